@@ -1,0 +1,39 @@
+//! Newtypes for the things that stages refer to by index.
+
+use serde::{Deserialize, Serialize};
+
+macro_rules! id {
+    ($(#[$doc:meta] $name:ident),* $(,)?) => {$(
+        #[$doc]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        #[serde(transparent)]
+        pub struct $name(pub u32);
+
+        impl $name {
+            /// The position in the vector that this id refers to.
+            pub fn index(self) -> usize {
+                self.0 as usize
+            }
+
+            /// The id of the element at `index`.
+            pub fn from_index(index: usize) -> Self {
+                Self(u32::try_from(index).expect("fewer than 2^32 elements"))
+            }
+        }
+    )*};
+}
+
+id! {
+    /// A view: index into [`crate::scene::Scene::views`].
+    ViewId,
+    /// An image segment: index into the segments of its own view.
+    SegmentId,
+    /// A reconstructed 3D line: index into the list of 3D lines.
+    LineId,
+    /// An accepted half-plane: index into the list of half-planes.
+    HalfPlaneId,
+    /// A roof facet: index into [`crate::roof::RoofModel::facets`].
+    FacetId,
+    /// A building: index into [`crate::roof::RoofModel::buildings`].
+    BuildingId,
+}

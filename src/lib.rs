@@ -1,0 +1,39 @@
+//! # ridgeline
+//!
+//! Three or more calibrated aerial photographs in, textured 3D roof models out.
+//!
+//! Implements B99 (Baillard, Schmid, Zisserman, Fitzgibbon 1999, "Automatic line matching and 3D
+//! reconstruction of buildings from multiple views").
+//!
+//! ```text
+//! images + orientation files
+//!    -> orientation, camera     Scene { views, ground }
+//!    -> lines2d                 edgels, chains, segments (per view)         B99 3.2
+//!    -> linematch               pairs, triples, N views                     B99 3.1 - 3.4
+//!    -> lines3d                 3D lines with covariance                    B99 3.2, figure 4
+//!    -> halfplane               points of interest, Sim(theta), half-planes B99 4.1
+//!    -> roof                    grouping, delineation, verification, walls  B99 4.2, 4.3
+//!    -> texture                 best view per face, atlas
+//!    -> export                  CityJSON, GLB, JSON
+//! ```
+//!
+//! Each stage is one function from typed input to `(value, Trace)`; the Trace holds what a teacher
+//! would draw. [`pipeline`] alone orders the stages.
+
+pub mod camera;
+pub mod error;
+pub mod geometry;
+pub mod halfplane;
+pub mod ids;
+pub mod linematch;
+pub mod lines2d;
+pub mod lines3d;
+pub mod math;
+pub mod parallel;
+pub mod params;
+pub mod raster;
+pub mod roof;
+pub mod scene;
+pub mod texture;
+
+pub use error::{Error, Result};

@@ -1,0 +1,20 @@
+//! Straight image segments (B99 3.2, "Implementation details").
+
+use nalgebra::Matrix2;
+use serde::Serialize;
+
+use crate::geometry::Segment2;
+
+/// A straight segment detected in one view, directed by contrast: the brighter side lies in the
+/// direction of [`Segment2::normal`], to the right of the direction as seen on the screen.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ImageSegment {
+    /// End points, pixels.
+    pub segment: Segment2,
+    /// Mean grey-value difference across the edge, bright minus dark side, 0 to 1.
+    pub contrast: f32,
+    /// Number of edgels that the line was fitted to.
+    pub edgels: u32,
+    /// Covariance of (offset along the normal at the midpoint in px, angle in rad), 2 x 2.
+    pub covariance: Matrix2<f64>,
+}

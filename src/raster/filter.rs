@@ -1,0 +1,74 @@
+//! Separable filters with clamped borders.
+
+use super::Gray;
+use crate::math;
+
+/// Gaussian blur with standard deviation `sigma_px`; borders are clamped. The kernel reaches 3 sigma.
+pub fn gaussian_blur(input: &Gray, sigma_px: f64) -> Gray {
+    let radius = (3.0 * sigma_px).ceil().max(1.0) as usize;
+    let mut kernel: Vec<f64> = (0..=radius)
+        .map(|i| math::exp(-0.5 * (i as f64 / sigma_px) * (i as f64 / sigma_px)))
+        .collect();
+    let sum = kernel[0] + 2.0 * kernel[1..].iter().sum::<f64>();
+    kernel.iter_mut().for_each(|k| *k /= sum);
+    let kernel: Vec<f32> = kernel.iter().map(|&k| k as f32).collect();
+    let (w, h) = (input.width, input.height);
+
+    let mut rows = Gray::new(w, h);
+    let mut padded = vec![0.0f32; w + 2 * radius];
+    for y in 0..h {
+        let row = &input.data[y * w..(y + 1) * w];
+        padded[..radius].fill(row[0]);
+        padded[radius..radius + w].copy_from_slice(row);
+        padded[radius + w..].fill(row[w - 1]);
+        let out = &mut rows.data[y * w..(y + 1) * w];
+        for (x, o) in out.iter_mut().enumerate() {
+            *o = padded[x + radius] * kernel[0];
+        }
+        for (i, &k) in kernel.iter().enumerate().skip(1) {
+            let (left, right) = (
+                &padded[radius - i..radius - i + w],
+                &padded[radius + i..radius + i + w],
+            );
+            for ((o, l), r) in out.iter_mut().zip(left).zip(right) {
+                *o += (l + r) * k;
+            }
+        }
+    }
+
+    let mut output = Gray::new(w, h);
+    for y in 0..h {
+        let row = |dy: isize| {
+            let y = (y as isize + dy).clamp(0, h as isize - 1) as usize;
+            &rows.data[y * w..(y + 1) * w]
+        };
+        let out = &mut output.data[y * w..(y + 1) * w];
+        for (o, v) in out.iter_mut().zip(row(0)) {
+            *o = v * kernel[0];
+        }
+        for (i, &k) in kernel.iter().enumerate().skip(1) {
+            for ((o, above), below) in out.iter_mut().zip(row(-(i as isize))).zip(row(i as isize)) {
+                *o += (above + below) * k;
+            }
+        }
+    }
+    output
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blur_keeps_the_mean_and_spreads_by_sigma() {
+        let mut impulse = Gray::new(41, 41);
+        impulse.data[20 * 41 + 20] = 1.0;
+        let blurred = gaussian_blur(&impulse, 2.0);
+        let sum: f32 = blurred.data.iter().sum();
+        assert!((sum - 1.0).abs() < 1e-4);
+        let variance: f32 = (0..41 * 41)
+            .map(|i| blurred.data[i] * ((i % 41) as f32 - 20.0) * ((i % 41) as f32 - 20.0))
+            .sum();
+        assert!((variance - 4.0).abs() < 0.1, "variance {variance}");
+    }
+}

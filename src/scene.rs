@@ -1,0 +1,50 @@
+//! What a reconstruction starts from: oriented views in one local frame.
+
+use nalgebra::Vector3;
+
+use crate::camera::Camera;
+use crate::ids::ViewId;
+use crate::raster::Gray;
+
+/// One photograph with its orientation.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// The image's file name without its folder: how messages and outputs call the view.
+    pub name: String,
+    /// The camera, an exact pinhole (distortion is removed on loading).
+    pub camera: Camera,
+    /// Grey values, 0 to 1, of the camera's size.
+    pub gray: Gray,
+    /// Colours for textures, of the camera's size.
+    pub rgb: image::RgbImage,
+}
+
+/// Oriented views and what is known about the ground.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The views, sorted by name.
+    pub views: Vec<View>,
+    /// Scene origin, metres: add it to local coordinates for the input's world frame.
+    pub origin: Vector3<f64>,
+    /// Height of the ground in the local frame, metres, when the user gave it.
+    pub ground_z: Option<f64>,
+    /// What the readers had to say (duplicate orientation, ignored files, ...).
+    pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// The view with this id.
+    pub fn view(&self, id: ViewId) -> &View {
+        &self.views[id.index()]
+    }
+
+    /// The camera of a view.
+    pub fn camera(&self, id: ViewId) -> &Camera {
+        &self.views[id.index()].camera
+    }
+
+    /// All view ids in order.
+    pub fn view_ids(&self) -> impl Iterator<Item = ViewId> + use<> {
+        (0..self.views.len()).map(ViewId::from_index)
+    }
+}
