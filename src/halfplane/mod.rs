@@ -1,4 +1,21 @@
-//! Half-planes by homography sweep (B99 4.1).
+//! From 3D lines to facets (B99 4): half-planes by homography sweep (4.1), grouping (4.2),
+//! delineation and verification (4.3).
+
+mod arrangement;
+mod borders;
+mod consistency;
+mod delineation;
+mod facets;
+mod grouping;
+mod labelling;
+mod neighbourhood;
+mod plan;
+
+pub use borders::{Border, BorderKind};
+pub use consistency::{ConsistencyMap, consistency_map};
+pub use facets::{FacetRejection, FacetTrace, RejectedFacet, reconstruct_facets};
+pub use grouping::{Member, PlaneGroup};
+pub use plan::{PlanGrid, image_from_plan, orthophoto};
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

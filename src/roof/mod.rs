@@ -1,5 +1,9 @@
 //! The roof model in which all methods end: planar facets, buildings, solids down to the ground.
 
+mod ground;
+
+pub use ground::Ground;
+
 use nalgebra::Point3;
 use serde::Serialize;
 
