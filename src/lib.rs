@@ -30,11 +30,13 @@ pub mod linematch;
 pub mod lines2d;
 pub mod lines3d;
 pub mod math;
+pub mod orientation;
 pub mod parallel;
 pub mod params;
 pub mod raster;
 pub mod roof;
 pub mod scene;
+pub mod synthetic;
 pub mod texture;
 
 pub use error::{Error, Result};
