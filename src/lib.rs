@@ -23,17 +23,20 @@
 pub mod camera;
 pub mod error;
 pub mod geometry;
+
 pub mod halfplane;
 pub mod ids;
 pub mod linematch;
 pub mod lines2d;
 pub mod lines3d;
 pub mod math;
+pub mod orientation;
 pub mod parallel;
 pub mod params;
 pub mod raster;
 pub mod roof;
 pub mod scene;
+pub mod synthetic;
 pub mod texture;
 
 pub use error::{Error, Result};
