@@ -57,8 +57,9 @@ impl Energy {
         self.unary[cell].binary_search_by_key(&label, |u| u.0).ok().map(|i| self.unary[cell][i].1)
     }
 
+    #[cfg(test)]
     /// The energy of a labelling; infinite when a cell has a plane that may not cover it.
-    pub fn of(&self, labels: &[u32]) -> f64 {
+    fn of(&self, labels: &[u32]) -> f64 {
         let data: f64 =
             labels.iter().enumerate().map(|(c, &l)| self.unary(c, l).unwrap_or(f64::INFINITY)).sum();
         let borders: f64 =
