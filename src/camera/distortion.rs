@@ -126,7 +126,7 @@ mod tests {
     use super::*;
 
     const LENS: Distortion = Distortion {
-        radial: [-0.12, 0.03, 0.004],
+        radial: [-0.25, 0.03, 0.004],
         radial_below: [0.01, 0.0, 0.0],
         tangential: [0.001, -0.002],
     };

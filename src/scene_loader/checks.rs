@@ -140,15 +140,15 @@ fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut
 /// Samples along each side of an image for the overlap.
 const GRID: u32 = 4;
 
-/// For each view, the greatest number of views (itself included) that see one of its sample points on the
-/// ground at height `z`.
+/// For each view, the greatest number of views (itself included; counted up to three, which is all that
+/// matters) that see one of its sample points on the ground at height `z`.
 fn views_together(cameras: &[&Camera], z: f64) -> Vec<usize> {
     cameras
         .iter()
         .map(|camera| {
             let seen_by = |world: &Point3<f64>| {
                 let sees = |c: &&&Camera| c.project(world).is_some_and(|p| c.contains(&p, -0.5));
-                cameras.iter().filter(sees).count()
+                cameras.iter().filter(sees).take(3).count()
             };
             samples(camera)
                 .filter_map(|p| camera.at_height(&p, z))
