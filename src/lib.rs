@@ -36,6 +36,7 @@ pub mod params;
 pub mod raster;
 pub mod roof;
 pub mod scene;
+pub mod scene_loader;
 pub mod synthetic;
 pub mod texture;
 
