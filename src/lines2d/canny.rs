@@ -108,22 +108,23 @@ pub fn suppress(gradient: &Gradient, local: &LocalGradients, low: f64) -> Vec<Ed
     let (w, h) = (gradient.width, gradient.height);
     let low = low as f32;
     let mut edgels = Vec::new();
+    let mut noise = vec![0.0; w];
     for y in 2..h.saturating_sub(2) {
+        local.noise_row(y, &mut noise);
+        let strength = &gradient.strength[y * w..(y + 1) * w];
         for x in 2..w.saturating_sub(2) {
-            let i = y * w + x;
-            let Some(offset) = crest(gradient, i) else {
-                continue;
-            };
-            let noise = local.noise(x, y);
-            if gradient.strength[i] < low * noise {
+            if strength[x] < low * noise[x] {
                 continue;
             }
-            edgels.push(Edgel {
-                position: Point2::new(x as f64 + 0.5, y as f64 + 0.5) + offset,
-                gradient: Vector2::new(gradient.x[i], gradient.y[i]),
-                strength: gradient.strength[i],
-                noise,
-            });
+            let i = y * w + x;
+            if let Some(offset) = crest(gradient, i) {
+                edgels.push(Edgel {
+                    position: Point2::new(x as f64 + 0.5, y as f64 + 0.5) + offset,
+                    gradient: Vector2::new(gradient.x[i], gradient.y[i]),
+                    strength: gradient.strength[i],
+                    noise: noise[x],
+                });
+            }
         }
     }
     edgels

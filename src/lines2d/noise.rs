@@ -45,18 +45,27 @@ impl LocalGradients {
         }
     }
 
-    /// Scale of the gradients around a pixel: the standard deviation of a component, grey values
-    /// per px, were they all noise.
-    pub fn noise(&self, x: usize, y: usize) -> f32 {
-        // Bilinear between block centres, so that thresholds have no steps at block borders.
-        let (column, fx) = interval(x, self.columns);
-        let (row, fy) = interval(y, self.rows);
-        let right = (column + 1).min(self.columns - 1);
-        let below = (row + 1).min(self.rows - 1);
-        let at = |column: usize, row: usize| self.noise[row * self.columns + column];
-        let top = at(column, row) + (at(right, row) - at(column, row)) * fx;
-        let bottom = at(column, below) + (at(right, below) - at(column, below)) * fx;
-        top + (bottom - top) * fy
+    /// Scale of the gradients around each pixel of row `y`: the standard deviation of a component, grey
+    /// values per px, were they all noise. Bilinear between block centres, so that thresholds have no
+    /// steps at block borders.
+    pub fn noise_row(&self, y: usize, row: &mut [f32]) {
+        let (above, f) = interval(y, self.rows);
+        let below = (above + 1).min(self.rows - 1);
+        let line = |row: usize| &self.noise[row * self.columns..(row + 1) * self.columns];
+        let (above, below) = (line(above), line(below));
+        let blocks = above.iter().zip(below).map(|(a, b)| a + (b - a) * f);
+        let blocks: Vec<f32> = blocks.collect();
+        // Before the first centre and after the last one the value is constant.
+        let half = BLOCK_PX / 2;
+        let (first, rest) = row.split_at_mut(half.min(row.len()));
+        first.fill(blocks[0]);
+        for (pixels, column) in rest.chunks_mut(BLOCK_PX).zip(0..) {
+            let left = blocks[column];
+            let slope = (blocks[(column + 1).min(self.columns - 1)] - left) / BLOCK_PX as f32;
+            for (pixel, i) in pixels.iter_mut().zip(0u16..) {
+                *pixel = left + slope * (f32::from(i) + 0.5);
+            }
+        }
     }
 
     /// `-ln H(strength)` around a pixel: 0 for what is ordinary there, large for what is rare.
