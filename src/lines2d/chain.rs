@@ -209,3 +209,68 @@ impl Raster {
         self.index[(y * self.width + x) as usize]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::edgel;
+    use super::*;
+
+    /// Edgels along a row whose brighter side is below: chains run to the right.
+    fn row(columns: &[i32]) -> Vec<Edgel> {
+        let at = |&x: &i32| edgel(f64::from(x) + 0.5, 5.5, (0.0, 1.0));
+        columns.iter().map(at).collect()
+    }
+
+    #[test]
+    fn a_gap_of_one_pixel_is_jumped_and_a_wider_one_is_not() {
+        let chains = link_chains(&row(&[3, 4, 6, 7, 10, 11]), 1.0);
+        let members: Vec<_> = chains.iter().map(|c| c.edgels.clone()).collect();
+        assert_eq!(members, [vec![0, 1, 2, 3], vec![4, 5]]);
+    }
+
+    #[test]
+    fn chains_run_with_the_brighter_side_to_the_right() {
+        let mut edgels = row(&[3, 4, 5]);
+        assert_eq!(link_chains(&edgels, 1.0)[0].edgels, [0, 1, 2]);
+        edgels.iter_mut().for_each(|e| e.gradient = -e.gradient);
+        assert_eq!(link_chains(&edgels, 1.0)[0].edgels, [2, 1, 0]);
+    }
+
+    #[test]
+    fn opposite_contrast_is_not_linked() {
+        let mut edgels = row(&[3, 4, 5, 6]);
+        edgels[2].gradient = -edgels[2].gradient;
+        edgels[3].gradient = -edgels[3].gradient;
+        let chains = link_chains(&edgels, 1.0);
+        assert_eq!(chains.len(), 2);
+        assert_eq!(chains[1].edgels, [3, 2]);
+    }
+
+    #[test]
+    fn one_strong_edgel_keeps_a_chain() {
+        let mut edgels = row(&[3, 4, 5, 20, 21, 22]);
+        edgels[4].strength = 3.0 * edgels[4].noise;
+        let kept = link_chains(&edgels, 2.5);
+        assert_eq!(kept.len(), 1);
+        assert_eq!(kept[0].edgels, [3, 4, 5]);
+    }
+
+    #[test]
+    fn a_ring_is_closed_and_holds_every_edgel_once() {
+        let on_circle = |i: i32| {
+            let (s, c) = crate::math::sin_cos(f64::from(i) / 60.0 * std::f64::consts::TAU);
+            edgel(20.5 + 10.0 * c, 20.5 + 10.0 * s, (c as f32, s as f32))
+        };
+        let mut edgels: Vec<_> = (0..60).map(on_circle).collect();
+        edgels.sort_by_key(|e| (e.pixel().1, e.pixel().0));
+        edgels.dedup_by_key(|e| e.pixel());
+        let chains = link_chains(&edgels, 1.0);
+        assert_eq!(chains.len(), 1);
+        assert!(chains[0].closed);
+        let mut members = chains[0].edgels.clone();
+        members.sort_unstable();
+        members.dedup();
+        assert_eq!(members.len(), chains[0].edgels.len());
+        assert!(members.len() * 10 >= edgels.len() * 9);
+    }
+}

@@ -17,7 +17,7 @@ const BINS: usize = 256;
 /// full contrast in one pixel, where nothing is ordinary any more.
 const BIN_WIDTH: f32 = 1.0 / 2048.0;
 /// Gradient noise never counts as less than this, grey values per px: rounding to 8 bits alone has a
-/// standard deviation of 1/255/sqrt(12), and about a quarter of it is left after smoothing.
+/// standard deviation of 1/255/sqrt(12), and a quarter of it is left after smoothing.
 const MIN_NOISE: f32 = 0.25 / 255.0 / 3.464_101_6;
 /// Median of a Rayleigh distribution, the strength of a gradient whose components are Gaussian with
 /// standard deviation 1.
@@ -137,12 +137,62 @@ fn noise_of(counts: &[u32; BINS]) -> f32 {
 fn surprise_of(counts: &[u32; BINS]) -> [f32; BINS] {
     let total = counts.iter().sum::<u32>().max(1);
     let mut surprise = [0.0; BINS];
+    // Never zero: what no pixel reaches is at most as rare as one in the sample.
+    let mut value = crate::math::ln(f64::from(total)) as f32;
     let mut stronger = 0;
     for (s, &n) in surprise.iter_mut().zip(counts).rev() {
-        stronger += n;
-        // Never zero: what no pixel reaches is at most as rare as one in the sample.
-        let share = f64::from(stronger.max(1)) / f64::from(total);
-        *s = -crate::math::ln(share) as f32;
+        if n > 0 {
+            stronger += n;
+            value = -crate::math::ln(f64::from(stronger) / f64::from(total)) as f32;
+        }
+        *s = value;
     }
     surprise
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{add_noise, step_edge};
+    use super::*;
+    use crate::raster::Gray;
+
+    /// What smoothing by 1 px and a central difference leave of white noise of 1: smoothed noise is
+    /// correlated as R(d) = exp(-d^2 / 4) / 4 pi, and the variance of a difference over 2 px, halved,
+    /// is (R(0) - R(2)) / 2.
+    const GAIN: f32 = 0.1586;
+
+    fn noisy(sigma: f64) -> Gradient {
+        let mut gray = Gray::from_fn(160, 160, |_, _| 0.5);
+        add_noise(&mut gray, sigma, 7);
+        Gradient::new(&gray, 1.0)
+    }
+
+    #[test]
+    fn the_noise_is_that_of_the_image() {
+        let local = LocalGradients::new(&noisy(0.02));
+        let mut row = vec![0.0; 160];
+        for y in [3, 80, 150] {
+            local.noise_row(y, &mut row);
+            for n in &row {
+                assert!((n / (0.02 * GAIN) - 1.0).abs() < 0.15, "{n}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_clean_image_has_the_noise_of_rounding() {
+        let local = LocalGradients::new(&noisy(0.0));
+        let mut row = vec![0.0; 160];
+        local.noise_row(9, &mut row);
+        assert_eq!(row, vec![MIN_NOISE; 160]);
+    }
+
+    #[test]
+    fn an_edge_is_a_surprise_and_noise_is_none() {
+        let mut gray = step_edge(160, 160, 0.3, 0.2);
+        add_noise(&mut gray, 0.02, 7);
+        let local = LocalGradients::new(&Gradient::new(&gray, 1.0));
+        assert!(local.surprise(80, 80, 0.02 * GAIN) < 1.0);
+        assert!(local.surprise(80, 80, 0.06) > 3.0);
+    }
 }
