@@ -40,6 +40,15 @@ pub struct SegmentParams {
     /// Largest root mean square distance of the edgels from their line, px. Assumption: what noise
     /// does to the weakest edges that are worth having.
     pub max_rms_px: f64,
+    /// Fewest edgels of a straight piece from which a line is grown. Assumption: what still
+    /// predicts a direction.
+    pub seed_edgels: usize,
+    /// Largest gap over which a line is grown, px. B99 3.2 jumps "up to a one pixel gap" when linking;
+    /// Assumption: along a line already fitted more is safe.
+    pub grow_gap_px: usize,
+    /// Largest turn of an edgel against the line that takes it up, degrees. Assumption: what texture
+    /// does to the gradient of a weak edge.
+    pub grow_turn_deg: f64,
     /// Smallest radius of curvature of a line that bends significantly, px. Assumption: over
     /// 60 px it bends by 1.5 px.
     pub min_radius_px: f64,
@@ -59,10 +68,13 @@ impl Default for SegmentParams {
             min_length_px: 15.0,
             worm_arm_edgels: 5,
             worm_bend_deg: 20.0,
-            max_residual_px: 0.9,
-            max_rms_px: 0.35,
+            max_residual_px: 1.2,
+            max_rms_px: 0.5,
+            seed_edgels: 8,
+            grow_gap_px: 6,
+            grow_turn_deg: 30.0,
             min_radius_px: 300.0,
-            max_ln_false_alarms: 0.0,
+            max_ln_false_alarms: 5.0,
             contrast_distance_px: 2.5,
             edgel_floor_px: 0.05,
         }
@@ -85,9 +97,9 @@ pub struct EdgelParams {
 impl Default for EdgelParams {
     fn default() -> Self {
         Self {
-            smoothing_px: 1.0,
-            low: 1.0,
-            high: 2.0,
+            smoothing_px: 0.8,
+            low: 1.8,
+            high: 2.5,
         }
     }
 }
