@@ -70,11 +70,11 @@ impl Default for SegmentParams {
             worm_bend_deg: 20.0,
             max_residual_px: 1.2,
             max_rms_px: 0.5,
-            seed_edgels: 6,
-            grow_gap_px: 4,
+            seed_edgels: 8,
+            grow_gap_px: 6,
             grow_turn_deg: 30.0,
             min_radius_px: 300.0,
-            max_ln_false_alarms: 0.0,
+            max_ln_false_alarms: 5.0,
             contrast_distance_px: 2.5,
             edgel_floor_px: 0.05,
         }
@@ -97,9 +97,9 @@ pub struct EdgelParams {
 impl Default for EdgelParams {
     fn default() -> Self {
         Self {
-            smoothing_px: 1.0,
-            low: 1.0,
-            high: 2.0,
+            smoothing_px: 0.8,
+            low: 1.8,
+            high: 2.5,
         }
     }
 }
@@ -131,9 +131,10 @@ pub struct MatchParams {
     /// Grey-value noise that windows are trusted against, 0 to 1. Assumption: an 8-bit camera and a
     /// good JPEG.
     pub noise: f64,
-    /// Angle of the planes tried on either side of the line besides the horizontal one, degrees
-    /// (Schmid and Zisserman 1997). Assumption: between the slopes of common roofs.
-    pub plane_angle_deg: f64,
+    /// Angles of the planes tried on either side of the line, degrees, the horizontal one first
+    /// (Schmid and Zisserman 1997). Assumption: up to the slopes of roofs, so close that a window's edge is
+    /// less than a pixel off at a base-to-height ratio of 0.4.
+    pub plane_angles_deg: Vec<f64>,
     /// Least sine of the angle at which a ray meets the other segment's interpretation plane:
     /// baseline over height times the sine of the line's angle to the epipolar lines. Assumption:
     /// below 0.04 an error of one pixel moves the line by 25 ground pixels in depth.
@@ -164,7 +165,7 @@ impl Default for MatchParams {
             min_views: 4,
             same_contrast: true,
             noise: 0.006,
-            plane_angle_deg: 35.0,
+            plane_angles_deg: vec![0.0, -20.0, 20.0, -40.0, 40.0, -55.0, 55.0],
             min_intersection_sine: 0.04,
             max_slope_deg: 75.0,
             gate_px: 1.5,
@@ -186,6 +187,8 @@ pub struct Lines3dParams {
     pub loss_scale: f64,
     /// Most Levenberg-Marquardt steps. Assumption: a good start converges in fewer than ten.
     pub max_iterations: usize,
+    /// Residual, in standard deviations, beyond which a segment is not of this line. Assumption.
+    pub max_residual: f64,
     /// Largest standard deviation of a line across itself, ground pixels. Assumption.
     pub max_sigma_px: f64,
 }
@@ -193,9 +196,10 @@ pub struct Lines3dParams {
 impl Default for Lines3dParams {
     fn default() -> Self {
         Self {
-            position_floor_px: 0.1,
+            position_floor_px: 0.15,
             loss_scale: 2.4,
             max_iterations: 20,
+            max_residual: 4.0,
             max_sigma_px: 3.0,
         }
     }
