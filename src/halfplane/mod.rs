@@ -14,6 +14,8 @@
 //! trace       what the page draws (B99 figures 12 and 14)
 //! ```
 
+#[cfg(test)]
+mod fixture;
 mod peak;
 mod poi;
 mod similarity;
