@@ -23,6 +23,7 @@
 pub mod camera;
 pub mod error;
 pub mod geometry;
+
 pub mod halfplane;
 pub mod ids;
 pub mod linematch;
