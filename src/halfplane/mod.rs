@@ -1,4 +1,30 @@
 //! Half-planes by homography sweep (B99 4.1).
+//!
+//! A 3D line leaves one parameter of a plane through it open, the angle theta. Each side of the line is
+//! swept apart: the neighbourhood in the most textured view is compared with every other view under the
+//! homographies `H(theta)`, and a distinct maximum of `Sim(theta)` makes a half-plane.
+//!
+//! ```text
+//! poi         points of interest of a view
+//! strip       the neighbourhood of a line side, and how a view is warped into it
+//! windows     correlations of all windows of two strips by running sums
+//! similarity  Sim(theta) of one line side, view by view
+//! peak        parabola, uncertainty and acceptance of a maximum
+//! sweep       the search over theta
+//! trace       what the page draws (B99 figures 12 and 14)
+//! ```
+
+mod peak;
+mod poi;
+mod similarity;
+mod strip;
+mod sweep;
+mod trace;
+mod windows;
+
+pub use poi::PointsOfInterest;
+pub use sweep::{similarity_curve, sweep_half_planes, sweep_side};
+pub use trace::{SideTrace, SimilarityCurve, SweepRejection, SweepTrace, ViewCurve};
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
