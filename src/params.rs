@@ -40,6 +40,15 @@ pub struct SegmentParams {
     /// Largest root mean square distance of the edgels from their line, px. Assumption: what noise
     /// does to the weakest edges that are worth having.
     pub max_rms_px: f64,
+    /// Fewest edgels of a straight piece from which a line is grown. Assumption: what still
+    /// predicts a direction.
+    pub seed_edgels: usize,
+    /// Largest gap over which a line is grown, px. B99 3.2 jumps "up to a one pixel gap" when linking;
+    /// Assumption: along a line already fitted more is safe.
+    pub grow_gap_px: usize,
+    /// Largest turn of an edgel against the line that takes it up, degrees. Assumption: what texture
+    /// does to the gradient of a weak edge.
+    pub grow_turn_deg: f64,
     /// Smallest radius of curvature of a line that bends significantly, px. Assumption: over
     /// 60 px it bends by 1.5 px.
     pub min_radius_px: f64,
@@ -59,8 +68,11 @@ impl Default for SegmentParams {
             min_length_px: 15.0,
             worm_arm_edgels: 5,
             worm_bend_deg: 20.0,
-            max_residual_px: 0.9,
-            max_rms_px: 0.35,
+            max_residual_px: 1.2,
+            max_rms_px: 0.5,
+            seed_edgels: 6,
+            grow_gap_px: 4,
+            grow_turn_deg: 30.0,
             min_radius_px: 300.0,
             max_ln_false_alarms: 0.0,
             contrast_distance_px: 2.5,
@@ -192,9 +204,54 @@ impl Default for SweepParams {
 }
 
 /// B99 4.2, 4.3: from half-planes to facets.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct RoofParams {}
+pub struct RoofParams {
+    /// Half-planes within this angle, degrees, may share a plane. B99 4.4: theta is known to 2 degrees
+    /// on textured faces and to 5 on weak ones; two of them may differ by somewhat more than either.
+    pub coplanar_angle_deg: f64,
+    /// Least distance within which a line counts as lying in a plane, metres. Assumption: eaves have
+    /// gutters and ridges have caps of about this size.
+    pub coplanar_distance_m: f64,
+    /// A facet may reach at least this far from its supporting line, metres. Assumption.
+    pub min_facet_depth_m: f64,
+    /// ... and at most this far, metres. Assumption: larger facets have lines on both sides.
+    pub max_facet_depth_m: f64,
+    /// Lines are extended by at least this much at both ends to meet others, metres (B99 figure 22). Assumption.
+    pub extension_m: f64,
+    /// Correlation at which a plane is as good as no plane. Assumption: half-way between what true planes and
+    /// chance reach; B99 accepts half-planes from `Sim = 0.4` on.
+    pub min_correlation: f64,
+    /// What a metre of facet border costs that no line supports, in square metres of mismatch. Assumption.
+    pub border_cost_m: f64,
+    /// What a metre of line earns whose half-plane is honoured, in square metres of match. Assumption.
+    pub half_plane_gain_m: f64,
+    /// Facets smaller than this are not reported, square metres. Assumption.
+    pub min_area_m2: f64,
+    /// Least share of a facet's outline that lies on reconstructed lines (tau_real, B99 4.3). Assumption.
+    pub min_real_ratio: f64,
+    /// Facets whose middle is lower than this above the ground are not roofs, metres. Assumption: higher than
+    /// cars, lower than garages.
+    pub min_height_m: f64,
+}
+
+impl Default for RoofParams {
+    fn default() -> Self {
+        Self {
+            coplanar_angle_deg: 8.0,
+            coplanar_distance_m: 0.15,
+            min_facet_depth_m: 5.0,
+            max_facet_depth_m: 15.0,
+            extension_m: 1.5,
+            min_correlation: 0.45,
+            border_cost_m: 0.25,
+            half_plane_gain_m: 0.1,
+            min_area_m2: 1.5,
+            min_real_ratio: 0.25,
+            min_height_m: 1.8,
+        }
+    }
+}
 
 /// Texture atlas.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

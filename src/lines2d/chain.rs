@@ -20,15 +20,19 @@ pub struct Chain {
 }
 
 /// No edgel.
-const NONE: u32 = u32::MAX;
+pub const NONE: u32 = u32::MAX;
 
 /// Links edgels (one a pixel at most, as [`super::detect_edgels`] gives them) into chains of two
 /// and more; chains without any edgel of at least `high` times its noise are dropped. Chains are
 /// ordered by their first edgel's index.
 pub fn link_chains(edgels: &[Edgel], high: f64) -> Vec<Chain> {
-    let raster = Raster::new(edgels);
-    let next = choose(edgels, &raster, 1.0);
-    let previous = choose(edgels, &raster, -1.0);
+    link_on(edgels, &Raster::new(edgels), high)
+}
+
+/// [`link_chains`] on a raster of the edgels that is at hand.
+pub fn link_on(edgels: &[Edgel], raster: &Raster, high: f64) -> Vec<Chain> {
+    let next = choose(edgels, raster, 1.0);
+    let previous = choose(edgels, raster, -1.0);
     let mutual = |i: u32| {
         let j = next[i as usize];
         (j != NONE && previous[j as usize] == i).then_some(j)
@@ -121,39 +125,37 @@ fn link_cost(from: &Edgel, to: &Edgel, tangent: &Vector2<f64>) -> f64 {
     ahead + 2.0 * aside
 }
 
-/// Which edgel a pixel holds, with a frame of two empty pixels.
-struct Raster {
+/// Which edgel a pixel holds ([`NONE`] elsewhere).
+pub struct Raster {
     width: isize,
+    height: isize,
     index: Vec<u32>,
 }
 
 impl Raster {
-    const FRAME: isize = 2;
-
-    fn new(edgels: &[Edgel]) -> Self {
+    /// The raster of edgels that have a pixel each.
+    pub fn new(edgels: &[Edgel]) -> Self {
         let (mut columns, mut rows) = (0, 0);
         for (x, y) in edgels.iter().map(Edgel::pixel) {
             columns = columns.max(x + 1);
             rows = rows.max(y + 1);
         }
-        let width = columns as isize + 2 * Self::FRAME;
-        let height = rows as isize + 2 * Self::FRAME;
-        let mut raster = Self {
-            width,
-            index: vec![NONE; (width * height) as usize],
-        };
+        let mut index = vec![NONE; columns * rows];
         for (i, (x, y)) in (0..).zip(edgels.iter().map(Edgel::pixel)) {
-            let at = raster.offset(x as isize, y as isize);
-            raster.index[at] = i;
+            index[y * columns + x] = i;
         }
-        raster
+        Self {
+            width: columns as isize,
+            height: rows as isize,
+            index,
+        }
     }
 
-    fn offset(&self, x: isize, y: isize) -> usize {
-        ((y + Self::FRAME) * self.width + x + Self::FRAME) as usize
-    }
-
-    fn at(&self, x: isize, y: isize) -> u32 {
-        self.index[self.offset(x, y)]
+    /// The edgel of a pixel; none outside.
+    pub fn at(&self, x: isize, y: isize) -> u32 {
+        if x < 0 || y < 0 || x >= self.width || y >= self.height {
+            return NONE;
+        }
+        self.index[(y * self.width + x) as usize]
     }
 }

@@ -5,12 +5,14 @@
 //!    -> chain    edgels linked over gaps of one pixel, hysteresis
 //!    -> worm     chains broken where the tangent turns
 //!    -> fit      straight pieces by orthogonal regression, tight threshold, covariance
+//!    -> grow     pieces grown along their line through the edgels ahead
 //!    -> segments length, curvature and significance decide; contrast directs
 //! ```
 
 mod canny;
 mod chain;
 mod fit;
+mod grow;
 mod noise;
 mod segments;
 mod significance;

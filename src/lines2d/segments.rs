@@ -5,8 +5,9 @@ use serde::Serialize;
 
 use super::ImageSegment;
 use super::canny::{Edgel, Gradient, suppress};
-use super::chain::link_chains;
-use super::fit::{LineFit, Piece, straight_pieces};
+use super::chain::{Chain, Raster, link_on};
+use super::fit::straight_pieces;
+use super::grow::{Grown, grow};
 use super::noise::LocalGradients;
 use super::significance::ln_false_alarms;
 use super::worm::tangent_breaks;
@@ -14,7 +15,7 @@ use crate::geometry::Segment2;
 use crate::params::SegmentParams;
 use crate::raster::Gray;
 
-/// Why a straight piece of a chain is not a segment.
+/// Why a straight line of edgels is not a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SegmentRejection {
@@ -26,10 +27,10 @@ pub enum SegmentRejection {
     NotSignificant,
 }
 
-/// A piece that was refused, with the reason.
+/// A line that was refused, with the reason.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RejectedSegment {
-    /// The piece, px.
+    /// The line, px.
     pub segment: Segment2,
     /// Why it was refused.
     pub reason: SegmentRejection,
@@ -44,44 +45,62 @@ pub struct SegmentTrace {
     pub chains: usize,
     /// Where the worm broke a chain, px.
     pub worm_breaks: Vec<Point2<f64>>,
-    /// Straight pieces that are too short.
+    /// Straight pieces of chains, from which lines are grown.
+    pub seeds: usize,
+    /// Seeds that a longer one has swallowed.
+    pub taken: usize,
+    /// Lines that are too short.
     pub too_short: usize,
-    /// Straight pieces that belong to a curve.
+    /// Lines that belong to a curve.
     pub curved: usize,
-    /// Straight pieces that the texture around them explains.
+    /// Lines that the texture around them explains.
     pub not_significant: usize,
-    /// The refused pieces of at least the minimum length.
+    /// The refused lines of at least the minimum length.
     pub rejected: Vec<RejectedSegment>,
 }
 
-/// The straight segments of an image, directed by contrast, ordered as their chains are.
+/// The straight segments of an image, directed by contrast, those of the longest pieces first.
 pub fn detect_segments(gray: &Gray, params: &SegmentParams) -> (Vec<ImageSegment>, SegmentTrace) {
     let gradient = Gradient::new(gray, params.edgels.smoothing_px);
     let local = LocalGradients::new(&gradient);
     let edgels = suppress(&gradient, &local, params.edgels.low);
-    let chains = link_chains(&edgels, params.edgels.high);
+    let raster = Raster::new(&edgels);
+    let chains = link_on(&edgels, &raster, params.edgels.high);
     let mut trace = SegmentTrace {
         edgels: edgels.len(),
         chains: chains.len(),
         ..SegmentTrace::default()
     };
-    let mut candidates = Vec::new();
-    for chain in &chains {
-        let members: Vec<Edgel> = chain.edgels.iter().map(|&i| edgels[i as usize]).collect();
-        candidates.extend(pieces_of(&members, params, &mut trace));
-    }
-    trace.too_short = candidates.len();
-    candidates.retain(|c| c.segment.length() >= params.min_length_px);
-    trace.too_short -= candidates.len();
-    let tests = candidates.len();
+    let mut seeds: Vec<Vec<u32>> = chains
+        .iter()
+        .flat_map(|chain| seeds_of(chain, &edgels, params, &mut trace))
+        .collect();
+    trace.seeds = seeds.len();
+    // The longest first: they predict best. The sort is stable, equals stay in the order of their chains.
+    seeds.sort_by_key(|seed| std::cmp::Reverse(seed.len()));
+
+    let tests = seeds.len();
+    let mut taken = vec![false; edgels.len()];
     let mut segments = Vec::new();
-    for candidate in &candidates {
-        match judge(candidate, &local, tests, params) {
-            None => segments.push(finish(candidate, gray, params)),
-            Some(reason) => trace.rejected.push(RejectedSegment {
-                segment: candidate.segment,
-                reason,
-            }),
+    for seed in &seeds {
+        if seed.iter().filter(|&&i| taken[i as usize]).count() * 2 > seed.len() {
+            trace.taken += 1;
+            continue;
+        }
+        let line = grow(&edgels, &raster, seed, &|i| !taken[i as usize], params);
+        let line = if line.line.is_tight(&line.points, params) {
+            line
+        } else {
+            Grown::new(&edgels, seed.clone())
+        };
+        let segment = extent(&line);
+        match judge(&line, &segment, &edgels, &local, tests, params) {
+            None => {
+                line.edgels.iter().for_each(|&i| taken[i as usize] = true);
+                segments.push(finish(&line, segment, gray, params));
+            }
+            Some(SegmentRejection::TooShort) => trace.too_short += 1,
+            Some(reason) => trace.rejected.push(RejectedSegment { segment, reason }),
         }
     }
     let refused = |reason| trace.rejected.iter().filter(|r| r.reason == reason).count();
@@ -90,36 +109,15 @@ pub fn detect_segments(gray: &Gray, params: &SegmentParams) -> (Vec<ImageSegment
     (segments, trace)
 }
 
-/// A straight piece with its edgels.
-struct Candidate {
-    edgels: Vec<Edgel>,
-    points: Vec<Point2<f64>>,
-    line: LineFit,
-    segment: Segment2,
-}
-
-impl Candidate {
-    fn new(edgels: &[Edgel], points: &[Point2<f64>], piece: &Piece) -> Self {
-        let points = points[piece.from..piece.to].to_vec();
-        let line = piece.line;
-        let along = points.iter().map(|p| line.along(p));
-        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| {
-            (l.min(t), h.max(t))
-        });
-        Self {
-            edgels: edgels[piece.from..piece.to].to_vec(),
-            segment: Segment2::new(
-                line.centroid + line.direction * low,
-                line.centroid + line.direction * high,
-            ),
-            points,
-            line,
-        }
-    }
-}
-
-fn pieces_of(edgels: &[Edgel], params: &SegmentParams, trace: &mut SegmentTrace) -> Vec<Candidate> {
-    let points: Vec<Point2<f64>> = edgels.iter().map(|e| e.position).collect();
+/// The straight pieces of a chain, as edgel indices.
+fn seeds_of(
+    chain: &Chain,
+    edgels: &[Edgel],
+    params: &SegmentParams,
+    trace: &mut SegmentTrace,
+) -> Vec<Vec<u32>> {
+    let position = |&i: &u32| edgels[i as usize].position;
+    let points: Vec<Point2<f64>> = chain.edgels.iter().map(position).collect();
     let breaks = tangent_breaks(&points, params);
     trace.worm_breaks.extend(breaks.iter().map(|&i| points[i]));
     let starts = std::iter::once(0).chain(breaks.iter().copied());
@@ -127,40 +125,58 @@ fn pieces_of(edgels: &[Edgel], params: &SegmentParams, trace: &mut SegmentTrace)
     starts
         .zip(ends)
         .flat_map(|(from, to)| straight_pieces(&points, from, to, params))
-        .map(|piece| Candidate::new(edgels, &points, &piece))
+        .filter(|piece| piece.to - piece.from >= params.seed_edgels)
+        .map(|piece| chain.edgels[piece.from..piece.to].to_vec())
         .collect()
 }
 
+/// The stretch of the line from its first to its last edgel.
+fn extent(grown: &Grown) -> Segment2 {
+    let line = &grown.line;
+    let along = grown.points.iter().map(|p| line.along(p));
+    let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| {
+        (l.min(t), h.max(t))
+    });
+    let at = |t: f64| line.centroid + line.direction * t;
+    Segment2::new(at(low), at(high))
+}
+
+/// Why the line is no segment, if it is none.
 fn judge(
-    candidate: &Candidate,
+    grown: &Grown,
+    segment: &Segment2,
+    edgels: &[Edgel],
     local: &LocalGradients,
     tests: usize,
     params: &SegmentParams,
 ) -> Option<SegmentRejection> {
-    let (curvature, sigma) = candidate.line.curvature(&candidate.points);
+    if segment.length() < params.min_length_px {
+        return Some(SegmentRejection::TooShort);
+    }
+    let line = &grown.line;
     let correlated = 2.0 * params.edgels.smoothing_px;
+    let (curvature, sigma) = line.curvature(&grown.points);
     let sigma = sigma * correlated.sqrt();
     if curvature.abs() > 3.0 * sigma && curvature.abs() * params.min_radius_px > 1.0 {
         return Some(SegmentRejection::Curved);
     }
-    let normal = candidate.line.normal();
-    let sum: f64 = candidate
-        .edgels
-        .iter()
-        .map(|e| {
-            let (x, y) = e.pixel();
-            let across = e.gradient.cast::<f64>().dot(&normal).max(0.0);
-            f64::from(local.surprise(x, y, across as f32))
-        })
-        .sum();
-    let n = candidate.edgels.len() as f64 / correlated;
-    let alarms = ln_false_alarms(tests, n, sum / correlated);
+    let normal = line.normal();
+    let surprise = |&i: &u32| {
+        let edgel = &edgels[i as usize];
+        let (x, y) = edgel.pixel();
+        let across = edgel.gradient.cast::<f64>().dot(&normal).max(0.0);
+        f64::from(local.surprise(x, y, across as f32))
+    };
+    let sum: f64 = grown.edgels.iter().map(surprise).sum();
+    // One edgel a pixel along the main axis, were there no gaps.
+    let step = segment.p1 - segment.p0;
+    let pixels = (step.x.abs().max(step.y.abs()) + 1.0).max(grown.edgels.len() as f64);
+    let alarms = ln_false_alarms(tests, pixels / correlated, sum / correlated);
     (alarms > params.max_ln_false_alarms).then_some(SegmentRejection::NotSignificant)
 }
 
-fn finish(candidate: &Candidate, gray: &Gray, params: &SegmentParams) -> ImageSegment {
-    let segment = candidate.segment;
-    let line = &candidate.line;
+fn finish(grown: &Grown, segment: Segment2, gray: &Gray, params: &SegmentParams) -> ImageSegment {
+    let line = &grown.line;
     ImageSegment {
         segment,
         contrast: contrast(gray, &segment, params.contrast_distance_px),

@@ -1,8 +1,12 @@
 //! The roof model in which all methods end: planar facets, buildings, solids down to the ground.
 
+mod ground;
 mod invariants;
+mod reconstruct;
 mod solid;
 
+pub use ground::Ground;
+pub use reconstruct::{RoofTrace, reconstruct_roofs};
 pub use invariants::{PLANAR_M, Violation, check_invariants};
 pub use solid::{SolidRejection, SolidTrace, WELD_M, close_buildings};
 
