@@ -22,8 +22,8 @@
 
 pub mod camera;
 pub mod error;
+pub mod export;
 pub mod geometry;
-
 pub mod halfplane;
 pub mod ids;
 pub mod linematch;

@@ -259,10 +259,23 @@ impl Default for RoofParams {
 pub struct TextureParams {
     /// Largest side of the atlas, px. Assumption: what every WebGL 2 device can hold.
     pub max_atlas_px: u32,
+    /// Side of a texel in pixels of the view that shows a face best. Assumption: 1, finer ones hold
+    /// no more detail.
+    pub texel_px: f64,
+    /// Border around each patch, px, against bleeding. Assumption: 4, so that patches stay apart down to the
+    /// second mipmap level.
+    pub padding_px: u32,
+    /// Quality of the atlas as JPEG, 1 to 100. Assumption: 90, where its blocks cannot be seen.
+    pub jpeg_quality: u8,
 }
 
 impl Default for TextureParams {
     fn default() -> Self {
-        Self { max_atlas_px: 4096 }
+        Self {
+            max_atlas_px: 4096,
+            texel_px: 1.0,
+            padding_px: 4,
+            jpeg_quality: 90,
+        }
     }
 }
