@@ -37,6 +37,7 @@ pub mod pipeline;
 pub mod raster;
 pub mod roof;
 pub mod scene;
+pub mod scene_loader;
 pub mod synthetic;
 pub mod texture;
 #[cfg(target_arch = "wasm32")]
