@@ -70,11 +70,11 @@ impl Default for SegmentParams {
             worm_bend_deg: 20.0,
             max_residual_px: 1.2,
             max_rms_px: 0.5,
-            seed_edgels: 6,
-            grow_gap_px: 4,
+            seed_edgels: 8,
+            grow_gap_px: 6,
             grow_turn_deg: 30.0,
             min_radius_px: 300.0,
-            max_ln_false_alarms: 0.0,
+            max_ln_false_alarms: 5.0,
             contrast_distance_px: 2.5,
             edgel_floor_px: 0.05,
         }
@@ -97,9 +97,9 @@ pub struct EdgelParams {
 impl Default for EdgelParams {
     fn default() -> Self {
         Self {
-            smoothing_px: 1.0,
-            low: 1.0,
-            high: 2.0,
+            smoothing_px: 0.8,
+            low: 1.8,
+            high: 2.5,
         }
     }
 }
