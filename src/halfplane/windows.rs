@@ -53,11 +53,14 @@ struct ColumnSums {
 
 const PADDING: usize = 8;
 
+/// Half of the largest window, without its centre: sums of 15 x 15 products are still exact.
+const MAX_HALF: usize = 7;
+
 impl Windows {
     /// Windows of `window_px` (odd, at most 15) around pixels (column, row), which must be ordered
     /// by row; those without texture are left out.
     pub fn new(reference: Patch, window_px: usize, pixels: &[(usize, usize)]) -> Self {
-        let half = (window_px / 2).min(7);
+        let half = (window_px / 2).min(MAX_HALF);
         let mut windows = Self {
             columns: ColumnSums::new(reference.stride),
             half,
@@ -77,6 +80,7 @@ impl Windows {
         correlations.clear();
         self.columns.clear();
         let (rows, half) = (self.reference.rows, self.half);
+        let mask = window_mask(half);
         let mut entered = 0;
         let mut left = 0;
         for site in &self.sites {
@@ -88,7 +92,7 @@ impl Windows {
                 self.columns.slide::<false>(self.reference.row(left), warped.row(left));
                 left += 1;
             }
-            correlations.push(site.correlation(self.columns.window(site.column, half)));
+            correlations.push(site.correlation(self.columns.window(site.column, &mask)));
         }
     }
 
@@ -162,13 +166,21 @@ impl ColumnSums {
         }
     }
 
-    /// `[Sb, Sbb, Sab]` over the columns `column - half ..= column + half`.
-    fn window(&self, column: usize, half: usize) -> [f64; 3] {
+    /// `[Sb, Sbb, Sab]` over the columns that `mask` keeps of the sixteen from `column - 7` on. The sums
+    /// are whole numbers, so the order in which the lanes are added does not matter.
+    fn window(&self, column: usize, mask: &[f32x8; 2]) -> [f64; 3] {
+        let first = PADDING + column - MAX_HALF;
         [&self.b, &self.bb, &self.ab].map(|sums| {
-            let first = PADDING + column - half;
-            f64::from(sums[first..=first + 2 * half].iter().sum::<f32>())
+            let (low, high) = sums[first..first + 16].split_at(8);
+            f64::from((load(low) * mask[0] + load(high) * mask[1]).reduce_add())
         })
     }
+}
+
+/// Ones at the columns of a window that starts `MAX_HALF - half` after the first of sixteen.
+fn window_mask(half: usize) -> [f32x8; 2] {
+    let lane = |i: usize| if i.abs_diff(MAX_HALF) <= half { 1.0 } else { 0.0 };
+    [0, 8].map(|start| f32x8::from(std::array::from_fn::<f32, 8, _>(|i| lane(start + i))))
 }
 
 fn load(values: &[f32]) -> f32x8 {
