@@ -15,14 +15,14 @@ pub use summary::StageSummary;
 
 use serde::{Deserialize, Serialize};
 
-use crate::export::export_all;
+use crate::export::{self, export_all};
 use crate::halfplane::{HalfPlane, SweepTrace, sweep_half_planes};
 use crate::linematch::{LineMatch, MatchTrace, match_lines};
 use crate::lines2d::{ImageSegment, SegmentTrace, detect_segments};
 use crate::lines3d::{Line3d, LineTrace, reconstruct_lines};
 use crate::parallel;
 use crate::params::Params;
-use crate::roof::{RoofModel, RoofTrace, reconstruct_facets};
+use crate::roof::{RoofModel, RoofTrace, reconstruct_roofs};
 use crate::scene::Scene;
 use crate::texture::{TextureTrace, TexturedModel, texture_model};
 
@@ -193,14 +193,15 @@ impl Run {
         else {
             return Vec::new();
         };
-        let mut files = export_all(
-            &self.scene,
-            &segments.value,
-            &lines.value,
-            &half_planes.value,
-            &roof.value,
-            &textured.value,
-        );
+        let outputs = export::Results {
+            scene: &self.scene,
+            segments: &segments.value,
+            lines: &lines.value,
+            half_planes: &half_planes.value,
+            model: &roof.value,
+            textured: &textured.value,
+        };
+        let mut files = export_all(&outputs, &self.params.texture);
         files.push(("report.json".into(), report::report(self, seconds)));
         files
     }
@@ -229,7 +230,7 @@ impl Run {
             }
             Stage::Facets => {
                 let (lines, half_planes) = (before(&r.lines), before(&r.half_planes));
-                r.roof = Some(reconstruct_facets(scene, lines, half_planes, &params.roof).into());
+                r.roof = Some(reconstruct_roofs(scene, lines, half_planes, &params.roof).into());
             }
             Stage::Model => {
                 let model = before(&r.roof);
