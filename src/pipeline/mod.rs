@@ -221,8 +221,9 @@ impl Run {
                 r.matches = Some(match_lines(scene, segments, &params.matching).into());
             }
             Stage::Lines => {
-                let matches = before(&r.matches);
-                r.lines = Some(reconstruct_lines(scene, matches, &params.lines3d).into());
+                let (segments, matches) = (before(&r.segments), before(&r.matches));
+                let found = reconstruct_lines(scene, segments, matches, &params.lines3d);
+                r.lines = Some(found.into());
             }
             Stage::HalfPlanes => {
                 let lines = before(&r.lines);
