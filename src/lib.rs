@@ -33,11 +33,14 @@ pub mod math;
 pub mod orientation;
 pub mod parallel;
 pub mod params;
+pub mod pipeline;
 pub mod raster;
 pub mod roof;
 pub mod scene;
 pub mod scene_loader;
 pub mod synthetic;
 pub mod texture;
+#[cfg(target_arch = "wasm32")]
+pub mod wasm;
 
 pub use error::{Error, Result};
