@@ -2,8 +2,17 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { SEGMENT_STRIDE, SUPPORT_STRIDE } from "../shared/results";
 import type { Selection } from "../shared/selection";
-import { type Overlay, drawView } from "./drawing";
-import { type Point, type Size, type Viewport, fit, nearestSegment, pan, toImage, zoomAt } from "./overlay";
+import { drawView, type Overlay } from "./drawing";
+import {
+  fitImage,
+  nearestSegment,
+  type Point,
+  pan,
+  type Size,
+  toImage,
+  type Viewport,
+  zoomAt,
+} from "./overlay";
 
 interface Props {
   view: number;
@@ -24,7 +33,7 @@ export function ImageCanvas({ view, name, image, overlay, selection, onPick }: P
   const [box, setBox] = useState<Size>({ width: 0, height: 0 });
   const [moved, setMoved] = useState<Viewport | null>(null);
   const drag = useRef<{ last: Point; travelled: number } | null>(null);
-  const fitted = fit(image, box);
+  const fitted = fitImage(image, box);
   const viewport = moved ?? fitted;
 
   useEffect(() => observeSize(canvas.current, setBox), []);
@@ -114,7 +123,12 @@ function pickAt({ segments, supports }: Overlay, view: number, at: Point, reach:
 }
 
 /** Null: the whole image again; undefined: the key means nothing here. */
-function viewportAfterKey(key: string, viewport: Viewport, box: Size, fitScale: number): Viewport | null | undefined {
+function viewportAfterKey(
+  key: string,
+  viewport: Viewport,
+  box: Size,
+  fitScale: number,
+): Viewport | null | undefined {
   const middle = { x: box.width / 2, y: box.height / 2 };
   switch (key) {
     case "+":

@@ -12,7 +12,8 @@ export function ImageViews() {
   if (views.length === 0 || images.value.length === 0) {
     return <Empty />;
   }
-  const shown = shownView.value === ALL ? views.map((_, i) => i) : [Math.min(shownView.value, views.length - 1)];
+  const shown =
+    shownView.value === ALL ? views.map((_, i) => i) : [Math.min(shownView.value, views.length - 1)];
   return (
     <div class="image-views">
       <div class="toolbar">
@@ -71,8 +72,8 @@ function Empty() {
     <div class="empty">
       <p>No oriented views yet.</p>
       <p class="muted">
-        Add photographs with their orientation on the left, or open the demo scene: six aerial views of detached
-        houses, reconstructed with one click.
+        Add photographs with their orientation on the left, or open the demo scene: six aerial views of
+        detached houses, reconstructed with one click.
       </p>
     </div>
   );

@@ -167,7 +167,10 @@ function surfaceRows(picked: Extract<Selection, { kind: "surface" }>): Row[] {
     rows.push(["Building", String(picked.building)]);
   }
   if (picked.facet !== null) {
-    rows.push(["Facet", String(picked.facet)], ...facetRows(picked.facet).filter(([label]) => !SHOWN.has(label)));
+    rows.push(
+      ["Facet", String(picked.facet)],
+      ...facetRows(picked.facet).filter(([label]) => !SHOWN.has(label)),
+    );
   }
   return rows;
 }
@@ -207,7 +210,7 @@ function degrees(radians: number): string {
 
 /** Clockwise from north. */
 function azimuth(east: number, north: number): string {
-  return `${((((Math.atan2(east, north) * 180) / Math.PI) + 360) % 360).toFixed(0)}° from north`;
+  return `${(((Math.atan2(east, north) * 180) / Math.PI + 360) % 360).toFixed(0)}° from north`;
 }
 
 function slopeText([x, y, z]: Vec3): string {

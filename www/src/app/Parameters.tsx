@@ -2,10 +2,10 @@
 import { useState } from "preact/hooks";
 import { resetParams, setParam } from "./actions";
 import {
-  type ParamField,
-  type ParamSection,
   fieldText,
   groupTitle,
+  type ParamField,
+  type ParamSection,
   paramSections,
   parseField,
 } from "./paramForm";

@@ -56,7 +56,9 @@ function DropZone() {
           ? "Drop three or more overlapping photographs and their orientation files here: files or a folder, in one go."
           : "Drop more files here."}
       </p>
-      {isEmpty && <p class="muted">JPEG, PNG or TIFF; COLMAP text, VGG .P matrices, or X Y Z omega phi kappa lists.</p>}
+      {isEmpty && (
+        <p class="muted">JPEG, PNG or TIFF; COLMAP text, VGG .P matrices, or X Y Z omega phi kappa lists.</p>
+      )}
       <div class="row">
         <button type="button" onClick={() => fileInput.current?.click()}>
           Files…
@@ -115,10 +117,10 @@ function ViewRow({ image }: { image: ImageReport }) {
           {baseName(image.path)}
         </span>
         <span class="muted numbers">
-          {image.width > 0 ? `${image.width} × ${image.height} px` : "unreadable"}
+          {image.size === null ? "unreadable" : `${image.size[0]} × ${image.size[1]} px`}
         </span>
-        <span class={`status ${image.oriented ? "good" : "bad"}`} title={image.status}>
-          {image.status}
+        <span class={`status ${image.orientation === null ? "bad" : "good"}`} title={image.orientation ?? ""}>
+          {image.orientation === null ? "no orientation" : "oriented"}
         </span>
       </div>
       <button
@@ -135,7 +137,8 @@ function ViewRow({ image }: { image: ImageReport }) {
 
 function OtherFiles() {
   const report = inspection.value;
-  const others = report?.files.filter(({ path }) => !report.images.some((image) => image.path === path)) ?? [];
+  const others =
+    report?.files.filter(({ path }) => !report.images.some((image) => image.path === path)) ?? [];
   if (others.length === 0) {
     return null;
   }
@@ -143,15 +146,20 @@ function OtherFiles() {
     <>
       <h3>Orientation and other files</h3>
       <ul class="files">
-        {others.map(({ path, kind, detail }) => (
+        {others.map(({ path, description }) => (
           <li key={path}>
             <span class="name" title={path}>
               {path}
             </span>
-            <span class="muted" title={detail}>
-              {kind}
+            <span class="muted" title={description}>
+              {description}
             </span>
-            <button type="button" class="quiet" aria-label={`Remove ${path}`} onClick={() => void removeFile(path)}>
+            <button
+              type="button"
+              class="quiet"
+              aria-label={`Remove ${path}`}
+              onClick={() => void removeFile(path)}
+            >
               ✕
             </button>
           </li>

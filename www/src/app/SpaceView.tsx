@@ -2,16 +2,16 @@
 import { signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { THEME_COLOURS } from "../shared/palette";
-import { buildCameras } from "../viewer/cameras";
 import { boundsOf, boundsOfFacets, boundsOfLines } from "../viewer/bounds";
+import { buildCameras } from "../viewer/cameras";
 import { buildFacets } from "../viewer/facets";
 import { buildFans } from "../viewer/fans";
 import { buildLines } from "../viewer/lines";
-import { type ModelLayer, type ModelMode, buildModel } from "../viewer/model";
+import { buildModel, type ModelLayer, type ModelMode } from "../viewer/model";
 import { GRID_STEP_M, Viewer } from "../viewer/viewer";
 import { notify } from "./actions";
 import { Legend } from "./Legend";
-import { type Tab, results, scene, selection, tab } from "./state";
+import { results, scene, selection, type Tab, tab } from "./state";
 import { theme } from "./theme";
 
 const LAYERS = ["lines", "fans", "facets", "model", "cameras"] as const;

@@ -1,7 +1,7 @@
 /** The stages in order: run, cancel, progress, time and counts. */
 import { cancel, runAll, runTo } from "./actions";
 import { stageWords } from "./stages";
-import { type StageState, type StageStatus, files, isBusy, runningStage, stages, tab } from "./state";
+import { files, isBusy, runningStage, type StageState, type StageStatus, stages, tab } from "./state";
 
 const STATUS_WORDS: Record<StageStatus, string> = {
   waiting: "not run",

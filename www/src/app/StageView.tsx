@@ -30,7 +30,14 @@ export function StageView() {
   };
   return (
     <>
-      <div class="tabs" role="tablist" aria-label="Stage views" tabIndex={-1} ref={list} onKeyDown={onKeyDown}>
+      <div
+        class="tabs"
+        role="tablist"
+        aria-label="Stage views"
+        tabIndex={-1}
+        ref={list}
+        onKeyDown={onKeyDown}
+      >
         {TABS.map((name) => (
           <button
             key={name}

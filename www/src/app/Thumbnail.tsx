@@ -19,7 +19,7 @@ export function Thumbnail({ blob }: { blob: Blob | undefined }) {
       isCurrent = false;
     };
   }, [blob]);
-  return <canvas ref={canvas} class="thumbnail" width={WIDTH_PX} height={(WIDTH_PX * 3) / 4} aria-hidden="true" />;
+  return <canvas ref={canvas} class="thumbnail" width={WIDTH_PX} height={(WIDTH_PX * 3) / 4} />;
 }
 
 async function decode(blob: Blob): Promise<ImageBitmap | null> {

@@ -3,13 +3,9 @@ import { batch } from "@preact/signals";
 import type { InputFile } from "../shared/messages";
 import type { Params, SceneInfo } from "../shared/results";
 import { Engine, EngineError } from "./engine";
-import { adviceFor } from "./notices";
+import { failureNotice } from "./notices";
 import { firstStageOf, stageWords } from "./stages";
 import {
-  NO_RESULTS,
-  type Notice,
-  type Results,
-  type StageState,
   activity,
   announcement,
   defaults,
@@ -17,10 +13,14 @@ import {
   files,
   images,
   inspection,
+  NO_RESULTS,
+  type Notice,
   notices,
   params,
   projectName,
+  type Results,
   results,
+  type StageState,
   scene,
   selection,
   shownView,
@@ -40,6 +40,9 @@ let stagesInWorker = 0;
 let filesInWorker = false;
 let sceneInWorker = false;
 let lastNotice = 0;
+
+/** So many refusals are shown at once: the first ones usually explain the others. */
+const MAX_PROBLEMS = 4;
 
 /** Compiles the core and reads its stages and defaults. */
 export async function start(): Promise<void> {
@@ -121,7 +124,12 @@ export async function cancel(): Promise<void> {
 /** Changes one parameter; stages that depend on it become outdated. */
 export function setParam(group: string, next: Params[string]): void {
   params.value = { ...params.value, [group]: next };
-  outdateFrom(firstStageOf(group, stages.value.map(({ name }) => name)));
+  outdateFrom(
+    firstStageOf(
+      group,
+      stages.value.map(({ name }) => name),
+    ),
+  );
 }
 
 export function resetParams(): void {
@@ -170,8 +178,11 @@ async function setProject(next: InputFile[]): Promise<void> {
   }
   await guarded("Reading files", async () => {
     await ensureInspected();
-    const report = inspection.value;
-    if (report?.images.some(({ oriented }) => oriented)) {
+    const problems = inspection.value?.errors ?? [];
+    for (const problem of problems.slice(0, MAX_PROBLEMS)) {
+      notify(failureNotice(problem, "input"));
+    }
+    if (problems.length === 0) {
       await ensureScene();
     }
   });
@@ -307,17 +318,11 @@ async function guarded<T>(what: string, task: () => Promise<T>): Promise<T | und
 }
 
 async function report(error: unknown): Promise<void> {
-  if (error instanceof EngineError && error.kind === "cancelled") {
+  const kind = error instanceof EngineError ? error.kind : "internal";
+  if (kind === "cancelled") {
     return;
   }
-  const text = error instanceof Error ? error.message : String(error);
-  const kind = error instanceof EngineError ? error.kind : "internal";
-  notify({
-    severity: "error",
-    title: kind === "input" ? "This input cannot be used" : "Something went wrong",
-    text,
-    advice: adviceFor(text, kind),
-  });
+  notify(failureNotice(error instanceof Error ? error.message : String(error), kind));
   if (kind === "crash") {
     forgetWorker();
     await start();

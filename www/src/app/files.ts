@@ -3,7 +3,9 @@ import type { InputFile } from "../shared/messages";
 
 /** Everything that was dropped, folders walked through. Must be called before the event's handler returns. */
 export function droppedFiles(transfer: DataTransfer): Promise<InputFile[]> {
-  const entries = [...transfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);
+  const entries = [...transfer.items]
+    .map((item) => item.webkitGetAsEntry())
+    .filter((entry) => entry !== null);
   if (entries.length === 0) {
     return Promise.resolve(pickedFiles(transfer.files));
   }

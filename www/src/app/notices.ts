@@ -1,26 +1,32 @@
-/** What to do about a failure, where its message does not say so itself. */
+/** Failures in words. The core's messages end with what to do about them, after a semicolon. */
 import type { FailureKind } from "../shared/messages";
+import type { Notice } from "./state";
 
-/** Cues in the core's messages, most particular first, and the advice that helps then. */
-const ADVICE: readonly (readonly [RegExp, string])[] = [
-  [/truncat|corrupt|decode|unexpected end|eof/i, "Export the image again, or remove it from the project."],
-  [
-    /no orientation|without (an )?orientation|not oriented/i,
-    "Add the orientation file that names this image, or remove the image. Names are compared without their extension.",
-  ],
-  [
-    /three views|3 views|at least three|fewer than/i,
-    "Add oriented photographs that show the same buildings until there are three or more.",
-  ],
-  [/nan|not finite|finite|singular/i, "Correct this number in the orientation file and add the file again."],
-  [/memory|too large/i, "Use fewer or smaller images, or crop them to the buildings of interest."],
-];
+const TITLES: Record<FailureKind, string> = {
+  input: "This input cannot be used",
+  internal: "Something went wrong",
+  crash: "The computation stopped",
+};
 
-/** One sentence of advice for a failure. */
-export function adviceFor(message: string, kind: FailureKind | "cancelled"): string {
-  if (kind === "crash") {
-    return "The computation was restarted and your files are still here. Run it again with fewer views, or other parameters.";
+const ADVICE: Record<Exclude<FailureKind, "input">, string> = {
+  internal: "Your files are still here: change the input or the parameters and run again.",
+  crash: "It was restarted and your files are still here. Run again with fewer or smaller images.",
+};
+
+/** A failure as a notice: what it is, and what to do. */
+export function failureNotice(message: string, kind: FailureKind): Omit<Notice, "id"> {
+  const { text, advice } = splitAdvice(message);
+  const known = kind === "input" ? advice : (advice ?? ADVICE[kind]);
+  const notice = { severity: "error" as const, title: TITLES[kind], text };
+  return known === undefined ? notice : { ...notice, advice: known };
+}
+
+/** Separates what is wrong from what to do, at the last semicolon. */
+export function splitAdvice(message: string): { text: string; advice?: string } {
+  const at = message.lastIndexOf("; ");
+  if (at < 0) {
+    return { text: message };
   }
-  const match = ADVICE.find(([cue]) => cue.test(message));
-  return match?.[1] ?? "Your files are still here: change the input or the parameters and run again.";
+  const advice = message.slice(at + 2);
+  return { text: message.slice(0, at), advice: advice.charAt(0).toUpperCase() + advice.slice(1) };
 }

@@ -23,7 +23,7 @@ export interface Size {
 const MAX_SCALE = 64;
 
 /** The whole image, centred, with a small margin. */
-export function fit(image: Size, box: Size, marginPx = 8): Viewport {
+export function fitImage(image: Size, box: Size, marginPx = 8): Viewport {
   const width = Math.max(1, box.width - 2 * marginPx);
   const height = Math.max(1, box.height - 2 * marginPx);
   const scale = Math.min(width / image.width, height / image.height);

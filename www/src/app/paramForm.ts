@@ -1,5 +1,5 @@
 /** The form of the parameters, made from whatever defaults the core gives: nothing is retyped here. */
-import type { ParamGroup, ParamValue, Params } from "../shared/results";
+import type { ParamGroup, Params, ParamValue } from "../shared/results";
 
 export interface ParamField {
   key: string;

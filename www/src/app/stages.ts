@@ -35,5 +35,5 @@ const STAGE_OF_GROUP: Record<string, string> = {
 /** The first stage that a change in `group` makes outdated; an unknown group outdates everything. */
 export function firstStageOf(group: string, stageNames: readonly string[]): number {
   const index = stageNames.indexOf(STAGE_OF_GROUP[group] ?? "");
-  return index < 0 ? 0 : index;
+  return Math.max(0, index);
 }

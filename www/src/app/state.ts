@@ -1,8 +1,8 @@
 /** All that the page knows, as signals. Components read them; `actions.ts` alone writes what the worker says. */
 import { computed, signal } from "@preact/signals";
 import type { InputFile } from "../shared/messages";
-import type { Selection } from "../shared/selection";
 import type { Facet, HalfPlane, Inspection, Params, SceneInfo } from "../shared/results";
+import type { Selection } from "../shared/selection";
 
 export const TABS = ["images", "segments", "matches", "lines", "halfplanes", "facets", "model"] as const;
 export type Tab = (typeof TABS)[number];

@@ -9,26 +9,32 @@ export type Vec3 = readonly [number, number, number];
 /** What a dropped file was recognised as. */
 export interface FileReport {
   path: string;
-  /** "image", an orientation format, or "ignored". */
   kind: string;
-  detail?: string;
+  /** The kind in words. */
+  description: string;
 }
 
-/** One image and whether it can be used. */
+/** An image and its orientation. */
 export interface ImageReport {
   path: string;
-  width: number;
-  height: number;
-  /** Whether an orientation was found for it. */
-  oriented: boolean;
-  /** A sentence: where the orientation comes from, or what is missing. */
-  status: string;
+  name: string;
+  /** Width and height in pixels; null when the header cannot be read. */
+  size: [number, number] | null;
+  /** Where its orientation stands; null when it has none. */
+  orientation: string | null;
 }
 
+/** What a set of files makes, known without decoding an image. */
 export interface Inspection {
   files: FileReport[];
   images: ImageReport[];
+  /** The orientation that a run would take. */
+  orientation: string | null;
+  /** Number of views that a run would use. */
+  views: number;
   warnings: string[];
+  /** Why a run would refuse these files; empty when it would not. */
+  errors: string[];
 }
 
 export interface LoadOptions {

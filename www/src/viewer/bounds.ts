@@ -22,7 +22,11 @@ export function boundsOfLines(lines: Float64Array): Sphere {
   }
   const axes = [0, 1, 2].map((axis) => Float64Array.from(lines.filter((_, i) => i % 3 === axis)).sort());
   const at = (share: number) =>
-    axes.map((values) => values[Math.round(share * (values.length - 1))] as number) as [number, number, number];
+    axes.map((values) => values[Math.round(share * (values.length - 1))] as number) as [
+      number,
+      number,
+      number,
+    ];
   return padded(new Box3().setFromPoints([yUp(at(OUTLIERS)), yUp(at(1 - OUTLIERS))]));
 }
 

@@ -1,10 +1,18 @@
 /** The views in space: each camera's centre and, where its projection is known, the frustum down to the ground. */
-import { BufferGeometry, LineBasicMaterial, LineSegments, Matrix3, Points, PointsMaterial, Vector3 } from "three";
+import {
+  BufferGeometry,
+  LineBasicMaterial,
+  LineSegments,
+  Matrix3,
+  Points,
+  PointsMaterial,
+  Vector3,
+} from "three";
 import { PALETTE } from "../shared/palette";
-import type { Selection } from "../shared/selection";
 import type { ViewInfo } from "../shared/results";
+import type { Selection } from "../shared/selection";
 import { zUpGroup } from "./frame";
-import { type Layer, disposeObject } from "./layer";
+import { disposeObject, type Layer } from "./layer";
 
 /** @param target the middle of what the views look at, local frame, metres; its height is the frusta's end */
 export function buildCameras(views: readonly ViewInfo[], target: Vector3): Layer {
@@ -52,10 +60,27 @@ export function groundCorners(view: ViewInfo, centre: Vector3, z: number): Vecto
   if (p === undefined || p.length !== 12) {
     return null;
   }
-  const [a, b, c, , d, e, f, , g, h, i] = p as [number, number, number, number, number, number, number, number, number, number, number];
+  const [a, b, c, , d, e, f, , g, h, i] = p as [
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+  ];
   const rayOfPixel = new Matrix3(a, b, c, d, e, f, g, h, i).invert();
   const corners: Vector3[] = [];
-  for (const [x, y] of [[0, 0], [view.width, 0], [view.width, view.height], [0, view.height]] as const) {
+  for (const [x, y] of [
+    [0, 0],
+    [view.width, 0],
+    [view.width, view.height],
+    [0, view.height],
+  ] as const) {
     const ray = new Vector3(x, y, 1).applyMatrix3(rayOfPixel);
     const depth = (z - centre.z) / ray.z;
     if (!Number.isFinite(depth)) {

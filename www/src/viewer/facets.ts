@@ -13,10 +13,10 @@ import {
   Vector3,
 } from "three";
 import { PALETTE } from "../shared/palette";
-import type { Selection } from "../shared/selection";
 import type { Facet, Vec3 } from "../shared/results";
+import type { Selection } from "../shared/selection";
 import { zUpGroup } from "./frame";
-import { type Layer, disposeObject } from "./layer";
+import { disposeObject, type Layer } from "./layer";
 
 /** From this slope on, radians, the tint has its full strength. */
 const FULL_TINT_SLOPE = (40 * Math.PI) / 180;
@@ -26,7 +26,9 @@ const OPACITY = 0.92;
 export function buildFacets(facets: readonly Facet[]): Layer {
   const object = zUpGroup();
   const triangles = facets.map(triangulate);
-  const facetOfTriangle = triangles.flatMap((positions, i) => new Array<number>(positions.length / 9).fill(i));
+  const facetOfTriangle = triangles.flatMap((positions, i) =>
+    new Array<number>(positions.length / 9).fill(i),
+  );
   const all = facetMesh(triangles, facets.map(normalTint));
   object.add(all, outlines(facets));
   let chosen: Mesh | null = null;
@@ -89,7 +91,10 @@ function triangulate({ outer, holes }: Facet): number[] {
   );
 }
 
-function facetMesh(triangles: readonly number[][], tints: readonly Color[]): Mesh<BufferGeometry, MeshBasicMaterial> {
+function facetMesh(
+  triangles: readonly number[][],
+  tints: readonly Color[],
+): Mesh<BufferGeometry, MeshBasicMaterial> {
   const colours = triangles.flatMap((positions, i) => {
     const tint = (tints[i] as Color).toArray();
     return new Array(positions.length / 3).fill(tint).flat() as number[];
@@ -112,7 +117,9 @@ function facetMesh(triangles: readonly number[][], tints: readonly Color[]): Mes
 function outlines(facets: readonly Facet[]): LineSegments {
   const points = facets.flatMap(({ outer, holes }) =>
     [outer, ...holes].flatMap((ring) =>
-      ring.flatMap((corner, i) => [corner, ring[(i + 1) % ring.length] as Vec3]).map((p) => new Vector3(...p)),
+      ring
+        .flatMap((corner, i) => [corner, ring[(i + 1) % ring.length] as Vec3])
+        .map((p) => new Vector3(...p)),
     ),
   );
   const material = new LineBasicMaterial({ color: PALETTE.casing, transparent: true, opacity: 0.7 });

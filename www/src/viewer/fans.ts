@@ -1,10 +1,10 @@
 /** Half-planes as fans: a strip from the 3D line into the half-plane, fading away from the line. */
 import { BufferAttribute, BufferGeometry, DoubleSide, Mesh, MeshBasicMaterial, Vector3 } from "three";
 import { PALETTE } from "../shared/palette";
-import type { Selection } from "../shared/selection";
 import { type HalfPlane, LINE_STRIDE } from "../shared/results";
+import type { Selection } from "../shared/selection";
 import { zUpGroup } from "./frame";
-import { type Layer, disposeObject, rgb } from "./layer";
+import { disposeObject, type Layer, rgb } from "./layer";
 
 /** Width of a fan over the length of its line, and its limits in metres: for the eye only. */
 const RELATIVE_WIDTH = 0.35;

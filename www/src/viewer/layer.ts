@@ -1,5 +1,13 @@
 /** What every builder of the viewer returns: an object, what a click on it means, and its end. */
-import { BufferGeometry, Color, type Intersection, Material, Mesh, type Object3D, Texture } from "three";
+import {
+  BufferGeometry,
+  Color,
+  type Intersection,
+  type Material,
+  type Mesh,
+  type Object3D,
+  Texture,
+} from "three";
 import type { Selection } from "../shared/selection";
 
 export interface Layer {

@@ -3,10 +3,10 @@ import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import { PALETTE } from "../shared/palette";
-import type { Selection } from "../shared/selection";
 import { LINE_STRIDE } from "../shared/results";
+import type { Selection } from "../shared/selection";
 import { zUpGroup } from "./frame";
-import { type Layer, disposeObject } from "./layer";
+import { disposeObject, type Layer } from "./layer";
 
 const WIDTH_PX = 2.25;
 const SELECTED_WIDTH_PX = 5;

@@ -1,6 +1,6 @@
 /** The textured model, read from the very GLB that can be downloaded. */
 import {
-  BufferGeometry,
+  type BufferGeometry,
   Color,
   EdgesGeometry,
   Group,
@@ -18,7 +18,7 @@ import {
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { PALETTE, type ThemeColours } from "../shared/palette";
 import type { Selection } from "../shared/selection";
-import { type Layer, disposeObject } from "./layer";
+import { disposeObject, type Layer } from "./layer";
 
 export type ModelMode = "textured" | "plain" | "wireframe";
 
@@ -44,7 +44,11 @@ export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLay
   });
   const textured = new Map(meshes.map((mesh) => [mesh, mesh.material as Material]));
   const plain = new MeshLambertMaterial({ flatShading: true, polygonOffset: true, polygonOffsetFactor: 1 });
-  const hidden = new MeshBasicMaterial({ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+  const hidden = new MeshBasicMaterial({
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+  });
   const edges = meshes.map(edgesOf);
   object.add(...edges);
   let marker: Object3D | null = null;

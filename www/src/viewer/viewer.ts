@@ -9,7 +9,7 @@ import {
   PerspectiveCamera,
   Raycaster,
   Scene,
-  Sphere,
+  type Sphere,
   Vector2,
   Vector3,
   WebGLRenderer,
@@ -39,7 +39,11 @@ export class Viewer {
   #frame = 0;
   #pressedAt = new Vector2();
 
-  constructor(canvas: HTMLCanvasElement, colours: ThemeColours, onPick: (selection: Selection | null) => void) {
+  constructor(
+    canvas: HTMLCanvasElement,
+    colours: ThemeColours,
+    onPick: (selection: Selection | null) => void,
+  ) {
     this.#renderer = new WebGLRenderer({ canvas, antialias: true });
     this.#onPick = onPick;
     this.#colours = colours;
@@ -100,7 +104,9 @@ export class Viewer {
     this.#bounds = bounds.clone();
     const distance = bounds.radius / Math.sin((FIELD_OF_VIEW_DEG * Math.PI) / 360);
     this.#controls.target.copy(bounds.center);
-    this.#camera.position.copy(bounds.center).addScaledVector(new Vector3(-0.45, 0.72, 0.62).normalize(), distance);
+    this.#camera.position
+      .copy(bounds.center)
+      .addScaledVector(new Vector3(-0.45, 0.72, 0.62).normalize(), distance);
     this.#controls.update();
     this.#buildGrid();
     this.draw();

@@ -19,7 +19,7 @@ async function answer(request: Request): Promise<void> {
     const { result, transfer } = await perform(request);
     post({ type: "done", id: request.id, result }, transfer);
   } catch (error) {
-    post({ type: "failed", id: request.id, ...describe(error) });
+    post({ type: "failed", id: request.id, ...failureOf(error) });
   }
 }
 
@@ -39,7 +39,7 @@ async function perform(request: Request): Promise<Answer> {
   return dispatch(core, request, (stage, fraction) => post({ type: "progress", stage, fraction }));
 }
 
-function describe(error: unknown): { message: string; kind: FailureKind } {
+function failureOf(error: unknown): { message: string; kind: FailureKind } {
   if (error instanceof WebAssembly.RuntimeError) {
     return { message: `The reconstruction core stopped (${error.message}).`, kind: "crash" };
   }
