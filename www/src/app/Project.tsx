@@ -149,7 +149,7 @@ function OtherFiles() {
         {others.map(({ path, description }) => (
           <li key={path}>
             <span class="name" title={path}>
-              {path}
+              {baseName(path)}
             </span>
             <span class="muted" title={description}>
               {description}

@@ -1,7 +1,16 @@
 /** The stages in order: run, cancel, progress, time and counts. */
 import { cancel, runAll, runTo } from "./actions";
 import { stageWords } from "./stages";
-import { files, isBusy, runningStage, type StageState, type StageStatus, stages, tab } from "./state";
+import {
+  files,
+  freshStages,
+  isBusy,
+  runningStage,
+  type StageState,
+  type StageStatus,
+  stages,
+  tab,
+} from "./state";
 
 const STATUS_WORDS: Record<StageStatus, string> = {
   waiting: "not run",
@@ -24,7 +33,7 @@ export function StageRail() {
           <button
             type="button"
             class="primary"
-            disabled={files.value.length === 0 || isBusy.value}
+            disabled={!canRun(stages.value.length)}
             onClick={() => void runAll()}
           >
             Run all
@@ -33,15 +42,20 @@ export function StageRail() {
         <span class="muted numbers">{totalTime(stages.value)}</span>
       </div>
       <ol>
-        {stages.value.map((stage) => (
-          <StageCard key={stage.name} stage={stage} />
+        {stages.value.map((stage, position) => (
+          <StageCard key={stage.name} stage={stage} position={position} />
         ))}
       </ol>
     </section>
   );
 }
 
-function StageCard({ stage }: { stage: StageState }) {
+/** Whether there is something to run among the first `count` stages, and nothing else going on. */
+function canRun(count: number): boolean {
+  return files.value.length > 0 && !isBusy.value && freshStages.value < count;
+}
+
+function StageCard({ stage, position }: { stage: StageState; position: number }) {
   const words = stageWords(stage.name);
   const percent = Math.round(100 * stage.fraction);
   return (
@@ -61,7 +75,7 @@ function StageCard({ stage }: { stage: StageState }) {
           class="quiet"
           aria-label={`Run up to ${words.title}`}
           title={`Run up to ${words.title}`}
-          disabled={files.value.length === 0 || isBusy.value}
+          disabled={!canRun(position + 1)}
           onClick={() => void runTo(stage.name)}
         >
           ▸

@@ -11,6 +11,7 @@ import {
   defaults,
   exportNames,
   files,
+  freshStages,
   images,
   inspection,
   NO_RESULTS,
@@ -34,8 +35,6 @@ const engine = new Engine((stage, fraction) => {
   }
 });
 
-/** How many stages, from the first, the present worker has run with the present parameters. */
-let stagesInWorker = 0;
 /** Whether the present worker holds the project's files, and has the scene loaded. */
 let filesInWorker = false;
 let sceneInWorker = false;
@@ -92,9 +91,9 @@ export async function runTo(target: string): Promise<void> {
     await ensureScene();
     const names = stages.value.map(({ name }) => name);
     const end = names.indexOf(target);
-    for (let i = stagesInWorker; i <= end; i += 1) {
+    for (let i = freshStages.value; i <= end; i += 1) {
       await runStage(names[i] as string);
-      stagesInWorker = i + 1;
+      freshStages.value = i + 1;
     }
   });
 }
@@ -166,7 +165,7 @@ async function setProject(next: InputFile[]): Promise<void> {
   }
   filesInWorker = false;
   sceneInWorker = false;
-  stagesInWorker = 0;
+  freshStages.value = 0;
   batch(() => {
     files.value = next;
     inspection.value = null;
@@ -296,7 +295,7 @@ function perView(call: "segments" | "matchedSegments"): Promise<Float32Array[]> 
 }
 
 function outdateFrom(index: number): void {
-  stagesInWorker = Math.min(stagesInWorker, index);
+  freshStages.value = Math.min(freshStages.value, index);
   stages.value = stages.value.map((stage, i) =>
     i >= index && stage.status === "done" ? { ...stage, status: "outdated" } : stage,
   );
@@ -332,7 +331,7 @@ async function report(error: unknown): Promise<void> {
 function forgetWorker(): void {
   filesInWorker = false;
   sceneInWorker = false;
-  stagesInWorker = 0;
+  freshStages.value = 0;
 }
 
 async function fetchDemo(): Promise<{ title: string; files: InputFile[] }> {

@@ -72,5 +72,8 @@ export const tab = signal<Tab>("images");
 export const shownView = signal(0);
 export const selection = signal<Selection | null>(null);
 
+/** How many stages, from the first, the worker has run with the present files and parameters. */
+export const freshStages = signal(0);
+
 export const runningStage = computed(() => stages.value.find((stage) => stage.status === "running") ?? null);
 export const isBusy = computed(() => activity.value !== "" || runningStage.value !== null);
