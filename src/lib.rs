@@ -22,6 +22,7 @@
 
 pub mod camera;
 pub mod error;
+pub mod export;
 pub mod geometry;
 pub mod halfplane;
 pub mod ids;
@@ -29,11 +30,17 @@ pub mod linematch;
 pub mod lines2d;
 pub mod lines3d;
 pub mod math;
+pub mod orientation;
 pub mod parallel;
 pub mod params;
+pub mod pipeline;
 pub mod raster;
 pub mod roof;
 pub mod scene;
+pub mod scene_loader;
+pub mod synthetic;
 pub mod texture;
+#[cfg(target_arch = "wasm32")]
+pub mod wasm;
 
 pub use error::{Error, Result};

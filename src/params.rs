@@ -26,14 +26,80 @@ pub struct Params {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SegmentParams {
+    /// The edgels that segments are made of.
+    pub edgels: EdgelParams,
     /// Shortest segment, px. B99 3.2: "above a minimum length (here 15 pixels)".
     pub min_length_px: f64,
+    /// Edgels in each of the worm's two arms. Assumption: a third of the shortest segment.
+    pub worm_arm_edgels: usize,
+    /// Tangent break, degrees. Assumption: several times the noise of an arm's direction (2 degrees).
+    pub worm_bend_deg: f64,
+    /// Largest distance of an edgel from its line, px. B99 3.2: "a very tight threshold"; Assumption:
+    /// three times the rms.
+    pub max_residual_px: f64,
+    /// Largest root mean square distance of the edgels from their line, px. Assumption: what noise
+    /// does to the weakest edges that are worth having.
+    pub max_rms_px: f64,
+    /// Fewest edgels of a straight piece from which a line is grown. Assumption: what still
+    /// predicts a direction.
+    pub seed_edgels: usize,
+    /// Largest gap over which a line is grown, px. B99 3.2 jumps "up to a one pixel gap" when linking;
+    /// Assumption: along a line already fitted more is safe.
+    pub grow_gap_px: usize,
+    /// Largest turn of an edgel against the line that takes it up, degrees. Assumption: what texture
+    /// does to the gradient of a weak edge.
+    pub grow_turn_deg: f64,
+    /// Smallest radius of curvature of a line that bends significantly, px. Assumption: over
+    /// 60 px it bends by 1.5 px.
+    pub min_radius_px: f64,
+    /// Natural logarithm of the expected number of lines by chance in an image, a line above which
+    /// is refused. Assumption: 0, one line.
+    pub max_ln_false_alarms: f64,
+    /// Distance off the line at which the contrast is measured, px. Assumption: outside the blur.
+    pub contrast_distance_px: f64,
+    /// Least standard deviation of an edgel, px. Assumption: what sampling leaves without noise.
+    pub edgel_floor_px: f64,
 }
 
 impl Default for SegmentParams {
     fn default() -> Self {
         Self {
+            edgels: EdgelParams::default(),
             min_length_px: 15.0,
+            worm_arm_edgels: 5,
+            worm_bend_deg: 20.0,
+            max_residual_px: 1.2,
+            max_rms_px: 0.5,
+            seed_edgels: 8,
+            grow_gap_px: 6,
+            grow_turn_deg: 30.0,
+            min_radius_px: 300.0,
+            max_ln_false_alarms: 5.0,
+            contrast_distance_px: 2.5,
+            edgel_floor_px: 0.05,
+        }
+    }
+}
+
+/// B99 3.2: edgels. Thresholds are multiples of the local standard deviation of a gradient component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct EdgelParams {
+    /// Standard deviation of the smoothing Gaussian, px. Assumption: as for any Canny detector.
+    pub smoothing_px: f64,
+    /// Least gradient of an edgel, in local noise units. Assumption: noise alone is stronger
+    /// than 2 at one pixel in seven; the significance of the whole line is tested later.
+    pub low: f64,
+    /// Least gradient of the strongest edgel in a chain, in local noise units.
+    pub high: f64,
+}
+
+impl Default for EdgelParams {
+    fn default() -> Self {
+        Self {
+            smoothing_px: 0.8,
+            low: 1.8,
+            high: 2.5,
         }
     }
 }
@@ -63,6 +129,46 @@ pub struct Lines3dParams {}
 pub struct SweepParams {
     /// Largest |theta|, degrees. B99 figure 15: "over the interval [-75; +75]".
     pub max_theta_deg: f64,
+    /// First step of the subdivision, degrees. Assumption: a point at the far end of the neighbourhood
+    /// moves by 2 to 4 px in a step, about the width of a correlation peak; near points move less.
+    pub first_step_deg: f64,
+    /// The subdivision ends below this step, degrees. B99 4.1: "a termination criterion of
+    /// `Delta theta < 1`" degree.
+    pub last_step_deg: f64,
+    /// Maxima of the first pass that are subdivided. Assumption: the highest few, since the first
+    /// pass sees a narrow peak only in part.
+    pub max_peaks: usize,
+    /// Side of the correlation window, px, odd, at most 15. B99 3.2: "15 x 15".
+    pub window_px: usize,
+    /// Depth of the neighbourhood away from the line, px. Assumption: the weight 1/distance leaves little to
+    /// points beyond.
+    pub depth_px: f64,
+    /// Depth of the neighbourhood, metres on the ground. Assumption: facets are rarely deeper.
+    pub depth_m: f64,
+    /// Strip beside the line that is not used, px. Assumption: the line's own blur and position error.
+    pub margin_px: f64,
+    /// Shortest projected line, px. Assumption: a window is not wider than the line is long.
+    pub min_length_px: f64,
+    /// Blur before the edge detector, standard deviation in px. Assumption: the least that keeps
+    /// single-pixel noise from becoming edges.
+    pub poi_blur_px: f64,
+    /// Least gradient of an edge that gives points of interest, grey range per px. B99 4.1: "a very low
+    /// threshold on gradient". Assumption: one grey level of 256 per pixel, three times the noise
+    /// that a good photograph leaves after the blur.
+    pub poi_min_gradient: f64,
+    /// Every how many edgels there is a point of interest. B99 4.1: "regularly sampled".
+    pub poi_spacing_px: usize,
+    /// Least number of points of interest. Assumption: as many as the edgels that verify a line
+    /// match for planes (B99 4.1: "only 10").
+    pub min_points: usize,
+    /// A correlation from here on is high. Assumption: the threshold for edgels of a line match (B99 3.2).
+    pub high_correlation: f64,
+    /// Least share of points of interest with a high correlation in a valid view. B99 4.1: "at
+    /// least a threshold number"; Assumption: a share, because the number of points varies widely.
+    pub min_high_share: f64,
+    /// Least number of valid views besides the reference. Assumption: a single pair has nothing to
+    /// confirm it.
+    pub min_valid_views: usize,
     /// Least peak. B99 figure 12: `Sim(theta_max) >= 0.4`.
     pub min_similarity: f64,
     /// Least curvature at the peak, per radian squared. B99 figure 12: `|Sim''| >= 4.0`.
@@ -75,6 +181,21 @@ impl Default for SweepParams {
     fn default() -> Self {
         Self {
             max_theta_deg: 75.0,
+            first_step_deg: 5.0,
+            last_step_deg: 1.0,
+            max_peaks: 3,
+            window_px: 15,
+            depth_px: 60.0,
+            depth_m: 6.0,
+            margin_px: 1.5,
+            min_length_px: 15.0,
+            poi_blur_px: 1.0,
+            poi_min_gradient: 0.004,
+            poi_spacing_px: 3,
+            min_points: 10,
+            high_correlation: 0.6,
+            min_high_share: 0.2,
+            min_valid_views: 2,
             min_similarity: 0.4,
             min_curvature: 4.0,
             min_amplitude: 0.2,
@@ -83,9 +204,54 @@ impl Default for SweepParams {
 }
 
 /// B99 4.2, 4.3: from half-planes to facets.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct RoofParams {}
+pub struct RoofParams {
+    /// Half-planes within this angle, degrees, may share a plane. B99 4.4: theta is known to 2 degrees
+    /// on textured faces and to 5 on weak ones; two of them may differ by somewhat more than either.
+    pub coplanar_angle_deg: f64,
+    /// Least distance within which a line counts as lying in a plane, metres. Assumption: eaves have
+    /// gutters and ridges have caps of about this size.
+    pub coplanar_distance_m: f64,
+    /// A facet may reach at least this far from its supporting line, metres. Assumption.
+    pub min_facet_depth_m: f64,
+    /// ... and at most this far, metres. Assumption: larger facets have lines on both sides.
+    pub max_facet_depth_m: f64,
+    /// Lines are extended by at least this much at both ends to meet others, metres (B99 figure 22). Assumption.
+    pub extension_m: f64,
+    /// Correlation at which a plane is as good as no plane. Assumption: half-way between what true planes and
+    /// chance reach; B99 accepts half-planes from `Sim = 0.4` on.
+    pub min_correlation: f64,
+    /// What a metre of facet border costs that no line supports, in square metres of mismatch. Assumption.
+    pub border_cost_m: f64,
+    /// What a metre of line earns whose half-plane is honoured, in square metres of match. Assumption.
+    pub half_plane_gain_m: f64,
+    /// Facets smaller than this are not reported, square metres. Assumption.
+    pub min_area_m2: f64,
+    /// Least share of a facet's outline that lies on reconstructed lines (tau_real, B99 4.3). Assumption.
+    pub min_real_ratio: f64,
+    /// Facets whose middle is lower than this above the ground are not roofs, metres. Assumption: higher than
+    /// cars, lower than garages.
+    pub min_height_m: f64,
+}
+
+impl Default for RoofParams {
+    fn default() -> Self {
+        Self {
+            coplanar_angle_deg: 8.0,
+            coplanar_distance_m: 0.15,
+            min_facet_depth_m: 5.0,
+            max_facet_depth_m: 15.0,
+            extension_m: 1.5,
+            min_correlation: 0.45,
+            border_cost_m: 0.25,
+            half_plane_gain_m: 0.1,
+            min_area_m2: 1.5,
+            min_real_ratio: 0.25,
+            min_height_m: 1.8,
+        }
+    }
+}
 
 /// Texture atlas.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -93,10 +259,23 @@ pub struct RoofParams {}
 pub struct TextureParams {
     /// Largest side of the atlas, px. Assumption: what every WebGL 2 device can hold.
     pub max_atlas_px: u32,
+    /// Side of a texel in pixels of the view that shows a face best. Assumption: 1, finer ones hold
+    /// no more detail.
+    pub texel_px: f64,
+    /// Border around each patch, px, against bleeding. Assumption: 4, so that patches stay apart down to the
+    /// second mipmap level.
+    pub padding_px: u32,
+    /// Quality of the atlas as JPEG, 1 to 100. Assumption: 90, where its blocks cannot be seen.
+    pub jpeg_quality: u8,
 }
 
 impl Default for TextureParams {
     fn default() -> Self {
-        Self { max_atlas_px: 4096 }
+        Self {
+            max_atlas_px: 4096,
+            texel_px: 1.0,
+            padding_px: 4,
+            jpeg_quality: 90,
+        }
     }
 }

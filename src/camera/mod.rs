@@ -5,8 +5,10 @@
 //! `x_cam = R (X - C)` with z forward; `P = K [R | -R C]`. K may have its principal point far
 //! outside the image (a crop of a large frame).
 
+mod distortion;
 mod two_view;
 
+pub use distortion::{Distortion, undistort};
 pub use two_view::{
     Homography, fundamental, homography_of_plane, plane_of_image_line, transfer_line,
 };

@@ -1,4 +1,54 @@
-//! Half-planes by homography sweep (B99 4.1).
+//! From 3D lines to facets (B99 4): half-planes by homography sweep (4.1), grouping (4.2),
+//! delineation and verification (4.3).
+//!
+//! A 3D line leaves one parameter of a plane through it open, the angle theta. Each side of the line is
+//! swept apart: the neighbourhood in the most textured view is compared with every other view under the
+//! homographies `H(theta)`, and a distinct maximum of `Sim(theta)` makes a half-plane. Half-planes and lines are
+//! then grouped into planes, and the planes compete for the cells into which all border lines cut the plan.
+//!
+//! ```text
+//! 4.1  poi            points of interest of a view
+//!      strip          the neighbourhood of a line side, and how a view is warped into it
+//!      windows        correlations of all windows of two strips by running sums
+//!      similarity     Sim(theta) of one line side, view by view
+//!      peak           parabola, uncertainty and acceptance of a maximum
+//!      sweep          the search over theta
+//!      trace          what the page draws (B99 figures 12 and 14)
+//! 4.2  neighbourhood  Delaunay triangulation constrained to the projected lines
+//!      grouping       collinear and coplanar grouping (figures 16 to 18)
+//!      borders        border lines, new lines by plane intersection (figures 19 to 22)
+//! 4.3  arrangement    the plan cut into cells by the border lines
+//!      consistency    similarity of a plane over the complete image set
+//!      labelling      conflicts: which plane covers which cell
+//!      delineation    closed outlines
+//!      facets         verification; orders 4.2 and 4.3
+//! ```
+
+mod arrangement;
+mod borders;
+mod consistency;
+mod delineation;
+mod facets;
+mod grouping;
+mod labelling;
+mod neighbourhood;
+mod peak;
+mod plan;
+mod poi;
+mod similarity;
+mod strip;
+mod sweep;
+mod trace;
+mod windows;
+
+pub use borders::{Border, BorderKind};
+pub use consistency::{ConsistencyMap, consistency_map};
+pub use facets::{FacetRejection, FacetTrace, RejectedFacet, reconstruct_facets};
+pub use grouping::{Member, PlaneGroup};
+pub use plan::{PlanGrid, image_from_plan, orthophoto};
+pub use poi::PointsOfInterest;
+pub use sweep::{similarity_curve, sweep_half_planes, sweep_side};
+pub use trace::{SideTrace, SimilarityCurve, SweepRejection, SweepTrace, ViewCurve};
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

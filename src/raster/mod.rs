@@ -1,8 +1,10 @@
 //! Pixel rasters in f32 and the filters on them. Grey values run from 0 to 1.
 
 mod filter;
+mod load;
 
 pub use filter::gaussian_blur;
+pub use load::{ImageHeader, Photograph, image_format, image_header, load_image};
 
 /// A raster of grey values (or of anything else in f32), row by row from the top.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,5 +1,15 @@
 //! The roof model in which all methods end: planar facets, buildings, solids down to the ground.
 
+mod ground;
+mod invariants;
+mod reconstruct;
+mod solid;
+
+pub use ground::Ground;
+pub use reconstruct::{RoofTrace, reconstruct_roofs};
+pub use invariants::{PLANAR_M, Violation, check_invariants};
+pub use solid::{SolidRejection, SolidTrace, WELD_M, close_buildings};
+
 use nalgebra::Point3;
 use serde::Serialize;
 
@@ -52,7 +62,7 @@ pub struct SolidFace {
 }
 
 /// A closed polyhedron. Invariants: every edge of a ring is run through once in each direction by the
-/// rings of all faces together (closed, oriented 2-manifold); faces are planar within 1e-6 m.
+/// rings of all faces together (closed, oriented 2-manifold); faces are planar within [`PLANAR_M`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Solid {
     /// Corners, metres, local frame.

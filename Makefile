@@ -1,0 +1,109 @@
+# ridgeline: `make demo` and `make test` need rustup's cargo, Node >= 20 and make; the rest is installed
+# here, once. Stamps in target/stamps/ and the tool cache keep second runs quick.
+#
+#   make demo       build, serve the page and print its address
+#   make test       set up, lint and run every test (native, wasm in Node, TypeScript, Chromium)
+#   make build      the static site in www/dist, for any static host
+#   make lint       format, clippy (native and wasm32), Biome, TypeScript
+#   make identical  the demo scene natively and in wasm, compared byte for byte
+#   make score      all scenes against their truth; rewrites the tables of docs/results.md
+#   make bench      time of every stage on the synthetic scene
+#   make clean      remove what was built (not the tool cache)
+
+SHELL := bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DELETE_ON_ERROR:
+.PHONY: demo test build lint identical score bench native setup clean
+
+# The command-line tool must be of exactly the crate's version: stated once, in Cargo.toml.
+WASM_BINDGEN_VERSION := $(shell sed -n 's/^wasm-bindgen = "=\(.*\)"/\1/p' Cargo.toml)
+WASM_PACK_VERSION := 0.15.1
+
+TOOLS := $(or $(RIDGELINE_CACHE),$(HOME)/.cache/ridgeline)/tools
+WASM_BINDGEN := $(TOOLS)/wasm-bindgen-$(WASM_BINDGEN_VERSION)/bin/wasm-bindgen
+WASM_PACK := $(TOOLS)/wasm-pack-$(WASM_PACK_VERSION)/bin/wasm-pack
+export PATH := $(dir $(WASM_BINDGEN)):$(dir $(WASM_PACK)):$(PATH)
+
+STAMPS := target/stamps
+RUST_SOURCES := $(shell find src -name '*.rs') Cargo.toml Cargo.lock .cargo/config.toml
+WWW_SOURCES := $(shell find www -type f -not -path 'www/node_modules/*' -not -path 'www/dist/*' \
+	-not -path 'www/src/pkg/*' -not -path 'www/test*' 2>/dev/null)
+PACKAGE := www/src/pkg/ridgeline_bg.wasm
+SITE := www/dist/index.html
+PORT ?= 4173
+
+demo: $(SITE)
+	cd www && npm run preview -- --port $(PORT)
+
+build: $(SITE)
+	@echo "The site is in www/dist."
+
+test: setup $(STAMPS)/chromium
+	tests/all.sh
+
+lint: $(STAMPS)/wasm32 $(STAMPS)/npm $(PACKAGE)
+	tests/all.sh lint
+
+identical: native $(PACKAGE)
+	node tests/identical.mjs target/release/ridgeline
+
+score: native
+	python3 tests/score_table.py --binary target/release/ridgeline --scenes "$${SCENES:-../shared/scenes}"
+
+bench:
+	cargo bench --bench stages
+
+native:
+	cargo build --release
+
+# All that the tests need besides a browser; the site is built because Chromium opens it.
+setup: $(SITE)
+
+clean:
+	rm -rf target www/dist www/src/pkg www/node_modules
+
+# ---- the wasm package and the site -------------------------------------------------------------
+
+$(PACKAGE): $(RUST_SOURCES) $(STAMPS)/wasm32 $(WASM_BINDGEN) $(WASM_PACK) $(STAMPS)/npm
+	wasm-pack build --mode no-install --target web --release --out-dir www/src/pkg --out-name ridgeline
+	www/node_modules/.bin/wasm-opt -O3 --enable-simd --enable-bulk-memory --enable-sign-ext \
+		--enable-mutable-globals --enable-nontrapping-float-to-int --enable-reference-types \
+		--enable-multivalue $@ -o $@.opt
+	mv $@.opt $@
+
+$(SITE): $(PACKAGE) $(STAMPS)/npm $(WWW_SOURCES)
+	cd www && npm run build
+	touch $@
+
+# ---- set-up --------------------------------------------------------------------------------------
+
+$(STAMPS)/wasm32:
+	mkdir -p $(STAMPS)
+	rustup target add wasm32-unknown-unknown
+	touch $@
+
+# Built from source: the download pages of ready-made binaries are not reachable everywhere. The
+# locked versions may have been withdrawn since; then any that fit will do.
+$(WASM_BINDGEN):
+	cargo install --locked --root $(TOOLS)/wasm-bindgen-$(WASM_BINDGEN_VERSION) wasm-bindgen-cli --version $(WASM_BINDGEN_VERSION) \
+		|| cargo install --root $(TOOLS)/wasm-bindgen-$(WASM_BINDGEN_VERSION) wasm-bindgen-cli --version $(WASM_BINDGEN_VERSION)
+
+$(WASM_PACK):
+	cargo install --locked --root $(TOOLS)/wasm-pack-$(WASM_PACK_VERSION) wasm-pack --version $(WASM_PACK_VERSION) \
+		|| cargo install --root $(TOOLS)/wasm-pack-$(WASM_PACK_VERSION) wasm-pack --version $(WASM_PACK_VERSION)
+
+# The lock file's content decides, not its time: a fresh checkout of the same lock installs nothing.
+LOCK_SUM := $(shell cksum < www/package-lock.json 2>/dev/null | tr ' ' '-')
+$(STAMPS)/npm: $(STAMPS)/npm-$(LOCK_SUM)
+	cp $< $@
+
+$(STAMPS)/npm-$(LOCK_SUM):
+	mkdir -p $(STAMPS)
+	rm -f $(STAMPS)/npm-*
+	cd www && npm ci --no-audit --no-fund
+	touch $@
+
+# Debian as root: the system's own package. Elsewhere: Playwright's browser. CHROMIUM names another one.
+$(STAMPS)/chromium: $(STAMPS)/npm
+	tests/install_chromium.sh
+	touch $@

@@ -1,0 +1,91 @@
+//! Reading a scene's folder and writing the results.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use ridgeline::scene_loader::InputFile;
+
+use super::Failure;
+
+/// What may be an image.
+const IMAGE_EXTENSIONS: [&str; 5] = ["jpg", "jpeg", "png", "tif", "tiff"];
+
+/// What may hold an orientation; the readers look at the content.
+const ORIENTATION_EXTENSIONS: [&str; 12] = [
+    "txt", "p", "json", "xml", "out", "nvm", "csv", "ori", "prj", "camera", "bin", "xyz",
+];
+
+/// Largest orientation file that is read, bytes: COLMAP writes some hundred bytes for every tie point.
+const MAX_ORIENTATION_BYTES: u64 = 1 << 30;
+
+/// All files below `folder` that may belong to a scene, sorted by path; paths are relative to the folder and
+/// have forward slashes.
+pub(super) fn read_scene(folder: &Path) -> Result<Vec<InputFile>, Failure> {
+    if !folder.is_dir() {
+        return Err(Failure::Input(format!(
+            "{}: not a folder; give the folder that holds the images and their orientation",
+            folder.display()
+        )));
+    }
+    let mut files = Vec::new();
+    walk(folder, "", &mut files)?;
+    files.sort_by(|a, b| a.path.cmp(&b.path));
+    Ok(files)
+}
+
+/// Writes the files under temporary names first, so that a full disk or an interruption leaves no half
+/// a model behind under its final name.
+pub(super) fn write_all(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Failure> {
+    let failure = |name: &str, e: io::Error| {
+        Failure::Output(format!(
+            "{}: cannot write: {e}",
+            folder.join(name).display()
+        ))
+    };
+    let temporary = |name: &str| folder.join(format!(".{name}.part"));
+    for (name, bytes) in files {
+        fs::write(temporary(name), bytes).map_err(|e| failure(name, e))?;
+    }
+    for (name, _) in files {
+        fs::rename(temporary(name), folder.join(name)).map_err(|e| failure(name, e))?;
+    }
+    Ok(())
+}
+
+fn walk(folder: &Path, prefix: &str, files: &mut Vec<InputFile>) -> Result<(), Failure> {
+    let unreadable =
+        |path: &Path, e: io::Error| Failure::Input(format!("{}: cannot read: {e}", path.display()));
+    for entry in fs::read_dir(folder).map_err(|e| unreadable(folder, e))? {
+        let entry = entry.map_err(|e| unreadable(folder, e))?;
+        let (path, name) = (entry.path(), entry.file_name());
+        let name = name.to_string_lossy();
+        if name.starts_with('.') {
+            continue;
+        }
+        let relative = format!("{prefix}{name}");
+        let kind = entry.file_type().map_err(|e| unreadable(&path, e))?;
+        if kind.is_dir() {
+            walk(&path, &format!("{relative}/"), files)?;
+        } else if is_wanted(&path) {
+            let bytes = fs::read(&path).map_err(|e| unreadable(&path, e))?;
+            files.push(InputFile {
+                path: relative,
+                bytes,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// By extension and size: a folder may hold point clouds and other large things.
+fn is_wanted(path: &Path) -> bool {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    let Some(extension) = extension.as_deref() else {
+        return false;
+    };
+    let small =
+        || fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() <= MAX_ORIENTATION_BYTES);
+    IMAGE_EXTENSIONS.contains(&extension)
+        || (ORIENTATION_EXTENSIONS.contains(&extension) && small())
+}

@@ -1,0 +1,142 @@
+//! Arguments and exit codes of the command line.
+//!
+//! Exit codes: 0 done, 1 the outputs could not be written, 2 the input or the arguments are bad.
+#![allow(clippy::print_stdout, clippy::print_stderr)] // The one place that talks to a terminal.
+
+mod files;
+mod reconstruct;
+mod table;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use ridgeline::params::Params;
+
+/// Three or more calibrated aerial photographs in, textured 3D roof models out.
+#[derive(Parser)]
+#[command(name = "ridgeline", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Reconstruct the roofs that the photographs in a folder show.
+    Reconstruct(ReconstructArgs),
+    /// Print all parameters with their defaults, as JSON for --params.
+    Params,
+}
+
+/// The arguments of `reconstruct`.
+#[derive(Args)]
+struct ReconstructArgs {
+    /// Folder with images and orientation files, anywhere in it.
+    scene: PathBuf,
+    /// Folder for the results; made if missing.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Which orientation to take where the folder holds several: a part of its path.
+    #[arg(long, value_name = "PATH")]
+    orientation: Option<String>,
+    /// How roofs are found.
+    #[arg(long, value_enum, default_value_t = Method::Lines)]
+    method: Method,
+    /// Use only these views (image names, separated by commas).
+    #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
+    views: Option<Vec<String>>,
+    /// Reconstruct only this part of the ground plan, metres in the frame of the orientation.
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_roi, allow_hyphen_values = true)]
+    roi: Option<[f64; 4]>,
+    /// JSON file with parameters; what it leaves out keeps its default.
+    #[arg(long, value_name = "FILE")]
+    params: Option<PathBuf>,
+    /// Number of threads; by default one per core. It never changes the result.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Height of the ground, metres in the frame of the orientation; estimated if not given.
+    #[arg(long, value_name = "H", value_parser = parse_finite, allow_hyphen_values = true)]
+    ground_z: Option<f64>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Method {
+    /// Lines matched over the views, and half-planes at them (Baillard et al. 1999).
+    Lines,
+}
+
+/// Why a command stopped.
+enum Failure {
+    /// The user's input: exit code 2.
+    Input(String),
+    /// The machine: exit code 1.
+    Output(String),
+}
+
+/// Runs the command that the arguments name.
+pub fn main() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        Command::Reconstruct(args) => reconstruct::reconstruct(&args),
+        Command::Params => print_params(),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Input(message)) => {
+            eprintln!("error: {message}");
+            ExitCode::from(2)
+        }
+        Err(Failure::Output(message)) => {
+            eprintln!("error: {message}");
+            ExitCode::from(1)
+        }
+    }
+}
+
+fn print_params() -> Result<(), Failure> {
+    let json = serde_json::to_string_pretty(&Params::default())
+        .expect("parameters hold only numbers and names");
+    println!("{json}");
+    Ok(())
+}
+
+fn parse_finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("'{text}' is not a number in metres")),
+    }
+}
+
+fn parse_roi(text: &str) -> Result<[f64; 4], String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(parse_finite)
+        .collect::<Result<_, _>>()?;
+    match numbers[..] {
+        [x0, y0, x1, y1] if x0 < x1 && y0 < y1 => Ok([x0, y0, x1, y1]),
+        [_, _, _, _] => Err("x0 must be less than x1, and y0 less than y1".into()),
+        _ => Err(format!(
+            "{} numbers; expected four: x0,y0,x1,y1",
+            numbers.len()
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_region_is_four_ordered_numbers() {
+        assert_eq!(parse_roi("-1,2,3.5,4"), Ok([-1.0, 2.0, 3.5, 4.0]));
+        for bad in ["1,2,3", "3,2,1,4", "1,2,nan,4", "1,2,inf,4", "", "a,b,c,d"] {
+            assert!(parse_roi(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! CityJSON 2.0: one Building with an LoD 2.2 Solid per building of the model.
+//!
+//! Coordinates are those of the input's world frame, as whole numbers of 0.1 mm from the scene origin (coarser steps
+//! would bend planar roofs). The texture is the file [`ATLAS_FILE`] beside this one. The input's
+//! orientation files do not name a coordinate reference system, so none is written.
+
+use serde_json::{Map, Value, json};
+
+use super::json::to_bytes;
+use super::{ATLAS_FILE, rounded};
+use crate::roof::{Building, RoofModel, Surface};
+use crate::scene::Scene;
+use crate::texture::{FaceTexture, TexturedModel};
+
+/// Step of the coordinates, metres.
+const SCALE_M: f64 = 1e-4;
+
+/// Name of the appearance theme.
+const THEME: &str = "photographs";
+
+/// The model as a CityJSON file.
+pub fn city_json(scene: &Scene, model: &RoofModel, textured: &TexturedModel) -> Vec<u8> {
+    let mut shared = Shared::default();
+    let mut objects = Map::new();
+    for (i, (building, textures)) in model.buildings.iter().zip(&textured.faces).enumerate() {
+        let object = building_object(scene, model, building, textures, &mut shared);
+        objects.insert(format!("building-{i}"), object);
+    }
+    let mut file = json!({
+        "type": "CityJSON",
+        "version": "2.0",
+        "transform": {
+            "scale": [SCALE_M, SCALE_M, SCALE_M],
+            "translate": scene.origin.as_slice(),
+        },
+        "CityObjects": objects,
+        "vertices": shared.vertices,
+    });
+    if !shared.vertices.is_empty() {
+        file["metadata"] = json!({ "geographicalExtent": extent(scene, &shared.vertices) });
+        file["appearance"] = json!({
+            "default-theme-texture": THEME,
+            "textures": [{ "type": "JPG", "image": ATLAS_FILE, "wrapMode": "none" }],
+            "vertices-texture": shared.uv,
+        });
+    }
+    to_bytes(&file)
+}
+
+/// The lists that all buildings share.
+#[derive(Default)]
+struct Shared {
+    vertices: Vec<[i64; 3]>,
+    uv: Vec<[f64; 2]>,
+}
+
+fn building_object(
+    scene: &Scene,
+    model: &RoofModel,
+    building: &Building,
+    textures: &[FaceTexture],
+    shared: &mut Shared,
+) -> Value {
+    let offset = shared.vertices.len();
+    let whole = |c: f64| (c / SCALE_M).round() as i64;
+    let vertices = &building.solid.vertices;
+    shared.vertices.extend(
+        vertices
+            .iter()
+            .map(|p| [whole(p.x), whole(p.y), whole(p.z)]),
+    );
+    let mut boundaries = Vec::new();
+    let mut surfaces = Vec::new();
+    let mut texture_values = Vec::new();
+    for (face, texture) in building.solid.faces.iter().zip(textures) {
+        let rings: Vec<Vec<usize>> = face
+            .rings
+            .iter()
+            .map(|ring| ring.iter().map(|&v| offset + v as usize).collect())
+            .collect();
+        boundaries.push(rings);
+        surfaces.push(semantic_surface(model, face.surface));
+        texture_values.push(texture_of_rings(texture, shared));
+    }
+    let values: Vec<usize> = (0..surfaces.len()).collect();
+    json!({
+        "type": "Building",
+        "attributes": {
+            "groundHeight": rounded(building.ground_z + scene.origin.z, 4),
+            "roofFacets": building.facets.len(),
+            "volume": rounded(building.solid.volume(), 3),
+        },
+        "geometry": [{
+            "type": "Solid",
+            "lod": "2.2",
+            "boundaries": [boundaries],
+            "semantics": { "surfaces": surfaces, "values": [values] },
+            "texture": { THEME: { "values": [texture_values] } },
+        }],
+    })
+}
+
+/// What a face is; roof surfaces carry the facet's id, slope and evidence.
+fn semantic_surface(model: &RoofModel, surface: Surface) -> Value {
+    match surface {
+        Surface::Wall => json!({ "type": "WallSurface" }),
+        Surface::Ground => json!({ "type": "GroundSurface" }),
+        Surface::Roof(id) => {
+            let facet = &model.facets[id.index()];
+            let slope = crate::math::acos(facet.plane.normal.z.clamp(-1.0, 1.0));
+            json!({
+                "type": "RoofSurface",
+                "facet": id,
+                "slopeDeg": rounded(slope.to_degrees(), 3),
+                "similarity": rounded(facet.similarity, 4),
+                "realLineRatio": rounded(facet.real_ratio, 4),
+            })
+        }
+    }
+}
+
+/// Per ring `[texture, uv, uv, ...]`; CityJSON's texture coordinates have their origin at the lower left.
+fn texture_of_rings(texture: &FaceTexture, shared: &mut Shared) -> Vec<Vec<usize>> {
+    let mut rings = Vec::new();
+    for ring in &texture.uv {
+        let first = shared.uv.len();
+        shared.uv.extend(ring.iter().map(|uv| {
+            [
+                rounded(f64::from(uv[0]), 6),
+                rounded(1.0 - f64::from(uv[1]), 6),
+            ]
+        }));
+        rings.push([0].into_iter().chain(first..shared.uv.len()).collect());
+    }
+    rings
+}
+
+/// Lowest and highest coordinates in the world frame.
+fn extent(scene: &Scene, vertices: &[[i64; 3]]) -> Vec<f64> {
+    let world = |axis: usize, v: i64| rounded(v as f64 * SCALE_M + scene.origin[axis], 4);
+    let of = |axis: usize| vertices.iter().map(move |v| v[axis]);
+    let low = (0..3).map(|axis| world(axis, of(axis).min().unwrap_or(0)));
+    let high = (0..3).map(|axis| world(axis, of(axis).max().unwrap_or(0)));
+    low.chain(high).collect()
+}

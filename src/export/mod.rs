@@ -1,0 +1,90 @@
+//! A model as files. Nothing here touches a file system: every writer returns bytes.
+//!
+//! | file | what |
+//! |---|---|
+//! | `model.city.json` | CityJSON 2.0, world frame of the input; refers to the atlas by its file name |
+//! | `model_atlas.jpg` | the texture atlas of `model.city.json` |
+//! | `model.glb` | glTF 2.0, Y up, near-origin coordinates, the atlas inside |
+//! | `lines.json`, `segments.json`, `halfplanes.json` | what the model was made from |
+//!
+//! Invariant: the same input gives the same bytes; nothing writes a date, a path or a random id.
+
+mod cityjson;
+mod glb;
+mod json;
+mod triangulate;
+
+pub use cityjson::city_json;
+pub use glb::glb;
+pub use json::{half_planes_json, lines_json, segments_json};
+pub use triangulate::triangulate;
+
+use image::codecs::jpeg::JpegEncoder;
+
+use crate::halfplane::HalfPlane;
+use crate::lines2d::ImageSegment;
+use crate::lines3d::Line3d;
+use crate::params::TextureParams;
+use crate::roof::RoofModel;
+use crate::scene::Scene;
+use crate::texture::TexturedModel;
+
+/// Name of the atlas beside the CityJSON file.
+pub const ATLAS_FILE: &str = "model_atlas.jpg";
+
+/// Everything that is written out.
+#[derive(Clone, Copy, Debug)]
+pub struct Results<'a> {
+    /// The views and the origin of the local frame.
+    pub scene: &'a Scene,
+    /// Image segments, per view.
+    pub segments: &'a [Vec<ImageSegment>],
+    /// 3D lines.
+    pub lines: &'a [Line3d],
+    /// Half-planes.
+    pub half_planes: &'a [HalfPlane],
+    /// The model.
+    pub model: &'a RoofModel,
+    /// Its textures.
+    pub textured: &'a TexturedModel,
+}
+
+/// All files: name and bytes, in a fixed order.
+pub fn export_all(results: &Results, params: &TextureParams) -> Vec<(String, Vec<u8>)> {
+    let Results {
+        scene,
+        segments,
+        lines,
+        half_planes,
+        model,
+        textured,
+    } = *results;
+    let atlas = atlas_jpeg(textured, params.jpeg_quality);
+    [
+        ("model.city.json", city_json(scene, model, textured)),
+        ("model.glb", glb(scene, model, textured, &atlas)),
+        (ATLAS_FILE, atlas),
+        ("lines.json", lines_json(scene, lines)),
+        ("segments.json", segments_json(scene, segments)),
+        ("halfplanes.json", half_planes_json(scene, half_planes)),
+    ]
+    .map(|(name, bytes)| (name.to_owned(), bytes))
+    .into()
+}
+
+/// The atlas as a JPEG file; quality from 1 to 100.
+pub fn atlas_jpeg(textured: &TexturedModel, quality: u8) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    JpegEncoder::new_with_quality(&mut bytes, quality.clamp(1, 100))
+        .encode_image(&textured.atlas)
+        .expect("writing to memory does not fail and an atlas is smaller than 65536 pixels");
+    bytes
+}
+
+/// A number rounded to a few decimals: shorter in a file, and it hides what is not significant.
+fn rounded(value: f64, decimals: u8) -> f64 {
+    let scale = (0..decimals).fold(1.0, |scale, _| scale * 10.0);
+    let r = (value * scale).round() / scale;
+    // No "-0.0" in files.
+    if r == 0.0 { 0.0 } else { r }
+}

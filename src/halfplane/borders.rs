@@ -1,0 +1,278 @@
+//! Border lines in plan: real lines, intersections of planes, closing lines (B99 4.2, 4.3, figures 19 to 22).
+//!
+//! Three kinds of lines may bound a facet:
+//! * reconstructed 3D lines, whether they lie in the plane with another plane attached or not
+//!   (figure 21), extended at both ends, since detected ends are unreliable (figure 22);
+//! * new lines in which two neighbouring planes meet (figure 19);
+//! * closing lines across the ends of a supporting line. They stand for the sides of the paper's convex hull,
+//!   where nothing was detected.
+//!
+//! A real line that runs along an intersection is moved onto it, so that ridge, hip and valley are where
+//! their planes meet.
+
+use nalgebra::{Point2, Vector2};
+use serde::Serialize;
+
+use super::grouping::{GroupingInput, PlaneGroup};
+use super::{Side, ThetaFrame};
+use crate::params::RoofParams;
+
+/// Where a border line comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BorderKind {
+    /// A reconstructed 3D line.
+    Real,
+    /// Two planes meet there.
+    Intersection,
+    /// Hypothesised across the end of a line.
+    Closing,
+}
+
+/// A border line in plan, metres.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Border {
+    /// Where it comes from.
+    pub kind: BorderKind,
+    /// One end.
+    pub a: Point2<f64>,
+    /// The other end.
+    pub b: Point2<f64>,
+}
+
+impl Border {
+    /// Length in plan, metres.
+    pub fn length(&self) -> f64 {
+        (self.b - self.a).norm()
+    }
+
+    fn direction(&self) -> Vector2<f64> {
+        (self.b - self.a) / self.length().max(1e-12)
+    }
+
+    fn distance(&self, p: &Point2<f64>) -> f64 {
+        let d = self.direction();
+        (d.x * (p.y - self.a.y) - d.y * (p.x - self.a.x)).abs()
+    }
+
+    fn foot(&self, p: &Point2<f64>) -> Point2<f64> {
+        let d = self.direction();
+        self.a + d * (p - self.a).dot(&d)
+    }
+}
+
+/// The part of the plan that a group may cover: boxes beside its supporting lines.
+#[derive(Clone, Debug)]
+pub struct Region {
+    boxes: Vec<PlanBox>,
+}
+
+/// A rectangle beside a line: origin at the line's start, `along` its direction, `across` to the left.
+#[derive(Clone, Copy, Debug)]
+struct PlanBox {
+    start: Point2<f64>,
+    along: Vector2<f64>,
+    length: f64,
+    left: f64,
+    right: f64,
+    ends: f64,
+}
+
+impl Region {
+    /// The region of a group: `depth` away from each supporting line on the side of its half-plane
+    /// (both sides for a line without one), a little beyond on the other side and over the ends.
+    pub fn new(input: &GroupingInput, group: &PlaneGroup, params: &RoofParams) -> Self {
+        let boxes = group
+            .members
+            .iter()
+            .filter_map(|m| {
+                let line = &input.lines[m.line.index()].segment;
+                let (a, b) = (line.p0.xy(), line.p1.xy());
+                let length = (b - a).norm();
+                if length < 1e-6 {
+                    return None;
+                }
+                let depth = length.clamp(params.min_facet_depth_m, params.max_facet_depth_m);
+                let (left, right) = match super::grouping::side_of(input, m) {
+                    Some(Side::Left) => (depth, MARGIN),
+                    Some(Side::Right) => (MARGIN, depth),
+                    // It lies in the plane, but which side of it the plane covers is unknown.
+                    None => (MARGIN, MARGIN),
+                };
+                let ends = (0.5 * length).clamp(params.extension_m, params.min_facet_depth_m);
+                Some(PlanBox { start: a, along: (b - a) / length, length, left, right, ends })
+            })
+            .collect();
+        Self { boxes }
+    }
+
+    /// Does the region hold a plan position?
+    pub fn contains(&self, p: &Point2<f64>) -> bool {
+        self.boxes.iter().any(|b| {
+            let d = p - b.start;
+            let (t, u) = (d.dot(&b.along), b.along.x * d.y - b.along.y * d.x);
+            t >= -b.ends && t <= b.length + b.ends && u <= b.left && u >= -b.right
+        })
+    }
+
+    /// Least and largest x and y, metres.
+    pub fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
+        let mut min = Point2::new(f64::INFINITY, f64::INFINITY);
+        let mut max = -min;
+        for b in &self.boxes {
+            let across = Vector2::new(-b.along.y, b.along.x);
+            for t in [-b.ends, b.length + b.ends] {
+                for u in [b.left, -b.right] {
+                    let p = b.start + b.along * t + across * u;
+                    min = Point2::new(min.x.min(p.x), min.y.min(p.y));
+                    max = Point2::new(max.x.max(p.x), max.y.max(p.y));
+                }
+            }
+        }
+        (min, max)
+    }
+}
+
+/// How far a region reaches behind its line, metres: more than the line's own uncertainty.
+const MARGIN: f64 = 0.5;
+/// A line within this distance of an intersection, metres, and this angle is the same line.
+const SAME_LINE: f64 = 0.3;
+const SAME_LINE_SINE: f64 = 0.09;
+
+/// All border lines of the scene, intersections first, none lying on another.
+pub fn border_lines(
+    input: &GroupingInput,
+    groups: &[PlaneGroup],
+    regions: &[Region],
+    params: &RoofParams,
+) -> Vec<Border> {
+    let mut borders: Vec<Border> = Vec::new();
+    for border in intersections(input, groups, regions) {
+        add(&mut borders, border);
+    }
+    let mut real: Vec<Border> = input.lines.iter().filter_map(|l| extended(&l.segment, params)).collect();
+    real.sort_by(|a, b| b.length().total_cmp(&a.length()));
+    for border in real {
+        add(&mut borders, border);
+    }
+    for border in closing_lines(input, groups, params) {
+        add(&mut borders, border);
+    }
+    borders
+}
+
+/// New lines by plane intersection (B99 4.2): where both planes' regions hold it.
+fn intersections(input: &GroupingInput, groups: &[PlaneGroup], regions: &[Region]) -> Vec<Border> {
+    let mut found = Vec::new();
+    for (i, p) in groups.iter().enumerate() {
+        let (min, max) = regions[i].bounds();
+        for (j, q) in groups.iter().enumerate().skip(i + 1) {
+            let (qmin, qmax) = regions[j].bounds();
+            let low = Point2::new(min.x.max(qmin.x), min.y.max(qmin.y));
+            let high = Point2::new(max.x.min(qmax.x), max.y.min(qmax.y));
+            if low.x >= high.x || low.y >= high.y || p.plane.angle_to(&q.plane) < MIN_CREASE {
+                continue;
+            }
+            let near = input.lines[p.members[0].line.index()].at(0.5);
+            let Some((point, direction)) = p.plane.intersection(&q.plane, &near) else { continue };
+            let inside = |x: &Point2<f64>| regions[i].contains(x) && regions[j].contains(x);
+            found.extend(stretches(&point.xy(), &direction.xy(), low, high, inside));
+        }
+    }
+    found
+}
+
+/// Planes at less than this angle (radians, 5 degrees) meet in a line too uncertain to be of use.
+const MIN_CREASE: f64 = 5.0 * std::f64::consts::PI / 180.0;
+
+/// The stretches of a line, longer than 0.5 m, on which `inside` holds, by steps of 0.25 m.
+fn stretches(
+    point: &Point2<f64>,
+    direction: &Vector2<f64>,
+    low: Point2<f64>,
+    high: Point2<f64>,
+    inside: impl Fn(&Point2<f64>) -> bool,
+) -> Vec<Border> {
+    const STEP: f64 = 0.25;
+    let norm = direction.norm();
+    if norm < 1e-9 {
+        return Vec::new();
+    }
+    let d = direction / norm;
+    // Only the part near the box matters.
+    let center = Point2::from((low.coords + high.coords) * 0.5);
+    let t0 = (center - point).dot(&d);
+    let half = 0.5 * (high - low).norm();
+    let steps = (2.0 * half / STEP).ceil() as usize;
+    let mut found = Vec::new();
+    let mut start: Option<Point2<f64>> = None;
+    let mut last = *point;
+    for k in 0..=steps {
+        let p = point + d * (t0 - half + k as f64 * STEP);
+        if inside(&p) {
+            start = start.or(Some(p));
+            last = p;
+        } else if let Some(s) = start.take() {
+            found.push(Border { kind: BorderKind::Intersection, a: s, b: last });
+        }
+    }
+    if let Some(s) = start {
+        found.push(Border { kind: BorderKind::Intersection, a: s, b: last });
+    }
+    found.retain(|b| b.length() > 0.5);
+    found
+}
+
+/// A real line in plan, extended at both ends; `None` when it is nearly vertical.
+fn extended(line: &crate::geometry::Segment3, params: &RoofParams) -> Option<Border> {
+    let (a, b) = (line.p0.xy(), line.p1.xy());
+    let length = (b - a).norm();
+    if length < 0.2 * line.length() || length < 0.1 {
+        return None;
+    }
+    let extra = (b - a) / length * (0.5 * length).clamp(params.extension_m, 3.0 * params.extension_m);
+    Some(Border { kind: BorderKind::Real, a: a - extra, b: b + extra })
+}
+
+/// Lines across both ends of every supporting line, on the side of its half-plane.
+fn closing_lines(input: &GroupingInput, groups: &[PlaneGroup], params: &RoofParams) -> Vec<Border> {
+    let mut found = Vec::new();
+    for group in groups {
+        for member in &group.members {
+            let Some(side) = super::grouping::side_of(input, member) else { continue };
+            let line = &input.lines[member.line.index()].segment;
+            let Some(frame) = ThetaFrame::new(line, side) else { continue };
+            let depth = line.length().clamp(params.min_facet_depth_m, params.max_facet_depth_m);
+            let away = frame.outward.xy();
+            for end in [line.p0.xy(), line.p1.xy()] {
+                found.push(Border { kind: BorderKind::Closing, a: end - away * MARGIN, b: end + away * depth });
+            }
+        }
+    }
+    found
+}
+
+/// Adds a border unless it lies on one that is there; one that runs along another is moved onto its line.
+fn add(borders: &mut Vec<Border>, mut border: Border) {
+    for other in borders.iter() {
+        let sine = {
+            let (d, e) = (border.direction(), other.direction());
+            (d.x * e.y - d.y * e.x).abs()
+        };
+        if sine > SAME_LINE_SINE || other.distance(&border.a) > SAME_LINE || other.distance(&border.b) > SAME_LINE {
+            continue;
+        }
+        let d = other.direction();
+        let (s, t) = ((border.a - other.a).dot(&d), (border.b - other.a).dot(&d));
+        let (s, t) = (s.min(t), s.max(t));
+        if t < 0.0 || s > other.length() {
+            continue;
+        }
+        if s >= -SAME_LINE && t <= other.length() + SAME_LINE {
+            return;
+        }
+        border.a = other.foot(&border.a);
+        border.b = other.foot(&border.b);
+    }
+    borders.push(border);
+}

@@ -1,0 +1,140 @@
+//! The maximum of a sampled `Sim(theta)`: position, curvature, uncertainty, acceptance (B99 figure 12).
+
+use super::SweepRejection;
+use crate::params::SweepParams;
+
+/// A parabola `value + slope (theta - at) + curvature (theta - at)^2 / 2`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Parabola {
+    /// Where the coefficients hold, radians.
+    pub at: f64,
+    /// Sim there.
+    pub value: f64,
+    /// Sim', per radian.
+    pub slope: f64,
+    /// Sim'', per radian squared.
+    pub curvature: f64,
+}
+
+impl Parabola {
+    /// Least squares over the samples (theta, Sim) within `reach` of `at`; `None` for fewer than three.
+    pub fn fit(samples: impl Iterator<Item = (f64, f64)>, at: f64, reach: f64) -> Option<Self> {
+        let mut normal = nalgebra::Matrix3::zeros();
+        let mut right = nalgebra::Vector3::zeros();
+        let mut count = 0;
+        for (theta, sim) in samples {
+            // In units of the reach, which keeps the normal equations well conditioned.
+            let t = (theta - at) / reach;
+            if t.abs() <= 1.0 + 1e-9 {
+                let row = nalgebra::Vector3::new(1.0, t, 0.5 * t * t);
+                normal += row * row.transpose();
+                right += row * sim;
+                count += 1;
+            }
+        }
+        if count < 3 {
+            return None;
+        }
+        let c = normal.cholesky()?.solve(&right);
+        Some(Self {
+            at,
+            value: c.x,
+            slope: c.y / reach,
+            curvature: c.z / (reach * reach),
+        })
+    }
+
+    /// Position and height of the maximum; `None` when the parabola opens upwards.
+    pub fn maximum(&self) -> Option<(f64, f64)> {
+        (self.curvature < 0.0).then(|| {
+            let step = -self.slope / self.curvature;
+            (self.at + step, self.value + 0.5 * self.slope * step)
+        })
+    }
+}
+
+/// The numbers that B99 figure 12 tests.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Peak {
+    /// Angle of the maximum, radians.
+    pub theta: f64,
+    /// `Sim(theta_max)`.
+    pub similarity: f64,
+    /// `|Sim''(theta_max)|`, per radian squared.
+    pub curvature: f64,
+    /// `Sim(theta_max) - Sim(theta_min)`.
+    pub amplitude: f64,
+}
+
+impl Peak {
+    /// The three validity criteria of figure 12.
+    pub fn check(&self, params: &SweepParams) -> Result<(), SweepRejection> {
+        if self.similarity < params.min_similarity {
+            Err(SweepRejection::LowPeak)
+        } else if self.curvature < params.min_curvature {
+            Err(SweepRejection::FlatCurve)
+        } else if self.amplitude < params.min_amplitude {
+            Err(SweepRejection::SmallAmplitude)
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// Standard deviation of the maximum from the slopes of the single views' curves there, radians.
+///
+/// The maximum of a mean of n curves is where their slopes cancel; it moves by the error of the
+/// mean slope over the curvature of the mean: `sigma = s / (sqrt(n) |Sim''|)`, s the scatter of
+/// the slopes. This is the sandwich covariance of an M-estimator. With one view there is no
+/// scatter; its whole slope range over `reach` then stands for it.
+pub(super) fn sigma_of_maximum(slopes: &[f64], curvature: f64, reach: f64) -> f64 {
+    let n = slopes.len() as f64;
+    let mean = slopes.iter().sum::<f64>() / n;
+    let scatter = slopes.iter().map(|s| (s - mean) * (s - mean)).sum::<f64>();
+    if slopes.len() < 2 {
+        return reach;
+    }
+    (scatter / (n * (n - 1.0))).sqrt() / curvature.abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_planted_parabola_is_recovered() {
+        let sim = |t: f64| 0.7 - 6.0 * (t - 0.31) * (t - 0.31);
+        let samples = [0.1, 0.2, 0.25, 0.3, 0.35, 0.4, 0.9].map(|t| (t, sim(t)));
+        let p = Parabola::fit(samples.into_iter(), 0.3, 0.12).unwrap();
+        let (theta, value) = p.maximum().unwrap();
+        assert!((theta - 0.31).abs() < 1e-9 && (value - 0.7).abs() < 1e-9);
+        assert!((p.curvature + 12.0).abs() < 1e-6);
+        assert!(Parabola::fit(samples.into_iter(), 0.9, 0.1).is_none());
+    }
+
+    #[test]
+    fn the_scatter_of_the_slopes_gives_sigma() {
+        // Parabolas of equal curvature whose maxima scatter: sigma is that of their mean.
+        let maxima = [0.1, 0.12, 0.14, 0.16];
+        let slopes = maxima.map(|m: f64| 5.0 * (m - 0.13));
+        let variance = maxima.iter().map(|m| (m - 0.13) * (m - 0.13)).sum::<f64>() / 3.0;
+        let sigma = sigma_of_maximum(&slopes, -5.0, 0.1);
+        assert!((sigma - (variance / 4.0).sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn each_criterion_rejects_by_itself() {
+        let params = SweepParams::default();
+        let good = Peak {
+            theta: 0.0,
+            similarity: 0.6,
+            curvature: 8.0,
+            amplitude: 0.3,
+        };
+        assert_eq!(good.check(&params), Ok(()));
+        let check = |peak: Peak| peak.check(&params).unwrap_err();
+        assert_eq!(check(Peak { similarity: 0.39, ..good }), SweepRejection::LowPeak);
+        assert_eq!(check(Peak { curvature: 3.9, ..good }), SweepRejection::FlatCurve);
+        assert_eq!(check(Peak { amplitude: 0.19, ..good }), SweepRejection::SmallAmplitude);
+    }
+}

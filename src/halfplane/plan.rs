@@ -1,0 +1,114 @@
+//! The plan grid: a raster of square cells on the XY plane in which plane hypotheses are compared.
+
+use nalgebra::{Matrix3, Point2};
+
+use crate::camera::Camera;
+use crate::geometry::Plane;
+use crate::raster::Gray;
+
+/// A window of plan positions; the centre of cell (column, row) is `origin + (column + 0.5, row + 0.5) step`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlanGrid {
+    /// Least x and y, metres.
+    pub origin: Point2<f64>,
+    /// Cell size, metres.
+    pub step: f64,
+    /// Columns (along x).
+    pub width: usize,
+    /// Rows (along y).
+    pub height: usize,
+}
+
+impl PlanGrid {
+    /// The grid that covers a box, aligned to multiples of `step` so that windows of one scene share cells.
+    pub fn covering(min: Point2<f64>, max: Point2<f64>, step: f64) -> Self {
+        let (c0, r0) = ((min.x / step).floor(), (min.y / step).floor());
+        let (c1, r1) = ((max.x / step).ceil(), (max.y / step).ceil());
+        Self {
+            origin: Point2::new(c0 * step, r0 * step),
+            step,
+            width: (c1 - c0).max(1.0) as usize,
+            height: (r1 - r0).max(1.0) as usize,
+        }
+    }
+
+    /// Centre of a cell, metres.
+    pub fn center(&self, column: usize, row: usize) -> Point2<f64> {
+        self.origin + nalgebra::Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * self.step
+    }
+
+    /// The cell that holds a plan position, when it is inside.
+    pub fn cell(&self, p: &Point2<f64>) -> Option<(usize, usize)> {
+        let (c, r) = ((p.x - self.origin.x) / self.step, (p.y - self.origin.y) / self.step);
+        (c >= 0.0 && r >= 0.0 && c < self.width as f64 && r < self.height as f64).then_some((c as usize, r as usize))
+    }
+
+    /// Column and row of this window's first cell in `larger`, which has the same step.
+    pub fn offset_in(&self, larger: &PlanGrid) -> (isize, isize) {
+        let d = (self.origin - larger.origin) / self.step;
+        (d.x.round() as isize, d.y.round() as isize)
+    }
+}
+
+/// The map from plan positions (x, y, 1) on a plane to the image of a camera: 3 x 3.
+///
+/// A point of the plane is (x, y, z(x, y)) with z linear, so its image is a homography of (x, y).
+pub fn image_from_plan(camera: &Camera, plane: &Plane) -> Matrix3<f64> {
+    let p = camera.projection_matrix();
+    let n = plane.normal;
+    let lift = nalgebra::Matrix4x3::new(
+        1.0, 0.0, 0.0,
+        0.0, 1.0, 0.0,
+        -n.x / n.z, -n.y / n.z, -plane.d / n.z,
+        0.0, 0.0, 1.0,
+    );
+    p * lift
+}
+
+/// The image seen from straight above under the hypothesis that the surface is `plane`: grey values
+/// on the grid, NaN where the image does not reach.
+pub fn orthophoto(gray: &Gray, camera: &Camera, plane: &Plane, grid: &PlanGrid) -> Vec<f32> {
+    let m = image_from_plan(camera, plane);
+    let mut out = Vec::with_capacity(grid.width * grid.height);
+    let step = m.column(0) * grid.step;
+    for row in 0..grid.height {
+        let start = grid.center(0, row);
+        let mut x = m * nalgebra::Vector3::new(start.x, start.y, 1.0);
+        for _ in 0..grid.width {
+            let value = if x.z > 1e-9 {
+                let inverse = 1.0 / x.z;
+                gray.sample((x.x * inverse) as f32, (x.y * inverse) as f32)
+            } else {
+                None
+            };
+            out.push(value.unwrap_or(f32::NAN));
+            x += step;
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::tests::crop_camera;
+    use nalgebra::{Point3, Vector3};
+
+    #[test]
+    fn plan_map_agrees_with_projection() {
+        let camera = crop_camera(100.0, -50.0, 0.3);
+        let plane = Plane::from_point_normal(&Point3::new(0.0, 0.0, 8.0), &Vector3::new(0.3, -0.1, 1.0)).unwrap();
+        let x = image_from_plan(&camera, &plane) * Vector3::new(4.0, 7.0, 1.0);
+        let expected = camera.project(&plane.lift(4.0, 7.0)).unwrap();
+        assert!((Point2::new(x.x / x.z, x.y / x.z) - expected).norm() < 1e-6);
+    }
+
+    #[test]
+    fn windows_of_one_scene_share_cells() {
+        let large = PlanGrid::covering(Point2::new(-10.03, 4.2), Point2::new(30.0, 40.0), 0.1);
+        let small = PlanGrid::covering(Point2::new(1.234, 9.87), Point2::new(3.0, 12.0), 0.1);
+        let (c, r) = small.offset_in(&large);
+        let p = small.center(3, 5);
+        assert_eq!(large.cell(&p), Some(((c + 3) as usize, (r + 5) as usize)));
+    }
+}

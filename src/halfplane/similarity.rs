@@ -1,0 +1,224 @@
+//! `Sim(theta)` of one line side (B99 4.1):
+//!
+//! `Sim(theta) = sum over valid views i, integral over POI of w(x) Cor^2(x, H^i(theta) x)`,
+//!
+//! with `w(x)` inversely proportional to the distance of x from the projected line, and normalised so
+//! that Sim is in (0, 1): the weights of a view's points sum to one and the views are averaged.
+//!
+//! Deviations: a negative correlation counts as 0, not as its square, because an inverted pattern
+//! is no support; distances below half a window count as half a window (Assumption: windows there
+//! reach the line anyway, and 1/0 would leave one point to decide).
+
+use nalgebra::Point2;
+
+use super::poi::PointsOfInterest;
+use super::strip::{Patch, Strip, corners};
+use super::windows::Windows;
+use super::{Side, SweepRejection, ThetaFrame};
+use crate::camera::homography_of_plane;
+use crate::geometry::Segment3;
+use crate::ids::ViewId;
+use crate::params::SweepParams;
+use crate::scene::Scene;
+
+/// What one view says about one theta.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct ViewScore {
+    /// Weighted mean of `Cor^2` over the points of interest, 0 to 1; 0 where the view does not see
+    /// the half-plane.
+    pub similarity: f64,
+    /// Share of the points of interest with a high correlation, 0 to 1.
+    pub high: f64,
+}
+
+/// One line side, ready to be compared at any theta.
+pub(super) struct LineSide<'a> {
+    scene: &'a Scene,
+    params: &'a SweepParams,
+    line: Segment3,
+    /// The frame of theta.
+    pub frame: ThetaFrame,
+    /// "The choice of the first view [...] can be automated by selecting the most textured image".
+    pub reference: ViewId,
+    /// The other views, in order.
+    pub others: Vec<ViewId>,
+    strip: Strip,
+    windows: Windows,
+    /// Normalised weight of every site.
+    weights: Vec<f64>,
+    warped: Patch,
+    correlations: Vec<f64>,
+    /// Correlations computed so far.
+    pub count: u64,
+    /// Strip pixels warped so far.
+    pub pixels: u64,
+}
+
+impl<'a> LineSide<'a> {
+    /// Chooses the reference view and its points of interest.
+    pub fn new(
+        scene: &'a Scene,
+        points: &[PointsOfInterest],
+        line: &Segment3,
+        side: Side,
+        params: &'a SweepParams,
+    ) -> Result<Self, SweepRejection> {
+        let frame = ThetaFrame::new(line, side).ok_or(SweepRejection::NoFrame)?;
+        let (reference, strip, pixels) = most_textured(scene, points, line, &frame, params)
+            .ok_or(SweepRejection::TooShort)?;
+        // Rows that no window reaches need not be warped.
+        let last = pixels.iter().map(|p| p.1).max().unwrap_or(0);
+        let strip = strip.truncated(last + params.window_px / 2 + 1);
+        let mut patch = Patch::default();
+        patch.warp(&scene.view(reference).gray, &strip, &strip.image_from_strip());
+        let windows = Windows::new(patch, params.window_px, &pixels);
+        if windows.sites.len() < params.min_points {
+            return Err(SweepRejection::NoPointsOfInterest);
+        }
+        let nearest = params.window_px as f64 * 0.5;
+        let mut weights: Vec<f64> = windows
+            .sites
+            .iter()
+            .map(|site| 1.0 / strip.distance_px(site.row).max(nearest))
+            .collect();
+        let sum: f64 = weights.iter().sum();
+        weights.iter_mut().for_each(|w| *w /= sum);
+        Ok(Self {
+            scene,
+            params,
+            line: *line,
+            frame,
+            reference,
+            others: scene.view_ids().filter(|&id| id != reference).collect(),
+            strip,
+            windows,
+            weights,
+            warped: Patch::default(),
+            correlations: Vec::new(),
+            count: 0,
+            pixels: 0,
+        })
+    }
+
+    /// Positions of the points of interest in the reference view, pixels.
+    pub fn points(&self) -> Vec<Point2<f64>> {
+        let m = self.strip.image_from_strip();
+        let at = |v: usize| v as f64 + 0.5;
+        self.windows
+            .sites
+            .iter()
+            .map(|s| (m * nalgebra::Vector3::new(at(s.column), at(s.row), 1.0)).xy().into())
+            .collect()
+    }
+
+    /// Weighted mean distance of the points of interest from the line, metres on the ground.
+    pub fn mean_distance_m(&self) -> f64 {
+        let pixel_m = self.scene.camera(self.reference).ground_pixel(&self.line.at(0.5));
+        let sites = self.windows.sites.iter().zip(&self.weights);
+        sites.map(|(s, w)| w * self.strip.distance_px(s.row)).sum::<f64>() * pixel_m
+    }
+
+    /// Does the reference view see the upper side of the half-plane? Elsewhere theta has no meaning.
+    pub fn is_visible(&self, theta: f64) -> bool {
+        self.sees(self.reference, theta)
+    }
+
+    /// Compares the reference with one view under `H(theta)`.
+    pub fn score(&mut self, view: ViewId, theta: f64) -> ViewScore {
+        let scene = self.scene;
+        if !self.sees(view, theta) {
+            return ViewScore::default();
+        }
+        let (from, to) = (scene.camera(self.reference), scene.view(view));
+        let plane = self.frame.plane(&self.line, theta);
+        let Some(h) = homography_of_plane(from, &to.camera, &plane) else {
+            return ViewScore::default();
+        };
+        let view_from_strip = h.0 * self.strip.image_from_strip();
+        let size = [self.strip.columns as f64, self.strip.rows as f64];
+        let Some(whole) = corners(&view_from_strip, [0.0, 0.0], size) else {
+            return ViewScore::default();
+        };
+        self.warped.warp(&to.gray, &self.strip, &view_from_strip);
+        self.windows.correlate(&self.warped, &mut self.correlations);
+        self.count += self.correlations.len() as u64;
+        self.pixels += (self.strip.columns * self.strip.rows) as u64;
+        let all_inside = whole.iter().all(|c| to.camera.contains(c, 0.5));
+        self.reduce(|site| {
+            all_inside || self.window_is_inside(site, &to.camera, &view_from_strip)
+        })
+    }
+
+    /// Weighted mean over the sites that the view shows.
+    fn reduce(&self, is_inside: impl Fn(usize) -> bool) -> ViewScore {
+        let (mut weight, mut similarity) = (0.0, 0.0);
+        let (mut points, mut high) = (0.0, 0.0);
+        for (i, (&w, &cor)) in self.weights.iter().zip(&self.correlations).enumerate() {
+            if is_inside(i) {
+                let cor = cor.max(0.0);
+                weight += w;
+                similarity += w * cor * cor;
+                points += 1.0;
+                high += f64::from(u8::from(cor >= self.params.high_correlation));
+            }
+        }
+        // A view that shows less than half of the neighbourhood does not see it.
+        if weight < 0.5 {
+            return ViewScore::default();
+        }
+        ViewScore {
+            similarity: similarity / weight,
+            high: high / points,
+        }
+    }
+
+    fn window_is_inside(
+        &self,
+        site: usize,
+        camera: &crate::camera::Camera,
+        view_from_strip: &nalgebra::Matrix3<f64>,
+    ) -> bool {
+        let site = &self.windows.sites[site];
+        let half = self.params.window_px as f64 * 0.5;
+        let (x, y) = (site.column as f64 + 0.5, site.row as f64 + 0.5);
+        corners(view_from_strip, [x - half, y - half], [x + half, y + half])
+            .is_some_and(|c| c.iter().all(|c| camera.contains(c, 0.5)))
+    }
+
+    /// Does the view look onto the upper side of the half-plane, not too obliquely?
+    fn sees(&self, view: ViewId, theta: f64) -> bool {
+        // The sine of 6 degrees: there a pixel covers ten on the plane.
+        const MIN_SINE: f64 = 0.1;
+        let to_camera = self.scene.camera(view).center - self.line.at(0.5);
+        let normal = self.frame.plane(&self.line, theta).normal;
+        normal.dot(&to_camera) > MIN_SINE * to_camera.norm()
+    }
+}
+
+/// The view in which the neighbourhood holds the most points of interest, with its strip and their
+/// pixels, ordered by row. The first one wins a tie.
+fn most_textured(
+    scene: &Scene,
+    points: &[PointsOfInterest],
+    line: &Segment3,
+    frame: &ThetaFrame,
+    params: &SweepParams,
+) -> Option<(ViewId, Strip, Vec<(usize, usize)>)> {
+    let mut best: Option<(ViewId, Strip, Vec<(usize, usize)>)> = None;
+    for id in scene.view_ids() {
+        let Some(strip) = Strip::new(scene.camera(id), line, frame, params) else {
+            continue;
+        };
+        let (min, max) = strip.bounds();
+        let mut pixels: Vec<(usize, usize)> = points[id.index()]
+            .within(min, max)
+            .filter_map(|p| strip.pixel_of(&p))
+            .collect();
+        pixels.sort_unstable_by_key(|&(column, row)| (row, column));
+        pixels.dedup();
+        if best.as_ref().is_none_or(|b| pixels.len() > b.2.len()) {
+            best = Some((id, strip, pixels));
+        }
+    }
+    best
+}

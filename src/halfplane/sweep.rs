@@ -1,0 +1,299 @@
+//! The search over theta and the stage itself (B99 4.1).
+//!
+//! "The algorithm used is recursive sub-division with a termination criterion of `Delta theta < 1`
+//! degree." A first pass samples the whole interval; the highest maxima are then halved down to the last
+//! step, and a parabola through the finest samples gives theta.
+//!
+//! Valid views: whether a view is valid depends on theta, since an occluded view agrees with no plane or
+//! with a wrong one. The sum over the views valid at each theta selects the maximum; the
+//! views valid there are then kept for the whole curve, so that Sim is continuous, and averaged.
+
+use super::peak::{Parabola, Peak, sigma_of_maximum};
+use super::poi::PointsOfInterest;
+use super::similarity::{LineSide, ViewScore};
+use super::trace::{SideTrace, SimilarityCurve, SweepRejection, SweepTrace, ViewCurve};
+use super::{HalfPlane, Side};
+use crate::geometry::Segment3;
+use crate::ids::LineId;
+use crate::lines3d::Line3d;
+use crate::params::SweepParams;
+use crate::scene::Scene;
+
+/// Half-planes of both sides of every line, in the order of the lines, left before right.
+pub fn sweep_half_planes(
+    scene: &Scene,
+    lines: &[Line3d],
+    params: &SweepParams,
+) -> (Vec<HalfPlane>, SweepTrace) {
+    let points = PointsOfInterest::detect_all(scene, params);
+    let sides: Vec<(usize, Side)> = (0..lines.len())
+        .flat_map(|i| [(i, Side::Left), (i, Side::Right)])
+        .collect();
+    let swept = crate::parallel::map(&sides, |_, &(i, side)| {
+        let mut counts = SweepTrace::default();
+        let half_plane = sweep_side(
+            scene,
+            &points,
+            LineId::from_index(i),
+            &lines[i],
+            side,
+            params,
+            &mut counts,
+        );
+        (half_plane, counts)
+    });
+    let mut trace = SweepTrace::default();
+    let mut half_planes = Vec::new();
+    for (half_plane, counts) in swept {
+        half_planes.extend(half_plane);
+        trace.sides.extend(counts.sides);
+        trace.correlations += counts.correlations;
+        trace.warped_pixels += counts.warped_pixels;
+    }
+    (half_planes, trace)
+}
+
+/// The half-plane of one side of one line, if there is one. Appends to the trace. `points` are those of
+/// every view of the scene.
+pub fn sweep_side(
+    scene: &Scene,
+    points: &[PointsOfInterest],
+    id: LineId,
+    line: &Line3d,
+    side: Side,
+    params: &SweepParams,
+    trace: &mut SweepTrace,
+) -> Option<HalfPlane> {
+    let mut curve = SimilarityCurve::default();
+    let result = LineSide::new(scene, points, &line.segment, side, params).and_then(|line_side| {
+        let mut search = Search::new(line_side, params);
+        let result = search.run();
+        trace.correlations += search.line_side.count;
+        trace.warped_pixels += search.line_side.pixels;
+        curve = search.curve();
+        result.map(|found| found.half_plane(&search, id, line, side))
+    });
+    trace.sides.push(SideTrace {
+        line: id,
+        side,
+        rejection: result.as_ref().err().copied(),
+        curve,
+    });
+    result.ok()
+}
+
+/// `Sim(theta)` of one line side at given angles (radians), in total and per view. `points` are those of
+/// every view of the scene ([`PointsOfInterest::detect_all`]).
+pub fn similarity_curve(
+    scene: &Scene,
+    points: &[PointsOfInterest],
+    line: &Segment3,
+    side: Side,
+    thetas: &[f64],
+    params: &SweepParams,
+) -> Result<SimilarityCurve, SweepRejection> {
+    let line_side = LineSide::new(scene, points, line, side, params)?;
+    let mut search = Search::new(line_side, params);
+    for &theta in thetas {
+        search.evaluate(theta);
+    }
+    search.valid = search.best().map(|i| search.valid_at(i)).unwrap_or_default();
+    Ok(search.curve())
+}
+
+/// All views at one angle.
+struct Sample {
+    theta: f64,
+    /// One entry a view of [`LineSide::others`].
+    scores: Vec<ViewScore>,
+}
+
+/// Samples of one line side, ordered by theta.
+struct Search<'a> {
+    line_side: LineSide<'a>,
+    params: &'a SweepParams,
+    samples: Vec<Sample>,
+    /// The views that count, by position in [`LineSide::others`].
+    valid: Vec<bool>,
+}
+
+/// An accepted maximum.
+struct Found {
+    peak: Peak,
+    sigma_theta: f64,
+}
+
+impl<'a> Search<'a> {
+    fn new(line_side: LineSide<'a>, params: &'a SweepParams) -> Self {
+        let valid = vec![false; line_side.others.len()];
+        Self {
+            line_side,
+            params,
+            samples: Vec::new(),
+            valid,
+        }
+    }
+
+    /// First pass, subdivision, validity, acceptance.
+    fn run(&mut self) -> Result<Found, SweepRejection> {
+        let max = self.params.max_theta_deg.to_radians();
+        let steps = (self.params.max_theta_deg / self.params.first_step_deg).ceil().max(1.0) as i32;
+        let step = max / f64::from(steps);
+        for i in -steps..=steps {
+            self.evaluate(step * f64::from(i));
+        }
+        for theta in self.highest_maxima() {
+            self.subdivide(theta, step);
+        }
+        let best = self.best().ok_or(SweepRejection::NoValidView)?;
+        self.valid = self.valid_at(best);
+        self.accept(best, step)
+    }
+
+    /// Samples all views at an angle, unless the reference view cannot see the half-plane there.
+    fn evaluate(&mut self, theta: f64) {
+        let place = self.samples.partition_point(|s| s.theta < theta);
+        let known = self.samples.get(place).is_some_and(|s| s.theta == theta);
+        if known || !self.line_side.is_visible(theta) {
+            return;
+        }
+        let scores = (0..self.line_side.others.len())
+            .map(|i| self.line_side.score(self.line_side.others[i], theta))
+            .collect();
+        self.samples.insert(place, Sample { theta, scores });
+    }
+
+    /// Halves the step around the highest sample near `theta` until it is below the last step.
+    fn subdivide(&mut self, theta: f64, first_step: f64) {
+        let mut step = first_step;
+        let mut centre = theta;
+        while step >= self.params.last_step_deg.to_radians() {
+            step *= 0.5;
+            let mut best = (f64::NEG_INFINITY, centre);
+            for theta in [centre - step, centre, centre + step] {
+                self.evaluate(theta);
+                if let Some(i) = self.samples.iter().position(|s| s.theta == theta) {
+                    let sum = self.valid_sum(i);
+                    if sum > best.0 {
+                        best = (sum, theta);
+                    }
+                }
+            }
+            centre = best.1;
+        }
+    }
+
+    /// Angles of the highest local maxima of the sum over valid views, highest first.
+    fn highest_maxima(&self) -> Vec<f64> {
+        let sums: Vec<f64> = (0..self.samples.len()).map(|i| self.valid_sum(i)).collect();
+        let mut maxima: Vec<usize> = (0..sums.len())
+            .filter(|&i| {
+                sums[i] > 0.0
+                    && (i == 0 || sums[i] > sums[i - 1])
+                    && (i + 1 == sums.len() || sums[i] >= sums[i + 1])
+            })
+            .collect();
+        maxima.sort_by(|&a, &b| sums[b].total_cmp(&sums[a]).then(a.cmp(&b)));
+        maxima.truncate(self.params.max_peaks);
+        maxima.iter().map(|&i| self.samples[i].theta).collect()
+    }
+
+    /// The sample with the largest sum over its valid views; `None` when none has enough of them.
+    fn best(&self) -> Option<usize> {
+        let mut best: Option<(usize, f64)> = None;
+        for i in 0..self.samples.len() {
+            let sum = self.valid_sum(i);
+            if sum > best.map_or(0.0, |b| b.1) {
+                best = Some((i, sum));
+            }
+        }
+        best.map(|b| b.0)
+    }
+
+    /// Which views are valid at a sample: enough of their correlations are high.
+    fn valid_at(&self, sample: usize) -> Vec<bool> {
+        let scores = &self.samples[sample].scores;
+        scores.iter().map(|s| s.high >= self.params.min_high_share).collect()
+    }
+
+    /// Sum of the similarities of the views valid at a sample; 0 when there are too few.
+    fn valid_sum(&self, sample: usize) -> f64 {
+        let valid = self.samples[sample].scores.iter().filter(|s| s.high >= self.params.min_high_share);
+        let (count, sum) = valid.fold((0, 0.0), |(n, sum), s| (n + 1, sum + s.similarity));
+        if count >= self.params.min_valid_views { sum } else { 0.0 }
+    }
+
+    /// `Sim` at a sample over the views that count.
+    fn similarity(&self, sample: &Sample) -> f64 {
+        let views = sample.scores.iter().zip(&self.valid).filter(|(_, v)| **v);
+        let (count, sum) = views.fold((0.0, 0.0), |(n, sum), (s, _)| (n + 1.0, sum + s.similarity));
+        if count > 0.0 { sum / count } else { 0.0 }
+    }
+
+    /// Fits the maximum near a sample and tests it.
+    fn accept(&self, best: usize, step: f64) -> Result<Found, SweepRejection> {
+        if best == 0 || best + 1 == self.samples.len() {
+            return Err(SweepRejection::AtIntervalEnd);
+        }
+        let at = self.samples[best].theta;
+        let curve = || self.samples.iter().map(|s| (s.theta, self.similarity(s)));
+        let wide = Parabola::fit(curve(), at, step).ok_or(SweepRejection::AtIntervalEnd)?;
+        let reach = step * 0.5;
+        let narrow = Parabola::fit(curve(), at, reach).unwrap_or(wide);
+        let (theta, similarity) = narrow.maximum().ok_or(SweepRejection::FlatCurve)?;
+        let lowest = curve().map(|(_, sim)| sim).fold(f64::INFINITY, f64::min);
+        let peak = Peak {
+            theta: theta.clamp(at - reach, at + reach),
+            similarity: similarity.min(1.0),
+            curvature: -wide.curvature,
+            amplitude: similarity - lowest,
+        };
+        peak.check(self.params)?;
+        let slopes: Vec<f64> = (0..self.valid.len())
+            .filter(|&v| self.valid[v])
+            .filter_map(|v| {
+                let curve = self.samples.iter().map(|s| (s.theta, s.scores[v].similarity));
+                Parabola::fit(curve, peak.theta, reach).map(|p| p.slope)
+            })
+            .collect();
+        Ok(Found {
+            peak,
+            sigma_theta: sigma_of_maximum(&slopes, narrow.curvature, reach),
+        })
+    }
+
+    fn curve(&self) -> SimilarityCurve {
+        let views = self.line_side.others.iter().enumerate().map(|(v, &view)| ViewCurve {
+            view,
+            valid: self.valid.get(v).copied().unwrap_or(false),
+            similarity: self.samples.iter().map(|s| s.scores[v].similarity).collect(),
+        });
+        SimilarityCurve {
+            reference: Some(self.line_side.reference),
+            points: self.line_side.points(),
+            thetas: self.samples.iter().map(|s| s.theta).collect(),
+            similarity: self.samples.iter().map(|s| self.similarity(s)).collect(),
+            views: views.collect(),
+        }
+    }
+}
+
+impl Found {
+    fn half_plane(&self, search: &Search, id: LineId, line: &Line3d, side: Side) -> HalfPlane {
+        let line_side = &search.line_side;
+        // A line that is off by sigma tilts the plane that fits its neighbourhood.
+        let from_line = line.sigma_m / line_side.mean_distance_m();
+        let views = line_side.others.iter().zip(&search.valid);
+        HalfPlane {
+            line: id,
+            side,
+            theta: self.peak.theta,
+            sigma_theta: crate::math::hypot(self.sigma_theta, from_line),
+            similarity: self.peak.similarity,
+            curvature: self.peak.curvature,
+            amplitude: self.peak.amplitude,
+            views: views.filter(|(_, v)| **v).map(|(&id, _)| id).collect(),
+            plane: line_side.frame.plane(&line.segment, self.peak.theta),
+        }
+    }
+}

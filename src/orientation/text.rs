@@ -1,0 +1,84 @@
+//! Lines of a text file that remember where they stand, so that every refusal can say it.
+
+use crate::{Error, Result};
+
+/// A line with its place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line<'a> {
+    pub file: &'a str,
+    /// From 1.
+    pub number: usize,
+    /// Without surrounding blanks.
+    pub text: &'a str,
+}
+
+impl<'a> Line<'a> {
+    /// Blank-separated fields.
+    pub(super) fn fields(&self) -> Vec<&'a str> {
+        self.text.split_whitespace().collect()
+    }
+
+    /// Is there nothing but a comment or blanks?
+    pub(super) fn is_empty(&self) -> bool {
+        self.text.is_empty() || self.text.starts_with('#')
+    }
+
+    pub(super) fn error(&self, problem: impl Into<String>, expected: impl Into<String>) -> Error {
+        Error::Line {
+            file: self.file.to_owned(),
+            line: self.number,
+            problem: problem.into(),
+            expected: expected.into(),
+        }
+    }
+
+    /// A finite number.
+    pub(super) fn number(&self, field: &str, what: &str) -> Result<f64> {
+        match field.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(self.error(
+                format!("{what} is {}", quoted(field)),
+                "a finite number with a decimal point",
+            )),
+        }
+    }
+
+    /// Finite numbers, one a field.
+    pub(super) fn numbers(&self, fields: &[&str], what: &str) -> Result<Vec<f64>> {
+        fields.iter().map(|f| self.number(f, what)).collect()
+    }
+
+    /// A whole number that fits 32 bits.
+    pub(super) fn whole(&self, field: &str, what: &str) -> Result<u32> {
+        field.parse().map_err(|_| {
+            self.error(
+                format!("{what} is {}", quoted(field)),
+                "a whole number that is not negative",
+            )
+        })
+    }
+}
+
+/// All lines of a file, empty ones and comments included.
+pub(super) fn lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Line<'a>> {
+    text.trim_start_matches('\u{feff}')
+        .lines()
+        .enumerate()
+        .map(move |(i, line)| Line {
+            file,
+            number: i + 1,
+            text: line.trim(),
+        })
+}
+
+/// Lines that hold data: neither empty nor a comment.
+pub(super) fn data_lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Line<'a>> {
+    lines(file, text).filter(|line| !line.is_empty())
+}
+
+/// A field in quotation marks, shortened: files may hold anything.
+pub(super) fn quoted(field: &str) -> String {
+    let short: String = field.chars().take(40).collect();
+    let dots = if short.len() < field.len() { "..." } else { "" };
+    format!("\"{short}{dots}\"")
+}

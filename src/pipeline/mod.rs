@@ -1,0 +1,274 @@
+//! The order of the stages, and what each of them left: the command line, the wasm session and the
+//! tests all run a reconstruction through [`Run`].
+//!
+//! ```text
+//! Scene -> segments -> matches -> lines -> halfplanes -> facets -> model -> files
+//! ```
+//!
+//! Invariant: no geometry here. Invariant: a result in a [`Run`] always belongs to the current
+//! parameters and to the current results before it; what is out of date is dropped, never shown.
+
+mod report;
+mod summary;
+
+pub use summary::StageSummary;
+
+use serde::{Deserialize, Serialize};
+
+use crate::export::export_all;
+use crate::halfplane::{HalfPlane, SweepTrace, sweep_half_planes};
+use crate::linematch::{LineMatch, MatchTrace, match_lines};
+use crate::lines2d::{ImageSegment, SegmentTrace, detect_segments};
+use crate::lines3d::{Line3d, LineTrace, reconstruct_lines};
+use crate::parallel;
+use crate::params::Params;
+use crate::roof::{RoofModel, RoofTrace, reconstruct_facets};
+use crate::scene::Scene;
+use crate::texture::{TextureTrace, TexturedModel, texture_model};
+
+/// The stages, in their order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stage {
+    /// Straight image segments in every view (B99 3.2).
+    Segments,
+    /// Segments matched over the views (B99 3.1 - 3.4).
+    Matches,
+    /// 3D lines (B99 3.2).
+    Lines,
+    /// Half-planes at the 3D lines (B99 4.1).
+    HalfPlanes,
+    /// Roof facets and the closed buildings below them (B99 4.2, 4.3).
+    Facets,
+    /// The textured model.
+    Model,
+}
+
+impl Stage {
+    /// All stages in order.
+    pub const ALL: [Self; 6] = [
+        Self::Segments,
+        Self::Matches,
+        Self::Lines,
+        Self::HalfPlanes,
+        Self::Facets,
+        Self::Model,
+    ];
+
+    /// The name in messages, reports and the session: one lower-case word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Segments => "segments",
+            Self::Matches => "matches",
+            Self::Lines => "lines",
+            Self::HalfPlanes => "halfplanes",
+            Self::Facets => "facets",
+            Self::Model => "model",
+        }
+    }
+
+    /// The stage of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|stage| stage.name() == name)
+    }
+}
+
+/// What a stage found, and its diary.
+#[derive(Clone, Debug)]
+pub struct Outcome<V, T> {
+    /// The result.
+    pub value: V,
+    /// How it came about, and why other things were refused.
+    pub trace: T,
+}
+
+impl<V, T> From<(V, T)> for Outcome<V, T> {
+    fn from((value, trace): (V, T)) -> Self {
+        Self { value, trace }
+    }
+}
+
+/// The results of the stages; `None` for what has not run.
+#[derive(Clone, Debug, Default)]
+pub struct Results {
+    /// Segments of each view, in the order of the views.
+    pub segments: Option<Outcome<Vec<Vec<ImageSegment>>, Vec<SegmentTrace>>>,
+    /// Matches.
+    pub matches: Option<Outcome<Vec<LineMatch>, MatchTrace>>,
+    /// 3D lines.
+    pub lines: Option<Outcome<Vec<Line3d>, LineTrace>>,
+    /// Half-planes.
+    pub half_planes: Option<Outcome<Vec<HalfPlane>, SweepTrace>>,
+    /// Facets and buildings.
+    pub roof: Option<Outcome<RoofModel, RoofTrace>>,
+    /// Textures of the model.
+    pub textured: Option<Outcome<TexturedModel, TextureTrace>>,
+}
+
+/// One reconstruction: a scene, the parameters, and the results so far.
+#[derive(Clone, Debug)]
+pub struct Run {
+    scene: Scene,
+    params: Params,
+    results: Results,
+    summaries: Vec<StageSummary>,
+}
+
+impl Run {
+    /// A run of which no stage has been done.
+    pub fn new(scene: Scene, params: Params) -> Self {
+        Self {
+            scene,
+            params,
+            results: Results::default(),
+            summaries: Vec::new(),
+        }
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The parameters.
+    pub fn params(&self) -> &Params {
+        &self.params
+    }
+
+    /// The results so far.
+    pub fn results(&self) -> &Results {
+        &self.results
+    }
+
+    /// What the stages so far had to say, in their order.
+    pub fn summaries(&self) -> &[StageSummary] {
+        &self.summaries
+    }
+
+    /// Changes the parameters and drops the results that they would change.
+    pub fn set_params(&mut self, params: Params) {
+        let first = Stage::ALL
+            .into_iter()
+            .find(|&stage| depends(stage, &self.params, &params));
+        self.params = params;
+        if let Some(stage) = first {
+            self.drop_from(stage);
+        }
+    }
+
+    /// Runs one stage, after those before it that have not run yet, and drops the results of those behind
+    /// it. `progress` hears fractions of this stage's work from 0 to 1.
+    pub fn step(&mut self, stage: Stage, progress: &mut dyn FnMut(f64)) -> StageSummary {
+        for earlier in Stage::ALL.into_iter().filter(|&s| s < stage) {
+            if !self.has(earlier) {
+                self.run_stage(earlier);
+            }
+        }
+        self.drop_from(stage);
+        progress(0.0);
+        self.run_stage(stage);
+        progress(1.0);
+        self.summaries.last().expect("just pushed").clone()
+    }
+
+    /// Runs all stages; `progress` hears the stage and its fraction.
+    pub fn run_all(&mut self, progress: &mut dyn FnMut(Stage, f64)) {
+        for stage in Stage::ALL {
+            self.step(stage, &mut |fraction| progress(stage, fraction));
+        }
+    }
+
+    /// Has this stage run?
+    pub fn has(&self, stage: Stage) -> bool {
+        self.summaries.iter().any(|summary| summary.stage == stage)
+    }
+
+    /// The files of a finished run, as (name, bytes): what the command line writes and the page offers.
+    /// `seconds` per stage go into `report.json`, in a part of their own, since they alone differ from
+    /// run to run. Empty before the last stage has run.
+    pub fn files(&self, seconds: &[(Stage, f64)]) -> Vec<(String, Vec<u8>)> {
+        let r = &self.results;
+        let (Some(segments), Some(lines), Some(half_planes), Some(roof), Some(textured)) =
+            (&r.segments, &r.lines, &r.half_planes, &r.roof, &r.textured)
+        else {
+            return Vec::new();
+        };
+        let mut files = export_all(
+            &self.scene,
+            &segments.value,
+            &lines.value,
+            &half_planes.value,
+            &roof.value,
+            &textured.value,
+        );
+        files.push(("report.json".into(), report::report(self, seconds)));
+        files
+    }
+
+    fn run_stage(&mut self, stage: Stage) {
+        let (scene, params, r) = (&self.scene, &self.params, &mut self.results);
+        match stage {
+            Stage::Segments => {
+                let per_view = parallel::map(&scene.views, |_, view| {
+                    detect_segments(&view.gray, &params.segments)
+                });
+                let (value, trace) = per_view.into_iter().unzip();
+                r.segments = Some(Outcome { value, trace });
+            }
+            Stage::Matches => {
+                let segments = before(&r.segments);
+                r.matches = Some(match_lines(scene, segments, &params.matching).into());
+            }
+            Stage::Lines => {
+                let matches = before(&r.matches);
+                r.lines = Some(reconstruct_lines(scene, matches, &params.lines3d).into());
+            }
+            Stage::HalfPlanes => {
+                let lines = before(&r.lines);
+                r.half_planes = Some(sweep_half_planes(scene, lines, &params.sweep).into());
+            }
+            Stage::Facets => {
+                let (lines, half_planes) = (before(&r.lines), before(&r.half_planes));
+                r.roof = Some(reconstruct_facets(scene, lines, half_planes, &params.roof).into());
+            }
+            Stage::Model => {
+                let model = before(&r.roof);
+                r.textured = Some(texture_model(scene, model, &params.texture).into());
+            }
+        }
+        self.summaries
+            .push(summary::summarise(stage, &self.scene, &self.results));
+    }
+
+    fn drop_from(&mut self, stage: Stage) {
+        self.summaries.retain(|summary| summary.stage < stage);
+        let r = &mut self.results;
+        for later in Stage::ALL.into_iter().filter(|&s| s >= stage) {
+            match later {
+                Stage::Segments => r.segments = None,
+                Stage::Matches => r.matches = None,
+                Stage::Lines => r.lines = None,
+                Stage::HalfPlanes => r.half_planes = None,
+                Stage::Facets => r.roof = None,
+                Stage::Model => r.textured = None,
+            }
+        }
+    }
+}
+
+/// The result of an earlier stage.
+fn before<V, T>(outcome: &Option<Outcome<V, T>>) -> &V {
+    &outcome.as_ref().expect("stages run in their order").value
+}
+
+/// Do the two sets of parameters differ in what this stage reads?
+fn depends(stage: Stage, a: &Params, b: &Params) -> bool {
+    match stage {
+        Stage::Segments => a.segments != b.segments,
+        Stage::Matches => a.matching != b.matching,
+        Stage::Lines => a.lines3d != b.lines3d,
+        Stage::HalfPlanes => a.sweep != b.sweep,
+        Stage::Facets => a.roof != b.roof,
+        Stage::Model => a.texture != b.texture,
+    }
+}

@@ -1,0 +1,54 @@
+//! `report.json`: counts per stage, parameters, version and warnings of a run.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::{Run, Stage, StageSummary};
+use crate::params::Params;
+
+/// The content of `report.json`.
+#[derive(Serialize)]
+struct Report<'a> {
+    version: &'static str,
+    views: Vec<ReportView<'a>>,
+    origin: [f64; 3],
+    stages: &'a [StageSummary],
+    /// Warnings of the readers; those of the stages stand with them.
+    warnings: &'a [String],
+    params: &'a Params,
+    /// Wall-clock seconds per stage: the only part that differs between runs of the same input.
+    seconds: BTreeMap<&'static str, f64>,
+}
+
+#[derive(Serialize)]
+struct ReportView<'a> {
+    view: &'a str,
+    width: u32,
+    height: u32,
+}
+
+/// The bytes of `report.json`; `seconds` may be empty.
+pub(super) fn report(run: &Run, seconds: &[(Stage, f64)]) -> Vec<u8> {
+    let views = run.scene.views.iter().map(|view| ReportView {
+        view: &view.name,
+        width: view.camera.width,
+        height: view.camera.height,
+    });
+    let report = Report {
+        version: env!("CARGO_PKG_VERSION"),
+        views: views.collect(),
+        origin: run.scene.origin.into(),
+        stages: &run.summaries,
+        warnings: &run.scene.warnings,
+        params: &run.params,
+        seconds: seconds
+            .iter()
+            .map(|(stage, s)| (stage.name(), *s))
+            .collect(),
+    };
+    let mut bytes =
+        serde_json::to_vec_pretty(&report).expect("a report holds only numbers and strings");
+    bytes.push(b'\n');
+    bytes
+}

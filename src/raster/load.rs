@@ -1,0 +1,269 @@
+//! Photographs from JPEG, PNG and TIFF bytes.
+//!
+//! The format is told by the content. Alpha is dropped. 16-bit images, of which many cameras fill only
+//! 10 to 14 bits, are divided by the smallest power of two that holds their brightest value, and their
+//! grey values keep the full depth. An orientation in the EXIF header is reported, never applied: the
+//! orientation files describe the pixels as they are stored.
+
+use std::io::Cursor;
+
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
+
+use super::Gray;
+use crate::{Error, Result};
+
+/// A decoded photograph.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Photograph {
+    /// Colours; a grey image has three equal channels.
+    pub rgb: image::RgbImage,
+    /// Grey values, 0 to 1.
+    pub gray: Gray,
+}
+
+impl Photograph {
+    /// The part at column, row of this width and height; it must lie inside.
+    pub fn crop(&self, [column, row, width, height]: [u32; 4]) -> Self {
+        let rgb = image::imageops::crop_imm(&self.rgb, column, row, width, height).to_image();
+        let gray = Gray::from_fn(width as usize, height as usize, |x, y| {
+            self.gray.get(x + column as usize, y + row as usize)
+        });
+        Self { rgb, gray }
+    }
+}
+
+/// What the header of an image says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImageHeader {
+    /// Width, pixels.
+    pub width: u32,
+    /// Height, pixels.
+    pub height: u32,
+    /// Does EXIF ask viewers to turn the image?
+    pub turned: bool,
+}
+
+/// Most pixels in one image: larger than the largest aerial frame camera (about 450 megapixels).
+const MAX_PIXELS: u64 = 600_000_000;
+
+/// The format of an image that can be read, by its first bytes.
+pub fn image_format(bytes: &[u8]) -> Option<ImageFormat> {
+    image::guess_format(bytes)
+        .ok()
+        .filter(|f| matches!(f, ImageFormat::Jpeg | ImageFormat::Png | ImageFormat::Tiff))
+}
+
+/// Reads the size from the header alone. `file` is for messages.
+pub fn image_header(file: &str, bytes: &[u8]) -> Result<ImageHeader> {
+    let mut decoder = decoder(file, bytes)?;
+    let (width, height) = decoder.dimensions();
+    let turned = decoder
+        .orientation()
+        .is_ok_and(|o| o != image::metadata::Orientation::NoTransforms);
+    Ok(ImageHeader {
+        width,
+        height,
+        turned,
+    })
+}
+
+/// Decodes an image. `file` is for messages.
+pub fn load_image(file: &str, bytes: &[u8]) -> Result<Photograph> {
+    if image_format(bytes) == Some(ImageFormat::Jpeg) && !jpeg_is_complete(bytes) {
+        // The decoder would fill what is missing with grey, where no line is ever found.
+        return Err(unreadable(file, "the JPEG is cut off before its end"));
+    }
+    let decoder = decoder(file, bytes)?;
+    let image =
+        DynamicImage::from_decoder(decoder).map_err(|e| unreadable(file, &e.to_string()))?;
+    photograph(image).ok_or_else(|| Error::File {
+        file: file.to_owned(),
+        problem: "it holds floating-point values, whose range is unknown".to_owned(),
+        advice: "convert it to 8 or 16 bits per channel".to_owned(),
+    })
+}
+
+fn decoder<'a>(file: &str, bytes: &'a [u8]) -> Result<impl ImageDecoder + use<'a>> {
+    let format = image_format(bytes)
+        .ok_or_else(|| unreadable(file, "its content is neither JPEG nor PNG nor TIFF"))?;
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let mut limits = image::Limits::no_limits();
+    limits.max_alloc = Some(MAX_PIXELS * 8);
+    reader.limits(limits);
+    let decoder = reader
+        .into_decoder()
+        .map_err(|e| unreadable(file, &e.to_string()))?;
+    let (width, height) = decoder.dimensions();
+    let pixels = u64::from(width) * u64::from(height);
+    if pixels > MAX_PIXELS || pixels == 0 {
+        return Err(Error::File {
+            file: file.to_owned(),
+            problem: format!("{width} x {height} pixels"),
+            advice: format!(
+                "cut out the part of interest (at most {} megapixels an image)",
+                MAX_PIXELS / 1_000_000
+            ),
+        });
+    }
+    Ok(decoder)
+}
+
+fn unreadable(file: &str, problem: &str) -> Error {
+    Error::File {
+        file: file.to_owned(),
+        problem: format!("the image cannot be read: {problem}"),
+        advice: "copy or export it again as JPEG, PNG or TIFF (8 or 16 bits)".to_owned(),
+    }
+}
+
+/// Does the entropy-coded data of a JPEG run to its end-of-image marker? Segments are stepped over by their
+/// lengths, so that a thumbnail's marker inside one does not count.
+fn jpeg_is_complete(bytes: &[u8]) -> bool {
+    let mut i = 2;
+    while let Some(&[a, marker]) = bytes.get(i..i + 2) {
+        match (a, marker) {
+            (0xff, 0xd9) => return true,
+            // Fill bytes, markers without a segment, and entropy-coded data.
+            (0xff, 0x00 | 0x01 | 0xd0..=0xd8) => i += 2,
+            (0xff, 0xff) => i += 1,
+            (0xff, _) => match bytes.get(i + 2..i + 4) {
+                Some(&[high, low]) => i += 2 + usize::from(high) * 256 + usize::from(low),
+                _ => return false,
+            },
+            _ => i += 1,
+        }
+    }
+    false
+}
+
+/// Colours in 8 bits and grey values; `None` for floating-point images.
+fn photograph(image: DynamicImage) -> Option<Photograph> {
+    match image {
+        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => None,
+        DynamicImage::ImageLuma16(_)
+        | DynamicImage::ImageLumaA16(_)
+        | DynamicImage::ImageRgb16(_)
+        | DynamicImage::ImageRgba16(_) => Some(scale_16_bits(&image.into_rgb16())),
+        _ => {
+            let rgb = image.into_rgb8();
+            let gray = Gray::from_rgb(&rgb);
+            Some(Photograph { rgb, gray })
+        }
+    }
+}
+
+fn scale_16_bits(deep: &image::ImageBuffer<image::Rgb<u16>, Vec<u16>>) -> Photograph {
+    let brightest = deep.as_raw().iter().copied().max().unwrap_or(0);
+    let bits = (u16::BITS - brightest.leading_zeros()).max(8);
+    let white = ((1u32 << bits) - 1) as f32;
+    let rgb = image::RgbImage::from_fn(deep.width(), deep.height(), |x, y| {
+        image::Rgb(
+            deep.get_pixel(x, y)
+                .0
+                .map(|v| (f32::from(v) * 255.0 / white).round() as u8),
+        )
+    });
+    let (width, height) = (deep.width() as usize, deep.height() as usize);
+    let data = deep
+        .pixels()
+        .map(|p| {
+            (0.299 * f32::from(p[0]) + 0.587 * f32::from(p[1]) + 0.114 * f32::from(p[2])) / white
+        })
+        .collect();
+    let gray = Gray {
+        width,
+        height,
+        data,
+    };
+    Photograph { rgb, gray }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{ImageBuffer, Luma, Rgb, Rgba};
+
+    fn encode(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+        let mut bytes = Cursor::new(Vec::new());
+        image.write_to(&mut bytes, format).unwrap();
+        bytes.into_inner()
+    }
+
+    fn ramp() -> image::RgbImage {
+        image::RgbImage::from_fn(40, 30, |x, y| Rgb([6 * x as u8, 8 * y as u8, 90]))
+    }
+
+    #[test]
+    fn lossless_formats_return_the_same_pixels() {
+        for format in [ImageFormat::Png, ImageFormat::Tiff] {
+            let loaded = load_image("a", &encode(&ramp().into(), format)).unwrap();
+            assert_eq!(loaded.rgb, ramp());
+            assert_eq!(loaded.gray, Gray::from_rgb(&ramp()));
+        }
+        let jpeg = load_image("a", &encode(&ramp().into(), ImageFormat::Jpeg)).unwrap();
+        for (a, b) in jpeg.rgb.as_raw().iter().zip(ramp().as_raw()) {
+            assert!(a.abs_diff(*b) < 30);
+        }
+    }
+
+    #[test]
+    fn sixteen_bits_are_scaled_by_the_depth_in_use() {
+        // 12 bits of 16: 4095 is white, and the grey value keeps the 12 bits.
+        let deep = ImageBuffer::from_fn(16, 16, |x, _| Luma([if x == 3 { 4095u16 } else { 1001 }]));
+        for format in [ImageFormat::Png, ImageFormat::Tiff] {
+            let loaded = load_image("a", &encode(&deep.clone().into(), format)).unwrap();
+            assert_eq!(loaded.rgb.get_pixel(3, 0).0, [255; 3]);
+            assert_eq!(loaded.rgb.get_pixel(0, 0).0, [62; 3]);
+            assert!((loaded.gray.get(0, 0) - 1001.0 / 4095.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn alpha_is_dropped_and_grey_becomes_three_channels() {
+        let alpha = ImageBuffer::from_fn(8, 8, |_, _| Rgba([10u8, 20, 30, 0]));
+        let loaded = load_image("a", &encode(&alpha.into(), ImageFormat::Png)).unwrap();
+        assert_eq!(loaded.rgb.get_pixel(1, 1).0, [10, 20, 30]);
+        let grey = ImageBuffer::from_fn(8, 8, |_, _| Luma([77u8]));
+        let loaded = load_image("a", &encode(&grey.into(), ImageFormat::Tiff)).unwrap();
+        assert_eq!(loaded.rgb.get_pixel(1, 1).0, [77; 3]);
+    }
+
+    #[test]
+    fn a_cut_off_image_is_refused_by_name() {
+        for format in [ImageFormat::Jpeg, ImageFormat::Png, ImageFormat::Tiff] {
+            let bytes = encode(&ramp().into(), format);
+            for part in [5, 4, 3, 2] {
+                let cut = &bytes[..bytes.len() * (part - 1) / part];
+                let message = load_image("b/a.jpg", cut).unwrap_err().to_string();
+                assert!(
+                    message.starts_with("b/a.jpg: the image cannot be read"),
+                    "{message}"
+                );
+            }
+        }
+        assert!(load_image("a.jpg", b"").is_err());
+    }
+
+    #[test]
+    fn absurd_sizes_are_refused_before_memory_is_taken() {
+        let mut png = encode(&ramp().into(), ImageFormat::Png);
+        png[16..24].copy_from_slice(&[0, 1, 0x86, 0xa0, 0, 1, 0x86, 0xa0]);
+        // The checksum of the header chunk must fit for the decoder to believe it.
+        let crc = crc32(&png[12..29]);
+        png[29..33].copy_from_slice(&crc.to_be_bytes());
+        let message = load_image("a.png", &png).unwrap_err().to_string();
+        assert!(message.contains("100000 x 100000"), "{message}");
+    }
+
+    fn crc32(bytes: &[u8]) -> u32 {
+        !bytes.iter().fold(!0u32, |crc, &b| {
+            (0..8).fold(crc ^ u32::from(b), |c, _| {
+                if c & 1 == 1 {
+                    (c >> 1) ^ 0xedb8_8320
+                } else {
+                    c >> 1
+                }
+            })
+        })
+    }
+}

@@ -1,0 +1,135 @@
+//! Height of the ground from the images: a sweep of horizontal planes.
+//!
+//! Every view, reduced four times, is compared with the others on horizontal planes at steps of height
+//! (the same measure that verifies facets, `halfplane::consistency`). Each position takes the height at which the views
+//! agree best; the ground near a building is what the lowest clearly matched positions around it show, since
+//! roofs and trees only rise above it.
+
+use nalgebra::{Matrix3, Point2, Point3, Vector3};
+use serde::Serialize;
+
+use crate::camera::Camera;
+use crate::geometry::Plane;
+use crate::halfplane::{PlanGrid, consistency_map};
+use crate::lines3d::Line3d;
+use crate::raster::Gray;
+use crate::scene::{Scene, View};
+
+/// Ground heights, metres, local frame.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Ground {
+    /// Matched plan positions with their heights, lowest level first.
+    samples: Vec<Point3<f64>>,
+    /// Height where nothing matched nearby.
+    fallback: f64,
+}
+
+/// Images are reduced by this factor for the sweep.
+const REDUCE: usize = 4;
+/// Most planes in the sweep.
+const MAX_LEVELS: usize = 64;
+/// A position counts as matched from this correlation and texture weight on.
+const MIN_CORRELATION: f32 = 0.7;
+const MIN_WEIGHT: f32 = 0.5;
+/// Share of the matched positions around a building that may lie below its ground (wrong matches).
+const LOW_SHARE: f64 = 0.15;
+
+impl Ground {
+    /// Sweeps the scene between the heights that its 3D lines span; the given height when there is one.
+    pub fn estimate(scene: &Scene, lines: &[Line3d]) -> Self {
+        if let Some(z) = scene.ground_z {
+            return Self { samples: Vec::new(), fallback: z };
+        }
+        let mut ends: Vec<Point3<f64>> = lines.iter().flat_map(|l| [l.segment.p0, l.segment.p1]).collect();
+        if ends.is_empty() {
+            return Self { samples: Vec::new(), fallback: 0.0 };
+        }
+        ends.sort_by(|a, b| a.z.total_cmp(&b.z));
+        // A few wrong lines may lie far off.
+        let share = |f: f64| ends[(f * (ends.len() - 1) as f64) as usize].z;
+        let (low, high) = (share(0.02) - 2.0, share(0.98) + 1.0);
+        let samples = sweep(scene, &ends, low, high);
+        let fallback = low_height(samples.iter().map(|s| s.z)).unwrap_or_else(|| share(0.1));
+        Self { samples, fallback }
+    }
+
+    /// Ground height around a plan position, from what matched within `radius` metres.
+    pub fn z_near(&self, p: &Point2<f64>, radius: f64) -> f64 {
+        let near = self.samples.iter().filter(|s| (s.xy() - p).norm() <= radius).map(|s| s.z);
+        low_height(near).unwrap_or(self.fallback)
+    }
+}
+
+/// The height below which only wrong matches lie; `None` with fewer than 30 samples.
+fn low_height(heights: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut heights: Vec<f64> = heights.collect();
+    if heights.len() < 30 {
+        return None;
+    }
+    heights.sort_by(f64::total_cmp);
+    Some(heights[(LOW_SHARE * heights.len() as f64) as usize])
+}
+
+fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3<f64>> {
+    let reduced = reduce(scene);
+    let middle = ends[ends.len() / 2];
+    let Some(view) = reduced.views.first() else { return Vec::new() };
+    let step = view.camera.ground_pixel(&middle);
+    let bound = |f: fn(f64, f64) -> f64, start: f64| {
+        let x = ends.iter().map(|p| p.x).fold(start, f);
+        let y = ends.iter().map(|p| p.y).fold(start, f);
+        Point2::new(x, y)
+    };
+    let margin = nalgebra::Vector2::new(5.0, 5.0);
+    let (min, max) = (bound(f64::min, f64::INFINITY) - margin, bound(f64::max, f64::NEG_INFINITY) + margin);
+    let grid = PlanGrid::covering(min, max, step);
+    // A window of many cells on end cannot be larger than what the views see: keep memory bounded.
+    if grid.width * grid.height > 4_000_000 {
+        return Vec::new();
+    }
+    let levels = (((high - low) / 0.5).ceil() as usize).clamp(2, MAX_LEVELS);
+    let heights: Vec<f64> = (0..levels).map(|i| low + (high - low) * i as f64 / (levels - 1) as f64).collect();
+    let maps = crate::parallel::map(&heights, |_, &z| {
+        let plane = Plane { normal: Vector3::z(), d: -z };
+        consistency_map(&reduced, &plane, &grid)
+    });
+    let mut samples = Vec::new();
+    for row in 0..grid.height {
+        for column in 0..grid.width {
+            let k = row * grid.width + column;
+            let best = (0..levels)
+                .filter(|&i| maps[i].weight[k] >= MIN_WEIGHT && maps[i].correlation[k] >= MIN_CORRELATION)
+                .max_by(|&i, &j| maps[i].correlation[k].total_cmp(&maps[j].correlation[k]).then(j.cmp(&i)));
+            if let Some(i) = best {
+                let p = grid.center(column, row);
+                samples.push(Point3::new(p.x, p.y, heights[i]));
+            }
+        }
+    }
+    samples
+}
+
+/// The scene with every image reduced by [`REDUCE`], mean of each block.
+fn reduce(scene: &Scene) -> Scene {
+    let views = scene
+        .views
+        .iter()
+        .map(|v| {
+            let (w, h) = (v.gray.width / REDUCE, v.gray.height / REDUCE);
+            let gray = Gray::from_fn(w, h, |x, y| {
+                let mut sum = 0.0;
+                for dy in 0..REDUCE {
+                    for dx in 0..REDUCE {
+                        sum += v.gray.get(x * REDUCE + dx, y * REDUCE + dy);
+                    }
+                }
+                sum / (REDUCE * REDUCE) as f32
+            });
+            let s = 1.0 / REDUCE as f64;
+            let k = Matrix3::new(s, 0.0, 0.0, 0.0, s, 0.0, 0.0, 0.0, 1.0) * v.camera.k;
+            let camera = Camera { k, width: w as u32, height: h as u32, ..v.camera.clone() };
+            View { name: v.name.clone(), camera, gray, rgb: image::RgbImage::new(0, 0) }
+        })
+        .collect();
+    Scene { views, origin: scene.origin, ground_z: scene.ground_z, warnings: Vec::new() }
+}

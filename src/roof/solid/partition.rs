@@ -1,0 +1,442 @@
+//! The facets' outlines as one partition of the plan: shared vertices, shared edges, no overlap.
+//!
+//! 1. Where two facets overlap in plan, the lower one loses the overlap (seen from above it is hidden).
+//! 2. Plan positions closer than [`WELD_M`] become one vertex.
+//! 3. Vertices that lie on another facet's edge are put into that edge (T-junctions).
+//! 4. Where two roofs cross in height along a shared edge, the crossing becomes a vertex.
+//!
+//! What still contradicts (an edge taken twice, edges that cross) is taken out and reported.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::float::single::SingleFloatOverlay;
+use nalgebra::{Point2, Point3, Vector2};
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+
+use super::rings::{Region, doubled_area, regions_from_edges, ring_edges};
+use super::{SolidRejection, WELD_M};
+use crate::geometry::Plane;
+use crate::roof::Facet;
+
+/// Parts of facets below this plan area are dropped, m^2. Assumption: a sliver of 10 cm x 10 cm is smaller than
+/// a pixel of any survey and only makes walls that nobody can see.
+const MIN_AREA_M2: f64 = 0.01;
+
+/// Steepest facet, metres of height per metre of plan (84 degrees): steeper ones have no useful plan.
+const MAX_GRADIENT: f64 = 10.0;
+
+/// A facet in the partition.
+#[derive(Clone, Debug)]
+pub struct PlanFacet {
+    /// Which input facet it is (a part of).
+    pub source: usize,
+    /// Its plane.
+    pub plane: Plane,
+    /// Outer ring counter-clockwise, holes clockwise; indices of plan vertices.
+    pub region: Region,
+}
+
+impl PlanFacet {
+    /// One facet for every region, otherwise like this one.
+    fn with_regions(&self, regions: Vec<Region>) -> impl Iterator<Item = Self> + '_ {
+        regions.into_iter().map(|region| Self {
+            region,
+            ..self.clone()
+        })
+    }
+}
+
+/// A partition of the plan into facets.
+#[derive(Clone, Debug, Default)]
+pub struct Partition {
+    /// Plan vertices, metres; no two closer than [`WELD_M`].
+    pub positions: Vec<Point2<f64>>,
+    /// The facets, in the order of the input.
+    pub facets: Vec<PlanFacet>,
+}
+
+impl Partition {
+    /// Builds the partition; also gives the facets that had to go, with the reason.
+    pub fn new(facets: &[Facet]) -> (Self, Vec<(usize, SolidRejection)>) {
+        let mut rejected = Vec::new();
+        let parts = without_overlaps(flat_parts(facets, &mut rejected));
+        let mut welder = Welder::default();
+        let mut partition = Self::default();
+        for part in &parts {
+            let edges: Vec<_> = part
+                .rings
+                .iter()
+                .flat_map(|ring| {
+                    let welded: Vec<u32> = ring.iter().map(|p| welder.weld(*p)).collect();
+                    ring_edges(&welded)
+                        .filter(|(a, b)| a != b)
+                        .collect::<Vec<_>>()
+                })
+                .collect();
+            let (source, plane, region) = (part.source, part.plane, Vec::new());
+            let whole = PlanFacet {
+                source,
+                plane,
+                region,
+            };
+            let regions = regions_from_edges(&edges, &welder.positions);
+            if regions.is_empty() {
+                rejected.push((source, SolidRejection::TooSmall));
+            }
+            partition.facets.extend(whole.with_regions(regions));
+        }
+        partition.positions = welder.positions.clone();
+        partition.insert_t_junctions();
+        partition.drop_small(&mut rejected);
+        partition.drop_conflicts(&mut rejected);
+        partition.insert_height_crossings(&mut welder);
+        (partition, rejected)
+    }
+
+    /// For every directed edge the facet on its left.
+    pub fn facet_left_of(&self) -> BTreeMap<(u32, u32), usize> {
+        self.facets
+            .iter()
+            .enumerate()
+            .flat_map(|(i, f)| {
+                f.region
+                    .iter()
+                    .flat_map(move |r| ring_edges(r).map(move |e| (e, i)))
+            })
+            .collect()
+    }
+
+    /// Height of a facet at a plan vertex, metres.
+    pub fn height(&self, facet: usize, vertex: u32) -> f64 {
+        let p = self.positions[vertex as usize];
+        self.facets[facet].plane.z_at(p.x, p.y)
+    }
+
+    /// Heights at a vertex that differ by no more than this are the same, metres: what moving a plan
+    /// position by [`WELD_M`] changes between two of the facets that meet there.
+    pub fn height_tolerances(&self) -> Vec<f64> {
+        let mut steepest = vec![0.0f64; self.positions.len()];
+        for facet in &self.facets {
+            let gradient = gradient(&facet.plane);
+            for &v in facet.region.iter().flatten() {
+                steepest[v as usize] = steepest[v as usize].max(gradient);
+            }
+        }
+        steepest.iter().map(|g| WELD_M * (1.0 + 2.0 * g)).collect()
+    }
+
+    /// Puts vertices that lie on an edge into it.
+    fn insert_t_junctions(&mut self) {
+        // An edge moves by up to WELD_M when a vertex is put in and may meet another one; rarely twice.
+        for _ in 0..4 {
+            let tree = RTree::bulk_load(
+                self.positions
+                    .iter()
+                    .enumerate()
+                    .map(|(i, p)| GeomWithData::new([p.x, p.y], i as u32))
+                    .collect(),
+            );
+            let mut changed = false;
+            let mut facets = Vec::with_capacity(self.facets.len());
+            for facet in &self.facets {
+                let mut edges = Vec::new();
+                for (a, b) in facet.region.iter().flat_map(|ring| ring_edges(ring)) {
+                    let stops = vertices_on_edge(a, b, &self.positions, &tree);
+                    changed |= !stops.is_empty();
+                    let path: Vec<u32> = [a].into_iter().chain(stops).chain([b]).collect();
+                    edges.extend(path.windows(2).map(|w| (w[0], w[1])));
+                }
+                facets.extend(facet.with_regions(regions_from_edges(&edges, &self.positions)));
+            }
+            self.facets = facets;
+            if !changed {
+                break;
+            }
+        }
+    }
+
+    /// Takes out facets whose area is nearly nothing.
+    fn drop_small(&mut self, rejected: &mut Vec<(usize, SolidRejection)>) {
+        let positions = &self.positions;
+        self.facets.retain(|facet| {
+            let keep = region_area(&facet.region, positions) >= MIN_AREA_M2;
+            if !keep {
+                rejected.push((facet.source, SolidRejection::TooSmall));
+            }
+            keep
+        });
+    }
+
+    /// Takes out facets whose edges are taken already or cross those of an earlier facet.
+    fn drop_conflicts(&mut self, rejected: &mut Vec<(usize, SolidRejection)>) {
+        let mut taken = BTreeSet::new();
+        let mut tree: RTree<GeomWithData<Rectangle<[f64; 2]>, (u32, u32)>> = RTree::new();
+        let positions = &self.positions;
+        self.facets.retain(|facet| {
+            let edges: Vec<_> = facet.region.iter().flat_map(|r| ring_edges(r)).collect();
+            let conflict = edges.iter().enumerate().any(|(i, &(a, b))| {
+                let envelope = edge_envelope(a, b, positions, 0.0);
+                taken.contains(&(a, b))
+                    || edges[..i]
+                        .iter()
+                        .any(|&other| cross(positions, (a, b), other))
+                    || tree
+                        .locate_in_envelope_intersecting(&envelope)
+                        .any(|other| cross(positions, (a, b), other.data))
+            });
+            if conflict {
+                rejected.push((facet.source, SolidRejection::Conflict));
+                return false;
+            }
+            for (a, b) in edges {
+                taken.insert((a, b));
+                let (p, q) = (positions[a as usize], positions[b as usize]);
+                let corners = Rectangle::from_corners([p.x, p.y], [q.x, q.y]);
+                tree.insert(GeomWithData::new(corners, (a, b)));
+            }
+            true
+        });
+    }
+
+    /// Puts a vertex where the two roofs beside an edge change places in height.
+    fn insert_height_crossings(&mut self, welder: &mut Welder) {
+        let tolerance = self.height_tolerances();
+        let left_of = self.facet_left_of();
+        let mut stops: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+        for (&(a, b), &left) in left_of.iter().filter(|((a, b), _)| a < b) {
+            let Some(&right) = left_of.get(&(b, a)) else {
+                continue;
+            };
+            let da = self.height(left, a) - self.height(right, a);
+            let db = self.height(left, b) - self.height(right, b);
+            if da * db < 0.0 && da.abs() > tolerance[a as usize] && db.abs() > tolerance[b as usize]
+            {
+                let (p, q) = (self.positions[a as usize], self.positions[b as usize]);
+                let stop = welder.weld(p + (q - p) * (da / (da - db)));
+                stops.insert((a, b), stop);
+                stops.insert((b, a), stop);
+            }
+        }
+        for ring in self.facets.iter_mut().flat_map(|f| f.region.iter_mut()) {
+            *ring = ring_edges(ring)
+                .flat_map(|e| [Some(e.0), stops.get(&e).copied()])
+                .flatten()
+                .collect();
+        }
+        self.positions = welder.positions.clone();
+    }
+}
+
+/// Rise of a plane, metres of height per metre of plan.
+fn gradient(plane: &Plane) -> f64 {
+    Vector2::new(plane.normal.x, plane.normal.y).norm() / plane.normal.z
+}
+
+/// Plan area of a region, m^2.
+fn region_area(region: &Region, positions: &[Point2<f64>]) -> f64 {
+    region
+        .iter()
+        .map(|r| doubled_area(r, positions) / 2.0)
+        .sum()
+}
+
+/// Do two edges cross in their insides?
+fn cross(positions: &[Point2<f64>], (a, b): (u32, u32), (c, d): (u32, u32)) -> bool {
+    if a == c || a == d || b == c || b == d {
+        return false;
+    }
+    let [p, q, r, s] = [a, b, c, d].map(|i| positions[i as usize]);
+    let side = |o: Point2<f64>, u: Point2<f64>, v: Point2<f64>| (u - o).perp(&(v - o));
+    side(p, q, r) * side(p, q, s) < 0.0 && side(r, s, p) * side(r, s, q) < 0.0
+}
+
+/// Box around an edge, grown by a margin.
+fn edge_envelope(a: u32, b: u32, positions: &[Point2<f64>], margin: f64) -> AABB<[f64; 2]> {
+    let (p, q) = (positions[a as usize], positions[b as usize]);
+    AABB::from_corners(
+        [p.x.min(q.x) - margin, p.y.min(q.y) - margin],
+        [p.x.max(q.x) + margin, p.y.max(q.y) + margin],
+    )
+}
+
+/// Vertices strictly between the ends of an edge and on it within [`WELD_M`], in order.
+fn vertices_on_edge(
+    a: u32,
+    b: u32,
+    positions: &[Point2<f64>],
+    tree: &RTree<GeomWithData<[f64; 2], u32>>,
+) -> Vec<u32> {
+    let (p, q) = (positions[a as usize], positions[b as usize]);
+    let length = (q - p).norm();
+    let direction = (q - p) / length;
+    let mut stops: Vec<(f64, u32)> = tree
+        .locate_in_envelope(&edge_envelope(a, b, positions, WELD_M))
+        .filter(|v| v.data != a && v.data != b)
+        .filter_map(|v| {
+            let r = positions[v.data as usize] - p;
+            let along = r.dot(&direction);
+            let on_edge = along > 0.0 && along < length && r.perp(&direction).abs() < WELD_M;
+            on_edge.then_some((along, v.data))
+        })
+        .collect();
+    stops.sort_by(|s, t| s.0.total_cmp(&t.0).then(s.1.cmp(&t.1)));
+    stops.into_iter().map(|(_, v)| v).collect()
+}
+
+/// Gives plan positions closer than [`WELD_M`] the same index.
+#[derive(Default)]
+struct Welder {
+    positions: Vec<Point2<f64>>,
+    cells: BTreeMap<(i64, i64), Vec<u32>>,
+}
+
+impl Welder {
+    fn weld(&mut self, p: Point2<f64>) -> u32 {
+        let (column, row) = ((p.x / WELD_M).floor() as i64, (p.y / WELD_M).floor() as i64);
+        let nearest = (-1..=1)
+            .flat_map(|dy| (-1..=1).map(move |dx| (column + dx, row + dy)))
+            .filter_map(|cell| self.cells.get(&cell))
+            .flatten()
+            .map(|&i| ((self.positions[i as usize] - p).norm(), i))
+            .filter(|(distance, _)| *distance < WELD_M)
+            .min_by(|s, t| s.0.total_cmp(&t.0).then(s.1.cmp(&t.1)));
+        if let Some((_, i)) = nearest {
+            return i;
+        }
+        let i = u32::try_from(self.positions.len()).expect("fewer than 2^32 corners");
+        self.positions.push(p);
+        self.cells.entry((column, row)).or_default().push(i);
+        i
+    }
+}
+
+/// A facet, or what is left of it, as rings of positions.
+struct Part {
+    source: usize,
+    plane: Plane,
+    rings: Vec<Vec<Point2<f64>>>,
+}
+
+/// The facets as rings in plan, without those that have no plan.
+fn flat_parts(facets: &[Facet], rejected: &mut Vec<(usize, SolidRejection)>) -> Vec<Part> {
+    let mut parts = Vec::new();
+    for (source, facet) in facets.iter().enumerate() {
+        let rings: Vec<Vec<Point2<f64>>> = [oriented(&facet.outer, true)]
+            .into_iter()
+            .chain(facet.holes.iter().map(|hole| oriented(hole, false)))
+            .collect();
+        let finite = rings
+            .iter()
+            .flatten()
+            .all(|p| p.x.is_finite() && p.y.is_finite());
+        let n = facet.plane.normal;
+        // NaN compares false, so this also catches planes that are not numbers.
+        let upright =
+            n.z > 0.0 && gradient(&facet.plane) < MAX_GRADIENT && facet.plane.d.is_finite();
+        if facet.outer.len() < 3 || !finite {
+            rejected.push((source, SolidRejection::NoOutline));
+        } else if !upright {
+            rejected.push((source, SolidRejection::TooSteep));
+        } else {
+            let plane = facet.plane;
+            parts.push(Part {
+                source,
+                plane,
+                rings,
+            });
+        }
+    }
+    parts
+}
+
+/// The plan of a ring, turned to run counter-clockwise or clockwise.
+fn oriented(ring: &[Point3<f64>], counter_clockwise: bool) -> Vec<Point2<f64>> {
+    let mut plan: Vec<_> = ring.iter().map(|p| p.xy()).collect();
+    let indices: Vec<u32> = (0..plan.len() as u32).collect();
+    if !plan.is_empty() && (doubled_area(&indices, &plan) > 0.0) != counter_clockwise {
+        plan.reverse();
+    }
+    plan
+}
+
+/// Takes every overlap from the lower of the two facets.
+fn without_overlaps(mut parts: Vec<Part>) -> Vec<Part> {
+    let mut i = 0;
+    while i < parts.len() {
+        let mut j = 0;
+        while j < i {
+            if boxes_meet(&parts[i], &parts[j]) {
+                let overlap = overlay(&parts[i].rings, &parts[j].rings, OverlayRule::Intersect);
+                if !overlap.is_empty() {
+                    let loser = if lower_over(&parts[i], &parts[j], &overlap) {
+                        i
+                    } else {
+                        j
+                    };
+                    let winner = i + j - loser;
+                    let rest = overlay(
+                        &parts[loser].rings,
+                        &parts[winner].rings,
+                        OverlayRule::Difference,
+                    );
+                    // All pieces stay in one part: they become separate regions after welding.
+                    parts[loser].rings = rest.into_iter().flatten().collect();
+                }
+            }
+            j += 1;
+        }
+        i += 1;
+    }
+    parts
+}
+
+/// Is `a` below `b` over their overlap? Equal heights: the later facet gives way.
+fn lower_over(a: &Part, b: &Part, overlap: &[Vec<Vec<Point2<f64>>>]) -> bool {
+    let corners = overlap.iter().flatten().flatten();
+    corners
+        .map(|p| a.plane.z_at(p.x, p.y) - b.plane.z_at(p.x, p.y))
+        .sum::<f64>()
+        <= 0.0
+}
+
+/// Do the bounding boxes of two parts overlap?
+fn boxes_meet(a: &Part, b: &Part) -> bool {
+    let bounds = |part: &Part| {
+        part.rings.iter().flatten().fold(
+            (
+                Point2::new(f64::MAX, f64::MAX),
+                Point2::new(f64::MIN, f64::MIN),
+            ),
+            |(low, high), p| (low.inf(p), high.sup(p)),
+        )
+    };
+    let ((la, ha), (lb, hb)) = (bounds(a), bounds(b));
+    la.x < hb.x && lb.x < ha.x && la.y < hb.y && lb.y < ha.y
+}
+
+/// Boolean of two sets of rings (even-odd), as shapes of rings.
+fn overlay(
+    a: &[Vec<Point2<f64>>],
+    b: &[Vec<Point2<f64>>],
+    rule: OverlayRule,
+) -> Vec<Vec<Vec<Point2<f64>>>> {
+    let plain = |rings: &[Vec<Point2<f64>>]| -> Vec<Vec<[f64; 2]>> {
+        rings
+            .iter()
+            .map(|ring| ring.iter().map(|p| [p.x, p.y]).collect())
+            .collect()
+    };
+    plain(a)
+        .overlay_as::<i64>(&plain(b), rule, FillRule::EvenOdd)
+        .into_iter()
+        .map(|shape| {
+            shape
+                .into_iter()
+                .map(|ring| ring.into_iter().map(|[x, y]| Point2::new(x, y)).collect())
+                .collect()
+        })
+        .collect()
+}

@@ -1,0 +1,259 @@
+//! Can these cameras have taken photographs of one place on the ground?
+//!
+//! What is refused: numbers that are no camera, cameras that look up, cameras below the ground, fewer
+//! than three views of any one place, more pixels than memory. Whether the pixels agree with the cameras
+//! is not asked here.
+
+use nalgebra::{Matrix3, Point2, Point3, Vector3};
+
+use super::plan::{PlannedView, listed};
+use crate::Error;
+use crate::camera::Camera;
+
+/// What the cameras together gave reason to say.
+#[derive(Default)]
+pub(super) struct Findings {
+    pub errors: Vec<Error>,
+    pub warnings: Vec<String>,
+    /// Least and greatest height of the ground at which three views see the same place, local frame.
+    pub heights: Option<[f64; 2]>,
+}
+
+/// Coordinates beyond this (metres) are map coordinates, of which an origin is taken off.
+const LARGE_M: f64 = 10_000.0;
+
+/// Grid of the origin, metres: whole hundreds are easy to add in one's head.
+const ORIGIN_GRID_M: f64 = 100.0;
+
+/// The scene origin: the mean projection centre in plan, rounded to whole hundreds of metres, when
+/// coordinates are large; else zero. Heights are small everywhere and stay what they are.
+pub(super) fn scene_origin<'a>(cameras: impl Iterator<Item = &'a Camera>) -> Vector3<f64> {
+    let centers: Vec<Point3<f64>> = cameras.map(|c| c.center).collect();
+    let is_large = |c: &Point3<f64>| c.x.abs() > LARGE_M || c.y.abs() > LARGE_M;
+    if !centers.iter().any(is_large) {
+        return Vector3::zeros();
+    }
+    let sum = centers.iter().fold(Vector3::zeros(), |s, c| s + c.coords);
+    let mean = sum / centers.len() as f64;
+    let round = |v: f64| (v / ORIGIN_GRID_M).round() * ORIGIN_GRID_M;
+    Vector3::new(round(mean.x), round(mean.y), 0.0)
+}
+
+/// Why these numbers are no camera.
+pub(super) fn numeric_problem(camera: &Camera) -> Option<&'static str> {
+    let Camera { k, r, center, .. } = camera;
+    let all = || k.iter().chain(r.iter()).chain(center.iter());
+    if all().any(|v| !v.is_finite() || v.abs() > 1e12) {
+        Some("a number is infinite or not a number")
+    } else if k[(0, 0)] <= 0.0 || k[(1, 1)] <= 0.0 {
+        Some("the focal length is not positive")
+    } else if (r * r.transpose() - Matrix3::identity()).amax() > 1e-6 || r.determinant() < 0.0 {
+        Some("the rotation matrix is not a rotation")
+    } else {
+        None
+    }
+}
+
+/// Checks of each camera in its world and of all together. `ground_z` in the local frame.
+pub(super) fn check_cameras(cameras: &[(&str, &Camera)], ground_z: Option<f64>) -> Findings {
+    let mut found = Findings::default();
+    for (name, camera) in cameras {
+        found.errors.extend(placement_error(name, camera, ground_z));
+    }
+    if found.errors.is_empty() {
+        check_overlap(cameras, ground_z, &mut found);
+    }
+    found
+}
+
+/// Does the camera stand above the ground and look down?
+fn placement_error(name: &str, camera: &Camera, ground_z: Option<f64>) -> Option<Error> {
+    let refuse = |problem: String, advice: &str| {
+        Some(Error::File {
+            file: name.to_owned(),
+            problem,
+            advice: advice.to_owned(),
+        })
+    };
+    let z = camera.center.z;
+    if z.abs() > LARGE_M {
+        return refuse(
+            format!("its camera is {z:.0} m high"),
+            "export the orientation in metres with Z up (map or local coordinates, not geocentric)",
+        );
+    }
+    if let Some(ground) = ground_z.filter(|&ground| z <= ground) {
+        return refuse(
+            format!("its camera ({z:.1} m) is below the ground ({ground:.1} m)"),
+            "check the height of the ground and the height system of the orientation",
+        );
+    }
+    let (width, height) = (f64::from(camera.width), f64::from(camera.height));
+    let middle = camera.ray(&Point2::new(width / 2.0, height / 2.0));
+    if middle.z >= 0.0 {
+        return refuse(
+            "its camera looks up from the horizon".to_owned(),
+            "check that Z is up, the order and the unit of the angles, and that image y runs down",
+        );
+    }
+    None
+}
+
+/// Refuses views that no three of which see the same place; warns of single ones.
+fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut Findings) {
+    let cameras_only: Vec<&Camera> = cameras.iter().map(|(_, c)| *c).collect();
+    let heights = ground_z.map_or_else(|| candidate_heights(&cameras_only), |z| vec![z]);
+    let mut most_seen = vec![1; cameras.len()];
+    for &z in &heights {
+        let counts = views_together(&cameras_only, z);
+        if counts.iter().any(|&n| n >= 3) {
+            let [low, high] = found.heights.unwrap_or([z, z]);
+            found.heights = Some([low.min(z), high.max(z)]);
+        }
+        for (most, n) in most_seen.iter_mut().zip(counts) {
+            *most = n.max(*most);
+        }
+    }
+    let alone = || (0..cameras.len()).filter(|&i| most_seen[i] < 3);
+    if found.heights.is_none() {
+        let place = match ground_z {
+            Some(z) => format!("at the ground height {z:.1} m"),
+            None => "at any height of the ground".to_owned(),
+        };
+        found.errors.push(Error::Scene {
+            problem: format!(
+                "the views do not overlap: no three of them see the same place {place}"
+            ),
+            advice:
+                "check that images and orientations belong together (names, unit and order of the \
+                     angles, the same coordinate system)"
+                    .to_owned(),
+        });
+    } else if alone().next().is_some() {
+        found.warnings.push(format!(
+            "views that see no place together with two others: {}",
+            listed(alone().map(|i| cameras[i].0))
+        ));
+    }
+}
+
+/// Samples along each side of an image for the overlap.
+const GRID: u32 = 4;
+
+/// For each view, the greatest number of views (itself included; counted up to three, which is all that
+/// matters) that see one of its sample points on the ground at height `z`.
+fn views_together(cameras: &[&Camera], z: f64) -> Vec<usize> {
+    cameras
+        .iter()
+        .map(|camera| {
+            let seen_by = |world: &Point3<f64>| {
+                let sees = |c: &&&Camera| c.project(world).is_some_and(|p| c.contains(&p, -0.5));
+                cameras.iter().filter(sees).take(3).count()
+            };
+            samples(camera)
+                .filter_map(|p| camera.at_height(&p, z))
+                .map(|world| seen_by(&world))
+                .max()
+                .unwrap_or(0)
+        })
+        .collect()
+}
+
+/// A grid of image points that includes the corners.
+fn samples(camera: &Camera) -> impl Iterator<Item = Point2<f64>> {
+    let (w, h) = (f64::from(camera.width), f64::from(camera.height));
+    (0..=GRID).flat_map(move |j| {
+        (0..=GRID).map(move |i| {
+            let t = |n: u32| f64::from(n) / f64::from(GRID);
+            Point2::new(w * t(i), h * t(j))
+        })
+    })
+}
+
+/// Heights at which the ground may lie: where rays of pairs of views pass each other, thinned out, and a
+/// series of depths below the lowest camera for views whose axes are parallel.
+fn candidate_heights(cameras: &[&Camera]) -> Vec<f64> {
+    const MOST: usize = 60;
+    // Neighbours in the list and far ones: every offset that is a power of two keeps large blocks quick.
+    let offsets = [1usize, 2, 3, 4, 8, 16, 32, 64];
+    let mut crossings: Vec<f64> = (0..cameras.len())
+        .flat_map(|i| offsets.iter().map(move |o| (i, i + o)))
+        .filter(|&(_, j)| j < cameras.len())
+        .flat_map(|(i, j)| pair_heights(cameras[i], cameras[j]))
+        .collect();
+    crossings.sort_by(f64::total_cmp);
+    let step = crossings.len().div_ceil(MOST).max(1);
+    let lowest = cameras
+        .iter()
+        .map(|c| c.center.z)
+        .fold(f64::INFINITY, f64::min);
+    // From indoor distances to the height of an airliner.
+    let mut heights: Vec<f64> = crossings.iter().copied().step_by(step).collect();
+    let mut depth = 2.0;
+    while depth < 12_000.0 {
+        heights.push(lowest - depth);
+        depth *= 1.1;
+    }
+    heights
+}
+
+/// Heights at which the middle ray of `a` passes nearest to rays of `b`, where that is in front of both.
+fn pair_heights(a: &Camera, b: &Camera) -> Vec<f64> {
+    let middle = |c: &Camera| Point2::new(f64::from(c.width) / 2.0, f64::from(c.height) / 2.0);
+    let ray = a.ray(&middle(a));
+    let rays = std::iter::once(middle(b)).chain(samples(b));
+    let heights = rays.filter_map(|p| {
+        let other = b.ray(&p);
+        let base = b.center - a.center;
+        let cosine = ray.dot(&other);
+        let sine2 = 1.0 - cosine * cosine;
+        // Rays within a third of a degree of parallel cross nowhere in particular.
+        if sine2 < 3e-5 {
+            return None;
+        }
+        let s = (base.dot(&ray) - cosine * base.dot(&other)) / sine2;
+        let t = (cosine * base.dot(&ray) - base.dot(&other)) / sine2;
+        (s > 0.0 && t > 0.0).then(|| 0.5 * ((a.center + ray * s).z + (b.center + other * t).z))
+    });
+    heights.collect()
+}
+
+/// Bytes that one pixel of a view takes: colours, grey values, and the rasters of the first stage.
+const BYTES_PER_PIXEL: u64 = 3 + 4 + 8;
+
+/// Memory for all views: a browser's WebAssembly has four gigabytes in all.
+const MEMORY_BYTES: u64 = if cfg!(target_arch = "wasm32") {
+    2 << 30
+} else {
+    32 << 30
+};
+
+/// Refuses more pixels than memory.
+pub(super) fn check_memory(views: &[PlannedView]) -> Option<Error> {
+    let size = |w: u32, h: u32| u64::from(w) * u64::from(h);
+    let kept: u64 = views
+        .iter()
+        .map(|v| {
+            v.part
+                .map_or(size(v.whole.width, v.whole.height), |[_, _, w, h]| {
+                    size(w, h)
+                })
+        })
+        .sum();
+    let largest = views
+        .iter()
+        .map(|v| size(v.whole.width, v.whole.height))
+        .max()?;
+    let bytes = kept * BYTES_PER_PIXEL + largest * 6;
+    let mb = |bytes: u64| bytes >> 20;
+    (bytes > MEMORY_BYTES).then(|| Error::Scene {
+        problem: format!(
+            "{} views of together {} megapixels need about {} MB of memory, more than {} MB",
+            views.len(),
+            kept / 1_000_000,
+            mb(bytes),
+            mb(MEMORY_BYTES)
+        ),
+        advice: "choose a region of interest or fewer views".to_owned(),
+    })
+}

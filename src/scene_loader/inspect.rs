@@ -1,0 +1,75 @@
+//! What was recognised, for a table that the user reads before anything is computed.
+
+use serde::Serialize;
+
+use super::input::{InputFile, LoadOptions};
+use super::plan::Plan;
+use crate::orientation::FileKind;
+
+/// Everything that is known about a set of files without decoding an image.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Inspection {
+    /// One entry a file, in the order given.
+    pub files: Vec<FileReport>,
+    /// The images in use, sorted by name.
+    pub images: Vec<ImageReport>,
+    /// The orientation that a run would take: format and files.
+    pub orientation: Option<String>,
+    /// Number of views that a run would use.
+    pub views: usize,
+    /// What a run would warn of.
+    pub warnings: Vec<String>,
+    /// Why a run would refuse these files; empty when it would not.
+    pub errors: Vec<String>,
+}
+
+/// What a file is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FileReport {
+    /// Its path.
+    pub path: String,
+    /// Its kind.
+    pub kind: FileKind,
+    /// The kind in words.
+    pub description: &'static str,
+}
+
+/// An image and its orientation.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ImageReport {
+    /// Path of the file.
+    pub path: String,
+    /// The name that views go by.
+    pub name: String,
+    /// Width and height in pixels; `None` when the header cannot be read.
+    pub size: Option<(u32, u32)>,
+    /// Where its orientation stands; `None` when it has none.
+    pub orientation: Option<String>,
+}
+
+/// Recognises files and plans a scene with default options.
+pub fn inspect_files(files: &[InputFile]) -> Inspection {
+    let plan = Plan::new(files, &LoadOptions::default());
+    let described = files
+        .iter()
+        .zip(&plan.kinds)
+        .map(|(file, &kind)| FileReport {
+            path: file.path.clone(),
+            kind,
+            description: kind.describe(),
+        });
+    let images = plan.images.iter().map(|image| ImageReport {
+        path: files[image.file].path.clone(),
+        name: files[image.file].name().to_owned(),
+        size: image.header.map(|h| (h.width, h.height)),
+        orientation: image.orientation.as_ref().map(|o| o.source.clone()),
+    });
+    Inspection {
+        files: described.collect(),
+        images: images.collect(),
+        orientation: plan.orientation,
+        views: plan.views.len(),
+        warnings: plan.warnings,
+        errors: plan.errors.iter().map(ToString::to_string).collect(),
+    }
+}

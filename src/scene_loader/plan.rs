@@ -1,0 +1,439 @@
+//! Which image goes with which orientation, and everything that speaks against it.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::checks;
+use super::input::{InputFile, LoadOptions, base_name, stem};
+use super::region;
+use crate::camera::{Camera, Distortion};
+use crate::orientation::{FileKind, Orientation, OrientationSet, detect, orientation_sets};
+use crate::raster::{ImageHeader, image_header};
+use crate::{Error, Result};
+
+/// Everything about a scene but its pixels.
+pub(super) struct Plan {
+    /// What each file is.
+    pub kinds: Vec<FileKind>,
+    /// The images in use, sorted by name.
+    pub images: Vec<PlannedImage>,
+    /// The orientation that was taken.
+    pub orientation: Option<String>,
+    /// The views: images with an orientation, in the order of `images`.
+    pub views: Vec<PlannedView>,
+    /// Added to local coordinates it gives the world of the input.
+    pub origin: Vector3<f64>,
+    pub warnings: Vec<String>,
+    /// Refusals, the one to report first in front.
+    pub errors: Vec<Error>,
+}
+
+/// An image and the orientation found for it.
+pub(super) struct PlannedImage {
+    pub file: usize,
+    pub header: Option<ImageHeader>,
+    pub orientation: Option<Orientation>,
+}
+
+/// A view before its pixels are decoded.
+pub(super) struct PlannedView {
+    pub file: usize,
+    /// Camera of the whole image, local frame.
+    pub whole: Camera,
+    pub distortion: Option<Distortion>,
+    /// Column, row, width, height of the part that is used; the whole image when absent.
+    pub part: Option<[u32; 4]>,
+}
+
+impl PlannedView {
+    /// The camera of the part that is used.
+    pub(super) fn camera(&self) -> Camera {
+        let mut camera = self.whole.clone();
+        if let Some([column, row, width, height]) = self.part {
+            camera.k[(0, 2)] -= f64::from(column);
+            camera.k[(1, 2)] -= f64::from(row);
+            (camera.width, camera.height) = (width, height);
+        }
+        camera
+    }
+}
+
+impl Plan {
+    /// Plans a scene; what stands against it is collected in `errors`.
+    pub(super) fn new(files: &[InputFile], options: &LoadOptions) -> Self {
+        let mut plan = Self {
+            kinds: files.iter().map(detect).collect(),
+            images: Vec::new(),
+            orientation: None,
+            views: Vec::new(),
+            origin: Vector3::zeros(),
+            warnings: Vec::new(),
+            errors: Vec::new(),
+        };
+        plan.find_images(files, options);
+        if let Some(orientations) = plan.choose_orientation(files, options) {
+            plan.match_orientations(files, orientations, options.views.is_some());
+            plan.form_views(files, options);
+        }
+        plan
+    }
+
+    /// The images that are wanted, with their headers.
+    fn find_images(&mut self, files: &[InputFile], options: &LoadOptions) {
+        let mut images: Vec<usize> = (0..files.len())
+            .filter(|&i| self.kinds[i] == FileKind::Image)
+            .collect();
+        images.sort_by_key(|&i| (files[i].name(), &files[i].path));
+        if let Some(wanted) = &options.views {
+            images = self.select(files, &images, wanted);
+        }
+        self.refuse_duplicates(files, &images);
+        if images.is_empty() && self.errors.is_empty() {
+            self.errors.push(Error::Scene {
+                problem: format!("there is no image among the {} files", files.len()),
+                advice: "add three or more JPEG, PNG or TIFF images".to_owned(),
+            });
+        }
+        let headers = crate::parallel::map(&images, |_, &i| {
+            image_header(&files[i].path, &files[i].bytes)
+        });
+        for (file, header) in images.into_iter().zip(headers) {
+            if header.as_ref().is_ok_and(|h| h.turned) {
+                self.warnings.push(format!(
+                    "{}: its EXIF header asks for a turn, which is not applied: the orientation \
+                     must describe the pixels as they are stored",
+                    files[file].path
+                ));
+            }
+            let header = header.map_err(|e| self.errors.push(e)).ok();
+            self.images.push(PlannedImage {
+                file,
+                header,
+                orientation: None,
+            });
+        }
+    }
+
+    fn select(&mut self, files: &[InputFile], images: &[usize], wanted: &[String]) -> Vec<usize> {
+        for name in wanted {
+            if !images
+                .iter()
+                .any(|&i| match_rank(name, files[i].name()).is_some())
+            {
+                self.errors.push(Error::Scene {
+                    problem: format!("there is no image called {name}"),
+                    advice: format!(
+                        "choose among {}",
+                        listed(images.iter().map(|&i| files[i].name()))
+                    ),
+                });
+            }
+        }
+        let is_wanted = |i: usize| {
+            wanted
+                .iter()
+                .any(|name| match_rank(name, files[i].name()).is_some())
+        };
+        images.iter().copied().filter(|&i| is_wanted(i)).collect()
+    }
+
+    fn refuse_duplicates(&mut self, files: &[InputFile], images: &[usize]) {
+        let mut keys: Vec<(String, usize)> = images
+            .iter()
+            .map(|&i| (stem(&files[i].path).to_lowercase(), i))
+            .collect();
+        keys.sort();
+        for pair in keys.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            self.errors.push(Error::Scene {
+                problem: format!(
+                    "{} and {} have the same name",
+                    files[pair[0].1].path, files[pair[1].1].path
+                ),
+                advice: "rename or remove one: images and orientations are matched by name"
+                    .to_owned(),
+            });
+        }
+    }
+
+    /// Reads the best candidate, or the one asked for.
+    fn choose_orientation(
+        &mut self,
+        files: &[InputFile],
+        options: &LoadOptions,
+    ) -> Option<Vec<Orientation>> {
+        let (sets, incomplete) = orientation_sets(files, &self.kinds);
+        self.warn_of_json(files);
+        let chosen = match &options.orientation {
+            None => sets.first(),
+            Some(wanted) => sets.iter().find(|set| {
+                let wanted = wanted.trim_end_matches('/');
+                set.files.iter().any(|&i| files[i].path.contains(wanted))
+            }),
+        };
+        let Some(set) = chosen else {
+            self.errors
+                .push(no_orientation(files, options, &sets, &incomplete));
+            return None;
+        };
+        self.warnings.extend(incomplete);
+        if options.orientation.is_none() && sets.len() > 1 {
+            let others = sets[1..].iter().map(|s| s.label(files));
+            self.warnings.push(format!(
+                "the orientation stands in the files {} times: {} was taken, not {}",
+                sets.len(),
+                set.label(files),
+                listed(others)
+            ));
+        }
+        self.orientation = Some(format!("{}: {}", set.format.name(), set.label(files)));
+        set.read(files, &mut self.warnings)
+            .map_err(|e| self.errors.push(e))
+            .ok()
+    }
+
+    fn warn_of_json(&mut self, files: &[InputFile]) {
+        let of_json = (0..files.len()).filter(|&i| self.kinds[i] == FileKind::Json);
+        let names: Vec<&str> = of_json.map(|i| &*files[i].path).collect();
+        if !names.is_empty() {
+            self.warnings.push(format!(
+                "JSON is no orientation format here, ignored: {}",
+                listed(names.into_iter())
+            ));
+        }
+    }
+
+    /// Gives each image its orientation.
+    fn match_orientations(
+        &mut self,
+        files: &[InputFile],
+        orientations: Vec<Orientation>,
+        selected: bool,
+    ) {
+        let mut used = vec![false; orientations.len()];
+        for image in &mut self.images {
+            let name = files[image.file].name();
+            match best_match(&orientations, name)[..] {
+                [] => self.errors.push(Error::File {
+                    file: files[image.file].path.clone(),
+                    problem: format!(
+                        "the image has no orientation in {}",
+                        self.orientation.as_deref().unwrap_or("any file")
+                    ),
+                    advice: "add its orientation, remove the image, or choose the views to use"
+                        .to_owned(),
+                }),
+                [one] => {
+                    used[one] = true;
+                    image.orientation = Some(orientations[one].clone());
+                }
+                [first, second, ..] => self.errors.push(Error::File {
+                    file: files[image.file].path.clone(),
+                    problem: format!(
+                        "two orientations are called like the image ({} and {})",
+                        orientations[first].source, orientations[second].source
+                    ),
+                    advice: "remove one of them".to_owned(),
+                }),
+            }
+        }
+        let without: Vec<&str> = (orientations.iter().zip(&used))
+            .filter(|(_, used)| !**used)
+            .map(|(o, _)| &*o.image)
+            .collect();
+        if !without.is_empty() && !selected {
+            self.warnings.push(format!(
+                "orientations without an image, ignored: {}",
+                listed(without.into_iter())
+            ));
+        }
+    }
+
+    /// Forms views in the local frame and checks them together.
+    fn form_views(&mut self, files: &[InputFile], options: &LoadOptions) {
+        let mut views = Vec::new();
+        for image in &self.images {
+            let (Some(header), Some(orientation)) = (&image.header, &image.orientation) else {
+                continue;
+            };
+            match planned_view(&files[image.file].path, image.file, header, orientation) {
+                Ok(view) => views.push(view),
+                Err(error) => self.errors.push(error),
+            }
+        }
+        if views.len() < 3 && self.errors.is_empty() {
+            self.errors.push(too_few(files, &views));
+        }
+        if views.len() < 3 {
+            self.views = views;
+            return;
+        }
+        self.origin = checks::scene_origin(views.iter().map(|v| &v.whole));
+        for view in &mut views {
+            view.whole.center -= self.origin;
+        }
+        let ground_z = options.ground_z.map(|z| z - self.origin.z);
+        let named: Vec<(&str, &Camera)> = views
+            .iter()
+            .map(|v| (&*files[v.file].path, &v.whole))
+            .collect();
+        let found = checks::check_cameras(&named, ground_z);
+        self.errors.extend(found.errors);
+        self.warnings.extend(found.warnings);
+        if let (Some(roi), Some(heights)) = (options.roi, found.heights) {
+            let roi = region::Region::new(roi, &self.origin, heights);
+            match roi.and_then(|roi| roi.cut(files, &mut views)) {
+                Ok(warnings) => self.warnings.extend(warnings),
+                Err(error) => self.errors.push(error),
+            }
+        }
+        self.errors.extend(checks::check_memory(&views));
+        self.views = views;
+    }
+}
+
+/// The camera of a whole image in the world of its orientation file, after the checks that need no other view.
+fn planned_view(
+    path: &str,
+    file: usize,
+    header: &ImageHeader,
+    orientation: &Orientation,
+) -> Result<PlannedView> {
+    let refuse = |problem: String, advice: &str| Error::File {
+        file: path.to_owned(),
+        problem,
+        advice: advice.to_owned(),
+    };
+    let (width, height) = (header.width, header.height);
+    if let Some((w, h)) = orientation.size.filter(|&size| size != (width, height)) {
+        return Err(refuse(
+            format!(
+                "the image has {width} x {height} pixels, but its orientation ({}) is for {w} x {h}",
+                orientation.source
+            ),
+            "use the image that was oriented, or export the orientation for this size",
+        ));
+    }
+    let camera = Camera {
+        k: orientation.k,
+        r: orientation.r,
+        center: orientation.center,
+        width,
+        height,
+    };
+    if let Some(problem) = checks::numeric_problem(&camera) {
+        return Err(refuse(
+            format!(
+                "its orientation ({}) is impossible: {problem}",
+                orientation.source
+            ),
+            "export the orientation again",
+        ));
+    }
+    if let Some(lens) = &orientation.distortion
+        && !lens.is_plausible(&camera.k, width, height)
+    {
+        return Err(refuse(
+            format!(
+                "the lens distortion in {} folds the image over",
+                orientation.source
+            ),
+            "check the order and the signs of the coefficients, or undistort the images",
+        ));
+    }
+    Ok(PlannedView {
+        file,
+        whole: without_scale(camera),
+        distortion: orientation.distortion,
+        part: None,
+    })
+}
+
+/// The same camera with `K[(2, 2)]` exactly 1.
+fn without_scale(mut camera: Camera) -> Camera {
+    let k: Matrix3<f64> = camera.k / camera.k[(2, 2)];
+    camera.k = k;
+    camera.k[(2, 2)] = 1.0;
+    camera
+}
+
+/// How well a name in an orientation file fits an image's; less is better, `None` is not at all.
+fn match_rank(oriented: &str, image: &str) -> Option<u8> {
+    let name = base_name(oriented);
+    let fits = |a: &str, b: &str| {
+        if a == b {
+            Some(0)
+        } else {
+            (a.to_lowercase() == b.to_lowercase()).then_some(3)
+        }
+    };
+    [
+        fits(name, image),
+        fits(name, stem(image)).map(|rank| rank + 1),
+        fits(stem(name), stem(image)).map(|rank| rank + 2),
+    ]
+    .into_iter()
+    .flatten()
+    .min()
+}
+
+/// The orientations that fit an image best.
+fn best_match(orientations: &[Orientation], image: &str) -> Vec<usize> {
+    let ranks: Vec<Option<u8>> = orientations
+        .iter()
+        .map(|o| match_rank(&o.image, image))
+        .collect();
+    let best = ranks.iter().flatten().min();
+    (0..ranks.len())
+        .filter(|&i| best.is_some() && ranks[i].as_ref() == best)
+        .collect()
+}
+
+fn no_orientation(
+    files: &[InputFile],
+    options: &LoadOptions,
+    sets: &[OrientationSet],
+    incomplete: &[String],
+) -> Error {
+    if let (Some(wanted), false) = (&options.orientation, sets.is_empty()) {
+        return Error::Scene {
+            problem: format!("no orientation file has {wanted} in its path"),
+            advice: format!(
+                "choose among {}",
+                listed(sets.iter().map(|s| s.label(files)))
+            ),
+        };
+    }
+    let mut problem = "no orientation was found".to_owned();
+    if !incomplete.is_empty() {
+        problem = format!("{problem}: {}", incomplete.join("; "));
+    }
+    Error::Scene {
+        problem,
+        advice: "add a COLMAP text model (cameras.txt and images.txt), a camera file with a list \
+                 `image X0 Y0 Z0 omega phi kappa`, or one 3 x 4 matrix NAME.P an image"
+            .to_owned(),
+    }
+}
+
+fn too_few(files: &[InputFile], views: &[PlannedView]) -> Error {
+    Error::Scene {
+        problem: format!(
+            "{} oriented {} ({}), but three are needed",
+            views.len(),
+            if views.len() == 1 { "view" } else { "views" },
+            listed(views.iter().map(|v| files[v.file].name()))
+        ),
+        advice: "add images: a line match in two views cannot be verified without a third"
+            .to_owned(),
+    }
+}
+
+/// Names in a row; long lists are cut short.
+pub(super) fn listed(names: impl Iterator<Item = impl AsRef<str>>) -> String {
+    const MOST: usize = 8;
+    let names: Vec<String> = names.map(|n| n.as_ref().to_owned()).collect();
+    let mut text = names[..names.len().min(MOST)].join(", ");
+    if names.len() > MOST {
+        text.push_str(&format!(" and {} more", names.len() - MOST));
+    }
+    text
+}

@@ -1,0 +1,362 @@
+//! Each kind of bad input and the words of its refusal.
+
+use nalgebra::Point2;
+
+use super::*;
+use crate::camera::Distortion;
+use crate::synthetic::{gable_scene, to_colmap, to_files, to_photogrammetric, to_projection};
+
+fn inputs(files: Vec<(String, Vec<u8>)>) -> Vec<InputFile> {
+    files
+        .into_iter()
+        .map(|(path, bytes)| InputFile::new(&path, bytes))
+        .collect()
+}
+
+fn gable_files() -> Vec<InputFile> {
+    inputs(to_files(&gable_scene(48).0))
+}
+
+fn find<'a>(files: &'a mut [InputFile], path: &str) -> &'a mut InputFile {
+    files
+        .iter_mut()
+        .find(|f| f.path == path)
+        .expect("a file of the scene")
+}
+
+/// Replaces text in a file of the scene.
+fn edit(files: &mut [InputFile], path: &str, from: &str, to: &str) {
+    let file = find(files, path);
+    let text = file.text().replace(from, to);
+    assert_ne!(text, file.text(), "{from} stands in {path}");
+    file.bytes = text.into_bytes();
+}
+
+/// The scene must be refused in these words, and the page must say the same.
+fn refused(files: &[InputFile], options: &LoadOptions, words: &[&str]) {
+    let message = load_scene(files, options).unwrap_err().to_string();
+    for word in words {
+        assert!(message.contains(word), "{message}\nlacks: {word}");
+    }
+    if *options == LoadOptions::default() {
+        let inspection = inspect_files(files);
+        // Only decoding finds an image whose header is sound.
+        assert!(inspection.errors.is_empty() || inspection.errors[0] == message);
+    }
+}
+
+fn all() -> LoadOptions {
+    LoadOptions::default()
+}
+
+fn only(views: &[&str]) -> LoadOptions {
+    LoadOptions {
+        views: Some(views.iter().map(|&v| v.to_owned()).collect()),
+        ..all()
+    }
+}
+
+#[test]
+fn a_scene_survives_the_way_through_files() {
+    let (mut scene, _) = gable_scene(48);
+    scene.origin = nalgebra::Vector3::new(432_100.0, 5_412_300.0, 0.0);
+    let images = to_files(&scene);
+    let images = images
+        .iter()
+        .filter(|(path, _)| path.starts_with("images/"));
+    for orientation in [
+        to_colmap(&scene),
+        to_photogrammetric(&scene),
+        to_projection(&scene),
+    ] {
+        let files = inputs(images.clone().cloned().chain(orientation).collect());
+        let found = load_scene(&files, &all()).unwrap();
+        assert_eq!(found.origin, scene.origin);
+        assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+        for (a, b) in found.views.iter().zip(&scene.views) {
+            assert_eq!((&a.name, &a.rgb, &a.gray), (&b.name, &b.rgb, &b.gray));
+            assert!((a.camera.center - b.camera.center).norm() < 1e-4);
+            assert!((a.camera.k - b.camera.k).norm() < 1e-2);
+            assert!((a.camera.r - b.camera.r).norm() < 1e-8);
+        }
+    }
+}
+
+#[test]
+fn images_and_orientations_without_each_other() {
+    let mut files = gable_files();
+    edit(&mut files, "colmap/images.txt", "s2_01.png", "other.png");
+    refused(
+        &files,
+        &all(),
+        &["images/s2_01.png: the image has no orientation", "COLMAP"],
+    );
+    // Left out by the choice of views, it does not matter.
+    let names = ["s1_01", "s1_02.png", "S1_03"];
+    let scene = load_scene(&files, &only(&names)).unwrap();
+    assert_eq!(scene.views.len(), 3);
+    // An orientation without an image is ignored and named.
+    files.retain(|f| f.path != "images/s2_01.png");
+    let scene = load_scene(&files, &all()).unwrap();
+    assert!(scene.warnings.iter().any(|w| w.contains("other.png")));
+    files.retain(|f| !f.path.starts_with("colmap/images"));
+    refused(
+        &files,
+        &all(),
+        &["no orientation was found: colmap/cameras.txt has no COLMAP image list"],
+    );
+    files.retain(|f| !f.path.starts_with("images/"));
+    refused(&files, &all(), &["no image among the 1 files"]);
+}
+
+#[test]
+fn names_that_are_not_unique() {
+    let mut files = gable_files();
+    let copy = find(&mut files, "images/s1_02.png").bytes.clone();
+    files.push(InputFile::new("more\\S1_02.tif", copy));
+    refused(
+        &files,
+        &all(),
+        &["images/s1_02.png", "more/S1_02.tif", "same name"],
+    );
+    let mut files = gable_files();
+    edit(&mut files, "colmap/images.txt", "s2_01.png", "x/s1_01.png");
+    refused(
+        &files,
+        &all(),
+        &["images/s1_01.png: two orientations", "line 3", "line 9"],
+    );
+    refused(
+        &gable_files(),
+        &only(&["s1_01", "s9"]),
+        &["no image called s9", "s2_03.png"],
+    );
+}
+
+#[test]
+fn fewer_than_three_views() {
+    let two = only(&["s1_01", "s2_02"]);
+    refused(
+        &gable_files(),
+        &two,
+        &[
+            "2 oriented views",
+            "s1_01.png, s2_02.png",
+            "three are needed",
+        ],
+    );
+}
+
+#[test]
+fn a_truncated_image() {
+    let mut files = gable_files();
+    find(&mut files, "images/s1_03.png").bytes.truncate(1500);
+    refused(
+        &files,
+        &all(),
+        &["images/s1_03.png: the image cannot be read", "again"],
+    );
+    find(&mut files, "images/s1_03.png").bytes.clear();
+    refused(
+        &files,
+        &all(),
+        &["images/s1_03.png: the image cannot be read"],
+    );
+}
+
+#[test]
+fn an_image_of_another_size() {
+    let mut files = gable_files();
+    edit(
+        &mut files,
+        "colmap/cameras.txt",
+        "3 PINHOLE 48 48",
+        "3 PINHOLE 96 96",
+    );
+    refused(
+        &files,
+        &all(),
+        &[
+            "images/s1_03.png",
+            "48 x 48",
+            "96 x 96",
+            "colmap/images.txt, line 7",
+        ],
+    );
+}
+
+#[test]
+fn cameras_that_are_none() {
+    let mut files = gable_files();
+    edit(
+        &mut files,
+        "colmap/cameras.txt",
+        "1 PINHOLE 48 48 15294",
+        "1 PINHOLE 48 48 NaN",
+    );
+    refused(
+        &files,
+        &all(),
+        &["colmap/cameras.txt, line 2", "\"NaN\"", "finite number"],
+    );
+    let (scene, _) = gable_scene(48);
+    let mut files = inputs(
+        to_files(&scene)
+            .into_iter()
+            .chain(to_projection(&scene))
+            .collect(),
+    );
+    files.retain(|f| !f.path.starts_with("colmap"));
+    find(&mut files, "projection/s1_02.P").bytes = b"1 0 0 0\n0 1 0 0\n1 1 0 5\n".to_vec();
+    refused(&files, &all(), &["projection/s1_02.P", "singular"]);
+}
+
+#[test]
+fn cameras_in_the_wrong_place() {
+    let ground = |z| LoadOptions {
+        ground_z: Some(z),
+        ..all()
+    };
+    refused(
+        &gable_files(),
+        &ground(1500.0),
+        &["s1_01.png", "below the ground (1500.0 m)"],
+    );
+    refused(
+        &gable_files(),
+        &ground(700.0),
+        &["do not overlap", "height 700.0 m"],
+    );
+    assert_eq!(
+        load_scene(&gable_files(), &ground(1.5)).unwrap().ground_z,
+        Some(1.5)
+    );
+
+    // Image y up instead of down: the second row of P changes its sign.
+    let (mut scene, _) = gable_scene(48);
+    for view in &mut scene.views {
+        let flip = nalgebra::Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, -1.0, -1.0));
+        view.camera.r = flip * view.camera.r;
+    }
+    refused(&inputs(to_files(&scene)), &all(), &["looks up", "angles"]);
+    // Geocentric coordinates: millions of metres high.
+    let (mut scene, _) = gable_scene(48);
+    scene.origin.z = 4.5e6;
+    refused(&inputs(to_files(&scene)), &all(), &["high", "geocentric"]);
+}
+
+#[test]
+fn views_that_see_different_places() {
+    // Two strips a kilometre apart, two views each: nowhere do three meet.
+    let (mut scene, _) = gable_scene(48);
+    scene.views.truncate(4);
+    for view in &mut scene.views[2..] {
+        view.camera.center.y += 2000.0;
+    }
+    refused(&inputs(to_files(&scene)), &all(), &["do not overlap"]);
+    // One stray view is a warning.
+    let (mut scene, _) = gable_scene(48);
+    scene.views[4].camera.center.y += 2000.0;
+    let found = load_scene(&inputs(to_files(&scene)), &all()).unwrap();
+    assert!(
+        found
+            .warnings
+            .iter()
+            .any(|w| w.contains("images/s2_02.png")),
+        "{:?}",
+        found.warnings
+    );
+}
+
+#[test]
+fn a_region_of_interest_cuts_images_and_keeps_projections() {
+    let (scene, truth) = gable_scene(400);
+    let files = inputs(to_files(&scene));
+    let options = |roi| LoadOptions {
+        roi: Some(roi),
+        ground_z: Some(truth.ground_z),
+        ..all()
+    };
+    let cut = load_scene(&files, &options([-1.0, -1.0, 1.0, 1.0])).unwrap();
+    for (part, whole) in cut.views.iter().zip(&scene.views) {
+        assert!(part.camera.width * part.camera.height < 400 * 400 * 3 / 4);
+        let ridge = nalgebra::Point3::new(0.0, 0.0, 9.375);
+        let (p, q) = (
+            part.camera.project(&ridge).unwrap(),
+            whole.camera.project(&ridge).unwrap(),
+        );
+        assert!(part.camera.contains(&p, 20.0));
+        let gray = |v: &View, p: Point2<f64>| v.gray.sample(p.x as f32, p.y as f32).unwrap();
+        assert!(
+            (gray(part, p) - gray(whole, q)).abs() < 1e-4,
+            "the same pixels"
+        );
+    }
+    refused(
+        &files,
+        &options([500.0, 0.0, 510.0, 10.0]),
+        &["region of interest", "0 views"],
+    );
+    refused(
+        &files,
+        &options([5.0, 0.0, 1.0, 10.0]),
+        &["region of interest", "is empty"],
+    );
+}
+
+/// The photograph that a lens takes where the pinhole takes `ideal`: found by iteration, the other way
+/// round than the loader.
+fn distorted(view: &View, lens: &Distortion) -> image::RgbImage {
+    let k = &view.camera.k;
+    image::RgbImage::from_fn(view.camera.width, view.camera.height, |column, row| {
+        let seen = Point2::new(
+            (f64::from(column) + 0.5 - k[(0, 2)]) / k[(0, 0)],
+            (f64::from(row) + 0.5 - k[(1, 2)]) / k[(1, 1)],
+        );
+        let mut ideal = seen;
+        for _ in 0..30 {
+            ideal += seen - lens.distort(&ideal);
+        }
+        let (x, y) = (
+            ideal.x * k[(0, 0)] + k[(0, 2)],
+            ideal.y * k[(1, 1)] + k[(1, 2)],
+        );
+        let gray = view.gray.sample(x as f32, y as f32).unwrap_or(0.0);
+        image::Rgb([(gray * 255.0).round() as u8; 3])
+    })
+}
+
+#[test]
+fn a_distorting_lens_is_removed() {
+    let (mut scene, _) = gable_scene(160);
+    let original = scene.clone();
+    let lens = Distortion {
+        radial: [-0.02, 0.001, 0.0],
+        radial_below: [0.0; 3],
+        tangential: [1e-4, -2e-4],
+    };
+    for view in &mut scene.views {
+        view.rgb = distorted(view, &lens);
+    }
+    let difference = |scene: &Scene| {
+        let (a, b) = (&scene.views[0].gray, &original.views[0].gray);
+        let inner = (30..130).flat_map(|y| (30..130).map(move |x| (x, y)));
+        inner
+            .map(|(x, y)| (a.get(x, y) - b.get(x, y)).abs())
+            .sum::<f32>()
+            / 1e4
+    };
+    let mut files = inputs(to_files(&scene));
+    let before = difference(&load_scene(&files, &all()).unwrap());
+    let cameras = find(&mut files, "colmap/cameras.txt");
+    let lines = cameras.text().replace(" PINHOLE", " OPENCV");
+    let lines = lines.lines().map(|line| match line.starts_with('#') {
+        true => format!("{line}\n"),
+        false => format!("{line} -0.02 0.001 1e-4 -2e-4\n"),
+    });
+    cameras.bytes = lines.collect::<String>().into_bytes();
+    let after = difference(&load_scene(&files, &all()).unwrap());
+    assert!(after < 0.006 && after < before / 3.0, "{before} {after}");
+    edit(&mut files, "colmap/cameras.txt", "-0.02 0.001", "-80 0.001");
+    refused(&files, &all(), &["s1_01.png: the lens distortion", "folds"]);
+}

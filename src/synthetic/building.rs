@@ -1,0 +1,185 @@
+//! The houses: roof facets over shared corners, walls below them, and the ground.
+
+use nalgebra::{Point3, Vector3};
+
+use super::SyntheticTruth;
+use super::render::Face;
+use super::texture::Paint;
+use crate::geometry::Segment3;
+use crate::math;
+
+/// A house on its ground, ready to render, and what should be found of it.
+pub(super) struct Building {
+    pub faces: Vec<Face>,
+    pub truth: SyntheticTruth,
+}
+
+/// Height of the ground, metres: not zero, so that nobody assumes it.
+const GROUND_Z: f64 = 1.5;
+const EAVE_Z: f64 = 6.0;
+/// How far the roof stands out over the walls, metres.
+const OVERHANG: f64 = 0.6;
+/// Tangent of the roof slope (about 37 degrees).
+const SLOPE: f64 = 0.75;
+/// Azimuth of the main wing, degrees: parallel to no baseline.
+const AZIMUTH_DEG: f64 = 26.0;
+
+/// Gable roof of 14 m by 9 m in plan.
+pub(super) fn gable() -> Building {
+    let (a, b) = (7.0, 4.5);
+    let ridge = EAVE_Z + SLOPE * b;
+    let corners = [
+        [-a, -b, EAVE_Z],
+        [a, -b, EAVE_Z],
+        [a, 0.0, ridge],
+        [-a, 0.0, ridge],
+        [a, b, EAVE_Z],
+        [-a, b, EAVE_Z],
+    ];
+    let facets: [(&[usize], Paint); 2] = [
+        (&[0, 1, 2, 3], paint([0.62, 0.33, 0.25], 0.10, 1)),
+        (&[3, 2, 4, 5], paint([0.55, 0.34, 0.28], 0.22, 2)),
+    ];
+    let (x, y) = (a - OVERHANG, b - OVERHANG);
+    let footprint = [
+        ([-x, -y], false),
+        ([x, -y], true),
+        ([x, y], false),
+        ([-x, y], true),
+    ];
+    build(&corners, &facets, &footprint, ridge)
+}
+
+/// Main wing of 15 m by 8 m with a hipped west and a gabled east end; side wing of 6 m width to the
+/// north with a gable. Equal slopes and eaves, so that its ridge is lower and meets the main slope.
+pub(super) fn l_shape() -> Building {
+    let (a, b, c, w, n) = (7.5, 4.0, 2.5, 3.0, 9.0);
+    let (ridge, side_ridge) = (EAVE_Z + SLOPE * b, EAVE_Z + SLOPE * w);
+    // The main wing lies south of the origin, so that the whole house is centred.
+    let south = |y: f64| y - 2.5;
+    let corners = [
+        [-a, south(-b), EAVE_Z],
+        [a, south(-b), EAVE_Z],
+        [a, south(0.0), ridge],
+        [-a + b, south(0.0), ridge],
+        [a, south(b), EAVE_Z],
+        [c + w, south(b), EAVE_Z],
+        [c, south(b - w), side_ridge],
+        [c - w, south(b), EAVE_Z],
+        [-a, south(b), EAVE_Z],
+        [c + w, south(n), EAVE_Z],
+        [c, south(n), side_ridge],
+        [c - w, south(n), EAVE_Z],
+    ];
+    let facets: [(&[usize], Paint); 5] = [
+        (&[0, 1, 2, 3], paint([0.46, 0.42, 0.40], 0.18, 3)),
+        (&[3, 2, 4, 5, 6, 7, 8], paint([0.47, 0.40, 0.38], 0.14, 4)),
+        (&[8, 0, 3], paint([0.45, 0.41, 0.41], 0.06, 5)),
+        (&[5, 9, 10, 6], paint([0.58, 0.36, 0.30], 0.10, 6)),
+        (&[6, 10, 11, 7], paint([0.56, 0.37, 0.31], 0.20, 7)),
+    ];
+    let o = OVERHANG;
+    let footprint = [
+        ([-a + o, south(-b + o)], false),
+        ([a - o, south(-b + o)], true),
+        ([a - o, south(b - o)], false),
+        ([c + w - o, south(b - o)], false),
+        ([c + w - o, south(n - o)], true),
+        ([c - w + o, south(n - o)], false),
+        ([c - w + o, south(b - o)], false),
+        ([-a + o, south(b - o)], false),
+    ];
+    build(&corners, &facets, &footprint, ridge)
+}
+
+fn paint(rgb: [f64; 3], contrast: f64, seed: u32) -> Paint {
+    Paint {
+        rgb,
+        contrast,
+        seed,
+    }
+}
+
+/// Faces and truth from roof corners (before turning by the azimuth), facets over them, and a
+/// footprint whose flagged sides end in a gable.
+fn build(
+    corners: &[[f64; 3]],
+    facets: &[(&[usize], Paint)],
+    footprint: &[([f64; 2], bool)],
+    ridge: f64,
+) -> Building {
+    let corners: Vec<Point3<f64>> = corners.iter().map(|&p| turn(p)).collect();
+    let mut faces = vec![ground()];
+    faces.extend(walls(footprint, ridge));
+    let first_roof = faces.len();
+    faces.extend(facets.iter().map(|(ring, paint)| {
+        let ring: Vec<Point3<f64>> = ring.iter().map(|&i| corners[i]).collect();
+        Face::new(&ring, *paint)
+    }));
+    let truth = SyntheticTruth {
+        edges: edges(&corners, facets),
+        facets: faces[first_roof..]
+            .iter()
+            .map(|f| (f.plane, f.corners.clone()))
+            .collect(),
+        ground_z: GROUND_Z,
+    };
+    Building { faces, truth }
+}
+
+/// Turned by the azimuth about the vertical axis.
+fn turn([x, y, z]: [f64; 3]) -> Point3<f64> {
+    let (s, c) = math::sin_cos(AZIMUTH_DEG.to_radians());
+    Point3::new(c * x - s * y, s * x + c * y, z)
+}
+
+/// The sides of all facets, each once.
+fn edges(corners: &[Point3<f64>], facets: &[(&[usize], Paint)]) -> Vec<Segment3> {
+    let mut sides: Vec<[usize; 2]> = facets
+        .iter()
+        .flat_map(|(ring, _)| {
+            (0..ring.len()).map(|i| {
+                let (p, q) = (ring[i], ring[(i + 1) % ring.len()]);
+                [p.min(q), p.max(q)]
+            })
+        })
+        .collect();
+    sides.sort_unstable();
+    sides.dedup();
+    sides
+        .into_iter()
+        .map(|[p, q]| Segment3::new(corners[p], corners[q]))
+        .collect()
+}
+
+/// Vertical faces over the sides of a counter-clockwise footprint, up to the underside of the roof.
+/// Equal slopes make the roof equally high over all footprint corners.
+fn walls(footprint: &[([f64; 2], bool)], ridge: f64) -> Vec<Face> {
+    let top = EAVE_Z + SLOPE * OVERHANG;
+    (0..footprint.len())
+        .map(|i| {
+            let ([px, py], gabled) = footprint[i];
+            let ([qx, qy], _) = footprint[(i + 1) % footprint.len()];
+            let mut ring = vec![
+                turn([px, py, GROUND_Z]),
+                turn([qx, qy, GROUND_Z]),
+                turn([qx, qy, top]),
+            ];
+            if gabled {
+                let half_width = 0.5 * (math::hypot(qx - px, qy - py));
+                let apex = (top + SLOPE * half_width).min(ridge);
+                ring.push(turn([0.5 * (px + qx), 0.5 * (py + qy), apex]));
+            }
+            ring.push(turn([px, py, top]));
+            Face::new(&ring, paint([0.78, 0.75, 0.66], 0.05, 20 + i as u32))
+        })
+        .collect()
+}
+
+/// A lawn, larger than any crop.
+fn ground() -> Face {
+    let r = 200.0;
+    let corner = |x, y| Point3::origin() + Vector3::new(x, y, GROUND_Z);
+    let ring = [corner(-r, -r), corner(r, -r), corner(r, r), corner(-r, r)];
+    Face::new(&ring, paint([0.30, 0.40, 0.24], 0.25, 40))
+}

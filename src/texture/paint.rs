@@ -1,0 +1,235 @@
+//! The colours of one patch: from the view that shows most of it, gaps from the next ones.
+
+use nalgebra::{Matrix2, Matrix3x2, Point2};
+use serde::Serialize;
+
+use super::patch::{FacePlane, Patch};
+use super::raster::fill_gaps;
+use super::shadow::{Footprints, shadow_on};
+use crate::camera::Camera;
+use crate::ids::ViewId;
+use crate::scene::Scene;
+
+/// Most samples along one side of a texel.
+const MAX_SUPERSAMPLING: usize = 4;
+
+/// Colours are balanced between views within this factor. Assumption: larger ratios come from different
+/// things in sight (a crane, a cloud's shadow), not from exposure.
+const MAX_GAIN: f32 = 2.0;
+
+/// How well a view shows a face.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ViewOfFace {
+    /// The view.
+    pub view: ViewId,
+    /// Share of the face that lies in the image and that no other face hides, 0 to 1.
+    pub visible: f64,
+    /// Image pixels that show a square metre of the face: resolution and viewing angle in one number.
+    pub pixels_per_m2: f64,
+}
+
+/// A painted patch.
+pub struct Painted {
+    /// `width * height` colours, 0 to 255; meaningless where no texel is known.
+    pub colours: Vec<[f32; 3]>,
+    /// Texels inside the face that some view shows.
+    pub known: Vec<bool>,
+    /// The views that show some of the face, the one that shows most pixels of it first.
+    pub views: Vec<ViewOfFace>,
+    /// Share of the face painted from other views than the first.
+    pub filled: f64,
+    /// Share of the face that no view shows.
+    pub unseen: f64,
+}
+
+/// Pixels of a view that show a square metre of the face around its middle; zero from behind.
+pub fn pixels_per_m2(plane: &FacePlane, camera: &Camera) -> f64 {
+    if plane.height(&camera.center) <= 0.0 {
+        return 0.0;
+    }
+    let axes = Matrix3x2::from_columns(&[plane.right, plane.up]);
+    let jacobian: Option<Matrix2<f64>> = camera.project_jacobian(&plane.middle()).map(|j| j * axes);
+    jacobian.map_or(0.0, |j| j.determinant().abs())
+}
+
+/// Paints the patch of face number `face` from all views.
+pub fn paint(
+    scene: &Scene,
+    faces: &[FacePlane],
+    face: usize,
+    patch: &Patch,
+    footprints: &[Footprints],
+) -> Painted {
+    let plane = &faces[face];
+    let inside = patch.inside(&plane.flat);
+    let total = inside.iter().filter(|&&i| i).count().max(1) as f64;
+    let mut seen: Vec<(ViewOfFace, Vec<bool>)> = Vec::new();
+    for view in scene.view_ids() {
+        let (camera, footprints) = (scene.camera(view), &footprints[view.index()]);
+        if !footprints.shows(face, camera) {
+            continue;
+        }
+        let hidden = shadow_on(face, patch, faces, footprints, &camera.center);
+        let mask = visible_texels(&inside, &hidden, plane, patch, camera);
+        let visible = mask.iter().filter(|&&v| v).count() as f64 / total;
+        if visible > 0.0 {
+            let pixels_per_m2 = pixels_per_m2(plane, camera);
+            seen.push((
+                ViewOfFace {
+                    view,
+                    visible,
+                    pixels_per_m2,
+                },
+                mask,
+            ));
+        }
+    }
+    // A stable sort: equal views stay in order.
+    seen.sort_by(|(a, _), (b, _)| {
+        (b.visible * b.pixels_per_m2).total_cmp(&(a.visible * a.pixels_per_m2))
+    });
+    let (colours, known) = compose(scene, plane, patch, &seen);
+    let share = |mask: &[bool]| mask.iter().filter(|&&k| k).count() as f64 / total;
+    let first = seen.first().map_or(0.0, |(v, _)| v.visible);
+    let (filled, unseen) = (share(&known) - first, 1.0 - share(&known));
+    let views = seen.into_iter().map(|(v, _)| v).collect();
+    Painted {
+        colours,
+        known,
+        views,
+        filled,
+        unseen,
+    }
+}
+
+impl Painted {
+    /// Extends the colours smoothly over the texels that no view shows and those beside the face.
+    pub fn fill(&mut self, patch: &Patch) {
+        fill_gaps(&mut self.colours, &self.known, patch.width, patch.height);
+    }
+}
+
+/// The texels of a face that lie in the image and are not hidden.
+fn visible_texels(
+    inside: &[bool],
+    hidden: &[bool],
+    plane: &FacePlane,
+    patch: &Patch,
+    camera: &Camera,
+) -> Vec<bool> {
+    let mut visible = vec![false; inside.len()];
+    for (i, v) in visible.iter_mut().enumerate() {
+        if inside[i] && !hidden[i] {
+            let (x, y) = (
+                (i % patch.width) as f64 + 0.5,
+                (i / patch.width) as f64 + 0.5,
+            );
+            let image = camera.project(&plane.lift(&patch.point_of(x, y)));
+            // Bilinear sampling needs half a pixel around.
+            *v = image.is_some_and(|p| camera.contains(&p, 0.5));
+        }
+    }
+    visible
+}
+
+/// Takes every texel from the first view that shows it, balanced to the first view of all.
+fn compose(
+    scene: &Scene,
+    plane: &FacePlane,
+    patch: &Patch,
+    seen: &[(ViewOfFace, Vec<bool>)],
+) -> (Vec<[f32; 3]>, Vec<bool>) {
+    let count = patch.width * patch.height;
+    let (mut colours, mut known) = (vec![[0.0f32; 3]; count], vec![false; count]);
+    for (rank, (of_face, mask)) in seen.iter().enumerate() {
+        if !(0..count).any(|i| mask[i] && !known[i]) {
+            continue;
+        }
+        let view = scene.view(of_face.view);
+        let texel_px = patch.texel_m * of_face.pixels_per_m2.sqrt();
+        let samples = (texel_px.round() as usize).clamp(1, MAX_SUPERSAMPLING);
+        let shown: Vec<Option<[f32; 3]>> = (0..count)
+            .map(|i| mask[i].then(|| texel(&view.rgb, &view.camera, plane, patch, i, samples)))
+            .collect();
+        let gain = if rank == 0 {
+            [1.0; 3]
+        } else {
+            gain_to(&colours, &known, &shown)
+        };
+        for i in 0..count {
+            if let (Some(colour), false) = (shown[i], known[i]) {
+                colours[i] = [0, 1, 2].map(|c| (colour[c] * gain[c]).min(255.0));
+                known[i] = true;
+            }
+        }
+    }
+    (colours, known)
+}
+
+/// The factor per channel that brings a view's colours to those already painted.
+fn gain_to(colours: &[[f32; 3]], known: &[bool], shown: &[Option<[f32; 3]>]) -> [f32; 3] {
+    let (mut painted, mut offered) = ([0.0f64; 3], [0.0f64; 3]);
+    for i in (0..colours.len()).filter(|&i| known[i]) {
+        if let Some(colour) = shown[i] {
+            for c in 0..3 {
+                painted[c] += f64::from(colours[i][c]);
+                offered[c] += f64::from(colour[c]);
+            }
+        }
+    }
+    [0, 1, 2].map(|c| {
+        let gain = if offered[c] > 0.0 {
+            (painted[c] / offered[c]) as f32
+        } else {
+            1.0
+        };
+        gain.clamp(1.0 / MAX_GAIN, MAX_GAIN)
+    })
+}
+
+/// Mean colour of a texel over `samples * samples` positions in the image.
+fn texel(
+    rgb: &image::RgbImage,
+    camera: &Camera,
+    plane: &FacePlane,
+    patch: &Patch,
+    index: usize,
+    samples: usize,
+) -> [f32; 3] {
+    let (column, row) = ((index % patch.width) as f64, (index / patch.width) as f64);
+    let step = 1.0 / samples as f64;
+    let mut sum = [0.0f32; 3];
+    let mut count = 0u8;
+    for k in 0..samples * samples {
+        let x = column + ((k % samples) as f64 + 0.5) * step;
+        let y = row + ((k / samples) as f64 + 0.5) * step;
+        let image = camera.project(&plane.lift(&patch.point_of(x, y)));
+        if let Some(colour) = image.and_then(|p| bilinear(rgb, &p)) {
+            (0..3).for_each(|c| sum[c] += colour[c]);
+            count += 1;
+        }
+    }
+    sum.map(|s| s / f32::from(count.max(1)))
+}
+
+/// Bilinear colour at an image position; `None` outside the centres of the border pixels.
+fn bilinear(rgb: &image::RgbImage, p: &Point2<f64>) -> Option<[f32; 3]> {
+    let (x, y) = (p.x - 0.5, p.y - 0.5);
+    let (w, h) = (rgb.width() as usize, rgb.height() as usize);
+    if !(x >= 0.0 && y >= 0.0 && x <= (w - 1) as f64 && y <= (h - 1) as f64) {
+        return None;
+    }
+    let (column, row) = (
+        (x as usize).min(w.max(2) - 2),
+        (y as usize).min(h.max(2) - 2),
+    );
+    let (fx, fy) = ((x - column as f64) as f32, (y - row as f64) as f32);
+    let (right, below) = ((column + 1).min(w - 1), (row + 1).min(h - 1));
+    let raw = rgb.as_raw();
+    let at = |x: usize, y: usize, c: usize| f32::from(raw[(y * w + x) * 3 + c]);
+    Some([0, 1, 2].map(|c| {
+        let top = at(column, row, c) * (1.0 - fx) + at(right, row, c) * fx;
+        let bottom = at(column, below, c) * (1.0 - fx) + at(right, below, c) * fx;
+        top * (1.0 - fy) + bottom * fy
+    }))
+}

@@ -1,0 +1,133 @@
+//! Filling on small rasters: polygons into masks, gaps with smooth colours.
+
+use nalgebra::Point2;
+
+/// Sets the pixels of a mask (`width * height`) whose centres lie inside the rings (even-odd).
+/// Positions are in pixels, y down, pixel (0, 0) has its centre at (0.5, 0.5).
+pub fn mark_inside(rings: &[Vec<Point2<f64>>], width: usize, height: usize, mask: &mut [bool]) {
+    let ys = rings.iter().flatten().map(|p| p.y);
+    let (low, high) = ys.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+    let first = (low - 0.5).ceil().max(0.0) as usize;
+    let end = ((high + 0.5).max(0.0) as usize).min(height);
+    let mut crossings = Vec::new();
+    for row in first..end {
+        let y = row as f64 + 0.5;
+        crossings.clear();
+        for ring in rings {
+            for (i, p) in ring.iter().enumerate() {
+                let q = &ring[(i + 1) % ring.len()];
+                if (p.y > y) != (q.y > y) {
+                    crossings.push(p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y));
+                }
+            }
+        }
+        crossings.sort_by(f64::total_cmp);
+        for span in crossings.chunks_exact(2) {
+            let from = (span[0] - 0.5).ceil().max(0.0) as usize;
+            let to = ((span[1] - 0.5).ceil().max(0.0) as usize).min(width);
+            if from < to {
+                mask[row * width + from..row * width + to].fill(true);
+            }
+        }
+    }
+}
+
+/// Gives the pixels that are not `known` smooth colours from the known ones around them (push-pull
+/// pyramid, Gortler et al. 1996). Without any known pixel nothing changes.
+pub fn fill_gaps(colours: &mut [[f32; 3]], known: &[bool], width: usize, height: usize) {
+    if known.iter().all(|&k| k) || !known.contains(&true) {
+        return;
+    }
+    let (w, h) = (width.div_ceil(2), height.div_ceil(2));
+    let mut half = vec![[0.0f32; 3]; w * h];
+    let mut half_known = vec![false; w * h];
+    for y in 0..h {
+        for x in 0..w {
+            let mut sum = [0.0f32; 3];
+            let mut count = 0u8;
+            for j in 2 * y..(2 * y + 2).min(height) {
+                for i in (2 * x..(2 * x + 2).min(width)).filter(|i| known[j * width + i]) {
+                    (0..3).for_each(|c| sum[c] += colours[j * width + i][c]);
+                    count += 1;
+                }
+            }
+            if count > 0 {
+                half[y * w + x] = sum.map(|s| s / f32::from(count));
+                half_known[y * w + x] = true;
+            }
+        }
+    }
+    fill_gaps(&mut half, &half_known, w, h);
+    for y in 0..height {
+        for x in (0..width).filter(|x| !known[y * width + x]) {
+            colours[y * width + x] = doubled(&half, w, h, x, y);
+        }
+    }
+}
+
+/// The colour of a pixel in a raster of half the size, bilinear.
+fn doubled(half: &[[f32; 3]], w: usize, h: usize, x: usize, y: usize) -> [f32; 3] {
+    // The centre of pixel x lies at (x + 0.5) / 2: a quarter before or behind the centre of pixel x / 2.
+    let near = |i: usize, n: usize| {
+        let other = if i % 2 == 0 {
+            (i / 2).saturating_sub(1)
+        } else {
+            (i / 2 + 1).min(n - 1)
+        };
+        (i / 2, other)
+    };
+    let ((x0, x1), (y0, y1)) = (near(x, w), near(y, h));
+    let mut colour = [0.0; 3];
+    for (c, value) in colour.iter_mut().enumerate() {
+        let row = |y: usize| 0.75 * half[y * w + x0][c] + 0.25 * half[y * w + x1][c];
+        *value = 0.75 * row(y0) + 0.25 * row(y1);
+    }
+    colour
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_are_inside_by_their_centres() {
+        let ring = vec![
+            Point2::new(1.4, 0.6),
+            Point2::new(4.6, 0.6),
+            Point2::new(4.6, 3.6),
+            Point2::new(1.4, 3.6),
+        ];
+        let hole = vec![
+            Point2::new(2.1, 2.1),
+            Point2::new(2.9, 2.1),
+            Point2::new(2.5, 2.9),
+        ];
+        let mut mask = vec![false; 6 * 4];
+        mark_inside(&[ring, hole], 6, 4, &mut mask);
+        let rows: Vec<String> = mask
+            .chunks(6)
+            .map(|row| row.iter().map(|&m| if m { '#' } else { '.' }).collect())
+            .collect();
+        assert_eq!(rows, ["......", ".####.", ".#.##.", ".####."]);
+    }
+
+    #[test]
+    fn gaps_take_the_colours_around_them() {
+        let (w, h) = (13, 7);
+        let mut colours = vec![[0.0; 3]; w * h];
+        let mut known = vec![false; w * h];
+        for y in 0..h {
+            for x in [0, 1, 11, 12] {
+                known[y * w + x] = true;
+                colours[y * w + x] = [if x < 6 { 10.0 } else { 90.0 }, 50.0, 0.0];
+            }
+        }
+        fill_gaps(&mut colours, &known, w, h);
+        assert!(
+            colours
+                .iter()
+                .all(|c| (10.0..=90.0).contains(&c[0]) && c[1] == 50.0)
+        );
+        assert!(colours[3 * w + 3][0] < 40.0 && colours[3 * w + 9][0] > 60.0);
+    }
+}

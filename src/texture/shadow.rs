@@ -1,0 +1,107 @@
+//! What hides a face from a view: the shadows that other faces cast onto its plane from the projection centre.
+//!
+//! Exact in the plane of the face, unlike a depth buffer, which needs a tolerance where faces are seen at a
+//! grazing angle (a wall 10 degrees off the ray falls half a metre within a pixel of 8.5 cm).
+
+use nalgebra::{Point2, Point3};
+
+use super::patch::{FacePlane, Patch};
+use super::raster::mark_inside;
+use crate::camera::Camera;
+
+/// Parts of a face closer to the plane than this cast no shadow, metres: neighbours start at a common edge
+/// and are planar within a few millimetres.
+const CLEARANCE_M: f64 = 0.02;
+
+/// Where faces lie in a view.
+#[derive(Clone, Debug)]
+pub struct Footprints {
+    /// Per face the box around its image (x0, y0, x1, y1), pixels; `None` where it looks away from the
+    /// camera or is not in front of it.
+    boxes: Vec<Option<[f64; 4]>>,
+}
+
+impl Footprints {
+    /// The images of all faces that look towards the camera.
+    pub fn new(faces: &[FacePlane], camera: &Camera) -> Self {
+        let footprint = |face: &FacePlane| {
+            if face.height(&camera.center) <= CLEARANCE_M {
+                return None;
+            }
+            let empty = [f64::MAX, f64::MAX, f64::MIN, f64::MIN];
+            face.rings[0].iter().try_fold(empty, |b, corner| {
+                let p = camera.project(corner)?;
+                Some([b[0].min(p.x), b[1].min(p.y), b[2].max(p.x), b[3].max(p.y)])
+            })
+        };
+        Self {
+            boxes: faces.iter().map(footprint).collect(),
+        }
+    }
+
+    /// Could the image of `face` show in an image of this size?
+    pub fn shows(&self, face: usize, camera: &Camera) -> bool {
+        let frame = [0.0, 0.0, f64::from(camera.width), f64::from(camera.height)];
+        self.boxes[face].is_some_and(|b| meet(&b, &frame))
+    }
+
+    /// The faces, other than `face`, whose images meet its image.
+    fn around(&self, face: usize) -> impl Iterator<Item = usize> + '_ {
+        let own = self.boxes[face];
+        (0..self.boxes.len()).filter(move |&other| {
+            other != face && matches!((own, self.boxes[other]), (Some(a), Some(b)) if meet(&a, &b))
+        })
+    }
+}
+
+/// The texels of a face's patch that other faces hide from a projection centre.
+pub fn shadow_on(
+    face: usize,
+    patch: &Patch,
+    faces: &[FacePlane],
+    footprints: &Footprints,
+    center: &Point3<f64>,
+) -> Vec<bool> {
+    let mut mask = vec![false; patch.width * patch.height];
+    let plane = &faces[face];
+    // Towards the centre the projection goes to infinity: stop just below its height.
+    let ceiling = 0.999 * plane.height(center);
+    for other in footprints.around(face) {
+        let shadow: Vec<Vec<Point2<f64>>> = faces[other]
+            .rings
+            .iter()
+            .map(|ring| {
+                let above = clip(ring, |p| plane.height(p) - CLEARANCE_M);
+                let between = clip(&above, |p| ceiling - plane.height(p));
+                between
+                    .iter()
+                    .map(|p| patch.texel_of(&plane.cast(center, p)))
+                    .collect()
+            })
+            .collect();
+        mark_inside(&shadow, patch.width, patch.height, &mut mask);
+    }
+    mask
+}
+
+/// The part of a ring on the positive side of a linear function (Sutherland and Hodgman). Edges that it adds lie
+/// on the border and cancel under the even-odd rule.
+fn clip(ring: &[Point3<f64>], side: impl Fn(&Point3<f64>) -> f64) -> Vec<Point3<f64>> {
+    let mut out = Vec::with_capacity(ring.len() + 2);
+    for (i, p) in ring.iter().enumerate() {
+        let q = &ring[(i + 1) % ring.len()];
+        let (sp, sq) = (side(p), side(q));
+        if sp >= 0.0 {
+            out.push(*p);
+        }
+        if (sp >= 0.0) != (sq >= 0.0) {
+            out.push(p + (q - p) * (sp / (sp - sq)));
+        }
+    }
+    out
+}
+
+/// Do two boxes overlap?
+fn meet(a: &[f64; 4], b: &[f64; 4]) -> bool {
+    a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
+}

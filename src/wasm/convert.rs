@@ -1,0 +1,57 @@
+//! Between Rust's values and JavaScript's.
+
+use js_sys::{Float32Array, Float64Array};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use wasm_bindgen::{JsError, JsValue};
+
+use crate::Error;
+use crate::geometry::Segment2;
+use crate::lines3d::Line3d;
+
+/// A JavaScript `Error` with the refusal's message, called "InputError": the page shows it as advice, and
+/// anything else as a fault of the program.
+pub(super) fn input_error(error: &Error) -> JsValue {
+    named_error("InputError", &error.to_string())
+}
+
+/// A JavaScript `Error` of this name.
+pub(super) fn named_error(name: &str, message: &str) -> JsValue {
+    let error = js_sys::Error::new(message);
+    error.set_name(name);
+    error.into()
+}
+
+/// A plain JavaScript object, as `JSON.parse` would give it.
+pub(super) fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
+    value
+        .serialize(&serde_wasm_bindgen::Serializer::json_compatible())
+        .map_err(|e| JsError::from(e).into())
+}
+
+/// A Rust value from a plain JavaScript object; `what` names it in the message.
+pub(super) fn from_js<T: DeserializeOwned>(value: JsValue, what: &str) -> Result<T, JsValue> {
+    serde_wasm_bindgen::from_value(value)
+        .map_err(|e| named_error("InputError", &format!("{what}: {e}")))
+}
+
+/// (x0, y0, x1, y1) per segment, pixels.
+pub(super) fn segment_array<'a>(segments: impl Iterator<Item = &'a Segment2>) -> Float32Array {
+    let numbers: Vec<f32> = segments.flat_map(end_points_px).collect();
+    Float32Array::from(&numbers[..])
+}
+
+/// The end points in single precision.
+pub(super) fn end_points_px(s: &Segment2) -> [f32; 4] {
+    [s.p0.x, s.p0.y, s.p1.x, s.p1.y].map(|v| v as f32)
+}
+
+/// (x, y, z) of both end points per line, metres, local frame.
+pub(super) fn line_array(lines: &[Line3d]) -> Float64Array {
+    let numbers: Vec<f64> = lines
+        .iter()
+        .flat_map(|l| [l.segment.p0, l.segment.p1])
+        .flat_map(|p| [p.x, p.y, p.z])
+        .collect();
+    Float64Array::from(&numbers[..])
+}

@@ -1,0 +1,272 @@
+//! A project in the page: files in, stages one by one, results out.
+
+use js_sys::{Float32Array, Float64Array, Function};
+use serde::{Deserialize, Serialize};
+use wasm_bindgen::prelude::*;
+
+use super::convert::{
+    end_points_px, from_js, input_error, line_array, named_error, segment_array, to_js,
+};
+use crate::linematch::SupportKind;
+use crate::params::Params;
+use crate::pipeline::{Run, Stage};
+use crate::scene_loader::{InputFile, LoadOptions, inspect_files, load_scene};
+
+/// Files, parameters and the reconstruction made of them.
+#[wasm_bindgen]
+#[derive(Default)]
+pub struct Session {
+    files: Vec<InputFile>,
+    params: Params,
+    run: Option<Run>,
+    /// Written on first request after the last stage.
+    outputs: Option<Vec<(String, Vec<u8>)>>,
+}
+
+/// What `load` may be told; see [`LoadOptions`].
+#[derive(Default, Deserialize)]
+#[serde(default, rename_all = "camelCase", deny_unknown_fields)]
+struct JsLoadOptions {
+    orientation: Option<String>,
+    views: Option<Vec<String>>,
+    roi: Option<[f64; 4]>,
+    ground_z: Option<f64>,
+}
+
+/// What `load` returns.
+#[derive(Serialize)]
+struct SceneInfo {
+    views: Vec<ViewInfo>,
+    origin: [f64; 3],
+    warnings: Vec<String>,
+}
+
+/// A view of the scene; its centre in metres, local frame.
+#[derive(Serialize)]
+struct ViewInfo {
+    name: String,
+    width: u32,
+    height: u32,
+    center: [f64; 3],
+}
+
+/// The pixels of a view, RGBA row by row: what `ImageData` takes.
+#[wasm_bindgen(getter_with_clone)]
+pub struct ViewImage {
+    /// Width, pixels.
+    pub width: u32,
+    /// Height, pixels.
+    pub height: u32,
+    /// `4 * width * height` bytes.
+    pub rgba: js_sys::Uint8ClampedArray,
+}
+
+#[wasm_bindgen]
+impl Session {
+    /// An empty session with the default parameters.
+    #[wasm_bindgen(constructor)]
+    pub fn new() -> Self {
+        console_error_panic_hook::set_once();
+        Self::default()
+    }
+
+    /// The names of the stages, in order.
+    pub fn stages() -> Vec<String> {
+        Stage::ALL.iter().map(|s| s.name().to_owned()).collect()
+    }
+
+    /// The parameters with their defaults, as a plain object.
+    #[wasm_bindgen(js_name = defaultParams)]
+    pub fn default_params() -> Result<JsValue, JsValue> {
+        to_js(&Params::default())
+    }
+
+    /// Adds an image or orientation file; a file of the same path is replaced.
+    #[wasm_bindgen(js_name = addFile)]
+    pub fn add_file(&mut self, path: String, bytes: Vec<u8>) {
+        self.files.retain(|file| file.path != path);
+        self.files.push(InputFile { path, bytes });
+        self.files.sort_by(|a, b| a.path.cmp(&b.path));
+    }
+
+    /// Forgets all files and all results.
+    #[wasm_bindgen(js_name = clearFiles)]
+    pub fn clear_files(&mut self) {
+        self.files.clear();
+        self.run = None;
+        self.outputs = None;
+    }
+
+    /// What the files are: their kinds, sizes, orientation status, and warnings.
+    pub fn inspect(&self) -> Result<JsValue, JsValue> {
+        to_js(&inspect_files(&self.files))
+    }
+
+    /// Makes a scene of the files: `{orientation?, views?, roi?, groundZ?}` in, `{views, origin,
+    /// warnings}` out.
+    pub fn load(&mut self, options: JsValue) -> Result<JsValue, JsValue> {
+        let options: Option<JsLoadOptions> = from_js(options, "options of load")?;
+        let options = options.unwrap_or_default();
+        let options = LoadOptions {
+            orientation: options.orientation,
+            views: options.views,
+            roi: options.roi,
+            ground_z: options.ground_z,
+        };
+        self.run = None;
+        self.outputs = None;
+        let scene = load_scene(&self.files, &options).map_err(|e| input_error(&e))?;
+        let views = scene.views.iter().map(|view| ViewInfo {
+            name: view.name.clone(),
+            width: view.camera.width,
+            height: view.camera.height,
+            center: view.camera.center.coords.into(),
+        });
+        let info = to_js(&SceneInfo {
+            views: views.collect(),
+            origin: scene.origin.into(),
+            warnings: scene.warnings.clone(),
+        });
+        self.run = Some(Run::new(scene, self.params.clone()));
+        info
+    }
+
+    /// Sets the parameters (what is missing takes its default) and drops the results that they change.
+    #[wasm_bindgen(js_name = setParams)]
+    pub fn set_params(&mut self, params: JsValue) -> Result<(), JsValue> {
+        self.params = from_js(params, "parameters")?;
+        self.outputs = None;
+        if let Some(run) = &mut self.run {
+            run.set_params(self.params.clone());
+        }
+        Ok(())
+    }
+
+    /// Runs a stage (after those before it that are missing); `{stage, counts, warnings}`.
+    #[wasm_bindgen(js_name = runStage)]
+    pub fn run_stage(&mut self, name: &str, on_progress: &Function) -> Result<JsValue, JsValue> {
+        let stage = Stage::from_name(name)
+            .ok_or_else(|| named_error("RangeError", &format!("no stage is called '{name}'")))?;
+        self.outputs = None;
+        let run = self.run.as_mut().ok_or_else(not_loaded)?;
+        let mut heard = Ok(());
+        let summary = run.step(stage, &mut |fraction| {
+            if let Err(e) = on_progress.call1(&JsValue::NULL, &fraction.into()) {
+                heard = Err(e);
+            }
+        });
+        heard?;
+        to_js(&summary)
+    }
+
+    /// The segments of a view: x0, y0, x1, y1 each, pixels.
+    pub fn segments(&self, view: usize) -> Result<Float32Array, JsValue> {
+        let found = self.loaded()?.results().segments.as_ref();
+        let segments = found.and_then(|s| s.value.get(view)).map_or(&[][..], |s| s);
+        Ok(segment_array(segments.iter().map(|s| &s.segment)))
+    }
+
+    /// The supports of the 3D lines (before that stage, of the matches) in a view: x0, y0, x1, y1 in pixels,
+    /// kind (0 matched, 1 merged, 2 grown) and index of the line each.
+    #[wasm_bindgen(js_name = matchedSegments)]
+    pub fn matched_segments(&self, view: usize) -> Result<Float32Array, JsValue> {
+        let results = self.loaded()?.results();
+        let supports: Vec<_> = match (&results.lines, &results.matches) {
+            (Some(lines), _) => lines.value.iter().map(|l| &l.supports).collect(),
+            (None, Some(matches)) => matches.value.iter().map(|m| &m.supports).collect(),
+            (None, None) => Vec::new(),
+        };
+        let mut numbers: Vec<f32> = Vec::new();
+        for (line, supports) in supports.into_iter().enumerate() {
+            for support in supports.iter().filter(|s| s.view.index() == view) {
+                numbers.extend(end_points_px(&support.stretch));
+                numbers.extend([kind_number(support.kind), line as f32]);
+            }
+        }
+        Ok(Float32Array::from(&numbers[..]))
+    }
+
+    /// The 3D lines: both end points each, metres, local frame.
+    pub fn lines(&self) -> Result<Float64Array, JsValue> {
+        let lines = self.loaded()?.results().lines.as_ref();
+        Ok(line_array(lines.map_or(&[][..], |l| &l.value)))
+    }
+
+    /// The accepted half-planes, as an array of objects.
+    #[wasm_bindgen(js_name = halfPlanes)]
+    pub fn half_planes(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().half_planes.as_ref();
+        to_js(&found.map_or(&[][..], |h| &h.value))
+    }
+
+    /// The roof facets, as an array of objects.
+    pub fn facets(&self) -> Result<JsValue, JsValue> {
+        let roof = self.loaded()?.results().roof.as_ref();
+        to_js(&roof.map_or(&[][..], |r| &r.value.facets))
+    }
+
+    /// The pixels of a view, distortion removed.
+    pub fn image(&self, view: usize) -> Result<ViewImage, JsValue> {
+        let run = self.loaded()?;
+        let view = run
+            .scene()
+            .views
+            .get(view)
+            .ok_or_else(|| named_error("RangeError", &format!("there is no view {view}")))?;
+        let rgba: Vec<u8> = view
+            .rgb
+            .pixels()
+            .flat_map(|p| [p[0], p[1], p[2], 255])
+            .collect();
+        Ok(ViewImage {
+            width: view.rgb.width(),
+            height: view.rgb.height(),
+            rgba: js_sys::Uint8ClampedArray::from(&rgba[..]),
+        })
+    }
+
+    /// The names of the files that the finished run offers; none before its last stage.
+    #[wasm_bindgen(js_name = exportNames)]
+    pub fn export_names(&mut self) -> Result<Vec<String>, JsValue> {
+        Ok(self
+            .outputs()?
+            .iter()
+            .map(|(name, _)| name.clone())
+            .collect())
+    }
+
+    /// The bytes of one of these files.
+    #[wasm_bindgen(js_name = exportFile)]
+    pub fn export_file(&mut self, name: &str) -> Result<Vec<u8>, JsValue> {
+        let outputs = self.outputs()?;
+        let found = outputs.iter().find(|(n, _)| n == name);
+        found.map(|(_, bytes)| bytes.clone()).ok_or_else(|| {
+            let message = format!("there is no '{name}': run all stages first");
+            named_error("RangeError", &message)
+        })
+    }
+
+    fn loaded(&self) -> Result<&Run, JsValue> {
+        self.run.as_ref().ok_or_else(not_loaded)
+    }
+
+    fn outputs(&mut self) -> Result<&[(String, Vec<u8>)], JsValue> {
+        let run = self.run.as_ref().ok_or_else(not_loaded)?;
+        Ok(self.outputs.get_or_insert_with(|| run.files(&[])))
+    }
+}
+
+fn not_loaded() -> JsValue {
+    named_error(
+        "InputError",
+        "no scene is loaded; add files and load them first",
+    )
+}
+
+fn kind_number(kind: SupportKind) -> f32 {
+    match kind {
+        SupportKind::Matched => 0.0,
+        SupportKind::Merged => 1.0,
+        SupportKind::Grown => 2.0,
+    }
+}

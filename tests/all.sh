@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# Runs every check, goes on after a failure, and ends with the true totals.
+#   tests/all.sh         all: what `make test` runs once everything is set up
+#   tests/all.sh lint    the checks that run no test
+# The output of each step also stands in target/test-logs/. A lint or build step counts as one check.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+logs=target/test-logs
+mkdir -p "$logs"
+passed=0 failed=0 broken=()
+
+# The sum of the numbers that a pattern (with \1) finds in a log.
+sum() { sed -E $'s/\e\\[[0-9;]*m//g' "$2" | sed -nE "s/$1/\1/p" | awk '{ s += $1 } END { print s + 0 }'; }
+
+# step NAME KIND COMMAND...: KIND is cargo, node or playwright (whose totals are read), or check.
+step() {
+    local name=$1 kind=$2 log="$logs/$1.log" good=0 bad=0 status=0
+    shift 2
+    printf '\n== %s: %s\n' "$name" "$*"
+    "$@" 2>&1 | tee "$log" || status=1
+    case $kind in
+        cargo)
+            good=$(sum '^test result: [^0-9]*([0-9]+) passed.*' "$log")
+            bad=$(sum '^test result: .* ([0-9]+) failed.*' "$log") ;;
+        node) # node:test and vitest
+            good=$(($(sum '^[^ ]+ pass ([0-9]+).*' "$log") + $(sum '^ *Tests .*[^0-9]([0-9]+) passed.*' "$log")))
+            bad=$(($(sum '^[^ ]+ fail ([0-9]+).*' "$log") + $(sum '^ *Tests .*[^0-9]([0-9]+) failed.*' "$log"))) ;;
+        playwright)
+            good=$(sum '^ +([0-9]+) passed.*' "$log")
+            bad=$(sum '^ +([0-9]+) failed.*' "$log") ;;
+        check) good=$((1 - status)) ;;
+    esac
+    # A step that fails without a failing test (it did not compile, say), or that ran no test at all,
+    # is a failure too.
+    if ((status != 0 && bad == 0)) || ((good + bad == 0)); then bad=1; fi
+    ((bad == 0)) || broken+=("$name")
+    passed=$((passed + good)) failed=$((failed + bad))
+}
+
+www() { (cd www && npm run --silent "$@"); }
+
+step format check cargo fmt --check
+step clippy-native check cargo clippy --all-targets --quiet -- -D warnings
+step clippy-wasm32 check cargo clippy --all-targets --quiet --target wasm32-unknown-unknown -- -D warnings
+step typecheck check www typecheck
+step biome check www lint
+if [ "${1:-all}" = all ]; then
+    step native cargo cargo test --quiet
+    step doc check env RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --quiet
+    step wasm cargo wasm-pack test --node --release --mode no-install -- --test wasm
+    step identical check node tests/identical.mjs target/debug/ridgeline
+    step typescript node www test:unit
+    step page playwright www test:e2e
+fi
+
+printf '\n'
+((failed == 0)) || printf 'Failed in: %s (logs in %s)\n' "${broken[*]}" "$logs"
+printf '%d passed, %d failed\n' "$passed" "$failed"
+((failed == 0))

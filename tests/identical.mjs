@@ -1,0 +1,76 @@
+// Runs a scene through the wasm Session in Node and through the native command line, and compares every
+// file byte for byte (report.json without its part `seconds`).
+//
+//   node tests/identical.mjs BINARY [SCENE]     the scene is the demo's by default
+//
+// Ends with exit code 1 and the names of the files that differ.
+
+import { spawnSync } from "node:child_process";
+import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join, relative, sep } from "node:path";
+import { fileURLToPath, pathToFileURL } from "node:url";
+
+const root = join(dirname(fileURLToPath(import.meta.url)), "..");
+const [binary, scene = join(root, "www/public/demo")] = process.argv.slice(2);
+if (!binary) {
+    console.error("usage: node tests/identical.mjs BINARY [SCENE]");
+    process.exit(2);
+}
+
+const native = runNative();
+const wasm = await runWasm();
+const names = [...new Set([...native.keys(), ...wasm.keys()])].sort();
+if (!names.includes("model.glb")) throw new Error("no model was written");
+const differing = names.filter((name) => !same(name));
+for (const name of names) {
+    const verdict = differing.includes(name) ? "DIFFERS" : "identical";
+    console.log(`${verdict.padEnd(10)} ${name} (${native.get(name)?.length ?? "missing"} bytes)`);
+}
+process.exit(differing.length === 0 ? 0 : 1);
+
+function runNative() {
+    const out = mkdtempSync(join(tmpdir(), "ridgeline-"));
+    try {
+        const args = ["reconstruct", scene, "--out", out];
+        const { status, error } = spawnSync(binary, args, { stdio: ["ignore", "ignore", "inherit"] });
+        if (status !== 0) throw error ?? new Error(`${binary} ended with exit code ${status}`);
+        return new Map(readdirSync(out).map((name) => [name, readFileSync(join(out, name))]));
+    } finally {
+        rmSync(out, { recursive: true });
+    }
+}
+
+async function runWasm() {
+    const pkg = join(root, "www/src/pkg");
+    const { initSync, Session } = await import(pathToFileURL(join(pkg, "ridgeline.js")).href);
+    initSync({ module: readFileSync(join(pkg, "ridgeline_bg.wasm")) });
+    const session = new Session();
+    for (const path of filesBelow(scene)) {
+        session.addFile(relative(scene, path).split(sep).join("/"), readFileSync(path));
+    }
+    session.load({});
+    for (const stage of Session.stages()) {
+        const start = performance.now();
+        const { counts } = session.runStage(stage, () => {});
+        const seconds = ((performance.now() - start) / 1000).toFixed(2);
+        console.log(`wasm ${stage.padEnd(10)} ${seconds.padStart(7)} s  ${JSON.stringify(counts)}`);
+    }
+    return new Map(session.exportNames().map((name) => [name, Buffer.from(session.exportFile(name))]));
+}
+
+// The files that the command line would read: it leaves out other kinds (src/cli/files.rs).
+function filesBelow(folder) {
+    const wanted = /\.(jpe?g|png|tiff?|txt|p|json|xml|out|nvm|csv|ori|prj|camera|bin|xyz)$/i;
+    return readdirSync(folder, { recursive: true, withFileTypes: true })
+        .filter((entry) => entry.isFile() && wanted.test(entry.name))
+        .map((entry) => join(entry.parentPath ?? entry.path, entry.name));
+}
+
+function same(name) {
+    const [a, b] = [native.get(name), wasm.get(name)];
+    if (a === undefined || b === undefined) return false;
+    if (name !== "report.json") return a.equals(b);
+    const content = (bytes) => ({ ...JSON.parse(bytes.toString()), seconds: undefined });
+    return JSON.stringify(content(a)) === JSON.stringify(content(b));
+}

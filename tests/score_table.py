@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""Reconstruct every scene of a folder, score it against its truth, and print one table.
+
+    python3 tests/score_table.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
+
+FOLDER holds one folder per scene; beside it lies `score/` with score.py, score2d.py (scenes with truth/)
+and check_real.py (scenes with check/), which need numpy and shapely. The tables between the markers of
+docs/results.md are rewritten when all scenes were run. Without FOLDER there is nothing to score, and
+the program says so and ends well.
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+RESULTS = ROOT / 'docs' / 'results.md'
+OUT = ROOT / 'target' / 'score'
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('--binary', required=True, type=pathlib.Path)
+    parser.add_argument('--scenes', required=True, type=pathlib.Path)
+    parser.add_argument('--only', help='names of scenes, separated by commas; docs/results.md is left alone')
+    args = parser.parse_args()
+    scorer = args.scenes.parent / 'score'
+    if not args.scenes.is_dir() or not scorer.is_dir():
+        print(f'score: skipped, there is no {args.scenes} with a {scorer} beside it')
+        return 0
+    names = sorted(p.name for p in args.scenes.iterdir() if (p / 'images').is_dir())
+    if args.only:
+        names = [name for name in names if name in args.only.split(',')]
+    runs = [run(args.binary.resolve(), args.scenes / name) for name in names]
+    tables = {
+        'rendered': rendered_table([(r, score(scorer, r)) for r in runs if (r['scene'] / 'truth').is_dir()]),
+        'real': real_table([(r, check(scorer, r)) for r in runs if (r['scene'] / 'check').is_dir()]),
+    }
+    for table in tables.values():
+        print(table, end='\n\n')
+    if not args.only:
+        rewrite(tables)
+    return 1 if any(r['failed'] for r in runs) else 0
+
+
+def run(binary, scene):
+    """Runs one scene; the outputs stand in target/score/<scene>."""
+    out = OUT / scene.name
+    print(f'{scene.name} ...', file=sys.stderr, flush=True)
+    start = time.monotonic()
+    done = subprocess.run([binary, 'reconstruct', scene, '--out', out], capture_output=True, text=True)
+    if done.returncode:
+        print(f'{scene.name}: exit code {done.returncode}: {done.stderr.strip()}', file=sys.stderr)
+    return {'scene': scene, 'out': out, 'seconds': time.monotonic() - start, 'failed': done.returncode != 0}
+
+
+def tool(scorer, name, run, *args):
+    """The JSON that one of the scoring programs writes; None when it failed."""
+    result = run['out'] / (name + '.json')
+    done = subprocess.run([sys.executable, scorer / (name + '.py'), run['scene'], *args, '--json', result],
+                          capture_output=True, text=True)
+    if done.returncode:
+        last = (done.stderr.strip().splitlines() or ['no message'])[-1]
+        print(f'{name}.py on {run["scene"].name}: {last}', file=sys.stderr)
+        return None
+    return json.loads(result.read_text())
+
+
+def score(scorer, run):
+    if run['failed']:
+        return None
+    out = run['out']
+    scores = tool(scorer, 'score', run, out / 'model.city.json', '--lines', out / 'lines.json')
+    segments = tool(scorer, 'score2d', run, out / 'segments.json')
+    return scores and segments and {**scores, 'segments': segments}
+
+
+def check(scorer, run):
+    return None if run['failed'] else tool(scorer, 'check_real', run, run['out'] / 'model.city.json')
+
+
+def rendered_table(rows):
+    header = ['scene', 'time [s]', 'edges in 2D', '3D lines', 'on roof edges', 'true', 'edges in 3D', 'facets > 10 m²',
+              'complete', 'correct', 'area within 0.2 m', 'outline RMS [m]', 'height RMS [m]']
+    return markdown(header, [[r['scene'].name, f'{r["seconds"]:.1f}'] + (rendered_row(s) if s else ['failed'] + ['-'] * 10)
+                             for r, s in rows])
+
+
+def rendered_row(s):
+    lines, large, geometry = s['lines'], s['faces']['gt_10m2'], s['faces']['geometry']
+    covered = [view['covered'] for view in s['segments']]
+    true = lines['precision_roof_edge_or_surface']
+    return [percent(sum(covered) / len(covered)), str(lines['lines']), percent(lines['precision_roof_edge']), percent(true),
+            percent(lines['edge_length_covered']), f'{large["found"]} of {large["reference"]}', percent(large['completeness']),
+            percent(large['correctness']), percent(s['area']['covered_within_0_2m_fraction']), metres(geometry['rms_outline_m']),
+            metres(geometry['rms_height_m'])]
+
+
+def real_table(rows):
+    header = ['scene', 'time [s]', 'facets', 'planes found', 'tie points on roofs', 'within 0.25 m', 'median height error [m]']
+    return markdown(header, [[r['scene'].name, f'{r["seconds"]:.1f}'] + (real_row(c) if c else ['failed'] + ['-'] * 4)
+                             for r, c in rows])
+
+
+def real_row(c):
+    return [str(c['facets']), f'{c["planes_found"]} of {len(c["planes"])}', str(c['points_on_roofs']),
+            percent(c['points_within_0_25m']), metres(c['median_abs_dz_m'])]
+
+
+def percent(x):
+    return '-' if x is None else f'{100 * x:.0f} %'
+
+
+def metres(x):
+    return '-' if x is None else f'{x:.2f}'
+
+
+def markdown(header, rows):
+    table = [header, *rows]
+    widths = [max(len(row[i]) for row in table) for i in range(len(header))]
+    lines = ['| ' + ' | '.join(cell.ljust(w) for cell, w in zip(row, widths)) + ' |' for row in table]
+    lines.insert(1, '|' + '|'.join('-' * (w + 2) for w in widths) + '|')
+    return '\n'.join(lines)
+
+
+def rewrite(tables):
+    """Puts each table between its markers in docs/results.md."""
+    text = RESULTS.read_text()
+    for name, table in tables.items():
+        begin, end = f'<!-- {name}: begin -->', f'<!-- {name}: end -->'
+        before, rest = text.split(begin)
+        text = before + begin + '\n' + table + '\n' + end + rest.split(end)[1]
+    RESULTS.write_text(text)
+    print(f'{RESULTS.relative_to(ROOT)} rewritten')
+
+
+if __name__ == '__main__':
+    sys.exit(main())
