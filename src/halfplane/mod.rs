@@ -49,6 +49,7 @@ pub use borders::{Border, BorderKind};
 pub use consistency::{ConsistencyMap, consistency_map};
 pub use facets::{FacetRejection, FacetTrace, RejectedFacet, reconstruct_facets};
 pub use grouping::{Member, PlaneGroup};
+pub use plane_lines::PlaneLine;
 pub use plan::{PlanGrid, image_from_plan, orthophoto};
 pub use poi::PointsOfInterest;
 pub use sweep::{similarity_curve, sweep_half_planes, sweep_side};

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::borders::Region;
 use crate::camera::Camera;
-use crate::geometry::{Plane, Segment2, Segment3};
+use crate::geometry::{Plane, Segment3};
 use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;
 use crate::scene::Scene;
@@ -142,9 +142,4 @@ fn common_line(members: &[Cast]) -> Option<(Point2<f64>, Point2<f64>)> {
     }
     let at = |t: f64| Point2::from(mean + direction * t);
     Some((at(start?), at(end?)))
-}
-
-/// The image of a line, for tests and overlays; `None` behind the camera.
-pub fn project_segment(camera: &Camera, segment: &Segment3) -> Option<Segment2> {
-    Some(Segment2::new(camera.project(&segment.p0)?, camera.project(&segment.p1)?))
 }
