@@ -437,7 +437,7 @@ fn what_a_higher_roof_hides_is_taken_from_another_view() {
     assert!((alone.unseen - hidden).abs() < 0.01, "{}", alone.unseen);
     assert!((alone.views[0].visible - 1.0 + hidden).abs() < 0.01);
     let both = low_roof(vec![
-        map_view("east.jpg", 25.0, 3.0),
+        map_view("east.jpg", 20.0, 3.0),
         map_view("west.jpg", -10.0, 3.0),
     ]);
     assert_eq!((both.views[0].view, both.unseen), (ViewId(0), 0.0));
