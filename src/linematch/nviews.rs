@@ -18,6 +18,9 @@ use crate::scene::Scene;
 /// How often segments are adopted and the line fitted again. Assumption: the second round changes few lines, a
 /// third none.
 const ROUNDS: usize = 2;
+/// Least number of views with a segment. Two interpretation planes always meet in a line; the third makes
+/// it evidence, correlation without a segment then adds to it.
+const MIN_MEASURED: usize = 3;
 /// A stretch reaches past the detected segments by this much to count as grown, px.
 const GROWN_PX: f64 = 3.0;
 
@@ -31,6 +34,8 @@ pub enum Rejection {
     IllConditioned,
     /// Fewer than the minimum of views support it.
     TooFewViews,
+    /// The views' neighbourhoods are not alike enough in the mean.
+    BelowThreshold,
     /// The supported stretch is shorter than the minimum of edgels.
     TooShort,
     /// It leaves the height range.
@@ -73,6 +78,9 @@ pub fn complete_line(
         let adopted = context.adopt(&fit.line, &segments, &taken);
         (fit, segments) = context.fit_consistent(&fit.line, &adopted)?;
     }
+    if views_of(&segments) < MIN_MEASURED {
+        return Err(Rejection::TooFewViews);
+    }
     let profile = Profile::new(
         context.scene,
         context.sights,
@@ -86,10 +94,29 @@ pub fn complete_line(
         return Err(Rejection::TooShort);
     }
     let supports = context.supports(&profile, stretch);
+    // DBG0
+    if let Ok(d) = std::env::var("DBG") {
+        let want: Vec<u32> = d.split(',').map(|x| x.parse().unwrap()).collect();
+        if seeds.iter().any(|s| s.view.0 == want[0] && s.segment.0 == want[1]) {
+            eprintln!("seeds {:?} adopted {:?} len {} sigma {:.3} res {:?}", seeds.iter().map(|s| (s.view.0, s.segment.0)).collect::<Vec<_>>(), segments.iter().map(|s| (s.view.0, s.segment.0)).collect::<Vec<_>>(), profile.t.len(), fit.sigma_at(0.5), fit.residuals.iter().map(|r| (r*10.0).round()/10.0).collect::<Vec<_>>());
+            for (i,v) in profile.views.iter().enumerate() {
+                let c = &v.correlation[stretch.0..=stretch.1];
+                let sc = EdgelScore::of(c, context.params.edgel_correlation);
+                eprintln!("   view {} ref {} stretch {:?} segs {:?} score {:.2} incl {} nan {}", v.view.0, i==profile.reference, stretch, v.segments.iter().map(|s| (s.0.0, s.1.map(|x| (x*10.0).round()/10.0))).collect::<Vec<_>>(), sc.score, sc.included, c.iter().filter(|c| c.is_nan()).count());
+            }
+            eprintln!("   -> {:?}", supports.iter().map(|s| (s.view.0, s.segments.len(), (s.score*100.0).round()/100.0)).collect::<Vec<_>>());
+        }
+    }
+    // DBG1
     context.check_views(&profile, stretch, &supports)?;
     let kept: Vec<SegmentRef> = supports.iter().flat_map(names).collect();
     let fit = context.fit(&fit.line, &kept)?;
     context.check_line(&fit, profile.t[stretch.0], profile.t[stretch.1], &supports)
+}
+
+/// Number of views among segments sorted by view.
+fn views_of(segments: &[SegmentRef]) -> usize {
+    segments.chunk_by(|a, b| a.view == b.view).count()
 }
 
 /// The detected segments of a support.
@@ -290,8 +317,12 @@ impl Context<'_> {
         let seeing = profile.views.iter().filter(sees).count();
         let minimum = if seeing >= 6 { self.params.min_views } else { 3 };
         let measured = supports.iter().filter(|s| !s.segments.is_empty()).count();
-        if measured < 2 || supports.len() < minimum {
+        if measured < MIN_MEASURED || supports.len() < minimum {
             return Err(Rejection::TooFewViews);
+        }
+        let score = supports.iter().map(|s| s.score).sum::<f64>() / supports.len() as f64;
+        if score < self.params.pair_score {
+            return Err(Rejection::BelowThreshold);
         }
         Ok(())
     }
