@@ -78,40 +78,43 @@ pub fn complete_line(
         let adopted = context.adopt(&fit.line, &segments, &taken);
         (fit, segments) = context.fit_consistent(&fit.line, &adopted)?;
     }
-    if views_of(&segments) < MIN_MEASURED {
-        return Err(Rejection::TooFewViews);
-    }
-    let profile = Profile::new(
-        context.scene,
-        context.sights,
-        &fit.line,
-        &segments,
-        context.params,
-    )
-    .ok_or(Rejection::NoFit)?;
-    let stretch = supported_stretch(&profile, context.params).ok_or(Rejection::TooFewViews)?;
-    if stretch.1 - stretch.0 + 1 < context.params.min_edgels {
-        return Err(Rejection::TooShort);
-    }
-    let supports = context.supports(&profile, stretch);
-    // DBG0
-    if let Ok(d) = std::env::var("DBG") {
-        let want: Vec<u32> = d.split(',').map(|x| x.parse().unwrap()).collect();
-        if seeds.iter().any(|s| s.view.0 == want[0] && s.segment.0 == want[1]) {
-            eprintln!("seeds {:?} adopted {:?} len {} sigma {:.3} res {:?}", seeds.iter().map(|s| (s.view.0, s.segment.0)).collect::<Vec<_>>(), segments.iter().map(|s| (s.view.0, s.segment.0)).collect::<Vec<_>>(), profile.t.len(), fit.sigma_at(0.5), fit.residuals.iter().map(|r| (r*10.0).round()/10.0).collect::<Vec<_>>());
-            for (i,v) in profile.views.iter().enumerate() {
-                let c = &v.correlation[stretch.0..=stretch.1];
-                let sc = EdgelScore::of(c, context.params.edgel_correlation);
-                eprintln!("   view {} ref {} stretch {:?} segs {:?} score {:.2} incl {} nan {}", v.view.0, i==profile.reference, stretch, v.segments.iter().map(|s| (s.0.0, s.1.map(|x| (x*10.0).round()/10.0))).collect::<Vec<_>>(), sc.score, sc.included, c.iter().filter(|c| c.is_nan()).count());
-            }
-            eprintln!("   -> {:?}", supports.iter().map(|s| (s.view.0, s.segments.len(), (s.score*100.0).round()/100.0)).collect::<Vec<_>>());
+    loop {
+        if views_of(&segments) < MIN_MEASURED {
+            return Err(Rejection::TooFewViews);
         }
+        let profile = context.profile(&fit.line, &segments)?;
+        let stretch = supported_stretch(&profile, context.params).ok_or(Rejection::TooFewViews)?;
+        if stretch.1 - stretch.0 + 1 < context.params.min_edgels {
+            return Err(Rejection::TooShort);
+        }
+        let supports = context.supports(&profile, stretch);
+        let disagreeing = disagreeing_views(&profile, &supports);
+        if disagreeing.is_empty() {
+            context.check_views(&profile, stretch, &supports)?;
+            let kept: Vec<SegmentRef> = supports.iter().flat_map(names).collect();
+            let fit = context.fit(&fit.line, &kept)?;
+            return context.check_line(&fit, profile.t[stretch.0], profile.t[stretch.1], &supports);
+        }
+        segments.retain(|s| !disagreeing.contains(&s.view));
+        (fit, segments) = context.fit_consistent(&fit.line, &segments)?;
     }
-    // DBG1
-    context.check_views(&profile, stretch, &supports)?;
-    let kept: Vec<SegmentRef> = supports.iter().flat_map(names).collect();
-    let fit = context.fit(&fit.line, &kept)?;
-    context.check_line(&fit, profile.t[stretch.0], profile.t[stretch.1], &supports)
+}
+
+/// Views that have segments on the line but do not support it photometrically. They see another edge nearby, and the
+/// line is better off without them. Where the reference view agrees with none, it alone is left out:
+/// the others were compared with nothing else.
+fn disagreeing_views(profile: &Profile, supports: &[LineSupport]) -> Vec<ViewId> {
+    let supported = |view: ViewId| supports.iter().any(|s| s.view == view);
+    let reference = profile.views[profile.reference].view;
+    if !supported(reference) {
+        return vec![reference];
+    }
+    profile
+        .views
+        .iter()
+        .filter(|v| !v.segments.is_empty() && !supported(v.view))
+        .map(|v| v.view)
+        .collect()
 }
 
 /// Number of views among segments sorted by view.
@@ -128,6 +131,10 @@ fn names(support: &LineSupport) -> impl Iterator<Item = SegmentRef> {
 }
 
 impl Context<'_> {
+    fn profile(&self, line: &Segment3, segments: &[SegmentRef]) -> Result<Profile, Rejection> {
+        Profile::new(self.scene, self.sights, line, segments, self.params).ok_or(Rejection::NoFit)
+    }
+
     /// Fits the line to those segments that agree with each other: the worst is dropped and the
     /// line fitted again until none is farther than `max_residual`. The robust loss alone leaves a
     /// line between two parallel edges a pixel apart.
