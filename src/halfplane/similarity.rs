@@ -117,17 +117,15 @@ impl<'a> LineSide<'a> {
             .collect()
     }
 
-    /// Weighted mean distance of the points of interest from the line, metres on the ground.
-    pub fn mean_distance_m(&self) -> f64 {
-        let pixel_m = self
-            .scene
-            .camera(self.reference)
-            .ground_pixel(&self.line.at(0.5));
+    /// Weighted mean distance of the points of interest from the line, metres on the ground: the lever
+    /// with which theta is measured. (The least-squares lever `E[d^2] / E[d]` is too long: the
+    /// correlation of a far point is lost before it can pull; measured on lines displaced by a known
+    /// noise, it makes sigma a third too small.)
+    pub fn lever_m(&self) -> f64 {
+        let camera = self.scene.camera(self.reference);
         let sites = self.windows.sites.iter().zip(&self.weights);
-        sites
-            .map(|(s, w)| w * self.strip.distance_px(s.row))
-            .sum::<f64>()
-            * pixel_m
+        let mean_px: f64 = sites.map(|(s, w)| w * self.strip.distance_px(s.row)).sum();
+        mean_px * camera.ground_pixel(&self.line.at(0.5))
     }
 
     /// Does the reference view see the upper side of the half-plane? Elsewhere theta has no meaning.

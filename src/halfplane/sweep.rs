@@ -311,8 +311,12 @@ impl<'a> Search<'a> {
 impl Found {
     fn half_plane(&self, search: &Search, id: LineId, line: &Line3d, side: Side) -> HalfPlane {
         let line_side = &search.line_side;
-        // A line that is off by sigma tilts the plane that fits its neighbourhood.
-        let from_line = line.sigma_m / line_side.mean_distance_m();
+        let plane = line_side.frame.plane(&line.segment, self.peak.theta);
+        // A line that lies above its plane by e tilts the plane that fits its neighbourhood by
+        // e / distance. The ends count as independent, so the middle has a quarter of their sum.
+        let ends = line.covariance[0] + line.covariance[1];
+        let height_m = 0.5 * plane.normal.dot(&(ends * plane.normal)).max(0.0).sqrt();
+        let from_line = height_m * crate::math::cos(self.peak.theta) / line_side.lever_m();
         let views = line_side.others.iter().zip(&search.valid);
         HalfPlane {
             line: id,
@@ -323,7 +327,7 @@ impl Found {
             curvature: self.peak.curvature,
             amplitude: self.peak.amplitude,
             views: views.filter(|(_, v)| **v).map(|(&id, _)| id).collect(),
-            plane: line_side.frame.plane(&line.segment, self.peak.theta),
+            plane,
         }
     }
 }
