@@ -26,14 +26,80 @@ pub struct Params {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SegmentParams {
+    /// The edgels that segments are made of.
+    pub edgels: EdgelParams,
     /// Shortest segment, px. B99 3.2: "above a minimum length (here 15 pixels)".
     pub min_length_px: f64,
+    /// Edgels in each of the worm's two arms. Assumption: a third of the shortest segment.
+    pub worm_arm_edgels: usize,
+    /// Tangent break, degrees. Assumption: several times the noise of an arm's direction (2 degrees).
+    pub worm_bend_deg: f64,
+    /// Largest distance of an edgel from its line, px. B99 3.2: "a very tight threshold"; Assumption:
+    /// three times the rms.
+    pub max_residual_px: f64,
+    /// Largest root mean square distance of the edgels from their line, px. Assumption: what noise
+    /// does to the weakest edges that are worth having.
+    pub max_rms_px: f64,
+    /// Fewest edgels of a straight piece from which a line is grown. Assumption: what still
+    /// predicts a direction.
+    pub seed_edgels: usize,
+    /// Largest gap over which a line is grown, px. B99 3.2 jumps "up to a one pixel gap" when linking;
+    /// Assumption: along a line already fitted more is safe.
+    pub grow_gap_px: usize,
+    /// Largest turn of an edgel against the line that takes it up, degrees. Assumption: what texture
+    /// does to the gradient of a weak edge.
+    pub grow_turn_deg: f64,
+    /// Smallest radius of curvature of a line that bends significantly, px. Assumption: over
+    /// 60 px it bends by 1.5 px.
+    pub min_radius_px: f64,
+    /// Natural logarithm of the expected number of lines by chance in an image, a line above which
+    /// is refused. Assumption: 0, one line.
+    pub max_ln_false_alarms: f64,
+    /// Distance off the line at which the contrast is measured, px. Assumption: outside the blur.
+    pub contrast_distance_px: f64,
+    /// Least standard deviation of an edgel, px. Assumption: what sampling leaves without noise.
+    pub edgel_floor_px: f64,
 }
 
 impl Default for SegmentParams {
     fn default() -> Self {
         Self {
+            edgels: EdgelParams::default(),
             min_length_px: 15.0,
+            worm_arm_edgels: 5,
+            worm_bend_deg: 20.0,
+            max_residual_px: 1.2,
+            max_rms_px: 0.5,
+            seed_edgels: 8,
+            grow_gap_px: 6,
+            grow_turn_deg: 30.0,
+            min_radius_px: 300.0,
+            max_ln_false_alarms: 5.0,
+            contrast_distance_px: 2.5,
+            edgel_floor_px: 0.05,
+        }
+    }
+}
+
+/// B99 3.2: edgels. Thresholds are multiples of the local standard deviation of a gradient component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct EdgelParams {
+    /// Standard deviation of the smoothing Gaussian, px. Assumption: as for any Canny detector.
+    pub smoothing_px: f64,
+    /// Least gradient of an edgel, in local noise units. Assumption: noise alone is stronger
+    /// than 2 at one pixel in seven; the significance of the whole line is tested later.
+    pub low: f64,
+    /// Least gradient of the strongest edgel in a chain, in local noise units.
+    pub high: f64,
+}
+
+impl Default for EdgelParams {
+    fn default() -> Self {
+        Self {
+            smoothing_px: 0.8,
+            low: 1.8,
+            high: 2.5,
         }
     }
 }

@@ -1,4 +1,28 @@
 //! Straight image segments (B99 3.2, "Implementation details").
+//!
+//! ```text
+//! canny          gradient, sub-pixel edgels above a multiple of the local noise (noise)
+//!    -> chain    edgels linked over gaps of one pixel, hysteresis
+//!    -> worm     chains broken where the tangent turns
+//!    -> fit      straight pieces by orthogonal regression, tight threshold, covariance
+//!    -> grow     pieces grown along their line through the edgels ahead
+//!    -> segments length, curvature and significance decide; contrast directs
+//! ```
+
+mod canny;
+mod chain;
+mod fit;
+mod grow;
+mod noise;
+mod segments;
+mod significance;
+#[cfg(test)]
+mod testing;
+mod worm;
+
+pub use canny::{Edgel, detect_edgels};
+pub use chain::{Chain, link_chains};
+pub use segments::{RejectedSegment, SegmentRejection, SegmentTrace, detect_segments};
 
 use nalgebra::Matrix2;
 use serde::Serialize;
