@@ -203,6 +203,9 @@ impl<'a> LineSide<'a> {
     }
 }
 
+/// A view, the strip in it and the strip's pixels (column, row) that are points of interest.
+type Neighbourhood = (ViewId, Strip, Vec<(usize, usize)>);
+
 /// The view in which the neighbourhood holds the most points of interest, with its strip and their
 /// pixels, ordered by row. The first one wins a tie.
 fn most_textured(
@@ -211,8 +214,8 @@ fn most_textured(
     line: &Segment3,
     frame: &ThetaFrame,
     params: &SweepParams,
-) -> Option<(ViewId, Strip, Vec<(usize, usize)>)> {
-    let mut best: Option<(ViewId, Strip, Vec<(usize, usize)>)> = None;
+) -> Option<Neighbourhood> {
+    let mut best: Option<Neighbourhood> = None;
     for id in scene.view_ids() {
         let Some(strip) = Strip::new(scene.camera(id), line, frame, params) else {
             continue;
