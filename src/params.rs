@@ -131,9 +131,10 @@ pub struct MatchParams {
     /// Grey-value noise that windows are trusted against, 0 to 1. Assumption: an 8-bit camera and a
     /// good JPEG.
     pub noise: f64,
-    /// Angle of the planes tried on either side of the line besides the horizontal one, degrees
-    /// (Schmid and Zisserman 1997). Assumption: between the slopes of common roofs.
-    pub plane_angle_deg: f64,
+    /// Angles of the planes tried on either side of the line, degrees, the horizontal one first
+    /// (Schmid and Zisserman 1997). Assumption: up to the slopes of roofs, so close that a window's edge is
+    /// less than a pixel off at a base-to-height ratio of 0.4.
+    pub plane_angles_deg: Vec<f64>,
     /// Least sine of the angle at which a ray meets the other segment's interpretation plane:
     /// baseline over height times the sine of the line's angle to the epipolar lines. Assumption:
     /// below 0.04 an error of one pixel moves the line by 25 ground pixels in depth.
@@ -164,7 +165,7 @@ impl Default for MatchParams {
             min_views: 4,
             same_contrast: true,
             noise: 0.006,
-            plane_angle_deg: 35.0,
+            plane_angles_deg: vec![0.0, -20.0, 20.0, -40.0, 40.0, -55.0, 55.0],
             min_intersection_sine: 0.04,
             max_slope_deg: 75.0,
             gate_px: 1.5,
@@ -186,6 +187,8 @@ pub struct Lines3dParams {
     pub loss_scale: f64,
     /// Most Levenberg-Marquardt steps. Assumption: a good start converges in fewer than ten.
     pub max_iterations: usize,
+    /// Residual, in standard deviations, beyond which a segment is not of this line. Assumption.
+    pub max_residual: f64,
     /// Largest standard deviation of a line across itself, ground pixels. Assumption.
     pub max_sigma_px: f64,
 }
@@ -193,9 +196,10 @@ pub struct Lines3dParams {
 impl Default for Lines3dParams {
     fn default() -> Self {
         Self {
-            position_floor_px: 0.1,
+            position_floor_px: 0.15,
             loss_scale: 2.4,
             max_iterations: 20,
+            max_residual: 4.0,
             max_sigma_px: 3.0,
         }
     }
@@ -261,9 +265,9 @@ impl Default for SweepParams {
             max_theta_deg: 75.0,
             first_step_deg: 5.0,
             last_step_deg: 1.0,
-            max_peaks: 3,
+            max_peaks: 2,
             window_px: 15,
-            depth_px: 60.0,
+            depth_px: 40.0,
             depth_m: 6.0,
             margin_px: 1.5,
             min_length_px: 15.0,

@@ -68,11 +68,10 @@ pub fn complete_line(
     seeds: &[SegmentRef],
     taken: impl Fn(SegmentRef) -> bool,
 ) -> Result<Line, Rejection> {
-    let mut segments = seeds.to_vec();
-    let mut fit = context.fit(start, &segments)?;
+    let (mut fit, mut segments) = context.fit_consistent(start, seeds)?;
     for _ in 0..ROUNDS {
-        segments = context.adopt(&fit.line, &segments, &taken);
-        fit = context.fit(&fit.line, &segments)?;
+        let adopted = context.adopt(&fit.line, &segments, &taken);
+        (fit, segments) = context.fit_consistent(&fit.line, &adopted)?;
     }
     let profile = Profile::new(
         context.scene,
@@ -102,6 +101,27 @@ fn names(support: &LineSupport) -> impl Iterator<Item = SegmentRef> {
 }
 
 impl Context<'_> {
+    /// Fits the line to those segments that agree with each other: the worst is dropped and the
+    /// line fitted again until none is farther than `max_residual`. The robust loss alone leaves a
+    /// line between two parallel edges a pixel apart.
+    fn fit_consistent(
+        &self,
+        start: &Segment3,
+        segments: &[SegmentRef],
+    ) -> Result<(LineFit, Vec<SegmentRef>), Rejection> {
+        let mut kept = segments.to_vec();
+        loop {
+            let fit = self.fit(start, &kept)?;
+            let worst = (0..kept.len())
+                .max_by(|&i, &j| fit.residuals[i].total_cmp(&fit.residuals[j]).then(j.cmp(&i)))
+                .ok_or(Rejection::NoFit)?;
+            if fit.residuals[worst] <= self.fitting.max_residual {
+                return Ok((fit, kept));
+            }
+            kept.remove(worst);
+        }
+    }
+
     fn fit(&self, start: &Segment3, segments: &[SegmentRef]) -> Result<LineFit, Rejection> {
         let observations: Vec<Observation> = segments
             .iter()
@@ -114,7 +134,8 @@ impl Context<'_> {
                 }
             })
             .collect();
-        fit_line(&observations, start, self.fitting).ok_or(Rejection::NoFit)
+        fit_line(&observations, start, self.fitting)
+            .ok_or(Rejection::NoFit)
     }
 
     /// The segments of all views that lie on the projection of the line, or not farther beyond its

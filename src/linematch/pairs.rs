@@ -215,16 +215,17 @@ fn pair_score(
         .filter(|s| s.included >= params.min_edgels)
         .map_or(0.0, |s| s.score)
     };
-    let mut best = StripSide::BOTH.map(|side| score(side, 0.0));
-    // Where the horizontal plane explains a side well enough, no other need be tried.
-    if best[0].max(best[1]) < 1.5 * params.pair_score {
-        for (i, side) in StripSide::BOTH.into_iter().enumerate() {
-            for theta in [-params.plane_angle_deg, params.plane_angle_deg] {
-                best[i] = best[i].max(score(side, theta));
-            }
+    let mut best = 0.0f64;
+    for &theta in &params.plane_angles_deg {
+        for side in StripSide::BOTH {
+            best = best.max(score(side, theta));
+        }
+        // Where a plane explains a side well enough, no other need be tried.
+        if best >= 1.5 * params.pair_score {
+            break;
         }
     }
-    best[0].max(best[1])
+    best
 }
 
 /// Correlations at the edgels of a reference strip with another view, on one side of a line, warped by

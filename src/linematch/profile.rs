@@ -137,7 +137,7 @@ fn correlate_views(
     let mut best: Vec<(f64, Vec<f32>)> = vec![(-1.0, Vec::new()); views.len()];
     for side in StripSide::BOTH {
         let mut chosen: Option<(f64, Vec<Vec<f32>>)> = None;
-        for theta in [0.0, -params.plane_angle_deg, params.plane_angle_deg] {
+        for &theta in &params.plane_angles_deg {
             let correlations: Vec<Vec<f32>> = views
                 .iter()
                 .enumerate()

@@ -230,8 +230,10 @@ impl Run {
                 r.half_planes = Some(sweep_half_planes(scene, lines, &params.sweep).into());
             }
             Stage::Facets => {
+                let segments = before(&r.segments);
                 let (lines, half_planes) = (before(&r.lines), before(&r.half_planes));
-                r.roof = Some(reconstruct_roofs(scene, lines, half_planes, &params.roof).into());
+                let found = reconstruct_roofs(scene, segments, lines, half_planes, &params.roof);
+                r.roof = Some(found.into());
             }
             Stage::Model => {
                 let model = before(&r.roof);

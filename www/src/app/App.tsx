@@ -1,0 +1,36 @@
+/** The layout: project on the left, the stage views in the middle, inspector and parameters on the right. */
+import { Downloads } from "./Downloads";
+import { Header } from "./Header";
+import { Inspector } from "./Inspector";
+import { Notices } from "./Notices";
+import { Parameters } from "./Parameters";
+import { Project } from "./Project";
+import { StageRail } from "./StageRail";
+import { StageView } from "./StageView";
+import { announcement } from "./state";
+
+export function App() {
+  return (
+    <>
+      <Header />
+      <div class="columns">
+        <aside class="column" aria-label="Project">
+          <Project />
+          <Downloads />
+        </aside>
+        <main class="centre">
+          <Notices />
+          <StageView />
+          <StageRail />
+        </main>
+        <aside class="column" aria-label="Details">
+          <Inspector />
+          <Parameters />
+        </aside>
+      </div>
+      <div class="visually-hidden" aria-live="polite">
+        {announcement}
+      </div>
+    </>
+  );
+}

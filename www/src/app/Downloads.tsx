@@ -1,0 +1,34 @@
+/** The output files, as soon as their stage has run. */
+import { download } from "./actions";
+import { exportNames } from "./state";
+
+const WHAT: Record<string, string> = {
+  "model.glb": "textured model, glTF 2.0",
+  "model.city.json": "CityJSON 2.0, LoD 2.2",
+  "lines.json": "3D lines and their views",
+  "halfplanes.json": "half-planes and Sim(theta)",
+  "segments.json": "image segments",
+  "report.json": "counts, parameters, warnings",
+};
+
+export function Downloads() {
+  return (
+    <section class="panel">
+      <h2>Output</h2>
+      {exportNames.value.length === 0 ? (
+        <p class="muted">Files appear here once their stage has run.</p>
+      ) : (
+        <ul class="downloads">
+          {exportNames.value.map((name) => (
+            <li key={name}>
+              <button type="button" class="link" onClick={() => void download(name)}>
+                {name}
+              </button>
+              <span class="muted">{WHAT[name] ?? ""}</span>
+            </li>
+          ))}
+        </ul>
+      )}
+    </section>
+  );
+}

@@ -1,0 +1,172 @@
+/** One view, to zoom (wheel, + and -), pan (drag, arrows), fit (0) and pick (click). */
+import { useEffect, useRef, useState } from "preact/hooks";
+import { SEGMENT_STRIDE, SUPPORT_STRIDE } from "../shared/results";
+import type { Selection } from "../shared/selection";
+import { drawView, type Overlay } from "./drawing";
+import {
+  fitImage,
+  nearestSegment,
+  type Point,
+  pan,
+  type Size,
+  toImage,
+  type Viewport,
+  zoomAt,
+} from "./overlay";
+
+interface Props {
+  view: number;
+  name: string;
+  image: ImageBitmap;
+  overlay: Overlay;
+  selection: Selection | null;
+  onPick: (selection: Selection | null) => void;
+}
+
+const ZOOM_STEP = 1.25;
+const PAN_STEP_PX = 40;
+const PICK_REACH_PX = 8;
+const CLICK_SLACK_PX = 4;
+
+export function ImageCanvas({ view, name, image, overlay, selection, onPick }: Props) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const [box, setBox] = useState<Size>({ width: 0, height: 0 });
+  const [moved, setMoved] = useState<Viewport | null>(null);
+  const drag = useRef<{ last: Point; travelled: number } | null>(null);
+  const fitted = fitImage(image, box);
+  const viewport = moved ?? fitted;
+
+  useEffect(() => observeSize(canvas.current, setBox), []);
+  // Another image starts whole.
+  useEffect(() => setMoved(null), [image]);
+  useEffect(() => {
+    const context = canvas.current?.getContext("2d");
+    if (context && box.width > 0) {
+      const ratio = window.devicePixelRatio;
+      resizeBacking(context.canvas, box, ratio);
+      drawView(context, image, viewport, ratio, overlay, selection, view);
+    }
+  });
+
+  const zoom = (at: Point, factor: number) => setMoved(zoomAt(viewport, at, factor, fitted.scale * 0.5));
+  const onWheel = (event: WheelEvent) => {
+    event.preventDefault();
+    zoom({ x: event.offsetX, y: event.offsetY }, 1.0015 ** -event.deltaY);
+  };
+  const onPointerDown = (event: PointerEvent) => {
+    canvas.current?.setPointerCapture(event.pointerId);
+    drag.current = { last: { x: event.clientX, y: event.clientY }, travelled: 0 };
+  };
+  const onPointerMove = (event: PointerEvent) => {
+    const { current } = drag;
+    if (current !== null) {
+      const dx = event.clientX - current.last.x;
+      const dy = event.clientY - current.last.y;
+      drag.current = {
+        last: { x: event.clientX, y: event.clientY },
+        travelled: current.travelled + Math.hypot(dx, dy),
+      };
+      setMoved(pan(viewport, dx, dy));
+    }
+  };
+  const onPointerUp = (event: PointerEvent) => {
+    if (drag.current !== null && drag.current.travelled < CLICK_SLACK_PX) {
+      const at = toImage(viewport, { x: event.offsetX, y: event.offsetY });
+      onPick(pickAt(overlay, view, at, PICK_REACH_PX / viewport.scale));
+    }
+    drag.current = null;
+  };
+  const onKeyDown = (event: KeyboardEvent) => {
+    const next = viewportAfterKey(event.key, viewport, box, fitted.scale);
+    if (next !== undefined) {
+      event.preventDefault();
+      setMoved(next);
+    } else if (event.key === "Escape") {
+      onPick(null);
+    }
+  };
+
+  return (
+    <figure class="image-view">
+      <canvas
+        ref={canvas}
+        tabIndex={0}
+        role="img"
+        aria-label={`${name}: drag to move, scroll to zoom, click a line to pick it`}
+        onWheel={onWheel}
+        onPointerDown={onPointerDown}
+        onPointerMove={onPointerMove}
+        onPointerUp={onPointerUp}
+        onPointerCancel={() => {
+          drag.current = null;
+        }}
+        onDblClick={() => setMoved(null)}
+        onKeyDown={onKeyDown}
+      />
+      <figcaption class="numbers">
+        {name} · {Math.round(100 * viewport.scale)} %
+      </figcaption>
+    </figure>
+  );
+}
+
+/** The nearest matched line, or else the nearest segment. */
+function pickAt({ segments, supports }: Overlay, view: number, at: Point, reach: number): Selection | null {
+  if (supports !== null) {
+    const support = nearestSegment(supports, SUPPORT_STRIDE, at, reach);
+    if (support >= 0) {
+      return { kind: "line", index: supports[support * SUPPORT_STRIDE + 5] as number };
+    }
+  }
+  const index = segments === null ? -1 : nearestSegment(segments, SEGMENT_STRIDE, at, reach);
+  return index < 0 ? null : { kind: "segment", view, index };
+}
+
+/** Null: the whole image again; undefined: the key means nothing here. */
+function viewportAfterKey(
+  key: string,
+  viewport: Viewport,
+  box: Size,
+  fitScale: number,
+): Viewport | null | undefined {
+  const middle = { x: box.width / 2, y: box.height / 2 };
+  switch (key) {
+    case "+":
+    case "=":
+      return zoomAt(viewport, middle, ZOOM_STEP, fitScale * 0.5);
+    case "-":
+      return zoomAt(viewport, middle, 1 / ZOOM_STEP, fitScale * 0.5);
+    case "0":
+      return null;
+    case "ArrowLeft":
+      return pan(viewport, PAN_STEP_PX, 0);
+    case "ArrowRight":
+      return pan(viewport, -PAN_STEP_PX, 0);
+    case "ArrowUp":
+      return pan(viewport, 0, PAN_STEP_PX);
+    case "ArrowDown":
+      return pan(viewport, 0, -PAN_STEP_PX);
+    default:
+      return undefined;
+  }
+}
+
+function observeSize(element: HTMLElement | null, onSize: (size: Size) => void): (() => void) | undefined {
+  if (element === null) {
+    return undefined;
+  }
+  const observer = new ResizeObserver(() =>
+    onSize({ width: element.clientWidth, height: element.clientHeight }),
+  );
+  observer.observe(element);
+  return () => observer.disconnect();
+}
+
+function resizeBacking(canvas: HTMLCanvasElement, box: Size, ratio: number): void {
+  const width = Math.round(box.width * ratio);
+  const height = Math.round(box.height * ratio);
+  if (canvas.width !== width || canvas.height !== height) {
+    canvas.width = width;
+    canvas.height = height;
+  }
+}

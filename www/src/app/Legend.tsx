@@ -1,0 +1,34 @@
+/** What the colours of the present tab mean. */
+import { type Tab, tab } from "./state";
+
+const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
+  segments: [["unmatched", "segment"]],
+  matches: [
+    ["unmatched", "unmatched"],
+    ["matched", "matched"],
+    ["merged", "merged"],
+    ["grown", "grown"],
+  ],
+  lines: [["matched", "3D line"]],
+  halfplanes: [
+    ["matched", "3D line"],
+    ["half-plane", "half-plane"],
+  ],
+};
+
+export function Legend() {
+  const entries = ENTRIES[tab.value] ?? [];
+  if (entries.length === 0) {
+    return null;
+  }
+  return (
+    <ul class="legend" aria-label="Colours">
+      {entries.map(([colour, meaning]) => (
+        <li key={meaning}>
+          <span class={`swatch ${colour}`} aria-hidden="true" />
+          {meaning}
+        </li>
+      ))}
+    </ul>
+  );
+}

@@ -1,0 +1,88 @@
+/** The parameters of every stage, from the core's own defaults; what differs from them is marked. */
+import { useState } from "preact/hooks";
+import { resetParams, setParam } from "./actions";
+import {
+  fieldText,
+  groupTitle,
+  type ParamField,
+  type ParamSection,
+  paramSections,
+  parseField,
+} from "./paramForm";
+import { defaults, params } from "./state";
+
+export function Parameters() {
+  const sections = paramSections(defaults.value, params.value);
+  const changed = sections.reduce((sum, section) => sum + section.changed, 0);
+  return (
+    <section class="panel">
+      <div class="row spread">
+        <h2>Parameters</h2>
+        {changed > 0 && (
+          <button type="button" class="quiet" onClick={resetParams}>
+            Reset {changed}
+          </button>
+        )}
+      </div>
+      <p class="muted">The defaults are the paper's. A change makes its stage and all later ones outdated.</p>
+      {sections.map((section) => (
+        <Section key={section.group} section={section} />
+      ))}
+    </section>
+  );
+}
+
+function Section({ section }: { section: ParamSection }) {
+  return (
+    <details class="params" open={section.changed > 0}>
+      <summary>
+        {groupTitle(section.group)}
+        {section.changed > 0 && <span class="changed-mark">{section.changed} changed</span>}
+      </summary>
+      {section.fields.map((field) => (
+        <Field key={field.key} group={section.group} field={field} />
+      ))}
+    </details>
+  );
+}
+
+function Field({ group, field }: { group: string; field: ParamField }) {
+  const [error, setError] = useState("");
+  const id = `param-${group}-${field.key}`;
+  const change = (text: string) => {
+    const parsed = parseField(field, text);
+    setError("error" in parsed ? parsed.error : "");
+    if ("value" in parsed) {
+      setParam(group, { ...params.value[group], [field.key]: parsed.value });
+    }
+  };
+  return (
+    <div class={`field ${field.changed ? "changed" : ""}`}>
+      <label for={id} title={field.key}>
+        {field.label}
+      </label>
+      {field.kind === "boolean" ? (
+        <input
+          id={id}
+          type="checkbox"
+          checked={field.value === true}
+          onChange={(event) => change(String(event.currentTarget.checked))}
+        />
+      ) : (
+        <input
+          id={id}
+          type="text"
+          inputMode={field.kind === "number" ? "decimal" : "text"}
+          value={fieldText(field.value)}
+          aria-invalid={error !== ""}
+          aria-describedby={`${id}-note`}
+          onChange={(event) => change(event.currentTarget.value)}
+        />
+      )}
+      <span class="unit muted">{field.unit}</span>
+      <span id={`${id}-note`} class={error === "" ? "muted note" : "error note"}>
+        {error || (field.changed ? `default ${fieldText(field.fallback)}` : "")}
+      </span>
+    </div>
+  );
+}

@@ -1,0 +1,191 @@
+/** The project: where files are dropped, and what each of them was recognised as. */
+import { useRef, useState } from "preact/hooks";
+import type { ImageReport } from "../shared/results";
+import { addFiles, clearProject, notify, openDemo, removeFile } from "./actions";
+import { droppedFiles, pickedFiles } from "./files";
+import { files, inspection, projectName, scene } from "./state";
+import { Thumbnail } from "./Thumbnail";
+
+export function Project() {
+  return (
+    <section class="panel">
+      <h2>Project{projectName.value !== "" && <span class="muted"> · {projectName}</span>}</h2>
+      <DropZone />
+      {files.value.length > 0 && <Views />}
+      {files.value.length > 0 && <OtherFiles />}
+      <Warnings />
+    </section>
+  );
+}
+
+function DropZone() {
+  const [isOver, setOver] = useState(false);
+  const fileInput = useRef<HTMLInputElement>(null);
+  const folderInput = useRef<HTMLInputElement>(null);
+  const isEmpty = files.value.length === 0;
+
+  const onDrop = (event: DragEvent) => {
+    event.preventDefault();
+    setOver(false);
+    if (event.dataTransfer !== null) {
+      droppedFiles(event.dataTransfer).then(addFiles, (error: unknown) =>
+        notify({ severity: "error", title: "The dropped files cannot be read", text: String(error) }),
+      );
+    }
+  };
+  const onPick = (event: Event) => {
+    const input = event.currentTarget as HTMLInputElement;
+    const picked = pickedFiles(input.files ?? new DataTransfer().files);
+    input.value = "";
+    void addFiles(picked);
+  };
+
+  return (
+    <section
+      class={`dropzone ${isOver ? "over" : ""}`}
+      aria-label="Add files"
+      onDragOver={(event) => {
+        event.preventDefault();
+        setOver(true);
+      }}
+      onDragLeave={() => setOver(false)}
+      onDrop={onDrop}
+    >
+      <p>
+        {isEmpty
+          ? "Drop three or more overlapping photographs and their orientation files here: files or a folder, in one go."
+          : "Drop more files here."}
+      </p>
+      {isEmpty && (
+        <p class="muted">JPEG, PNG or TIFF; COLMAP text, VGG .P matrices, or X Y Z omega phi kappa lists.</p>
+      )}
+      <div class="row">
+        <button type="button" onClick={() => fileInput.current?.click()}>
+          Files…
+        </button>
+        <button type="button" onClick={() => folderInput.current?.click()}>
+          Folder…
+        </button>
+        <button type="button" class={isEmpty ? "primary" : ""} onClick={() => void openDemo()}>
+          Demo scene
+        </button>
+      </div>
+      <input ref={fileInput} type="file" multiple hidden data-testid="file-input" onChange={onPick} />
+      <input
+        ref={folderInput}
+        type="file"
+        multiple
+        hidden
+        onChange={onPick}
+        {...({ webkitdirectory: true } as object)}
+      />
+    </section>
+  );
+}
+
+function Views() {
+  const report = inspection.value;
+  if (report === null) {
+    return <p class="muted">Reading {files.value.length} files…</p>;
+  }
+  return (
+    <>
+      <div class="row spread">
+        <h3>
+          {report.images.length} {report.images.length === 1 ? "view" : "views"}
+        </h3>
+        <button type="button" class="quiet" onClick={() => void clearProject()}>
+          Remove all
+        </button>
+      </div>
+      <ul class="views">
+        {report.images.map((image) => (
+          <ViewRow key={image.path} image={image} />
+        ))}
+      </ul>
+    </>
+  );
+}
+
+function ViewRow({ image }: { image: ImageReport }) {
+  const blob = files.value.find(({ path }) => path === image.path)?.blob;
+  return (
+    <li class="view">
+      <Thumbnail blob={blob} />
+      <div class="view-text">
+        <span class="name" title={image.path}>
+          {baseName(image.path)}
+        </span>
+        <span class="muted numbers">
+          {image.size === null ? "unreadable" : `${image.size[0]} × ${image.size[1]} px`}
+        </span>
+        <span class={`status ${image.orientation === null ? "bad" : "good"}`} title={image.orientation ?? ""}>
+          {image.orientation === null ? "no orientation" : "oriented"}
+        </span>
+      </div>
+      <button
+        type="button"
+        class="quiet"
+        aria-label={`Remove ${image.path}`}
+        onClick={() => void removeFile(image.path)}
+      >
+        ✕
+      </button>
+    </li>
+  );
+}
+
+function OtherFiles() {
+  const report = inspection.value;
+  const others =
+    report?.files.filter(({ path }) => !report.images.some((image) => image.path === path)) ?? [];
+  if (others.length === 0) {
+    return null;
+  }
+  return (
+    <>
+      <h3>Orientation and other files</h3>
+      <ul class="files">
+        {others.map(({ path, description }) => (
+          <li key={path}>
+            <span class="name" title={path}>
+              {baseName(path)}
+            </span>
+            <span class="muted" title={description}>
+              {description}
+            </span>
+            <button
+              type="button"
+              class="quiet"
+              aria-label={`Remove ${path}`}
+              onClick={() => void removeFile(path)}
+            >
+              ✕
+            </button>
+          </li>
+        ))}
+      </ul>
+    </>
+  );
+}
+
+function Warnings() {
+  const all = new Set([...(inspection.value?.warnings ?? []), ...(scene.value?.warnings ?? [])]);
+  if (all.size === 0) {
+    return null;
+  }
+  return (
+    <>
+      <h3>Warnings</h3>
+      <ul class="warnings">
+        {[...all].map((text) => (
+          <li key={text}>{text}</li>
+        ))}
+      </ul>
+    </>
+  );
+}
+
+function baseName(path: string): string {
+  return path.slice(path.lastIndexOf("/") + 1);
+}

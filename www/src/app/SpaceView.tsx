@@ -1,0 +1,243 @@
+/** The 3D view: layers follow the results, the tab and the switches above it. */
+import { signal, useSignalEffect } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import { THEME_COLOURS } from "../shared/palette";
+import { boundsOf, boundsOfFacets, boundsOfLines } from "../viewer/bounds";
+import { buildCameras } from "../viewer/cameras";
+import { buildFacets } from "../viewer/facets";
+import { buildFans } from "../viewer/fans";
+import { buildLines } from "../viewer/lines";
+import { buildModel, type ModelLayer, type ModelMode } from "../viewer/model";
+import { GRID_STEP_M, Viewer } from "../viewer/viewer";
+import { notify } from "./actions";
+import { Legend } from "./Legend";
+import { results, scene, selection, type Tab, tab } from "./state";
+import { theme } from "./theme";
+
+const LAYERS = ["lines", "fans", "facets", "model", "cameras"] as const;
+type LayerName = (typeof LAYERS)[number];
+
+const LAYER_TITLES: Record<LayerName, string> = {
+  lines: "3D lines",
+  fans: "Half-planes",
+  facets: "Facets",
+  model: "Model",
+  cameras: "Cameras",
+};
+
+/** What each tab shows until a person switches something. */
+const shown = signal<Record<Tab, readonly LayerName[]>>({
+  images: [],
+  segments: [],
+  matches: [],
+  lines: ["lines"],
+  halfplanes: ["lines", "fans"],
+  facets: ["facets"],
+  model: ["model"],
+});
+const mode = signal<ModelMode>("textured");
+/** The viewer while it exists; the effects below wait for it. */
+const viewer = signal<Viewer | null>(null);
+const model = signal<ModelLayer | null>(null);
+
+export function SpaceView({ hidden }: { hidden: boolean }) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  useEffect(() => createViewer(canvas.current), []);
+  useLayers();
+  const isEmpty = layerIsEmpty(tab.value);
+  return (
+    <div class="space-view" hidden={hidden}>
+      <div class="toolbar">
+        <LayerSwitches />
+        {shown.value[tab.value].includes("model") && <ModeSwitches />}
+        <span class="grow" />
+        <Legend />
+        <button type="button" onClick={() => viewer.value?.lookAt(boundsNow())}>
+          Fit
+        </button>
+        <button type="button" onClick={() => viewer.value?.lookDown()}>
+          Top
+        </button>
+      </div>
+      <div class="space-canvas">
+        <canvas
+          ref={canvas}
+          tabIndex={0}
+          role="img"
+          data-testid="viewer"
+          aria-label="3D view: drag to orbit, right-drag or arrows to move, scroll to zoom, click to pick"
+          onKeyDown={(event) => {
+            if (event.key === "Escape") {
+              selection.value = null;
+            }
+          }}
+        />
+        {isEmpty && (
+          <div class="empty over">
+            <p>Nothing to show yet.</p>
+            <p class="muted">This view fills when its stage has run.</p>
+          </div>
+        )}
+        {!isEmpty && <span class="scale muted numbers">grid {GRID_STEP_M} m</span>}
+      </div>
+    </div>
+  );
+}
+
+function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefined {
+  if (canvas === null) {
+    return undefined;
+  }
+  try {
+    viewer.value = new Viewer(canvas, THEME_COLOURS[theme.peek()], (picked) => {
+      selection.value = picked;
+    });
+  } catch {
+    notify({
+      severity: "warning",
+      title: "No 3D view",
+      text: "This browser offers no WebGL 2. Everything else works, and the model can be downloaded.",
+      advice: "Switch on hardware acceleration in the browser's settings to see the model here.",
+    });
+  }
+  return () => {
+    viewer.value?.dispose();
+    viewer.value = null;
+  };
+}
+
+/** Keeps the viewer's layers, modes, theme and selection as the signals say. */
+function useLayers(): void {
+  useSignalEffect(() => {
+    const { lines } = results.value;
+    viewer.value?.setLayer("lines", lines === null ? null : buildLines(lines));
+    if (lines !== null) {
+      viewer.value?.lookAt(boundsOfLines(lines));
+    }
+  });
+  useSignalEffect(() => {
+    const { lines, halfPlanes } = results.value;
+    const has = lines !== null && halfPlanes !== null;
+    viewer.value?.setLayer("fans", has ? buildFans(halfPlanes, lines) : null);
+  });
+  useSignalEffect(() => {
+    const { facets } = results.value;
+    viewer.value?.setLayer("facets", facets === null ? null : buildFacets(facets));
+  });
+  useSignalEffect(() => {
+    const views = scene.value?.views;
+    const target = boundsNow().center;
+    // The bounds are in the viewer's frame, the cameras in the local one.
+    const local = target.set(target.x, -target.z, target.y);
+    viewer.value?.setLayer("cameras", views === undefined ? null : buildCameras(views, local));
+  });
+  useSignalEffect(() => {
+    void showModel(results.value.glb);
+  });
+  useSignalEffect(() => {
+    model.value?.setMode(mode.value);
+    model.value?.setTheme(THEME_COLOURS[theme.value]);
+    viewer.value?.setTheme(THEME_COLOURS[theme.value]);
+  });
+  // Last, so that fresh layers are shown or hidden, and highlighted, as they should be.
+  useSignalEffect(() => {
+    void [results.value, scene.value, model.value];
+    for (const name of LAYERS) {
+      viewer.value?.showLayer(name, shown.value[tab.value].includes(name));
+    }
+    viewer.value?.highlight(selection.value);
+  });
+}
+
+async function showModel(glb: Uint8Array<ArrayBuffer> | null): Promise<void> {
+  if (glb === null) {
+    model.value = null;
+    viewer.peek()?.setLayer("model", null);
+    return;
+  }
+  try {
+    const layer = await buildModel(glb);
+    if (results.peek().glb !== glb) {
+      layer.dispose();
+      return;
+    }
+    layer.setMode(mode.peek());
+    viewer.peek()?.setLayer("model", layer);
+    model.value = layer;
+    viewer.peek()?.lookAt(boundsOf(layer.object));
+  } catch (error) {
+    notify({ severity: "error", title: "The model cannot be shown", text: String(error) });
+  }
+}
+
+/** What the present tab shows, as a sphere in the viewer's frame. */
+function boundsNow() {
+  const { lines, facets } = results.value;
+  if (tab.value === "model" && model.value !== null) {
+    return boundsOf(model.value.object);
+  }
+  if (tab.value === "facets" && facets !== null && facets.length > 0) {
+    return boundsOfFacets(facets);
+  }
+  return boundsOfLines(lines ?? new Float64Array());
+}
+
+function layerIsEmpty(name: Tab): boolean {
+  const { lines, halfPlanes, facets, glb } = results.value;
+  switch (name) {
+    case "lines":
+      return lines === null;
+    case "halfplanes":
+      return halfPlanes === null;
+    case "facets":
+      return facets === null;
+    case "model":
+      return glb === null;
+    default:
+      return false;
+  }
+}
+
+function LayerSwitches() {
+  const visible = shown.value[tab.value];
+  const toggle = (name: LayerName) => () => {
+    const next = visible.includes(name) ? visible.filter((one) => one !== name) : [...visible, name];
+    shown.value = { ...shown.value, [tab.value]: next };
+  };
+  return (
+    <fieldset class="choice">
+      <legend class="visually-hidden">Layers</legend>
+      {LAYERS.map((name) => (
+        <button key={name} type="button" aria-pressed={visible.includes(name)} onClick={toggle(name)}>
+          {LAYER_TITLES[name]}
+        </button>
+      ))}
+    </fieldset>
+  );
+}
+
+const MODES: readonly (readonly [ModelMode, string])[] = [
+  ["textured", "Textured"],
+  ["plain", "Plain"],
+  ["wireframe", "Wireframe"],
+];
+
+function ModeSwitches() {
+  return (
+    <fieldset class="choice">
+      <legend class="visually-hidden">Appearance</legend>
+      {MODES.map(([name, title]) => (
+        <button
+          key={name}
+          type="button"
+          aria-pressed={mode.value === name}
+          onClick={() => {
+            mode.value = name;
+          }}
+        >
+          {title}
+        </button>
+      ))}
+    </fieldset>
+  );
+}

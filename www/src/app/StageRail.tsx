@@ -1,0 +1,119 @@
+/** The stages in order: run, cancel, progress, time and counts. */
+import { cancel, runAll, runTo } from "./actions";
+import { stageWords } from "./stages";
+import {
+  files,
+  freshStages,
+  isBusy,
+  runningStage,
+  type StageState,
+  type StageStatus,
+  stages,
+  tab,
+} from "./state";
+
+const STATUS_WORDS: Record<StageStatus, string> = {
+  waiting: "not run",
+  running: "running",
+  done: "done",
+  outdated: "outdated",
+  failed: "failed",
+};
+
+export function StageRail() {
+  const isRunning = runningStage.value !== null;
+  return (
+    <section class="rail" aria-label="Stages">
+      <div class="rail-run">
+        {isRunning ? (
+          <button type="button" onClick={() => void cancel()}>
+            Cancel
+          </button>
+        ) : (
+          <button
+            type="button"
+            class="primary"
+            disabled={!canRun(stages.value.length)}
+            onClick={() => void runAll()}
+          >
+            Run all
+          </button>
+        )}
+        <span class="muted numbers">{totalTime(stages.value)}</span>
+      </div>
+      <ol>
+        {stages.value.map((stage, position) => (
+          <StageCard key={stage.name} stage={stage} position={position} />
+        ))}
+      </ol>
+    </section>
+  );
+}
+
+/** Whether there is something to run among the first `count` stages, and nothing else going on. */
+function canRun(count: number): boolean {
+  return files.value.length > 0 && !isBusy.value && freshStages.value < count;
+}
+
+function StageCard({ stage, position }: { stage: StageState; position: number }) {
+  const words = stageWords(stage.name);
+  const percent = Math.round(100 * stage.fraction);
+  return (
+    <li class={`stage ${stage.status}`} data-stage={stage.name} data-status={stage.status}>
+      <div class="row spread">
+        <button
+          type="button"
+          class="link"
+          onClick={() => {
+            tab.value = words.tab;
+          }}
+        >
+          {words.title}
+        </button>
+        <button
+          type="button"
+          class="quiet"
+          aria-label={`Run up to ${words.title}`}
+          title={`Run up to ${words.title}`}
+          disabled={!canRun(position + 1)}
+          onClick={() => void runTo(stage.name)}
+        >
+          ▸
+        </button>
+      </div>
+      <span class="muted section">{words.section}</span>
+      {stage.status === "running" ? (
+        <progress max={1} value={stage.fraction} aria-label={`${words.title}: ${percent} %`} />
+      ) : (
+        <span class="numbers counts" title={countsText(stage)}>
+          {countsText(stage) || STATUS_WORDS[stage.status]}
+        </span>
+      )}
+      <span class="muted numbers">{statusLine(stage)}</span>
+      {stage.warnings.length > 0 && (
+        <span class="stage-warning" title={stage.warnings.join("\n")}>
+          {stage.warnings.length} {stage.warnings.length === 1 ? "warning" : "warnings"}
+        </span>
+      )}
+    </li>
+  );
+}
+
+function statusLine(stage: StageState): string {
+  if (stage.status === "running") {
+    return `${Math.round(100 * stage.fraction)} %`;
+  }
+  const time = stage.seconds === null ? "" : `${stage.seconds.toFixed(1)} s`;
+  return stage.status === "outdated" || stage.status === "failed" ? STATUS_WORDS[stage.status] : time;
+}
+
+function countsText({ counts }: StageState): string {
+  return Object.entries(counts)
+    .map(([name, count]) => `${count.toLocaleString("en")} ${name.replaceAll("_", " ")}`)
+    .join(", ");
+}
+
+function totalTime(all: readonly StageState[]): string {
+  const seconds = all.reduce((sum, stage) => sum + (stage.seconds ?? 0), 0);
+  return seconds > 0 ? `${seconds.toFixed(1)} s in all` : "";
+}

@@ -1,0 +1,371 @@
+/** What a person can do, and what follows from it: the only place that talks to the worker. */
+import { batch } from "@preact/signals";
+import type { InputFile } from "../shared/messages";
+import type { Params, SceneInfo } from "../shared/results";
+import { Engine, EngineError } from "./engine";
+import { failureNotice } from "./notices";
+import { firstStageOf, stageWords } from "./stages";
+import {
+  activity,
+  announcement,
+  defaults,
+  exportNames,
+  files,
+  freshStages,
+  images,
+  inspection,
+  NO_RESULTS,
+  type Notice,
+  notices,
+  params,
+  projectName,
+  type Results,
+  results,
+  type StageState,
+  scene,
+  selection,
+  shownView,
+  stages,
+  tab,
+} from "./state";
+
+const engine = new Engine((stage, fraction) => {
+  if (stages.value.some(({ name, status }) => name === stage && status === "running")) {
+    updateStage(stage, { fraction });
+  }
+});
+
+/** Whether the present worker holds the project's files, and has the scene loaded. */
+let filesInWorker = false;
+let sceneInWorker = false;
+let lastNotice = 0;
+
+/** So many refusals are shown at once: the first ones usually explain the others. */
+const MAX_PROBLEMS = 4;
+
+/** Compiles the core and reads its stages and defaults. */
+export async function start(): Promise<void> {
+  await guarded("Starting", async () => {
+    await openEngine();
+  });
+}
+
+/** Adds files (the same path replaces), inspects them, and loads the scene once it looks whole. */
+export async function addFiles(added: InputFile[], name?: string): Promise<void> {
+  if (added.length === 0) {
+    return;
+  }
+  const byPath = new Map(files.value.map((file) => [file.path, file]));
+  for (const file of added) {
+    byPath.set(file.path, file);
+  }
+  if (name !== undefined || projectName.value === "") {
+    projectName.value = name ?? "Own files";
+  }
+  await setProject([...byPath.values()]);
+}
+
+export async function removeFile(path: string): Promise<void> {
+  await setProject(files.value.filter((file) => file.path !== path));
+}
+
+export async function clearProject(): Promise<void> {
+  projectName.value = "";
+  await setProject([]);
+}
+
+/** Fetches the demo scene from this site and drops it in as if it were the user's. */
+export async function openDemo(): Promise<void> {
+  const fetched = await guarded("Fetching the demo scene", fetchDemo);
+  if (fetched === undefined) {
+    return;
+  }
+  files.value = [];
+  await addFiles(fetched.files, fetched.title);
+  await runAll();
+}
+
+/** Runs every stage up to `target` that the worker has not run with the present parameters. */
+export async function runTo(target: string): Promise<void> {
+  await guarded("", async () => {
+    await ensureScene();
+    const names = stages.value.map(({ name }) => name);
+    const end = names.indexOf(target);
+    for (let i = freshStages.value; i <= end; i += 1) {
+      await runStage(names[i] as string);
+      freshStages.value = i + 1;
+    }
+  });
+}
+
+export async function runAll(): Promise<void> {
+  const last = stages.value.at(-1);
+  if (last !== undefined) {
+    await runTo(last.name);
+  }
+}
+
+/** Ends the worker. What it had found stays on the page; the next run starts afresh. */
+export async function cancel(): Promise<void> {
+  forgetWorker();
+  engine.close();
+  batch(() => {
+    activity.value = "";
+    stages.value = stages.value.map((stage) =>
+      stage.status === "running" ? { ...stage, status: "waiting", fraction: 0 } : stage,
+    );
+    exportNames.value = [];
+  });
+  say("Cancelled. The next run begins with the first stage.");
+  await start();
+}
+
+/** Changes one parameter; stages that depend on it become outdated. */
+export function setParam(group: string, next: Params[string]): void {
+  params.value = { ...params.value, [group]: next };
+  outdateFrom(
+    firstStageOf(
+      group,
+      stages.value.map(({ name }) => name),
+    ),
+  );
+}
+
+export function resetParams(): void {
+  params.value = structuredClone(defaults.value);
+  outdateFrom(0);
+}
+
+/** Saves one output file through the browser. */
+export async function download(name: string): Promise<void> {
+  await guarded(`Writing ${name}`, async () => {
+    const bytes = await engine.call("exportFile", { name });
+    const url = URL.createObjectURL(new Blob([bytes], { type: mediaType(name) }));
+    const link = document.createElement("a");
+    link.href = url;
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(url), 10_000);
+  });
+}
+
+export function notify(notice: Omit<Notice, "id">): void {
+  lastNotice += 1;
+  notices.value = [...notices.value, { ...notice, id: lastNotice }];
+}
+
+export function dismiss(id: number): void {
+  notices.value = notices.value.filter((notice) => notice.id !== id);
+}
+
+async function setProject(next: InputFile[]): Promise<void> {
+  if (activity.value !== "" || stages.value.some(({ status }) => status === "running")) {
+    forgetWorker();
+    engine.close();
+  }
+  filesInWorker = false;
+  sceneInWorker = false;
+  freshStages.value = 0;
+  batch(() => {
+    files.value = next;
+    inspection.value = null;
+    notices.value = [];
+    clearScene();
+  });
+  if (next.length === 0) {
+    return;
+  }
+  await guarded("Reading files", async () => {
+    await ensureInspected();
+    const problems = inspection.value?.errors ?? [];
+    for (const problem of problems.slice(0, MAX_PROBLEMS)) {
+      notify(failureNotice(problem, "input"));
+    }
+    if (problems.length === 0) {
+      await ensureScene();
+    }
+  });
+}
+
+function clearScene(): void {
+  for (const image of images.value) {
+    image.close();
+  }
+  scene.value = null;
+  images.value = [];
+  results.value = NO_RESULTS;
+  exportNames.value = [];
+  selection.value = null;
+  shownView.value = 0;
+  tab.value = "images";
+  stages.value = stages.value.map(({ name }) => freshStage(name));
+}
+
+async function openEngine(): Promise<void> {
+  if (engine.isOpen) {
+    return;
+  }
+  const core = await engine.open();
+  defaults.value = core.defaults;
+  if (stages.value.length === 0) {
+    params.value = structuredClone(core.defaults);
+    stages.value = core.stages.map(freshStage);
+  }
+}
+
+/** Gives the worker the project's files, where it does not hold them yet. */
+async function ensureInspected(): Promise<void> {
+  await openEngine();
+  if (!filesInWorker) {
+    inspection.value = await engine.call("setFiles", { files: files.value });
+    filesInWorker = true;
+  }
+}
+
+/** Has the worker load the scene: the replay after a cancelled run and the first load are the same. */
+async function ensureScene(): Promise<void> {
+  await ensureInspected();
+  if (!sceneInWorker) {
+    const loaded = await engine.call("load", { options: {} });
+    sceneInWorker = true;
+    scene.value = loaded;
+    if (images.value.length !== loaded.views.length) {
+      images.value = await fetchImages(loaded);
+    }
+  }
+  await engine.call("setParams", { params: params.value });
+}
+
+async function fetchImages(loaded: SceneInfo): Promise<ImageBitmap[]> {
+  const bitmaps: ImageBitmap[] = [];
+  for (let view = 0; view < loaded.views.length; view += 1) {
+    const { rgba, width, height } = await engine.call("image", { view });
+    bitmaps.push(await createImageBitmap(new ImageData(rgba, width, height)));
+  }
+  return bitmaps;
+}
+
+async function runStage(name: string): Promise<void> {
+  const started = performance.now();
+  updateStage(name, { status: "running", fraction: 0, warnings: [] });
+  say(`${stageWords(name).title} running`);
+  try {
+    const summary = await engine.call("run", { stage: name });
+    const found = await fetchResults(name);
+    const seconds = (performance.now() - started) / 1000;
+    const names = await engine.call("exportNames", {});
+    batch(() => {
+      results.value = { ...results.value, ...found };
+      exportNames.value = names;
+      selection.value = null;
+      tab.value = stageWords(name).tab;
+      updateStage(name, { ...summary, status: "done", fraction: 1, seconds });
+    });
+    say(`${stageWords(name).title} done in ${seconds.toFixed(1)} s`);
+  } catch (error) {
+    const cancelled = error instanceof EngineError && error.kind === "cancelled";
+    updateStage(name, { status: cancelled ? "waiting" : "failed", fraction: 0 });
+    throw error;
+  }
+}
+
+/** What a stage adds to the results. */
+async function fetchResults(stage: string): Promise<Partial<Results>> {
+  switch (stage) {
+    case "segments":
+      return { segments: await perView("segments") };
+    case "matches":
+      return { supports: await perView("matchedSegments") };
+    case "lines":
+      return { supports: await perView("matchedSegments"), lines: await engine.call("lines", {}) };
+    case "halfplanes":
+      return { halfPlanes: await engine.call("halfPlanes", {}) };
+    case "facets":
+      return { facets: await engine.call("facets", {}) };
+    case "model":
+      return { glb: await engine.call("exportFile", { name: "model.glb" }) };
+    default:
+      return {};
+  }
+}
+
+function perView(call: "segments" | "matchedSegments"): Promise<Float32Array[]> {
+  const views = scene.value?.views ?? [];
+  return Promise.all(views.map((_, view) => engine.call(call, { view })));
+}
+
+function outdateFrom(index: number): void {
+  freshStages.value = Math.min(freshStages.value, index);
+  stages.value = stages.value.map((stage, i) =>
+    i >= index && stage.status === "done" ? { ...stage, status: "outdated" } : stage,
+  );
+}
+
+/** Runs a task, shows what it is, and turns whatever it throws into a notice. */
+async function guarded<T>(what: string, task: () => Promise<T>): Promise<T | undefined> {
+  activity.value = what;
+  try {
+    return await task();
+  } catch (error) {
+    await report(error);
+    return undefined;
+  } finally {
+    if (activity.value === what) {
+      activity.value = "";
+    }
+  }
+}
+
+async function report(error: unknown): Promise<void> {
+  const kind = error instanceof EngineError ? error.kind : "internal";
+  if (kind === "cancelled") {
+    return;
+  }
+  notify(failureNotice(error instanceof Error ? error.message : String(error), kind));
+  if (kind === "crash") {
+    forgetWorker();
+    await start();
+  }
+}
+
+function forgetWorker(): void {
+  filesInWorker = false;
+  sceneInWorker = false;
+  freshStages.value = 0;
+}
+
+async function fetchDemo(): Promise<{ title: string; files: InputFile[] }> {
+  const folder = new URL("demo/", document.baseURI);
+  const manifest = (await (await fetchOk(new URL("manifest.json", folder))).json()) as {
+    title: string;
+    files: string[];
+  };
+  const fetched = await Promise.all(
+    manifest.files.map(async (path) => ({ path, blob: await (await fetchOk(new URL(path, folder))).blob() })),
+  );
+  return { title: manifest.title, files: fetched };
+}
+
+async function fetchOk(url: URL): Promise<Response> {
+  const response = await fetch(url);
+  if (!response.ok) {
+    throw new Error(`${url.pathname}: the site answered ${response.status}. Was the demo folder published?`);
+  }
+  return response;
+}
+
+function freshStage(name: string): StageState {
+  return { name, status: "waiting", fraction: 0, seconds: null, counts: {}, warnings: [] };
+}
+
+function updateStage(name: string, change: Partial<StageState>): void {
+  stages.value = stages.value.map((stage) => (stage.name === name ? { ...stage, ...change } : stage));
+}
+
+function mediaType(name: string): string {
+  return name.endsWith(".json") ? "application/json" : "application/octet-stream";
+}
+
+function say(text: string): void {
+  announcement.value = text;
+}

@@ -1,0 +1,28 @@
+/**
+ * The one visual language of 2D, 3D and charts. Hues are those of Okabe and Ito, lifted so that they stand on a
+ * photograph; each also differs in lightness or thickness, so that no meaning hangs on hue alone.
+ */
+export const PALETTE = {
+  unmatched: "#c3c8d0",
+  matched: "#4aa8ff",
+  merged: "#c78bf2",
+  grown: "#ff9d2e",
+  halfPlane: "#14b8a0",
+  rejected: "#e5484d",
+  selected: "#ffe11a",
+  casing: "#14171c",
+  line: "#4aa8ff",
+} as const;
+
+/** Colours that depend on the theme, for canvases that no style sheet reaches. */
+export interface ThemeColours {
+  background: string;
+  grid: string;
+  ink: string;
+  clay: string;
+}
+
+export const THEME_COLOURS: Record<"light" | "dark", ThemeColours> = {
+  light: { background: "#eef0f2", grid: "#d3d8de", ink: "#2a2f36", clay: "#e6dfd6" },
+  dark: { background: "#15181d", grid: "#2b3139", ink: "#d9dee5", clay: "#b3aca3" },
+};

@@ -1,0 +1,115 @@
+/**
+ * What the core returns, as it crosses the worker boundary. Lengths in metres (local frame: the
+ * input's map frame minus `SceneInfo.origin`, Z up), angles in radians, image positions in pixels
+ * (x right, y down, the centre of the top-left pixel is (0.5, 0.5)).
+ */
+
+export type Vec3 = readonly [number, number, number];
+
+/** What a dropped file was recognised as. */
+export interface FileReport {
+  path: string;
+  kind: string;
+  /** The kind in words. */
+  description: string;
+}
+
+/** An image and its orientation. */
+export interface ImageReport {
+  path: string;
+  name: string;
+  /** Width and height in pixels; null when the header cannot be read. */
+  size: [number, number] | null;
+  /** Where its orientation stands; null when it has none. */
+  orientation: string | null;
+}
+
+/** What a set of files makes, known without decoding an image. */
+export interface Inspection {
+  files: FileReport[];
+  images: ImageReport[];
+  /** The orientation that a run would take. */
+  orientation: string | null;
+  /** Number of views that a run would use. */
+  views: number;
+  warnings: string[];
+  /** Why a run would refuse these files; empty when it would not. */
+  errors: string[];
+}
+
+export interface LoadOptions {
+  /** Path (or folder) of the orientation to prefer. */
+  orientation?: string;
+  views?: string[];
+  groundZ?: number;
+  roi?: [number, number, number, number];
+}
+
+export interface ViewInfo {
+  name: string;
+  width: number;
+  height: number;
+  center: Vec3;
+  /** Row-major 3 x 4 matrix from the local frame to pixels, where the core offers it. */
+  projection?: number[];
+}
+
+export interface SceneInfo {
+  views: ViewInfo[];
+  origin: Vec3;
+  warnings: string[];
+}
+
+export interface StageSummary {
+  stage: string;
+  counts: Record<string, number>;
+  warnings: string[];
+}
+
+export interface Plane {
+  normal: Vec3;
+  d: number;
+}
+
+export interface HalfPlane {
+  line: number;
+  side: "left" | "right";
+  theta: number;
+  sigma_theta?: number;
+  similarity: number;
+  curvature: number;
+  amplitude: number;
+  views: number[];
+  plane: Plane;
+}
+
+export interface Facet {
+  outer: Vec3[];
+  holes: Vec3[][];
+  plane: Plane;
+  building: number;
+  similarity: number;
+  real_ratio?: number;
+  lines?: number[];
+  half_planes?: number[];
+}
+
+export interface ViewImage {
+  width: number;
+  height: number;
+  rgba: Uint8ClampedArray<ArrayBuffer>;
+}
+
+/** Parameters of one stage: what the core's defaults hold, whatever that is. */
+export type ParamValue = number | boolean | string | null | ParamValue[] | { [key: string]: ParamValue };
+export type ParamGroup = Record<string, ParamValue>;
+export type Params = Record<string, ParamGroup>;
+
+/** How a stretch of a matched line came about, as `matchedSegments` numbers it. */
+export const SUPPORT_KINDS = ["matched", "merged", "grown"] as const;
+export type SupportKind = (typeof SUPPORT_KINDS)[number];
+
+/** Numbers per entry of the flat arrays. */
+export const SEGMENT_STRIDE = 4;
+export const SUPPORT_STRIDE = 6;
+export const LINE_STRIDE = 6;

@@ -1,0 +1,81 @@
+/** Half-planes as fans: a strip from the 3D line into the half-plane, fading away from the line. */
+import { BufferAttribute, BufferGeometry, DoubleSide, Mesh, MeshBasicMaterial, Vector3 } from "three";
+import { PALETTE } from "../shared/palette";
+import { type HalfPlane, LINE_STRIDE } from "../shared/results";
+import type { Selection } from "../shared/selection";
+import { zUpGroup } from "./frame";
+import { disposeObject, type Layer, rgb } from "./layer";
+
+/** Width of a fan over the length of its line, and its limits in metres: for the eye only. */
+const RELATIVE_WIDTH = 0.35;
+const WIDTH_M = { min: 0.6, max: 3 };
+const ALPHA = { near: 0.75, far: 0.08, dimmed: 0.3 };
+
+/** @param lines p0 and p1 of each 3D line, local frame, metres */
+export function buildFans(halfPlanes: readonly HalfPlane[], lines: Float64Array): Layer {
+  const object = zUpGroup();
+  const corners = halfPlanes.map((halfPlane) => fanCorners(halfPlane, lines));
+  const all = fanMesh(corners, PALETTE.halfPlane);
+  object.add(all);
+  let chosen: Mesh<BufferGeometry, MeshBasicMaterial> | null = null;
+
+  return {
+    object,
+    pick: (hit) => ({ kind: "halfplane", index: Math.floor((hit.faceIndex ?? 0) / 2) }),
+    highlight(selection: Selection | null) {
+      if (chosen !== null) {
+        object.remove(chosen);
+        disposeObject(chosen);
+        chosen = null;
+      }
+      all.material.opacity = selection === null ? 1 : ALPHA.dimmed;
+      const corner = selection?.kind === "halfplane" ? corners[selection.index] : undefined;
+      if (corner !== undefined) {
+        chosen = fanMesh([corner], PALETTE.selected);
+        chosen.renderOrder = 2;
+        object.add(chosen);
+      }
+    },
+    dispose: () => disposeObject(object),
+  };
+}
+
+/** Start and end on the line, then end and start away from it. */
+export function fanCorners(halfPlane: HalfPlane, lines: Float64Array): Vector3[] {
+  const at = halfPlane.line * LINE_STRIDE;
+  const p0 = new Vector3().fromArray(lines, at);
+  const p1 = new Vector3().fromArray(lines, at + 3);
+  const along = p1.clone().sub(p0);
+  const width = Math.min(WIDTH_M.max, Math.max(WIDTH_M.min, along.length() * RELATIVE_WIDTH));
+  const away = awayFromLine(halfPlane, along.normalize()).multiplyScalar(width);
+  return [p0, p1, p1.clone().add(away), p0.clone().add(away)];
+}
+
+/** The unit vector in the half-plane across its line: to the left or right of it, seen from above. */
+function awayFromLine(halfPlane: HalfPlane, direction: Vector3): Vector3 {
+  const away = new Vector3(...halfPlane.plane.normal).cross(direction).normalize();
+  const left = new Vector3(-direction.y, direction.x, 0);
+  const isLeft = away.dot(left) > 0;
+  return isLeft === (halfPlane.side === "left") ? away : away.negate();
+}
+
+function fanMesh(corners: readonly Vector3[][], colour: string): Mesh<BufferGeometry, MeshBasicMaterial> {
+  const base = rgb(colour);
+  const positions = corners.flatMap((fan) => fan.flatMap((corner) => corner.toArray()));
+  const colours = corners.flatMap(() => [
+    ...[...base, ALPHA.near, ...base, ALPHA.near],
+    ...[...base, ALPHA.far, ...base, ALPHA.far],
+  ]);
+  const indices = corners.flatMap((_, i) => [0, 1, 2, 0, 2, 3].map((corner) => 4 * i + corner));
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(Float32Array.from(positions), 3));
+  geometry.setAttribute("color", new BufferAttribute(Float32Array.from(colours), 4));
+  geometry.setIndex(indices);
+  const material = new MeshBasicMaterial({
+    vertexColors: true,
+    transparent: true,
+    side: DoubleSide,
+    depthWrite: false,
+  });
+  return new Mesh(geometry, material);
+}

@@ -1,0 +1,189 @@
+/** The textured model, read from the very GLB that can be downloaded. */
+import {
+  type BufferGeometry,
+  Color,
+  EdgesGeometry,
+  Group,
+  type Intersection,
+  LineBasicMaterial,
+  LineSegments,
+  type Material,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  type Object3D,
+  Triangle,
+  Vector3,
+} from "three";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { PALETTE, type ThemeColours } from "../shared/palette";
+import type { Selection } from "../shared/selection";
+import { disposeObject, type Layer } from "./layer";
+
+export type ModelMode = "textured" | "plain" | "wireframe";
+
+export interface ModelLayer extends Layer {
+  setMode(mode: ModelMode): void;
+  setTheme(colours: ThemeColours): void;
+}
+
+const DIMMED = new Color(0.45, 0.45, 0.45);
+/** Edges where the faces on both sides differ by less are not drawn, degrees. */
+const EDGE_ANGLE_DEG = 2;
+
+export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLayer> {
+  const bytes = glb.buffer.slice(glb.byteOffset, glb.byteOffset + glb.byteLength);
+  const { scene } = await new GLTFLoader().parseAsync(bytes, "");
+  const object = new Group();
+  object.add(scene);
+  const meshes: Mesh[] = [];
+  scene.traverse((child) => {
+    if (child instanceof Mesh) {
+      meshes.push(child);
+    }
+  });
+  const textured = new Map(meshes.map((mesh) => [mesh, mesh.material as Material]));
+  const plain = new MeshLambertMaterial({ flatShading: true, polygonOffset: true, polygonOffsetFactor: 1 });
+  const hidden = new MeshBasicMaterial({
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+  });
+  const edges = meshes.map(edgesOf);
+  object.add(...edges);
+  let marker: Object3D | null = null;
+
+  return {
+    object,
+    pick: describeHit,
+    highlight(selection: Selection | null) {
+      if (marker !== null) {
+        object.remove(marker);
+        disposeObject(marker);
+        marker = null;
+      }
+      const isChosen = (mesh: Mesh) => matches(mesh, selection);
+      const chosen = meshes.filter(isChosen);
+      for (const material of new Set(textured.values())) {
+        const tint = chosen.length > 0 ? DIMMED : new Color(1, 1, 1);
+        (material as MeshBasicMaterial).color?.copy(tint);
+      }
+      if (chosen.length > 0) {
+        marker = markerOf(chosen);
+        object.add(marker);
+      }
+    },
+    setMode(mode: ModelMode) {
+      for (const mesh of meshes) {
+        const own = textured.get(mesh) as Material;
+        mesh.material = mode === "textured" ? own : mode === "plain" ? plain : hidden;
+      }
+      for (const edge of edges) {
+        edge.visible = mode !== "textured";
+      }
+    },
+    setTheme(colours: ThemeColours) {
+      plain.color.set(colours.clay);
+      hidden.color.set(colours.background);
+      for (const edge of edges) {
+        edge.material.color.set(colours.ink);
+      }
+    },
+    dispose() {
+      for (const material of [...textured.values(), plain, hidden]) {
+        material.dispose();
+      }
+      disposeObject(object);
+    },
+  };
+}
+
+/** Which face was hit, from the extras that the export wrote, and its area. */
+function describeHit(hit: Intersection): Selection | null {
+  const mesh = hit.object;
+  if (!(mesh instanceof Mesh)) {
+    return null;
+  }
+  return {
+    kind: "surface",
+    surface: String(extra(mesh, "surface") ?? "face"),
+    building: numberOrNull(extra(mesh, "building")),
+    facet: numberOrNull(extra(mesh, "facet")),
+    areaM2: areaOf(mesh.geometry),
+  };
+}
+
+function matches(mesh: Mesh, selection: Selection | null): boolean {
+  if (selection?.kind === "facet") {
+    return numberOrNull(extra(mesh, "facet")) === selection.index;
+  }
+  return (
+    selection?.kind === "surface" &&
+    numberOrNull(extra(mesh, "building")) === selection.building &&
+    numberOrNull(extra(mesh, "facet")) === selection.facet &&
+    String(extra(mesh, "surface") ?? "face") === selection.surface &&
+    Math.abs(areaOf(mesh.geometry) - selection.areaM2) < 1e-9
+  );
+}
+
+/** An extra of the node or of the nearest one above it. */
+function extra(object: Object3D, name: string): unknown {
+  for (let at: Object3D | null = object; at !== null; at = at.parent) {
+    if (name in at.userData) {
+      return at.userData[name];
+    }
+  }
+  return undefined;
+}
+
+function numberOrNull(value: unknown): number | null {
+  return typeof value === "number" ? value : null;
+}
+
+function areaOf(geometry: BufferGeometry): number {
+  const positions = geometry.getAttribute("position");
+  const count = geometry.index?.count ?? positions.count;
+  const corner = (i: number) => new Vector3().fromBufferAttribute(positions, geometry.index?.getX(i) ?? i);
+  let area = 0;
+  for (let i = 0; i + 2 < count; i += 3) {
+    area += new Triangle(corner(i), corner(i + 1), corner(i + 2)).getArea();
+  }
+  return area;
+}
+
+function edgesOf(mesh: Mesh): LineSegments<EdgesGeometry, LineBasicMaterial> {
+  const edges = new LineSegments(new EdgesGeometry(mesh.geometry, EDGE_ANGLE_DEG), new LineBasicMaterial());
+  mesh.updateWorldMatrix(true, false);
+  edges.applyMatrix4(mesh.matrixWorld);
+  edges.visible = false;
+  edges.raycast = () => undefined;
+  return edges;
+}
+
+function markerOf(meshes: readonly Mesh[]): Object3D {
+  const marker = new Group();
+  for (const mesh of meshes) {
+    mesh.updateWorldMatrix(true, false);
+    const tint = new Mesh(
+      mesh.geometry.clone(),
+      new MeshBasicMaterial({
+        color: PALETTE.selected,
+        transparent: true,
+        opacity: 0.35,
+        polygonOffset: true,
+        polygonOffsetFactor: -1,
+        polygonOffsetUnits: -1,
+      }),
+    );
+    const outline = new LineSegments(
+      new EdgesGeometry(mesh.geometry, EDGE_ANGLE_DEG),
+      new LineBasicMaterial({ color: PALETTE.selected, depthTest: false }),
+    );
+    for (const part of [tint, outline]) {
+      part.raycast = () => undefined;
+      part.applyMatrix4(mesh.matrixWorld);
+      marker.add(part);
+    }
+  }
+  return marker;
+}

@@ -1,0 +1,221 @@
+/** One WebGL view: orbit, pick, layers. Draws when something changed, not all the time. */
+import {
+  Box3,
+  Color,
+  DirectionalLight,
+  GridHelper,
+  HemisphereLight,
+  type LineBasicMaterial,
+  PerspectiveCamera,
+  Raycaster,
+  Scene,
+  type Sphere,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { ThemeColours } from "../shared/palette";
+import type { Selection } from "../shared/selection";
+import type { Layer } from "./layer";
+
+const FIELD_OF_VIEW_DEG = 35;
+/** A press that moves less, in CSS pixels, is a click. */
+const CLICK_SLACK_PX = 4;
+const PICK_REACH_PX = 7;
+export const GRID_STEP_M = 10;
+
+export class Viewer {
+  readonly #renderer: WebGLRenderer;
+  readonly #scene = new Scene();
+  readonly #camera = new PerspectiveCamera(FIELD_OF_VIEW_DEG, 1, 0.5, 1e5);
+  readonly #controls: OrbitControls;
+  readonly #layers = new Map<string, Layer>();
+  readonly #observer: ResizeObserver;
+  readonly #onPick: (selection: Selection | null) => void;
+  #grid: GridHelper | null = null;
+  #colours: ThemeColours;
+  #bounds: Sphere | null = null;
+  #frame = 0;
+  #pressedAt = new Vector2();
+
+  constructor(
+    canvas: HTMLCanvasElement,
+    colours: ThemeColours,
+    onPick: (selection: Selection | null) => void,
+  ) {
+    this.#renderer = new WebGLRenderer({ canvas, antialias: true });
+    this.#onPick = onPick;
+    this.#colours = colours;
+    const sun = new DirectionalLight(0xffffff, 2.2);
+    sun.position.set(-0.6, 1, 0.5);
+    this.#scene.add(new HemisphereLight(0xffffff, 0x8a8580, 1.4), sun);
+    this.#camera.position.set(40, 50, 60);
+    this.#controls = new OrbitControls(this.#camera, canvas);
+    this.#controls.maxPolarAngle = 0.495 * Math.PI;
+    this.#controls.listenToKeyEvents(canvas);
+    this.#controls.addEventListener("change", () => this.draw());
+    canvas.addEventListener("pointerdown", (event) => this.#pressedAt.set(event.clientX, event.clientY));
+    canvas.addEventListener("pointerup", (event) => this.#click(event));
+    this.#observer = new ResizeObserver(() => this.#resize());
+    this.#observer.observe(canvas);
+    this.setTheme(colours);
+  }
+
+  /** Puts a layer in place of the one of this name, if any. */
+  setLayer(name: string, layer: Layer | null): void {
+    const old = this.#layers.get(name);
+    if (old !== undefined) {
+      this.#scene.remove(old.object);
+      old.dispose();
+      this.#layers.delete(name);
+    }
+    if (layer !== null) {
+      this.#layers.set(name, layer);
+      this.#scene.add(layer.object);
+    }
+    this.draw();
+  }
+
+  showLayer(name: string, visible: boolean): void {
+    const layer = this.#layers.get(name);
+    if (layer !== undefined) {
+      layer.object.visible = visible;
+      this.draw();
+    }
+  }
+
+  highlight(selection: Selection | null): void {
+    for (const layer of this.#layers.values()) {
+      layer.highlight(selection);
+    }
+    this.draw();
+  }
+
+  setTheme(colours: ThemeColours): void {
+    this.#colours = colours;
+    this.#scene.background = new Color(colours.background);
+    this.#buildGrid();
+    this.draw();
+  }
+
+  /** Looks at a sphere from the south-west, as from a low aeroplane, and lays the grid below it. */
+  lookAt(bounds: Sphere): void {
+    this.#bounds = bounds.clone();
+    const distance = bounds.radius / Math.sin((FIELD_OF_VIEW_DEG * Math.PI) / 360);
+    this.#controls.target.copy(bounds.center);
+    this.#camera.position
+      .copy(bounds.center)
+      .addScaledVector(new Vector3(-0.45, 0.72, 0.62).normalize(), distance);
+    this.#controls.update();
+    this.#buildGrid();
+    this.draw();
+  }
+
+  /** Straight down, north up. */
+  lookDown(): void {
+    const distance = this.#camera.position.distanceTo(this.#controls.target);
+    this.#camera.position.copy(this.#controls.target).add(new Vector3(0, distance, 1e-3 * distance));
+    this.#controls.update();
+    this.draw();
+  }
+
+  draw(): void {
+    if (this.#frame === 0) {
+      this.#frame = requestAnimationFrame(() => this.#render());
+    }
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.#frame);
+    this.#observer.disconnect();
+    for (const name of [...this.#layers.keys()]) {
+      this.setLayer(name, null);
+    }
+    cancelAnimationFrame(this.#frame);
+    this.#controls.dispose();
+    this.#renderer.dispose();
+  }
+
+  #render(): void {
+    this.#frame = 0;
+    const distance = this.#camera.position.distanceTo(this.#controls.target);
+    this.#camera.near = Math.max(0.1, distance / 200);
+    this.#camera.far = Math.max(5000, distance * 20);
+    this.#camera.updateProjectionMatrix();
+    this.#renderer.render(this.#scene, this.#camera);
+  }
+
+  #resize(): void {
+    const canvas = this.#renderer.domElement;
+    const { clientWidth, clientHeight } = canvas;
+    if (clientWidth === 0 || clientHeight === 0) {
+      return;
+    }
+    this.#renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.#renderer.setSize(clientWidth, clientHeight, false);
+    this.#camera.aspect = clientWidth / clientHeight;
+    cancelAnimationFrame(this.#frame);
+    this.#render();
+  }
+
+  #click(event: PointerEvent): void {
+    if (this.#pressedAt.distanceTo(new Vector2(event.clientX, event.clientY)) > CLICK_SLACK_PX) {
+      return;
+    }
+    const { clientWidth, clientHeight } = this.#renderer.domElement;
+    const at = new Vector2((event.offsetX / clientWidth) * 2 - 1, 1 - (event.offsetY / clientHeight) * 2);
+    this.#onPick(this.#pickAt(at));
+  }
+
+  /** Thin things first: a line is picked even where a facet is in front of it by a hair. */
+  #pickAt(at: Vector2): Selection | null {
+    const caster = new Raycaster();
+    caster.setFromCamera(at, this.#camera);
+    const distance = this.#camera.position.distanceTo(this.#controls.target);
+    const metresPerPx =
+      (2 * distance * Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360)) / this.#renderer.domElement.clientHeight;
+    caster.params.Line.threshold = PICK_REACH_PX * metresPerPx;
+    caster.params.Points.threshold = 2 * PICK_REACH_PX * metresPerPx;
+    (caster.params as { Line2?: { threshold: number } }).Line2 = { threshold: PICK_REACH_PX };
+    for (const name of PICK_ORDER) {
+      const layer = this.#layers.get(name);
+      const hit = layer?.object.visible ? caster.intersectObject(layer.object, true)[0] : undefined;
+      const selection = hit === undefined ? null : (layer?.pick(hit) ?? null);
+      if (selection !== null) {
+        return selection;
+      }
+    }
+    return null;
+  }
+
+  #buildGrid(): void {
+    if (this.#grid !== null) {
+      this.#scene.remove(this.#grid);
+      this.#grid.dispose();
+    }
+    if (this.#bounds === null) {
+      return;
+    }
+    const { center, radius } = this.#bounds;
+    const steps = 2 * Math.ceil((1.5 * radius) / GRID_STEP_M);
+    this.#grid = new GridHelper(steps * GRID_STEP_M, steps, this.#colours.grid, this.#colours.grid);
+    const snapped = (value: number) => Math.round(value / GRID_STEP_M) * GRID_STEP_M;
+    this.#grid.position.set(snapped(center.x), this.#floor(), snapped(center.z));
+    (this.#grid.material as LineBasicMaterial).depthWrite = false;
+    this.#grid.raycast = () => undefined;
+    this.#scene.add(this.#grid);
+  }
+
+  /** The lowest point of the model, or the bottom of the sphere while there is none. */
+  #floor(): number {
+    const model = this.#layers.get("model");
+    if (model !== undefined) {
+      return new Box3().setFromObject(model.object).min.y - 0.02;
+    }
+    return (this.#bounds?.center.y ?? 0) - 0.35 * (this.#bounds?.radius ?? 0);
+  }
+}
+
+/** Layers in the order in which a click tries them. */
+const PICK_ORDER = ["lines", "fans", "facets", "model", "cameras"] as const;

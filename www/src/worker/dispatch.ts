@@ -1,0 +1,129 @@
+/** Answers one request with the core's Session: parse, call, convert. No geometry, no state but the session. */
+import type { CallName, InputFile, Request, Result } from "../shared/messages";
+import type {
+  Facet,
+  HalfPlane,
+  Inspection,
+  LoadOptions,
+  Params,
+  SceneInfo,
+  StageSummary,
+  ViewImage,
+} from "../shared/results";
+
+/** The part of the wasm class that the page uses. */
+export interface CoreSession {
+  addFile(path: string, bytes: Uint8Array): void;
+  clearFiles(): void;
+  inspect(): Inspection;
+  load(options: LoadOptions): SceneInfo;
+  setParams(params: Params): void;
+  runStage(name: string, onProgress: (fraction: number) => void): StageSummary;
+  segments(view: number): Float32Array;
+  matchedSegments(view: number): Float32Array;
+  lines(): Float64Array;
+  halfPlanes(): HalfPlane[];
+  facets(): Facet[];
+  image(view: number): ViewImage;
+  exportFile(name: string): Uint8Array<ArrayBuffer>;
+  exportNames(): string[];
+}
+
+/** The wasm module once compiled: its class and what hangs on the class itself. */
+export interface Core {
+  session: CoreSession;
+  stages: string[];
+  defaults: Params;
+}
+
+export interface Answer {
+  result: Result<CallName>;
+  transfer: Transferable[];
+}
+
+/** Progress is a message at most every so often: the page cannot draw more. */
+const PROGRESS_INTERVAL_MS = 40;
+
+/** Answers every request but `open`, which makes the core. */
+export async function dispatch(
+  core: Core,
+  request: Exclude<Request, { type: "open" }>,
+  onProgress: (stage: string, fraction: number) => void,
+): Promise<Answer> {
+  const { session } = core;
+  switch (request.type) {
+    case "setFiles":
+      return copied(await setFiles(session, request.args.files));
+    case "load":
+      return copied(session.load(request.args.options));
+    case "image":
+      return imageAnswer(session.image(request.args.view));
+    case "setParams":
+      session.setParams(request.args.params);
+      return copied(null);
+    case "run":
+      return copied(runStage(session, request.args.stage, onProgress));
+    case "segments":
+      return moved(session.segments(request.args.view));
+    case "matchedSegments":
+      return moved(session.matchedSegments(request.args.view));
+    case "lines":
+      return moved(session.lines());
+    case "halfPlanes":
+      return copied(session.halfPlanes());
+    case "facets":
+      return copied(session.facets());
+    case "exportNames":
+      return copied(session.exportNames());
+    case "exportFile":
+      return moved(session.exportFile(request.args.name));
+  }
+}
+
+async function setFiles(session: CoreSession, files: InputFile[]): Promise<Inspection> {
+  session.clearFiles();
+  for (const { path, blob } of files) {
+    session.addFile(path, new Uint8Array(await readBlob(path, blob)));
+  }
+  return session.inspect();
+}
+
+/** A file may have vanished since it was dropped: the browser's own message does not name it. */
+async function readBlob(path: string, blob: Blob): Promise<ArrayBuffer> {
+  try {
+    return await blob.arrayBuffer();
+  } catch {
+    throw new Error(`${path}: the file can no longer be read. Was it moved or changed? Add it again.`);
+  }
+}
+
+function runStage(
+  session: CoreSession,
+  stage: string,
+  onProgress: (stage: string, fraction: number) => void,
+): StageSummary {
+  let last = 0;
+  return session.runStage(stage, (fraction) => {
+    const now = performance.now();
+    if (now - last >= PROGRESS_INTERVAL_MS || fraction >= 1) {
+      last = now;
+      onProgress(stage, fraction);
+    }
+  });
+}
+
+function imageAnswer(image: ViewImage): Answer {
+  return {
+    result: { width: image.width, height: image.height, rgba: image.rgba },
+    transfer: [image.rgba.buffer],
+  };
+}
+
+/** Arrays that the core hands out are copies of its memory, so their buffers may move. */
+function moved(array: Float32Array | Float64Array | Uint8Array<ArrayBuffer>): Answer {
+  return { result: array as Result<CallName>, transfer: [array.buffer as ArrayBuffer] };
+}
+
+function copied(result: Result<CallName>): Answer {
+  return { result, transfer: [] };
+}

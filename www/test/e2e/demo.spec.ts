@@ -1,0 +1,110 @@
+import { readFileSync } from "node:fs";
+import { expect, test } from "@playwright/test";
+import { lookOf, openTab, stage, waitForStage, watch } from "./helpers";
+
+test("one click turns the demo scene into a textured model that can be downloaded", async ({ page }) => {
+  const { problems } = watch(page);
+  await page.goto("/");
+  await page.getByRole("button", { name: "Demo scene" }).click();
+  await waitForStage(page, "model");
+  await expect(page.getByRole("alert")).toHaveCount(0);
+  await expect(page.locator(".view")).toHaveCount(6);
+
+  const canvas = page.getByTestId("viewer");
+  await test.step("the viewer shows a textured model", async () => {
+    await expect(async () => {
+      const look = await lookOf(page, canvas);
+      expect(look.drawn).toBeGreaterThan(0.05);
+      expect(look.colours).toBeGreaterThan(40);
+    }).toPass();
+  });
+
+  await test.step("plain and wireframe look different, with fewer colours", async () => {
+    const textured = await lookOf(page, canvas);
+    await page.getByRole("button", { name: "Plain" }).click();
+    await expect(async () => {
+      expect((await lookOf(page, canvas)).colours).toBeLessThan(textured.colours);
+    }).toPass();
+    await page.getByRole("button", { name: "Wireframe" }).click();
+    await expect(async () => {
+      expect((await lookOf(page, canvas)).drawn).toBeLessThan(textured.drawn);
+    }).toPass();
+    await page.getByRole("button", { name: "Textured" }).click();
+  });
+
+  await test.step("the GLB begins as one", async () => {
+    const [download] = await Promise.all([
+      page.waitForEvent("download"),
+      page.getByRole("button", { name: "model.glb" }).click(),
+    ]);
+    expect(download.suggestedFilename()).toBe("model.glb");
+    const bytes = readFileSync(await download.path());
+    expect(bytes.subarray(0, 4).toString("latin1")).toBe("glTF");
+    expect(bytes.readUInt32LE(8)).toBe(bytes.length);
+  });
+
+  await test.step("the CityJSON holds buildings", async () => {
+    const [download] = await Promise.all([
+      page.waitForEvent("download"),
+      page.getByRole("button", { name: "model.city.json" }).click(),
+    ]);
+    const city = JSON.parse(readFileSync(await download.path(), "utf8")) as {
+      type: string;
+      CityObjects: Record<string, unknown>;
+    };
+    expect(city.type).toBe("CityJSON");
+    expect(Object.keys(city.CityObjects).length).toBeGreaterThan(0);
+  });
+
+  await test.step("every stage view shows what its stage found", async () => {
+    const image = page.locator(".image-view canvas").first();
+    await openTab(page, "Images");
+    const plain = await lookOf(page, image);
+    expect(plain.colours).toBeGreaterThan(40);
+    for (const name of ["3D lines", "Half-planes", "Facets"]) {
+      await openTab(page, name);
+      await expect(async () => {
+        expect((await lookOf(page, canvas)).colours, name).toBeGreaterThan(4);
+      }).toPass();
+    }
+  });
+
+  await test.step("a line that is picked in an image shows its numbers", async () => {
+    await openTab(page, "Matches");
+    const image = page.locator(".image-view canvas").first();
+    const box = await image.boundingBox();
+    const inspector = page.getByTestId("inspector");
+    for (let i = 0; i < 60 && !(await inspector.getByText(/^3D line \d+$/).isVisible()); i += 1) {
+      const x = (box?.width ?? 0) * (0.3 + 0.05 * (i % 9));
+      const y = (box?.height ?? 0) * (0.2 + 0.08 * Math.floor(i / 9));
+      await image.click({ position: { x, y } });
+    }
+    await expect(inspector.getByText(/^3D line \d+$/)).toBeVisible();
+    await expect(inspector.getByText("Length")).toBeVisible();
+  });
+
+  await test.step("a changed parameter makes its stage and the later ones outdated, not the earlier", async () => {
+    await page.getByText("Half-plane sweep", { exact: true }).click();
+    const field = page.locator("#param-sweep-min_similarity");
+    await field.fill("0.45");
+    await field.press("Enter");
+    await expect(stage(page, "halfplanes")).toHaveAttribute("data-status", "outdated");
+    await expect(stage(page, "model")).toHaveAttribute("data-status", "outdated");
+    await expect(stage(page, "lines")).toHaveAttribute("data-status", "done");
+    await expect(page.getByText("default 0.4", { exact: true })).toBeVisible();
+  });
+  expect(problems).toEqual([]);
+});
+
+test("a run can be cancelled, and started again", async ({ page }) => {
+  await page.goto("/");
+  await page.getByRole("button", { name: "Demo scene" }).click();
+  await expect(stage(page, "matches")).toHaveAttribute("data-status", "running", { timeout: 60_000 });
+  await page.getByRole("button", { name: "Cancel" }).click();
+  await expect(stage(page, "matches")).toHaveAttribute("data-status", "waiting");
+  await expect(page.getByRole("alert")).toHaveCount(0);
+  await page.getByRole("button", { name: "Run up to Segments" }).click();
+  await waitForStage(page, "segments");
+  await openTab(page, "Segments");
+  await expect(page.locator(".image-view canvas").first()).toBeVisible();
+});

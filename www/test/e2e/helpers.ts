@@ -1,0 +1,113 @@
+/** What the page's tests share: its parts, files to give it, and the pixels that it shows. */
+import { readdirSync, readFileSync } from "node:fs";
+import { expect, type Locator, type Page } from "@playwright/test";
+
+export interface Upload {
+  name: string;
+  mimeType: string;
+  buffer: Buffer;
+}
+
+const DEMO = new URL("../../public/demo/", import.meta.url);
+const HOUSE = new URL("../fixtures/house/", import.meta.url);
+
+export function upload(name: string, buffer: Buffer): Upload {
+  return { name, mimeType: "application/octet-stream", buffer };
+}
+
+export function demoImages(count: number): Upload[] {
+  const folder = new URL("images/", DEMO);
+  const names = readdirSync(folder).sort().slice(0, count);
+  return names.map((name) => upload(name, readFileSync(new URL(name, folder))));
+}
+
+/** The demo's orientation; `change` edits its list of exterior orientations. */
+export function demoOrientation(change = (text: string) => text): Upload[] {
+  const folder = new URL("orientation/photogrammetric/", DEMO);
+  const text = (name: string) => readFileSync(new URL(name, folder), "utf8");
+  return [
+    upload("camera.txt", Buffer.from(text("camera.txt"))),
+    upload("exterior.txt", Buffer.from(change(text("exterior.txt")))),
+  ];
+}
+
+/** A small scene of its own, with its orientation as 3 x 4 matrices. */
+export function houseFiles(): Upload[] {
+  const names = readdirSync(HOUSE).filter((name) => !name.endsWith(".md"));
+  return names.map((name) => upload(name, readFileSync(new URL(name, HOUSE))));
+}
+
+export async function give(page: Page, files: Upload[]): Promise<void> {
+  await page.getByTestId("file-input").setInputFiles(files);
+}
+
+export function stage(page: Page, name: string): Locator {
+  return page.locator(`[data-stage="${name}"]`);
+}
+
+export async function waitForStage(page: Page, name: string, timeout = 200_000): Promise<void> {
+  await expect(stage(page, name)).toHaveAttribute("data-status", "done", { timeout });
+}
+
+export async function openTab(page: Page, name: string): Promise<void> {
+  await page.getByRole("tab", { name, exact: true }).click();
+}
+
+export interface Look {
+  /** Share of pixels that differ from the top left one. */
+  drawn: number;
+  /** Number of different colours, in steps of 16. */
+  colours: number;
+}
+
+/** What an element shows on the screen, from a screenshot that the browser decodes. */
+export async function lookOf(page: Page, element: Locator): Promise<Look> {
+  const png = (await element.screenshot()).toString("base64");
+  return page.evaluate(async (base64) => {
+    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    if (context === null) {
+      throw new Error("no 2D context");
+    }
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    const coarse = (at: number) =>
+      ((data[at] ?? 0) >> 4) * 256 + ((data[at + 1] ?? 0) >> 4) * 16 + ((data[at + 2] ?? 0) >> 4);
+    const background = coarse(0);
+    const seen = new Set<number>();
+    let drawn = 0;
+    for (let at = 0; at < data.length; at += 4) {
+      const colour = coarse(at);
+      seen.add(colour);
+      drawn += colour === background ? 0 : 1;
+    }
+    return { drawn: drawn / (data.length / 4), colours: seen.size };
+  }, png);
+}
+
+/** Fails the test on a script error, and on a request to anywhere but the page's own origin. */
+export function watch(page: Page): { problems: string[] } {
+  const problems: string[] = [];
+  page.on("pageerror", (error) => problems.push(`script error: ${error.message}`));
+  page.on("dialog", (dialog) => {
+    problems.push(`dialog: ${dialog.message()}`);
+    void dialog.dismiss();
+  });
+  page.on("request", (request) => {
+    const { protocol, origin } = new URL(request.url());
+    if (
+      protocol.startsWith("http") &&
+      origin !== new URL(page.url()).origin &&
+      page.url() !== "about:blank"
+    ) {
+      problems.push(`request to ${request.url()}`);
+    }
+  });
+  page.on("console", (message) => {
+    if (message.type() === "error" && /Content Security Policy/.test(message.text())) {
+      problems.push(message.text());
+    }
+  });
+  return { problems };
+}

@@ -1,0 +1,99 @@
+import { expect, test } from "@playwright/test";
+import {
+  demoImages,
+  demoOrientation,
+  give,
+  houseFiles,
+  lookOf,
+  stage,
+  type Upload,
+  upload,
+  waitForStage,
+  watch,
+} from "./helpers";
+
+test("own files with another kind of orientation become a model", async ({ page }) => {
+  const { problems } = watch(page);
+  await page.goto("/");
+  await give(page, houseFiles());
+  await expect(page.locator(".status.good")).toHaveCount(6);
+  await page.getByRole("button", { name: "Run all" }).click();
+  await waitForStage(page, "model");
+  await expect(stage(page, "lines")).toContainText(/[1-9]\d* .*lines?/);
+  await expect(async () => {
+    expect((await lookOf(page, page.getByTestId("viewer"))).drawn).toBeGreaterThan(0.02);
+  }).toPass();
+  expect(problems).toEqual([]);
+});
+
+const truncated = (): Upload[] => {
+  const [first, ...others] = demoImages(3) as [Upload, ...Upload[]];
+  return [upload(first.name, first.buffer.subarray(0, 20_000)), ...others, ...demoOrientation()];
+};
+
+const BAD_INPUTS: { what: string; files: () => Upload[]; says: RegExp }[] = [
+  {
+    what: "an image without orientation",
+    files: () => [
+      ...demoImages(3),
+      ...demoOrientation((text) => text.replace(/^s1_02.*$/m, "").replace(/^s2_.*$/gm, "")),
+    ],
+    says: /s1_02|orientation/,
+  },
+  { what: "a truncated JPEG", files: truncated, says: /s1_01\.jpg/ },
+  { what: "two views only", files: () => [...demoImages(2), ...demoOrientation()], says: /three|3/ },
+  {
+    what: "a camera that is not a number",
+    files: () => [
+      ...demoImages(3),
+      ...demoOrientation((text) => text.replace(/^(s1_01\.jpg) \S+/m, "$1 NaN")),
+    ],
+    says: /exterior\.txt/,
+  },
+  {
+    what: "no image at all",
+    files: () => [upload("notes.txt", Buffer.from("nothing of use"))],
+    says: /image|photograph/i,
+  },
+];
+
+for (const { what, files, says } of BAD_INPUTS) {
+  test(`${what} is refused in words, and the page lives on`, async ({ page }) => {
+    const { problems } = watch(page);
+    await page.goto("/");
+    await give(page, files());
+    const alert = page.getByRole("alert").first();
+    await expect(alert).toBeVisible();
+    await expect(alert).toContainText(says);
+    await page.getByRole("button", { name: "Demo scene" }).click();
+    await waitForStage(page, "segments", 60_000);
+    await expect(page.getByRole("alert")).toHaveCount(0);
+    expect(problems).toEqual([]);
+  });
+}
+
+test("a file name is text, whatever it says", async ({ page }) => {
+  const { problems } = watch(page);
+  const names = [
+    '<img src=x onerror="alert(1)">.jpg',
+    "<script>alert(2)<\\script>.jpg",
+    "a&lt;b&#39;';--.jpg",
+    "javascript:alert(3).jpg",
+    `${"long".repeat(60)}.jpg`,
+    "\u202egpj.exe.jpg",
+  ];
+  const [image] = demoImages(1) as [Upload];
+  await page.goto("/");
+  await give(
+    page,
+    names.map((name) => upload(name, image.buffer)),
+  );
+  await expect(page.locator(".view")).toHaveCount(names.length);
+  const shown = await page.locator(".view .name").allTextContents();
+  expect([...shown].sort()).toEqual([...names].sort());
+  await expect(page.locator("#app img")).toHaveCount(1);
+  await expect(page.getByRole("alert").first()).toBeVisible();
+  const width = await page.evaluate(() => document.documentElement.scrollWidth);
+  expect(width).toBeLessThanOrEqual(1280);
+  expect(problems).toEqual([]);
+});

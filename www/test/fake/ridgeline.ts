@@ -1,0 +1,177 @@
+/**
+ * A stand-in for the wasm package, with its interface and nothing behind it: one planted gable, seen from
+ * straight above. For work on the page without Rust (`npm run dev:fake`) and for the worker's unit tests; it is never
+ * part of a build.
+ */
+
+import type { Facet, HalfPlane, Params, SceneInfo, ViewImage } from "../../src/shared/results";
+import type { CoreSession } from "../../src/worker/dispatch";
+import { glbOf } from "./glb";
+
+const SIZE_PX = 400;
+const PX_PER_M = 20;
+const STAGES = ["segments", "matches", "lines", "halfplanes", "facets", "model"];
+
+type P = [number, number, number];
+/** A gable of 12 m by 8 m: eaves at 5 m, ridge at 8 m. */
+const CORNERS: P[] = [
+  [-6, -4, 5],
+  [6, -4, 5],
+  [6, 4, 5],
+  [-6, 4, 5],
+  [-6, 0, 8],
+  [6, 0, 8],
+];
+const EDGES = [
+  [0, 1],
+  [2, 3],
+  [4, 5],
+  [0, 4],
+  [3, 4],
+  [1, 5],
+  [2, 5],
+] as const;
+const SOUTH = { normal: [0, -0.6, 0.8] as P, d: -6.4 };
+const NORTH = { normal: [0, 0.6, 0.8] as P, d: -6.4 };
+
+const corner = (i: number) => CORNERS[i] as P;
+
+function facet(indices: number[], plane: typeof SOUTH): Facet {
+  return { outer: indices.map(corner), holes: [], plane, building: 0, similarity: 0.8, real_ratio: 1 };
+}
+
+export const FACETS: Facet[] = [facet([0, 1, 5, 4], SOUTH), facet([2, 3, 4, 5], NORTH)];
+
+const HALF_PLANES: HalfPlane[] = [
+  { line: 0, side: "left", theta: 0.64, plane: SOUTH },
+  { line: 1, side: "left", theta: 0.64, plane: NORTH },
+  { line: 2, side: "left", theta: -0.64, plane: NORTH },
+  { line: 2, side: "right", theta: -0.64, plane: SOUTH },
+].map((one) => ({
+  ...one,
+  side: one.side as "left" | "right",
+  similarity: 0.7,
+  curvature: 9,
+  amplitude: 0.5,
+  views: [0, 1, 2],
+}));
+
+export class Session implements CoreSession {
+  #files: string[] = [];
+
+  static stages(): string[] {
+    return STAGES;
+  }
+
+  static defaultParams(): Params {
+    return {
+      segments: { min_length_px: 15 },
+      matching: { window_px: 15 },
+      lines3d: {},
+      sweep: { max_theta_deg: 75, min_similarity: 0.4, min_curvature: 4, min_amplitude: 0.2 },
+      roof: {},
+      texture: { max_atlas_px: 4096 },
+    };
+  }
+
+  addFile(path: string): void {
+    this.#files.push(path);
+  }
+
+  clearFiles(): void {
+    this.#files = [];
+  }
+
+  inspect() {
+    const images = this.#images().map((path) => ({
+      path,
+      name: path.slice(path.lastIndexOf("/") + 1),
+      size: [SIZE_PX, SIZE_PX] as [number, number],
+      orientation: "planted",
+    }));
+    return {
+      files: this.#files.map((path) => ({ path, kind: "image", description: "a file" })),
+      images,
+      orientation: "planted",
+      views: images.length,
+      warnings: [],
+      errors: images.length < 3 ? ["fewer than three views; add photographs"] : [],
+    };
+  }
+
+  load(): SceneInfo {
+    if (this.#images().length < 3) {
+      throw Object.assign(new Error("fewer than three views; add photographs"), { name: "InputError" });
+    }
+    const views = this.#images().map((path, i) => ({
+      name: path.slice(path.lastIndexOf("/") + 1),
+      width: SIZE_PX,
+      height: SIZE_PX,
+      center: [40 * i - 80, 0, 120] as P,
+    }));
+    return { views, origin: [1000, 2000, 0], warnings: [] };
+  }
+
+  setParams(): void {}
+
+  runStage(stage: string, onProgress: (fraction: number) => void) {
+    for (let step = 1; step <= 20; step += 1) {
+      const until = performance.now() + 25;
+      while (performance.now() < until);
+      onProgress(step / 20);
+    }
+    return { stage, counts: { [stage]: 7 }, warnings: [] };
+  }
+
+  segments(): Float32Array {
+    return Float32Array.from(EDGES.flatMap(([a, b]) => [...pixel(corner(a)), ...pixel(corner(b))]));
+  }
+
+  matchedSegments(): Float32Array {
+    return Float32Array.from(
+      EDGES.flatMap(([a, b], i) => [...pixel(corner(a)), ...pixel(corner(b)), i % 3, i]),
+    );
+  }
+
+  lines(): Float64Array {
+    return Float64Array.from(EDGES.flatMap(([a, b]) => [...corner(a), ...corner(b)]));
+  }
+
+  halfPlanes(): HalfPlane[] {
+    return HALF_PLANES;
+  }
+
+  facets(): Facet[] {
+    return FACETS;
+  }
+
+  image(): ViewImage {
+    const rgba = new Uint8ClampedArray(4 * SIZE_PX * SIZE_PX);
+    for (let i = 0; i < SIZE_PX * SIZE_PX; i += 1) {
+      const shade = 90 + 60 * Math.sin((i % SIZE_PX) / 23) * Math.cos(i / SIZE_PX / 31);
+      rgba.set([shade, shade + 10, shade - 10, 255], 4 * i);
+    }
+    return { width: SIZE_PX, height: SIZE_PX, rgba };
+  }
+
+  exportFile(name: string): Uint8Array<ArrayBuffer> {
+    return name === "model.glb" ? glbOf(FACETS) : new TextEncoder().encode("{}");
+  }
+
+  exportNames(): string[] {
+    return ["model.glb", "report.json"];
+  }
+
+  #images(): string[] {
+    return this.#files.filter((path) => path.endsWith(".jpg"));
+  }
+}
+
+function pixel([x, y]: P): [number, number] {
+  return [SIZE_PX / 2 + x * PX_PER_M, SIZE_PX / 2 - y * PX_PER_M];
+}
+
+/** What the package's default export does: nothing to compile here. */
+export default function init(): Promise<void> {
+  return Promise.resolve();
+}

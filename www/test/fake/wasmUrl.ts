@@ -1,0 +1,2 @@
+/** The fake has nothing to compile. */
+export default "none";

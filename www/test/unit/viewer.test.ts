@@ -1,0 +1,98 @@
+import { Vector3 } from "three";
+import { describe, expect, it } from "vitest";
+import type { HalfPlane } from "../../src/shared/results";
+import { boundsOfLines } from "../../src/viewer/bounds";
+import { groundCorners } from "../../src/viewer/cameras";
+import { normalTint } from "../../src/viewer/facets";
+import { fanCorners } from "../../src/viewer/fans";
+import { yUp, zUpGroup } from "../../src/viewer/frame";
+
+describe("frame", () => {
+  it("turns Z up into Y up as the GLB does", () => {
+    expect(yUp([1, 2, 3]).toArray()).toEqual([1, 3, -2]);
+  });
+
+  it("turns the children of its group by the same map", () => {
+    const group = zUpGroup();
+    const turned = new Vector3(1, 2, 3).applyMatrix4(group.matrix);
+    expect(turned.distanceTo(yUp([1, 2, 3]))).toBeLessThan(1e-12);
+  });
+});
+
+describe("fanCorners", () => {
+  const line = Float64Array.from([0, 0, 5, 10, 0, 5]);
+  const halfPlane = (side: "left" | "right", normal: [number, number, number]): HalfPlane => ({
+    line: 0,
+    side,
+    theta: 0,
+    similarity: 1,
+    curvature: 9,
+    amplitude: 1,
+    views: [],
+    plane: { normal, d: -5 },
+  });
+
+  it.each([
+    ["left", 1],
+    ["right", -1],
+  ] as const)("lies to the %s of the line, seen from above", (side, sign) => {
+    const corners = fanCorners(halfPlane(side, [0, 0, 1]), line);
+    expect(corners.slice(2).every(({ y }) => Math.sign(y) === sign)).toBe(true);
+  });
+
+  it("lies in its plane", () => {
+    const normal = new Vector3(0, -0.6, 0.8);
+    const corners = fanCorners(halfPlane("left", [0, -0.6, 0.8]), line);
+    for (const corner of corners) {
+      expect(normal.dot(corner)).toBeCloseTo(4, 9);
+    }
+    expect(corners[2]?.z).toBeGreaterThan(5);
+  });
+});
+
+describe("groundCorners", () => {
+  it("finds the ground below the image corners of a camera that looks down", () => {
+    // Focal length 100 px, 200 x 100 px, 50 m above the ground, x east, y south.
+    const projection = [100, 0, -100, 5000, 0, -100, -50, 2500, 0, 0, -1, 50];
+    const centre = new Vector3(0, 0, 50);
+    const view = { name: "a", width: 200, height: 100, center: [0, 0, 50] as const, projection };
+    const corners = groundCorners(view, centre, 0);
+    expect(corners?.map(({ x, y, z }) => [x, y, z].map((v) => Math.round(v * 1e6) / 1e6 + 0))).toEqual([
+      [-50, 25, 0],
+      [50, 25, 0],
+      [50, -25, 0],
+      [-50, -25, 0],
+    ]);
+  });
+
+  it("has no answer without a projection", () => {
+    const view = { name: "a", width: 200, height: 100, center: [0, 0, 50] as const };
+    expect(groundCorners(view, new Vector3(0, 0, 50), 0)).toBeNull();
+  });
+});
+
+describe("normalTint", () => {
+  const tint = (normal: [number, number, number]) => normalTint({ plane: { normal, d: 0 } });
+
+  it("gives opposite slopes different hues, and a level facet none", () => {
+    const south = tint([0, -0.6, 0.8]).getHSL({ h: 0, s: 0, l: 0 });
+    const north = tint([0, 0.6, 0.8]).getHSL({ h: 0, s: 0, l: 0 });
+    expect(Math.abs(south.h - north.h)).toBeGreaterThan(0.2);
+    expect(tint([0, 0, 1]).getHSL({ h: 0, s: 0, l: 0 }).s).toBeLessThan(0.02);
+  });
+});
+
+describe("boundsOfLines", () => {
+  it("is not blown up by one stray line", () => {
+    const lines = Array.from({ length: 60 }, (_, i) => [
+      i % 10,
+      Math.floor(i / 10),
+      5,
+      (i % 10) + 1,
+      i / 10,
+      5,
+    ]);
+    lines.push([9000, 9000, 5, 9001, 9000, 5]);
+    expect(boundsOfLines(Float64Array.from(lines.flat())).radius).toBeLessThan(20);
+  });
+});
