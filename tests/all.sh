@@ -41,7 +41,7 @@ www() { (cd www && npm run --silent "$@"); }
 
 step format check cargo fmt --check
 step clippy-native check cargo clippy --all-targets --quiet -- -D warnings
-step clippy-wasm32 check cargo clippy --all-targets --quiet --target wasm32-unknown-unknown -- -D warnings
+step clippy-wasm32 check cargo clippy --lib --bins --tests --quiet --target wasm32-unknown-unknown -- -D warnings
 step typecheck check www typecheck
 step biome check www lint
 if [ "${1:-all}" = all ]; then
