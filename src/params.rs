@@ -110,18 +110,100 @@ impl Default for EdgelParams {
 pub struct MatchParams {
     /// Side of the correlation window, px. B99 3.2: "15 x 15".
     pub window_px: usize,
+    /// Least correlation of an edgel that counts. B99 3.2: "the threshold value is 0.6".
+    pub edgel_correlation: f64,
+    /// Least number of such edgels. B99 3.2: "the minimum is 15 edgels"; B99 4.1: "only 10 matched
+    /// edgels (rather than 15)" where planes are built on the lines, as here.
+    pub min_edgels: usize,
+    /// Least score of a pair, see [`crate::linematch::EdgelScore`]. Assumption: the paper gives no value; at 0.5 a line
+    /// is seen unoccluded over more than half of its edgels.
+    pub pair_score: f64,
+    /// Share of `pair_score` asked of a third view with a segment at the predicted position. B99 3.2:
+    /// "about 50% of its value".
+    pub with_segment: f64,
+    /// The same without a segment. B99 3.2: "about 50% more than its value".
+    pub without_segment: f64,
+    /// Least number of views of a line where six or more see it. B99 3.4: "here 4". Three where
+    /// fewer do.
+    pub min_views: usize,
+    /// Must the bright side be the same in all views? Assumption: one flight, one sun.
+    pub same_contrast: bool,
+    /// Grey-value noise that windows are trusted against, 0 to 1. Assumption: an 8-bit camera and a
+    /// good JPEG.
+    pub noise: f64,
+    /// Angles of the planes tried on either side of the line, degrees, the horizontal one first
+    /// (Schmid and Zisserman 1997). Assumption: up to the slopes of roofs, so close that a window's edge is
+    /// less than a pixel off at a base-to-height ratio of 0.4.
+    pub plane_angles_deg: Vec<f64>,
+    /// Least sine of the angle at which a ray meets the other segment's interpretation plane:
+    /// baseline over height times the sine of the line's angle to the epipolar lines. Assumption:
+    /// below 0.04 an error of one pixel moves the line by 25 ground pixels in depth.
+    pub min_intersection_sine: f64,
+    /// Steepest line, degrees. Assumption: roof edges; verticals have no plane across them.
+    pub max_slope_deg: f64,
+    /// Distance at which a segment lies "at the predicted position", px, where the prediction itself is
+    /// certain; three standard deviations where it is not. Assumption.
+    pub gate_px: f64,
+    /// Longest gap bridged by correlation, px. Assumption: B99 3.3 asks for correlation support only; beyond
+    /// about four windows neighbouring houses' edges in one line become likelier than one line.
+    pub max_gap_px: f64,
+    /// Largest number of partner views of a view. Assumption: keeps the work linear in the number of views.
+    pub max_partners: usize,
+    /// Heights between which lines are sought, metres in the scene's frame; estimated where `None`.
+    pub z_range_m: Option<[f64; 2]>,
 }
 
 impl Default for MatchParams {
     fn default() -> Self {
-        Self { window_px: 15 }
+        Self {
+            window_px: 15,
+            edgel_correlation: 0.6,
+            min_edgels: 10,
+            pair_score: 0.5,
+            with_segment: 0.5,
+            without_segment: 1.5,
+            min_views: 4,
+            same_contrast: true,
+            noise: 0.006,
+            plane_angles_deg: vec![0.0, -20.0, 20.0, -40.0, 40.0, -55.0, 55.0],
+            min_intersection_sine: 0.04,
+            max_slope_deg: 75.0,
+            gate_px: 1.5,
+            max_gap_px: 30.0,
+            max_partners: 8,
+            z_range_m: None,
+        }
     }
 }
 
 /// B99 3.2, figure 4: 3D lines.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Lines3dParams {}
+pub struct Lines3dParams {
+    /// Error of a segment's ends that its own covariance does not know, px: calibration,
+    /// compression, edges that are not quite straight. Assumption.
+    pub position_floor_px: f64,
+    /// Scale c of the Cauchy loss, standard deviations. Assumption: the usual 2.4 (95 % efficiency).
+    pub loss_scale: f64,
+    /// Most Levenberg-Marquardt steps. Assumption: a good start converges in fewer than ten.
+    pub max_iterations: usize,
+    /// Residual, in standard deviations, beyond which a segment is not of this line. Assumption.
+    pub max_residual: f64,
+    /// Largest standard deviation of a line across itself, ground pixels. Assumption.
+    pub max_sigma_px: f64,
+}
+
+impl Default for Lines3dParams {
+    fn default() -> Self {
+        Self {
+            position_floor_px: 0.15,
+            loss_scale: 2.4,
+            max_iterations: 20,
+            max_residual: 4.0,
+            max_sigma_px: 3.0,
+        }
+    }
+}
 
 /// B99 4.1: half-planes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -183,9 +265,9 @@ impl Default for SweepParams {
             max_theta_deg: 75.0,
             first_step_deg: 5.0,
             last_step_deg: 1.0,
-            max_peaks: 3,
+            max_peaks: 2,
             window_px: 15,
-            depth_px: 60.0,
+            depth_px: 40.0,
             depth_m: 6.0,
             margin_px: 1.5,
             min_length_px: 15.0,

@@ -69,10 +69,7 @@ fn walk(folder: &Path, prefix: &str, files: &mut Vec<InputFile>) -> Result<(), F
             walk(&path, &format!("{relative}/"), files)?;
         } else if is_wanted(&path) {
             let bytes = fs::read(&path).map_err(|e| unreadable(&path, e))?;
-            files.push(InputFile {
-                path: relative,
-                bytes,
-            });
+            files.push(InputFile::new(&relative, bytes));
         }
     }
     Ok(())

@@ -1,8 +1,9 @@
 //! Border lines in plan: real lines, intersections of planes, closing lines (B99 4.2, 4.3, figures 19 to 22).
 //!
-//! Three kinds of lines may bound a facet:
+//! Four kinds of lines may bound a facet:
 //! * reconstructed 3D lines, whether they lie in the plane with another plane attached or not
 //!   (figure 21), extended at both ends, since detected ends are unreliable (figure 22);
+//! * lines found in a plane from segments of several views ([`super::plane_lines`]);
 //! * new lines in which two neighbouring planes meet (figure 19);
 //! * closing lines across the ends of a supporting line. They stand for the sides of the paper's convex hull,
 //!   where nothing was detected.
@@ -15,6 +16,7 @@ use serde::Serialize;
 
 use super::grouping::{GroupingInput, PlaneGroup};
 use super::{Side, ThetaFrame};
+use crate::geometry::Segment3;
 use crate::params::RoofParams;
 
 /// Where a border line comes from.
@@ -23,6 +25,8 @@ use crate::params::RoofParams;
 pub enum BorderKind {
     /// A reconstructed 3D line.
     Real,
+    /// A line found in a plane.
+    InPlane,
     /// Two planes meet there.
     Intersection,
     /// Hypothesised across the end of a line.
@@ -93,7 +97,7 @@ impl Region {
                     return None;
                 }
                 let depth = length.clamp(params.min_facet_depth_m, params.max_facet_depth_m);
-                let (left, right) = match super::grouping::side_of(input, m) {
+                let (left, right) = match m.side {
                     Some(Side::Left) => (depth, MARGIN),
                     Some(Side::Right) => (MARGIN, depth),
                     // It lies in the plane, but which side of it the plane covers is unknown.
@@ -144,16 +148,20 @@ pub fn border_lines(
     input: &GroupingInput,
     groups: &[PlaneGroup],
     regions: &[Region],
+    plane_lines: &[Segment3],
     params: &RoofParams,
 ) -> Vec<Border> {
     let mut borders: Vec<Border> = Vec::new();
     for border in intersections(input, groups, regions) {
         add(&mut borders, border);
     }
-    let mut real: Vec<Border> = input.lines.iter().filter_map(|l| extended(&l.segment, params)).collect();
-    real.sort_by(|a, b| b.length().total_cmp(&a.length()));
-    for border in real {
-        add(&mut borders, border);
+    let lines: Vec<Segment3> = input.lines.iter().map(|l| l.segment).collect();
+    for (kind, lines) in [(BorderKind::Real, lines.as_slice()), (BorderKind::InPlane, plane_lines)] {
+        let mut real: Vec<Border> = lines.iter().filter_map(|l| extended(kind, l, params)).collect();
+        real.sort_by(|a, b| b.length().total_cmp(&a.length()));
+        for border in real {
+            add(&mut borders, border);
+        }
     }
     for border in closing_lines(input, groups, params) {
         add(&mut borders, border);
@@ -224,14 +232,14 @@ fn stretches(
 }
 
 /// A real line in plan, extended at both ends; `None` when it is nearly vertical.
-fn extended(line: &crate::geometry::Segment3, params: &RoofParams) -> Option<Border> {
+fn extended(kind: BorderKind, line: &Segment3, params: &RoofParams) -> Option<Border> {
     let (a, b) = (line.p0.xy(), line.p1.xy());
     let length = (b - a).norm();
     if length < 0.2 * line.length() || length < 0.1 {
         return None;
     }
     let extra = (b - a) / length * (0.5 * length).clamp(params.extension_m, 3.0 * params.extension_m);
-    Some(Border { kind: BorderKind::Real, a: a - extra, b: b + extra })
+    Some(Border { kind, a: a - extra, b: b + extra })
 }
 
 /// Lines across both ends of every supporting line, on the side of its half-plane.
@@ -239,7 +247,7 @@ fn closing_lines(input: &GroupingInput, groups: &[PlaneGroup], params: &RoofPara
     let mut found = Vec::new();
     for group in groups {
         for member in &group.members {
-            let Some(side) = super::grouping::side_of(input, member) else { continue };
+            let Some(side) = member.side else { continue };
             let line = &input.lines[member.line.index()].segment;
             let Some(frame) = ThetaFrame::new(line, side) else { continue };
             let depth = line.length().clamp(params.min_facet_depth_m, params.max_facet_depth_m);

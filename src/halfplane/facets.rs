@@ -16,9 +16,11 @@ use super::grouping::{GroupingInput, PlaneGroup, group_planes};
 use super::labelling::{Energy, LabelEdge, NO_PLANE};
 use super::neighbourhood::line_neighbours;
 use super::plan::PlanGrid;
+use super::plane_lines::{PlaneLine, lines_in_plane};
 use super::{HalfPlane, ThetaFrame};
 use crate::geometry::{Plane, Segment3};
 use crate::ids::BuildingId;
+use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
 use crate::params::RoofParams;
 use crate::roof::{Facet, Ground};
@@ -64,6 +66,8 @@ pub struct RejectedFacet {
 pub struct FacetTrace {
     /// Groups of coplanar lines and half-planes.
     pub groups: Vec<PlaneGroup>,
+    /// Lines found in the groups' planes.
+    pub plane_lines: Vec<PlaneLine>,
     /// Border lines in plan.
     pub borders: Vec<Border>,
     /// Number of cells that the border lines cut the plan into.
@@ -76,6 +80,7 @@ pub struct FacetTrace {
 /// touch become buildings when walls are added.
 pub fn reconstruct_facets(
     scene: &Scene,
+    segments: &[Vec<ImageSegment>],
     lines: &[Line3d],
     half_planes: &[HalfPlane],
     ground: &Ground,
@@ -83,20 +88,35 @@ pub fn reconstruct_facets(
 ) -> (Vec<Facet>, FacetTrace) {
     let neighbours = line_neighbours(lines);
     let input = GroupingInput { lines, half_planes, neighbours: &neighbours };
-    let groups: Vec<PlaneGroup> = group_planes(&input, params);
+    let mut groups: Vec<PlaneGroup> = group_planes(&input, params);
+    groups.retain(|g| !lies_on_ground(&input, g, ground, params));
     let regions: Vec<Region> = groups.iter().map(|g| Region::new(&input, g, params)).collect();
     let Some(grid) = plan_window(scene, lines, &regions) else {
         return (Vec::new(), FacetTrace { groups, ..FacetTrace::default() });
     };
-    let borders = border_lines(&input, &groups, &regions, params);
+    let plane_lines: Vec<PlaneLine> =
+        crate::parallel::map(&groups, |i, g| lines_in_plane(scene, segments, &g.plane, &regions[i])).concat();
+    let in_plane: Vec<Segment3> = plane_lines.iter().map(|l| l.segment).collect();
+    let borders = border_lines(&input, &groups, &regions, &in_plane, params);
+    let real: Vec<Segment3> = lines.iter().map(|l| l.segment).chain(in_plane).collect();
+    let index = LineIndex::new(real);
     let arrangement = Arrangement::new(&with_frame(&borders, &grid));
     let planes: Vec<Plane> = groups.iter().map(|g| g.plane).collect();
 
     let evidence = Evidence::collect(scene, &input, &groups, &regions, &arrangement, &grid);
-    let mut solver = Solver { energy: evidence.energy(&arrangement, &planes, lines, params), evidence, arrangement, planes };
-    let (facets, rejected) = solver.solve(&input, &groups, ground, params);
+    let energy = evidence.energy(&arrangement, &planes, &index, params);
+    let mut solver = Solver { energy, evidence, arrangement, planes, index };
+    let (facets, rejected) = solver.solve(&groups, ground, params);
     let cells = solver.arrangement.cells;
-    (facets, FacetTrace { groups, borders, cells, rejected })
+    (facets, FacetTrace { groups, plane_lines, borders, cells, rejected })
+}
+
+/// Are all lines of the group lower than any eave?
+fn lies_on_ground(input: &GroupingInput, group: &PlaneGroup, ground: &Ground, params: &RoofParams) -> bool {
+    group.members.iter().all(|m| {
+        let line = &input.lines[m.line.index()].segment;
+        [line.p0, line.p1].iter().all(|p| p.z - ground.z_at(&p.xy()) < 0.7 * params.min_height_m)
+    })
 }
 
 /// The plan grid of the whole scene: the ground pixel as cell, the regions of all groups as window.
@@ -182,7 +202,7 @@ impl Evidence {
         self.cells[cell].binary_search_by_key(&plane, |e| e.0).ok().map(|i| &self.cells[cell][i].1)
     }
 
-    fn energy(&self, arrangement: &Arrangement, planes: &[Plane], lines: &[Line3d], params: &RoofParams) -> Energy {
+    fn energy(&self, arrangement: &Arrangement, planes: &[Plane], index: &LineIndex, params: &RoofParams) -> Energy {
         let unary = self
             .cells
             .iter()
@@ -197,11 +217,10 @@ impl Evidence {
                     .collect()
             })
             .collect();
-        let index = LineIndex::new(lines);
         let edges = arrangement
             .edges
             .iter()
-            .map(|e| self.label_edge(e, arrangement, planes, &index, params))
+            .map(|e| self.label_edge(e, arrangement, planes, index, params))
             .collect();
         Energy { unary, edges }
     }
@@ -331,8 +350,7 @@ const BESIDE_LINE: f64 = 0.25;
 const LINE_SINE: f64 = 0.12;
 
 impl LineIndex {
-    fn new(lines: &[Line3d]) -> Self {
-        let lines: Vec<Segment3> = lines.iter().map(|l| l.segment).collect();
+    fn new(lines: Vec<Segment3>) -> Self {
         let boxes = lines
             .iter()
             .enumerate()
@@ -378,19 +396,18 @@ struct Solver {
     evidence: Evidence,
     arrangement: Arrangement,
     planes: Vec<Plane>,
+    index: LineIndex,
 }
 
 impl Solver {
     /// Labels, delineates and verifies until no facet is withdrawn.
     fn solve(
         &mut self,
-        input: &GroupingInput,
         groups: &[PlaneGroup],
         ground: &Ground,
         params: &RoofParams,
     ) -> (Vec<Facet>, Vec<RejectedFacet>) {
         const ROUNDS: usize = 4;
-        let index = LineIndex::new(input.lines);
         let mut rejected = Vec::new();
         for round in 1..=ROUNDS {
             let labels = self.energy.minimise(self.planes.len() as u32);
@@ -398,7 +415,7 @@ impl Solver {
             let mut facets = Vec::new();
             let mut withdrawn = Vec::new();
             for outline in &delineation.outlines {
-                let facet = self.facet(outline, &delineation, groups, &index);
+                let facet = self.facet(outline, &delineation, groups);
                 match self.verify(&facet, outline, ground, params) {
                     Ok(()) => facets.push(facet),
                     Err(reason) => {
@@ -419,7 +436,7 @@ impl Solver {
         unreachable!("the last round returns")
     }
 
-    fn facet(&self, outline: &Outline, delineation: &Delineation, groups: &[PlaneGroup], index: &LineIndex) -> Facet {
+    fn facet(&self, outline: &Outline, delineation: &Delineation, groups: &[PlaneGroup]) -> Facet {
         let plane = self.planes[outline.plane as usize];
         let group = &groups[outline.plane as usize];
         let lift = |ring: &Vec<usize>| -> Vec<Point3<f64>> {
@@ -436,14 +453,14 @@ impl Solver {
             outer: lift(&outline.outer),
             holes: outline.holes.iter().map(lift).collect(),
             similarity: if weight > 0.0 { correlation / weight } else { 0.0 },
-            real_ratio: self.real_ratio(outline, delineation, index),
+            real_ratio: self.real_ratio(outline, delineation),
             lines: group.lines(),
             half_planes: group.half_planes(),
         }
     }
 
     /// tau_real: the share of the outline on reconstructed lines, B99 4.3.
-    fn real_ratio(&self, outline: &Outline, delineation: &Delineation, index: &LineIndex) -> f64 {
+    fn real_ratio(&self, outline: &Outline, delineation: &Delineation) -> f64 {
         let plane = &self.planes[outline.plane as usize];
         let (mut real, mut total) = (0.0, 0.0);
         for (i, &v) in outline.outer.iter().enumerate() {
@@ -454,7 +471,7 @@ impl Solver {
                 let (p, q) = (a + (b - a) * (k as f64 / pieces), a + (b - a) * ((k + 1) as f64 / pieces));
                 let z = plane.z_at(0.5 * (p.x + q.x), 0.5 * (p.y + q.y));
                 total += (q - p).norm();
-                if index.heights_along(&p, &q).iter().any(|h| (h - z).abs() < LINE_HEIGHT) {
+                if self.index.heights_along(&p, &q).iter().any(|h| (h - z).abs() < LINE_HEIGHT) {
                     real += (q - p).norm();
                 }
             }
@@ -470,7 +487,7 @@ impl Solver {
             return Err(FacetRejection::TooSmall { area_m2 });
         }
         let middle = facet.outer.iter().fold(nalgebra::Vector3::zeros(), |s, p| s + p.coords) / facet.outer.len() as f64;
-        let height_m = middle.z - ground.z_near(&Point2::new(middle.x, middle.y), 20.0);
+        let height_m = middle.z - ground.z_at(&Point2::new(middle.x, middle.y));
         if height_m < params.min_height_m {
             return Err(FacetRejection::NearGround { height_m });
         }

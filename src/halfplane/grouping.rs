@@ -21,6 +21,8 @@ use crate::params::RoofParams;
 pub struct Member {
     /// The line.
     pub line: LineId,
+    /// The side of the line that the plane covers, where that is known.
+    pub side: Option<Side>,
     /// Its half-plane in this plane; `None` for a line that merely lies in it.
     pub half_plane: Option<HalfPlaneId>,
 }
@@ -76,7 +78,70 @@ pub fn group_planes(input: &GroupingInput, params: &RoofParams) -> Vec<PlaneGrou
             groups.push(grow(input, &by_line, seed, &mut free, params));
         }
     }
-    merge_groups(input, groups, params)
+    let mut groups = merge_groups(input, groups, params);
+    add_line_pairs(input, &by_line, &mut groups, params);
+    groups.iter_mut().for_each(|g| infer_sides(input, g));
+    groups
+}
+
+/// Planes of two neighbouring coplanar lines that no half-plane explains (B99 5: "an efficient and robust approach
+/// would use both"): hipped roofs without texture have ridges and eaves, but no half-plane.
+fn add_line_pairs(
+    input: &GroupingInput,
+    by_line: &[Vec<HalfPlaneId>],
+    groups: &mut Vec<PlaneGroup>,
+    params: &RoofParams,
+) {
+    let mut none_free = vec![false; input.half_planes.len()];
+    for (i, neighbours) in input.neighbours.iter().enumerate() {
+        let first = LineId::from_index(i);
+        for &second in neighbours.iter().filter(|&&n| n > first) {
+            if groups.iter().any(|g| g.contains(first) && g.contains(second)) {
+                continue;
+            }
+            let members = vec![member(input, first, None), member(input, second, None)];
+            let Some(plane) = plane_of_pair(input, first, second).filter(|p| all_lie_in(input, p, &members, params))
+            else {
+                continue;
+            };
+            let mut group = PlaneGroup { plane, members };
+            extend(input, by_line, &mut group, &mut none_free, params);
+            groups.push(group);
+        }
+    }
+}
+
+/// The plane through two lines that span one: at an angle, or parallel and apart.
+fn plane_of_pair(input: &GroupingInput, first: LineId, second: LineId) -> Option<Plane> {
+    /// Lines at less than this sine (10 degrees) are parallel; ...
+    const PARALLEL_SINE: f64 = 0.17;
+    /// ... then they must be this far apart, metres.
+    const APART: f64 = 1.0;
+    /// Roof planes are less steep than this (normal's z of 75 degrees, B99 figure 15).
+    const STEEP: f64 = 0.26;
+    let (a, b) = (&input.lines[first.index()].segment, &input.lines[second.index()].segment);
+    let sine = a.direction().cross(&b.direction()).norm();
+    let apart = a.line_distance(&b.at(0.5)).max(b.line_distance(&a.at(0.5)));
+    if sine < PARALLEL_SINE && apart < APART {
+        return None;
+    }
+    fit_plane(input, &[member(input, first, None), member(input, second, None)]).filter(|p| p.normal.z > STEEP)
+}
+
+/// A line that lies in the plane without a half-plane has the plane on the side of the other members.
+fn infer_sides(input: &GroupingInput, group: &mut PlaneGroup) {
+    /// Nearer than this to the line the others do not tell, metres.
+    const UNDECIDED: f64 = 0.5;
+    let middle = |m: &Member| input.lines[m.line.index()].at(0.5);
+    let middles: Vec<_> = group.members.iter().map(middle).collect();
+    for (i, m) in group.members.iter_mut().enumerate().filter(|(_, m)| m.side.is_none()) {
+        let line = &input.lines[m.line.index()].segment;
+        let (d, p) = (line.direction().xy(), line.p0.xy());
+        let offset: f64 = middles.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, q)| d.perp(&(q.xy() - p))).sum();
+        if offset.abs() > UNDECIDED {
+            m.side = Some(if offset > 0.0 { Side::Left } else { Side::Right });
+        }
+    }
 }
 
 fn half_planes_by_line(input: &GroupingInput) -> Vec<Vec<HalfPlaneId>> {
@@ -109,12 +174,28 @@ fn grow(
     free[seed.index()] = false;
     let mut group = PlaneGroup {
         plane: half_plane.plane,
-        members: vec![Member { line: half_plane.line, half_plane: Some(seed) }],
+        members: vec![member(input, half_plane.line, Some(seed))],
     };
-    let mut queue = std::collections::VecDeque::from([half_plane.line]);
+    extend(input, by_line, &mut group, free, params);
+    group
+}
+
+fn member(input: &GroupingInput, line: LineId, half_plane: Option<HalfPlaneId>) -> Member {
+    Member { line, side: half_plane.map(|h| input.half_planes[h.index()].side), half_plane }
+}
+
+/// Adds neighbouring lines and half-planes that lie in the group's plane until there are no more.
+fn extend(
+    input: &GroupingInput,
+    by_line: &[Vec<HalfPlaneId>],
+    group: &mut PlaneGroup,
+    free: &mut [bool],
+    params: &RoofParams,
+) {
+    let mut queue: std::collections::VecDeque<LineId> = group.members.iter().map(|m| m.line).collect();
     while let Some(line) = queue.pop_front() {
         for &next in &input.neighbours[line.index()] {
-            if group.contains(next) || !lies_in_plane(input, &group, next, params) {
+            if group.contains(next) || !lies_in_plane(input, group, next, params) {
                 continue;
             }
             let matching = by_line[next.index()].iter().copied().find(|h| {
@@ -125,7 +206,7 @@ fn grow(
             // A line whose half-planes all rise elsewhere is still a border of this plane when it
             // bounds it on the right side, which delineation decides: it lies in the plane (figure 21 a).
             let before = group.clone();
-            group.members.push(Member { line: next, half_plane: matching });
+            group.members.push(member(input, next, matching));
             match fit_plane(input, &group.members) {
                 Some(plane) if all_lie_in(input, &plane, &group.members, params) => {
                     group.plane = plane;
@@ -134,11 +215,10 @@ fn grow(
                     }
                     queue.push_back(next);
                 }
-                _ => group = before,
+                _ => *group = before,
             }
         }
     }
-    group
 }
 
 /// Does the line lie in the group's plane as far as the group's plane is known there?
@@ -236,11 +316,6 @@ fn are_neighbours(input: &GroupingInput, a: &PlaneGroup, b: &PlaneGroup) -> bool
     a.members.iter().any(|m| {
         lines.contains(&m.line) || input.neighbours[m.line.index()].iter().any(|n| lines.binary_search(n).is_ok())
     })
-}
-
-/// Which side of its line a half-plane member covers.
-pub fn side_of(input: &GroupingInput, member: &Member) -> Option<Side> {
-    member.half_plane.map(|h| input.half_planes[h.index()].side)
 }
 
 fn distance_to_segment(p: &nalgebra::Point3<f64>, line: &Line3d) -> f64 {

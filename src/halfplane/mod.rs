@@ -16,6 +16,7 @@
 //!      trace          what the page draws (B99 figures 12 and 14)
 //! 4.2  neighbourhood  Delaunay triangulation constrained to the projected lines
 //!      grouping       collinear and coplanar grouping (figures 16 to 18)
+//!      plane_lines    new lines in a plane from segments of several views
 //!      borders        border lines, new lines by plane intersection (figures 19 to 22)
 //! 4.3  arrangement    the plan cut into cells by the border lines
 //!      consistency    similarity of a plane over the complete image set
@@ -32,8 +33,11 @@ mod facets;
 mod grouping;
 mod labelling;
 mod neighbourhood;
+#[cfg(test)]
+mod fixture;
 mod peak;
 mod plan;
+mod plane_lines;
 mod poi;
 mod similarity;
 mod strip;
@@ -45,6 +49,7 @@ pub use borders::{Border, BorderKind};
 pub use consistency::{ConsistencyMap, consistency_map};
 pub use facets::{FacetRejection, FacetTrace, RejectedFacet, reconstruct_facets};
 pub use grouping::{Member, PlaneGroup};
+pub use plane_lines::PlaneLine;
 pub use plan::{PlanGrid, image_from_plan, orthophoto};
 pub use poi::PointsOfInterest;
 pub use sweep::{similarity_curve, sweep_half_planes, sweep_side};

@@ -133,8 +133,26 @@ mod tests {
         };
         assert_eq!(good.check(&params), Ok(()));
         let check = |peak: Peak| peak.check(&params).unwrap_err();
-        assert_eq!(check(Peak { similarity: 0.39, ..good }), SweepRejection::LowPeak);
-        assert_eq!(check(Peak { curvature: 3.9, ..good }), SweepRejection::FlatCurve);
-        assert_eq!(check(Peak { amplitude: 0.19, ..good }), SweepRejection::SmallAmplitude);
+        assert_eq!(
+            check(Peak {
+                similarity: 0.39,
+                ..good
+            }),
+            SweepRejection::LowPeak
+        );
+        assert_eq!(
+            check(Peak {
+                curvature: 3.9,
+                ..good
+            }),
+            SweepRejection::FlatCurve
+        );
+        assert_eq!(
+            check(Peak {
+                amplitude: 0.19,
+                ..good
+            }),
+            SweepRejection::SmallAmplitude
+        );
     }
 }

@@ -32,7 +32,12 @@ impl PointsOfInterest {
         for start in 0..edges.data.len() {
             if edges.data[start] {
                 let chain = edges.take_chain(start);
-                points.extend(chain.iter().skip(spacing / 2 % chain.len()).step_by(spacing));
+                points.extend(
+                    chain
+                        .iter()
+                        .skip(spacing / 2 % chain.len())
+                        .step_by(spacing),
+                );
             }
         }
         points.sort_unstable();

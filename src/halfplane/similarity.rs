@@ -5,9 +5,8 @@
 //! with `w(x)` inversely proportional to the distance of x from the projected line, and normalised so
 //! that Sim is in (0, 1): the weights of a view's points sum to one and the views are averaged.
 //!
-//! Deviations: a negative correlation counts as 0, not as its square, because an inverted pattern
-//! is no support; distances below half a window count as half a window (Assumption: windows there
-//! reach the line anyway, and 1/0 would leave one point to decide).
+//! Deviation: a negative correlation counts as 0, not as its square, because an inverted pattern is no
+//! support. The margin beside the line keeps 1/distance finite.
 
 use nalgebra::Point2;
 
@@ -64,22 +63,25 @@ impl<'a> LineSide<'a> {
         params: &'a SweepParams,
     ) -> Result<Self, SweepRejection> {
         let frame = ThetaFrame::new(line, side).ok_or(SweepRejection::NoFrame)?;
-        let (reference, strip, pixels) = most_textured(scene, points, line, &frame, params)
-            .ok_or(SweepRejection::TooShort)?;
+        let (reference, strip, pixels) =
+            most_textured(scene, points, line, &frame, params).ok_or(SweepRejection::TooShort)?;
         // Rows that no window reaches need not be warped.
         let last = pixels.iter().map(|p| p.1).max().unwrap_or(0);
         let strip = strip.truncated(last + params.window_px / 2 + 1);
         let mut patch = Patch::default();
-        patch.warp(&scene.view(reference).gray, &strip, &strip.image_from_strip());
+        patch.warp(
+            &scene.view(reference).gray,
+            &strip,
+            &strip.image_from_strip(),
+        );
         let windows = Windows::new(patch, params.window_px, &pixels);
         if windows.sites.len() < params.min_points {
             return Err(SweepRejection::NoPointsOfInterest);
         }
-        let nearest = params.window_px as f64 * 0.5;
         let mut weights: Vec<f64> = windows
             .sites
             .iter()
-            .map(|site| 1.0 / strip.distance_px(site.row).max(nearest))
+            .map(|site| 1.0 / strip.distance_px(site.row))
             .collect();
         let sum: f64 = weights.iter().sum();
         weights.iter_mut().for_each(|w| *w /= sum);
@@ -107,15 +109,25 @@ impl<'a> LineSide<'a> {
         self.windows
             .sites
             .iter()
-            .map(|s| (m * nalgebra::Vector3::new(at(s.column), at(s.row), 1.0)).xy().into())
+            .map(|s| {
+                (m * nalgebra::Vector3::new(at(s.column), at(s.row), 1.0))
+                    .xy()
+                    .into()
+            })
             .collect()
     }
 
     /// Weighted mean distance of the points of interest from the line, metres on the ground.
     pub fn mean_distance_m(&self) -> f64 {
-        let pixel_m = self.scene.camera(self.reference).ground_pixel(&self.line.at(0.5));
+        let pixel_m = self
+            .scene
+            .camera(self.reference)
+            .ground_pixel(&self.line.at(0.5));
         let sites = self.windows.sites.iter().zip(&self.weights);
-        sites.map(|(s, w)| w * self.strip.distance_px(s.row)).sum::<f64>() * pixel_m
+        sites
+            .map(|(s, w)| w * self.strip.distance_px(s.row))
+            .sum::<f64>()
+            * pixel_m
     }
 
     /// Does the reference view see the upper side of the half-plane? Elsewhere theta has no meaning.
@@ -144,9 +156,7 @@ impl<'a> LineSide<'a> {
         self.count += self.correlations.len() as u64;
         self.pixels += (self.strip.columns * self.strip.rows) as u64;
         let all_inside = whole.iter().all(|c| to.camera.contains(c, 0.5));
-        self.reduce(|site| {
-            all_inside || self.window_is_inside(site, &to.camera, &view_from_strip)
-        })
+        self.reduce(|site| all_inside || self.window_is_inside(site, &to.camera, &view_from_strip))
     }
 
     /// Weighted mean over the sites that the view shows.
@@ -221,4 +231,46 @@ fn most_textured(
         }
     }
     best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixture::{Surface, scene};
+    use super::*;
+    use crate::geometry::Plane;
+    use nalgebra::{Point3, Vector3};
+
+    #[test]
+    fn weights_are_inverse_to_the_distance_and_sum_to_one() {
+        let ground = Surface {
+            plane: Plane::from_point_normal(&Point3::origin(), &Vector3::z()).unwrap(),
+            exists: |_, _| true,
+            texture: 0.3,
+        };
+        let scene = scene(&[ground]);
+        let params = SweepParams::default();
+        let points = PointsOfInterest::detect_all(&scene, &params);
+        let line = Segment3::new(Point3::new(-4.0, 1.0, 0.0), Point3::new(4.0, -1.0, 0.0));
+        let mut side = LineSide::new(&scene, &points, &line, Side::Right, &params).unwrap();
+        assert!((side.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        let product = |i: usize| {
+            let distance = side.strip.distance_px(side.windows.sites[i].row);
+            side.weights[i] * distance
+        };
+        assert!((1..side.weights.len()).all(|i| (product(i) - product(0)).abs() < 1e-12));
+
+        // The mean of squares by hand; an inverted window counts as none.
+        side.correlations = vec![-1.0; side.weights.len()];
+        side.correlations[0] = 0.5;
+        side.correlations[1] = 0.7;
+        let score = side.reduce(|_| true);
+        let expected = side.weights[0] * 0.25 + side.weights[1] * 0.49;
+        assert!((score.similarity - expected).abs() < 1e-12);
+        assert!((score.high - 1.0 / side.weights.len() as f64).abs() < 1e-12);
+        assert_eq!(
+            side.reduce(|i| i == 0),
+            ViewScore::default(),
+            "too little in view"
+        );
+    }
 }

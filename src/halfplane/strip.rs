@@ -100,8 +100,7 @@ impl Strip {
             offset.dot(&self.along),
             offset.dot(&self.across) - self.margin_px,
         );
-        let inside =
-            u >= 0.0 && v >= 0.0 && u < self.columns as f64 && v < self.rows as f64;
+        let inside = u >= 0.0 && v >= 0.0 && u < self.columns as f64 && v < self.rows as f64;
         inside.then_some((u as usize, v as usize))
     }
 
@@ -129,11 +128,7 @@ impl Strip {
 }
 
 /// Where the corners of a rectangle go under a homography; `None` when one is beyond the horizon.
-pub(super) fn corners(
-    h: &Matrix3<f64>,
-    min: [f64; 2],
-    max: [f64; 2],
-) -> Option<[Point2<f64>; 4]> {
+pub(super) fn corners(h: &Matrix3<f64>, min: [f64; 2], max: [f64; 2]) -> Option<[Point2<f64>; 4]> {
     let mut out = [Point2::origin(); 4];
     let rectangle = [
         [min[0], min[1]],
@@ -253,8 +248,12 @@ impl<'a> Sampler<'a> {
 
     /// Eight samples in whole units of 1/510.
     fn bilinear(&self, x: f32x8, y: f32x8) -> f32x8 {
-        let x = x.fast_max(f32x8::ZERO).fast_min(f32x8::splat(self.limit[0]));
-        let y = y.fast_max(f32x8::ZERO).fast_min(f32x8::splat(self.limit[1]));
+        let x = x
+            .fast_max(f32x8::ZERO)
+            .fast_min(f32x8::splat(self.limit[0]));
+        let y = y
+            .fast_max(f32x8::ZERO)
+            .fast_min(f32x8::splat(self.limit[1]));
         let (column, row) = (x.fast_trunc_int(), y.fast_trunc_int());
         let (fx, fy) = (x - column.round_float(), y - row.round_float());
         let (column, row) = (column.to_array(), row.to_array());

@@ -97,7 +97,10 @@ pub fn similarity_curve(
     for &theta in thetas {
         search.evaluate(theta);
     }
-    search.valid = search.best().map(|i| search.valid_at(i)).unwrap_or_default();
+    search.valid = search
+        .best()
+        .map(|i| search.valid_at(i))
+        .unwrap_or_default();
     Ok(search.curve())
 }
 
@@ -137,7 +140,9 @@ impl<'a> Search<'a> {
     /// First pass, subdivision, validity, acceptance.
     fn run(&mut self) -> Result<Found, SweepRejection> {
         let max = self.params.max_theta_deg.to_radians();
-        let steps = (self.params.max_theta_deg / self.params.first_step_deg).ceil().max(1.0) as i32;
+        let steps = (self.params.max_theta_deg / self.params.first_step_deg)
+            .ceil()
+            .max(1.0) as i32;
         let step = max / f64::from(steps);
         for i in -steps..=steps {
             self.evaluate(step * f64::from(i));
@@ -194,7 +199,10 @@ impl<'a> Search<'a> {
             })
             .collect();
         maxima.sort_by(|&a, &b| sums[b].total_cmp(&sums[a]).then(a.cmp(&b)));
+        let highest = maxima.first().map_or(0.0, |&i| sums[i]);
         maxima.truncate(self.params.max_peaks);
+        // Half a step from its top, a peak still has half its height.
+        maxima.retain(|&i| sums[i] >= 0.5 * highest);
         maxima.iter().map(|&i| self.samples[i].theta).collect()
     }
 
@@ -213,14 +221,24 @@ impl<'a> Search<'a> {
     /// Which views are valid at a sample: enough of their correlations are high.
     fn valid_at(&self, sample: usize) -> Vec<bool> {
         let scores = &self.samples[sample].scores;
-        scores.iter().map(|s| s.high >= self.params.min_high_share).collect()
+        scores
+            .iter()
+            .map(|s| s.high >= self.params.min_high_share)
+            .collect()
     }
 
     /// Sum of the similarities of the views valid at a sample; 0 when there are too few.
     fn valid_sum(&self, sample: usize) -> f64 {
-        let valid = self.samples[sample].scores.iter().filter(|s| s.high >= self.params.min_high_share);
+        let valid = self.samples[sample]
+            .scores
+            .iter()
+            .filter(|s| s.high >= self.params.min_high_share);
         let (count, sum) = valid.fold((0, 0.0), |(n, sum), s| (n + 1, sum + s.similarity));
-        if count >= self.params.min_valid_views { sum } else { 0.0 }
+        if count >= self.params.min_valid_views {
+            sum
+        } else {
+            0.0
+        }
     }
 
     /// `Sim` at a sample over the views that count.
@@ -252,7 +270,10 @@ impl<'a> Search<'a> {
         let slopes: Vec<f64> = (0..self.valid.len())
             .filter(|&v| self.valid[v])
             .filter_map(|v| {
-                let curve = self.samples.iter().map(|s| (s.theta, s.scores[v].similarity));
+                let curve = self
+                    .samples
+                    .iter()
+                    .map(|s| (s.theta, s.scores[v].similarity));
                 Parabola::fit(curve, peak.theta, reach).map(|p| p.slope)
             })
             .collect();
@@ -263,11 +284,20 @@ impl<'a> Search<'a> {
     }
 
     fn curve(&self) -> SimilarityCurve {
-        let views = self.line_side.others.iter().enumerate().map(|(v, &view)| ViewCurve {
-            view,
-            valid: self.valid.get(v).copied().unwrap_or(false),
-            similarity: self.samples.iter().map(|s| s.scores[v].similarity).collect(),
-        });
+        let views = self
+            .line_side
+            .others
+            .iter()
+            .enumerate()
+            .map(|(v, &view)| ViewCurve {
+                view,
+                valid: self.valid.get(v).copied().unwrap_or(false),
+                similarity: self
+                    .samples
+                    .iter()
+                    .map(|s| s.scores[v].similarity)
+                    .collect(),
+            });
         SimilarityCurve {
             reference: Some(self.line_side.reference),
             points: self.line_side.points(),
@@ -295,5 +325,220 @@ impl Found {
             views: views.filter(|(_, v)| **v).map(|(&id, _)| id).collect(),
             plane: line_side.frame.plane(&line.segment, self.peak.theta),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::ThetaFrame;
+    use super::super::fixture::{Surface, line, scene};
+    use super::*;
+    use crate::geometry::Plane;
+    use crate::ids::ViewId;
+    use nalgebra::{Point3, Vector3};
+
+    /// A ridge along x at a height of 8 m: falls by 30 degrees to the left (north) and by 20 degrees to the
+    /// right (south).
+    fn ridge() -> Line3d {
+        line(Point3::new(-5.0, 0.0, 8.0), Point3::new(5.0, 0.0, 8.0))
+    }
+
+    fn slope(line: &Line3d, side: Side, theta_deg: f64, exists: fn(f64, f64) -> bool) -> Surface {
+        let frame = ThetaFrame::new(&line.segment, side).unwrap();
+        Surface {
+            plane: frame.plane(&line.segment, f64::to_radians(theta_deg)),
+            exists,
+            texture: 0.3,
+        }
+    }
+
+    fn horizontal(z: f64) -> Surface {
+        Surface {
+            plane: Plane::from_point_normal(&Point3::new(0.0, 0.0, z), &Vector3::z()).unwrap(),
+            exists: |_, _| true,
+            texture: 0.3,
+        }
+    }
+
+    fn north(_: f64, y: f64) -> bool {
+        y > 0.0
+    }
+
+    fn south(_: f64, y: f64) -> bool {
+        y <= 0.0
+    }
+
+    fn gable() -> Scene {
+        scene(&[
+            slope(&ridge(), Side::Left, -30.0, north),
+            slope(&ridge(), Side::Right, -20.0, south),
+        ])
+    }
+
+    fn theta_deg(half_planes: &[HalfPlane], line: u32, side: Side) -> f64 {
+        half_planes
+            .iter()
+            .find(|h| h.line == LineId(line) && h.side == side)
+            .unwrap()
+            .theta
+            .to_degrees()
+    }
+
+    #[test]
+    fn negative_theta_falls_away_from_the_line() {
+        let height = |side, y| slope(&ridge(), side, -30.0, north).plane.z_at(0.0, y);
+        let drop = 2.0 / 3.0f64.sqrt();
+        assert!((height(Side::Left, 2.0) - 8.0 + drop).abs() < 1e-9);
+        assert!((height(Side::Right, -2.0) - 8.0 + drop).abs() < 1e-9);
+    }
+
+    #[test]
+    fn both_sides_of_a_ridge_are_recovered() {
+        let reversed = line(ridge().segment.p1, ridge().segment.p0);
+        let (found, trace) =
+            sweep_half_planes(&gable(), &[ridge(), reversed], &SweepParams::default());
+        assert_eq!(found.len(), 4);
+        for (line, side, planted) in [
+            (0, Side::Left, -30.0),
+            (0, Side::Right, -20.0),
+            (1, Side::Left, -20.0),
+            (1, Side::Right, -30.0),
+        ] {
+            let theta = theta_deg(&found, line, side);
+            assert!((theta - planted).abs() < 2.0, "{theta} for {planted}");
+        }
+        assert!(
+            found
+                .iter()
+                .all(|h| h.views.len() == 3 && h.similarity > 0.8)
+        );
+        assert!(trace.sides.iter().all(|s| s.rejection.is_none()));
+        assert!(trace.correlations > 0 && trace.warped_pixels > trace.correlations);
+    }
+
+    #[test]
+    fn a_sloping_line_rises_with_its_plane() {
+        // A hip: one side falls, the other one rises away from it.
+        let hip = line(Point3::new(-5.0, -3.0, 6.0), Point3::new(5.0, 3.0, 9.0));
+        let scene = scene(&[
+            slope(&hip, Side::Left, 25.0, |x, y| y > 0.6 * x),
+            slope(&hip, Side::Right, -40.0, |x, y| y <= 0.6 * x),
+        ]);
+        let (found, _) = sweep_half_planes(&scene, &[hip], &SweepParams::default());
+        assert!((theta_deg(&found, 0, Side::Left) - 25.0).abs() < 2.0);
+        assert!((theta_deg(&found, 0, Side::Right) + 40.0).abs() < 2.0);
+    }
+
+    #[test]
+    fn beyond_an_eave_there_is_no_half_plane() {
+        // B99 figure 12: the roof ends at the line, the ground lies 8 m lower.
+        let scene = scene(&[slope(&ridge(), Side::Left, 15.0, north), horizontal(0.0)]);
+        let (found, trace) = sweep_half_planes(&scene, &[ridge()], &SweepParams::default());
+        assert_eq!(found.len(), 1);
+        assert!((theta_deg(&found, 0, Side::Left) - 15.0).abs() < 2.0);
+        assert!(trace.sides[1].rejection.is_some());
+        assert!(!trace.sides[1].curve.thetas.is_empty());
+    }
+
+    #[test]
+    fn an_occluded_view_is_not_valid() {
+        let mut scene = gable();
+        let covered = gable_covered().views.swap_remove(1);
+        scene.views[1].gray = covered.gray;
+        let (found, trace) = sweep_half_planes(&scene, &[ridge()], &SweepParams::default());
+        for (h, side) in found.iter().zip(&trace.sides) {
+            assert_ne!(side.curve.reference, Some(ViewId(1)));
+            assert!(!h.views.contains(&ViewId(1)));
+            assert_eq!(h.views.len(), 2);
+            let curve = &side.curve.views;
+            assert!(curve.iter().all(|v| v.valid == (v.view != ViewId(1))));
+        }
+        assert!((theta_deg(&found, 0, Side::Left) + 30.0).abs() < 2.0);
+        assert!((theta_deg(&found, 0, Side::Right) + 20.0).abs() < 2.0);
+    }
+
+    /// The gable below a horizontal cover, with less texture so that it is not the reference.
+    fn gable_covered() -> Scene {
+        let mut cover = horizontal(12.0);
+        cover.texture = 0.01;
+        scene(&[cover])
+    }
+
+    #[test]
+    fn identical_views_are_entirely_similar() {
+        let mut scene = gable();
+        let first = scene.views[0].clone();
+        scene.views = vec![first.clone(), first.clone(), first];
+        let params = SweepParams::default();
+        let points = PointsOfInterest::detect_all(&scene, &params);
+        let thetas = [-0.9, -0.3, 0.0, 0.4, 1.0];
+        let curve = similarity_curve(
+            &scene,
+            &points,
+            &ridge().segment,
+            Side::Left,
+            &thetas,
+            &params,
+        )
+        .unwrap();
+        assert_eq!(curve.thetas, thetas);
+        assert!(curve.similarity.iter().all(|s| (s - 1.0).abs() < 1e-3));
+    }
+
+    #[test]
+    fn the_curve_of_every_view_peaks_at_the_plane() {
+        let scene = gable();
+        let params = SweepParams::default();
+        let points = PointsOfInterest::detect_all(&scene, &params);
+        let thetas: Vec<f64> = (-60..=60)
+            .step_by(5)
+            .map(|d| f64::from(d).to_radians())
+            .collect();
+        let curve = similarity_curve(
+            &scene,
+            &points,
+            &ridge().segment,
+            Side::Left,
+            &thetas,
+            &params,
+        )
+        .unwrap();
+        for view in &curve.views {
+            let best = (0..thetas.len())
+                .max_by(|&a, &b| view.similarity[a].total_cmp(&view.similarity[b]))
+                .unwrap();
+            assert!((thetas[best].to_degrees() + 30.0).abs() < 5.1);
+        }
+        let frame = ThetaFrame::new(&ridge().segment, Side::Left).unwrap();
+        for p in &curve.points {
+            let world = scene
+                .camera(curve.reference.unwrap())
+                .at_height(p, 8.0)
+                .unwrap();
+            assert!((world - Point3::new(0.0, 0.0, 8.0)).dot(&frame.outward) > 0.0);
+        }
+    }
+
+    #[test]
+    fn rejections_name_the_reason() {
+        let mut smooth = horizontal(8.0);
+        smooth.texture = 0.0;
+        let scene = scene(&[smooth]);
+        let up = line(Point3::new(0.0, 0.0, 8.0), Point3::new(0.0, 0.0, 12.0));
+        let short = line(Point3::new(0.0, 0.0, 8.0), Point3::new(0.5, 0.0, 8.0));
+        let outside = line(Point3::new(0.0, 0.0, 8.0), Point3::new(50.0, 0.0, 8.0));
+        let (found, trace) = sweep_half_planes(
+            &scene,
+            &[up, short, outside, ridge()],
+            &SweepParams::default(),
+        );
+        assert!(found.is_empty());
+        let reasons: Vec<_> = trace.sides.iter().map(|s| s.rejection.unwrap()).collect();
+        use SweepRejection::{NoFrame, NoPointsOfInterest, TooShort};
+        assert_eq!(
+            reasons[..6],
+            [NoFrame, NoFrame, TooShort, TooShort, TooShort, TooShort]
+        );
+        assert_eq!(reasons[6..], [NoPointsOfInterest; 2]);
     }
 }

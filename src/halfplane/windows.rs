@@ -85,11 +85,13 @@ impl Windows {
         let mut left = 0;
         for site in &self.sites {
             while entered < rows.min(site.row + half + 1) {
-                self.columns.slide::<true>(self.reference.row(entered), warped.row(entered));
+                self.columns
+                    .slide::<true>(self.reference.row(entered), warped.row(entered));
                 entered += 1;
             }
             while left < site.row.saturating_sub(half) {
-                self.columns.slide::<false>(self.reference.row(left), warped.row(left));
+                self.columns
+                    .slide::<false>(self.reference.row(left), warped.row(left));
                 left += 1;
             }
             correlations.push(site.correlation(self.columns.window(site.column, &mask)));
@@ -179,7 +181,13 @@ impl ColumnSums {
 
 /// Ones at the columns of a window that starts `MAX_HALF - half` after the first of sixteen.
 fn window_mask(half: usize) -> [f32x8; 2] {
-    let lane = |i: usize| if i.abs_diff(MAX_HALF) <= half { 1.0 } else { 0.0 };
+    let lane = |i: usize| {
+        if i.abs_diff(MAX_HALF) <= half {
+            1.0
+        } else {
+            0.0
+        }
+    };
     [0, 8].map(|start| f32x8::from(std::array::from_fn::<f32, 8, _>(|i| lane(start + i))))
 }
 

@@ -1,9 +1,76 @@
 //! Line matching over two, three and N views (B99 3.1 - 3.4).
+//!
+//! ```text
+//! height, partners    where lines can be, which views see the same ground
+//!    -> pairs         two views: epipolar beam (sight, index), correlation of both sides (strip)   3.1
+//!    -> triples       third views: trifocal transfer, segment at the predicted position          3.2
+//!    -> select        winner takes all; each winner is completed:                                3.2
+//!       -> nviews     segments near the reprojection adopted, fitted, views counted              3.4
+//!       -> grow       merged and grown along its profile                                         3.3
+//! ```
+
+mod grow;
+mod height;
+mod index;
+mod nviews;
+mod pairs;
+mod partners;
+mod profile;
+mod select;
+mod sight;
+mod strip;
+mod trace;
+mod triples;
+
+pub use nviews::Rejection;
+pub use sight::{SegmentRef, epipolar_beam};
+pub use strip::EdgelScore;
+pub use trace::{MatchTrace, PairTrace, SegmentOutcome, StepCount};
+pub use triples::Verification;
 
 use serde::Serialize;
 
 use crate::geometry::Segment2;
 use crate::ids::{SegmentId, ViewId};
+use crate::lines2d::ImageSegment;
+use crate::params::{Lines3dParams, MatchParams};
+use crate::scene::Scene;
+
+/// Matches the segments of all views (one list a view, in the order of the scene's views) over three
+/// and more views. Fewer than three views, or views without common ground, give no match.
+pub fn match_lines(
+    scene: &Scene,
+    segments: &[Vec<ImageSegment>],
+    params: &MatchParams,
+) -> (Vec<LineMatch>, MatchTrace) {
+    let mut trace = MatchTrace::default();
+    let sights = sight::Sights::new(scene, segments);
+    let estimated = match params.z_range_m {
+        Some(z) => Some(z),
+        None => height::height_range(scene, &sights).map(|range| {
+            trace.heights_m = range.heights;
+            range.z
+        }),
+    };
+    let z_range = estimated.unwrap_or_else(|| height::any_height(scene));
+    trace.z_range_m = Some(z_range);
+    trace.view_pairs = partners::partner_views(scene, z_range, params);
+
+    let pairs = pairs::match_pairs(scene, &sights, &trace.view_pairs, z_range, params);
+    let bundles = triples::verify_pairs(scene, &sights, &pairs, params);
+    let context = nviews::Context {
+        scene,
+        segments,
+        sights: &sights,
+        z_range,
+        params,
+        fitting: &Lines3dParams::default(),
+    };
+    let selection = select::winner_takes_all(&context, &pairs, &bundles);
+    trace.record(segments, &pairs, &bundles, &selection);
+    let matches = selection.lines.into_iter().map(LineMatch::from).collect();
+    (matches, trace)
+}
 
 /// How a stretch of a line came to be part of a match (the page colours it so).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -40,4 +107,14 @@ pub struct LineMatch {
     pub supports: Vec<LineSupport>,
     /// Mean photometric score, 0 to 1.
     pub score: f64,
+}
+
+impl From<nviews::Line> for LineMatch {
+    fn from(line: nviews::Line) -> Self {
+        let sum: f64 = line.supports.iter().map(|s| s.score).sum();
+        Self {
+            score: sum / line.supports.len().max(1) as f64,
+            supports: line.supports,
+        }
+    }
 }

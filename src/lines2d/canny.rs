@@ -108,22 +108,23 @@ pub fn suppress(gradient: &Gradient, local: &LocalGradients, low: f64) -> Vec<Ed
     let (w, h) = (gradient.width, gradient.height);
     let low = low as f32;
     let mut edgels = Vec::new();
+    let mut noise = vec![0.0; w];
     for y in 2..h.saturating_sub(2) {
+        local.noise_row(y, &mut noise);
+        let strength = &gradient.strength[y * w..(y + 1) * w];
         for x in 2..w.saturating_sub(2) {
-            let i = y * w + x;
-            let Some(offset) = crest(gradient, i) else {
-                continue;
-            };
-            let noise = local.noise(x, y);
-            if gradient.strength[i] < low * noise {
+            if strength[x] < low * noise[x] {
                 continue;
             }
-            edgels.push(Edgel {
-                position: Point2::new(x as f64 + 0.5, y as f64 + 0.5) + offset,
-                gradient: Vector2::new(gradient.x[i], gradient.y[i]),
-                strength: gradient.strength[i],
-                noise,
-            });
+            let i = y * w + x;
+            if let Some(offset) = crest(gradient, i) {
+                edgels.push(Edgel {
+                    position: Point2::new(x as f64 + 0.5, y as f64 + 0.5) + offset,
+                    gradient: Vector2::new(gradient.x[i], gradient.y[i]),
+                    strength: gradient.strength[i],
+                    noise: noise[x],
+                });
+            }
         }
     }
     edgels
@@ -165,4 +166,61 @@ fn crest(gradient: &Gradient, i: usize) -> Option<Vector2<f64>> {
     } else {
         Vector2::new(t * slope, t)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{add_noise, distance_to_edge, step_edge};
+    use super::*;
+
+    /// Edgels near the planted edge, away from the border.
+    fn near_edge(gray: &Gray, angle: f64) -> Vec<(Edgel, f64)> {
+        let inside = |e: &Edgel| {
+            let (x, y) = e.pixel();
+            (6..gray.width - 6).contains(&x) && (6..gray.height - 6).contains(&y)
+        };
+        detect_edgels(gray, &EdgelParams::default())
+            .into_iter()
+            .filter(inside)
+            .map(|e| (e, distance_to_edge(gray, angle, &e.position)))
+            .filter(|(_, d)| d.abs() < 1.5)
+            .collect()
+    }
+
+    #[test]
+    fn edgels_lie_on_a_planted_edge_without_bias() {
+        for step in 0..24 {
+            let angle = f64::from(step) * 15f64.to_radians() + 0.03;
+            let mut gray = step_edge(80, 80, angle, 0.3);
+            add_noise(&mut gray, 2.0 / 255.0, step as u64);
+            let found = near_edge(&gray, angle);
+            assert!(found.len() >= 60, "{} at {angle}", found.len());
+            let n = found.len() as f64;
+            let mean = found.iter().map(|(_, d)| d).sum::<f64>() / n;
+            let rms = (found.iter().map(|(_, d)| d * d).sum::<f64>() / n).sqrt();
+            assert!(rms <= 0.1, "rms {rms} at {angle}");
+            assert!(mean.abs() <= 0.03, "mean {mean} at {angle}");
+        }
+    }
+
+    #[test]
+    fn the_gradient_points_to_the_brighter_side() {
+        for angle in [0.2, 1.7, 3.0, 5.1] {
+            let gray = step_edge(80, 80, angle, 0.3);
+            for (e, _) in near_edge(&gray, angle) {
+                let brighter = e.position + e.gradient.cast::<f64>().normalize() * 3.0;
+                assert!(distance_to_edge(&gray, angle, &brighter) > 2.0);
+                let t = e.tangent();
+                assert!(Vector2::new(-t.y, t.x).dot(&e.gradient.cast::<f64>()) > 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn tiny_and_flat_images_have_no_edgels() {
+        for (w, h) in [(0, 0), (1, 1), (2, 9), (9, 2), (5, 5), (40, 3)] {
+            let gray = Gray::from_fn(w, h, |_, _| 0.5);
+            assert!(detect_edgels(&gray, &EdgelParams::default()).is_empty());
+        }
+    }
 }

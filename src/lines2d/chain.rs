@@ -31,8 +31,7 @@ pub fn link_chains(edgels: &[Edgel], high: f64) -> Vec<Chain> {
 
 /// [`link_chains`] on a raster of the edgels that is at hand.
 pub fn link_on(edgels: &[Edgel], raster: &Raster, high: f64) -> Vec<Chain> {
-    let next = choose(edgels, raster, 1.0);
-    let previous = choose(edgels, raster, -1.0);
+    let (next, previous) = choose(edgels, raster);
     let mutual = |i: u32| {
         let j = next[i as usize];
         (j != NONE && previous[j as usize] == i).then_some(j)
@@ -77,52 +76,103 @@ fn walk(start: u32, closed: bool, next: &impl Fn(u32) -> Option<u32>, seen: &mut
     Chain { edgels, closed }
 }
 
-/// Each edgel's choice of a follower (`sense` 1) or a predecessor (-1).
-fn choose(edgels: &[Edgel], raster: &Raster, sense: f64) -> Vec<u32> {
-    edgels
-        .iter()
-        .map(|e| {
-            let near = best(edgels, raster, e, sense, 1);
-            if near != NONE {
-                near
-            } else {
-                best(edgels, raster, e, sense, 2)
-            }
-        })
-        .collect()
+/// Each edgel's choice of a follower and of a predecessor.
+fn choose(edgels: &[Edgel], raster: &Raster) -> (Vec<u32>, Vec<u32>) {
+    let mut next = Vec::with_capacity(edgels.len());
+    let mut previous = Vec::with_capacity(edgels.len());
+    for from in edgels {
+        let mut choice = Choice::default();
+        choice.look(edgels, raster, from, &RING_1);
+        let near = choice;
+        if near.next == NONE || near.previous == NONE {
+            choice.look(edgels, raster, from, &RING_2);
+        }
+        // What is adjacent goes before what lies across a gap.
+        next.push(if near.next != NONE {
+            near.next
+        } else {
+            choice.next
+        });
+        previous.push(if near.previous != NONE {
+            near.previous
+        } else {
+            choice.previous
+        });
+    }
+    (next, previous)
 }
 
-/// The cheapest edgel on the ring of pixels at Chebyshev distance `ring`.
-fn best(edgels: &[Edgel], raster: &Raster, from: &Edgel, sense: f64, ring: isize) -> u32 {
-    let (x, y) = from.pixel();
-    let tangent = from.tangent() * sense;
-    let mut best = (f64::INFINITY, NONE);
-    for dy in -ring..=ring {
-        let step = if dy.abs() == ring { 1 } else { 2 * ring };
-        for dx in (-ring..=ring).step_by(step as usize) {
+/// The pixels around one, row by row.
+const RING_1: [(isize, isize); 8] = ring(1);
+/// The pixels around those.
+const RING_2: [(isize, isize); 16] = ring(2);
+
+const fn ring<const N: usize>(reach: isize) -> [(isize, isize); N] {
+    let mut pixels = [(0, 0); N];
+    let (mut n, mut y) = (0, -reach);
+    while y <= reach {
+        let mut x = -reach;
+        while x <= reach {
+            if x == -reach || x == reach || y == -reach || y == reach {
+                pixels[n] = (x, y);
+                n += 1;
+            }
+            x += 1;
+        }
+        y += 1;
+    }
+    pixels
+}
+
+/// The cheapest follower and predecessor so far.
+#[derive(Clone, Copy)]
+struct Choice {
+    next: u32,
+    next_cost: f64,
+    previous: u32,
+    previous_cost: f64,
+}
+
+impl Default for Choice {
+    fn default() -> Self {
+        Self {
+            next: NONE,
+            next_cost: f64::INFINITY,
+            previous: NONE,
+            previous_cost: f64::INFINITY,
+        }
+    }
+}
+
+impl Choice {
+    /// Considers the edgels of these pixels around `from`. The cost of a link is the distance along the
+    /// tangent plus twice the distance aside (times the gradient's strength, which is the same for
+    /// all); there is none when the other edgel lies more aside than along or its contrast has turned by more than a
+    /// right angle.
+    fn look(&mut self, edgels: &[Edgel], raster: &Raster, from: &Edgel, pixels: &[(isize, isize)]) {
+        let (x, y) = from.pixel();
+        let gradient = from.gradient.cast::<f64>();
+        let tangent = Vector2::new(gradient.y, -gradient.x);
+        for (dx, dy) in pixels {
             let index = raster.at(x as isize + dx, y as isize + dy);
             if index == NONE {
                 continue;
             }
-            let cost = link_cost(from, &edgels[index as usize], &tangent);
-            if cost < best.0 {
-                best = (cost, index);
+            let to = &edgels[index as usize];
+            let step = to.position - from.position;
+            let along = step.dot(&tangent);
+            let aside = step.dot(&gradient).abs();
+            if aside > 1.5 * along.abs() || from.gradient.dot(&to.gradient) <= 0.0 {
+                continue;
+            }
+            let cost = along.abs() + 2.0 * aside;
+            if along > 0.0 && cost < self.next_cost {
+                (self.next, self.next_cost) = (index, cost);
+            } else if along < 0.0 && cost < self.previous_cost {
+                (self.previous, self.previous_cost) = (index, cost);
             }
         }
     }
-    best.1
-}
-
-/// How far apart two edgels are, sideways distance counted double; infinite when the second does not lie
-/// ahead or its contrast has turned by more than a right angle.
-fn link_cost(from: &Edgel, to: &Edgel, tangent: &Vector2<f64>) -> f64 {
-    let step = to.position - from.position;
-    let ahead = step.dot(tangent);
-    let aside = (step.x * tangent.y - step.y * tangent.x).abs();
-    if ahead <= 0.0 || aside > 1.5 * ahead || from.gradient.dot(&to.gradient) <= 0.0 {
-        return f64::INFINITY;
-    }
-    ahead + 2.0 * aside
 }
 
 /// Which edgel a pixel holds ([`NONE`] elsewhere).
@@ -157,5 +207,70 @@ impl Raster {
             return NONE;
         }
         self.index[(y * self.width + x) as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::edgel;
+    use super::*;
+
+    /// Edgels along a row whose brighter side is below: chains run to the right.
+    fn row(columns: &[i32]) -> Vec<Edgel> {
+        let at = |&x: &i32| edgel(f64::from(x) + 0.5, 5.5, (0.0, 1.0));
+        columns.iter().map(at).collect()
+    }
+
+    #[test]
+    fn a_gap_of_one_pixel_is_jumped_and_a_wider_one_is_not() {
+        let chains = link_chains(&row(&[3, 4, 6, 7, 10, 11]), 1.0);
+        let members: Vec<_> = chains.iter().map(|c| c.edgels.clone()).collect();
+        assert_eq!(members, [vec![0, 1, 2, 3], vec![4, 5]]);
+    }
+
+    #[test]
+    fn chains_run_with_the_brighter_side_to_the_right() {
+        let mut edgels = row(&[3, 4, 5]);
+        assert_eq!(link_chains(&edgels, 1.0)[0].edgels, [0, 1, 2]);
+        edgels.iter_mut().for_each(|e| e.gradient = -e.gradient);
+        assert_eq!(link_chains(&edgels, 1.0)[0].edgels, [2, 1, 0]);
+    }
+
+    #[test]
+    fn opposite_contrast_is_not_linked() {
+        let mut edgels = row(&[3, 4, 5, 6]);
+        edgels[2].gradient = -edgels[2].gradient;
+        edgels[3].gradient = -edgels[3].gradient;
+        let chains = link_chains(&edgels, 1.0);
+        assert_eq!(chains.len(), 2);
+        assert_eq!(chains[1].edgels, [3, 2]);
+    }
+
+    #[test]
+    fn one_strong_edgel_keeps_a_chain() {
+        let mut edgels = row(&[3, 4, 5, 20, 21, 22]);
+        edgels[4].strength = 3.0 * edgels[4].noise;
+        let kept = link_chains(&edgels, 2.5);
+        assert_eq!(kept.len(), 1);
+        assert_eq!(kept[0].edgels, [3, 4, 5]);
+    }
+
+    #[test]
+    fn a_ring_is_closed_and_holds_every_edgel_once() {
+        let on_circle = |i: i32| {
+            let (s, c) = crate::math::sin_cos(f64::from(i) / 60.0 * std::f64::consts::TAU);
+            edgel(20.5 + 10.0 * c, 20.5 + 10.0 * s, (c as f32, s as f32))
+        };
+        let mut edgels: Vec<_> = (0..60).map(on_circle).collect();
+        edgels.sort_by_key(|e| (e.pixel().1, e.pixel().0));
+        edgels.dedup_by_key(|e| e.pixel());
+        let chains = link_chains(&edgels, 1.0);
+        assert_eq!(chains.len(), 1);
+        assert!(chains[0].closed);
+        let mut members = chains[0].edgels.clone();
+        members.sort_unstable();
+        members.dedup();
+        assert_eq!(members.len(), chains[0].edgels.len());
+        assert!(members.len() * 10 >= edgels.len() * 9);
     }
 }

@@ -212,3 +212,69 @@ fn join(points: &[Point2<f64>], a: &Piece, b: &Piece, params: &SegmentParams) ->
         line,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_planted_line_is_recovered(angle in 0.0..std::f64::consts::TAU, offset in -50.0..50.0f64) {
+            let (s, c) = crate::math::sin_cos(angle);
+            let (direction, normal) = (Vector2::new(c, s), Vector2::new(-s, c));
+            let at = |t: i32| Point2::from(direction * f64::from(t) + normal * offset);
+            let points: Vec<_> = (0..20).map(at).collect();
+            let line = LineFit::new(&points);
+            prop_assert!((line.direction - direction).norm() < 1e-9);
+            prop_assert!((line.normal().dot(&line.centroid.coords) - offset).abs() < 1e-9);
+            prop_assert!(line.rms < 1e-6);
+            prop_assert!((line.spread - 665.0).abs() < 1e-6);
+        }
+    }
+
+    /// Points of a circle through the origin, curved to the side of the normal for a positive radius.
+    fn arc(radius: f64, count: i32) -> Vec<Point2<f64>> {
+        let at = |i: i32| {
+            let (s, c) = crate::math::sin_cos(f64::from(i) / radius.abs());
+            Point2::new(radius.abs() * s, radius * (1.0 - c))
+        };
+        (0..count).map(at).collect()
+    }
+
+    #[test]
+    fn the_curvature_of_an_arc_is_one_over_its_radius() {
+        for radius in [150.0, -400.0] {
+            let points = arc(radius, 40);
+            let (curvature, sigma) = LineFit::new(&points).curvature(&points);
+            assert!((curvature * radius - 1.0).abs() < 0.02, "{curvature}");
+            assert!(curvature.abs() > 3.0 * sigma);
+        }
+    }
+
+    #[test]
+    fn a_tight_bend_is_split_where_it_is_farthest_from_its_chord() {
+        let mut points: Vec<_> = (0..30).map(|i| Point2::new(f64::from(i), 0.0)).collect();
+        points.extend((1..30).map(|i| Point2::new(29.0 + f64::from(i), 0.3 * f64::from(i))));
+        let pieces = straight_pieces(&points, 0, points.len(), &SegmentParams::default());
+        let cuts: Vec<_> = pieces.iter().map(|p| (p.from, p.to)).collect();
+        assert_eq!(cuts, [(0, 30), (29, 59)]);
+    }
+
+    #[test]
+    fn the_covariance_follows_from_independent_edgels() {
+        // Without smoothing: sigma^2 / n for the offset and sigma^2 / sum t^2 for the angle.
+        let points: Vec<_> = (0..40)
+            .map(|i| Point2::new(f64::from(i), if i % 2 == 0 { 0.1 } else { -0.1 }))
+            .collect();
+        let line = LineFit::new(&points);
+        let c = line.covariance(0.0, 0.0, 0.0);
+        let sigma2 = 0.01 * 40.0 / 38.0;
+        assert!((c[(0, 0)] / (sigma2 / 40.0) - 1.0).abs() < 0.01);
+        assert!((c[(1, 1)] / (sigma2 / 5330.0) - 1.0).abs() < 0.01);
+        // Ten pixels from the centroid the offset takes up the angle's uncertainty.
+        let off = line.covariance(10.0, 0.0, 0.0);
+        assert!((off[(0, 0)] - c[(0, 0)] - 100.0 * c[(1, 1)]).abs() < 1e-12);
+        assert!((off[(0, 1)] - 10.0 * c[(1, 1)]).abs() < 1e-12);
+    }
+}

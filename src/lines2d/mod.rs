@@ -16,6 +16,8 @@ mod grow;
 mod noise;
 mod segments;
 mod significance;
+#[cfg(test)]
+mod testing;
 mod worm;
 
 pub use canny::{Edgel, detect_edgels};

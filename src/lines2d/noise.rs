@@ -17,7 +17,7 @@ const BINS: usize = 256;
 /// full contrast in one pixel, where nothing is ordinary any more.
 const BIN_WIDTH: f32 = 1.0 / 2048.0;
 /// Gradient noise never counts as less than this, grey values per px: rounding to 8 bits alone has a
-/// standard deviation of 1/255/sqrt(12), and about a quarter of it is left after smoothing.
+/// standard deviation of 1/255/sqrt(12), and a quarter of it is left after smoothing.
 const MIN_NOISE: f32 = 0.25 / 255.0 / 3.464_101_6;
 /// Median of a Rayleigh distribution, the strength of a gradient whose components are Gaussian with
 /// standard deviation 1.
@@ -45,18 +45,27 @@ impl LocalGradients {
         }
     }
 
-    /// Scale of the gradients around a pixel: the standard deviation of a component, grey values
-    /// per px, were they all noise.
-    pub fn noise(&self, x: usize, y: usize) -> f32 {
-        // Bilinear between block centres, so that thresholds have no steps at block borders.
-        let (column, fx) = interval(x, self.columns);
-        let (row, fy) = interval(y, self.rows);
-        let right = (column + 1).min(self.columns - 1);
-        let below = (row + 1).min(self.rows - 1);
-        let at = |column: usize, row: usize| self.noise[row * self.columns + column];
-        let top = at(column, row) + (at(right, row) - at(column, row)) * fx;
-        let bottom = at(column, below) + (at(right, below) - at(column, below)) * fx;
-        top + (bottom - top) * fy
+    /// Scale of the gradients around each pixel of row `y`: the standard deviation of a component, grey
+    /// values per px, were they all noise. Bilinear between block centres, so that thresholds have no
+    /// steps at block borders.
+    pub fn noise_row(&self, y: usize, row: &mut [f32]) {
+        let (above, f) = interval(y, self.rows);
+        let below = (above + 1).min(self.rows - 1);
+        let line = |row: usize| &self.noise[row * self.columns..(row + 1) * self.columns];
+        let (above, below) = (line(above), line(below));
+        let blocks = above.iter().zip(below).map(|(a, b)| a + (b - a) * f);
+        let blocks: Vec<f32> = blocks.collect();
+        // Before the first centre and after the last one the value is constant.
+        let half = BLOCK_PX / 2;
+        let (first, rest) = row.split_at_mut(half.min(row.len()));
+        first.fill(blocks[0]);
+        for (pixels, column) in rest.chunks_mut(BLOCK_PX).zip(0..) {
+            let left = blocks[column];
+            let slope = (blocks[(column + 1).min(self.columns - 1)] - left) / BLOCK_PX as f32;
+            for (pixel, i) in pixels.iter_mut().zip(0u16..) {
+                *pixel = left + slope * (f32::from(i) + 0.5);
+            }
+        }
     }
 
     /// `-ln H(strength)` around a pixel: 0 for what is ordinary there, large for what is rare.
@@ -128,12 +137,62 @@ fn noise_of(counts: &[u32; BINS]) -> f32 {
 fn surprise_of(counts: &[u32; BINS]) -> [f32; BINS] {
     let total = counts.iter().sum::<u32>().max(1);
     let mut surprise = [0.0; BINS];
+    // Never zero: what no pixel reaches is at most as rare as one in the sample.
+    let mut value = crate::math::ln(f64::from(total)) as f32;
     let mut stronger = 0;
     for (s, &n) in surprise.iter_mut().zip(counts).rev() {
-        stronger += n;
-        // Never zero: what no pixel reaches is at most as rare as one in the sample.
-        let share = f64::from(stronger.max(1)) / f64::from(total);
-        *s = -crate::math::ln(share) as f32;
+        if n > 0 {
+            stronger += n;
+            value = -crate::math::ln(f64::from(stronger) / f64::from(total)) as f32;
+        }
+        *s = value;
     }
     surprise
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{add_noise, step_edge};
+    use super::*;
+    use crate::raster::Gray;
+
+    /// What smoothing by 1 px and a central difference leave of white noise of 1: smoothed noise is
+    /// correlated as R(d) = exp(-d^2 / 4) / 4 pi, and the variance of a difference over 2 px, halved,
+    /// is (R(0) - R(2)) / 2.
+    const GAIN: f32 = 0.1586;
+
+    fn noisy(sigma: f64) -> Gradient {
+        let mut gray = Gray::from_fn(160, 160, |_, _| 0.5);
+        add_noise(&mut gray, sigma, 7);
+        Gradient::new(&gray, 1.0)
+    }
+
+    #[test]
+    fn the_noise_is_that_of_the_image() {
+        let local = LocalGradients::new(&noisy(0.02));
+        let mut row = vec![0.0; 160];
+        for y in [3, 80, 150] {
+            local.noise_row(y, &mut row);
+            for n in &row {
+                assert!((n / (0.02 * GAIN) - 1.0).abs() < 0.15, "{n}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_clean_image_has_the_noise_of_rounding() {
+        let local = LocalGradients::new(&noisy(0.0));
+        let mut row = vec![0.0; 160];
+        local.noise_row(9, &mut row);
+        assert_eq!(row, vec![MIN_NOISE; 160]);
+    }
+
+    #[test]
+    fn an_edge_is_a_surprise_and_noise_is_none() {
+        let mut gray = step_edge(160, 160, 0.3, 0.2);
+        add_noise(&mut gray, 0.02, 7);
+        let local = LocalGradients::new(&Gradient::new(&gray, 1.0));
+        assert!(local.surprise(80, 80, 0.02 * GAIN) < 1.0);
+        assert!(local.surprise(80, 80, 0.06) > 3.0);
+    }
 }

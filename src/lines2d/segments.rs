@@ -208,3 +208,170 @@ fn contrast(gray: &Gray, segment: &Segment2, distance_px: f64) -> f32 {
         0.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{add_noise, distance_to_edge, step_edge};
+    use super::*;
+
+    /// The segment on the planted edge; there must be exactly one.
+    fn planted(gray: &Gray, angle: f64) -> ImageSegment {
+        let (segments, _) = detect_segments(gray, &SegmentParams::default());
+        let on_edge = |s: &&ImageSegment| {
+            let end = |p| distance_to_edge(gray, angle, p).abs() < 1.5;
+            end(&s.segment.p0) && end(&s.segment.p1)
+        };
+        let found: Vec<_> = segments.iter().filter(on_edge).collect();
+        assert_eq!(found.len(), 1, "at {angle}");
+        found[0].clone()
+    }
+
+    /// Angle of the segment's normal against that of the planted edge, rad.
+    fn turn(found: &ImageSegment, angle: f64) -> f64 {
+        let n = found.segment.normal();
+        let (s, c) = crate::math::sin_cos(angle);
+        crate::math::atan2(n.y * c - n.x * s, n.x * c + n.y * s)
+    }
+
+    #[test]
+    fn a_planted_edge_is_found_within_a_tenth_of_a_pixel_and_of_a_degree() {
+        let (mut offsets, mut turns, mut count) = (0.0, 0.0, 0.0);
+        for step in 0..72 {
+            let angle = f64::from(step) * 5f64.to_radians() + 0.02;
+            let mut gray = step_edge(64, 64, angle, 0.3);
+            add_noise(&mut gray, 2.0 / 255.0, step as u64);
+            let found = planted(&gray, angle);
+            assert!(found.segment.length() > 50.0);
+            assert!((found.contrast - 0.3).abs() < 0.02, "{}", found.contrast);
+            let offset = distance_to_edge(&gray, angle, &found.segment.midpoint());
+            // Within pi/2 only when the brighter side is on the side of the normal.
+            let turn = turn(&found, angle);
+            assert!(turn.to_degrees().abs() < 0.3, "turn {turn} at {angle}");
+            offsets += offset * offset;
+            turns += turn * turn;
+            count += 1.0;
+        }
+        let (offset, turn) = ((offsets / count).sqrt(), (turns / count).sqrt());
+        assert!(offset <= 0.05, "offset {offset} px rms");
+        assert!(
+            turn.to_degrees() <= 0.1,
+            "turn {} degrees rms",
+            turn.to_degrees()
+        );
+    }
+
+    #[test]
+    fn the_covariance_is_that_of_the_errors() {
+        let (mut offsets, mut turns, mut count) = (0.0, 0.0, 0.0);
+        for seed in 0..200u32 {
+            let angle = f64::from(seed) * 0.1;
+            let mut gray = step_edge(48, 48, angle, 0.15);
+            add_noise(&mut gray, 6.0 / 255.0, u64::from(seed));
+            let found = planted(&gray, angle);
+            let offset = distance_to_edge(&gray, angle, &found.segment.midpoint());
+            let turn = turn(&found, angle);
+            offsets += offset * offset / found.covariance[(0, 0)];
+            turns += turn * turn / found.covariance[(1, 1)];
+            count += 1.0;
+        }
+        for normalised in [(offsets / count).sqrt(), (turns / count).sqrt()] {
+            assert!((0.7..1.4).contains(&normalised), "{normalised} sigma rms");
+        }
+    }
+
+    #[test]
+    fn a_weak_edge_is_found_when_it_is_long() {
+        // One and a half times the noise of a pixel.
+        let mut gray = step_edge(160, 160, 0.4, 0.03);
+        add_noise(&mut gray, 0.02, 3);
+        let (segments, _) = detect_segments(&gray, &SegmentParams::default());
+        let on_edge = |s: &&ImageSegment| {
+            distance_to_edge(&gray, 0.4, &s.segment.midpoint()).abs() < 1.0
+                && turn(s, 0.4).abs() < 0.1
+        };
+        let found: f64 = segments
+            .iter()
+            .filter(on_edge)
+            .map(|s| s.segment.length())
+            .sum();
+        assert!(found > 80.0, "{found} px of 170");
+    }
+
+    #[test]
+    fn noise_has_few_segments_and_none_that_are_long() {
+        let mut gray = Gray::from_fn(400, 400, |_, _| 0.5);
+        add_noise(&mut gray, 0.05, 11);
+        let (segments, trace) = detect_segments(&gray, &SegmentParams::default());
+        assert!(trace.edgels > 5000);
+        assert!(segments.len() <= 40, "{}", segments.len());
+        assert!(segments.iter().all(|s| s.segment.length() < 45.0));
+    }
+
+    #[test]
+    fn a_disc_is_not_cut_into_chords() {
+        for radius in [20.0, 60.0, 120.0] {
+            let gray = Gray::from_fn(300, 300, |x, y| {
+                let d = crate::math::hypot(x as f64 - 150.0, y as f64 - 150.0) - radius;
+                (0.4 + 0.3 * (0.5 - 0.5 * libm::erf(d))) as f32
+            });
+            let (segments, trace) = detect_segments(&gray, &SegmentParams::default());
+            assert!(trace.chains > 0);
+            assert!(
+                segments.is_empty(),
+                "{} chords of radius {radius}",
+                segments.len()
+            );
+        }
+    }
+
+    #[test]
+    fn a_line_that_texture_interrupts_is_one_segment() {
+        // Bright crumbs on the edge, every 16 px, end the chains.
+        let mut gray = step_edge(120, 120, std::f64::consts::FRAC_PI_2, 0.2);
+        for x in (10..120).step_by(16) {
+            for y in 58..62 {
+                for x in x..x + 2 {
+                    gray.data[y * 120 + x] = 0.9;
+                }
+            }
+        }
+        let params = SegmentParams::default();
+        let longest = |params: &SegmentParams| {
+            let (segments, _) = detect_segments(&gray, params);
+            let lengths = segments.iter().map(|s| s.segment.length());
+            lengths.fold(0.0, f64::max)
+        };
+        assert!(longest(&params) > 90.0, "{}", longest(&params));
+        let without = SegmentParams {
+            grow_gap_px: 0,
+            ..params
+        };
+        assert!(longest(&without) < 30.0, "{}", longest(&without));
+    }
+
+    #[test]
+    fn a_square_has_four_sides_that_run_around_it() {
+        let gray = Gray::from_fn(80, 80, |x, y| {
+            let inside = |v: usize| (20..60).contains(&v);
+            if inside(x) && inside(y) { 0.7 } else { 0.3 }
+        });
+        let (segments, trace) = detect_segments(&gray, &SegmentParams::default());
+        assert_eq!(segments.len(), 4);
+        for s in &segments {
+            let inwards = Point2::new(40.0, 40.0) - s.segment.midpoint();
+            assert!(s.segment.normal().dot(&inwards) > 19.0, "{s:?}");
+            assert!((s.segment.length() - 40.0).abs() < 5.0);
+        }
+        assert!(trace.worm_breaks.len() >= 3);
+    }
+
+    #[test]
+    fn empty_and_broken_rasters_have_no_segments() {
+        let params = SegmentParams::default();
+        for (w, h) in [(0, 0), (1, 70), (70, 1), (4, 4)] {
+            assert!(detect_segments(&Gray::new(w, h), &params).0.is_empty());
+        }
+        let nan = Gray::from_fn(50, 50, |_, _| f32::NAN);
+        assert!(detect_segments(&nan, &params).0.is_empty());
+    }
+}

@@ -1,10 +1,25 @@
 //! 3D lines from matched image segments (B99 3.2, figure 4).
+//!
+//! ```text
+//! fit           four parameters, Levenberg-Marquardt on the distances of the measured segments
+//!    -> extent  end points where at least two views support the line
+//! ```
+
+mod extent;
+mod fit;
+mod projection;
+
+pub use fit::{LineFit, Observation, fit_line, line_of_planes};
+pub use projection::ProjectedLine;
 
 use nalgebra::{Matrix3, Point3};
 use serde::Serialize;
 
 use crate::geometry::Segment3;
-use crate::linematch::LineSupport;
+use crate::linematch::{LineMatch, LineSupport};
+use crate::lines2d::ImageSegment;
+use crate::params::Lines3dParams;
+use crate::scene::Scene;
 
 /// A reconstructed 3D line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -24,5 +39,116 @@ impl Line3d {
     /// A point of the line, `t` from 0 to 1.
     pub fn at(&self, t: f64) -> Point3<f64> {
         self.segment.at(t)
+    }
+}
+
+/// What became of a match.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "fate", rename_all = "snake_case")]
+pub enum LineOutcome {
+    /// It is a 3D line.
+    Reconstructed {
+        /// Index of the line.
+        line: u32,
+        /// Root mean square of the weighted residuals, standard deviations.
+        residual: f64,
+    },
+    /// Fewer than two measured segments, or planes that fix no line.
+    NoFit,
+    /// Less certain across itself than `max_sigma_px`.
+    IllConditioned {
+        /// Standard deviation, metres.
+        sigma_m: f64,
+    },
+    /// No stretch that two views support.
+    NoExtent,
+}
+
+/// The trace of [`reconstruct_lines`].
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct LineTrace {
+    /// One for each match.
+    pub outcomes: Vec<LineOutcome>,
+    /// Total length of the lines, metres.
+    pub length_m: f64,
+}
+
+/// Reconstructs a 3D line from each match; `segments` are those that the matches refer to.
+pub fn reconstruct_lines(
+    scene: &Scene,
+    segments: &[Vec<ImageSegment>],
+    matches: &[LineMatch],
+    params: &Lines3dParams,
+) -> (Vec<Line3d>, LineTrace) {
+    let results = crate::parallel::map(matches, |_, m| reconstruct(scene, segments, m, params));
+    let mut lines: Vec<Line3d> = Vec::new();
+    let mut trace = LineTrace::default();
+    for result in results {
+        trace.outcomes.push(match result {
+            Ok((line, residual)) => {
+                trace.length_m += line.segment.length();
+                lines.push(line);
+                LineOutcome::Reconstructed {
+                    line: lines.len() as u32 - 1,
+                    residual,
+                }
+            }
+            Err(outcome) => outcome,
+        });
+    }
+    (lines, trace)
+}
+
+/// One line and its residual, or why there is none.
+fn reconstruct(
+    scene: &Scene,
+    segments: &[Vec<ImageSegment>],
+    matched: &LineMatch,
+    params: &Lines3dParams,
+) -> Result<(Line3d, f64), LineOutcome> {
+    let observations: Vec<Observation> = matched
+        .supports
+        .iter()
+        .flat_map(|s| s.segments.iter().map(move |id| (s.view, id)))
+        .map(|(view, id)| {
+            let detected = &segments[view.index()][id.index()];
+            Observation {
+                camera: scene.camera(view),
+                segment: detected.segment,
+                covariance: detected.covariance,
+            }
+        })
+        .collect();
+    let start = line_of_planes(&observations).ok_or(LineOutcome::NoFit)?;
+    let fit = fit_line(&observations, &start, params).ok_or(LineOutcome::NoFit)?;
+    let (t0, t1) = extent::common_extent(scene, &fit.line, &matched.supports)
+        .ok_or(LineOutcome::NoExtent)?;
+    let (d, length) = (fit.line.direction(), fit.line.length());
+    let segment = Segment3::new(fit.line.p0 + d * t0, fit.line.p0 + d * t1);
+    let (f0, f1) = (t0 / length, t1 / length);
+    let sigma_m = fit.sigma_at(f0).max(fit.sigma_at(f1));
+    let camera = scene.camera(matched.supports[0].view);
+    if sigma_m > params.max_sigma_px * camera.ground_pixel(&segment.p0) {
+        return Err(LineOutcome::IllConditioned { sigma_m });
+    }
+    let squares: f64 = fit.residuals.iter().map(|r| r * r).sum();
+    let line = Line3d {
+        segment: along_supports(scene, segment, &matched.supports),
+        sigma_m,
+        covariance: [fit.covariance_at(f0), fit.covariance_at(f1)],
+        supports: matched.supports.clone(),
+    };
+    Ok((line, (squares / (2.0 * fit.residuals.len() as f64)).sqrt()))
+}
+
+/// The segment directed as its supports' stretches are.
+fn along_supports(scene: &Scene, segment: Segment3, supports: &[LineSupport]) -> Segment3 {
+    let along = supports.iter().find_map(|s| {
+        let image = ProjectedLine::new(scene.camera(s.view), &segment)?;
+        Some(image.direction.dot(&s.stretch.direction()))
+    });
+    match along {
+        Some(d) if d < 0.0 => Segment3::new(segment.p1, segment.p0),
+        _ => segment,
     }
 }

@@ -100,7 +100,11 @@ fn by_fields(f: &[&str]) -> Option<FileKind> {
         Some(FileKind::ColmapCameras)
     } else if f.len() >= 10 && numbers(0..9) && !is_number(f[9]) {
         Some(FileKind::ColmapImages)
-    } else if f.len() >= 8 && f.len() % 2 == 0 && numbers(0..f.len()) && is_colour(&f[4..7]) {
+    } else if f.len() >= 8
+        && f.len().is_multiple_of(2)
+        && numbers(0..f.len())
+        && is_colour(&f[4..7])
+    {
         Some(FileKind::ColmapPoints)
     } else if f.len() == 7 && !is_number(f[0]) && numbers(1..7) {
         Some(FileKind::PhotogrammetricExterior)

@@ -15,14 +15,14 @@ pub use summary::StageSummary;
 
 use serde::{Deserialize, Serialize};
 
-use crate::export::export_all;
+use crate::export::{self, export_all};
 use crate::halfplane::{HalfPlane, SweepTrace, sweep_half_planes};
 use crate::linematch::{LineMatch, MatchTrace, match_lines};
 use crate::lines2d::{ImageSegment, SegmentTrace, detect_segments};
 use crate::lines3d::{Line3d, LineTrace, reconstruct_lines};
 use crate::parallel;
 use crate::params::Params;
-use crate::roof::{RoofModel, RoofTrace, reconstruct_facets};
+use crate::roof::{RoofModel, RoofTrace, reconstruct_roofs};
 use crate::scene::Scene;
 use crate::texture::{TextureTrace, TexturedModel, texture_model};
 
@@ -193,14 +193,15 @@ impl Run {
         else {
             return Vec::new();
         };
-        let mut files = export_all(
-            &self.scene,
-            &segments.value,
-            &lines.value,
-            &half_planes.value,
-            &roof.value,
-            &textured.value,
-        );
+        let outputs = export::Results {
+            scene: &self.scene,
+            segments: &segments.value,
+            lines: &lines.value,
+            half_planes: &half_planes.value,
+            model: &roof.value,
+            textured: &textured.value,
+        };
+        let mut files = export_all(&outputs, &self.params.texture);
         files.push(("report.json".into(), report::report(self, seconds)));
         files
     }
@@ -220,16 +221,19 @@ impl Run {
                 r.matches = Some(match_lines(scene, segments, &params.matching).into());
             }
             Stage::Lines => {
-                let matches = before(&r.matches);
-                r.lines = Some(reconstruct_lines(scene, matches, &params.lines3d).into());
+                let (segments, matches) = (before(&r.segments), before(&r.matches));
+                let found = reconstruct_lines(scene, segments, matches, &params.lines3d);
+                r.lines = Some(found.into());
             }
             Stage::HalfPlanes => {
                 let lines = before(&r.lines);
                 r.half_planes = Some(sweep_half_planes(scene, lines, &params.sweep).into());
             }
             Stage::Facets => {
+                let segments = before(&r.segments);
                 let (lines, half_planes) = (before(&r.lines), before(&r.half_planes));
-                r.roof = Some(reconstruct_facets(scene, lines, half_planes, &params.roof).into());
+                let found = reconstruct_roofs(scene, segments, lines, half_planes, &params.roof);
+                r.roof = Some(found.into());
             }
             Stage::Model => {
                 let model = before(&r.roof);

@@ -113,7 +113,7 @@ fn model(results: &Results) -> Found {
     let faces = || textured.value.faces.iter().flatten();
     let counts = vec![
         ("faces", faces().count()),
-        ("textured faces", faces().filter(|f| f.is_some()).count()),
+        ("textured faces", faces().filter(|f| f.view.is_some()).count()),
     ];
     (counts, Vec::new())
 }

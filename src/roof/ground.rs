@@ -15,15 +15,23 @@ use crate::lines3d::Line3d;
 use crate::raster::Gray;
 use crate::scene::{Scene, View};
 
-/// Ground heights, metres, local frame.
+/// Ground heights, metres, local frame, on a coarse grid over the scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ground {
-    /// Matched plan positions with their heights, lowest level first.
-    samples: Vec<Point3<f64>>,
-    /// Height where nothing matched nearby.
-    fallback: f64,
+    min: Point2<f64>,
+    columns: usize,
+    rows: usize,
+    /// Row by row; empty for one height everywhere.
+    heights: Vec<f64>,
+    /// Height outside the grid.
+    elsewhere: f64,
 }
 
+/// Cell of the ground grid, metres.
+const CELL: f64 = 5.0;
+/// Matched positions within this distance tell the ground height of a cell, metres: more than half
+/// the width of a building.
+const RADIUS: f64 = 18.0;
 /// Images are reduced by this factor for the sweep.
 const REDUCE: usize = 4;
 /// Most planes in the sweep.
@@ -35,28 +43,57 @@ const MIN_WEIGHT: f32 = 0.5;
 const LOW_SHARE: f64 = 0.15;
 
 impl Ground {
+    /// The same height everywhere.
+    pub fn level(z: f64) -> Self {
+        Self { min: Point2::origin(), columns: 0, rows: 0, heights: Vec::new(), elsewhere: z }
+    }
+
     /// Sweeps the scene between the heights that its 3D lines span; the given height when there is one.
     pub fn estimate(scene: &Scene, lines: &[Line3d]) -> Self {
         if let Some(z) = scene.ground_z {
-            return Self { samples: Vec::new(), fallback: z };
+            return Self::level(z);
         }
         let mut ends: Vec<Point3<f64>> = lines.iter().flat_map(|l| [l.segment.p0, l.segment.p1]).collect();
         if ends.is_empty() {
-            return Self { samples: Vec::new(), fallback: 0.0 };
+            return Self::level(0.0);
         }
         ends.sort_by(|a, b| a.z.total_cmp(&b.z));
         // A few wrong lines may lie far off.
         let share = |f: f64| ends[(f * (ends.len() - 1) as f64) as usize].z;
         let (low, high) = (share(0.02) - 2.0, share(0.98) + 1.0);
         let samples = sweep(scene, &ends, low, high);
-        let fallback = low_height(samples.iter().map(|s| s.z)).unwrap_or_else(|| share(0.1));
-        Self { samples, fallback }
+        let elsewhere = low_height(samples.iter().map(|s| s.z)).unwrap_or_else(|| share(0.1));
+        Self::from_samples(&samples, elsewhere)
     }
 
-    /// Ground height around a plan position, from what matched within `radius` metres.
-    pub fn z_near(&self, p: &Point2<f64>, radius: f64) -> f64 {
-        let near = self.samples.iter().filter(|s| (s.xy() - p).norm() <= radius).map(|s| s.z);
-        low_height(near).unwrap_or(self.fallback)
+    fn from_samples(samples: &[Point3<f64>], elsewhere: f64) -> Self {
+        let bound = |start: f64, f: fn(f64, f64) -> f64| {
+            Point2::new(
+                samples.iter().map(|s| s.x).fold(start, f),
+                samples.iter().map(|s| s.y).fold(start, f),
+            )
+        };
+        let (min, max) = (bound(f64::INFINITY, f64::min), bound(f64::NEG_INFINITY, f64::max));
+        if samples.is_empty() {
+            return Self::level(elsewhere);
+        }
+        let (columns, rows) = (((max.x - min.x) / CELL) as usize + 1, ((max.y - min.y) / CELL) as usize + 1);
+        let cells: Vec<usize> = (0..columns * rows).collect();
+        let heights = crate::parallel::map(&cells, |_, &k| {
+            let at = min + nalgebra::Vector2::new((k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5) * CELL;
+            let near = samples.iter().filter(|s| (s.xy() - at).norm_squared() <= RADIUS * RADIUS);
+            low_height(near.map(|s| s.z)).unwrap_or(elsewhere)
+        });
+        Self { min, columns, rows, heights, elsewhere }
+    }
+
+    /// Ground height at a plan position, metres.
+    pub fn z_at(&self, p: &Point2<f64>) -> f64 {
+        let (c, r) = ((p.x - self.min.x) / CELL, (p.y - self.min.y) / CELL);
+        if c < 0.0 || r < 0.0 || c >= self.columns as f64 || r >= self.rows as f64 {
+            return self.elsewhere;
+        }
+        self.heights[r as usize * self.columns + c as usize]
     }
 }
 

@@ -6,7 +6,8 @@
 
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
-use super::plan::{PlannedView, listed};
+use super::names::listed;
+use super::plan::PlannedView;
 use crate::Error;
 use crate::camera::Camera;
 

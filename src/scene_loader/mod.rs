@@ -14,6 +14,7 @@
 mod checks;
 mod input;
 mod inspect;
+mod names;
 mod plan;
 mod region;
 

@@ -1,9 +1,10 @@
 //! Which image goes with which orientation, and everything that speaks against it.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 use super::checks;
-use super::input::{InputFile, LoadOptions, base_name, stem};
+use super::input::{InputFile, LoadOptions, stem};
+use super::names::{best_match, listed, match_rank};
 use super::region;
 use crate::camera::{Camera, Distortion};
 use crate::orientation::{FileKind, Orientation, OrientationSet, detect, orientation_sets};
@@ -341,50 +342,10 @@ fn planned_view(
     }
     Ok(PlannedView {
         file,
-        whole: without_scale(camera),
+        whole: camera,
         distortion: orientation.distortion,
         part: None,
     })
-}
-
-/// The same camera with `K[(2, 2)]` exactly 1.
-fn without_scale(mut camera: Camera) -> Camera {
-    let k: Matrix3<f64> = camera.k / camera.k[(2, 2)];
-    camera.k = k;
-    camera.k[(2, 2)] = 1.0;
-    camera
-}
-
-/// How well a name in an orientation file fits an image's; less is better, `None` is not at all.
-fn match_rank(oriented: &str, image: &str) -> Option<u8> {
-    let name = base_name(oriented);
-    let fits = |a: &str, b: &str| {
-        if a == b {
-            Some(0)
-        } else {
-            (a.to_lowercase() == b.to_lowercase()).then_some(3)
-        }
-    };
-    [
-        fits(name, image),
-        fits(name, stem(image)).map(|rank| rank + 1),
-        fits(stem(name), stem(image)).map(|rank| rank + 2),
-    ]
-    .into_iter()
-    .flatten()
-    .min()
-}
-
-/// The orientations that fit an image best.
-fn best_match(orientations: &[Orientation], image: &str) -> Vec<usize> {
-    let ranks: Vec<Option<u8>> = orientations
-        .iter()
-        .map(|o| match_rank(&o.image, image))
-        .collect();
-    let best = ranks.iter().flatten().min();
-    (0..ranks.len())
-        .filter(|&i| best.is_some() && ranks[i].as_ref() == best)
-        .collect()
 }
 
 fn no_orientation(
@@ -425,15 +386,4 @@ fn too_few(files: &[InputFile], views: &[PlannedView]) -> Error {
         advice: "add images: a line match in two views cannot be verified without a third"
             .to_owned(),
     }
-}
-
-/// Names in a row; long lists are cut short.
-pub(super) fn listed(names: impl Iterator<Item = impl AsRef<str>>) -> String {
-    const MOST: usize = 8;
-    let names: Vec<String> = names.map(|n| n.as_ref().to_owned()).collect();
-    let mut text = names[..names.len().min(MOST)].join(", ");
-    if names.len() > MOST {
-        text.push_str(&format!(" and {} more", names.len() - MOST));
-    }
-    text
 }

@@ -6,7 +6,8 @@
 use nalgebra::{Point3, Vector3};
 
 use super::input::InputFile;
-use super::plan::{PlannedView, listed};
+use super::names::listed;
+use super::plan::PlannedView;
 use crate::{Error, Result};
 
 /// Buildings rise above the ground by no more than this, metres. Assumption: roofs of houses and halls.

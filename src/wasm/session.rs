@@ -83,9 +83,10 @@ impl Session {
 
     /// Adds an image or orientation file; a file of the same path is replaced.
     #[wasm_bindgen(js_name = addFile)]
-    pub fn add_file(&mut self, path: String, bytes: Vec<u8>) {
-        self.files.retain(|file| file.path != path);
-        self.files.push(InputFile { path, bytes });
+    pub fn add_file(&mut self, path: &str, bytes: Vec<u8>) {
+        let added = InputFile::new(path, bytes);
+        self.files.retain(|file| file.path != added.path);
+        self.files.push(added);
         self.files.sort_by(|a, b| a.path.cmp(&b.path));
     }
 

@@ -1,0 +1,93 @@
+//! Merging and growing (B99 3.3): which stretch of a 3D line the views support.
+//!
+//! * Where two views have a segment, the line is there.
+//! * Growing: where one view only has a segment, the others are taken along if the neighbourhoods
+//!   correlate over three views ("the end points may be extended provided the grown edgels satisfy the
+//!   photometric correlation tests over the three views").
+//! * Merging: a gap between fragments that no view closes is bridged by the same test.
+
+use super::profile::Profile;
+use crate::params::MatchParams;
+
+/// Holes of this many edgels are closed without a test: an end point is not better known.
+const HOLE_PX: usize = 4;
+/// Share of a gap's edgels that must correlate over three views.
+const GAP_SHARE: f64 = 0.8;
+
+/// The supported stretch: first and last edgel of the profile. `None` where no two views agree.
+pub fn supported_stretch(profile: &Profile, params: &MatchParams) -> Option<(usize, usize)> {
+    let n = profile.t.len();
+    let detections: Vec<usize> = (0..n).map(|e| profile.detections(e)).collect();
+    let agreeing: Vec<bool> = (0..n).map(|e| profile.agreeing(e, params) >= 3).collect();
+    let supported: Vec<bool> = (0..n)
+        .map(|e| detections[e] >= 2 || (detections[e] >= 1 && agreeing[e]))
+        .collect();
+    let (start, end) = longest_run(&detections)?;
+    let forward = extend(&supported[end..], &agreeing[end..], params);
+    let reversed = |v: &[bool]| v[..=start].iter().rev().copied().collect::<Vec<_>>();
+    let backward = extend(&reversed(&supported), &reversed(&agreeing), params);
+    Some((start - backward, end + forward))
+}
+
+/// The longest run of edgels that two views detected.
+fn longest_run(detections: &[usize]) -> Option<(usize, usize)> {
+    let mut best: Option<(usize, usize)> = None;
+    let mut start = 0;
+    for (e, d) in detections.iter().enumerate() {
+        if *d < 2 {
+            start = e + 1;
+        } else if best.is_none_or(|(s, t)| e - start > t - s) {
+            best = Some((start, e));
+        }
+    }
+    best
+}
+
+/// How far support reaches from the first edgel on, which is supported.
+fn extend(supported: &[bool], agreeing: &[bool], params: &MatchParams) -> usize {
+    let mut reached = 0;
+    while reached + 1 < supported.len() {
+        if supported[reached + 1] {
+            reached += 1;
+            continue;
+        }
+        let Some(gap) = supported[reached + 1..].iter().position(|s| *s) else {
+            break;
+        };
+        let bridged = &agreeing[reached + 1..reached + 1 + gap];
+        let agreed = bridged.iter().filter(|a| **a).count() as f64;
+        let by_correlation = gap as f64 <= params.max_gap_px && agreed >= GAP_SHARE * gap as f64;
+        if gap > HOLE_PX && !by_correlation {
+            break;
+        }
+        reached += gap + 1;
+    }
+    reached
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bools(s: &str) -> Vec<bool> {
+        s.bytes().map(|b| b == b'x').collect()
+    }
+
+    fn reach(supported: &str, agreeing: &str) -> usize {
+        extend(&bools(supported), &bools(agreeing), &MatchParams::default())
+    }
+
+    #[test]
+    fn holes_are_closed_and_gaps_need_correlation() {
+        assert_eq!(reach("xxx...xxx", "........."), 8, "a small hole");
+        assert_eq!(reach("xx........xx", "............"), 1, "an unsupported gap");
+        assert_eq!(reach("xx........xx", ".xxxxxxxxxx."), 11, "a bridged gap");
+        assert_eq!(reach("xxxx........", "xxxxxxxxxxxx"), 3, "nothing beyond a gap");
+    }
+
+    #[test]
+    fn the_longest_run_starts() {
+        assert_eq!(longest_run(&[2, 1, 2, 3, 2, 0, 2, 2]), Some((2, 4)));
+        assert_eq!(longest_run(&[1, 0, 1]), None);
+    }
+}

@@ -1,0 +1,322 @@
+//! From a pair or triple to a line over N views (B99 3.4): the 3D line is projected into all views, segments near the
+//! projection are adopted, the line is fitted again, merged and grown, and its views are counted.
+
+use serde::Serialize;
+
+use super::grow::supported_stretch;
+use super::profile::{Profile, ViewProfile};
+use super::sight::{SegmentRef, Sight, Sights};
+use super::strip::EdgelScore;
+use super::{LineSupport, SupportKind};
+use crate::geometry::{Segment2, Segment3};
+use crate::ids::ViewId;
+use crate::lines2d::ImageSegment;
+use crate::lines3d::{LineFit, Observation, ProjectedLine, fit_line};
+use crate::params::{Lines3dParams, MatchParams};
+use crate::scene::Scene;
+
+/// How often segments are adopted and the line fitted again. Assumption: the second round changes few lines, a
+/// third none.
+const ROUNDS: usize = 2;
+/// A stretch reaches past the detected segments by this much to count as grown, px.
+const GROWN_PX: f64 = 3.0;
+
+/// Why a hypothesis that no other line took the segments of did not become a match.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rejection {
+    /// No line fits the segments.
+    NoFit,
+    /// The line is not determined well enough across itself.
+    IllConditioned,
+    /// Fewer than the minimum of views support it.
+    TooFewViews,
+    /// The supported stretch is shorter than the minimum of edgels.
+    TooShort,
+    /// It leaves the height range.
+    OutsideHeights,
+}
+
+/// A line over N views, not yet compared with others.
+pub struct Line {
+    /// The fitted line, directed by contrast where that is the same in all views.
+    pub segment: Segment3,
+    /// Its supports, by view.
+    pub supports: Vec<LineSupport>,
+}
+
+/// What [`complete_line`] needs of the whole.
+pub struct Context<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The detected segments.
+    pub segments: &'a [Vec<ImageSegment>],
+    /// The same, prepared.
+    pub sights: &'a Sights,
+    /// Heights between which lines are sought, metres.
+    pub z_range: [f64; 2],
+    /// Matching parameters.
+    pub params: &'a MatchParams,
+    /// Fitting parameters.
+    pub fitting: &'a Lines3dParams,
+}
+
+/// Completes a hypothesis from some of its segments; `taken` tells which segments belong to other lines.
+pub fn complete_line(
+    context: &Context,
+    start: &Segment3,
+    seeds: &[SegmentRef],
+    taken: impl Fn(SegmentRef) -> bool,
+) -> Result<Line, Rejection> {
+    let (mut fit, mut segments) = context.fit_consistent(start, seeds)?;
+    for _ in 0..ROUNDS {
+        let adopted = context.adopt(&fit.line, &segments, &taken);
+        (fit, segments) = context.fit_consistent(&fit.line, &adopted)?;
+    }
+    let profile = Profile::new(
+        context.scene,
+        context.sights,
+        &fit.line,
+        &segments,
+        context.params,
+    )
+    .ok_or(Rejection::NoFit)?;
+    let stretch = supported_stretch(&profile, context.params).ok_or(Rejection::TooFewViews)?;
+    if stretch.1 - stretch.0 + 1 < context.params.min_edgels {
+        return Err(Rejection::TooShort);
+    }
+    let supports = context.supports(&profile, stretch);
+    context.check_views(&profile, stretch, &supports)?;
+    let kept: Vec<SegmentRef> = supports.iter().flat_map(names).collect();
+    let fit = context.fit(&fit.line, &kept)?;
+    context.check_line(&fit, profile.t[stretch.0], profile.t[stretch.1], &supports)
+}
+
+/// The detected segments of a support.
+fn names(support: &LineSupport) -> impl Iterator<Item = SegmentRef> {
+    support.segments.iter().map(|segment| SegmentRef {
+        view: support.view,
+        segment: *segment,
+    })
+}
+
+impl Context<'_> {
+    /// Fits the line to those segments that agree with each other: the worst is dropped and the
+    /// line fitted again until none is farther than `max_residual`. The robust loss alone leaves a
+    /// line between two parallel edges a pixel apart.
+    fn fit_consistent(
+        &self,
+        start: &Segment3,
+        segments: &[SegmentRef],
+    ) -> Result<(LineFit, Vec<SegmentRef>), Rejection> {
+        let mut kept = segments.to_vec();
+        loop {
+            let fit = self.fit(start, &kept)?;
+            let worst = (0..kept.len())
+                .max_by(|&i, &j| fit.residuals[i].total_cmp(&fit.residuals[j]).then(j.cmp(&i)))
+                .ok_or(Rejection::NoFit)?;
+            if fit.residuals[worst] <= self.fitting.max_residual {
+                return Ok((fit, kept));
+            }
+            kept.remove(worst);
+        }
+    }
+
+    fn fit(&self, start: &Segment3, segments: &[SegmentRef]) -> Result<LineFit, Rejection> {
+        let observations: Vec<Observation> = segments
+            .iter()
+            .map(|s| {
+                let detected = &self.segments[s.view.index()][s.segment.index()];
+                Observation {
+                    camera: self.scene.camera(s.view),
+                    segment: detected.segment,
+                    covariance: detected.covariance,
+                }
+            })
+            .collect();
+        fit_line(&observations, start, self.fitting)
+            .ok_or(Rejection::NoFit)
+    }
+
+    /// The segments of all views that lie on the projection of the line, or not farther beyond its
+    /// ends than a gap may be.
+    fn adopt(
+        &self,
+        line: &Segment3,
+        known: &[SegmentRef],
+        taken: &impl Fn(SegmentRef) -> bool,
+    ) -> Vec<SegmentRef> {
+        let mut found = Vec::new();
+        for view in self.scene.view_ids() {
+            let Some((image, extent)) = self.extent(line, known, view) else {
+                continue;
+            };
+            let (from, to) = (
+                extent.p0 - image.direction * self.params.max_gap_px,
+                extent.p1 + image.direction * self.params.max_gap_px,
+            );
+            let stretch = Segment2::new(from, to);
+            let index = &self.sights.views[view.index()].index;
+            for id in index.near_segment(&stretch, self.params.gate_px) {
+                let name = SegmentRef {
+                    view,
+                    segment: crate::ids::SegmentId(id),
+                };
+                let on_line = |s: &Sight| {
+                    let ahead = |p: nalgebra::Point2<f64>| (p - from).dot(&image.direction);
+                    let (s0, s1) = (ahead(s.segment.p0), ahead(s.segment.p1));
+                    s0.max(s1) >= 0.0
+                        && s0.min(s1) <= stretch.length()
+                        && self.lies_on(&image, s)
+                };
+                if !taken(name) && self.sights.get(name).is_some_and(on_line) {
+                    found.push(name);
+                }
+            }
+        }
+        found
+    }
+
+    /// The image of the line in a view, and the stretch of it that the known segments cover.
+    fn extent(
+        &self,
+        line: &Segment3,
+        known: &[SegmentRef],
+        view: ViewId,
+    ) -> Option<(ProjectedLine, Segment2)> {
+        let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
+        for s in known {
+            let image = ProjectedLine::new(self.scene.camera(s.view), line)?;
+            let sight = self.sights.get(*s)?;
+            for p in [sight.segment.p0, sight.segment.p1] {
+                let t = image.t_of(&p);
+                (from, to) = (from.min(t), to.max(t));
+            }
+        }
+        let image = ProjectedLine::new(self.scene.camera(view), line)?;
+        Some((image, Segment2::new(image.at(from)?, image.at(to)?)))
+    }
+
+    fn lies_on(&self, image: &ProjectedLine, sight: &Sight) -> bool {
+        let along = sight.segment.direction().dot(&image.direction);
+        let near = |p| image.distance(p).abs() <= self.params.gate_px;
+        (!self.params.same_contrast || along > 0.0)
+            && along.abs() > 0.9
+            && near(&sight.segment.p0)
+            && near(&sight.segment.p1)
+    }
+
+    /// The views that support the stretch.
+    fn supports(&self, profile: &Profile, stretch: (usize, usize)) -> Vec<LineSupport> {
+        let mut supports: Vec<LineSupport> = (0..profile.views.len())
+            .filter(|i| *i != profile.reference)
+            .filter_map(|i| self.support(profile, &profile.views[i], stretch, None))
+            .collect();
+        // The reference view agrees with itself; its score is what the others say.
+        let mean = supports.iter().map(|s| s.score).sum::<f64>() / supports.len().max(1) as f64;
+        let reference = &profile.views[profile.reference];
+        supports.extend(self.support(profile, reference, stretch, Some(mean)));
+        supports.sort_by_key(|s| s.view);
+        supports
+    }
+
+    /// The support of one view: with a segment at half the threshold, without at one and a half
+    /// (B99 3.2).
+    fn support(
+        &self,
+        profile: &Profile,
+        view: &ViewProfile,
+        (start, end): (usize, usize),
+        score: Option<f64>,
+    ) -> Option<LineSupport> {
+        let (t0, t1) = (profile.t[start], profile.t[end]);
+        let segments: Vec<_> = view
+            .segments
+            .iter()
+            .filter(|(_, [s, e])| e.min(t1) - s.max(t0) >= 0.5 * (e - s).min(t1 - t0))
+            .collect();
+        let correlation = &view.correlation[start..=end];
+        let seen = EdgelScore::of(correlation, self.params.edgel_correlation);
+        let score = score.unwrap_or(seen.score);
+        let factor = if segments.is_empty() {
+            self.params.without_segment
+        } else {
+            self.params.with_segment
+        };
+        let enough = !segments.is_empty() || seen.included >= self.params.min_edgels;
+        (enough && score >= self.params.pair_score * factor).then_some(())?;
+
+        let supported: Vec<usize> = (start..=end)
+            .filter(|&e| {
+                view.detected[e]
+                    || f64::from(view.correlation[e]) >= self.params.edgel_correlation
+            })
+            .collect();
+        let (first, last) = (*supported.first()?, *supported.last()?);
+        let stretch = Segment2::new(view.image.at(profile.t[first])?, view.image.at(profile.t[last])?);
+        let outermost = segments.iter().fold(
+            (f64::INFINITY, f64::NEG_INFINITY),
+            |(f, t), (_, [s, e])| (f.min(s.max(t0)), t.max(e.min(t1))),
+        );
+        let detected_px = (outermost.1 - outermost.0) * (stretch.length()
+            / (profile.t[last] - profile.t[first]).max(1e-9));
+        let kind = match segments.len() {
+            0 => SupportKind::Grown,
+            _ if stretch.length() > detected_px + GROWN_PX => SupportKind::Grown,
+            1 => SupportKind::Matched,
+            _ => SupportKind::Merged,
+        };
+        Some(LineSupport {
+            view: view.view,
+            segments: segments.iter().map(|(id, _)| *id).collect(),
+            stretch,
+            score: score.min(1.0),
+            kind,
+        })
+    }
+
+    /// At least two views with segments, and at least the minimum of views that support the line.
+    fn check_views(
+        &self,
+        profile: &Profile,
+        (start, end): (usize, usize),
+        supports: &[LineSupport],
+    ) -> Result<(), Rejection> {
+        let middle = 0.5 * (profile.t[start] + profile.t[end]);
+        let sees = |v: &&ViewProfile| {
+            let x = v.image.at(middle);
+            x.is_some_and(|x| self.scene.camera(v.view).contains(&x, 1.0))
+        };
+        let seeing = profile.views.iter().filter(sees).count();
+        let minimum = if seeing >= 6 { self.params.min_views } else { 3 };
+        let measured = supports.iter().filter(|s| !s.segments.is_empty()).count();
+        if measured < 2 || supports.len() < minimum {
+            return Err(Rejection::TooFewViews);
+        }
+        Ok(())
+    }
+
+    fn check_line(
+        &self,
+        fit: &LineFit,
+        t0: f64,
+        t1: f64,
+        supports: &[LineSupport],
+    ) -> Result<Line, Rejection> {
+        let length = fit.line.length();
+        let segment = super::triples::stretch_of(&fit.line, t0, t1);
+        let sigma = fit.sigma_at(t0 / length).max(fit.sigma_at(t1 / length));
+        let camera = self.scene.camera(supports[0].view);
+        if sigma > self.fitting.max_sigma_px * camera.ground_pixel(&segment.p0) {
+            return Err(Rejection::IllConditioned);
+        }
+        let [low, high] = self.z_range;
+        if [segment.p0.z, segment.p1.z].iter().any(|z| *z < low || *z > high) {
+            return Err(Rejection::OutsideHeights);
+        }
+        Ok(Line {
+            segment,
+            supports: supports.to_vec(),
+        })
+    }
+}

@@ -1,0 +1,255 @@
+//! Two-view matching (B99 3.1): candidates in the epipolar beam, scored by the correlation of the
+//! lines' neighbourhoods.
+//!
+//! The paper matches consecutive views only. A line near-parallel to a baseline is undetermined by
+//! that pair, whatever its segments, so here every pair of partner views is searched and each
+//! hypothesis judged by its own conditioning: lines along the flight are matched across it.
+//!
+//! Work: each segment meets only the segments in its beam (about 3 to 10 with the height range of a
+//! suburb), so that the work grows with segments x partners x density, not with their square.
+
+use nalgebra::{Point3, Vector3};
+
+use super::sight::{SegmentRef, Sight, Sights, epipolar_beam, ray_in_plane};
+use super::strip::{EdgelScore, Strip, StripFrame, StripSide, correlate};
+use crate::camera::{Camera, homography_of_plane};
+use crate::geometry::{Plane, Segment3};
+use crate::halfplane::{Side, ThetaFrame};
+use crate::ids::ViewId;
+use crate::parallel;
+use crate::params::MatchParams;
+use crate::scene::Scene;
+
+/// Two segments that may be images of one line.
+#[derive(Clone, Debug)]
+pub struct Pair {
+    /// Segment of the view with the lower index.
+    pub a: SegmentRef,
+    /// Segment of the other view.
+    pub b: SegmentRef,
+    /// The stretch of the 3D line that both see, directed as `a`, metres.
+    pub overlap: Segment3,
+    /// Its length in the first view, pixels.
+    pub overlap_px: f64,
+    /// Photometric score of the better side, 0 to 1.
+    pub score: f64,
+}
+
+/// What became of one segment in the pair search.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PairSearch {
+    /// Candidates in beams that passed the geometric tests.
+    pub candidates: u32,
+    /// Best score among them.
+    pub best: f64,
+}
+
+/// All pair hypotheses that can serve anywhere: those above `pair_score * with_segment`.
+pub struct Pairs {
+    /// Sorted by (a, b).
+    pub pairs: Vec<Pair>,
+    /// For each view and segment, what its search found, in both directions.
+    pub searches: Vec<Vec<PairSearch>>,
+}
+
+/// Matches every segment with those of its partner views.
+pub fn match_pairs(
+    scene: &Scene,
+    sights: &Sights,
+    partners: &[(ViewId, ViewId)],
+    z_range: [f64; 2],
+    params: &MatchParams,
+) -> Pairs {
+    let tasks: Vec<(SegmentRef, &Sight)> = scene
+        .view_ids()
+        .flat_map(|view| sights.of_view(view))
+        .collect();
+    let found = parallel::map(&tasks, |_, (name, sight)| {
+        search_one(scene, sights, partners, z_range, params, *name, sight)
+    });
+    let mut searches: Vec<Vec<PairSearch>> = sights
+        .views
+        .iter()
+        .map(|v| vec![PairSearch::default(); v.sights.len()])
+        .collect();
+    let mut pairs: Vec<Pair> = Vec::new();
+    for pair in found.into_iter().flatten() {
+        for s in [pair.a, pair.b] {
+            let search = &mut searches[s.view.index()][s.segment.index()];
+            search.candidates += 1;
+            search.best = search.best.max(pair.score);
+        }
+        if pair.score >= params.pair_score * params.with_segment {
+            pairs.push(pair);
+        }
+    }
+    Pairs { pairs, searches }
+}
+
+/// Scores a segment against its candidates in all partner views of higher index.
+fn search_one(
+    scene: &Scene,
+    sights: &Sights,
+    partners: &[(ViewId, ViewId)],
+    z_range: [f64; 2],
+    params: &MatchParams,
+    name: SegmentRef,
+    sight: &Sight,
+) -> Vec<Pair> {
+    let first = scene.view(name.view);
+    let frame = StripFrame::new(&sight.segment, params.window_px);
+    let strip = Strip::reference(&first.gray, &frame);
+    let mut pairs = Vec::new();
+    for (_, other) in partners.iter().filter(|(view, _)| *view == name.view) {
+        let camera = scene.camera(*other);
+        let Some(beam) = epipolar_beam(&first.camera, &sight.segment, camera, z_range) else {
+            continue;
+        };
+        let view = &sights.views[other.index()];
+        for id in view.index.near_quad(&beam, params.gate_px) {
+            let Some(candidate) = view.sights[id as usize].as_ref() else {
+                continue;
+            };
+            let Some(geometry) =
+                PairGeometry::new(&first.camera, sight, camera, candidate, z_range, params)
+            else {
+                continue;
+            };
+            let score = pair_score(scene, name.view, *other, &frame, &strip, &geometry, params);
+            pairs.push(Pair {
+                a: name,
+                b: SegmentRef {
+                    view: *other,
+                    segment: crate::ids::SegmentId(id),
+                },
+                overlap: geometry.overlap,
+                overlap_px: geometry.to_px - geometry.from_px,
+                score,
+            });
+        }
+    }
+    pairs
+}
+
+/// The 3D line that two segments would have in common.
+struct PairGeometry {
+    overlap: Segment3,
+    /// The overlap along the first segment, pixels from its start.
+    from_px: f64,
+    to_px: f64,
+}
+
+impl PairGeometry {
+    /// The common stretch, where it is long enough, well conditioned, in the height range, not too
+    /// steep, and of one contrast direction.
+    fn new(
+        first: &Camera,
+        a: &Sight,
+        second: &Camera,
+        b: &Sight,
+        z_range: [f64; 2],
+        params: &MatchParams,
+    ) -> Option<Self> {
+        let sine = |plane: &Plane, rays: &[Vector3<f64>; 2]| {
+            let [s, e] = rays.map(|r| plane.normal.dot(&r).abs());
+            s.min(e)
+        };
+        if sine(&b.plane, &a.rays) < params.min_intersection_sine
+            || sine(&a.plane, &b.rays) < params.min_intersection_sine
+        {
+            return None;
+        }
+        let meet = |center: &Point3<f64>, rays: &[Vector3<f64>; 2], plane: &Plane| {
+            Some([
+                ray_in_plane(center, &rays[0], plane)?,
+                ray_in_plane(center, &rays[1], plane)?,
+            ])
+        };
+        let [a0, a1] = meet(&first.center, &a.rays, &b.plane)?;
+        let [b0, b1] = meet(&second.center, &b.rays, &a.plane)?;
+        let length = (a1 - a0).norm();
+        let direction = (a1 - a0) / length.max(1e-9);
+        let (t0, t1) = ((b0 - a0).dot(&direction), (b1 - a0).dot(&direction));
+        if params.same_contrast && t1 <= t0 {
+            return None;
+        }
+        let (from, to) = (t0.min(t1).max(0.0), t0.max(t1).min(length));
+        let px = a.length_px / length;
+        // The ends of detected segments are not reliable: a window's half may be missing.
+        if (to - from) * px < params.min_edgels as f64 {
+            return None;
+        }
+        let overlap = Segment3::new(a0 + direction * from, a0 + direction * to);
+        let [low, high] = z_range;
+        let in_range = |z: f64| z >= low && z <= high;
+        let steepest = crate::math::sin(params.max_slope_deg.to_radians());
+        (in_range(overlap.p0.z) && in_range(overlap.p1.z) && direction.z.abs() <= steepest)
+            .then_some(Self {
+                overlap,
+                from_px: from * px,
+                to_px: to * px,
+            })
+    }
+}
+
+/// Photometric score of two segments over their common stretch: the better side, each with the best
+/// of its planes.
+fn pair_score(
+    scene: &Scene,
+    first: ViewId,
+    second: ViewId,
+    frame: &StripFrame,
+    strip: &Strip,
+    geometry: &PairGeometry,
+    params: &MatchParams,
+) -> f64 {
+    let start = (geometry.from_px.round() as usize).min(frame.edgels - 1);
+    let end = (geometry.to_px.round() as usize).clamp(start + 1, frame.edgels);
+    let part = frame.part(start, end - start);
+    let strip = strip.part(start, end - start);
+    let score = |side: StripSide, theta_deg: f64| {
+        side_correlation(
+            scene, first, second, &part, &strip, &geometry.overlap, side, theta_deg, params,
+        )
+        .map(|c| EdgelScore::of(&c, params.edgel_correlation))
+        .filter(|s| s.included >= params.min_edgels)
+        .map_or(0.0, |s| s.score)
+    };
+    let mut best = 0.0f64;
+    for &theta in &params.plane_angles_deg {
+        for side in StripSide::BOTH {
+            best = best.max(score(side, theta));
+        }
+        // Where a plane explains a side well enough, no other need be tried.
+        if best >= 1.5 * params.pair_score {
+            break;
+        }
+    }
+    best
+}
+
+/// Correlations at the edgels of a reference strip with another view, on one side of a line, warped by
+/// the half-plane at `theta_deg`. `None` for a line without such a plane.
+#[allow(clippy::too_many_arguments)] // Every one is another thing; a struct would be used once.
+pub fn side_correlation(
+    scene: &Scene,
+    first: ViewId,
+    second: ViewId,
+    frame: &StripFrame,
+    strip: &Strip,
+    line: &Segment3,
+    side: StripSide,
+    theta_deg: f64,
+    params: &MatchParams,
+) -> Option<Vec<f32>> {
+    // What is right on the screen of a camera that looks down is right from above.
+    let from_above = match side {
+        StripSide::Left => Side::Left,
+        StripSide::Right => Side::Right,
+    };
+    let plane = ThetaFrame::new(line, from_above)?.plane(line, theta_deg.to_radians());
+    let (a, b) = (scene.camera(first), scene.view(second));
+    let h = homography_of_plane(a, &b.camera, &plane)?;
+    let warped = Strip::warped(&b.gray, &h, frame, side);
+    Some(correlate(strip, &warped, side, params.noise))
+}

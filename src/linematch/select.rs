@@ -1,0 +1,135 @@
+//! The final matching set (B99 3.2): winner takes all.
+//!
+//! "Whenever a line belongs to several triples, only the triple with the best score is retained." With N views the
+//! unit is the bundle of triples of one pair: bundles are taken in the order of their evidence, completed to
+//! lines over all views, and own their segments from then on. The losers' segments are not
+//! thrown away: those that lie on the winner's line were adopted by it (merging), the others remain
+//! free for the next bundle.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use super::nviews::{Context, Line, Rejection, complete_line};
+use super::pairs::Pairs;
+use super::sight::SegmentRef;
+use super::triples::Bundle;
+
+/// What became of a bundle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fate {
+    /// It became this line.
+    Won(usize),
+    /// Its segments belong to this line.
+    Lost(usize),
+    /// It failed on its own.
+    Rejected(Rejection),
+}
+
+/// The lines, and the fate of each bundle.
+pub struct Selection {
+    /// Accepted lines, the best first.
+    pub lines: Vec<Line>,
+    /// One for each bundle.
+    pub fates: Vec<Fate>,
+    /// For each view and segment, the line that owns it.
+    pub owners: Vec<Vec<Option<usize>>>,
+}
+
+/// Takes bundles by falling evidence.
+pub fn winner_takes_all(context: &Context, pairs: &Pairs, bundles: &[Bundle]) -> Selection {
+    let mut selection = Selection {
+        lines: Vec::new(),
+        fates: vec![Fate::Rejected(Rejection::NoFit); bundles.len()],
+        owners: context
+            .segments
+            .iter()
+            .map(|v| vec![None; v.len()])
+            .collect(),
+    };
+    let mut queue: BinaryHeap<Entry> = bundles
+        .iter()
+        .enumerate()
+        .map(|(bundle, b)| Entry {
+            evidence: b.evidence(&pairs.pairs[b.pair]),
+            bundle,
+        })
+        .collect();
+    while let Some(entry) = queue.pop() {
+        let bundle = &bundles[entry.bundle];
+        let pair = &pairs.pairs[bundle.pair];
+        if let Some(owner) = selection.owner(pair.a).or(selection.owner(pair.b)) {
+            selection.fates[entry.bundle] = Fate::Lost(owner);
+            continue;
+        }
+        // What others took since does not count any more: back into the queue with the rest.
+        let rest = Bundle {
+            pair: bundle.pair,
+            verified: bundle
+                .verified
+                .iter()
+                .copied()
+                .filter(|v| selection.owner(v.segment).is_none())
+                .collect(),
+        };
+        let evidence = rest.evidence(pair);
+        if evidence < entry.evidence {
+            queue.push(Entry { evidence, ..entry });
+            continue;
+        }
+        let mut seeds = vec![pair.a, pair.b];
+        seeds.extend(rest.verified.iter().map(|v| v.segment));
+        let taken = |s: SegmentRef| selection.owner(s).is_some();
+        let fate = match complete_line(context, &pair.overlap, &seeds, taken) {
+            Ok(line) => selection.accept(line),
+            Err(reason) => Fate::Rejected(reason),
+        };
+        selection.fates[entry.bundle] = fate;
+    }
+    selection
+}
+
+impl Selection {
+    fn owner(&self, s: SegmentRef) -> Option<usize> {
+        self.owners[s.view.index()][s.segment.index()]
+    }
+
+    fn accept(&mut self, line: Line) -> Fate {
+        let index = self.lines.len();
+        for support in &line.supports {
+            for segment in &support.segments {
+                self.owners[support.view.index()][segment.index()] = Some(index);
+            }
+        }
+        self.lines.push(line);
+        Fate::Won(index)
+    }
+}
+
+/// A bundle in the queue: the most evidence first, the lower index on a tie.
+#[derive(Clone, Copy)]
+struct Entry {
+    evidence: f64,
+    bundle: usize,
+}
+
+impl Ord for Entry {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.evidence
+            .total_cmp(&other.evidence)
+            .then(other.bundle.cmp(&self.bundle))
+    }
+}
+
+impl PartialOrd for Entry {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Entry {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Entry {}

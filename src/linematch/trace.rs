@@ -1,0 +1,229 @@
+//! What a teacher would draw of the matching: heights, pairs, triples, and for each segment its fate.
+
+use serde::Serialize;
+
+use super::SupportKind;
+use super::nviews::Rejection;
+use super::pairs::Pairs;
+use super::select::{Fate, Selection};
+use super::sight::SegmentRef;
+use super::triples::{Bundle, Verification};
+use crate::ids::ViewId;
+use crate::lines2d::ImageSegment;
+
+/// Most pairs kept in the trace, the best of each segment first.
+const MAX_PAIRS_PER_SEGMENT: usize = 12;
+
+/// What became of one segment.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "fate", rename_all = "snake_case")]
+pub enum SegmentOutcome {
+    /// It belongs to a match.
+    Matched {
+        /// Index of the match.
+        line: u32,
+    },
+    /// No segment in any epipolar beam passed the geometric tests.
+    NoCandidate,
+    /// No candidate's photometric score reached the threshold.
+    BelowThreshold {
+        /// The best score, 0 to 1.
+        best: f32,
+    },
+    /// It had pairs, but no match came of them.
+    NotVerified {
+        /// Why its best pair failed.
+        reason: Rejection,
+    },
+    /// The partner segments of its best pair went to another match.
+    LostTo {
+        /// Index of that match.
+        line: u32,
+    },
+}
+
+/// A pair hypothesis, with the triples that it is part of.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PairTrace {
+    /// Segment of the view with the lower index.
+    pub a: SegmentRef,
+    /// Segment of the other view.
+    pub b: SegmentRef,
+    /// Photometric score, 0 to 1.
+    pub score: f32,
+    /// Segments of third views at the predicted position: each makes a triple.
+    pub verified: Vec<Verification>,
+    /// The match that it became, after winner takes all.
+    pub line: Option<u32>,
+}
+
+/// Counts and lengths of one step (the rows of B99's results).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct StepCount {
+    /// Number of segments or supports.
+    pub number: usize,
+    /// Their total length in the images, pixels.
+    pub length_px: f64,
+}
+
+impl StepCount {
+    fn add(&mut self, length_px: f64) {
+        self.number += 1;
+        self.length_px += length_px;
+    }
+}
+
+/// The trace of [`super::match_lines`].
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct MatchTrace {
+    /// Heights between which lines were sought, metres; [`super::epipolar_beam`] draws beams with it.
+    pub z_range_m: Option<[f64; 2]>,
+    /// Heights found by the sweep that the range rests on, metres, sorted.
+    pub heights_m: Vec<f64>,
+    /// Pairs of views that were matched.
+    pub view_pairs: Vec<(ViewId, ViewId)>,
+    /// For each view, the fate of each segment.
+    pub outcomes: Vec<Vec<SegmentOutcome>>,
+    /// The best pairs of each segment.
+    pub pairs: Vec<PairTrace>,
+    /// Number of pairs tested by correlation.
+    pub candidates: usize,
+    /// Number of pairs above the threshold.
+    pub pair_count: usize,
+    /// Number of triples before winner takes all.
+    pub triples_before: usize,
+    /// Number of triples after it.
+    pub triples_after: usize,
+    /// Segments given.
+    pub detected: StepCount,
+    /// Segments that belong to a match.
+    pub matched: StepCount,
+    /// Of these, the ones joined to another segment of the same view.
+    pub merged: StepCount,
+    /// Supports that reach past their segments, or have none; the length is that of the grown part.
+    pub grown: StepCount,
+}
+
+impl MatchTrace {
+    /// Fills in everything that follows from the search.
+    pub(super) fn record(
+        &mut self,
+        segments: &[Vec<ImageSegment>],
+        pairs: &Pairs,
+        bundles: &[Bundle],
+        selection: &Selection,
+    ) {
+        self.candidates = pairs.searches.iter().flatten().map(|s| s.candidates as usize).sum::<usize>() / 2;
+        self.pair_count = bundles.len();
+        self.triples_before = bundles.iter().map(|b| b.views().count()).sum();
+        self.triples_after = selection
+            .lines
+            .iter()
+            .map(|l| l.supports.len().saturating_sub(2))
+            .sum();
+        self.outcomes = outcomes(segments, pairs, bundles, selection);
+        self.pairs = best_pairs(segments, pairs, bundles, selection);
+        self.count(segments, selection);
+    }
+
+    fn count(&mut self, segments: &[Vec<ImageSegment>], selection: &Selection) {
+        for segment in segments.iter().flatten() {
+            self.detected.add(segment.segment.length());
+        }
+        for support in selection.lines.iter().flat_map(|l| &l.supports) {
+            let mut detected_px = 0.0;
+            for id in &support.segments {
+                let length = segments[support.view.index()][id.index()].segment.length();
+                detected_px += length;
+                self.matched.add(length);
+                if support.segments.len() > 1 {
+                    self.merged.add(length);
+                }
+            }
+            if support.kind == SupportKind::Grown {
+                self.grown
+                    .add((support.stretch.length() - detected_px).max(0.0));
+            }
+        }
+    }
+}
+
+fn outcomes(
+    segments: &[Vec<ImageSegment>],
+    pairs: &Pairs,
+    bundles: &[Bundle],
+    selection: &Selection,
+) -> Vec<Vec<SegmentOutcome>> {
+    let mut outcomes: Vec<Vec<SegmentOutcome>> = segments
+        .iter()
+        .zip(&pairs.searches)
+        .map(|(view, searches)| {
+            (0..view.len())
+                .map(|i| match searches[i] {
+                    s if s.candidates == 0 => SegmentOutcome::NoCandidate,
+                    s => SegmentOutcome::BelowThreshold {
+                        best: s.best as f32,
+                    },
+                })
+                .collect()
+        })
+        .collect();
+    // Weak pairs first, so that the best one has the last word.
+    let mut order: Vec<usize> = (0..bundles.len()).collect();
+    order.sort_by(|&i, &j| {
+        let score = |b: usize| pairs.pairs[bundles[b].pair].score;
+        score(i).total_cmp(&score(j)).then(j.cmp(&i))
+    });
+    for i in order {
+        let outcome = match selection.fates[i] {
+            Fate::Won(_) => continue,
+            Fate::Lost(line) => SegmentOutcome::LostTo { line: line as u32 },
+            Fate::Rejected(reason) => SegmentOutcome::NotVerified { reason },
+        };
+        let pair = &pairs.pairs[bundles[i].pair];
+        for s in [pair.a, pair.b] {
+            outcomes[s.view.index()][s.segment.index()] = outcome;
+        }
+    }
+    for (view, owners) in outcomes.iter_mut().zip(&selection.owners) {
+        for (outcome, owner) in view.iter_mut().zip(owners) {
+            if let Some(line) = owner {
+                *outcome = SegmentOutcome::Matched { line: *line as u32 };
+            }
+        }
+    }
+    outcomes
+}
+
+/// The pairs above the threshold, at most so many a segment.
+fn best_pairs(
+    segments: &[Vec<ImageSegment>],
+    pairs: &Pairs,
+    bundles: &[Bundle],
+    selection: &Selection,
+) -> Vec<PairTrace> {
+    let mut order: Vec<usize> = (0..bundles.len()).collect();
+    order.sort_by(|&i, &j| {
+        let score = |b: usize| pairs.pairs[bundles[b].pair].score;
+        score(j).total_cmp(&score(i)).then(i.cmp(&j))
+    });
+    let mut kept: Vec<Vec<usize>> = segments.iter().map(|v| vec![0; v.len()]).collect();
+    order
+        .into_iter()
+        .filter_map(|i| {
+            let pair = &pairs.pairs[bundles[i].pair];
+            let count = &mut kept[pair.a.view.index()][pair.a.segment.index()];
+            *count += 1;
+            (*count <= MAX_PAIRS_PER_SEGMENT).then(|| PairTrace {
+                a: pair.a,
+                b: pair.b,
+                score: pair.score as f32,
+                verified: bundles[i].verified.clone(),
+                line: match selection.fates[i] {
+                    Fate::Won(line) => Some(line as u32),
+                    _ => None,
+                },
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,202 @@
+//! Three-view matching (B99 3.2): a pair fixes a 3D line, its image in a third view is the trifocal transfer
+//! of the pair, and a segment found there verifies it.
+//!
+//! Every third view that verifies a pair makes a triple. The triples of one pair share their line, so they are kept
+//! together as a [`Bundle`]: that is the join of triplets of B99 3.4 for triples with two segments
+//! in common. Because each pair of views takes its turn as the first two, all search directions are
+//! covered. A bundle whose pair no segment verifies stays: correlation without a segment may still
+//! verify it (`nviews`).
+
+use nalgebra::{Point3, Vector3};
+use serde::Serialize;
+
+use super::pairs::{Pair, Pairs};
+use super::sight::{SegmentRef, Sight, Sights};
+use crate::geometry::Segment3;
+use crate::ids::ViewId;
+use crate::lines3d::ProjectedLine;
+use crate::parallel;
+use crate::params::MatchParams;
+use crate::scene::Scene;
+
+/// Predictions less certain than this many pixels (one standard deviation) verify nothing.
+const MAX_SIGMA_PX: f64 = 2.0;
+
+/// A segment at the position that a pair predicts in a third view.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Verification {
+    /// The segment.
+    pub segment: SegmentRef,
+    /// Its better photometric score with the two segments of the pair.
+    pub score: f64,
+}
+
+/// A pair with the segments of all third views that verify it.
+#[derive(Clone, Debug)]
+pub struct Bundle {
+    /// Index into [`Pairs::pairs`].
+    pub pair: usize,
+    /// By view and segment; several in one view are fragments of one line.
+    pub verified: Vec<Verification>,
+}
+
+impl Bundle {
+    /// Evidence for the line: seen length times the sum of the scores, the best of each view.
+    pub fn evidence(&self, pair: &Pair) -> f64 {
+        let mut sum = pair.score;
+        for group in self.views() {
+            sum += group.iter().map(|v| v.score).fold(0.0, f64::max);
+        }
+        sum * pair.overlap_px
+    }
+
+    /// The verifications of each third view.
+    pub fn views(&self) -> impl Iterator<Item = &[Verification]> {
+        self.verified
+            .chunk_by(|a, b| a.segment.view == b.segment.view)
+    }
+}
+
+/// Verifies every pair above the threshold in all other views.
+pub fn verify_pairs(
+    scene: &Scene,
+    sights: &Sights,
+    pairs: &Pairs,
+    params: &MatchParams,
+) -> Vec<Bundle> {
+    let strong: Vec<usize> = (0..pairs.pairs.len())
+        .filter(|&i| pairs.pairs[i].score >= params.pair_score)
+        .collect();
+    parallel::map(&strong, |_, &index| {
+        let pair = &pairs.pairs[index];
+        let others = scene
+            .view_ids()
+            .filter(|v| *v != pair.a.view && *v != pair.b.view);
+        Bundle {
+            pair: index,
+            verified: others
+                .flat_map(|view| verify_in_view(scene, sights, pairs, pair, view, params))
+                .collect(),
+        }
+    })
+}
+
+/// Segments of one view at the predicted position that also pass the photometric test.
+fn verify_in_view(
+    scene: &Scene,
+    sights: &Sights,
+    pairs: &Pairs,
+    pair: &Pair,
+    view: ViewId,
+    params: &MatchParams,
+) -> Vec<Verification> {
+    let Some(prediction) = Prediction::new(scene, sights, pair, view) else {
+        return Vec::new();
+    };
+    let reach = params.gate_px.max(3.0 * prediction.sigma_px);
+    let ends = [prediction.image.at(0.0), prediction.image.at(prediction.length)];
+    let [Some(start), Some(end)] = ends else {
+        return Vec::new();
+    };
+    let stretch = crate::geometry::Segment2::new(start, end);
+    let near = sights.views[view.index()].index.near_segment(&stretch, reach);
+    near.into_iter()
+        .filter_map(|id| {
+            let segment = SegmentRef {
+                view,
+                segment: crate::ids::SegmentId(id),
+            };
+            let sight = sights.get(segment)?;
+            prediction.agrees(sight, reach, params).then_some(())?;
+            let score = pairs.score(pair.a, segment).max(pairs.score(pair.b, segment));
+            (score > 0.0).then_some(Verification { segment, score })
+        })
+        .collect()
+}
+
+impl Pairs {
+    /// Score of two segments of different views in either order; zero when they are no pair.
+    pub fn score(&self, s: SegmentRef, t: SegmentRef) -> f64 {
+        let key = (s.min(t), s.max(t));
+        self.pairs
+            .binary_search_by(|p| (p.a, p.b).cmp(&key))
+            .map_or(0.0, |i| self.pairs[i].score)
+    }
+}
+
+/// The trifocal transfer of a pair to a third view, with its uncertainty.
+struct Prediction {
+    image: ProjectedLine,
+    /// Length of the predicted stretch along the 3D line, metres.
+    length: f64,
+    /// Standard deviation across the line at the worse end, pixels.
+    sigma_px: f64,
+}
+
+impl Prediction {
+    fn new(scene: &Scene, sights: &Sights, pair: &Pair, view: ViewId) -> Option<Self> {
+        let camera = scene.camera(view);
+        let image = ProjectedLine::new(camera, &pair.overlap)?;
+        let length = pair.overlap.length();
+        let sigma_px = transfer_sigma(scene, sights, pair, view, &image)?;
+        (sigma_px <= MAX_SIGMA_PX).then_some(Self {
+            image,
+            length,
+            sigma_px,
+        })
+    }
+
+    /// Does a segment lie on the prediction, over their common stretch?
+    fn agrees(&self, sight: &Sight, reach: f64, params: &MatchParams) -> bool {
+        let ends = [sight.segment.p0, sight.segment.p1];
+        let [t0, t1] = ends.map(|p| self.image.t_of(&p));
+        if params.same_contrast && t1 <= t0 {
+            return false;
+        }
+        let (from, to) = (t0.min(t1).max(0.0), t0.max(t1).min(self.length));
+        let span = (t1 - t0).abs();
+        // Half a window in common, or half of a short one.
+        let px = sight.length_px / span.max(1e-9);
+        if (to - from) * px < 0.5 * (params.window_px as f64).min(sight.length_px) {
+            return false;
+        }
+        let gate = (reach * reach + 9.0 * sight.sigma_px * sight.sigma_px).sqrt();
+        [from, to].iter().all(|t| {
+            let p = sight.segment.at((t - t0) / (t1 - t0));
+            self.image.distance(&p).abs() <= gate
+        })
+    }
+}
+
+/// How far the predicted line moves for one standard deviation of either segment, pixels: an error
+/// of `b` moves the point where a ray of `a` meets b's plane along that ray, and the reverse.
+fn transfer_sigma(
+    scene: &Scene,
+    sights: &Sights,
+    pair: &Pair,
+    view: ViewId,
+    image: &ProjectedLine,
+) -> Option<f64> {
+    let (a, b) = (sights.get(pair.a)?, sights.get(pair.b)?);
+    let (first, second) = (scene.camera(pair.a.view), scene.camera(pair.b.view));
+    let third = scene.camera(view);
+    let shift = |x: &Point3<f64>, along: &Vector3<f64>| {
+        Some(image.distance(&third.project(&(x + along))?))
+    };
+    let mut worst = 0.0f64;
+    for x in [pair.overlap.p0, pair.overlap.p1] {
+        let ray = |c: &Point3<f64>| (x - c).normalize();
+        let (ra, rb) = (ray(&first.center), ray(&second.center));
+        let by_b = b.sigma_px * second.ground_pixel(&x) / b.plane.normal.dot(&ra);
+        let by_a = a.sigma_px * first.ground_pixel(&x) / a.plane.normal.dot(&rb);
+        let (sa, sb) = (shift(&x, &(ra * by_b))?, shift(&x, &(rb * by_a))?);
+        worst = worst.max((sa * sa + sb * sb).sqrt());
+    }
+    worst.is_finite().then_some(worst)
+}
+
+/// The stretch of a line between two places along it, metres.
+pub fn stretch_of(line: &Segment3, from: f64, to: f64) -> Segment3 {
+    let d = line.direction();
+    Segment3::new(line.p0 + d * from, line.p0 + d * to)
+}

@@ -1,0 +1,302 @@
+//! One 3D line from its image segments (B99 3.2, figure 4): Levenberg-Marquardt on the distances
+//! between measured segments and the image of the line.
+//!
+//! The line has four parameters: the offsets of two anchor points in the two directions across it,
+//! in metres. That is minimal, free of singularities for the small steps taken here, and its
+//! covariance is that of the end points directly. The offsets are applied and the frame rebuilt after each step.
+//!
+//! The paper sums the distances of the measured end points from the image of the line. Those two
+//! distances are taken here as (offset at the middle, angle) and weighted by the segment's
+//! covariance, which makes long and well-defined segments count for what they are worth. The loss
+//! is Cauchy's, so that one wrong segment among several views does not move the line.
+
+use nalgebra::{Matrix2, Matrix3, Matrix4, Matrix4x2, Point3, Vector2, Vector3, Vector4};
+
+use crate::camera::Camera;
+use crate::geometry::{Segment2, Segment3};
+use crate::params::Lines3dParams;
+
+/// A measured image segment.
+#[derive(Clone, Debug)]
+pub struct Observation<'a> {
+    /// The camera that saw it.
+    pub camera: &'a Camera,
+    /// Its end points, pixels.
+    pub segment: Segment2,
+    /// Covariance of (offset along the normal at the middle in px, angle in rad).
+    pub covariance: Matrix2<f64>,
+}
+
+/// A fitted 3D line.
+#[derive(Clone, Debug)]
+pub struct LineFit {
+    /// The line, with the anchors as its end points, metres.
+    pub line: Segment3,
+    /// Two unit vectors across the line.
+    pub across: [Vector3<f64>; 2],
+    /// Covariance of (start along `across[0]`, start along `across[1]`, end likewise), m^2.
+    pub covariance: Matrix4<f64>,
+    /// Weighted residual length of each observation, in standard deviations (two values in one).
+    pub residuals: Vec<f64>,
+}
+
+impl LineFit {
+    /// Covariance across the line of the point at fraction `t` (0 start, 1 end), 3 x 3, m^2.
+    pub fn covariance_at(&self, t: f64) -> Matrix3<f64> {
+        let c = &self.covariance;
+        let (s, e) = (1.0 - t, t);
+        let start = c.fixed_view::<2, 2>(0, 0);
+        let end = c.fixed_view::<2, 2>(2, 2);
+        let both = c.fixed_view::<2, 2>(0, 2);
+        let m = start * (s * s) + end * (e * e) + (both + both.transpose()) * (s * e);
+        let [u, v] = self.across;
+        u * u.transpose() * m[(0, 0)]
+            + v * v.transpose() * m[(1, 1)]
+            + (u * v.transpose() + v * u.transpose()) * (0.5 * (m[(0, 1)] + m[(1, 0)]))
+    }
+
+    /// Standard deviation across the line at fraction `t`, metres, in the worst direction.
+    pub fn sigma_at(&self, t: f64) -> f64 {
+        let values = self.covariance_at(t).symmetric_eigenvalues();
+        values.max().max(0.0).sqrt()
+    }
+}
+
+/// The line nearest to all interpretation planes in the least-squares sense: direction across all
+/// their normals, position by least squares. A start for [`fit_line`]; its end points are those of
+/// the longest observation. `None` when the planes do not fix a line.
+pub fn line_of_planes(observations: &[Observation]) -> Option<Segment3> {
+    let planes: Vec<_> = observations
+        .iter()
+        .filter_map(|o| {
+            let plane = crate::camera::plane_of_image_line(o.camera, &o.segment.line())?;
+            Some((plane, o.segment.length()))
+        })
+        .collect();
+    let longest = observations
+        .iter()
+        .max_by(|a, b| a.segment.length().total_cmp(&b.segment.length()))?;
+    let scatter = planes.iter().fold(Matrix3::zeros(), |s, (p, w)| {
+        s + p.normal * p.normal.transpose() * *w
+    });
+    let eigen = scatter.symmetric_eigen();
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+    // Planes that are nearly one plane (all within about 0.1 degree) fix no line.
+    if eigen.eigenvalues[order[1]] < 3e-6 * eigen.eigenvalues[order[2]] {
+        return None;
+    }
+    let direction = eigen.eigenvectors.column(order[0]).into_owned();
+    let origin = least_squares_point(&planes, &scatter, &direction, longest)?;
+    let ends = [longest.segment.p0, longest.segment.p1]
+        .map(|x| nearest_on_line(&origin, &direction, longest.camera, &x));
+    Some(Segment3::new(ends[0]?, ends[1]?))
+}
+
+/// The point on all planes, in the plane through the longest segment's ray across the direction.
+fn least_squares_point(
+    planes: &[(crate::geometry::Plane, f64)],
+    scatter: &Matrix3<f64>,
+    direction: &Vector3<f64>,
+    longest: &Observation,
+) -> Option<Point3<f64>> {
+    let near = longest.camera.center;
+    let rhs = planes
+        .iter()
+        .fold(Vector3::zeros(), |s, (p, w)| {
+            s - p.normal * (p.signed_distance(&near) * w)
+        });
+    // The direction is free in the scatter; fixing the step along it to zero makes it regular.
+    let full = scatter + direction * direction.transpose() * scatter.trace();
+    Some(near + full.cholesky()?.solve(&rhs))
+}
+
+/// The point of a line nearest to the ray through an image point.
+fn nearest_on_line(
+    origin: &Point3<f64>,
+    direction: &Vector3<f64>,
+    camera: &Camera,
+    x: &nalgebra::Point2<f64>,
+) -> Option<Point3<f64>> {
+    let ray = camera.ray(x);
+    let between = camera.center - origin;
+    let c = ray.dot(direction);
+    let sine2 = 1.0 - c * c;
+    (sine2 > 1e-9)
+        .then(|| origin + direction * ((between.dot(direction) - between.dot(&ray) * c) / sine2))
+}
+
+/// Fits the line to the observations, starting at `initial`. `None` with fewer than two
+/// observations or when they leave the line undetermined.
+pub fn fit_line(
+    observations: &[Observation],
+    initial: &Segment3,
+    params: &Lines3dParams,
+) -> Option<LineFit> {
+    if observations.len() < 2 || initial.length() < 1e-6 {
+        return None;
+    }
+    let weighted: Vec<_> = observations
+        .iter()
+        .map(|o| Weighted::new(o, params))
+        .collect();
+    let mut line = *initial;
+    let mut state = normal_equations(&weighted, &line, params)?;
+    let mut damping = 1e-4;
+    for _ in 0..params.max_iterations {
+        let mut system = state.hessian;
+        for i in 0..4 {
+            system[(i, i)] *= 1.0 + damping;
+        }
+        let step = system.cholesky()?.solve(&-state.gradient);
+        let moved = displace(&line, &state.across, &step);
+        match normal_equations(&weighted, &moved, params) {
+            Some(next) if next.cost <= state.cost => {
+                let gain = state.cost - next.cost;
+                (line, state) = (moved, next);
+                damping = (damping * 0.2).max(1e-9);
+                // A gain of a millionth of one standard deviation squared changes no digit of use.
+                if gain <= 1e-6 * (1.0 + state.cost) {
+                    break;
+                }
+            }
+            _ => damping *= 10.0,
+        }
+        if damping > 1e6 {
+            break;
+        }
+    }
+    finish(line, state)
+}
+
+fn finish(line: Segment3, state: Normal) -> Option<LineFit> {
+    let covariance = state.hessian.try_inverse()?;
+    let weights: f64 = state.residuals.iter().map(|r| 2.0 / (1.0 + r * r)).sum();
+    let redundancy = (weights - 4.0).max(1.0);
+    // Observations that scatter more than their covariances say make the line less certain.
+    let factor = (2.0 * state.cost / redundancy).max(1.0);
+    Some(LineFit {
+        line,
+        across: state.across,
+        covariance: covariance * factor,
+        residuals: state.residuals,
+    })
+}
+
+/// An observation with its projection matrix and the whitening of its two residuals.
+struct Weighted {
+    m: Matrix3<f64>,
+    center: Point3<f64>,
+    segment: Segment2,
+    length: f64,
+    whitening: Matrix2<f64>,
+}
+
+impl Weighted {
+    fn new(o: &Observation, params: &Lines3dParams) -> Self {
+        let length = o.segment.length().max(1.0);
+        let floor = params.position_floor_px;
+        let mut c = o.covariance;
+        c[(0, 0)] += floor * floor;
+        // The same floor at the two ends, opposite in sign, seen as an angle.
+        c[(1, 1)] += 4.0 * floor * floor / (length * length);
+        let whitening = c
+            .cholesky()
+            .and_then(|l| l.l().try_inverse())
+            .unwrap_or_else(|| Matrix2::new(1.0 / floor, 0.0, 0.0, 0.5 * length / floor));
+        Self {
+            m: o.camera.k * o.camera.r,
+            center: o.camera.center,
+            segment: o.segment,
+            length,
+            whitening,
+        }
+    }
+
+    /// Whitened (offset, angle) and its 4 x 2 transposed Jacobian; `None` behind the camera.
+    fn residual(
+        &self,
+        line: &Segment3,
+        across: &[Vector3<f64>; 2],
+    ) -> Option<(Vector2<f64>, Matrix4x2<f64>)> {
+        let (x0, x1) = (
+            self.m * (line.p0 - self.center),
+            self.m * (line.p1 - self.center),
+        );
+        if x0.z <= 1e-9 || x1.z <= 1e-9 {
+            return None;
+        }
+        let l = x0.cross(&x1);
+        let n = l.xy().norm();
+        if n < 1e-12 {
+            return None;
+        }
+        let [u, v] = across.map(|a| self.m * a);
+        let changes = [u.cross(&x1), v.cross(&x1), x0.cross(&u), x0.cross(&v)];
+        // The sense of the normal of l follows p0 -> p1, that of the residual the measured segment.
+        let mut e = Vector2::zeros();
+        let mut de = Matrix4x2::zeros();
+        for (i, p) in [self.segment.p0, self.segment.p1].iter().enumerate() {
+            let x = Vector3::new(p.x, p.y, 1.0);
+            e[i] = l.dot(&x) / n;
+            for (j, dl) in changes.iter().enumerate() {
+                de[(j, i)] = dl.dot(&x) / n - e[i] * l.xy().dot(&dl.xy()) / (n * n);
+            }
+        }
+        let to_offset_angle = Matrix2::new(0.5, 0.5, -1.0 / self.length, 1.0 / self.length);
+        let w = self.whitening * to_offset_angle;
+        Some((w * e, de * w.transpose()))
+    }
+}
+
+/// Gauss-Newton's normal equations at a line.
+struct Normal {
+    across: [Vector3<f64>; 2],
+    cost: f64,
+    gradient: Vector4<f64>,
+    hessian: Matrix4<f64>,
+    residuals: Vec<f64>,
+}
+
+fn normal_equations(
+    observations: &[Weighted],
+    line: &Segment3,
+    params: &Lines3dParams,
+) -> Option<Normal> {
+    let across = across(&line.direction());
+    let c2 = params.loss_scale * params.loss_scale;
+    let mut normal = Normal {
+        across,
+        cost: 0.0,
+        gradient: Vector4::zeros(),
+        hessian: Matrix4::zeros(),
+        residuals: Vec::with_capacity(observations.len()),
+    };
+    for o in observations {
+        let (r, j) = o.residual(line, &across)?;
+        let e2 = r.norm_squared();
+        // Cauchy: rho = c^2/2 ln(1 + e^2/c^2), weight 1 / (1 + e^2/c^2).
+        normal.cost += 0.5 * c2 * crate::math::ln(1.0 + e2 / c2);
+        let weight = 1.0 / (1.0 + e2 / c2);
+        normal.gradient += j * r * weight;
+        normal.hessian += j * j.transpose() * weight;
+        normal.residuals.push(e2.sqrt());
+    }
+    Some(normal)
+}
+
+fn displace(line: &Segment3, across: &[Vector3<f64>; 2], step: &Vector4<f64>) -> Segment3 {
+    Segment3::new(
+        line.p0 + across[0] * step[0] + across[1] * step[1],
+        line.p1 + across[0] * step[2] + across[1] * step[3],
+    )
+}
+
+/// Two unit vectors across a direction, built on the coordinate axis farthest from it.
+fn across(direction: &Vector3<f64>) -> [Vector3<f64>; 2] {
+    let axis = direction.iamin();
+    let mut e = Vector3::zeros();
+    e[axis] = 1.0;
+    let u = direction.cross(&e).normalize();
+    [u, direction.cross(&u)]
+}

@@ -1,0 +1,81 @@
+//! A 3D line as one view sees it: the map between places along the line and image points.
+
+use nalgebra::{Point2, Vector2, Vector3};
+
+use crate::camera::Camera;
+use crate::geometry::{Segment2, Segment3};
+
+/// The image of a directed 3D line, with the exact projective map along it.
+///
+/// With X(t) = p0 + t d (t in metres from the start of the segment) the homogeneous image point is
+/// `a + t b`, where `a = K R (p0 - C)` and `b = K R d`.
+#[derive(Clone, Copy, Debug)]
+pub struct ProjectedLine {
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+    /// Unit direction in the image, that of growing t.
+    pub direction: Vector2<f64>,
+    /// The image line, `l . (x, y, 1)` = signed distance in pixels.
+    pub line: Vector3<f64>,
+}
+
+impl ProjectedLine {
+    /// The image of the line; `None` where an end of the segment is not in front of the camera or
+    /// the camera looks along it.
+    pub fn new(camera: &Camera, segment: &Segment3) -> Option<Self> {
+        let (x0, x1) = (
+            camera.project(&segment.p0)?,
+            camera.project(&segment.p1)?,
+        );
+        let image = Segment2::new(x0, x1);
+        if image.length() < 1e-6 {
+            return None;
+        }
+        let m = camera.k * camera.r;
+        Some(Self {
+            a: m * (segment.p0 - camera.center),
+            b: m * segment.direction(),
+            direction: image.direction(),
+            line: image.line(),
+        })
+    }
+
+    /// The image of the point at `t` metres; `None` behind the camera.
+    pub fn at(&self, t: f64) -> Option<Point2<f64>> {
+        let x = self.a + self.b * t;
+        (x.z > 1e-9).then(|| Point2::new(x.x / x.z, x.y / x.z))
+    }
+
+    /// Metres along the line of the image point nearest to `x`: solves `u . (x(t) - x) = 0`.
+    pub fn t_of(&self, x: &Point2<f64>) -> f64 {
+        let (u, s) = (self.direction, self.direction.dot(&x.coords));
+        -(u.dot(&self.a.xy()) - s * self.a.z) / (u.dot(&self.b.xy()) - s * self.b.z)
+    }
+
+    /// Signed distance of an image point from the line, pixels.
+    pub fn distance(&self, x: &Point2<f64>) -> f64 {
+        self.line.x * x.x + self.line.y * x.y + self.line.z
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::tests::crop_camera;
+    use nalgebra::Point3;
+
+    #[test]
+    fn t_of_inverts_at() {
+        let camera = crop_camera(120.0, 40.0, 0.4);
+        let line = Segment3::new(Point3::new(-3.0, 2.0, 8.0), Point3::new(9.0, 6.0, 11.0));
+        let image = ProjectedLine::new(&camera, &line).unwrap();
+        for t in [-20.0, 0.0, 3.7, 40.0] {
+            let x = image.at(t).unwrap();
+            assert!((image.t_of(&x) - t).abs() < 1e-7);
+            assert!(image.distance(&x).abs() < 1e-6);
+            let aside = x + Vector2::new(-image.direction.y, image.direction.x) * 2.5;
+            assert!((image.t_of(&aside) - t).abs() < 1e-7);
+            assert!((image.distance(&aside) - 2.5).abs() < 1e-6);
+        }
+    }
+}
