@@ -6,6 +6,7 @@
 #   make build      the static site in www/dist, for any static host
 #   make lint       format, clippy (native and wasm32), Biome, TypeScript
 #   make identical  the demo scene natively and in wasm, compared byte for byte
+#   make golden     rewrite the hashes that the tests of whole runs expect (tests/golden)
 #   make score      all scenes against their truth; rewrites the tables of docs/results.md
 #   make bench      time of every stage on the synthetic scene
 #   make clean      remove what was built (not the tool cache)
@@ -13,7 +14,7 @@
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: demo test build lint identical score bench native setup clean
+.PHONY: demo test build lint identical golden score bench native setup clean
 
 # The command-line tool must be of exactly the crate's version: stated once, in Cargo.toml.
 WASM_BINDGEN_VERSION := $(shell sed -n 's/^wasm-bindgen = "=\(.*\)"/\1/p' Cargo.toml)
@@ -46,6 +47,9 @@ lint: $(STAMPS)/wasm32 $(STAMPS)/npm $(PACKAGE)
 
 identical: native $(PACKAGE)
 	node tests/identical.mjs target/release/ridgeline
+
+golden:
+	RIDGELINE_REWRITE=1 cargo test --release --test pipeline golden
 
 score: native
 	python3 tests/score_table.py --binary target/release/ridgeline --scenes "$${SCENES:-../shared/scenes}"

@@ -1,0 +1,201 @@
+//! The whole pipeline on the synthetic L-shaped house: what it finds is the planted truth, what it
+//! writes is the same whatever the number of threads, and it keeps no result that is out of date.
+#![cfg(not(target_arch = "wasm32"))]
+
+mod common;
+
+use common::{GOLDEN, SIZE_PX, golden_of, synthetic_files};
+use nalgebra::{Point2, Point3};
+use ridgeline::geometry::{Plane, Segment3};
+use ridgeline::params::Params;
+use ridgeline::pipeline::{Run, Stage};
+use ridgeline::roof::{Facet, check_invariants};
+use ridgeline::scene_loader::{InputFile, LoadOptions, load_scene};
+use ridgeline::synthetic::{SyntheticTruth, l_scene};
+
+/// Accuracy that six views at 8.5 cm ground pixel allow, metres.
+const NEAR_M: f64 = 0.25;
+
+fn finished() -> (Run, SyntheticTruth) {
+    let (scene, truth) = l_scene(SIZE_PX);
+    let mut run = Run::new(scene, Params::default());
+    run.run_all(&mut |_, _| {});
+    (run, truth)
+}
+
+#[test]
+fn the_planted_house_is_found() {
+    let (run, truth) = finished();
+    let results = run.results();
+
+    let lines: Vec<Segment3> = results
+        .lines
+        .as_ref()
+        .unwrap()
+        .value
+        .iter()
+        .map(|l| l.segment)
+        .collect();
+    let covered: f64 = truth
+        .edges
+        .iter()
+        .map(|e| e.length() * covered_share(e, &lines))
+        .sum();
+    let total: f64 = truth.edges.iter().map(Segment3::length).sum();
+    assert!(
+        covered >= 0.6 * total,
+        "{covered:.1} m of {total:.1} m of the edges"
+    );
+
+    let model = &results.roof.as_ref().unwrap().value;
+    assert_eq!(check_invariants(model), vec![]);
+    assert_eq!(model.buildings.len(), 1);
+    assert!((model.buildings[0].ground_z - truth.ground_z).abs() < 0.5);
+    let found = truth
+        .facets
+        .iter()
+        .filter(|(plane, outer)| is_found(plane, outer, &model.facets));
+    assert!(
+        found.count() * 5 >= truth.facets.len() * 4,
+        "at least four of five facets"
+    );
+    for facet in &model.facets {
+        let middle = inner_point(&facet.outer);
+        let true_plane = truth
+            .facets
+            .iter()
+            .any(|(plane, _)| agrees(plane, &facet.plane, &middle));
+        assert!(true_plane, "{:?} is no plane of the house", facet.plane);
+    }
+
+    let textured = &results.textured.as_ref().unwrap().value;
+    let faces: usize = model.buildings.iter().map(|b| b.solid.faces.len()).sum();
+    assert_eq!(textured.faces.iter().map(Vec::len).sum::<usize>(), faces);
+}
+
+#[test]
+fn the_files_have_the_golden_bytes() {
+    let input: Vec<_> = synthetic_files()
+        .into_iter()
+        .map(|(path, bytes)| InputFile::new(&path, bytes))
+        .collect();
+    let scene = load_scene(&input, &LoadOptions::default()).unwrap();
+    let mut run = Run::new(scene, Params::default());
+    run.run_all(&mut |_, _| {});
+    let found = golden_of(&run.files(&[]));
+    if std::env::var_os("RIDGELINE_REWRITE").is_some() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/synthetic.txt");
+        std::fs::write(path, found).unwrap();
+    } else {
+        assert_eq!(found, GOLDEN, "if the change is intended: make golden");
+    }
+}
+
+#[test]
+fn one_thread_gives_the_bytes_of_many() {
+    let files_with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| finished().0.files(&[]))
+    };
+    assert_eq!(files_with(1), files_with(5));
+}
+
+#[test]
+fn new_parameters_drop_what_they_change() {
+    let (scene, _) = l_scene(64);
+    let mut run = Run::new(scene, Params::default());
+    run.step(Stage::HalfPlanes, &mut |_| {});
+    let mut params = run.params().clone();
+    params.sweep.min_similarity = 0.9;
+    run.set_params(params);
+    assert!(run.has(Stage::Lines) && !run.has(Stage::HalfPlanes));
+    run.step(Stage::Segments, &mut |_| {});
+    assert!(run.has(Stage::Segments) && !run.has(Stage::Matches));
+    assert!(
+        run.files(&[]).is_empty(),
+        "an unfinished run offers nothing"
+    );
+}
+
+#[test]
+fn images_without_structure_give_an_empty_model_and_say_so() {
+    let (mut scene, _) = l_scene(64);
+    for view in &mut scene.views {
+        view.gray.data.fill(0.5);
+    }
+    let mut run = Run::new(scene, Params::default());
+    run.run_all(&mut |_, _| {});
+    assert!(run.results().roof.as_ref().unwrap().value.facets.is_empty());
+    assert_eq!(run.summaries()[0].warnings.len(), 6, "one for each view");
+    assert!(!run.files(&[]).is_empty());
+}
+
+/// The share of an edge that lies near lines of its own direction.
+fn covered_share(edge: &Segment3, lines: &[Segment3]) -> f64 {
+    const SAMPLES: usize = 50;
+    let parallel = |l: &&Segment3| l.direction().cross(&edge.direction()).norm() < 0.05;
+    let lines: Vec<&Segment3> = lines.iter().filter(parallel).collect();
+    let covered = (0..SAMPLES).filter(|&i| {
+        let p = edge.at((i as f64 + 0.5) / SAMPLES as f64);
+        lines.iter().any(|l| distance(l, &p) < NEAR_M)
+    });
+    covered.count() as f64 / SAMPLES as f64
+}
+
+/// From a point to a finite segment, metres.
+fn distance(segment: &Segment3, p: &Point3<f64>) -> f64 {
+    let t = (p - segment.p0).dot(&segment.direction()) / segment.length();
+    (segment.at(t.clamp(0.0, 1.0)) - p).norm()
+}
+
+/// Does a facet lie over the middle of the true one, in its plane?
+fn is_found(plane: &Plane, outer: &[Point3<f64>], facets: &[Facet]) -> bool {
+    let middle = inner_point(outer);
+    let covers = |f: &&Facet| contains(&f.outer, &middle.xy());
+    facets
+        .iter()
+        .filter(covers)
+        .any(|f| agrees(plane, &f.plane, &middle))
+}
+
+fn agrees(truth: &Plane, found: &Plane, at: &Point3<f64>) -> bool {
+    truth.angle_to(found).to_degrees() < 4.0
+        && (truth.z_at(at.x, at.y) - found.z_at(at.x, at.y)).abs() < NEAR_M
+}
+
+/// The middle of a ring, or of its largest convex corner where the middle lies outside.
+fn inner_point(ring: &[Point3<f64>]) -> Point3<f64> {
+    let mean = ring
+        .iter()
+        .fold(nalgebra::Vector3::zeros(), |s, p| s + p.coords)
+        / ring.len() as f64;
+    let corners = (0..ring.len()).map(|i| {
+        let around = [
+            ring[(i + ring.len() - 1) % ring.len()],
+            ring[i],
+            ring[(i + 1) % ring.len()],
+        ];
+        Point3::from(
+            around
+                .iter()
+                .fold(nalgebra::Vector3::zeros(), |s, p| s + p.coords)
+                / 3.0,
+        )
+    });
+    std::iter::once(Point3::from(mean))
+        .chain(corners)
+        .find(|p| contains(ring, &p.xy()))
+        .expect("every polygon has an ear")
+}
+
+/// Even-odd rule in plan.
+fn contains(ring: &[Point3<f64>], p: &Point2<f64>) -> bool {
+    let edges = ring.iter().zip(ring.iter().cycle().skip(1));
+    let crossings = edges.filter(|(a, b)| {
+        (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)
+    });
+    crossings.count() % 2 == 1
+}

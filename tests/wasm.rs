@@ -1,0 +1,117 @@
+//! The page's session in Node: the whole pipeline on the synthetic scene gives the very bytes that it
+//! gives natively, and bad input is refused in words.
+//!
+//! `wasm-pack test --node --release -- --test wasm`
+#![cfg(target_arch = "wasm32")]
+
+mod common;
+
+use common::{GOLDEN, golden_of, synthetic_files};
+use js_sys::{Array, Error, Function, Object, Reflect};
+use ridgeline::wasm::Session;
+use wasm_bindgen::{JsCast, JsValue};
+use wasm_bindgen_test::wasm_bindgen_test;
+
+fn session_of(files: &[(String, Vec<u8>)]) -> Session {
+    let mut session = Session::new();
+    for (path, bytes) in files {
+        session.add_file(path, bytes.clone());
+    }
+    session
+}
+
+fn refusal(session: &mut Session) -> (String, String) {
+    let error: Error = session
+        .load(JsValue::UNDEFINED)
+        .unwrap_err()
+        .unchecked_into();
+    (error.name().into(), error.message().into())
+}
+
+fn member(object: &JsValue, name: &str) -> JsValue {
+    Reflect::get(object, &name.into()).unwrap()
+}
+
+#[wasm_bindgen_test]
+fn the_files_have_the_native_bytes() {
+    let mut session = session_of(&synthetic_files());
+    let info = session.load(Object::new().into()).unwrap();
+    assert_eq!(Array::from(&member(&info, "views")).length(), 6);
+    let fractions = Array::new();
+    let push = Function::new_with_args("fraction", "this.push(fraction)").bind0(&fractions);
+    for stage in Session::stages() {
+        let summary = session.run_stage(&stage, &push).unwrap();
+        assert_eq!(member(&summary, "stage"), JsValue::from(stage));
+    }
+    assert_eq!(fractions.get(0), 0.0);
+    assert_eq!(fractions.get(fractions.length() - 1), 1.0);
+
+    let names = session.export_names().unwrap();
+    let files: Vec<_> = names
+        .into_iter()
+        .map(|name| {
+            let bytes = session.export_file(&name).unwrap();
+            (name, bytes)
+        })
+        .collect();
+    assert_eq!(golden_of(&files), GOLDEN);
+
+    // What the page draws.
+    assert!(
+        session.segments(0).unwrap().length() % 4 == 0 && session.segments(0).unwrap().length() > 0
+    );
+    assert!(session.matched_segments(5).unwrap().length() % 6 == 0);
+    assert!(session.lines().unwrap().length() >= 6);
+    let half_plane = Array::from(&session.half_planes().unwrap()).get(0);
+    assert!(member(&half_plane, "theta").as_f64().unwrap().abs() < 1.6);
+    let facet = Array::from(&session.facets().unwrap()).get(0);
+    assert!(Array::from(&member(&facet, "outer")).length() >= 3);
+    let image = session.image(2).unwrap();
+    assert_eq!(image.rgba.length(), 4 * image.width * image.height);
+}
+
+#[wasm_bindgen_test]
+fn an_image_without_orientation_is_refused() {
+    let mut files = synthetic_files();
+    files.push(("images/stray.png".into(), files[0].1.clone()));
+    let (name, message) = refusal(&mut session_of(&files));
+    assert_eq!(name, "InputError");
+    assert!(message.contains("stray.png"), "{message}");
+}
+
+#[wasm_bindgen_test]
+fn a_truncated_image_is_refused_and_the_session_goes_on() {
+    let mut files = synthetic_files();
+    let (path, whole) = files[0].clone();
+    files[0].1.truncate(whole.len() / 2);
+    let mut session = session_of(&files);
+    let (name, message) = refusal(&mut session);
+    assert_eq!(name, "InputError");
+    assert!(
+        message.contains(&path) || path.ends_with(&message),
+        "{message}"
+    );
+    session.add_file(&path, whole);
+    assert!(session.load(JsValue::UNDEFINED).is_ok());
+}
+
+#[wasm_bindgen_test]
+fn a_session_without_a_scene_says_so() {
+    let mut session = Session::new();
+    assert!(session.lines().is_err() && session.export_names().is_err());
+    let error: Error = session
+        .run_stage("segments", &Function::new_no_args(""))
+        .unwrap_err()
+        .unchecked_into();
+    assert!(String::from(error.message()).contains("load"));
+}
+
+#[wasm_bindgen_test]
+fn parameters_come_back_as_they_went() {
+    let mut session = Session::new();
+    let params = Session::default_params().unwrap();
+    session.set_params(params.clone()).unwrap();
+    Reflect::set(&params, &"colour".into(), &1.into()).unwrap();
+    let error: Error = session.set_params(params).unwrap_err().unchecked_into();
+    assert!(String::from(error.message()).contains("colour"));
+}
