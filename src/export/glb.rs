@@ -108,7 +108,6 @@ impl File {
         };
         let unlit = gltf::extensions::material::Material {
             unlit: Some(gltf::extensions::material::Unlit {}),
-            ..Default::default()
         };
         let surface = gltf::material::PbrMetallicRoughness {
             base_color_texture: Some(info),

@@ -84,17 +84,19 @@ impl Peak {
 /// Standard deviation of the maximum from the slopes of the single views' curves there, radians.
 ///
 /// The maximum of a mean of n curves is where their slopes cancel; it moves by the error of the
-/// mean slope over the curvature of the mean: `sigma = s / (sqrt(n) |Sim''|)`, s the scatter of
-/// the slopes. This is the sandwich covariance of an M-estimator. With one view there is no
-/// scatter; its whole slope range over `reach` then stands for it.
+/// mean slope over the curvature of the mean (the sandwich covariance of an M-estimator). Each slope
+/// has an error of its own view, which their scatter s shows, and one of the reference view, which all
+/// share and the scatter hides; the photographs being of one kind, it is taken to be as large:
+/// `sigma = s sqrt(1/n + 1) / |Sim''|`. A single view has no scatter; its maximum is then only
+/// known to lie within `reach`.
 pub(super) fn sigma_of_maximum(slopes: &[f64], curvature: f64, reach: f64) -> f64 {
-    let n = slopes.len() as f64;
-    let mean = slopes.iter().sum::<f64>() / n;
-    let scatter = slopes.iter().map(|s| (s - mean) * (s - mean)).sum::<f64>();
     if slopes.len() < 2 {
         return reach;
     }
-    (scatter / (n * (n - 1.0))).sqrt() / curvature.abs()
+    let n = slopes.len() as f64;
+    let mean = slopes.iter().sum::<f64>() / n;
+    let squares: f64 = slopes.iter().map(|s| (s - mean) * (s - mean)).sum();
+    (squares / (n - 1.0) * (1.0 / n + 1.0)).sqrt() / curvature.abs()
 }
 
 #[cfg(test)]
@@ -114,12 +116,13 @@ mod tests {
 
     #[test]
     fn the_scatter_of_the_slopes_gives_sigma() {
-        // Parabolas of equal curvature whose maxima scatter: sigma is that of their mean.
+        // Parabolas of equal curvature whose maxima scatter with the variance v: their mean has v / 4, the
+        // shared reference adds v.
         let maxima = [0.1, 0.12, 0.14, 0.16];
         let slopes = maxima.map(|m: f64| 5.0 * (m - 0.13));
         let variance = maxima.iter().map(|m| (m - 0.13) * (m - 0.13)).sum::<f64>() / 3.0;
         let sigma = sigma_of_maximum(&slopes, -5.0, 0.1);
-        assert!((sigma - (variance / 4.0).sqrt()).abs() < 1e-12);
+        assert!((sigma - (variance * 1.25).sqrt()).abs() < 1e-12);
     }
 
     #[test]

@@ -3,15 +3,17 @@
 //! "These points are computed by applying an edge detector to the first image, with a very low
 //! threshold on gradient. The edges are then linked and regularly sampled to determine the POI."
 //!
-//! Assumption: gradient of the blurred image, non-maximum suppression along the gradient, one
-//! threshold without hysteresis; 8-connected chains; every third edgel, and at least one of each
-//! chain. Positions stay on the pixel grid: a correlation window needs no more.
+//! Edgels and chains are those of the line detector ([`crate::lines2d`]), but with one threshold for
+//! the whole image: relative to the surroundings, as for lines, the weak texture of a plain roof
+//! is kept only together with its noise, or the texture of a tiled one is lost with it (measured: the
+//! share of true line sides found falls from 77 to 75 % at 0.7 and to 63 % at 2 times the local noise).
+//! Positions are kept to the pixel: a correlation window needs no more.
 
 use nalgebra::Point2;
 
-use crate::math;
-use crate::params::SweepParams;
-use crate::raster::{Gray, gaussian_blur};
+use crate::lines2d::{detect_edgels, link_chains};
+use crate::params::{EdgelParams, SweepParams};
+use crate::raster::Gray;
 use crate::scene::Scene;
 
 /// The points of interest of one view, row by row.
@@ -26,18 +28,19 @@ pub struct PointsOfInterest {
 impl PointsOfInterest {
     /// Points of interest of one image.
     pub fn detect(gray: &Gray, params: &SweepParams) -> Self {
-        let mut edges = thin_edges(gray, params);
+        let all = EdgelParams {
+            smoothing_px: params.poi_blur_px,
+            low: 0.0,
+            high: 0.0,
+        };
+        let mut edgels = detect_edgels(gray, &all);
+        edgels.retain(|e| f64::from(e.strength) >= params.poi_min_gradient);
         let spacing = params.poi_spacing_px.max(1);
         let mut points = Vec::new();
-        for start in 0..edges.data.len() {
-            if edges.data[start] {
-                let chain = edges.take_chain(start);
-                points.extend(
-                    chain
-                        .iter()
-                        .skip(spacing / 2 % chain.len())
-                        .step_by(spacing),
-                );
+        for chain in link_chains(&edgels, all.high) {
+            for &edgel in chain.edgels.iter().step_by(spacing) {
+                let (x, y) = edgels[edgel as usize].pixel();
+                points.push(y * gray.width + x);
             }
         }
         points.sort_unstable();
@@ -77,109 +80,6 @@ impl PointsOfInterest {
         let columns = points.iter().map(|&i| (i % width) as u32).collect();
         Self { columns, starts }
     }
-}
-
-/// One-pixel-wide edges: which pixels still belong to no chain.
-struct EdgeMap {
-    width: usize,
-    height: usize,
-    data: Vec<bool>,
-}
-
-impl EdgeMap {
-    /// The chain through `start`, in order along it, removed from the map.
-    fn take_chain(&mut self, start: usize) -> Vec<usize> {
-        self.data[start] = false;
-        let mut chain = self.walk(start);
-        chain.reverse();
-        chain.push(start);
-        chain.extend(self.walk(start));
-        chain
-    }
-
-    /// The unvisited edgels that follow `from`, one neighbour after the other.
-    fn walk(&mut self, from: usize) -> Vec<usize> {
-        let mut path = Vec::new();
-        let mut at = from;
-        while let Some(next) = self.neighbour(at) {
-            self.data[next] = false;
-            path.push(next);
-            at = next;
-        }
-        path
-    }
-
-    /// The next edgel beside `at`: sides before corners, so that a staircase stays one chain.
-    fn neighbour(&self, at: usize) -> Option<usize> {
-        const STEPS: [(isize, isize); 8] = [
-            (1, 0),
-            (0, 1),
-            (-1, 0),
-            (0, -1),
-            (1, 1),
-            (-1, 1),
-            (-1, -1),
-            (1, -1),
-        ];
-        let (x, y) = ((at % self.width) as isize, (at / self.width) as isize);
-        STEPS.iter().find_map(|(dx, dy)| {
-            let (x, y) = (x + dx, y + dy);
-            let inside =
-                x >= 0 && y >= 0 && (x as usize) < self.width && (y as usize) < self.height;
-            let i = (y * self.width as isize + x) as usize;
-            (inside && self.data[i]).then_some(i)
-        })
-    }
-}
-
-/// Pixels where the gradient is above the threshold and a maximum along its own direction.
-fn thin_edges(gray: &Gray, params: &SweepParams) -> EdgeMap {
-    let (width, height) = (gray.width, gray.height);
-    let mut map = EdgeMap {
-        width,
-        height,
-        data: vec![false; width * height],
-    };
-    if width < 5 || height < 5 {
-        return map;
-    }
-    let blurred = gaussian_blur(gray, params.poi_blur_px).data;
-    let gradient = |i: usize| {
-        (
-            (blurred[i + 1] - blurred[i - 1]) * 0.5,
-            (blurred[i + width] - blurred[i - width]) * 0.5,
-        )
-    };
-    let mut magnitude = vec![0.0f32; width * height];
-    for y in 1..height - 1 {
-        for i in y * width + 1..(y + 1) * width - 1 {
-            let (gx, gy) = gradient(i);
-            magnitude[i] = (gx * gx + gy * gy).sqrt();
-        }
-    }
-    let threshold = params.poi_min_gradient as f32;
-    let diagonal = math::tan(std::f64::consts::FRAC_PI_8) as f32;
-    for y in 2..height - 2 {
-        for i in y * width + 2..(y + 1) * width - 2 {
-            let m = magnitude[i];
-            if m < threshold {
-                continue;
-            }
-            let (gx, gy) = gradient(i);
-            let step = if gy.abs() < diagonal * gx.abs() {
-                1
-            } else if gx.abs() < diagonal * gy.abs() {
-                width
-            } else if gx * gy > 0.0 {
-                width + 1
-            } else {
-                width - 1
-            };
-            // One strict and one weak comparison keep a plateau of two pixels one pixel wide.
-            map.data[i] = m > magnitude[i - step] && m >= magnitude[i + step];
-        }
-    }
-    map
 }
 
 #[cfg(test)]

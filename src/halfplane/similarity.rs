@@ -117,17 +117,15 @@ impl<'a> LineSide<'a> {
             .collect()
     }
 
-    /// Weighted mean distance of the points of interest from the line, metres on the ground.
-    pub fn mean_distance_m(&self) -> f64 {
-        let pixel_m = self
-            .scene
-            .camera(self.reference)
-            .ground_pixel(&self.line.at(0.5));
+    /// Weighted mean distance of the points of interest from the line, metres on the ground: the lever
+    /// with which theta is measured. (The least-squares lever `E[d^2] / E[d]` is too long: the
+    /// correlation of a far point is lost before it can pull; measured on lines displaced by a known
+    /// noise, it makes sigma a third too small.)
+    pub fn lever_m(&self) -> f64 {
+        let camera = self.scene.camera(self.reference);
         let sites = self.windows.sites.iter().zip(&self.weights);
-        sites
-            .map(|(s, w)| w * self.strip.distance_px(s.row))
-            .sum::<f64>()
-            * pixel_m
+        let mean_px: f64 = sites.map(|(s, w)| w * self.strip.distance_px(s.row)).sum();
+        mean_px * camera.ground_pixel(&self.line.at(0.5))
     }
 
     /// Does the reference view see the upper side of the half-plane? Elsewhere theta has no meaning.
@@ -205,6 +203,9 @@ impl<'a> LineSide<'a> {
     }
 }
 
+/// A view, the strip in it and the strip's pixels (column, row) that are points of interest.
+type Neighbourhood = (ViewId, Strip, Vec<(usize, usize)>);
+
 /// The view in which the neighbourhood holds the most points of interest, with its strip and their
 /// pixels, ordered by row. The first one wins a tie.
 fn most_textured(
@@ -213,8 +214,8 @@ fn most_textured(
     line: &Segment3,
     frame: &ThetaFrame,
     params: &SweepParams,
-) -> Option<(ViewId, Strip, Vec<(usize, usize)>)> {
-    let mut best: Option<(ViewId, Strip, Vec<(usize, usize)>)> = None;
+) -> Option<Neighbourhood> {
+    let mut best: Option<Neighbourhood> = None;
     for id in scene.view_ids() {
         let Some(strip) = Strip::new(scene.camera(id), line, frame, params) else {
             continue;

@@ -67,7 +67,7 @@ impl Strip {
         let margin_px = params.margin_px;
         let rows = (depth_px - margin_px).floor().max(0.0) as usize;
         let columns = image.length().floor() as usize;
-        (rows >= params.window_px / 2 + 1).then_some(Self {
+        (rows > params.window_px / 2).then_some(Self {
             origin: image.p0,
             along: image.direction(),
             across,

@@ -139,16 +139,20 @@ impl<'a> Search<'a> {
 
     /// First pass, subdivision, validity, acceptance.
     fn run(&mut self) -> Result<Found, SweepRejection> {
-        let max = self.params.max_theta_deg.to_radians();
-        let steps = (self.params.max_theta_deg / self.params.first_step_deg)
+        // Steps of nothing would never end.
+        const LEAST_STEP_DEG: f64 = 0.05;
+        let max_deg = self.params.max_theta_deg.clamp(0.0, 89.0);
+        let steps = (max_deg / self.params.first_step_deg.max(LEAST_STEP_DEG))
             .ceil()
-            .max(1.0) as i32;
-        let step = max / f64::from(steps);
+            .max(1.0);
+        let step = (max_deg / steps).to_radians();
+        let last_step = self.params.last_step_deg.max(LEAST_STEP_DEG).to_radians();
+        let steps = steps as i32;
         for i in -steps..=steps {
             self.evaluate(step * f64::from(i));
         }
         for theta in self.highest_maxima() {
-            self.subdivide(theta, step);
+            self.subdivide(theta, step, last_step);
         }
         let best = self.best().ok_or(SweepRejection::NoValidView)?;
         self.valid = self.valid_at(best);
@@ -169,10 +173,10 @@ impl<'a> Search<'a> {
     }
 
     /// Halves the step around the highest sample near `theta` until it is below the last step.
-    fn subdivide(&mut self, theta: f64, first_step: f64) {
+    fn subdivide(&mut self, theta: f64, first_step: f64, last_step: f64) {
         let mut step = first_step;
         let mut centre = theta;
-        while step >= self.params.last_step_deg.to_radians() {
+        while step >= last_step {
             step *= 0.5;
             let mut best = (f64::NEG_INFINITY, centre);
             for theta in [centre - step, centre, centre + step] {
@@ -311,8 +315,12 @@ impl<'a> Search<'a> {
 impl Found {
     fn half_plane(&self, search: &Search, id: LineId, line: &Line3d, side: Side) -> HalfPlane {
         let line_side = &search.line_side;
-        // A line that is off by sigma tilts the plane that fits its neighbourhood.
-        let from_line = line.sigma_m / line_side.mean_distance_m();
+        let plane = line_side.frame.plane(&line.segment, self.peak.theta);
+        // A line that lies above its plane by e tilts the plane that fits its neighbourhood by
+        // e / distance. The ends count as independent, so the middle has a quarter of their sum.
+        let ends = line.covariance[0] + line.covariance[1];
+        let height_m = 0.5 * plane.normal.dot(&(ends * plane.normal)).max(0.0).sqrt();
+        let from_line = height_m * crate::math::cos(self.peak.theta) / line_side.lever_m();
         let views = line_side.others.iter().zip(&search.valid);
         HalfPlane {
             line: id,
@@ -323,7 +331,7 @@ impl Found {
             curvature: self.peak.curvature,
             amplitude: self.peak.amplitude,
             views: views.filter(|(_, v)| **v).map(|(&id, _)| id).collect(),
-            plane: line_side.frame.plane(&line.segment, self.peak.theta),
+            plane,
         }
     }
 }

@@ -18,6 +18,9 @@ use crate::scene::Scene;
 /// How often segments are adopted and the line fitted again. Assumption: the second round changes few lines, a
 /// third none.
 const ROUNDS: usize = 2;
+/// Least number of views with a segment. Two interpretation planes always meet in a line; the third makes
+/// it evidence, correlation without a segment then adds to it.
+const MIN_MEASURED: usize = 3;
 /// A stretch reaches past the detected segments by this much to count as grown, px.
 const GROWN_PX: f64 = 3.0;
 
@@ -31,6 +34,8 @@ pub enum Rejection {
     IllConditioned,
     /// Fewer than the minimum of views support it.
     TooFewViews,
+    /// The views' neighbourhoods are not alike enough in the mean.
+    BelowThreshold,
     /// The supported stretch is shorter than the minimum of edgels.
     TooShort,
     /// It leaves the height range.
@@ -73,23 +78,48 @@ pub fn complete_line(
         let adopted = context.adopt(&fit.line, &segments, &taken);
         (fit, segments) = context.fit_consistent(&fit.line, &adopted)?;
     }
-    let profile = Profile::new(
-        context.scene,
-        context.sights,
-        &fit.line,
-        &segments,
-        context.params,
-    )
-    .ok_or(Rejection::NoFit)?;
-    let stretch = supported_stretch(&profile, context.params).ok_or(Rejection::TooFewViews)?;
-    if stretch.1 - stretch.0 + 1 < context.params.min_edgels {
-        return Err(Rejection::TooShort);
+    loop {
+        if views_of(&segments) < MIN_MEASURED {
+            return Err(Rejection::TooFewViews);
+        }
+        let profile = context.profile(&fit.line, &segments)?;
+        let stretch = supported_stretch(&profile, context.params).ok_or(Rejection::TooFewViews)?;
+        if stretch.1 - stretch.0 + 1 < context.params.min_edgels {
+            return Err(Rejection::TooShort);
+        }
+        let supports = context.supports(&profile, stretch);
+        let disagreeing = disagreeing_views(&profile, &supports);
+        if disagreeing.is_empty() {
+            context.check_views(&profile, stretch, &supports)?;
+            let kept: Vec<SegmentRef> = supports.iter().flat_map(names).collect();
+            let fit = context.fit(&fit.line, &kept)?;
+            return context.check_line(&fit, profile.t[stretch.0], profile.t[stretch.1], &supports);
+        }
+        segments.retain(|s| !disagreeing.contains(&s.view));
+        (fit, segments) = context.fit_consistent(&fit.line, &segments)?;
     }
-    let supports = context.supports(&profile, stretch);
-    context.check_views(&profile, stretch, &supports)?;
-    let kept: Vec<SegmentRef> = supports.iter().flat_map(names).collect();
-    let fit = context.fit(&fit.line, &kept)?;
-    context.check_line(&fit, profile.t[stretch.0], profile.t[stretch.1], &supports)
+}
+
+/// Views that have segments on the line but do not support it photometrically. They see another edge nearby, and the
+/// line is better off without them. Where the reference view agrees with none, it alone is left out:
+/// the others were compared with nothing else.
+fn disagreeing_views(profile: &Profile, supports: &[LineSupport]) -> Vec<ViewId> {
+    let supported = |view: ViewId| supports.iter().any(|s| s.view == view);
+    let reference = profile.views[profile.reference].view;
+    if !supported(reference) {
+        return vec![reference];
+    }
+    profile
+        .views
+        .iter()
+        .filter(|v| !v.segments.is_empty() && !supported(v.view))
+        .map(|v| v.view)
+        .collect()
+}
+
+/// Number of views among segments sorted by view.
+fn views_of(segments: &[SegmentRef]) -> usize {
+    segments.chunk_by(|a, b| a.view == b.view).count()
 }
 
 /// The detected segments of a support.
@@ -101,6 +131,10 @@ fn names(support: &LineSupport) -> impl Iterator<Item = SegmentRef> {
 }
 
 impl Context<'_> {
+    fn profile(&self, line: &Segment3, segments: &[SegmentRef]) -> Result<Profile, Rejection> {
+        Profile::new(self.scene, self.sights, line, segments, self.params).ok_or(Rejection::NoFit)
+    }
+
     /// Fits the line to those segments that agree with each other: the worst is dropped and the
     /// line fitted again until none is farther than `max_residual`. The robust loss alone leaves a
     /// line between two parallel edges a pixel apart.
@@ -290,8 +324,12 @@ impl Context<'_> {
         let seeing = profile.views.iter().filter(sees).count();
         let minimum = if seeing >= 6 { self.params.min_views } else { 3 };
         let measured = supports.iter().filter(|s| !s.segments.is_empty()).count();
-        if measured < 2 || supports.len() < minimum {
+        if measured < MIN_MEASURED || supports.len() < minimum {
             return Err(Rejection::TooFewViews);
+        }
+        let score = supports.iter().map(|s| s.score).sum::<f64>() / supports.len() as f64;
+        if score < self.params.pair_score {
+            return Err(Rejection::BelowThreshold);
         }
         Ok(())
     }

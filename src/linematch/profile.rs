@@ -157,6 +157,10 @@ fn correlate_views(
             if chosen.as_ref().is_none_or(|(t, _)| total > *t) {
                 chosen = Some((total, correlations));
             }
+            // Where a plane explains the side well enough, no other need be tried.
+            if total >= 0.8 * views.len() as f64 {
+                break;
+            }
         }
         for (slot, correlation) in best.iter_mut().zip(chosen?.1) {
             let score = EdgelScore::of(&correlation, params.edgel_correlation).score;

@@ -171,7 +171,8 @@ fn check_facet(id: FacetId, facet: &Facet, found: &mut Vec<Violation>) {
     let corners = || facet.outer.iter().chain(facet.holes.iter().flatten());
     let finite = corners().all(|p| p.coords.iter().all(|c| c.is_finite()));
     let plane = &facet.plane;
-    if !finite || !((plane.normal.norm() - 1.0).abs() < 1e-9 && plane.normal.z > 0.0) {
+    let is_unit = (plane.normal.norm() - 1.0).abs() < 1e-9;
+    if !(finite && is_unit && plane.normal.z > 0.0) {
         found.push(Violation::FacetPlane { facet: id });
         return;
     }

@@ -362,6 +362,17 @@ mod tests {
     }
 
     #[test]
+    fn a_low_roof_around_two_high_ones_that_touch_in_a_corner_is_a_manifold() {
+        let model = closed(&[
+            rectangle(7.0, 3.0, 11.0, 4.0, 42.0, 0.0, 0.0),
+            rectangle(9.0, 1.0, 14.0, 6.0, 30.0, 0.0, 0.0),
+            rectangle(11.0, 2.0, 12.0, 3.0, 37.0, 0.0, 0.0),
+        ]);
+        let volume = 4.0 * 42.0 + 22.0 * 30.0 + 37.0;
+        assert!((model.buildings[0].solid.volume() - volume).abs() < 1e-6);
+    }
+
+    #[test]
     fn the_higher_of_two_overlapping_facets_stays_whole() {
         let model = closed(&[
             rectangle(0.0, 0.0, 10.0, 10.0, 5.0, 0.0, 0.0),

@@ -1,10 +1,12 @@
 //! From faces to a closed oriented 2-manifold: twins, separated corners, merged walls.
 //!
 //! Four walls can meet in one vertical edge: roofs of heights high, low, high, low around a corner,
-//! or an outline that touches itself there. Such an edge is shared by two pairs of walls; each pair that faces
-//! the same stretch of outside is joined, and the corners are doubled so that the two pairs only touch.
+//! or an outline that touches itself there. Such an edge is shared by two pairs of walls. Each pair that faces the
+//! same stretch of outside is joined, and the corners are doubled so that the two pairs only touch. Where a roof with
+//! a hole goes around both high parts the corners stay one that way; there the pairs around the same
+//! stretch of inside are joined instead.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Point2, Point3};
 
@@ -19,12 +21,35 @@ const STRAIGHT_M: f64 = 1e-5;
 
 /// Makes the shell a closed oriented 2-manifold. `None` when its faces do not close.
 pub fn close_shell(shell: &Shell) -> Option<Shell> {
-    let edges = HalfEdges::new(shell)?;
-    let closed = edges.separate_corners(shell);
-    let mut closed = merge_walls(closed)?;
+    let mut closed = merge_walls(separate(shell)?)?;
     while drop_straight_corners(&mut closed) {}
     drop_unused_corners(&mut closed);
-    HalfEdges::new(&closed)?.is_simple.then_some(closed)
+    HalfEdges::new(&closed, &BTreeSet::new())?
+        .shared
+        .is_empty()
+        .then_some(closed)
+}
+
+/// Doubles corners until no edge is shared by more than two faces.
+fn separate(shell: &Shell) -> Option<Shell> {
+    let mut inwards = BTreeSet::new();
+    loop {
+        let (closed, original) = HalfEdges::new(shell, &inwards)?.separate_corners(shell);
+        let shared = HalfEdges::new(&closed, &BTreeSet::new())?.shared;
+        if shared.is_empty() {
+            return Some(closed);
+        }
+        let before = inwards.len();
+        inwards.extend(
+            shared
+                .iter()
+                .map(|&(a, b)| (original[a as usize], original[b as usize])),
+        );
+        // Neither way of joining helps.
+        if inwards.len() == before {
+            return None;
+        }
+    }
 }
 
 /// The directed edges of all rings, each with its twin: the same edge, run the other way by the neighbour.
@@ -34,13 +59,14 @@ struct HalfEdges {
     next: Vec<usize>,
     face: Vec<usize>,
     twin: Vec<usize>,
-    /// No edge is shared by more than two faces.
-    is_simple: bool,
+    /// Edges, upwards, that more than two faces share.
+    shared: Vec<(u32, u32)>,
 }
 
 impl HalfEdges {
-    /// `None` when some edge is not run through equally often both ways.
-    fn new(shell: &Shell) -> Option<Self> {
+    /// `None` when some edge is not run through equally often both ways. The walls that share the
+    /// edges `inwards` are joined around the inside.
+    fn new(shell: &Shell, inwards: &BTreeSet<(u32, u32)>) -> Option<Self> {
         let (mut start, mut next, mut face) = (Vec::new(), Vec::new(), Vec::new());
         for (f, ring) in shell
             .faces
@@ -71,30 +97,39 @@ impl HalfEdges {
             start,
             next,
             face,
-            is_simple: true,
+            shared: Vec::new(),
         };
         for (&(a, b), there) in &of_edge {
             let back = of_edge.get(&(b, a))?;
             if there.len() != back.len() {
                 return None;
             }
-            edges.is_simple &= there.len() == 1;
             if shell.corners[a as usize].z <= shell.corners[b as usize].z {
-                edges.pair(there, back, shell);
+                if there.len() > 1 {
+                    edges.shared.push((a, b));
+                }
+                edges.pair(there, back, inwards.contains(&(a, b)), shell);
             }
         }
         edges.twin.iter().all(|&t| t != usize::MAX).then_some(edges)
     }
 
     /// Joins the half-edges of one edge: those of walls that go up with those that go down. Outside is
-    /// counter-clockwise of a wall that goes up here, so its partner is the next wall in that turn.
-    fn pair(&mut self, up: &[usize], down: &[usize], shell: &Shell) {
+    /// counter-clockwise of a wall that goes up here, so its partner is the next wall in that turn; inside is clockwise.
+    fn pair(&mut self, up: &[usize], down: &[usize], inwards: bool, shell: &Shell) {
         let mut free = down.to_vec();
         for &h in up {
             let from = self.azimuth(h, shell);
             let nearest = (0..free.len())
                 .min_by(|&i, &j| {
-                    let angle = |k: usize| turn(from, self.azimuth(free[k], shell));
+                    let angle = |k: usize| {
+                        let to = self.azimuth(free[k], shell);
+                        if inwards {
+                            turn(to, from)
+                        } else {
+                            turn(from, to)
+                        }
+                    };
                     angle(i).total_cmp(&angle(j))
                 })
                 .expect("as many down as up");
@@ -119,10 +154,10 @@ impl HalfEdges {
         math::atan2(d.y, d.x)
     }
 
-    /// Gives every fan of faces around a corner a corner of its own.
-    fn separate_corners(&self, shell: &Shell) -> Shell {
+    /// Gives every fan of faces around a corner a corner of its own; also says which corner it was.
+    fn separate_corners(&self, shell: &Shell) -> (Shell, Vec<u32>) {
         let mut corner_of = vec![u32::MAX; self.start.len()];
-        let mut out = Shell::default();
+        let (mut out, mut original) = (Shell::default(), Vec::new());
         for h in 0..self.start.len() {
             if corner_of[h] != u32::MAX {
                 continue;
@@ -130,6 +165,7 @@ impl HalfEdges {
             let corner = out.corners.len() as u32;
             out.corners.push(shell.corners[self.start[h] as usize]);
             out.plan.push(shell.plan[self.start[h] as usize]);
+            original.push(self.start[h]);
             // Turn about the corner: the half-edge after the twin starts at the same corner.
             let mut at = h;
             while corner_of[at] == u32::MAX {
@@ -149,7 +185,7 @@ impl HalfEdges {
                 rings,
             });
         }
-        out
+        (out, original)
     }
 
     /// The rings around a group of faces, or `None` when there is more than one.
@@ -181,7 +217,7 @@ impl HalfEdges {
 
 /// Joins walls that stand in one vertical plane and share a vertical edge (the two halves of a gable end).
 fn merge_walls(shell: Shell) -> Option<Shell> {
-    let edges = HalfEdges::new(&shell)?;
+    let edges = HalfEdges::new(&shell, &BTreeSet::new())?;
     let mut group_of: Vec<usize> = (0..shell.faces.len()).collect();
     let mut groups: Vec<Vec<usize>> = (0..shell.faces.len()).map(|f| vec![f]).collect();
     for h in 0..edges.start.len() {

@@ -49,6 +49,9 @@ impl PlanFacet {
     }
 }
 
+/// A directed edge with the box around it.
+type BoxedEdge = GeomWithData<Rectangle<[f64; 2]>, (u32, u32)>;
+
 /// A partition of the plan into facets.
 #[derive(Clone, Debug, Default)]
 pub struct Partition {
@@ -173,7 +176,7 @@ impl Partition {
     /// Takes out facets whose edges are taken already or cross those of an earlier facet.
     fn drop_conflicts(&mut self, rejected: &mut Vec<(usize, SolidRejection)>) {
         let mut taken = BTreeSet::new();
-        let mut tree: RTree<GeomWithData<Rectangle<[f64; 2]>, (u32, u32)>> = RTree::new();
+        let mut tree: RTree<BoxedEdge> = RTree::new();
         let positions = &self.positions;
         self.facets.retain(|facet| {
             let edges: Vec<_> = facet.region.iter().flat_map(|r| ring_edges(r)).collect();

@@ -60,8 +60,8 @@ export function buildFacets(facets: readonly Facet[]): Layer {
 export function normalTint({ plane }: Pick<Facet, "plane">): Color {
   const [x, y, z] = plane.normal;
   const slope = Math.atan2(Math.hypot(x, y), Math.abs(z));
-  const chroma = 0.125 * Math.min(1, slope / FULL_TINT_SLOPE);
-  return fromOklch(0.74, chroma, Math.atan2(y, x));
+  const chroma = 0.1 * Math.min(1, slope / FULL_TINT_SLOPE);
+  return fromOklch(0.76, chroma, Math.atan2(y, x));
 }
 
 /** Oklch (Ottosson 2020) to three's linear working space, clipped. */

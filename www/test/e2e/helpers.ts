@@ -54,7 +54,7 @@ export async function openTab(page: Page, name: string): Promise<void> {
 }
 
 export interface Look {
-  /** Share of pixels that differ from the top left one. */
+  /** Share of pixels that differ from the most frequent colour. */
   drawn: number;
   /** Number of different colours, in steps of 16. */
   colours: number;
@@ -74,15 +74,13 @@ export async function lookOf(page: Page, element: Locator): Promise<Look> {
     const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
     const coarse = (at: number) =>
       ((data[at] ?? 0) >> 4) * 256 + ((data[at + 1] ?? 0) >> 4) * 16 + ((data[at + 2] ?? 0) >> 4);
-    const background = coarse(0);
-    const seen = new Set<number>();
-    let drawn = 0;
+    const counts = new Map<number, number>();
     for (let at = 0; at < data.length; at += 4) {
       const colour = coarse(at);
-      seen.add(colour);
-      drawn += colour === background ? 0 : 1;
+      counts.set(colour, (counts.get(colour) ?? 0) + 1);
     }
-    return { drawn: drawn / (data.length / 4), colours: seen.size };
+    const pixels = data.length / 4;
+    return { drawn: 1 - Math.max(...counts.values()) / pixels, colours: counts.size };
   }, png);
 }
 
