@@ -1,5 +1,5 @@
 # ridgeline: `make demo` and `make test` need rustup's cargo, Node >= 20 and make; the rest is installed
-# here, once. Stamps in target/stamps/ and the tool cache keep second runs quick.
+# here, once. Stamps (target/stamps/, www/node_modules/) and the tool cache keep second runs quick.
 #
 #   make demo       build, serve the page and print its address
 #   make test       set up, lint and run every test (native, wasm in Node, TypeScript, Chromium)
@@ -26,6 +26,8 @@ WASM_PACK := $(TOOLS)/wasm-pack-$(WASM_PACK_VERSION)/bin/wasm-pack
 export PATH := $(dir $(WASM_BINDGEN)):$(dir $(WASM_PACK)):$(PATH)
 
 STAMPS := target/stamps
+WASM32 := $(STAMPS)/wasm32-$(shell rustc --version | cut -d ' ' -f 2)
+NPM := www/node_modules/.installed-$(shell cksum < www/package-lock.json | tr ' ' '-')
 RUST_SOURCES := $(shell find src -name '*.rs') Cargo.toml Cargo.lock .cargo/config.toml
 WWW_SOURCES := $(shell find www -type f -not -path 'www/node_modules/*' -not -path 'www/dist/*' \
 	-not -path 'www/src/pkg/*' -not -path 'www/test*' 2>/dev/null)
@@ -42,7 +44,7 @@ build: $(SITE)
 test: setup $(STAMPS)/chromium
 	tests/all.sh
 
-lint: $(STAMPS)/wasm32 $(STAMPS)/npm $(PACKAGE)
+lint: $(WASM32) $(NPM) $(PACKAGE)
 	tests/all.sh lint
 
 identical: native $(PACKAGE)
@@ -68,20 +70,20 @@ clean:
 
 # ---- the wasm package and the site -------------------------------------------------------------
 
-$(PACKAGE): $(RUST_SOURCES) $(STAMPS)/wasm32 $(WASM_BINDGEN) $(WASM_PACK) $(STAMPS)/npm
+$(PACKAGE): $(RUST_SOURCES) $(WASM32) $(WASM_BINDGEN) $(WASM_PACK) $(NPM)
 	wasm-pack build --mode no-install --target web --release --out-dir www/src/pkg --out-name ridgeline
 	www/node_modules/.bin/wasm-opt -O3 --enable-simd --enable-bulk-memory --enable-sign-ext \
 		--enable-mutable-globals --enable-nontrapping-float-to-int --enable-reference-types \
 		--enable-multivalue $@ -o $@.opt
 	mv $@.opt $@
 
-$(SITE): $(PACKAGE) $(STAMPS)/npm $(WWW_SOURCES)
+$(SITE): $(PACKAGE) $(NPM) $(WWW_SOURCES)
 	cd www && npm run build
 	touch $@
 
 # ---- set-up --------------------------------------------------------------------------------------
 
-$(STAMPS)/wasm32:
+$(WASM32):
 	mkdir -p $(STAMPS)
 	rustup target add wasm32-unknown-unknown
 	touch $@
@@ -97,17 +99,11 @@ $(WASM_PACK):
 		|| cargo install --root $(TOOLS)/wasm-pack-$(WASM_PACK_VERSION) wasm-pack --version $(WASM_PACK_VERSION)
 
 # The lock file's content decides, not its time: a fresh checkout of the same lock installs nothing.
-LOCK_SUM := $(shell cksum < www/package-lock.json 2>/dev/null | tr ' ' '-')
-$(STAMPS)/npm: $(STAMPS)/npm-$(LOCK_SUM)
-	cp $< $@
-
-$(STAMPS)/npm-$(LOCK_SUM):
-	mkdir -p $(STAMPS)
-	rm -f $(STAMPS)/npm-*
+$(NPM):
 	cd www && npm ci --no-audit --no-fund
 	touch $@
 
 # Debian as root: the system's own package. Elsewhere: Playwright's browser. CHROMIUM names another one.
-$(STAMPS)/chromium: $(STAMPS)/npm
+$(STAMPS)/chromium: $(NPM)
 	tests/install_chromium.sh
 	touch $@
