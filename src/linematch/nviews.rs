@@ -34,8 +34,6 @@ pub enum Rejection {
     IllConditioned,
     /// Fewer than the minimum of views support it.
     TooFewViews,
-    /// The views' neighbourhoods are not alike enough in the mean.
-    BelowThreshold,
     /// The supported stretch is shorter than the minimum of edgels.
     TooShort,
     /// It leaves the height range.
@@ -88,7 +86,7 @@ pub fn complete_line(
             return Err(Rejection::TooShort);
         }
         let supports = context.supports(&profile, stretch);
-        let disagreeing = disagreeing_views(&profile, &supports);
+        let disagreeing = disagreeing_views(&profile, &supports, context.params);
         if disagreeing.is_empty() {
             context.check_views(&profile, stretch, &supports)?;
             let kept: Vec<SegmentRef> = supports.iter().flat_map(names).collect();
@@ -100,19 +98,23 @@ pub fn complete_line(
     }
 }
 
-/// Views that have segments on the line but do not support it photometrically. They see another edge nearby, and the
-/// line is better off without them. Where the reference view agrees with none, it alone is left out:
-/// the others were compared with nothing else.
-fn disagreeing_views(profile: &Profile, supports: &[LineSupport]) -> Vec<ViewId> {
-    let supported = |view: ViewId| supports.iter().any(|s| s.view == view);
-    let reference = profile.views[profile.reference].view;
-    if !supported(reference) {
-        return vec![reference];
+/// Views that have segments on the line but see another edge nearby: those that do not support it
+/// photometrically and, where the views are not alike in the mean, the one least like the others. A wrong view displaces the
+/// line and with it the windows of the right ones, so one is left out at a time.
+fn disagreeing_views(
+    profile: &Profile,
+    supports: &[LineSupport],
+    params: &MatchParams,
+) -> Vec<ViewId> {
+    let measured = profile.views.iter().filter(|v| !v.segments.is_empty());
+    let mean = supports.iter().map(|s| s.score).sum::<f64>() / supports.len().max(1) as f64;
+    if mean < params.pair_score {
+        let worst = measured.min_by(|a, b| a.agreement.total_cmp(&b.agreement));
+        return worst.map(|v| v.view).into_iter().collect();
     }
-    profile
-        .views
-        .iter()
-        .filter(|v| !v.segments.is_empty() && !supported(v.view))
+    let supported = |v: &&ViewProfile| supports.iter().any(|s| s.view == v.view);
+    measured
+        .filter(|v| !supported(v))
         .map(|v| v.view)
         .collect()
 }
@@ -334,10 +336,6 @@ impl Context<'_> {
         let measured = supports.iter().filter(|s| !s.segments.is_empty()).count();
         if measured < MIN_MEASURED || supports.len() < minimum {
             return Err(Rejection::TooFewViews);
-        }
-        let score = supports.iter().map(|s| s.score).sum::<f64>() / supports.len() as f64;
-        if score < self.params.pair_score {
-            return Err(Rejection::BelowThreshold);
         }
         Ok(())
     }

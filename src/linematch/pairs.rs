@@ -236,10 +236,9 @@ fn pair_score(
     best
 }
 
-/// Correlations at the edgels of a reference strip with another view, on one side of a line, warped by
-/// the half-plane at `theta_deg`. `None` for a line without such a plane.
+/// Correlations at the edgels of a reference strip with another view, see [`side_strip`].
 #[allow(clippy::too_many_arguments)] // Every one is another thing; a struct would be used once.
-pub fn side_correlation(
+fn side_correlation(
     scene: &Scene,
     first: ViewId,
     second: ViewId,
@@ -250,6 +249,21 @@ pub fn side_correlation(
     theta_deg: f64,
     params: &MatchParams,
 ) -> Option<Vec<f32>> {
+    let warped = side_strip(scene, first, second, frame, line, side, theta_deg)?;
+    Some(correlate(strip, &warped, side, params.noise))
+}
+
+/// One side of a line's strip in another view, warped by the half-plane at `theta_deg`. `None` for
+/// a line without such a plane.
+pub fn side_strip(
+    scene: &Scene,
+    first: ViewId,
+    second: ViewId,
+    frame: &StripFrame,
+    line: &Segment3,
+    side: StripSide,
+    theta_deg: f64,
+) -> Option<Strip> {
     // What is right on the screen of a camera that looks down is right from above.
     let from_above = match side {
         StripSide::Left => Side::Left,
@@ -258,6 +272,5 @@ pub fn side_correlation(
     let plane = ThetaFrame::new(line, from_above)?.plane(line, theta_deg.to_radians());
     let (a, b) = (scene.camera(first), scene.view(second));
     let h = homography_of_plane(a, &b.camera, &plane)?;
-    let warped = Strip::warped(&b.gray, &h, frame, side);
-    Some(correlate(strip, &warped, side, params.noise))
+    Some(Strip::warped(&b.gray, &h, frame, side))
 }

@@ -1,9 +1,9 @@
 //! The evidence along a 3D line, edgel by edgel: which views detected a segment there, and which
 //! views' neighbourhoods correlate. Merging and growing (B99 3.3) read it.
 
-use super::pairs::side_correlation;
+use super::pairs::side_strip;
 use super::sight::{SegmentRef, Sights};
-use super::strip::{EdgelScore, Strip, StripFrame, StripSide};
+use super::strip::{EdgelScore, Strip, StripFrame, StripSide, correlate};
 use super::triples::stretch_of;
 use crate::geometry::{Segment2, Segment3};
 use crate::ids::{SegmentId, ViewId};
@@ -24,13 +24,15 @@ pub struct ViewProfile {
     /// At each edgel: correlation with the reference view on the better side; NaN where the view does
     /// not see it. All ones in the reference view itself.
     pub correlation: Vec<f32>,
+    /// Mean score with the other views that have segments: low for a view that sees another edge.
+    pub agreement: f64,
 }
 
 /// What all views say along the line.
 pub struct Profile {
     /// Metres along the line of each edgel; edgels are a pixel apart in the reference view.
     pub t: Vec<f64>,
-    /// Index of the reference view in `views`.
+    /// Index in `views` of the reference view: of those with segments the one most like the others.
     pub reference: usize,
     /// The views that see the line.
     pub views: Vec<ViewProfile>,
@@ -50,16 +52,13 @@ impl Profile {
             .filter_map(|view| view_segments(scene, sights, line, segments, view))
             .collect();
         let reach = |v: &ViewProfile| v.segments.iter().map(|(_, [s, e])| e - s).sum::<f64>();
-        let reference = (0..views.len()).max_by(|&i, &j| {
-            reach(&views[i])
-                .total_cmp(&reach(&views[j]))
-                .then(j.cmp(&i))
-        })?;
+        let longest = (0..views.len())
+            .max_by(|&i, &j| reach(&views[i]).total_cmp(&reach(&views[j])).then(j.cmp(&i)))?;
         let ends = views.iter().flat_map(|v| v.segments.iter());
         let (from, to) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(f, t), (_, [s, e])| {
             (f.min(*s), t.max(*e))
         });
-        let image = views[reference].image;
+        let image = views[longest].image;
         let frame = StripFrame::new(
             &Segment2::new(image.at(from)?, image.at(to)?),
             params.window_px,
@@ -74,7 +73,8 @@ impl Profile {
                 .collect();
         }
         let stretch = stretch_of(line, from, to);
-        correlate_views(scene, &stretch, &frame, reference, &mut views, params)?;
+        let strips = Strips::new(scene, &stretch, &frame, longest, &views, params)?;
+        let reference = strips.compare(&mut views, params)?;
         Some(Self {
             t,
             reference,
@@ -89,7 +89,8 @@ impl Profile {
 
     /// Number of views whose neighbourhoods agree at an edgel, the reference included.
     pub fn agreeing(&self, edgel: usize, params: &MatchParams) -> usize {
-        let agrees = |v: &&ViewProfile| f64::from(v.correlation[edgel]) >= params.edgel_correlation;
+        let agrees =
+            |v: &&ViewProfile| f64::from(v.correlation[edgel]) >= params.edgel_correlation;
         self.views.iter().filter(agrees).count()
     }
 }
@@ -108,7 +109,10 @@ fn view_segments(
         .filter(|s| s.view == view)
         .filter_map(|s| {
             let sight = sights.get(*s)?;
-            let (t0, t1) = (image.t_of(&sight.segment.p0), image.t_of(&sight.segment.p1));
+            let (t0, t1) = (
+                image.t_of(&sight.segment.p0),
+                image.t_of(&sight.segment.p1),
+            );
             Some((s.segment, [t0.min(t1), t0.max(t1)]))
         })
         .collect();
@@ -118,58 +122,94 @@ fn view_segments(
         segments: on_line,
         detected: Vec::new(),
         correlation: Vec::new(),
+        agreement: 0.0,
     })
 }
 
-/// Fills in the correlations: on either side of the line the half-plane that agrees best over all views, then for
-/// each view its better side (the other may be hidden there).
-fn correlate_views(
-    scene: &Scene,
-    line: &Segment3,
-    frame: &StripFrame,
-    reference: usize,
-    views: &mut [ViewProfile],
-    params: &MatchParams,
-) -> Option<()> {
-    let first = views[reference].view;
-    let strip = Strip::reference(&scene.view(first).gray, frame);
-    let mut best: Vec<(f64, Vec<f32>)> = vec![(-1.0, Vec::new()); views.len()];
-    for side in StripSide::BOTH {
-        let mut chosen: Option<(f64, Vec<Vec<f32>>)> = None;
-        for &theta in &params.plane_angles_deg {
-            let correlations: Vec<Vec<f32>> = views
+/// The strips of all views on one grid, on either side of the line, warped by the half-plane that
+/// agrees best over the views with segments. On one grid any two views compare without new samples.
+struct Strips {
+    sides: [Vec<Strip>; 2],
+}
+
+impl Strips {
+    fn new(
+        scene: &Scene,
+        line: &Segment3,
+        frame: &StripFrame,
+        grid: usize,
+        views: &[ViewProfile],
+        params: &MatchParams,
+    ) -> Option<Self> {
+        let first = views[grid].view;
+        let measured: Vec<usize> = with_segments(views).collect();
+        let pairs = (measured.len() * (measured.len() - 1) / 2) as f64;
+        let best = |side: StripSide| {
+            let mut chosen: Option<(f64, f64)> = None;
+            for &theta in &params.plane_angles_deg {
+                let strips: Vec<Strip> = measured
+                    .iter()
+                    .map(|&i| side_strip(scene, first, views[i].view, frame, line, side, theta))
+                    .collect::<Option<_>>()?;
+                let total: f64 = (0..strips.len())
+                    .flat_map(|i| (0..i).map(move |j| (i, j)))
+                    .map(|(i, j)| side_score(&strips[i], &strips[j], side, params))
+                    .sum();
+                if chosen.is_none_or(|(t, _)| total > t) {
+                    chosen = Some((total, theta));
+                }
+                // Where a plane explains the side well enough, no other need be tried.
+                if total >= 0.8 * pairs {
+                    break;
+                }
+            }
+            let theta = chosen?.1;
+            views
                 .iter()
-                .enumerate()
-                .map(|(i, v)| {
-                    if i == reference {
-                        return Some(vec![1.0; frame.edgels]);
-                    }
-                    side_correlation(
-                        scene, first, v.view, frame, &strip, line, side, theta, params,
-                    )
-                })
-                .collect::<Option<_>>()?;
-            let total: f64 = correlations
-                .iter()
-                .map(|c| EdgelScore::of(c, params.edgel_correlation).score)
-                .sum();
-            if chosen.as_ref().is_none_or(|(t, _)| total > *t) {
-                chosen = Some((total, correlations));
-            }
-            // Where a plane explains the side well enough, no other need be tried.
-            if total >= 0.8 * views.len() as f64 {
-                break;
-            }
-        }
-        for (slot, correlation) in best.iter_mut().zip(chosen?.1) {
-            let score = EdgelScore::of(&correlation, params.edgel_correlation).score;
-            if score > slot.0 {
-                *slot = (score, correlation);
-            }
-        }
+                .map(|v| side_strip(scene, first, v.view, frame, line, side, theta))
+                .collect::<Option<Vec<Strip>>>()
+        };
+        let [left, right] = StripSide::BOTH.map(best);
+        Some(Self {
+            sides: [left?, right?],
+        })
     }
-    for (view, (_, correlation)) in views.iter_mut().zip(best) {
-        view.correlation = correlation;
+
+    /// Correlations of two views on the better side (the other may be hidden in one of them).
+    fn correlations(&self, i: usize, j: usize, params: &MatchParams) -> (f64, Vec<f32>) {
+        let [left, right] = [0, 1].map(|s| {
+            let strips = &self.sides[s];
+            let c = correlate(&strips[i], &strips[j], StripSide::BOTH[s], params.noise);
+            (EdgelScore::of(&c, params.edgel_correlation).score, c)
+        });
+        if right.0 > left.0 { right } else { left }
     }
-    Some(())
+
+    /// Fills in the agreements and the correlations with the reference view, and names it.
+    fn compare(&self, views: &mut [ViewProfile], params: &MatchParams) -> Option<usize> {
+        let measured: Vec<usize> = with_segments(views).collect();
+        for &i in &measured {
+            let others = measured.iter().filter(|j| **j != i);
+            let sum: f64 = others.map(|&j| self.correlations(i, j, params).0).sum();
+            views[i].agreement = sum / (measured.len() - 1).max(1) as f64;
+        }
+        let agreement = |i: &usize| views[*i].agreement;
+        let reference = measured
+            .into_iter()
+            .max_by(|i, j| agreement(i).total_cmp(&agreement(j)).then(j.cmp(i)))?;
+        for (i, view) in views.iter_mut().enumerate() {
+            let (_, correlation) = self.correlations(reference, i, params);
+            let own = vec![1.0; correlation.len()];
+            view.correlation = if i == reference { own } else { correlation };
+        }
+        Some(reference)
+    }
+}
+
+fn with_segments(views: &[ViewProfile]) -> impl Iterator<Item = usize> {
+    (0..views.len()).filter(|i| !views[*i].segments.is_empty())
+}
+
+fn side_score(a: &Strip, b: &Strip, side: StripSide, params: &MatchParams) -> f64 {
+    EdgelScore::of(&correlate(a, b, side, params.noise), params.edgel_correlation).score
 }
