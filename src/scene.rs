@@ -1,6 +1,6 @@
 //! What a reconstruction starts from: oriented views in one local frame.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::camera::Camera;
 use crate::ids::ViewId;
@@ -41,6 +41,33 @@ impl Scene {
     /// The camera of a view.
     pub fn camera(&self, id: ViewId) -> &Camera {
         &self.views[id.index()].camera
+    }
+
+    /// The same scene with the grey images reduced by a whole factor (mean of each block); without colours.
+    pub fn reduced(&self, factor: usize) -> Scene {
+        let scale = 1.0 / factor as f64;
+        let views = self.views.iter().map(|v| {
+            let gray = v.gray.reduced(factor);
+            let k = Matrix3::new(scale, 0.0, 0.0, 0.0, scale, 0.0, 0.0, 0.0, 1.0) * v.camera.k;
+            let camera = Camera {
+                k,
+                width: gray.width as u32,
+                height: gray.height as u32,
+                ..v.camera.clone()
+            };
+            View {
+                name: v.name.clone(),
+                camera,
+                gray,
+                rgb: image::RgbImage::new(0, 0),
+            }
+        });
+        Scene {
+            views: views.collect(),
+            origin: self.origin,
+            ground_z: self.ground_z,
+            warnings: Vec::new(),
+        }
     }
 
     /// All view ids in order.

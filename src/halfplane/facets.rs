@@ -15,7 +15,7 @@ use super::delineation::{Delineation, Outline, delineate, signed_area};
 use super::evidence::{Evidence, LINE_HEIGHT};
 use super::grouping::{GroupingInput, PlaneGroup, group_planes};
 use super::hypothesis::{bounding_lines, hypotheses};
-use super::labelling::Energy;
+use super::labelling::{Energy, NO_PLANE};
 use super::line_index::LineIndex;
 use super::neighbourhood::line_neighbours;
 use super::plan::PlanGrid;
@@ -109,7 +109,13 @@ pub fn reconstruct_facets(
             },
         );
     };
-    let hypotheses = hypotheses(scene, segments, &input, groups, grid.step, params);
+    let fine = scene
+        .views
+        .iter()
+        .map(|v| v.camera.ground_pixel(&lines[0].at(0.5)))
+        .fold(f64::INFINITY, f64::min);
+    let reduced = scene.reduced(((grid.step / fine) as usize).max(1));
+    let hypotheses = hypotheses(scene, &reduced, segments, &input, groups, grid.step, params);
     let bounding = bounding_lines(&input, &hypotheses);
     let borders = border_lines(&input, &hypotheses, &bounding, params);
     let arrangement = Arrangement::new(&with_frame(&borders, &grid));
@@ -176,9 +182,12 @@ fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[Region]) -> Option<Pl
     }
     let size = max - min;
     // Coarser cells for a very large window: at most 36 million.
-    let step = step.max((size.x * size.y / 36e6).sqrt());
+    let step = step.max(FINEST_CELL).max((size.x * size.y / 36e6).sqrt());
     (size.x > 0.0 && size.y > 0.0 && step.is_finite()).then(|| PlanGrid::covering(min, max, step))
 }
+
+/// Finest cell, metres. Assumption: what a roof's border lines can be told apart by; sharper images are reduced.
+const FINEST_CELL: f64 = 0.06;
 
 /// The borders and a frame around the window, so that every cell that matters is closed.
 fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {
@@ -218,8 +227,9 @@ impl Solver {
     ) -> (Vec<Facet>, Vec<RejectedFacet>) {
         const ROUNDS: usize = 4;
         let mut rejected = Vec::new();
+        let mut labels = vec![NO_PLANE; self.arrangement.cells];
         for round in 1..=ROUNDS {
-            let labels = self.energy.minimise(self.planes.len() as u32);
+            labels = self.energy.minimise(self.planes.len() as u32, labels);
             let delineation = delineate(&self.arrangement, &labels, &self.planes);
             let mut facets = Vec::new();
             let mut withdrawn = Vec::new();
@@ -242,6 +252,7 @@ impl Solver {
             for outline in withdrawn {
                 for &cell in &outline.cells {
                     self.energy.unary[cell].retain(|u| u.0 != outline.plane);
+                    labels[cell] = NO_PLANE;
                 }
             }
         }

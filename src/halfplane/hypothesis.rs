@@ -25,10 +25,11 @@ pub struct Hypothesis {
     pub lines: Vec<PlaneLine>,
 }
 
-/// Compares the views on every group's plane; planes of two lines that the images contradict beside their own lines
+/// Compares the views (in `reduced`, whose pixels are about `step` wide) on every group's plane; planes of two lines that the images contradict beside their own lines
 /// are dropped.
 pub fn hypotheses(
     scene: &Scene,
+    reduced: &Scene,
     segments: &[Vec<ImageSegment>],
     input: &GroupingInput,
     groups: Vec<PlaneGroup>,
@@ -38,7 +39,7 @@ pub fn hypotheses(
     let built = crate::parallel::map(&groups, |_, group| {
         let region = Region::new(input, group, params);
         let (min, max) = region.bounds();
-        let map = consistency_map(scene, &group.plane, &PlanGrid::covering(min, max, step));
+        let map = consistency_map(reduced, &group.plane, &PlanGrid::covering(min, max, step));
         if group.half_planes().is_empty() && !supported(input, group, &map, params) {
             return None;
         }

@@ -79,55 +79,38 @@ impl Energy {
         data + borders
     }
 
-    /// A labelling that no single expansion improves, starting from "no plane" everywhere.
-    pub fn minimise(&self, planes: u32) -> Vec<u32> {
-        let mut cells_of_plane = vec![Vec::new(); planes as usize];
-        for (cell, candidates) in self.unary.iter().enumerate() {
-            for (plane, _) in candidates {
-                cells_of_plane[*plane as usize].push(cell);
-            }
-        }
-        let mut edges_of_cell = vec![Vec::new(); self.unary.len()];
-        for (i, e) in self.edges.iter().enumerate() {
-            edges_of_cell[e.cells[0]].push(i);
-            edges_of_cell[e.cells[1]].push(i);
-        }
-        let all: Vec<usize> = (0..self.unary.len()).collect();
-        let mut labels = vec![NO_PLANE; self.unary.len()];
-        const ROUNDS: usize = 6;
+    /// A labelling that no single expansion improves, starting from `labels`.
+    pub fn minimise(&self, planes: u32, mut labels: Vec<u32>) -> Vec<u32> {
+        let graph = CellGraph::new(self, planes);
+        let mut clock = Clock::new(self.unary.len(), planes);
+        const ROUNDS: usize = 8;
         for _ in 0..ROUNDS {
-            let before = labels.clone();
-            for plane in 0..planes {
-                self.expand(
-                    plane,
-                    &cells_of_plane[plane as usize],
-                    &edges_of_cell,
-                    &mut labels,
-                );
+            let start = clock.now;
+            for plane in (0..planes).chain([NO_PLANE]) {
+                // Nothing changed where this plane may lie since it was last tried: it would fail again.
+                if clock.worth_trying(plane, &graph) {
+                    let changed = self.expand(plane, &graph, &mut labels);
+                    clock.tried(plane, &changed);
+                }
             }
-            self.expand(NO_PLANE, &all, &edges_of_cell, &mut labels);
-            if labels == before {
-                break;
+            if clock.changed_since(start) {
+                continue;
             }
+            break;
         }
         labels
     }
 
     /// The best move in which any of `cells` may change to `alpha`.
-    fn expand(
-        &self,
-        alpha: u32,
-        cells: &[usize],
-        edges_of_cell: &[Vec<usize>],
-        labels: &mut [u32],
-    ) {
+    fn expand(&self, alpha: u32, graph: &CellGraph, labels: &mut [u32]) -> Vec<usize> {
+        let cells = graph.cells_of(alpha);
         let movable: Vec<usize> = cells
             .iter()
             .copied()
             .filter(|&c| labels[c] != alpha)
             .collect();
         if movable.is_empty() {
-            return;
+            return Vec::new();
         }
         let mut node = std::collections::BTreeMap::new();
         let mut cut = Cut::default();
@@ -138,7 +121,7 @@ impl Energy {
             let keep = self.unary(c, labels[c]).unwrap_or(BLOCKED);
             let change = self.unary(c, alpha).unwrap_or(BLOCKED);
             cut.unary(node[&c], keep, change);
-            for &e in &edges_of_cell[c] {
+            for &e in &graph.edges_of_cell[c] {
                 let edge = &self.edges[e];
                 let (i, j) = (edge.cells[0], edge.cells[1]);
                 let (li, lj) = (labels[i], labels[j]);
@@ -161,11 +144,109 @@ impl Energy {
                 }
             }
         }
-        for (c, moves) in movable.iter().zip(cut.solve()) {
-            if moves {
-                labels[*c] = alpha;
+        let changed: Vec<usize> = movable
+            .into_iter()
+            .zip(cut.solve())
+            .filter(|(_, moves)| *moves)
+            .map(|(c, _)| c)
+            .collect();
+        changed.iter().for_each(|&c| labels[c] = alpha);
+        changed
+    }
+}
+
+/// Which cells a plane may cover, and which edges a cell has.
+struct CellGraph {
+    cells_of_plane: Vec<Vec<usize>>,
+    /// The planes' cells and the cells beside them: where a change concerns the plane.
+    surroundings_of_plane: Vec<Vec<usize>>,
+    all: Vec<usize>,
+    edges_of_cell: Vec<Vec<usize>>,
+}
+
+impl CellGraph {
+    fn new(energy: &Energy, planes: u32) -> Self {
+        let mut cells_of_plane = vec![Vec::new(); planes as usize];
+        for (cell, candidates) in energy.unary.iter().enumerate() {
+            for (plane, _) in candidates {
+                cells_of_plane[*plane as usize].push(cell);
             }
         }
+        let mut edges_of_cell = vec![Vec::new(); energy.unary.len()];
+        for (i, e) in energy.edges.iter().enumerate() {
+            edges_of_cell[e.cells[0]].push(i);
+            edges_of_cell[e.cells[1]].push(i);
+        }
+        let surroundings_of_plane = cells_of_plane
+            .iter()
+            .map(|cells| {
+                let beside = cells
+                    .iter()
+                    .flat_map(|&c| &edges_of_cell[c])
+                    .flat_map(|&e| energy.edges[e].cells);
+                let mut around: Vec<usize> = cells.iter().copied().chain(beside).collect();
+                around.sort_unstable();
+                around.dedup();
+                around
+            })
+            .collect();
+        Self {
+            cells_of_plane,
+            surroundings_of_plane,
+            all: (0..energy.unary.len()).collect(),
+            edges_of_cell,
+        }
+    }
+
+    fn cells_of(&self, plane: u32) -> &[usize] {
+        self.cells_of_plane.get(plane as usize).unwrap_or(&self.all)
+    }
+
+    fn surroundings_of(&self, plane: u32) -> &[usize] {
+        self.surroundings_of_plane
+            .get(plane as usize)
+            .unwrap_or(&self.all)
+    }
+}
+
+/// When each cell last changed its label and each plane was last tried, in tries.
+struct Clock {
+    now: u32,
+    changed: Vec<u32>,
+    tried: Vec<u32>,
+}
+
+impl Clock {
+    fn new(cells: usize, planes: u32) -> Self {
+        Self {
+            now: 1,
+            changed: vec![1; cells],
+            tried: vec![0; planes as usize + 1],
+        }
+    }
+
+    fn slot(&self, plane: u32) -> usize {
+        (plane as usize).min(self.tried.len() - 1)
+    }
+
+    fn worth_trying(&self, plane: u32, graph: &CellGraph) -> bool {
+        let last = self.tried[self.slot(plane)];
+        graph
+            .surroundings_of(plane)
+            .iter()
+            .any(|&c| self.changed[c] > last)
+    }
+
+    fn tried(&mut self, plane: u32, changed: &[usize]) {
+        // The plane's own changes do not make it worth trying again.
+        self.now += 1;
+        changed.iter().for_each(|&c| self.changed[c] = self.now);
+        let slot = self.slot(plane);
+        self.tried[slot] = self.now;
+    }
+
+    fn changed_since(&self, time: u32) -> bool {
+        self.changed.iter().any(|&c| c > time)
     }
 }
 
@@ -261,6 +342,10 @@ mod tests {
         }
     }
 
+    fn from_nothing(energy: &Energy) -> Vec<u32> {
+        energy.minimise(2, vec![NO_PLANE; energy.unary.len()])
+    }
+
     #[test]
     fn an_undecided_cell_follows_the_cheaper_border() {
         // Cells 0 - 1 - 2; plane 0 fits cell 0, plane 1 fits cell 2, cell 1 fits both equally; only the border
@@ -273,7 +358,7 @@ mod tests {
             ],
             edges: vec![edge(0, 1, 1.0, vec![]), edge(1, 2, 1.0, vec![(0, 1, 0.1)])],
         };
-        assert_eq!(energy.minimise(2), [0, 0, 1]);
+        assert_eq!(from_nothing(&energy), [0, 0, 1]);
     }
 
     #[test]
@@ -300,7 +385,7 @@ mod tests {
                     energy.of(&labels)
                 })
                 .fold(f64::INFINITY, f64::min);
-            let found = energy.of(&energy.minimise(2));
+            let found = energy.of(&from_nothing(&energy));
             assert!(found <= best + 0.05, "seed {seed}: {found} against {best}");
         }
     }
@@ -311,6 +396,6 @@ mod tests {
             unary: vec![vec![(0, -5.0)], vec![(1, 0.5)], vec![(0, -5.0)]],
             edges: vec![edge(0, 1, 3.0, vec![]), edge(1, 2, 3.0, vec![])],
         };
-        assert!(energy.of(&energy.minimise(2)).is_finite());
+        assert!(energy.of(&from_nothing(&energy)).is_finite());
     }
 }

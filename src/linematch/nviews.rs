@@ -113,10 +113,7 @@ fn disagreeing_views(
         return worst.map(|v| v.view).into_iter().collect();
     }
     let supported = |v: &&ViewProfile| supports.iter().any(|s| s.view == v.view);
-    measured
-        .filter(|v| !supported(v))
-        .map(|v| v.view)
-        .collect()
+    measured.filter(|v| !supported(v)).map(|v| v.view).collect()
 }
 
 /// Number of views among segments sorted by view.

@@ -58,6 +58,18 @@ impl Gray {
         }
     }
 
+    /// The mean of each block of `factor` x `factor` pixels; rows and columns left over are dropped.
+    pub fn reduced(&self, factor: usize) -> Self {
+        let area = (factor * factor) as f32;
+        Self::from_fn(self.width / factor, self.height / factor, |x, y| {
+            let row = |dy: usize| {
+                let start = (y * factor + dy) * self.width + x * factor;
+                self.data[start..start + factor].iter().sum::<f32>()
+            };
+            (0..factor).map(row).sum::<f32>() / area
+        })
+    }
+
     /// The value at a column and row.
     pub fn get(&self, x: usize, y: usize) -> f32 {
         self.data[y * self.width + x]

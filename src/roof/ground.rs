@@ -5,15 +5,13 @@
 //! agree best; the ground near a building is what the lowest clearly matched positions around it show, since
 //! roofs and trees only rise above it.
 
-use nalgebra::{Matrix3, Point2, Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector3};
 use serde::Serialize;
 
-use crate::camera::Camera;
 use crate::geometry::Plane;
 use crate::halfplane::{PlanGrid, consistency_map};
 use crate::lines3d::Line3d;
-use crate::raster::Gray;
-use crate::scene::{Scene, View};
+use crate::scene::Scene;
 
 /// Ground heights, metres, local frame, on a coarse grid over the scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -133,7 +131,7 @@ fn low_height(heights: impl Iterator<Item = f64>) -> Option<f64> {
 }
 
 fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3<f64>> {
-    let reduced = reduce(scene);
+    let reduced = scene.reduced(REDUCE);
     let middle = ends[ends.len() / 2];
     let Some(view) = reduced.views.first() else {
         return Vec::new();
@@ -186,44 +184,4 @@ fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3
         }
     }
     samples
-}
-
-/// The scene with every image reduced by [`REDUCE`], mean of each block.
-fn reduce(scene: &Scene) -> Scene {
-    let views = scene
-        .views
-        .iter()
-        .map(|v| {
-            let (w, h) = (v.gray.width / REDUCE, v.gray.height / REDUCE);
-            let gray = Gray::from_fn(w, h, |x, y| {
-                let mut sum = 0.0;
-                for dy in 0..REDUCE {
-                    for dx in 0..REDUCE {
-                        sum += v.gray.get(x * REDUCE + dx, y * REDUCE + dy);
-                    }
-                }
-                sum / (REDUCE * REDUCE) as f32
-            });
-            let s = 1.0 / REDUCE as f64;
-            let k = Matrix3::new(s, 0.0, 0.0, 0.0, s, 0.0, 0.0, 0.0, 1.0) * v.camera.k;
-            let camera = Camera {
-                k,
-                width: w as u32,
-                height: h as u32,
-                ..v.camera.clone()
-            };
-            View {
-                name: v.name.clone(),
-                camera,
-                gray,
-                rgb: image::RgbImage::new(0, 0),
-            }
-        })
-        .collect();
-    Scene {
-        views,
-        origin: scene.origin,
-        ground_z: scene.ground_z,
-        warnings: Vec::new(),
-    }
 }
