@@ -113,7 +113,10 @@ fn model(results: &Results) -> Found {
     let faces = || textured.value.faces.iter().flatten();
     let counts = vec![
         ("faces", faces().count()),
-        ("textured faces", faces().filter(|f| f.view.is_some()).count()),
+        (
+            "textured faces",
+            faces().filter(|f| f.view.is_some()).count(),
+        ),
     ];
     (counts, Vec::new())
 }
