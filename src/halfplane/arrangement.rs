@@ -75,12 +75,15 @@ impl Arrangement {
 
     fn from_triangulation(cdt: &ConstrainedDelaunayTriangulation<Vertex>) -> Self {
         let vertices: Vec<Point2<f64>> = cdt.vertices().map(|v| v.data().0).collect();
-        let faces: Vec<[usize; 3]> =
-            cdt.inner_faces().map(|f| f.vertices().map(|v| v.fix().index())).collect();
+        let faces: Vec<[usize; 3]> = cdt
+            .inner_faces()
+            .map(|f| f.vertices().map(|v| v.fix().index()))
+            .collect();
         // Inner faces are numbered from 1; 0 is the outside.
-        let number = |f: spade::handles::FaceHandle<'_, spade::handles::PossiblyOuterTag, _, _, _, _>| {
-            f.as_inner().map(|f| f.fix().index() - 1)
-        };
+        let number =
+            |f: spade::handles::FaceHandle<'_, spade::handles::PossiblyOuterTag, _, _, _, _>| {
+                f.as_inner().map(|f| f.fix().index() - 1)
+            };
         let mut sets = DisjointSets::new(faces.len());
         for edge in cdt.undirected_edges().filter(|e| !e.is_constraint_edge()) {
             let e = edge.as_directed();
@@ -116,10 +119,22 @@ impl Arrangement {
                 let e = edge.as_directed();
                 let (f, g) = (number(e.face())?, number(e.rev().face())?);
                 let (left, right) = (triangles[f].1, triangles[g].1);
-                (left != right).then(|| CellEdge { left, right, a: e.from().fix().index(), b: e.to().fix().index() })
+                (left != right).then(|| CellEdge {
+                    left,
+                    right,
+                    a: e.from().fix().index(),
+                    b: e.to().fix().index(),
+                })
             })
             .collect();
-        Self { vertices, triangles, cells: areas.len(), areas, edges, open }
+        Self {
+            vertices,
+            triangles,
+            cells: areas.len(),
+            areas,
+            edges,
+            open,
+        }
     }
 
     /// The cell under the centre of each grid cell; `u32::MAX` outside all triangles.
@@ -136,14 +151,17 @@ impl Arrangement {
             }
             for r in r0..=(r1 as usize).min(grid.height - 1) {
                 let y = grid.center(0, r).y;
-                let Some((x0, x1)) = span(&t, y) else { continue };
+                let Some((x0, x1)) = span(&t, y) else {
+                    continue;
+                };
                 let column = |x: f64| (x - grid.origin.x) / grid.step - 0.5;
                 // A centre on the common side of two triangles must not fall between them by rounding.
                 const SLACK: f64 = 1e-6;
                 let c0 = (column(x0) - SLACK).ceil().max(0.0);
                 let c1 = (column(x1) + SLACK).floor().min(grid.width as f64 - 1.0);
                 if c1 >= c0 {
-                    out[r * grid.width + c0 as usize..=r * grid.width + c1 as usize].fill(cell as u32);
+                    out[r * grid.width + c0 as usize..=r * grid.width + c1 as usize]
+                        .fill(cell as u32);
                 }
             }
         }
@@ -190,7 +208,9 @@ fn split_at_crossings(borders: &[Border]) -> (Vec<Point2<f64>>, Vec<(usize, usiz
 
 /// Where two borders cross (ends included, with the snapping distance as slack).
 fn crossing(p: &Border, q: &Border) -> Option<Point2<f64>> {
-    let overlap = |a0: f64, a1: f64, b0: f64, b1: f64| a0.min(a1) <= b0.max(b1) + SNAP && b0.min(b1) <= a0.max(a1) + SNAP;
+    let overlap = |a0: f64, a1: f64, b0: f64, b1: f64| {
+        a0.min(a1) <= b0.max(b1) + SNAP && b0.min(b1) <= a0.max(a1) + SNAP
+    };
     if !overlap(p.a.x, p.b.x, q.a.x, q.b.x) || !overlap(p.a.y, p.b.y, q.a.y, q.b.y) {
         return None;
     }
@@ -221,7 +241,8 @@ impl Snapper {
             .map(|v| v.data)
             .next();
         if near.is_none() {
-            self.tree.insert(GeomWithData::new([p.x, p.y], self.points.len()));
+            self.tree
+                .insert(GeomWithData::new([p.x, p.y], self.points.len()));
             self.points.push(p);
         }
     }
@@ -231,15 +252,22 @@ impl Snapper {
         let d = border.b - border.a;
         let length = d.norm().max(1e-12);
         let d = d / length;
-        let low = [border.a.x.min(border.b.x) - SNAP, border.a.y.min(border.b.y) - SNAP];
-        let high = [border.a.x.max(border.b.x) + SNAP, border.a.y.max(border.b.y) + SNAP];
+        let low = [
+            border.a.x.min(border.b.x) - SNAP,
+            border.a.y.min(border.b.y) - SNAP,
+        ];
+        let high = [
+            border.a.x.max(border.b.x) + SNAP,
+            border.a.y.max(border.b.y) + SNAP,
+        ];
         let mut on: Vec<(f64, usize)> = self
             .tree
             .locate_in_envelope_intersecting(&rstar::AABB::from_corners(low, high))
             .filter_map(|v| {
                 let r = self.points[v.data] - border.a;
                 let t = r.dot(&d);
-                (d.perp(&r).abs() <= SNAP && t >= -SNAP && t <= length + SNAP).then_some((t, v.data))
+                (d.perp(&r).abs() <= SNAP && t >= -SNAP && t <= length + SNAP)
+                    .then_some((t, v.data))
             })
             .collect();
         on.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -255,7 +283,9 @@ pub struct DisjointSets {
 impl DisjointSets {
     /// `n` sets of one element.
     pub fn new(n: usize) -> Self {
-        Self { parent: (0..n).collect() }
+        Self {
+            parent: (0..n).collect(),
+        }
     }
 
     /// The representative of the set of `i`.
@@ -280,7 +310,11 @@ mod tests {
     use super::*;
 
     fn border(a: [f64; 2], b: [f64; 2]) -> Border {
-        Border { kind: BorderKind::Real, a: a.into(), b: b.into() }
+        Border {
+            kind: BorderKind::Real,
+            a: a.into(),
+            b: b.into(),
+        }
     }
 
     #[test]
@@ -295,10 +329,19 @@ mod tests {
             border([1.0, -1.0], [1.0, 5.0]),
             border([0.02, 0.0], [4.0, 3.98]),
         ]);
-        let crossings = a.vertices.iter().filter(|v| (*v - Point2::new(1.0, 1.0)).norm() < 0.1).count();
+        let crossings = a
+            .vertices
+            .iter()
+            .filter(|v| (*v - Point2::new(1.0, 1.0)).norm() < 0.1)
+            .count();
         assert_eq!(crossings, 1);
         let inside: Vec<f64> = {
-            let grid = PlanGrid { origin: Point2::origin(), step: 0.05, width: 80, height: 80 };
+            let grid = PlanGrid {
+                origin: Point2::origin(),
+                step: 0.05,
+                width: 80,
+                height: 80,
+            };
             let mut seen: Vec<u32> = a.raster(&grid);
             seen.sort_unstable();
             seen.dedup();
@@ -316,7 +359,12 @@ mod tests {
             border([3.0, 4.0], [0.0, 0.0]),
             border([-3.0, 1.0], [5.0, 2.0]),
         ]);
-        let grid = PlanGrid { origin: Point2::new(-4.0, -1.0), step: 0.02, width: 500, height: 300 };
+        let grid = PlanGrid {
+            origin: Point2::new(-4.0, -1.0),
+            step: 0.02,
+            width: 500,
+            height: 300,
+        };
         let mut counted = vec![0usize; a.cells];
         for c in a.raster(&grid) {
             if c != u32::MAX {
@@ -324,7 +372,10 @@ mod tests {
             }
         }
         for (cell, &n) in counted.iter().enumerate() {
-            assert!((n as f64 * 0.0004 - a.areas[cell]).abs() < 0.05, "cell {cell}");
+            assert!(
+                (n as f64 * 0.0004 - a.areas[cell]).abs() < 0.05,
+                "cell {cell}"
+            );
         }
     }
 }

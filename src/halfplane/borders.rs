@@ -14,7 +14,8 @@
 use nalgebra::{Point2, Vector2};
 use serde::Serialize;
 
-use super::grouping::{GroupingInput, PlaneGroup};
+use super::grouping::{GroupingInput, Member, PlaneGroup};
+use super::hypothesis::Hypothesis;
 use super::{Side, ThetaFrame};
 use crate::geometry::Segment3;
 use crate::params::RoofParams;
@@ -104,7 +105,14 @@ impl Region {
                     None => (MARGIN, MARGIN),
                 };
                 let ends = (0.5 * length).clamp(params.extension_m, params.min_facet_depth_m);
-                Some(PlanBox { start: a, along: (b - a) / length, length, left, right, ends })
+                Some(PlanBox {
+                    start: a,
+                    along: (b - a) / length,
+                    length,
+                    left,
+                    right,
+                    ends,
+                })
             })
             .collect();
         Self { boxes }
@@ -146,44 +154,57 @@ const SAME_LINE_SINE: f64 = 0.09;
 /// All border lines of the scene, intersections first, none lying on another.
 pub fn border_lines(
     input: &GroupingInput,
-    groups: &[PlaneGroup],
-    regions: &[Region],
-    plane_lines: &[Segment3],
+    hypotheses: &[Hypothesis],
+    bounding: &[Segment3],
     params: &RoofParams,
 ) -> Vec<Border> {
     let mut borders: Vec<Border> = Vec::new();
-    for border in intersections(input, groups, regions) {
+    for border in intersections(input, hypotheses) {
         add(&mut borders, border);
     }
-    let lines: Vec<Segment3> = input.lines.iter().map(|l| l.segment).collect();
-    for (kind, lines) in [(BorderKind::Real, lines.as_slice()), (BorderKind::InPlane, plane_lines)] {
-        let mut real: Vec<Border> = lines.iter().filter_map(|l| extended(kind, l, params)).collect();
+    let in_plane: Vec<Segment3> = hypotheses
+        .iter()
+        .flat_map(|h| &h.lines)
+        .map(|l| l.segment)
+        .collect();
+    for (kind, lines) in [
+        (BorderKind::Real, bounding),
+        (BorderKind::InPlane, &in_plane),
+    ] {
+        let mut real: Vec<Border> = lines
+            .iter()
+            .filter_map(|l| extended(kind, l, params))
+            .collect();
         real.sort_by(|a, b| b.length().total_cmp(&a.length()));
         for border in real {
             add(&mut borders, border);
         }
     }
-    for border in closing_lines(input, groups, params) {
+    for border in closing_lines(input, hypotheses, params) {
         add(&mut borders, border);
     }
     borders
 }
 
 /// New lines by plane intersection (B99 4.2): where both planes' regions hold it.
-fn intersections(input: &GroupingInput, groups: &[PlaneGroup], regions: &[Region]) -> Vec<Border> {
+fn intersections(input: &GroupingInput, hypotheses: &[Hypothesis]) -> Vec<Border> {
     let mut found = Vec::new();
-    for (i, p) in groups.iter().enumerate() {
-        let (min, max) = regions[i].bounds();
-        for (j, q) in groups.iter().enumerate().skip(i + 1) {
-            let (qmin, qmax) = regions[j].bounds();
+    for (i, first) in hypotheses.iter().enumerate() {
+        let (min, max) = first.region.bounds();
+        let p = &first.group;
+        for second in &hypotheses[i + 1..] {
+            let (qmin, qmax) = second.region.bounds();
+            let q = &second.group;
             let low = Point2::new(min.x.max(qmin.x), min.y.max(qmin.y));
             let high = Point2::new(max.x.min(qmax.x), max.y.min(qmax.y));
             if low.x >= high.x || low.y >= high.y || p.plane.angle_to(&q.plane) < MIN_CREASE {
                 continue;
             }
             let near = input.lines[p.members[0].line.index()].at(0.5);
-            let Some((point, direction)) = p.plane.intersection(&q.plane, &near) else { continue };
-            let inside = |x: &Point2<f64>| regions[i].contains(x) && regions[j].contains(x);
+            let Some((point, direction)) = p.plane.intersection(&q.plane, &near) else {
+                continue;
+            };
+            let inside = |x: &Point2<f64>| first.region.contains(x) && second.region.contains(x);
             found.extend(stretches(&point.xy(), &direction.xy(), low, high, inside));
         }
     }
@@ -221,11 +242,19 @@ fn stretches(
             start = start.or(Some(p));
             last = p;
         } else if let Some(s) = start.take() {
-            found.push(Border { kind: BorderKind::Intersection, a: s, b: last });
+            found.push(Border {
+                kind: BorderKind::Intersection,
+                a: s,
+                b: last,
+            });
         }
     }
     if let Some(s) = start {
-        found.push(Border { kind: BorderKind::Intersection, a: s, b: last });
+        found.push(Border {
+            kind: BorderKind::Intersection,
+            a: s,
+            b: last,
+        });
     }
     found.retain(|b| b.length() > 0.5);
     found
@@ -238,27 +267,51 @@ fn extended(kind: BorderKind, line: &Segment3, params: &RoofParams) -> Option<Bo
     if length < 0.2 * line.length() || length < 0.1 {
         return None;
     }
-    let extra = (b - a) / length * (0.5 * length).clamp(params.extension_m, 3.0 * params.extension_m);
-    Some(Border { kind, a: a - extra, b: b + extra })
+    let extra =
+        (b - a) / length * (0.5 * length).clamp(params.extension_m, 3.0 * params.extension_m);
+    Some(Border {
+        kind,
+        a: a - extra,
+        b: b + extra,
+    })
 }
 
-/// Lines across both ends of every supporting line, on the side of its half-plane.
-fn closing_lines(input: &GroupingInput, groups: &[PlaneGroup], params: &RoofParams) -> Vec<Border> {
+/// Lines across both ends of a group's longest lines, on the side that the plane covers.
+fn closing_lines(
+    input: &GroupingInput,
+    hypotheses: &[Hypothesis],
+    params: &RoofParams,
+) -> Vec<Border> {
     let mut found = Vec::new();
-    for group in groups {
-        for member in &group.members {
+    for group in hypotheses.iter().map(|h| &h.group) {
+        let mut members: Vec<(f64, &Member)> = group
+            .members
+            .iter()
+            .map(|m| (input.lines[m.line.index()].segment.length(), m))
+            .collect();
+        members.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.line.cmp(&b.1.line)));
+        for (length, member) in members.into_iter().take(CLOSED_LINES) {
             let Some(side) = member.side else { continue };
             let line = &input.lines[member.line.index()].segment;
-            let Some(frame) = ThetaFrame::new(line, side) else { continue };
-            let depth = line.length().clamp(params.min_facet_depth_m, params.max_facet_depth_m);
+            let Some(frame) = ThetaFrame::new(line, side) else {
+                continue;
+            };
+            let depth = length.clamp(params.min_facet_depth_m, params.max_facet_depth_m);
             let away = frame.outward.xy();
             for end in [line.p0.xy(), line.p1.xy()] {
-                found.push(Border { kind: BorderKind::Closing, a: end - away * MARGIN, b: end + away * depth });
+                found.push(Border {
+                    kind: BorderKind::Closing,
+                    a: end - away * MARGIN,
+                    b: end + away * depth,
+                });
             }
         }
     }
     found
 }
+
+/// A facet has a few long sides; shorter lines in its plane are parts of them or of its texture.
+const CLOSED_LINES: usize = 3;
 
 /// Adds a border unless it lies on one that is there; one that runs along another is moved onto its line.
 fn add(borders: &mut Vec<Border>, mut border: Border) {
@@ -267,7 +320,10 @@ fn add(borders: &mut Vec<Border>, mut border: Border) {
             let (d, e) = (border.direction(), other.direction());
             (d.x * e.y - d.y * e.x).abs()
         };
-        if sine > SAME_LINE_SINE || other.distance(&border.a) > SAME_LINE || other.distance(&border.b) > SAME_LINE {
+        if sine > SAME_LINE_SINE
+            || other.distance(&border.a) > SAME_LINE
+            || other.distance(&border.b) > SAME_LINE
+        {
             continue;
         }
         let d = other.direction();

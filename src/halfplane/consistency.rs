@@ -22,10 +22,23 @@ use crate::scene::Scene;
 pub struct ConsistencyMap {
     /// The window of the plan.
     pub grid: PlanGrid,
-    /// Mean of the better half of the pairwise correlations, -1 to 1; 0 where `weight` is 0.
-    pub correlation: Vec<f32>,
-    /// How much the texture can tell, 0 to 1; 0 where fewer than two views see the window.
-    pub weight: Vec<f32>,
+    /// Correlation in steps of 1 / 127. A scene has hundreds of maps: a byte a value keeps them small.
+    correlation: Vec<i8>,
+    /// Weight in steps of 1 / 255.
+    weight: Vec<u8>,
+}
+
+impl ConsistencyMap {
+    /// Mean of the better half of the pairwise correlations at cell `k` (row by row), -1 to 1; 0 where
+    /// the weight is 0.
+    pub fn correlation(&self, k: usize) -> f32 {
+        f32::from(self.correlation[k]) / 127.0
+    }
+
+    /// How much the texture at cell `k` can tell, 0 to 1; 0 where fewer than two views see the window.
+    pub fn weight(&self, k: usize) -> f32 {
+        f32::from(self.weight[k]) / 255.0
+    }
 }
 
 /// Standard deviation of the image noise as grey value. Assumption: 2.5 of 255, sensor and JPEG together.
@@ -41,17 +54,31 @@ pub fn consistency_map(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> Consist
     let views = views_of_plane(scene, plane, grid);
     let windows: Vec<ViewWindows> = views
         .iter()
-        .map(|&v| ViewWindows::new(orthophoto(&scene.view(v).gray, scene.camera(v), plane, grid), grid))
+        .map(|&v| {
+            ViewWindows::new(
+                orthophoto(&scene.view(v).gray, scene.camera(v), plane, grid),
+                grid,
+            )
+        })
         .collect();
     combine(&windows, grid)
 }
 
 /// The views in whose image some of the grid's window lies, frontal ones first, at most [`MAX_VIEWS`].
 fn views_of_plane(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> Vec<ViewId> {
-    let (w, h) = (grid.width as f64 * grid.step, grid.height as f64 * grid.step);
+    let (w, h) = (
+        grid.width as f64 * grid.step,
+        grid.height as f64 * grid.step,
+    );
     let at = |fx: f64, fy: f64| plane.lift(grid.origin.x + fx * w, grid.origin.y + fy * h);
     let middle = at(0.5, 0.5);
-    let corners = [middle, at(0.1, 0.1), at(0.9, 0.1), at(0.9, 0.9), at(0.1, 0.9)];
+    let corners = [
+        middle,
+        at(0.1, 0.1),
+        at(0.9, 0.1),
+        at(0.9, 0.9),
+        at(0.1, 0.9),
+    ];
     let mut scored: Vec<(f64, ViewId)> = scene
         .view_ids()
         .filter_map(|v| {
@@ -80,19 +107,38 @@ struct ViewWindows {
 
 impl ViewWindows {
     fn new(mut gray: Vec<f32>, grid: &PlanGrid) -> Self {
-        let inside: Vec<f32> = gray.iter().map(|g| if g.is_nan() { 0.0 } else { 1.0 }).collect();
+        let inside: Vec<f32> = gray
+            .iter()
+            .map(|g| if g.is_nan() { 0.0 } else { 1.0 })
+            .collect();
         let count = box_sum(&inside, grid);
         let full = ((2 * HALF_WINDOW + 1) * (2 * HALF_WINDOW + 1)) as f32;
         let valid: Vec<bool> = count.iter().map(|&c| c > full - 0.5).collect();
         // Centring keeps the running sums of squares small.
-        let (sum, n) = gray.iter().filter(|g| !g.is_nan()).fold((0.0f64, 0u32), |(s, n), &g| (s + f64::from(g), n + 1));
-        let center = if n > 0 { (sum / f64::from(n)) as f32 } else { 0.0 };
-        gray.iter_mut().for_each(|g| *g = if g.is_nan() { 0.0 } else { *g - center });
+        let (sum, n) = gray
+            .iter()
+            .filter(|g| !g.is_nan())
+            .fold((0.0f64, 0u32), |(s, n), &g| (s + f64::from(g), n + 1));
+        let center = if n > 0 {
+            (sum / f64::from(n)) as f32
+        } else {
+            0.0
+        };
+        gray.iter_mut()
+            .for_each(|g| *g = if g.is_nan() { 0.0 } else { *g - center });
         let mean: Vec<f32> = box_sum(&gray, grid).iter().map(|s| s / full).collect();
         let squares: Vec<f32> = gray.iter().map(|g| g * g).collect();
-        let variance =
-            box_sum(&squares, grid).iter().zip(&mean).map(|(s, m)| (s / full - m * m).max(0.0)).collect();
-        Self { gray, mean, variance, valid }
+        let variance = box_sum(&squares, grid)
+            .iter()
+            .zip(&mean)
+            .map(|(s, m)| (s / full - m * m).max(0.0))
+            .collect();
+        Self {
+            gray,
+            mean,
+            variance,
+            valid,
+        }
     }
 }
 
@@ -115,7 +161,11 @@ fn combine(windows: &[ViewWindows], grid: &PlanGrid) -> ConsistencyMap {
             pairs.push(correlation);
         }
     }
-    let mut map = ConsistencyMap { grid: *grid, correlation: vec![0.0; cells], weight: vec![0.0; cells] };
+    let mut map = ConsistencyMap {
+        grid: *grid,
+        correlation: vec![0; cells],
+        weight: vec![0; cells],
+    };
     let mut sorted: Vec<f32> = Vec::with_capacity(pairs.len());
     for k in 0..cells {
         sorted.clear();
@@ -125,10 +175,15 @@ fn combine(windows: &[ViewWindows], grid: &PlanGrid) -> ConsistencyMap {
         }
         sorted.sort_unstable_by(|a, b| b.total_cmp(a));
         let better = &sorted[..sorted.len().div_ceil(2)];
-        map.correlation[k] = better.iter().sum::<f32>() / better.len() as f32;
-        let seen: Vec<f32> = windows.iter().filter(|w| w.valid[k]).map(|w| w.variance[k]).collect();
+        let mean = better.iter().sum::<f32>() / better.len() as f32;
+        map.correlation[k] = (mean * 127.0).round().clamp(-127.0, 127.0) as i8;
+        let seen: Vec<f32> = windows
+            .iter()
+            .filter(|w| w.valid[k])
+            .map(|w| w.variance[k])
+            .collect();
         let variance = seen.iter().sum::<f32>() / seen.len() as f32;
-        map.weight[k] = variance / (variance + NOISE * NOISE);
+        map.weight[k] = (variance / (variance + NOISE * NOISE) * 255.0).round() as u8;
     }
     map
 }
@@ -181,7 +236,12 @@ mod tests {
 
     #[test]
     fn box_sum_agrees_with_direct_sums() {
-        let grid = PlanGrid { origin: Point2::origin(), step: 1.0, width: 17, height: 14 };
+        let grid = PlanGrid {
+            origin: Point2::origin(),
+            step: 1.0,
+            width: 17,
+            height: 14,
+        };
         let values: Vec<f32> = (0..17 * 14).map(|i| ((i * 37) % 11) as f32).collect();
         let sums = box_sum(&values, &grid);
         for (x, y) in [(0, 0), (5, 5), (8, 7), (16, 13), (3, 12)] {

@@ -45,17 +45,23 @@ pub fn delineate(arrangement: &Arrangement, labels: &[u32], planes: &[Plane]) ->
     let keep = corner_vertices(arrangement, &borders);
     let mut outlines = Vec::new();
     for (root, edges) in group_by_component(&borders) {
-        let cells: Vec<usize> = (0..arrangement.cells).filter(|&c| component[c] == root).collect();
+        let cells: Vec<usize> = (0..arrangement.cells)
+            .filter(|&c| component[c] == root)
+            .collect();
         let rings = rings(&edges, &arrangement.vertices)
             .into_iter()
             .map(|ring| ring.into_iter().filter(|&v| keep[v]).collect::<Vec<_>>())
             .filter(|ring| ring.len() >= 3);
-        outlines.extend(nest(rings, &arrangement.vertices).into_iter().map(|(outer, holes)| Outline {
-            plane: labels[root],
-            outer,
-            holes,
-            cells: cells.clone(),
-        }));
+        outlines.extend(
+            nest(rings, &arrangement.vertices)
+                .into_iter()
+                .map(|(outer, holes)| Outline {
+                    plane: labels[root],
+                    outer,
+                    holes,
+                    cells: cells.clone(),
+                }),
+        );
     }
     let vertices = move_to_intersections(&arrangement.vertices, &outlines, planes);
     Delineation { vertices, outlines }
@@ -82,12 +88,24 @@ struct BorderEdge {
 
 fn border_edges(arrangement: &Arrangement, labels: &[u32], component: &[usize]) -> Vec<BorderEdge> {
     let mut borders = Vec::new();
-    for e in arrangement.edges.iter().filter(|e| component[e.left] != component[e.right]) {
+    for e in arrangement
+        .edges
+        .iter()
+        .filter(|e| component[e.left] != component[e.right])
+    {
         if labels[e.left] != NO_PLANE {
-            borders.push(BorderEdge { component: component[e.left], a: e.a, b: e.b });
+            borders.push(BorderEdge {
+                component: component[e.left],
+                a: e.a,
+                b: e.b,
+            });
         }
         if labels[e.right] != NO_PLANE {
-            borders.push(BorderEdge { component: component[e.right], a: e.b, b: e.a });
+            borders.push(BorderEdge {
+                component: component[e.right],
+                a: e.b,
+                b: e.a,
+            });
         }
     }
     borders
@@ -130,17 +148,32 @@ fn rings(edges: &[(usize, usize)], vertices: &[Point2<f64>]) -> Vec<Vec<usize>> 
 }
 
 /// Of the edges that leave `at`, the one that turns most to the left: it bounds the same corner of the facet.
-fn sharpest_left(previous: Option<usize>, at: usize, ends: &[usize], vertices: &[Point2<f64>]) -> usize {
-    let Some(previous) = previous else { return ends[0] };
+fn sharpest_left(
+    previous: Option<usize>,
+    at: usize,
+    ends: &[usize],
+    vertices: &[Point2<f64>],
+) -> usize {
+    let Some(previous) = previous else {
+        return ends[0];
+    };
     let back = vertices[previous] - vertices[at];
     let clockwise_from_back = |end: usize| {
         let d = vertices[end] - vertices[at];
         let angle = crate::math::atan2(d.perp(&back), d.dot(&back));
-        if angle <= 0.0 { angle + std::f64::consts::TAU } else { angle }
+        if angle <= 0.0 {
+            angle + std::f64::consts::TAU
+        } else {
+            angle
+        }
     };
     *ends
         .iter()
-        .min_by(|a, b| clockwise_from_back(**a).total_cmp(&clockwise_from_back(**b)).then(a.cmp(b)))
+        .min_by(|a, b| {
+            clockwise_from_back(**a)
+                .total_cmp(&clockwise_from_back(**b))
+                .then(a.cmp(b))
+        })
         .expect("at least one edge leaves")
 }
 
@@ -150,9 +183,13 @@ fn nest(
     vertices: &[Point2<f64>],
 ) -> Vec<(Vec<usize>, Vec<Vec<usize>>)> {
     let (outer, holes): (Vec<_>, Vec<_>) = rings.partition(|r| signed_area(r, vertices) > 0.0);
-    let mut nested: Vec<(Vec<usize>, Vec<Vec<usize>>)> = outer.into_iter().map(|o| (o, Vec::new())).collect();
+    let mut nested: Vec<(Vec<usize>, Vec<Vec<usize>>)> =
+        outer.into_iter().map(|o| (o, Vec::new())).collect();
     for hole in holes {
-        let owner = nested.iter_mut().find(|(o, _)| hole.iter().any(|v| !o.contains(v) && inside(&vertices[*v], o, vertices)));
+        let owner = nested.iter_mut().find(|(o, _)| {
+            hole.iter()
+                .any(|v| !o.contains(v) && inside(&vertices[*v], o, vertices))
+        });
         if let Some((_, holes)) = owner {
             holes.push(hole);
         }
@@ -164,14 +201,19 @@ fn nest(
 pub fn signed_area(ring: &[usize], vertices: &[Point2<f64>]) -> f64 {
     let origin = ring.first().map_or(Point2::origin(), |&v| vertices[v]);
     let next = ring.iter().cycle().skip(1);
-    0.5 * ring.iter().zip(next).map(|(&a, &b)| (vertices[a] - origin).perp(&(vertices[b] - origin))).sum::<f64>()
+    0.5 * ring
+        .iter()
+        .zip(next)
+        .map(|(&a, &b)| (vertices[a] - origin).perp(&(vertices[b] - origin)))
+        .sum::<f64>()
 }
 
 fn inside(p: &Point2<f64>, ring: &[usize], vertices: &[Point2<f64>]) -> bool {
     let next = ring.iter().cycle().skip(1);
     ring.iter().zip(next).fold(false, |odd, (&i, &j)| {
         let (a, b) = (vertices[i], vertices[j]);
-        let crosses = (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y);
+        let crosses =
+            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y);
         odd != crosses
     })
 }
@@ -190,9 +232,17 @@ fn corner_vertices(arrangement: &Arrangement, borders: &[BorderEdge]) -> Vec<boo
     }
     let mut keep = vec![false; arrangement.vertices.len()];
     let mut visited: std::collections::BTreeSet<(usize, usize)> = std::collections::BTreeSet::new();
-    let junctions: Vec<usize> = links.iter().filter(|(_, ends)| ends.len() != 2).map(|(&v, _)| v).collect();
+    let junctions: Vec<usize> = links
+        .iter()
+        .filter(|(_, ends)| ends.len() != 2)
+        .map(|(&v, _)| v)
+        .collect();
     // Rings without a junction start anywhere, after all chains between junctions.
-    let starts = junctions.iter().chain(links.keys()).copied().collect::<Vec<_>>();
+    let starts = junctions
+        .iter()
+        .chain(links.keys())
+        .copied()
+        .collect::<Vec<_>>();
     for start in starts {
         for &second in &links[&start] {
             if visited.contains(&(start, second)) {
@@ -203,7 +253,11 @@ fn corner_vertices(arrangement: &Arrangement, borders: &[BorderEdge]) -> Vec<boo
             visited.insert((second, start));
             while links[&chain[chain.len() - 1]].len() == 2 && chain[chain.len() - 1] != start {
                 let (at, from) = (chain[chain.len() - 1], chain[chain.len() - 2]);
-                let next = links[&at].iter().copied().find(|&v| v != from).expect("two links");
+                let next = links[&at]
+                    .iter()
+                    .copied()
+                    .find(|&v| v != from)
+                    .expect("two links");
                 visited.insert((at, next));
                 visited.insert((next, at));
                 chain.push(next);
@@ -226,7 +280,11 @@ fn mark_bends(chain: &[usize], vertices: &[Point2<f64>], keep: &mut [bool]) {
     let distance = |v: usize| {
         let r = vertices[v] - a;
         // A closed chain has no base line: the farthest vertex splits it.
-        if d.norm() < 1e-9 { r.norm() } else { d.perp(&r).abs() / d.norm() }
+        if d.norm() < 1e-9 {
+            r.norm()
+        } else {
+            d.perp(&r).abs() / d.norm()
+        }
     };
     let (split, far) = (1..chain.len() - 1)
         .map(|i| (i, distance(chain[i])))
@@ -244,7 +302,11 @@ const SAME_HEIGHT: f64 = 0.35;
 const MAX_MOVE: f64 = 0.4;
 
 /// Moves every vertex at which planes of about the same height meet to their intersection.
-fn move_to_intersections(vertices: &[Point2<f64>], outlines: &[Outline], planes: &[Plane]) -> Vec<Point2<f64>> {
+fn move_to_intersections(
+    vertices: &[Point2<f64>],
+    outlines: &[Outline],
+    planes: &[Plane],
+) -> Vec<Point2<f64>> {
     let mut incident: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
     for o in outlines {
         for &v in o.outer.iter().chain(o.holes.iter().flatten()) {
@@ -265,7 +327,11 @@ fn move_to_intersections(vertices: &[Point2<f64>], outlines: &[Outline], planes:
 
 /// The plan position nearest to `p` at which the planes that meet near it have one height.
 fn common_point(p: &Point2<f64>, list: &[u32], planes: &[Plane]) -> Option<Point2<f64>> {
-    let mut at: Vec<(f64, &Plane)> = list.iter().map(|&i| &planes[i as usize]).map(|q| (q.z_at(p.x, p.y), q)).collect();
+    let mut at: Vec<(f64, &Plane)> = list
+        .iter()
+        .map(|&i| &planes[i as usize])
+        .map(|q| (q.z_at(p.x, p.y), q))
+        .collect();
     at.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Differences of neighbouring heights within a cluster: slope difference . step = - height difference.
     let rows: Vec<(Vector2<f64>, f64)> = at
@@ -296,11 +362,22 @@ mod tests {
     #[test]
     fn a_touching_ring_is_split_into_simple_ones() {
         // Two triangles that share vertex 0, as one set of directed edges.
-        let vertices: Vec<Point2<f64>> =
-            [[0.0, 0.0], [2.0, -1.0], [2.0, 1.0], [-2.0, 1.0], [-2.0, -1.0]].map(Point2::from).to_vec();
+        let vertices: Vec<Point2<f64>> = [
+            [0.0, 0.0],
+            [2.0, -1.0],
+            [2.0, 1.0],
+            [-2.0, 1.0],
+            [-2.0, -1.0],
+        ]
+        .map(Point2::from)
+        .to_vec();
         let found = rings(&[(0, 1), (1, 2), (2, 0), (0, 3), (3, 4), (4, 0)], &vertices);
         assert_eq!(found.len(), 2);
-        assert!(found.iter().all(|r| r.len() == 3 && signed_area(r, &vertices) > 0.0));
+        assert!(
+            found
+                .iter()
+                .all(|r| r.len() == 3 && signed_area(r, &vertices) > 0.0)
+        );
     }
 
     #[test]
@@ -314,10 +391,16 @@ mod tests {
         assert!((found - apex.xy()).norm() < 1e-9);
         // Two planes: the nearest point of their line.
         let on_line = common_point(&Point2::new(5.1, 5.9), &[0, 1], &planes).unwrap();
-        let (a, b) = (planes[0].z_at(on_line.x, on_line.y), planes[1].z_at(on_line.x, on_line.y));
+        let (a, b) = (
+            planes[0].z_at(on_line.x, on_line.y),
+            planes[1].z_at(on_line.x, on_line.y),
+        );
         assert!((a - b).abs() < 1e-9);
         // A step stays a step.
-        let lower = Plane { d: planes[1].d + 2.0, ..planes[1] };
+        let lower = Plane {
+            d: planes[1].d + 2.0,
+            ..planes[1]
+        };
         assert!(common_point(&Point2::new(5.0, 6.0), &[0, 1], &[planes[0], lower]).is_none());
     }
 }

@@ -96,11 +96,15 @@ fn add_line_pairs(
     for (i, neighbours) in input.neighbours.iter().enumerate() {
         let first = LineId::from_index(i);
         for &second in neighbours.iter().filter(|&&n| n > first) {
-            if groups.iter().any(|g| g.contains(first) && g.contains(second)) {
+            if groups
+                .iter()
+                .any(|g| g.contains(first) && g.contains(second))
+            {
                 continue;
             }
             let members = vec![member(input, first, None), member(input, second, None)];
-            let Some(plane) = plane_of_pair(input, first, second).filter(|p| all_lie_in(input, p, &members, params))
+            let Some(plane) = plane_of_pair(input, first, second)
+                .filter(|p| all_lie_in(input, p, &members, params))
             else {
                 continue;
             };
@@ -119,13 +123,20 @@ fn plane_of_pair(input: &GroupingInput, first: LineId, second: LineId) -> Option
     const APART: f64 = 1.0;
     /// Roof planes are less steep than this (normal's z of 75 degrees, B99 figure 15).
     const STEEP: f64 = 0.26;
-    let (a, b) = (&input.lines[first.index()].segment, &input.lines[second.index()].segment);
+    let (a, b) = (
+        &input.lines[first.index()].segment,
+        &input.lines[second.index()].segment,
+    );
     let sine = a.direction().cross(&b.direction()).norm();
     let apart = a.line_distance(&b.at(0.5)).max(b.line_distance(&a.at(0.5)));
     if sine < PARALLEL_SINE && apart < APART {
         return None;
     }
-    fit_plane(input, &[member(input, first, None), member(input, second, None)]).filter(|p| p.normal.z > STEEP)
+    fit_plane(
+        input,
+        &[member(input, first, None), member(input, second, None)],
+    )
+    .filter(|p| p.normal.z > STEEP)
 }
 
 /// A line that lies in the plane without a half-plane has the plane on the side of the other members.
@@ -134,12 +145,26 @@ fn infer_sides(input: &GroupingInput, group: &mut PlaneGroup) {
     const UNDECIDED: f64 = 0.5;
     let middle = |m: &Member| input.lines[m.line.index()].at(0.5);
     let middles: Vec<_> = group.members.iter().map(middle).collect();
-    for (i, m) in group.members.iter_mut().enumerate().filter(|(_, m)| m.side.is_none()) {
+    for (i, m) in group
+        .members
+        .iter_mut()
+        .enumerate()
+        .filter(|(_, m)| m.side.is_none())
+    {
         let line = &input.lines[m.line.index()].segment;
         let (d, p) = (line.direction().xy(), line.p0.xy());
-        let offset: f64 = middles.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, q)| d.perp(&(q.xy() - p))).sum();
+        let offset: f64 = middles
+            .iter()
+            .enumerate()
+            .filter(|(j, _)| *j != i)
+            .map(|(_, q)| d.perp(&(q.xy() - p)))
+            .sum();
         if offset.abs() > UNDECIDED {
-            m.side = Some(if offset > 0.0 { Side::Left } else { Side::Right });
+            m.side = Some(if offset > 0.0 {
+                Side::Left
+            } else {
+                Side::Right
+            });
         }
     }
 }
@@ -158,7 +183,9 @@ fn by_strength(input: &GroupingInput) -> Vec<HalfPlaneId> {
         let h = &input.half_planes[id.index()];
         h.similarity * input.lines[h.line.index()].segment.length()
     };
-    let mut ids: Vec<HalfPlaneId> = (0..input.half_planes.len()).map(HalfPlaneId::from_index).collect();
+    let mut ids: Vec<HalfPlaneId> = (0..input.half_planes.len())
+        .map(HalfPlaneId::from_index)
+        .collect();
     ids.sort_by(|a, b| strength(b).total_cmp(&strength(a)).then(a.cmp(b)));
     ids
 }
@@ -181,7 +208,11 @@ fn grow(
 }
 
 fn member(input: &GroupingInput, line: LineId, half_plane: Option<HalfPlaneId>) -> Member {
-    Member { line, side: half_plane.map(|h| input.half_planes[h.index()].side), half_plane }
+    Member {
+        line,
+        side: half_plane.map(|h| input.half_planes[h.index()].side),
+        half_plane,
+    }
 }
 
 /// Adds neighbouring lines and half-planes that lie in the group's plane until there are no more.
@@ -192,7 +223,8 @@ fn extend(
     free: &mut [bool],
     params: &RoofParams,
 ) {
-    let mut queue: std::collections::VecDeque<LineId> = group.members.iter().map(|m| m.line).collect();
+    let mut queue: std::collections::VecDeque<LineId> =
+        group.members.iter().map(|m| m.line).collect();
     while let Some(line) = queue.pop_front() {
         for &next in &input.neighbours[line.index()] {
             if group.contains(next) || !lies_in_plane(input, group, next, params) {
@@ -222,35 +254,55 @@ fn extend(
 }
 
 /// Does the line lie in the group's plane as far as the group's plane is known there?
-fn lies_in_plane(input: &GroupingInput, group: &PlaneGroup, line: LineId, params: &RoofParams) -> bool {
+fn lies_in_plane(
+    input: &GroupingInput,
+    group: &PlaneGroup,
+    line: LineId,
+    params: &RoofParams,
+) -> bool {
     let candidate = &input.lines[line.index()];
-    [candidate.segment.p0, candidate.segment.p1].iter().all(|p| {
-        // The nearest member tells how far the plane has to be extrapolated.
-        let reach = group
-            .members
-            .iter()
-            .map(|m| distance_to_segment(p, &input.lines[m.line.index()]))
-            .fold(f64::INFINITY, f64::min);
-        let sigma_angle = if group.members.len() == 1 {
-            group.members[0].half_plane.map_or(0.0, |h| input.half_planes[h.index()].sigma_theta).max(MIN_SIGMA_THETA)
-        } else {
-            MIN_SIGMA_THETA
-        };
-        let sigma = (candidate.sigma_m * candidate.sigma_m + reach * sigma_angle * reach * sigma_angle).sqrt();
-        let tolerance = (3.0 * sigma).clamp(params.coplanar_distance_m, 3.0 * params.coplanar_distance_m);
-        reach <= params.max_facet_depth_m && group.plane.signed_distance(p).abs() <= tolerance
-    })
+    [candidate.segment.p0, candidate.segment.p1]
+        .iter()
+        .all(|p| {
+            // The nearest member tells how far the plane has to be extrapolated.
+            let reach = group
+                .members
+                .iter()
+                .map(|m| distance_to_segment(p, &input.lines[m.line.index()]))
+                .fold(f64::INFINITY, f64::min);
+            let sigma_angle = if group.members.len() == 1 {
+                group.members[0]
+                    .half_plane
+                    .map_or(0.0, |h| input.half_planes[h.index()].sigma_theta)
+                    .max(MIN_SIGMA_THETA)
+            } else {
+                MIN_SIGMA_THETA
+            };
+            let sigma = (candidate.sigma_m * candidate.sigma_m
+                + reach * sigma_angle * reach * sigma_angle)
+                .sqrt();
+            let tolerance =
+                (3.0 * sigma).clamp(params.coplanar_distance_m, 3.0 * params.coplanar_distance_m);
+            reach <= params.max_facet_depth_m && group.plane.signed_distance(p).abs() <= tolerance
+        })
 }
 
 /// After the regression every member must still lie in the plane.
-fn all_lie_in(input: &GroupingInput, plane: &Plane, members: &[Member], params: &RoofParams) -> bool {
+fn all_lie_in(
+    input: &GroupingInput,
+    plane: &Plane,
+    members: &[Member],
+    params: &RoofParams,
+) -> bool {
     members.iter().all(|m| {
         let line = &input.lines[m.line.index()];
-        let tolerance = (3.0 * line.sigma_m).clamp(params.coplanar_distance_m, 2.0 * params.coplanar_distance_m);
+        let tolerance = (3.0 * line.sigma_m)
+            .clamp(params.coplanar_distance_m, 2.0 * params.coplanar_distance_m);
         plane.signed_distance(&line.segment.p0).abs() <= tolerance
             && plane.signed_distance(&line.segment.p1).abs() <= tolerance
             && m.half_plane.is_none_or(|h| {
-                input.half_planes[h.index()].plane.angle_to(plane) < 1.5 * params.coplanar_angle_deg.to_radians()
+                input.half_planes[h.index()].plane.angle_to(plane)
+                    < 1.5 * params.coplanar_angle_deg.to_radians()
             })
     })
 }
@@ -286,20 +338,37 @@ pub fn fit_plane(input: &GroupingInput, members: &[Member]) -> Option<Plane> {
 }
 
 /// Neighbouring groups of one plane become one.
-fn merge_groups(input: &GroupingInput, groups: Vec<PlaneGroup>, params: &RoofParams) -> Vec<PlaneGroup> {
+fn merge_groups(
+    input: &GroupingInput,
+    groups: Vec<PlaneGroup>,
+    params: &RoofParams,
+) -> Vec<PlaneGroup> {
     let mut merged: Vec<PlaneGroup> = Vec::new();
     for group in groups {
         let target = merged.iter().position(|m| {
-            m.plane.angle_to(&group.plane) < params.coplanar_angle_deg.to_radians() && are_neighbours(input, m, &group) && {
-                let mut union = m.members.clone();
-                union.extend(group.members.iter().filter(|x| !union.contains(x)).copied().collect::<Vec<_>>());
-                fit_plane(input, &union).is_some_and(|plane| all_lie_in(input, &plane, &union, params))
-            }
+            m.plane.angle_to(&group.plane) < params.coplanar_angle_deg.to_radians()
+                && are_neighbours(input, m, &group)
+                && {
+                    let mut union = m.members.clone();
+                    union.extend(
+                        group
+                            .members
+                            .iter()
+                            .filter(|x| !union.contains(x))
+                            .copied()
+                            .collect::<Vec<_>>(),
+                    );
+                    fit_plane(input, &union)
+                        .is_some_and(|plane| all_lie_in(input, &plane, &union, params))
+                }
         });
         match target {
             Some(t) => {
-                let extra: Vec<Member> =
-                    group.members.into_iter().filter(|x| !merged[t].members.contains(x)).collect();
+                let extra: Vec<Member> = group
+                    .members
+                    .into_iter()
+                    .filter(|x| !merged[t].members.contains(x))
+                    .collect();
                 merged[t].members.extend(extra);
                 if let Some(plane) = fit_plane(input, &merged[t].members) {
                     merged[t].plane = plane;
@@ -314,7 +383,10 @@ fn merge_groups(input: &GroupingInput, groups: Vec<PlaneGroup>, params: &RoofPar
 fn are_neighbours(input: &GroupingInput, a: &PlaneGroup, b: &PlaneGroup) -> bool {
     let lines = b.lines();
     a.members.iter().any(|m| {
-        lines.contains(&m.line) || input.neighbours[m.line.index()].iter().any(|n| lines.binary_search(n).is_ok())
+        lines.contains(&m.line)
+            || input.neighbours[m.line.index()]
+                .iter()
+                .any(|n| lines.binary_search(n).is_ok())
     })
 }
 

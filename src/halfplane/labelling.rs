@@ -45,7 +45,10 @@ impl LabelEdge {
         if a == b {
             return 0.0;
         }
-        self.supported.iter().find(|(p, q, _)| *p == a && *q == b).map_or(self.unsupported, |s| s.2)
+        self.supported
+            .iter()
+            .find(|(p, q, _)| *p == a && *q == b)
+            .map_or(self.unsupported, |s| s.2)
     }
 }
 
@@ -54,16 +57,25 @@ impl Energy {
         if label == NO_PLANE {
             return Some(0.0);
         }
-        self.unary[cell].binary_search_by_key(&label, |u| u.0).ok().map(|i| self.unary[cell][i].1)
+        self.unary[cell]
+            .binary_search_by_key(&label, |u| u.0)
+            .ok()
+            .map(|i| self.unary[cell][i].1)
     }
 
     #[cfg(test)]
     /// The energy of a labelling; infinite when a cell has a plane that may not cover it.
     fn of(&self, labels: &[u32]) -> f64 {
-        let data: f64 =
-            labels.iter().enumerate().map(|(c, &l)| self.unary(c, l).unwrap_or(f64::INFINITY)).sum();
-        let borders: f64 =
-            self.edges.iter().map(|e| e.cost(labels[e.cells[0]], labels[e.cells[1]])).sum();
+        let data: f64 = labels
+            .iter()
+            .enumerate()
+            .map(|(c, &l)| self.unary(c, l).unwrap_or(f64::INFINITY))
+            .sum();
+        let borders: f64 = self
+            .edges
+            .iter()
+            .map(|e| e.cost(labels[e.cells[0]], labels[e.cells[1]]))
+            .sum();
         data + borders
     }
 
@@ -86,7 +98,12 @@ impl Energy {
         for _ in 0..ROUNDS {
             let before = labels.clone();
             for plane in 0..planes {
-                self.expand(plane, &cells_of_plane[plane as usize], &edges_of_cell, &mut labels);
+                self.expand(
+                    plane,
+                    &cells_of_plane[plane as usize],
+                    &edges_of_cell,
+                    &mut labels,
+                );
             }
             self.expand(NO_PLANE, &all, &edges_of_cell, &mut labels);
             if labels == before {
@@ -97,8 +114,18 @@ impl Energy {
     }
 
     /// The best move in which any of `cells` may change to `alpha`.
-    fn expand(&self, alpha: u32, cells: &[usize], edges_of_cell: &[Vec<usize>], labels: &mut [u32]) {
-        let movable: Vec<usize> = cells.iter().copied().filter(|&c| labels[c] != alpha).collect();
+    fn expand(
+        &self,
+        alpha: u32,
+        cells: &[usize],
+        edges_of_cell: &[Vec<usize>],
+        labels: &mut [u32],
+    ) {
+        let movable: Vec<usize> = cells
+            .iter()
+            .copied()
+            .filter(|&c| labels[c] != alpha)
+            .collect();
         if movable.is_empty() {
             return;
         }
@@ -119,7 +146,13 @@ impl Energy {
                     // Both may move: handle the edge once, from its first cell.
                     (Some(&ni), Some(&nj)) => {
                         if c == i {
-                            cut.pair(ni, nj, edge.cost(li, lj), edge.cost(li, alpha), edge.cost(alpha, lj));
+                            cut.pair(
+                                ni,
+                                nj,
+                                edge.cost(li, lj),
+                                edge.cost(li, alpha),
+                                edge.cost(alpha, lj),
+                            );
                         }
                     }
                     (Some(&ni), None) => cut.unary(ni, edge.cost(li, lj), edge.cost(alpha, lj)),
@@ -221,7 +254,11 @@ mod tests {
     use super::*;
 
     fn edge(a: usize, b: usize, unsupported: f64, supported: Vec<(u32, u32, f64)>) -> LabelEdge {
-        LabelEdge { cells: [a, b], unsupported, supported }
+        LabelEdge {
+            cells: [a, b],
+            unsupported,
+            supported,
+        }
     }
 
     #[test]
@@ -229,7 +266,11 @@ mod tests {
         // Cells 0 - 1 - 2; plane 0 fits cell 0, plane 1 fits cell 2, cell 1 fits both equally; only the border
         // between 1 and 2 is supported.
         let energy = Energy {
-            unary: vec![vec![(0, -5.0), (1, 5.0)], vec![(0, -1.0), (1, -1.0)], vec![(0, 5.0), (1, -5.0)]],
+            unary: vec![
+                vec![(0, -5.0), (1, 5.0)],
+                vec![(0, -1.0), (1, -1.0)],
+                vec![(0, 5.0), (1, -5.0)],
+            ],
             edges: vec![edge(0, 1, 1.0, vec![]), edge(1, 2, 1.0, vec![(0, 1, 0.1)])],
         };
         assert_eq!(energy.minimise(2), [0, 0, 1]);
@@ -244,13 +285,18 @@ mod tests {
                 state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 f64::from(state >> 16) / 65536.0
             };
-            let unary = (0..5).map(|_| (0..2).map(|p| (p, 2.0 * next() - 1.0)).collect()).collect();
-            let edges = (0..4).map(|i| edge(i, i + 1, 0.2 + 0.5 * next(), vec![])).collect();
+            let unary = (0..5)
+                .map(|_| (0..2).map(|p| (p, 2.0 * next() - 1.0)).collect())
+                .collect();
+            let edges = (0..4)
+                .map(|i| edge(i, i + 1, 0.2 + 0.5 * next(), vec![]))
+                .collect();
             let energy = Energy { unary, edges };
             let best = (0..243)
                 .map(|k: u32| {
-                    let labels: Vec<u32> =
-                        (0..5).map(|i| [0, 1, NO_PLANE][(k / 3u32.pow(i) % 3) as usize]).collect();
+                    let labels: Vec<u32> = (0..5)
+                        .map(|i| [0, 1, NO_PLANE][(k / 3u32.pow(i) % 3) as usize])
+                        .collect();
                     energy.of(&labels)
                 })
                 .fold(f64::INFINITY, f64::min);

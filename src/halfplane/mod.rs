@@ -20,6 +20,8 @@
 //!      borders        border lines, new lines by plane intersection (figures 19 to 22)
 //! 4.3  arrangement    the plan cut into cells by the border lines
 //!      consistency    similarity of a plane over the complete image set
+//!      hypothesis     planes with their regions, similarity and lines, ready to compete
+//!      evidence       what images and lines say for each plane over each cell
 //!      labelling      conflicts: which plane covers which cell
 //!      delineation    closed outlines
 //!      facets         verification; orders 4.2 and 4.3
@@ -29,12 +31,15 @@ mod arrangement;
 mod borders;
 mod consistency;
 mod delineation;
+mod evidence;
 mod facets;
-mod grouping;
-mod labelling;
-mod neighbourhood;
 #[cfg(test)]
 mod fixture;
+mod grouping;
+mod hypothesis;
+mod labelling;
+mod line_index;
+mod neighbourhood;
 mod peak;
 mod plan;
 mod plane_lines;
@@ -49,8 +54,8 @@ pub use borders::{Border, BorderKind};
 pub use consistency::{ConsistencyMap, consistency_map};
 pub use facets::{FacetRejection, FacetTrace, RejectedFacet, reconstruct_facets};
 pub use grouping::{Member, PlaneGroup};
-pub use plane_lines::PlaneLine;
 pub use plan::{PlanGrid, image_from_plan, orthophoto};
+pub use plane_lines::PlaneLine;
 pub use poi::PointsOfInterest;
 pub use sweep::{similarity_curve, sweep_half_planes, sweep_side};
 pub use trace::{SideTrace, SimilarityCurve, SweepRejection, SweepTrace, ViewCurve};

@@ -72,8 +72,11 @@ mod tests {
 
     #[test]
     fn a_line_in_between_separates() {
-        let lines =
-            [line([0.0, 0.0], [10.0, 0.0]), line([-20.0, 2.0], [30.0, 2.0]), line([0.0, 4.0], [10.0, 4.0])];
+        let lines = [
+            line([0.0, 0.0], [10.0, 0.0]),
+            line([-20.0, 2.0], [30.0, 2.0]),
+            line([0.0, 4.0], [10.0, 4.0]),
+        ];
         let n = line_neighbours(&lines);
         assert_eq!(n[0], [LineId(1)]);
         assert_eq!(n[1], [LineId(0), LineId(2)]);
@@ -82,8 +85,11 @@ mod tests {
 
     #[test]
     fn crossing_and_touching_lines_are_neighbours() {
-        let lines =
-            [line([0.0, 0.0], [10.0, 0.0]), line([5.0, -5.0], [5.0, 5.0]), line([10.0, 0.0], [10.0, 9.0])];
+        let lines = [
+            line([0.0, 0.0], [10.0, 0.0]),
+            line([5.0, -5.0], [5.0, 5.0]),
+            line([10.0, 0.0], [10.0, 9.0]),
+        ];
         let n = line_neighbours(&lines);
         assert!(n[0].contains(&LineId(1)) && n[1].contains(&LineId(0)));
         assert!(n[0].contains(&LineId(2)));

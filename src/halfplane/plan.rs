@@ -39,8 +39,12 @@ impl PlanGrid {
 
     /// The cell that holds a plan position, when it is inside.
     pub fn cell(&self, p: &Point2<f64>) -> Option<(usize, usize)> {
-        let (c, r) = ((p.x - self.origin.x) / self.step, (p.y - self.origin.y) / self.step);
-        (c >= 0.0 && r >= 0.0 && c < self.width as f64 && r < self.height as f64).then_some((c as usize, r as usize))
+        let (c, r) = (
+            (p.x - self.origin.x) / self.step,
+            (p.y - self.origin.y) / self.step,
+        );
+        (c >= 0.0 && r >= 0.0 && c < self.width as f64 && r < self.height as f64)
+            .then_some((c as usize, r as usize))
     }
 
     /// Column and row of this window's first cell in `larger`, which has the same step.
@@ -57,10 +61,18 @@ pub fn image_from_plan(camera: &Camera, plane: &Plane) -> Matrix3<f64> {
     let p = camera.projection_matrix();
     let n = plane.normal;
     let lift = nalgebra::Matrix4x3::new(
-        1.0, 0.0, 0.0,
-        0.0, 1.0, 0.0,
-        -n.x / n.z, -n.y / n.z, -plane.d / n.z,
-        0.0, 0.0, 1.0,
+        1.0,
+        0.0,
+        0.0,
+        0.0,
+        1.0,
+        0.0,
+        -n.x / n.z,
+        -n.y / n.z,
+        -plane.d / n.z,
+        0.0,
+        0.0,
+        1.0,
     );
     p * lift
 }
@@ -97,7 +109,9 @@ mod tests {
     #[test]
     fn plan_map_agrees_with_projection() {
         let camera = crop_camera(100.0, -50.0, 0.3);
-        let plane = Plane::from_point_normal(&Point3::new(0.0, 0.0, 8.0), &Vector3::new(0.3, -0.1, 1.0)).unwrap();
+        let plane =
+            Plane::from_point_normal(&Point3::new(0.0, 0.0, 8.0), &Vector3::new(0.3, -0.1, 1.0))
+                .unwrap();
         let x = image_from_plan(&camera, &plane) * Vector3::new(4.0, 7.0, 1.0);
         let expected = camera.project(&plane.lift(4.0, 7.0)).unwrap();
         assert!((Point2::new(x.x / x.z, x.y / x.z) - expected).norm() < 1e-6);

@@ -64,21 +64,30 @@ pub fn lines_in_plane(
     for (view, list) in scene.view_ids().zip(segments) {
         let camera = scene.camera(view);
         casts.extend(list.iter().filter_map(|s| {
-            let (a, b) = (cast(camera, plane, &s.segment.p0)?, cast(camera, plane, &s.segment.p1)?);
+            let (a, b) = (
+                cast(camera, plane, &s.segment.p0)?,
+                cast(camera, plane, &s.segment.p1)?,
+            );
             let inside = region.contains(&a) && region.contains(&b);
             (inside && (b - a).norm() > 1e-6).then_some(Cast { view, a, b })
         }));
     }
     // Longest first: it is the best known direction.
-    casts.sort_by(|p, q| q.length().total_cmp(&p.length()).then(p.view.cmp(&q.view)).then(p.a.x.total_cmp(&q.a.x)));
+    casts.sort_by(|p, q| {
+        q.length()
+            .total_cmp(&p.length())
+            .then(p.view.cmp(&q.view))
+            .then(p.a.x.total_cmp(&q.a.x))
+    });
     let mut used = vec![false; casts.len()];
     let mut found = Vec::new();
     for i in 0..casts.len() {
         if used[i] {
             continue;
         }
-        let members: Vec<usize> =
-            (0..casts.len()).filter(|&j| !used[j] && coincide(&casts[i], &casts[j], SAME_LINE_PX * pixel)).collect();
+        let members: Vec<usize> = (0..casts.len())
+            .filter(|&j| !used[j] && coincide(&casts[i], &casts[j], SAME_LINE_PX * pixel))
+            .collect();
         let mut views: Vec<ViewId> = members.iter().map(|&j| casts[j].view).collect();
         views.sort_unstable();
         views.dedup();
@@ -88,7 +97,10 @@ pub fn lines_in_plane(
         members.iter().for_each(|&j| used[j] = true);
         let members: Vec<Cast> = members.into_iter().map(|j| casts[j]).collect();
         if let Some((a, b)) = common_line(&members) {
-            found.push(PlaneLine { segment: Segment3::new(plane.lift(a.x, a.y), plane.lift(b.x, b.y)), views });
+            found.push(PlaneLine {
+                segment: Segment3::new(plane.lift(a.x, a.y), plane.lift(b.x, b.y)),
+                views,
+            });
         }
     }
     found
@@ -117,9 +129,13 @@ fn coincide(reference: &Cast, other: &Cast, tolerance: f64) -> bool {
 /// Length-weighted mean line of the casts; it reaches as far as at least two views do.
 fn common_line(members: &[Cast]) -> Option<(Point2<f64>, Point2<f64>)> {
     let weight: f64 = members.iter().map(Cast::length).sum();
-    let direction = members.iter().fold(Vector2::zeros(), |s, c| s + (c.b - c.a));
+    let direction = members
+        .iter()
+        .fold(Vector2::zeros(), |s, c| s + (c.b - c.a));
     let direction = direction / direction.norm();
-    let mean = members.iter().fold(Vector2::zeros(), |s, c| s + (c.a.coords + c.b.coords) * (0.5 * c.length())) / weight;
+    let mean = members.iter().fold(Vector2::zeros(), |s, c| {
+        s + (c.a.coords + c.b.coords) * (0.5 * c.length())
+    }) / weight;
     let mut ends: Vec<(f64, ViewId, i32)> = Vec::new();
     for c in members {
         ends.push(((c.a.coords - mean).dot(&direction), c.view, 1));

@@ -80,9 +80,17 @@ mod tests {
     #[test]
     fn holes_are_closed_and_gaps_need_correlation() {
         assert_eq!(reach("xxx...xxx", "........."), 8, "a small hole");
-        assert_eq!(reach("xx........xx", "............"), 1, "an unsupported gap");
+        assert_eq!(
+            reach("xx........xx", "............"),
+            1,
+            "an unsupported gap"
+        );
         assert_eq!(reach("xx........xx", ".xxxxxxxxxx."), 11, "a bridged gap");
-        assert_eq!(reach("xxxx........", "xxxxxxxxxxxx"), 3, "nothing beyond a gap");
+        assert_eq!(
+            reach("xxxx........", "xxxxxxxxxxxx"),
+            3,
+            "nothing beyond a gap"
+        );
     }
 
     #[test]

@@ -147,7 +147,11 @@ impl Context<'_> {
         loop {
             let fit = self.fit(start, &kept)?;
             let worst = (0..kept.len())
-                .max_by(|&i, &j| fit.residuals[i].total_cmp(&fit.residuals[j]).then(j.cmp(&i)))
+                .max_by(|&i, &j| {
+                    fit.residuals[i]
+                        .total_cmp(&fit.residuals[j])
+                        .then(j.cmp(&i))
+                })
                 .ok_or(Rejection::NoFit)?;
             if fit.residuals[worst] <= self.fitting.max_residual {
                 return Ok((fit, kept));
@@ -168,8 +172,7 @@ impl Context<'_> {
                 }
             })
             .collect();
-        fit_line(&observations, start, self.fitting)
-            .ok_or(Rejection::NoFit)
+        fit_line(&observations, start, self.fitting).ok_or(Rejection::NoFit)
     }
 
     /// The segments of all views that lie on the projection of the line, or not farther beyond its
@@ -199,9 +202,7 @@ impl Context<'_> {
                 let on_line = |s: &Sight| {
                     let ahead = |p: nalgebra::Point2<f64>| (p - from).dot(&image.direction);
                     let (s0, s1) = (ahead(s.segment.p0), ahead(s.segment.p1));
-                    s0.max(s1) >= 0.0
-                        && s0.min(s1) <= stretch.length()
-                        && self.lies_on(&image, s)
+                    s0.max(s1) >= 0.0 && s0.min(s1) <= stretch.length() && self.lies_on(&image, s)
                 };
                 if !taken(name) && self.sights.get(name).is_some_and(on_line) {
                     found.push(name);
@@ -282,18 +283,21 @@ impl Context<'_> {
 
         let supported: Vec<usize> = (start..=end)
             .filter(|&e| {
-                view.detected[e]
-                    || f64::from(view.correlation[e]) >= self.params.edgel_correlation
+                view.detected[e] || f64::from(view.correlation[e]) >= self.params.edgel_correlation
             })
             .collect();
         let (first, last) = (*supported.first()?, *supported.last()?);
-        let stretch = Segment2::new(view.image.at(profile.t[first])?, view.image.at(profile.t[last])?);
-        let outermost = segments.iter().fold(
-            (f64::INFINITY, f64::NEG_INFINITY),
-            |(f, t), (_, [s, e])| (f.min(s.max(t0)), t.max(e.min(t1))),
+        let stretch = Segment2::new(
+            view.image.at(profile.t[first])?,
+            view.image.at(profile.t[last])?,
         );
-        let detected_px = (outermost.1 - outermost.0) * (stretch.length()
-            / (profile.t[last] - profile.t[first]).max(1e-9));
+        let outermost = segments
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(f, t), (_, [s, e])| {
+                (f.min(s.max(t0)), t.max(e.min(t1)))
+            });
+        let detected_px = (outermost.1 - outermost.0)
+            * (stretch.length() / (profile.t[last] - profile.t[first]).max(1e-9));
         let kind = match segments.len() {
             0 => SupportKind::Grown,
             _ if stretch.length() > detected_px + GROWN_PX => SupportKind::Grown,
@@ -322,7 +326,11 @@ impl Context<'_> {
             x.is_some_and(|x| self.scene.camera(v.view).contains(&x, 1.0))
         };
         let seeing = profile.views.iter().filter(sees).count();
-        let minimum = if seeing >= 6 { self.params.min_views } else { 3 };
+        let minimum = if seeing >= 6 {
+            self.params.min_views
+        } else {
+            3
+        };
         let measured = supports.iter().filter(|s| !s.segments.is_empty()).count();
         if measured < MIN_MEASURED || supports.len() < minimum {
             return Err(Rejection::TooFewViews);
@@ -349,7 +357,10 @@ impl Context<'_> {
             return Err(Rejection::IllConditioned);
         }
         let [low, high] = self.z_range;
-        if [segment.p0.z, segment.p1.z].iter().any(|z| *z < low || *z > high) {
+        if [segment.p0.z, segment.p1.z]
+            .iter()
+            .any(|z| *z < low || *z > high)
+        {
             return Err(Rejection::OutsideHeights);
         }
         Ok(Line {

@@ -209,7 +209,15 @@ fn pair_score(
     let strip = strip.part(start, end - start);
     let score = |side: StripSide, theta_deg: f64| {
         side_correlation(
-            scene, first, second, &part, &strip, &geometry.overlap, side, theta_deg, params,
+            scene,
+            first,
+            second,
+            &part,
+            &strip,
+            &geometry.overlap,
+            side,
+            theta_deg,
+            params,
         )
         .map(|c| EdgelScore::of(&c, params.edgel_correlation))
         .filter(|s| s.included >= params.min_edgels)

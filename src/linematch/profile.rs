@@ -50,8 +50,11 @@ impl Profile {
             .filter_map(|view| view_segments(scene, sights, line, segments, view))
             .collect();
         let reach = |v: &ViewProfile| v.segments.iter().map(|(_, [s, e])| e - s).sum::<f64>();
-        let reference = (0..views.len())
-            .max_by(|&i, &j| reach(&views[i]).total_cmp(&reach(&views[j])).then(j.cmp(&i)))?;
+        let reference = (0..views.len()).max_by(|&i, &j| {
+            reach(&views[i])
+                .total_cmp(&reach(&views[j]))
+                .then(j.cmp(&i))
+        })?;
         let ends = views.iter().flat_map(|v| v.segments.iter());
         let (from, to) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(f, t), (_, [s, e])| {
             (f.min(*s), t.max(*e))
@@ -86,8 +89,7 @@ impl Profile {
 
     /// Number of views whose neighbourhoods agree at an edgel, the reference included.
     pub fn agreeing(&self, edgel: usize, params: &MatchParams) -> usize {
-        let agrees =
-            |v: &&ViewProfile| f64::from(v.correlation[edgel]) >= params.edgel_correlation;
+        let agrees = |v: &&ViewProfile| f64::from(v.correlation[edgel]) >= params.edgel_correlation;
         self.views.iter().filter(agrees).count()
     }
 }
@@ -106,10 +108,7 @@ fn view_segments(
         .filter(|s| s.view == view)
         .filter_map(|s| {
             let sight = sights.get(*s)?;
-            let (t0, t1) = (
-                image.t_of(&sight.segment.p0),
-                image.t_of(&sight.segment.p1),
-            );
+            let (t0, t1) = (image.t_of(&sight.segment.p0), image.t_of(&sight.segment.p1));
             Some((s.segment, [t0.min(t1), t0.max(t1)]))
         })
         .collect();

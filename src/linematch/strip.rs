@@ -295,7 +295,11 @@ impl EdgelScore {
             }
         }
         Self {
-            score: if common > 0 { sum / f64::from(common) } else { 0.0 },
+            score: if common > 0 {
+                sum / f64::from(common)
+            } else {
+                0.0
+            },
             included,
         }
     }
@@ -309,8 +313,9 @@ mod tests {
     /// A reproducible texture without structure.
     fn texture(x: f64, y: f64) -> f32 {
         let s = |v: f64| libm::sin(v);
-        (0.5 + 0.12 * s(0.9 * x + 0.3 * y) + 0.12 * s(0.2 * x - 1.1 * y) + 0.1 * s(0.51 * x * y * 0.05))
-            as f32
+        (0.5 + 0.12 * s(0.9 * x + 0.3 * y)
+            + 0.12 * s(0.2 * x - 1.1 * y)
+            + 0.1 * s(0.51 * x * y * 0.05)) as f32
     }
 
     fn image(h: &Matrix3<f64>) -> Gray {

@@ -113,7 +113,13 @@ impl MatchTrace {
         bundles: &[Bundle],
         selection: &Selection,
     ) {
-        self.candidates = pairs.searches.iter().flatten().map(|s| s.candidates as usize).sum::<usize>() / 2;
+        self.candidates = pairs
+            .searches
+            .iter()
+            .flatten()
+            .map(|s| s.candidates as usize)
+            .sum::<usize>()
+            / 2;
         self.pair_count = bundles.len();
         self.triples_before = bundles.iter().map(|b| b.views().count()).sum();
         self.triples_after = selection

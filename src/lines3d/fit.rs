@@ -101,11 +101,9 @@ fn least_squares_point(
     longest: &Observation,
 ) -> Option<Point3<f64>> {
     let near = longest.camera.center;
-    let rhs = planes
-        .iter()
-        .fold(Vector3::zeros(), |s, (p, w)| {
-            s - p.normal * (p.signed_distance(&near) * w)
-        });
+    let rhs = planes.iter().fold(Vector3::zeros(), |s, (p, w)| {
+        s - p.normal * (p.signed_distance(&near) * w)
+    });
     // The direction is free in the scatter; fixing the step along it to zero makes it regular.
     let full = scatter + direction * direction.transpose() * scatter.trace();
     Some(near + full.cholesky()?.solve(&rhs))

@@ -45,7 +45,13 @@ const LOW_SHARE: f64 = 0.15;
 impl Ground {
     /// The same height everywhere.
     pub fn level(z: f64) -> Self {
-        Self { min: Point2::origin(), columns: 0, rows: 0, heights: Vec::new(), elsewhere: z }
+        Self {
+            min: Point2::origin(),
+            columns: 0,
+            rows: 0,
+            heights: Vec::new(),
+            elsewhere: z,
+        }
     }
 
     /// Sweeps the scene between the heights that its 3D lines span; the given height when there is one.
@@ -53,7 +59,10 @@ impl Ground {
         if let Some(z) = scene.ground_z {
             return Self::level(z);
         }
-        let mut ends: Vec<Point3<f64>> = lines.iter().flat_map(|l| [l.segment.p0, l.segment.p1]).collect();
+        let mut ends: Vec<Point3<f64>> = lines
+            .iter()
+            .flat_map(|l| [l.segment.p0, l.segment.p1])
+            .collect();
         if ends.is_empty() {
             return Self::level(0.0);
         }
@@ -73,18 +82,34 @@ impl Ground {
                 samples.iter().map(|s| s.y).fold(start, f),
             )
         };
-        let (min, max) = (bound(f64::INFINITY, f64::min), bound(f64::NEG_INFINITY, f64::max));
+        let (min, max) = (
+            bound(f64::INFINITY, f64::min),
+            bound(f64::NEG_INFINITY, f64::max),
+        );
         if samples.is_empty() {
             return Self::level(elsewhere);
         }
-        let (columns, rows) = (((max.x - min.x) / CELL) as usize + 1, ((max.y - min.y) / CELL) as usize + 1);
+        let (columns, rows) = (
+            ((max.x - min.x) / CELL) as usize + 1,
+            ((max.y - min.y) / CELL) as usize + 1,
+        );
         let cells: Vec<usize> = (0..columns * rows).collect();
         let heights = crate::parallel::map(&cells, |_, &k| {
-            let at = min + nalgebra::Vector2::new((k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5) * CELL;
-            let near = samples.iter().filter(|s| (s.xy() - at).norm_squared() <= RADIUS * RADIUS);
+            let at = min
+                + nalgebra::Vector2::new((k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5)
+                    * CELL;
+            let near = samples
+                .iter()
+                .filter(|s| (s.xy() - at).norm_squared() <= RADIUS * RADIUS);
             low_height(near.map(|s| s.z)).unwrap_or(elsewhere)
         });
-        Self { min, columns, rows, heights, elsewhere }
+        Self {
+            min,
+            columns,
+            rows,
+            heights,
+            elsewhere,
+        }
     }
 
     /// Ground height at a plan position, metres.
@@ -110,7 +135,9 @@ fn low_height(heights: impl Iterator<Item = f64>) -> Option<f64> {
 fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3<f64>> {
     let reduced = reduce(scene);
     let middle = ends[ends.len() / 2];
-    let Some(view) = reduced.views.first() else { return Vec::new() };
+    let Some(view) = reduced.views.first() else {
+        return Vec::new();
+    };
     let step = view.camera.ground_pixel(&middle);
     let bound = |f: fn(f64, f64) -> f64, start: f64| {
         let x = ends.iter().map(|p| p.x).fold(start, f);
@@ -118,16 +145,24 @@ fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3
         Point2::new(x, y)
     };
     let margin = nalgebra::Vector2::new(5.0, 5.0);
-    let (min, max) = (bound(f64::min, f64::INFINITY) - margin, bound(f64::max, f64::NEG_INFINITY) + margin);
+    let (min, max) = (
+        bound(f64::min, f64::INFINITY) - margin,
+        bound(f64::max, f64::NEG_INFINITY) + margin,
+    );
     let grid = PlanGrid::covering(min, max, step);
     // A window of many cells on end cannot be larger than what the views see: keep memory bounded.
     if grid.width * grid.height > 4_000_000 {
         return Vec::new();
     }
     let levels = (((high - low) / 0.5).ceil() as usize).clamp(2, MAX_LEVELS);
-    let heights: Vec<f64> = (0..levels).map(|i| low + (high - low) * i as f64 / (levels - 1) as f64).collect();
+    let heights: Vec<f64> = (0..levels)
+        .map(|i| low + (high - low) * i as f64 / (levels - 1) as f64)
+        .collect();
     let maps = crate::parallel::map(&heights, |_, &z| {
-        let plane = Plane { normal: Vector3::z(), d: -z };
+        let plane = Plane {
+            normal: Vector3::z(),
+            d: -z,
+        };
         consistency_map(&reduced, &plane, &grid)
     });
     let mut samples = Vec::new();
@@ -135,8 +170,15 @@ fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3
         for column in 0..grid.width {
             let k = row * grid.width + column;
             let best = (0..levels)
-                .filter(|&i| maps[i].weight[k] >= MIN_WEIGHT && maps[i].correlation[k] >= MIN_CORRELATION)
-                .max_by(|&i, &j| maps[i].correlation[k].total_cmp(&maps[j].correlation[k]).then(j.cmp(&i)));
+                .filter(|&i| {
+                    maps[i].weight(k) >= MIN_WEIGHT && maps[i].correlation(k) >= MIN_CORRELATION
+                })
+                .max_by(|&i, &j| {
+                    maps[i]
+                        .correlation(k)
+                        .total_cmp(&maps[j].correlation(k))
+                        .then(j.cmp(&i))
+                });
             if let Some(i) = best {
                 let p = grid.center(column, row);
                 samples.push(Point3::new(p.x, p.y, heights[i]));
@@ -164,9 +206,24 @@ fn reduce(scene: &Scene) -> Scene {
             });
             let s = 1.0 / REDUCE as f64;
             let k = Matrix3::new(s, 0.0, 0.0, 0.0, s, 0.0, 0.0, 0.0, 1.0) * v.camera.k;
-            let camera = Camera { k, width: w as u32, height: h as u32, ..v.camera.clone() };
-            View { name: v.name.clone(), camera, gray, rgb: image::RgbImage::new(0, 0) }
+            let camera = Camera {
+                k,
+                width: w as u32,
+                height: h as u32,
+                ..v.camera.clone()
+            };
+            View {
+                name: v.name.clone(),
+                camera,
+                gray,
+                rgb: image::RgbImage::new(0, 0),
+            }
         })
         .collect();
-    Scene { views, origin: scene.origin, ground_z: scene.ground_z, warnings: Vec::new() }
+    Scene {
+        views,
+        origin: scene.origin,
+        ground_z: scene.ground_z,
+        warnings: Vec::new(),
+    }
 }

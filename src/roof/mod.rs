@@ -6,8 +6,8 @@ mod reconstruct;
 mod solid;
 
 pub use ground::Ground;
-pub use reconstruct::{RoofTrace, reconstruct_roofs};
 pub use invariants::{PLANAR_M, Violation, check_invariants};
+pub use reconstruct::{RoofTrace, reconstruct_roofs};
 pub use solid::{SolidRejection, SolidTrace, WELD_M, close_buildings};
 
 use nalgebra::Point3;

@@ -27,13 +27,24 @@ pub fn reconstruct_roofs(
     params: &RoofParams,
 ) -> (RoofModel, RoofTrace) {
     let ground = Ground::estimate(scene, lines);
-    let (facets, facet_trace) = reconstruct_facets(scene, segments, lines, half_planes, &ground, params);
+    let (facets, facet_trace) =
+        reconstruct_facets(scene, segments, lines, half_planes, &ground, params);
     let (model, solids) = close_buildings(&facets, |members| ground_below(&ground, members));
-    (model, RoofTrace { facets: facet_trace, solids })
+    (
+        model,
+        RoofTrace {
+            facets: facet_trace,
+            solids,
+        },
+    )
 }
 
 /// Ground height below a building: the middle one of those at its corners.
 fn ground_below(ground: &Ground, members: &[&Facet]) -> f64 {
-    let mut heights: Vec<f64> = members.iter().flat_map(|f| &f.outer).map(|p| ground.z_at(&p.xy())).collect();
+    let mut heights: Vec<f64> = members
+        .iter()
+        .flat_map(|f| &f.outer)
+        .map(|p| ground.z_at(&p.xy()))
+        .collect();
     crate::math::median(&mut heights).unwrap_or(f64::NAN)
 }

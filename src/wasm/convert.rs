@@ -1,6 +1,7 @@
 //! Between Rust's values and JavaScript's.
 
 use js_sys::{Float32Array, Float64Array};
+use nalgebra::Matrix3x4;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::{JsError, JsValue};
@@ -49,6 +50,11 @@ pub(super) fn segment_array<'a>(segments: impl Iterator<Item = &'a Segment2>) ->
 /// The end points in single precision.
 pub(super) fn end_points_px(s: &Segment2) -> [f32; 4] {
     [s.p0.x, s.p0.y, s.p1.x, s.p1.y].map(|v| v as f32)
+}
+
+/// The twelve numbers of a 3 x 4 matrix, row by row.
+pub(super) fn row_major(matrix: &Matrix3x4<f64>) -> Vec<f64> {
+    matrix.transpose().iter().copied().collect()
 }
 
 /// (x, y, z) of both end points per line, metres, local frame.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
 use super::convert::{
-    end_points_px, from_js, input_error, line_array, named_error, segment_array, to_js,
+    end_points_px, from_js, input_error, line_array, named_error, row_major, segment_array, to_js,
 };
 use crate::linematch::SupportKind;
 use crate::params::Params;
@@ -41,13 +41,14 @@ struct SceneInfo {
     warnings: Vec<String>,
 }
 
-/// A view of the scene; its centre in metres, local frame.
+/// A view of the scene; its centre in metres, local frame, and its 3 x 4 matrix from there to pixels, row by row.
 #[derive(Serialize)]
 struct ViewInfo {
     name: String,
     width: u32,
     height: u32,
     center: [f64; 3],
+    projection: Vec<f64>,
 }
 
 /// The pixels of a view, RGBA row by row: what `ImageData` takes.
@@ -122,6 +123,7 @@ impl Session {
             width: view.camera.width,
             height: view.camera.height,
             center: view.camera.center.coords.into(),
+            projection: row_major(&view.camera.projection_matrix()),
         });
         let info = to_js(&SceneInfo {
             views: views.collect(),

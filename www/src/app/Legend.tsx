@@ -14,7 +14,7 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
     ["matched", "3D line"],
     ["half-plane", "half-plane"],
   ],
-  facets: [["normals", "hue: where it faces; strength: slope"]],
+  facets: [["normals", "hue: azimuth, strength: slope"]],
 };
 
 export function Legend() {

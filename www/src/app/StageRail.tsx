@@ -60,27 +60,15 @@ function StageCard({ stage, position }: { stage: StageState; position: number })
   const percent = Math.round(100 * stage.fraction);
   return (
     <li class={`stage ${stage.status}`} data-stage={stage.name} data-status={stage.status}>
-      <div class="row spread">
-        <button
-          type="button"
-          class="link"
-          onClick={() => {
-            tab.value = words.tab;
-          }}
-        >
-          {words.title}
-        </button>
-        <button
-          type="button"
-          class="quiet"
-          aria-label={`Run up to ${words.title}`}
-          title={`Run up to ${words.title}`}
-          disabled={!canRun(position + 1)}
-          onClick={() => void runTo(stage.name)}
-        >
-          ▸
-        </button>
-      </div>
+      <button
+        type="button"
+        class="link"
+        onClick={() => {
+          tab.value = words.tab;
+        }}
+      >
+        {words.title}
+      </button>
       <span class="muted section">{words.section}</span>
       {stage.status === "running" ? (
         <progress max={1} value={stage.fraction} aria-label={`${words.title}: ${percent} %`} />
@@ -90,6 +78,16 @@ function StageCard({ stage, position }: { stage: StageState; position: number })
         </span>
       )}
       <span class="muted numbers">{statusLine(stage)}</span>
+      <button
+        type="button"
+        class="quiet"
+        aria-label={`Run up to ${words.title}`}
+        title={`Run up to ${words.title}`}
+        disabled={!canRun(position + 1)}
+        onClick={() => void runTo(stage.name)}
+      >
+        ▸
+      </button>
       {stage.warnings.length > 0 && (
         <span class="stage-warning" title={stage.warnings.join("\n")}>
           {stage.warnings.length} {stage.warnings.length === 1 ? "warning" : "warnings"}

@@ -50,8 +50,8 @@ export interface ViewInfo {
   width: number;
   height: number;
   center: Vec3;
-  /** Row-major 3 x 4 matrix from the local frame to pixels, where the core offers it. */
-  projection?: number[];
+  /** Row-major 3 x 4 matrix from the local frame to pixels. */
+  projection: number[];
 }
 
 export interface SceneInfo {

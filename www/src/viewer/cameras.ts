@@ -1,4 +1,4 @@
-/** The views in space: each camera's centre and, where its projection is known, the frustum down to the ground. */
+/** The views in space: each camera's centre and its frustum down to the ground. */
 import {
   BufferGeometry,
   LineBasicMaterial,
@@ -54,10 +54,10 @@ function frustumEdges(view: ViewInfo, target: Vector3): Vector3[] {
   return corners.flatMap((corner, i) => [centre, corner, corner, corners[(i + 1) % 4] as Vector3]);
 }
 
-/** Where the rays of the image corners meet the height `z`; null where one does not, or without projection. */
+/** Where the rays of the image corners meet the height `z`; null where one never does. */
 export function groundCorners(view: ViewInfo, centre: Vector3, z: number): Vector3[] | null {
   const p = view.projection;
-  if (p === undefined || p.length !== 12) {
+  if (p.length !== 12) {
     return null;
   }
   const [a, b, c, , d, e, f, , g, h, i] = p as [
@@ -83,7 +83,7 @@ export function groundCorners(view: ViewInfo, centre: Vector3, z: number): Vecto
   ] as const) {
     const ray = new Vector3(x, y, 1).applyMatrix3(rayOfPixel);
     const depth = (z - centre.z) / ray.z;
-    if (!Number.isFinite(depth)) {
+    if (!Number.isFinite(depth) || depth <= 0) {
       return null;
     }
     corners.push(centre.clone().addScaledVector(ray, depth));

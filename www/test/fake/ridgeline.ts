@@ -107,7 +107,8 @@ export class Session implements CoreSession {
       name: path.slice(path.lastIndexOf("/") + 1),
       width: SIZE_PX,
       height: SIZE_PX,
-      center: [40 * i - 80, 0, 120] as P,
+      center: [0, 0, 4000 + i] as P,
+      projection: downwards(4000 + i),
     }));
     return { views, origin: [1000, 2000, 0], warnings: [] };
   }
@@ -165,6 +166,13 @@ export class Session implements CoreSession {
   #images(): string[] {
     return this.#files.filter((path) => path.endsWith(".jpg"));
   }
+}
+
+/** A camera straight above the middle, so far away that every height has the same scale. */
+function downwards(height: number): number[] {
+  const focal = PX_PER_M * height;
+  const half = SIZE_PX / 2;
+  return [focal, 0, -half, half * height, 0, -focal, -half, half * height, 0, 0, -1, height];
 }
 
 function pixel([x, y]: P): [number, number] {

@@ -65,9 +65,10 @@ describe("groundCorners", () => {
     ]);
   });
 
-  it("has no answer without a projection", () => {
-    const view = { name: "a", width: 200, height: 100, center: [0, 0, 50] as const };
-    expect(groundCorners(view, new Vector3(0, 0, 50), 0)).toBeNull();
+  it("has no answer for rays that never reach that height", () => {
+    const projection = [100, 0, -100, 5000, 0, -100, -50, 2500, 0, 0, -1, 50];
+    const view = { name: "a", width: 200, height: 100, center: [0, 0, 50] as const, projection };
+    expect(groundCorners(view, new Vector3(0, 0, 50), 80)).toBeNull();
   });
 });
 

@@ -1,0 +1,143 @@
+//! Plane hypotheses ready to compete: a group, where it may reach, what the images say there, its lines.
+
+use nalgebra::{Point2, Vector2};
+
+use super::Side;
+use super::borders::Region;
+use super::consistency::{ConsistencyMap, consistency_map};
+use super::grouping::{GroupingInput, PlaneGroup};
+use super::plan::PlanGrid;
+use super::plane_lines::{PlaneLine, lines_in_plane};
+use crate::geometry::{Plane, Segment3};
+use crate::lines2d::ImageSegment;
+use crate::params::RoofParams;
+use crate::scene::Scene;
+
+/// A plane with its evidence.
+pub struct Hypothesis {
+    /// Lines, half-planes and plane.
+    pub group: PlaneGroup,
+    /// The part of the plan that it may cover.
+    pub region: Region,
+    /// Similarity of the views on the plane, over the region.
+    pub map: ConsistencyMap,
+    /// Lines found in the plane that may bound it.
+    pub lines: Vec<PlaneLine>,
+}
+
+/// Compares the views on every group's plane; planes of two lines that the images contradict beside their own lines
+/// are dropped.
+pub fn hypotheses(
+    scene: &Scene,
+    segments: &[Vec<ImageSegment>],
+    input: &GroupingInput,
+    groups: Vec<PlaneGroup>,
+    step: f64,
+    params: &RoofParams,
+) -> Vec<Hypothesis> {
+    let built = crate::parallel::map(&groups, |_, group| {
+        let region = Region::new(input, group, params);
+        let (min, max) = region.bounds();
+        let map = consistency_map(scene, &group.plane, &PlanGrid::covering(min, max, step));
+        if group.half_planes().is_empty() && !supported(input, group, &map, params) {
+            return None;
+        }
+        let mut lines = lines_in_plane(scene, segments, &group.plane, &region);
+        lines.retain(|l| !crosses_surface(&map, &l.segment));
+        Some((region, map, lines))
+    });
+    groups
+        .into_iter()
+        .zip(built)
+        .filter_map(|(group, built)| {
+            built.map(|(region, map, lines)| Hypothesis {
+                group,
+                region,
+                map,
+                lines,
+            })
+        })
+        .collect()
+}
+
+/// The real lines that may bound a facet: over some plane's region, and not inside a surface.
+pub fn bounding_lines(input: &GroupingInput, hypotheses: &[Hypothesis]) -> Vec<Segment3> {
+    let keep = crate::parallel::map(input.lines, |_, line| {
+        let middle = line.at(0.5).xy();
+        let over: Vec<&Hypothesis> = hypotheses
+            .iter()
+            .filter(|h| h.region.contains(&middle))
+            .collect();
+        !over.is_empty()
+            && !over.iter().any(|h| {
+                lies_in(&h.group.plane, &line.segment) && crosses_surface(&h.map, &line.segment)
+            })
+    });
+    input
+        .lines
+        .iter()
+        .zip(keep)
+        .filter(|(_, keep)| *keep)
+        .map(|(l, _)| l.segment)
+        .collect()
+}
+
+fn lies_in(plane: &Plane, line: &Segment3) -> bool {
+    const NEAR: f64 = 0.2;
+    plane.signed_distance(&line.p0).abs() < NEAR && plane.signed_distance(&line.p1).abs() < NEAR
+}
+
+/// Correlation and texture weight from which on a position clearly shows the plane's surface.
+const ON_SURFACE: f32 = 0.65;
+const TEXTURED: f32 = 0.3;
+
+/// Does the plane's surface clearly go on at both sides of the line? Rows of tiles do that, borders do not.
+fn crosses_surface(map: &ConsistencyMap, line: &Segment3) -> bool {
+    [Side::Left, Side::Right].into_iter().all(|side| {
+        let seen = beside(map, line, side);
+        let on = seen
+            .iter()
+            .filter(|(c, w)| *c >= ON_SURFACE && *w >= TEXTURED)
+            .count();
+        !seen.is_empty() && on * 5 >= seen.len() * 4
+    })
+}
+
+/// Do the images, where they can tell, agree with the plane beside at least two of its lines?
+fn supported(
+    input: &GroupingInput,
+    group: &PlaneGroup,
+    map: &ConsistencyMap,
+    params: &RoofParams,
+) -> bool {
+    let agreeing = group.members.iter().filter(|m| {
+        let Some(side) = m.side else { return false };
+        let seen = beside(map, &input.lines[m.line.index()].segment, side);
+        let (sum, weight) = seen
+            .iter()
+            .fold((0.0, 0.0), |(s, n), (c, w)| (s + c * w, n + w));
+        weight > 0.0 && f64::from(sum / weight) >= params.min_correlation
+    });
+    agreeing.count() >= 2
+}
+
+/// Correlation and weight at positions beside a line, farther from it than half a window.
+fn beside(map: &ConsistencyMap, line: &Segment3, side: Side) -> Vec<(f32, f32)> {
+    let (a, b) = (line.p0.xy(), line.p1.xy());
+    let length = (b - a).norm();
+    if length < 1e-6 {
+        return Vec::new();
+    }
+    let d = (b - a) / length;
+    let left = Vector2::new(-d.y, d.x) * (8.0 * map.grid.step);
+    let across = if side == Side::Left { left } else { -left };
+    let count = (length / (3.0 * map.grid.step)).ceil();
+    (0..count as usize)
+        .filter_map(|i| {
+            let p: Point2<f64> = a + (b - a) * ((i as f64 + 0.5) / count) + across;
+            let (c, r) = map.grid.cell(&p)?;
+            let k = r * map.grid.width + c;
+            Some((map.correlation(k), map.weight(k)))
+        })
+        .collect()
+}
