@@ -1,5 +1,6 @@
 //! Models written as files: valid for independent readers, and the same geometry as in memory.
 
+#![cfg(not(target_arch = "wasm32"))] // The independent readers are native crates.
 #![allow(clippy::unwrap_used)]
 
 use std::collections::BTreeMap;

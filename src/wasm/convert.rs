@@ -30,10 +30,15 @@ pub(super) fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
         .map_err(|e| JsError::from(e).into())
 }
 
-/// A Rust value from a plain JavaScript object; `what` names it in the message.
-pub(super) fn from_js<T: DeserializeOwned>(value: JsValue, what: &str) -> Result<T, JsValue> {
-    serde_wasm_bindgen::from_value(value)
-        .map_err(|e| named_error("InputError", &format!("{what}: {e}")))
+/// A Rust value from a plain JavaScript object; `what` names it in the message. By way of JSON, so that the
+/// page's parameters are read, and misspelt names refused, exactly as the command line's.
+pub(super) fn from_js<T: DeserializeOwned>(value: &JsValue, what: &str) -> Result<T, JsValue> {
+    let text = if value.is_undefined() {
+        "null".to_owned()
+    } else {
+        String::from(js_sys::JSON::stringify(value)?)
+    };
+    serde_json::from_str(&text).map_err(|e| named_error("InputError", &format!("{what}: {e}")))
 }
 
 /// (x0, y0, x1, y1) per segment, pixels.

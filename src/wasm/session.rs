@@ -107,7 +107,7 @@ impl Session {
     /// Makes a scene of the files: `{orientation?, views?, roi?, groundZ?}` in, `{views, origin,
     /// warnings}` out.
     pub fn load(&mut self, options: JsValue) -> Result<JsValue, JsValue> {
-        let options: Option<JsLoadOptions> = from_js(options, "options of load")?;
+        let options: Option<JsLoadOptions> = from_js(&options, "options of load")?;
         let options = options.unwrap_or_default();
         let options = LoadOptions {
             orientation: options.orientation,
@@ -137,7 +137,7 @@ impl Session {
     /// Sets the parameters (what is missing takes its default) and drops the results that they change.
     #[wasm_bindgen(js_name = setParams)]
     pub fn set_params(&mut self, params: JsValue) -> Result<(), JsValue> {
-        self.params = from_js(params, "parameters")?;
+        self.params = from_js(&params, "parameters")?;
         self.outputs = None;
         if let Some(run) = &mut self.run {
             run.set_params(self.params.clone());
