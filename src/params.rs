@@ -196,10 +196,10 @@ pub struct Lines3dParams {
 impl Default for Lines3dParams {
     fn default() -> Self {
         Self {
-            position_floor_px: 0.15,
+            position_floor_px: 0.1,
             loss_scale: 2.4,
             max_iterations: 20,
-            max_residual: 4.0,
+            max_residual: 3.0,
             max_sigma_px: 3.0,
         }
     }

@@ -42,6 +42,7 @@ pub fn match_lines(
     scene: &Scene,
     segments: &[Vec<ImageSegment>],
     params: &MatchParams,
+    fitting: &Lines3dParams,
 ) -> (Vec<LineMatch>, MatchTrace) {
     let mut trace = MatchTrace::default();
     let sights = sight::Sights::new(scene, segments);
@@ -64,7 +65,7 @@ pub fn match_lines(
         sights: &sights,
         z_range,
         params,
-        fitting: &Lines3dParams::default(),
+        fitting,
     };
     let selection = select::winner_takes_all(&context, &pairs, &bundles);
     trace.record(segments, &pairs, &bundles, &selection);

@@ -11,7 +11,7 @@ use super::{LineSupport, SupportKind};
 use crate::geometry::{Segment2, Segment3};
 use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;
-use crate::lines3d::{LineFit, Observation, ProjectedLine, fit_line};
+use crate::lines3d::{LineFit, Observation, ProjectedLine, conditioning, fit_line};
 use crate::params::{Lines3dParams, MatchParams};
 use crate::scene::Scene;
 
@@ -32,6 +32,8 @@ pub enum Rejection {
     NoFit,
     /// The line is not determined well enough across itself.
     IllConditioned,
+    /// One view alone determines it in some direction: whatever segment lies there fits.
+    Unverified,
     /// Fewer than the minimum of views support it.
     TooFewViews,
     /// The supported stretch is shorter than the minimum of edgels.
@@ -88,10 +90,11 @@ pub fn complete_line(
         let supports = context.supports(&profile, stretch);
         let disagreeing = disagreeing_views(&profile, &supports, context.params);
         if disagreeing.is_empty() {
-            context.check_views(&profile, stretch, &supports)?;
             let kept: Vec<SegmentRef> = supports.iter().flat_map(names).collect();
             let fit = context.fit(&fit.line, &kept)?;
-            return context.check_line(&fit, profile.t[stretch.0], profile.t[stretch.1], &supports);
+            let ends = [profile.t[stretch.0], profile.t[stretch.1]];
+            let expected = context.expected_views(&profile, stretch);
+            return context.check_line(&fit, ends, expected, supports);
         }
         segments.retain(|s| !disagreeing.contains(&s.view));
         (fit, segments) = context.fit_consistent(&fit.line, &segments)?;
@@ -160,7 +163,11 @@ impl Context<'_> {
     }
 
     fn fit(&self, start: &Segment3, segments: &[SegmentRef]) -> Result<LineFit, Rejection> {
-        let observations: Vec<Observation> = segments
+        fit_line(&self.observations(segments), start, self.fitting).ok_or(Rejection::NoFit)
+    }
+
+    fn observations(&self, segments: &[SegmentRef]) -> Vec<Observation<'_>> {
+        segments
             .iter()
             .map(|s| {
                 let detected = &self.segments[s.view.index()][s.segment.index()];
@@ -170,8 +177,26 @@ impl Context<'_> {
                     covariance: detected.covariance,
                 }
             })
-            .collect();
-        fit_line(&observations, start, self.fitting).ok_or(Rejection::NoFit)
+            .collect()
+    }
+
+    /// Largest standard deviation at the ends t0 and t1 (metres along the fit) that the line would have
+    /// without one of its views. A view that alone fixes the line in some direction cannot be
+    /// verified by the others: whatever segment it has there fits.
+    fn sigma_without_one(
+        &self,
+        fit: &LineFit,
+        [t0, t1]: [f64; 2],
+        supports: &[LineSupport],
+    ) -> f64 {
+        let line = super::triples::stretch_of(&fit.line, t0, t1);
+        let without = |left_out: &LineSupport| {
+            let others = supports.iter().filter(|s| s.view != left_out.view);
+            let segments: Vec<SegmentRef> = others.flat_map(names).collect();
+            conditioning(&self.observations(&segments), &line, self.fitting)
+                .map_or(f64::INFINITY, |c| c.sigma_at(0.0).max(c.sigma_at(1.0)))
+        };
+        supports.iter().map(without).fold(0.0, f64::max)
     }
 
     /// The segments of all views that lie on the projection of the line, or not farther beyond its
@@ -312,44 +337,50 @@ impl Context<'_> {
         })
     }
 
-    /// At least two views with segments, and at least the minimum of views that support the line.
-    fn check_views(
-        &self,
-        profile: &Profile,
-        (start, end): (usize, usize),
-        supports: &[LineSupport],
-    ) -> Result<(), Rejection> {
+    /// Number of views that ought to support the line: `min_views` where six or more see it.
+    fn expected_views(&self, profile: &Profile, (start, end): (usize, usize)) -> usize {
         let middle = 0.5 * (profile.t[start] + profile.t[end]);
         let sees = |v: &&ViewProfile| {
             let x = v.image.at(middle);
             x.is_some_and(|x| self.scene.camera(v.view).contains(&x, 1.0))
         };
         let seeing = profile.views.iter().filter(sees).count();
-        let minimum = if seeing >= 6 {
+        if seeing >= 6 {
             self.params.min_views
         } else {
-            3
-        };
-        let measured = supports.iter().filter(|s| !s.segments.is_empty()).count();
-        if measured < MIN_MEASURED || supports.len() < minimum {
-            return Err(Rejection::TooFewViews);
+            MIN_MEASURED
         }
-        Ok(())
     }
 
+    /// The last tests of a completed line, with the stretch t0 to t1 (metres) of the fit.
+    ///
+    /// Deviation from the paper's four of six views: three do where the line is twice as certain as it
+    /// must be. Two strips often see the two sides of an eave differently, and then three views are all there are.
     fn check_line(
         &self,
         fit: &LineFit,
-        t0: f64,
-        t1: f64,
-        supports: &[LineSupport],
+        [t0, t1]: [f64; 2],
+        expected_views: usize,
+        supports: Vec<LineSupport>,
     ) -> Result<Line, Rejection> {
         let length = fit.line.length();
         let segment = super::triples::stretch_of(&fit.line, t0, t1);
-        let sigma = fit.sigma_at(t0 / length).max(fit.sigma_at(t1 / length));
         let camera = self.scene.camera(supports[0].view);
-        if sigma > self.fitting.max_sigma_px * camera.ground_pixel(&segment.p0) {
+        let sigma_px = fit.sigma_at(t0 / length).max(fit.sigma_at(t1 / length))
+            / camera.ground_pixel(&segment.p0);
+        if sigma_px > self.fitting.max_sigma_px {
             return Err(Rejection::IllConditioned);
+        }
+        let score = supports.iter().map(|s| s.score).sum::<f64>() / supports.len() as f64;
+        let without_one = self.sigma_without_one(fit, [t0, t1], &supports);
+        if without_one > self.fitting.max_sigma_px * camera.ground_pixel(&segment.p0) {
+            return Err(Rejection::Unverified);
+        }
+        let certain =
+            score >= self.params.pair_score && sigma_px <= 0.5 * self.fitting.max_sigma_px;
+        let measured = supports.iter().filter(|s| !s.segments.is_empty()).count();
+        if measured < MIN_MEASURED || (supports.len() < expected_views && !certain) {
+            return Err(Rejection::TooFewViews);
         }
         let [low, high] = self.z_range;
         if [segment.p0.z, segment.p1.z]
@@ -358,9 +389,6 @@ impl Context<'_> {
         {
             return Err(Rejection::OutsideHeights);
         }
-        Ok(Line {
-            segment,
-            supports: supports.to_vec(),
-        })
+        Ok(Line { segment, supports })
     }
 }

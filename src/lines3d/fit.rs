@@ -16,6 +16,9 @@ use crate::camera::Camera;
 use crate::geometry::{Segment2, Segment3};
 use crate::params::Lines3dParams;
 
+/// Weight of the belief that the covariances are right, in residuals.
+const SCATTER_PRIOR: f64 = 4.0;
+
 /// A measured image segment.
 #[derive(Clone, Debug)]
 pub struct Observation<'a> {
@@ -167,12 +170,38 @@ pub fn fit_line(
     finish(line, state)
 }
 
+/// How well observations would determine a line if they agreed with it: [`LineFit`] without fitting,
+/// residuals or scatter. `None` when they leave it undetermined.
+pub fn conditioning(
+    observations: &[Observation],
+    line: &Segment3,
+    params: &Lines3dParams,
+) -> Option<LineFit> {
+    let weighted: Vec<_> = observations
+        .iter()
+        .map(|o| Weighted::new(o, params))
+        .collect();
+    let across = across(&line.direction());
+    let mut information = Matrix4::zeros();
+    for o in &weighted {
+        let (_, j) = o.residual(line, &across)?;
+        information += j * j.transpose();
+    }
+    Some(LineFit {
+        line: *line,
+        across,
+        covariance: information.try_inverse()?,
+        residuals: Vec::new(),
+    })
+}
+
 fn finish(line: Segment3, state: Normal) -> Option<LineFit> {
     let covariance = state.hessian.try_inverse()?;
-    let weights: f64 = state.residuals.iter().map(|r| 2.0 / (1.0 + r * r)).sum();
-    let redundancy = (weights - 4.0).max(1.0);
-    // Observations that scatter more than their covariances say make the line less certain.
-    let factor = (2.0 * state.cost / redundancy).max(1.0);
+    // Observations that scatter more than their covariances say make the line less certain. Three views have a
+    // redundancy of two, which hardly tells; the prior counts like as many expected residuals.
+    let redundancy = (2.0 * state.residuals.len() as f64 - 4.0).max(0.0);
+    let factor = (2.0 * state.cost + SCATTER_PRIOR) / (redundancy + SCATTER_PRIOR);
+    let factor = factor.max(1.0);
     Some(LineFit {
         line,
         across: state.across,

@@ -9,7 +9,7 @@ mod extent;
 mod fit;
 mod projection;
 
-pub use fit::{LineFit, Observation, fit_line, line_of_planes};
+pub use fit::{LineFit, Observation, conditioning, fit_line, line_of_planes};
 pub use projection::ProjectedLine;
 
 use nalgebra::{Matrix3, Point3};
