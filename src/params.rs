@@ -330,7 +330,7 @@ impl Default for RoofParams {
             half_plane_gain_m: 0.1,
             min_area_m2: 1.5,
             min_real_ratio: 0.25,
-            min_height_m: 1.8,
+            min_height_m: 2.0,
         }
     }
 }
