@@ -218,7 +218,8 @@ impl Run {
             }
             Stage::Matches => {
                 let segments = before(&r.segments);
-                r.matches = Some(match_lines(scene, segments, &params.matching, &params.lines3d).into());
+                r.matches =
+                    Some(match_lines(scene, segments, &params.matching, &params.lines3d).into());
             }
             Stage::Lines => {
                 let (segments, matches) = (before(&r.segments), before(&r.matches));

@@ -25,6 +25,11 @@ pub struct Ground {
     elsewhere: f64,
 }
 
+/// Blocks higher than this above the common plane show no ground, metres: lower than any eave. Assumption: the
+/// ground of one scene is nearly plane.
+const STANDS_OUT: f64 = 1.0;
+/// Ground as a whole slopes less than this (normal's z of 8 degrees). Assumption: a steeper fit follows a roof.
+const LEAST_LEVEL: f64 = 0.99;
 /// Cell of the ground grid, metres.
 const CELL: f64 = 5.0;
 /// Matched positions within this distance tell the ground height of a cell, metres: more than half
@@ -108,25 +113,56 @@ impl Ground {
             heights,
             elsewhere,
         }
+        .without_large_roofs()
     }
 
-    /// The plane that fits the ground heights best.
+    /// The plane that the ground lies in as a whole, fitted from below: blocks that stand out above it are roofs or
+    /// woods so large that no ground is seen around them.
     pub fn plane(&self) -> Plane {
-        let level = Plane {
-            normal: Vector3::z(),
-            d: -self.elsewhere,
-        };
-        let points: Vec<(Point3<f64>, f64)> = (0..self.heights.len())
-            .map(|k| {
-                let (c, r) = ((k % self.columns) as f64, (k / self.columns) as f64);
-                let p = self.min + nalgebra::Vector2::new(c + 0.5, r + 0.5) * CELL;
-                (Point3::new(p.x, p.y, self.heights[k]), 1.0)
-            })
+        let all: Vec<(Point3<f64>, f64)> = (0..self.heights.len())
+            .map(|k| (self.block(k), 1.0))
             .collect();
-        // Steeper than 15 degrees is not ground but a bad fit.
-        Plane::fit(&points)
-            .filter(|p| p.normal.z > 0.966)
-            .unwrap_or(level)
+        let mut sorted = self.heights.clone();
+        sorted.sort_by(f64::total_cmp);
+        let low = sorted
+            .get(sorted.len() / 10)
+            .copied()
+            .unwrap_or(self.elsewhere);
+        let mut plane = Plane {
+            normal: Vector3::z(),
+            d: -low,
+        };
+        const ROUNDS: usize = 10;
+        for _ in 0..ROUNDS {
+            let near: Vec<_> = all
+                .iter()
+                .filter(|(p, _)| plane.signed_distance(p).abs() < STANDS_OUT)
+                .copied()
+                .collect();
+            match Plane::fit(&near).filter(|p| p.normal.z > LEAST_LEVEL) {
+                Some(next) if 4 * near.len() > all.len() => plane = next,
+                _ => break,
+            }
+        }
+        plane
+    }
+
+    fn block(&self, k: usize) -> Point3<f64> {
+        let (c, r) = ((k % self.columns) as f64, (k / self.columns) as f64);
+        let p = self.min + nalgebra::Vector2::new(c + 0.5, r + 0.5) * CELL;
+        Point3::new(p.x, p.y, self.heights[k])
+    }
+
+    /// Lowers blocks that stand out above the common plane onto it.
+    fn without_large_roofs(mut self) -> Self {
+        let plane = self.plane();
+        for k in 0..self.heights.len() {
+            let at = self.block(k);
+            if plane.signed_distance(&at) > STANDS_OUT {
+                self.heights[k] = plane.z_at(at.x, at.y);
+            }
+        }
+        self
     }
 
     /// Ground height at a plan position, metres.
