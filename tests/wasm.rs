@@ -3,6 +3,7 @@
 //!
 //! `wasm-pack test --node --release -- --test wasm`
 #![cfg(target_arch = "wasm32")]
+#![allow(clippy::unwrap_used)]
 
 mod common;
 
