@@ -112,8 +112,8 @@ pub struct MatchParams {
     pub window_px: usize,
     /// Least correlation of an edgel that counts. B99 3.2: "the threshold value is 0.6".
     pub edgel_correlation: f64,
-    /// Least number of such edgels. B99 3.2: "the minimum is 15 edgels"; B99 4.1: "only 10 matched
-    /// edgels (rather than 15)" where planes are built on the lines, as here.
+    /// Least number of such edgels. B99 3.2: "the minimum is 15 edgels". B99 4.1 relaxes it to 10 where
+    /// planes are built on the lines; here that adds wrong lines and hardly any roof edges.
     pub min_edgels: usize,
     /// Least score of a pair, see [`crate::linematch::EdgelScore`]. Assumption: the paper gives no value; at 0.5 a line
     /// is seen unoccluded over more than half of its edgels.
@@ -158,7 +158,7 @@ impl Default for MatchParams {
         Self {
             window_px: 15,
             edgel_correlation: 0.6,
-            min_edgels: 10,
+            min_edgels: 15,
             pair_score: 0.5,
             with_segment: 0.5,
             without_segment: 1.5,
@@ -168,7 +168,7 @@ impl Default for MatchParams {
             plane_angles_deg: vec![0.0, -20.0, 20.0, -40.0, 40.0, -55.0, 55.0],
             min_intersection_sine: 0.04,
             max_slope_deg: 75.0,
-            gate_px: 1.5,
+            gate_px: 1.0,
             max_gap_px: 30.0,
             max_partners: 8,
             z_range_m: None,
@@ -199,7 +199,7 @@ impl Default for Lines3dParams {
             position_floor_px: 0.1,
             loss_scale: 2.4,
             max_iterations: 20,
-            max_residual: 3.0,
+            max_residual: 4.0,
             max_sigma_px: 3.0,
         }
     }
@@ -330,7 +330,7 @@ impl Default for RoofParams {
             half_plane_gain_m: 0.1,
             min_area_m2: 1.5,
             min_real_ratio: 0.25,
-            min_height_m: 1.8,
+            min_height_m: 2.0,
         }
     }
 }

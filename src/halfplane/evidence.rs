@@ -6,6 +6,7 @@ use nalgebra::Point2;
 
 use super::ThetaFrame;
 use super::arrangement::{Arrangement, CellEdge};
+use super::consistency::ConsistencyMap;
 use super::grouping::{GroupingInput, PlaneGroup};
 use super::hypothesis::Hypothesis;
 use super::labelling::{Energy, LabelEdge, NO_PLANE};
@@ -31,17 +32,23 @@ pub struct CellEvidence {
 pub struct Evidence {
     /// Per cell: (plane, evidence), ascending by plane.
     cells: Vec<Vec<(u32, CellEvidence)>>,
+    /// Per cell: sum of weight x (correlation - least correlation) on the ground, square metres; at least 0.
+    ground: Vec<f64>,
 }
 
 impl Evidence {
-    /// Sums each hypothesis' consistency map over the cells.
+    /// Sums each hypothesis' consistency map over the cells; `ground` are the maps of the ground plane at
+    /// a few heights, over `grid`.
     pub fn collect(
         input: &GroupingInput,
         hypotheses: &[Hypothesis],
         arrangement: &Arrangement,
         grid: &PlanGrid,
+        ground: &[ConsistencyMap],
+        params: &RoofParams,
     ) -> Self {
         let raster = arrangement.raster(grid);
+        let ground = ground_evidence(ground, &raster, arrangement.cells, grid, params);
         let per_group = crate::parallel::map(hypotheses, |_, h| {
             let mut cells = sum_over_cells(h, &raster, grid);
             add_half_planes(&mut cells, input, &h.group, &raster, grid);
@@ -56,7 +63,7 @@ impl Evidence {
                 }
             }
         }
-        Self { cells }
+        Self { cells, ground }
     }
 
     /// The evidence for a plane in a cell; `None` where the plane may not cover it.
@@ -78,13 +85,18 @@ impl Evidence {
         let unary = self
             .cells
             .iter()
-            .map(|candidates| {
+            .zip(&self.ground)
+            .map(|(candidates, ground)| {
                 candidates
                     .iter()
                     .map(|(plane, e)| {
                         // sum of weight x (least correlation - correlation): negative for a match.
                         let mismatch = e.weight * params.min_correlation - e.correlation;
-                        (*plane, mismatch - params.half_plane_gain_m * e.half_plane_m)
+                        // "No plane" keeps the cost 0, so what speaks for the ground counts against roofs.
+                        (
+                            *plane,
+                            mismatch + ground - params.half_plane_gain_m * e.half_plane_m,
+                        )
                     })
                     .collect()
             })
@@ -121,6 +133,12 @@ impl Evidence {
             for q in labels(edge.right).filter(|&q| q != p) {
                 let (pp, qq) = (planes.get(p as usize), planes.get(q as usize));
                 let factor = match (pp, qq) {
+                    // Two hypotheses of one roof plane: a border between them says nothing.
+                    (Some(p), Some(q))
+                        if p.angle_to(q) < SAME_PLANE && apart(p, q, &middle) < MEETING =>
+                    {
+                        DUPLICATE
+                    }
                     (Some(p), Some(q)) => {
                         let meets = [a, b]
                             .iter()
@@ -136,7 +154,7 @@ impl Evidence {
                     (Some(p), None) | (None, Some(p)) if on_line(p, &middle) => ON_LINE,
                     _ => 1.0,
                 };
-                if factor < 1.0 {
+                if factor != 1.0 {
                     supported.push((p, q, factor * full));
                 }
             }
@@ -149,6 +167,14 @@ impl Evidence {
     }
 }
 
+fn apart(p: &Plane, q: &Plane, at: &Point2<f64>) -> f64 {
+    (p.z_at(at.x, at.y) - q.z_at(at.x, at.y)).abs()
+}
+
+/// Planes at less than this angle, radians (6 degrees), that meet are one plane found twice.
+const SAME_PLANE: f64 = 6.0 * std::f64::consts::PI / 180.0;
+/// Share of the full border cost between two hypotheses of one plane.
+const DUPLICATE: f64 = 3.0;
 /// Share of the full border cost where two planes meet along a reconstructed line, ...
 const CREASE_ON_LINE: f64 = 0.1;
 /// ... where two planes meet, ...
@@ -159,6 +185,30 @@ const ON_LINE: f64 = 0.15;
 const MEETING: f64 = 0.25;
 /// A line lies in a plane's border when their heights differ by less, metres.
 pub const LINE_HEIGHT: f64 = 0.35;
+
+/// What the ground explains at least as well as a roof could, per cell.
+fn ground_evidence(
+    maps: &[ConsistencyMap],
+    raster: &[u32],
+    cells: usize,
+    grid: &PlanGrid,
+    params: &RoofParams,
+) -> Vec<f64> {
+    let area = grid.step * grid.step;
+    let mut evidence = vec![0.0f64; cells];
+    for (k, &cell) in raster.iter().enumerate().filter(|(_, c)| **c != u32::MAX) {
+        let best = maps
+            .iter()
+            .map(|m| (m.correlation(k), m.weight(k)))
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((correlation, weight)) = best {
+            evidence[cell as usize] +=
+                f64::from(weight) * (f64::from(correlation) - params.min_correlation) * area;
+        }
+    }
+    evidence.iter_mut().for_each(|e| *e = e.max(0.0));
+    evidence
+}
 
 fn sum_over_cells(
     hypothesis: &Hypothesis,

@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::HalfPlane;
 use super::arrangement::Arrangement;
 use super::borders::{Border, Region, border_lines};
+use super::consistency::{ConsistencyMap, consistency_map};
 use super::delineation::{Delineation, Outline, delineate, signed_area};
 use super::evidence::{Evidence, LINE_HEIGHT};
 use super::grouping::{GroupingInput, PlaneGroup, group_planes};
@@ -120,7 +121,15 @@ pub fn reconstruct_facets(
     let borders = border_lines(&input, &hypotheses, &bounding, params);
     let arrangement = Arrangement::new(&with_frame(&borders, &grid));
 
-    let evidence = Evidence::collect(&input, &hypotheses, &arrangement, &grid);
+    let ground_maps = ground_maps(&reduced, ground, &grid);
+    let evidence = Evidence::collect(
+        &input,
+        &hypotheses,
+        &arrangement,
+        &grid,
+        &ground_maps,
+        params,
+    );
     let groups: Vec<PlaneGroup> = hypotheses.iter().map(|h| h.group.clone()).collect();
     let plane_lines: Vec<PlaneLine> = hypotheses.into_iter().flat_map(|h| h.lines).collect();
     let planes: Vec<Plane> = groups.iter().map(|g| g.plane).collect();
@@ -184,6 +193,23 @@ fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[Region]) -> Option<Pl
     // Coarser cells for a very large window: at most 36 million.
     let step = step.max(FINEST_CELL).max((size.x * size.y / 36e6).sqrt());
     (size.x > 0.0 && size.y > 0.0 && step.is_finite()).then(|| PlanGrid::covering(min, max, step))
+}
+
+/// Similarity of the views on the ground plane; its height is only known to a few decimetres, so it is tried at
+/// three.
+fn ground_maps(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Vec<ConsistencyMap> {
+    const OFFSETS: [f64; 3] = [-0.3, 0.0, 0.3];
+    let plane = ground.plane();
+    crate::parallel::map(&OFFSETS, |_, dz| {
+        consistency_map(
+            scene,
+            &Plane {
+                d: plane.d - dz * plane.normal.z,
+                ..plane
+            },
+            grid,
+        )
+    })
 }
 
 /// Finest cell, metres. Assumption: what a roof's border lines can be told apart by; sharper images are reduced.

@@ -110,6 +110,25 @@ impl Ground {
         }
     }
 
+    /// The plane that fits the ground heights best.
+    pub fn plane(&self) -> Plane {
+        let level = Plane {
+            normal: Vector3::z(),
+            d: -self.elsewhere,
+        };
+        let points: Vec<(Point3<f64>, f64)> = (0..self.heights.len())
+            .map(|k| {
+                let (c, r) = ((k % self.columns) as f64, (k / self.columns) as f64);
+                let p = self.min + nalgebra::Vector2::new(c + 0.5, r + 0.5) * CELL;
+                (Point3::new(p.x, p.y, self.heights[k]), 1.0)
+            })
+            .collect();
+        // Steeper than 15 degrees is not ground but a bad fit.
+        Plane::fit(&points)
+            .filter(|p| p.normal.z > 0.966)
+            .unwrap_or(level)
+    }
+
     /// Ground height at a plan position, metres.
     pub fn z_at(&self, p: &Point2<f64>) -> f64 {
         let (c, r) = ((p.x - self.min.x) / CELL, (p.y - self.min.y) / CELL);
