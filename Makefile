@@ -29,8 +29,9 @@ STAMPS := target/stamps
 WASM32 := $(STAMPS)/wasm32-$(shell rustc --version | cut -d ' ' -f 2)
 NPM := www/node_modules/.installed-$(shell cksum < www/package-lock.json | tr ' ' '-')
 RUST_SOURCES := $(shell find src -name '*.rs') Cargo.toml Cargo.lock .cargo/config.toml
-WWW_SOURCES := $(shell find www -type f -not -path 'www/node_modules/*' -not -path 'www/dist/*' \
-	-not -path 'www/src/pkg/*' -not -path 'www/test*' 2>/dev/null)
+WWW_SOURCES := $(shell find www -type f -not -name '*.tsbuildinfo' -not -path 'www/node_modules/*' \
+	-not -path 'www/dist/*' -not -path 'www/src/pkg/*' -not -path 'www/test*' -not -path 'www/screenshots/*' \
+	-not -path 'www/playwright-report/*')
 PACKAGE := www/src/pkg/ridgeline_bg.wasm
 SITE := www/dist/index.html
 PORT ?= 4173

@@ -1,6 +1,7 @@
 //! The whole pipeline on the synthetic L-shaped house: what it finds is the planted truth, what it
 //! writes is the same whatever the number of threads, and it keeps no result that is out of date.
 #![cfg(not(target_arch = "wasm32"))]
+#![allow(clippy::unwrap_used)]
 
 mod common;
 

@@ -3,6 +3,7 @@
 //!
 //! `wasm-pack test --node --release -- --test wasm`
 #![cfg(target_arch = "wasm32")]
+#![allow(clippy::unwrap_used)]
 
 mod common;
 
@@ -58,9 +59,16 @@ fn the_files_have_the_native_bytes() {
 
     // What the page draws.
     assert!(
-        session.segments(0).unwrap().length() % 4 == 0 && session.segments(0).unwrap().length() > 0
+        session.segments(0).unwrap().length().is_multiple_of(4)
+            && session.segments(0).unwrap().length() > 0
     );
-    assert!(session.matched_segments(5).unwrap().length() % 6 == 0);
+    assert!(
+        session
+            .matched_segments(5)
+            .unwrap()
+            .length()
+            .is_multiple_of(6)
+    );
     assert!(session.lines().unwrap().length() >= 6);
     let half_plane = Array::from(&session.half_planes().unwrap()).get(0);
     assert!(member(&half_plane, "theta").as_f64().unwrap().abs() < 1.6);

@@ -174,7 +174,7 @@ fn apart(p: &Plane, q: &Plane, at: &Point2<f64>) -> f64 {
 /// Planes at less than this angle, radians (6 degrees), that meet are one plane found twice.
 const SAME_PLANE: f64 = 6.0 * std::f64::consts::PI / 180.0;
 /// Share of the full border cost between two hypotheses of one plane.
-const DUPLICATE: f64 = 3.0;
+const DUPLICATE: f64 = 1.5;
 /// Share of the full border cost where two planes meet along a reconstructed line, ...
 const CREASE_ON_LINE: f64 = 0.1;
 /// ... where two planes meet, ...

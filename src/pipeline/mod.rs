@@ -218,8 +218,8 @@ impl Run {
             }
             Stage::Matches => {
                 let segments = before(&r.segments);
-                r.matches =
-                    Some(match_lines(scene, segments, &params.matching, &params.lines3d).into());
+                let found = match_lines(scene, segments, &params.matching, &params.lines3d);
+                r.matches = Some(found.into());
             }
             Stage::Lines => {
                 let (segments, matches) = (before(&r.segments), before(&r.matches));
@@ -270,7 +270,8 @@ fn before<V, T>(outcome: &Option<Outcome<V, T>>) -> &V {
 fn depends(stage: Stage, a: &Params, b: &Params) -> bool {
     match stage {
         Stage::Segments => a.segments != b.segments,
-        Stage::Matches => a.matching != b.matching,
+        // Matching fits 3D lines too, to tell which segments agree.
+        Stage::Matches => a.matching != b.matching || a.lines3d != b.lines3d,
         Stage::Lines => a.lines3d != b.lines3d,
         Stage::HalfPlanes => a.sweep != b.sweep,
         Stage::Facets => a.roof != b.roof,

@@ -1,4 +1,5 @@
 //! What the tests of whole runs share, natively and in wasm.
+#![allow(dead_code)] // Not every test uses all of it.
 
 use std::fmt::Write;
 
