@@ -2,8 +2,8 @@
 //!
 //! * Where two views have a segment, the line is there.
 //! * Growing: where one view only has a segment, the others are taken along if the neighbourhoods
-//!   correlate over three views ("the end points may be extended provided the grown edgels satisfy the
-//!   photometric correlation tests over the three views").
+//!   correlate over three views ("the end points may be extended provided the grown edgels satisfy
+//!   the photometric correlation tests over the three views").
 //! * Merging: a gap between fragments that no view closes is bridged by the same test.
 
 use super::profile::Profile;
@@ -80,9 +80,17 @@ mod tests {
     #[test]
     fn holes_are_closed_and_gaps_need_correlation() {
         assert_eq!(reach("xxx...xxx", "........."), 8, "a small hole");
-        assert_eq!(reach("xx........xx", "............"), 1, "an unsupported gap");
+        assert_eq!(
+            reach("xx........xx", "............"),
+            1,
+            "an unsupported gap"
+        );
         assert_eq!(reach("xx........xx", ".xxxxxxxxxx."), 11, "a bridged gap");
-        assert_eq!(reach("xxxx........", "xxxxxxxxxxxx"), 3, "nothing beyond a gap");
+        assert_eq!(
+            reach("xxxx........", "xxxxxxxxxxxx"),
+            3,
+            "nothing beyond a gap"
+        );
     }
 
     #[test]

@@ -1,10 +1,10 @@
-//! The range of heights in which a scene's lines lie. The epipolar beam of B99 3.1 is endless along the epipolar
-//! lines; the range cuts it to what the scene can contain.
+//! The range of heights in which a scene's lines lie. The epipolar beam of B99 3.1 is endless along
+//! the epipolar lines; the range cuts it to what the scene can contain.
 //!
 //! The paper does not say how. Here the ends of the longest segments are swept along their rays
-//! through all depths at which another view can see them; an unambiguous maximum of correlation that two more
-//! views confirm gives a height. The range spans the heights that have company, so that a few wrong
-//! maxima do not widen it and a single tower does.
+//! through all depths at which another view can see them; an unambiguous maximum of correlation
+//! that two more views confirm gives a height. The range spans the heights that have company, so
+//! that a few wrong maxima do not widen it and a single tower does.
 
 use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3};
 
@@ -55,7 +55,11 @@ pub fn height_range(scene: &Scene, sights: &Sights) -> Option<HeightRange> {
         heights.partition_point(|h| *h <= z + COMPANY_M) - from - 1
     };
     let mut low = heights.iter().copied().find(|z| company(*z) >= COMPANY)?;
-    let high = heights.iter().rev().copied().find(|z| company(*z) >= COMPANY)?;
+    let high = heights
+        .iter()
+        .rev()
+        .copied()
+        .find(|z| company(*z) >= COMPANY)?;
     if let Some(ground) = scene.ground_z {
         low = low.min(ground);
     }
@@ -72,7 +76,11 @@ pub fn any_height(scene: &Scene) -> [f64; 2] {
     let camera = lowest.fold(f64::INFINITY, f64::min);
     let ground = scene.ground_z.unwrap_or_else(|| {
         let scale = |c: &Camera| c.center.z - 1000.0 * c.k[(0, 0)] / 10_000.0;
-        scene.views.iter().map(|v| scale(&v.camera)).fold(f64::INFINITY, f64::min)
+        scene
+            .views
+            .iter()
+            .map(|v| scale(&v.camera))
+            .fold(f64::INFINITY, f64::min)
     });
     [ground - MARGIN_M, ground + 0.5 * (camera - ground)]
 }
@@ -136,8 +144,7 @@ fn sweep(scene: &Scene, images: &[Gray], view: ViewId, x: &Point2<f64>) -> Optio
     confirmed.sort_by(|a, b| b.0.total_cmp(&a.0));
     let (best, depth) = *confirmed.first()?;
     let second = confirmed.get(1).map_or(0.0, |c| c.0);
-    (best >= ACCEPTED && best - second >= UNIQUE)
-        .then(|| (camera.center + camera.ray(x) * depth).z)
+    (best >= ACCEPTED && best - second >= UNIQUE).then(|| (camera.center + camera.ray(x) * depth).z)
 }
 
 /// The other views, nearest projection centre first.
@@ -172,7 +179,10 @@ fn epipolar_depths(first: &Camera, second: &Camera, x: &Point2<f64>) -> Vec<f64>
             let other = second.ray(&p);
             let c = ray.dot(&other);
             let b = second.center - center;
-            let (s, t) = (b.dot(&ray) - c * b.dot(&other), c * b.dot(&ray) - b.dot(&other));
+            let (s, t) = (
+                b.dot(&ray) - c * b.dot(&other),
+                c * b.dot(&ray) - b.dot(&other),
+            );
             let sine2 = 1.0 - c * c;
             (sine2 > 1e-10 && s > 0.0 && t > 0.0).then(|| s / sine2)
         })

@@ -1,5 +1,6 @@
-//! From a pair or triple to a line over N views (B99 3.4): the 3D line is projected into all views, segments near the
-//! projection are adopted, the line is fitted again, merged and grown, and its views are counted.
+//! From a pair or triple to a line over N views (B99 3.4): the 3D line is projected into all views,
+//! segments near the projection are adopted, the line is fitted again, merged and grown, and its
+//! views are counted.
 
 use serde::Serialize;
 
@@ -15,11 +16,11 @@ use crate::lines3d::{LineFit, Observation, ProjectedLine, conditioning, fit_line
 use crate::params::{Lines3dParams, MatchParams};
 use crate::scene::Scene;
 
-/// How often segments are adopted and the line fitted again. Assumption: the second round changes few lines, a
-/// third none.
+/// How often segments are adopted and the line fitted again. Assumption: the second round changes
+/// few lines, a third none.
 const ROUNDS: usize = 2;
-/// Least number of views with a segment. Two interpretation planes always meet in a line; the third makes
-/// it evidence, correlation without a segment then adds to it.
+/// Least number of views with a segment. Two interpretation planes always meet in a line; the third
+/// makes it evidence, correlation without a segment then adds to it.
 const MIN_MEASURED: usize = 3;
 /// A stretch reaches past the detected segments by this much to count as grown, px.
 const GROWN_PX: f64 = 3.0;
@@ -66,7 +67,8 @@ pub struct Context<'a> {
     pub fitting: &'a Lines3dParams,
 }
 
-/// Completes a hypothesis from some of its segments; `taken` tells which segments belong to other lines.
+/// Completes a hypothesis from some of its segments; `taken` tells which segments belong to other
+/// lines.
 pub fn complete_line(
     context: &Context,
     start: &Segment3,
@@ -102,8 +104,9 @@ pub fn complete_line(
 }
 
 /// Views that have segments on the line but see another edge nearby: those that do not support it
-/// photometrically and, where the views are not alike in the mean, the one least like the others. A wrong view displaces the
-/// line and with it the windows of the right ones, so one is left out at a time.
+/// photometrically and, where the views are not alike in the mean, the one least like the others. A
+/// wrong view displaces the line and with it the windows of the right ones, so one is left out at a
+/// time.
 fn disagreeing_views(
     profile: &Profile,
     supports: &[LineSupport],
@@ -116,10 +119,7 @@ fn disagreeing_views(
         return worst.map(|v| v.view).into_iter().collect();
     }
     let supported = |v: &&ViewProfile| supports.iter().any(|s| s.view == v.view);
-    measured
-        .filter(|v| !supported(v))
-        .map(|v| v.view)
-        .collect()
+    measured.filter(|v| !supported(v)).map(|v| v.view).collect()
 }
 
 /// Number of views among segments sorted by view.
@@ -152,7 +152,11 @@ impl Context<'_> {
         loop {
             let fit = self.fit(start, &kept)?;
             let worst = (0..kept.len())
-                .max_by(|&i, &j| fit.residuals[i].total_cmp(&fit.residuals[j]).then(j.cmp(&i)))
+                .max_by(|&i, &j| {
+                    fit.residuals[i]
+                        .total_cmp(&fit.residuals[j])
+                        .then(j.cmp(&i))
+                })
                 .ok_or(Rejection::NoFit)?;
             if fit.residuals[worst] <= self.fitting.max_residual {
                 return Ok((fit, kept));
@@ -179,8 +183,8 @@ impl Context<'_> {
             .collect()
     }
 
-    /// Largest standard deviation at the ends t0 and t1 (metres along the fit) that the line would have
-    /// without one of its views. A view that alone fixes the line in some direction cannot be
+    /// Largest standard deviation at the ends t0 and t1 (metres along the fit) that the line would
+    /// have without one of its views. A view that alone fixes the line in some direction cannot be
     /// verified by the others: whatever segment it has there fits.
     fn sigma_without_one(
         &self,
@@ -225,9 +229,7 @@ impl Context<'_> {
                 let on_line = |s: &Sight| {
                     let ahead = |p: nalgebra::Point2<f64>| (p - from).dot(&image.direction);
                     let (s0, s1) = (ahead(s.segment.p0), ahead(s.segment.p1));
-                    s0.max(s1) >= 0.0
-                        && s0.min(s1) <= stretch.length()
-                        && self.lies_on(&image, s)
+                    s0.max(s1) >= 0.0 && s0.min(s1) <= stretch.length() && self.lies_on(&image, s)
                 };
                 if !taken(name) && self.sights.get(name).is_some_and(on_line) {
                     found.push(name);
@@ -308,18 +310,21 @@ impl Context<'_> {
 
         let supported: Vec<usize> = (start..=end)
             .filter(|&e| {
-                view.detected[e]
-                    || f64::from(view.correlation[e]) >= self.params.edgel_correlation
+                view.detected[e] || f64::from(view.correlation[e]) >= self.params.edgel_correlation
             })
             .collect();
         let (first, last) = (*supported.first()?, *supported.last()?);
-        let stretch = Segment2::new(view.image.at(profile.t[first])?, view.image.at(profile.t[last])?);
-        let outermost = segments.iter().fold(
-            (f64::INFINITY, f64::NEG_INFINITY),
-            |(f, t), (_, [s, e])| (f.min(s.max(t0)), t.max(e.min(t1))),
+        let stretch = Segment2::new(
+            view.image.at(profile.t[first])?,
+            view.image.at(profile.t[last])?,
         );
-        let detected_px = (outermost.1 - outermost.0) * (stretch.length()
-            / (profile.t[last] - profile.t[first]).max(1e-9));
+        let outermost = segments
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(f, t), (_, [s, e])| {
+                (f.min(s.max(t0)), t.max(e.min(t1)))
+            });
+        let detected_px = (outermost.1 - outermost.0)
+            * (stretch.length() / (profile.t[last] - profile.t[first]).max(1e-9));
         let kind = match segments.len() {
             0 => SupportKind::Grown,
             _ if stretch.length() > detected_px + GROWN_PX => SupportKind::Grown,
@@ -352,8 +357,9 @@ impl Context<'_> {
 
     /// The last tests of a completed line, with the stretch t0 to t1 (metres) of the fit.
     ///
-    /// Deviation from the paper's four of six views: three do where the line is twice as certain as it
-    /// must be. Two strips often see the two sides of an eave differently, and then three views are all there are.
+    /// Deviation from the paper's four of six views: three do where the line is twice as certain as
+    /// it must be. Two strips often see the two sides of an eave differently, and then three views
+    /// are all there are.
     fn check_line(
         &self,
         fit: &LineFit,
@@ -374,13 +380,17 @@ impl Context<'_> {
         if without_one > self.fitting.max_sigma_px * camera.ground_pixel(&segment.p0) {
             return Err(Rejection::Unverified);
         }
-        let certain = score >= self.params.pair_score && sigma_px <= 0.5 * self.fitting.max_sigma_px;
+        let certain =
+            score >= self.params.pair_score && sigma_px <= 0.5 * self.fitting.max_sigma_px;
         let measured = supports.iter().filter(|s| !s.segments.is_empty()).count();
         if measured < MIN_MEASURED || (supports.len() < expected_views && !certain) {
             return Err(Rejection::TooFewViews);
         }
         let [low, high] = self.z_range;
-        if [segment.p0.z, segment.p1.z].iter().any(|z| *z < low || *z > high) {
+        if [segment.p0.z, segment.p1.z]
+            .iter()
+            .any(|z| *z < low || *z > high)
+        {
             return Err(Rejection::OutsideHeights);
         }
         Ok(Line { segment, supports })

@@ -21,8 +21,8 @@ pub struct ViewProfile {
     pub segments: Vec<(SegmentId, [f64; 2])>,
     /// At each edgel: does a segment lie there?
     pub detected: Vec<bool>,
-    /// At each edgel: correlation with the reference view on the better side; NaN where the view does
-    /// not see it. All ones in the reference view itself.
+    /// At each edgel: correlation with the reference view on the better side; NaN where the view
+    /// does not see it. All ones in the reference view itself.
     pub correlation: Vec<f32>,
     /// Mean score with the other views that have segments: low for a view that sees another edge.
     pub agreement: f64,
@@ -52,8 +52,11 @@ impl Profile {
             .filter_map(|view| view_segments(scene, sights, line, segments, view))
             .collect();
         let reach = |v: &ViewProfile| v.segments.iter().map(|(_, [s, e])| e - s).sum::<f64>();
-        let longest = (0..views.len())
-            .max_by(|&i, &j| reach(&views[i]).total_cmp(&reach(&views[j])).then(j.cmp(&i)))?;
+        let longest = (0..views.len()).max_by(|&i, &j| {
+            reach(&views[i])
+                .total_cmp(&reach(&views[j]))
+                .then(j.cmp(&i))
+        })?;
         let ends = views.iter().flat_map(|v| v.segments.iter());
         let (from, to) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(f, t), (_, [s, e])| {
             (f.min(*s), t.max(*e))
@@ -89,8 +92,7 @@ impl Profile {
 
     /// Number of views whose neighbourhoods agree at an edgel, the reference included.
     pub fn agreeing(&self, edgel: usize, params: &MatchParams) -> usize {
-        let agrees =
-            |v: &&ViewProfile| f64::from(v.correlation[edgel]) >= params.edgel_correlation;
+        let agrees = |v: &&ViewProfile| f64::from(v.correlation[edgel]) >= params.edgel_correlation;
         self.views.iter().filter(agrees).count()
     }
 }
@@ -109,10 +111,7 @@ fn view_segments(
         .filter(|s| s.view == view)
         .filter_map(|s| {
             let sight = sights.get(*s)?;
-            let (t0, t1) = (
-                image.t_of(&sight.segment.p0),
-                image.t_of(&sight.segment.p1),
-            );
+            let (t0, t1) = (image.t_of(&sight.segment.p0), image.t_of(&sight.segment.p1));
             Some((s.segment, [t0.min(t1), t0.max(t1)]))
         })
         .collect();
@@ -211,5 +210,9 @@ fn with_segments(views: &[ViewProfile]) -> impl Iterator<Item = usize> {
 }
 
 fn side_score(a: &Strip, b: &Strip, side: StripSide, params: &MatchParams) -> f64 {
-    EdgelScore::of(&correlate(a, b, side, params.noise), params.edgel_correlation).score
+    EdgelScore::of(
+        &correlate(a, b, side, params.noise),
+        params.edgel_correlation,
+    )
+    .score
 }

@@ -1,11 +1,11 @@
-//! Three-view matching (B99 3.2): a pair fixes a 3D line, its image in a third view is the trifocal transfer
-//! of the pair, and a segment found there verifies it.
+//! Three-view matching (B99 3.2): a pair fixes a 3D line, its image in a third view is the trifocal
+//! transfer of the pair, and a segment found there verifies it.
 //!
-//! Every third view that verifies a pair makes a triple. The triples of one pair share their line, so they are kept
-//! together as a [`Bundle`]: that is the join of triplets of B99 3.4 for triples with two segments
-//! in common. Because each pair of views takes its turn as the first two, all search directions are
-//! covered. A bundle whose pair no segment verifies stays: correlation without a segment may still
-//! verify it (`nviews`).
+//! Every third view that verifies a pair makes a triple. The triples of one pair share their line,
+//! so they are kept together as a [`Bundle`]: that is the join of triplets of B99 3.4 for triples
+//! with two segments in common. Because each pair of views takes its turn as the first two, all
+//! search directions are covered. A bundle whose pair no segment verifies stays: correlation
+//! without a segment may still verify it (`nviews`).
 
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;
@@ -94,12 +94,17 @@ fn verify_in_view(
         return Vec::new();
     };
     let reach = params.gate_px.max(3.0 * prediction.sigma_px);
-    let ends = [prediction.image.at(0.0), prediction.image.at(prediction.length)];
+    let ends = [
+        prediction.image.at(0.0),
+        prediction.image.at(prediction.length),
+    ];
     let [Some(start), Some(end)] = ends else {
         return Vec::new();
     };
     let stretch = crate::geometry::Segment2::new(start, end);
-    let near = sights.views[view.index()].index.near_segment(&stretch, reach);
+    let near = sights.views[view.index()]
+        .index
+        .near_segment(&stretch, reach);
     near.into_iter()
         .filter_map(|id| {
             let segment = SegmentRef {
@@ -108,7 +113,9 @@ fn verify_in_view(
             };
             let sight = sights.get(segment)?;
             prediction.agrees(sight, reach, params).then_some(())?;
-            let score = pairs.score(pair.a, segment).max(pairs.score(pair.b, segment));
+            let score = pairs
+                .score(pair.a, segment)
+                .max(pairs.score(pair.b, segment));
             (score > 0.0).then_some(Verification { segment, score })
         })
         .collect()
@@ -180,9 +187,8 @@ fn transfer_sigma(
     let (a, b) = (sights.get(pair.a)?, sights.get(pair.b)?);
     let (first, second) = (scene.camera(pair.a.view), scene.camera(pair.b.view));
     let third = scene.camera(view);
-    let shift = |x: &Point3<f64>, along: &Vector3<f64>| {
-        Some(image.distance(&third.project(&(x + along))?))
-    };
+    let shift =
+        |x: &Point3<f64>, along: &Vector3<f64>| Some(image.distance(&third.project(&(x + along))?));
     let mut worst = 0.0f64;
     for x in [pair.overlap.p0, pair.overlap.p1] {
         let ray = |c: &Point3<f64>| (x - c).normalize();

@@ -121,8 +121,8 @@ fn reconstruct(
         .collect();
     let start = line_of_planes(&observations).ok_or(LineOutcome::NoFit)?;
     let fit = fit_line(&observations, &start, params).ok_or(LineOutcome::NoFit)?;
-    let (t0, t1) = extent::common_extent(scene, &fit.line, &matched.supports)
-        .ok_or(LineOutcome::NoExtent)?;
+    let (t0, t1) =
+        extent::common_extent(scene, &fit.line, &matched.supports).ok_or(LineOutcome::NoExtent)?;
     let (d, length) = (fit.line.direction(), fit.line.length());
     let segment = Segment3::new(fit.line.p0 + d * t0, fit.line.p0 + d * t1);
     let (f0, f1) = (t0 / length, t1 / length);

@@ -23,10 +23,7 @@ impl ProjectedLine {
     /// The image of the line; `None` where an end of the segment is not in front of the camera or
     /// the camera looks along it.
     pub fn new(camera: &Camera, segment: &Segment3) -> Option<Self> {
-        let (x0, x1) = (
-            camera.project(&segment.p0)?,
-            camera.project(&segment.p1)?,
-        );
+        let (x0, x1) = (camera.project(&segment.p0)?, camera.project(&segment.p1)?);
         let image = Segment2::new(x0, x1);
         if image.length() < 1e-6 {
             return None;
