@@ -2,8 +2,8 @@
 //!
 //! * Where two views have a segment, the line is there.
 //! * Growing: where one view only has a segment, the others are taken along if the neighbourhoods
-//!   correlate over three views ("the end points may be extended provided the grown edgels satisfy the
-//!   photometric correlation tests over the three views").
+//!   correlate over three views ("the end points may be extended provided the grown edgels satisfy
+//!   the photometric correlation tests over the three views").
 //! * Merging: a gap between fragments that no view closes is bridged by the same test.
 
 use super::profile::Profile;

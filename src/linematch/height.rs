@@ -1,10 +1,10 @@
-//! The range of heights in which a scene's lines lie. The epipolar beam of B99 3.1 is endless along the epipolar
-//! lines; the range cuts it to what the scene can contain.
+//! The range of heights in which a scene's lines lie. The epipolar beam of B99 3.1 is endless along
+//! the epipolar lines; the range cuts it to what the scene can contain.
 //!
 //! The paper does not say how. Here the ends of the longest segments are swept along their rays
-//! through all depths at which another view can see them; an unambiguous maximum of correlation that two more
-//! views confirm gives a height. The range spans the heights that have company, so that a few wrong
-//! maxima do not widen it and a single tower does.
+//! through all depths at which another view can see them; an unambiguous maximum of correlation
+//! that two more views confirm gives a height. The range spans the heights that have company, so
+//! that a few wrong maxima do not widen it and a single tower does.
 
 use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3};
 

@@ -36,8 +36,8 @@ use crate::lines2d::ImageSegment;
 use crate::params::{Lines3dParams, MatchParams};
 use crate::scene::Scene;
 
-/// Matches the segments of all views (one list a view, in the order of the scene's views) over three
-/// and more views. Fewer than three views, or views without common ground, give no match.
+/// Matches the segments of all views (one list a view, in the order of the scene's views) over
+/// three and more views. Fewer than three views, or views without common ground, give no match.
 pub fn match_lines(
     scene: &Scene,
     segments: &[Vec<ImageSegment>],
@@ -93,7 +93,8 @@ pub struct LineSupport {
     /// The detected segments that belong to the line in this view; none where the line was
     /// verified by correlation alone.
     pub segments: Vec<SegmentId>,
-    /// The stretch of the line that is supported in this view, pixels, same direction as the 3D line.
+    /// The stretch of the line that is supported in this view, pixels, same direction as the 3D
+    /// line.
     pub stretch: Segment2,
     /// Photometric score, 0 to 1.
     pub score: f64,
@@ -117,5 +118,115 @@ impl From<nviews::Line> for LineMatch {
             score: sum / line.supports.len().max(1) as f64,
             supports: line.supports,
         }
+    }
+}
+
+#[cfg(test)]
+mod planted;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lines3d::reconstruct_lines;
+
+    fn matched() -> (Scene, Vec<Vec<ImageSegment>>, Vec<LineMatch>, MatchTrace) {
+        let scene = planted::scene();
+        let segments = planted::segments(&scene);
+        let (matches, trace) = match_lines(
+            &scene,
+            &segments,
+            &MatchParams::default(),
+            &Lines3dParams::default(),
+        );
+        (scene, segments, matches, trace)
+    }
+
+    #[test]
+    fn planted_edges_are_matched_and_nothing_else() {
+        let (scene, segments, matches, trace) = matched();
+        let (lines, _) = reconstruct_lines(&scene, &segments, &matches, &Lines3dParams::default());
+        assert_eq!(lines.len(), 4);
+        for edge in planted::edges() {
+            let found = lines.iter().any(|l| {
+                (l.segment.p0 - edge.at(0.02)).norm() < 0.3
+                    && (l.segment.p1 - edge.at(0.98)).norm() < 0.3
+                    && edge.line_distance(&l.at(0.5)) < 4.0 * l.sigma_m
+            });
+            assert!(found, "edge {edge:?} in {lines:?}");
+        }
+        for (view, outcomes) in trace.outcomes.iter().enumerate() {
+            for (segment, outcome) in outcomes.iter().enumerate() {
+                let planted = segment < 4 || (view == 1 && segment == 4);
+                let matched = matches!(outcome, SegmentOutcome::Matched { .. });
+                assert_eq!(
+                    planted, matched,
+                    "view {view} segment {segment}: {outcome:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_height_range_holds_roof_and_ground() {
+        let (_, _, _, trace) = matched();
+        let [low, high] = trace.z_range_m.unwrap();
+        assert!(low < 0.5 && low > -6.0, "low {low}");
+        assert!(high > planted::ROOF_Z && high < 14.0, "high {high}");
+        assert!(trace.heights_m.len() >= 8);
+    }
+
+    #[test]
+    fn fragments_merge_and_short_segments_grow() {
+        let (scene, _, matches, _) = matched();
+        let first = SegmentId(0);
+        let edge = matches
+            .iter()
+            .find(|m| m.supports[0].segments.contains(&first))
+            .unwrap();
+        let broken = &edge.supports[1];
+        assert_eq!(broken.segments, vec![SegmentId(0), SegmentId(4)]);
+        assert_eq!(broken.kind, SupportKind::Merged);
+        let short = &edge.supports[2];
+        assert_eq!(short.kind, SupportKind::Grown);
+        let whole = planted::part_of(&scene, 2, 0, 0.02, 0.98);
+        assert!(short.stretch.length() > 0.95 * whole.length());
+    }
+
+    #[test]
+    fn an_edge_missing_in_one_view_is_verified_by_correlation() {
+        let scene = planted::scene();
+        let mut segments = planted::segments(&scene);
+        segments[3].remove(2);
+        let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
+        let (matches, _) = match_lines(&scene, &segments, &params, &fitting);
+        let edge = matches
+            .iter()
+            .find(|m| m.supports[0].segments.contains(&SegmentId(2)))
+            .unwrap();
+        assert_eq!(edge.supports.len(), 5);
+        assert!(edge.supports[3].segments.is_empty());
+        assert_eq!(edge.supports[3].kind, SupportKind::Grown);
+    }
+
+    #[test]
+    fn two_views_give_no_match() {
+        let mut scene = planted::scene();
+        let mut segments = planted::segments(&scene);
+        scene.views.truncate(2);
+        segments.truncate(2);
+        let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
+        let (matches, trace) = match_lines(&scene, &segments, &params, &fitting);
+        assert!(matches.is_empty());
+        assert_eq!(trace.outcomes[0].len(), segments[0].len());
+    }
+
+    #[test]
+    fn no_views_and_no_segments_are_no_error() {
+        let mut scene = planted::scene();
+        let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
+        let none = vec![Vec::new(); 5];
+        assert!(match_lines(&scene, &none, &params, &fitting).0.is_empty());
+        scene.views.clear();
+        assert!(match_lines(&scene, &[], &params, &fitting).0.is_empty());
     }
 }

@@ -1,5 +1,6 @@
-//! From a pair or triple to a line over N views (B99 3.4): the 3D line is projected into all views, segments near the
-//! projection are adopted, the line is fitted again, merged and grown, and its views are counted.
+//! From a pair or triple to a line over N views (B99 3.4): the 3D line is projected into all views,
+//! segments near the projection are adopted, the line is fitted again, merged and grown, and its
+//! views are counted.
 
 use serde::Serialize;
 
@@ -15,11 +16,11 @@ use crate::lines3d::{LineFit, Observation, ProjectedLine, conditioning, fit_line
 use crate::params::{Lines3dParams, MatchParams};
 use crate::scene::Scene;
 
-/// How often segments are adopted and the line fitted again. Assumption: the second round changes few lines, a
-/// third none.
+/// How often segments are adopted and the line fitted again. Assumption: the second round changes
+/// few lines, a third none.
 const ROUNDS: usize = 2;
-/// Least number of views with a segment. Two interpretation planes always meet in a line; the third makes
-/// it evidence, correlation without a segment then adds to it.
+/// Least number of views with a segment. Two interpretation planes always meet in a line; the third
+/// makes it evidence, correlation without a segment then adds to it.
 const MIN_MEASURED: usize = 3;
 /// A stretch reaches past the detected segments by this much to count as grown, px.
 const GROWN_PX: f64 = 3.0;
@@ -66,7 +67,8 @@ pub struct Context<'a> {
     pub fitting: &'a Lines3dParams,
 }
 
-/// Completes a hypothesis from some of its segments; `taken` tells which segments belong to other lines.
+/// Completes a hypothesis from some of its segments; `taken` tells which segments belong to other
+/// lines.
 pub fn complete_line(
     context: &Context,
     start: &Segment3,
@@ -102,8 +104,9 @@ pub fn complete_line(
 }
 
 /// Views that have segments on the line but see another edge nearby: those that do not support it
-/// photometrically and, where the views are not alike in the mean, the one least like the others. A wrong view displaces the
-/// line and with it the windows of the right ones, so one is left out at a time.
+/// photometrically and, where the views are not alike in the mean, the one least like the others. A
+/// wrong view displaces the line and with it the windows of the right ones, so one is left out at a
+/// time.
 fn disagreeing_views(
     profile: &Profile,
     supports: &[LineSupport],
@@ -180,8 +183,8 @@ impl Context<'_> {
             .collect()
     }
 
-    /// Largest standard deviation at the ends t0 and t1 (metres along the fit) that the line would have
-    /// without one of its views. A view that alone fixes the line in some direction cannot be
+    /// Largest standard deviation at the ends t0 and t1 (metres along the fit) that the line would
+    /// have without one of its views. A view that alone fixes the line in some direction cannot be
     /// verified by the others: whatever segment it has there fits.
     fn sigma_without_one(
         &self,
@@ -354,8 +357,9 @@ impl Context<'_> {
 
     /// The last tests of a completed line, with the stretch t0 to t1 (metres) of the fit.
     ///
-    /// Deviation from the paper's four of six views: three do where the line is twice as certain as it
-    /// must be. Two strips often see the two sides of an eave differently, and then three views are all there are.
+    /// Deviation from the paper's four of six views: three do where the line is twice as certain as
+    /// it must be. Two strips often see the two sides of an eave differently, and then three views
+    /// are all there are.
     fn check_line(
         &self,
         fit: &LineFit,

@@ -12,7 +12,7 @@ use nalgebra::{Point3, Vector3};
 
 use super::sight::{SegmentRef, Sight, Sights, epipolar_beam, ray_in_plane};
 use super::strip::{EdgelScore, Strip, StripFrame, StripSide, correlate};
-use crate::camera::{Camera, homography_of_plane};
+use crate::camera::{Camera, Homography, homography_of_plane};
 use crate::geometry::{Plane, Segment3};
 use crate::halfplane::{Side, ThetaFrame};
 use crate::ids::ViewId;
@@ -264,13 +264,83 @@ pub fn side_strip(
     side: StripSide,
     theta_deg: f64,
 ) -> Option<Strip> {
+    let view = scene.view(second);
+    let h = side_homography(scene.camera(first), &view.camera, line, side, theta_deg)?;
+    Some(Strip::warped(&view.gray, &h, frame, side))
+}
+
+/// The homography of the half-plane at `theta_deg` on one side of a line, the side as seen in
+/// `first`.
+fn side_homography(
+    first: &Camera,
+    second: &Camera,
+    line: &Segment3,
+    side: StripSide,
+    theta_deg: f64,
+) -> Option<Homography> {
     // What is right on the screen of a camera that looks down is right from above.
     let from_above = match side {
         StripSide::Left => Side::Left,
         StripSide::Right => Side::Right,
     };
     let plane = ThetaFrame::new(line, from_above)?.plane(line, theta_deg.to_radians());
-    let (a, b) = (scene.camera(first), scene.view(second));
-    let h = homography_of_plane(a, &b.camera, &plane)?;
-    Some(Strip::warped(&b.gray, &h, frame, side))
+    homography_of_plane(first, second, &plane)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Segment2;
+    use crate::linematch::planted;
+
+    #[test]
+    fn a_rising_side_is_warped_as_it_rises() {
+        let scene = planted::scene();
+        let line = Segment3::new(Point3::new(-3.0, 1.0, 4.0), Point3::new(5.0, 2.0, 4.5));
+        for (i, j) in [(0, 1), (0, 2), (3, 1)] {
+            let (first, second) = (&scene.views[i].camera, &scene.views[j].camera);
+            for (side, sign) in [(StripSide::Left, 1.0), (StripSide::Right, -1.0)] {
+                // Two metres to the side and, at 40 degrees, upwards.
+                let left = Vector3::z().cross(&line.direction()).normalize();
+                let theta = 40.0f64.to_radians();
+                let up = line.direction().cross(&left);
+                let world = line.at(0.4)
+                    + left * (2.0 * sign * crate::math::cos(theta))
+                    + up * (2.0 * crate::math::sin(theta));
+                let h = side_homography(first, second, &line, side, 40.0).unwrap();
+                let seen = first.project(&world).unwrap();
+                assert!((h.apply(&seen).unwrap() - second.project(&world).unwrap()).norm() < 1e-6);
+                // It lies on that side of the line in the first view.
+                let image = Segment2::new(
+                    first.project(&line.p0).unwrap(),
+                    first.project(&line.p1).unwrap(),
+                );
+                let right = image.line().dot(&Vector3::new(seen.x, seen.y, 1.0)) > 0.0;
+                assert_eq!(right, side == StripSide::Right);
+            }
+        }
+    }
+
+    #[test]
+    fn a_line_along_the_baseline_is_no_pair() {
+        let scene = planted::scene();
+        let segments = planted::segments(&scene);
+        let sights = Sights::new(&scene, &segments);
+        let z_range = [-2.0, 8.0];
+        let params = MatchParams::default();
+        let partners: Vec<_> = [(0, 1), (0, 3)]
+            .map(|(a, b)| (ViewId(a), ViewId(b)))
+            .to_vec();
+        let pairs = match_pairs(&scene, &sights, &partners, z_range, &params);
+        // Edge 1 runs along x, the direction of the baseline of views 0 and 1, edge 0 across it.
+        let found = |edge: u32, other: u32| {
+            let name = |v| SegmentRef {
+                view: ViewId(v),
+                segment: crate::ids::SegmentId(edge),
+            };
+            pairs.score(name(0), name(other)) > 0.0
+        };
+        assert!(found(0, 1) && !found(1, 1), "within the strip");
+        assert!(found(1, 3) && !found(0, 3), "across the strips");
+    }
 }

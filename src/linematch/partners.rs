@@ -11,8 +11,8 @@ const GRID: usize = 5;
 /// Least share of a view that the partner must see.
 const MIN_OVERLAP: f64 = 0.1;
 
-/// Pairs (lower, higher) of views that see the same ground at the middle of the height range. A view with more
-/// candidates than `max_partners` keeps those with the nearest projection centres.
+/// Pairs (lower, higher) of views that see the same ground at the middle of the height range. A
+/// view with more candidates than `max_partners` keeps those with the nearest projection centres.
 pub fn partner_views(
     scene: &Scene,
     z_range: [f64; 2],

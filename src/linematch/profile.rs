@@ -21,8 +21,8 @@ pub struct ViewProfile {
     pub segments: Vec<(SegmentId, [f64; 2])>,
     /// At each edgel: does a segment lie there?
     pub detected: Vec<bool>,
-    /// At each edgel: correlation with the reference view on the better side; NaN where the view does
-    /// not see it. All ones in the reference view itself.
+    /// At each edgel: correlation with the reference view on the better side; NaN where the view
+    /// does not see it. All ones in the reference view itself.
     pub correlation: Vec<f32>,
     /// Mean score with the other views that have segments: low for a view that sees another edge.
     pub agreement: f64,

@@ -1,10 +1,10 @@
 //! The final matching set (B99 3.2): winner takes all.
 //!
-//! "Whenever a line belongs to several triples, only the triple with the best score is retained." With N views the
-//! unit is the bundle of triples of one pair: bundles are taken in the order of their evidence, completed to
-//! lines over all views, and own their segments from then on. The losers' segments are not
-//! thrown away: those that lie on the winner's line were adopted by it (merging), the others remain
-//! free for the next bundle.
+//! "Whenever a line belongs to several triples, only the triple with the best score is retained."
+//! With N views the unit is the bundle of triples of one pair: bundles are taken in the order of
+//! their evidence, completed to lines over all views, and own their segments from then on. The
+//! losers' segments are not thrown away: those that lie on the winner's line were adopted by it
+//! (merging), the others remain free for the next bundle.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

@@ -105,8 +105,8 @@ impl Sights {
     }
 }
 
-/// The epipolar beam of a segment in another view (B99 3.1, figure 2): between the epipolar lines of the
-/// two end points, cut to the heights `z_range` (metres). Corners in order around it; `None`
+/// The epipolar beam of a segment in another view (B99 3.1, figure 2): between the epipolar lines
+/// of the two end points, cut to the heights `z_range` (metres). Corners in order around it; `None`
 /// where a corner is not in front of the camera.
 pub fn epipolar_beam(
     first: &Camera,

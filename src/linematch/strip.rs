@@ -1,13 +1,15 @@
-//! Correlation of the neighbourhoods of a line in two views (B99 3.1, 3.2; Schmid and Zisserman 1997).
+//! Correlation of the neighbourhoods of a line in two views (B99 3.1, 3.2; Schmid and Zisserman
+//! 1997).
 //!
 //! The neighbourhood of a line is a strip: one row of samples across the line for each edgel, a
-//! pixel apart in the reference view. In another view the same strip is sampled through the homography
-//! of a plane through the line, so that strips flown in opposite directions need no special case.
-//! A strip is sampled once and serves all windows along it: the centred normalised cross-correlation
-//! of the 15 x 15 window at each edgel comes from running sums over the rows.
+//! pixel apart in the reference view. In another view the same strip is sampled through the
+//! homography of a plane through the line, so that strips flown in opposite directions need no
+//! special case. A strip is sampled once and serves all windows along it: the centred normalised
+//! cross-correlation of the 15 x 15 window at each edgel comes from running sums over the rows.
 //!
-//! Deviation from the paper: the two sides of the line are scored separately, each with its half of the
-//! window (the line itself belongs to both), because beyond an eave or a rake the background moves.
+//! Deviation from the paper: the two sides of the line are scored separately, each with its half of
+//! the window (the line itself belongs to both), because beyond an eave or a rake the background
+//! moves.
 
 use nalgebra::{Point2, Vector2, Vector3};
 
@@ -79,7 +81,8 @@ pub struct Strip {
 pub enum StripSide {
     /// Against the across direction: left as seen on the screen.
     Left,
-    /// Along the across direction: right as seen on the screen, bright for a segment directed by contrast.
+    /// Along the across direction: right as seen on the screen, bright for a segment directed by
+    /// contrast.
     Right,
 }
 
@@ -161,7 +164,8 @@ impl Strip {
     }
 }
 
-/// Bilinear samples at `start`, `start + step`, ...; false (and no samples) if any leaves the image.
+/// Bilinear samples at `start`, `start + step`, ...; false (and no samples) if any leaves the
+/// image.
 fn sample_row(gray: &Gray, start: &Vector2<f64>, step: &Vector2<f64>, out: &mut [f32]) -> bool {
     let end = start + step * (out.len() - 1) as f64;
     let (right, bottom) = (gray.width as f64 - 0.5, gray.height as f64 - 0.5);
@@ -230,8 +234,8 @@ impl Sums {
         self.ab += sign * o.ab;
     }
 
-    /// Centred normalised cross-correlation; the noise variance added to both variances takes windows
-    /// without texture to zero instead of to chance.
+    /// Centred normalised cross-correlation; the noise variance added to both variances takes
+    /// windows without texture to zero instead of to chance.
     fn correlation(&self, columns: usize, noise_variance: f64) -> f32 {
         let n = self.rows * columns as f64;
         let covariance = self.ab / n - self.a / n * (self.b / n);
@@ -241,8 +245,8 @@ impl Sums {
     }
 }
 
-/// Correlation of one side of two strips of the same frame at each edgel; NaN where the window lacks
-/// more than a quarter of its rows.
+/// Correlation of one side of two strips of the same frame at each edgel; NaN where the window
+/// lacks more than a quarter of its rows.
 pub fn correlate(a: &Strip, b: &Strip, side: StripSide, noise: f64) -> Vec<f32> {
     let columns = side.columns(a.half);
     let window = 2 * a.half + 1;
@@ -283,8 +287,9 @@ pub struct EdgelScore {
 impl EdgelScore {
     /// Scores correlations; NaN edgels are not common to both views and count neither way.
     ///
-    /// Assumption: an edgel below the threshold counts as zero. The paper's "average of the included
-    /// ones" would lie above the edgel threshold always, and 150 % of a threshold for it above one.
+    /// Assumption: an edgel below the threshold counts as zero. The paper's "average of the
+    /// included ones" would lie above the edgel threshold always, and 150 % of a threshold for it
+    /// above one.
     pub fn of(correlations: &[f32], edgel_threshold: f64) -> Self {
         let (mut sum, mut included, mut common) = (0.0, 0, 0);
         for c in correlations.iter().filter(|c| !c.is_nan()) {

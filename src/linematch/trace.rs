@@ -1,4 +1,5 @@
-//! What a teacher would draw of the matching: heights, pairs, triples, and for each segment its fate.
+//! What a teacher would draw of the matching: heights, pairs, triples, and for each segment its
+//! fate.
 
 use serde::Serialize;
 
@@ -76,7 +77,8 @@ impl StepCount {
 /// The trace of [`super::match_lines`].
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct MatchTrace {
-    /// Heights between which lines were sought, metres; [`super::epipolar_beam`] draws beams with it.
+    /// Heights between which lines were sought, metres; [`super::epipolar_beam`] draws beams with
+    /// it.
     pub z_range_m: Option<[f64; 2]>,
     /// Heights found by the sweep that the range rests on, metres, sorted.
     pub heights_m: Vec<f64>,

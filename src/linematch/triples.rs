@@ -1,11 +1,14 @@
-//! Three-view matching (B99 3.2): a pair fixes a 3D line, its image in a third view is the trifocal transfer
-//! of the pair, and a segment found there verifies it.
+//! Three-view matching (B99 3.2): a pair fixes a 3D line, its image in a third view is the trifocal
+//! transfer of the pair, and a segment found there verifies it.
 //!
-//! Every third view that verifies a pair makes a triple. The triples of one pair share their line, so they are kept
-//! together as a [`Bundle`]: that is the join of triplets of B99 3.4 for triples with two segments
-//! in common. Because each pair of views takes its turn as the first two, all search directions are
-//! covered. A bundle whose pair no segment verifies stays: correlation without a segment may still
-//! verify it (`nviews`).
+//! Every third view that verifies a pair makes a triple. The triples of one pair share their line,
+//! so they are kept together as a [`Bundle`]: that is the join of triplets of B99 3.4 for triples
+//! with two segments in common. Because each pair of views takes its turn as the first two, all
+//! search directions are covered.
+//!
+//! Deviation: the photometric test alone ("without a segment") adds views to a line in `nviews` but
+//! does not replace the third segment. Of the lines with two segments and correlation in two or
+//! more other views, 28 % were wrong on six views with a base-to-height ratio of 0.2 to 0.4.
 
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;

@@ -43,8 +43,24 @@ impl Grown {
     }
 }
 
+/// The line of a seed, grown where that keeps it tight and as it is elsewhere.
+pub fn grow_tight(
+    all: &[Edgel],
+    raster: &Raster,
+    seed: &[u32],
+    free: &impl Fn(u32) -> bool,
+    params: &SegmentParams,
+) -> Grown {
+    let grown = grow(all, raster, seed, free, params);
+    if grown.line.is_tight(&grown.points, params) {
+        grown
+    } else {
+        Grown::new(all, seed.to_vec())
+    }
+}
+
 /// Grows a seed at both ends through the edgels that `free` allows.
-pub fn grow(
+fn grow(
     all: &[Edgel],
     raster: &Raster,
     seed: &[u32],
@@ -58,7 +74,7 @@ pub fn grow(
             grown.edgels.push(i);
             grown.points.push(all[i as usize].position);
             // A refit now and then: the more edgels, the less a single one can turn the line.
-            if grown.points.len() % (1 + grown.line.count / 8) == 0 {
+            if grown.points.len().is_multiple_of(1 + grown.line.count / 8) {
                 grown.line = LineFit::new(&grown.points);
             }
         }

@@ -1,4 +1,11 @@
 //! From an image to its straight segments: the stage (B99 3.2, "Implementation details").
+//!
+//! Deviations: lines grow past the ends of their chains ([`super::grow`]), and a test of significance
+//! ([`super::significance`]) stands in for a global threshold of contrast.
+//!
+//! Tried and left out: evidence from the directions of the edgels besides their strength (the same
+//! coverage of true roof edges at the same number of segments), and chains alone without growing (on two
+//! rendered views of a suburb, about 880 segments each: 48 % of the true roof edges covered instead of 59 %).
 
 use nalgebra::Point2;
 use serde::Serialize;
@@ -7,7 +14,7 @@ use super::ImageSegment;
 use super::canny::{Edgel, Gradient, suppress};
 use super::chain::{Chain, Raster, link_on};
 use super::fit::straight_pieces;
-use super::grow::{Grown, grow};
+use super::grow::{Grown, grow_tight};
 use super::noise::LocalGradients;
 use super::significance::ln_false_alarms;
 use super::worm::tangent_breaks;
@@ -87,12 +94,7 @@ pub fn detect_segments(gray: &Gray, params: &SegmentParams) -> (Vec<ImageSegment
             trace.taken += 1;
             continue;
         }
-        let line = grow(&edgels, &raster, seed, &|i| !taken[i as usize], params);
-        let line = if line.line.is_tight(&line.points, params) {
-            line
-        } else {
-            Grown::new(&edgels, seed.clone())
-        };
+        let line = grow_tight(&edgels, &raster, seed, &|i| !taken[i as usize], params);
         let segment = extent(&line);
         match judge(&line, &segment, &edgels, &local, tests, params) {
             None => {

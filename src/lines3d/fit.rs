@@ -3,7 +3,8 @@
 //!
 //! The line has four parameters: the offsets of two anchor points in the two directions across it,
 //! in metres. That is minimal, free of singularities for the small steps taken here, and its
-//! covariance is that of the end points directly. The offsets are applied and the frame rebuilt after each step.
+//! covariance is that of the end points directly. The offsets are applied and the frame rebuilt
+//! after each step.
 //!
 //! The paper sums the distances of the measured end points from the image of the line. Those two
 //! distances are taken here as (offset at the middle, angle) and weighted by the segment's
@@ -170,8 +171,8 @@ pub fn fit_line(
     finish(line, state)
 }
 
-/// How well observations would determine a line if they agreed with it: [`LineFit`] without fitting,
-/// residuals or scatter. `None` when they leave it undetermined.
+/// How well observations would determine a line if they agreed with it: [`LineFit`] without
+/// fitting, residuals or scatter. `None` when they leave it undetermined.
 pub fn conditioning(
     observations: &[Observation],
     line: &Segment3,
@@ -197,8 +198,9 @@ pub fn conditioning(
 
 fn finish(line: Segment3, state: Normal) -> Option<LineFit> {
     let covariance = state.hessian.try_inverse()?;
-    // Observations that scatter more than their covariances say make the line less certain. Three views have a
-    // redundancy of two, which hardly tells; the prior counts like as many expected residuals.
+    // Observations that scatter more than their covariances say make the line less certain. Three
+    // views have a redundancy of two, which hardly tells; the prior counts like as many expected
+    // residuals.
     let redundancy = (2.0 * state.residuals.len() as f64 - 4.0).max(0.0);
     let factor = (2.0 * state.cost + SCATTER_PRIOR) / (redundancy + SCATTER_PRIOR);
     let factor = factor.max(1.0);
@@ -326,4 +328,162 @@ fn across(direction: &Vector3<f64>) -> [Vector3<f64>; 2] {
     e[axis] = 1.0;
     let u = direction.cross(&e).normalize();
     [u, direction.cross(&u)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::tests::crop_camera;
+    use nalgebra::Point2;
+
+    fn cameras() -> Vec<Camera> {
+        [
+            (-280.0, -200.0, 0.0),
+            (0.0, -190.0, 0.1),
+            (310.0, -200.0, 0.0),
+            (10.0, 190.0, 3.1),
+        ]
+        .map(|(x, y, kappa)| crop_camera(x, y, kappa))
+        .to_vec()
+    }
+
+    fn planted() -> Segment3 {
+        Segment3::new(Point3::new(-3.0, 2.0, 8.0), Point3::new(5.0, 6.0, 9.5))
+    }
+
+    /// Reproducible numbers of variance one, roughly normal.
+    fn noise(seed: &mut u64) -> f64 {
+        let mut sum = 0.0;
+        for _ in 0..12 {
+            *seed = seed
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            sum += (*seed >> 11) as f64 / (1u64 << 53) as f64;
+        }
+        sum - 6.0
+    }
+
+    /// The planted line as each camera measures it, with `sigma_px` of noise at the ends; pieces,
+    /// not the whole, as detectors give.
+    fn observe<'a>(cameras: &'a [Camera], sigma_px: f64, seed: &mut u64) -> Vec<Observation<'a>> {
+        cameras
+            .iter()
+            .enumerate()
+            .map(|(i, camera)| {
+                let part = (0.05 * i as f64, 1.0 - 0.1 * i as f64);
+                let exact = Segment2::new(
+                    camera.project(&planted().at(part.0)).unwrap(),
+                    camera.project(&planted().at(part.1)).unwrap(),
+                );
+                let n = exact.normal();
+                let shift = |p: Point2<f64>, seed: &mut u64| p + n * (sigma_px * noise(seed));
+                let segment = Segment2::new(shift(exact.p0, seed), shift(exact.p1, seed));
+                let (s2, length) = (sigma_px * sigma_px, exact.length());
+                let covariance = Matrix2::new(0.5 * s2, 0.0, 0.0, 2.0 * s2 / (length * length));
+                Observation {
+                    camera,
+                    segment,
+                    covariance,
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn exact_observations_give_the_planted_line() {
+        let cameras = cameras();
+        let observations = observe(&cameras, 0.0, &mut 1);
+        let start = line_of_planes(&observations).unwrap();
+        let off = Segment3::new(
+            start.p0 + Vector3::new(0.3, -0.2, 0.8),
+            start.p1 + Vector3::new(-0.2, 0.1, -0.5),
+        );
+        for initial in [start, off] {
+            let fit = fit_line(&observations, &initial, &Lines3dParams::default()).unwrap();
+            for p in [fit.line.p0, fit.line.p1] {
+                assert!(planted().line_distance(&p) < 1e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn jacobian_agrees_with_differences() {
+        let cameras = cameras();
+        let observations = observe(&cameras, 0.3, &mut 7);
+        let line = planted();
+        let across = across(&line.direction());
+        for o in &observations {
+            let o = Weighted::new(o, &Lines3dParams::default());
+            let (_, j) = o.residual(&line, &across).unwrap();
+            for k in 0..4 {
+                let mut step = Vector4::zeros();
+                step[k] = 1e-4;
+                let at = |s: Vector4<f64>| {
+                    o.residual(&displace(&line, &across, &s), &across)
+                        .unwrap()
+                        .0
+                };
+                let d = (at(step) - at(-step)) / 2e-4;
+                let analytic = j.row(k).transpose();
+                assert!(
+                    (d - analytic).norm() < 1e-4 * (1.0 + analytic.norm()),
+                    "{d} {analytic}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn sigma_is_calibrated() {
+        let cameras = cameras();
+        let params = Lines3dParams {
+            position_floor_px: 1e-3,
+            ..Lines3dParams::default()
+        };
+        let (mut seed, mut sum, mut count) = (5u64, 0.0, 0.0);
+        for _ in 0..300 {
+            let observations = observe(&cameras, 0.2, &mut seed);
+            let start = line_of_planes(&observations).unwrap();
+            let fit = fit_line(&observations, &start, &params).unwrap();
+            // Error of the middle across the line, against its covariance: two degrees of freedom.
+            let middle = fit.line.at(0.5);
+            let d = planted().direction();
+            let foot = planted().p0 + d * (middle - planted().p0).dot(&d);
+            let [u, v] = fit.across;
+            let e = Vector2::new((middle - foot).dot(&u), (middle - foot).dot(&v));
+            let c = fit.covariance_at(0.5);
+            let c2 = Matrix2::new(
+                (u.transpose() * c * u)[0],
+                (u.transpose() * c * v)[0],
+                (v.transpose() * c * u)[0],
+                (v.transpose() * c * v)[0],
+            );
+            sum += (e.transpose() * c2.try_inverse().unwrap() * e)[0];
+            count += 1.0;
+        }
+        let mean = sum / count;
+        assert!(
+            (1.4..2.6).contains(&mean),
+            "squared error over variance {mean}, expected 2"
+        );
+    }
+
+    #[test]
+    fn one_wrong_segment_does_not_move_the_line() {
+        let cameras = cameras();
+        let mut observations = observe(&cameras, 0.05, &mut 3);
+        let wrong = &mut observations[1].segment;
+        (wrong.p0.x, wrong.p1.x) = (wrong.p0.x + 6.0, wrong.p1.x + 6.0);
+        (wrong.p0.y, wrong.p1.y) = (wrong.p0.y + 6.0, wrong.p1.y + 6.0);
+        let fit = fit_line(&observations, &planted(), &Lines3dParams::default()).unwrap();
+        assert!(planted().line_distance(&fit.line.at(0.5)) < 0.1);
+        assert!(fit.residuals[1] > 10.0);
+    }
+
+    #[test]
+    fn parallel_planes_fix_no_line() {
+        let cameras = vec![crop_camera(0.0, 0.0, 0.0), crop_camera(0.0, 0.0, 0.0)];
+        assert!(line_of_planes(&observe(&cameras, 0.0, &mut 1)).is_none());
+        assert!(fit_line(&[], &planted(), &Lines3dParams::default()).is_none());
+    }
 }

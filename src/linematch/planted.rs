@@ -1,0 +1,159 @@
+//! A planted scene for the tests: a flat roof 6 m above textured ground, seen from two strips flown
+//! in opposite directions, with the segments that a detector would give.
+
+use nalgebra::{Matrix2, Matrix3, Point2, Point3, Rotation3, Vector3};
+
+use crate::camera::Camera;
+use crate::geometry::{Segment2, Segment3};
+use crate::lines2d::ImageSegment;
+use crate::raster::Gray;
+use crate::scene::{Scene, View};
+
+/// Height of the roof, metres; the ground is at zero.
+pub const ROOF_Z: f64 = 6.0;
+/// Half the roof in x and y, metres.
+const HALF: [f64; 2] = [7.0, 5.0];
+const SIZE: u32 = 300;
+
+/// A camera 300 m up with pixels of 0.1 m, cropped about the world's origin.
+fn camera(x: f64, y: f64, kappa: f64) -> Camera {
+    let down = Matrix3::new(1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0);
+    let r = Rotation3::from_axis_angle(&Vector3::z_axis(), kappa).into_inner() * down;
+    let center = Point3::new(x, y, 300.0);
+    let f = 3000.0;
+    let towards = r * (Point3::origin() - center);
+    let half = f64::from(SIZE) / 2.0;
+    let k = Matrix3::new(
+        f,
+        0.0,
+        half - f * towards.x / towards.z,
+        0.0,
+        f,
+        half - f * towards.y / towards.z,
+        0.0,
+        0.0,
+        1.0,
+    );
+    Camera {
+        k,
+        r,
+        center,
+        width: SIZE,
+        height: SIZE,
+    }
+}
+
+/// Value noise with cells of 0.3 m, 0 to 1.
+fn texture(x: f64, y: f64) -> f64 {
+    let (u, v) = (x / 0.3 + 1000.0, y / 0.3 + 1000.0);
+    let (i, j) = (u.floor(), v.floor());
+    let value = |di: f64, dj: f64| {
+        let mut h = ((i + di) as u64)
+            .wrapping_mul(0x9E37_79B9_7F4A_7C15)
+            .wrapping_add(((j + dj) as u64).wrapping_mul(0xC2B2_AE3D_27D4_EB4F));
+        h = (h ^ (h >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        ((h >> 33) & 0xFFFF) as f64 / 65535.0
+    };
+    let (a, b) = (u - i, v - j);
+    let top = value(0.0, 0.0) * (1.0 - a) + value(1.0, 0.0) * a;
+    let low = value(0.0, 1.0) * (1.0 - a) + value(1.0, 1.0) * a;
+    top * (1.0 - b) + low * b
+}
+
+fn render(camera: &Camera) -> Gray {
+    Gray::from_fn(SIZE as usize, SIZE as usize, |c, r| {
+        let x = Point2::new(c as f64 + 0.5, r as f64 + 0.5);
+        let roof = camera.at_height(&x, ROOF_Z).unwrap();
+        if roof.x.abs() <= HALF[0] && roof.y.abs() <= HALF[1] {
+            (0.6 + 0.3 * texture(roof.x, roof.y)) as f32
+        } else {
+            let ground = camera.at_height(&x, 0.0).unwrap();
+            (0.2 + 0.3 * texture(ground.x + 50.0, ground.y)) as f32
+        }
+    })
+}
+
+/// The scene: views 0, 1 and 4 of one strip, 2 and 3 of another, turned by 180 degrees.
+pub fn scene() -> Scene {
+    let places = [
+        (-40.0, -45.0, 0.0),
+        (40.0, -40.0, 0.02),
+        (42.0, 45.0, 3.12),
+        (-38.0, 40.0, 3.15),
+        (0.0, -42.0, 0.01),
+    ];
+    let views = places
+        .iter()
+        .enumerate()
+        .map(|(i, (x, y, kappa))| {
+            let camera = camera(*x, *y, *kappa);
+            View {
+                name: format!("{i}.png"),
+                gray: render(&camera),
+                rgb: image::RgbImage::new(SIZE, SIZE),
+                camera,
+            }
+        })
+        .collect();
+    Scene {
+        views,
+        origin: Vector3::zeros(),
+        ground_z: None,
+        warnings: Vec::new(),
+    }
+}
+
+/// The four edges of the roof, the roof to their right as seen from above.
+pub fn edges() -> [Segment3; 4] {
+    let [x, y] = HALF;
+    let corners = [(-x, -y), (-x, y), (x, y), (x, -y)].map(|(x, y)| Point3::new(x, y, ROOF_Z));
+    [0, 1, 2, 3].map(|i| Segment3::new(corners[i], corners[(i + 1) % 4]))
+}
+
+/// A detected segment, a twentieth of a pixel off.
+pub fn detected(segment: Segment2, index: usize) -> ImageSegment {
+    let off = segment.normal() * if index.is_multiple_of(2) { 0.05 } else { -0.05 };
+    let segment = Segment2::new(segment.p0 + off, segment.p1 + off);
+    let length = segment.length();
+    ImageSegment {
+        segment,
+        contrast: 0.4,
+        edgels: length as u32,
+        covariance: Matrix2::new(0.0025, 0.0, 0.0, 0.01 / (length * length)),
+    }
+}
+
+/// The part `from` to `to` of an edge in a view.
+pub fn part_of(scene: &Scene, view: usize, edge: usize, from: f64, to: f64) -> Segment2 {
+    let camera = &scene.views[view].camera;
+    let at = |t| camera.project(&edges()[edge].at(t)).unwrap();
+    Segment2::new(at(from), at(to))
+}
+
+/// What a detector gives: each view's four edges in order, then distractors. In view 1 edge 0 is
+/// broken in two, in view 2 it lacks its last third.
+pub fn segments(scene: &Scene) -> Vec<Vec<ImageSegment>> {
+    (0..scene.views.len())
+        .map(|view| {
+            let mut found = Vec::new();
+            for edge in 0..4 {
+                let (from, to) = match (view, edge) {
+                    (1, 0) => (0.02, 0.4),
+                    (2, 0) => (0.02, 0.66),
+                    _ => (0.02, 0.98),
+                };
+                found.push(detected(part_of(scene, view, edge, from, to), view + edge));
+            }
+            if view == 1 {
+                found.push(detected(part_of(scene, view, 0, 0.6, 0.98), 1));
+            }
+            for i in 0..6 {
+                let (i, v) = (f64::from(i), view as f64);
+                let p = Point2::new(20.0 + 45.0 * i, 15.0 + 20.0 * v + 4.0 * i);
+                let q = p + nalgebra::Vector2::new(25.0 - 8.0 * i, 20.0 + 7.0 * v);
+                found.push(detected(Segment2::new(p, q), view));
+            }
+            found
+        })
+        .collect()
+}
