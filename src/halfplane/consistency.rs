@@ -183,7 +183,9 @@ fn combine(windows: &[ViewWindows], grid: &PlanGrid) -> ConsistencyMap {
             .map(|w| w.variance[k])
             .collect();
         let variance = seen.iter().sum::<f32>() / seen.len() as f32;
-        map.weight[k] = (variance / (variance + NOISE * NOISE) * 255.0).round() as u8;
+        // 0 is kept for what is not seen at all.
+        let weight = variance / (variance + NOISE * NOISE);
+        map.weight[k] = (weight * 255.0).round().max(1.0) as u8;
     }
     map
 }

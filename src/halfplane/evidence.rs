@@ -186,6 +186,10 @@ const MEETING: f64 = 0.25;
 /// A line lies in a plane's border when their heights differ by less, metres.
 pub const LINE_HEIGHT: f64 = 0.35;
 
+/// How much of the ground's match counts. Assumption: half. Rows of tiles or seams that run along the parallax
+/// correlate at any height, so a match with the ground is weaker evidence than a half-plane's.
+const GROUND_SHARE: f64 = 0.5;
+
 /// What the ground explains at least as well as a roof could, per cell.
 fn ground_evidence(
     maps: &[ConsistencyMap],
@@ -206,7 +210,9 @@ fn ground_evidence(
                 f64::from(weight) * (f64::from(correlation) - params.min_correlation) * area;
         }
     }
-    evidence.iter_mut().for_each(|e| *e = e.max(0.0));
+    evidence
+        .iter_mut()
+        .for_each(|e| *e = GROUND_SHARE * e.max(0.0));
     evidence
 }
 

@@ -95,9 +95,9 @@ fn noise(x: f64, y: f64, seed: usize) -> f64 {
     let smooth = |t: f64| t * t * (3.0 - 2.0 * t);
     let (fx, fy) = (smooth(x - i), smooth(y - j));
     let at = |di: usize, dj: usize| {
-        let mut h = (i as u64 + di as u64) * 73_856_093
-            ^ (j as u64 + dj as u64) * 19_349_663
-            ^ (seed as u64 + 1) * 83_492_791;
+        let mut h = ((i as u64 + di as u64) * 73_856_093)
+            ^ ((j as u64 + dj as u64) * 19_349_663)
+            ^ ((seed as u64 + 1) * 83_492_791);
         h = (h ^ (h >> 13)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
         ((h >> 33) % 2001) as f64 / 1000.0 - 1.0
     };
