@@ -64,7 +64,58 @@ pub fn delineate(arrangement: &Arrangement, labels: &[u32], planes: &[Plane]) ->
         );
     }
     let vertices = move_to_intersections(&arrangement.vertices, &outlines, planes);
+    join_coinciding(&vertices, &mut outlines);
     Delineation { vertices, outlines }
+}
+
+/// Vertices that were moved onto each other become one; rings lose what collapses with them.
+fn join_coinciding(vertices: &[Point2<f64>], outlines: &mut Vec<Outline>) {
+    /// Nearer than the arrangement tells crossings apart, metres.
+    const SAME: f64 = 0.05;
+    let mut used: Vec<usize> = outlines
+        .iter()
+        .flat_map(|o| o.outer.iter().chain(o.holes.iter().flatten()))
+        .copied()
+        .collect();
+    used.sort_unstable();
+    used.dedup();
+    let mut first: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut kept: Vec<usize> = Vec::new();
+    for v in used {
+        let same = kept
+            .iter()
+            .copied()
+            .find(|&k| (vertices[k] - vertices[v]).norm() < SAME);
+        if same.is_none() {
+            kept.push(v);
+        }
+        first.insert(v, same.unwrap_or(v));
+    }
+    for o in outlines.iter_mut() {
+        for ring in std::iter::once(&mut o.outer).chain(&mut o.holes) {
+            ring.iter_mut().for_each(|v| *v = first[v]);
+            remove_spikes(ring);
+        }
+        o.holes.retain(|h| h.len() >= 3);
+    }
+    outlines.retain(|o| o.outer.len() >= 3 && signed_area(&o.outer, vertices) > 0.0);
+}
+
+/// Takes out repeated vertices and runs to a vertex and straight back.
+fn remove_spikes(ring: &mut Vec<usize>) {
+    loop {
+        let n = ring.len();
+        if n < 3 {
+            return;
+        }
+        let repeated = (0..n).find(|&i| ring[i] == ring[(i + 1) % n]);
+        let spike = (0..n).find(|&i| ring[i] == ring[(i + 2) % n]);
+        match (repeated, spike) {
+            (Some(i), _) => drop(ring.remove(i)),
+            (None, Some(i)) => drop(ring.remove((i + 1) % n)),
+            (None, None) => return,
+        }
+    }
 }
 
 /// The lowest cell of each cell's facet.
@@ -378,6 +429,13 @@ mod tests {
                 .iter()
                 .all(|r| r.len() == 3 && signed_area(r, &vertices) > 0.0)
         );
+    }
+
+    #[test]
+    fn spikes_and_repetitions_leave_a_ring() {
+        let mut ring = vec![1, 2, 2, 3, 7, 3, 4, 1];
+        remove_spikes(&mut ring);
+        assert_eq!(ring, [2, 3, 4, 1]);
     }
 
     #[test]

@@ -98,8 +98,18 @@ pub fn close_buildings(
         }
         add_building(&mut model, members, &group, shell, ground);
     }
+    report_vanished(facets.len(), &mut trace);
     trace.rejected.sort_by_key(|(source, _)| *source);
     (model, trace)
+}
+
+/// A facet of which nothing is left and that nobody refused crossed itself: no facet goes without a reason.
+fn report_vanished(facets: usize, trace: &mut SolidTrace) {
+    for source in 0..facets {
+        if !trace.sources.contains(&source) && !trace.rejected.iter().any(|r| r.0 == source) {
+            trace.rejected.push((source, SolidRejection::Conflict));
+        }
+    }
 }
 
 /// Groups of facets connected through shared edges, each sorted, ordered by their first facet.
