@@ -204,7 +204,7 @@ impl Default for Lines3dParams {
             loss_scale: 2.4,
             max_iterations: 20,
             max_residual: 4.0,
-            max_sigma_px: 3.0,
+            max_sigma_px: 1.5,
         }
     }
 }

@@ -165,6 +165,17 @@ impl Context<'_> {
         }
     }
 
+    /// How far each segment agrees with the line that fits those that agree best, 0 to 1: 1/2 at a
+    /// standard deviation. `None` where nothing fits.
+    pub fn agreement(&self, start: &Segment3, segments: &[SegmentRef]) -> Option<Vec<f64>> {
+        let (fit, kept) = self.fit_consistent(start, segments).ok()?;
+        let agrees = |s: &SegmentRef| {
+            let i = kept.iter().position(|k| k == s)?;
+            Some(1.0 / (1.0 + fit.residuals[i] * fit.residuals[i]))
+        };
+        Some(segments.iter().map(|s| agrees(s).unwrap_or(0.0)).collect())
+    }
+
     fn fit(&self, start: &Segment3, segments: &[SegmentRef]) -> Result<LineFit, Rejection> {
         fit_line(&self.observations(segments), start, self.fitting).ok_or(Rejection::NoFit)
     }
@@ -183,23 +194,27 @@ impl Context<'_> {
             .collect()
     }
 
-    /// Largest standard deviation at the ends t0 and t1 (metres along the fit) that the line would
-    /// have without one of its views. A view that alone fixes the line in some direction cannot be
-    /// verified by the others: whatever segment it has there fits.
-    fn sigma_without_one(
+    /// Does something verify every view? Each is left out in turn. Where the others still determine
+    /// the line, its segment is a measurement at the predicted position; where they do not, any
+    /// parallel segment in it would fit, and its grey values have to agree as much as without a segment.
+    fn every_view_verified(
         &self,
         fit: &LineFit,
         [t0, t1]: [f64; 2],
         supports: &[LineSupport],
-    ) -> f64 {
+        limit_m: f64,
+    ) -> bool {
         let line = super::triples::stretch_of(&fit.line, t0, t1);
-        let without = |left_out: &LineSupport| {
+        let sigma_without = |left_out: &LineSupport| {
             let others = supports.iter().filter(|s| s.view != left_out.view);
             let segments: Vec<SegmentRef> = others.flat_map(names).collect();
             conditioning(&self.observations(&segments), &line, self.fitting)
                 .map_or(f64::INFINITY, |c| c.sigma_at(0.0).max(c.sigma_at(1.0)))
         };
-        supports.iter().map(without).fold(0.0, f64::max)
+        let by_correlation = self.params.pair_score * self.params.without_segment;
+        supports
+            .iter()
+            .all(|s| s.score >= by_correlation || sigma_without(s) <= limit_m)
     }
 
     /// The segments of all views that lie on the projection of the line, or not farther beyond its
@@ -376,15 +391,19 @@ impl Context<'_> {
             return Err(Rejection::IllConditioned);
         }
         let score = supports.iter().map(|s| s.score).sum::<f64>() / supports.len() as f64;
-        let without_one = self.sigma_without_one(fit, [t0, t1], &supports);
-        if without_one > self.fitting.max_sigma_px * camera.ground_pixel(&segment.p0) {
+        let limit_m = 2.0 * self.fitting.max_sigma_px * camera.ground_pixel(&segment.p0);
+        if !self.every_view_verified(fit, [t0, t1], &supports, limit_m) {
             return Err(Rejection::Unverified);
         }
-        let certain =
-            score >= self.params.pair_score && sigma_px <= 0.5 * self.fitting.max_sigma_px;
         let measured = supports.iter().filter(|s| !s.segments.is_empty()).count();
+        let certain = score >= self.params.pair_score;
         if measured < MIN_MEASURED || (supports.len() < expected_views && !certain) {
             return Err(Rejection::TooFewViews);
+        }
+        // The one view that verifies two others is hit by chance the more easily the shorter the line.
+        let length_px = segment.length() / camera.ground_pixel(&segment.p0);
+        if measured == MIN_MEASURED && length_px < 2.0 * self.params.min_edgels as f64 {
+            return Err(Rejection::TooShort);
         }
         let [low, high] = self.z_range;
         if [segment.p0.z, segment.p1.z]

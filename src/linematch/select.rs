@@ -10,9 +10,10 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::nviews::{Context, Line, Rejection, complete_line};
-use super::pairs::Pairs;
+use super::pairs::{Pair, Pairs};
 use super::sight::SegmentRef;
 use super::triples::Bundle;
+use crate::parallel;
 
 /// What became of a bundle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,13 +47,9 @@ pub fn winner_takes_all(context: &Context, pairs: &Pairs, bundles: &[Bundle]) ->
             .map(|v| vec![None; v.len()])
             .collect(),
     };
-    let mut queue: BinaryHeap<Entry> = bundles
-        .iter()
-        .enumerate()
-        .map(|(bundle, b)| Entry {
-            evidence: b.evidence(&pairs.pairs[b.pair]),
-            bundle,
-        })
+    let weighed = parallel::map(bundles, |_, b| evidence(context, &pairs.pairs[b.pair], b));
+    let mut queue: BinaryHeap<Entry> = (weighed.into_iter().enumerate())
+        .map(|(bundle, evidence)| Entry { evidence, bundle })
         .collect();
     while let Some(entry) = queue.pop() {
         let bundle = &bundles[entry.bundle];
@@ -71,10 +68,12 @@ pub fn winner_takes_all(context: &Context, pairs: &Pairs, bundles: &[Bundle]) ->
                 .filter(|v| selection.owner(v.segment).is_none())
                 .collect(),
         };
-        let evidence = rest.evidence(pair);
-        if evidence < entry.evidence {
-            queue.push(Entry { evidence, ..entry });
-            continue;
+        if rest.verified.len() < bundle.verified.len() {
+            let evidence = evidence(context, pair, &rest);
+            if evidence < entry.evidence {
+                queue.push(Entry { evidence, ..entry });
+                continue;
+            }
         }
         let mut seeds = vec![pair.a, pair.b];
         seeds.extend(rest.verified.iter().map(|v| v.segment));
@@ -86,6 +85,24 @@ pub fn winner_takes_all(context: &Context, pairs: &Pairs, bundles: &[Bundle]) ->
         selection.fates[entry.bundle] = fate;
     }
     selection
+}
+
+/// Evidence for the line of a bundle: seen length times the sum over the views of the best score,
+/// each as much as the segment agrees with the line that fits them all. Without that, a pair of a ridge in one
+/// view with the gutter a pixel beside it in another counts as much as two images of the ridge.
+fn evidence(context: &Context, pair: &Pair, bundle: &Bundle) -> f64 {
+    let scores = [(pair.a, pair.score), (pair.b, pair.score)];
+    let verified = bundle.verified.iter().map(|v| (v.segment, v.score));
+    let (seeds, scores): (Vec<SegmentRef>, Vec<f64>) = scores.into_iter().chain(verified).unzip();
+    let Some(agreement) = context.agreement(&pair.overlap, &seeds) else {
+        return 0.0;
+    };
+    let mut best: Vec<f64> = vec![0.0; context.segments.len()];
+    for ((seed, score), agrees) in seeds.iter().zip(scores).zip(agreement) {
+        let view = &mut best[seed.view.index()];
+        *view = view.max(score * agrees);
+    }
+    best.iter().sum::<f64>() * pair.overlap_px
 }
 
 impl Selection {

@@ -44,15 +44,6 @@ pub struct Bundle {
 }
 
 impl Bundle {
-    /// Evidence for the line: seen length times the sum of the scores, the best of each view.
-    pub fn evidence(&self, pair: &Pair) -> f64 {
-        let mut sum = pair.score;
-        for group in self.views() {
-            sum += group.iter().map(|v| v.score).fold(0.0, f64::max);
-        }
-        sum * pair.overlap_px
-    }
-
     /// The verifications of each third view.
     pub fn views(&self) -> impl Iterator<Item = &[Verification]> {
         self.verified
