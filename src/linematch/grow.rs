@@ -1,6 +1,6 @@
 //! Merging and growing (B99 3.3): which stretch of a 3D line the views support.
 //!
-//! * Where two views have a segment, the line is there.
+//! * Where most of its views have the edge, the line is there.
 //! * Growing: where one view only has a segment, the others are taken along if the neighbourhoods
 //!   correlate over three views ("the end points may be extended provided the grown edgels satisfy
 //!   the photometric correlation tests over the three views").
@@ -14,27 +14,34 @@ const HOLE_PX: usize = 4;
 /// Share of a gap's edgels that must correlate over three views.
 const GAP_SHARE: f64 = 0.8;
 
-/// The supported stretch: first and last edgel of the profile. `None` where no two views agree.
+/// The supported stretch: first and last edgel of the profile. `None` where too few views agree.
 pub fn supported_stretch(profile: &Profile, params: &MatchParams) -> Option<(usize, usize)> {
     let n = profile.t.len();
+    let needed = needed_views(profile.measured());
     let detections: Vec<usize> = (0..n).map(|e| profile.detections(e)).collect();
     let agreeing: Vec<bool> = (0..n).map(|e| profile.agreeing(e, params) >= 3).collect();
     let supported: Vec<bool> = (0..n)
-        .map(|e| detections[e] >= 2 || (detections[e] >= 1 && agreeing[e]))
+        .map(|e| detections[e] >= needed || (detections[e] + 1 >= needed.max(3) && agreeing[e]))
         .collect();
-    let (start, end) = longest_run(&detections)?;
+    let (start, end) = longest_run(&detections, needed)?;
     let forward = extend(&supported[end..], &agreeing[end..], params);
     let reversed = |v: &[bool]| v[..=start].iter().rev().copied().collect::<Vec<_>>();
     let backward = extend(&reversed(&supported), &reversed(&agreeing), params);
     Some((start - backward, end + forward))
 }
 
-/// The longest run of edgels that two views detected.
-fn longest_run(detections: &[usize]) -> Option<(usize, usize)> {
+/// Number of views that must see the edge at a place, of those that see it somewhere: more than half, because
+/// in a textured neighbourhood single pieces line up by chance.
+fn needed_views(measured: usize) -> usize {
+    (measured / 2 + 1).max(2)
+}
+
+/// The longest run of edgels that enough views detected.
+fn longest_run(detections: &[usize], needed: usize) -> Option<(usize, usize)> {
     let mut best: Option<(usize, usize)> = None;
     let mut start = 0;
     for (e, d) in detections.iter().enumerate() {
-        if *d < 2 {
+        if *d < needed {
             start = e + 1;
         } else if best.is_none_or(|(s, t)| e - start > t - s) {
             best = Some((start, e));
@@ -95,7 +102,7 @@ mod tests {
 
     #[test]
     fn the_longest_run_starts() {
-        assert_eq!(longest_run(&[2, 1, 2, 3, 2, 0, 2, 2]), Some((2, 4)));
-        assert_eq!(longest_run(&[1, 0, 1]), None);
+        assert_eq!(longest_run(&[2, 1, 2, 3, 2, 0, 2, 2], 2), Some((2, 4)));
+        assert_eq!(longest_run(&[1, 0, 1], 2), None);
     }
 }

@@ -10,6 +10,7 @@
 //! ```
 
 mod grow;
+mod guided;
 mod height;
 mod index;
 mod nviews;
@@ -22,6 +23,7 @@ mod strip;
 mod trace;
 mod triples;
 
+pub use guided::GuidedEdge;
 pub use nviews::Rejection;
 pub use sight::{SegmentRef, epipolar_beam};
 pub use strip::EdgelScore;
@@ -100,6 +102,10 @@ pub struct LineSupport {
     pub score: f64,
     /// How it was found.
     pub kind: SupportKind,
+    /// The edge measured along the line, which the 3D line is fitted to; `None` where correlation alone
+    /// supports it.
+    #[serde(skip)]
+    pub edge: Option<GuidedEdge>,
 }
 
 /// A line matched over at least three views.

@@ -5,6 +5,7 @@
 use serde::Serialize;
 
 use super::grow::supported_stretch;
+use super::guided::{GuidedEdge, measure_edge};
 use super::profile::{Profile, ViewProfile};
 use super::sight::{SegmentRef, Sight, Sights};
 use super::strip::EdgelScore;
@@ -22,6 +23,10 @@ const ROUNDS: usize = 2;
 /// Least number of views with a segment. Two interpretation planes always meet in a line; the third
 /// makes it evidence, correlation without a segment then adds to it.
 const MIN_MEASURED: usize = 3;
+/// Least number of views in which the detector itself saw it. Assumption.
+const MIN_DETECTED: usize = 2;
+/// How far beside a line, in gates, a segment belongs to it and starts no other line.
+const OWN: f64 = 1.5;
 /// A stretch reaches past the detected segments by this much to count as grown, px.
 const GROWN_PX: f64 = 3.0;
 
@@ -77,14 +82,16 @@ pub fn complete_line(
 ) -> Result<Line, Rejection> {
     let (mut fit, mut segments) = context.fit_consistent(start, seeds)?;
     for _ in 0..ROUNDS {
-        let adopted = context.adopt(&fit.line, &segments, &taken);
+        let adopted = context.adopt(&fit.line, &segments, 1.0, &taken);
         (fit, segments) = context.fit_consistent(&fit.line, &adopted)?;
     }
+    let (mut fit, mut edges) = context.measure_again(fit, &segments)?;
+    let mut segments = context.adopt(&fit.line, &segments, OWN, &taken);
     loop {
-        if views_of(&segments) < MIN_MEASURED {
+        if edges.len() < MIN_MEASURED || views_of(&segments) < MIN_DETECTED {
             return Err(Rejection::TooFewViews);
         }
-        let profile = context.profile(&fit.line, &segments)?;
+        let profile = context.profile(&fit.line, &segments, &edges)?;
         let stretch = supported_stretch(&profile, context.params).ok_or(Rejection::TooFewViews)?;
         if stretch.1 - stretch.0 + 1 < context.params.min_edgels {
             return Err(Rejection::TooShort);
@@ -92,14 +99,13 @@ pub fn complete_line(
         let supports = context.supports(&profile, stretch);
         let disagreeing = disagreeing_views(&profile, &supports, context.params);
         if disagreeing.is_empty() {
-            let kept: Vec<SegmentRef> = supports.iter().flat_map(names).collect();
-            let fit = context.fit(&fit.line, &kept)?;
             let ends = [profile.t[stretch.0], profile.t[stretch.1]];
             let expected = context.expected_views(&profile, stretch);
             return context.check_line(&fit, ends, expected, supports);
         }
         segments.retain(|s| !disagreeing.contains(&s.view));
-        (fit, segments) = context.fit_consistent(&fit.line, &segments)?;
+        edges.retain(|e| !disagreeing.contains(&e.view));
+        (fit, edges) = context.fit_edges(&fit.line, &edges)?;
     }
 }
 
@@ -112,7 +118,7 @@ fn disagreeing_views(
     supports: &[LineSupport],
     params: &MatchParams,
 ) -> Vec<ViewId> {
-    let measured = profile.views.iter().filter(|v| !v.segments.is_empty());
+    let measured = profile.views.iter().filter(|v| v.measured());
     let mean = supports.iter().map(|s| s.score).sum::<f64>() / supports.len().max(1) as f64;
     if mean < params.pair_score {
         let worst = measured.min_by(|a, b| a.agreement.total_cmp(&b.agreement));
@@ -120,6 +126,11 @@ fn disagreeing_views(
     }
     let supported = |v: &&ViewProfile| supports.iter().any(|s| s.view == v.view);
     measured.filter(|v| !supported(v)).map(|v| v.view).collect()
+}
+
+/// The first of the largest residuals.
+fn worst_residual(residuals: &[f64]) -> Option<usize> {
+    (0..residuals.len()).max_by(|&i, &j| residuals[i].total_cmp(&residuals[j]).then(j.cmp(&i)))
 }
 
 /// Number of views among segments sorted by view.
@@ -136,8 +147,79 @@ fn names(support: &LineSupport) -> impl Iterator<Item = SegmentRef> {
 }
 
 impl Context<'_> {
-    fn profile(&self, line: &Segment3, segments: &[SegmentRef]) -> Result<Profile, Rejection> {
-        Profile::new(self.scene, self.sights, line, segments, self.params).ok_or(Rejection::NoFit)
+    fn profile(
+        &self,
+        line: &Segment3,
+        segments: &[SegmentRef],
+        edges: &[GuidedEdge],
+    ) -> Result<Profile, Rejection> {
+        Profile::new(self.scene, self.sights, line, segments, edges, self.params)
+            .ok_or(Rejection::NoFit)
+    }
+
+    /// Measures the edge again in every view that sees the line, and fits the line to what was found.
+    fn measure_again(
+        &self,
+        mut fit: LineFit,
+        segments: &[SegmentRef],
+    ) -> Result<(LineFit, Vec<GuidedEdge>), Rejection> {
+        let mut edges = Vec::new();
+        for _ in 0..ROUNDS {
+            let found: Vec<GuidedEdge> = (self.scene.view_ids())
+                .filter_map(|view| self.measure(&fit.line, segments, view))
+                .collect();
+            (fit, edges) = self.fit_edges(&fit.line, &found)?;
+        }
+        Ok((fit, edges))
+    }
+
+    fn measure(
+        &self,
+        line: &Segment3,
+        segments: &[SegmentRef],
+        view: ViewId,
+    ) -> Option<GuidedEdge> {
+        let (image, core) = self.extent(line, segments, view)?;
+        let margin = self.params.max_gap_px;
+        let expected = Segment2::new(
+            core.p0 - image.direction * margin,
+            core.p1 + image.direction * margin,
+        );
+        let core = [margin, margin + core.length()];
+        let gray = &self.scene.view(view).gray;
+        measure_edge(view, gray, &expected, core, self.params.noise)
+    }
+
+    /// [`Self::fit_consistent`] for measured edges.
+    fn fit_edges(
+        &self,
+        start: &Segment3,
+        edges: &[GuidedEdge],
+    ) -> Result<(LineFit, Vec<GuidedEdge>), Rejection> {
+        let mut kept = edges.to_vec();
+        loop {
+            if kept.len() < MIN_MEASURED {
+                return Err(Rejection::TooFewViews);
+            }
+            let fit = fit_line(&self.observed(kept.iter()), start, self.fitting)
+                .ok_or(Rejection::NoFit)?;
+            match worst_residual(&fit.residuals) {
+                Some(worst) if fit.residuals[worst] > self.fitting.max_residual => {
+                    kept.remove(worst);
+                }
+                _ => return Ok((fit, kept)),
+            }
+        }
+    }
+
+    fn observed<'e>(&self, edges: impl Iterator<Item = &'e GuidedEdge>) -> Vec<Observation<'_>> {
+        edges
+            .map(|e| Observation {
+                camera: self.scene.camera(e.view),
+                segment: e.segment,
+                covariance: e.covariance,
+            })
+            .collect()
     }
 
     /// Fits the line to those segments that agree with each other: the worst is dropped and the
@@ -151,13 +233,7 @@ impl Context<'_> {
         let mut kept = segments.to_vec();
         loop {
             let fit = self.fit(start, &kept)?;
-            let worst = (0..kept.len())
-                .max_by(|&i, &j| {
-                    fit.residuals[i]
-                        .total_cmp(&fit.residuals[j])
-                        .then(j.cmp(&i))
-                })
-                .ok_or(Rejection::NoFit)?;
+            let worst = worst_residual(&fit.residuals).ok_or(Rejection::NoFit)?;
             if fit.residuals[worst] <= self.fitting.max_residual {
                 return Ok((fit, kept));
             }
@@ -207,22 +283,24 @@ impl Context<'_> {
         let line = super::triples::stretch_of(&fit.line, t0, t1);
         let sigma_without = |left_out: &LineSupport| {
             let others = supports.iter().filter(|s| s.view != left_out.view);
-            let segments: Vec<SegmentRef> = others.flat_map(names).collect();
-            conditioning(&self.observations(&segments), &line, self.fitting)
+            let edges = others.filter_map(|s| s.edge.as_ref());
+            conditioning(&self.observed(edges), &line, self.fitting)
                 .map_or(f64::INFINITY, |c| c.sigma_at(0.0).max(c.sigma_at(1.0)))
         };
         let by_correlation = self.params.pair_score * self.params.without_segment;
         supports
             .iter()
+            .filter(|s| s.edge.is_some())
             .all(|s| s.score >= by_correlation || sigma_without(s) <= limit_m)
     }
 
     /// The segments of all views that lie on the projection of the line, or not farther beyond its
-    /// ends than a gap may be.
+    /// ends than a gap may be; `reach` times the gate is near enough.
     fn adopt(
         &self,
         line: &Segment3,
         known: &[SegmentRef],
+        reach: f64,
         taken: &impl Fn(SegmentRef) -> bool,
     ) -> Vec<SegmentRef> {
         let mut found = Vec::new();
@@ -236,7 +314,7 @@ impl Context<'_> {
             );
             let stretch = Segment2::new(from, to);
             let index = &self.sights.views[view.index()].index;
-            for id in index.near_segment(&stretch, self.params.gate_px) {
+            for id in index.near_segment(&stretch, reach * self.params.gate_px) {
                 let name = SegmentRef {
                     view,
                     segment: crate::ids::SegmentId(id),
@@ -244,7 +322,7 @@ impl Context<'_> {
                 let on_line = |s: &Sight| {
                     let ahead = |p: nalgebra::Point2<f64>| (p - from).dot(&image.direction);
                     let (s0, s1) = (ahead(s.segment.p0), ahead(s.segment.p1));
-                    s0.max(s1) >= 0.0 && s0.min(s1) <= stretch.length() && self.lies_on(&image, s)
+                    s0.max(s1) >= 0.0 && s0.min(s1) <= stretch.length() && self.lies_on(&image, s, reach)
                 };
                 if !taken(name) && self.sights.get(name).is_some_and(on_line) {
                     found.push(name);
@@ -274,9 +352,9 @@ impl Context<'_> {
         Some((image, Segment2::new(image.at(from)?, image.at(to)?)))
     }
 
-    fn lies_on(&self, image: &ProjectedLine, sight: &Sight) -> bool {
+    fn lies_on(&self, image: &ProjectedLine, sight: &Sight, reach: f64) -> bool {
         let along = sight.segment.direction().dot(&image.direction);
-        let near = |p| image.distance(p).abs() <= self.params.gate_px;
+        let near = |p| image.distance(p).abs() <= reach * self.params.gate_px;
         (!self.params.same_contrast || along > 0.0)
             && along.abs() > 0.9
             && near(&sight.segment.p0)
@@ -315,12 +393,13 @@ impl Context<'_> {
         let correlation = &view.correlation[start..=end];
         let seen = EdgelScore::of(correlation, self.params.edgel_correlation);
         let score = score.unwrap_or(seen.score);
-        let factor = if segments.is_empty() {
-            self.params.without_segment
-        } else {
+        let measured = view.edge.is_some() || !segments.is_empty();
+        let factor = if measured {
             self.params.with_segment
+        } else {
+            self.params.without_segment
         };
-        let enough = !segments.is_empty() || seen.included >= self.params.min_edgels;
+        let enough = measured || seen.included >= self.params.min_edgels;
         (enough && score >= self.params.pair_score * factor).then_some(())?;
 
         let supported: Vec<usize> = (start..=end)
@@ -352,6 +431,7 @@ impl Context<'_> {
             stretch,
             score: score.min(1.0),
             kind,
+            edge: view.edge.clone(),
         })
     }
 
@@ -395,7 +475,7 @@ impl Context<'_> {
         if !self.every_view_verified(fit, [t0, t1], &supports, limit_m) {
             return Err(Rejection::Unverified);
         }
-        let measured = supports.iter().filter(|s| !s.segments.is_empty()).count();
+        let measured = supports.iter().filter(|s| s.edge.is_some()).count();
         let certain = score >= self.params.pair_score;
         if measured < MIN_MEASURED || (supports.len() < expected_views && !certain) {
             return Err(Rejection::TooFewViews);

@@ -1,6 +1,7 @@
 //! The evidence along a 3D line, edgel by edgel: which views detected a segment there, and which
 //! views' neighbourhoods correlate. Merging and growing (B99 3.3) read it.
 
+use super::guided::GuidedEdge;
 use super::pairs::side_strip;
 use super::sight::{SegmentRef, Sights};
 use super::strip::{EdgelScore, Strip, StripFrame, StripSide, correlate};
@@ -19,13 +20,31 @@ pub struct ViewProfile {
     pub image: ProjectedLine,
     /// Its segments on the line, with the stretch of the line they cover, metres.
     pub segments: Vec<(SegmentId, [f64; 2])>,
-    /// At each edgel: does a segment lie there?
+    /// The edge measured along the line.
+    pub edge: Option<GuidedEdge>,
+    /// At each edgel: does a segment or a piece of the measured edge lie there?
     pub detected: Vec<bool>,
     /// At each edgel: correlation with the reference view on the better side; NaN where the view
     /// does not see it. All ones in the reference view itself.
     pub correlation: Vec<f32>,
     /// Mean score with the other views that have segments: low for a view that sees another edge.
     pub agreement: f64,
+}
+
+impl ViewProfile {
+    /// Is there an edge in this view?
+    pub fn measured(&self) -> bool {
+        self.edge.is_some()
+    }
+
+    /// The stretches of the line, metres, where an edge was found.
+    fn covered(&self) -> Vec<[f64; 2]> {
+        let pieces = self.edge.iter().flat_map(|e| &e.pieces);
+        pieces
+            .map(|p| [self.image.t_of(&p.p0), self.image.t_of(&p.p1)])
+            .map(|[s, e]| [s.min(e), s.max(e)])
+            .collect()
+    }
 }
 
 /// What all views say along the line.
@@ -45,21 +64,26 @@ impl Profile {
         sights: &Sights,
         line: &Segment3,
         segments: &[SegmentRef],
+        edges: &[GuidedEdge],
         params: &MatchParams,
     ) -> Option<Self> {
         let mut views: Vec<ViewProfile> = scene
             .view_ids()
-            .filter_map(|view| view_segments(scene, sights, line, segments, view))
+            .filter_map(|view| {
+                let mut profile = view_segments(scene, sights, line, segments, view)?;
+                profile.edge = edges.iter().find(|e| e.view == view).cloned();
+                Some(profile)
+            })
             .collect();
-        let reach = |v: &ViewProfile| v.segments.iter().map(|(_, [s, e])| e - s).sum::<f64>();
+        let reach = |v: &ViewProfile| v.covered().iter().map(|[s, e]| e - s).sum::<f64>();
         let longest = (0..views.len()).max_by(|&i, &j| {
             reach(&views[i])
                 .total_cmp(&reach(&views[j]))
                 .then(j.cmp(&i))
         })?;
-        let ends = views.iter().flat_map(|v| v.segments.iter());
-        let (from, to) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(f, t), (_, [s, e])| {
-            (f.min(*s), t.max(*e))
+        let ends = views.iter().flat_map(ViewProfile::covered);
+        let (from, to) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(f, t), [s, e]| {
+            (f.min(s), t.max(e))
         });
         let image = views[longest].image;
         let frame = StripFrame::new(
@@ -70,10 +94,9 @@ impl Profile {
             .map(|e| image.t_of(&frame.edgel(e)))
             .collect();
         for view in &mut views {
-            view.detected = t
-                .iter()
-                .map(|t| view.segments.iter().any(|(_, [s, e])| t >= s && t <= e))
-                .collect();
+            let covered = view.covered();
+            let on_edge = |t: &f64| covered.iter().any(|[s, e]| t >= s && t <= e);
+            view.detected = t.iter().map(on_edge).collect();
         }
         let stretch = stretch_of(line, from, to);
         let strips = Strips::new(scene, &stretch, &frame, longest, &views, params)?;
@@ -85,7 +108,12 @@ impl Profile {
         })
     }
 
-    /// Number of views with a segment at an edgel.
+    /// Number of views with an edge.
+    pub fn measured(&self) -> usize {
+        with_segments(&self.views).count()
+    }
+
+    /// Number of views with the edge at an edgel.
     pub fn detections(&self, edgel: usize) -> usize {
         self.views.iter().filter(|v| v.detected[edgel]).count()
     }
@@ -119,6 +147,7 @@ fn view_segments(
         view,
         image,
         segments: on_line,
+        edge: None,
         detected: Vec::new(),
         correlation: Vec::new(),
         agreement: 0.0,
@@ -206,7 +235,7 @@ impl Strips {
 }
 
 fn with_segments(views: &[ViewProfile]) -> impl Iterator<Item = usize> {
-    (0..views.len()).filter(|i| !views[*i].segments.is_empty())
+    (0..views.len()).filter(|i| views[*i].measured())
 }
 
 fn side_score(a: &Strip, b: &Strip, side: StripSide, params: &MatchParams) -> f64 {

@@ -109,14 +109,11 @@ fn reconstruct(
     let observations: Vec<Observation> = matched
         .supports
         .iter()
-        .flat_map(|s| s.segments.iter().map(move |id| (s.view, id)))
-        .map(|(view, id)| {
-            let detected = &segments[view.index()][id.index()];
-            Observation {
-                camera: scene.camera(view),
-                segment: detected.segment,
-                covariance: detected.covariance,
-            }
+        .filter_map(|s| s.edge.as_ref())
+        .map(|edge| Observation {
+            camera: scene.camera(edge.view),
+            segment: edge.segment,
+            covariance: edge.covariance,
         })
         .collect();
     let start = line_of_planes(&observations).ok_or(LineOutcome::NoFit)?;
