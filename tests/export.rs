@@ -186,6 +186,7 @@ fn planted_evidence() -> (Vec<Vec<ImageSegment>>, Vec<Line3d>, Vec<HalfPlane>) {
         stretch: segment,
         score: 0.75,
         kind: SupportKind::Matched,
+        edge: None,
     };
     let line = Line3d {
         segment: Segment3::new([1.0, 2.0, 3.0].into(), [4.0, 5.0, 6.123_456].into()),

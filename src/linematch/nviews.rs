@@ -13,7 +13,7 @@ use super::{LineSupport, SupportKind};
 use crate::geometry::{Segment2, Segment3};
 use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;
-use crate::lines3d::{LineFit, Observation, ProjectedLine, conditioning, fit_line};
+use crate::lines3d::{LineFit, Observation, ProjectedLine, conditioning, doubly_covered, fit_line};
 use crate::params::{Lines3dParams, MatchParams};
 use crate::scene::Scene;
 
@@ -23,12 +23,14 @@ const ROUNDS: usize = 2;
 /// Least number of views with a segment. Two interpretation planes always meet in a line; the third
 /// makes it evidence, correlation without a segment then adds to it.
 const MIN_MEASURED: usize = 3;
-/// Least number of views in which the detector itself saw it. Assumption.
-const MIN_DETECTED: usize = 2;
+/// Least number of views with an edge and views with a detected segment, together: three of three, or two with
+/// four others where the edge was found again.
+const MIN_EVIDENCE: usize = 6;
 /// How far beside a line, in gates, a segment belongs to it and starts no other line.
 const OWN: f64 = 1.5;
-/// A stretch reaches past the detected segments by this much to count as grown, px.
-const GROWN_PX: f64 = 3.0;
+/// A stretch reaches past the detected segments by this much to count as grown, px: more than a piece of
+/// a measured edge.
+const GROWN_PX: f64 = 6.0;
 
 /// Why a hypothesis that no other line took the segments of did not become a match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -88,7 +90,7 @@ pub fn complete_line(
     let (mut fit, mut edges) = context.measure_again(fit, &segments)?;
     let mut segments = context.adopt(&fit.line, &segments, OWN, &taken);
     loop {
-        if edges.len() < MIN_MEASURED || views_of(&segments) < MIN_DETECTED {
+        if edges.len() < MIN_MEASURED || edges.len() + views_of(&segments) < MIN_EVIDENCE {
             return Err(Rejection::TooFewViews);
         }
         let profile = context.profile(&fit.line, &segments, &edges)?;
@@ -138,14 +140,6 @@ fn views_of(segments: &[SegmentRef]) -> usize {
     segments.chunk_by(|a, b| a.view == b.view).count()
 }
 
-/// The detected segments of a support.
-fn names(support: &LineSupport) -> impl Iterator<Item = SegmentRef> {
-    support.segments.iter().map(|segment| SegmentRef {
-        view: support.view,
-        segment: *segment,
-    })
-}
-
 impl Context<'_> {
     fn profile(
         &self,
@@ -179,15 +173,32 @@ impl Context<'_> {
         segments: &[SegmentRef],
         view: ViewId,
     ) -> Option<GuidedEdge> {
-        let (image, core) = self.extent(line, segments, view)?;
+        let (image, whole) = self.extent(line, segments, view)?;
         let margin = self.params.max_gap_px;
         let expected = Segment2::new(
-            core.p0 - image.direction * margin,
-            core.p1 + image.direction * margin,
+            whole.p0 - image.direction * margin,
+            whole.p1 + image.direction * margin,
         );
-        let core = [margin, margin + core.length()];
+        let core = self.core(line, segments, view)?;
+        let along = |t: f64| Some((image.at(t)? - expected.p0).dot(&expected.direction()));
+        let core = [along(core.0)?, along(core.1)?];
         let gray = &self.scene.view(view).gray;
         measure_edge(view, gray, &expected, core, self.params.noise)
+    }
+
+    /// The stretch of a line, metres, along which a view must show an edge: that of its own segments, or what
+    /// two other views detected.
+    fn core(&self, line: &Segment3, segments: &[SegmentRef], view: ViewId) -> Option<(f64, f64)> {
+        let place = |s: &SegmentRef| {
+            let image = ProjectedLine::new(self.scene.camera(s.view), line)?;
+            let sight = self.sights.get(*s)?;
+            let [t0, t1] = [&sight.segment.p0, &sight.segment.p1].map(|p| image.t_of(p));
+            Some((t0.min(t1), t0.max(t1)))
+        };
+        let own = segments.iter().filter(|s| s.view == view).filter_map(place);
+        let hull = own.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let all = segments.iter().filter_map(place);
+        hull.or_else(|| doubly_covered(all.flat_map(|(s, e)| [(s, 1), (e, -1)]).collect()))
     }
 
     /// [`Self::fit_consistent`] for measured edges.
@@ -322,7 +333,9 @@ impl Context<'_> {
                 let on_line = |s: &Sight| {
                     let ahead = |p: nalgebra::Point2<f64>| (p - from).dot(&image.direction);
                     let (s0, s1) = (ahead(s.segment.p0), ahead(s.segment.p1));
-                    s0.max(s1) >= 0.0 && s0.min(s1) <= stretch.length() && self.lies_on(&image, s, reach)
+                    s0.max(s1) >= 0.0
+                        && s0.min(s1) <= stretch.length()
+                        && self.lies_on(&image, s, reach)
                 };
                 if !taken(name) && self.sights.get(name).is_some_and(on_line) {
                     found.push(name);
@@ -420,10 +433,9 @@ impl Context<'_> {
         let detected_px = (outermost.1 - outermost.0)
             * (stretch.length() / (profile.t[last] - profile.t[first]).max(1e-9));
         let kind = match segments.len() {
-            0 => SupportKind::Grown,
-            _ if stretch.length() > detected_px + GROWN_PX => SupportKind::Grown,
-            1 => SupportKind::Matched,
-            _ => SupportKind::Merged,
+            2.. => SupportKind::Merged,
+            1 if stretch.length() <= detected_px + GROWN_PX => SupportKind::Matched,
+            _ => SupportKind::Grown,
         };
         Some(LineSupport {
             view: view.view,

@@ -60,16 +60,23 @@ fn texture(x: f64, y: f64) -> f64 {
     top * (1.0 - b) + low * b
 }
 
+/// Four by four samples a pixel: an edge is where it is, not where the nearest pixel begins.
 fn render(camera: &Camera) -> Gray {
-    Gray::from_fn(SIZE as usize, SIZE as usize, |c, r| {
-        let x = Point2::new(c as f64 + 0.5, r as f64 + 0.5);
-        let roof = camera.at_height(&x, ROOF_Z).unwrap();
+    let seen = |x: &Point2<f64>| {
+        let roof = camera.at_height(x, ROOF_Z).unwrap();
         if roof.x.abs() <= HALF[0] && roof.y.abs() <= HALF[1] {
-            (0.6 + 0.3 * texture(roof.x, roof.y)) as f32
+            0.6 + 0.3 * texture(roof.x, roof.y)
         } else {
-            let ground = camera.at_height(&x, 0.0).unwrap();
-            (0.2 + 0.3 * texture(ground.x + 50.0, ground.y)) as f32
+            let ground = camera.at_height(x, 0.0).unwrap();
+            0.2 + 0.3 * texture(ground.x + 50.0, ground.y)
         }
+    };
+    Gray::from_fn(SIZE as usize, SIZE as usize, |c, r| {
+        let samples = (0..16).map(|i| {
+            let (u, v) = ((i % 4) as f64 + 0.5, (i / 4) as f64 + 0.5);
+            seen(&Point2::new(c as f64 + u / 4.0, r as f64 + v / 4.0))
+        });
+        (samples.sum::<f64>() / 16.0) as f32
     })
 }
 

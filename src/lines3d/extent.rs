@@ -26,7 +26,7 @@ pub fn common_extent(
 }
 
 /// First and last place where two intervals overlap, from their starts (+1) and ends (-1).
-fn doubly_covered(mut ends: Vec<(f64, i32)>) -> Option<(f64, f64)> {
+pub fn doubly_covered(mut ends: Vec<(f64, i32)>) -> Option<(f64, f64)> {
     // At the same place an interval starts before another ends.
     ends.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
     let (mut covered, mut first, mut last) = (0, None, None);

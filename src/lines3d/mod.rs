@@ -9,6 +9,7 @@ mod extent;
 mod fit;
 mod projection;
 
+pub(crate) use extent::doubly_covered;
 pub use fit::{LineFit, Observation, conditioning, fit_line, line_of_planes};
 pub use projection::ProjectedLine;
 
@@ -17,7 +18,6 @@ use serde::Serialize;
 
 use crate::geometry::Segment3;
 use crate::linematch::{LineMatch, LineSupport};
-use crate::lines2d::ImageSegment;
 use crate::params::Lines3dParams;
 use crate::scene::Scene;
 
@@ -73,14 +73,13 @@ pub struct LineTrace {
     pub length_m: f64,
 }
 
-/// Reconstructs a 3D line from each match; `segments` are those that the matches refer to.
+/// Reconstructs a 3D line from the measured edges of each match.
 pub fn reconstruct_lines(
     scene: &Scene,
-    segments: &[Vec<ImageSegment>],
     matches: &[LineMatch],
     params: &Lines3dParams,
 ) -> (Vec<Line3d>, LineTrace) {
-    let results = crate::parallel::map(matches, |_, m| reconstruct(scene, segments, m, params));
+    let results = crate::parallel::map(matches, |_, m| reconstruct(scene, m, params));
     let mut lines: Vec<Line3d> = Vec::new();
     let mut trace = LineTrace::default();
     for result in results {
@@ -102,7 +101,6 @@ pub fn reconstruct_lines(
 /// One line and its residual, or why there is none.
 fn reconstruct(
     scene: &Scene,
-    segments: &[Vec<ImageSegment>],
     matched: &LineMatch,
     params: &Lines3dParams,
 ) -> Result<(Line3d, f64), LineOutcome> {

@@ -223,7 +223,7 @@ impl Run {
             }
             Stage::Lines => {
                 let (segments, matches) = (before(&r.segments), before(&r.matches));
-                let found = reconstruct_lines(scene, segments, matches, &params.lines3d);
+                let found = reconstruct_lines(scene, matches, &params.lines3d);
                 r.lines = Some(found.into());
             }
             Stage::HalfPlanes => {
