@@ -28,6 +28,8 @@ pub struct Params {
 pub struct SegmentParams {
     /// The edgels that segments are made of.
     pub edgels: EdgelParams,
+    /// Thin lines, the second source of segments.
+    pub bars: BarParams,
     /// Shortest segment, px. B99 3.2: "above a minimum length (here 15 pixels)".
     pub min_length_px: f64,
     /// Edgels in each of the worm's two arms. Assumption: a third of the shortest segment.
@@ -66,6 +68,7 @@ impl Default for SegmentParams {
     fn default() -> Self {
         Self {
             edgels: EdgelParams::default(),
+            bars: BarParams::default(),
             min_length_px: 15.0,
             worm_arm_edgels: 5,
             worm_bend_deg: 20.0,
@@ -102,6 +105,28 @@ impl Default for EdgelParams {
     fn default() -> Self {
         Self {
             smoothing_px: 0.8,
+            low: 1.8,
+            high: 2.5,
+        }
+    }
+}
+
+/// B99 5: bars. Thresholds are multiples of the local scale of the second derivative.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct BarParams {
+    /// Look for bars at all?
+    pub detect: bool,
+    /// Least second derivative of a point of a bar.
+    pub low: f64,
+    /// Least second derivative of the strongest point in a chain.
+    pub high: f64,
+}
+
+impl Default for BarParams {
+    fn default() -> Self {
+        Self {
+            detect: true,
             low: 1.8,
             high: 2.5,
         }

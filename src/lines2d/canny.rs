@@ -9,7 +9,7 @@
 use nalgebra::{Point2, Vector2};
 use serde::Serialize;
 
-use super::noise::LocalGradients;
+use super::noise::LocalStrengths;
 use crate::params::EdgelParams;
 use crate::raster::{Gray, gaussian_blur};
 
@@ -45,9 +45,8 @@ impl Edgel {
 
 /// The edgels of an image, row by row. Nothing closer than two pixels to the border is found.
 pub fn detect_edgels(gray: &Gray, params: &EdgelParams) -> Vec<Edgel> {
-    let gradient = Gradient::new(gray, params.smoothing_px);
-    let local = LocalGradients::new(&gradient);
-    suppress(&gradient, &local, params.low)
+    let gradient = Gradient::new(&gaussian_blur(gray, params.smoothing_px));
+    suppress(&gradient, &gradient.statistics(), params.low)
 }
 
 /// Gradient of a smoothed image, row by row; zero on the border pixels.
@@ -65,10 +64,9 @@ pub struct Gradient {
 }
 
 impl Gradient {
-    /// Smooths by a Gaussian of `smoothing_px` and differentiates.
-    pub fn new(gray: &Gray, smoothing_px: f64) -> Self {
-        let smooth = gaussian_blur(gray, smoothing_px);
-        let (width, height) = (gray.width, gray.height);
+    /// Differentiates a smoothed image.
+    pub fn new(smooth: &Gray) -> Self {
+        let (width, height) = (smooth.width, smooth.height);
         let mut gradient = Self {
             width,
             height,
@@ -82,6 +80,11 @@ impl Gradient {
             }
         }
         gradient
+    }
+
+    /// Statistics of the strength.
+    pub fn statistics(&self) -> LocalStrengths {
+        LocalStrengths::new(&self.strength, self.width, self.height)
     }
 
     fn differentiate_row(&mut self, smooth: &[f32], y: usize) {
@@ -104,7 +107,7 @@ impl Gradient {
 }
 
 /// Non-maximum suppression: the edgels stronger than `low` times the local noise.
-pub fn suppress(gradient: &Gradient, local: &LocalGradients, low: f64) -> Vec<Edgel> {
+pub fn suppress(gradient: &Gradient, local: &LocalStrengths, low: f64) -> Vec<Edgel> {
     let (w, h) = (gradient.width, gradient.height);
     let low = low as f32;
     let mut edgels = Vec::new();

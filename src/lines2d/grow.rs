@@ -11,6 +11,7 @@ use nalgebra::Point2;
 use super::canny::Edgel;
 use super::chain::{NONE, Raster};
 use super::fit::LineFit;
+use crate::geometry::Segment2;
 use crate::params::SegmentParams;
 
 /// The edgels of a line in order along it, and the line.
@@ -34,6 +35,16 @@ impl Grown {
             points,
             line,
         }
+    }
+
+    /// The stretch of the line from its first to its last edgel.
+    pub fn extent(&self) -> Segment2 {
+        let along = self.points.iter().map(|p| self.line.along(p));
+        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| {
+            (l.min(t), h.max(t))
+        });
+        let at = |t: f64| self.line.centroid + self.line.direction * t;
+        Segment2::new(at(low), at(high))
     }
 
     fn reverse(&mut self) {

@@ -8,180 +8,80 @@
 //! rendered views of a suburb, about 880 segments each: 48 % of the true roof edges covered instead of 59 %).
 
 use nalgebra::Point2;
-use serde::Serialize;
 
-use super::ImageSegment;
-use super::canny::{Edgel, Gradient, suppress};
-use super::chain::{Chain, Raster, link_on};
-use super::fit::straight_pieces;
-use super::grow::{Grown, grow_tight};
-use super::noise::LocalGradients;
-use super::significance::ln_false_alarms;
-use super::worm::tangent_breaks;
+use super::bar::{Fan, Hessian, bar_points, fan_edgels};
+use super::canny::{Gradient, suppress};
+use super::grow::Grown;
+use super::lines::significant_lines;
+use super::trace::SegmentTrace;
+use super::{ImageSegment, SegmentKind};
 use crate::geometry::Segment2;
 use crate::params::SegmentParams;
-use crate::raster::Gray;
+use crate::raster::{Gray, gaussian_blur};
 
-/// Why a straight line of edgels is not a segment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SegmentRejection {
-    /// Shorter than the minimum length.
-    TooShort,
-    /// Part of a curve.
-    Curved,
-    /// Not distinguishable from the texture around it.
-    NotSignificant,
-}
-
-/// A line that was refused, with the reason.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RejectedSegment {
-    /// The line, px.
-    pub segment: Segment2,
-    /// Why it was refused.
-    pub reason: SegmentRejection,
-}
-
-/// What the detector did in one view.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct SegmentTrace {
-    /// Edgels above the low threshold.
-    pub edgels: usize,
-    /// Chains of edgels after hysteresis.
-    pub chains: usize,
-    /// Where the worm broke a chain, px.
-    pub worm_breaks: Vec<Point2<f64>>,
-    /// Straight pieces of chains, from which lines are grown.
-    pub seeds: usize,
-    /// Seeds that a longer one has swallowed.
-    pub taken: usize,
-    /// Lines that are too short.
-    pub too_short: usize,
-    /// Lines that belong to a curve.
-    pub curved: usize,
-    /// Lines that the texture around them explains.
-    pub not_significant: usize,
-    /// The refused lines of at least the minimum length.
-    pub rejected: Vec<RejectedSegment>,
-}
-
-/// The straight segments of an image, directed by contrast, those of the longest pieces first.
+/// The straight segments of an image, directed by contrast: edges first, then bars.
 pub fn detect_segments(gray: &Gray, params: &SegmentParams) -> (Vec<ImageSegment>, SegmentTrace) {
-    let gradient = Gradient::new(gray, params.edgels.smoothing_px);
-    let local = LocalGradients::new(&gradient);
-    let edgels = suppress(&gradient, &local, params.edgels.low);
-    let raster = Raster::new(&edgels);
-    let chains = link_on(&edgels, &raster, params.edgels.high);
-    let mut trace = SegmentTrace {
-        edgels: edgels.len(),
-        chains: chains.len(),
-        ..SegmentTrace::default()
-    };
-    let mut seeds: Vec<Vec<u32>> = chains
-        .iter()
-        .flat_map(|chain| seeds_of(chain, &edgels, params, &mut trace))
-        .collect();
-    trace.seeds = seeds.len();
-    // The longest first: they predict best. The sort is stable, equals stay in the order of their chains.
-    seeds.sort_by_key(|seed| std::cmp::Reverse(seed.len()));
-
-    let tests = seeds.len();
-    let mut taken = vec![false; edgels.len()];
-    let mut segments = Vec::new();
-    for seed in &seeds {
-        if seed.iter().filter(|&&i| taken[i as usize]).count() * 2 > seed.len() {
-            trace.taken += 1;
-            continue;
-        }
-        let line = grow_tight(&edgels, &raster, seed, &|i| !taken[i as usize], params);
-        let segment = extent(&line);
-        match judge(&line, &segment, &edgels, &local, tests, params) {
-            None => {
-                line.edgels.iter().for_each(|&i| taken[i as usize] = true);
-                segments.push(finish(&line, segment, gray, params));
-            }
-            Some(SegmentRejection::TooShort) => trace.too_short += 1,
-            Some(reason) => trace.rejected.push(RejectedSegment { segment, reason }),
-        }
+    let smooth = gaussian_blur(gray, params.edgels.smoothing_px);
+    let mut trace = SegmentTrace::default();
+    let mut segments = edge_segments(gray, &smooth, params, &mut trace);
+    if params.bars.detect {
+        segments.extend(bar_segments(gray, &smooth, params, &mut trace));
     }
-    let refused = |reason| trace.rejected.iter().filter(|r| r.reason == reason).count();
-    trace.curved = refused(SegmentRejection::Curved);
-    trace.not_significant = refused(SegmentRejection::NotSignificant);
     (segments, trace)
 }
 
-/// The straight pieces of a chain, as edgel indices.
-fn seeds_of(
-    chain: &Chain,
-    edgels: &[Edgel],
+/// Segments on steps.
+fn edge_segments(
+    gray: &Gray,
+    smooth: &Gray,
     params: &SegmentParams,
     trace: &mut SegmentTrace,
-) -> Vec<Vec<u32>> {
-    let position = |&i: &u32| edgels[i as usize].position;
-    let points: Vec<Point2<f64>> = chain.edgels.iter().map(position).collect();
-    let breaks = tangent_breaks(&points, params);
-    trace.worm_breaks.extend(breaks.iter().map(|&i| points[i]));
-    let starts = std::iter::once(0).chain(breaks.iter().copied());
-    let ends = breaks.iter().map(|b| b + 1).chain([points.len()]);
-    starts
-        .zip(ends)
-        .flat_map(|(from, to)| straight_pieces(&points, from, to, params))
-        .filter(|piece| piece.to - piece.from >= params.seed_edgels)
-        .map(|piece| chain.edgels[piece.from..piece.to].to_vec())
+) -> Vec<ImageSegment> {
+    let gradient = Gradient::new(smooth);
+    let local = gradient.statistics();
+    let edgels = suppress(&gradient, &local, params.edgels.low);
+    significant_lines(&edgels, &local, params.edgels.high, params, trace)
+        .iter()
+        .map(|line| finish(line, SegmentKind::Edge, gray, params))
         .collect()
 }
 
-/// The stretch of the line from its first to its last edgel.
-fn extent(grown: &Grown) -> Segment2 {
-    let line = &grown.line;
-    let along = grown.points.iter().map(|p| line.along(p));
-    let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| {
-        (l.min(t), h.max(t))
-    });
-    let at = |t: f64| line.centroid + line.direction * t;
-    Segment2::new(at(low), at(high))
-}
-
-/// Why the line is no segment, if it is none.
-fn judge(
-    grown: &Grown,
-    segment: &Segment2,
-    edgels: &[Edgel],
-    local: &LocalGradients,
-    tests: usize,
+/// Segments on thin lines.
+fn bar_segments(
+    gray: &Gray,
+    smooth: &Gray,
     params: &SegmentParams,
-) -> Option<SegmentRejection> {
-    if segment.length() < params.min_length_px {
-        return Some(SegmentRejection::TooShort);
+    trace: &mut SegmentTrace,
+) -> Vec<ImageSegment> {
+    let hessian = Hessian::new(smooth);
+    let local = hessian.statistics();
+    let points = bar_points(smooth, &hessian, &local, params.bars.low);
+    let mut segments = Vec::new();
+    for kind in [SegmentKind::BrightBar, SegmentKind::DarkBar] {
+        for fan in [Fan::Right, Fan::Down] {
+            let edgels = fan_edgels(&points, kind == SegmentKind::BrightBar, fan);
+            let lines = significant_lines(&edgels, &local, params.bars.high, params, trace);
+            let own = lines.iter().filter(|l| fan.holds(&l.line.normal()));
+            segments.extend(own.map(|line| finish(line, kind, gray, params)));
+        }
     }
-    let line = &grown.line;
-    let correlated = 2.0 * params.edgels.smoothing_px;
-    let (curvature, sigma) = line.curvature(&grown.points);
-    let sigma = sigma * correlated.sqrt();
-    if curvature.abs() > 3.0 * sigma && curvature.abs() * params.min_radius_px > 1.0 {
-        return Some(SegmentRejection::Curved);
-    }
-    let normal = line.normal();
-    let surprise = |&i: &u32| {
-        let edgel = &edgels[i as usize];
-        let (x, y) = edgel.pixel();
-        let across = edgel.gradient.cast::<f64>().dot(&normal).max(0.0);
-        f64::from(local.surprise(x, y, across as f32))
-    };
-    let sum: f64 = grown.edgels.iter().map(surprise).sum();
-    // One edgel a pixel along the main axis, were there no gaps.
-    let step = segment.p1 - segment.p0;
-    let pixels = (step.x.abs().max(step.y.abs()) + 1.0).max(grown.edgels.len() as f64);
-    let alarms = ln_false_alarms(tests, pixels / correlated, sum / correlated);
-    (alarms > params.max_ln_false_alarms).then_some(SegmentRejection::NotSignificant)
+    segments
 }
 
-fn finish(grown: &Grown, segment: Segment2, gray: &Gray, params: &SegmentParams) -> ImageSegment {
+fn finish(grown: &Grown, kind: SegmentKind, gray: &Gray, params: &SegmentParams) -> ImageSegment {
     let line = &grown.line;
+    let mut segment = grown.extent();
+    let mut contrast = contrast(gray, &segment, params.contrast_distance_px);
+    if kind == SegmentKind::Edge {
+        contrast = contrast.max(0.0);
+    } else if contrast < 0.0 {
+        segment = Segment2::new(segment.p1, segment.p0);
+        contrast = -contrast;
+    }
     ImageSegment {
+        kind,
         segment,
-        contrast: contrast(gray, &segment, params.contrast_distance_px),
+        contrast,
         edgels: u32::try_from(line.count).expect("fewer than 2^32 edgels"),
         covariance: line.covariance(
             line.along(&segment.midpoint()),
@@ -205,7 +105,7 @@ fn contrast(gray: &Gray, segment: &Segment2, distance_px: f64) -> f32 {
         }
     }
     if count > 0.0 {
-        (sum / count).max(0.0)
+        sum / count
     } else {
         0.0
     }
