@@ -62,6 +62,11 @@ pub struct SegmentParams {
     pub contrast_distance_px: f64,
     /// Least standard deviation of an edgel, px. Assumption: what sampling leaves without noise.
     pub edgel_floor_px: f64,
+    /// Least step, in local noise units, that a line is moved to in the unsmoothed image. Assumption.
+    pub refine_strength: f64,
+    /// Standard deviation of the edge that the image shows about the edge that is meant, px. Assumption: a third
+    /// of what fascias, gutters and ridge caps are wide.
+    pub edge_floor_px: f64,
 }
 
 impl Default for SegmentParams {
@@ -81,6 +86,8 @@ impl Default for SegmentParams {
             max_ln_false_alarms: 5.0,
             contrast_distance_px: 2.5,
             edgel_floor_px: 0.05,
+            refine_strength: 3.0,
+            edge_floor_px: 0.0,
         }
     }
 }

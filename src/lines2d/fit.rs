@@ -88,12 +88,8 @@ impl LineFit {
     }
 
     /// Covariance of (offset along the normal in px, angle in rad) at the position `along` the line.
-    ///
-    /// Smoothing makes the errors of neighbouring edgels alike: white noise after a Gaussian of
-    /// standard deviation s is correlated as exp(-d^2 / 4 s^2), so that 2 sqrt(pi) s consecutive
-    /// edgels count as one. `floor_px` is the least standard deviation of an edgel.
-    pub fn covariance(&self, along: f64, smoothing_px: f64, floor_px: f64) -> Matrix2<f64> {
-        let correlated = (2.0 * std::f64::consts::PI.sqrt() * smoothing_px).max(1.0);
+    /// `correlated` consecutive edgels count as one; `floor_px` is the least standard deviation of an edgel.
+    pub fn covariance(&self, along: f64, correlated: f64, floor_px: f64) -> Matrix2<f64> {
         // Two parameters are taken out of the independent errors.
         let independent = (self.count as f64 / correlated - 2.0).max(1.0);
         let scale = (independent + 2.0) / independent;
@@ -106,6 +102,28 @@ impl LineFit {
             angle * along,
             angle,
         )
+    }
+
+    /// How many consecutive edgels err together: 1 + 2 sum of the autocorrelation of their distances from
+    /// the line, up to the first lag without any.
+    ///
+    /// Smoothing alone makes neighbours alike: white noise after a Gaussian of standard
+    /// deviation s is correlated as exp(-d^2 / 4 s^2), so that it is 2 sqrt(pi) s at least. Tiles, planks and
+    /// shadows reach farther.
+    pub fn correlated_edgels(&self, points: &[Point2<f64>], smoothing_px: f64) -> f64 {
+        let least = (2.0 * std::f64::consts::PI.sqrt() * smoothing_px).max(1.0);
+        let across: Vec<f64> = points.iter().map(|p| self.across(p)).collect();
+        let power: f64 = across.iter().map(|d| d * d).sum();
+        let mut sum = 1.0;
+        for lag in 1..points.len() / 4 {
+            let pairs = across.iter().zip(&across[lag..]);
+            let product: f64 = pairs.map(|(a, b)| a * b).sum();
+            if product <= 0.0 {
+                break;
+            }
+            sum += 2.0 * product / power;
+        }
+        sum.max(least)
     }
 
     /// Curvature of the best parabola (1/px) and its standard deviation.
@@ -268,12 +286,12 @@ mod tests {
             .map(|i| Point2::new(f64::from(i), if i % 2 == 0 { 0.1 } else { -0.1 }))
             .collect();
         let line = LineFit::new(&points);
-        let c = line.covariance(0.0, 0.0, 0.0);
+        let c = line.covariance(0.0, 1.0, 0.0);
         let sigma2 = 0.01 * 40.0 / 38.0;
         assert!((c[(0, 0)] / (sigma2 / 40.0) - 1.0).abs() < 0.01);
         assert!((c[(1, 1)] / (sigma2 / 5330.0) - 1.0).abs() < 0.01);
         // Ten pixels from the centroid the offset takes up the angle's uncertainty.
-        let off = line.covariance(10.0, 0.0, 0.0);
+        let off = line.covariance(10.0, 1.0, 0.0);
         assert!((off[(0, 0)] - c[(0, 0)] - 100.0 * c[(1, 1)]).abs() < 1e-12);
         assert!((off[(0, 1)] - 10.0 * c[(1, 1)]).abs() < 1e-12);
     }

@@ -16,6 +16,7 @@ mod fit;
 mod grow;
 mod lines;
 mod noise;
+mod refine;
 mod segments;
 mod significance;
 #[cfg(test)]

@@ -1,0 +1,195 @@
+//! Lines moved to where the unsmoothed image has its edge.
+//!
+//! Smoothing makes edgels steady, and blends two edges closer than about 2 px into one between them: an
+//! eave with its fascia below and its gutter in front has such pairs everywhere. Once the line is known no smoothing
+//! is needed, because the pixels along it can be averaged instead (the slanted-edge method by which ISO 12233
+//! measures lenses). Stretch by stretch, rows of pixels across the line are shifted to the line and
+//! averaged; the stretch's edgels then move together to the crest of the mean profile's derivative.
+
+use nalgebra::{Point2, Vector2};
+
+use super::canny::Edgel;
+use super::fit::LineFit;
+use super::grow::Grown;
+use crate::raster::Gray;
+
+/// Edgels in a stretch: as many as smoothing to 1/4 of the noise of a pixel takes.
+const STRETCH: usize = 16;
+/// Samples on either side of the line, px along the image axis across it.
+const REACH: usize = 4;
+/// Samples of a profile.
+const SAMPLES: usize = 2 * REACH + 1;
+
+/// Moves the edgels of a line found on a step and fits the line again. A stretch whose step is weaker
+/// than `least` times the noise around it stays where it is.
+pub fn refine(line: &mut Grown, all: &[Edgel], gray: &Gray, least: f64) {
+    let axes = Axes::of(&line.line);
+    let count = line.points.len();
+    let stretches = (count / STRETCH).max(1);
+    for s in 0..stretches {
+        let range = s * count / stretches..(s + 1) * count / stretches;
+        let points = &line.points[range.clone()];
+        let noise: f32 = line.edgels[range.clone()]
+            .iter()
+            .map(|&i| all[i as usize].noise)
+            .sum();
+        let noise = f64::from(noise) / range.len() as f64;
+        let profile = axes.mean_profile(points, gray);
+        let Some(crest) = profile.and_then(|p| crest(&p, least * noise)) else {
+            continue;
+        };
+        let now = points.iter().map(|p| line.line.across(p)).sum::<f64>() / points.len() as f64;
+        let normal = line.line.normal();
+        let shift = normal * (crest * axes.across(&normal).abs() - now);
+        line.points[range].iter_mut().for_each(|p| *p += shift);
+    }
+    line.line = LineFit::new(&line.points);
+}
+
+/// The image axis that is more across a line, and the line as a function of the other one.
+struct Axes {
+    /// Whether rows are across the line (columns otherwise).
+    rows: bool,
+    /// Change of the position across per pixel along.
+    slope: f64,
+    /// Position across at zero along.
+    start: f64,
+    /// 1 where the brighter side is at larger coordinates, -1 where it is not.
+    sense: f64,
+}
+
+impl Axes {
+    fn of(line: &LineFit) -> Self {
+        let normal = line.normal();
+        let mut axes = Self {
+            rows: normal.x.abs() >= normal.y.abs(),
+            slope: 0.0,
+            start: 0.0,
+            sense: 1.0,
+        };
+        axes.sense = axes.across(&normal).signum();
+        axes.slope = axes.across(&line.direction) / axes.along(&line.direction);
+        let centroid = &line.centroid.coords;
+        axes.start = axes.across(centroid) - axes.slope * axes.along(centroid);
+        axes
+    }
+
+    fn across(&self, v: &Vector2<f64>) -> f64 {
+        if self.rows { v.x } else { v.y }
+    }
+
+    fn along(&self, v: &Vector2<f64>) -> f64 {
+        if self.rows { v.y } else { v.x }
+    }
+
+    /// Mean grey values across the line, from the dark to the bright side; `None` too near the border.
+    fn mean_profile(&self, points: &[Point2<f64>], gray: &Gray) -> Option<[f64; SAMPLES]> {
+        let (step, stride, length) = if self.rows {
+            (1, gray.width, gray.width)
+        } else {
+            (gray.width, 1, gray.height)
+        };
+        let mut sum = [0.0f32; SAMPLES];
+        let mut count = 0.0;
+        for p in points {
+            let along = self.along(&p.coords).floor();
+            let at = self.start + self.slope * (along + 0.5) - 0.5;
+            let first = at.floor() as isize - REACH as isize - 1;
+            if first < 0 || first as usize + SAMPLES + 3 > length {
+                continue;
+            }
+            let base = along as usize * stride + first as usize * step;
+            let weights = catmull_rom((at - at.floor()) as f32);
+            for (k, s) in sum.iter_mut().enumerate() {
+                let i = base + k * step;
+                for (tap, w) in weights.iter().enumerate() {
+                    *s += w * gray.data[i + tap * step];
+                }
+            }
+            count += 1.0;
+        }
+        if self.sense < 0.0 {
+            sum.reverse();
+        }
+        (count > 0.0).then(|| sum.map(|s| f64::from(s) / count))
+    }
+}
+
+/// Weights of the four samples around a position, a fraction `f` after the second.
+fn catmull_rom(f: f32) -> [f32; 4] {
+    let (f2, f3) = (f * f, f * f * f);
+    [
+        0.5 * (2.0 * f2 - f - f3),
+        0.5 * (3.0 * f3 - 5.0 * f2) + 1.0,
+        0.5 * (4.0 * f2 + f - 3.0 * f3),
+        0.5 * (f3 - f2),
+    ]
+}
+
+/// Position of the steepest rise within 1.5 samples of the middle, if it is one of at least `least`.
+fn crest(profile: &[f64; SAMPLES], least: f64) -> Option<f64> {
+    // rises[j] lies at j - REACH + 0.5 samples from the middle.
+    let rises: Vec<f64> = profile.windows(2).map(|p| p[1] - p[0]).collect();
+    let mut best = REACH - 2;
+    for j in REACH - 2..REACH + 2 {
+        if rises[j] > rises[best] {
+            best = j;
+        }
+    }
+    let (before, top, after) = (rises[best - 1], rises[best], rises[best + 1]);
+    if top < least || top <= before || top < after || top <= 0.0 {
+        return None;
+    }
+    // A blurred step has a Gaussian derivative: its logarithm is a parabola.
+    let (before, top, after) = if before > 0.0 && after > 0.0 {
+        let ln = crate::math::ln;
+        (ln(before), ln(top), ln(after))
+    } else {
+        (before, top, after)
+    };
+    let t = 0.5 * (after - before) / (2.0 * top - before - after);
+    Some(best as f64 + 0.5 - REACH as f64 + t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{distance_to_edge, edgel, step_edge};
+    use super::*;
+
+    /// A line of edgels beside the planted edge, at this distance towards the brighter side, px.
+    fn beside(gray: &Gray, angle: f64, off: f64) -> (Vec<Edgel>, Grown) {
+        let (s, c) = crate::math::sin_cos(angle);
+        let centre = Point2::new(gray.width as f64 / 2.0 + 0.2, gray.height as f64 / 2.0 - 0.3);
+        let at = |t: f64| centre + Vector2::new(c, s) * off + Vector2::new(s, -c) * t;
+        let all: Vec<Edgel> = (-25..25)
+            .map(|t| at(f64::from(t)))
+            .map(|p| edgel(p.x, p.y, (c as f32, s as f32)))
+            .map(|e| Edgel { noise: 0.001, ..e })
+            .collect();
+        let grown = Grown::new(&all, (0..50).collect());
+        (all, grown)
+    }
+
+    #[test]
+    fn a_line_beside_an_edge_moves_onto_it() {
+        for step in 0..24 {
+            let angle = f64::from(step) * 15f64.to_radians() + 0.03;
+            let gray = step_edge(80, 80, angle, 0.3);
+            for off in [-0.6, 0.0, 0.4] {
+                let (all, mut line) = beside(&gray, angle, off);
+                refine(&mut line, &all, &gray, 3.0);
+                let miss = distance_to_edge(&gray, angle, &line.line.centroid);
+                assert!(miss.abs() < 0.03, "{miss} px from {off} at {angle}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_line_without_a_step_stays() {
+        let gray = Gray::from_fn(80, 80, |_, _| 0.5);
+        let (all, mut line) = beside(&gray, 0.3, 0.4);
+        let before = line.line;
+        refine(&mut line, &all, &gray, 3.0);
+        assert_eq!(line.line, before);
+    }
+}
