@@ -62,10 +62,12 @@ pub struct SegmentParams {
     pub contrast_distance_px: f64,
     /// Least standard deviation of an edgel, px. Assumption: what sampling leaves without noise.
     pub edgel_floor_px: f64,
-    /// Least step, in local noise units, that a line is moved to in the unsmoothed image. Assumption.
-    pub refine_strength: f64,
-    /// Standard deviation of the edge that the image shows about the edge that is meant, px. Assumption: a third
-    /// of what fascias, gutters and ridge caps are wide.
+    /// Least shift of a stretch of a line to the crest of the unsmoothed edge, in standard deviations of that
+    /// crest. Assumption: less is noise.
+    pub refine_sigmas: f64,
+    /// Standard deviation of the edge that the image shows about the edge that is meant, px, at either end of a segment.
+    /// Assumption: what fascias, gutters and ridge caps do on aerial photographs: two thirds of
+    /// the segments lie within one standard deviation of the true edge.
     pub edge_floor_px: f64,
 }
 
@@ -80,14 +82,14 @@ impl Default for SegmentParams {
             max_residual_px: 1.2,
             max_rms_px: 0.5,
             seed_edgels: 8,
-            grow_gap_px: 6,
+            grow_gap_px: 12,
             grow_turn_deg: 30.0,
             min_radius_px: 300.0,
-            max_ln_false_alarms: 5.0,
+            max_ln_false_alarms: 7.0,
             contrast_distance_px: 2.5,
             edgel_floor_px: 0.05,
-            refine_strength: 3.0,
-            edge_floor_px: 0.0,
+            refine_sigmas: 2.5,
+            edge_floor_px: 0.3,
         }
     }
 }
@@ -128,14 +130,17 @@ pub struct BarParams {
     pub low: f64,
     /// Least second derivative of the strongest point in a chain.
     pub high: f64,
+    /// A bar is refused that has a segment on an edge so near along half of it, px.
+    pub clear_px: f64,
 }
 
 impl Default for BarParams {
     fn default() -> Self {
         Self {
-            detect: true,
-            low: 1.8,
-            high: 2.5,
+            detect: false,
+            low: 2.5,
+            high: 3.5,
+            clear_px: 2.0,
         }
     }
 }

@@ -78,10 +78,19 @@ impl Hessian {
         let mut strength = vec![0.0; w * h];
         if w >= 3 {
             for y in 1..h.saturating_sub(1) {
-                strength_row(&smooth.data, w, y, &mut strength[y * w + 1..(y + 1) * w - 1]);
+                strength_row(
+                    &smooth.data,
+                    w,
+                    y,
+                    &mut strength[y * w + 1..(y + 1) * w - 1],
+                );
             }
         }
-        Self { width: w, height: h, strength }
+        Self {
+            width: w,
+            height: h,
+            strength,
+        }
     }
 
     /// Statistics of the strength.
@@ -139,7 +148,11 @@ fn bar_point(smooth: &Gray, x: usize, y: usize, noise: f32) -> Option<BarPoint> 
     let xy = 0.25 * (s[i - w - 1] - s[i - w + 1] - s[i + w - 1] + s[i + w + 1]);
     let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
     let radius = (half * half + xy * xy).sqrt();
-    let second = if mean < 0.0 { mean - radius } else { mean + radius };
+    let second = if mean < 0.0 {
+        mean - radius
+    } else {
+        mean + radius
+    };
     // (H - second I) n = 0, from the better conditioned row.
     let normal = if (half >= 0.0) == (mean >= 0.0) {
         Vector2::new(second - yy, xy)

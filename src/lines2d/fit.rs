@@ -30,38 +30,9 @@ pub struct LineFit {
 impl LineFit {
     /// Fits a line to at least two distinct points.
     pub fn new(points: &[Point2<f64>]) -> Self {
-        let n = points.len() as f64;
-        let sum = points.iter().fold(Vector2::zeros(), |s, p| s + p.coords);
-        let centroid = Point2::from(sum / n);
-        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-        for p in points {
-            let d = p - centroid;
-            xx += d.x * d.x;
-            xy += d.x * d.y;
-            yy += d.y * d.y;
-        }
-        let (half_sum, half_difference) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-        let radius = (half_difference * half_difference + xy * xy).sqrt();
-        // The eigenvector of the larger eigenvalue, from the better conditioned row.
-        let axis = if half_difference >= 0.0 {
-            Vector2::new(half_difference + radius, xy)
-        } else {
-            Vector2::new(xy, radius - half_difference)
-        };
-        let chord = points[points.len() - 1] - points[0];
-        let axis = if axis.dot(&chord) < 0.0 { -axis } else { axis };
-        let norm = axis.norm();
-        Self {
-            centroid,
-            direction: if norm > 0.0 {
-                axis / norm
-            } else {
-                Vector2::x()
-            },
-            count: points.len(),
-            spread: half_sum + radius,
-            rms: ((half_sum - radius).max(0.0) / n).sqrt(),
-        }
+        let mut moments = Moments::about(points[0]);
+        points.iter().for_each(|p| moments.add(p));
+        moments.line(&(points[points.len() - 1] - points[0]))
     }
 
     /// Unit normal (-dy, dx).
@@ -147,6 +118,72 @@ impl LineFit {
 
 fn cubed(t: f64) -> f64 {
     t * t * t
+}
+
+/// Sums over points from which their line follows, to which points can be added one by one.
+#[derive(Clone, Copy, Debug)]
+pub struct Moments {
+    /// What the sums are about, near the points: sums about the image's corner would lose digits.
+    origin: Point2<f64>,
+    count: usize,
+    sum: Vector2<f64>,
+    xx: f64,
+    xy: f64,
+    yy: f64,
+}
+
+impl Moments {
+    /// Of no points yet.
+    pub fn about(origin: Point2<f64>) -> Self {
+        Self {
+            origin,
+            count: 0,
+            sum: Vector2::zeros(),
+            xx: 0.0,
+            xy: 0.0,
+            yy: 0.0,
+        }
+    }
+
+    /// Adds a point.
+    pub fn add(&mut self, point: &Point2<f64>) {
+        let d = point - self.origin;
+        self.count += 1;
+        self.sum += d;
+        self.xx += d.x * d.x;
+        self.xy += d.x * d.y;
+        self.yy += d.y * d.y;
+    }
+
+    /// The orthogonal regression line, in the sense of `chord`.
+    pub fn line(&self, chord: &Vector2<f64>) -> LineFit {
+        let n = self.count as f64;
+        let mean = self.sum / n;
+        let xx = self.xx - n * mean.x * mean.x;
+        let xy = self.xy - n * mean.x * mean.y;
+        let yy = self.yy - n * mean.y * mean.y;
+        let (half_sum, half_difference) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+        let radius = (half_difference * half_difference + xy * xy).sqrt();
+        // The eigenvector of the larger eigenvalue, from the better conditioned row.
+        let axis = if half_difference >= 0.0 {
+            Vector2::new(half_difference + radius, xy)
+        } else {
+            Vector2::new(xy, radius - half_difference)
+        };
+        let axis = if axis.dot(chord) < 0.0 { -axis } else { axis };
+        let norm = axis.norm();
+        LineFit {
+            centroid: self.origin + mean,
+            direction: if norm > 0.0 {
+                axis / norm
+            } else {
+                Vector2::x()
+            },
+            count: self.count,
+            spread: half_sum + radius,
+            rms: ((half_sum - radius).max(0.0) / n).sqrt(),
+        }
+    }
 }
 
 /// A stretch of a chain (`points[from..to]`) with its line.

@@ -65,6 +65,10 @@ fn seeds_of(
     params: &SegmentParams,
     trace: &mut SegmentTrace,
 ) -> Vec<Vec<u32>> {
+    if chain.edgels.len() < params.seed_edgels {
+        trace.short_chains += 1;
+        return Vec::new();
+    }
     let position = |&i: &u32| edgels[i as usize].position;
     let points: Vec<Point2<f64>> = chain.edgels.iter().map(position).collect();
     let breaks = tangent_breaks(&points, params);

@@ -159,15 +159,15 @@ mod tests {
     /// is (R(0) - R(2)) / 2.
     const GAIN: f32 = 0.1586;
 
-    fn noisy(sigma: f64) -> Gradient {
+    fn noisy(sigma: f64) -> LocalStrengths {
         let mut gray = Gray::from_fn(160, 160, |_, _| 0.5);
         add_noise(&mut gray, sigma, 7);
-        Gradient::new(&gaussian_blur(&gray, 1.0))
+        Gradient::new(&gaussian_blur(&gray, 1.0)).statistics()
     }
 
     #[test]
     fn the_noise_is_that_of_the_image() {
-        let local = noisy(0.02).statistics();
+        let local = noisy(0.02);
         let mut row = vec![0.0; 160];
         for y in [3, 80, 150] {
             local.noise_row(y, &mut row);
@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_clean_image_has_the_noise_of_rounding() {
-        let local = noisy(0.0).statistics();
+        let local = noisy(0.0);
         let mut row = vec![0.0; 160];
         local.noise_row(9, &mut row);
         assert_eq!(row, vec![MIN_NOISE; 160]);

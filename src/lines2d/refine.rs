@@ -20,28 +20,33 @@ const REACH: usize = 4;
 /// Samples of a profile.
 const SAMPLES: usize = 2 * REACH + 1;
 
-/// Moves the edgels of a line found on a step and fits the line again. A stretch whose step is weaker
-/// than `least` times the noise around it stays where it is.
-pub fn refine(line: &mut Grown, all: &[Edgel], gray: &Gray, least: f64) {
+/// Standard deviation of a pixel over that of a gradient component after smoothing by 0.8 px, for white noise.
+const PIXEL_NOISE: f64 = 4.5;
+
+/// Moves the edgels of a line found on a step and fits the line again. A stretch moves only by more than `sigmas`
+/// standard deviations of its crest: where blending is not the matter, smoothed edgels are less noisy.
+pub fn refine(line: &mut Grown, all: &[Edgel], gray: &Gray, sigmas: f64) {
     let axes = Axes::of(&line.line);
+    let normal = line.line.normal();
+    let scale = axes.across(&normal).abs();
     let count = line.points.len();
     let stretches = (count / STRETCH).max(1);
     for s in 0..stretches {
         let range = s * count / stretches..(s + 1) * count / stretches;
-        let points = &line.points[range.clone()];
-        let noise: f32 = line.edgels[range.clone()]
-            .iter()
-            .map(|&i| all[i as usize].noise)
-            .sum();
-        let noise = f64::from(noise) / range.len() as f64;
-        let profile = axes.mean_profile(points, gray);
-        let Some(crest) = profile.and_then(|p| crest(&p, least * noise)) else {
+        let (points, edgels) = (&line.points[range.clone()], &line.edgels[range.clone()]);
+        let Some(crest) = axes.mean_profile(points, gray).and_then(|p| Crest::of(&p)) else {
             continue;
         };
-        let now = points.iter().map(|p| line.line.across(p)).sum::<f64>() / points.len() as f64;
-        let normal = line.line.normal();
-        let shift = normal * (crest * axes.across(&normal).abs() - now);
-        line.points[range].iter_mut().for_each(|p| *p += shift);
+        let n = points.len() as f64;
+        let noise = edgels.iter().map(|&i| all[i as usize].noise).sum::<f32>();
+        let sigma = scale * PIXEL_NOISE * f64::from(noise) / n / (n.sqrt() * crest.sharpness);
+        let now = points.iter().map(|p| line.line.across(p)).sum::<f64>() / n;
+        let shift = crest.position * scale - now;
+        if shift.abs() > sigmas * sigma {
+            line.points[range]
+                .iter_mut()
+                .for_each(|p| *p += normal * shift);
+        }
     }
     line.line = LineFit::new(&line.points);
 }
@@ -126,29 +131,43 @@ fn catmull_rom(f: f32) -> [f32; 4] {
     ]
 }
 
-/// Position of the steepest rise within 1.5 samples of the middle, if it is one of at least `least`.
-fn crest(profile: &[f64; SAMPLES], least: f64) -> Option<f64> {
-    // rises[j] lies at j - REACH + 0.5 samples from the middle.
-    let rises: Vec<f64> = profile.windows(2).map(|p| p[1] - p[0]).collect();
-    let mut best = REACH - 2;
-    for j in REACH - 2..REACH + 2 {
-        if rises[j] > rises[best] {
-            best = j;
+/// Where a profile rises most.
+struct Crest {
+    /// Position, samples from the middle.
+    position: f64,
+    /// Second difference of the rises there, negated, grey values: noise of a standard deviation s in the profile
+    /// moves the crest by s over this.
+    sharpness: f64,
+}
+
+impl Crest {
+    /// The steepest rise within 1.5 samples of the middle, if it is a crest.
+    fn of(profile: &[f64; SAMPLES]) -> Option<Self> {
+        // Rise j lies at j - REACH + 0.5 samples from the middle.
+        let rise = |j: usize| profile[j + 1] - profile[j];
+        let mut best = REACH - 2;
+        for j in REACH - 2..REACH + 2 {
+            if rise(j) > rise(best) {
+                best = j;
+            }
         }
+        let (before, top, after) = (rise(best - 1), rise(best), rise(best + 1));
+        if top <= before || top < after || top <= 0.0 {
+            return None;
+        }
+        let sharpness = 2.0 * top - before - after;
+        // A blurred step has a Gaussian derivative: its logarithm is a parabola.
+        let t = if before > 0.0 && after > 0.0 {
+            let ln = crate::math::ln;
+            0.5 * (ln(after) - ln(before)) / (2.0 * ln(top) - ln(before) - ln(after))
+        } else {
+            0.5 * (after - before) / sharpness
+        };
+        Some(Self {
+            position: best as f64 + 0.5 - REACH as f64 + t,
+            sharpness,
+        })
     }
-    let (before, top, after) = (rises[best - 1], rises[best], rises[best + 1]);
-    if top < least || top <= before || top < after || top <= 0.0 {
-        return None;
-    }
-    // A blurred step has a Gaussian derivative: its logarithm is a parabola.
-    let (before, top, after) = if before > 0.0 && after > 0.0 {
-        let ln = crate::math::ln;
-        (ln(before), ln(top), ln(after))
-    } else {
-        (before, top, after)
-    };
-    let t = 0.5 * (after - before) / (2.0 * top - before - after);
-    Some(best as f64 + 0.5 - REACH as f64 + t)
 }
 
 #[cfg(test)]
@@ -159,7 +178,10 @@ mod tests {
     /// A line of edgels beside the planted edge, at this distance towards the brighter side, px.
     fn beside(gray: &Gray, angle: f64, off: f64) -> (Vec<Edgel>, Grown) {
         let (s, c) = crate::math::sin_cos(angle);
-        let centre = Point2::new(gray.width as f64 / 2.0 + 0.2, gray.height as f64 / 2.0 - 0.3);
+        let centre = Point2::new(
+            gray.width as f64 / 2.0 + 0.2,
+            gray.height as f64 / 2.0 - 0.3,
+        );
         let at = |t: f64| centre + Vector2::new(c, s) * off + Vector2::new(s, -c) * t;
         let all: Vec<Edgel> = (-25..25)
             .map(|t| at(f64::from(t)))

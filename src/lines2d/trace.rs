@@ -15,6 +15,8 @@ pub enum SegmentRejection {
     Curved,
     /// Not distinguishable from the texture around it.
     NotSignificant,
+    /// A bar along an edge that is a segment already.
+    BesideEdge,
 }
 
 /// A line that was refused, with the reason.
@@ -33,6 +35,8 @@ pub struct SegmentTrace {
     pub edgels: usize,
     /// Chains of edgels after hysteresis.
     pub chains: usize,
+    /// Chains with too few edgels for a straight piece.
+    pub short_chains: usize,
     /// Where the worm broke a chain, px.
     pub worm_breaks: Vec<Point2<f64>>,
     /// Straight pieces of chains, from which lines are grown.
@@ -45,8 +49,8 @@ pub struct SegmentTrace {
     pub curved: usize,
     /// Lines that the texture around them explains.
     pub not_significant: usize,
-    /// Bars that an edge explains as well.
-    pub bars_beside_edges: usize,
+    /// Bars along an edge that is a segment already.
+    pub beside_edge: usize,
     /// The refused lines of at least the minimum length.
     pub rejected: Vec<RejectedSegment>,
 }
@@ -58,6 +62,7 @@ impl SegmentTrace {
             SegmentRejection::TooShort => self.too_short += 1,
             SegmentRejection::Curved => self.curved += 1,
             SegmentRejection::NotSignificant => self.not_significant += 1,
+            SegmentRejection::BesideEdge => self.beside_edge += 1,
         }
         if refused.reason != SegmentRejection::TooShort {
             self.rejected.push(refused);
