@@ -63,7 +63,7 @@ pub struct SegmentParams {
     /// Least standard deviation of an edgel, px. Assumption: what sampling leaves without noise.
     pub edgel_floor_px: f64,
     /// Least shift of a stretch of a line to the crest of the unsmoothed edge, in standard deviations of that
-    /// crest. Assumption: less is noise.
+    /// crest. Assumption: of 0.3, 0.8, 1.3 and 2.5 the second brought lines nearer to true roof edges without following noise.
     pub refine_sigmas: f64,
     /// Standard deviation of the edge that the image shows about the edge that is meant, px, at either end of a segment.
     /// Assumption: what fascias, gutters and ridge caps do on aerial photographs: two thirds of
@@ -88,7 +88,7 @@ impl Default for SegmentParams {
             max_ln_false_alarms: 7.0,
             contrast_distance_px: 2.5,
             edgel_floor_px: 0.05,
-            refine_sigmas: 2.5,
+            refine_sigmas: 0.8,
             edge_floor_px: 0.3,
         }
     }
@@ -124,13 +124,15 @@ impl Default for EdgelParams {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BarParams {
-    /// Look for bars at all?
+    /// Look for bars at all? Assumption: no. On rendered scenes they add 2 % to the true roof edges covered for half as many
+    /// segments again; more and weaker edges add as much for less.
     pub detect: bool,
-    /// Least second derivative of a point of a bar.
+    /// Least second derivative of a point of a bar. Assumption: above what tiles do.
     pub low: f64,
-    /// Least second derivative of the strongest point in a chain.
+    /// Least second derivative of the strongest point in a chain. Assumption.
     pub high: f64,
-    /// A bar is refused that has a segment on an edge so near along half of it, px.
+    /// A bar is refused that has a segment on an edge so near along half of it, px. Assumption: the edges
+    /// of a gutter's two sides.
     pub clear_px: f64,
 }
 

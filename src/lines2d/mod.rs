@@ -6,7 +6,11 @@
 //!    -> worm     chains broken where the tangent turns
 //!    -> fit      straight pieces by orthogonal regression, tight threshold, covariance
 //!    -> grow     pieces grown along their line through the edgels ahead
-//!    -> segments length, curvature and significance decide; contrast directs
+//!    -> lines    length, curvature and significance decide
+//!    -> refine   lines moved to the crest of the unsmoothed edge
+//!    -> segments covariance and contrast; bars that edges stand for are refused
+//!
+//! bar            thin bright or dark lines as edgels, on the same way from chain to lines
 //! ```
 
 mod bar;

@@ -6,7 +6,7 @@
 //! measures lenses). Stretch by stretch, rows of pixels across the line are shifted to the line and
 //! averaged; the stretch's edgels then move together to the crest of the mean profile's derivative.
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Matrix2, Point2, Vector2};
 
 use super::canny::Edgel;
 use super::fit::LineFit;
@@ -24,13 +24,15 @@ const SAMPLES: usize = 2 * REACH + 1;
 const PIXEL_NOISE: f64 = 4.5;
 
 /// Moves the edgels of a line found on a step and fits the line again. A stretch moves only by more than `sigmas`
-/// standard deviations of its crest: where blending is not the matter, smoothed edgels are less noisy.
-pub fn refine(line: &mut Grown, all: &[Edgel], gray: &Gray, sigmas: f64) {
+/// standard deviations of its crest: where blending is not the matter, smoothed edgels are less noisy. Returns
+/// the covariance of (offset in px, angle in rad) that the noise of the crests adds at the middle of the line.
+pub fn refine(line: &mut Grown, all: &[Edgel], gray: &Gray, sigmas: f64) -> Matrix2<f64> {
     let axes = Axes::of(&line.line);
     let normal = line.line.normal();
     let scale = axes.across(&normal).abs();
     let count = line.points.len();
     let stretches = (count / STRETCH).max(1);
+    let mut variance = 0.0;
     for s in 0..stretches {
         let range = s * count / stretches..(s + 1) * count / stretches;
         let (points, edgels) = (&line.points[range.clone()], &line.edgels[range.clone()]);
@@ -43,12 +45,22 @@ pub fn refine(line: &mut Grown, all: &[Edgel], gray: &Gray, sigmas: f64) {
         let now = points.iter().map(|p| line.line.across(p)).sum::<f64>() / n;
         let shift = crest.position * scale - now;
         if shift.abs() > sigmas * sigma {
+            variance += sigma * sigma / stretches as f64;
             line.points[range]
                 .iter_mut()
                 .for_each(|p| *p += normal * shift);
         }
     }
     line.line = LineFit::new(&line.points);
+    let m = stretches as f64;
+    // m stretches of equal length L/m: the sum of their squared distances from the middle is L^2 (m^2 - 1) / 12 m.
+    let lever = line.extent().length() * ((m * m - 1.0) / (12.0 * m)).sqrt();
+    let angle = if stretches > 1 {
+        variance / (lever * lever)
+    } else {
+        0.0
+    };
+    Matrix2::new(variance / m, 0.0, 0.0, angle)
 }
 
 /// The image axis that is more across a line, and the line as a function of the other one.

@@ -3,6 +3,11 @@
 //! Deviations: lines grow past the ends of their chains ([`super::grow`]), and a test of significance
 //! ([`super::significance`]) stands in for a global threshold of contrast.
 //!
+//! What limits the position of a segment is the roof, not the image: measured along true edges of two rendered
+//! scenes, the crest of the mean profile itself scatters by 0.2 to 0.3 px on eaves and rakes, whose visible fascias and
+//! gutters are half a pixel to two pixels wide. Hips, which have none, scatter by 0.08 to 0.15 px. The covariance holds
+//! a term for it.
+//!
 //! Tried and left out: evidence from the directions of the edgels besides their strength (the same
 //! coverage of true roof edges at the same number of segments), and chains alone without growing (on two
 //! rendered views of a suburb, about 880 segments each: 48 % of the true roof edges covered instead of 59 %).
@@ -46,12 +51,15 @@ fn edge_segments(
     let gradient = Gradient::new(smooth);
     let local = gradient.statistics();
     let edgels = suppress(&gradient, &local, params.edgels.low);
-    let mut lines = significant_lines(&edgels, &local, params.edgels.high, params, trace);
-    for line in &mut lines {
-        refine(line, &edgels, gray, params.refine_sigmas);
-    }
-    let finish = |line| finish(line, SegmentKind::Edge, gray, params);
-    lines.iter().map(finish).collect()
+    significant_lines(&edgels, &local, params.edgels.high, params, trace)
+        .into_iter()
+        .map(|mut line| {
+            let noise = refine(&mut line, &edgels, gray, params.refine_sigmas);
+            let mut segment = finish(&line, SegmentKind::Edge, gray, params);
+            segment.covariance += noise;
+            segment
+        })
+        .collect()
 }
 
 /// Segments on thin lines.
@@ -262,7 +270,7 @@ mod tests {
         let (segments, trace) = detect_segments(&gray, &SegmentParams::default());
         assert!(trace.edgels > 5000);
         assert!(segments.len() <= 150, "{}", segments.len());
-        assert!(segments.iter().all(|s| s.segment.length() < 60.0));
+        assert!(segments.iter().all(|s| s.segment.length() < 100.0));
     }
 
     #[test]
@@ -321,6 +329,53 @@ mod tests {
             assert!((s.segment.length() - 40.0).abs() < 5.0);
         }
         assert!(trace.worm_breaks.len() >= 3);
+    }
+
+    /// A bar of this contrast and width sqrt(2 pi) times 0.9 px through the middle of an image.
+    fn bar(angle: f64, contrast: f64) -> Gray {
+        let empty = Gray::new(90, 90);
+        let mut gray = Gray::from_fn(90, 90, |x, y| {
+            let p = Point2::new(x as f64 + 0.5, y as f64 + 0.5);
+            let d = distance_to_edge(&empty, angle, &p) / 0.9;
+            (0.5 + contrast * crate::math::exp(-0.5 * d * d)) as f32
+        });
+        add_noise(&mut gray, 2.0 / 255.0, 5);
+        gray
+    }
+
+    #[test]
+    fn a_thin_line_is_a_bar_along_its_middle() {
+        let mut params = SegmentParams::default();
+        params.bars.detect = true;
+        // Its two sides are edges, which would stand for it.
+        params.bars.clear_px = 0.0;
+        for step in 0..12 {
+            let angle = f64::from(step) * 15f64.to_radians() + 0.02;
+            for (contrast, kind) in [(0.2, SegmentKind::BrightBar), (-0.2, SegmentKind::DarkBar)] {
+                let gray = bar(angle, contrast);
+                let (segments, _) = detect_segments(&gray, &params);
+                let miss = |s: &ImageSegment| distance_to_edge(&gray, angle, &s.segment.midpoint());
+                let found = |s: &&ImageSegment| s.kind == kind && miss(s).abs() < 0.1;
+                let found: Vec<_> = segments.iter().filter(found).collect();
+                assert_eq!(found.len(), 1, "at {angle}");
+                assert!(found[0].segment.length() > 60.0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_bar_between_two_edges_is_refused() {
+        let mut params = SegmentParams::default();
+        params.bars.detect = true;
+        let gray = bar(0.4, 0.2);
+        let (segments, trace) = detect_segments(&gray, &params);
+        assert!(trace.beside_edge > 0);
+        let in_the_middle = |s: &ImageSegment| {
+            s.kind == SegmentKind::BrightBar
+                && s.segment.length() > 40.0
+                && distance_to_edge(&gray, 0.4, &s.segment.midpoint()).abs() < 0.5
+        };
+        assert!(!segments.iter().any(in_the_middle));
     }
 
     #[test]
