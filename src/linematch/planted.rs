@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, Matrix3, Point2, Point3, Rotation3, Vector3};
 
 use crate::camera::Camera;
 use crate::geometry::{Segment2, Segment3};
-use crate::lines2d::ImageSegment;
+use crate::lines2d::{ImageSegment, SegmentKind};
 use crate::raster::Gray;
 use crate::scene::{Scene, View};
 
@@ -123,6 +123,7 @@ pub fn detected(segment: Segment2, index: usize) -> ImageSegment {
     let segment = Segment2::new(segment.p0 + off, segment.p1 + off);
     let length = segment.length();
     ImageSegment {
+        kind: SegmentKind::Edge,
         segment,
         contrast: 0.4,
         edgels: length as u32,

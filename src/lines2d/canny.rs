@@ -9,7 +9,7 @@
 use nalgebra::{Point2, Vector2};
 use serde::Serialize;
 
-use super::noise::LocalGradients;
+use super::noise::LocalStrengths;
 use crate::params::EdgelParams;
 use crate::raster::{Gray, gaussian_blur};
 
@@ -45,67 +45,63 @@ impl Edgel {
 
 /// The edgels of an image, row by row. Nothing closer than two pixels to the border is found.
 pub fn detect_edgels(gray: &Gray, params: &EdgelParams) -> Vec<Edgel> {
-    let gradient = Gradient::new(gray, params.smoothing_px);
-    let local = LocalGradients::new(&gradient);
-    suppress(&gradient, &local, params.low)
+    let smooth = gaussian_blur(gray, params.smoothing_px);
+    let gradient = Gradient::new(&smooth);
+    suppress(&gradient, &gradient.statistics(), params.low)
 }
 
-/// Gradient of a smoothed image, row by row; zero on the border pixels.
-pub struct Gradient {
-    /// Columns.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-    /// Derivative to the right, grey values per px.
-    pub x: Vec<f32>,
-    /// Derivative downwards, grey values per px.
-    pub y: Vec<f32>,
-    /// Length of the gradient.
+/// Gradient of a smoothed image; zero on the border pixels. Only its length is stored: the components are cheap
+/// to take where they are wanted.
+pub struct Gradient<'a> {
+    smooth: &'a Gray,
+    /// Length of the gradient, grey values per px, row by row.
     pub strength: Vec<f32>,
 }
 
-impl Gradient {
-    /// Smooths by a Gaussian of `smoothing_px` and differentiates.
-    pub fn new(gray: &Gray, smoothing_px: f64) -> Self {
-        let smooth = gaussian_blur(gray, smoothing_px);
-        let (width, height) = (gray.width, gray.height);
-        let mut gradient = Self {
-            width,
-            height,
-            x: vec![0.0; width * height],
-            y: vec![0.0; width * height],
-            strength: vec![0.0; width * height],
-        };
-        if width >= 3 {
-            for y in 1..height.saturating_sub(1) {
-                gradient.differentiate_row(&smooth.data, y);
+impl<'a> Gradient<'a> {
+    /// Differentiates a smoothed image.
+    pub fn new(smooth: &'a Gray) -> Self {
+        let (w, h) = (smooth.width, smooth.height);
+        let mut strength = vec![0.0; w * h];
+        if w >= 3 {
+            for y in 1..h.saturating_sub(1) {
+                strength_row(
+                    &smooth.data,
+                    w,
+                    y,
+                    &mut strength[y * w + 1..(y + 1) * w - 1],
+                );
             }
         }
-        gradient
+        Self { smooth, strength }
     }
 
-    fn differentiate_row(&mut self, smooth: &[f32], y: usize) {
-        let w = self.width;
-        let row = |y: usize| &smooth[y * w..(y + 1) * w];
-        let (above, here, below) = (row(y - 1), row(y), row(y + 1));
-        let inner = y * w + 1..(y + 1) * w - 1;
-        let (gx, gy) = (&mut self.x[inner.clone()], &mut self.y[inner.clone()]);
-        let strength = &mut self.strength[inner];
-        for ((g, left), right) in gx.iter_mut().zip(here).zip(&here[2..]) {
-            *g = 0.5 * (right - left);
-        }
-        for ((g, a), b) in gy.iter_mut().zip(&above[1..]).zip(&below[1..]) {
-            *g = 0.5 * (b - a);
-        }
-        for ((s, x), y) in strength.iter_mut().zip(gx.iter()).zip(gy.iter()) {
-            *s = (x * x + y * y).sqrt();
-        }
+    /// Statistics of the strength.
+    pub fn statistics(&self) -> LocalStrengths {
+        LocalStrengths::new(&self.strength, self.smooth.width, self.smooth.height)
+    }
+
+    /// Derivatives to the right and downwards at an inner pixel, grey values per px.
+    fn at(&self, i: usize) -> Vector2<f32> {
+        let (s, w) = (&self.smooth.data, self.smooth.width);
+        Vector2::new(0.5 * (s[i + 1] - s[i - 1]), 0.5 * (s[i + w] - s[i - w]))
+    }
+}
+
+fn strength_row(smooth: &[f32], w: usize, y: usize, out: &mut [f32]) {
+    let n = out.len();
+    let row = |y: usize, x: usize| &smooth[y * w + x..][..n];
+    let (left, right) = (row(y, 0), row(y, 2));
+    let (above, below) = (row(y - 1, 1), row(y + 1, 1));
+    for (i, out) in out.iter_mut().enumerate() {
+        let (gx, gy) = (0.5 * (right[i] - left[i]), 0.5 * (below[i] - above[i]));
+        *out = (gx * gx + gy * gy).sqrt();
     }
 }
 
 /// Non-maximum suppression: the edgels stronger than `low` times the local noise.
-pub fn suppress(gradient: &Gradient, local: &LocalGradients, low: f64) -> Vec<Edgel> {
-    let (w, h) = (gradient.width, gradient.height);
+pub fn suppress(gradient: &Gradient, local: &LocalStrengths, low: f64) -> Vec<Edgel> {
+    let (w, h) = (gradient.smooth.width, gradient.smooth.height);
     let low = low as f32;
     let mut edgels = Vec::new();
     let mut noise = vec![0.0; w];
@@ -117,10 +113,11 @@ pub fn suppress(gradient: &Gradient, local: &LocalGradients, low: f64) -> Vec<Ed
                 continue;
             }
             let i = y * w + x;
-            if let Some(offset) = crest(gradient, i) {
+            let g = gradient.at(i);
+            if let Some(offset) = crest(&gradient.strength, w, i, &g) {
                 edgels.push(Edgel {
                     position: Point2::new(x as f64 + 0.5, y as f64 + 0.5) + offset,
-                    gradient: Vector2::new(gradient.x[i], gradient.y[i]),
+                    gradient: g,
                     strength: gradient.strength[i],
                     noise: noise[x],
                 });
@@ -132,35 +129,33 @@ pub fn suppress(gradient: &Gradient, local: &LocalGradients, low: f64) -> Vec<Ed
 
 /// Offset in px from the centre of pixel `i` to the crest of the gradient strength, across the edge; `None`
 /// where a neighbour across the edge is stronger. Both components stay within half a pixel.
-fn crest(gradient: &Gradient, i: usize) -> Option<Vector2<f64>> {
-    let s = &gradient.strength;
-    let m = s[i];
-    let (gx, gy) = (gradient.x[i], gradient.y[i]);
+fn crest(s: &[f32], width: usize, i: usize, gradient: &Vector2<f32>) -> Option<Vector2<f64>> {
+    let (gx, gy) = (gradient.x, gradient.y);
     let along_x = gx.abs() >= gy.abs();
-    let (major, minor) = if along_x {
-        (1, gradient.width)
+    let (major, minor) = if along_x { (1, width) } else { (width, 1) };
+    let (large, small) = if along_x { (gx, gy) } else { (gy, gx) };
+    let diagonal = if (gx >= 0.0) == (gy >= 0.0) {
+        major + minor
     } else {
-        (gradient.width, 1)
+        // Wraps below zero and back where it is added.
+        major.wrapping_sub(minor)
     };
-    if m <= 0.0 {
+    if large == 0.0 {
         return None;
     }
-    let slope = if along_x { gy / gx } else { gx / gy };
-    let f = slope.abs();
-    let (ahead, behind) = if slope >= 0.0 {
-        (s[i + major + minor], s[i - major - minor])
-    } else {
-        (s[i + major - minor], s[i - major + minor])
-    };
-    let ahead = s[i + major] + (ahead - s[i + major]) * f;
-    let behind = s[i - major] + (behind - s[i - major]) * f;
+    // Strengths a step along the larger component away, interpolated; all times its size, to save the division.
+    let (large_size, small_size) = (large.abs(), small.abs());
+    let mix = |near: usize, far: usize| s[near] * (large_size - small_size) + s[far] * small_size;
+    let m = s[i] * large_size;
+    let ahead = mix(i + major, i.wrapping_add(diagonal));
+    let behind = mix(i - major, i.wrapping_sub(diagonal));
     if ahead >= m || behind > m {
         return None;
     }
     let t = 0.5 * (ahead - behind) / (2.0 * m - ahead - behind);
     // Just inside the pixel, so that its index can be had back from the position.
     let t = f64::from(t).clamp(-0.499, 0.499);
-    let slope = f64::from(slope);
+    let slope = f64::from(small / large);
     Some(if along_x {
         Vector2::new(t, t * slope)
     } else {

@@ -81,11 +81,12 @@ fn choose(edgels: &[Edgel], raster: &Raster) -> (Vec<u32>, Vec<u32>) {
     let mut next = Vec::with_capacity(edgels.len());
     let mut previous = Vec::with_capacity(edgels.len());
     for from in edgels {
+        let around = raster.occupied(from);
         let mut choice = Choice::default();
-        choice.look(edgels, raster, from, &RING_1);
+        choice.look(edgels, raster, from, around & RING_1);
         let near = choice;
         if near.next == NONE || near.previous == NONE {
-            choice.look(edgels, raster, from, &RING_2);
+            choice.look(edgels, raster, from, around & RING_2);
         }
         // What is adjacent goes before what lies across a gap.
         next.push(if near.next != NONE {
@@ -102,27 +103,10 @@ fn choose(edgels: &[Edgel], raster: &Raster) -> (Vec<u32>, Vec<u32>) {
     (next, previous)
 }
 
-/// The pixels around one, row by row.
-const RING_1: [(isize, isize); 8] = ring(1);
-/// The pixels around those.
-const RING_2: [(isize, isize); 16] = ring(2);
-
-const fn ring<const N: usize>(reach: isize) -> [(isize, isize); N] {
-    let mut pixels = [(0, 0); N];
-    let (mut n, mut y) = (0, -reach);
-    while y <= reach {
-        let mut x = -reach;
-        while x <= reach {
-            if x == -reach || x == reach || y == -reach || y == reach {
-                pixels[n] = (x, y);
-                n += 1;
-            }
-            x += 1;
-        }
-        y += 1;
-    }
-    pixels
-}
+/// The 8 pixels around the middle of 5 x 5, one bit each, row by row.
+const RING_1: u32 = 0b00000_01110_01010_01110_00000;
+/// The 16 pixels around those.
+const RING_2: u32 = 0b11111_10001_10001_10001_11111;
 
 /// The cheapest follower and predecessor so far.
 #[derive(Clone, Copy)]
@@ -149,15 +133,10 @@ impl Choice {
     /// tangent plus twice the distance aside (times the gradient's strength, which is the same for
     /// all); there is none when the other edgel lies more aside than along or its contrast has turned by more than a
     /// right angle.
-    fn look(&mut self, edgels: &[Edgel], raster: &Raster, from: &Edgel, pixels: &[(isize, isize)]) {
-        let (x, y) = from.pixel();
+    fn look(&mut self, edgels: &[Edgel], raster: &Raster, from: &Edgel, pixels: u32) {
         let gradient = from.gradient.cast::<f64>();
         let tangent = Vector2::new(gradient.y, -gradient.x);
-        for (dx, dy) in pixels {
-            let index = raster.at(x as isize + dx, y as isize + dy);
-            if index == NONE {
-                continue;
-            }
+        for index in raster.of(from, pixels) {
             let to = &edgels[index as usize];
             let step = to.position - from.position;
             let along = step.dot(&tangent);
@@ -175,11 +154,17 @@ impl Choice {
     }
 }
 
+/// Empty pixels around a raster, so that looking two pixels around an edgel needs no care.
+const MARGIN: usize = 2;
+
 /// Which edgel a pixel holds ([`NONE`] elsewhere).
 pub struct Raster {
-    width: isize,
-    height: isize,
+    width: usize,
+    height: usize,
     index: Vec<u32>,
+    /// One bit a pixel, `words` words a row: most pixels are empty, and bits say so without a look at each.
+    occupied: Vec<u32>,
+    words: usize,
 }
 
 impl Raster {
@@ -190,23 +175,58 @@ impl Raster {
             columns = columns.max(x + 1);
             rows = rows.max(y + 1);
         }
-        let mut index = vec![NONE; columns * rows];
+        let (width, height) = (columns + 2 * MARGIN, rows + 2 * MARGIN);
+        // A word more than the pixels need, because words are read in twos.
+        let words = width / 32 + 2;
+        let mut index = vec![NONE; width * height];
+        let mut occupied = vec![0u32; words * height];
         for (i, (x, y)) in (0..).zip(edgels.iter().map(Edgel::pixel)) {
-            index[y * columns + x] = i;
+            let (x, y) = (x + MARGIN, y + MARGIN);
+            index[y * width + x] = i;
+            occupied[y * words + x / 32] |= 1 << (x % 32);
         }
         Self {
-            width: columns as isize,
-            height: rows as isize,
+            width,
+            height,
             index,
+            occupied,
+            words,
         }
     }
 
     /// The edgel of a pixel; none outside.
     pub fn at(&self, x: isize, y: isize) -> u32 {
-        if x < 0 || y < 0 || x >= self.width || y >= self.height {
+        let (x, y) = (x + MARGIN as isize, y + MARGIN as isize);
+        if x < 0 || y < 0 || x >= self.width as isize || y >= self.height as isize {
             return NONE;
         }
-        self.index[(y * self.width + x) as usize]
+        self.index[y as usize * self.width + x as usize]
+    }
+
+    /// Which of the 5 x 5 pixels around an edgel hold edgels, one bit each, row by row.
+    fn occupied(&self, edgel: &Edgel) -> u32 {
+        let (x, y) = edgel.pixel();
+        let mut bits = 0;
+        for row in 0..5 {
+            // The pixel's own bit is x + MARGIN, so the first of the five is x.
+            let words = &self.occupied[(y + row) * self.words + x / 32..][..2];
+            let both = u64::from(words[0]) | u64::from(words[1]) << 32;
+            bits |= ((both >> (x % 32)) as u32 & 0b11111) << (5 * row);
+        }
+        bits
+    }
+
+    /// The edgels of some of the 5 x 5 pixels around that of an edgel, row by row; they must be there.
+    fn of(&self, edgel: &Edgel, mut pixels: u32) -> impl Iterator<Item = u32> {
+        let (x, y) = edgel.pixel();
+        let first = y * self.width + x;
+        std::iter::from_fn(move || {
+            (pixels != 0).then(|| {
+                let bit = pixels.trailing_zeros() as usize;
+                pixels &= pixels - 1;
+                self.index[first + bit / 5 * self.width + bit % 5]
+            })
+        })
     }
 }
 

@@ -30,38 +30,9 @@ pub struct LineFit {
 impl LineFit {
     /// Fits a line to at least two distinct points.
     pub fn new(points: &[Point2<f64>]) -> Self {
-        let n = points.len() as f64;
-        let sum = points.iter().fold(Vector2::zeros(), |s, p| s + p.coords);
-        let centroid = Point2::from(sum / n);
-        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-        for p in points {
-            let d = p - centroid;
-            xx += d.x * d.x;
-            xy += d.x * d.y;
-            yy += d.y * d.y;
-        }
-        let (half_sum, half_difference) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-        let radius = (half_difference * half_difference + xy * xy).sqrt();
-        // The eigenvector of the larger eigenvalue, from the better conditioned row.
-        let axis = if half_difference >= 0.0 {
-            Vector2::new(half_difference + radius, xy)
-        } else {
-            Vector2::new(xy, radius - half_difference)
-        };
-        let chord = points[points.len() - 1] - points[0];
-        let axis = if axis.dot(&chord) < 0.0 { -axis } else { axis };
-        let norm = axis.norm();
-        Self {
-            centroid,
-            direction: if norm > 0.0 {
-                axis / norm
-            } else {
-                Vector2::x()
-            },
-            count: points.len(),
-            spread: half_sum + radius,
-            rms: ((half_sum - radius).max(0.0) / n).sqrt(),
-        }
+        let mut moments = Moments::about(points[0]);
+        points.iter().for_each(|p| moments.add(p));
+        moments.line(&(points[points.len() - 1] - points[0]))
     }
 
     /// Unit normal (-dy, dx).
@@ -88,12 +59,8 @@ impl LineFit {
     }
 
     /// Covariance of (offset along the normal in px, angle in rad) at the position `along` the line.
-    ///
-    /// Smoothing makes the errors of neighbouring edgels alike: white noise after a Gaussian of
-    /// standard deviation s is correlated as exp(-d^2 / 4 s^2), so that 2 sqrt(pi) s consecutive
-    /// edgels count as one. `floor_px` is the least standard deviation of an edgel.
-    pub fn covariance(&self, along: f64, smoothing_px: f64, floor_px: f64) -> Matrix2<f64> {
-        let correlated = (2.0 * std::f64::consts::PI.sqrt() * smoothing_px).max(1.0);
+    /// `correlated` consecutive edgels count as one; `floor_px` is the least standard deviation of an edgel.
+    pub fn covariance(&self, along: f64, correlated: f64, floor_px: f64) -> Matrix2<f64> {
         // Two parameters are taken out of the independent errors.
         let independent = (self.count as f64 / correlated - 2.0).max(1.0);
         let scale = (independent + 2.0) / independent;
@@ -106,6 +73,28 @@ impl LineFit {
             angle * along,
             angle,
         )
+    }
+
+    /// How many consecutive edgels err together: 1 + 2 sum of the autocorrelation of their distances from
+    /// the line, up to the first lag without any.
+    ///
+    /// Smoothing alone makes neighbours alike: white noise after a Gaussian of standard
+    /// deviation s is correlated as exp(-d^2 / 4 s^2), so that it is 2 sqrt(pi) s at least. Tiles, planks and
+    /// shadows reach farther.
+    pub fn correlated_edgels(&self, points: &[Point2<f64>], smoothing_px: f64) -> f64 {
+        let least = (2.0 * std::f64::consts::PI.sqrt() * smoothing_px).max(1.0);
+        let across: Vec<f64> = points.iter().map(|p| self.across(p)).collect();
+        let power: f64 = across.iter().map(|d| d * d).sum();
+        let mut sum = 1.0;
+        for lag in 1..points.len() / 4 {
+            let pairs = across.iter().zip(&across[lag..]);
+            let product: f64 = pairs.map(|(a, b)| a * b).sum();
+            if product <= 0.0 {
+                break;
+            }
+            sum += 2.0 * product / power;
+        }
+        sum.max(least)
     }
 
     /// Curvature of the best parabola (1/px) and its standard deviation.
@@ -129,6 +118,72 @@ impl LineFit {
 
 fn cubed(t: f64) -> f64 {
     t * t * t
+}
+
+/// Sums over points from which their line follows, to which points can be added one by one.
+#[derive(Clone, Copy, Debug)]
+pub struct Moments {
+    /// What the sums are about, near the points: sums about the image's corner would lose digits.
+    origin: Point2<f64>,
+    count: usize,
+    sum: Vector2<f64>,
+    xx: f64,
+    xy: f64,
+    yy: f64,
+}
+
+impl Moments {
+    /// Of no points yet.
+    pub fn about(origin: Point2<f64>) -> Self {
+        Self {
+            origin,
+            count: 0,
+            sum: Vector2::zeros(),
+            xx: 0.0,
+            xy: 0.0,
+            yy: 0.0,
+        }
+    }
+
+    /// Adds a point.
+    pub fn add(&mut self, point: &Point2<f64>) {
+        let d = point - self.origin;
+        self.count += 1;
+        self.sum += d;
+        self.xx += d.x * d.x;
+        self.xy += d.x * d.y;
+        self.yy += d.y * d.y;
+    }
+
+    /// The orthogonal regression line, in the sense of `chord`.
+    pub fn line(&self, chord: &Vector2<f64>) -> LineFit {
+        let n = self.count as f64;
+        let mean = self.sum / n;
+        let xx = self.xx - n * mean.x * mean.x;
+        let xy = self.xy - n * mean.x * mean.y;
+        let yy = self.yy - n * mean.y * mean.y;
+        let (half_sum, half_difference) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+        let radius = (half_difference * half_difference + xy * xy).sqrt();
+        // The eigenvector of the larger eigenvalue, from the better conditioned row.
+        let axis = if half_difference >= 0.0 {
+            Vector2::new(half_difference + radius, xy)
+        } else {
+            Vector2::new(xy, radius - half_difference)
+        };
+        let axis = if axis.dot(chord) < 0.0 { -axis } else { axis };
+        let norm = axis.norm();
+        LineFit {
+            centroid: self.origin + mean,
+            direction: if norm > 0.0 {
+                axis / norm
+            } else {
+                Vector2::x()
+            },
+            count: self.count,
+            spread: half_sum + radius,
+            rms: ((half_sum - radius).max(0.0) / n).sqrt(),
+        }
+    }
 }
 
 /// A stretch of a chain (`points[from..to]`) with its line.
@@ -268,12 +323,12 @@ mod tests {
             .map(|i| Point2::new(f64::from(i), if i % 2 == 0 { 0.1 } else { -0.1 }))
             .collect();
         let line = LineFit::new(&points);
-        let c = line.covariance(0.0, 0.0, 0.0);
+        let c = line.covariance(0.0, 1.0, 0.0);
         let sigma2 = 0.01 * 40.0 / 38.0;
         assert!((c[(0, 0)] / (sigma2 / 40.0) - 1.0).abs() < 0.01);
         assert!((c[(1, 1)] / (sigma2 / 5330.0) - 1.0).abs() < 0.01);
         // Ten pixels from the centroid the offset takes up the angle's uncertainty.
-        let off = line.covariance(10.0, 0.0, 0.0);
+        let off = line.covariance(10.0, 1.0, 0.0);
         assert!((off[(0, 0)] - c[(0, 0)] - 100.0 * c[(1, 1)]).abs() < 1e-12);
         assert!((off[(0, 1)] - 10.0 * c[(1, 1)]).abs() < 1e-12);
     }

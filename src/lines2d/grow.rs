@@ -10,7 +10,8 @@ use nalgebra::Point2;
 
 use super::canny::Edgel;
 use super::chain::{NONE, Raster};
-use super::fit::LineFit;
+use super::fit::{LineFit, Moments};
+use crate::geometry::Segment2;
 use crate::params::SegmentParams;
 
 /// The edgels of a line in order along it, and the line.
@@ -36,6 +37,16 @@ impl Grown {
         }
     }
 
+    /// The stretch of the line from its first to its last edgel.
+    pub fn extent(&self) -> Segment2 {
+        let along = self.points.iter().map(|p| self.line.along(p));
+        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| {
+            (l.min(t), h.max(t))
+        });
+        let at = |t: f64| self.line.centroid + self.line.direction * t;
+        Segment2::new(at(low), at(high))
+    }
+
     fn reverse(&mut self) {
         self.edgels.reverse();
         self.points.reverse();
@@ -51,12 +62,14 @@ pub fn grow_tight(
     free: &impl Fn(u32) -> bool,
     params: &SegmentParams,
 ) -> Grown {
-    let grown = grow(all, raster, seed, free, params);
-    if grown.line.is_tight(&grown.points, params) {
-        grown
-    } else {
-        Grown::new(all, seed.to_vec())
+    // Long gaps lead a weak line astray in texture; then it may still do with short ones.
+    for gap_px in [params.grow_gap_px, params.grow_gap_px / 3] {
+        let grown = grow(all, raster, seed, gap_px, free, params);
+        if grown.line.is_tight(&grown.points, params) {
+            return grown;
+        }
     }
+    Grown::new(all, seed.to_vec())
 }
 
 /// Grows a seed at both ends through the edgels that `free` allows.
@@ -64,49 +77,53 @@ fn grow(
     all: &[Edgel],
     raster: &Raster,
     seed: &[u32],
+    gap_px: usize,
     free: &impl Fn(u32) -> bool,
     params: &SegmentParams,
 ) -> Grown {
     let mut grown = Grown::new(all, seed.to_vec());
+    let cosine = crate::math::cos(params.grow_turn_deg.to_radians());
+    let mut moments = Moments::about(grown.points[0]);
+    grown.points.iter().for_each(|p| moments.add(p));
     // The direction follows the contrast while growing forward and opposes it while growing back.
     for sense in [1.0, -1.0] {
-        while let Some(i) = ahead(all, raster, &grown, sense, free, params) {
+        while let Some(i) = ahead(all, raster, &grown, gap_px, sense * cosine, free, params) {
             grown.edgels.push(i);
-            grown.points.push(all[i as usize].position);
-            // A refit now and then: the more edgels, the less a single one can turn the line.
-            if grown.points.len().is_multiple_of(1 + grown.line.count / 8) {
-                grown.line = LineFit::new(&grown.points);
-            }
+            let position = all[i as usize].position;
+            grown.points.push(position);
+            moments.add(&position);
+            grown.line = moments.line(&grown.line.direction);
         }
-        grown.line = LineFit::new(&grown.points);
         grown.reverse();
     }
     grown
 }
 
-/// The next edgel along the line beyond the last one, within the largest gap.
+/// The next edgel along the line beyond the last one, within the largest gap. `cosine` is the least one of its turn,
+/// negative where edgels run against the line.
 fn ahead(
     all: &[Edgel],
     raster: &Raster,
     grown: &Grown,
-    sense: f64,
+    gap_px: usize,
+    cosine: f64,
     free: &impl Fn(u32) -> bool,
     params: &SegmentParams,
 ) -> Option<u32> {
     let line = &grown.line;
     let last = line.along(grown.points.last()?);
     let step = 1.0 / line.direction.x.abs().max(line.direction.y.abs());
-    let cosine = crate::math::cos(params.grow_turn_deg.to_radians());
+    let sense = cosine.signum();
     let fits = |i: u32| {
         let edgel = &all[i as usize];
         line.along(&edgel.position) > last + 0.25
             && line.across(&edgel.position).abs() <= params.max_residual_px
-            && edgel.tangent().dot(&line.direction) * sense >= cosine
+            && edgel.tangent().dot(&line.direction) * sense >= cosine.abs()
             && free(i)
     };
     // Columns of three pixels across the line, one after the other.
     let across_is_y = line.direction.x.abs() >= line.direction.y.abs();
-    for k in 1..=params.grow_gap_px + 1 {
+    for k in 1..=gap_px + 1 {
         let p = line.centroid + line.direction * (last + k as f64 * step);
         let (x, y) = (p.x.floor() as isize, p.y.floor() as isize);
         let mut best = (f64::INFINITY, NONE);

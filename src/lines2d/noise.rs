@@ -2,12 +2,10 @@
 //!
 //! B99 3.2 names the Canny detector and no thresholds. One threshold for a whole photograph either
 //! loses the weak ridge between two roof planes of similar shade or drowns in the crowns of trees, so
-//! everything here is relative to the surroundings: [`LocalGradients::noise`] is the scale of the
-//! gradients nearby, and [`LocalGradients::surprise`] is `-ln H(g)`, where `H(g)` is the share of
+//! everything here is relative to the surroundings: [`LocalStrengths::noise`] is the scale of the
+//! gradients nearby, and [`LocalStrengths::surprise`] is `-ln H(g)`, where `H(g)` is the share of
 //! the pixels nearby whose gradient is stronger than `g` (Desolneux, Moisan, Morel 2001, "Edge
 //! detection by Helmholtz principle", with the distribution taken locally instead of globally).
-
-use super::canny::Gradient;
 
 /// Side of a block, px. Statistics are pooled over 3 x 3 blocks: a roof plane's size.
 const BLOCK_PX: usize = 32;
@@ -23,20 +21,20 @@ const MIN_NOISE: f32 = 0.25 / 255.0 / 3.464_101_6;
 /// standard deviation 1.
 const RAYLEIGH_MEDIAN: f32 = 1.177_41;
 
-/// Gradient statistics on a grid of blocks.
-pub struct LocalGradients {
+/// Statistics of a strength (of the gradient, of the second derivative) on a grid of blocks.
+pub struct LocalStrengths {
     columns: usize,
     rows: usize,
     noise: Vec<f32>,
     surprise: Vec<[f32; BINS]>,
 }
 
-impl LocalGradients {
-    /// The statistics of a gradient raster.
-    pub fn new(gradient: &Gradient) -> Self {
-        let columns = gradient.width.div_ceil(BLOCK_PX).max(1);
-        let rows = gradient.height.div_ceil(BLOCK_PX).max(1);
-        let counts = pool(&histograms(gradient, columns, rows), columns, rows);
+impl LocalStrengths {
+    /// The statistics of a raster of strengths, row by row.
+    pub fn new(strength: &[f32], width: usize, height: usize) -> Self {
+        let columns = width.div_ceil(BLOCK_PX).max(1);
+        let rows = height.div_ceil(BLOCK_PX).max(1);
+        let counts = pool(&histograms(strength, width, columns, rows), columns, rows);
         Self {
             columns,
             rows,
@@ -87,10 +85,9 @@ fn interval(x: usize, blocks: usize) -> (usize, f32) {
 }
 
 /// Strengths of every other pixel of every other row, counted per block.
-fn histograms(gradient: &Gradient, columns: usize, rows: usize) -> Vec<[u32; BINS]> {
+fn histograms(strength: &[f32], width: usize, columns: usize, rows: usize) -> Vec<[u32; BINS]> {
     let mut counts = vec![[0u32; BINS]; columns * rows];
-    for y in (0..gradient.height).step_by(2) {
-        let line = &gradient.strength[y * gradient.width..(y + 1) * gradient.width];
+    for (y, line) in strength.chunks_exact(width.max(1)).enumerate().step_by(2) {
         let blocks = &mut counts[y / BLOCK_PX * columns..][..columns];
         for (block, pixels) in blocks.iter_mut().zip(line.chunks(BLOCK_PX)) {
             for &strength in pixels.iter().step_by(2) {
@@ -152,24 +149,25 @@ fn surprise_of(counts: &[u32; BINS]) -> [f32; BINS] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::canny::Gradient;
     use super::super::testing::{add_noise, step_edge};
     use super::*;
-    use crate::raster::Gray;
+    use crate::raster::{Gray, gaussian_blur};
 
     /// What smoothing by 1 px and a central difference leave of white noise of 1: smoothed noise is
     /// correlated as R(d) = exp(-d^2 / 4) / 4 pi, and the variance of a difference over 2 px, halved,
     /// is (R(0) - R(2)) / 2.
     const GAIN: f32 = 0.1586;
 
-    fn noisy(sigma: f64) -> Gradient {
+    fn noisy(sigma: f64) -> LocalStrengths {
         let mut gray = Gray::from_fn(160, 160, |_, _| 0.5);
         add_noise(&mut gray, sigma, 7);
-        Gradient::new(&gray, 1.0)
+        Gradient::new(&gaussian_blur(&gray, 1.0)).statistics()
     }
 
     #[test]
     fn the_noise_is_that_of_the_image() {
-        let local = LocalGradients::new(&noisy(0.02));
+        let local = noisy(0.02);
         let mut row = vec![0.0; 160];
         for y in [3, 80, 150] {
             local.noise_row(y, &mut row);
@@ -181,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_clean_image_has_the_noise_of_rounding() {
-        let local = LocalGradients::new(&noisy(0.0));
+        let local = noisy(0.0);
         let mut row = vec![0.0; 160];
         local.noise_row(9, &mut row);
         assert_eq!(row, vec![MIN_NOISE; 160]);
@@ -191,7 +189,7 @@ mod tests {
     fn an_edge_is_a_surprise_and_noise_is_none() {
         let mut gray = step_edge(160, 160, 0.3, 0.2);
         add_noise(&mut gray, 0.02, 7);
-        let local = LocalGradients::new(&Gradient::new(&gray, 1.0));
+        let local = Gradient::new(&gaussian_blur(&gray, 1.0)).statistics();
         assert!(local.surprise(80, 80, 0.02 * GAIN) < 1.0);
         assert!(local.surprise(80, 80, 0.06) > 3.0);
     }

@@ -14,45 +14,60 @@ pub fn gaussian_blur(input: &Gray, sigma_px: f64) -> Gray {
     let kernel: Vec<f32> = kernel.iter().map(|&k| k as f32).collect();
     let (w, h) = (input.width, input.height);
 
-    let mut rows = Gray::new(w, h);
-    let mut padded = vec![0.0f32; w + 2 * radius];
-    for y in 0..h {
-        let row = &input.data[y * w..(y + 1) * w];
-        padded[..radius].fill(row[0]);
-        padded[radius..radius + w].copy_from_slice(row);
-        padded[radius + w..].fill(row[w - 1]);
-        let out = &mut rows.data[y * w..(y + 1) * w];
-        for (x, o) in out.iter_mut().enumerate() {
-            *o = padded[x + radius] * kernel[0];
-        }
-        for (i, &k) in kernel.iter().enumerate().skip(1) {
-            let (left, right) = (
-                &padded[radius - i..radius - i + w],
-                &padded[radius + i..radius + i + w],
-            );
-            for ((o, l), r) in out.iter_mut().zip(left).zip(right) {
-                *o += (l + r) * k;
-            }
-        }
+    if w == 0 || h == 0 {
+        return Gray::new(w, h);
     }
 
+    // Rows blurred along x are kept only as long as a row around them wants them: row y in slot y mod slots.
+    let slots = 2 * radius + 1;
+    let mut rows = vec![0.0f32; slots * w];
+    let mut padded = vec![0.0f32; w + 2 * radius];
+    let mut ready = 0;
     let mut output = Gray::new(w, h);
-    for y in 0..h {
+    for (y, out) in output.data.chunks_exact_mut(w).enumerate() {
+        while ready < h.min(y + radius + 1) {
+            let slot = ready % slots;
+            let row = &mut rows[slot * w..(slot + 1) * w];
+            blur_row(
+                &input.data[ready * w..(ready + 1) * w],
+                &kernel,
+                &mut padded,
+                row,
+            );
+            ready += 1;
+        }
         let row = |dy: isize| {
-            let y = (y as isize + dy).clamp(0, h as isize - 1) as usize;
-            &rows.data[y * w..(y + 1) * w]
+            let slot = (y as isize + dy).clamp(0, h as isize - 1) as usize % slots;
+            &rows[slot * w..(slot + 1) * w]
         };
-        let out = &mut output.data[y * w..(y + 1) * w];
         for (o, v) in out.iter_mut().zip(row(0)) {
             *o = v * kernel[0];
         }
         for (i, &k) in kernel.iter().enumerate().skip(1) {
-            for ((o, above), below) in out.iter_mut().zip(row(-(i as isize))).zip(row(i as isize)) {
-                *o += (above + below) * k;
+            let (above, below) = (row(-(i as isize)), row(i as isize));
+            for ((o, a), b) in out.iter_mut().zip(above).zip(below) {
+                *o += (a + b) * k;
             }
         }
     }
     output
+}
+
+/// Blurs one row; `padded` is room for it and the reach of the kernel on either side.
+fn blur_row(row: &[f32], kernel: &[f32], padded: &mut [f32], out: &mut [f32]) {
+    let (w, radius) = (row.len(), kernel.len() - 1);
+    padded[..radius].fill(row[0]);
+    padded[radius..radius + w].copy_from_slice(row);
+    padded[radius + w..].fill(row[w - 1]);
+    for (o, v) in out.iter_mut().zip(row) {
+        *o = v * kernel[0];
+    }
+    for (i, &k) in kernel.iter().enumerate().skip(1) {
+        let (left, right) = (&padded[radius - i..][..w], &padded[radius + i..][..w]);
+        for ((o, l), r) in out.iter_mut().zip(left).zip(right) {
+            *o += (l + r) * k;
+        }
+    }
 }
 
 #[cfg(test)]

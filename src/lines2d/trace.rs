@@ -1,0 +1,71 @@
+//! What the segment stage did in a view, and why a line of edgels is no segment.
+
+use nalgebra::Point2;
+use serde::Serialize;
+
+use crate::geometry::Segment2;
+
+/// Why a straight line of edgels is not a segment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SegmentRejection {
+    /// Shorter than the minimum length.
+    TooShort,
+    /// Part of a curve.
+    Curved,
+    /// Not distinguishable from the texture around it.
+    NotSignificant,
+    /// A bar along an edge that is a segment already.
+    BesideEdge,
+}
+
+/// A line that was refused, with the reason.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RejectedSegment {
+    /// The line, px.
+    pub segment: Segment2,
+    /// Why it was refused.
+    pub reason: SegmentRejection,
+}
+
+/// What the detector did in one view.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct SegmentTrace {
+    /// Edgels above the low threshold.
+    pub edgels: usize,
+    /// Chains of edgels after hysteresis.
+    pub chains: usize,
+    /// Chains with too few edgels for a straight piece.
+    pub short_chains: usize,
+    /// Where the worm broke a chain, px.
+    pub worm_breaks: Vec<Point2<f64>>,
+    /// Straight pieces of chains, from which lines are grown.
+    pub seeds: usize,
+    /// Seeds that a longer one has swallowed.
+    pub taken: usize,
+    /// Lines that are too short.
+    pub too_short: usize,
+    /// Lines that belong to a curve.
+    pub curved: usize,
+    /// Lines that the texture around them explains.
+    pub not_significant: usize,
+    /// Bars along an edge that is a segment already.
+    pub beside_edge: usize,
+    /// The refused lines of at least the minimum length.
+    pub rejected: Vec<RejectedSegment>,
+}
+
+impl SegmentTrace {
+    /// Counts a refused line, and keeps it unless it is too short.
+    pub(super) fn refuse(&mut self, refused: RejectedSegment) {
+        match refused.reason {
+            SegmentRejection::TooShort => self.too_short += 1,
+            SegmentRejection::Curved => self.curved += 1,
+            SegmentRejection::NotSignificant => self.not_significant += 1,
+            SegmentRejection::BesideEdge => self.beside_edge += 1,
+        }
+        if refused.reason != SegmentRejection::TooShort {
+            self.rejected.push(refused);
+        }
+    }
+}
