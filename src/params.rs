@@ -89,7 +89,7 @@ impl Default for SegmentParams {
             contrast_distance_px: 2.5,
             edgel_floor_px: 0.05,
             refine_sigmas: 0.8,
-            edge_floor_px: 0.3,
+            edge_floor_px: 0.1,
         }
     }
 }
