@@ -23,6 +23,9 @@ const ROUNDS: usize = 2;
 /// Least number of views with a segment. Two interpretation planes always meet in a line; the third
 /// makes it evidence, correlation without a segment then adds to it.
 const MIN_MEASURED: usize = 3;
+/// Least number of views with an edge and views with a detected segment, together: three of three, or two with
+/// four where the edge was found again.
+const MIN_EVIDENCE: usize = 6;
 /// How far beside a line, in gates, a segment belongs to it and starts no other line.
 const OWN: f64 = 1.5;
 /// A stretch reaches past the detected segments by this much to count as grown, px: more than a piece of
@@ -41,8 +44,6 @@ pub enum Rejection {
     Unverified,
     /// Fewer than the minimum of views support it.
     TooFewViews,
-    /// The detector missed it in half of the views that look alike.
-    Undetected,
     /// The supported stretch is shorter than the minimum of edgels.
     TooShort,
     /// It leaves the height range.
@@ -89,7 +90,7 @@ pub fn complete_line(
     let (mut fit, mut edges) = context.measure_again(fit, &segments)?;
     let mut segments = context.adopt(&fit.line, &segments, OWN, &taken);
     loop {
-        if edges.len() < MIN_MEASURED || views_of(&segments) < MIN_MEASURED {
+        if edges.len() < MIN_MEASURED || edges.len() + views_of(&segments) < MIN_EVIDENCE {
             return Err(Rejection::TooFewViews);
         }
         let profile = context.profile(&fit.line, &segments, &edges)?;
@@ -491,14 +492,9 @@ impl Context<'_> {
         if measured < MIN_MEASURED || (supports.len() < expected_views && !certain) {
             return Err(Rejection::TooFewViews);
         }
-        // Views that look alike detect alike: an edge that half of them missed is a chance alignment. And the
-        // one view that verifies two others is hit by chance the more easily the shorter the line.
-        let detected = supports.iter().filter(|s| !s.segments.is_empty()).count();
-        if detected < MIN_MEASURED || 2 * detected <= supports.len() {
-            return Err(Rejection::Undetected);
-        }
+        // The one view that verifies two others is hit by chance the more easily the shorter the line.
         let length_px = segment.length() / camera.ground_pixel(&segment.p0);
-        if detected == MIN_MEASURED && length_px < 2.0 * self.params.min_edgels as f64 {
+        if measured == MIN_MEASURED && length_px < 2.0 * self.params.min_edgels as f64 {
             return Err(Rejection::TooShort);
         }
         let [low, high] = self.z_range;

@@ -222,7 +222,7 @@ impl Run {
                 r.matches = Some(found.into());
             }
             Stage::Lines => {
-                let (segments, matches) = (before(&r.segments), before(&r.matches));
+                let matches = before(&r.matches);
                 let found = reconstruct_lines(scene, matches, &params.lines3d);
                 r.lines = Some(found.into());
             }
