@@ -34,6 +34,7 @@ pub mod orientation;
 pub mod parallel;
 pub mod params;
 pub mod pipeline;
+pub mod progress;
 pub mod raster;
 pub mod roof;
 pub mod scene;

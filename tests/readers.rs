@@ -105,7 +105,7 @@ fn among_several_orientations_the_documented_one_or_the_wanted_one_is_taken() {
         "{message}"
     );
 
-    let inspection = inspect_files(&files);
+    let inspection = inspect_files(&files, &LoadOptions::default());
     assert_eq!((inspection.views, inspection.images.len()), (6, 6));
     assert_eq!(
         inspection.images[0].orientation.as_deref(),
@@ -123,7 +123,7 @@ fn check_refusal(error: &Error) -> Result<(), TestCaseError> {
 }
 
 fn check_files(files: &[InputFile]) -> Result<(), TestCaseError> {
-    let inspection = inspect_files(files);
+    let inspection = inspect_files(files, &LoadOptions::default());
     match load_scene(files, &LoadOptions::default()) {
         Ok(scene) => {
             prop_assert!(inspection.errors.is_empty(), "{:?}", inspection.errors);

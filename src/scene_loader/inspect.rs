@@ -15,6 +15,8 @@ pub struct Inspection {
     pub images: Vec<ImageReport>,
     /// The orientation that a run would take: format and files.
     pub orientation: Option<String>,
+    /// All orientations among the files, the preferred one first.
+    pub orientations: Vec<OrientationReport>,
     /// Number of views that a run would use.
     pub views: usize,
     /// What a run would warn of.
@@ -34,6 +36,15 @@ pub struct FileReport {
     pub description: &'static str,
 }
 
+/// One of the orientations that a scene may be given.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OrientationReport {
+    /// Its format and files, in words.
+    pub label: String,
+    /// What [`LoadOptions::orientation`] chooses it by.
+    pub path: String,
+}
+
 /// An image and its orientation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ImageReport {
@@ -47,9 +58,9 @@ pub struct ImageReport {
     pub orientation: Option<String>,
 }
 
-/// Recognises files and plans a scene with default options.
-pub fn inspect_files(files: &[InputFile]) -> Inspection {
-    let plan = Plan::new(files, &LoadOptions::default());
+/// Recognises files and plans a scene.
+pub fn inspect_files(files: &[InputFile], options: &LoadOptions) -> Inspection {
+    let plan = Plan::new(files, options);
     let described = files
         .iter()
         .zip(&plan.kinds)
@@ -68,6 +79,7 @@ pub fn inspect_files(files: &[InputFile]) -> Inspection {
         files: described.collect(),
         images: images.collect(),
         orientation: plan.orientation,
+        orientations: plan.candidates,
         views: plan.views.len(),
         warnings: plan.warnings,
         errors: plan.errors.iter().map(ToString::to_string).collect(),

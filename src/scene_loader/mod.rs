@@ -19,7 +19,7 @@ mod plan;
 mod region;
 
 pub use input::{InputFile, LoadOptions};
-pub use inspect::{FileReport, ImageReport, Inspection, inspect_files};
+pub use inspect::{FileReport, ImageReport, Inspection, OrientationReport, inspect_files};
 
 use crate::camera::undistort;
 use crate::raster::load_image;

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::checks;
 use super::input::{InputFile, LoadOptions, stem};
+use super::inspect::OrientationReport;
 use super::names::{best_match, listed, match_rank};
 use super::region;
 use crate::camera::{Camera, Distortion};
@@ -19,6 +20,8 @@ pub(super) struct Plan {
     pub images: Vec<PlannedImage>,
     /// The orientation that was taken.
     pub orientation: Option<String>,
+    /// All of them, the preferred one first.
+    pub candidates: Vec<OrientationReport>,
     /// The views: images with an orientation, in the order of `images`.
     pub views: Vec<PlannedView>,
     /// Added to local coordinates it gives the world of the input.
@@ -65,6 +68,7 @@ impl Plan {
             kinds: files.iter().map(detect).collect(),
             images: Vec::new(),
             orientation: None,
+            candidates: Vec::new(),
             views: Vec::new(),
             origin: Vector3::zeros(),
             warnings: Vec::new(),
@@ -163,12 +167,23 @@ impl Plan {
     ) -> Option<Vec<Orientation>> {
         let (sets, incomplete) = orientation_sets(files, &self.kinds);
         self.warn_of_json(files);
+        self.candidates = sets
+            .iter()
+            .map(|set| OrientationReport {
+                label: format!("{}: {}", set.format.name(), set.label(files)),
+                path: files[set.files[0]].path.clone(),
+            })
+            .collect();
+        let named = |wanted: &str, fits: &dyn Fn(&str, &str) -> bool| {
+            let wanted = wanted.trim_end_matches('/');
+            sets.iter()
+                .find(|set| set.files.iter().any(|&i| fits(&files[i].path, wanted)))
+        };
         let chosen = match &options.orientation {
             None => sets.first(),
-            Some(wanted) => sets.iter().find(|set| {
-                let wanted = wanted.trim_end_matches('/');
-                set.files.iter().any(|&i| files[i].path.contains(wanted))
-            }),
+            // A whole path names one set, even where it is a part of another's.
+            Some(wanted) => named(wanted, &|path, wanted| path == wanted)
+                .or_else(|| named(wanted, &|path, wanted| path.contains(wanted))),
         };
         let Some(set) = chosen else {
             self.errors

@@ -93,6 +93,7 @@ export class Session implements CoreSession {
       files: this.#files.map((path) => ({ path, kind: "image", description: "a file" })),
       images,
       orientation: "planted",
+      orientations: [{ label: "planted", path: "planted" }],
       views: images.length,
       warnings: [],
       errors: images.length < 3 ? ["fewer than three views; add photographs"] : [],
