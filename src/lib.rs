@@ -21,6 +21,7 @@
 //! would draw. [`pipeline`] alone orders the stages.
 
 pub mod camera;
+pub mod doctor;
 pub mod error;
 pub mod export;
 pub mod geometry;

@@ -19,7 +19,7 @@ mod photogrammetric;
 mod projection;
 mod text;
 
-pub use angles::{omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa};
+pub use angles::{AngleUnit, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa};
 pub use detect::{FileKind, detect};
 
 use nalgebra::{Matrix3, Point3};
@@ -69,6 +69,21 @@ pub struct Orientation {
     pub center: Point3<f64>,
     /// Width and height of the image in pixels, where the file states them.
     pub size: Option<(u32, u32)>,
+    /// The rotation angles as the file states them, in whatever unit and order.
+    pub angles: Option<[f64; 3]>,
+    /// Where in the frame the image lies, where the file states it.
+    pub crop: Option<Crop>,
+}
+
+/// The place of an image in the frame that it was cut out of, pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crop {
+    /// First column.
+    pub column: f64,
+    /// First row, from the top.
+    pub row: f64,
+    /// Width and height of the frame.
+    pub frame: [f64; 2],
 }
 
 /// Files that together orient images: one candidate for the orientation of a scene.

@@ -45,6 +45,8 @@ pub(super) fn read(path: &str, text: &str) -> Result<Orientation> {
         r,
         center,
         size: None,
+        angles: None,
+        crop: None,
     })
 }
 

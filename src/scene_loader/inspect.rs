@@ -23,6 +23,8 @@ pub struct Inspection {
     pub warnings: Vec<String>,
     /// Why a run would refuse these files; empty when it would not.
     pub errors: Vec<String>,
+    /// Do only the places of the cameras speak against them? Then loading looks at the images, and says more.
+    pub is_implausible: bool,
 }
 
 /// What a file is.
@@ -83,5 +85,6 @@ pub fn inspect_files(files: &[InputFile], options: &LoadOptions) -> Inspection {
         views: plan.views.len(),
         warnings: plan.warnings,
         errors: plan.errors.iter().map(ToString::to_string).collect(),
+        is_implausible: plan.is_implausible,
     }
 }

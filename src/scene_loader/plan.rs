@@ -8,7 +8,7 @@ use super::inspect::OrientationReport;
 use super::names::{best_match, listed, match_rank};
 use super::region;
 use crate::camera::{Camera, Distortion};
-use crate::orientation::{FileKind, Orientation, OrientationSet, detect, orientation_sets};
+use crate::orientation::{Crop, FileKind, Orientation, OrientationSet, detect, orientation_sets};
 use crate::raster::{ImageHeader, image_header};
 use crate::{Error, Result};
 
@@ -29,6 +29,8 @@ pub(super) struct Plan {
     pub warnings: Vec<String>,
     /// Refusals, the one to report first in front.
     pub errors: Vec<Error>,
+    /// Does nothing but the cameras' places speak against the scene? Then the images may tell why.
+    pub is_implausible: bool,
 }
 
 /// An image and the orientation found for it.
@@ -44,6 +46,9 @@ pub(super) struct PlannedView {
     /// Camera of the whole image, local frame.
     pub whole: Camera,
     pub distortion: Option<Distortion>,
+    /// The rotation angles as the file states them, and the place of the image in its frame.
+    pub angles: Option<[f64; 3]>,
+    pub crop: Option<Crop>,
     /// Column, row, width, height of the part that is used; the whole image when absent.
     pub part: Option<[u32; 4]>,
 }
@@ -73,6 +78,7 @@ impl Plan {
             origin: Vector3::zeros(),
             warnings: Vec::new(),
             errors: Vec::new(),
+            is_implausible: false,
         };
         plan.find_images(files, options);
         if let Some(orientations) = plan.choose_orientation(files, options) {
@@ -292,6 +298,7 @@ impl Plan {
             .map(|v| (&*files[v.file].path, &v.whole))
             .collect();
         let found = checks::check_cameras(&named, ground_z);
+        self.is_implausible = self.errors.is_empty() && !found.errors.is_empty();
         self.errors.extend(found.errors);
         self.warnings.extend(found.warnings);
         if let (Some(roi), Some(heights)) = (options.roi, found.heights) {
@@ -301,7 +308,9 @@ impl Plan {
                 Err(error) => self.errors.push(error),
             }
         }
-        self.errors.extend(checks::check_memory(&views));
+        let too_large = checks::check_memory(&views);
+        self.is_implausible &= too_large.is_none();
+        self.errors.extend(too_large);
         self.views = views;
     }
 }
@@ -359,6 +368,8 @@ fn planned_view(
         file,
         whole: camera,
         distortion: orientation.distortion,
+        angles: orientation.angles,
+        crop: orientation.crop,
         part: None,
     })
 }

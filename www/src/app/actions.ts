@@ -211,13 +211,15 @@ async function loadProject(what: string): Promise<void> {
   await guarded(what, async () => {
     await ensureInspected();
     const problems = inspection.value?.errors ?? [];
-    // The inspection is of all images; of some of them, loading says what is wrong.
-    const isOfAll = runOptions.value.leftOut.length === 0;
-    for (const problem of isOfAll ? problems.slice(0, MAX_PROBLEMS) : []) {
-      notify(failureNotice(problem, "input"));
-    }
-    if (problems.length === 0 || !isOfAll) {
+    // The inspection is of all images, and does not look into them: where that matters, loading says
+    // what is wrong.
+    const isFinal = runOptions.value.leftOut.length === 0 && inspection.value?.is_implausible !== true;
+    if (problems.length === 0 || !isFinal) {
       await ensureScene();
+      return;
+    }
+    for (const problem of problems.slice(0, MAX_PROBLEMS)) {
+      notify(failureNotice(problem, "input"));
     }
   });
 }

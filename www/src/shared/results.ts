@@ -45,6 +45,8 @@ export interface Inspection {
   warnings: string[];
   /** Why a run would refuse these files; empty when it would not. */
   errors: string[];
+  /** Only the places of the cameras speak against them: loading looks at the images, and says more. */
+  is_implausible: boolean;
 }
 
 /** What a person may ask for beyond the files. */

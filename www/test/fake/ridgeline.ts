@@ -96,6 +96,7 @@ export class Session implements CoreSession {
       orientations: [{ label: "planted", path: "planted" }],
       views: images.length,
       warnings: [],
+      is_implausible: false,
       errors: images.length < 3 ? ["fewer than three views; add photographs"] : [],
     };
   }
