@@ -247,26 +247,33 @@ impl Clinic {
         best
     }
 
-    /// Focal lengths in question: the best on a wide scale, from a few pairs, and its neighbours.
+    /// Focal lengths in question: the pixel size under which a few pairs agree best, and its neighbours.
     fn focal_lengths(&self, patients: &[Patient]) -> Vec<Suspect> {
-        const STEP: f64 = 1.06;
-        const STEPS: i32 = 130; // From 1/20 to a hundred times that of a sensor of 1000 px in millimetres.
         let few: Vec<(usize, usize)> = self.pairs.iter().copied().step_by(4).collect();
+        let camera = &patients[0].camera;
+        let longer = f64::from(camera.width.max(camera.height));
+        // Millimetres, or the width of the image, or that of small-format film as a unit; and the reverse.
+        let units = PIXEL_SIZES_UM.map(|size| 1000.0 / size);
+        let units = units.into_iter().chain([longer, longer / 36.0]);
         let mut best = (0.0, 1.0);
-        let mut factor = 0.5;
-        for _ in 0..STEPS {
+        for factor in units.flat_map(|unit| [unit, 1.0 / unit]) {
             if let Some(cameras) = Suspect::Focal(factor).treated(patients) {
                 let score = total(&self.counts(&cameras, &few)).score;
                 if score > best.0 {
                     best = (score, factor);
                 }
             }
-            factor *= STEP;
         }
-        let near = [0.96, 0.98, 0.99, 1.0, 1.01, 1.02, 1.04];
+        let near = [0.97, 0.98, 0.99, 1.0, 1.01, 1.02, 1.03];
         near.map(|f| Suspect::Focal(best.1 * f)).to_vec()
     }
 }
+
+/// Sizes of a pixel that occur, micrometres: small and large sensors, scanners.
+const PIXEL_SIZES_UM: [f64; 30] = [
+    1.5, 1.55, 2.0, 2.4, 3.2, 3.3, 3.76, 3.9, 4.0, 4.4, 4.6, 4.8, 5.2, 5.6, 6.0, 6.4, 6.8, 7.0,
+    7.2, 7.5, 8.0, 9.0, 10.0, 12.0, 12.5, 14.0, 15.0, 20.0, 25.0, 30.0,
+];
 
 /// The mean viewing direction: planes across it serve as ground, wherever up is.
 fn mean_axis(cameras: &[Camera]) -> Vector3<f64> {
