@@ -219,6 +219,7 @@ impl Pose {
             r: rotation_from_omega_phi_kappa(omega, phi, kappa).into_inner(),
             center: self.center,
             size: Some(crop.size),
+            from_middle: false,
             angles: Some(self.angles),
             crop: Some(Crop {
                 column: crop.column,

@@ -217,7 +217,7 @@ impl Plan {
         let names: Vec<&str> = of_json.map(|i| &*files[i].path).collect();
         if !names.is_empty() {
             self.warnings.push(format!(
-                "JSON is no orientation format here, ignored: {}",
+                "JSON that is no orientation known here, ignored: {}",
                 listed(names.into_iter())
             ));
         }
@@ -337,8 +337,13 @@ fn planned_view(
             "use the image that was oriented, or export the orientation for this size",
         ));
     }
+    let mut k = orientation.k;
+    if orientation.from_middle {
+        k[(0, 2)] += f64::from(width) / 2.0;
+        k[(1, 2)] += f64::from(height) / 2.0;
+    }
     let camera = Camera {
-        k: orientation.k,
+        k,
         r: orientation.r,
         center: orientation.center,
         width,
@@ -395,8 +400,8 @@ fn no_orientation(
     }
     Error::Scene {
         problem,
-        advice: "add a COLMAP text model (cameras.txt and images.txt), a camera file with a list \
-                 `image X0 Y0 Z0 omega phi kappa`, or one 3 x 4 matrix NAME.P an image"
+        advice: "add the orientation as COLMAP, Metashape, BlocksExchange, Pix4D, OpenSfM or Bundler write it, a camera \
+                 file with a list `image X0 Y0 Z0 omega phi kappa`, or one 3 x 4 matrix NAME.P an image"
             .to_owned(),
     }
 }
