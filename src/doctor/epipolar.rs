@@ -33,9 +33,9 @@ const LEAST_CORRELATION: f32 = 0.7;
 /// Least standard deviation of grey values in a window, 0 to 1: below it there is only noise.
 const LEAST_CONTRAST: f32 = 0.01;
 
-/// Depths at which a point may lie, in baselines. Assumption: aerial views meet at angles between a degree and
-/// a hundred.
-const DEPTHS: [f64; 2] = [0.4, 60.0];
+/// Depths at which a point may lie, in baselines. Assumption: aerial views meet at angles between two degrees and
+/// a hundred. Without an upper end, crops centred on the same place agree under any short focal length.
+const DEPTHS: [f64; 2] = [0.4, 30.0];
 
 /// Shortest part of an epipolar line worth a search, pixels.
 const SHORTEST: f64 = 4.0;

@@ -89,6 +89,9 @@ pub enum Diagnosis {
 /// Longer side of the reduced images, pixels: enough to tell places apart, few enough to search fast.
 const REDUCED_PX: u32 = 300;
 
+/// In smaller images a line is too short to tell the right place from a wrong one, pixels.
+const SMALLEST_PX: u32 = 128;
+
 /// Fewer points than this decide nothing.
 const FEWEST_POINTS: usize = 40;
 
@@ -107,6 +110,10 @@ const NEIGHBOURS: usize = 5;
 
 /// Examines views, and looks for the mistake where they do not agree.
 pub fn examine(patients: &[Patient]) -> Diagnosis {
+    let is_small = |p: &Patient| p.camera.width.min(p.camera.height) < SMALLEST_PX;
+    if patients.iter().any(is_small) {
+        return Diagnosis::Unknown(Agreement::default());
+    }
     let clinic = Clinic::new(patients);
     let stated: Vec<Camera> = patients.iter().map(|p| p.camera.clone()).collect();
     let counts = clinic.counts(&stated, &clinic.pairs);

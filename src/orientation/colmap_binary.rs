@@ -85,12 +85,12 @@ impl<'a> Bytes<'a> {
         Ok(f64::from_le_bytes(self.take()?))
     }
 
-    /// Up to the zero that ends it; blanks would end a field of the text.
+    /// Up to the zero that ends it; a line break would end the line of the text.
     fn name(&mut self) -> Result<String> {
         let Some(end) = self.rest.iter().position(|&b| b == 0) else {
             return Err(self.error("a name does not end"));
         };
-        let name = String::from_utf8_lossy(&self.rest[..end]).replace(char::is_whitespace, "_");
+        let name = String::from_utf8_lossy(&self.rest[..end]).replace(['\n', '\r'], "_");
         self.rest = &self.rest[end + 1..];
         Ok(name)
     }

@@ -12,6 +12,7 @@
 //! Architecture invariant: no file system here; paths are names. [`load_scene`] and [`inspect_files`] walk the
 //! same plan, so that the page's table never disagrees with a run.
 
+mod archive;
 mod checks;
 mod input;
 mod inspect;
@@ -20,6 +21,7 @@ mod plan;
 mod region;
 mod verdict;
 
+pub use archive::unpack;
 pub use input::{InputFile, LoadOptions};
 pub use inspect::{FileReport, ImageReport, Inspection, OrientationReport, inspect_files};
 

@@ -13,7 +13,7 @@ use crate::linematch::SupportKind;
 use crate::params::Params;
 use crate::pipeline::{Run, Stage};
 use crate::progress::Listener;
-use crate::scene_loader::{InputFile, LoadOptions, inspect_files, load_scene};
+use crate::scene_loader::{InputFile, LoadOptions, inspect_files, load_scene, unpack};
 
 /// Files, parameters and the reconstruction made of them.
 #[wasm_bindgen]
@@ -85,13 +85,15 @@ impl Session {
         to_js(&Params::default())
     }
 
-    /// Adds an image or orientation file; a file of the same path is replaced.
+    /// Adds an image or orientation file, or an archive of them; a file of the same path is replaced.
     #[wasm_bindgen(js_name = addFile)]
-    pub fn add_file(&mut self, path: &str, bytes: Vec<u8>) {
-        let added = InputFile::new(path, bytes);
-        self.files.retain(|file| file.path != added.path);
-        self.files.push(added);
+    pub fn add_file(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), JsValue> {
+        for added in unpack(InputFile::new(path, bytes)).map_err(|e| input_error(&e))? {
+            self.files.retain(|file| file.path != added.path);
+            self.files.push(added);
+        }
         self.files.sort_by(|a, b| a.path.cmp(&b.path));
+        Ok(())
     }
 
     /// Forgets all files and all results.
