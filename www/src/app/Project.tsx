@@ -58,7 +58,10 @@ function DropZone() {
           : "Drop more files here."}
       </p>
       {isEmpty && (
-        <p class="muted">JPEG, PNG or TIFF; COLMAP text, VGG .P matrices, or X Y Z omega phi kappa lists.</p>
+        <p class="muted">
+          JPEG, PNG or TIFF; orientation as COLMAP, Metashape, Pix4D, OpenSfM, Bundler and others write it,
+          matrices, or X Y Z omega phi kappa lists; also in a .zip.
+        </p>
       )}
       <div class="row">
         <button type="button" onClick={() => fileInput.current?.click()}>
@@ -133,15 +136,20 @@ function ViewRow({ image }: { image: ImageReport }) {
           {image.orientation === null ? "no orientation" : "oriented"}
         </span>
       </div>
-      <button
-        type="button"
-        class="quiet"
-        aria-label={`Remove ${image.path}`}
-        onClick={() => void removeFile(image.path)}
-      >
-        ✕
-      </button>
+      <RemoveButton path={image.path} />
     </li>
+  );
+}
+
+/** Files inside an archive come and go with it. */
+function RemoveButton({ path }: { path: string }) {
+  if (!files.value.some((file) => file.path === path)) {
+    return <span />;
+  }
+  return (
+    <button type="button" class="quiet" aria-label={`Remove ${path}`} onClick={() => void removeFile(path)}>
+      ✕
+    </button>
   );
 }
 
@@ -164,14 +172,7 @@ function OtherFiles() {
             <span class="muted" title={description}>
               {description}
             </span>
-            <button
-              type="button"
-              class="quiet"
-              aria-label={`Remove ${path}`}
-              onClick={() => void removeFile(path)}
-            >
-              ✕
-            </button>
+            <RemoveButton path={path} />
           </li>
         ))}
       </ul>
