@@ -66,8 +66,7 @@ pub(crate) mod tests {
             Arc::new(move |f| ear.lock().expect("no panic").push(f)),
             work,
         );
-        let fractions = heard_so_far.lock().expect("no panic").clone();
-        fractions
+        heard_so_far.lock().expect("no panic").clone()
     }
 
     #[test]

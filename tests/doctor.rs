@@ -170,7 +170,7 @@ fn broken(scene: &Scene) -> Vec<Broken> {
 #[test]
 fn broken_orientations_are_named() {
     // All mistakes on one scene, some on another.
-    for (scene, every) in [(gable_scene(320).0, 1), (l_scene(320).0, 4)] {
+    for (scene, every) in [(gable_scene(320).0, 1), (l_scene(320).0, 6)] {
         let mut unnamed = Vec::new();
         for (what, orientation, name) in broken(&scene).into_iter().step_by(every) {
             let said = words(&scene, orientation);

@@ -237,26 +237,42 @@ impl Clinic {
         self.best_of(patients, self.focal_lengths(patients))
     }
 
+    /// The best of many: a few pairs of views single out those worth asking all.
     fn best_of(
         &self,
         patients: &[Patient],
         suspects: Vec<Suspect>,
     ) -> (Agreement, Option<Suspect>) {
+        const FINALISTS: usize = 4;
+        let few = self.few_pairs();
+        let mut treated: Vec<(f64, Suspect, Vec<Camera>)> = (suspects.into_iter())
+            .filter_map(|suspect| {
+                let cameras = suspect.treated(patients)?;
+                let score = total(&self.counts(&cameras, &few)).score;
+                Some((score, suspect, cameras))
+            })
+            .collect();
+        treated.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut best = (Agreement::default(), None);
-        for suspect in suspects {
-            if let Some(cameras) = suspect.treated(patients) {
-                let after = self.agreement(&cameras);
-                if after.score > best.0.score {
-                    best = (after, Some(suspect));
-                }
+        for (_, suspect, cameras) in treated.into_iter().take(FINALISTS) {
+            let after = self.agreement(&cameras);
+            if after.score > best.0.score {
+                best = (after, Some(suspect));
             }
         }
         best
     }
 
+    /// Enough pairs of views for a first impression.
+    fn few_pairs(&self) -> Vec<(usize, usize)> {
+        const ENOUGH: usize = 4;
+        let step = (self.pairs.len() / ENOUGH).max(1);
+        self.pairs.iter().copied().step_by(step).collect()
+    }
+
     /// Focal lengths in question: the pixel size under which a few pairs agree best, and its neighbours.
     fn focal_lengths(&self, patients: &[Patient]) -> Vec<Suspect> {
-        let few: Vec<(usize, usize)> = self.pairs.iter().copied().step_by(4).collect();
+        let few = self.few_pairs();
         let camera = &patients[0].camera;
         let longer = f64::from(camera.width.max(camera.height));
         // Millimetres, or the width of the image, or that of small-format film as a unit; and the reverse.
