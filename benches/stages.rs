@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use criterion::{Criterion, criterion_group, criterion_main};
 use ridgeline::params::Params;
 use ridgeline::pipeline::{Run, Stage};
+use ridgeline::progress::silent;
 use ridgeline::synthetic::l_scene;
 
 fn stages(c: &mut Criterion) {
@@ -20,7 +21,7 @@ fn stages(c: &mut Criterion) {
             b.iter_custom(|times| {
                 let start = Instant::now();
                 for _ in 0..times {
-                    run.step(stage, &mut |_| {});
+                    run.step(stage, &silent());
                 }
                 start.elapsed()
             });

@@ -21,6 +21,7 @@
 //! would draw. [`pipeline`] alone orders the stages.
 
 pub mod camera;
+pub mod doctor;
 pub mod error;
 pub mod export;
 pub mod geometry;
@@ -34,6 +35,7 @@ pub mod orientation;
 pub mod parallel;
 pub mod params;
 pub mod pipeline;
+pub mod progress;
 pub mod raster;
 pub mod roof;
 pub mod scene;

@@ -11,11 +11,17 @@ use std::process::{Command, Output};
 use common::synthetic_files;
 
 /// What a run writes.
-const OUTPUTS: [&str; 7] = [
+const OUTPUTS: [&str; 13] = [
+    "footprints.geojson",
     "halfplanes.json",
+    "lines.csv",
     "lines.json",
     "model.city.json",
+    "model.dxf",
     "model.glb",
+    "model.mtl",
+    "model.obj",
+    "model.ply",
     "model_atlas.jpg",
     "report.json",
     "segments.json",

@@ -498,3 +498,180 @@ fn the_same_model_gives_the_same_bytes() {
     let (_, model, _) = planted_models().remove(1);
     assert_eq!(files_of(&scene(), &model), files_of(&scene(), &model));
 }
+
+/// Area of the faces of all solids, square metres.
+fn surface_area(model: &RoofModel) -> f64 {
+    let solids = model.buildings.iter().map(|b| &b.solid);
+    solids
+        .flat_map(|s| s.faces.iter().map(|f| s.vector_area(&f.rings).norm()))
+        .sum()
+}
+
+fn triangle_area([a, b, c]: [Vector3<f64>; 3]) -> f64 {
+    0.5 * (b - a).cross(&(c - a)).norm()
+}
+
+#[test]
+fn obj_reads_back_with_the_area_and_the_texture_of_the_model() {
+    let scene = scene();
+    for (name, model, _) in planted_models() {
+        let files = files_of(&scene, &model);
+        let (meshes, materials) = tobj::load_obj_buf(
+            &mut &files["model.obj"][..],
+            &tobj::LoadOptions::default(),
+            |path| {
+                assert_eq!(path.to_str(), Some("model.mtl"));
+                tobj::load_mtl_buf(&mut &files["model.mtl"][..])
+            },
+        )
+        .unwrap();
+        assert_eq!(
+            materials.unwrap()[0].diffuse_texture.as_deref(),
+            Some("model_atlas.jpg")
+        );
+        let mut area = 0.0;
+        for mesh in meshes.iter().map(|m| &m.mesh) {
+            let point =
+                |i: u32| Vector3::from_row_slice(&mesh.positions[3 * i as usize..][..3]) - ORIGIN;
+            for t in mesh.indices.chunks(3) {
+                area += triangle_area([point(t[0]), point(t[1]), point(t[2])]);
+            }
+            assert_eq!(mesh.indices.len(), mesh.texcoord_indices.len());
+            assert!(mesh.texcoords.iter().all(|v| (0.0..=1.0).contains(v)));
+        }
+        assert!((area - surface_area(&model)).abs() < 0.05, "{name}: {area}");
+    }
+}
+
+#[test]
+fn ply_reads_back_with_its_faces_and_edges() {
+    use ply_rs_bw::ply::Property;
+    let scene = scene();
+    let (_, lines, _) = planted_evidence();
+    for (name, model, _) in planted_models() {
+        let files = files_of(&scene, &model);
+        let parser = ply_rs_bw::parser::Parser::<ply_rs_bw::ply::DefaultElement>::new();
+        let ply = parser.read_ply(&mut &files["model.ply"][..]).unwrap();
+        let number = |p: &Property| match p {
+            Property::Double(v) => *v,
+            Property::Int(i) => f64::from(*i),
+            other => panic!("{other:?}"),
+        };
+        let point = |i: usize| {
+            let v = &ply.payload["vertex"][i];
+            Vector3::new(number(&v["x"]), number(&v["y"]), number(&v["z"])) - ORIGIN
+        };
+        let area: f64 = ply.payload["face"]
+            .iter()
+            .map(|face| match &face["vertex_indices"] {
+                Property::ListInt(i) => triangle_area([0, 1, 2].map(|k| point(i[k] as usize))),
+                other => panic!("{other:?}"),
+            })
+            .sum();
+        assert!((area - surface_area(&model)).abs() < 0.01, "{name}: {area}");
+        assert_eq!(ply.payload["edge"].len(), lines.len());
+        let edge = &ply.payload["edge"][0];
+        let ends = ["vertex1", "vertex2"].map(|k| point(number(&edge[k]) as usize));
+        assert!((ends[0] - lines[0].segment.p0.coords).norm() < 1e-4);
+        assert!((ends[1] - lines[0].segment.p1.coords).norm() < 1e-4);
+    }
+}
+
+#[test]
+fn dxf_reads_back_on_its_layers() {
+    let scene = scene();
+    let (_, lines, _) = planted_evidence();
+    for (name, model, _) in planted_models() {
+        let files = files_of(&scene, &model);
+        let drawing = dxf::Drawing::load(&mut &files["model.dxf"][..]).unwrap();
+        assert_eq!(drawing.header.version, dxf::enums::AcadVersion::R12);
+        let at = |p: &dxf::Point| Vector3::new(p.x, p.y, p.z) - ORIGIN;
+        let (mut area, mut drawn) = (0.0, 0);
+        for entity in drawing.entities() {
+            match &entity.specific {
+                dxf::entities::EntityType::Face3D(f) => {
+                    assert!(["ROOF", "WALL", "GROUND"].contains(&&*entity.common.layer));
+                    area +=
+                        triangle_area([&f.first_corner, &f.second_corner, &f.third_corner].map(at));
+                }
+                dxf::entities::EntityType::Line(line) => {
+                    assert_eq!(entity.common.layer, "LINE3D");
+                    assert!((at(&line.p1) - lines[drawn].segment.p0.coords).norm() < 1e-4);
+                    drawn += 1;
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+        assert!((area - surface_area(&model)).abs() < 0.01, "{name}: {area}");
+        assert_eq!(drawn, lines.len());
+    }
+}
+
+#[test]
+fn footprints_read_back_with_the_plan_area() {
+    let scene = scene();
+    let ring_area = |ring: &Vec<geojson::Position>| -> f64 {
+        assert_eq!(ring.first(), ring.last(), "rings are closed");
+        ring.windows(2)
+            .map(|e| {
+                let [a, b] = [0, 1].map(|i| [e[i][0] - ORIGIN.x, e[i][1] - ORIGIN.y]);
+                0.5 * (a[0] * b[1] - b[0] * a[1])
+            })
+            .sum()
+    };
+    for (name, model, _) in planted_models() {
+        let files = files_of(&scene, &model);
+        let text = std::str::from_utf8(&files["footprints.geojson"]).unwrap();
+        let collection: geojson::FeatureCollection = text
+            .parse::<geojson::GeoJson>()
+            .unwrap()
+            .try_into()
+            .unwrap();
+        let mut area = 0.0;
+        for feature in &collection.features {
+            let Some(geojson::GeometryValue::Polygon { coordinates }) =
+                feature.geometry.as_ref().map(|g| &g.value)
+            else {
+                panic!("{name}: no polygon");
+            };
+            // Outer rings counter-clockwise, holes clockwise (RFC 7946, 3.1.6).
+            assert!(ring_area(&coordinates[0]) > 0.0);
+            assert!(coordinates[1..].iter().all(|hole| ring_area(hole) < 0.0));
+            area += coordinates.iter().map(ring_area).sum::<f64>();
+            assert_eq!(feature.property("ground_m").unwrap().as_f64(), Some(0.0));
+        }
+        let plan: f64 = model
+            .buildings
+            .iter()
+            .map(|b| {
+                let ground = b
+                    .solid
+                    .faces
+                    .iter()
+                    .filter(|f| f.surface == Surface::Ground);
+                ground
+                    .map(|f| b.solid.vector_area(&f.rings).norm())
+                    .sum::<f64>()
+            })
+            .sum();
+        assert!(
+            (area - plan).abs() < 1e-6,
+            "{name}: {area} instead of {plan}"
+        );
+    }
+}
+
+#[test]
+fn the_table_of_lines_reads_back() {
+    let (_, lines, _) = planted_evidence();
+    let files = files_of(&scene(), &planted_models()[0].1);
+    let mut reader = csv::Reader::from_reader(&files["lines.csv"][..]);
+    let rows: Vec<BTreeMap<String, f64>> = reader.deserialize().map(Result::unwrap).collect();
+    assert_eq!(rows.len(), lines.len());
+    for (row, line) in rows.iter().zip(&lines) {
+        let p = Vector3::new(row["x1_m"], row["y1_m"], row["z1_m"]) - ORIGIN;
+        assert!((p - line.segment.p1.coords).norm() < 1e-4);
+        assert!((row["length_m"] - line.segment.length()).abs() < 1e-4);
+        assert_eq!(row["views"] as usize, line.supports.len());
+    }
+}

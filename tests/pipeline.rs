@@ -10,6 +10,7 @@ use nalgebra::{Point2, Point3};
 use ridgeline::geometry::{Plane, Segment3};
 use ridgeline::params::Params;
 use ridgeline::pipeline::{Run, Stage};
+use ridgeline::progress::silent;
 use ridgeline::roof::{Facet, check_invariants};
 use ridgeline::scene_loader::{InputFile, LoadOptions, load_scene};
 use ridgeline::synthetic::{SyntheticTruth, l_scene};
@@ -20,7 +21,7 @@ const NEAR_M: f64 = 0.25;
 fn finished() -> (Run, SyntheticTruth) {
     let (scene, truth) = l_scene(SIZE_PX);
     let mut run = Run::new(scene, Params::default());
-    run.run_all(&mut |_, _| {});
+    run.run_all();
     (run, truth)
 }
 
@@ -82,7 +83,7 @@ fn the_files_have_the_golden_bytes() {
         .collect();
     let scene = load_scene(&input, &LoadOptions::default()).unwrap();
     let mut run = Run::new(scene, Params::default());
-    run.run_all(&mut |_, _| {});
+    run.run_all();
     let found = golden_of(&run.files(&[]));
     if std::env::var_os("RIDGELINE_REWRITE").is_some() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/synthetic.txt");
@@ -108,12 +109,12 @@ fn one_thread_gives_the_bytes_of_many() {
 fn new_parameters_drop_what_they_change() {
     let (scene, _) = l_scene(64);
     let mut run = Run::new(scene, Params::default());
-    run.step(Stage::HalfPlanes, &mut |_| {});
+    run.step(Stage::HalfPlanes, &silent());
     let mut params = run.params().clone();
     params.sweep.min_similarity = 0.9;
     run.set_params(params);
     assert!(run.has(Stage::Lines) && !run.has(Stage::HalfPlanes));
-    run.step(Stage::Segments, &mut |_| {});
+    run.step(Stage::Segments, &silent());
     assert!(run.has(Stage::Segments) && !run.has(Stage::Matches));
     assert!(
         run.files(&[]).is_empty(),
@@ -128,7 +129,7 @@ fn images_without_structure_give_an_empty_model_and_say_so() {
         view.gray.data.fill(0.5);
     }
     let mut run = Run::new(scene, Params::default());
-    run.run_all(&mut |_, _| {});
+    run.run_all();
     assert!(run.results().roof.as_ref().unwrap().value.facets.is_empty());
     assert_eq!(run.summaries()[0].warnings.len(), 6, "one for each view");
     assert!(!run.files(&[]).is_empty());

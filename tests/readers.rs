@@ -1,11 +1,13 @@
 //! The readers against the small files in `tests/fixtures`, and against damaged ones.
 //!
-//! The fixtures are the gable house of `ridgeline::synthetic` at 48 x 48 pixels in three orientation formats;
-//! the photogrammetric list is in map coordinates. All must put the truth at the same pixels.
+//! The fixtures are the gable house of `ridgeline::synthetic` at 48 x 48 pixels in every orientation format
+//! (`tests/fixtures/make.py` writes most of them); the photogrammetric list is in map coordinates. All must put the
+//! truth at the same pixels.
 
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use ridgeline::Error;
+use ridgeline::orientation::{FileKind, orientation_sets};
 use ridgeline::scene_loader::{InputFile, LoadOptions, inspect_files, load_scene};
 use ridgeline::synthetic::gable_scene;
 
@@ -45,6 +47,39 @@ fn projection() -> Vec<InputFile> {
     ]
 }
 
+/// The formats that `tests/fixtures/make.py` writes, with all that they say.
+fn written() -> Vec<Vec<InputFile>> {
+    vec![
+        fixtures!["colmap_binary/cameras.bin", "colmap_binary/images.bin"],
+        fixtures!["krc/cameras.json"],
+        fixtures!["opensfm/reconstruction.json"],
+        fixtures!["nerfstudio/transforms.json"],
+        fixtures![
+            "bundler/bundle.out",
+            "bundler/list.txt",
+            "bundler/principal_points.txt"
+        ],
+        fixtures!["metashape/cameras.xml"],
+        fixtures!["blocks/block.xml"],
+        fixtures!["pix4d/gable_calibrated_camera_parameters.txt"],
+        fixtures!["pmatrix/gable_pmatrix.txt", "pmatrix/gable_offset.xyz"],
+        fixtures!["middlebury/gable_par.txt"],
+        fixtures![
+            "strecha/s1_01.png.camera",
+            "strecha/s1_02.png.camera",
+            "strecha/s1_03.png.camera",
+            "strecha/s2_01.png.camera",
+            "strecha/s2_02.png.camera",
+            "strecha/s2_03.png.camera",
+        ],
+    ]
+}
+
+/// VisualSFM knows no principal point: the same cameras, but for theirs.
+fn nvm() -> Vec<InputFile> {
+    fixtures!["nvm/model.nvm"]
+}
+
 fn with_images(orientation: Vec<InputFile>) -> Vec<InputFile> {
     images().into_iter().chain(orientation).collect()
 }
@@ -53,12 +88,11 @@ fn with_images(orientation: Vec<InputFile>) -> Vec<InputFile> {
 fn all_formats_put_the_truth_at_the_same_pixels() {
     let (planted, truth) = gable_scene(48);
     let map = Vector3::new(432_100.0, 5_412_300.0, 0.0);
-    for (files, world, origin) in [
-        (colmap(), Vector3::zeros(), Vector3::zeros()),
-        (projection(), Vector3::zeros(), Vector3::zeros()),
-        // The origin is the mean projection centre, rounded: 432100.5 and 5412299.7.
-        (photogrammetric(), map, map),
-    ] {
+    let local = (written().into_iter().chain([colmap(), projection()]))
+        .map(|files| (files, Vector3::zeros(), Vector3::zeros()));
+    // The origin is the mean projection centre, rounded: 432100.5 and 5412299.7.
+    for (files, world, origin) in local.chain([(photogrammetric(), map, map)]) {
+        let name = files[0].path.clone();
         let scene = load_scene(&with_images(files), &LoadOptions::default()).unwrap();
         assert_eq!(scene.origin, origin);
         assert_eq!(scene.views.len(), 6);
@@ -70,9 +104,27 @@ fn all_formats_put_the_truth_at_the_same_pixels() {
                 let local = corner + world - scene.origin;
                 let p = found.camera.project(&local).unwrap();
                 let q = expected.camera.project(corner).unwrap();
-                assert!((p - q).norm() < 0.01, "{}: {p} instead of {q}", found.name);
+                let message = format!("{name}, {}: {p} instead of {q}", found.name);
+                assert!((p - q).norm() < 0.01, "{message}");
             }
         }
+    }
+}
+
+#[test]
+fn a_format_without_principal_point_has_it_in_the_middle() {
+    let (planted, _) = gable_scene(48);
+    let Err(error) = load_scene(&with_images(nvm()), &LoadOptions::default()) else {
+        panic!("crops without their principal point cannot see the same place");
+    };
+    assert!(error.to_string().contains("do not overlap"), "{error}");
+    let sets = orientation_sets(&nvm(), &[FileKind::Nvm]).0;
+    let found = sets[0].read(&nvm(), &mut Vec::new()).unwrap();
+    for (found, expected) in found.iter().zip(&planted.views) {
+        assert!(found.from_middle && found.k[(0, 2)] == 0.0);
+        assert!((found.k[(0, 0)] - expected.camera.k[(0, 0)]).abs() < 1e-9);
+        assert!((found.r - expected.camera.r).norm() < 1e-9);
+        assert!((found.center - expected.camera.center).norm() < 1e-6);
     }
 }
 
@@ -105,7 +157,7 @@ fn among_several_orientations_the_documented_one_or_the_wanted_one_is_taken() {
         "{message}"
     );
 
-    let inspection = inspect_files(&files);
+    let inspection = inspect_files(&files, &LoadOptions::default());
     assert_eq!((inspection.views, inspection.images.len()), (6, 6));
     assert_eq!(
         inspection.images[0].orientation.as_deref(),
@@ -123,7 +175,7 @@ fn check_refusal(error: &Error) -> Result<(), TestCaseError> {
 }
 
 fn check_files(files: &[InputFile]) -> Result<(), TestCaseError> {
-    let inspection = inspect_files(files);
+    let inspection = inspect_files(files, &LoadOptions::default());
     match load_scene(files, &LoadOptions::default()) {
         Ok(scene) => {
             prop_assert!(inspection.errors.is_empty(), "{:?}", inspection.errors);
@@ -214,9 +266,11 @@ proptest! {
 
     #[test]
     fn damaged_orientation_gives_a_scene_or_a_readable_refusal(
-        format in 0..3usize, file in any::<usize>(), damages in prop::collection::vec(damage(), 1..4),
+        format in 0..15usize, file in any::<usize>(), damages in prop::collection::vec(damage(), 1..4),
     ) {
-        let mut orientation = [colmap, photogrammetric, projection][format]();
+        let mut all = written();
+        all.extend([colmap(), photogrammetric(), projection(), nvm()]);
+        let mut orientation = all.swap_remove(format);
         let count = orientation.len();
         for damage in &damages {
             apply(damage, &mut orientation[file % count].bytes);
@@ -245,7 +299,7 @@ proptest! {
     #[test]
     fn any_bytes_under_any_known_name_are_survived(
         name in prop::sample::select(vec![
-            "cameras.txt", "images.txt", "camera.txt", "exterior.txt", "a.P", "a.jpg", "a.json", "README",
+            "cameras.bin", "images.bin", "x.nvm", "x.camera", "x.xml", "cameras.txt", "images.txt", "camera.txt", "exterior.txt", "a.P", "a.jpg", "a.json", "README",
         ]),
         bytes in prop_oneof![
             prop::collection::vec(any::<u8>(), 0..2000),

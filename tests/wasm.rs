@@ -16,7 +16,7 @@ use wasm_bindgen_test::wasm_bindgen_test;
 fn session_of(files: &[(String, Vec<u8>)]) -> Session {
     let mut session = Session::new();
     for (path, bytes) in files {
-        session.add_file(path, bytes.clone());
+        session.add_file(path, bytes.clone()).unwrap();
     }
     session
 }
@@ -99,7 +99,7 @@ fn a_truncated_image_is_refused_and_the_session_goes_on() {
         message.contains(&path) || path.ends_with(&message),
         "{message}"
     );
-    session.add_file(&path, whole);
+    session.add_file(&path, whole).unwrap();
     assert!(session.load(JsValue::UNDEFINED).is_ok());
 }
 

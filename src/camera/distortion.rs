@@ -28,6 +28,16 @@ pub struct Distortion {
 }
 
 impl Distortion {
+    /// Radial k1, k2, k3 and tangential p1, p2; `None` where all are zero.
+    pub fn brown(radial: [f64; 3], tangential: [f64; 2]) -> Option<Self> {
+        let any = radial.iter().chain(&tangential).any(|&v| v != 0.0);
+        any.then_some(Self {
+            radial,
+            radial_below: [0.0; 3],
+            tangential,
+        })
+    }
+
     /// Where the lens puts an ideal normalised image point.
     pub fn distort(&self, ideal: &Point2<f64>) -> Point2<f64> {
         let (x, y) = (ideal.x, ideal.y);

@@ -4,7 +4,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use ridgeline::scene_loader::InputFile;
+use ridgeline::scene_loader::{InputFile, unpack};
 
 use super::Failure;
 
@@ -12,8 +12,8 @@ use super::Failure;
 const IMAGE_EXTENSIONS: [&str; 5] = ["jpg", "jpeg", "png", "tif", "tiff"];
 
 /// What may hold an orientation; the readers look at the content.
-const ORIENTATION_EXTENSIONS: [&str; 12] = [
-    "txt", "p", "json", "xml", "out", "nvm", "csv", "ori", "prj", "camera", "bin", "xyz",
+const ORIENTATION_EXTENSIONS: [&str; 10] = [
+    "txt", "p", "json", "xml", "out", "nvm", "camera", "bin", "xyz", "zip",
 ];
 
 /// Largest orientation file that is read, bytes: COLMAP writes some hundred bytes for every tie point.
@@ -22,14 +22,17 @@ const MAX_ORIENTATION_BYTES: u64 = 1 << 30;
 /// All files below `folder` that may belong to a scene, sorted by path; paths are relative to the folder and
 /// have forward slashes.
 pub(super) fn read_scene(folder: &Path) -> Result<Vec<InputFile>, Failure> {
-    if !folder.is_dir() {
+    let mut files = Vec::new();
+    if folder.is_file() && is_archive(folder) {
+        add(folder, "scene.zip", &mut files)?;
+    } else if folder.is_dir() {
+        walk(folder, "", &mut files)?;
+    } else {
         return Err(Failure::Input(format!(
-            "{}: not a folder; give the folder that holds the images and their orientation",
+            "{}: not a folder; give the folder (or .zip archive) that holds the images and their orientation",
             folder.display()
         )));
     }
-    let mut files = Vec::new();
-    walk(folder, "", &mut files)?;
     files.sort_by(|a, b| a.path.cmp(&b.path));
     Ok(files)
 }
@@ -53,9 +56,24 @@ pub(super) fn write_all(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<()
     Ok(())
 }
 
+/// Adds a file, or those of an archive.
+fn add(path: &Path, name: &str, files: &mut Vec<InputFile>) -> Result<(), Failure> {
+    let bytes = fs::read(path).map_err(|e| unreadable(path, e))?;
+    let unpacked = unpack(InputFile::new(name, bytes));
+    files.extend(unpacked.map_err(|e| Failure::Input(e.to_string()))?);
+    Ok(())
+}
+
+fn unreadable(path: &Path, e: io::Error) -> Failure {
+    Failure::Input(format!("{}: cannot read: {e}", path.display()))
+}
+
+fn is_archive(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("zip"))
+}
+
 fn walk(folder: &Path, prefix: &str, files: &mut Vec<InputFile>) -> Result<(), Failure> {
-    let unreadable =
-        |path: &Path, e: io::Error| Failure::Input(format!("{}: cannot read: {e}", path.display()));
     for entry in fs::read_dir(folder).map_err(|e| unreadable(folder, e))? {
         let entry = entry.map_err(|e| unreadable(folder, e))?;
         let (path, name) = (entry.path(), entry.file_name());
@@ -68,8 +86,7 @@ fn walk(folder: &Path, prefix: &str, files: &mut Vec<InputFile>) -> Result<(), F
         if kind.is_dir() {
             walk(&path, &format!("{relative}/"), files)?;
         } else if is_wanted(&path) {
-            let bytes = fs::read(&path).map_err(|e| unreadable(&path, e))?;
-            files.push(InputFile::new(&relative, bytes));
+            add(&path, &relative, files)?;
         }
     }
     Ok(())

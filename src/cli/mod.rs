@@ -32,7 +32,7 @@ enum Command {
 /// The arguments of `reconstruct`.
 #[derive(Args)]
 struct ReconstructArgs {
-    /// Folder with images and orientation files, anywhere in it.
+    /// Folder or .zip archive with images and orientation files, anywhere in it.
     scene: PathBuf,
     /// Folder for the results; made if missing.
     #[arg(long, value_name = "DIR")]

@@ -1,11 +1,13 @@
 //! `ridgeline reconstruct`: folder in, folder out.
 
 use std::fs;
+use std::sync::Arc;
 use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::params::Params;
 use ridgeline::pipeline::{Run, Stage};
+use ridgeline::progress::Listener;
 use ridgeline::scene_loader::{LoadOptions, load_scene};
 
 use super::{Failure, ReconstructArgs, files, table};
@@ -81,9 +83,11 @@ fn run_stages(run: &mut Run) -> Vec<(Stage, f64)> {
     for (i, stage) in Stage::ALL.into_iter().enumerate() {
         bar.set_message(stage.name());
         let start = Instant::now();
-        run.step(stage, &mut |fraction| {
-            bar.set_position(((i as f64 + fraction) * BAR_STEPS) as u64);
+        let shown = bar.clone();
+        let listener: Listener = Arc::new(move |fraction| {
+            shown.set_position(((i as f64 + fraction) * BAR_STEPS) as u64);
         });
+        run.step(stage, &listener);
         seconds.push((stage, start.elapsed().as_secs_f64()));
     }
     bar.finish_and_clear();

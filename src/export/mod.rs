@@ -5,6 +5,11 @@
 //! | `model.city.json` | CityJSON 2.0, world frame of the input; refers to the atlas by its file name |
 //! | `model_atlas.jpg` | the texture atlas of `model.city.json` |
 //! | `model.glb` | glTF 2.0, Y up, near-origin coordinates, the atlas inside |
+//! | `model.obj`, `model.mtl` | triangles and the same atlas, world frame |
+//! | `model.ply` | triangles, and the 3D lines as edges |
+//! | `model.dxf` | 3DFACE and LINE for drawing programs |
+//! | `footprints.geojson` | outlines on the ground, with heights |
+//! | `lines.csv` | the 3D lines as a table |
 //! | `lines.json`, `segments.json`, `halfplanes.json` | what the model was made from |
 //!
 //! Invariant: the same input gives the same bytes; nothing writes a date, a path or a random id.
@@ -12,11 +17,15 @@
 mod cityjson;
 mod glb;
 mod json;
+mod mesh;
+mod plans;
 mod triangulate;
 
 pub use cityjson::city_json;
 pub use glb::glb;
 pub use json::{half_planes_json, lines_json, segments_json};
+pub use mesh::{MATERIAL_FILE, mtl, obj, ply};
+pub use plans::{dxf, footprints, lines_csv};
 pub use triangulate::triangulate;
 
 use image::codecs::jpeg::JpegEncoder;
@@ -64,6 +73,12 @@ pub fn export_all(results: &Results, params: &TextureParams) -> Vec<(String, Vec
         ("model.city.json", city_json(scene, model, textured)),
         ("model.glb", glb(scene, model, textured, &atlas)),
         (ATLAS_FILE, atlas),
+        ("model.obj", obj(scene, model, textured)),
+        (MATERIAL_FILE, mtl()),
+        ("model.ply", ply(scene, model, lines)),
+        ("model.dxf", dxf(scene, model, lines)),
+        ("footprints.geojson", footprints(scene, model)),
+        ("lines.csv", lines_csv(scene, lines)),
         ("lines.json", lines_json(scene, lines)),
         ("segments.json", segments_json(scene, segments)),
         ("halfplanes.json", half_planes_json(scene, half_planes)),

@@ -49,7 +49,7 @@ impl Evidence {
     ) -> Self {
         let raster = arrangement.raster(grid);
         let ground = ground_evidence(ground, &raster, arrangement.cells, grid, params);
-        let per_group = crate::parallel::map(hypotheses, |_, h| {
+        let per_group = crate::parallel::map_part(hypotheses, 0.7..0.75, |_, h| {
             let mut cells = sum_over_cells(h, &raster, grid);
             add_half_planes(&mut cells, input, &h.group, &raster, grid);
             cells

@@ -200,7 +200,7 @@ fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[Region]) -> Option<Pl
 fn ground_maps(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Vec<ConsistencyMap> {
     const OFFSETS: [f64; 3] = [-0.3, 0.0, 0.3];
     let plane = ground.plane();
-    crate::parallel::map(&OFFSETS, |_, dz| {
+    crate::parallel::map_part(&OFFSETS, 0.6..0.7, |_, dz| {
         consistency_map(
             scene,
             &Plane {

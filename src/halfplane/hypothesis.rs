@@ -36,7 +36,7 @@ pub fn hypotheses(
     step: f64,
     params: &RoofParams,
 ) -> Vec<Hypothesis> {
-    let built = crate::parallel::map(&groups, |_, group| {
+    let built = crate::parallel::map_part(&groups, 0.1..0.45, |_, group| {
         let region = Region::new(input, group, params);
         let (min, max) = region.bounds();
         let map = consistency_map(reduced, &group.plane, &PlanGrid::covering(min, max, step));

@@ -29,7 +29,7 @@ pub fn sweep_half_planes(
     let sides: Vec<(usize, Side)> = (0..lines.len())
         .flat_map(|i| [(i, Side::Left), (i, Side::Right)])
         .collect();
-    let swept = crate::parallel::map(&sides, |_, &(i, side)| {
+    let swept = crate::parallel::map_part(&sides, 0.05..1.0, |_, &(i, side)| {
         let mut counts = SweepTrace::default();
         let half_plane = sweep_side(
             scene,

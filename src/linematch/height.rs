@@ -47,7 +47,9 @@ pub struct HeightRange {
 pub fn height_range(scene: &Scene, sights: &Sights) -> Option<HeightRange> {
     let blurred: Vec<Gray> = parallel::map(&scene.views, |_, v| gaussian_blur(&v.gray, 1.0));
     let points = interest_points(scene, sights);
-    let found = parallel::map(&points, |_, (view, x)| sweep(scene, &blurred, *view, x));
+    let found = parallel::map_part(&points, 0.0..0.2, |_, (view, x)| {
+        sweep(scene, &blurred, *view, x)
+    });
     let mut heights: Vec<f64> = found.into_iter().flatten().collect();
     heights.sort_by(f64::total_cmp);
     let company = |z: f64| {

@@ -64,7 +64,7 @@ pub fn match_pairs(
         .view_ids()
         .flat_map(|view| sights.of_view(view))
         .collect();
-    let found = parallel::map(&tasks, |_, (name, sight)| {
+    let found = parallel::map_part(&tasks, 0.2..0.5, |_, (name, sight)| {
         search_one(scene, sights, partners, z_range, params, *name, sight)
     });
     let mut searches: Vec<Vec<PairSearch>> = sights

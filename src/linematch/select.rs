@@ -14,6 +14,7 @@ use super::pairs::{Pair, Pairs};
 use super::sight::SegmentRef;
 use super::triples::Bundle;
 use crate::parallel;
+use crate::progress::reached;
 
 /// What became of a bundle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,6 +84,7 @@ pub fn winner_takes_all(context: &Context, pairs: &Pairs, bundles: &[Bundle]) ->
             Err(reason) => Fate::Rejected(reason),
         };
         selection.fates[entry.bundle] = fate;
+        reached(0.6 + 0.4 * (1.0 - queue.len() as f64 / bundles.len() as f64));
     }
     selection
 }

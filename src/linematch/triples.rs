@@ -61,7 +61,7 @@ pub fn verify_pairs(
     let strong: Vec<usize> = (0..pairs.pairs.len())
         .filter(|&i| pairs.pairs[i].score >= params.pair_score)
         .collect();
-    parallel::map(&strong, |_, &index| {
+    parallel::map_part(&strong, 0.5..0.6, |_, &index| {
         let pair = &pairs.pairs[index];
         let others = scene
             .view_ids()

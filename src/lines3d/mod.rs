@@ -79,7 +79,8 @@ pub fn reconstruct_lines(
     matches: &[LineMatch],
     params: &Lines3dParams,
 ) -> (Vec<Line3d>, LineTrace) {
-    let results = crate::parallel::map(matches, |_, m| reconstruct(scene, m, params));
+    let results =
+        crate::parallel::map_part(matches, 0.0..1.0, |_, m| reconstruct(scene, m, params));
     let mut lines: Vec<Line3d> = Vec::new();
     let mut trace = LineTrace::default();
     for result in results {

@@ -4,6 +4,40 @@ use nalgebra::{Matrix3, Rotation3};
 
 use crate::math;
 
+/// Units of angles, in the order in which a tie is decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AngleUnit {
+    /// 360 to a turn.
+    Degrees,
+    /// 400 to a turn.
+    Gon,
+    /// Two pi to a turn.
+    Radians,
+}
+
+impl AngleUnit {
+    /// All units.
+    pub const ALL: [Self; 3] = [Self::Degrees, Self::Gon, Self::Radians];
+
+    /// One of it in radians.
+    pub fn radians(self) -> f64 {
+        match self {
+            Self::Degrees => std::f64::consts::PI / 180.0,
+            Self::Gon => std::f64::consts::PI / 200.0,
+            Self::Radians => 1.0,
+        }
+    }
+
+    /// What people call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Degrees => "degrees",
+            Self::Gon => "gon",
+            Self::Radians => "radians",
+        }
+    }
+}
+
 /// `cam_from_world` (x right, y down, z forward) of the photogrammetric angles, radians.
 ///
 /// `R = Rx(omega) Ry(phi) Rz(kappa)` turns image axes (x right, y up, z towards the viewer) into

@@ -165,6 +165,9 @@ fn read_image(line: &Line, lenses: &BTreeMap<u32, Lens>, cameras: &str) -> Resul
         center: Point3::from(-(r.inverse() * Vector3::new(t[0], t[1], t[2]))),
         r: r.into_inner(),
         size: Some(lens.size),
+        from_middle: false,
+        angles: None,
+        crop: None,
     })
 }
 

@@ -26,7 +26,39 @@ pub enum FileKind {
     PhotogrammetricExterior,
     /// A 3 x 4 matrix.
     Projection,
-    /// JSON, which is no orientation format here.
+    /// COLMAP's binary list of cameras.
+    ColmapBinaryCameras,
+    /// COLMAP's binary list of images.
+    ColmapBinaryImages,
+    /// Metashape's cameras.
+    Metashape,
+    /// ContextCapture's BlocksExchange.
+    Blocks,
+    /// Pix4D's calibrated camera parameters.
+    Pix4d,
+    /// Pix4D's projection matrices.
+    Pmatrix,
+    /// Pix4D's offset of the world.
+    Offset,
+    /// OpenSfM's reconstruction.
+    OpenSfm,
+    /// JSON list of K, R, C.
+    Krc,
+    /// nerfstudio's transforms.
+    Nerfstudio,
+    /// Bundler's cameras.
+    Bundler,
+    /// Bundler's list of images.
+    BundlerList,
+    /// Principal points of Bundler's images.
+    PrincipalPoints,
+    /// VisualSFM's model.
+    Nvm,
+    /// Strecha's camera.
+    Strecha,
+    /// Middlebury's parameters.
+    Middlebury,
+    /// JSON that is no orientation known here.
     Json,
     /// Nothing that is used.
     Ignored,
@@ -43,6 +75,22 @@ impl FileKind {
             Self::PhotogrammetricCamera => "interior orientation (camera.txt)",
             Self::PhotogrammetricExterior => "exterior orientation (exterior.txt)",
             Self::Projection => "projection matrix (.P)",
+            Self::ColmapBinaryCameras => "COLMAP camera list (cameras.bin)",
+            Self::ColmapBinaryImages => "COLMAP image list (images.bin)",
+            Self::Metashape => "Metashape cameras (XML)",
+            Self::Blocks => "BlocksExchange (XML)",
+            Self::Pix4d => "Pix4D camera parameters",
+            Self::Pmatrix => "Pix4D projection matrices",
+            Self::Offset => "Pix4D offset of the world",
+            Self::OpenSfm => "OpenSfM reconstruction",
+            Self::Krc => "JSON list of K, R, C",
+            Self::Nerfstudio => "nerfstudio transforms",
+            Self::Bundler => "Bundler cameras (bundle.out)",
+            Self::BundlerList => "Bundler list of images (list.txt)",
+            Self::PrincipalPoints => "principal points of the images",
+            Self::Nvm => "VisualSFM model (.nvm)",
+            Self::Strecha => "Strecha camera",
+            Self::Middlebury => "Middlebury parameters",
             Self::Json => "JSON that is no orientation known here",
             Self::Ignored => "not used",
         }
@@ -63,6 +111,13 @@ pub fn detect(file: &InputFile) -> FileKind {
     let head = &file.bytes[..file.bytes.len().min(HEAD_BYTES)];
     if !head.contains(&0) {
         let text = String::from_utf8_lossy(head);
+        if text
+            .trim_start_matches('\u{feff}')
+            .trim_start()
+            .starts_with(['{', '['])
+        {
+            return by_keys(&file.text());
+        }
         if let Some(kind) = by_content(&text) {
             return kind;
         }
@@ -72,8 +127,17 @@ pub fn detect(file: &InputFile) -> FileKind {
 
 fn by_content(text: &str) -> Option<FileKind> {
     let trimmed = text.trim_start_matches('\u{feff}').trim_start();
-    if trimmed.starts_with(['{', '[']) {
-        return Some(FileKind::Json);
+    if trimmed.starts_with("# Bundle file") {
+        return Some(FileKind::Bundler);
+    }
+    if trimmed.starts_with("NVM_V3") {
+        return Some(FileKind::Nvm);
+    }
+    if trimmed.starts_with('<') {
+        return by_tags(trimmed);
+    }
+    if trimmed.starts_with("fileName imageWidth imageHeight") {
+        return Some(FileKind::Pix4d);
     }
     if text
         .lines()
@@ -83,6 +147,20 @@ fn by_content(text: &str) -> Option<FileKind> {
     }
     let lines: Vec<Line> = data_lines("", text).take(HEAD_LINES).collect();
     let fields: Vec<Vec<&str>> = lines.iter().map(Line::fields).collect();
+    if fields.len() == HEAD_LINES
+        && fields
+            .iter()
+            .all(|f| f.len() == 3 && f.iter().all(|f| is_number(f)))
+    {
+        return Some(FileKind::Strecha);
+    }
+    if fields.len() > 1 && fields[0].len() == 1 && is_number(fields[0][0]) && fields[1].len() == 22
+    {
+        return Some(FileKind::Middlebury);
+    }
+    if !fields.is_empty() && fields.iter().all(|f| is_image_name(f)) {
+        return Some(FileKind::BundlerList);
+    }
     if lines.len() == 3
         && fields
             .iter()
@@ -106,11 +184,49 @@ fn by_fields(f: &[&str]) -> Option<FileKind> {
         && is_colour(&f[4..7])
     {
         Some(FileKind::ColmapPoints)
+    } else if f.len() == 13 && !is_number(f[0]) && numbers(1..13) {
+        Some(FileKind::Pmatrix)
     } else if f.len() == 7 && !is_number(f[0]) && numbers(1..7) {
         Some(FileKind::PhotogrammetricExterior)
     } else {
         None
     }
+}
+
+/// The kind of an XML file.
+fn by_tags(head: &str) -> Option<FileKind> {
+    if head.contains("<BlocksExchange") {
+        Some(FileKind::Blocks)
+    } else if head.contains("<chunk") && head.contains("<sensor") {
+        Some(FileKind::Metashape)
+    } else {
+        None
+    }
+}
+
+/// The kind of a JSON file, by its keys wherever they stand.
+fn by_keys(text: &str) -> FileKind {
+    let has = |keys: &[&str]| keys.iter().all(|key| text.contains(&format!("\"{key}\"")));
+    if has(&["cameras", "shots", "projection_type"]) {
+        FileKind::OpenSfm
+    } else if has(&["frames", "transform_matrix"]) {
+        FileKind::Nerfstudio
+    } else if has(&["views", "K", "R", "C"]) {
+        FileKind::Krc
+    } else {
+        FileKind::Json
+    }
+}
+
+/// A line of Bundler's list: an image, perhaps with a focal length.
+fn is_image_name(fields: &[&str]) -> bool {
+    let extension = fields[0]
+        .rsplit_once('.')
+        .map_or("", |(_, e)| e)
+        .to_ascii_lowercase();
+    fields.len() <= 3
+        && ["jpg", "jpeg", "png", "tif", "tiff"].contains(&&*extension)
+        && fields[1..].iter().all(|f| is_number(f))
 }
 
 fn is_number(field: &str) -> bool {
@@ -137,8 +253,14 @@ fn by_name(file: &InputFile) -> FileKind {
         "images.txt" => FileKind::ColmapImages,
         "camera.txt" => FileKind::PhotogrammetricCamera,
         "exterior.txt" => FileKind::PhotogrammetricExterior,
+        "cameras.bin" => FileKind::ColmapBinaryCameras,
+        "images.bin" => FileKind::ColmapBinaryImages,
+        "principal_points.txt" => FileKind::PrincipalPoints,
+        _ if name.ends_with("_offset.xyz") || name == "offset.xyz" => FileKind::Offset,
         _ => match name.rsplit_once('.').map_or("", |(_, e)| e) {
             "p" => FileKind::Projection,
+            "nvm" => FileKind::Nvm,
+            "camera" => FileKind::Strecha,
             "jpg" | "jpeg" | "png" | "tif" | "tiff" => FileKind::Image,
             "json" => FileKind::Json,
             _ => FileKind::Ignored,

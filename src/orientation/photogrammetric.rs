@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::text::{Line, data_lines, quoted};
-use super::{Orientation, rotation_from_omega_phi_kappa};
+use super::{AngleUnit, Crop, Orientation, rotation_from_omega_phi_kappa};
 use crate::{Error, Result};
 
 /// Reads the orientations from (path, text) of both files.
@@ -49,7 +49,7 @@ pub(super) fn read(
 
 /// Part of the frame that a view shows, pixels.
 #[derive(Clone, Copy)]
-struct Crop {
+struct Part {
     column: f64,
     row: f64,
     size: (u32, u32),
@@ -61,8 +61,8 @@ struct Frame {
     focal_px: [f64; 2],
     /// Principal point in the frame, pixels.
     principal_px: [f64; 2],
-    whole: Crop,
-    crops: BTreeMap<String, Crop>,
+    whole: Part,
+    crops: BTreeMap<String, Part>,
 }
 
 /// The keys of a camera file that stand once, with the number of values that they may have.
@@ -116,7 +116,7 @@ fn read_frame(file: &str, text: &str, warnings: &mut Vec<String>) -> Result<Fram
             width / 2.0 + point[0] / pixel[0],
             height / 2.0 - point[1] / pixel[1],
         ],
-        whole: Crop {
+        whole: Part {
             column: 0.0,
             row: 0.0,
             size: whole,
@@ -151,14 +151,14 @@ fn whole_px(line: &Line, value: f64) -> Result<u32> {
     }
 }
 
-fn read_crop(line: &Line, fields: &[&str]) -> Result<(String, Crop)> {
+fn read_crop(line: &Line, fields: &[&str]) -> Result<(String, Part)> {
     if fields.len() != 6 {
         return Err(line.error(
             format!("{} fields", fields.len()),
             "crop NAME column row width height",
         ));
     }
-    let crop = Crop {
+    let crop = Part {
         column: line.number(fields[2], "the column")?,
         row: line.number(fields[3], "the row")?,
         size: (
@@ -196,7 +196,7 @@ fn read_pose(line: &Line) -> Result<Pose> {
 }
 
 impl Pose {
-    fn orientation(&self, frame: &Frame, unit: Unit) -> Orientation {
+    fn orientation(&self, frame: &Frame, unit: AngleUnit) -> Orientation {
         let crop = frame.crops.get(&self.image).unwrap_or(&frame.whole);
         let [omega, phi, kappa] = self.angles.map(|a| a * unit.radians());
         let [fx, fy] = frame.focal_px;
@@ -219,54 +219,35 @@ impl Pose {
             r: rotation_from_omega_phi_kappa(omega, phi, kappa).into_inner(),
             center: self.center,
             size: Some(crop.size),
-        }
-    }
-}
-
-/// Units of angles, in the order in which a tie is decided.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Unit {
-    Degrees,
-    Gon,
-    Radians,
-}
-
-impl Unit {
-    fn radians(self) -> f64 {
-        match self {
-            Self::Degrees => std::f64::consts::PI / 180.0,
-            Self::Gon => std::f64::consts::PI / 200.0,
-            Self::Radians => 1.0,
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Degrees => "degrees",
-            Self::Gon => "gon",
-            Self::Radians => "radians",
+            from_middle: false,
+            angles: Some(self.angles),
+            crop: Some(Crop {
+                column: crop.column,
+                row: crop.row,
+                frame: [frame.whole.size.0, frame.whole.size.1].map(f64::from),
+            }),
         }
     }
 }
 
 /// The unit that a comment names, as a word of its own.
-fn stated_unit(text: &str) -> Option<Unit> {
+fn stated_unit(text: &str) -> Option<AngleUnit> {
     text.lines()
         .filter_map(|line| line.trim().strip_prefix('#'))
         .flat_map(|comment| comment.split(|c: char| !c.is_alphabetic()))
         .find_map(|word| match &*word.to_ascii_lowercase() {
-            "degree" | "degrees" | "deg" => Some(Unit::Degrees),
-            "gon" | "gons" | "grad" | "grads" | "gradian" | "gradians" => Some(Unit::Gon),
-            "radian" | "radians" | "rad" => Some(Unit::Radians),
+            "degree" | "degrees" | "deg" => Some(AngleUnit::Degrees),
+            "gon" | "gons" | "grad" | "grads" | "gradian" | "gradians" => Some(AngleUnit::Gon),
+            "radian" | "radians" | "rad" => Some(AngleUnit::Radians),
             _ => None,
         })
 }
 
 /// The unit under which the rays through the image centres pass nearest to a common point in front of the
 /// cameras, relative to its distance.
-fn guess_unit(frame: &Frame, poses: &[Pose]) -> Unit {
-    let mut best = (f64::INFINITY, Unit::Degrees);
-    for unit in [Unit::Degrees, Unit::Gon, Unit::Radians] {
+fn guess_unit(frame: &Frame, poses: &[Pose]) -> AngleUnit {
+    let mut best = (f64::INFINITY, AngleUnit::Degrees);
+    for unit in AngleUnit::ALL {
         let orientations: Vec<_> = poses.iter().map(|p| p.orientation(frame, unit)).collect();
         let spread = spread_of_rays(&orientations);
         if spread < best.0 {
@@ -344,9 +325,9 @@ mod tests {
         let text = |i: usize| String::from_utf8(files[i].1.clone()).unwrap();
         let camera = text(0).replace("degrees", "");
         for (unit, factor) in [
-            (Unit::Degrees, 1.0),
-            (Unit::Gon, 200.0 / 180.0),
-            (Unit::Radians, 1f64.to_radians()),
+            (AngleUnit::Degrees, 1.0),
+            (AngleUnit::Gon, 200.0 / 180.0),
+            (AngleUnit::Radians, 1f64.to_radians()),
         ] {
             let list: String = data_lines("", &text(1))
                 .map(|line| {

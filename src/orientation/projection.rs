@@ -45,6 +45,9 @@ pub(super) fn read(path: &str, text: &str) -> Result<Orientation> {
         r,
         center,
         size: None,
+        from_middle: false,
+        angles: None,
+        crop: None,
     })
 }
 
@@ -55,7 +58,7 @@ fn stem(path: &str) -> &str {
 
 /// `[M | m] ~ K [R | -R C]` with K upper triangular of positive diagonal and `K[(2, 2)] = 1`: Gram-Schmidt
 /// on the rows of M from the last to the first. `None` for a singular M.
-fn decompose(
+pub(super) fn decompose(
     m: &Matrix3<f64>,
     column: &Vector3<f64>,
 ) -> Option<(Matrix3<f64>, Matrix3<f64>, Point3<f64>)> {

@@ -76,6 +76,17 @@ pub(super) fn data_lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item
     lines(file, text).filter(|line| !line.is_empty())
 }
 
+/// A longer text from elsewhere in one line, shortened.
+pub(super) fn quoted_long(text: &str) -> String {
+    const MOST: usize = 200;
+    let short: String = text.chars().take(MOST).collect();
+    let dots = if short.len() < text.len() { "..." } else { "" };
+    // A semicolon would end the problem and begin the advice.
+    format!("{short}{dots}")
+        .replace(['\n', '\r'], " ")
+        .replace("; ", ", ")
+}
+
 /// A field in quotation marks, shortened: files may hold anything.
 pub(super) fn quoted(field: &str) -> String {
     let short: String = field.chars().take(40).collect();

@@ -22,6 +22,7 @@ use crate::lines2d::{ImageSegment, SegmentTrace, detect_segments};
 use crate::lines3d::{Line3d, LineTrace, reconstruct_lines};
 use crate::parallel;
 use crate::params::Params;
+use crate::progress::{self, Listener};
 use crate::roof::{RoofModel, RoofTrace, reconstruct_roofs};
 use crate::scene::Scene;
 use crate::texture::{TextureTrace, TexturedModel, texture_model};
@@ -158,7 +159,7 @@ impl Run {
 
     /// Runs one stage, after those before it that have not run yet, and drops the results of those behind
     /// it. `progress` hears fractions of this stage's work from 0 to 1.
-    pub fn step(&mut self, stage: Stage, progress: &mut dyn FnMut(f64)) -> StageSummary {
+    pub fn step(&mut self, stage: Stage, progress: &Listener) -> StageSummary {
         for earlier in Stage::ALL.into_iter().filter(|&s| s < stage) {
             if !self.has(earlier) {
                 self.run_stage(earlier);
@@ -166,15 +167,15 @@ impl Run {
         }
         self.drop_from(stage);
         progress(0.0);
-        self.run_stage(stage);
+        progress::heard(Listener::clone(progress), || self.run_stage(stage));
         progress(1.0);
         self.summaries.last().expect("just pushed").clone()
     }
 
-    /// Runs all stages; `progress` hears the stage and its fraction.
-    pub fn run_all(&mut self, progress: &mut dyn FnMut(Stage, f64)) {
+    /// Runs all stages, with nobody listening.
+    pub fn run_all(&mut self) {
         for stage in Stage::ALL {
-            self.step(stage, &mut |fraction| progress(stage, fraction));
+            self.step(stage, &progress::silent());
         }
     }
 
@@ -210,7 +211,7 @@ impl Run {
         let (scene, params, r) = (&self.scene, &self.params, &mut self.results);
         match stage {
             Stage::Segments => {
-                let per_view = parallel::map(&scene.views, |_, view| {
+                let per_view = parallel::map_part(&scene.views, 0.0..1.0, |_, view| {
                     detect_segments(&view.gray, &params.segments)
                 });
                 let (value, trace) = per_view.into_iter().unzip();

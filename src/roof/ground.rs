@@ -211,7 +211,7 @@ fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3
     let heights: Vec<f64> = (0..levels)
         .map(|i| low + (high - low) * i as f64 / (levels - 1) as f64)
         .collect();
-    let maps = crate::parallel::map(&heights, |_, &z| {
+    let maps = crate::parallel::map_part(&heights, 0.0..0.1, |_, &z| {
         let plane = Plane {
             normal: Vector3::z(),
             d: -z,

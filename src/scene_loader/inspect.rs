@@ -15,12 +15,16 @@ pub struct Inspection {
     pub images: Vec<ImageReport>,
     /// The orientation that a run would take: format and files.
     pub orientation: Option<String>,
+    /// All orientations among the files, the preferred one first.
+    pub orientations: Vec<OrientationReport>,
     /// Number of views that a run would use.
     pub views: usize,
     /// What a run would warn of.
     pub warnings: Vec<String>,
     /// Why a run would refuse these files; empty when it would not.
     pub errors: Vec<String>,
+    /// Do only the places of the cameras speak against them? Then loading looks at the images, and says more.
+    pub is_implausible: bool,
 }
 
 /// What a file is.
@@ -32,6 +36,15 @@ pub struct FileReport {
     pub kind: FileKind,
     /// The kind in words.
     pub description: &'static str,
+}
+
+/// One of the orientations that a scene may be given.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OrientationReport {
+    /// Its format and files, in words.
+    pub label: String,
+    /// What [`LoadOptions::orientation`] chooses it by.
+    pub path: String,
 }
 
 /// An image and its orientation.
@@ -47,9 +60,9 @@ pub struct ImageReport {
     pub orientation: Option<String>,
 }
 
-/// Recognises files and plans a scene with default options.
-pub fn inspect_files(files: &[InputFile]) -> Inspection {
-    let plan = Plan::new(files, &LoadOptions::default());
+/// Recognises files and plans a scene.
+pub fn inspect_files(files: &[InputFile], options: &LoadOptions) -> Inspection {
+    let plan = Plan::new(files, options);
     let described = files
         .iter()
         .zip(&plan.kinds)
@@ -68,8 +81,10 @@ pub fn inspect_files(files: &[InputFile]) -> Inspection {
         files: described.collect(),
         images: images.collect(),
         orientation: plan.orientation,
+        orientations: plan.candidates,
         views: plan.views.len(),
         warnings: plan.warnings,
         errors: plan.errors.iter().map(ToString::to_string).collect(),
+        is_implausible: plan.is_implausible,
     }
 }

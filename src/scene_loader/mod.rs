@@ -6,41 +6,67 @@
 //!       -> checks                do the cameras look down, at the same place, from above the ground
 //!       -> region                part of each image that shows the region of interest
 //!       -> decode, undistort     views
+//!       -> doctor, verdict       do the images agree with their cameras
 //! ```
 //!
 //! Architecture invariant: no file system here; paths are names. [`load_scene`] and [`inspect_files`] walk the
 //! same plan, so that the page's table never disagrees with a run.
 
+mod archive;
 mod checks;
 mod input;
 mod inspect;
 mod names;
 mod plan;
 mod region;
+mod verdict;
 
+pub use archive::unpack;
 pub use input::{InputFile, LoadOptions};
-pub use inspect::{FileReport, ImageReport, Inspection, inspect_files};
+pub use inspect::{FileReport, ImageReport, Inspection, OrientationReport, inspect_files};
+
+use nalgebra::Vector3;
 
 use crate::camera::undistort;
+use crate::doctor::{Patient, examine};
 use crate::raster::load_image;
 use crate::scene::{Scene, View};
 use crate::{Error, Result};
 
 use plan::{Plan, PlannedView};
+use verdict::verdict;
 
 /// Reads a scene. The first refusal is returned; [`inspect_files`] lists them all.
 pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
     let plan = Plan::new(files, options);
-    if let Some(error) = plan.errors.into_iter().next() {
+    let refusal = plan.errors.into_iter().next();
+    if let Some(error) = refusal.clone().filter(|_| !plan.is_implausible) {
         return Err(error);
     }
     let views = crate::parallel::map(&plan.views, |_, view| decode(&files[view.file], view));
+    let views: Vec<View> = views.into_iter().collect::<Result<_>>()?;
+    let patients: Vec<Patient> = (plan.views.iter().zip(&views))
+        .map(|(planned, view)| patient(planned, view, plan.origin))
+        .collect();
+    let warning = verdict(examine(&patients), &patients, refusal)?;
     Ok(Scene {
-        views: views.into_iter().collect::<Result<_>>()?,
+        views,
         origin: plan.origin,
         ground_z: options.ground_z.map(|z| z - plan.origin.z),
-        warnings: plan.warnings,
+        warnings: plan.warnings.into_iter().chain(warning).collect(),
     })
+}
+
+fn patient<'a>(planned: &PlannedView, view: &'a View, origin: Vector3<f64>) -> Patient<'a> {
+    Patient {
+        name: &view.name,
+        camera: view.camera.clone(),
+        gray: &view.gray,
+        origin,
+        angles: planned.angles,
+        // A part of the image has no place in the frame that the file speaks of.
+        crop: planned.crop.filter(|_| planned.part.is_none()),
+    }
 }
 
 /// Decodes one view, removes its distortion and cuts out its part.

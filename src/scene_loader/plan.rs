@@ -4,10 +4,11 @@ use nalgebra::Vector3;
 
 use super::checks;
 use super::input::{InputFile, LoadOptions, stem};
+use super::inspect::OrientationReport;
 use super::names::{best_match, listed, match_rank};
 use super::region;
 use crate::camera::{Camera, Distortion};
-use crate::orientation::{FileKind, Orientation, OrientationSet, detect, orientation_sets};
+use crate::orientation::{Crop, FileKind, Orientation, OrientationSet, detect, orientation_sets};
 use crate::raster::{ImageHeader, image_header};
 use crate::{Error, Result};
 
@@ -19,6 +20,8 @@ pub(super) struct Plan {
     pub images: Vec<PlannedImage>,
     /// The orientation that was taken.
     pub orientation: Option<String>,
+    /// All of them, the preferred one first.
+    pub candidates: Vec<OrientationReport>,
     /// The views: images with an orientation, in the order of `images`.
     pub views: Vec<PlannedView>,
     /// Added to local coordinates it gives the world of the input.
@@ -26,6 +29,8 @@ pub(super) struct Plan {
     pub warnings: Vec<String>,
     /// Refusals, the one to report first in front.
     pub errors: Vec<Error>,
+    /// Does nothing but the cameras' places speak against the scene? Then the images may tell why.
+    pub is_implausible: bool,
 }
 
 /// An image and the orientation found for it.
@@ -41,6 +46,9 @@ pub(super) struct PlannedView {
     /// Camera of the whole image, local frame.
     pub whole: Camera,
     pub distortion: Option<Distortion>,
+    /// The rotation angles as the file states them, and the place of the image in its frame.
+    pub angles: Option<[f64; 3]>,
+    pub crop: Option<Crop>,
     /// Column, row, width, height of the part that is used; the whole image when absent.
     pub part: Option<[u32; 4]>,
 }
@@ -65,10 +73,12 @@ impl Plan {
             kinds: files.iter().map(detect).collect(),
             images: Vec::new(),
             orientation: None,
+            candidates: Vec::new(),
             views: Vec::new(),
             origin: Vector3::zeros(),
             warnings: Vec::new(),
             errors: Vec::new(),
+            is_implausible: false,
         };
         plan.find_images(files, options);
         if let Some(orientations) = plan.choose_orientation(files, options) {
@@ -163,12 +173,23 @@ impl Plan {
     ) -> Option<Vec<Orientation>> {
         let (sets, incomplete) = orientation_sets(files, &self.kinds);
         self.warn_of_json(files);
+        self.candidates = sets
+            .iter()
+            .map(|set| OrientationReport {
+                label: format!("{}: {}", set.format.name(), set.label(files)),
+                path: files[set.files[0]].path.clone(),
+            })
+            .collect();
+        let named = |wanted: &str, fits: &dyn Fn(&str, &str) -> bool| {
+            let wanted = wanted.trim_end_matches('/');
+            sets.iter()
+                .find(|set| set.files.iter().any(|&i| fits(&files[i].path, wanted)))
+        };
         let chosen = match &options.orientation {
             None => sets.first(),
-            Some(wanted) => sets.iter().find(|set| {
-                let wanted = wanted.trim_end_matches('/');
-                set.files.iter().any(|&i| files[i].path.contains(wanted))
-            }),
+            // A whole path names one set, even where it is a part of another's.
+            Some(wanted) => named(wanted, &|path, wanted| path == wanted)
+                .or_else(|| named(wanted, &|path, wanted| path.contains(wanted))),
         };
         let Some(set) = chosen else {
             self.errors
@@ -196,7 +217,7 @@ impl Plan {
         let names: Vec<&str> = of_json.map(|i| &*files[i].path).collect();
         if !names.is_empty() {
             self.warnings.push(format!(
-                "JSON is no orientation format here, ignored: {}",
+                "JSON that is no orientation known here, ignored: {}",
                 listed(names.into_iter())
             ));
         }
@@ -277,6 +298,7 @@ impl Plan {
             .map(|v| (&*files[v.file].path, &v.whole))
             .collect();
         let found = checks::check_cameras(&named, ground_z);
+        self.is_implausible = self.errors.is_empty() && !found.errors.is_empty();
         self.errors.extend(found.errors);
         self.warnings.extend(found.warnings);
         if let (Some(roi), Some(heights)) = (options.roi, found.heights) {
@@ -286,7 +308,9 @@ impl Plan {
                 Err(error) => self.errors.push(error),
             }
         }
-        self.errors.extend(checks::check_memory(&views));
+        let too_large = checks::check_memory(&views);
+        self.is_implausible &= too_large.is_none();
+        self.errors.extend(too_large);
         self.views = views;
     }
 }
@@ -313,8 +337,13 @@ fn planned_view(
             "use the image that was oriented, or export the orientation for this size",
         ));
     }
+    let mut k = orientation.k;
+    if orientation.from_middle {
+        k[(0, 2)] += f64::from(width) / 2.0;
+        k[(1, 2)] += f64::from(height) / 2.0;
+    }
     let camera = Camera {
-        k: orientation.k,
+        k,
         r: orientation.r,
         center: orientation.center,
         width,
@@ -344,6 +373,8 @@ fn planned_view(
         file,
         whole: camera,
         distortion: orientation.distortion,
+        angles: orientation.angles,
+        crop: orientation.crop,
         part: None,
     })
 }
@@ -369,8 +400,8 @@ fn no_orientation(
     }
     Error::Scene {
         problem,
-        advice: "add a COLMAP text model (cameras.txt and images.txt), a camera file with a list \
-                 `image X0 Y0 Z0 omega phi kappa`, or one 3 x 4 matrix NAME.P an image"
+        advice: "add the orientation as COLMAP, Metashape, BlocksExchange, Pix4D, OpenSfM or Bundler write it, a camera \
+                 file with a list `image X0 Y0 Z0 omega phi kappa`, or one 3 x 4 matrix NAME.P an image"
             .to_owned(),
     }
 }

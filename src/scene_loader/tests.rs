@@ -39,7 +39,7 @@ fn refused(files: &[InputFile], options: &LoadOptions, words: &[&str]) {
         assert!(message.contains(word), "{message}\nlacks: {word}");
     }
     if *options == LoadOptions::default() {
-        let inspection = inspect_files(files);
+        let inspection = inspect_files(files, &LoadOptions::default());
         // Only decoding finds an image whose header is sound.
         assert!(inspection.errors.is_empty() || inspection.errors[0] == message);
     }

@@ -108,11 +108,11 @@ pub fn texture_model(
         .iter()
         .map(|v| Footprints::new(&faces, &v.camera))
         .collect();
-    let texels = crate::parallel::map(&faces, |i, face| {
+    let texels = crate::parallel::map_part(&faces, 0.0..0.2, |i, face| {
         texel_m(scene, i, face, &footprints, params)
     });
     let (patches, packing, coarsened) = lay_out(&faces, &texels, params);
-    let mut painted = crate::parallel::map(&patches, |i, patch| {
+    let mut painted = crate::parallel::map_part(&patches, 0.2..0.9, |i, patch| {
         paint(scene, &faces, i, patch, &footprints)
     });
     let kinds: Vec<Surface> = keys

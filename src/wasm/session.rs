@@ -1,5 +1,7 @@
 //! A project in the page: files in, stages one by one, results out.
 
+use std::sync::Arc;
+
 use js_sys::{Float32Array, Float64Array, Function};
 use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
@@ -10,7 +12,8 @@ use super::convert::{
 use crate::linematch::SupportKind;
 use crate::params::Params;
 use crate::pipeline::{Run, Stage};
-use crate::scene_loader::{InputFile, LoadOptions, inspect_files, load_scene};
+use crate::progress::Listener;
+use crate::scene_loader::{InputFile, LoadOptions, inspect_files, load_scene, unpack};
 
 /// Files, parameters and the reconstruction made of them.
 #[wasm_bindgen]
@@ -82,13 +85,15 @@ impl Session {
         to_js(&Params::default())
     }
 
-    /// Adds an image or orientation file; a file of the same path is replaced.
+    /// Adds an image or orientation file, or an archive of them; a file of the same path is replaced.
     #[wasm_bindgen(js_name = addFile)]
-    pub fn add_file(&mut self, path: &str, bytes: Vec<u8>) {
-        let added = InputFile::new(path, bytes);
-        self.files.retain(|file| file.path != added.path);
-        self.files.push(added);
+    pub fn add_file(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), JsValue> {
+        for added in unpack(InputFile::new(path, bytes)).map_err(|e| input_error(&e))? {
+            self.files.retain(|file| file.path != added.path);
+            self.files.push(added);
+        }
         self.files.sort_by(|a, b| a.path.cmp(&b.path));
+        Ok(())
     }
 
     /// Forgets all files and all results.
@@ -99,22 +104,16 @@ impl Session {
         self.outputs = None;
     }
 
-    /// What the files are: their kinds, sizes, orientation status, and warnings.
-    pub fn inspect(&self) -> Result<JsValue, JsValue> {
-        to_js(&inspect_files(&self.files))
+    /// What the files are: their kinds, sizes, orientation status, and warnings; under the options of
+    /// `load`.
+    pub fn inspect(&self, options: JsValue) -> Result<JsValue, JsValue> {
+        to_js(&inspect_files(&self.files, &load_options(&options)?))
     }
 
     /// Makes a scene of the files: `{orientation?, views?, roi?, groundZ?}` in, `{views, origin,
     /// warnings}` out.
     pub fn load(&mut self, options: JsValue) -> Result<JsValue, JsValue> {
-        let options: Option<JsLoadOptions> = from_js(&options, "options of load")?;
-        let options = options.unwrap_or_default();
-        let options = LoadOptions {
-            orientation: options.orientation,
-            views: options.views,
-            roi: options.roi,
-            ground_z: options.ground_z,
-        };
+        let options = load_options(&options)?;
         self.run = None;
         self.outputs = None;
         let scene = load_scene(&self.files, &options).map_err(|e| input_error(&e))?;
@@ -152,14 +151,12 @@ impl Session {
             .ok_or_else(|| named_error("RangeError", &format!("no stage is called '{name}'")))?;
         self.outputs = None;
         let run = self.run.as_mut().ok_or_else(not_loaded)?;
-        let mut heard = Ok(());
-        let summary = run.step(stage, &mut |fraction| {
-            if let Err(e) = on_progress.call1(&JsValue::NULL, &fraction.into()) {
-                heard = Err(e);
-            }
+        let on_progress = on_progress.clone();
+        let listener: Listener = Arc::new(move |fraction| {
+            // A listener that throws is the page's own fault, and no reason to lose the stage.
+            let _ = on_progress.call1(&JsValue::NULL, &fraction.into());
         });
-        heard?;
-        to_js(&summary)
+        to_js(&run.step(stage, &listener))
     }
 
     /// The segments of a view: x0, y0, x1, y1 each, pixels.
@@ -257,6 +254,17 @@ impl Session {
         let run = self.run.as_ref().ok_or_else(not_loaded)?;
         Ok(self.outputs.get_or_insert_with(|| run.files(&[])))
     }
+}
+
+fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
+    let options: Option<JsLoadOptions> = from_js(options, "options of load")?;
+    let options = options.unwrap_or_default();
+    Ok(LoadOptions {
+        orientation: options.orientation,
+        views: options.views,
+        roi: options.roi,
+        ground_z: options.ground_z,
+    })
 }
 
 fn not_loaded() -> JsValue {

@@ -5,6 +5,13 @@ import { exportNames } from "./state";
 const WHAT: Record<string, string> = {
   "model.glb": "textured model, glTF 2.0",
   "model.city.json": "CityJSON 2.0, LoD 2.2",
+  "model_atlas.jpg": "its texture, as of the OBJ file",
+  "model.obj": "triangles with texture",
+  "model.mtl": "material of the OBJ file",
+  "model.ply": "triangles, and 3D lines as edges",
+  "model.dxf": "3DFACE and LINE, AutoCAD R12",
+  "footprints.geojson": "outlines on the ground",
+  "lines.csv": "3D lines as a table",
   "lines.json": "3D lines and their views",
   "halfplanes.json": "half-planes and Sim(theta)",
   "segments.json": "image segments",

@@ -1,9 +1,10 @@
 /** The project: where files are dropped, and what each of them was recognised as. */
 import { useRef, useState } from "preact/hooks";
 import type { ImageReport } from "../shared/results";
-import { addFiles, clearProject, notify, openDemo, removeFile } from "./actions";
+import { addFiles, clearProject, notify, openDemo, removeFile, setRunOptions } from "./actions";
 import { droppedFiles, pickedFiles } from "./files";
-import { files, inspection, projectName, scene } from "./state";
+import { OrientationChoice, PlaceFields } from "./RunOptionFields";
+import { files, inspection, projectName, runOptions, scene } from "./state";
 import { Thumbnail } from "./Thumbnail";
 
 export function Project() {
@@ -57,7 +58,10 @@ function DropZone() {
           : "Drop more files here."}
       </p>
       {isEmpty && (
-        <p class="muted">JPEG, PNG or TIFF; COLMAP text, VGG .P matrices, or X Y Z omega phi kappa lists.</p>
+        <p class="muted">
+          JPEG, PNG or TIFF; orientation as COLMAP, Metashape, Pix4D, OpenSfM, Bundler and others write it,
+          matrices, or X Y Z omega phi kappa lists; also in a .zip.
+        </p>
       )}
       <div class="row">
         <button type="button" onClick={() => fileInput.current?.click()}>
@@ -91,9 +95,7 @@ function Views() {
   return (
     <>
       <div class="row spread">
-        <h3>
-          {report.images.length} {report.images.length === 1 ? "view" : "views"}
-        </h3>
+        <h3>{countText(report.images)}</h3>
         <button type="button" class="quiet" onClick={() => void clearProject()}>
           Remove all
         </button>
@@ -103,14 +105,25 @@ function Views() {
           <ViewRow key={image.path} image={image} />
         ))}
       </ul>
+      <OrientationChoice />
+      <PlaceFields />
     </>
   );
 }
 
 function ViewRow({ image }: { image: ImageReport }) {
   const blob = files.value.find(({ path }) => path === image.path)?.blob;
+  const { leftOut } = runOptions.value;
+  const isUsed = !leftOut.includes(image.path);
+  const others = leftOut.filter((path) => path !== image.path);
   return (
-    <li class="view">
+    <li class={`view ${isUsed ? "" : "left-out"}`}>
+      <input
+        type="checkbox"
+        checked={isUsed}
+        aria-label={`Use ${image.path}`}
+        onChange={() => void setRunOptions({ leftOut: isUsed ? [...others, image.path] : others })}
+      />
       <Thumbnail blob={blob} />
       <div class="view-text">
         <span class="name" title={image.path}>
@@ -123,15 +136,20 @@ function ViewRow({ image }: { image: ImageReport }) {
           {image.orientation === null ? "no orientation" : "oriented"}
         </span>
       </div>
-      <button
-        type="button"
-        class="quiet"
-        aria-label={`Remove ${image.path}`}
-        onClick={() => void removeFile(image.path)}
-      >
-        ✕
-      </button>
+      <RemoveButton path={image.path} />
     </li>
+  );
+}
+
+/** Files inside an archive come and go with it. */
+function RemoveButton({ path }: { path: string }) {
+  if (!files.value.some((file) => file.path === path)) {
+    return <span />;
+  }
+  return (
+    <button type="button" class="quiet" aria-label={`Remove ${path}`} onClick={() => void removeFile(path)}>
+      ✕
+    </button>
   );
 }
 
@@ -154,14 +172,7 @@ function OtherFiles() {
             <span class="muted" title={description}>
               {description}
             </span>
-            <button
-              type="button"
-              class="quiet"
-              aria-label={`Remove ${path}`}
-              onClick={() => void removeFile(path)}
-            >
-              ✕
-            </button>
+            <RemoveButton path={path} />
           </li>
         ))}
       </ul>
@@ -184,6 +195,13 @@ function Warnings() {
       </ul>
     </>
   );
+}
+
+/** "6 views", or "4 of 6 views" where some are left out. */
+function countText(images: readonly ImageReport[]): string {
+  const used = images.filter(({ path }) => !runOptions.value.leftOut.includes(path)).length;
+  const all = `${images.length} ${images.length === 1 ? "view" : "views"}`;
+  return used === images.length ? all : `${used} of ${all}`;
 }
 
 function baseName(path: string): string {

@@ -4,6 +4,7 @@ import type { InputFile } from "../shared/messages";
 import type { Params, SceneInfo } from "../shared/results";
 import { Engine, EngineError } from "./engine";
 import { failureNotice } from "./notices";
+import { loadOptions } from "./runOptions";
 import { firstStageOf, stageWords } from "./stages";
 import {
   activity,
@@ -14,13 +15,17 @@ import {
   freshStages,
   images,
   inspection,
+  isBusy,
+  NO_OPTIONS,
   NO_RESULTS,
   type Notice,
   notices,
   params,
   projectName,
   type Results,
+  type RunOptions,
   results,
+  runOptions,
   type StageState,
   scene,
   selection,
@@ -81,6 +86,7 @@ export async function openDemo(): Promise<void> {
     return;
   }
   files.value = [];
+  runOptions.value = NO_OPTIONS;
   await addFiles(fetched.files, fetched.title);
   await runAll();
 }
@@ -136,6 +142,22 @@ export function resetParams(): void {
   outdateFrom(0);
 }
 
+/** Changes what is asked for beyond the files, and loads the scene again. */
+export async function setRunOptions(change: Partial<RunOptions>): Promise<void> {
+  stopWorker();
+  sceneInWorker = false;
+  freshStages.value = 0;
+  batch(() => {
+    runOptions.value = { ...runOptions.value, ...change };
+    if (change.orientation !== undefined) {
+      inspection.value = null;
+    }
+    notices.value = [];
+    clearScene();
+  });
+  await loadProject("Loading");
+}
+
 /** Saves one output file through the browser. */
 export async function download(name: string): Promise<void> {
   await guarded(`Writing ${name}`, async () => {
@@ -158,11 +180,16 @@ export function dismiss(id: number): void {
   notices.value = notices.value.filter((notice) => notice.id !== id);
 }
 
-async function setProject(next: InputFile[]): Promise<void> {
-  if (activity.value !== "" || stages.value.some(({ status }) => status === "running")) {
+/** Ends the worker if it is at work: what it does is out of date. */
+function stopWorker(): void {
+  if (isBusy.value) {
     forgetWorker();
     engine.close();
   }
+}
+
+async function setProject(next: InputFile[]): Promise<void> {
+  stopWorker();
   filesInWorker = false;
   sceneInWorker = false;
   freshStages.value = 0;
@@ -170,19 +197,29 @@ async function setProject(next: InputFile[]): Promise<void> {
     files.value = next;
     inspection.value = null;
     notices.value = [];
+    runOptions.value = next.length === 0 ? NO_OPTIONS : runOptions.value;
     clearScene();
   });
-  if (next.length === 0) {
+  await loadProject("Reading files");
+}
+
+/** Inspects the files, says what stands against them, or loads the scene. */
+async function loadProject(what: string): Promise<void> {
+  if (files.value.length === 0) {
     return;
   }
-  await guarded("Reading files", async () => {
+  await guarded(what, async () => {
     await ensureInspected();
     const problems = inspection.value?.errors ?? [];
+    // The inspection is of all images, and does not look into them: where that matters, loading says
+    // what is wrong.
+    const isFinal = runOptions.value.leftOut.length === 0 && inspection.value?.is_implausible !== true;
+    if (problems.length === 0 || !isFinal) {
+      await ensureScene();
+      return;
+    }
     for (const problem of problems.slice(0, MAX_PROBLEMS)) {
       notify(failureNotice(problem, "input"));
-    }
-    if (problems.length === 0) {
-      await ensureScene();
     }
   });
 }
@@ -217,8 +254,13 @@ async function openEngine(): Promise<void> {
 async function ensureInspected(): Promise<void> {
   await openEngine();
   if (!filesInWorker) {
-    inspection.value = await engine.call("setFiles", { files: files.value });
+    await engine.call("setFiles", { files: files.value });
     filesInWorker = true;
+    inspection.value = null;
+  }
+  if (inspection.value === null) {
+    const { orientation } = runOptions.value;
+    inspection.value = await engine.call("inspect", { options: orientation === null ? {} : { orientation } });
   }
 }
 
@@ -226,7 +268,9 @@ async function ensureInspected(): Promise<void> {
 async function ensureScene(): Promise<void> {
   await ensureInspected();
   if (!sceneInWorker) {
-    const loaded = await engine.call("load", { options: {} });
+    const loaded = await engine.call("load", {
+      options: loadOptions(runOptions.value, inspection.value),
+    });
     sceneInWorker = true;
     scene.value = loaded;
     if (images.value.length !== loaded.views.length) {

@@ -49,6 +49,17 @@ export const NO_RESULTS: Results = {
 
 export const files = signal<InputFile[]>([]);
 export const projectName = signal("");
+/** What the person asked for beyond the files; images are left out by their path. */
+export interface RunOptions {
+  orientation: string | null;
+  leftOut: readonly string[];
+  roi: [number, number, number, number] | null;
+  groundZ: number | null;
+}
+
+export const NO_OPTIONS: RunOptions = { orientation: null, leftOut: [], roi: null, groundZ: null };
+
+export const runOptions = signal<RunOptions>(NO_OPTIONS);
 export const inspection = signal<Inspection | null>(null);
 export const scene = signal<SceneInfo | null>(null);
 /** The undistorted images of the loaded scene, by view. */

@@ -19,7 +19,8 @@ export interface InputFile {
 /** Every call that the worker answers: its arguments and its result. */
 export interface Calls {
   open: { args: { wasmUrl: string }; result: { stages: string[]; defaults: Params } };
-  setFiles: { args: { files: InputFile[] }; result: Inspection };
+  setFiles: { args: { files: InputFile[] }; result: null };
+  inspect: { args: { options: LoadOptions }; result: Inspection };
   load: { args: { options: LoadOptions }; result: SceneInfo };
   image: { args: { view: number }; result: ViewImage };
   setParams: { args: { params: Params }; result: null };

@@ -24,24 +24,40 @@ export interface ImageReport {
   orientation: string | null;
 }
 
+/** One of the orientations that a scene may be given. */
+export interface OrientationReport {
+  /** Its format and files, in words. */
+  label: string;
+  /** What `LoadOptions.orientation` chooses it by. */
+  path: string;
+}
+
 /** What a set of files makes, known without decoding an image. */
 export interface Inspection {
   files: FileReport[];
   images: ImageReport[];
   /** The orientation that a run would take. */
   orientation: string | null;
+  /** All orientations among the files, the preferred one first. */
+  orientations: OrientationReport[];
   /** Number of views that a run would use. */
   views: number;
   warnings: string[];
   /** Why a run would refuse these files; empty when it would not. */
   errors: string[];
+  /** Only the places of the cameras speak against them: loading looks at the images, and says more. */
+  is_implausible: boolean;
 }
 
+/** What a person may ask for beyond the files. */
 export interface LoadOptions {
-  /** Path (or folder) of the orientation to prefer. */
+  /** Path (or folder) of the orientation to take. */
   orientation?: string;
+  /** Names of the images to use; all when absent. */
   views?: string[];
+  /** Height of the ground, metres, in the frame of the orientation. */
   groundZ?: number;
+  /** x0, y0, x1, y1, metres, in the frame of the orientation. */
   roi?: [number, number, number, number];
 }
 

@@ -15,7 +15,7 @@ import type {
 export interface CoreSession {
   addFile(path: string, bytes: Uint8Array): void;
   clearFiles(): void;
-  inspect(): Inspection;
+  inspect(options: LoadOptions): Inspection;
   load(options: LoadOptions): SceneInfo;
   setParams(params: Params): void;
   runStage(name: string, onProgress: (fraction: number) => void): StageSummary;
@@ -54,6 +54,8 @@ export async function dispatch(
   switch (request.type) {
     case "setFiles":
       return copied(await setFiles(session, request.args.files));
+    case "inspect":
+      return copied(session.inspect(request.args.options));
     case "load":
       return copied(session.load(request.args.options));
     case "image":
@@ -80,12 +82,12 @@ export async function dispatch(
   }
 }
 
-async function setFiles(session: CoreSession, files: InputFile[]): Promise<Inspection> {
+async function setFiles(session: CoreSession, files: InputFile[]): Promise<null> {
   session.clearFiles();
   for (const { path, blob } of files) {
     session.addFile(path, new Uint8Array(await readBlob(path, blob)));
   }
-  return session.inspect();
+  return null;
 }
 
 /** A file may have vanished since it was dropped: the browser's own message does not name it. */

@@ -37,6 +37,17 @@ export function houseFiles(): Upload[] {
   return names.map((name) => upload(name, readFileSync(new URL(name, HOUSE))));
 }
 
+/** The same matrices in one file, as Pix4D writes them. */
+export function housePmatrix(): Upload {
+  const lines = houseFiles()
+    .filter(({ name }) => name.endsWith(".P"))
+    .map(
+      ({ name, buffer }) =>
+        `${name.replace(".P", ".jpg")} ${buffer.toString().trim().split(/\s+/).join(" ")}`,
+    );
+  return upload("house_pmatrix.txt", Buffer.from(`${lines.join("\n")}\n`));
+}
+
 export async function give(page: Page, files: Upload[]): Promise<void> {
   await page.getByTestId("file-input").setInputFiles(files);
 }

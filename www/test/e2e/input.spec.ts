@@ -4,6 +4,7 @@ import {
   demoOrientation,
   give,
   houseFiles,
+  housePmatrix,
   lookOf,
   stage,
   type Upload,
@@ -96,4 +97,47 @@ test("a file name is text, whatever it says", async ({ page }) => {
   const width = await page.evaluate(() => document.documentElement.scrollWidth);
   expect(width).toBeLessThanOrEqual(1280);
   expect(problems).toEqual([]);
+});
+
+test("the orientation, the views and the region can be chosen", async ({ page }) => {
+  const { problems } = watch(page);
+  await page.goto("/");
+  await give(page, [...houseFiles(), housePmatrix()]);
+  const choice = page.getByLabel("Orientation", { exact: true });
+  await expect(choice.getByRole("option")).toHaveCount(2);
+  await expect(page.locator(".warnings")).toContainText("2 times");
+  const second = await choice.getByRole("option").nth(1).getAttribute("value");
+  await choice.selectOption(second);
+  await expect(page.locator(".warnings")).toHaveCount(0);
+  await expect(page.locator(".view .status.good").first()).toHaveAttribute("title", /\.P$/);
+
+  await page.locator(".view input[type=checkbox]").nth(2).uncheck();
+  await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
+  await expect(page.getByRole("group", { name: "View" }).getByRole("button")).toHaveCount(6);
+
+  await page.getByText("Region and ground").click();
+  await page.getByLabel(/Region/).fill("1, 2, 3");
+  await page.getByLabel(/Region/).press("Enter");
+  await expect(page.getByText("four numbers")).toBeVisible();
+  await page.getByLabel(/Height of the ground/).fill("99999");
+  await page.getByLabel(/Height of the ground/).press("Enter");
+  await expect(page.getByRole("alert")).toContainText("below the ground");
+  await page.getByLabel(/Height of the ground/).fill("");
+  await page.getByLabel(/Height of the ground/).press("Enter");
+  await expect(page.getByRole("alert")).toHaveCount(0);
+  await expect(page.getByRole("button", { name: "Run all" })).toBeEnabled();
+  expect(problems).toEqual([]);
+});
+
+test("angles in the wrong unit are named", async ({ page }) => {
+  await page.goto("/");
+  await give(page, [
+    ...demoImages(6),
+    ...demoOrientation((text) =>
+      text.replace(/^(s\S+ \S+ \S+ \S+) (\S+) (\S+) (\S+)$/gm, (_, start, ...angles) =>
+        [start, ...angles.slice(0, 3).map((a: string) => Number(a) / 0.9)].join(" "),
+      ),
+    ),
+  ]);
+  await expect(page.getByRole("alert")).toContainText("gon", { timeout: 60_000 });
 });

@@ -93,8 +93,10 @@ export class Session implements CoreSession {
       files: this.#files.map((path) => ({ path, kind: "image", description: "a file" })),
       images,
       orientation: "planted",
+      orientations: [{ label: "planted", path: "planted" }],
       views: images.length,
       warnings: [],
+      is_implausible: false,
       errors: images.length < 3 ? ["fewer than three views; add photographs"] : [],
     };
   }

@@ -17,7 +17,8 @@ describe("dispatch", () => {
   it("replaces the files, not adds to them", async () => {
     const one = core();
     await dispatch(one, ask({ type: "setFiles", args: { files: three } }), silent);
-    const { result } = await dispatch(one, ask({ type: "setFiles", args: { files: three } }), silent);
+    await dispatch(one, ask({ type: "setFiles", args: { files: three } }), silent);
+    const { result } = await dispatch(one, ask({ type: "inspect", args: { options: {} } }), silent);
     expect(result).toMatchObject({ views: 3, errors: [] });
   });
 

@@ -1,0 +1,127 @@
+//! The model as plain meshes: OBJ with its material, and PLY with the 3D lines as edges.
+//!
+//! Coordinates are those of the input's world frame, metres, Z up. A program that reads them into single precision
+//! should take off the scene origin first; both files state it in a comment.
+
+use std::fmt::Write;
+
+use nalgebra::Point3;
+
+use super::{ATLAS_FILE, rounded, triangulate};
+use crate::lines3d::Line3d;
+use crate::roof::{RoofModel, Surface};
+use crate::scene::Scene;
+use crate::texture::TexturedModel;
+
+/// Name of the material file beside the OBJ file.
+pub const MATERIAL_FILE: &str = "model.mtl";
+
+/// Decimals of a coordinate: 0.1 mm.
+const DECIMALS: u8 = 4;
+
+/// The textured model as OBJ: an object per building, a group per surface, triangles.
+pub fn obj(scene: &Scene, model: &RoofModel, textured: &TexturedModel) -> Vec<u8> {
+    let mut text = comment("# ", scene);
+    line(&mut text, format_args!("mtllib {MATERIAL_FILE}"));
+    // OBJ counts from one, over the whole file.
+    let (mut first_vertex, mut first_uv) = (1, 1);
+    for (b, (building, textures)) in model.buildings.iter().zip(&textured.faces).enumerate() {
+        let solid = &building.solid;
+        line(&mut text, format_args!("o building_{b}"));
+        for p in &solid.vertices {
+            let [x, y, z] = world(scene, p);
+            line(&mut text, format_args!("v {x} {y} {z}"));
+        }
+        line(&mut text, format_args!("usemtl photographs"));
+        for (face, texture) in solid.faces.iter().zip(textures) {
+            line(&mut text, format_args!("g {}", group(face.surface)));
+            for [u, v] in texture.uv.iter().flatten() {
+                // The atlas has its origin at the top, OBJ at the bottom.
+                line(&mut text, format_args!("vt {u} {}", 1.0 - v));
+            }
+            let corners: Vec<u32> = face.rings.iter().flatten().copied().collect();
+            for triangle in triangulate(solid, face) {
+                let [a, b, c] = triangle
+                    .map(|i| format!("{}/{}", first_vertex + corners[i as usize], first_uv + i));
+                line(&mut text, format_args!("f {a} {b} {c}"));
+            }
+            first_uv += corners.len() as u32;
+        }
+        first_vertex += solid.vertices.len() as u32;
+    }
+    text.into_bytes()
+}
+
+/// The material of the OBJ file: the atlas, as bright as it is.
+pub fn mtl() -> Vec<u8> {
+    format!("newmtl photographs\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nillum 0\nmap_Kd {ATLAS_FILE}\n")
+        .into_bytes()
+}
+
+/// The model and the 3D lines as PLY (ASCII): triangles of the solids, and edges.
+pub fn ply(scene: &Scene, model: &RoofModel, lines: &[Line3d]) -> Vec<u8> {
+    let mut vertices: Vec<Point3<f64>> = Vec::new();
+    let mut triangles: Vec<[usize; 3]> = Vec::new();
+    for building in &model.buildings {
+        let (solid, first) = (&building.solid, vertices.len());
+        for face in &solid.faces {
+            let corners: Vec<u32> = face.rings.iter().flatten().copied().collect();
+            let found = triangulate(solid, face);
+            triangles.extend(
+                found
+                    .iter()
+                    .map(|t| t.map(|i| first + corners[i as usize] as usize)),
+            );
+        }
+        vertices.extend(&solid.vertices);
+    }
+    let first_end = vertices.len();
+    vertices.extend(lines.iter().flat_map(|l| [l.segment.p0, l.segment.p1]));
+
+    let mut text = "ply\nformat ascii 1.0\n".to_owned();
+    text.push_str(&comment("comment ", scene));
+    line(&mut text, format_args!("element vertex {}", vertices.len()));
+    text.push_str("property double x\nproperty double y\nproperty double z\n");
+    line(&mut text, format_args!("element face {}", triangles.len()));
+    text.push_str("property list uchar int vertex_indices\n");
+    line(&mut text, format_args!("element edge {}", lines.len()));
+    text.push_str("property int vertex1\nproperty int vertex2\nend_header\n");
+    for p in &vertices {
+        let [x, y, z] = world(scene, p);
+        line(&mut text, format_args!("{x} {y} {z}"));
+    }
+    for [a, b, c] in triangles {
+        line(&mut text, format_args!("3 {a} {b} {c}"));
+    }
+    for i in 0..lines.len() {
+        let a = first_end + 2 * i;
+        line(&mut text, format_args!("{a} {}", a + 1));
+    }
+    text.into_bytes()
+}
+
+fn comment(start: &str, scene: &Scene) -> String {
+    let [x, y, z] = world(scene, &Point3::origin());
+    format!("{start}metres, Z up; origin of the local frame {x} {y} {z}\n")
+}
+
+fn group(surface: Surface) -> String {
+    match surface {
+        Surface::Roof(facet) => format!("roof_{}", facet.index()),
+        Surface::Wall => "wall".to_owned(),
+        Surface::Ground => "ground".to_owned(),
+    }
+}
+
+/// A point in the world frame of the input, rounded.
+pub(super) fn world(scene: &Scene, p: &Point3<f64>) -> [f64; 3] {
+    (p + scene.origin)
+        .coords
+        .map(|v| rounded(v, DECIMALS))
+        .into()
+}
+
+/// Adds a line.
+pub(super) fn line(text: &mut String, content: std::fmt::Arguments) {
+    writeln!(text, "{content}").expect("a String takes all that is written");
+}

@@ -1,0 +1,218 @@
+//! Which files together orient images, and the reader of each format.
+
+use super::{FileKind, Format, Orientation};
+use super::{bundles, colmap, colmap_binary, json, matrices, photogrammetric, projection, xml};
+use crate::Result;
+use crate::scene_loader::InputFile;
+
+/// Files that together orient images: one candidate for the orientation of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OrientationSet {
+    /// The format.
+    pub format: Format,
+    /// Folder of the files, without a final slash; empty for the top.
+    pub folder: String,
+    /// Indices of the files among the inputs, in the order that the reader wants.
+    pub files: Vec<usize>,
+}
+
+impl OrientationSet {
+    /// The paths of its files, for messages and for choosing between sets: the folder when there are many.
+    pub fn label(&self, inputs: &[InputFile]) -> String {
+        let what = if self.format == Format::Strecha {
+            ".camera"
+        } else {
+            ".P"
+        };
+        match &self.files[..] {
+            files if files.len() <= 2 || self.format == Format::Bundler => files
+                .iter()
+                .take(2)
+                .map(|&i| &*inputs[i].path)
+                .collect::<Vec<_>>()
+                .join(" + "),
+            files if self.folder.is_empty() => format!("{} files {what}", files.len()),
+            files => format!("{}/ ({} files {what})", self.folder, files.len()),
+        }
+    }
+
+    /// Reads the orientations of the set. Warnings are added to `warnings`.
+    pub fn read(
+        &self,
+        inputs: &[InputFile],
+        warnings: &mut Vec<String>,
+    ) -> Result<Vec<Orientation>> {
+        let texts: Vec<_> = (self.files.iter())
+            .map(|&i| (&*inputs[i].path, inputs[i].text()))
+            .collect();
+        let file = |i: usize| (texts[i].0, &*texts[i].1);
+        let further = |i: usize| (i < texts.len()).then(|| file(i));
+        let (path, text) = file(0);
+        match self.format {
+            Format::Colmap => colmap::read(file(0), file(1)),
+            Format::ColmapBinary => {
+                let bytes = |i: usize| &inputs[self.files[i]].bytes[..];
+                let cameras = colmap_binary::cameras_text(path, bytes(0))?;
+                let images = colmap_binary::images_text(texts[1].0, bytes(1))?;
+                colmap::read((path, &cameras), (texts[1].0, &images))
+            }
+            Format::Photogrammetric => photogrammetric::read(file(0), file(1), warnings),
+            Format::Metashape => xml::read_metashape(path, text),
+            Format::Blocks => xml::read_blocks(path, text),
+            Format::Pix4d => matrices::read_pix4d(path, text),
+            Format::OpenSfm => json::read_opensfm(path, text),
+            Format::Krc => json::read_krc(path, text),
+            Format::Nerfstudio => json::read_nerfstudio(path, text),
+            Format::Bundler => bundles::read_bundler(file(0), file(1), further(2)),
+            Format::Nvm => bundles::read_nvm(path, text),
+            Format::Middlebury => matrices::read_middlebury(path, text),
+            Format::Pmatrix => matrices::read_pmatrix(file(0), further(1)),
+            Format::Strecha => each(&texts, matrices::read_strecha),
+            Format::Projection => each(&texts, projection::read),
+        }
+    }
+}
+
+fn each<T: AsRef<str>>(
+    texts: &[(&str, T)],
+    read: fn(&str, &str) -> Result<Orientation>,
+) -> Result<Vec<Orientation>> {
+    texts
+        .iter()
+        .map(|(path, text)| read(path, text.as_ref()))
+        .collect()
+}
+
+/// The candidates among recognised files, best first, and what is missing to complete others.
+pub fn orientation_sets(
+    inputs: &[InputFile],
+    kinds: &[FileKind],
+) -> (Vec<OrientationSet>, Vec<String>) {
+    let mut sets = Vec::new();
+    let mut incomplete = Vec::new();
+    for pair in [
+        (
+            Format::Colmap,
+            FileKind::ColmapCameras,
+            FileKind::ColmapImages,
+        ),
+        (
+            Format::ColmapBinary,
+            FileKind::ColmapBinaryCameras,
+            FileKind::ColmapBinaryImages,
+        ),
+        (
+            Format::Photogrammetric,
+            FileKind::PhotogrammetricCamera,
+            FileKind::PhotogrammetricExterior,
+        ),
+        (Format::Bundler, FileKind::Bundler, FileKind::BundlerList),
+    ] {
+        pairs(inputs, kinds, pair, &mut sets, &mut incomplete);
+    }
+    for (i, kind) in kinds.iter().enumerate() {
+        if let Some(format) = alone(*kind) {
+            sets.push(OrientationSet {
+                format,
+                folder: inputs[i].folder().to_owned(),
+                files: vec![i],
+            });
+        }
+    }
+    sets.extend(folders(
+        inputs,
+        kinds,
+        Format::Projection,
+        FileKind::Projection,
+    ));
+    sets.extend(folders(inputs, kinds, Format::Strecha, FileKind::Strecha));
+    for set in &mut sets {
+        let extra = match set.format {
+            Format::Bundler => FileKind::PrincipalPoints,
+            Format::Pmatrix => FileKind::Offset,
+            _ => continue,
+        };
+        let beside = |&i: &usize| kinds[i] == extra && inputs[i].folder() == set.folder;
+        set.files.extend((0..inputs.len()).find(beside));
+    }
+    sets.sort_by(|a, b| (a.format, &a.folder, &a.files).cmp(&(b.format, &b.folder, &b.files)));
+    (sets, incomplete)
+}
+
+/// The format of a file that is an orientation by itself.
+fn alone(kind: FileKind) -> Option<Format> {
+    Some(match kind {
+        FileKind::Metashape => Format::Metashape,
+        FileKind::Blocks => Format::Blocks,
+        FileKind::Pix4d => Format::Pix4d,
+        FileKind::OpenSfm => Format::OpenSfm,
+        FileKind::Krc => Format::Krc,
+        FileKind::Nerfstudio => Format::Nerfstudio,
+        FileKind::Nvm => Format::Nvm,
+        FileKind::Middlebury => Format::Middlebury,
+        FileKind::Pmatrix => Format::Pmatrix,
+        _ => return None,
+    })
+}
+
+/// Joins two kinds of files of one folder; a lone partner in another folder is taken as well.
+fn pairs(
+    inputs: &[InputFile],
+    kinds: &[FileKind],
+    (format, first, second): (Format, FileKind, FileKind),
+    sets: &mut Vec<OrientationSet>,
+    incomplete: &mut Vec<String>,
+) {
+    let of = |kind| (0..inputs.len()).filter(move |&i| kinds[i] == kind);
+    let firsts: Vec<usize> = of(first).collect();
+    for s in of(second) {
+        let folder = inputs[s].folder();
+        let partner = firsts
+            .iter()
+            .find(|&&f| inputs[f].folder() == folder)
+            .or(firsts.first().filter(|_| firsts.len() == 1));
+        match partner {
+            Some(&f) => sets.push(OrientationSet {
+                format,
+                folder: folder.to_owned(),
+                files: vec![f, s],
+            }),
+            // Lists of images are written for many other ends.
+            None if second == FileKind::BundlerList => {}
+            None => incomplete.push(format!(
+                "{} has no {} beside it",
+                inputs[s].path,
+                first.describe()
+            )),
+        }
+    }
+    if of(second).next().is_none() {
+        incomplete.extend(
+            firsts
+                .iter()
+                .map(|&f| format!("{} has no {} beside it", inputs[f].path, second.describe())),
+        );
+    }
+}
+
+/// All files of this kind in one folder make one set.
+fn folders(
+    inputs: &[InputFile],
+    kinds: &[FileKind],
+    format: Format,
+    kind: FileKind,
+) -> Vec<OrientationSet> {
+    let mut sets: Vec<OrientationSet> = Vec::new();
+    for i in (0..inputs.len()).filter(|&i| kinds[i] == kind) {
+        let folder = inputs[i].folder();
+        match sets.iter_mut().find(|s| s.folder == folder) {
+            Some(set) => set.files.push(i),
+            None => sets.push(OrientationSet {
+                format,
+                folder: folder.to_owned(),
+                files: vec![i],
+            }),
+        }
+    }
+    sets
+}

@@ -1,0 +1,92 @@
+/** Which orientation, which part of the ground, how high it lies. */
+import { useState } from "preact/hooks";
+import { setRunOptions } from "./actions";
+import { type Parsed, parseHeight, parseRegion } from "./runOptions";
+import { inspection, runOptions } from "./state";
+
+/** Where the files hold the orientation several times: which one is taken. */
+export function OrientationChoice() {
+  const found = inspection.value?.orientations ?? [];
+  if (found.length < 2) {
+    return null;
+  }
+  return (
+    <div class="option">
+      <label for="orientation">Orientation</label>
+      <select
+        id="orientation"
+        value={runOptions.value.orientation ?? found[0]?.path}
+        onChange={(event) => void setRunOptions({ orientation: event.currentTarget.value })}
+      >
+        {found.map(({ label, path }) => (
+          <option key={path} value={path}>
+            {label}
+          </option>
+        ))}
+      </select>
+    </div>
+  );
+}
+
+/** Region of interest and height of the ground, both in the frame of the orientation. */
+export function PlaceFields() {
+  const { roi, groundZ } = runOptions.value;
+  return (
+    <details class="params" open={roi !== null || groundZ !== null}>
+      <summary>Region and ground</summary>
+      <OptionField
+        id="roi"
+        label="Region x0, y0, x1, y1 (m)"
+        placeholder="all"
+        shown={roi?.join(", ") ?? ""}
+        parse={parseRegion}
+        onValue={(value) => void setRunOptions({ roi: value })}
+      />
+      <OptionField
+        id="ground-z"
+        label="Height of the ground (m)"
+        placeholder="estimated"
+        shown={groundZ?.toString() ?? ""}
+        parse={parseHeight}
+        onValue={(value) => void setRunOptions({ groundZ: value })}
+      />
+    </details>
+  );
+}
+
+interface FieldProps<T> {
+  id: string;
+  label: string;
+  placeholder: string;
+  shown: string;
+  parse: (text: string) => Parsed<T>;
+  onValue: (value: T | null) => void;
+}
+
+function OptionField<T>({ id, label, placeholder, shown, parse, onValue }: FieldProps<T>) {
+  const [error, setError] = useState("");
+  const change = (text: string) => {
+    const parsed = parse(text);
+    setError("error" in parsed ? parsed.error : "");
+    if ("value" in parsed) {
+      onValue(parsed.value);
+    }
+  };
+  return (
+    <div class="option">
+      <label for={id}>{label}</label>
+      <input
+        id={id}
+        type="text"
+        value={shown}
+        placeholder={placeholder}
+        aria-invalid={error !== ""}
+        aria-describedby={`${id}-note`}
+        onChange={(event) => change(event.currentTarget.value)}
+      />
+      <span id={`${id}-note`} class="error note">
+        {error}
+      </span>
+    </div>
+  );
+}

@@ -1,0 +1,38 @@
+import { describe, expect, it } from "vitest";
+import { loadOptions, parseHeight, parseRegion } from "../../src/app/runOptions";
+import type { Inspection } from "../../src/shared/results";
+
+const NONE = { orientation: null, leftOut: [], roi: null, groundZ: null };
+
+const image = (path: string) => ({ path, name: path.replace("in/", ""), size: null, orientation: null });
+const inspection = { images: ["in/a.jpg", "in/b.jpg", "in/c.jpg"].map(image) } as unknown as Inspection;
+
+describe("run options", () => {
+  it("say nothing where nothing is asked for", () => {
+    expect(loadOptions(NONE, inspection)).toEqual({});
+  });
+
+  it("name the views that are left, the orientation, region and ground", () => {
+    const wanted = { orientation: "x/b.out", leftOut: ["in/b.jpg"], roi: [1, 2, 3, 4] as const, groundZ: 0 };
+    expect(loadOptions({ ...wanted, roi: [...wanted.roi] }, inspection)).toEqual({
+      orientation: "x/b.out",
+      views: ["a.jpg", "c.jpg"],
+      roi: [1, 2, 3, 4],
+      groundZ: 0,
+    });
+  });
+
+  it("read a region with any separators, and say what is wrong with it", () => {
+    expect(parseRegion("1, 2;3  4.5")).toEqual({ value: [1, 2, 3, 4.5] });
+    expect(parseRegion("  ")).toEqual({ value: null });
+    expect(parseRegion("1,2,3")).toHaveProperty("error");
+    expect(parseRegion("1,2,x,4")).toHaveProperty("error");
+    expect(parseRegion("3,2,1,4")).toHaveProperty("error");
+  });
+
+  it("read a height; zero is one, nothing is none", () => {
+    expect(parseHeight("0")).toEqual({ value: 0 });
+    expect(parseHeight("")).toEqual({ value: null });
+    expect(parseHeight("12 m")).toHaveProperty("error");
+  });
+});
