@@ -30,6 +30,7 @@ pub mod linematch;
 pub mod lines2d;
 pub mod lines3d;
 pub mod math;
+pub mod objectspace;
 pub mod orientation;
 pub mod parallel;
 pub mod params;

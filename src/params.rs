@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Params {
+    /// Which of the methods finds the roofs.
+    pub method: Method,
     /// Image segments.
     pub segments: SegmentParams,
     /// Line matching.
@@ -18,8 +20,21 @@ pub struct Params {
     pub sweep: SweepParams,
     /// Grouping, delineation, verification, conflicts.
     pub roof: RoofParams,
+    /// Rectangles in object space.
+    pub objectspace: ObjectSpaceParams,
     /// Texture atlas.
     pub texture: TextureParams,
+}
+
+/// How roofs are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Method {
+    /// Lines matched over the views, and half-planes at them (B99).
+    #[default]
+    Lines,
+    /// Regions, and planes between parallel lines in object space (W96).
+    Rectangles,
 }
 
 /// B99 3.2: segments.
@@ -362,6 +377,48 @@ impl Default for TextureParams {
             texel_px: 1.0,
             padding_px: 4,
             jpeg_quality: 90,
+        }
+    }
+}
+
+/// W96: the object-space method.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ObjectSpaceParams {
+    /// Regions and their lines.
+    pub oris: OrisParams,
+}
+
+/// W96 3.3: region segmentation. W96 gives no numbers ("Wiman 1995").
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct OrisParams {
+    /// Standard deviation of the blur before gradients are taken, px. Assumption: 0.8, as for edgels.
+    pub smoothing_px: f64,
+    /// What a vector costs, bits. Assumption: its end is one of 64 x 64 positions relative to its start.
+    pub vector_bits: f64,
+    /// Pixels that make one independent grey value. Assumption: resampling and compression tie neighbours together.
+    pub pixels_per_sample: f64,
+    /// Least standard deviation of the grey values of a region, grey levels of 255. Assumption: sensor and JPEG.
+    pub least_sigma: f64,
+    /// Shortest vector that is measured as a line, px. Assumption: half of B99's shortest segment.
+    pub min_line_px: f64,
+    /// Least contrast of a line, grey range 1. Assumption: three grey levels of 255.
+    pub min_contrast: f64,
+    /// Largest root mean square distance of the gradient's crest from the line, px; otherwise the vector itself is taken. Assumption.
+    pub max_rms_px: f64,
+}
+
+impl Default for OrisParams {
+    fn default() -> Self {
+        Self {
+            smoothing_px: 0.8,
+            vector_bits: 12.0,
+            pixels_per_sample: 2.0,
+            least_sigma: 1.5,
+            min_line_px: 8.0,
+            min_contrast: 0.012,
+            max_rms_px: 0.8,
         }
     }
 }

@@ -1,0 +1,3 @@
+//! The object-space method (W96).
+
+pub mod oris;
