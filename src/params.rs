@@ -387,6 +387,87 @@ impl Default for TextureParams {
 pub struct ObjectSpaceParams {
     /// Regions and their lines.
     pub oris: OrisParams,
+    /// Main directions.
+    pub directions: DirectionParams,
+    /// Clusters of lines.
+    pub clusters: ClusterParams,
+}
+
+/// W96 3.4: main directions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct DirectionParams {
+    /// Most pairs of directions in a window. W96 has one. Assumption: a few, for neighbours that stand askew.
+    pub max_pairs: usize,
+    /// Least share of the weight of all lines that follows a pair. Assumption: chance gives 4 of 90 degrees, 5 %.
+    pub min_share: f64,
+    /// A line within this of a direction follows it, degrees. Assumption.
+    pub tolerance_deg: f64,
+    /// Pairs are at least so far apart, degrees. Assumption.
+    pub apart_deg: f64,
+}
+
+impl Default for DirectionParams {
+    fn default() -> Self {
+        Self {
+            max_pairs: 3,
+            min_share: 0.12,
+            tolerance_deg: 2.0,
+            apart_deg: 6.0,
+        }
+    }
+}
+
+/// W96 3.5: clusters of lines.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ClusterParams {
+    /// An image line within this of a main direction belongs to it, degrees. Assumption.
+    pub angle_deg: f64,
+    /// ... or within what this displacement of an end does to its direction, px. Assumption.
+    pub end_px: f64,
+    /// Image lines within this distance support a 3D line, px. Assumption: three standard deviations.
+    pub gate_px: f64,
+    /// Standard deviation of an image line, px. Assumption: the precision of region boundaries.
+    pub sigma_px: f64,
+    /// Intersections nearer than this are one, metres. Assumption.
+    pub cell_m: f64,
+    /// Largest difference of the grey values on one side at least, grey range 1. Assumption; W96 4 proposes to use radiometry here.
+    pub max_grey_difference: f64,
+    /// Least number of views. W96 3.5: all views, "too restrictive, due to possible occlusion". Assumption: three.
+    pub min_views: usize,
+    /// A view that covers less of a line does not count. Assumption.
+    pub min_coverage: f64,
+    /// What an image line costs on its own, bits. Assumption: one of 64 positions.
+    pub position_bits: f64,
+    /// What a 3D line costs, bits. Assumption: one of 100 x 40 places.
+    pub line_bits: f64,
+    /// What it costs that a view misses a line, bits. Assumption.
+    pub miss_bits: f64,
+    /// Gaps up to this length are bridged, metres. Assumption: a chimney or a tree top.
+    pub max_gap_m: f64,
+    /// Shortest line, metres. Assumption.
+    pub min_length_m: f64,
+}
+
+impl Default for ClusterParams {
+    fn default() -> Self {
+        Self {
+            angle_deg: 2.5,
+            end_px: 1.5,
+            gate_px: 1.5,
+            sigma_px: 0.5,
+            cell_m: 0.15,
+            max_grey_difference: 0.08,
+            min_views: 3,
+            min_coverage: 0.25,
+            position_bits: 6.0,
+            line_bits: 12.0,
+            miss_bits: 1.0,
+            max_gap_m: 4.0,
+            min_length_m: 1.0,
+        }
+    }
 }
 
 /// W96 3.3: region segmentation. W96 gives no numbers ("Wiman 1995").
@@ -399,6 +480,9 @@ pub struct OrisParams {
     pub vector_bits: f64,
     /// Pixels that make one independent grey value. Assumption: resampling and compression tie neighbours together.
     pub pixels_per_sample: f64,
+    /// Weight of each of the two colour differences beside grey. Assumption: they are smoother, and JPEG stores them at half the
+    /// resolution.
+    pub color_weight: f64,
     /// Least standard deviation of the grey values of a region, grey levels of 255. Assumption: sensor and JPEG.
     pub least_sigma: f64,
     /// Shortest vector that is measured as a line, px. Assumption: half of B99's shortest segment.
@@ -414,7 +498,8 @@ impl Default for OrisParams {
         Self {
             smoothing_px: 0.8,
             vector_bits: 12.0,
-            pixels_per_sample: 2.0,
+            pixels_per_sample: 1.7,
+            color_weight: 0.5,
             least_sigma: 1.5,
             min_line_px: 8.0,
             min_contrast: 0.012,

@@ -17,41 +17,40 @@ pub struct Lattice {
     pub y: i32,
 }
 
-/// Steps of the integer grey values in one grey level of 255.
-const STEPS_PER_LEVEL: f64 = 4.0;
+/// Number of channels: grey, and two colour differences.
+pub const CHANNELS: usize = 3;
 
-/// Count, sum and sum of squares of grey values; the difference of two sets of pixels may be negative.
+/// Count, sums and sums of squares of the channels; the difference of two sets of pixels may be negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Moments {
     /// Number of pixels.
     pub count: i64,
-    sum: i64,
-    squares: i64,
+    sum: [i64; CHANNELS],
+    squares: [i64; CHANNELS],
 }
 
 impl Moments {
-    /// Mean grey value, 0 to 255.
-    pub fn mean(&self) -> f64 {
-        self.sum as f64 / (self.count.max(1) as f64 * STEPS_PER_LEVEL)
+    /// Mean of a channel, 0 to 255.
+    pub fn mean(&self, channel: usize) -> f64 {
+        self.sum[channel] as f64 / self.count.max(1) as f64
     }
 
-    /// Variance of the grey values, levels of 255 squared.
-    pub fn variance(&self) -> f64 {
-        let n = self.count.max(1) as f64;
-        let mean = self.sum as f64 / n;
-        let scale = STEPS_PER_LEVEL * STEPS_PER_LEVEL;
-        (self.squares as f64 / n - mean * mean).max(0.0) / scale
+    /// Variance of a channel, levels of 255 squared.
+    pub fn variance(&self, channel: usize) -> f64 {
+        let mean = self.mean(channel);
+        (self.squares[channel] as f64 / self.count.max(1) as f64 - mean * mean).max(0.0)
     }
 }
 
 impl Add for Moments {
     type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self {
-            count: self.count + other.count,
-            sum: self.sum + other.sum,
-            squares: self.squares + other.squares,
+    fn add(mut self, other: Self) -> Self {
+        self.count += other.count;
+        for c in 0..CHANNELS {
+            self.sum[c] += other.sum[c];
+            self.squares[c] += other.squares[c];
         }
+        self
     }
 }
 
@@ -60,8 +59,8 @@ impl Neg for Moments {
     fn neg(self) -> Self {
         Self {
             count: -self.count,
-            sum: -self.sum,
-            squares: -self.squares,
+            sum: self.sum.map(|v| -v),
+            squares: self.squares.map(|v| -v),
         }
     }
 }
@@ -73,25 +72,29 @@ impl Sub for Moments {
     }
 }
 
-/// Running sums along every row of an image.
+/// Running sums along every row of an image: sum and sum of squares of each channel. A row of 66 000 pixels still
+/// fits into 32 bits.
 pub struct RowSums {
     stride: usize,
-    before: Vec<(u32, u64)>,
+    before: Vec<[[u32; 2]; CHANNELS]>,
 }
 
 impl RowSums {
-    /// The sums of an image of grey values 0 to 1.
-    pub fn new(gray: &Gray) -> Self {
-        let stride = gray.width + 1;
-        let mut before = Vec::with_capacity(stride * gray.height);
-        for row in gray.data.chunks_exact(gray.width.max(1)) {
-            let (mut sum, mut squares) = (0u32, 0u64);
-            before.push((0, 0));
-            for &g in row {
-                let step = (f64::from(g).clamp(0.0, 1.0) * 255.0 * STEPS_PER_LEVEL).round() as u32;
-                sum += step;
-                squares += u64::from(step) * u64::from(step);
-                before.push((sum, squares));
+    /// The sums of an image in three channels of the same size, values 0 to 1.
+    pub fn new(channels: &[Gray; CHANNELS]) -> Self {
+        let (width, height) = (channels[0].width, channels[0].height);
+        let stride = width + 1;
+        let mut before = Vec::with_capacity(stride * height);
+        for y in 0..height {
+            let mut sums = [[0u32; 2]; CHANNELS];
+            before.push(sums);
+            for x in 0..width {
+                for (sum, channel) in sums.iter_mut().zip(channels) {
+                    let level = (channel.get(x, y).clamp(0.0, 1.0) * 255.0).round() as u32;
+                    sum[0] += level;
+                    sum[1] += level * level;
+                }
+                before.push(sums);
             }
         }
         Self { stride, before }
@@ -110,11 +113,12 @@ impl RowSums {
         for row in 0..dy {
             // The first pixel centre (k + 1/2) not left of the side at the centre of the row.
             let k = i64::from(top.x) + ceil_div(dx * (2 * row + 1) - dy, 2 * dy);
-            let (sum, squares) =
-                self.before[(i64::from(top.y) + row) as usize * self.stride + k.max(0) as usize];
+            let at = (i64::from(top.y) + row) as usize * self.stride + k.max(0) as usize;
             m.count += k;
-            m.sum += i64::from(sum);
-            m.squares += squares as i64;
+            for (c, [sum, squares]) in self.before[at].into_iter().enumerate() {
+                m.sum[c] += i64::from(sum);
+                m.squares[c] += i64::from(squares);
+            }
         }
         if down { m } else { -m }
     }
@@ -135,7 +139,7 @@ mod tests {
     #[test]
     fn a_polygon_holds_the_pixels_whose_centres_lie_inside() {
         let gray = image();
-        let sums = RowSums::new(&gray);
+        let sums = RowSums::new(&[gray.clone(), image(), image()]);
         let p = |x, y| Lattice { x, y };
         let (a, b, c) = (p(2, 1), p(17, 6), p(5, 15));
         let m = sums.side(a, b) + sums.side(b, c) + sums.side(c, a);
@@ -154,12 +158,12 @@ mod tests {
             }
         }
         assert_eq!(m.count, count);
-        assert!((m.mean() - sum / f64::from(count as i32)).abs() < 0.13);
+        assert!((m.mean(0) - sum / f64::from(count as i32)).abs() < 0.5);
     }
 
     #[test]
     fn a_side_back_takes_away_what_it_brought() {
-        let sums = RowSums::new(&image());
+        let sums = RowSums::new(&[image(), image(), image()]);
         let (a, b) = (Lattice { x: 3, y: 14 }, Lattice { x: 11, y: 2 });
         assert_eq!(sums.side(a, b), -sums.side(b, a));
     }

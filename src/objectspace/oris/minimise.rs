@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::integrals::Moments;
+use super::integrals::{CHANNELS, Moments};
 use super::partition::{OUTSIDE, Partition};
 use crate::math::log2;
 use crate::params::OrisParams;
@@ -14,6 +14,7 @@ pub(super) struct CodeLength {
     vector_bits: f64,
     pixels_per_sample: f64,
     least_variance: f64,
+    weights: [f64; CHANNELS],
 }
 
 impl CodeLength {
@@ -22,13 +23,17 @@ impl CodeLength {
             vector_bits: params.vector_bits,
             pixels_per_sample: params.pixels_per_sample,
             least_variance: params.least_sigma * params.least_sigma,
+            weights: [1.0, params.color_weight, params.color_weight],
         }
     }
 
     /// Bits of a region: its grey values given mean and noise, and these two parameters.
     pub fn region(&self, m: &Moments) -> f64 {
         let samples = m.count as f64 / self.pixels_per_sample;
-        0.5 * samples * log2(m.variance().max(self.least_variance)) + log2(samples.max(1.0))
+        let spread: f64 = (0..CHANNELS)
+            .map(|c| self.weights[c] * log2(m.variance(c).max(self.least_variance)))
+            .sum();
+        0.5 * samples * spread + log2(samples.max(1.0))
     }
 }
 

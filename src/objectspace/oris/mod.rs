@@ -4,16 +4,20 @@
 //! description length in bits is
 //!
 //! ```text
-//! L = sum over regions   n/2 log2(max(s^2, s0^2)) + log2 n
+//! L = sum over regions   n/2 sum over channels w log2(max(s^2, s0^2)) + log2 n
 //!   + sum over vectors   c
 //!
 //! n    number of independent grey values: pixels / pixels_per_sample
 //! s^2  variance of the grey values, s0 = least_sigma
+//! w    1 for grey, color_weight for the two colour differences
 //! ```
 //!
 //! The first term codes the grey values given mean and noise (without the part n/2 log2(2 pi e), which is the same for every
 //! partition), `log2 n` the two parameters of a region, each to its own precision 1/sqrt(n). A vector costs
 //! `c = vector_bits`: its end relative to its start. Boundaries are shared, so each vector counts once.
+//!
+//! W96 has panchromatic images. Colour is used where there is any, because a red roof in the shade and the lawn beside it are
+//! often of the same grey; photographs without colour have differences without variance, which say nothing.
 //!
 //! From a fine partition ([`watershed`](self::watershed)) two moves are made, the one with the largest gain in L
 //! first, until none gains (`minimise`):
@@ -29,6 +33,7 @@
 //! Lines for measuring are then taken from the vectors and moved to the crest of the gradient ([`vectors`](self::vectors)):
 //! break points stand on corners of pixels, which is as good as the regions need and not as good as the image is.
 
+mod color;
 mod integrals;
 mod minimise;
 mod partition;
@@ -36,6 +41,7 @@ mod rings;
 mod vectors;
 mod watershed;
 
+pub use color::ColorImage;
 pub use integrals::Lattice;
 pub use minimise::Moves;
 pub use vectors::{RegionLine, region_lines};
@@ -45,7 +51,6 @@ use serde::Serialize;
 use self::integrals::RowSums;
 use self::partition::{OUTSIDE, Partition};
 use crate::params::OrisParams;
-use crate::raster::Gray;
 
 /// A region of constant grey level.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -120,14 +125,15 @@ impl Segmentation {
     }
 }
 
-/// Segments an image of grey values 0 to 1. Empty for an image without pixels.
-pub fn segment_regions(gray: &Gray, params: &OrisParams) -> Segmentation {
-    if gray.width == 0 || gray.height == 0 {
+/// Segments an image. Empty for an image without pixels.
+pub fn segment_regions(image: &ColorImage, params: &OrisParams) -> Segmentation {
+    let (width, height) = (image.sharp[0].width, image.sharp[0].height);
+    if width == 0 || height == 0 {
         return Segmentation::default();
     }
-    let (labels, count) = watershed::watershed(gray, params.smoothing_px);
-    let sums = RowSums::new(gray);
-    let mut partition = Partition::from_labels(&labels, count, gray.width, gray.height, sums);
+    let (labels, count) = watershed::watershed(&image.smooth);
+    let sums = RowSums::new(&image.sharp);
+    let mut partition = Partition::from_labels(&labels, count, width, height, sums);
     let moves = minimise::minimise(&mut partition, params);
     Segmentation {
         initial_regions: count,
@@ -167,8 +173,8 @@ fn describe(p: &Partition) -> Segmentation {
         .map(|(r, _)| Region {
             area_px: r.moments.count as u32,
             perimeter_px: 0.0,
-            mean: r.moments.mean(),
-            variance: r.moments.variance(),
+            mean: r.moments.mean(0),
+            variance: r.moments.variance(0),
             rings: Vec::new(),
         })
         .collect();
@@ -193,6 +199,7 @@ fn describe(p: &Partition) -> Segmentation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::raster::Gray;
 
     /// A drawn partition: a house-like pentagon and a rectangle on a background, with noise of 10 grey levels.
     fn drawn() -> (Gray, Vec<Vec<[f64; 2]>>) {
@@ -247,7 +254,7 @@ mod tests {
     fn a_drawn_partition_is_recovered() {
         let (gray, rings) = drawn();
         let s = segment_regions(
-            &gray,
+            &ColorImage::from_gray(&gray, 0.8),
             &OrisParams {
                 pixels_per_sample: 1.0,
                 ..OrisParams::default()
@@ -272,7 +279,7 @@ mod tests {
     #[test]
     fn the_regions_share_out_the_image() {
         let (gray, _) = drawn();
-        let s = segment_regions(&gray, &OrisParams::default());
+        let s = segment_regions(&ColorImage::from_gray(&gray, 0.8), &OrisParams::default());
         let area: u32 = s.regions.iter().map(|r| r.area_px).sum();
         assert_eq!(area as usize, gray.data.len());
         for region in 0..s.regions.len() as u32 {
@@ -285,7 +292,7 @@ mod tests {
     #[test]
     fn without_contrast_there_is_one_region() {
         let gray = Gray::from_fn(40, 30, |_, _| 0.5);
-        let s = segment_regions(&gray, &OrisParams::default());
+        let s = segment_regions(&ColorImage::from_gray(&gray, 0.8), &OrisParams::default());
         assert_eq!((s.regions.len(), s.vectors.len()), (1, 4));
         assert_eq!(s.regions[0].rings[0].len(), 4);
     }

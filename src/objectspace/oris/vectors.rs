@@ -7,14 +7,15 @@
 use nalgebra::{Matrix2, Point2, Vector2};
 use serde::Serialize;
 
-use super::Segmentation;
+use super::{ColorImage, Segmentation};
 use crate::geometry::Segment2;
 use crate::lines2d::ImageSegment;
 use crate::math::{hypot, median};
 use crate::params::OrisParams;
-use crate::raster::{Gray, gaussian_blur};
+use crate::raster::Gray;
 
-/// An image line on the boundary of two regions, directed by contrast: its right side is the brighter one.
+/// An image line on the boundary of two regions, directed by contrast: its right side is the brighter one (or the one of more
+/// red or blue, where colour shows it better).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RegionLine {
     /// The line with its accuracy.
@@ -27,11 +28,10 @@ pub struct RegionLine {
 
 /// The lines of all vectors that are long and clear enough, longest first.
 pub fn region_lines(
-    gray: &Gray,
+    image: &ColorImage,
     segmentation: &Segmentation,
     params: &OrisParams,
 ) -> Vec<RegionLine> {
-    let smooth = gaussian_blur(gray, params.smoothing_px);
     let mut lines: Vec<RegionLine> = (0..segmentation.vectors.len())
         .filter_map(|k| {
             let v = &segmentation.vectors[k];
@@ -40,7 +40,14 @@ pub fn region_lines(
             }
             let point = |p: [i32; 2]| Point2::new(f64::from(p[0]), f64::from(p[1]));
             let vector = Segment2::new(point(v.ends[0]), point(v.ends[1]));
-            measure(gray, &smooth, &vector, k as u32, params)
+            let channel = clearest_channel(image, &vector)?;
+            let (sharp, smooth) = (&image.sharp[channel], &image.smooth[channel]);
+            let mut found = measure(sharp, smooth, &vector, k as u32, params)?;
+            if channel != 0 {
+                let beside = |side| grey_beside(&image.sharp[0], &found.line.segment, side);
+                found.sides = [beside(-1.0)?, beside(1.0)?];
+            }
+            Some(found)
         })
         .collect();
     lines.sort_by(|a, b| {
@@ -58,6 +65,21 @@ const REACH_PX: f64 = 2.0;
 const STEP_PX: f64 = 0.5;
 /// Distances from the line at which the grey values beside it are taken, pixels: outside the blur of the edge.
 const BESIDE_PX: [f64; 3] = [1.8, 2.6, 3.4];
+
+/// The channel with the largest contrast across a vector. Grey counts twice: compression leaves colour at half the
+/// resolution.
+fn clearest_channel(image: &ColorImage, vector: &Segment2) -> Option<usize> {
+    let mut best = (0, 0.0);
+    for (c, channel) in image.sharp.iter().enumerate() {
+        let contrast =
+            (grey_beside(channel, vector, 1.0)? - grey_beside(channel, vector, -1.0)?).abs();
+        let weighted = if c == 0 { 2.0 * contrast } else { contrast };
+        if weighted > best.1 {
+            best = (c, weighted);
+        }
+    }
+    Some(best.0)
+}
 
 fn measure(
     gray: &Gray,
@@ -205,7 +227,8 @@ mod tests {
             (0.3 + 0.3 * (d + 0.5).clamp(0.0, 1.0)) as f32
         });
         let params = OrisParams::default();
-        let lines = region_lines(&gray, &segment_regions(&gray, &params), &params);
+        let image = ColorImage::from_gray(&gray, params.smoothing_px);
+        let lines = region_lines(&image, &segment_regions(&image, &params), &params);
         assert_eq!(lines.len(), 1);
         let found = &lines[0];
         for p in [found.line.segment.p0, found.line.segment.p1] {

@@ -5,13 +5,13 @@
 //! Assumption: W96 does not say how the fine partition is made. Single pixels as regions would be the finest, at
 //! fifteen times the cost and with the same edges.
 
-use crate::raster::{Gray, gaussian_blur};
+use super::integrals::CHANNELS;
+use crate::raster::Gray;
 
-/// Labels of the pixels, row by row, counted from 0, and the number of regions. `smoothing_px` is the standard
-/// deviation of the blur before the gradient.
-pub fn watershed(gray: &Gray, smoothing_px: f64) -> (Vec<u32>, usize) {
-    let level = gradient_levels(&gaussian_blur(gray, smoothing_px));
-    let (w, h) = (gray.width, gray.height);
+/// Labels of the pixels of a blurred image, row by row, counted from 0, and the number of regions.
+pub fn watershed(smooth: &[Gray; CHANNELS]) -> (Vec<u32>, usize) {
+    let level = gradient_levels(smooth);
+    let (w, h) = (smooth[0].width, smooth[0].height);
     let (mut labels, count) = minima(&level, w, h);
     let mut queue = BucketQueue::new(&level);
     for k in 0..w * h {
@@ -36,15 +36,19 @@ const NONE: u32 = u32::MAX;
 const STEPS: f32 = 1020.0;
 
 /// Gradient magnitude in whole steps.
-fn gradient_levels(gray: &Gray) -> Vec<u16> {
-    let (w, h) = (gray.width, gray.height);
+fn gradient_levels(smooth: &[Gray; CHANNELS]) -> Vec<u16> {
+    let (w, h) = (smooth[0].width, smooth[0].height);
     let mut levels = Vec::with_capacity(w * h);
     for y in 0..h {
         let (above, below) = (y.saturating_sub(1), (y + 1).min(h - 1));
         for x in 0..w {
-            let gx = gray.get((x + 1).min(w - 1), y) - gray.get(x.saturating_sub(1), y);
-            let gy = gray.get(x, below) - gray.get(x, above);
-            levels.push(((gx * gx + gy * gy).sqrt() * STEPS).round() as u16);
+            let square = |g: &Gray| {
+                let gx = g.get((x + 1).min(w - 1), y) - g.get(x.saturating_sub(1), y);
+                let gy = g.get(x, below) - g.get(x, above);
+                gx * gx + gy * gy
+            };
+            let sum: f32 = smooth.iter().map(square).sum();
+            levels.push((sum.sqrt() * STEPS).round() as u16);
         }
     }
     levels
@@ -138,7 +142,7 @@ mod tests {
     #[test]
     fn basins_meet_at_the_edge() {
         let gray = Gray::from_fn(12, 9, |x, _| if x < 5 { 0.2 } else { 0.8 });
-        let (labels, count) = watershed(&gray, 0.7);
+        let (labels, count) = watershed(&[gray.clone(), Gray::new(12, 9), Gray::new(12, 9)]);
         assert_eq!(count, 2);
         for (k, label) in labels.iter().enumerate() {
             assert_eq!(*label, u32::from(k % 12 >= 5), "pixel {k}");
