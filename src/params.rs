@@ -391,6 +391,69 @@ pub struct ObjectSpaceParams {
     pub directions: DirectionParams,
     /// Clusters of lines.
     pub clusters: ClusterParams,
+    /// Planes.
+    pub planes: PlaneParams,
+}
+
+/// W96 3.6: planes between parallel lines.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PlaneParams {
+    /// By how much the window of a plane is enlarged, metres. W96 3.6: "appr. 0.5 m".
+    pub margin_m: f64,
+    /// Steepest plane, degrees. Assumption: roofs, not walls.
+    pub max_slope_deg: f64,
+    /// Least distance of the two lines, metres. Assumption.
+    pub min_width_m: f64,
+    /// Largest distance of the two lines, metres. Assumption.
+    pub max_width_m: f64,
+    /// Planes whose middle is lower than this above the ground are no roofs, metres. Assumption.
+    pub min_height_m: f64,
+    /// Shortest stretch across the plane that a crossing image line covers, metres. Assumption.
+    pub min_crossing_m: f64,
+    /// A crossing within this of a right angle is one, degrees. Assumption.
+    pub angle_deg: f64,
+    /// Crossings within this along the lines are one end, metres. Assumption.
+    pub position_m: f64,
+    /// Most ends of a pair of lines that are tried. W96: two. Assumption.
+    pub max_ends: usize,
+    /// Most candidates kept of a pair of lines. Assumption.
+    pub max_candidates: usize,
+    /// Least share of an outline that image lines cover, mean over the views, for it to be looked at. Assumption.
+    pub min_support: f64,
+    /// Support at which a side speaks neither for nor against a plane. Assumption.
+    pub least_support: f64,
+    /// Correlation at which an area speaks neither for nor against a plane. Assumption.
+    pub least_correlation: f64,
+    /// What a metre of side weighs against a square metre of area, metres. Assumption.
+    pub side_weight_m: f64,
+    /// Least measure, square metres. W96 accepts any best plane, and proposes "thresholding the measure". Assumption.
+    pub min_measure_m2: f64,
+    /// Smallest plane, square metres. Assumption.
+    pub min_area_m2: f64,
+}
+
+impl Default for PlaneParams {
+    fn default() -> Self {
+        Self {
+            margin_m: 0.5,
+            max_slope_deg: 65.0,
+            min_width_m: 1.2,
+            max_width_m: 25.0,
+            min_height_m: 2.0,
+            min_crossing_m: 0.8,
+            angle_deg: 3.0,
+            position_m: 0.3,
+            max_ends: 8,
+            max_candidates: 4,
+            min_support: 0.25,
+            least_support: 0.3,
+            least_correlation: 0.5,
+            side_weight_m: 0.5,
+            min_measure_m2: 1.0,
+            min_area_m2: 3.0,
+        }
+    }
 }
 
 /// W96 3.4: main directions.

@@ -8,6 +8,7 @@
 use nalgebra::{Point2, Point3, Vector3};
 use serde::Serialize;
 
+use super::Facet;
 use crate::geometry::Plane;
 use crate::halfplane::{PlanGrid, consistency_map};
 use crate::lines3d::Line3d;
@@ -172,6 +173,18 @@ impl Ground {
             return self.elsewhere;
         }
         self.heights[r as usize * self.columns + c as usize]
+    }
+}
+
+impl Ground {
+    /// Ground height below a building, metres: the middle one of those at its corners.
+    pub fn below(&self, members: &[&Facet]) -> f64 {
+        let mut heights: Vec<f64> = members
+            .iter()
+            .flat_map(|f| &f.outer)
+            .map(|p| self.z_at(&p.xy()))
+            .collect();
+        crate::math::median(&mut heights).unwrap_or(f64::NAN)
     }
 }
 

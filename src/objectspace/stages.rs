@@ -1,0 +1,250 @@
+//! The four stages of the method, each from typed input to `(value, trace)`.
+
+use nalgebra::{Matrix3, Point2};
+use serde::Serialize;
+
+use super::clusters::{Axes, ClusterLine, ClusterTrace, cluster_lines};
+use super::directions::{DirectionTrace, MainDirections, main_directions};
+use super::oris::{ColorImage, RegionLine, Segmentation, region_lines, segment_regions};
+use super::planes::{PlaneCandidate, PlaneSearch, PlaneTrace};
+use super::select::best_set;
+use super::sight::{Sight, sights};
+use crate::geometry::Segment2;
+use crate::ids::{BuildingId, LineId};
+use crate::linematch::{LineSupport, SupportKind, scene_heights};
+use crate::lines2d::ImageSegment;
+use crate::lines3d::Line3d;
+use crate::parallel;
+use crate::params::ObjectSpaceParams;
+use crate::roof::{Facet, Ground, RoofModel, SolidTrace, close_buildings};
+use crate::scene::Scene;
+
+/// Regions of every view and the lines on their boundaries (W96 3.3).
+pub fn find_regions(
+    scene: &Scene,
+    params: &ObjectSpaceParams,
+) -> (Vec<Vec<RegionLine>>, Vec<Segmentation>) {
+    let per_view = parallel::map(&scene.views, |_, view| {
+        let image = ColorImage::new(&view.gray, &view.rgb, params.oris.smoothing_px);
+        let segmentation = segment_regions(&image, &params.oris);
+        (
+            region_lines(&image, &segmentation, &params.oris),
+            segmentation,
+        )
+    });
+    per_view.into_iter().unzip()
+}
+
+/// A part of the ground plan that is analysed on its own.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Window {
+    /// Least x and y, metres.
+    pub min: Point2<f64>,
+    /// Largest x and y, metres.
+    pub max: Point2<f64>,
+    /// Heights between which lines are sought, metres.
+    pub z_range_m: [f64; 2],
+    /// Main directions of what stands in it.
+    pub directions: Vec<MainDirections>,
+}
+
+/// How the windows and their directions were found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct WindowTrace {
+    /// The histogram of each window.
+    pub histograms: Vec<DirectionTrace>,
+}
+
+/// Windows with their main directions (W96 3.4).
+pub fn find_directions(
+    scene: &Scene,
+    lines: &[Vec<RegionLine>],
+    params: &ObjectSpaceParams,
+) -> (Vec<Window>, WindowTrace) {
+    let segments = image_segments(lines);
+    let z_range_m = scene_heights(scene, &segments);
+    let all = sights(scene, lines);
+    let (directions, histogram) = main_directions(&all, &params.directions);
+    let ends = || all.iter().flat_map(|s| s.ends_at(z_range_m[0]));
+    let bound = |start: f64, f: fn(f64, f64) -> f64| {
+        Point2::new(
+            ends().map(|p| p.x).fold(start, f),
+            ends().map(|p| p.y).fold(start, f),
+        )
+    };
+    let window = Window {
+        min: bound(f64::INFINITY, f64::min),
+        max: bound(f64::NEG_INFINITY, f64::max),
+        z_range_m,
+        directions,
+    };
+    (
+        vec![window],
+        WindowTrace {
+            histograms: vec![histogram],
+        },
+    )
+}
+
+/// The image lines in the form that the files and the other method have.
+pub fn image_segments(lines: &[Vec<RegionLine>]) -> Vec<Vec<ImageSegment>> {
+    lines
+        .iter()
+        .map(|view| view.iter().map(|l| l.line.clone()).collect())
+        .collect()
+}
+
+/// A 3D line with the main direction that it was found in.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FoundLine {
+    /// Index of the window.
+    pub window: usize,
+    /// Index of the pair of main directions in the window, and which of the two.
+    pub direction: [usize; 2],
+    /// The line.
+    pub line: ClusterLine,
+}
+
+/// 3D lines of all windows and directions (W96 3.5).
+pub fn find_clusters(
+    scene: &Scene,
+    lines: &[Vec<RegionLine>],
+    windows: &[Window],
+    params: &ObjectSpaceParams,
+) -> (Vec<FoundLine>, Vec<ClusterTrace>) {
+    let sights = sights(scene, lines);
+    let tasks: Vec<(usize, [usize; 2])> = windows
+        .iter()
+        .enumerate()
+        .flat_map(|(w, window)| {
+            (0..window.directions.len()).flat_map(move |d| [(w, [d, 0]), (w, [d, 1])])
+        })
+        .collect();
+    let results = parallel::map(&tasks, |_, &(w, [pair, axis])| {
+        let direction = windows[w].directions[pair].axes()[axis];
+        cluster_lines(
+            scene,
+            &sights,
+            &direction,
+            windows[w].z_range_m,
+            &params.clusters,
+        )
+    });
+    let (mut found, mut traces) = (Vec::new(), Vec::new());
+    for ((window, direction), (lines, trace)) in tasks.into_iter().zip(results) {
+        found.extend(lines.into_iter().map(|line| FoundLine {
+            window,
+            direction,
+            line,
+        }));
+        traces.push(trace);
+    }
+    (found, traces)
+}
+
+/// What the search for planes did.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct RectangleTrace {
+    /// Every pair of parallel lines.
+    pub pairs: Vec<PlaneTrace>,
+    /// All candidates.
+    pub candidates: Vec<PlaneCandidate>,
+    /// The chosen ones.
+    pub chosen: Vec<usize>,
+    /// Walls and ground.
+    pub solids: SolidTrace,
+}
+
+/// Planes between parallel lines, the best set of them, and the buildings below (W96 3.6).
+pub fn find_rectangles(
+    scene: &Scene,
+    lines: &[Vec<RegionLine>],
+    windows: &[Window],
+    found: &[FoundLine],
+    params: &ObjectSpaceParams,
+) -> (RoofModel, RectangleTrace) {
+    let sights = sights(scene, lines);
+    let world: Vec<Line3d> = found.iter().map(|f| world_line(&sights, &f.line)).collect();
+    let ground = Ground::estimate(scene, &world);
+    let all: Vec<ClusterLine> = found.iter().map(|f| f.line.clone()).collect();
+    let search = PlaneSearch {
+        scene,
+        sights: &sights,
+        lines: &all,
+        ground: &ground,
+        params: &params.planes,
+    };
+    let mut trace = RectangleTrace::default();
+    for (w, window) in windows.iter().enumerate() {
+        for (d, pair) in window.directions.iter().enumerate() {
+            for (axis, direction) in pair.axes().iter().enumerate() {
+                let members: Vec<usize> = (0..found.len())
+                    .filter(|&k| found[k].window == w && found[k].direction == [d, axis])
+                    .collect();
+                let (candidates, pairs) = search.candidates(&Axes::new(direction), &members);
+                trace.candidates.extend(candidates);
+                trace.pairs.extend(pairs);
+            }
+        }
+    }
+    trace.chosen = best_set(&trace.candidates);
+    let facets: Vec<Facet> = trace
+        .chosen
+        .iter()
+        .map(|&k| facet(&trace.candidates[k]))
+        .collect();
+    let (model, solids) = close_buildings(&facets, |members| ground.below(members));
+    trace.solids = solids;
+    (model, trace)
+}
+
+fn facet(candidate: &PlaneCandidate) -> Facet {
+    Facet {
+        building: BuildingId(0),
+        plane: candidate.plane,
+        outer: candidate.ring.clone(),
+        holes: Vec::new(),
+        similarity: candidate.correlation,
+        real_ratio: candidate.support,
+        lines: candidate
+            .lines
+            .iter()
+            .map(|&k| LineId::from_index(k))
+            .collect(),
+        half_planes: Vec::new(),
+    }
+}
+
+/// The 3D lines in the form that the files and the other method have.
+pub fn world_lines(scene: &Scene, lines: &[Vec<RegionLine>], found: &[FoundLine]) -> Vec<Line3d> {
+    let sights = sights(scene, lines);
+    found.iter().map(|f| world_line(&sights, &f.line)).collect()
+}
+
+fn world_line(sights: &[Sight], line: &ClusterLine) -> Line3d {
+    let variance = line.sigma_m * line.sigma_m;
+    let supports = line.coverage.iter().map(|&(view, score)| {
+        let own = || {
+            line.supports
+                .iter()
+                .map(|&k| &sights[k])
+                .filter(move |s| s.view == view)
+        };
+        let camera = own().next().map(|s| s.camera);
+        let ends = [line.segment.p0, line.segment.p1]
+            .map(|p| camera.and_then(|c| c.project(&p)).unwrap_or_default());
+        LineSupport {
+            view,
+            segments: own().map(|s| s.line).collect(),
+            stretch: Segment2::new(ends[0], ends[1]),
+            score,
+            kind: SupportKind::Matched,
+        }
+    });
+    Line3d {
+        segment: line.segment,
+        sigma_m: line.sigma_m,
+        covariance: [Matrix3::identity() * variance; 2],
+        supports: supports.collect(),
+    }
+}
