@@ -387,6 +387,8 @@ impl Default for TextureParams {
 pub struct ObjectSpaceParams {
     /// Regions and their lines.
     pub oris: OrisParams,
+    /// Windows around buildings.
+    pub windows: WindowParams,
     /// Main directions.
     pub directions: DirectionParams,
     /// Clusters of lines.
@@ -452,6 +454,35 @@ impl Default for PlaneParams {
             side_weight_m: 0.5,
             min_measure_m2: 1.0,
             min_area_m2: 3.0,
+        }
+    }
+}
+
+/// W96 3.1: where buildings are. The paper assumes it known.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WindowParams {
+    /// Buildings' boxes x0, y0, x1, y1, metres in the frame of the orientation; found where there are none.
+    pub given_m: Vec<[f64; 4]>,
+    /// Heights between which lines are sought, metres in the frame of the orientation; estimated where `None`.
+    pub z_range_m: Option<[f64; 2]>,
+    /// Side of the tiles in which buildings are sought, metres. Assumption: a house with what stands around it.
+    pub tile_m: f64,
+    /// Lines of a building are linked over this distance in plan, metres. Assumption: the depth of a facet; closer than
+    /// most houses stand.
+    pub link_m: f64,
+    /// The window reaches beyond the lines by this, metres. Assumption: lines that were not found.
+    pub margin_m: f64,
+}
+
+impl Default for WindowParams {
+    fn default() -> Self {
+        Self {
+            given_m: Vec::new(),
+            z_range_m: None,
+            tile_m: 24.0,
+            link_m: 6.0,
+            margin_m: 4.0,
         }
     }
 }

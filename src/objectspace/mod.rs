@@ -8,6 +8,7 @@
 //! ```text
 //! 3.3  oris        regions with straight shared boundaries, lines on them
 //!      sight       image lines with rays and interpretation planes
+//! 3.1  windows     a window for each building
 //! 3.4  directions  main directions from a histogram of azimuths
 //! 3.5  clusters    3D lines by clustering in the plane across a main direction
 //! 3.6  ends        where a plane between two parallel lines ends
@@ -24,10 +25,12 @@ mod planes;
 mod select;
 pub mod sight;
 mod stages;
+mod windows;
 
 pub use ends::{Crossing, End};
 pub use planes::{PlaneCandidate, PlaneRejection, PlaneTrace};
 pub use stages::{
-    FoundLine, RectangleTrace, Window, WindowTrace, find_clusters, find_directions,
-    find_rectangles, find_regions, image_segments, world_lines,
+    FoundLine, RectangleTrace, find_clusters, find_directions, find_rectangles, find_regions,
+    image_segments, world_lines,
 };
+pub use windows::{Window, WindowTrace};

@@ -1,14 +1,14 @@
 //! The four stages of the method, each from typed input to `(value, trace)`.
 
-use nalgebra::{Matrix3, Point2};
+use nalgebra::Matrix3;
 use serde::Serialize;
 
 use super::clusters::{Axes, ClusterLine, ClusterTrace, cluster_lines};
-use super::directions::{DirectionTrace, MainDirections, main_directions};
 use super::oris::{ColorImage, RegionLine, Segmentation, region_lines, segment_regions};
 use super::planes::{PlaneCandidate, PlaneSearch, PlaneTrace};
 use super::select::best_set;
 use super::sight::{Sight, sights};
+use super::windows::{Window, WindowTrace, find_windows};
 use crate::geometry::Segment2;
 use crate::ids::{BuildingId, LineId};
 use crate::linematch::{LineSupport, SupportKind, scene_heights};
@@ -35,55 +35,25 @@ pub fn find_regions(
     per_view.into_iter().unzip()
 }
 
-/// A part of the ground plan that is analysed on its own.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Window {
-    /// Least x and y, metres.
-    pub min: Point2<f64>,
-    /// Largest x and y, metres.
-    pub max: Point2<f64>,
-    /// Heights between which lines are sought, metres.
-    pub z_range_m: [f64; 2],
-    /// Main directions of what stands in it.
-    pub directions: Vec<MainDirections>,
-}
-
-/// How the windows and their directions were found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct WindowTrace {
-    /// The histogram of each window.
-    pub histograms: Vec<DirectionTrace>,
-}
-
-/// Windows with their main directions (W96 3.4).
+/// Windows around buildings with their main directions (W96 3.4).
 pub fn find_directions(
     scene: &Scene,
     lines: &[Vec<RegionLine>],
     params: &ObjectSpaceParams,
 ) -> (Vec<Window>, WindowTrace) {
-    let segments = image_segments(lines);
-    let z_range_m = scene_heights(scene, &segments);
-    let all = sights(scene, lines);
-    let (directions, histogram) = main_directions(&all, &params.directions);
-    let ends = || all.iter().flat_map(|s| s.ends_at(z_range_m[0]));
-    let bound = |start: f64, f: fn(f64, f64) -> f64| {
-        Point2::new(
-            ends().map(|p| p.x).fold(start, f),
-            ends().map(|p| p.y).fold(start, f),
-        )
-    };
-    let window = Window {
-        min: bound(f64::INFINITY, f64::min),
-        max: bound(f64::NEG_INFINITY, f64::max),
-        z_range_m,
-        directions,
-    };
-    (
-        vec![window],
-        WindowTrace {
-            histograms: vec![histogram],
-        },
-    )
+    let z_range = params
+        .windows
+        .z_range_m
+        .map(|z| z.map(|z| z - scene.origin.z));
+    let z_range = z_range.unwrap_or_else(|| scene_heights(scene, &image_segments(lines)));
+    let o = scene.origin;
+    let given = params
+        .windows
+        .given_m
+        .iter()
+        .map(|&[x0, y0, x1, y1]| [x0 - o.x, y0 - o.y, x1 - o.x, y1 - o.y]);
+    let given: Vec<[f64; 4]> = given.collect();
+    find_windows(scene, &sights(scene, lines), z_range, &given, params)
 }
 
 /// The image lines in the form that the files and the other method have.
@@ -121,14 +91,23 @@ pub fn find_clusters(
         })
         .collect();
     let results = parallel::map(&tasks, |_, &(w, [pair, axis])| {
-        let direction = windows[w].directions[pair].axes()[axis];
-        cluster_lines(
+        let window = &windows[w];
+        let shown: Vec<usize> = (0..sights.len())
+            .filter(|&k| window.shows(&sights[k]))
+            .collect();
+        let inside: Vec<Sight> = shown.iter().map(|&k| sights[k].clone()).collect();
+        let direction = window.directions[pair].axes()[axis];
+        let (mut lines, trace) = cluster_lines(
             scene,
-            &sights,
+            &inside,
             &direction,
-            windows[w].z_range_m,
+            window.z_range_m,
             &params.clusters,
-        )
+        );
+        for line in &mut lines {
+            line.supports.iter_mut().for_each(|k| *k = shown[*k]);
+        }
+        (lines, trace)
     });
     let (mut found, mut traces) = (Vec::new(), Vec::new());
     for ((window, direction), (lines, trace)) in tasks.into_iter().zip(results) {

@@ -396,7 +396,14 @@ fn depends(stage: Stage, a: &Params, b: &Params) -> bool {
         Stage::HalfPlanes => a.sweep != b.sweep,
         Stage::Facets => a.roof != b.roof,
         Stage::Regions => a.objectspace.oris != b.objectspace.oris,
-        Stage::Directions => a.objectspace.directions != b.objectspace.directions,
+        // Windows are found with clusters and the ground, too.
+        Stage::Directions => {
+            let (a, b) = (&a.objectspace, &b.objectspace);
+            a.windows != b.windows
+                || a.directions != b.directions
+                || a.clusters != b.clusters
+                || a.planes.min_height_m != b.planes.min_height_m
+        }
         Stage::Clusters => a.objectspace.clusters != b.objectspace.clusters,
         Stage::Rectangles => a.objectspace.planes != b.objectspace.planes,
         Stage::Model => a.texture != b.texture,

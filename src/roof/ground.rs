@@ -9,7 +9,7 @@ use nalgebra::{Point2, Point3, Vector3};
 use serde::Serialize;
 
 use super::Facet;
-use crate::geometry::Plane;
+use crate::geometry::{Plane, Segment3};
 use crate::halfplane::{PlanGrid, consistency_map};
 use crate::lines3d::Line3d;
 use crate::scene::Scene;
@@ -60,13 +60,16 @@ impl Ground {
 
     /// Sweeps the scene between the heights that its 3D lines span; the given height when there is one.
     pub fn estimate(scene: &Scene, lines: &[Line3d]) -> Self {
+        let segments: Vec<Segment3> = lines.iter().map(|l| l.segment).collect();
+        Self::of_segments(scene, &segments)
+    }
+
+    /// The same from 3D lines without their accuracy.
+    pub fn of_segments(scene: &Scene, lines: &[Segment3]) -> Self {
         if let Some(z) = scene.ground_z {
             return Self::level(z);
         }
-        let mut ends: Vec<Point3<f64>> = lines
-            .iter()
-            .flat_map(|l| [l.segment.p0, l.segment.p1])
-            .collect();
+        let mut ends: Vec<Point3<f64>> = lines.iter().flat_map(|l| [l.p0, l.p1]).collect();
         if ends.is_empty() {
             return Self::level(0.0);
         }
