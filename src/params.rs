@@ -429,6 +429,10 @@ pub struct PlaneParams {
     pub least_correlation: f64,
     /// What a metre of side weighs against a square metre of area, metres. Assumption.
     pub side_weight_m: f64,
+    /// What a plane costs, square metres. Assumption: two planes must explain more than one by this.
+    pub plane_cost_m2: f64,
+    /// What an end costs that is not at right angles, square metres. Assumption: it has a parameter more.
+    pub slant_cost_m2: f64,
     /// Least measure, square metres. W96 accepts any best plane, and proposes "thresholding the measure". Assumption.
     pub min_measure_m2: f64,
     /// Smallest plane, square metres. Assumption.
@@ -452,6 +456,8 @@ impl Default for PlaneParams {
             least_support: 0.3,
             least_correlation: 0.5,
             side_weight_m: 0.5,
+            plane_cost_m2: 2.0,
+            slant_cost_m2: 1.5,
             min_measure_m2: 1.0,
             min_area_m2: 3.0,
         }
@@ -534,7 +540,7 @@ pub struct ClusterParams {
     pub min_coverage: f64,
     /// What an image line costs on its own, bits. Assumption: one of 64 positions.
     pub position_bits: f64,
-    /// What a 3D line costs, bits. Assumption: one of 100 x 40 places.
+    /// What a 3D line costs, bits. Assumption: one of 16 x 16 places beside those that others leave.
     pub line_bits: f64,
     /// What it costs that a view misses a line, bits. Assumption.
     pub miss_bits: f64,
@@ -549,14 +555,14 @@ impl Default for ClusterParams {
         Self {
             angle_deg: 2.5,
             end_px: 1.5,
-            gate_px: 1.5,
-            sigma_px: 0.5,
+            gate_px: 1.2,
+            sigma_px: 0.4,
             cell_m: 0.15,
             max_grey_difference: 0.08,
             min_views: 3,
             min_coverage: 0.25,
             position_bits: 6.0,
-            line_bits: 12.0,
+            line_bits: 8.0,
             miss_bits: 1.0,
             max_gap_m: 4.0,
             min_length_m: 1.0,

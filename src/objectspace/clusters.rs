@@ -545,3 +545,74 @@ pub(super) fn covered(stretches: impl Iterator<Item = [f64; 2]>, within: [f64; 2
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixture::{planted_lines, rig};
+    use super::super::sight::sights;
+    use super::*;
+    use crate::params::ClusterParams;
+
+    fn found(share_of_outliers: f64, views: usize) -> Vec<ClusterLine> {
+        let scene = rig(views);
+        let truth = Segment3::new(Point3::new(-5.0, 1.0, 6.0), Point3::new(5.0, 1.0, 6.0));
+        let lines = planted_lines(&scene, &[truth], share_of_outliers, &[]);
+        let sights = sights(&scene, &lines);
+        cluster_lines(
+            &scene,
+            &sights,
+            &Vector3::x(),
+            [0.0, 12.0],
+            &ClusterParams::default(),
+        )
+        .0
+    }
+
+    #[test]
+    fn a_line_is_found_among_as_many_outliers() {
+        let lines = found(0.5, 6);
+        let best = &lines[0];
+        for p in [best.segment.p0, best.segment.p1] {
+            assert!((p.y - 1.0).abs() < 0.1 && (p.z - 6.0).abs() < 0.1, "{p}");
+            assert!((p.x.abs() - 5.0).abs() < 0.3, "{p}");
+        }
+        assert_eq!(best.coverage.len(), 6);
+    }
+
+    #[test]
+    fn a_line_hidden_in_two_views_is_found_at_a_cost() {
+        let scene = rig(6);
+        let truth = Segment3::new(Point3::new(-5.0, 1.0, 6.0), Point3::new(5.0, 1.0, 6.0));
+        let best = |hidden: &[usize]| {
+            let lines = planted_lines(&scene, &[truth], 0.0, hidden);
+            let sights = sights(&scene, &lines);
+            cluster_lines(
+                &scene,
+                &sights,
+                &Vector3::x(),
+                [0.0, 12.0],
+                &ClusterParams::default(),
+            )
+            .0
+        };
+        let (all, four, two) = (best(&[]), best(&[1, 4]), best(&[0, 1, 3, 4]));
+        assert_eq!((all.len(), four.len(), two.len()), (1, 1, 0));
+        assert!(four[0].gain_bits < all[0].gain_bits);
+    }
+
+    #[test]
+    fn an_image_line_supports_one_3d_line_only() {
+        let lines = found(0.5, 6);
+        let mut used: Vec<usize> = lines.iter().flat_map(|l| l.supports.clone()).collect();
+        let count = used.len();
+        used.sort_unstable();
+        used.dedup();
+        assert_eq!(used.len(), count);
+    }
+
+    #[test]
+    fn covered_counts_overlaps_once() {
+        let parts = [[0.0, 2.0], [1.0, 3.0], [5.0, 9.0], [-4.0, -1.0]];
+        assert_eq!(covered(parts.into_iter(), [0.0, 6.0]), 4.0);
+    }
+}

@@ -135,6 +135,33 @@ pub(super) fn ends(
         }
     }
     proposals.extend(line_ends.iter().map(|&u| [u, u]));
+    distinct(strip, crossings, proposals, views, params)
+}
+
+/// The clusters of the slanted crossings and of further proposals.
+pub(super) fn slanted_ends(
+    strip: &Strip,
+    crossings: &[Crossing],
+    starts: &[[f64; 2]],
+    views: usize,
+    params: &PlaneParams,
+) -> Vec<End> {
+    let proposals = crossings
+        .iter()
+        .map(|c| c.at)
+        .chain(starts.iter().copied())
+        .collect();
+    distinct(strip, crossings, proposals, views, params)
+}
+
+/// Settles the proposals and keeps the best, each place once.
+fn distinct(
+    strip: &Strip,
+    crossings: &[Crossing],
+    proposals: Vec<[f64; 2]>,
+    views: usize,
+    params: &PlaneParams,
+) -> Vec<End> {
     let mut found: Vec<End> = proposals
         .into_iter()
         .map(|p| settle(strip, crossings, p, views, params))

@@ -20,6 +20,8 @@
 pub mod clusters;
 pub mod directions;
 mod ends;
+#[cfg(test)]
+mod fixture;
 pub mod oris;
 mod planes;
 mod select;

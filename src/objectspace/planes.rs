@@ -7,6 +7,7 @@
 //! ```text
 //! M = sum over the area of  weight (correlation - least_correlation)
 //!   + side_weight  sum over the sides of  length (support - least_support)       square metres
+//!   - plane_cost - slant_cost (ends that are not at right angles)
 //! ```
 //!
 //! * the first sum is the paper's criterion that "the area ... inside the 3D plane should be radiometrically homogeneous
@@ -16,13 +17,14 @@
 //!   support is the share of a side that image lines cover, mean over all views.
 //!
 //! Of the polygons between two lines those with the largest M are kept as candidates. A pair of lines may hold
-//! several, with gaps between them: U-shapes.
+//! several, with gaps between them: U-shapes. A line with an end of a perpendicular, higher one makes a triangle: the end of a
+//! hip below its ridge.
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Point3};
 use serde::Serialize;
 
 use super::clusters::{Axes, ClusterLine, overlap};
-use super::ends::{Crossing, End, Strip, crossings, ends, side_support};
+use super::ends::{Crossing, End, Strip, crossings, ends, side_support, slanted_ends};
 use super::sight::Sight;
 use crate::geometry::Plane;
 use crate::halfplane::{ConsistencyMap, PlanGrid, consistency_map};
@@ -37,7 +39,7 @@ pub struct PlaneCandidate {
     /// The plane.
     pub plane: Plane,
     /// Corners, metres, counter-clockwise seen from above.
-    pub ring: Vec<nalgebra::Point3<f64>>,
+    pub ring: Vec<Point3<f64>>,
     /// The two lines (one for a triangle), as indices into the clusters of the window.
     pub lines: Vec<usize>,
     /// Share of the outline that image lines cover, mean over the views.
@@ -119,6 +121,75 @@ impl PlaneSearch<'_> {
             traces.push(trace);
         }
         (candidates, traces)
+    }
+
+    /// Triangles below the ends of higher lines, `apexes`, on the lines that run along `axes.u`.
+    pub fn triangles(
+        &self,
+        axes: &Axes,
+        members: &[usize],
+        apexes: &[Point3<f64>],
+    ) -> Vec<PlaneCandidate> {
+        let found = crate::parallel::map(members, |_, &k| {
+            let base = self.along(axes, &self.lines[k]);
+            let mut found: Vec<PlaneCandidate> = apexes
+                .iter()
+                .flat_map(|apex| self.triangle(axes, &base, apex))
+                .collect();
+            found.iter_mut().for_each(|c| c.lines = vec![k]);
+            found
+        });
+        found.into_iter().flatten().collect()
+    }
+
+    fn triangle(&self, axes: &Axes, base: &Along, apex: &Point3<f64>) -> Option<PlaneCandidate> {
+        let top = axes.u.dot(&apex.coords);
+        let inside = base.range[0] < top && top < base.range[1] && apex.z > base.place[1] + 0.3;
+        inside.then_some(())?;
+        let tip = Along {
+            range: base.range,
+            place: [axes.v.dot(&apex.coords), apex.z],
+            stretches: Vec::new(),
+        };
+        let strip = self.strip(axes, [base, &tip]).ok()?;
+        let crossings = crossings(&strip, self.sights, self.params);
+        let views = self.scene.views.len();
+        let starts = base.range.map(|u| [u, top]);
+        let ends = slanted_ends(&strip, &crossings, &starts, views, self.params);
+        let to_tip = |e: &&End| (e.at[1] - top).abs() <= 2.0 * self.params.position_m;
+        let best = |side: f64| {
+            let on_side = ends
+                .iter()
+                .filter(to_tip)
+                .filter(|e| side * (e.at[0] - top) > 0.5);
+            on_side.max_by(|a, b| a.support.total_cmp(&b.support))
+        };
+        let (left, right) = (best(-1.0)?, best(1.0)?);
+        let bottom = [left.at[0], right.at[0]];
+        let slant = |e: &End| {
+            let d = top - e.at[0];
+            (strip.width * strip.width + d * d).sqrt()
+        };
+        let sides = [
+            (
+                bottom[1] - bottom[0],
+                side_support(&base.stretches, bottom, views),
+            ),
+            (slant(left), left.support),
+            (slant(right), right.support),
+        ];
+        let length: f64 = sides.iter().map(|s| s.0).sum();
+        let support = sides.iter().map(|s| s.0 * s.1).sum::<f64>() / length;
+        (support >= self.params.min_support).then_some(())?;
+        let corners = vec![[bottom[0], 0.0], [bottom[1], 0.0], [top, strip.width]];
+        // Both slants are fixed by the apex: no parameter of their own.
+        let shape = Shape {
+            corners,
+            length,
+            support,
+            slants: 0,
+        };
+        self.measured(&strip, vec![shape]).pop()
     }
 
     fn along(&self, axes: &Axes, line: &ClusterLine) -> Along {
@@ -225,10 +296,12 @@ impl PlaneSearch<'_> {
                         [q[1], strip.width],
                         [q[0], strip.width],
                     ];
+                    let slants = [left, right].iter().filter(|e| e.at[0] != e.at[1]).count();
                     shapes.push(Shape {
                         corners: corners.into(),
                         length,
                         support,
+                        slants,
                     });
                 }
             }
@@ -238,44 +311,43 @@ impl PlaneSearch<'_> {
 
     /// The best shapes of a strip by the measure, those with a positive one.
     fn measured(&self, strip: &Strip, shapes: Vec<Shape>) -> Vec<PlaneCandidate> {
-        let rings: Vec<Vec<nalgebra::Point3<f64>>> = shapes.iter().map(|s| s.ring(strip)).collect();
+        let rings: Vec<Vec<Point3<f64>>> = shapes.iter().map(|s| s.ring(strip)).collect();
         let Some(judge) = Judge::new(self.scene, &strip.plane, &rings) else {
             return Vec::new();
         };
         let mut found: Vec<PlaneCandidate> = shapes
             .iter()
             .zip(rings)
-            .filter_map(|(shape, ring)| {
-                self.judged(&judge, &strip.plane, ring, shape.length, shape.support)
-            })
+            .filter_map(|(shape, ring)| self.judged(&judge, &strip.plane, ring, shape))
             .collect();
         found.sort_by(|a, b| b.measure.total_cmp(&a.measure));
         found.truncate(self.params.max_candidates);
         found
     }
 
-    /// A candidate of this outline; `None` where its measure is not positive.
-    pub fn judged(
+    /// A candidate of this outline; `None` where its measure is too small.
+    fn judged(
         &self,
         judge: &Judge,
         plane: &Plane,
-        ring: Vec<nalgebra::Point3<f64>>,
-        length: f64,
-        support: f64,
+        ring: Vec<Point3<f64>>,
+        shape: &Shape,
     ) -> Option<PlaneCandidate> {
         let p = self.params;
-        let (area, weight, correlation) = judge.inside(&ring);
-        let slope = plane.normal.z;
-        let measure = area / slope * weight * (correlation - p.least_correlation)
-            + p.side_weight_m * length * (support - p.least_support);
+        let (plan_area, weight, correlation) = judge.inside(&ring);
+        let area = plan_area / plane.normal.z;
+        let measure = area * weight * (correlation - p.least_correlation)
+            + p.side_weight_m * shape.length * (shape.support - p.least_support)
+            - p.plane_cost_m2
+            - p.slant_cost_m2 * shape.slants as f64;
         let accepted = measure > p.min_measure_m2
-            && area / slope >= p.min_area_m2
+            && area >= p.min_area_m2
             && correlation >= p.least_correlation;
         accepted.then(|| PlaneCandidate {
             plane: *plane,
             ring,
             lines: Vec::new(),
-            support,
+            support: shape.support,
             correlation,
             measure,
         })
@@ -288,10 +360,12 @@ struct Shape {
     corners: Vec<[f64; 2]>,
     length: f64,
     support: f64,
+    /// Ends that are not at right angles.
+    slants: usize,
 }
 
 impl Shape {
-    fn ring(&self, strip: &Strip) -> Vec<nalgebra::Point3<f64>> {
+    fn ring(&self, strip: &Strip) -> Vec<Point3<f64>> {
         let mut ring: Vec<_> = self
             .corners
             .iter()
@@ -305,7 +379,7 @@ impl Shape {
 }
 
 /// Signed area in plan, square metres.
-pub(super) fn area_2d(ring: &[nalgebra::Point3<f64>]) -> f64 {
+pub(super) fn area_2d(ring: &[Point3<f64>]) -> f64 {
     (0..ring.len())
         .map(|i| {
             let (p, q) = (&ring[i], &ring[(i + 1) % ring.len()]);
@@ -325,7 +399,7 @@ const MOST_CELLS: f64 = 60_000.0;
 
 impl Judge {
     /// Compares the views on a plane where the rings are; `None` without rings.
-    pub fn new(scene: &Scene, plane: &Plane, rings: &[Vec<nalgebra::Point3<f64>>]) -> Option<Self> {
+    pub fn new(scene: &Scene, plane: &Plane, rings: &[Vec<Point3<f64>>]) -> Option<Self> {
         let corners = || rings.iter().flatten();
         let bound = |start: f64, f: fn(f64, f64) -> f64| {
             Point2::new(
@@ -353,7 +427,7 @@ impl Judge {
     }
 
     /// Area in plan, mean weight and weighted mean correlation inside a convex ring that runs counter-clockwise.
-    pub fn inside(&self, ring: &[nalgebra::Point3<f64>]) -> (f64, f64, f64) {
+    pub fn inside(&self, ring: &[Point3<f64>]) -> (f64, f64, f64) {
         let (mut cells, mut weights, mut sum) = (0u32, 0.0, 0.0);
         for row in 0..self.grid.height {
             let y = self.grid.center(0, row).y;
@@ -384,7 +458,7 @@ impl Judge {
 }
 
 /// The range of x inside a convex ring at a y.
-fn span(ring: &[nalgebra::Point3<f64>], y: f64) -> Option<[f64; 2]> {
+fn span(ring: &[Point3<f64>], y: f64) -> Option<[f64; 2]> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for i in 0..ring.len() {
         let (p, q) = (&ring[i], &ring[(i + 1) % ring.len()]);

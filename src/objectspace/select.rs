@@ -127,31 +127,49 @@ fn branch(
     branch(others, conflicts, weights, sum, chosen, best);
 }
 
-/// Greedy, then exchanges of one candidate for those that it excludes.
+/// Greedy, then exchanges: one candidate for those that it excludes, or several for the one that excludes them.
 fn exchanged(tangle: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
     let mut order = tangle.to_vec();
     order.sort_by(|&a, &b| weights[b].total_cmp(&weights[a]).then(a.cmp(&b)));
     let mut inside = vec![false; conflicts.len()];
+    // Each exchange raises the sum, so this ends.
     loop {
-        let gains = |k: usize, inside: &[bool]| {
-            let lost: f64 = conflicts[k]
-                .iter()
-                .filter(|&&c| inside[c])
-                .map(|&c| weights[c])
-                .sum();
-            weights[k] - lost
+        let gain = |k: usize, inside: &[bool]| {
+            let lost = conflicts[k].iter().filter(|&&c| inside[c]);
+            weights[k] - lost.map(|&c| weights[c]).sum::<f64>()
         };
-        // Each exchange raises the sum, so this ends.
-        let Some(&k) = order
+        if let Some(&k) = order
             .iter()
-            .find(|&&k| !inside[k] && gains(k, &inside) > 1e-9)
-        else {
+            .find(|&&k| !inside[k] && gain(k, &inside) > 1e-9)
+        {
+            conflicts[k].iter().for_each(|&c| inside[c] = false);
+            inside[k] = true;
+            continue;
+        }
+        let better = order.iter().filter(|&&k| inside[k]).find_map(|&k| {
+            let freed = freed_by(k, &order, conflicts, &inside);
+            let sum: f64 = freed.iter().map(|&f| weights[f]).sum();
+            (sum > weights[k] + 1e-9).then_some((k, freed))
+        });
+        let Some((k, freed)) = better else {
             break;
         };
-        conflicts[k].iter().for_each(|&c| inside[c] = false);
-        inside[k] = true;
+        inside[k] = false;
+        freed.into_iter().for_each(|f| inside[f] = true);
     }
     order.into_iter().filter(|&k| inside[k]).collect()
+}
+
+/// What could stand in the place of one candidate, greedily.
+fn freed_by(gone: usize, order: &[usize], conflicts: &[Vec<usize>], inside: &[bool]) -> Vec<usize> {
+    let mut freed: Vec<usize> = Vec::new();
+    for &k in order {
+        let blocked = |c: &usize| (inside[*c] && *c != gone) || freed.contains(c);
+        if conflicts[k].contains(&gone) && !conflicts[k].iter().any(blocked) {
+            freed.push(k);
+        }
+    }
+    freed
 }
 
 #[cfg(test)]

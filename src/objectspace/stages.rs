@@ -1,6 +1,6 @@
 //! The four stages of the method, each from typed input to `(value, trace)`.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Point3};
 use serde::Serialize;
 
 use super::clusters::{Axes, ClusterLine, ClusterTrace, cluster_lines};
@@ -162,6 +162,13 @@ pub fn find_rectangles(
                     .collect();
                 let (candidates, pairs) = search.candidates(&Axes::new(direction), &members);
                 trace.candidates.extend(candidates);
+                let apexes: Vec<Point3<f64>> = found
+                    .iter()
+                    .filter(|f| f.window == w && f.direction == [d, 1 - axis])
+                    .flat_map(|f| [f.line.segment.p0, f.line.segment.p1])
+                    .collect();
+                let triangles = search.triangles(&Axes::new(direction), &members, &apexes);
+                trace.candidates.extend(triangles);
                 trace.pairs.extend(pairs);
             }
         }

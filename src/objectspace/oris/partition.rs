@@ -71,6 +71,10 @@ pub(super) struct Straightening {
     pub sides: [u32; 2],
     /// The pixels that would go from the right region to the left one.
     pub moved: Moments,
+    /// How far the boundary moves, pixels.
+    pub height_px: f64,
+    /// Is one of the two vectors as short as a pixel?
+    pub step: bool,
 }
 
 /// The partition.
@@ -156,7 +160,15 @@ impl Partition {
             return None;
         }
         let moved = self.sums.side(pa, pb) + self.sums.side(pb, pc) - self.sums.side(pa, pc);
-        Some(Straightening { sides, moved })
+        let (dx, dy) = (f64::from(pc.x - pa.x), f64::from(pc.y - pa.y));
+        let height_px = cross.abs() as f64 / (dx * dx + dy * dy).sqrt();
+        let short = |p: Lattice, q: Lattice| (p.x - q.x).abs() + (p.y - q.y).abs() <= 1;
+        Some(Straightening {
+            sides,
+            moved,
+            height_px,
+            step: short(pa, pb) || short(pb, pc),
+        })
     }
 
     fn joined(&self, a: u32, c: u32) -> bool {
