@@ -292,3 +292,77 @@ pub(super) fn side_support(
         .sum();
     sum / views.max(1) as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixture::{planted_lines, rig};
+    use super::super::sight::sights;
+    use super::*;
+    use crate::geometry::Segment3;
+
+    /// A roof plane that rises along Y from an eave at y = 0, z = 3 to a ridge at y = 4, z = 6.
+    fn strip() -> Strip {
+        Strip::new(
+            &Axes::new(&Vector3::x()),
+            [0.0, 3.0],
+            [4.0, 6.0],
+            [-8.0, 8.0],
+        )
+        .unwrap()
+    }
+
+    fn found(uv: &[[f64; 2]]) -> Vec<End> {
+        let (scene, strip) = (rig(6), strip());
+        let truth: Vec<Segment3> = uv
+            .iter()
+            .map(|[a, b]| Segment3::new(strip.point(*a, 0.0), strip.point(*b, strip.width)))
+            .collect();
+        let lines = planted_lines(&scene, &truth, 0.3, &[2]);
+        let params = PlaneParams::default();
+        let crossings = crossings(&strip, &sights(&scene, &lines), &params);
+        ends(&strip, &crossings, &[], 6, &params)
+    }
+
+    #[test]
+    fn a_plane_with_a_gap_has_four_ends() {
+        let planted = [-7.0, -2.0, 1.5, 6.0];
+        let ends = found(&planted.map(|u| [u, u]));
+        for u in planted {
+            let end = ends.iter().find(|e| (e.at[0] - u).abs() < 0.1).unwrap();
+            // One of six views does not see them.
+            assert!(
+                end.at[0] == end.at[1] && end.support > 0.75 && end.support < 0.9,
+                "{end:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn slanted_ends_keep_both_positions() {
+        let ends = found(&[[-7.0, -3.0], [6.0, 6.0]]);
+        let hip = ends
+            .iter()
+            .find(|e| e.at[0] != e.at[1] && e.support > 0.7)
+            .unwrap();
+        assert!(
+            (hip.at[0] + 7.0).abs() < 0.15 && (hip.at[1] + 3.0).abs() < 0.15,
+            "{hip:?}"
+        );
+    }
+
+    #[test]
+    fn lines_off_the_plane_scatter() {
+        // 2 m above the plane: seen from six places it crosses at six.
+        let (scene, strip) = (rig(6), strip());
+        let up = Vector3::z() * 2.0;
+        let truth = [Segment3::new(
+            strip.point(1.0, 0.0) + up,
+            strip.point(1.0, strip.width) + up,
+        )];
+        let lines = planted_lines(&scene, &truth, 0.0, &[]);
+        let params = PlaneParams::default();
+        let crossings = crossings(&strip, &sights(&scene, &lines), &params);
+        let best = ends(&strip, &crossings, &[], 6, &params);
+        assert!(best.first().is_none_or(|e| e.support < 0.6), "{best:?}");
+    }
+}

@@ -426,8 +426,12 @@ impl Judge {
         Some(Self { grid, map })
     }
 
-    /// Area in plan, mean weight and weighted mean correlation inside a convex ring that runs counter-clockwise.
-    pub fn inside(&self, ring: &[Point3<f64>]) -> (f64, f64, f64) {
+    /// Area in plan of a convex ring that runs counter-clockwise; mean weight and weighted mean correlation inside.
+    pub fn inside(&self, whole: &[Point3<f64>]) -> (f64, f64, f64) {
+        // Windows that reach over the border show its edge, which is in the right place for many a false plane.
+        let core = shrunk(whole, REACH_CELLS * self.grid.step);
+        let ring = core.as_deref().unwrap_or(whole);
+        let plan_area = area_2d(whole);
         let (mut cells, mut weights, mut sum) = (0u32, 0.0, 0.0);
         for row in 0..self.grid.height {
             let y = self.grid.center(0, row).y;
@@ -449,12 +453,34 @@ impl Judge {
         }
         let n = f64::from(cells.max(1));
         let correlation = if weights > 0.0 { sum / weights } else { 0.0 };
-        (
-            f64::from(cells) * self.grid.step * self.grid.step,
-            weights / n,
-            correlation,
-        )
+        (plan_area, weights / n, correlation)
     }
+}
+
+/// Half the window of the correlation and the pixel that an edge takes, cells.
+const REACH_CELLS: f64 = 6.0;
+
+/// A convex ring with its sides moved inwards; `None` where little is left.
+fn shrunk(ring: &[Point3<f64>], by: f64) -> Option<Vec<Point3<f64>>> {
+    let n = ring.len();
+    // Lines a x + b y = c through the moved sides; the inside is to the left.
+    let side = |i: usize| {
+        let (p, q) = (&ring[i], &ring[(i + 1) % n]);
+        let d = (q - p).xy().normalize();
+        (-d.y, d.x, -d.y * p.x + d.x * p.y + by)
+    };
+    let moved: Vec<Point3<f64>> = (0..n)
+        .map(|i| {
+            let ((a, b, c), (d, e, f)) = (side((i + n - 1) % n), side(i));
+            let det = a * e - b * d;
+            Point3::new((c * e - b * f) / det, (a * f - c * d) / det, 0.0)
+        })
+        .collect();
+    let inwards = (0..n).all(|i| {
+        let j = (i + 1) % n;
+        (moved[j] - moved[i]).xy().dot(&(ring[j] - ring[i]).xy()) > 0.0
+    });
+    (inwards && area_2d(&moved) > 0.15 * area_2d(ring)).then_some(moved)
 }
 
 /// The range of x inside a convex ring at a y.
@@ -469,4 +495,22 @@ fn span(ring: &[Point3<f64>], y: f64) -> Option<[f64; 2]> {
         }
     }
     (low < high).then_some([low, high])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rectangle_shrinks_on_all_sides_and_a_sliver_does_not() {
+        let ring = |w: f64| {
+            [[0.0, 0.0], [9.0, 0.0], [9.0, w], [0.0, w]]
+                .map(|[x, y]| Point3::new(x, y, 1.0))
+                .to_vec()
+        };
+        let core = shrunk(&ring(6.0), 1.0).unwrap();
+        assert!((area_2d(&core) - 28.0).abs() < 1e-9);
+        assert_eq!(span(&core, 3.0), Some([1.0, 8.0]));
+        assert!(shrunk(&ring(1.5), 1.0).is_none());
+    }
 }

@@ -137,7 +137,7 @@ fn raised_lines(
             kept.push(line);
         }
     }
-    let ground = Ground::of_segments(scene, &kept);
+    let ground = Ground::of_segments(scene, &kept, Some(z_range_m));
     let height = |s: &Segment3| s.p0.z - ground.z_at(&s.at(0.5).xy());
     kept.retain(|s| height(s) >= 0.7 * params.planes.min_height_m);
     kept

@@ -61,11 +61,12 @@ impl Ground {
     /// Sweeps the scene between the heights that its 3D lines span; the given height when there is one.
     pub fn estimate(scene: &Scene, lines: &[Line3d]) -> Self {
         let segments: Vec<Segment3> = lines.iter().map(|l| l.segment).collect();
-        Self::of_segments(scene, &segments)
+        Self::of_segments(scene, &segments, None)
     }
 
-    /// The same from 3D lines without their accuracy.
-    pub fn of_segments(scene: &Scene, lines: &[Segment3]) -> Self {
+    /// The same from 3D lines without their accuracy, swept between two heights where they are known: the lines may all
+    /// be those of a roof.
+    pub fn of_segments(scene: &Scene, lines: &[Segment3], z_range: Option<[f64; 2]>) -> Self {
         if let Some(z) = scene.ground_z {
             return Self::level(z);
         }
@@ -76,7 +77,8 @@ impl Ground {
         ends.sort_by(|a, b| a.z.total_cmp(&b.z));
         // A few wrong lines may lie far off.
         let share = |f: f64| ends[(f * (ends.len() - 1) as f64) as usize].z;
-        let (low, high) = (share(0.02) - 2.0, share(0.98) + 1.0);
+        let around_lines = [share(0.02) - 2.0, share(0.98) + 1.0];
+        let [low, high] = z_range.unwrap_or(around_lines);
         let samples = sweep(scene, &ends, low, high);
         let elsewhere = low_height(samples.iter().map(|s| s.z)).unwrap_or_else(|| share(0.1));
         Self::from_samples(&samples, elsewhere)
