@@ -456,7 +456,7 @@ impl Default for PlaneParams {
             least_support: 0.3,
             least_correlation: 0.5,
             side_weight_m: 0.5,
-            plane_cost_m2: 2.0,
+            plane_cost_m2: 1.0,
             slant_cost_m2: 1.5,
             min_measure_m2: 1.0,
             min_area_m2: 3.0,
