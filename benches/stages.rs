@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use ridgeline::params::Params;
-use ridgeline::pipeline::{Run, Stage};
+use ridgeline::pipeline::Run;
 use ridgeline::progress::silent;
 use ridgeline::synthetic::l_scene;
 
@@ -16,7 +16,7 @@ fn stages(c: &mut Criterion) {
     group
         .sample_size(10)
         .measurement_time(Duration::from_secs(5));
-    for stage in Stage::ALL {
+    for &stage in run.stages().to_vec().iter() {
         group.bench_function(stage.name(), |b| {
             b.iter_custom(|times| {
                 let start = Instant::now();

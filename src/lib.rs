@@ -3,7 +3,8 @@
 //! Three or more calibrated aerial photographs in, textured 3D roof models out.
 //!
 //! Implements B99 (Baillard, Schmid, Zisserman, Fitzgibbon 1999, "Automatic line matching and 3D
-//! reconstruction of buildings from multiple views").
+//! reconstruction of buildings from multiple views") and W96 (Wiman, Axelsson 1996, "Finding 3D-structures in multiple aerial
+//! images using lines and regions").
 //!
 //! ```text
 //! images + orientation files
@@ -13,6 +14,8 @@
 //!    -> lines3d                 3D lines with covariance                    B99 3.2, figure 4
 //!    -> halfplane               points of interest, Sim(theta), half-planes B99 4.1
 //!    -> roof                    grouping, delineation, verification, walls  B99 4.2, 4.3
+//!    or, from the images to the roofs in one go
+//!    -> objectspace             regions, main directions, clusters, planes  W96 3.3 - 3.6
 //!    -> texture                 best view per face, atlas
 //!    -> export                  CityJSON, GLB, JSON
 //! ```
@@ -31,6 +34,7 @@ pub mod linematch;
 pub mod lines2d;
 pub mod lines3d;
 pub mod math;
+pub mod objectspace;
 pub mod orientation;
 pub mod parallel;
 pub mod params;

@@ -40,9 +40,9 @@ struct ReconstructArgs {
     /// Which orientation to take where the folder holds several: a part of its path.
     #[arg(long, value_name = "PATH")]
     orientation: Option<String>,
-    /// How roofs are found.
-    #[arg(long, value_enum, default_value_t = Method::Lines)]
-    method: Method,
+    /// How roofs are found; by default as the parameters say: lines.
+    #[arg(long, value_enum)]
+    method: Option<Method>,
     /// Use only these views (image names, separated by commas).
     #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
     views: Option<Vec<String>>,
@@ -64,6 +64,17 @@ struct ReconstructArgs {
 enum Method {
     /// Lines matched over the views, and half-planes at them (Baillard et al. 1999).
     Lines,
+    /// Regions, and planes between parallel lines in object space (Wiman and Axelsson 1996).
+    Rectangles,
+}
+
+impl From<Method> for ridgeline::params::Method {
+    fn from(method: Method) -> Self {
+        match method {
+            Method::Lines => Self::Lines,
+            Method::Rectangles => Self::Rectangles,
+        }
+    }
 }
 
 /// Why a command stopped.

@@ -17,7 +17,10 @@ const BAR_STEPS: f64 = 100.0;
 
 /// Reads the scene, runs every stage, writes the results and prints a summary.
 pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
-    let params = read_params(args)?;
+    let mut params = read_params(args)?;
+    if let Some(method) = args.method {
+        params.method = method.into();
+    }
     make_folder(args)?;
     set_threads(args);
     let start = Instant::now();
@@ -76,11 +79,12 @@ fn set_threads(args: &ReconstructArgs) {
 
 /// Runs the stages under a progress bar (which indicatif hides away from a terminal); seconds each.
 fn run_stages(run: &mut Run) -> Vec<(Stage, f64)> {
-    let bar = ProgressBar::new(Stage::ALL.len() as u64 * BAR_STEPS as u64);
+    let stages = run.stages();
+    let bar = ProgressBar::new(stages.len() as u64 * BAR_STEPS as u64);
     let style = ProgressStyle::with_template("{msg:12} {bar:40} {elapsed}");
     bar.set_style(style.expect("the template is well formed"));
     let mut seconds = Vec::new();
-    for (i, stage) in Stage::ALL.into_iter().enumerate() {
+    for (i, &stage) in stages.iter().enumerate() {
         bar.set_message(stage.name());
         let start = Instant::now();
         let shown = bar.clone();

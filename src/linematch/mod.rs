@@ -75,6 +75,13 @@ pub fn match_lines(
     (matches, trace)
 }
 
+/// The range of heights, metres, in which the lines of a scene lie: estimated from the segments of all views, or as wide as
+/// the cameras allow.
+pub fn scene_heights(scene: &Scene, segments: &[Vec<ImageSegment>]) -> [f64; 2] {
+    let sights = sight::Sights::new(scene, segments);
+    height::height_range(scene, &sights).map_or_else(|| height::any_height(scene), |range| range.z)
+}
+
 /// How a stretch of a line came to be part of a match (the page colours it so).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]

@@ -2,7 +2,8 @@
 //! tests all run a reconstruction through [`Run`].
 //!
 //! ```text
-//! Scene -> segments -> matches -> lines -> halfplanes -> facets -> model -> files
+//! B99:  Scene -> segments -> matches -> lines -> halfplanes -> facets -> model -> files
+//! W96:  Scene -> regions -> directions -> clusters -> rectangles      -> model -> files
 //! ```
 //!
 //! Invariant: no geometry here. Invariant: a result in a [`Run`] always belongs to the current
@@ -13,6 +14,8 @@ mod summary;
 
 pub use summary::StageSummary;
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use crate::export::{self, export_all};
@@ -20,8 +23,14 @@ use crate::halfplane::{HalfPlane, SweepTrace, sweep_half_planes};
 use crate::linematch::{LineMatch, MatchTrace, match_lines};
 use crate::lines2d::{ImageSegment, SegmentTrace, detect_segments};
 use crate::lines3d::{Line3d, LineTrace, reconstruct_lines};
+use crate::objectspace::clusters::ClusterTrace;
+use crate::objectspace::oris::{RegionLine, Segmentation};
+use crate::objectspace::{
+    FoundLine, RectangleTrace, Window, WindowTrace, find_clusters, find_directions,
+    find_rectangles, find_regions, image_segments, world_lines,
+};
 use crate::parallel;
-use crate::params::Params;
+use crate::params::{Method, Params};
 use crate::progress::{self, Listener};
 use crate::roof::{RoofModel, RoofTrace, reconstruct_roofs};
 use crate::scene::Scene;
@@ -41,20 +50,53 @@ pub enum Stage {
     HalfPlanes,
     /// Roof facets and the closed buildings below them (B99 4.2, 4.3).
     Facets,
+    /// Regions with straight boundaries in every view (W96 3.3).
+    Regions,
+    /// Windows and their main directions (W96 3.4).
+    Directions,
+    /// 3D lines by clustering (W96 3.5).
+    Clusters,
+    /// Planes between parallel lines and the closed buildings below them (W96 3.6).
+    Rectangles,
     /// The textured model.
     Model,
 }
 
 impl Stage {
-    /// All stages in order.
-    pub const ALL: [Self; 6] = [
+    /// All stages of all methods.
+    pub const ALL: [Self; 10] = [
         Self::Segments,
         Self::Matches,
         Self::Lines,
         Self::HalfPlanes,
         Self::Facets,
+        Self::Regions,
+        Self::Directions,
+        Self::Clusters,
+        Self::Rectangles,
         Self::Model,
     ];
+
+    /// The stages of a method in their order, which is also the order of the enumeration.
+    pub fn of(method: Method) -> &'static [Self] {
+        match method {
+            Method::Lines => &[
+                Self::Segments,
+                Self::Matches,
+                Self::Lines,
+                Self::HalfPlanes,
+                Self::Facets,
+                Self::Model,
+            ],
+            Method::Rectangles => &[
+                Self::Regions,
+                Self::Directions,
+                Self::Clusters,
+                Self::Rectangles,
+                Self::Model,
+            ],
+        }
+    }
 
     /// The name in messages, reports and the session: one lower-case word.
     pub fn name(self) -> &'static str {
@@ -64,6 +106,10 @@ impl Stage {
             Self::Lines => "lines",
             Self::HalfPlanes => "halfplanes",
             Self::Facets => "facets",
+            Self::Regions => "regions",
+            Self::Directions => "directions",
+            Self::Clusters => "clusters",
+            Self::Rectangles => "rectangles",
             Self::Model => "model",
         }
     }
@@ -102,8 +148,24 @@ pub struct Results {
     pub half_planes: Option<Outcome<Vec<HalfPlane>, SweepTrace>>,
     /// Facets and buildings.
     pub roof: Option<Outcome<RoofModel, RoofTrace>>,
+    /// W96: lines on the boundaries of the regions of each view, in the order of the views.
+    pub regions: Option<Outcome<Vec<Vec<RegionLine>>, Vec<Segmentation>>>,
+    /// W96: windows with their main directions.
+    pub directions: Option<Outcome<Vec<Window>, WindowTrace>>,
+    /// W96: 3D lines; a trace for each window and direction.
+    pub clusters: Option<Outcome<Vec<FoundLine>, Vec<ClusterTrace>>>,
+    /// W96: planes and buildings.
+    pub rectangles: Option<Outcome<RoofModel, RectangleTrace>>,
     /// Textures of the model.
     pub textured: Option<Outcome<TexturedModel, TextureTrace>>,
+}
+
+impl Results {
+    /// The roof model of whichever method ran.
+    pub fn model(&self) -> Option<&RoofModel> {
+        let lines = self.roof.as_ref().map(|r| &r.value);
+        lines.or(self.rectangles.as_ref().map(|r| &r.value))
+    }
 }
 
 /// One reconstruction: a scene, the parameters, and the results so far.
@@ -146,6 +208,11 @@ impl Run {
         &self.summaries
     }
 
+    /// The stages of the chosen method, in their order.
+    pub fn stages(&self) -> &'static [Stage] {
+        Stage::of(self.params.method)
+    }
+
     /// Changes the parameters and drops the results that they would change.
     pub fn set_params(&mut self, params: Params) {
         let first = Stage::ALL
@@ -160,7 +227,7 @@ impl Run {
     /// Runs one stage, after those before it that have not run yet, and drops the results of those behind
     /// it. `progress` hears fractions of this stage's work from 0 to 1.
     pub fn step(&mut self, stage: Stage, progress: &Listener) -> StageSummary {
-        for earlier in Stage::ALL.into_iter().filter(|&s| s < stage) {
+        for &earlier in self.stages().iter().filter(|&&s| s < stage) {
             if !self.has(earlier) {
                 self.run_stage(earlier);
             }
@@ -174,7 +241,7 @@ impl Run {
 
     /// Runs all stages, with nobody listening.
     pub fn run_all(&mut self) {
-        for stage in Stage::ALL {
+        for &stage in self.stages() {
             self.step(stage, &progress::silent());
         }
     }
@@ -188,23 +255,46 @@ impl Run {
     /// `seconds` per stage go into `report.json`, in a part of their own, since they alone differ from
     /// run to run. Empty before the last stage has run.
     pub fn files(&self, seconds: &[(Stage, f64)]) -> Vec<(String, Vec<u8>)> {
-        let r = &self.results;
-        let (Some(segments), Some(lines), Some(half_planes), Some(roof), Some(textured)) =
-            (&r.segments, &r.lines, &r.half_planes, &r.roof, &r.textured)
-        else {
+        let Some(outputs) = self.outputs() else {
             return Vec::new();
         };
-        let outputs = export::Results {
+        let borrowed = export::Results {
             scene: &self.scene,
-            segments: &segments.value,
-            lines: &lines.value,
-            half_planes: &half_planes.value,
-            model: &roof.value,
-            textured: &textured.value,
+            segments: &outputs.segments,
+            lines: &outputs.lines,
+            half_planes: outputs.half_planes,
+            model: outputs.model,
+            textured: outputs.textured,
         };
-        let mut files = export_all(&outputs, &self.params.texture);
+        let mut files = export_all(&borrowed, &self.params.texture);
         files.push(("report.json".into(), report::report(self, seconds)));
         files
+    }
+
+    /// What goes into the files; `None` before the last stage has run.
+    fn outputs(&self) -> Option<Outputs<'_>> {
+        let r = &self.results;
+        let (model, textured) = (r.model()?, &r.textured.as_ref()?.value);
+        Some(match self.params.method {
+            Method::Lines => Outputs {
+                segments: Cow::Borrowed(&r.segments.as_ref()?.value),
+                lines: Cow::Borrowed(&r.lines.as_ref()?.value),
+                half_planes: &r.half_planes.as_ref()?.value,
+                model,
+                textured,
+            },
+            Method::Rectangles => {
+                let lines = &r.regions.as_ref()?.value;
+                let found = &r.clusters.as_ref()?.value;
+                Outputs {
+                    segments: Cow::Owned(image_segments(lines)),
+                    lines: Cow::Owned(world_lines(&self.scene, lines, found)),
+                    half_planes: &[],
+                    model,
+                    textured,
+                }
+            }
+        })
     }
 
     fn run_stage(&mut self, stage: Stage) {
@@ -237,8 +327,24 @@ impl Run {
                 let found = reconstruct_roofs(scene, segments, lines, half_planes, &params.roof);
                 r.roof = Some(found.into());
             }
+            Stage::Regions => r.regions = Some(find_regions(scene, &params.objectspace).into()),
+            Stage::Directions => {
+                let lines = before(&r.regions);
+                r.directions = Some(find_directions(scene, lines, &params.objectspace).into());
+            }
+            Stage::Clusters => {
+                let (lines, windows) = (before(&r.regions), before(&r.directions));
+                let found = find_clusters(scene, lines, windows, &params.objectspace);
+                r.clusters = Some(found.into());
+            }
+            Stage::Rectangles => {
+                let (lines, windows) = (before(&r.regions), before(&r.directions));
+                let clusters = before(&r.clusters);
+                let found = find_rectangles(scene, lines, windows, clusters, &params.objectspace);
+                r.rectangles = Some(found.into());
+            }
             Stage::Model => {
-                let model = before(&r.roof);
+                let model = r.model().expect("stages run in their order");
                 r.textured = Some(texture_model(scene, model, &params.texture).into());
             }
         }
@@ -256,10 +362,23 @@ impl Run {
                 Stage::Lines => r.lines = None,
                 Stage::HalfPlanes => r.half_planes = None,
                 Stage::Facets => r.roof = None,
+                Stage::Regions => r.regions = None,
+                Stage::Directions => r.directions = None,
+                Stage::Clusters => r.clusters = None,
+                Stage::Rectangles => r.rectangles = None,
                 Stage::Model => r.textured = None,
             }
         }
     }
+}
+
+/// What goes into the files.
+struct Outputs<'a> {
+    segments: Cow<'a, [Vec<ImageSegment>]>,
+    lines: Cow<'a, [Line3d]>,
+    half_planes: &'a [HalfPlane],
+    model: &'a RoofModel,
+    textured: &'a TexturedModel,
 }
 
 /// The result of an earlier stage.
@@ -270,12 +389,24 @@ fn before<V, T>(outcome: &Option<Outcome<V, T>>) -> &V {
 /// Do the two sets of parameters differ in what this stage reads?
 fn depends(stage: Stage, a: &Params, b: &Params) -> bool {
     match stage {
-        Stage::Segments => a.segments != b.segments,
+        // Another method leaves nothing of the results.
+        Stage::Segments => a.segments != b.segments || a.method != b.method,
         // Matching fits 3D lines too, to tell which segments agree.
         Stage::Matches => a.matching != b.matching || a.lines3d != b.lines3d,
         Stage::Lines => a.lines3d != b.lines3d,
         Stage::HalfPlanes => a.sweep != b.sweep,
         Stage::Facets => a.roof != b.roof,
+        Stage::Regions => a.objectspace.oris != b.objectspace.oris,
+        // Windows are found with clusters and the ground, too.
+        Stage::Directions => {
+            let (a, b) = (&a.objectspace, &b.objectspace);
+            a.windows != b.windows
+                || a.directions != b.directions
+                || a.clusters != b.clusters
+                || a.planes.min_height_m != b.planes.min_height_m
+        }
+        Stage::Clusters => a.objectspace.clusters != b.objectspace.clusters,
+        Stage::Rectangles => a.objectspace.planes != b.objectspace.planes,
         Stage::Model => a.texture != b.texture,
     }
 }

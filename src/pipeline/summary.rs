@@ -26,6 +26,10 @@ pub(super) fn summarise(stage: Stage, scene: &Scene, results: &Results) -> Stage
         Stage::Lines => lines(results),
         Stage::HalfPlanes => half_planes(results),
         Stage::Facets => facets(results),
+        Stage::Regions => regions(scene, results),
+        Stage::Directions => directions(results),
+        Stage::Clusters => clusters(results),
+        Stage::Rectangles => rectangles(results),
         Stage::Model => model(results),
     };
     StageSummary {
@@ -104,6 +108,65 @@ fn facets(results: &Results) -> Found {
     let none = "no roof facet was found: the model is empty";
     let warnings = warn_if(model.facets.is_empty() && some(&results.half_planes), none);
     (counts, warnings)
+}
+
+fn regions(scene: &Scene, results: &Results) -> Found {
+    let Some(found) = &results.regions else {
+        return (Vec::new(), Vec::new());
+    };
+    let regions = found.trace.iter().map(|s| s.regions.len()).sum();
+    let lines = found.value.iter().map(Vec::len).sum();
+    let empty = scene
+        .views
+        .iter()
+        .zip(&found.value)
+        .filter(|(_, l)| l.is_empty());
+    let warnings = empty.map(|(view, _)| {
+        format!(
+            "{}: no straight region boundary found; leave this view out",
+            view.name
+        )
+    });
+    let counts = vec![
+        ("views", scene.views.len()),
+        ("regions", regions),
+        ("lines", lines),
+    ];
+    (counts, warnings.collect())
+}
+
+fn directions(results: &Results) -> Found {
+    let windows = results.directions.as_ref().map_or(&[][..], |d| &d.value);
+    let pairs = windows.iter().map(|w| w.directions.len()).sum();
+    let none = "no main direction was found: the lines run all ways; try method lines";
+    (
+        vec![("windows", windows.len()), ("pairs of directions", pairs)],
+        warn_if(pairs == 0, none),
+    )
+}
+
+fn clusters(results: &Results) -> Found {
+    let lines = results.clusters.as_ref().map_or(&[][..], |c| &c.value);
+    let none = "no 3D line was found; check that the orientation belongs to these images and that the views overlap";
+    (
+        vec![("lines", lines.len())],
+        warn_if(lines.is_empty() && some(&results.directions), none),
+    )
+}
+
+fn rectangles(results: &Results) -> Found {
+    let Some(found) = &results.rectangles else {
+        return (Vec::new(), Vec::new());
+    };
+    let counts = vec![
+        ("facets", found.value.facets.len()),
+        ("buildings", found.value.buildings.len()),
+        ("candidates", found.trace.candidates.len()),
+        ("pairs of lines", found.trace.pairs.len()),
+    ];
+    let none = "no plane between parallel lines was accepted: the model is empty";
+    let empty = found.value.facets.is_empty() && some(&results.clusters);
+    (counts, warn_if(empty, none))
 }
 
 fn model(results: &Results) -> Found {

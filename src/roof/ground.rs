@@ -8,7 +8,8 @@
 use nalgebra::{Point2, Point3, Vector3};
 use serde::Serialize;
 
-use crate::geometry::Plane;
+use super::Facet;
+use crate::geometry::{Plane, Segment3};
 use crate::halfplane::{PlanGrid, consistency_map};
 use crate::lines3d::Line3d;
 use crate::scene::Scene;
@@ -59,20 +60,25 @@ impl Ground {
 
     /// Sweeps the scene between the heights that its 3D lines span; the given height when there is one.
     pub fn estimate(scene: &Scene, lines: &[Line3d]) -> Self {
+        let segments: Vec<Segment3> = lines.iter().map(|l| l.segment).collect();
+        Self::of_segments(scene, &segments, None)
+    }
+
+    /// The same from 3D lines without their accuracy, swept between two heights where they are known: the lines may all
+    /// be those of a roof.
+    pub fn of_segments(scene: &Scene, lines: &[Segment3], z_range: Option<[f64; 2]>) -> Self {
         if let Some(z) = scene.ground_z {
             return Self::level(z);
         }
-        let mut ends: Vec<Point3<f64>> = lines
-            .iter()
-            .flat_map(|l| [l.segment.p0, l.segment.p1])
-            .collect();
+        let mut ends: Vec<Point3<f64>> = lines.iter().flat_map(|l| [l.p0, l.p1]).collect();
         if ends.is_empty() {
             return Self::level(0.0);
         }
         ends.sort_by(|a, b| a.z.total_cmp(&b.z));
         // A few wrong lines may lie far off.
         let share = |f: f64| ends[(f * (ends.len() - 1) as f64) as usize].z;
-        let (low, high) = (share(0.02) - 2.0, share(0.98) + 1.0);
+        let around_lines = [share(0.02) - 2.0, share(0.98) + 1.0];
+        let [low, high] = z_range.unwrap_or(around_lines);
         let samples = sweep(scene, &ends, low, high);
         let elsewhere = low_height(samples.iter().map(|s| s.z)).unwrap_or_else(|| share(0.1));
         Self::from_samples(&samples, elsewhere)
@@ -172,6 +178,18 @@ impl Ground {
             return self.elsewhere;
         }
         self.heights[r as usize * self.columns + c as usize]
+    }
+}
+
+impl Ground {
+    /// Ground height below a building, metres: the middle one of those at its corners.
+    pub fn below(&self, members: &[&Facet]) -> f64 {
+        let mut heights: Vec<f64> = members
+            .iter()
+            .flat_map(|f| &f.outer)
+            .map(|p| self.z_at(&p.xy()))
+            .collect();
+        crate::math::median(&mut heights).unwrap_or(f64::NAN)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Facet, Ground, RoofModel, SolidTrace, close_buildings};
+use super::{Ground, RoofModel, SolidTrace, close_buildings};
 use crate::halfplane::{FacetTrace, HalfPlane, reconstruct_facets};
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
@@ -29,7 +29,7 @@ pub fn reconstruct_roofs(
     let ground = Ground::estimate(scene, lines);
     let (facets, facet_trace) =
         reconstruct_facets(scene, segments, lines, half_planes, &ground, params);
-    let (model, solids) = close_buildings(&facets, |members| ground_below(&ground, members));
+    let (model, solids) = close_buildings(&facets, |members| ground.below(members));
     (
         model,
         RoofTrace {
@@ -37,14 +37,4 @@ pub fn reconstruct_roofs(
             solids,
         },
     )
-}
-
-/// Ground height below a building: the middle one of those at its corners.
-fn ground_below(ground: &Ground, members: &[&Facet]) -> f64 {
-    let mut heights: Vec<f64> = members
-        .iter()
-        .flat_map(|f| &f.outer)
-        .map(|p| ground.z_at(&p.xy()))
-        .collect();
-    crate::math::median(&mut heights).unwrap_or(f64::NAN)
 }

@@ -10,7 +10,8 @@ use super::convert::{
     end_points_px, from_js, input_error, line_array, named_error, row_major, segment_array, to_js,
 };
 use crate::linematch::SupportKind;
-use crate::params::Params;
+use crate::objectspace::{Window, WindowTrace};
+use crate::params::{Method, Params};
 use crate::pipeline::{Run, Stage};
 use crate::progress::Listener;
 use crate::scene_loader::{InputFile, LoadOptions, inspect_files, load_scene, unpack};
@@ -54,6 +55,13 @@ struct ViewInfo {
     projection: Vec<f64>,
 }
 
+/// What `directions` returns.
+#[derive(Serialize)]
+struct Found<'a> {
+    windows: &'a [Window],
+    trace: &'a WindowTrace,
+}
+
 /// The pixels of a view, RGBA row by row: what `ImageData` takes.
 #[wasm_bindgen(getter_with_clone)]
 pub struct ViewImage {
@@ -74,9 +82,21 @@ impl Session {
         Self::default()
     }
 
-    /// The names of the stages, in order.
+    /// The names of the stages of method "lines", in order.
     pub fn stages() -> Vec<String> {
-        Stage::ALL.iter().map(|s| s.name().to_owned()).collect()
+        Stage::of(Method::Lines)
+            .iter()
+            .map(|s| s.name().to_owned())
+            .collect()
+    }
+
+    /// The names of the stages of the method that the parameters choose, in order.
+    #[wasm_bindgen(js_name = chosenStages)]
+    pub fn chosen_stages(&self) -> Vec<String> {
+        Stage::of(self.params.method)
+            .iter()
+            .map(|s| s.name().to_owned())
+            .collect()
     }
 
     /// The parameters with their defaults, as a plain object.
@@ -161,7 +181,12 @@ impl Session {
 
     /// The segments of a view: x0, y0, x1, y1 each, pixels.
     pub fn segments(&self, view: usize) -> Result<Float32Array, JsValue> {
-        let found = self.loaded()?.results().segments.as_ref();
+        let results = self.loaded()?.results();
+        if let Some(regions) = &results.regions {
+            let lines = regions.value.get(view).map_or(&[][..], |l| l);
+            return Ok(segment_array(lines.iter().map(|l| &l.line.segment)));
+        }
+        let found = results.segments.as_ref();
         let segments = found.and_then(|s| s.value.get(view)).map_or(&[][..], |s| s);
         Ok(segment_array(segments.iter().map(|s| &s.segment)))
     }
@@ -188,7 +213,16 @@ impl Session {
 
     /// The 3D lines: both end points each, metres, local frame.
     pub fn lines(&self) -> Result<Float64Array, JsValue> {
-        let lines = self.loaded()?.results().lines.as_ref();
+        let results = self.loaded()?.results();
+        if let Some(found) = &results.clusters {
+            let ends = found
+                .value
+                .iter()
+                .flat_map(|f| [f.line.segment.p0, f.line.segment.p1]);
+            let numbers: Vec<f64> = ends.flat_map(|p| [p.x, p.y, p.z]).collect();
+            return Ok(Float64Array::from(&numbers[..]));
+        }
+        let lines = results.lines.as_ref();
         Ok(line_array(lines.map_or(&[][..], |l| &l.value)))
     }
 
@@ -201,8 +235,35 @@ impl Session {
 
     /// The roof facets, as an array of objects.
     pub fn facets(&self) -> Result<JsValue, JsValue> {
-        let roof = self.loaded()?.results().roof.as_ref();
-        to_js(&roof.map_or(&[][..], |r| &r.value.facets))
+        let model = self.loaded()?.results().model();
+        to_js(&model.map_or(&[][..], |m| &m.facets))
+    }
+
+    /// Method "rectangles": the segmentation of a view, `{regions, vectors, initial_regions, moves}`; `null` before that stage.
+    pub fn regions(&self, view: usize) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().regions.as_ref();
+        to_js(&found.and_then(|r| r.trace.get(view)))
+    }
+
+    /// Method "rectangles": the windows with their main directions and how they were found, `{windows, trace}`.
+    pub fn directions(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().directions.as_ref();
+        to_js(&found.map(|d| Found {
+            windows: &d.value,
+            trace: &d.trace,
+        }))
+    }
+
+    /// Method "rectangles": the cluster planes, one for each window and direction (figures 7 and 8).
+    pub fn clusters(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().clusters.as_ref();
+        to_js(&found.map(|c| &c.trace))
+    }
+
+    /// Method "rectangles": pairs of lines, candidates and the choice (figures 11 and 12).
+    pub fn rectangles(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().rectangles.as_ref();
+        to_js(&found.map(|r| &r.trace))
     }
 
     /// The pixels of a view, distortion removed.

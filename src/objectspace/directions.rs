@@ -1,0 +1,200 @@
+//! Main directions (W96 3.4, figures 4 and 5): two horizontal, perpendicular directions of a building.
+//!
+//! The interpretation plane of every image line is cut with the XY plane. For a horizontal line the cut is parallel to the line
+//! itself, from every view; for any other line it is some direction that differs from view to view. The azimuths of all
+//! cuts of all views fill one histogram, each weighted with the length and the contrast of its line, and two peaks that are
+//! perpendicular are located together: the sum of the histogram at an azimuth and a right angle further is largest.
+//!
+//! W96 assumes one building. A window may hold several orientations: peaks are taken in turn while they stand out.
+
+use nalgebra::Vector3;
+use serde::Serialize;
+
+use super::sight::Sight;
+use crate::math::{atan2, exp, sin_cos};
+use crate::params::DirectionParams;
+
+/// A pair of perpendicular horizontal directions.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MainDirections {
+    /// Azimuth of the first direction from the X axis towards Y, radians, 0 to pi/2; the other is a right angle further.
+    pub azimuth: f64,
+    /// Share of the weight of all lines that points either way.
+    pub share: f64,
+}
+
+impl MainDirections {
+    /// Both unit directions.
+    pub fn axes(&self) -> [Vector3<f64>; 2] {
+        let (s, c) = sin_cos(self.azimuth);
+        [Vector3::new(c, s, 0.0), Vector3::new(-s, c, 0.0)]
+    }
+}
+
+/// The histogram and what was read from it (figure 5).
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct DirectionTrace {
+    /// Weight of the azimuths 0 to 180 degrees, in bins of `bin_deg`, smoothed.
+    pub histogram: Vec<f64>,
+    /// Width of a bin, degrees.
+    pub bin_deg: f64,
+    /// The accepted pairs.
+    pub found: Vec<MainDirections>,
+}
+
+const BINS: usize = 360;
+/// Contrasts above this add no more weight: a white line on a road is no better edge than an eave.
+const FULL_CONTRAST: f64 = 0.1;
+
+/// The main directions of the lines, those of the largest weight first.
+pub fn main_directions(
+    sights: &[Sight],
+    params: &DirectionParams,
+) -> (Vec<MainDirections>, DirectionTrace) {
+    let cuts: Vec<[f64; 2]> = sights.iter().filter_map(azimuth).collect();
+    directions_of(&cuts, params)
+}
+
+/// The same from (azimuth in radians, weight).
+fn directions_of(
+    cuts: &[[f64; 2]],
+    params: &DirectionParams,
+) -> (Vec<MainDirections>, DirectionTrace) {
+    let histogram = histogram(cuts);
+    let total: f64 = cuts.iter().map(|c| c[1]).sum();
+    let mut free: Vec<f64> = (0..BINS / 2)
+        .map(|k| histogram[k] + histogram[k + BINS / 2])
+        .collect();
+    let mut found: Vec<MainDirections> = Vec::new();
+    let bin = std::f64::consts::PI / BINS as f64;
+    let apart = (params.apart_deg.to_radians() / bin) as usize;
+    while found.len() < params.max_pairs {
+        let best = (0..free.len()).max_by(|&a, &b| free[a].total_cmp(&free[b]).then(b.cmp(&a)));
+        let Some(best) = best.filter(|&b| free[b] > 0.0) else {
+            break;
+        };
+        let azimuth = refined((best as f64 + 0.5) * bin, cuts);
+        let share = share(azimuth, cuts, params.tolerance_deg.to_radians()) / total;
+        if share < params.min_share {
+            break;
+        }
+        found.push(MainDirections { azimuth, share });
+        for k in 0..=2 * apart {
+            let n = free.len();
+            free[(best + n + k - apart) % n] = 0.0;
+        }
+    }
+    let trace = DirectionTrace {
+        histogram,
+        bin_deg: 180.0 / BINS as f64,
+        found: found.clone(),
+    };
+    (found, trace)
+}
+
+/// Azimuth, 0 to pi, and weight of the cut of an interpretation plane with the XY plane; `None` for a horizontal plane.
+fn azimuth(sight: &Sight) -> Option<[f64; 2]> {
+    let n = sight.normal;
+    (n.x * n.x + n.y * n.y > 1e-12).then(|| {
+        let a = atan2(n.x, -n.y).rem_euclid(std::f64::consts::PI);
+        [a, sight.length_px * sight.contrast.min(FULL_CONTRAST)]
+    })
+}
+
+fn histogram(cuts: &[[f64; 2]]) -> Vec<f64> {
+    let mut raw = vec![0.0; BINS];
+    for [azimuth, weight] in cuts {
+        let k = (azimuth / std::f64::consts::PI * BINS as f64) as usize % BINS;
+        raw[k] += weight;
+    }
+    // Smoothed with the accuracy of an average line, 1 degree.
+    const SIGMA_BINS: f64 = 2.0;
+    const REACH: usize = 6;
+    let kernel: Vec<f64> = (0..=REACH)
+        .map(|k| exp(-0.5 * (k * k) as f64 / (SIGMA_BINS * SIGMA_BINS)))
+        .collect();
+    let at = |k: usize| {
+        (1..=REACH).fold(kernel[0] * raw[k], |s, i| {
+            s + kernel[i] * (raw[(k + i) % BINS] + raw[(k + BINS - i) % BINS])
+        })
+    };
+    (0..BINS).map(at).collect()
+}
+
+/// Difference of two azimuths up to right angles, radians, -pi/4 to pi/4.
+fn difference(a: f64, b: f64) -> f64 {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let d = (a - b).rem_euclid(quarter);
+    if d > 0.5 * quarter { d - quarter } else { d }
+}
+
+/// The mean of the azimuths around a peak, far ones weighted down.
+fn refined(start: f64, cuts: &[[f64; 2]]) -> f64 {
+    const SCALE: f64 = 0.01;
+    const WIDEST: f64 = 0.05;
+    const ROUNDS: usize = 8;
+    let mut azimuth = start;
+    for _ in 0..ROUNDS {
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for [a, weight] in cuts {
+            let d = difference(*a, azimuth);
+            if d.abs() < WIDEST {
+                let w = weight / (1.0 + (d / SCALE) * (d / SCALE));
+                sum += w * d;
+                weights += w;
+            }
+        }
+        if weights > 0.0 {
+            azimuth += sum / weights;
+        }
+    }
+    azimuth.rem_euclid(std::f64::consts::FRAC_PI_2)
+}
+
+fn share(azimuth: f64, cuts: &[[f64; 2]], tolerance: f64) -> f64 {
+    cuts.iter()
+        .filter(|c| difference(c[0], azimuth).abs() < tolerance)
+        .map(|c| c[1])
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn directions_are_found_among_unrelated_lines(
+            azimuth in 0.0..90.0f64,
+            noise in prop::collection::vec((0.0..180.0f64, 5.0..40.0f64), 36),
+            errors in prop::collection::vec(-0.7..0.7f64, 84),
+        ) {
+            // 30 % of the lines run anywhere.
+            let mut cuts: Vec<[f64; 2]> = errors
+                .iter()
+                .enumerate()
+                .map(|(k, e)| {
+                    let a = azimuth + 90.0 * f64::from(k as u32 % 2) + e;
+                    [a.rem_euclid(180.0).to_radians(), 20.0]
+                })
+                .collect();
+            cuts.extend(noise.iter().map(|(a, w)| [a.to_radians(), *w]));
+            let (found, _) = directions_of(&cuts, &DirectionParams::default());
+            let d = difference(found[0].azimuth, azimuth.to_radians()).to_degrees();
+            prop_assert!(d.abs() < 0.3, "{d} degrees");
+        }
+    }
+
+    #[test]
+    fn two_orientations_give_two_pairs() {
+        let cuts: Vec<[f64; 2]> = [10.0f64, 100.0, 10.2, 35.0, 125.0]
+            .map(|a| [a.to_radians(), 20.0])
+            .into();
+        let (found, trace) = directions_of(&cuts, &DirectionParams::default());
+        assert_eq!(found.len(), 2);
+        assert!((found[0].azimuth.to_degrees() - 10.1).abs() < 0.2);
+        assert!((found[1].azimuth.to_degrees() - 35.0).abs() < 0.1);
+        assert_eq!(trace.histogram.len(), BINS);
+    }
+}

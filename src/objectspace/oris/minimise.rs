@@ -1,0 +1,221 @@
+//! The greedy descent of the description length: the two moves of ORIS by a priority queue.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use super::integrals::{CHANNELS, Moments};
+use super::partition::{OUTSIDE, Partition};
+use crate::math::log2;
+use crate::params::OrisParams;
+
+/// The code length, bits; see [`super`].
+#[derive(Clone, Copy)]
+pub(super) struct CodeLength {
+    vector_bits: f64,
+    pixels_per_sample: f64,
+    least_variance: f64,
+    weights: [f64; CHANNELS],
+}
+
+impl CodeLength {
+    pub fn new(params: &OrisParams) -> Self {
+        Self {
+            vector_bits: params.vector_bits,
+            pixels_per_sample: params.pixels_per_sample,
+            least_variance: params.least_sigma * params.least_sigma,
+            weights: [1.0, params.color_weight, params.color_weight],
+        }
+    }
+
+    /// Bits of a region: its grey values given mean and noise, and these two parameters.
+    pub fn region(&self, m: &Moments) -> f64 {
+        let samples = m.count as f64 / self.pixels_per_sample;
+        let spread: f64 = (0..CHANNELS)
+            .map(|c| self.weights[c] * log2(m.variance(c).max(self.least_variance)))
+            .sum();
+        0.5 * samples * spread + log2(samples.max(1.0))
+    }
+}
+
+/// Moves made, by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Moves {
+    /// Break points dropped.
+    pub dropped: usize,
+    /// Regions merged into others.
+    pub merged: usize,
+}
+
+/// Makes moves in the order of their gain until none gains.
+pub(super) fn minimise(p: &mut Partition, params: &OrisParams) -> Moves {
+    let mut descent = Descent {
+        code: CodeLength::new(params),
+        queue: BinaryHeap::new(),
+        moves: Moves::default(),
+    };
+    // Boundaries along pixels have many needless break points, which would make every merger look cheap: these go first.
+    descent.offer_all_nodes(p);
+    descent.run(p);
+    loop {
+        descent.offer_all_nodes(p);
+        descent.offer_all_pairs(p);
+        // Offers that came to gain by changes around them are found by looking at all of them again.
+        if !descent.run(p) {
+            return descent.moves;
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Move {
+    Drop(u32),
+    Merge(u32, u32),
+}
+
+/// A move and what it gained when it was offered.
+struct Offer {
+    gain: f64,
+    what: Move,
+}
+
+impl PartialEq for Offer {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Offer {}
+
+impl PartialOrd for Offer {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Offer {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.gain
+            .total_cmp(&other.gain)
+            .then(other.what.cmp(&self.what))
+    }
+}
+
+/// A boundary may move by this without cost, pixels: the pixels on an edge mix both regions, and the staircase of whole pixels
+/// along a slanted edge holds no information. (Without this, staircases between regions without noise stay:
+/// each step alone would cost more than its vector.) More rounds corners off.
+const MIXED_PX: f64 = 0.5;
+/// Gains below this are rounding, bits.
+const LEAST_GAIN: f64 = 1e-6;
+
+struct Descent {
+    code: CodeLength,
+    queue: BinaryHeap<Offer>,
+    moves: Moves,
+}
+
+impl Descent {
+    /// Works the queue off; did anything change?
+    fn run(&mut self, p: &mut Partition) -> bool {
+        let before = self.moves;
+        while let Some(offer) = self.queue.pop() {
+            let Some(gain) = self.gain(p, offer.what).filter(|&g| g > LEAST_GAIN) else {
+                continue;
+            };
+            // The surroundings may have changed since the offer: it has to stand in line again.
+            if gain < offer.gain - LEAST_GAIN {
+                self.queue.push(Offer { gain, ..offer });
+                continue;
+            }
+            self.make(p, offer.what);
+        }
+        before != self.moves
+    }
+
+    fn make(&mut self, p: &mut Partition, what: Move) {
+        match what {
+            Move::Drop(node) => {
+                let straightening = p.straightening(node).expect("its gain was computed");
+                for end in p.drop_node(node, &straightening) {
+                    self.offer(p, Move::Drop(end));
+                }
+                self.moves.dropped += 1;
+            }
+            Move::Merge(i, j) => {
+                let (kept, neighbours, touched) = p.merge(i, j);
+                for other in neighbours {
+                    self.offer(p, pair(kept, other));
+                }
+                for node in touched {
+                    self.offer(p, Move::Drop(node));
+                }
+                self.moves.merged += 1;
+            }
+        }
+    }
+
+    fn offer(&mut self, p: &Partition, what: Move) {
+        if let Some(gain) = self.gain(p, what).filter(|&g| g > LEAST_GAIN) {
+            self.queue.push(Offer { gain, what });
+        }
+    }
+
+    fn offer_all_nodes(&mut self, p: &Partition) {
+        for node in 0..p.nodes.len() {
+            self.offer(p, Move::Drop(node as u32));
+        }
+    }
+
+    fn offer_all_pairs(&mut self, p: &Partition) {
+        for (i, region) in p.regions.iter().enumerate().skip(1) {
+            for &j in region.shared.keys().filter(|&&j| j as usize > i) {
+                self.offer(p, Move::Merge(i as u32, j));
+            }
+        }
+    }
+
+    /// By how much a move shortens the description, bits; `None` where it cannot be made.
+    fn gain(&self, p: &Partition, what: Move) -> Option<f64> {
+        match what {
+            Move::Drop(node) => self.drop_gain(p, node),
+            Move::Merge(i, j) => self.merge_gain(p, i, j),
+        }
+    }
+
+    fn drop_gain(&self, p: &Partition, node: u32) -> Option<f64> {
+        let s = p.straightening(node)?;
+        if s.moved == Moments::default() {
+            return Some(self.code.vector_bits);
+        }
+        if s.sides.contains(&OUTSIDE) {
+            return None;
+        }
+        let [left, right] = s.sides.map(|r| p.regions[r as usize].moments);
+        let (new_left, new_right) = (left + s.moved, right - s.moved);
+        if new_left.count < 1 || new_right.count < 1 {
+            return None;
+        }
+        if s.height_px <= MIXED_PX || (s.step && s.height_px < 1.0) {
+            return Some(self.code.vector_bits);
+        }
+        let change = self.code.region(&new_left) + self.code.region(&new_right)
+            - self.code.region(&left)
+            - self.code.region(&right);
+        Some(self.code.vector_bits - change)
+    }
+
+    fn merge_gain(&self, p: &Partition, i: u32, j: u32) -> Option<f64> {
+        let (a, b) = (&p.regions[i as usize], &p.regions[j as usize]);
+        if !a.alive || !b.alive || i == OUTSIDE {
+            return None;
+        }
+        let shared = f64::from(*a.shared.get(&j)?);
+        let change = self.code.region(&(a.moments + b.moments))
+            - self.code.region(&a.moments)
+            - self.code.region(&b.moments);
+        Some(self.code.vector_bits * shared - change)
+    }
+}
+
+fn pair(i: u32, j: u32) -> Move {
+    Move::Merge(i.min(j), i.max(j))
+}

@@ -1,0 +1,414 @@
+//! A partition of the image into regions with straight, shared boundaries, and its two changes.
+//!
+//! The boundaries are a planar graph: nodes on lattice points, vectors between them, each with the region on
+//! either side. A node with two vectors is a break point, one with more a junction. Every vector belongs to both of its
+//! regions, so that neighbours can neither overlap nor part.
+
+use std::collections::BTreeMap;
+
+use super::integrals::{Lattice, Moments, RowSums};
+
+/// Beyond the border of the image.
+pub(super) const OUTSIDE: u32 = 0;
+
+/// A vector of a boundary.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    /// Nodes at its start and end.
+    pub nodes: [u32; 2],
+    /// Regions to the left and to the right of its direction as seen on the screen.
+    pub sides: [u32; 2],
+    pub alive: bool,
+}
+
+/// A break point or junction with the vectors that end there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node {
+    pub at: Lattice,
+    edges: [u32; 4],
+    degree: u8,
+}
+
+impl Node {
+    /// The vectors that end here.
+    pub fn edges(&self) -> &[u32] {
+        &self.edges[..usize::from(self.degree)]
+    }
+
+    fn add(&mut self, edge: u32) {
+        self.edges[usize::from(self.degree)] = edge;
+        self.degree += 1;
+    }
+
+    fn remove(&mut self, edge: u32) {
+        let k = self.edges().iter().position(|&e| e == edge);
+        let k = k.expect("a vector is listed at its nodes");
+        self.degree -= 1;
+        self.edges[k] = self.edges[usize::from(self.degree)];
+    }
+
+    fn replace(&mut self, old: u32, new: u32) {
+        let k = self.edges().iter().position(|&e| e == old);
+        self.edges[k.expect("a vector is listed at its nodes")] = new;
+    }
+}
+
+/// A region while the partition changes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Region {
+    pub moments: Moments,
+    pub alive: bool,
+    /// Number of vectors shared with each neighbour.
+    pub shared: BTreeMap<u32, u32>,
+    /// Vectors that were beside this region at some time.
+    edges: Vec<u32>,
+}
+
+/// What dropping a break point would do.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Straightening {
+    /// The regions to the left and to the right of the path a - node - c.
+    pub sides: [u32; 2],
+    /// The pixels that would go from the right region to the left one.
+    pub moved: Moments,
+    /// How far the boundary moves, pixels.
+    pub height_px: f64,
+    /// Is one of the two vectors as short as a pixel?
+    pub step: bool,
+}
+
+/// The partition.
+pub(super) struct Partition {
+    pub nodes: Vec<Node>,
+    pub edges: Vec<Edge>,
+    pub regions: Vec<Region>,
+    sums: RowSums,
+    occupied: Occupied,
+}
+
+impl Partition {
+    /// The partition of a label image: vectors along the cracks between pixels of different labels.
+    pub fn from_labels(
+        labels: &[u32],
+        count: usize,
+        width: usize,
+        height: usize,
+        sums: RowSums,
+    ) -> Self {
+        let mut p = Self {
+            nodes: Vec::new(),
+            edges: Vec::new(),
+            regions: vec![Region::default(); count + 1],
+            sums,
+            occupied: Occupied::new(width + 1, height + 1),
+        };
+        p.trace_cracks(&Cracks {
+            labels,
+            width,
+            height,
+        });
+        for e in 0..p.edges.len() {
+            let Edge { nodes, sides, .. } = p.edges[e];
+            let term = p
+                .sums
+                .side(p.nodes[nodes[0] as usize].at, p.nodes[nodes[1] as usize].at);
+            for (k, own) in sides.into_iter().enumerate() {
+                let region = &mut p.regions[own as usize];
+                region.moments = if k == 1 {
+                    region.moments + term
+                } else {
+                    region.moments - term
+                };
+                region.edges.push(e as u32);
+                *region.shared.entry(sides[1 - k]).or_default() += 1;
+            }
+        }
+        p.regions.iter_mut().skip(1).for_each(|r| r.alive = true);
+        p
+    }
+
+    /// The two vectors and the outer nodes at a break point; `None` for a junction or where nothing is left.
+    fn ends(&self, node: u32) -> Option<([u32; 2], [u32; 2])> {
+        let &[e, f] = self.nodes[node as usize].edges() else {
+            return None;
+        };
+        let far = |e: u32| {
+            let [a, b] = self.edges[e as usize].nodes;
+            if a == node { b } else { a }
+        };
+        Some(([e, f], [far(e), far(f)]))
+    }
+
+    /// What dropping this break point would do; `None` where the boundary would then touch or cross another, or where the
+    /// border of the image would move.
+    pub fn straightening(&self, node: u32) -> Option<Straightening> {
+        let ([e, _], [a, c]) = self.ends(node)?;
+        if a == c || self.joined(a, c) {
+            return None;
+        }
+        let edge = &self.edges[e as usize];
+        // The path runs a - node - c.
+        let sides = if edge.nodes[1] == node {
+            edge.sides
+        } else {
+            [edge.sides[1], edge.sides[0]]
+        };
+        let [pa, pb, pc] = [a, node, c].map(|n| self.nodes[n as usize].at);
+        let cross = i64::from(pb.x - pa.x) * i64::from(pc.y - pa.y)
+            - i64::from(pb.y - pa.y) * i64::from(pc.x - pa.x);
+        if cross != 0 && (sides.contains(&OUTSIDE) || self.occupied.within([pa, pb, pc])) {
+            return None;
+        }
+        let moved = self.sums.side(pa, pb) + self.sums.side(pb, pc) - self.sums.side(pa, pc);
+        let (dx, dy) = (f64::from(pc.x - pa.x), f64::from(pc.y - pa.y));
+        let height_px = cross.abs() as f64 / (dx * dx + dy * dy).sqrt();
+        let short = |p: Lattice, q: Lattice| (p.x - q.x).abs() + (p.y - q.y).abs() <= 1;
+        Some(Straightening {
+            sides,
+            moved,
+            height_px,
+            step: short(pa, pb) || short(pb, pc),
+        })
+    }
+
+    fn joined(&self, a: u32, c: u32) -> bool {
+        let ends = |e: &u32| self.edges[*e as usize].nodes;
+        self.nodes[a as usize]
+            .edges()
+            .iter()
+            .any(|e| ends(e).contains(&c))
+    }
+
+    /// Drops a break point; returns the two nodes that are joined now.
+    pub fn drop_node(&mut self, node: u32, what: &Straightening) -> [u32; 2] {
+        let ([e, f], [a, c]) = self.ends(node).expect("only break points are dropped");
+        let at = self.nodes[node as usize].at;
+        self.occupied.set(at, false);
+        self.nodes[node as usize].degree = 0;
+        self.edges[e as usize].nodes = [a, c];
+        self.edges[e as usize].sides = what.sides;
+        self.edges[f as usize].alive = false;
+        self.nodes[c as usize].replace(f, e);
+        let [left, right] = what.sides;
+        self.unshare(left, right);
+        let l = &mut self.regions[left as usize];
+        l.moments = l.moments + what.moved;
+        let r = &mut self.regions[right as usize];
+        r.moments = r.moments - what.moved;
+        [a, c]
+    }
+
+    fn unshare(&mut self, a: u32, b: u32) {
+        for (own, other) in [(a, b), (b, a)] {
+            let shared = &mut self.regions[own as usize].shared;
+            if let Some(n) = shared.get_mut(&other) {
+                *n -= 1;
+                if *n == 0 {
+                    shared.remove(&other);
+                }
+            }
+        }
+    }
+
+    /// Merges two neighbours by taking away all vectors between them. Returns the region that stays, the neighbours
+    /// whose boundary with it has grown, and the nodes that lost vectors.
+    pub fn merge(&mut self, i: u32, j: u32) -> (u32, Vec<u32>, Vec<u32>) {
+        let len = |r: u32| (self.regions[r as usize].edges.len(), u32::MAX - r);
+        let (keep, gone) = if len(i) >= len(j) { (i, j) } else { (j, i) };
+        let old = std::mem::take(&mut self.regions[gone as usize]);
+        let mut touched = Vec::new();
+        for &e in &old.edges {
+            let edge = &mut self.edges[e as usize];
+            if !edge.alive || !edge.sides.contains(&gone) {
+                continue;
+            }
+            if edge.sides.contains(&keep) {
+                edge.alive = false;
+                for n in edge.nodes {
+                    self.nodes[n as usize].remove(e);
+                    touched.push(n);
+                }
+            } else {
+                let side = usize::from(edge.sides[1] == gone);
+                edge.sides[side] = keep;
+                self.regions[keep as usize].edges.push(e);
+            }
+        }
+        let kept = &mut self.regions[keep as usize];
+        kept.moments = kept.moments + old.moments;
+        kept.shared.remove(&gone);
+        let mut neighbours = Vec::new();
+        for (&other, &n) in old.shared.iter().filter(|(o, _)| **o != keep) {
+            *self.regions[keep as usize].shared.entry(other).or_default() += n;
+            let back = &mut self.regions[other as usize].shared;
+            back.remove(&gone);
+            *back.entry(keep).or_default() += n;
+            neighbours.push(other);
+        }
+        self.forget_free_nodes(&touched);
+        (keep, neighbours, touched)
+    }
+
+    fn forget_free_nodes(&mut self, touched: &[u32]) {
+        for &n in touched {
+            if self.nodes[n as usize].edges().is_empty() {
+                self.occupied.set(self.nodes[n as usize].at, false);
+            }
+        }
+    }
+
+    fn trace_cracks(&mut self, cracks: &Cracks) {
+        let (w, h) = (cracks.width, cracks.height);
+        let mut ids = vec![u32::MAX; (w + 1) * (h + 1)];
+        for y in 0..=h {
+            for x in 0..=w {
+                if cracks.is_node(x, y) {
+                    ids[y * (w + 1) + x] = self.nodes.len() as u32;
+                    let at = Lattice {
+                        x: x as i32,
+                        y: y as i32,
+                    };
+                    self.occupied.set(at, true);
+                    self.nodes.push(Node {
+                        at,
+                        edges: [0; 4],
+                        degree: 0,
+                    });
+                }
+            }
+        }
+        for y in 0..=h {
+            let mut start = ids[y * (w + 1)];
+            for x in 1..=w {
+                let end = ids[y * (w + 1) + x];
+                if end != u32::MAX {
+                    let (above, below) = (cracks.label(x, y), cracks.label(x, y + 1));
+                    self.add_edge([start, end], [above, below]);
+                    start = end;
+                }
+            }
+        }
+        for x in 0..=w {
+            let mut start = ids[x];
+            for y in 1..=h {
+                let end = ids[y * (w + 1) + x];
+                if end != u32::MAX {
+                    let (left, right) = (cracks.label(x, y), cracks.label(x + 1, y));
+                    // A vector that runs down has the pixels of larger x to its left.
+                    self.add_edge([start, end], [right, left]);
+                    start = end;
+                }
+            }
+        }
+    }
+
+    /// Adds a vector unless there is no crack.
+    fn add_edge(&mut self, nodes: [u32; 2], sides: [u32; 2]) {
+        if sides[0] == sides[1] {
+            return;
+        }
+        let id = self.edges.len() as u32;
+        self.edges.push(Edge {
+            nodes,
+            sides,
+            alive: true,
+        });
+        nodes
+            .into_iter()
+            .for_each(|n| self.nodes[n as usize].add(id));
+    }
+}
+
+/// The cracks between the pixels of a label image.
+struct Cracks<'a> {
+    labels: &'a [u32],
+    width: usize,
+    height: usize,
+}
+
+impl Cracks<'_> {
+    /// The region of a pixel, counted from 1, with columns and rows counted from 1; [`OUTSIDE`] beyond the border.
+    fn label(&self, column: usize, row: usize) -> u32 {
+        let inside = (1..=self.width).contains(&column) && (1..=self.height).contains(&row);
+        if inside {
+            self.labels[(row - 1) * self.width + column - 1] + 1
+        } else {
+            OUTSIDE
+        }
+    }
+
+    /// Do the cracks at this lattice point do anything but run straight on?
+    fn is_node(&self, x: usize, y: usize) -> bool {
+        let a = [self.label(x, y), self.label(x + 1, y)];
+        let b = [self.label(x, y + 1), self.label(x + 1, y + 1)];
+        let straight = (a == b) || (a[0] == a[1] && b[0] == b[1]);
+        !straight
+    }
+}
+
+/// Which lattice points are nodes, a bit each.
+struct Occupied {
+    words_per_row: usize,
+    words: Vec<u64>,
+}
+
+impl Occupied {
+    fn new(width: usize, height: usize) -> Self {
+        let words_per_row = width.div_ceil(64);
+        Self {
+            words_per_row,
+            words: vec![0; words_per_row * height],
+        }
+    }
+
+    fn set(&mut self, at: Lattice, value: bool) {
+        let word = &mut self.words[at.y as usize * self.words_per_row + at.x as usize / 64];
+        let bit = 1u64 << (at.x as usize % 64);
+        if value { *word |= bit } else { *word &= !bit }
+    }
+
+    /// Is there a node in the closed triangle besides its corners?
+    fn within(&self, corners: [Lattice; 3]) -> bool {
+        let [a, b, c] = corners;
+        let (top, bottom) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
+        (top..=bottom).any(|y| {
+            let (mut low, mut high) = (i64::MAX, i64::MIN);
+            for (p, q) in [(a, b), (b, c), (c, a)] {
+                let (p, q) = if p.y <= q.y { (p, q) } else { (q, p) };
+                if y < p.y || y > q.y {
+                    continue;
+                }
+                if p.y == q.y {
+                    low = low.min(i64::from(p.x.min(q.x)));
+                    high = high.max(i64::from(p.x.max(q.x)));
+                    continue;
+                }
+                let (dx, dy) = (i64::from(q.x - p.x), i64::from(q.y - p.y));
+                let n = dx * i64::from(y - p.y);
+                low = low.min(i64::from(p.x) - (-n).div_euclid(dy));
+                high = high.max(i64::from(p.x) + n.div_euclid(dy));
+            }
+            (low <= high) && self.any_in_row(y as usize, low as usize, high as usize, &corners)
+        })
+    }
+
+    fn any_in_row(&self, y: usize, low: usize, high: usize, except: &[Lattice; 3]) -> bool {
+        let row = &self.words[y * self.words_per_row..(y + 1) * self.words_per_row];
+        (low / 64..=high / 64).any(|k| {
+            let mut word = row[k];
+            if k == low / 64 {
+                word &= u64::MAX << (low % 64);
+            }
+            if k == high / 64 {
+                word &= u64::MAX >> (63 - high % 64);
+            }
+            for p in except
+                .iter()
+                .filter(|p| p.y as usize == y && p.x as usize / 64 == k)
+            {
+                word &= !(1u64 << (p.x as usize % 64));
+            }
+            word != 0
+        })
+    }
+}

@@ -1,0 +1,315 @@
+//! The four stages of the method, each from typed input to `(value, trace)`.
+
+use nalgebra::{Matrix3, Point3};
+use serde::Serialize;
+
+use super::clusters::{Axes, ClusterLine, ClusterTrace, cluster_lines};
+use super::oris::{ColorImage, RegionLine, Segmentation, region_lines, segment_regions};
+use super::planes::{PlaneCandidate, PlaneSearch, PlaneTrace};
+use super::select::best_set;
+use super::sight::{Sight, sights};
+use super::windows::{Window, WindowTrace, find_windows};
+use crate::geometry::{Segment2, Segment3};
+use crate::ids::{BuildingId, LineId};
+use crate::linematch::{LineSupport, SupportKind, scene_heights};
+use crate::lines2d::ImageSegment;
+use crate::lines3d::Line3d;
+use crate::parallel;
+use crate::params::ObjectSpaceParams;
+use crate::roof::{Facet, Ground, RoofModel, SolidTrace, close_buildings};
+use crate::scene::Scene;
+
+/// Regions of every view and the lines on their boundaries (W96 3.3).
+pub fn find_regions(
+    scene: &Scene,
+    params: &ObjectSpaceParams,
+) -> (Vec<Vec<RegionLine>>, Vec<Segmentation>) {
+    let per_view = parallel::map(&scene.views, |_, view| {
+        let image = ColorImage::new(&view.gray, &view.rgb, params.oris.smoothing_px);
+        let segmentation = segment_regions(&image, &params.oris);
+        (
+            region_lines(&image, &segmentation, &params.oris),
+            segmentation,
+        )
+    });
+    per_view.into_iter().unzip()
+}
+
+/// Windows around buildings with their main directions (W96 3.4).
+pub fn find_directions(
+    scene: &Scene,
+    lines: &[Vec<RegionLine>],
+    params: &ObjectSpaceParams,
+) -> (Vec<Window>, WindowTrace) {
+    let z_range = params
+        .windows
+        .z_range_m
+        .map(|z| z.map(|z| z - scene.origin.z));
+    let z_range = z_range.unwrap_or_else(|| scene_heights(scene, &image_segments(lines)));
+    let o = scene.origin;
+    let given = params
+        .windows
+        .given_m
+        .iter()
+        .map(|&[x0, y0, x1, y1]| [x0 - o.x, y0 - o.y, x1 - o.x, y1 - o.y]);
+    let given: Vec<[f64; 4]> = given.collect();
+    find_windows(scene, &sights(scene, lines), z_range, &given, params)
+}
+
+/// The image lines in the form that the files and the other method have.
+pub fn image_segments(lines: &[Vec<RegionLine>]) -> Vec<Vec<ImageSegment>> {
+    lines
+        .iter()
+        .map(|view| view.iter().map(|l| l.line.clone()).collect())
+        .collect()
+}
+
+/// A 3D line with the main direction that it was found in.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FoundLine {
+    /// Index of the window.
+    pub window: usize,
+    /// Index of the pair of main directions in the window, and which of the two.
+    pub direction: [usize; 2],
+    /// The line.
+    pub line: ClusterLine,
+}
+
+/// 3D lines of all windows and directions (W96 3.5).
+pub fn find_clusters(
+    scene: &Scene,
+    lines: &[Vec<RegionLine>],
+    windows: &[Window],
+    params: &ObjectSpaceParams,
+) -> (Vec<FoundLine>, Vec<ClusterTrace>) {
+    let sights = sights(scene, lines);
+    let tasks: Vec<(usize, [usize; 2])> = windows
+        .iter()
+        .enumerate()
+        .flat_map(|(w, window)| {
+            (0..window.directions.len()).flat_map(move |d| [(w, [d, 0]), (w, [d, 1])])
+        })
+        .collect();
+    let results = parallel::map(&tasks, |_, &(w, [pair, axis])| {
+        let window = &windows[w];
+        let shown: Vec<usize> = (0..sights.len())
+            .filter(|&k| window.shows(&sights[k]))
+            .collect();
+        let inside: Vec<Sight> = shown.iter().map(|&k| sights[k].clone()).collect();
+        let direction = window.directions[pair].axes()[axis];
+        let (mut lines, trace) = cluster_lines(
+            scene,
+            &inside,
+            &direction,
+            window.z_range_m,
+            &params.clusters,
+        );
+        for line in &mut lines {
+            line.supports.iter_mut().for_each(|k| *k = shown[*k]);
+        }
+        (lines, trace)
+    });
+    let (mut found, mut traces) = (Vec::new(), Vec::new());
+    for ((window, direction), (lines, trace)) in tasks.into_iter().zip(results) {
+        found.extend(lines.into_iter().map(|line| FoundLine {
+            window,
+            direction,
+            line,
+        }));
+        traces.push(trace);
+    }
+    (found, traces)
+}
+
+/// What the search for planes did.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct RectangleTrace {
+    /// Every pair of parallel lines.
+    pub pairs: Vec<PlaneTrace>,
+    /// All candidates.
+    pub candidates: Vec<PlaneCandidate>,
+    /// The chosen ones.
+    pub chosen: Vec<usize>,
+    /// Walls and ground.
+    pub solids: SolidTrace,
+}
+
+/// Planes between parallel lines, the best set of them, and the buildings below (W96 3.6).
+pub fn find_rectangles(
+    scene: &Scene,
+    lines: &[Vec<RegionLine>],
+    windows: &[Window],
+    found: &[FoundLine],
+    params: &ObjectSpaceParams,
+) -> (RoofModel, RectangleTrace) {
+    let sights = sights(scene, lines);
+    let segments: Vec<Segment3> = found.iter().map(|f| f.line.segment).collect();
+    let z_range = windows.first().map(|w| w.z_range_m);
+    let ground = Ground::of_segments(scene, &segments, z_range);
+    let all: Vec<ClusterLine> = found.iter().map(|f| f.line.clone()).collect();
+    let search = PlaneSearch {
+        scene,
+        sights: &sights,
+        lines: &all,
+        ground: &ground,
+        params: &params.planes,
+    };
+    let mut trace = RectangleTrace::default();
+    for (w, window) in windows.iter().enumerate() {
+        for (d, pair) in window.directions.iter().enumerate() {
+            for (axis, direction) in pair.axes().iter().enumerate() {
+                let members: Vec<usize> = (0..found.len())
+                    .filter(|&k| found[k].window == w && found[k].direction == [d, axis])
+                    .collect();
+                let (candidates, pairs) = search.candidates(&Axes::new(direction), &members);
+                trace.candidates.extend(candidates);
+                let apexes: Vec<Point3<f64>> = found
+                    .iter()
+                    .filter(|f| f.window == w && f.direction == [d, 1 - axis])
+                    .flat_map(|f| [f.line.segment.p0, f.line.segment.p1])
+                    .collect();
+                let triangles = search.triangles(&Axes::new(direction), &members, &apexes);
+                trace.candidates.extend(triangles);
+                trace.pairs.extend(pairs);
+            }
+        }
+    }
+    trace.chosen = best_set(&trace.candidates);
+    let facets: Vec<Facet> = trace
+        .chosen
+        .iter()
+        .map(|&k| facet(&trace.candidates[k]))
+        .collect();
+    let (model, solids) = close_buildings(&facets, |members| ground.below(members));
+    trace.solids = solids;
+    (model, trace)
+}
+
+fn facet(candidate: &PlaneCandidate) -> Facet {
+    Facet {
+        building: BuildingId(0),
+        plane: candidate.plane,
+        outer: candidate.ring.clone(),
+        holes: Vec::new(),
+        similarity: candidate.correlation,
+        real_ratio: candidate.support,
+        lines: candidate
+            .lines
+            .iter()
+            .map(|&k| LineId::from_index(k))
+            .collect(),
+        half_planes: Vec::new(),
+    }
+}
+
+/// The 3D lines in the form that the files and the other method have.
+pub fn world_lines(scene: &Scene, lines: &[Vec<RegionLine>], found: &[FoundLine]) -> Vec<Line3d> {
+    let sights = sights(scene, lines);
+    found.iter().map(|f| world_line(&sights, &f.line)).collect()
+}
+
+fn world_line(sights: &[Sight], line: &ClusterLine) -> Line3d {
+    let variance = line.sigma_m * line.sigma_m;
+    let supports = line.coverage.iter().map(|&(view, score)| {
+        let own = || {
+            line.supports
+                .iter()
+                .map(|&k| &sights[k])
+                .filter(move |s| s.view == view)
+        };
+        let camera = own().next().map(|s| s.camera);
+        let ends = [line.segment.p0, line.segment.p1]
+            .map(|p| camera.and_then(|c| c.project(&p)).unwrap_or_default());
+        LineSupport {
+            view,
+            segments: own().map(|s| s.line).collect(),
+            stretch: Segment2::new(ends[0], ends[1]),
+            score,
+            kind: SupportKind::Matched,
+            edge: None,
+        }
+    });
+    Line3d {
+        segment: line.segment,
+        sigma_m: line.sigma_m,
+        covariance: [Matrix3::identity() * variance; 2],
+        supports: supports.collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::roof::check_invariants;
+    use crate::synthetic::{SyntheticTruth, gable_scene, l_scene};
+
+    fn model(scene: &Scene) -> RoofModel {
+        let params = ObjectSpaceParams::default();
+        let (lines, _) = find_regions(scene, &params);
+        let (windows, _) = find_directions(scene, &lines, &params);
+        let (found, _) = find_clusters(scene, &lines, &windows, &params);
+        let (model, _) = find_rectangles(scene, &lines, &windows, &found, &params);
+        assert_eq!(check_invariants(&model), []);
+        model
+    }
+
+    /// True facets whose plane a found facet has (to 2 degrees and 0.1 m), and found ones that have none.
+    fn agreement(model: &RoofModel, truth: &SyntheticTruth) -> (usize, usize) {
+        let agrees = |f: &Facet, (plane, ring): &(crate::geometry::Plane, Vec<Point3<f64>>)| {
+            let middle = f
+                .outer
+                .iter()
+                .fold(nalgebra::Vector3::zeros(), |s, p| s + p.coords)
+                / f.outer.len() as f64;
+            let bounds = |k: usize| {
+                let values = || ring.iter().map(|p| p[k]);
+                values().fold(f64::INFINITY, f64::min)..=values().fold(f64::NEG_INFINITY, f64::max)
+            };
+            (0..2).all(|k| bounds(k).contains(&middle[k]))
+                && f.plane.angle_to(plane).to_degrees() < 2.0
+                && plane.signed_distance(&middle.into()).abs() < 0.1
+        };
+        let found = truth
+            .facets
+            .iter()
+            .filter(|t| model.facets.iter().any(|f| agrees(f, t)))
+            .count();
+        let wrong = model
+            .facets
+            .iter()
+            .filter(|f| !truth.facets.iter().any(|t| agrees(f, t)))
+            .count();
+        (found, wrong)
+    }
+
+    #[test]
+    fn a_gable_is_two_rectangles() {
+        let (mut scene, truth) = gable_scene(320);
+        assert_eq!(agreement(&model(&scene), &truth), (2, 0));
+        // The same with the roof hidden in one view of the six.
+        let view = &mut scene.views[3];
+        view.gray.data.fill(0.5);
+        view.rgb
+            .pixels_mut()
+            .for_each(|p| *p = image::Rgb([128; 3]));
+        assert_eq!(agreement(&model(&scene), &truth), (2, 0));
+    }
+
+    #[test]
+    fn an_l_shaped_house_has_slanted_ends() {
+        let (scene, truth) = l_scene(320);
+        let (found, wrong) = agreement(&model(&scene), &truth);
+        assert!(found >= 3 && wrong == 0, "{found} found, {wrong} wrong");
+    }
+
+    #[test]
+    fn without_images_there_is_no_model() {
+        let (mut scene, _) = gable_scene(64);
+        for view in &mut scene.views {
+            view.gray.data.fill(0.5);
+        }
+        assert!(model(&scene).facets.is_empty());
+        scene.views.clear();
+        assert!(model(&scene).facets.is_empty());
+    }
+}
