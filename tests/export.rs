@@ -175,6 +175,7 @@ fn files_of(scene: &Scene, model: &RoofModel) -> BTreeMap<String, Vec<u8>> {
 fn planted_evidence() -> (Vec<Vec<ImageSegment>>, Vec<Line3d>, Vec<HalfPlane>) {
     let segment = Segment2::new([1.0, 2.0].into(), [30.25, 4.0].into());
     let image_segment = ImageSegment {
+        kind: Default::default(),
         segment,
         contrast: 0.3,
         edgels: 29,

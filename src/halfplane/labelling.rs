@@ -14,7 +14,10 @@
 //! real lines (tau_real) and area counts as in S(P). The minimum is found by alpha-expansion
 //! (Boykov, Veksler, Zabih 2001), each expansion a minimum cut.
 
+use std::collections::BTreeMap;
+
 use petgraph::graph::{DiGraph, NodeIndex};
+use petgraph::unionfind::UnionFind;
 use petgraph::visit::EdgeRef;
 
 /// No plane covers the cell.
@@ -112,7 +115,7 @@ impl Energy {
         if movable.is_empty() {
             return Vec::new();
         }
-        let mut node = std::collections::BTreeMap::new();
+        let mut node = BTreeMap::new();
         let mut cut = Cut::default();
         for &c in &movable {
             node.insert(c, cut.node());
@@ -286,26 +289,135 @@ impl Cut {
         self.arcs.push((i, j, j_moves + i_moves - stay));
     }
 
-    /// For each node: does it move?
+    /// For each node: does it move? Decides what needs no cut first; a tie moves.
     fn solve(self) -> Vec<bool> {
-        let n = self.unaries.len();
-        let mut graph = DiGraph::<(), u64>::with_capacity(n + 2, 2 * n + self.arcs.len());
-        let nodes: Vec<NodeIndex> = (0..n).map(|_| graph.add_node(())).collect();
-        let (source, sink) = (graph.add_node(()), graph.add_node(()));
         let units = |c: f64| (c * UNIT).round() as i64;
-        // The source side keeps, the sink side moves.
-        for (i, (keep, change)) in self.unaries.iter().enumerate() {
-            let difference = units(*keep) - units(*change);
-            if difference < 0 {
-                graph.add_edge(source, nodes[i], difference.unsigned_abs());
-            } else if difference > 0 {
-                graph.add_edge(nodes[i], sink, difference.unsigned_abs());
+        let mut open = OpenNodes {
+            gain: (self.unaries.iter())
+                .map(|(keep, change)| units(*keep) - units(*change))
+                .collect(),
+            arcs: (self.arcs.iter())
+                .map(|&(i, j, c)| (i, j, units(c)))
+                .filter(|a| a.2 > 0)
+                .collect(),
+            moves: vec![None; self.unaries.len()],
+        };
+        open.decide();
+        open.cut()
+    }
+}
+
+/// The nodes of a cut that nothing has decided yet.
+struct OpenNodes {
+    /// What moving saves in unaries, units.
+    gain: Vec<i64>,
+    /// (from, to, capacity): paid when `from` keeps and `to` moves.
+    arcs: Vec<(usize, usize, i64)>,
+    moves: Vec<Option<bool>>,
+}
+
+impl OpenNodes {
+    /// Fixes every node whose own cost outweighs all its arcs, whatever its neighbours do, charges the
+    /// neighbours for it, and goes on with them. Most cells of a plane's region are nothing like the plane:
+    /// few are left for the cut, whose result is the same.
+    fn decide(&mut self) {
+        let n = self.gain.len();
+        let mut arcs_of = vec![Vec::new(); n];
+        let (mut saved, mut paid) = (vec![0i64; n], vec![0i64; n]);
+        for (k, &(i, j, capacity)) in self.arcs.iter().enumerate() {
+            arcs_of[i].push(k);
+            arcs_of[j].push(k);
+            saved[i] += capacity;
+            paid[j] += capacity;
+        }
+        let mut queue: std::collections::VecDeque<usize> = (0..n).collect();
+        while let Some(i) = queue.pop_front() {
+            if self.moves[i].is_some() {
+                continue;
+            }
+            let moves = if self.gain[i] + saved[i] < 0 {
+                false
+            } else if self.gain[i] - paid[i] >= 0 {
+                true
+            } else {
+                continue;
+            };
+            self.moves[i] = Some(moves);
+            for &k in &arcs_of[i] {
+                let (from, to, capacity) = self.arcs[k];
+                let other = if from == i { to } else { from };
+                if self.moves[other].is_some() {
+                    continue;
+                }
+                if from == i {
+                    paid[to] -= capacity;
+                    self.gain[to] -= if moves { 0 } else { capacity };
+                } else {
+                    saved[from] -= capacity;
+                    self.gain[from] += if moves { capacity } else { 0 };
+                }
+                queue.push_back(other);
             }
         }
-        for (i, j, capacity) in self.arcs {
-            if units(capacity) > 0 {
-                graph.add_edge(nodes[i], nodes[j], units(capacity).unsigned_abs());
+    }
+
+    /// The minimum cut of the undecided nodes, one connected part after the other.
+    fn cut(mut self) -> Vec<bool> {
+        let open: Vec<bool> = self.moves.iter().map(Option::is_none).collect();
+        let arcs = || self.arcs.iter().filter(|(i, j, _)| open[*i] && open[*j]);
+        let mut connected = UnionFind::new(self.gain.len());
+        for (i, j, _) in arcs() {
+            connected.union(*i, *j);
+        }
+        let mut parts: BTreeMap<usize, Part> = BTreeMap::new();
+        for i in (0..self.gain.len()).filter(|&i| open[i]) {
+            parts.entry(connected.find(i)).or_default().nodes.push(i);
+        }
+        for arc in arcs() {
+            let part = parts.entry(connected.find(arc.0)).or_default();
+            part.arcs.push(*arc);
+        }
+        for part in parts.values() {
+            for (i, moves) in part.nodes.iter().zip(part.cut(&self.gain)) {
+                self.moves[*i] = Some(moves);
             }
+        }
+        self.moves.iter().map(|m| *m == Some(true)).collect()
+    }
+}
+
+/// A connected part of the undecided nodes.
+#[derive(Default)]
+struct Part {
+    /// Ascending.
+    nodes: Vec<usize>,
+    /// As in [`OpenNodes`].
+    arcs: Vec<(usize, usize, i64)>,
+}
+
+impl Part {
+    /// For each node: does it move?
+    fn cut(&self, gain: &[i64]) -> Vec<bool> {
+        let n = self.nodes.len();
+        let mut graph = DiGraph::<(), u64>::with_capacity(n + 2, n + self.arcs.len());
+        let place: Vec<NodeIndex> = (0..n).map(|_| graph.add_node(())).collect();
+        let (source, sink) = (graph.add_node(()), graph.add_node(()));
+        // The source side keeps, the sink side moves.
+        for (&i, &at) in self.nodes.iter().zip(&place) {
+            if gain[i] < 0 {
+                graph.add_edge(source, at, gain[i].unsigned_abs());
+            } else if gain[i] > 0 {
+                graph.add_edge(at, sink, gain[i].unsigned_abs());
+            }
+        }
+        let of = |i: usize| {
+            place[self
+                .nodes
+                .binary_search(&i)
+                .expect("both ends are in the part")]
+        };
+        for &(i, j, capacity) in &self.arcs {
+            graph.add_edge(of(i), of(j), capacity.unsigned_abs());
         }
         let (_, flow) = petgraph::algo::dinics(&graph, source, sink);
         // Nodes that residual capacity still reaches from the source keep their label.
@@ -326,7 +438,7 @@ impl Cut {
                 visit(e.source(), flow[e.id().index()] > 0);
             }
         }
-        keeps[..n].iter().map(|k| !k).collect()
+        place.iter().map(|at| !keeps[at.index()]).collect()
     }
 }
 

@@ -142,7 +142,7 @@ mod tests {
     use super::*;
     use crate::lines3d::reconstruct_lines;
 
-    fn matched() -> (Scene, Vec<Vec<ImageSegment>>, Vec<LineMatch>, MatchTrace) {
+    fn matched() -> (Scene, Vec<LineMatch>, MatchTrace) {
         let scene = planted::scene();
         let segments = planted::segments(&scene);
         let (matches, trace) = match_lines(
@@ -151,12 +151,12 @@ mod tests {
             &MatchParams::default(),
             &Lines3dParams::default(),
         );
-        (scene, segments, matches, trace)
+        (scene, matches, trace)
     }
 
     #[test]
     fn planted_edges_are_matched_and_nothing_else() {
-        let (scene, segments, matches, trace) = matched();
+        let (scene, matches, trace) = matched();
         let (lines, _) = reconstruct_lines(&scene, &matches, &Lines3dParams::default());
         assert_eq!(lines.len(), 4);
         for edge in planted::edges() {
@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn the_height_range_holds_roof_and_ground() {
-        let (_, _, _, trace) = matched();
+        let (_, _, trace) = matched();
         let [low, high] = trace.z_range_m.unwrap();
         assert!(low < 0.5 && low > -6.0, "low {low}");
         assert!(high > planted::ROOF_Z && high < 14.0, "high {high}");
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn fragments_merge_and_short_segments_grow() {
-        let (scene, _, matches, _) = matched();
+        let (scene, matches, _) = matched();
         let first = SegmentId(0);
         let edge = matches
             .iter()

@@ -165,7 +165,7 @@ fn bar_point(smooth: &Gray, x: usize, y: usize, noise: f32) -> Option<BarPoint> 
     }
     let normal = normal / length;
     let offset = normal * (-gradient.dot(&normal) / second);
-    if !(offset.amax() <= REACH_PX) {
+    if offset.amax().is_nan() || offset.amax() > REACH_PX {
         return None;
     }
     // Just inside the pixel, so that its index can be had back from the position.

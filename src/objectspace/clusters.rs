@@ -266,16 +266,13 @@ impl Search<'_> {
         let stretch = [p[0].max(q[0]), p[1].min(q[1])];
         let shared = stretch[1] - stretch[0];
         let shorter = (p[1] - p[0]).min(q[1] - q[0]);
-        (shared > 0.4 * shorter).then(|| {
-            (
-                shared,
-                Proposal {
-                    at,
-                    stretch,
-                    forward: a.forward,
-                },
-            )
-        })
+        let forward = a.forward;
+        let proposal = Proposal {
+            at,
+            stretch,
+            forward,
+        };
+        (shared > 0.4 * shorter).then_some((shared, proposal))
     }
 
     /// Lets all image lines vote for a proposal; `None` where too few views agree.

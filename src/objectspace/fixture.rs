@@ -60,6 +60,7 @@ fn region_line(segment: Segment2) -> RegionLine {
             contrast: 0.2,
             edgels: segment.length() as u32,
             covariance: Matrix2::identity() * 0.01,
+            kind: crate::lines2d::SegmentKind::Edge,
         },
         sides: [0.3, 0.5],
         vector: 0,
