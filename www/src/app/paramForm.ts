@@ -39,10 +39,11 @@ export function groupTitle(group: string): string {
   return GROUP_TITLES[group] ?? words(group);
 }
 
-/** One section a stage, in the core's order; a stage without parameters has none. */
+/** One section a stage, in the core's order; a stage without parameters has none, nor has a single value beside the
+ * groups. */
 export function paramSections(defaults: Params, values: Params): ParamSection[] {
   return Object.entries(defaults)
-    .filter(([, fallback]) => Object.keys(fallback).length > 0)
+    .filter(([, fallback]) => typeof fallback === "object" && Object.keys(fallback).length > 0)
     .map(([group, fallback]) => {
       const fields = paramFields(fallback, values[group] ?? {});
       return { group, fields, changed: fields.filter(({ changed }) => changed).length };

@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { type ParamField, paramSections, parseField } from "../../src/app/paramForm";
 import { firstStageOf } from "../../src/app/stages";
+import type { Params } from "../../src/shared/results";
 
 const DEFAULTS = {
   segments: { min_length_px: 15, area_m2: 2, closed: true },
@@ -20,6 +21,11 @@ function field(group: string, key: string, values = DEFAULTS): ParamField {
 describe("paramSections", () => {
   it("leaves out stages without parameters", () => {
     expect(paramSections(DEFAULTS, DEFAULTS).map(({ group }) => group)).toEqual(["segments", "sweep"]);
+  });
+
+  it("makes no section of a single value", () => {
+    const withMethod: Params = JSON.parse(JSON.stringify({ method: "lines", ...DEFAULTS }));
+    expect(paramSections(withMethod, withMethod).map(({ group }) => group)).toEqual(["segments", "sweep"]);
   });
 
   it("reads the unit from the name", () => {
