@@ -250,7 +250,11 @@ mod tests {
         // One and a half times the noise of a pixel.
         let mut gray = step_edge(160, 160, 0.4, 0.03);
         add_noise(&mut gray, 0.02, 3);
-        let (segments, _) = detect_segments(&gray, &SegmentParams::default());
+        let params = SegmentParams {
+            grow_gap_px: 12,
+            ..SegmentParams::default()
+        };
+        let (segments, _) = detect_segments(&gray, &params);
         let on_edge = |s: &&ImageSegment| {
             distance_to_edge(&gray, 0.4, &s.segment.midpoint()).abs() < 1.0
                 && turn(s, 0.4).abs() < 0.1
@@ -301,7 +305,10 @@ mod tests {
                 }
             }
         }
-        let params = SegmentParams::default();
+        let params = SegmentParams {
+            grow_gap_px: 12,
+            ..SegmentParams::default()
+        };
         let longest = |params: &SegmentParams| {
             let (segments, _) = detect_segments(&gray, params);
             let lengths = segments.iter().map(|s| s.segment.length());
