@@ -4,11 +4,11 @@
 //! |---|---|---|
 //! | COLMAP text, binary | `cameras` + `images` | none: `x_cam = R X + t`, centre of the top-left pixel (0.5, 0.5) |
 //! | photogrammetric list | camera + exterior | omega, phi, kappa; mm from the frame's centre, y up; crops |
-//! | Metashape, BlocksExchange | XML | see [`xml`] |
-//! | Pix4D parameters, pmatrix | text | see [`matrices`] |
-//! | OpenSfM, nerfstudio, K R C | JSON | see [`json`] |
-//! | Bundler, VisualSFM | text | see [`bundles`] |
-//! | Strecha, Middlebury | text | see [`matrices`] |
+//! | Metashape, BlocksExchange | XML | see `xml` |
+//! | Pix4D parameters, pmatrix | text | see `matrices` |
+//! | OpenSfM, nerfstudio, K R C | JSON | see `json` |
+//! | Bundler, VisualSFM | text | see `bundles` |
+//! | Strecha, Middlebury | text | see `matrices` |
 //! | projection matrices | one `.P` per image | 3 x 4 up to scale and sign; centre of the top-left pixel (0, 0) |
 //!
 //! Where a scene holds its orientation more than once, the first in the order of [`Format`] is taken: COLMAP

@@ -19,7 +19,7 @@
 //! W96 has panchromatic images. Colour is used where there is any, because a red roof in the shade and the lawn beside it are
 //! often of the same grey; photographs without colour have differences without variance, which say nothing.
 //!
-//! From a fine partition ([`watershed`](self::watershed)) two moves are made, the one with the largest gain in L
+//! From a fine partition (`watershed`) two moves are made, the one with the largest gain in L
 //! first, until none gains (`minimise`):
 //!
 //! * **drop a break point** of a boundary: the triangle that it spans changes sides. Only where no other node lies
@@ -30,7 +30,7 @@
 //! anew. Sums over regions and triangles come from running sums along rows (`integrals`), so that a move costs as much
 //! as its boundary is long, and the whole grows nearly linearly with the image.
 //!
-//! Lines for measuring are then taken from the vectors and moved to the crest of the gradient ([`vectors`](self::vectors)):
+//! Lines for measuring are then taken from the vectors and moved to the crest of the gradient (`vectors`):
 //! break points stand on corners of pixels, which is as good as the regions need and not as good as the image is.
 
 mod color;
