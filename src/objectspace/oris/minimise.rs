@@ -5,6 +5,7 @@ use std::collections::BinaryHeap;
 
 use super::integrals::{CHANNELS, Moments};
 use super::partition::{OUTSIDE, Partition};
+use super::settle::settle;
 use crate::math::log2;
 use crate::params::OrisParams;
 
@@ -44,6 +45,8 @@ pub struct Moves {
     pub dropped: usize,
     /// Regions merged into others.
     pub merged: usize,
+    /// Nodes moved to a better place.
+    pub moved: usize,
 }
 
 /// Makes moves in the order of their gain until none gains.
@@ -60,7 +63,10 @@ pub(super) fn minimise(p: &mut Partition, params: &OrisParams) -> Moves {
         descent.offer_all_nodes(p);
         descent.offer_all_pairs(p);
         // Offers that came to gain by changes around them are found by looking at all of them again.
-        if !descent.run(p) {
+        let changed = descent.run(p);
+        let moved = settle(p, &descent.code);
+        descent.moves.moved += moved;
+        if !changed && moved == 0 {
             return descent.moves;
         }
     }
@@ -105,7 +111,7 @@ impl Ord for Offer {
 /// each step alone would cost more than its vector.) More rounds corners off.
 const MIXED_PX: f64 = 0.5;
 /// Gains below this are rounding, bits.
-const LEAST_GAIN: f64 = 1e-6;
+pub(super) const LEAST_GAIN: f64 = 1e-6;
 
 struct Descent {
     code: CodeLength,

@@ -26,6 +26,9 @@
 //!   in the triangle, so that boundaries never cross;
 //! * **merge two regions**: all vectors between them go. Junctions that are left with two vectors become break points.
 //!
+//! Between rounds a third move, which is not W96's, lets every node go to the lattice point nearby where L is least
+//! (`settle`). Without it blunt corners stay up to 2.5 px beside the true ones, which the straightening of a staircase took.
+//!
 //! Gains stand in a priority queue and are computed again when their turn comes; what a move changes nearby is offered
 //! anew. Sums over regions and triangles come from running sums along rows (`integrals`), so that a move costs as much
 //! as its boundary is long, and the whole grows nearly linearly with the image.
@@ -34,10 +37,12 @@
 //! break points stand on corners of pixels, which is as good as the regions need and not as good as the image is.
 
 mod color;
+mod edge_grid;
 mod integrals;
 mod minimise;
 mod partition;
 mod rings;
+mod settle;
 mod vectors;
 mod watershed;
 
@@ -202,7 +207,7 @@ mod tests {
     use crate::raster::Gray;
 
     /// A drawn partition: a house-like pentagon and a rectangle on a background, with noise of 10 grey levels.
-    fn drawn() -> (Gray, Vec<Vec<[f64; 2]>>) {
+    fn drawn(seed: u64) -> (Gray, Vec<Vec<[f64; 2]>>) {
         let shapes: Vec<(Vec<[f64; 2]>, f64)> = vec![
             (
                 vec![[20.0, 24.0], [70.0, 14.0], [82.0, 74.0], [32.0, 84.0]],
@@ -219,7 +224,7 @@ mod tests {
                 (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]) > 0.0
             })
         };
-        let mut state = 12345u64;
+        let mut state = seed;
         let mut noise = || {
             // Sum of twelve uniform numbers: nearly Gaussian.
             let sum: f64 = (0..12)
@@ -252,33 +257,34 @@ mod tests {
 
     #[test]
     fn a_drawn_partition_is_recovered() {
-        let (gray, rings) = drawn();
-        let s = segment_regions(&ColorImage::from_gray(&gray, 0.8), &OrisParams::default());
-        // Mixed pixels where three regions meet may be a sliver of their own.
-        let large = s.regions.iter().filter(|r| r.area_px > 40).count();
-        let areas: Vec<u32> = s.regions.iter().map(|r| r.area_px).collect();
-        assert_eq!(large, 3, "two shapes and the background: {areas:?}");
-        let slivers: u32 = areas.iter().filter(|&&a| a <= 40).sum();
-        assert!(slivers < 64, "{areas:?}");
-        let mut found: Vec<[i32; 2]> = s.vectors.iter().flat_map(|v| v.ends).collect();
-        found.sort_unstable();
-        found.dedup();
-        for corner in rings.iter().flatten() {
-            let distance = found
-                .iter()
-                .map(|p| {
-                    let d = [f64::from(p[0]) - corner[0], f64::from(p[1]) - corner[1]];
-                    (d[0] * d[0] + d[1] * d[1]).sqrt()
-                })
-                .fold(f64::INFINITY, f64::min);
-            // Known weakness: break points stay on the lattice, and blunt corners slide along the longer side.
-            assert!(distance <= 2.5, "corner {corner:?} at {distance} px");
+        for seed in [1, 2, 3, 12345] {
+            let (gray, rings) = drawn(seed);
+            let image = ColorImage::from_gray(&gray, 0.8);
+            let s = segment_regions(&image, &OrisParams::default());
+            // Mixed pixels where three regions meet may be a sliver of their own.
+            let areas: Vec<u32> = s.regions.iter().map(|r| r.area_px).collect();
+            let large = areas.iter().filter(|&&a| a > 40).count();
+            assert_eq!(large, 3, "two shapes and the background: {areas:?}");
+            let slivers: u32 = areas.iter().filter(|&&a| a <= 40).sum();
+            assert!(slivers < 64, "{areas:?}");
+            for corner in rings.iter().flatten() {
+                let distance = distance_to_vertex(&s, *corner);
+                assert!(distance <= 1.0, "corner {corner:?} at {distance} px");
+            }
         }
+    }
+
+    fn distance_to_vertex(s: &Segmentation, corner: [f64; 2]) -> f64 {
+        let ends = s.vectors.iter().flat_map(|v| v.ends);
+        let distance = |p: [i32; 2]| {
+            crate::math::hypot(f64::from(p[0]) - corner[0], f64::from(p[1]) - corner[1])
+        };
+        ends.map(distance).fold(f64::INFINITY, f64::min)
     }
 
     #[test]
     fn the_regions_share_out_the_image() {
-        let (gray, _) = drawn();
+        let (gray, _) = drawn(12345);
         let s = segment_regions(&ColorImage::from_gray(&gray, 0.8), &OrisParams::default());
         let area: u32 = s.regions.iter().map(|r| r.area_px).sum();
         assert_eq!(area as usize, gray.data.len());

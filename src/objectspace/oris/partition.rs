@@ -198,6 +198,63 @@ impl Partition {
         [a, c]
     }
 
+    /// The nodes at the far ends of the vectors of a node.
+    pub fn around(&self, node: u32) -> impl Iterator<Item = u32> {
+        self.nodes[node as usize].edges().iter().map(move |&e| {
+            let [a, b] = self.edges[e as usize].nodes;
+            if a == node { b } else { a }
+        })
+    }
+
+    /// May a node go to a place without leaving the border of the image, and without its vectors passing over
+    /// another node? (Whether it meets another vector on its way is for [`super::edge_grid`] to say.)
+    pub fn may_move(&self, node: u32, to: Lattice) -> bool {
+        let at = self.nodes[node as usize].at;
+        if !self.occupied.covers(to) || self.occupied.get(to) {
+            return false;
+        }
+        self.nodes[node as usize].edges().iter().all(|&e| {
+            let edge = &self.edges[e as usize];
+            let far = edge.nodes[usize::from(edge.nodes[0] == node)];
+            let far = self.nodes[far as usize].at;
+            let turn = i64::from(to.x - at.x) * i64::from(far.y - at.y)
+                - i64::from(to.y - at.y) * i64::from(far.x - at.x);
+            (turn == 0 || !edge.sides.contains(&OUTSIDE)) && !self.occupied.within([at, to, far])
+        })
+    }
+
+    /// The pixels that each region would win if a node went to a place.
+    pub fn shift(&self, node: u32, to: Lattice) -> Vec<(u32, Moments)> {
+        let at = self.nodes[node as usize].at;
+        let mut won: Vec<(u32, Moments)> = Vec::with_capacity(4);
+        for &e in self.nodes[node as usize].edges() {
+            let Edge { nodes, sides, .. } = self.edges[e as usize];
+            let starts = nodes[0] == node;
+            let far = self.nodes[nodes[usize::from(starts)] as usize].at;
+            // What the right side wins; a vector towards the node counts the other way round.
+            let term = self.sums.side(to, far) - self.sums.side(at, far);
+            let term = if starts { term } else { -term };
+            for (region, term) in [(sides[1], term), (sides[0], -term)] {
+                match won.iter_mut().find(|w| w.0 == region) {
+                    Some(w) => w.1 = w.1 + term,
+                    None => won.push((region, term)),
+                }
+            }
+        }
+        won
+    }
+
+    /// Moves a node; `won` is its [`Self::shift`].
+    pub fn move_node(&mut self, node: u32, to: Lattice, won: &[(u32, Moments)]) {
+        let at = std::mem::replace(&mut self.nodes[node as usize].at, to);
+        self.occupied.set(at, false);
+        self.occupied.set(to, true);
+        for (region, term) in won {
+            let moments = &mut self.regions[*region as usize].moments;
+            *moments = *moments + *term;
+        }
+    }
+
     fn unshare(&mut self, a: u32, b: u32) {
         for (own, other) in [(a, b), (b, a)] {
             let shared = &mut self.regions[own as usize].shared;
@@ -348,6 +405,7 @@ impl Cracks<'_> {
 
 /// Which lattice points are nodes, a bit each.
 struct Occupied {
+    width: usize,
     words_per_row: usize,
     words: Vec<u64>,
 }
@@ -356,9 +414,21 @@ impl Occupied {
     fn new(width: usize, height: usize) -> Self {
         let words_per_row = width.div_ceil(64);
         Self {
+            width,
             words_per_row,
             words: vec![0; words_per_row * height],
         }
+    }
+
+    /// Is this a lattice point of the image?
+    fn covers(&self, at: Lattice) -> bool {
+        let height = self.words.len() / self.words_per_row;
+        (0..self.width as i32).contains(&at.x) && (0..height as i32).contains(&at.y)
+    }
+
+    fn get(&self, at: Lattice) -> bool {
+        let word = self.words[at.y as usize * self.words_per_row + at.x as usize / 64];
+        word >> (at.x as usize % 64) & 1 == 1
     }
 
     fn set(&mut self, at: Lattice, value: bool) {
