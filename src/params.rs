@@ -467,6 +467,9 @@ pub struct PlaneParams {
     pub least_support: f64,
     /// Correlation at which an area speaks neither for nor against a plane. Assumption.
     pub least_correlation: f64,
+    /// A plane is compared with those above and below it at a distance that moves the images against each other by this, px.
+    /// Assumption: more than the error of a true plane, less than the windows.
+    pub beside_px: f64,
     /// What a metre of side weighs against a square metre of area, metres. Assumption.
     pub side_weight_m: f64,
     /// What a plane costs, square metres. Assumption: two planes must explain more than one by this.
@@ -495,6 +498,7 @@ impl Default for PlaneParams {
             min_support: 0.25,
             least_support: 0.3,
             least_correlation: 0.5,
+            beside_px: 3.0,
             side_weight_m: 0.5,
             plane_cost_m2: 1.0,
             slant_cost_m2: 1.5,

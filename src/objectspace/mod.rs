@@ -12,6 +12,8 @@
 //! 3.4  directions  main directions from a histogram of azimuths
 //! 3.5  clusters    3D lines by clustering in the plane across a main direction
 //! 3.6  ends        where a plane between two parallel lines ends
+//!      shapes      outlines between ends
+//!      judge       what the images say about a plane
 //!      planes      plane candidates and their measure
 //!      select      best non-overlapping set
 //!      stages      the stages that the pipeline runs
@@ -22,9 +24,11 @@ pub mod directions;
 mod ends;
 #[cfg(test)]
 mod fixture;
+mod judge;
 pub mod oris;
 mod planes;
 mod select;
+mod shapes;
 pub mod sight;
 mod stages;
 mod windows;

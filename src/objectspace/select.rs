@@ -8,7 +8,8 @@ use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;
 
-use super::planes::{PlaneCandidate, area_2d};
+use super::judge::area_2d;
+use super::planes::PlaneCandidate;
 
 /// Candidates that overlap by more than this share of the smaller one exclude each other. Assumption: what errors of their
 /// ends do at shared sides.

@@ -37,9 +37,11 @@
 //! break points stand on corners of pixels, which is as good as the regions need and not as good as the image is.
 
 mod color;
+mod cracks;
 mod edge_grid;
 mod integrals;
 mod minimise;
+mod occupied;
 mod partition;
 mod rings;
 mod settle;

@@ -6,7 +6,9 @@
 
 use std::collections::BTreeMap;
 
+use super::cracks::Cracks;
 use super::integrals::{Lattice, Moments, RowSums};
+use super::occupied::Occupied;
 
 /// Beyond the border of the image.
 pub(super) const OUTSIDE: u32 = 0;
@@ -30,12 +32,21 @@ pub(super) struct Node {
 }
 
 impl Node {
+    /// Without vectors.
+    pub fn new(at: Lattice) -> Self {
+        Self {
+            at,
+            edges: [0; 4],
+            degree: 0,
+        }
+    }
+
     /// The vectors that end here.
     pub fn edges(&self) -> &[u32] {
         &self.edges[..usize::from(self.degree)]
     }
 
-    fn add(&mut self, edge: u32) {
+    pub(super) fn add(&mut self, edge: u32) {
         self.edges[usize::from(self.degree)] = edge;
         self.degree += 1;
     }
@@ -83,7 +94,7 @@ pub(super) struct Partition {
     pub edges: Vec<Edge>,
     pub regions: Vec<Region>,
     sums: RowSums,
-    occupied: Occupied,
+    pub(super) occupied: Occupied,
 }
 
 impl Partition {
@@ -206,11 +217,16 @@ impl Partition {
         })
     }
 
-    /// May a node go to a place without leaving the border of the image, and without its vectors passing over
+    /// Is this a lattice point of the image?
+    pub fn covers(&self, at: Lattice) -> bool {
+        self.occupied.covers(at)
+    }
+
+    /// May a node go to a place in the image without leaving the border of the image, and without its vectors passing over
     /// another node? (Whether it meets another vector on its way is for [`super::edge_grid`] to say.)
     pub fn may_move(&self, node: u32, to: Lattice) -> bool {
         let at = self.nodes[node as usize].at;
-        if !self.occupied.covers(to) || self.occupied.get(to) {
+        if self.occupied.get(to) {
             return false;
         }
         self.nodes[node as usize].edges().iter().all(|&e| {
@@ -312,173 +328,5 @@ impl Partition {
                 self.occupied.set(self.nodes[n as usize].at, false);
             }
         }
-    }
-
-    fn trace_cracks(&mut self, cracks: &Cracks) {
-        let (w, h) = (cracks.width, cracks.height);
-        let mut ids = vec![u32::MAX; (w + 1) * (h + 1)];
-        for y in 0..=h {
-            for x in 0..=w {
-                if cracks.is_node(x, y) {
-                    ids[y * (w + 1) + x] = self.nodes.len() as u32;
-                    let at = Lattice {
-                        x: x as i32,
-                        y: y as i32,
-                    };
-                    self.occupied.set(at, true);
-                    self.nodes.push(Node {
-                        at,
-                        edges: [0; 4],
-                        degree: 0,
-                    });
-                }
-            }
-        }
-        for y in 0..=h {
-            let mut start = ids[y * (w + 1)];
-            for x in 1..=w {
-                let end = ids[y * (w + 1) + x];
-                if end != u32::MAX {
-                    let (above, below) = (cracks.label(x, y), cracks.label(x, y + 1));
-                    self.add_edge([start, end], [above, below]);
-                    start = end;
-                }
-            }
-        }
-        for x in 0..=w {
-            let mut start = ids[x];
-            for y in 1..=h {
-                let end = ids[y * (w + 1) + x];
-                if end != u32::MAX {
-                    let (left, right) = (cracks.label(x, y), cracks.label(x + 1, y));
-                    // A vector that runs down has the pixels of larger x to its left.
-                    self.add_edge([start, end], [right, left]);
-                    start = end;
-                }
-            }
-        }
-    }
-
-    /// Adds a vector unless there is no crack.
-    fn add_edge(&mut self, nodes: [u32; 2], sides: [u32; 2]) {
-        if sides[0] == sides[1] {
-            return;
-        }
-        let id = self.edges.len() as u32;
-        self.edges.push(Edge {
-            nodes,
-            sides,
-            alive: true,
-        });
-        nodes
-            .into_iter()
-            .for_each(|n| self.nodes[n as usize].add(id));
-    }
-}
-
-/// The cracks between the pixels of a label image.
-struct Cracks<'a> {
-    labels: &'a [u32],
-    width: usize,
-    height: usize,
-}
-
-impl Cracks<'_> {
-    /// The region of a pixel, counted from 1, with columns and rows counted from 1; [`OUTSIDE`] beyond the border.
-    fn label(&self, column: usize, row: usize) -> u32 {
-        let inside = (1..=self.width).contains(&column) && (1..=self.height).contains(&row);
-        if inside {
-            self.labels[(row - 1) * self.width + column - 1] + 1
-        } else {
-            OUTSIDE
-        }
-    }
-
-    /// Do the cracks at this lattice point do anything but run straight on?
-    fn is_node(&self, x: usize, y: usize) -> bool {
-        let a = [self.label(x, y), self.label(x + 1, y)];
-        let b = [self.label(x, y + 1), self.label(x + 1, y + 1)];
-        let straight = (a == b) || (a[0] == a[1] && b[0] == b[1]);
-        !straight
-    }
-}
-
-/// Which lattice points are nodes, a bit each.
-struct Occupied {
-    width: usize,
-    words_per_row: usize,
-    words: Vec<u64>,
-}
-
-impl Occupied {
-    fn new(width: usize, height: usize) -> Self {
-        let words_per_row = width.div_ceil(64);
-        Self {
-            width,
-            words_per_row,
-            words: vec![0; words_per_row * height],
-        }
-    }
-
-    /// Is this a lattice point of the image?
-    fn covers(&self, at: Lattice) -> bool {
-        let height = self.words.len() / self.words_per_row;
-        (0..self.width as i32).contains(&at.x) && (0..height as i32).contains(&at.y)
-    }
-
-    fn get(&self, at: Lattice) -> bool {
-        let word = self.words[at.y as usize * self.words_per_row + at.x as usize / 64];
-        word >> (at.x as usize % 64) & 1 == 1
-    }
-
-    fn set(&mut self, at: Lattice, value: bool) {
-        let word = &mut self.words[at.y as usize * self.words_per_row + at.x as usize / 64];
-        let bit = 1u64 << (at.x as usize % 64);
-        if value { *word |= bit } else { *word &= !bit }
-    }
-
-    /// Is there a node in the closed triangle besides its corners?
-    fn within(&self, corners: [Lattice; 3]) -> bool {
-        let [a, b, c] = corners;
-        let (top, bottom) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
-        (top..=bottom).any(|y| {
-            let (mut low, mut high) = (i64::MAX, i64::MIN);
-            for (p, q) in [(a, b), (b, c), (c, a)] {
-                let (p, q) = if p.y <= q.y { (p, q) } else { (q, p) };
-                if y < p.y || y > q.y {
-                    continue;
-                }
-                if p.y == q.y {
-                    low = low.min(i64::from(p.x.min(q.x)));
-                    high = high.max(i64::from(p.x.max(q.x)));
-                    continue;
-                }
-                let (dx, dy) = (i64::from(q.x - p.x), i64::from(q.y - p.y));
-                let n = dx * i64::from(y - p.y);
-                low = low.min(i64::from(p.x) - (-n).div_euclid(dy));
-                high = high.max(i64::from(p.x) + n.div_euclid(dy));
-            }
-            (low <= high) && self.any_in_row(y as usize, low as usize, high as usize, &corners)
-        })
-    }
-
-    fn any_in_row(&self, y: usize, low: usize, high: usize, except: &[Lattice; 3]) -> bool {
-        let row = &self.words[y * self.words_per_row..(y + 1) * self.words_per_row];
-        (low / 64..=high / 64).any(|k| {
-            let mut word = row[k];
-            if k == low / 64 {
-                word &= u64::MAX << (low % 64);
-            }
-            if k == high / 64 {
-                word &= u64::MAX >> (63 - high % 64);
-            }
-            for p in except
-                .iter()
-                .filter(|p| p.y as usize == y && p.x as usize / 64 == k)
-            {
-                word &= !(1u64 << (p.x as usize % 64));
-            }
-            word != 0
-        })
     }
 }

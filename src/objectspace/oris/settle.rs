@@ -49,24 +49,26 @@ fn best_step(
     node: u32,
 ) -> Option<(Lattice, Vec<(u32, Moments)>)> {
     let at = p.nodes[node as usize].at;
-    let mut best: Option<(f64, Lattice, Vec<(u32, Moments)>)> = None;
+    let mut steps: Vec<(f64, Lattice, Vec<(u32, Moments)>)> = Vec::new();
     for (dx, dy) in directions() {
         for step in STEPS {
             let to = Lattice {
                 x: at.x + step * dx,
                 y: at.y + step * dy,
             };
-            // A longer step in this direction would be in the way of the same node.
-            if !p.may_move(node, to) || grid.crossed(p, node, to) {
-                break;
-            }
-            let shift = p.shift(node, to);
-            let gain = gain(p, code, &shift);
-            if gain > best.as_ref().map_or(LEAST_GAIN, |b| b.0) {
-                best = Some((gain, to, shift));
+            if p.covers(to) {
+                let shift = p.shift(node, to);
+                let gain = gain(p, code, &shift);
+                if gain > LEAST_GAIN {
+                    steps.push((gain, to, shift));
+                }
             }
         }
     }
+    // Steps that gain are few: whether they are free is asked of these only.
+    steps.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let free = |to: Lattice| p.may_move(node, to) && !grid.crossed(p, node, to);
+    let best = steps.into_iter().find(|s| free(s.1));
     best.map(|(_, to, shift)| (to, shift))
 }
 
