@@ -26,6 +26,8 @@ pub struct ConsistencyMap {
     correlation: Vec<i8>,
     /// Weight in steps of 1 / 255.
     weight: Vec<u8>,
+    /// The same from the median of the views instead of their mean.
+    common_weight: Vec<u8>,
 }
 
 impl ConsistencyMap {
@@ -38,6 +40,11 @@ impl ConsistencyMap {
     /// How much the texture at cell `k` can tell, 0 to 1; 0 where fewer than two views see the window.
     pub fn weight(&self, k: usize) -> f32 {
         f32::from(self.weight[k]) / 255.0
+    }
+
+    /// The same for the texture that most views show: what hides the cell in some of them has no say.
+    pub fn common_weight(&self, k: usize) -> f32 {
+        f32::from(self.common_weight[k]) / 255.0
     }
 }
 
@@ -165,6 +172,7 @@ fn combine(windows: &[ViewWindows], grid: &PlanGrid) -> ConsistencyMap {
         grid: *grid,
         correlation: vec![0; cells],
         weight: vec![0; cells],
+        common_weight: vec![0; cells],
     };
     let mut sorted: Vec<f32> = Vec::with_capacity(pairs.len());
     for k in 0..cells {
@@ -177,17 +185,23 @@ fn combine(windows: &[ViewWindows], grid: &PlanGrid) -> ConsistencyMap {
         let better = &sorted[..sorted.len().div_ceil(2)];
         let mean = better.iter().sum::<f32>() / better.len() as f32;
         map.correlation[k] = (mean * 127.0).round().clamp(-127.0, 127.0) as i8;
-        let seen: Vec<f32> = windows
+        let mut seen: Vec<f32> = windows
             .iter()
             .filter(|w| w.valid[k])
             .map(|w| w.variance[k])
             .collect();
         let variance = seen.iter().sum::<f32>() / seen.len() as f32;
-        // 0 is kept for what is not seen at all.
-        let weight = variance / (variance + NOISE * NOISE);
-        map.weight[k] = (weight * 255.0).round().max(1.0) as u8;
+        map.weight[k] = weight_of(variance);
+        seen.sort_unstable_by(f32::total_cmp);
+        map.common_weight[k] = weight_of(seen[(seen.len() - 1) / 2]);
     }
     map
+}
+
+/// Weight of a window with this variance, in steps; 0 is kept for what is not seen at all.
+fn weight_of(variance: f32) -> u8 {
+    let weight = variance / (variance + NOISE * NOISE);
+    (weight * 255.0).round().max(1.0) as u8
 }
 
 /// Sum over the window around every cell, along rows and then along columns; windows that stick out of the

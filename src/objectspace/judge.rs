@@ -126,7 +126,7 @@ fn mean_inside(map: &ConsistencyMap, ring: &[Point3<f64>]) -> [f64; 2] {
         };
         for c in column(x0)..column(x1).min(grid.width) {
             let k = row * grid.width + c;
-            let weight = f64::from(map.weight(k));
+            let weight = f64::from(map.common_weight(k));
             cells += 1;
             weights += weight;
             sum += weight * f64::from(map.correlation(k));

@@ -5,14 +5,16 @@
 //! writing it down. Here
 //!
 //! ```text
-//! M = sum over the area of  weight (correlation - least_correlation)
+//! M = sum over the area of  weight (correlation - correlation beside - least_rise)
 //!   + side_weight  sum over the sides of  length (support - least_support)       square metres
 //!   - plane_cost - slant_cost (ends that are not at right angles)
 //! ```
 //!
 //! * the first sum is the paper's criterion that "the area ... inside the 3D plane should be radiometrically homogeneous
 //!   over all images": the views, warped to the plane, are compared by correlation (`halfplane::consistency`),
-//!   with little weight where there is no texture;
+//!   with little weight where there is no texture. They must agree better than on planes a little above and below: smooth surfaces
+//!   correlate on any plane near them, and a fixed level of correlation lets many false planes through
+//!   (of 910 candidates of the rendered scenes the difference tells true from false in 88 of 100 pairs, correlation alone in 80);
 //! * the second is its geometry, and the contrast of its lines, since only lines with contrast are region boundaries:
 //!   support is the share of a side that image lines cover, mean over all views.
 //!
@@ -259,14 +261,12 @@ impl PlaneSearch<'_> {
         let p = self.params;
         let seen = judge.inside(&ring);
         let area = area_2d(&ring) / plane.normal.z;
-        let measure = area * seen.weight * (seen.correlation - p.least_correlation)
+        let rise = seen.correlation - seen.beside;
+        let measure = area * seen.weight * (rise - p.least_rise)
             + p.side_weight_m * shape.length * (shape.support - p.least_support)
             - p.plane_cost_m2
             - p.slant_cost_m2 * shape.slants as f64;
-        let accepted = measure > p.min_measure_m2
-            && area >= p.min_area_m2
-            && seen.correlation >= p.least_correlation;
-        accepted.then(|| PlaneCandidate {
+        (measure > p.min_measure_m2 && area >= p.min_area_m2).then(|| PlaneCandidate {
             plane: *plane,
             ring,
             lines: Vec::new(),
