@@ -465,6 +465,9 @@ pub struct PlaneParams {
     pub min_support: f64,
     /// Support at which a side speaks neither for nor against a plane. Assumption.
     pub least_support: f64,
+    /// Least correlation of the views on a plane. Assumption: unrelated textures reach 0.45, since only the better half of all pairs of
+    /// views counts.
+    pub least_correlation: f64,
     /// By how much the views agree better on a plane than beside it where an area speaks neither for nor against. Assumption.
     pub least_rise: f64,
     /// A plane is compared with those above and below it at a distance that moves the images against each other by this, px.
@@ -497,6 +500,7 @@ impl Default for PlaneParams {
             max_candidates: 4,
             min_support: 0.25,
             least_support: 0.3,
+            least_correlation: 0.5,
             least_rise: 0.08,
             beside_px: 3.0,
             side_weight_m: 0.5,

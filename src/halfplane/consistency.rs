@@ -11,6 +11,8 @@
 //!   against; each position carries the weight `s^2 / (s^2 + n^2)` with s the standard deviation
 //!   within the window and n that of the noise.
 
+use nalgebra::Point3;
+
 use super::plan::{PlanGrid, orthophoto};
 use crate::camera::Camera;
 use crate::geometry::Plane;
@@ -59,16 +61,31 @@ const MAX_VIEWS: usize = 6;
 /// Compares all views on `plane` over `grid`.
 pub fn consistency_map(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> ConsistencyMap {
     let views = views_of_plane(scene, plane, grid);
-    let windows: Vec<ViewWindows> = views
-        .iter()
-        .map(|&v| {
-            ViewWindows::new(
-                orthophoto(&scene.view(v).gray, scene.camera(v), plane, grid),
-                grid,
-            )
-        })
-        .collect();
-    combine(&windows, grid)
+    let photo = |&v: &ViewId| orthophoto(&scene.view(v).gray, scene.camera(v), plane, grid);
+    let windows = views.iter().map(|v| ViewWindows::new(photo(v), grid));
+    combine(&windows.collect::<Vec<_>>(), grid)
+}
+
+/// The same where something known stands in front of the plane: `hidden` says whether a view sees a point of it.
+pub fn consistency_map_behind(
+    scene: &Scene,
+    plane: &Plane,
+    grid: &PlanGrid,
+    hidden: impl Fn(ViewId, &Point3<f64>) -> bool,
+) -> ConsistencyMap {
+    let views = views_of_plane(scene, plane, grid);
+    let photo = |&v: &ViewId| {
+        let mut photo = orthophoto(&scene.view(v).gray, scene.camera(v), plane, grid);
+        for (k, gray) in photo.iter_mut().enumerate() {
+            let at = grid.center(k % grid.width, k / grid.width);
+            if hidden(v, &plane.lift(at.x, at.y)) {
+                *gray = f32::NAN;
+            }
+        }
+        photo
+    };
+    let windows = views.iter().map(|v| ViewWindows::new(photo(v), grid));
+    combine(&windows.collect::<Vec<_>>(), grid)
 }
 
 /// The views in whose image some of the grid's window lies, frontal ones first, at most [`MAX_VIEWS`].

@@ -51,7 +51,7 @@ mod trace;
 mod windows;
 
 pub use borders::{Border, BorderKind};
-pub use consistency::{ConsistencyMap, consistency_map};
+pub use consistency::{ConsistencyMap, consistency_map, consistency_map_behind};
 pub use facets::{FacetRejection, FacetTrace, RejectedFacet, reconstruct_facets};
 pub use grouping::{Member, PlaneGroup};
 pub use plan::{PlanGrid, image_from_plan, orthophoto};

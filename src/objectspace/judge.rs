@@ -2,9 +2,9 @@
 
 use nalgebra::{Point2, Point3, Vector2};
 
+use super::solid::Solid;
 use crate::geometry::Plane;
-use crate::halfplane::{ConsistencyMap, PlanGrid, consistency_map};
-use crate::params::PlaneParams;
+use crate::halfplane::{ConsistencyMap, PlanGrid, consistency_map, consistency_map_behind};
 use crate::scene::Scene;
 
 /// Signed area in plan, square metres.
@@ -17,60 +17,101 @@ pub(super) fn area_2d(ring: &[Point3<f64>]) -> f64 {
         .sum()
 }
 
-/// What the images say about one plane.
-pub(super) struct Judge {
+/// Compares the views on one plane and on planes beside it.
+pub(super) struct Judge<'a> {
+    scene: &'a Scene,
+    solids: &'a [Solid],
+    plane: Plane,
     grid: PlanGrid,
-    /// On the plane, above and below it.
-    maps: [ConsistencyMap; 3],
+    /// How far a metre of height moves the images against each other, pixels.
+    parallax_px: f64,
+    map: ConsistencyMap,
 }
 
-/// What the images say about a polygon in the plane.
-pub(super) struct Seen {
+/// What the views say about a polygon in the plane.
+pub(super) struct OnPlane {
     /// How much its texture can tell, 0 to 1.
     pub weight: f64,
     /// Correlation of the views, weighted by texture.
     pub correlation: f64,
-    /// The larger one of the correlations above and below.
-    pub beside: f64,
 }
+
+/// The views on planes above and below.
+pub(super) struct Beside([ConsistencyMap; 2], PlanGrid);
+
+/// Correlation of unrelated textures: only the better half of all pairs of views counts. No plane beside another one is taken to
+/// be worse, so that hopeless planes need not be compared with any.
+pub(super) const CHANCE: f64 = 0.45;
 
 /// Largest number of cells of a plane's grid.
 const MOST_CELLS: f64 = 60_000.0;
 
-impl Judge {
-    /// Compares the views on a plane where the rings are; `None` without rings.
+impl<'a> Judge<'a> {
+    /// Compares the views on a plane where the rings are and no solid hides it; `None` without rings.
     pub fn new(
-        scene: &Scene,
+        scene: &'a Scene,
         plane: &Plane,
         rings: &[Vec<Point3<f64>>],
-        params: &PlaneParams,
+        solids: &'a [Solid],
     ) -> Option<Self> {
         let first = rings.iter().flatten().next()?;
         let grid = grid_over(scene, rings, first)?;
-        let rise = params.beside_px / parallax_px(scene, first);
-        rise.is_finite().then_some(())?;
-        let maps = [0.0, rise, -rise].map(|dz| {
-            let lifted = Plane {
-                d: plane.d - plane.normal.z * dz,
-                ..*plane
-            };
-            consistency_map(scene, &lifted, &grid)
-        });
-        Some(Self { grid, maps })
+        let parallax_px = parallax_px(scene, first);
+        (parallax_px > 0.0).then(|| Self {
+            scene,
+            solids,
+            plane: *plane,
+            grid,
+            parallax_px,
+            map: compare(scene, plane, &grid, solids),
+        })
     }
 
     /// Looks inside a convex ring that runs counter-clockwise.
-    pub fn inside(&self, whole: &[Point3<f64>]) -> Seen {
-        // Windows that reach over the border show its edge, which is in the right place for many a false plane.
-        let core = shrunk(whole, REACH_CELLS * self.grid.step);
-        let ring = core.as_deref().unwrap_or(whole);
-        let [on, above, below] = self.maps.each_ref().map(|m| mean_inside(m, ring));
-        Seen {
-            weight: on[0],
-            correlation: on[1],
-            beside: above[1].max(below[1]),
+    pub fn on_plane(&self, ring: &[Point3<f64>]) -> OnPlane {
+        let [weight, correlation] = mean_inside(&self.map, &core(ring, &self.grid));
+        OnPlane {
+            weight,
+            correlation,
         }
     }
+
+    /// Compares the views above and below the plane, where they move by so many pixels against each other.
+    pub fn beside(&self, shift_px: f64) -> Beside {
+        let rise = shift_px / self.parallax_px;
+        let maps = [rise, -rise].map(|dz| {
+            let lifted = Plane {
+                d: self.plane.d - self.plane.normal.z * dz,
+                ..self.plane
+            };
+            compare(self.scene, &lifted, &self.grid, self.solids)
+        });
+        Beside(maps, self.grid)
+    }
+}
+
+impl Beside {
+    /// The larger one of the correlations above and below inside a ring.
+    pub fn correlation(&self, ring: &[Point3<f64>]) -> f64 {
+        let core = core(ring, &self.1);
+        let [above, below] = self.0.each_ref().map(|m| mean_inside(m, &core)[1]);
+        above.max(below)
+    }
+}
+
+fn compare(scene: &Scene, plane: &Plane, grid: &PlanGrid, solids: &[Solid]) -> ConsistencyMap {
+    if solids.is_empty() {
+        return consistency_map(scene, plane, grid);
+    }
+    consistency_map_behind(scene, plane, grid, |view, point| {
+        let center = &scene.camera(view).center;
+        solids.iter().any(|s| s.hides(point, center))
+    })
+}
+
+/// A ring without its border: windows that reach over it show its edge, which is in the right place for many a false plane.
+fn core(ring: &[Point3<f64>], grid: &PlanGrid) -> Vec<Point3<f64>> {
+    shrunk(ring, REACH_CELLS * grid.step).unwrap_or_else(|| ring.to_vec())
 }
 
 /// A plan grid over all rings with cells as fine as the finest image.

@@ -14,6 +14,7 @@
 //! 3.6  ends        where a plane between two parallel lines ends
 //!      shapes      outlines between ends
 //!      judge       what the images say about a plane
+//!      solid       what hides a plane
 //!      planes      plane candidates and their measure
 //!      select      best non-overlapping set
 //!      stages      the stages that the pipeline runs
@@ -30,6 +31,7 @@ mod planes;
 mod select;
 mod shapes;
 pub mod sight;
+mod solid;
 mod stages;
 mod windows;
 

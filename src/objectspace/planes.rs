@@ -27,9 +27,10 @@ use serde::Serialize;
 
 use super::clusters::{Axes, ClusterLine, overlap};
 use super::ends::{Crossing, End, Strip, crossings, ends, slanted_ends};
-use super::judge::{Judge, area_2d};
+use super::judge::{CHANCE, Judge, OnPlane, area_2d};
 use super::shapes::{Along, Shape, quadrilaterals, triangle};
 use super::sight::Sight;
+use super::solid::{Solid, partly_hidden};
 use crate::geometry::Plane;
 use crate::params::PlaneParams;
 use crate::roof::Ground;
@@ -48,7 +49,7 @@ pub struct PlaneCandidate {
     pub support: f64,
     /// Mean correlation of the views inside, weighted by texture.
     pub correlation: f64,
-    /// The same on planes above and below it, the larger one.
+    /// The same on planes above and below it, the larger one, at least that of unrelated textures.
     pub beside: f64,
     /// The measure M, square metres.
     pub measure: f64,
@@ -87,6 +88,8 @@ pub(super) struct PlaneSearch<'a> {
     pub sights: &'a [Sight<'a>],
     pub lines: &'a [ClusterLine],
     pub ground: &'a Ground,
+    /// What was found before and may hide what is sought now.
+    pub solids: &'a [Solid],
     pub params: &'a PlaneParams,
 }
 
@@ -118,6 +121,14 @@ impl PlaneSearch<'_> {
             traces.push(trace);
         }
         (candidates, traces)
+    }
+
+    /// Candidates of a pair of lines again, now that solids are known.
+    pub fn again(&self, axes: &Axes, lines: [usize; 2]) -> Vec<PlaneCandidate> {
+        let [a, b] = lines.map(|k| self.along(axes, &self.lines[k]));
+        let (mut candidates, _) = self.pair(axes, [&a, &b]);
+        candidates.iter_mut().for_each(|c| c.lines = lines.into());
+        candidates
     }
 
     /// Triangles below the ends of higher lines, `apexes`, on the lines that run along `axes.u`.
@@ -235,45 +246,69 @@ impl PlaneSearch<'_> {
     }
 
     /// The best shapes of a strip by the measure, those with a positive one.
-    fn measured(&self, strip: &Strip, shapes: Vec<Shape>) -> Vec<PlaneCandidate> {
+    fn measured(&self, strip: &Strip, mut shapes: Vec<Shape>) -> Vec<PlaneCandidate> {
+        let plane = &strip.plane;
+        let in_front = self.solids.iter().filter(|s| s.stands_above(plane));
+        let solids: Vec<Solid> = in_front.cloned().collect();
+        if !self.solids.is_empty() {
+            shapes.retain(|s| partly_hidden(self.scene, &solids, &s.ring(strip)));
+        }
         let rings: Vec<Vec<Point3<f64>>> = shapes.iter().map(|s| s.ring(strip)).collect();
-        let Some(judge) = Judge::new(self.scene, &strip.plane, &rings, self.params) else {
+        let Some(judge) = Judge::new(self.scene, plane, &rings, &solids) else {
             return Vec::new();
         };
-        let mut found: Vec<PlaneCandidate> = shapes
-            .iter()
+        let promising: Vec<(Shape, Vec<Point3<f64>>, OnPlane)> = shapes
+            .into_iter()
             .zip(rings)
-            .filter_map(|(shape, ring)| self.judged(&judge, &strip.plane, ring, shape))
+            .map(|(shape, ring)| (judge.on_plane(&ring), shape, ring))
+            .filter(|(on, shape, ring)| self.measure(plane, ring, shape, on, CHANCE).is_some())
+            .map(|(on, shape, ring)| (shape, ring, on))
+            .collect();
+        if promising.is_empty() {
+            return Vec::new();
+        }
+        let beside = judge.beside(self.params.beside_px);
+        let mut found: Vec<PlaneCandidate> = promising
+            .into_iter()
+            .filter_map(|(shape, ring, on)| {
+                let beside = beside.correlation(&ring).max(CHANCE);
+                let measure = self.measure(plane, &ring, &shape, &on, beside)?;
+                Some(PlaneCandidate {
+                    plane: *plane,
+                    ring,
+                    lines: Vec::new(),
+                    support: shape.support,
+                    correlation: on.correlation,
+                    beside,
+                    measure,
+                })
+            })
             .collect();
         found.sort_by(|a, b| b.measure.total_cmp(&a.measure));
         found.truncate(self.params.max_candidates);
         found
     }
 
-    /// A candidate of this outline; `None` where its measure is too small.
-    fn judged(
+    /// The measure M; `None` where it is too small.
+    fn measure(
         &self,
-        judge: &Judge,
         plane: &Plane,
-        ring: Vec<Point3<f64>>,
+        ring: &[Point3<f64>],
         shape: &Shape,
-    ) -> Option<PlaneCandidate> {
+        on: &OnPlane,
+        beside: f64,
+    ) -> Option<f64> {
         let p = self.params;
-        let seen = judge.inside(&ring);
-        let area = area_2d(&ring) / plane.normal.z;
-        let rise = seen.correlation - seen.beside;
-        let measure = area * seen.weight * (rise - p.least_rise)
+        let area = area_2d(ring) / plane.normal.z;
+        let rise = on.correlation - beside;
+        let measure = area * on.weight * (rise - p.least_rise)
             + p.side_weight_m * shape.length * (shape.support - p.least_support)
             - p.plane_cost_m2
             - p.slant_cost_m2 * shape.slants as f64;
-        (measure > p.min_measure_m2 && area >= p.min_area_m2).then(|| PlaneCandidate {
-            plane: *plane,
-            ring,
-            lines: Vec::new(),
-            support: shape.support,
-            correlation: seen.correlation,
-            beside: seen.beside,
-            measure,
-        })
+        let accepted = measure > p.min_measure_m2
+            && area >= p.min_area_m2
+            && on.correlation >= p.least_correlation
+            && rise >= 0.0;
+        accepted.then_some(measure)
     }
 }

@@ -5,9 +5,10 @@ use serde::Serialize;
 
 use super::clusters::{Axes, ClusterLine, ClusterTrace, cluster_lines};
 use super::oris::{ColorImage, RegionLine, Segmentation, region_lines, segment_regions};
-use super::planes::{PlaneCandidate, PlaneSearch, PlaneTrace};
+use super::planes::{PlaneCandidate, PlaneRejection, PlaneSearch, PlaneTrace};
 use super::select::best_set;
 use super::sight::{Sight, sights};
+use super::solid::Solid;
 use super::windows::{Window, WindowTrace, find_windows};
 use crate::geometry::{Segment2, Segment3};
 use crate::ids::{BuildingId, LineId};
@@ -147,34 +148,34 @@ pub fn find_rectangles(
     let z_range = windows.first().map(|w| w.z_range_m);
     let ground = Ground::of_segments(scene, &segments, z_range);
     let all: Vec<ClusterLine> = found.iter().map(|f| f.line.clone()).collect();
-    let search = PlaneSearch {
+    let mut search = PlaneSearch {
         scene,
         sights: &sights,
         lines: &all,
         ground: &ground,
+        solids: &[],
         params: &params.planes,
     };
     let mut trace = RectangleTrace::default();
-    for (w, window) in windows.iter().enumerate() {
-        for (d, pair) in window.directions.iter().enumerate() {
-            for (axis, direction) in pair.axes().iter().enumerate() {
-                let members: Vec<usize> = (0..found.len())
-                    .filter(|&k| found[k].window == w && found[k].direction == [d, axis])
-                    .collect();
-                let (candidates, pairs) = search.candidates(&Axes::new(direction), &members);
-                trace.candidates.extend(candidates);
-                let apexes: Vec<Point3<f64>> = found
-                    .iter()
-                    .filter(|f| f.window == w && f.direction == [d, 1 - axis])
-                    .flat_map(|f| [f.line.segment.p0, f.line.segment.p1])
-                    .collect();
-                let triangles = search.triangles(&Axes::new(direction), &members, &apexes);
-                trace.candidates.extend(triangles);
-                trace.pairs.extend(pairs);
-            }
-        }
+    let axes = |&[w, d, axis]: &[usize; 3]| Axes::new(&windows[w].directions[d].axes()[axis]);
+    let searches: Vec<[usize; 3]> = (0..windows.len())
+        .flat_map(|w| (0..windows[w].directions.len()).map(move |d| [w, d]))
+        .flat_map(|[w, d]| [[w, d, 0], [w, d, 1]])
+        .collect();
+    for of in &searches {
+        search_planes(&search, &axes(of), found, *of, &mut trace);
     }
     trace.chosen = best_set(&trace.candidates);
+    let chosen = trace.chosen.iter().map(|&k| &trace.candidates[k]);
+    let solids: Vec<Solid> = chosen.map(|c| Solid::new(&c.plane, &c.ring)).collect();
+    search.solids = &solids;
+    if search_behind(
+        &search,
+        |lines| axes(&of_line(&found[lines[0]])),
+        &mut trace,
+    ) {
+        trace.chosen = best_set(&trace.candidates);
+    }
     let facets: Vec<Facet> = trace
         .chosen
         .iter()
@@ -183,6 +184,57 @@ pub fn find_rectangles(
     let (model, solids) = close_buildings(&facets, |members| ground.below(members));
     trace.solids = solids;
     (model, trace)
+}
+
+/// Window, pair of directions and direction of a line.
+fn of_line(line: &FoundLine) -> [usize; 3] {
+    [line.window, line.direction[0], line.direction[1]]
+}
+
+/// Quadrilaterals and triangles of one direction.
+fn search_planes(
+    search: &PlaneSearch,
+    axes: &Axes,
+    found: &[FoundLine],
+    of: [usize; 3],
+    trace: &mut RectangleTrace,
+) {
+    let [w, d, axis] = of;
+    let lines_of = |of: [usize; 3]| (0..found.len()).filter(move |&k| of_line(&found[k]) == of);
+    let members: Vec<usize> = lines_of(of).collect();
+    let (candidates, pairs) = search.candidates(axes, &members);
+    trace.candidates.extend(candidates);
+    trace.pairs.extend(pairs);
+    let across = lines_of([w, d, 1 - axis]).map(|k| &found[k].line.segment);
+    let apexes: Vec<Point3<f64>> = across.flat_map(|s| [s.p0, s.p1]).collect();
+    let triangles = search.triangles(axes, &members, &apexes);
+    trace.candidates.extend(triangles);
+}
+
+/// Judges the pairs that were too weak again, where the solids hide them from some views; did any change?
+fn search_behind(
+    search: &PlaneSearch,
+    axes: impl Fn([usize; 2]) -> Axes + Sync,
+    trace: &mut RectangleTrace,
+) -> bool {
+    let weak: Vec<usize> = (0..trace.pairs.len())
+        .filter(|&k| trace.pairs[k].rejection == Some(PlaneRejection::Weak))
+        .collect();
+    if search.solids.is_empty() {
+        return false;
+    }
+    let again = parallel::map(&weak, |_, &k| {
+        let lines = trace.pairs[k].lines;
+        search.again(&axes(lines), lines)
+    });
+    let before = trace.candidates.len();
+    for (k, candidates) in weak.into_iter().zip(again) {
+        if !candidates.is_empty() {
+            trace.pairs[k].rejection = None;
+        }
+        trace.candidates.extend(candidates);
+    }
+    trace.candidates.len() > before
 }
 
 fn facet(candidate: &PlaneCandidate) -> Facet {
