@@ -34,10 +34,12 @@ pub(super) struct OnPlane {
     pub weight: f64,
     /// Correlation of the views, weighted by texture.
     pub correlation: f64,
+    /// Its weighted median.
+    pub median: f64,
 }
 
 /// The views on planes above and below.
-pub(super) struct Beside([ConsistencyMap; 2], PlanGrid);
+pub(super) struct Beside([ConsistencyMap; 2]);
 
 /// Correlation of unrelated textures: only the better half of all pairs of views counts. No plane beside another one is taken to
 /// be worse, so that hopeless planes need not be compared with any.
@@ -69,11 +71,51 @@ impl<'a> Judge<'a> {
 
     /// Looks inside a convex ring that runs counter-clockwise.
     pub fn on_plane(&self, ring: &[Point3<f64>]) -> OnPlane {
-        let [weight, correlation] = mean_inside(&self.map, &core(ring, &self.grid));
-        OnPlane {
-            weight,
-            correlation,
+        let (mut cells, mut weights, mut sum) = (0u32, 0.0, 0.0);
+        let mut spread = Spread::default();
+        for k in self.cells(ring) {
+            let (weight, c) = (self.map.common_weight(k), self.map.correlation(k));
+            cells += 1;
+            weights += f64::from(weight);
+            sum += f64::from(weight) * f64::from(c);
+            spread.add(c, weight);
         }
+        OnPlane {
+            weight: weights / f64::from(cells.max(1)),
+            correlation: if weights > 0.0 { sum / weights } else { 0.0 },
+            median: spread.median(),
+        }
+    }
+
+    /// By how much the views agree better on the plane than above and below it inside a ring: the lower one of the medians.
+    pub fn rise(&self, beside: &Beside, ring: &[Point3<f64>]) -> f64 {
+        let cells = self.cells(ring);
+        let medians = beside.0.each_ref().map(|map| {
+            let mut spread = Spread::default();
+            for &k in &cells {
+                let other = map.correlation(k).max(CHANCE as f32);
+                spread.add(self.map.correlation(k) - other, self.map.common_weight(k));
+            }
+            spread.median()
+        });
+        medians[0].min(medians[1])
+    }
+
+    /// The cells inside a ring without its border: windows that reach over it show its edge, which is in the right place for
+    /// many a false plane.
+    fn cells(&self, ring: &[Point3<f64>]) -> Vec<usize> {
+        let grid = &self.grid;
+        let core = shrunk(ring, REACH_CELLS * grid.step);
+        let ring = core.as_deref().unwrap_or(ring);
+        let column = |x: f64| ((x - grid.origin.x) / grid.step - 0.5).ceil().max(0.0) as usize;
+        let mut cells = Vec::new();
+        for row in 0..grid.height {
+            if let Some([x0, x1]) = span(ring, grid.center(0, row).y) {
+                let columns = column(x0)..column(x1).min(grid.width);
+                cells.extend(columns.map(|c| row * grid.width + c));
+            }
+        }
+        cells
     }
 
     /// Compares the views above and below the plane, where they move by so many pixels against each other.
@@ -86,16 +128,42 @@ impl<'a> Judge<'a> {
             };
             compare(self.scene, &lifted, &self.grid, self.solids)
         });
-        Beside(maps, self.grid)
+        Beside(maps)
     }
 }
 
-impl Beside {
-    /// The larger one of the correlations above and below inside a ring.
-    pub fn correlation(&self, ring: &[Point3<f64>]) -> f64 {
-        let core = core(ring, &self.1);
-        let [above, below] = self.0.each_ref().map(|m| mean_inside(m, &core)[1]);
-        above.max(below)
+/// A weighted histogram of values from -2 to 2.
+struct Spread {
+    weights: [f64; Self::BINS],
+}
+
+impl Default for Spread {
+    fn default() -> Self {
+        Self {
+            weights: [0.0; Self::BINS],
+        }
+    }
+}
+
+impl Spread {
+    const BINS: usize = 512;
+    /// Bins per unit.
+    const FINENESS: f32 = 128.0;
+
+    fn add(&mut self, value: f32, weight: f32) {
+        let bin = ((value + 2.0) * Self::FINENESS).round().max(0.0) as usize;
+        self.weights[bin.min(Self::BINS - 1)] += f64::from(weight);
+    }
+
+    /// The weighted median; -2 of nothing.
+    fn median(&self) -> f64 {
+        let half = 0.5 * self.weights.iter().sum::<f64>();
+        let mut sum = 0.0;
+        let bin = self.weights.iter().position(|w| {
+            sum += w;
+            sum >= half
+        });
+        bin.unwrap_or(0) as f64 / f64::from(Self::FINENESS) - 2.0
     }
 }
 
@@ -107,11 +175,6 @@ fn compare(scene: &Scene, plane: &Plane, grid: &PlanGrid, solids: &[Solid]) -> C
         let center = &scene.camera(view).center;
         solids.iter().any(|s| s.hides(point, center))
     })
-}
-
-/// A ring without its border: windows that reach over it show its edge, which is in the right place for many a false plane.
-fn core(ring: &[Point3<f64>], grid: &PlanGrid) -> Vec<Point3<f64>> {
-    shrunk(ring, REACH_CELLS * grid.step).unwrap_or_else(|| ring.to_vec())
 }
 
 /// A plan grid over all rings with cells as fine as the finest image.
@@ -154,27 +217,6 @@ fn parallax_px(scene: &Scene, at: &Point3<f64>) -> f64 {
         .iter()
         .flat_map(|a| slopes.iter().map(move |b| (a - b).norm()));
     pairs.fold(0.0, f64::max) / finest_m(scene, at)
-}
-
-/// Mean weight and weighted mean correlation inside a convex ring.
-fn mean_inside(map: &ConsistencyMap, ring: &[Point3<f64>]) -> [f64; 2] {
-    let grid = &map.grid;
-    let (mut cells, mut weights, mut sum) = (0u32, 0.0, 0.0);
-    let column = |x: f64| ((x - grid.origin.x) / grid.step - 0.5).ceil().max(0.0) as usize;
-    for row in 0..grid.height {
-        let Some([x0, x1]) = span(ring, grid.center(0, row).y) else {
-            continue;
-        };
-        for c in column(x0)..column(x1).min(grid.width) {
-            let k = row * grid.width + c;
-            let weight = f64::from(map.common_weight(k));
-            cells += 1;
-            weights += weight;
-            sum += weight * f64::from(map.correlation(k));
-        }
-    }
-    let correlation = if weights > 0.0 { sum / weights } else { 0.0 };
-    [weights / f64::from(cells.max(1)), correlation]
 }
 
 /// Half the window of the correlation and the pixel that an edge takes, cells.
@@ -220,6 +262,16 @@ fn span(ring: &[Point3<f64>], y: f64) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_median_is_not_moved_by_a_minority() {
+        let mut spread = Spread::default();
+        (0..60).for_each(|_| spread.add(0.25, 0.5));
+        (0..28).for_each(|_| spread.add(-0.9, 1.0));
+        assert!((spread.median() - 0.25).abs() < 0.01);
+        (0..4).for_each(|_| spread.add(-0.9, 1.0));
+        assert!((spread.median() + 0.9).abs() < 0.01);
+    }
 
     #[test]
     fn a_rectangle_shrinks_on_all_sides_and_a_sliver_does_not() {

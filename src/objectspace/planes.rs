@@ -5,16 +5,17 @@
 //! writing it down. Here
 //!
 //! ```text
-//! M = sum over the area of  weight (correlation - correlation beside - least_rise)
+//! M = sum over the area of  weight (rise - least_rise)
 //!   + side_weight  sum over the sides of  length (support - least_support)       square metres
 //!   - plane_cost - slant_cost (ends that are not at right angles)
 //! ```
 //!
 //! * the first sum is the paper's criterion that "the area ... inside the 3D plane should be radiometrically homogeneous
 //!   over all images": the views, warped to the plane, are compared by correlation (`halfplane::consistency`),
-//!   with little weight where there is no texture. They must agree better than on planes a little above and below: smooth surfaces
-//!   correlate on any plane near them, and a fixed level of correlation lets many false planes through
-//!   (of 910 candidates of the rendered scenes the difference tells true from false in 88 of 100 pairs, correlation alone in 80);
+//!   with little weight where there is no texture. They must agree better than on planes a little above and below, and the
+//!   rise is the median by how much they do: smooth surfaces correlate on any plane near them, so that a fixed level of correlation
+//!   lets many false planes through (of 910 candidates of the rendered scenes the difference tells true from false in 88 of 100
+//!   pairs, correlation alone in 80). The median, because what stands on a roof agrees above it;
 //! * the second is its geometry, and the contrast of its lines, since only lines with contrast are region boundaries:
 //!   support is the share of a side that image lines cover, mean over all views.
 //!
@@ -49,8 +50,8 @@ pub struct PlaneCandidate {
     pub support: f64,
     /// Mean correlation of the views inside, weighted by texture.
     pub correlation: f64,
-    /// The same on planes above and below it, the larger one, at least that of unrelated textures.
-    pub beside: f64,
+    /// By how much it exceeds the correlation on planes above and below it, median.
+    pub rise: f64,
     /// The measure M, square metres.
     pub measure: f64,
 }
@@ -261,7 +262,10 @@ impl PlaneSearch<'_> {
             .into_iter()
             .zip(rings)
             .map(|(shape, ring)| (judge.on_plane(&ring), shape, ring))
-            .filter(|(on, shape, ring)| self.measure(plane, ring, shape, on, CHANCE).is_some())
+            .filter(|(on, shape, ring)| {
+                self.measure(plane, ring, shape, on, on.median - CHANCE)
+                    .is_some()
+            })
             .map(|(on, shape, ring)| (shape, ring, on))
             .collect();
         if promising.is_empty() {
@@ -271,15 +275,15 @@ impl PlaneSearch<'_> {
         let mut found: Vec<PlaneCandidate> = promising
             .into_iter()
             .filter_map(|(shape, ring, on)| {
-                let beside = beside.correlation(&ring).max(CHANCE);
-                let measure = self.measure(plane, &ring, &shape, &on, beside)?;
+                let rise = judge.rise(&beside, &ring);
+                let measure = self.measure(plane, &ring, &shape, &on, rise)?;
                 Some(PlaneCandidate {
                     plane: *plane,
                     ring,
                     lines: Vec::new(),
                     support: shape.support,
                     correlation: on.correlation,
-                    beside,
+                    rise,
                     measure,
                 })
             })
@@ -296,11 +300,10 @@ impl PlaneSearch<'_> {
         ring: &[Point3<f64>],
         shape: &Shape,
         on: &OnPlane,
-        beside: f64,
+        rise: f64,
     ) -> Option<f64> {
         let p = self.params;
         let area = area_2d(ring) / plane.normal.z;
-        let rise = on.correlation - beside;
         let measure = area * on.weight * (rise - p.least_rise)
             + p.side_weight_m * shape.length * (shape.support - p.least_support)
             - p.plane_cost_m2

@@ -14,6 +14,22 @@ pub(super) struct Building {
     pub truth: SyntheticTruth,
 }
 
+/// Where a house stands.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    center: [f64; 2],
+    /// Azimuth of the main wing, degrees.
+    azimuth_deg: f64,
+    eave_z: f64,
+}
+
+/// Parallel to no baseline.
+const HOME: Place = Place {
+    center: [0.0, 0.0],
+    azimuth_deg: 26.0,
+    eave_z: EAVE_Z,
+};
+
 /// Height of the ground, metres: not zero, so that nobody assumes it.
 const GROUND_Z: f64 = 1.5;
 const EAVE_Z: f64 = 6.0;
@@ -21,33 +37,113 @@ const EAVE_Z: f64 = 6.0;
 const OVERHANG: f64 = 0.6;
 /// Tangent of the roof slope (about 37 degrees).
 const SLOPE: f64 = 0.75;
-/// Azimuth of the main wing, degrees: parallel to no baseline.
-const AZIMUTH_DEG: f64 = 26.0;
 
 /// Gable roof of 14 m by 9 m in plan.
 pub(super) fn gable() -> Building {
+    gable_at(HOME, [7.0, 4.5], 0.0, 1)
+}
+
+/// Two gable roofs in line, 3 m apart: planes with a gap.
+pub(super) fn row() -> Building {
+    let beside = |u: f64| Place {
+        center: turned(HOME.azimuth_deg, [u, 0.0]),
+        ..HOME
+    };
+    let half = [3.5, 4.0];
+    join(
+        gable_at(beside(-5.0), half, 0.0, 1),
+        gable_at(beside(5.0), half, 0.0, 3),
+    )
+}
+
+/// Two gable roofs whose azimuths differ by 37 degrees.
+pub(super) fn askew() -> Building {
+    let place = |center, azimuth_deg| Place {
+        center,
+        azimuth_deg,
+        ..HOME
+    };
+    join(
+        gable_at(place([-5.5, -5.0], 26.0), [4.5, 3.0], 0.0, 1),
+        gable_at(place([6.0, 5.0], 63.0), [4.5, 3.2], 0.0, 3),
+    )
+}
+
+/// A gable roof whose ends are not square: parallelograms.
+pub(super) fn sheared() -> Building {
+    gable_at(HOME, [6.0, 4.5], 0.4, 1)
+}
+
+/// A low gable roof close to a tower, which hides some of it from one strip.
+pub(super) fn tower_and_annex() -> Building {
+    let beside = |v: f64, eave_z| Place {
+        center: turned(0.0, [0.0, v]),
+        azimuth_deg: 0.0,
+        eave_z,
+    };
+    join(
+        gable_at(beside(4.0, 22.0), [5.0, 3.0], 0.0, 1),
+        gable_at(beside(-3.4, 5.0), [5.0, 3.0], 0.0, 3),
+    )
+}
+
+/// Hip roof of 14 m by 9 m in plan.
+pub(super) fn hip() -> Building {
     let (a, b) = (7.0, 4.5);
     let ridge = EAVE_Z + SLOPE * b;
     let corners = [
         [-a, -b, EAVE_Z],
         [a, -b, EAVE_Z],
-        [a, 0.0, ridge],
-        [-a, 0.0, ridge],
         [a, b, EAVE_Z],
         [-a, b, EAVE_Z],
+        [a - b, 0.0, ridge],
+        [-a + b, 0.0, ridge],
+    ];
+    let facets: [(&[usize], Paint); 4] = [
+        (&[0, 1, 4, 5], paint([0.62, 0.33, 0.25], 0.15, 1)),
+        (&[2, 3, 5, 4], paint([0.55, 0.34, 0.28], 0.22, 2)),
+        (&[1, 2, 4], paint([0.60, 0.36, 0.25], 0.20, 3)),
+        (&[3, 0, 5], paint([0.52, 0.30, 0.26], 0.18, 4)),
+    ];
+    let (x, y) = (a - OVERHANG, b - OVERHANG);
+    let footprint = [[-x, -y], [x, -y], [x, y], [-x, y]].map(|p| (p, false));
+    build(HOME, &corners, &facets, &footprint, ridge)
+}
+
+/// Gable roof of given half length and half width; its ends are shifted along the eaves by `shear` for every metre across.
+fn gable_at(place: Place, [a, b]: [f64; 2], shear: f64, seed: u32) -> Building {
+    let (eave, ridge) = (place.eave_z, place.eave_z + SLOPE * b);
+    let at = |x: f64, y: f64| [x + shear * y, y];
+    let raised = |x: f64, y: f64, z: f64| [x + shear * y, y, z];
+    let corners = [
+        raised(-a, -b, eave),
+        raised(a, -b, eave),
+        raised(a, 0.0, ridge),
+        raised(-a, 0.0, ridge),
+        raised(a, b, eave),
+        raised(-a, b, eave),
     ];
     let facets: [(&[usize], Paint); 2] = [
-        (&[0, 1, 2, 3], paint([0.62, 0.33, 0.25], 0.10, 1)),
-        (&[3, 2, 4, 5], paint([0.55, 0.34, 0.28], 0.22, 2)),
+        (&[0, 1, 2, 3], paint([0.62, 0.33, 0.25], 0.10, seed)),
+        (&[3, 2, 4, 5], paint([0.55, 0.34, 0.28], 0.22, seed + 1)),
     ];
     let (x, y) = (a - OVERHANG, b - OVERHANG);
     let footprint = [
-        ([-x, -y], false),
-        ([x, -y], true),
-        ([x, y], false),
-        ([-x, y], true),
+        (at(-x, -y), false),
+        (at(x, -y), true),
+        (at(x, y), false),
+        (at(-x, y), true),
     ];
-    build(&corners, &facets, &footprint, ridge)
+    build(place, &corners, &facets, &footprint, ridge)
+}
+
+/// Both houses on one ground.
+fn join(mut a: Building, b: Building) -> Building {
+    // The first face of either is the ground.
+    a.faces.extend(b.faces.into_iter().skip(1));
+    a.truth.edges.extend(b.truth.edges);
+    a.truth.facets.extend(b.truth.facets);
+    a
 }
 
 /// Main wing of 15 m by 8 m with a hipped west and a gabled east end; side wing of 6 m width to the
@@ -89,7 +185,7 @@ pub(super) fn l_shape() -> Building {
         ([c - w + o, south(b - o)], false),
         ([-a + o, south(b - o)], false),
     ];
-    build(&corners, &facets, &footprint, ridge)
+    build(HOME, &corners, &facets, &footprint, ridge)
 }
 
 fn paint(rgb: [f64; 3], contrast: f64, seed: u32) -> Paint {
@@ -103,14 +199,15 @@ fn paint(rgb: [f64; 3], contrast: f64, seed: u32) -> Paint {
 /// Faces and truth from roof corners (before turning by the azimuth), facets over them, and a
 /// footprint whose flagged sides end in a gable.
 fn build(
+    place: Place,
     corners: &[[f64; 3]],
     facets: &[(&[usize], Paint)],
     footprint: &[([f64; 2], bool)],
     ridge: f64,
 ) -> Building {
-    let corners: Vec<Point3<f64>> = corners.iter().map(|&p| turn(p)).collect();
+    let corners: Vec<Point3<f64>> = corners.iter().map(|&p| place.world(p)).collect();
     let mut faces = vec![ground()];
-    faces.extend(walls(footprint, ridge));
+    faces.extend(walls(place, footprint, ridge));
     let first_roof = faces.len();
     faces.extend(facets.iter().map(|(ring, paint)| {
         let ring: Vec<Point3<f64>> = ring.iter().map(|&i| corners[i]).collect();
@@ -127,10 +224,17 @@ fn build(
     Building { faces, truth }
 }
 
-/// Turned by the azimuth about the vertical axis.
-fn turn([x, y, z]: [f64; 3]) -> Point3<f64> {
-    let (s, c) = math::sin_cos(AZIMUTH_DEG.to_radians());
-    Point3::new(c * x - s * y, s * x + c * y, z)
+impl Place {
+    /// A point of the house in the world.
+    fn world(&self, [x, y, z]: [f64; 3]) -> Point3<f64> {
+        let [x, y] = turned(self.azimuth_deg, [x, y]);
+        Point3::new(self.center[0] + x, self.center[1] + y, z)
+    }
+}
+
+fn turned(azimuth_deg: f64, [x, y]: [f64; 2]) -> [f64; 2] {
+    let (s, c) = math::sin_cos(azimuth_deg.to_radians());
+    [c * x - s * y, s * x + c * y]
 }
 
 /// The sides of all facets, each once.
@@ -154,23 +258,23 @@ fn edges(corners: &[Point3<f64>], facets: &[(&[usize], Paint)]) -> Vec<Segment3>
 
 /// Vertical faces over the sides of a counter-clockwise footprint, up to the underside of the roof.
 /// Equal slopes make the roof equally high over all footprint corners.
-fn walls(footprint: &[([f64; 2], bool)], ridge: f64) -> Vec<Face> {
-    let top = EAVE_Z + SLOPE * OVERHANG;
+fn walls(place: Place, footprint: &[([f64; 2], bool)], ridge: f64) -> Vec<Face> {
+    let top = place.eave_z + SLOPE * OVERHANG;
     (0..footprint.len())
         .map(|i| {
             let ([px, py], gabled) = footprint[i];
             let ([qx, qy], _) = footprint[(i + 1) % footprint.len()];
             let mut ring = vec![
-                turn([px, py, GROUND_Z]),
-                turn([qx, qy, GROUND_Z]),
-                turn([qx, qy, top]),
+                place.world([px, py, GROUND_Z]),
+                place.world([qx, qy, GROUND_Z]),
+                place.world([qx, qy, top]),
             ];
             if gabled {
                 let half_width = 0.5 * (math::hypot(qx - px, qy - py));
                 let apex = (top + SLOPE * half_width).min(ridge);
-                ring.push(turn([0.5 * (px + qx), 0.5 * (py + qy), apex]));
+                ring.push(place.world([0.5 * (px + qx), 0.5 * (py + qy), apex]));
             }
-            ring.push(turn([px, py, top]));
+            ring.push(place.world([px, py, top]));
             Face::new(&ring, paint([0.78, 0.75, 0.66], 0.05, 20 + i as u32))
         })
         .collect()

@@ -6,7 +6,7 @@
 //! the crop). Nothing is random but a hash of integers, so that every target renders the same bytes.
 //!
 //! ```text
-//! building      faces of the gable and of the L-shaped house, and the truth
+//! building      faces of the houses, and the truth
 //! texture       value noise on a face
 //! render        rays through nine samples of every pixel
 //! files         the scene as image and orientation files
@@ -49,6 +49,31 @@ pub fn gable_scene(size: u32) -> (Scene, SyntheticTruth) {
 /// pixels. The house fills a crop of 320 pixels.
 pub fn l_scene(size: u32) -> (Scene, SyntheticTruth) {
     scene_of(&building::l_shape(), size)
+}
+
+/// Two gable roofs in line, 3 m apart; four facets in two planes with a gap.
+pub fn row_scene(size: u32) -> (Scene, SyntheticTruth) {
+    scene_of(&building::row(), size)
+}
+
+/// Two small gable roofs whose azimuths differ by 37 degrees; 400 pixels show both.
+pub fn askew_scene(size: u32) -> (Scene, SyntheticTruth) {
+    scene_of(&building::askew(), size)
+}
+
+/// A gable roof whose ends are not square: its facets are parallelograms.
+pub fn sheared_scene(size: u32) -> (Scene, SyntheticTruth) {
+    scene_of(&building::sheared(), size)
+}
+
+/// A low gable roof beside a tower that hides some of it in every second view.
+pub fn tower_scene(size: u32) -> (Scene, SyntheticTruth) {
+    scene_of(&building::tower_and_annex(), size)
+}
+
+/// A hip roof: two trapezoids and two triangles.
+pub fn hip_scene(size: u32) -> (Scene, SyntheticTruth) {
+    scene_of(&building::hip(), size)
 }
 
 fn scene_of(building: &building::Building, size: u32) -> (Scene, SyntheticTruth) {
