@@ -468,6 +468,9 @@ pub struct PlaneParams {
     /// Least correlation of the views on a plane. Assumption: unrelated textures reach 0.45, since only the better half of all pairs of
     /// views counts.
     pub least_correlation: f64,
+    /// Planes that fall behind those beside them by more are refused whatever their sides say. Assumption: the error of the
+    /// comparison on weak texture.
+    pub min_rise: f64,
     /// By how much the views agree better on a plane than beside it where an area speaks neither for nor against. Assumption.
     pub least_rise: f64,
     /// A plane is compared with those above and below it at a distance that moves the images against each other by this, px.
@@ -501,7 +504,8 @@ impl Default for PlaneParams {
             min_support: 0.25,
             least_support: 0.3,
             least_correlation: 0.5,
-            least_rise: 0.08,
+            min_rise: -0.05,
+            least_rise: 0.04,
             beside_px: 3.0,
             side_weight_m: 0.5,
             plane_cost_m2: 1.0,

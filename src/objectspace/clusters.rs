@@ -21,9 +21,10 @@
 //! in which the line is hidden costs `miss_bits`; W96 demands all views. Endless lines are truncated where fewer than
 //! the least number of views support them; gaps up to `max_gap_m` are bridged (a chimney), longer ones part a line.
 
-use nalgebra::{Matrix2, Point2, Point3, Vector2, Vector3};
+use nalgebra::{Matrix2, Point2, Vector2, Vector3};
 use serde::Serialize;
 
+use super::cluster_plane::{Axes, PlaneRay, covered, overlap};
 use super::sight::Sight;
 use crate::geometry::Segment3;
 use crate::ids::ViewId;
@@ -58,30 +59,6 @@ pub struct ClusterTrace {
     pub selected: Vec<([f64; 2], f64)>,
     /// The best of the others: they contradict better ones or gain nothing.
     pub refused: Vec<([f64; 2], f64)>,
-}
-
-/// Axes of a cluster plane: along the main direction, across it and up.
-#[derive(Clone, Copy, Debug)]
-pub struct Axes {
-    /// Along.
-    pub u: Vector3<f64>,
-    /// Across, horizontal.
-    pub v: Vector3<f64>,
-}
-
-impl Axes {
-    /// For a horizontal unit direction.
-    pub fn new(direction: &Vector3<f64>) -> Self {
-        Self {
-            u: *direction,
-            v: Vector3::z().cross(direction),
-        }
-    }
-
-    /// The world point at (u, v, z).
-    pub fn point(&self, u: f64, v: f64, z: f64) -> Point3<f64> {
-        Point3::from(self.u * u + self.v * v + Vector3::z() * z)
-    }
 }
 
 /// Finds the 3D lines of one direction between two heights.
@@ -123,63 +100,6 @@ pub fn cluster_lines(
     (selected, trace)
 }
 
-/// An image line in the cluster plane: `normal . (v, z) = offset`.
-struct PlaneRay {
-    sight: usize,
-    normal: Vector2<f64>,
-    offset: f64,
-    /// Does its direction by contrast agree with the main direction?
-    forward: bool,
-    /// Pixels per metre.
-    scale: f64,
-}
-
-impl PlaneRay {
-    /// `None` for an image line of another direction.
-    fn new(
-        k: usize,
-        sight: &Sight,
-        axes: &Axes,
-        z_range: [f64; 2],
-        params: &ClusterParams,
-    ) -> Option<Self> {
-        let z = 0.5 * (z_range[0] + z_range[1]);
-        let [a, b] = sight.ends_at(z);
-        let middle = nalgebra::center(&a, &b);
-        let along = sight.image_direction(&middle, &axes.u)?;
-        let d = sight.segment.direction();
-        let cross = (along.x * d.y - along.y * d.x).abs();
-        let tolerance = params
-            .angle_deg
-            .to_radians()
-            .max(params.end_px / sight.length_px);
-        (cross <= tolerance).then_some(())?;
-        let n = sight.normal;
-        let normal = Vector2::new(n.dot(&axes.v), n.z);
-        let size = normal.norm();
-        let offset =
-            n.dot(&sight.camera.center.coords) - n.dot(&axes.u) * axes.u.dot(&middle.coords);
-        (size > 0.1).then(|| Self {
-            sight: k,
-            normal: normal / size,
-            offset: offset / size,
-            forward: along.dot(&d) > 0.0,
-            scale: 1.0 / sight.camera.ground_pixel(&middle),
-        })
-    }
-
-    fn meet(&self, other: &Self) -> Option<Vector2<f64>> {
-        let m = Matrix2::new(self.normal.x, self.normal.y, other.normal.x, other.normal.y);
-        // Rays nearer than 3 degrees leave the height open.
-        (m.determinant().abs() > 0.05).then_some(())?;
-        Some(m.try_inverse()? * Vector2::new(self.offset, other.offset))
-    }
-
-    fn drawn(&self, z_range: [f64; 2]) -> [[f64; 2]; 2] {
-        z_range.map(|z| [(self.offset - self.normal.y * z) / self.normal.x, z])
-    }
-}
-
 /// A place in the cluster plane and the stretch that two image lines propose.
 struct Proposal {
     at: Vector2<f64>,
@@ -188,23 +108,23 @@ struct Proposal {
 }
 
 /// A cluster before selection.
-struct Candidate {
-    at: Vector2<f64>,
-    forward: bool,
-    stretch: [f64; 2],
+pub(super) struct Candidate {
+    pub at: Vector2<f64>,
+    pub forward: bool,
+    pub stretch: [f64; 2],
     /// Sights with their stretches and mean square residuals, px^2.
-    members: Vec<(usize, [f64; 2], f64)>,
-    gain: f64,
-    coverage: Vec<(ViewId, f64)>,
+    pub members: Vec<(usize, [f64; 2], f64)>,
+    pub gain: f64,
+    pub coverage: Vec<(ViewId, f64)>,
 }
 
-struct Search<'a> {
-    scene: &'a Scene,
-    sights: &'a [Sight<'a>],
-    axes: Axes,
-    rays: Vec<PlaneRay>,
-    z_range: [f64; 2],
-    params: &'a ClusterParams,
+pub(super) struct Search<'a> {
+    pub scene: &'a Scene,
+    pub sights: &'a [Sight<'a>],
+    pub axes: Axes,
+    pub rays: Vec<PlaneRay>,
+    pub z_range: [f64; 2],
+    pub params: &'a ClusterParams,
 }
 
 impl Search<'_> {
@@ -299,7 +219,7 @@ impl Search<'_> {
         self.candidate(at, p.forward, stretch, members)
     }
 
-    fn candidate(
+    pub(super) fn candidate(
         &self,
         at: Vector2<f64>,
         forward: bool,
@@ -391,7 +311,7 @@ impl Search<'_> {
     }
 
     /// The place by least squares, long image lines counting more.
-    fn fitted(&self, members: &[(usize, [f64; 2], f64)]) -> Option<Vector2<f64>> {
+    pub(super) fn fitted(&self, members: &[(usize, [f64; 2], f64)]) -> Option<Vector2<f64>> {
         let (mut a, mut b) = (Matrix2::zeros(), Vector2::zeros());
         for (k, s, r2) in members {
             let ray = &self.rays[*k];
@@ -446,101 +366,6 @@ impl Search<'_> {
             p.is_some_and(|p| camera.contains(&p, 2.0))
         })
     }
-
-    /// Takes the best candidate, removes its image lines from the others, and so on.
-    fn select(
-        &self,
-        candidates: &mut Vec<Candidate>,
-        trace: &mut ClusterTrace,
-    ) -> Vec<ClusterLine> {
-        let mut taken: Vec<Vec<[f64; 2]>> = vec![Vec::new(); self.rays.len()];
-        let mut selected = Vec::new();
-        candidates.retain(|c| c.gain > 0.0);
-        let order = |a: &Candidate, b: &Candidate| {
-            b.gain
-                .total_cmp(&a.gain)
-                .then(a.at.x.total_cmp(&b.at.x))
-                .then(a.at.y.total_cmp(&b.at.y))
-        };
-        candidates.sort_by(order);
-        // Candidates from many proposals are the same cluster again.
-        let mut queue: std::collections::VecDeque<Candidate> = std::mem::take(candidates).into();
-        while let Some(best) = queue.pop_front() {
-            let free: Vec<_> = best
-                .members
-                .iter()
-                .filter(|m| {
-                    taken[m.0]
-                        .iter()
-                        .all(|t| overlap(*t, m.1) < 0.3 * (m.1[1] - m.1[0]))
-                })
-                .copied()
-                .collect();
-            let place = [best.at.x, best.at.y];
-            if free.len() < best.members.len() {
-                let again = self
-                    .fitted(&free)
-                    .and_then(|at| self.candidate(at, best.forward, best.stretch, free));
-                match again.filter(|c| c.gain > 0.0) {
-                    Some(c) => {
-                        let k = queue.partition_point(|other| order(other, &c).is_lt());
-                        queue.insert(k, c);
-                    }
-                    None if trace.refused.len() < MOST_REFUSED => {
-                        trace.refused.push((place, best.gain))
-                    }
-                    None => {}
-                }
-                continue;
-            }
-            for m in &best.members {
-                taken[m.0].push([m.1[0].max(best.stretch[0]), m.1[1].min(best.stretch[1])]);
-            }
-            trace.selected.push((place, best.gain));
-            selected.push(self.line(&best));
-        }
-        selected
-    }
-
-    fn line(&self, c: &Candidate) -> ClusterLine {
-        let n = c.members.len().max(1) as f64;
-        let mean: f64 = c.members.iter().map(|m| m.2).sum::<f64>() / n;
-        let scale = self.rays[c.members[0].0].scale;
-        ClusterLine {
-            segment: Segment3::new(
-                self.axes.point(c.stretch[0], c.at.x, c.at.y),
-                self.axes.point(c.stretch[1], c.at.x, c.at.y),
-            ),
-            supports: c.members.iter().map(|m| self.rays[m.0].sight).collect(),
-            gain_bits: c.gain,
-            coverage: c.coverage.clone(),
-            // Rays across each other by some 20 degrees.
-            sigma_m: 3.0 * (mean / n).sqrt().max(0.05) / scale,
-        }
-    }
-}
-
-/// Most refused clusters kept for the plot.
-const MOST_REFUSED: usize = 200;
-
-/// Length that two stretches share; negative when they are apart.
-pub(super) fn overlap(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[1].min(b[1]) - a[0].max(b[0])
-}
-
-/// Length of `within` that the stretches cover together.
-pub(super) fn covered(stretches: impl Iterator<Item = [f64; 2]>, within: [f64; 2]) -> f64 {
-    let mut inside: Vec<[f64; 2]> = stretches
-        .map(|s| [s[0].max(within[0]), s[1].min(within[1])])
-        .filter(|s| s[1] > s[0])
-        .collect();
-    inside.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let (mut sum, mut end) = (0.0, f64::NEG_INFINITY);
-    for [a, b] in inside {
-        sum += (b - a.max(end)).max(0.0);
-        end = end.max(b);
-    }
-    sum
 }
 
 #[cfg(test)]
@@ -548,32 +373,41 @@ mod tests {
     use super::super::fixture::{planted_lines, rig};
     use super::super::sight::sights;
     use super::*;
+    use crate::geometry::Segment3;
     use crate::params::ClusterParams;
+    use nalgebra::Point3;
 
-    fn found(share_of_outliers: f64, views: usize) -> Vec<ClusterLine> {
-        let scene = rig(views);
-        let truth = Segment3::new(Point3::new(-5.0, 1.0, 6.0), Point3::new(5.0, 1.0, 6.0));
-        let lines = planted_lines(&scene, &[truth], share_of_outliers, &[]);
+    fn planted() -> [Segment3; 3] {
+        [[1.0, 6.0], [-4.0, 3.0], [5.5, 4.0]]
+            .map(|[y, z]| Segment3::new(Point3::new(-5.0, y, z), Point3::new(5.0, y, z)))
+    }
+
+    /// Three planted lines among as many unrelated ones, six views.
+    fn found() -> Vec<ClusterLine> {
+        let scene = rig(6);
+        let lines = planted_lines(&scene, &planted(), 0.5, &[]);
         let sights = sights(&scene, &lines);
-        cluster_lines(
-            &scene,
-            &sights,
-            &Vector3::x(),
-            [0.0, 12.0],
-            &ClusterParams::default(),
-        )
-        .0
+        let params = ClusterParams::default();
+        cluster_lines(&scene, &sights, &Vector3::x(), [0.0, 12.0], &params).0
     }
 
     #[test]
-    fn a_line_is_found_among_as_many_outliers() {
-        let lines = found(0.5, 6);
-        let best = &lines[0];
-        for p in [best.segment.p0, best.segment.p1] {
-            assert!((p.y - 1.0).abs() < 0.1 && (p.z - 6.0).abs() < 0.1, "{p}");
-            assert!((p.x.abs() - 5.0).abs() < 0.3, "{p}");
+    fn lines_are_found_among_as_many_outliers() {
+        let lines = found();
+        for truth in planted() {
+            let near = |l: &&ClusterLine| {
+                let [p, q] = [l.segment.p0, truth.p0];
+                (p.y - q.y).abs() < 0.1 && (p.z - q.z).abs() < 0.1
+            };
+            let best = lines
+                .iter()
+                .find(near)
+                .expect("a line where one is planted");
+            for p in [best.segment.p0, best.segment.p1] {
+                assert!((p.x.abs() - 5.0).abs() < 0.3, "{p}");
+            }
+            assert_eq!(best.coverage.len(), 6);
         }
-        assert_eq!(best.coverage.len(), 6);
     }
 
     #[test]
@@ -599,17 +433,11 @@ mod tests {
 
     #[test]
     fn an_image_line_supports_one_3d_line_only() {
-        let lines = found(0.5, 6);
+        let lines = found();
         let mut used: Vec<usize> = lines.iter().flat_map(|l| l.supports.clone()).collect();
         let count = used.len();
         used.sort_unstable();
         used.dedup();
         assert_eq!(used.len(), count);
-    }
-
-    #[test]
-    fn covered_counts_overlaps_once() {
-        let parts = [[0.0, 2.0], [1.0, 3.0], [5.0, 9.0], [-4.0, -1.0]];
-        assert_eq!(covered(parts.into_iter(), [0.0, 6.0]), 4.0);
     }
 }

@@ -183,6 +183,12 @@ mod tests {
             let (found, _) = directions_of(&cuts, &DirectionParams::default());
             let d = difference(found[0].azimuth, azimuth.to_radians()).to_degrees();
             prop_assert!(d.abs() < 0.3, "{d} degrees");
+            // A start beside the peak leads to it.
+            for wrong in [-1.5f64, 1.5] {
+                let again = refined((azimuth + wrong).to_radians(), &cuts);
+                let d = difference(again, azimuth.to_radians()).to_degrees();
+                prop_assert!(d.abs() < 0.3, "{d} degrees after {wrong}");
+            }
         }
     }
 

@@ -8,7 +8,7 @@
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 
-use super::clusters::{Axes, covered, overlap};
+use super::cluster_plane::{Axes, covered, overlap};
 use super::sight::Sight;
 use crate::geometry::Plane;
 use crate::ids::ViewId;

@@ -10,7 +10,7 @@
 //!      sight       image lines with rays and interpretation planes
 //! 3.1  windows     a window for each building
 //! 3.4  directions  main directions from a histogram of azimuths
-//! 3.5  clusters    3D lines by clustering in the plane across a main direction
+//! 3.5  clusters    3D lines by clustering in the plane across a main direction (`cluster_plane`, `cluster_select`)
 //! 3.6  ends        where a plane between two parallel lines ends
 //!      shapes      outlines between ends
 //!      judge       what the images say about a plane
@@ -20,6 +20,8 @@
 //!      stages      the stages that the pipeline runs
 //! ```
 
+mod cluster_plane;
+mod cluster_select;
 pub mod clusters;
 pub mod directions;
 mod ends;
@@ -33,6 +35,8 @@ mod shapes;
 pub mod sight;
 mod solid;
 mod stages;
+#[cfg(test)]
+mod tests;
 mod windows;
 
 pub use ends::{Crossing, End};

@@ -26,7 +26,8 @@
 use nalgebra::Point3;
 use serde::Serialize;
 
-use super::clusters::{Axes, ClusterLine, overlap};
+use super::cluster_plane::{Axes, overlap};
+use super::clusters::ClusterLine;
 use super::ends::{Crossing, End, Strip, crossings, ends, slanted_ends};
 use super::judge::{CHANCE, Judge, OnPlane, area_2d};
 use super::shapes::{Along, Shape, quadrilaterals, triangle};
@@ -311,7 +312,7 @@ impl PlaneSearch<'_> {
         let accepted = measure > p.min_measure_m2
             && area >= p.min_area_m2
             && on.correlation >= p.least_correlation
-            && rise >= 0.0;
+            && rise >= p.min_rise;
         accepted.then_some(measure)
     }
 }

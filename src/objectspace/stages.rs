@@ -3,7 +3,8 @@
 use nalgebra::{Matrix3, Point3};
 use serde::Serialize;
 
-use super::clusters::{Axes, ClusterLine, ClusterTrace, cluster_lines};
+use super::cluster_plane::Axes;
+use super::clusters::{ClusterLine, ClusterTrace, cluster_lines};
 use super::oris::{ColorImage, RegionLine, Segmentation, region_lines, segment_regions};
 use super::planes::{PlaneCandidate, PlaneRejection, PlaneSearch, PlaneTrace};
 use super::select::best_set;
@@ -286,82 +287,5 @@ fn world_line(sights: &[Sight], line: &ClusterLine) -> Line3d {
         sigma_m: line.sigma_m,
         covariance: [Matrix3::identity() * variance; 2],
         supports: supports.collect(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::roof::check_invariants;
-    use crate::synthetic::{SyntheticTruth, gable_scene, l_scene};
-
-    fn model(scene: &Scene) -> RoofModel {
-        let params = ObjectSpaceParams::default();
-        let (lines, _) = find_regions(scene, &params);
-        let (windows, _) = find_directions(scene, &lines, &params);
-        let (found, _) = find_clusters(scene, &lines, &windows, &params);
-        let (model, _) = find_rectangles(scene, &lines, &windows, &found, &params);
-        assert_eq!(check_invariants(&model), []);
-        model
-    }
-
-    /// True facets whose plane a found facet has (to 2 degrees and 0.1 m), and found ones that have none.
-    fn agreement(model: &RoofModel, truth: &SyntheticTruth) -> (usize, usize) {
-        let agrees = |f: &Facet, (plane, ring): &(crate::geometry::Plane, Vec<Point3<f64>>)| {
-            let middle = f
-                .outer
-                .iter()
-                .fold(nalgebra::Vector3::zeros(), |s, p| s + p.coords)
-                / f.outer.len() as f64;
-            let bounds = |k: usize| {
-                let values = || ring.iter().map(|p| p[k]);
-                values().fold(f64::INFINITY, f64::min)..=values().fold(f64::NEG_INFINITY, f64::max)
-            };
-            (0..2).all(|k| bounds(k).contains(&middle[k]))
-                && f.plane.angle_to(plane).to_degrees() < 2.0
-                && plane.signed_distance(&middle.into()).abs() < 0.1
-        };
-        let found = truth
-            .facets
-            .iter()
-            .filter(|t| model.facets.iter().any(|f| agrees(f, t)))
-            .count();
-        let wrong = model
-            .facets
-            .iter()
-            .filter(|f| !truth.facets.iter().any(|t| agrees(f, t)))
-            .count();
-        (found, wrong)
-    }
-
-    #[test]
-    fn a_gable_is_two_rectangles() {
-        let (mut scene, truth) = gable_scene(320);
-        assert_eq!(agreement(&model(&scene), &truth), (2, 0));
-        // The same with the roof hidden in one view of the six.
-        let view = &mut scene.views[3];
-        view.gray.data.fill(0.5);
-        view.rgb
-            .pixels_mut()
-            .for_each(|p| *p = image::Rgb([128; 3]));
-        assert_eq!(agreement(&model(&scene), &truth), (2, 0));
-    }
-
-    #[test]
-    fn an_l_shaped_house_has_slanted_ends() {
-        let (scene, truth) = l_scene(320);
-        let (found, wrong) = agreement(&model(&scene), &truth);
-        assert!(found >= 3 && wrong == 0, "{found} found, {wrong} wrong");
-    }
-
-    #[test]
-    fn without_images_there_is_no_model() {
-        let (mut scene, _) = gable_scene(64);
-        for view in &mut scene.views {
-            view.gray.data.fill(0.5);
-        }
-        assert!(model(&scene).facets.is_empty());
-        scene.views.clear();
-        assert!(model(&scene).facets.is_empty());
     }
 }
