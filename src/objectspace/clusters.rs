@@ -25,6 +25,7 @@ use nalgebra::{Matrix2, Point2, Vector2, Vector3};
 use serde::Serialize;
 
 use super::cluster_plane::{Axes, PlaneRay, covered, overlap};
+use super::cluster_proposals::Proposal;
 use super::sight::Sight;
 use crate::geometry::Segment3;
 use crate::ids::ViewId;
@@ -100,13 +101,6 @@ pub fn cluster_lines(
     (selected, trace)
 }
 
-/// A place in the cluster plane and the stretch that two image lines propose.
-struct Proposal {
-    at: Vector2<f64>,
-    stretch: [f64; 2],
-    forward: bool,
-}
-
 /// A cluster before selection.
 pub(super) struct Candidate {
     pub at: Vector2<f64>,
@@ -129,70 +123,11 @@ pub(super) struct Search<'a> {
 
 impl Search<'_> {
     /// The stretch along the main direction that an image line covers at a height.
-    fn stretch(&self, sight: usize, z: f64) -> [f64; 2] {
+    pub(super) fn stretch(&self, sight: usize, z: f64) -> [f64; 2] {
         let [a, b] = self.sights[sight]
             .ends_at(z)
             .map(|p| self.axes.u.dot(&p.coords));
         [a.min(b), a.max(b)]
-    }
-
-    /// Intersections of image lines of different views that may show the same stretch, one for each small cell; and
-    /// how many there were.
-    fn proposals(&self) -> (Vec<Proposal>, usize) {
-        let mut cells: std::collections::BTreeMap<[i64; 4], (f64, Proposal)> =
-            std::collections::BTreeMap::new();
-        let mut count = 0;
-        for (i, a) in self.rays.iter().enumerate() {
-            for b in &self.rays[i + 1..] {
-                let Some((weight, proposal)) = self.propose(a, b) else {
-                    continue;
-                };
-                count += 1;
-                let middle = 0.5 * (proposal.stretch[0] + proposal.stretch[1]);
-                let cell = |x: f64, size: f64| (x / size).floor() as i64;
-                let key = [
-                    cell(proposal.at.x, self.params.cell_m),
-                    cell(proposal.at.y, self.params.cell_m),
-                    cell(middle, 4.0),
-                    i64::from(proposal.forward),
-                ];
-                match cells.entry(key) {
-                    std::collections::btree_map::Entry::Vacant(e) => {
-                        e.insert((weight, proposal));
-                    }
-                    std::collections::btree_map::Entry::Occupied(mut e) => {
-                        if weight > e.get().0 {
-                            e.insert((weight, proposal));
-                        }
-                    }
-                }
-            }
-        }
-        (cells.into_values().map(|(_, p)| p).collect(), count)
-    }
-
-    fn propose(&self, a: &PlaneRay, b: &PlaneRay) -> Option<(f64, Proposal)> {
-        let (s, t) = (&self.sights[a.sight], &self.sights[b.sight]);
-        if s.view == t.view || a.forward != b.forward {
-            return None;
-        }
-        let at = a.meet(b)?;
-        (at.y >= self.z_range[0] && at.y <= self.z_range[1]).then_some(())?;
-        // The same surface on one side at least.
-        let alike =
-            (0..2).any(|k| (s.sides[k] - t.sides[k]).abs() <= self.params.max_grey_difference);
-        alike.then_some(())?;
-        let (p, q) = (self.stretch(a.sight, at.y), self.stretch(b.sight, at.y));
-        let stretch = [p[0].max(q[0]), p[1].min(q[1])];
-        let shared = stretch[1] - stretch[0];
-        let shorter = (p[1] - p[0]).min(q[1] - q[0]);
-        let forward = a.forward;
-        let proposal = Proposal {
-            at,
-            stretch,
-            forward,
-        };
-        (shared > 0.4 * shorter).then_some((shared, proposal))
     }
 
     /// Lets all image lines vote for a proposal; `None` where too few views agree.

@@ -10,7 +10,8 @@
 //!      sight       image lines with rays and interpretation planes
 //! 3.1  windows     a window for each building
 //! 3.4  directions  main directions from a histogram of azimuths
-//! 3.5  clusters    3D lines by clustering in the plane across a main direction (`cluster_plane`, `cluster_select`)
+//! 3.5  clusters    3D lines by clustering in the plane across a main direction (`cluster_plane`,
+//!                  `cluster_proposals`, `cluster_select`)
 //! 3.6  ends        where a plane between two parallel lines ends
 //!      shapes      outlines between ends
 //!      judge       what the images say about a plane
@@ -21,6 +22,7 @@
 //! ```
 
 mod cluster_plane;
+mod cluster_proposals;
 mod cluster_select;
 pub mod clusters;
 pub mod directions;

@@ -82,7 +82,7 @@ pub(super) fn tower_and_annex() -> Building {
         eave_z,
     };
     join(
-        gable_at(beside(4.0, 22.0), [5.0, 3.0], 0.0, 1),
+        gable_at(beside(4.0, 14.0), [5.0, 3.0], 0.0, 1),
         gable_at(beside(-3.4, 5.0), [5.0, 3.0], 0.0, 3),
     )
 }

@@ -13,9 +13,11 @@ use super::integrals::{Lattice, Moments};
 use super::minimise::{CodeLength, LEAST_GAIN};
 use super::partition::{OUTSIDE, Partition};
 
-/// Steps that are tried in each of eight directions, pixels. Assumption: single steps for the position, longer ones along
-/// a boundary, where the description changes little and single steps may each lose what several gain.
-const STEPS: [i32; 3] = [1, 2, 4];
+/// All steps up to this are tried in either axis, pixels: boundaries run in any direction, and a node that slides along one needs
+/// steps in that direction. Assumption.
+const NEAR_PX: i32 = 2;
+/// ... and one longer step in each of eight directions, pixels, where single steps each lose what several gain. Assumption.
+const FAR_PX: i32 = 4;
 
 /// Moves nodes while any of these steps shortens the description; returns how many moves it took.
 pub(super) fn settle(p: &mut Partition, code: &CodeLength) -> usize {
@@ -50,18 +52,16 @@ fn best_step(
 ) -> Option<(Lattice, Vec<(u32, Moments)>)> {
     let at = p.nodes[node as usize].at;
     let mut steps: Vec<(f64, Lattice, Vec<(u32, Moments)>)> = Vec::new();
-    for (dx, dy) in directions() {
-        for step in STEPS {
-            let to = Lattice {
-                x: at.x + step * dx,
-                y: at.y + step * dy,
-            };
-            if p.covers(to) {
-                let shift = p.shift(node, to);
-                let gain = gain(p, code, &shift);
-                if gain > LEAST_GAIN {
-                    steps.push((gain, to, shift));
-                }
+    for (dx, dy) in offsets() {
+        let to = Lattice {
+            x: at.x + dx,
+            y: at.y + dy,
+        };
+        if p.covers(to) {
+            let shift = p.shift(node, to);
+            let gain = gain(p, code, &shift);
+            if gain > LEAST_GAIN {
+                steps.push((gain, to, shift));
             }
         }
     }
@@ -72,9 +72,10 @@ fn best_step(
     best.map(|(_, to, shift)| (to, shift))
 }
 
-fn directions() -> impl Iterator<Item = (i32, i32)> {
-    let around = |k: i32| (k / 3 - 1, k % 3 - 1);
-    (0..9).map(around).filter(|d| *d != (0, 0))
+fn offsets() -> impl Iterator<Item = (i32, i32)> {
+    let square = |r: i32| (-r..=r).flat_map(move |y| (-r..=r).map(move |x| (x, y)));
+    let far = square(1).map(|(x, y)| (FAR_PX * x, FAR_PX * y));
+    square(NEAR_PX).chain(far).filter(|d| *d != (0, 0))
 }
 
 /// By how many bits the regions get shorter; minus infinity where one would lose all its pixels.

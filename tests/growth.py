@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""How the time of the object-space method grows with the number and the size of the images; writes docs/growth.svg.
+
+    python3 tests/growth.py --binary target/release/ridgeline --scenes FOLDER
+
+The number of images: detached with its first 3 to 6 views. The size: squares cut out of suburb, all views. Times are
+processor seconds of one thread, so that a busy machine changes little: the share of each stage of the run times the processor
+time of the process. The script needs Python alone.
+"""
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+STAGES = ['regions', 'directions', 'clusters', 'rectangles']
+# Colours that remain apart for the colour-blind (Okabe and Ito).
+COLOURS = {'regions': '#0072b2', 'directions': '#e69f00', 'clusters': '#009e73', 'rectangles': '#d55e00'}
+SQUARES_M = [16, 30, 44, 58, 72]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('--binary', required=True, type=pathlib.Path)
+    parser.add_argument('--scenes', required=True, type=pathlib.Path)
+    args = parser.parse_args()
+    binary = args.binary.resolve()
+    names = sorted(p.name for p in (args.scenes / 'detached' / 'images').iterdir())
+    by_views = [measure(binary, args.scenes / 'detached', '--views', ','.join(names[:n])) for n in range(3, len(names) + 1)]
+    by_size = [measure(binary, args.scenes / 'suburb', f'--roi={-s / 2},{-s / 2},{s / 2},{s / 2}') for s in SQUARES_M]
+    figure = [
+        plot(0, 'number of images (detached, 600 x 600)', [(m['views'], m['seconds']) for m in by_views]),
+        plot(1, 'megapixels of all six images (suburb)', [(m['megapixels'], m['seconds']) for m in by_size]),
+    ]
+    (ROOT / 'docs' / 'growth.svg').write_text(svg(figure))
+    for m in by_views + by_size:
+        total = sum(m['seconds'].values())
+        stages = ', '.join(f'{s} {m["seconds"][s]:.2f}' for s in STAGES)
+        print(f'{m["views"]} images, {m["megapixels"]:.2f} megapixels: {total:.2f} s ({stages})')
+
+
+def measure(binary, scene, *options):
+    """One run on one thread: processor seconds of every stage."""
+    with tempfile.TemporaryDirectory() as out:
+        process = subprocess.Popen([binary, 'reconstruct', scene, '--method', 'rectangles', '--threads', '1', '--out', out,
+                                    *options], stdout=subprocess.PIPE, text=True)
+        text = process.stdout.read()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode:
+            raise SystemExit(f'{scene.name}: exit code {process.returncode}')
+        report = json.loads((pathlib.Path(out) / 'report.json').read_text())
+    lines = [line.split() for line in text.splitlines()]
+    total = next(float(words[1]) for words in lines if words[:1] == ['total'])
+    share = (usage.ru_utime + usage.ru_stime) / total
+    return {
+        'views': len(report['views']),
+        'megapixels': sum(v['width'] * v['height'] for v in report['views']) / 1e6,
+        'seconds': {s: report['seconds'][s] * share for s in STAGES},
+    }
+
+
+WIDTH, HEIGHT, LEFT, TOP = 300, 190, 46, 16
+
+
+def plot(column, caption, points):
+    """Stacked areas of the stages over x."""
+    x0 = LEFT + column * (WIDTH + 80)
+    largest_x = max(x for x, _ in points)
+    largest_y = nice(max(sum(s.values()) for _, s in points))
+    at = lambda x, y: f'{x0 + WIDTH * x / largest_x:.1f},{TOP + HEIGHT * (1 - y / largest_y):.1f}'
+    parts = []
+    base = [0.0] * len(points)
+    for stage in STAGES:
+        top = [b + s[stage] for b, (_, s) in zip(base, points)]
+        ring = [at(x, y) for (x, _), y in zip(points, top)] + [at(x, y) for (x, _), y in reversed(list(zip(points, base)))]
+        parts.append(f'<polygon points="{" ".join(ring)}" fill="{COLOURS[stage]}" fill-opacity="0.75"/>')
+        base = top
+    for (x, _), y in zip(points, base):
+        px, py = at(x, y).split(',')
+        parts.append(f'<circle cx="{px}" cy="{py}" r="3"/><text x="{px}" y="{TOP + HEIGHT + 16}" text-anchor="middle">{x:.3g}</text>')
+    # What growth in proportion to the last point would be.
+    parts.append(f'<polyline points="{at(0, 0)} {at(points[-1][0], base[-1])}" fill="none" stroke="#777" stroke-dasharray="4 3"/>')
+    for k in range(3):
+        y = largest_y * k / 2
+        py = at(0, y).split(',')[1]
+        parts.append(f'<text x="{x0 - 6}" y="{py}" text-anchor="end" dominant-baseline="middle">{y:.3g} s</text>')
+    parts.append(f'<path d="M{x0} {TOP}V{TOP + HEIGHT}H{x0 + WIDTH}" fill="none" stroke="#777"/>')
+    parts.append(f'<text x="{x0 + WIDTH / 2}" y="{TOP + HEIGHT + 36}" text-anchor="middle">{caption}</text>')
+    return '\n'.join(parts)
+
+
+def nice(x):
+    """The next 1, 2 or 5 times a power of ten."""
+    step = 1e-3
+    while True:
+        for factor in (1, 2, 5):
+            if factor * step >= x:
+                return factor * step
+        step *= 10
+
+
+def svg(plots):
+    legend = ''.join(
+        f'<rect x="{LEFT + 10}" y="{TOP + 4 + 16 * k}" width="10" height="10" fill="{COLOURS[s]}" fill-opacity="0.75"/>'
+        f'<text x="{LEFT + 26}" y="{TOP + 13 + 16 * k}">{s}</text>' for k, s in enumerate(STAGES))
+    width, height = LEFT + 2 * WIDTH + 100, TOP + HEIGHT + 48
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" '
+            f'font-family="sans-serif" font-size="12">\n<rect width="100%" height="100%" fill="white"/>\n'
+            + '\n'.join(plots) + '\n' + legend + '\n</svg>\n')
+
+
+if __name__ == '__main__':
+    main()
