@@ -18,7 +18,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 STAGES = ['regions', 'directions', 'clusters', 'rectangles']
 # Colours that remain apart for the colour-blind (Okabe and Ito).
 COLOURS = {'regions': '#0072b2', 'directions': '#e69f00', 'clusters': '#009e73', 'rectangles': '#d55e00'}
-SQUARES_M = [16, 30, 44, 58, 72]
+SQUARES_M = [16, 28, 40, 52, 64]
 
 
 def main():
