@@ -3,7 +3,7 @@
 
     python3 tests/growth.py --binary target/release/ridgeline --scenes FOLDER
 
-The number of images: detached with its first 3 to 6 views. The size: squares cut out of suburb, all views. Times are
+The number of images: house-gable with its first 3 to 6 views. The size: three scenes of six views. Times are
 processor seconds of one thread, so that a busy machine changes little: the share of each stage of the run times the processor
 time of the process. The script needs Python alone.
 """
@@ -18,7 +18,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 STAGES = ['regions', 'directions', 'clusters', 'rectangles']
 # Colours that remain apart for the colour-blind (Okabe and Ito).
 COLOURS = {'regions': '#0072b2', 'directions': '#e69f00', 'clusters': '#009e73', 'rectangles': '#d55e00'}
-SQUARES_M = [16, 28, 40, 52, 64]
+# Six images each: 256 x 256, 600 x 600 and 1200 x 1200.
+SIZES = ['house-gable', 'detached', 'suburb']
 
 
 def main():
@@ -27,18 +28,19 @@ def main():
     parser.add_argument('--scenes', required=True, type=pathlib.Path)
     args = parser.parse_args()
     binary = args.binary.resolve()
-    names = sorted(p.name for p in (args.scenes / 'detached' / 'images').iterdir())
-    by_views = [measure(binary, args.scenes / 'detached', '--views', ','.join(names[:n])) for n in range(3, len(names) + 1)]
-    by_size = [measure(binary, args.scenes / 'suburb', f'--roi={-s / 2},{-s / 2},{s / 2},{s / 2}') for s in SQUARES_M]
-    figure = [
-        plot(0, 'number of images (detached, 600 x 600)', [(m['views'], m['seconds']) for m in by_views]),
-        plot(1, 'megapixels of all six images (suburb)', [(m['megapixels'], m['seconds']) for m in by_size]),
-    ]
-    (ROOT / 'docs' / 'growth.svg').write_text(svg(figure))
-    for m in by_views + by_size:
-        total = sum(m['seconds'].values())
-        stages = ', '.join(f'{s} {m["seconds"][s]:.2f}' for s in STAGES)
-        print(f'{m["views"]} images, {m["megapixels"]:.2f} megapixels: {total:.2f} s ({stages})')
+    small = args.scenes / SIZES[0]
+    names = sorted(p.name for p in (small / 'images').iterdir())
+    by_views = [measure(binary, small, '--views', ','.join(names[:n])) for n in range(3, len(names) + 1)]
+    by_size = [by_views[-1]]
+    for scene in SIZES[1:]:
+        # Drawn after each, since the large ones take their time.
+        by_size.append(measure(binary, args.scenes / scene))
+        figure = [
+            plot(0, f'number of images ({SIZES[0]})', [(m['views'], m['seconds']) for m in by_views]),
+            plot(1, f'megapixels of all images ({", ".join(SIZES[:len(by_size)])})',
+                 [(m['megapixels'], m['seconds']) for m in by_size]),
+        ]
+        (ROOT / 'docs' / 'growth.svg').write_text(svg(figure))
 
 
 def measure(binary, scene, *options):
@@ -55,11 +57,11 @@ def measure(binary, scene, *options):
     lines = [line.split() for line in text.splitlines()]
     total = next(float(words[1]) for words in lines if words[:1] == ['total'])
     share = (usage.ru_utime + usage.ru_stime) / total
-    return {
-        'views': len(report['views']),
-        'megapixels': sum(v['width'] * v['height'] for v in report['views']) / 1e6,
-        'seconds': {s: report['seconds'][s] * share for s in STAGES},
-    }
+    seconds = {s: report['seconds'][s] * share for s in STAGES}
+    megapixels = sum(v['width'] * v['height'] for v in report['views']) / 1e6
+    print(f'{len(report["views"])} images, {megapixels:.2f} megapixels:',
+          ', '.join(f'{s} {t:.2f} s' for s, t in seconds.items()), flush=True)
+    return {'views': len(report['views']), 'megapixels': megapixels, 'seconds': seconds}
 
 
 WIDTH, HEIGHT, LEFT, TOP = 300, 190, 46, 16
