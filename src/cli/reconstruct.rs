@@ -37,21 +37,6 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
 
     let mut run = Run::new(scene, params);
     let seconds = run_stages(&mut run);
-    if let Ok(path) = std::env::var("W96DUMP") {
-        let r = run.results();
-        let o = run.scene().origin;
-        let j = serde_json::json!({
-            "origin": [o.x, o.y, o.z],
-            "windows": r.directions.as_ref().map(|d| &d.value),
-            "wtrace": r.directions.as_ref().map(|d| &d.trace),
-            "found": r.clusters.as_ref().map(|d| &d.value),
-            "ctrace": r.clusters.as_ref().map(|d| &d.trace),
-            "rect": r.rectangles.as_ref().map(|d| &d.trace),
-            "lines": r.regions.as_ref().map(|d| &d.value),
-            "seg": r.regions.as_ref().map(|d| &d.trace),
-        });
-        fs::write(path, j.to_string()).unwrap();
-    }
     let written = run.files(&seconds);
     files::write_all(&args.out, &written)?;
     print!(
