@@ -16,9 +16,7 @@
 
 use std::collections::BTreeMap;
 
-use petgraph::graph::{DiGraph, NodeIndex};
-use petgraph::unionfind::UnionFind;
-use petgraph::visit::EdgeRef;
+use ac_library::{Dsu, MfGraph};
 
 /// No plane covers the cell.
 pub const NO_PLANE: u32 = u32::MAX;
@@ -365,16 +363,16 @@ impl OpenNodes {
     fn cut(mut self) -> Vec<bool> {
         let open: Vec<bool> = self.moves.iter().map(Option::is_none).collect();
         let arcs = || self.arcs.iter().filter(|(i, j, _)| open[*i] && open[*j]);
-        let mut connected = UnionFind::new(self.gain.len());
+        let mut connected = Dsu::new(self.gain.len());
         for (i, j, _) in arcs() {
-            connected.union(*i, *j);
+            connected.merge(*i, *j);
         }
         let mut parts: BTreeMap<usize, Part> = BTreeMap::new();
         for i in (0..self.gain.len()).filter(|&i| open[i]) {
-            parts.entry(connected.find(i)).or_default().nodes.push(i);
+            parts.entry(connected.leader(i)).or_default().nodes.push(i);
         }
         for arc in arcs() {
-            let part = parts.entry(connected.find(arc.0)).or_default();
+            let part = parts.entry(connected.leader(arc.0)).or_default();
             part.arcs.push(*arc);
         }
         for part in parts.values() {
@@ -399,46 +397,26 @@ impl Part {
     /// For each node: does it move?
     fn cut(&self, gain: &[i64]) -> Vec<bool> {
         let n = self.nodes.len();
-        let mut graph = DiGraph::<(), u64>::with_capacity(n + 2, n + self.arcs.len());
-        let place: Vec<NodeIndex> = (0..n).map(|_| graph.add_node(())).collect();
-        let (source, sink) = (graph.add_node(()), graph.add_node(()));
+        let (source, sink) = (n, n + 1);
+        let mut graph = MfGraph::<i64>::new(n + 2);
         // The source side keeps, the sink side moves.
-        for (&i, &at) in self.nodes.iter().zip(&place) {
+        for (place, &i) in self.nodes.iter().enumerate() {
             if gain[i] < 0 {
-                graph.add_edge(source, at, gain[i].unsigned_abs());
+                graph.add_edge(source, place, -gain[i]);
             } else if gain[i] > 0 {
-                graph.add_edge(at, sink, gain[i].unsigned_abs());
+                graph.add_edge(place, sink, gain[i]);
             }
         }
-        let of = |i: usize| {
-            place[self
-                .nodes
-                .binary_search(&i)
-                .expect("both ends are in the part")]
-        };
+        let of = |i: usize| (self.nodes.binary_search(&i)).expect("both ends are in the part");
         for &(i, j, capacity) in &self.arcs {
-            graph.add_edge(of(i), of(j), capacity.unsigned_abs());
+            graph.add_edge(of(i), of(j), capacity);
         }
-        let (_, flow) = petgraph::algo::dinics(&graph, source, sink);
+        graph.flow(source, sink);
         // Nodes that residual capacity still reaches from the source keep their label.
-        let mut keeps = vec![false; n + 2];
-        let mut stack = vec![source];
-        keeps[source.index()] = true;
-        while let Some(u) = stack.pop() {
-            let mut visit = |v: NodeIndex, free: bool| {
-                if free && !keeps[v.index()] {
-                    keeps[v.index()] = true;
-                    stack.push(v);
-                }
-            };
-            for e in graph.edges_directed(u, petgraph::Direction::Outgoing) {
-                visit(e.target(), flow[e.id().index()] < *e.weight());
-            }
-            for e in graph.edges_directed(u, petgraph::Direction::Incoming) {
-                visit(e.source(), flow[e.id().index()] > 0);
-            }
-        }
-        place.iter().map(|at| !keeps[at.index()]).collect()
+        graph.min_cut(source)[..n]
+            .iter()
+            .map(|keeps| !keeps)
+            .collect()
     }
 }
 
