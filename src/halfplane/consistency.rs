@@ -11,6 +11,8 @@
 //!   against; each position carries the weight `s^2 / (s^2 + n^2)` with s the standard deviation
 //!   within the window and n that of the noise.
 
+use wide::f32x8;
+
 use super::plan::{PlanGrid, orthophoto};
 use crate::camera::Camera;
 use crate::geometry::Plane;
@@ -153,9 +155,9 @@ fn combine(windows: &[ViewWindows], grid: &PlanGrid) -> ConsistencyMap {
             for (k, c) in correlation.iter_mut().enumerate() {
                 *c = if a.valid[k] && b.valid[k] {
                     let covariance = *c / full - a.mean[k] * b.mean[k];
-                    covariance / (a.variance[k] * b.variance[k]).sqrt().max(1e-7)
+                    (covariance / (a.variance[k] * b.variance[k]).sqrt().max(1e-7)).clamp(-1.0, 1.0)
                 } else {
-                    f32::NAN
+                    UNSEEN
                 };
             }
             pairs.push(correlation);
@@ -166,28 +168,60 @@ fn combine(windows: &[ViewWindows], grid: &PlanGrid) -> ConsistencyMap {
         correlation: vec![0; cells],
         weight: vec![0; cells],
     };
-    let mut sorted: Vec<f32> = Vec::with_capacity(pairs.len());
-    for k in 0..cells {
-        sorted.clear();
-        sorted.extend(pairs.iter().map(|p| p[k]).filter(|c| !c.is_nan()));
-        if sorted.is_empty() {
-            continue;
+    for start in (0..cells).step_by(LANES) {
+        let means = better_half_means(&pairs, start, cells);
+        for k in start..cells.min(start + LANES) {
+            let Some(mean) = means[k - start] else {
+                continue;
+            };
+            let (sum, seen) = (windows.iter().filter(|w| w.valid[k]))
+                .fold((0.0f32, 0.0f32), |(s, n), w| (s + w.variance[k], n + 1.0));
+            let variance = sum / seen;
+            map.correlation[k] = (mean * 127.0).round().clamp(-127.0, 127.0) as i8;
+            // 0 is kept for what is not seen at all.
+            let weight = variance / (variance + NOISE * NOISE);
+            map.weight[k] = (weight * 255.0).round().max(1.0) as u8;
         }
-        sorted.sort_unstable_by(|a, b| b.total_cmp(a));
-        let better = &sorted[..sorted.len().div_ceil(2)];
-        let mean = better.iter().sum::<f32>() / better.len() as f32;
-        map.correlation[k] = (mean * 127.0).round().clamp(-127.0, 127.0) as i8;
-        let seen: Vec<f32> = windows
-            .iter()
-            .filter(|w| w.valid[k])
-            .map(|w| w.variance[k])
-            .collect();
-        let variance = seen.iter().sum::<f32>() / seen.len() as f32;
-        // 0 is kept for what is not seen at all.
-        let weight = variance / (variance + NOISE * NOISE);
-        map.weight[k] = (weight * 255.0).round().max(1.0) as u8;
     }
     map
+}
+
+/// Cells that are sorted at once.
+const LANES: usize = 8;
+/// Pairs of [`MAX_VIEWS`] views.
+const MAX_PAIRS: usize = MAX_VIEWS * (MAX_VIEWS - 1) / 2;
+/// Below any correlation: the pair does not see the cell.
+const UNSEEN: f32 = -4.0;
+
+/// Mean of the better half of the pairs' correlations at the cells from `start`; `None` where no pair sees
+/// the cell.
+fn better_half_means(pairs: &[Vec<f32>], start: usize, cells: usize) -> [Option<f32>; LANES] {
+    let end = cells.min(start + LANES);
+    let mut columns = [f32x8::splat(UNSEEN); MAX_PAIRS];
+    for (column, pair) in columns.iter_mut().zip(pairs) {
+        let mut lanes = [UNSEEN; LANES];
+        lanes[..end - start].copy_from_slice(&pair[start..end]);
+        *column = f32x8::from(lanes);
+    }
+    let columns = &mut columns[..pairs.len()];
+    sort_descending(columns);
+    let sorted: Vec<[f32; LANES]> = columns.iter().map(|c| c.to_array()).collect();
+    std::array::from_fn(|lane| {
+        let seen = sorted.iter().filter(|c| c[lane] > UNSEEN).count();
+        let better = seen.div_ceil(2);
+        let sum: f32 = sorted[..better].iter().map(|c| c[lane]).sum();
+        (seen > 0).then(|| sum / better as f32)
+    })
+}
+
+/// Sorts every lane by comparisons of neighbours (a network of odd and even transpositions): no branches.
+fn sort_descending(columns: &mut [f32x8]) {
+    for round in 0..columns.len() {
+        for pair in columns[round % 2..].chunks_exact_mut(2) {
+            let (a, b) = (pair[0], pair[1]);
+            (pair[0], pair[1]) = (a.fast_max(b), a.fast_min(b));
+        }
+    }
 }
 
 /// Sum over the window around every cell, along rows and then along columns; windows that stick out of the

@@ -10,10 +10,11 @@ use serde::Serialize;
 
 use super::HalfPlane;
 use super::arrangement::Arrangement;
+use super::border_cost::{BorderCosts, LINE_HEIGHT};
 use super::borders::{Border, Region, border_lines};
 use super::consistency::{ConsistencyMap, consistency_map};
 use super::delineation::{Delineation, Outline, delineate, signed_area};
-use super::evidence::{Evidence, LINE_HEIGHT};
+use super::evidence::Evidence;
 use super::grouping::{GroupingInput, PlaneGroup, group_planes};
 use super::hypothesis::{bounding_lines, hypotheses};
 use super::labelling::{Energy, NO_PLANE};
@@ -236,7 +237,7 @@ fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {
 }
 
 struct Solver {
-    energy: Energy,
+    energy: Energy<BorderCosts>,
     evidence: Evidence,
     arrangement: Arrangement,
     planes: Vec<Plane>,

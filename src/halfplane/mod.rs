@@ -22,12 +22,14 @@
 //!      consistency    similarity of a plane over the complete image set
 //!      hypothesis     planes with their regions, similarity and lines, ready to compete
 //!      evidence       what images and lines say for each plane over each cell
+//!      border_cost    what a border between two planes costs
 //!      labelling      conflicts: which plane covers which cell
 //!      delineation    closed outlines
 //!      facets         verification; orders 4.2 and 4.3
 //! ```
 
 mod arrangement;
+mod border_cost;
 mod borders;
 mod consistency;
 mod delineation;
