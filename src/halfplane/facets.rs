@@ -17,6 +17,7 @@ use super::delineation::{Delineation, Outline, delineate, signed_area};
 use super::evidence::Evidence;
 use super::grouping::{GroupingInput, PlaneGroup, group_planes};
 use super::hypothesis::{bounding_lines, hypotheses};
+use super::islands::without_islands;
 use super::labelling::{Energy, NO_PLANE};
 use super::line_index::LineIndex;
 use super::neighbourhood::line_neighbours;
@@ -257,6 +258,7 @@ impl Solver {
         let mut labels = vec![NO_PLANE; self.arrangement.cells];
         for round in 1..=ROUNDS {
             labels = self.energy.minimise(self.planes.len() as u32, labels);
+            labels = without_islands(&self.arrangement, labels, params.min_area_m2);
             let delineation = delineate(&self.arrangement, &labels, &self.planes);
             let mut facets = Vec::new();
             let mut withdrawn = Vec::new();

@@ -24,6 +24,7 @@
 //!      evidence       what images and lines say for each plane over each cell
 //!      border_cost    what a border between two planes costs
 //!      labelling      conflicts: which plane covers which cell
+//!      islands        patches too small to be a facet or a hole
 //!      delineation    closed outlines
 //!      facets         verification; orders 4.2 and 4.3
 //! ```
@@ -39,6 +40,7 @@ mod facets;
 mod fixture;
 mod grouping;
 mod hypothesis;
+mod islands;
 mod labelling;
 mod line_index;
 mod neighbourhood;

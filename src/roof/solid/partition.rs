@@ -344,11 +344,10 @@ fn flat_parts(facets: &[Facet], rejected: &mut Vec<(usize, SolidRejection)>) -> 
         } else if !upright {
             rejected.push((source, SolidRejection::TooSteep));
         } else {
-            let plane = facet.plane;
             parts.push(Part {
                 source,
-                plane,
-                rings,
+                plane: facet.plane,
+                rings: simple(&rings),
             });
         }
     }
@@ -363,6 +362,13 @@ fn oriented(ring: &[Point3<f64>], counter_clockwise: bool) -> Vec<Point2<f64>> {
         plan.reverse();
     }
     plan
+}
+
+/// Rings that neither cross themselves nor each other, around what the given ones (outer rings counter-clockwise,
+/// holes clockwise) enclose: an outline that folds over at one corner loses the fold, not the facet.
+fn simple(rings: &[Vec<Point2<f64>>]) -> Vec<Vec<Point2<f64>>> {
+    let shapes = overlay_filled(rings, &[], OverlayRule::Subject, FillRule::Positive);
+    shapes.into_iter().flatten().collect()
 }
 
 /// Takes every overlap from the lower of the two facets.
@@ -426,6 +432,15 @@ fn overlay(
     b: &[Vec<Point2<f64>>],
     rule: OverlayRule,
 ) -> Vec<Vec<Vec<Point2<f64>>>> {
+    overlay_filled(a, b, rule, FillRule::EvenOdd)
+}
+
+fn overlay_filled(
+    a: &[Vec<Point2<f64>>],
+    b: &[Vec<Point2<f64>>],
+    rule: OverlayRule,
+    fill: FillRule,
+) -> Vec<Vec<Vec<Point2<f64>>>> {
     let plain = |rings: &[Vec<Point2<f64>>]| -> Vec<Vec<[f64; 2]>> {
         rings
             .iter()
@@ -433,7 +448,7 @@ fn overlay(
             .collect()
     };
     plain(a)
-        .overlay_as::<i64>(&plain(b), rule, FillRule::EvenOdd)
+        .overlay_as::<i64>(&plain(b), rule, fill)
         .into_iter()
         .map(|shape| {
             shape
