@@ -5,7 +5,8 @@
 //!   (figure 21), extended at both ends, since detected ends are unreliable (figure 22);
 //! * lines found in a plane from segments of several views ([`super::plane_lines`]);
 //! * new lines in which two neighbouring planes meet (figure 19);
-//! * closing lines across the ends of a supporting line. They stand for the sides of the paper's convex hull,
+//! * closing lines across the ends of a supporting line, and where the views cease to agree on a plane
+//!   ([`super::extent`]). They stand for the sides of the paper's convex hull,
 //!   where nothing was detected.
 //!
 //! A real line that runs along an intersection is moved onto it, so that ridge, hip and valley are where
@@ -14,6 +15,7 @@
 use nalgebra::{Point2, Vector2};
 use serde::Serialize;
 
+use super::extent::extent_lines;
 use super::grouping::{GroupingInput, Member, PlaneGroup};
 use super::hypothesis::Hypothesis;
 use super::{Side, ThetaFrame};
@@ -181,6 +183,9 @@ pub fn border_lines(
         }
     }
     for border in outermost_lines(input, hypotheses, params) {
+        add(&mut borders, border);
+    }
+    for border in extent_lines(input, hypotheses) {
         add(&mut borders, border);
     }
     for border in closing_lines(input, hypotheses, params) {

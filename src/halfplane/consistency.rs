@@ -66,37 +66,60 @@ pub fn consistency_map(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> Consist
     combine(&windows, grid)
 }
 
-/// The views in whose image some of the grid's window lies, frontal ones first, at most [`MAX_VIEWS`].
+/// Positions along each side of the window at which views are asked whether they see it.
+const SAMPLES: usize = 6;
+
+/// The views to compare: at most [`MAX_VIEWS`], such that every part of the window is seen by as many as
+/// possible, frontal ones first. Crops of large photographs often show a part only.
 fn views_of_plane(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> Vec<ViewId> {
-    let (w, h) = (
-        grid.width as f64 * grid.step,
-        grid.height as f64 * grid.step,
-    );
-    let at = |fx: f64, fy: f64| plane.lift(grid.origin.x + fx * w, grid.origin.y + fy * h);
-    let middle = at(0.5, 0.5);
-    let corners = [
-        middle,
-        at(0.1, 0.1),
-        at(0.9, 0.1),
-        at(0.9, 0.9),
-        at(0.1, 0.9),
-    ];
-    let mut scored: Vec<(f64, ViewId)> = scene
-        .view_ids()
-        .filter_map(|v| {
-            let camera: &Camera = scene.camera(v);
-            let seen = corners
-                .iter()
-                .filter(|p| camera.project(p).is_some_and(|x| camera.contains(&x, 1.0)))
-                .count();
-            let toward = (camera.center - middle).normalize().dot(&plane.normal);
-            // A plane seen at a grazing angle (below 15 degrees) has no usable pixels.
-            (seen > 0 && toward > 0.26).then_some((seen as f64 * toward, v))
-        })
+    let candidates: Vec<Candidate> = (scene.view_ids())
+        .filter_map(|v| Candidate::new(v, scene.camera(v), plane, grid))
         .collect();
-    scored.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    scored.truncate(MAX_VIEWS);
-    scored.into_iter().map(|(_, v)| v).collect()
+    let mut seen_by = [0u32; SAMPLES * SAMPLES];
+    let mut chosen: Vec<usize> = Vec::new();
+    while chosen.len() < MAX_VIEWS {
+        let best = (0..candidates.len())
+            .filter(|i| !chosen.contains(i))
+            .map(|i| (candidates[i].gain(&seen_by), i))
+            .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+        let Some((_, best)) = best else { break };
+        let sees = candidates[best].sees.iter();
+        (seen_by.iter_mut().zip(sees)).for_each(|(n, sees)| *n += u32::from(*sees));
+        chosen.push(best);
+    }
+    chosen.into_iter().map(|i| candidates[i].view).collect()
+}
+
+/// A view that sees some of the window.
+struct Candidate {
+    view: ViewId,
+    /// Cosine of the angle between the plane's normal and the direction to the camera.
+    toward: f64,
+    sees: [bool; SAMPLES * SAMPLES],
+}
+
+impl Candidate {
+    fn new(view: ViewId, camera: &Camera, plane: &Plane, grid: &PlanGrid) -> Option<Self> {
+        let at = |fx: f64, fy: f64| {
+            let (x, y) = (fx * grid.width as f64, fy * grid.height as f64);
+            plane.lift(grid.origin.x + x * grid.step, grid.origin.y + y * grid.step)
+        };
+        let middle = at(0.5, 0.5);
+        let toward = (camera.center - middle).normalize().dot(&plane.normal);
+        let sees = std::array::from_fn(|k| {
+            let part = |i: usize| (i as f64 + 0.5) / SAMPLES as f64;
+            let p = at(part(k % SAMPLES), part(k / SAMPLES));
+            (camera.project(&p)).is_some_and(|x| camera.contains(&x, 1.0))
+        });
+        // A plane seen at a grazing angle (below 15 degrees) has no usable pixels.
+        (toward > 0.26 && sees.contains(&true)).then_some(Self { view, toward, sees })
+    }
+
+    /// What the view adds: less where others see the position already.
+    fn gain(&self, seen_by: &[u32]) -> f64 {
+        let seen = seen_by.iter().zip(&self.sees).filter(|(_, sees)| **sees);
+        self.toward * seen.map(|(n, _)| 1.0 / f64::from(1 + n * n)).sum::<f64>()
+    }
 }
 
 /// One view on the grid with the mean and the variance of the window around every cell.

@@ -18,6 +18,7 @@
 //!      grouping       collinear and coplanar grouping (figures 16 to 18)
 //!      plane_lines    new lines in a plane from segments of several views
 //!      borders        border lines, new lines by plane intersection (figures 19 to 22)
+//!      extent         closing lines where the views cease to agree on a plane
 //! 4.3  arrangement    the plan cut into cells by the border lines
 //!      consistency    similarity of a plane over the complete image set
 //!      hypothesis     planes with their regions, similarity and lines, ready to compete
@@ -35,6 +36,7 @@ mod borders;
 mod consistency;
 mod delineation;
 mod evidence;
+mod extent;
 mod facets;
 #[cfg(test)]
 mod fixture;
