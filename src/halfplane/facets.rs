@@ -16,7 +16,7 @@ use super::consistency::{ConsistencyMap, consistency_map};
 use super::delineation::{Delineation, Outline, delineate, signed_area};
 use super::evidence::Evidence;
 use super::grouping::{GroupingInput, PlaneGroup, group_planes};
-use super::hypothesis::{bounding_lines, hypotheses};
+use super::hypothesis::{ON_SURFACE, TEXTURED, bounding_lines, hypotheses};
 use super::islands::without_islands;
 use super::labelling::{Energy, NO_PLANE};
 use super::line_index::LineIndex;
@@ -50,7 +50,7 @@ pub enum FacetRejection {
         /// Mean correlation inside the outline.
         similarity: f64,
     },
-    /// Too little of its outline lies on reconstructed lines or on intersections with other facets.
+    /// Too little of its outline lies on reconstructed lines, and the images do not clearly show it.
     Unsupported {
         /// tau_real, 0 to 1.
         real_ratio: f64,
@@ -378,7 +378,10 @@ impl Solver {
                 similarity: facet.similarity,
             });
         }
-        if facet.real_ratio < params.min_real_ratio {
+        // Where the images show the surface itself, its outline need not lie on lines.
+        let shown = facet.similarity >= f64::from(ON_SURFACE)
+            && self.weight(outline) >= f64::from(TEXTURED) * area_m2 * facet.plane.normal.z;
+        if facet.real_ratio < params.min_real_ratio && !shown {
             return Err(FacetRejection::Unsupported {
                 real_ratio: facet.real_ratio,
             });
