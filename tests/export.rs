@@ -154,6 +154,7 @@ fn scene() -> Scene {
         origin: ORIGIN,
         ground_z: None,
         warnings: Vec::new(),
+        survey: ridgeline::scene::Survey::default(),
     }
 }
 

@@ -64,6 +64,20 @@ fn written() -> Vec<Vec<InputFile>> {
         fixtures!["pix4d/gable_calibrated_camera_parameters.txt"],
         fixtures!["pmatrix/gable_pmatrix.txt", "pmatrix/gable_offset.xyz"],
         fixtures!["middlebury/gable_par.txt"],
+        fixtures!["inpho/gable.prj"],
+        fixtures!["patb/camera.txt", "patb/gable.ori"],
+        fixtures!["shots/cameras.json", "shots/shots.geojson"],
+        fixtures![
+            "micmac/Orientation-s1_01.png.xml",
+            "micmac/Orientation-s1_02.png.xml",
+            "micmac/Orientation-s1_03.png.xml",
+            "micmac/Orientation-s2_01.png.xml",
+            "micmac/Orientation-s2_02.png.xml",
+            "micmac/Orientation-s2_03.png.xml",
+            "micmac/AutoCal_s1_02.png.xml",
+            "micmac/AutoCal_s2_01.png.xml",
+            "micmac/AutoCal_s2_03.png.xml",
+        ],
         fixtures![
             "strecha/s1_01.png.camera",
             "strecha/s1_02.png.camera",
@@ -266,7 +280,7 @@ proptest! {
 
     #[test]
     fn damaged_orientation_gives_a_scene_or_a_readable_refusal(
-        format in 0..15usize, file in any::<usize>(), damages in prop::collection::vec(damage(), 1..4),
+        format in 0..19usize, file in any::<usize>(), damages in prop::collection::vec(damage(), 1..4),
     ) {
         let mut all = written();
         all.extend([colmap(), photogrammetric(), projection(), nvm()]);

@@ -12,8 +12,8 @@ use super::Failure;
 const IMAGE_EXTENSIONS: [&str; 5] = ["jpg", "jpeg", "png", "tif", "tiff"];
 
 /// What may hold an orientation; the readers look at the content.
-const ORIENTATION_EXTENSIONS: [&str; 10] = [
-    "txt", "p", "json", "xml", "out", "nvm", "camera", "bin", "xyz", "zip",
+const ORIENTATION_EXTENSIONS: [&str; 13] = [
+    "txt", "p", "json", "geojson", "xml", "out", "nvm", "camera", "bin", "xyz", "prj", "ori", "zip",
 ];
 
 /// Largest orientation file that is read, bytes: COLMAP writes some hundred bytes for every tie point.

@@ -49,6 +49,18 @@ struct ReconstructArgs {
     /// Reconstruct only this part of the ground plan, metres in the frame of the orientation.
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_roi, allow_hyphen_values = true)]
     roi: Option<[f64; 4]>,
+    /// Reference system of the orientation's world, as EPSG:25832; it is named in the results.
+    #[arg(long, value_name = "EPSG:N", value_parser = parse_crs)]
+    crs: Option<u32>,
+    /// Undo the mistake in the orientation that the images give away, instead of refusing the scene.
+    #[arg(long)]
+    apply_fix: bool,
+    /// Shift views back that are shifted against the others by up to a few pixels.
+    #[arg(long)]
+    adjust: bool,
+    /// Refuse what needs more memory than this, megabytes.
+    #[arg(long, value_name = "MB")]
+    memory: Option<u32>,
     /// JSON file with parameters; what it leaves out keeps its default.
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
@@ -116,6 +128,11 @@ fn parse_finite(text: &str) -> Result<f64, String> {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err(format!("'{text}' is not a number in metres")),
     }
+}
+
+fn parse_crs(text: &str) -> Result<u32, String> {
+    ridgeline::orientation::epsg_of(text)
+        .ok_or_else(|| format!("'{text}' is not a number of EPSG, as EPSG:25832"))
 }
 
 fn parse_roi(text: &str) -> Result<[f64; 4], String> {

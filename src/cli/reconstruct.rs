@@ -30,6 +30,10 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
         views: args.views.clone(),
         roi: args.roi,
         ground_z: args.ground_z,
+        epsg: args.crs,
+        memory_mb: args.memory,
+        apply_fix: args.apply_fix,
+        adjust: args.adjust,
     };
     let scene = load_scene(&input, &options).map_err(|e| Failure::Input(e.to_string()))?;
     drop(input);

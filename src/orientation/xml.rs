@@ -106,8 +106,8 @@ struct Lens {
 }
 
 /// Reads elements of one file; refusals name it and the line.
-struct Reader<'a> {
-    path: &'a str,
+pub(super) struct Reader<'a> {
+    pub path: &'a str,
 }
 
 impl Reader<'_> {
@@ -224,13 +224,13 @@ impl Reader<'_> {
         Ok(m)
     }
 
-    fn number(&self, parent: Node, name: &str) -> Result<f64> {
+    pub(super) fn number(&self, parent: Node, name: &str) -> Result<f64> {
         let node = child(parent, name)
             .ok_or_else(|| self.error(parent, &format!("<{name}> is missing")))?;
         Ok(self.numbers::<1>(node)?[0])
     }
 
-    fn numbers<const N: usize>(&self, node: Node) -> Result<[f64; N]> {
+    pub(super) fn numbers<const N: usize>(&self, node: Node) -> Result<[f64; N]> {
         let text = node.text().unwrap_or_default();
         let numbers: Vec<f64> = text
             .split_whitespace()
@@ -245,7 +245,7 @@ impl Reader<'_> {
         format!("{}, line {}", self.path, line_of(node))
     }
 
-    fn error(&self, node: Node, problem: &str) -> Error {
+    pub(super) fn error(&self, node: Node, problem: &str) -> Error {
         Error::Line {
             file: self.path.to_owned(),
             line: line_of(node),
@@ -259,15 +259,15 @@ fn line_of(node: Node) -> usize {
     node.document().text_pos_at(node.range().start).row as usize
 }
 
-fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
+pub(super) fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
     node.children().find(|n| n.has_tag_name(name))
 }
 
-fn text_of<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
+pub(super) fn text_of<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
     child(node, name).and_then(|n| n.text()).map(str::trim)
 }
 
-fn parse<'a>(path: &str, text: &'a str) -> Result<Document<'a>> {
+pub(super) fn parse<'a>(path: &str, text: &'a str) -> Result<Document<'a>> {
     Document::parse(text.trim_start_matches('\u{feff}')).map_err(|e| Error::Line {
         file: path.to_owned(),
         line: e.pos().row as usize,

@@ -46,6 +46,9 @@ pub struct ImageHeader {
 /// Most pixels in one image: larger than the largest aerial frame camera (about 450 megapixels).
 const MAX_PIXELS: u64 = 600_000_000;
 
+/// No encoding packs more pixels into a byte (deflate: a thousand bytes): what claims more would only cost memory.
+const MOST_PIXELS_PER_BYTE: u64 = 4096;
+
 /// The format of an image that can be read, by its first bytes.
 pub fn image_format(bytes: &[u8]) -> Option<ImageFormat> {
     image::guess_format(bytes)
@@ -69,13 +72,21 @@ pub fn image_header(file: &str, bytes: &[u8]) -> Result<ImageHeader> {
 
 /// Decodes an image. `file` is for messages.
 pub fn load_image(file: &str, bytes: &[u8]) -> Result<Photograph> {
+    finish(file, decode(file, bytes)?)
+}
+
+/// The pixels as they are stored.
+pub(super) fn decode(file: &str, bytes: &[u8]) -> Result<DynamicImage> {
     if image_format(bytes) == Some(ImageFormat::Jpeg) && !jpeg_is_complete(bytes) {
         // The decoder would fill what is missing with grey, where no line is ever found.
         return Err(unreadable(file, "the JPEG is cut off before its end"));
     }
     let decoder = decoder(file, bytes)?;
-    let image =
-        DynamicImage::from_decoder(decoder).map_err(|e| unreadable(file, &e.to_string()))?;
+    DynamicImage::from_decoder(decoder).map_err(|e| unreadable(file, &e.to_string()))
+}
+
+/// Colours and grey values of decoded pixels.
+pub(super) fn finish(file: &str, image: DynamicImage) -> Result<Photograph> {
     photograph(image).ok_or_else(|| Error::File {
         file: file.to_owned(),
         problem: "it holds floating-point values, whose range is unknown".to_owned(),
@@ -104,6 +115,13 @@ fn decoder<'a>(file: &str, bytes: &'a [u8]) -> Result<impl ImageDecoder + use<'a
                 MAX_PIXELS / 1_000_000
             ),
         });
+    }
+    if pixels / MOST_PIXELS_PER_BYTE > bytes.len() as u64 {
+        let problem = format!(
+            "{} bytes cannot hold {width} x {height} pixels",
+            bytes.len()
+        );
+        return Err(unreadable(file, &problem));
     }
     Ok(decoder)
 }

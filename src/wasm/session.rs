@@ -35,6 +35,9 @@ struct JsLoadOptions {
     views: Option<Vec<String>>,
     roi: Option<[f64; 4]>,
     ground_z: Option<f64>,
+    epsg: Option<u32>,
+    apply_fix: bool,
+    adjust: bool,
 }
 
 /// What `load` returns.
@@ -325,6 +328,10 @@ fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
         views: options.views,
         roi: options.roi,
         ground_z: options.ground_z,
+        epsg: options.epsg,
+        memory_mb: None,
+        apply_fix: options.apply_fix,
+        adjust: options.adjust,
     })
 }
 
