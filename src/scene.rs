@@ -47,6 +47,24 @@ pub struct Scene {
     pub survey: Survey,
 }
 
+impl Survey {
+    /// What the coordinates of the results are, in words; `None` where the files do not say.
+    pub fn describe(&self) -> Option<String> {
+        let of_anchor = |a: &Anchor| {
+            let Anchor {
+                lon_deg,
+                lat_deg,
+                height_m,
+            } = a;
+            format!(
+                "east, north, up from longitude {lon_deg}, latitude {lat_deg}, ellipsoidal height {height_m} m (WGS84)"
+            )
+        };
+        let of_epsg = self.epsg.map(|epsg| format!("EPSG:{epsg}"));
+        of_epsg.or_else(|| self.anchor.as_ref().map(of_anchor))
+    }
+}
+
 impl Scene {
     /// The view with this id.
     pub fn view(&self, id: ViewId) -> &View {

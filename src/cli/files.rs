@@ -47,13 +47,32 @@ pub(super) fn write_all(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<()
         ))
     };
     let temporary = |name: &str| folder.join(format!(".{name}.part"));
-    for (name, bytes) in files {
-        fs::write(temporary(name), bytes).map_err(|e| failure(name, e))?;
-    }
-    for (name, _) in files {
-        fs::rename(temporary(name), folder.join(name)).map_err(|e| failure(name, e))?;
-    }
-    Ok(())
+    let write = || {
+        for (name, bytes) in files {
+            fs::write(temporary(name), bytes).map_err(|e| failure(name, e))?;
+        }
+        for (name, _) in files {
+            fs::rename(temporary(name), folder.join(name)).map_err(|e| failure(name, e))?;
+        }
+        Ok(())
+    };
+    write().inspect_err(|_| {
+        // Those that are there: what cannot be removed either was never written.
+        for (name, _) in files {
+            let _ = fs::remove_file(temporary(name));
+        }
+    })
+}
+
+/// Writes one file in the same way.
+pub(super) fn write_one(path: &Path, bytes: Vec<u8>) -> Result<(), Failure> {
+    let folder = path
+        .parent()
+        .filter(|p| !p.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let name = path.file_name().map(|n| n.to_string_lossy().into_owned());
+    let name = name.ok_or_else(|| Failure::Input(format!("{}: names no file", path.display())))?;
+    write_all(folder, &[(name, bytes)])
 }
 
 /// Adds a file, or those of an archive.

@@ -6,6 +6,7 @@
 mod files;
 mod reconstruct;
 mod table;
+mod tiles;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -61,9 +62,15 @@ struct ReconstructArgs {
     /// Refuse what needs more memory than this, megabytes.
     #[arg(long, value_name = "MB")]
     memory: Option<u32>,
+    /// Reconstruct the region in overlapping tiles of about this size, metres, one after the other, into one model.
+    #[arg(long, value_name = "M", value_parser = parse_finite, conflicts_with = "project")]
+    tile: Option<f64>,
     /// JSON file with parameters; what it leaves out keeps its default.
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
+    /// Write a project file too: images, orientation, parameters and results in one .zip, which SCENE takes.
+    #[arg(long, value_name = "FILE.zip")]
+    project: Option<PathBuf>,
     /// Number of threads; by default one per core. It never changes the result.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,

@@ -19,6 +19,7 @@ mod input;
 mod inspect;
 mod names;
 mod plan;
+mod project;
 mod region;
 mod treatment;
 mod verdict;
@@ -26,12 +27,13 @@ mod verdict;
 pub use archive::unpack;
 pub use input::{InputFile, LoadOptions};
 pub use inspect::{FileReport, ImageReport, Inspection, OrientationReport, inspect_files};
+pub use project::{Project, open_project};
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::camera::undistort;
 use crate::doctor::Patient;
-use crate::raster::{load_image, load_part};
+use crate::raster::{Gray, load_image, load_part};
 use crate::scene::{Scene, Survey, View};
 use crate::{Error, Result};
 
@@ -69,6 +71,32 @@ pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
         region::cut_scene(&mut scene, roi)?;
     }
     Ok(scene)
+}
+
+/// The views as whole images, without their pixels: names, cameras and what the files say. A region of interest and memory do not matter.
+pub fn whole_views(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
+    let options = LoadOptions {
+        roi: None,
+        memory_mb: Some(u32::MAX),
+        ..options.clone()
+    };
+    let plan = Plan::new(files, &options);
+    if let Some(error) = plan.errors.into_iter().next() {
+        return Err(error);
+    }
+    let view = |planned: &PlannedView| View {
+        name: files[planned.file].name().to_owned(),
+        camera: planned.whole.clone(),
+        gray: Gray::new(0, 0),
+        rgb: image::RgbImage::new(0, 0),
+    };
+    Ok(Scene {
+        views: plan.views.iter().map(view).collect(),
+        origin: plan.origin,
+        ground_z: options.ground_z.map(|z| z - plan.origin.z),
+        warnings: plan.warnings,
+        survey: plan.survey,
+    })
 }
 
 /// Decodes all views, at the same time where that does not take much more memory.
