@@ -185,6 +185,16 @@ fn bad_arguments_are_explained() {
     scene.is_refused(&["--roi", "5,0,1,1"], &["x0 must be less than x1"]);
     scene.is_refused(&["--ground-z", "NaN"], &["not a number"]);
     scene.is_refused(&["--views", "nothing.png"], &["nothing.png"]);
+    scene.is_refused(&["--crs", "mercator"], &["EPSG:25832"]);
+    scene.is_refused(
+        &["--project", "no/such/folder/a.zip"],
+        &["no/such/folder/a.zip", "cannot be written"],
+    );
+    scene.is_refused(&["--tile", "50"], &["--roi"]);
+    scene.is_refused(
+        &["--tile", "5", "--roi", "-10,-10,10,10"],
+        &["tiles of 30 m or more"],
+    );
     let params = scene.0.path().join("params.json");
     fs::write(&params, r#"{"sweep": {"min_simularity": 0.5}}"#).unwrap();
     let words = ["params.json", "min_simularity", "min_similarity"];
@@ -375,4 +385,43 @@ fn a_failure_of_writing_leaves_nothing_half() {
             .iter()
             .all(|name| !name.contains("part"))
     );
+}
+
+#[test]
+fn earlier_results_within_the_scene_are_not_part_of_it() {
+    let scene = Scene::new();
+    scene.write("results/model_atlas.png", &scene.read("images/s1_01.png"));
+    let output = Command::new(env!("CARGO_BIN_EXE_ridgeline"))
+        .arg("reconstruct")
+        .arg(scene.0.path().join("scene"))
+        .arg("--out")
+        .arg(scene.0.path().join("scene/results"))
+        .args(["--memory", "30"])
+        .output()
+        .unwrap();
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(message.contains("MB of memory"), "{message}");
+}
+
+#[test]
+fn tiles_give_the_model_of_the_whole() {
+    let scene = Scene::new();
+    let output = scene.run(&["--roi", "-31,-31,31,31", "--tile", "31", "--ground-z", "0"]);
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(printed.contains("tile 4 of 4"), "{printed}");
+    assert_eq!(names_in(&scene.out()), OUTPUTS);
+    // The house stands in the middle, where four tiles meet: it is taken once, and whole.
+    let city: serde_json::Value =
+        serde_json::from_slice(&fs::read(scene.out().join("model.city.json")).unwrap()).unwrap();
+    let buildings = city["CityObjects"].as_object().unwrap();
+    assert_eq!(buildings.len(), 1, "{printed}");
+    let facets = buildings.values().next().unwrap()["attributes"]["roofFacets"]
+        .as_u64()
+        .unwrap();
+    assert!(facets >= 4, "{facets}");
 }

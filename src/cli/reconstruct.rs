@@ -19,9 +19,12 @@ const BAR_STEPS: f64 = 100.0;
 pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
     let stated = read_params(args)?;
     make_folder(args)?;
+    args.project
+        .as_deref()
+        .map_or(Ok(()), files::check_writable)?;
     set_threads(args);
     let start = Instant::now();
-    let input = files::read_scene(&args.scene)?;
+    let input = files::read_scene(&args.scene, &args.out)?;
     let (input, opened) = open_project(input).map_err(|e| Failure::Input(e.to_string()))?;
     let opened = opened.unwrap_or_default();
     let options = load_options(args, opened.options);

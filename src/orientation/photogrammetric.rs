@@ -386,6 +386,14 @@ mod tests {
     }
 
     #[test]
+    fn a_heading_is_skipped() {
+        let list = format!("imageName X Y Z Omega Phi Kappa\n{EXTERIOR}");
+        assert_eq!(read_both(CAMERA, &list).unwrap().len(), 1);
+        let damaged = read_both(CAMERA, &list.replace("Kappa", "3"));
+        assert!(damaged.unwrap_err().to_string().contains("line 1"));
+    }
+
+    #[test]
     fn refusals_name_the_line() {
         let message =
             |camera: &str, exterior: &str| read_both(camera, exterior).unwrap_err().to_string();

@@ -72,7 +72,9 @@ pub fn image_header(file: &str, bytes: &[u8]) -> Result<ImageHeader> {
 
 /// Decodes an image. `file` is for messages.
 pub fn load_image(file: &str, bytes: &[u8]) -> Result<Photograph> {
-    finish(file, decode(file, bytes)?)
+    let image = decode(file, bytes)?;
+    let brightest = brightest(&image);
+    finish(file, image, brightest)
 }
 
 /// The pixels as they are stored.
@@ -85,9 +87,9 @@ pub(super) fn decode(file: &str, bytes: &[u8]) -> Result<DynamicImage> {
     DynamicImage::from_decoder(decoder).map_err(|e| unreadable(file, &e.to_string()))
 }
 
-/// Colours and grey values of decoded pixels.
-pub(super) fn finish(file: &str, image: DynamicImage) -> Result<Photograph> {
-    photograph(image).ok_or_else(|| Error::File {
+/// Colours and grey values of decoded pixels; `brightest` is the brightest value of the whole image, where it has 16 bits.
+pub(super) fn finish(file: &str, image: DynamicImage, brightest: u16) -> Result<Photograph> {
+    photograph(image, brightest).ok_or_else(|| Error::File {
         file: file.to_owned(),
         problem: "it holds floating-point values, whose range is unknown".to_owned(),
         advice: "convert it to 8 or 16 bits per channel".to_owned(),
@@ -155,13 +157,13 @@ fn jpeg_is_complete(bytes: &[u8]) -> bool {
 }
 
 /// Colours in 8 bits and grey values; `None` for floating-point images.
-fn photograph(image: DynamicImage) -> Option<Photograph> {
+fn photograph(image: DynamicImage, brightest: u16) -> Option<Photograph> {
     match image {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => None,
         DynamicImage::ImageLuma16(_)
         | DynamicImage::ImageLumaA16(_)
         | DynamicImage::ImageRgb16(_)
-        | DynamicImage::ImageRgba16(_) => Some(scale_16_bits(&image.into_rgb16())),
+        | DynamicImage::ImageRgba16(_) => Some(scale_16_bits(&image.into_rgb16(), brightest)),
         _ => {
             let rgb = image.into_rgb8();
             let gray = Gray::from_rgb(&rgb);
@@ -170,8 +172,23 @@ fn photograph(image: DynamicImage) -> Option<Photograph> {
     }
 }
 
-fn scale_16_bits(deep: &image::ImageBuffer<image::Rgb<u16>, Vec<u16>>) -> Photograph {
-    let brightest = deep.as_raw().iter().copied().max().unwrap_or(0);
+/// The brightest value of an image of 16 bits, of whichever colour; 0 for others.
+pub(super) fn brightest(image: &DynamicImage) -> u16 {
+    match image {
+        DynamicImage::ImageLuma16(_)
+        | DynamicImage::ImageLumaA16(_)
+        | DynamicImage::ImageRgb16(_)
+        | DynamicImage::ImageRgba16(_) => {
+            image.to_rgb16().as_raw().iter().copied().max().unwrap_or(0)
+        }
+        _ => 0,
+    }
+}
+
+fn scale_16_bits(
+    deep: &image::ImageBuffer<image::Rgb<u16>, Vec<u16>>,
+    brightest: u16,
+) -> Photograph {
     let bits = (u16::BITS - brightest.leading_zeros()).max(8);
     let white = ((1u32 << bits) - 1) as f32;
     let rgb = image::RgbImage::from_fn(deep.width(), deep.height(), |x, y| {

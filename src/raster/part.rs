@@ -1,7 +1,8 @@
 //! A part of a photograph, without holding all of it where the format allows.
 //!
 //! TIFF is stored in strips or tiles: only those that touch the part are decoded. JPEG and PNG are decoded whole and cut at once. TIFFs in
-//! other colours than grey, RGB and RGBA of 8 or 16 bits, or with separate planes, are decoded whole too.
+//! other colours than grey, RGB and RGBA of 8 or 16 bits, or with separate planes, are decoded whole too. Of those with 16 bits every chunk is
+//! looked at once, for the brightest value.
 
 use std::io::Cursor;
 
@@ -10,7 +11,7 @@ use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::Tag;
 
-use super::load::{decode, finish};
+use super::load::{brightest, decode, finish};
 use super::{Photograph, image_format};
 use crate::Result;
 
@@ -19,14 +20,16 @@ pub type Part = [u32; 4];
 
 /// Decodes a part of an image; it must lie inside. `file` is for messages.
 pub fn load_part(file: &str, bytes: &[u8], part: Part) -> Result<Photograph> {
-    let image = match tiff_part(bytes, part) {
-        Some(image) => image,
+    let (image, brightest) = match tiff_part(bytes, part) {
+        Some(found) => found,
         None => {
             let [column, row, width, height] = part;
-            decode(file, bytes)?.crop_imm(column, row, width, height)
+            let whole = decode(file, bytes)?;
+            let brightest = brightest(&whole);
+            (whole.crop_imm(column, row, width, height), brightest)
         }
     };
-    finish(file, image)
+    finish(file, image, brightest)
 }
 
 /// Bytes that decoding a part takes beyond the part itself: the whole image, or one strip or tile.
@@ -81,8 +84,8 @@ fn open(bytes: &[u8]) -> Option<Tiff<'_>> {
     })
 }
 
-/// The part, from the chunks that touch it; `None` where the file is none of those that can be read so.
-fn tiff_part(bytes: &[u8], part: Part) -> Option<DynamicImage> {
+/// The part, from the chunks that touch it, and the brightest value of the whole where it has 16 bits; `None` where the file is none of those that can be read so.
+fn tiff_part(bytes: &[u8], part: Part) -> Option<(DynamicImage, u16)> {
     let mut tiff = open(bytes)?;
     let [_, _, width, height] = part;
     let (w, h, samples) = (width as usize, height as usize, tiff.samples);
@@ -92,26 +95,49 @@ fn tiff_part(bytes: &[u8], part: Part) -> Option<DynamicImage> {
             DecodingResult::U8(values) => Some(values),
             _ => None,
         })?;
-        Some(match samples {
+        let image = match samples {
             1 => DynamicImage::ImageLuma8(ImageBuffer::from_raw(width, height, pixels)?),
             3 => DynamicImage::ImageRgb8(ImageBuffer::from_raw(width, height, pixels)?),
             _ => DynamicImage::ImageRgba8(ImageBuffer::from_raw(width, height, pixels)?),
-        })
+        };
+        Some((image, 0))
     } else {
         let mut pixels = vec![0u16; w * h * samples];
         tiff.read(part, &mut pixels, |chunk| match chunk {
             DecodingResult::U16(values) => Some(values),
             _ => None,
         })?;
-        Some(match samples {
+        let image = match samples {
             1 => DynamicImage::ImageLuma16(ImageBuffer::from_raw(width, height, pixels)?),
             3 => DynamicImage::ImageRgb16(ImageBuffer::from_raw(width, height, pixels)?),
             _ => DynamicImage::ImageRgba16(ImageBuffer::from_raw(width, height, pixels)?),
-        })
+        };
+        Some((image, tiff.brightest()?))
     }
 }
 
 impl Tiff<'_> {
+    /// The brightest value of the whole image, chunk by chunk: parts of views must not be scaled each in its own way. Alpha does not count.
+    fn brightest(&mut self) -> Option<u16> {
+        let (w, h) = self.decoder.chunk_dimensions();
+        let count = self
+            .size
+            .0
+            .div_ceil(w)
+            .checked_mul(self.size.1.div_ceil(h))?;
+        let mut brightest = 0;
+        for index in 0..count {
+            let DecodingResult::U16(values) = self.decoder.read_chunk(index).ok()? else {
+                return None;
+            };
+            let colours = values
+                .chunks(self.samples)
+                .flat_map(|pixel| &pixel[..pixel.len().min(3)]);
+            brightest = brightest.max(colours.copied().max().unwrap_or(0));
+        }
+        Some(brightest)
+    }
+
     /// Copies the part out of the chunks that touch it.
     fn read<T: Copy>(
         &mut self,

@@ -126,7 +126,7 @@ fn shift_views(
     let done = if adjust {
         "were shifted back"
     } else {
-        "are shifted against the others (they can be adjusted)"
+        "are shifted against the others (--adjust shifts them back)"
     };
     (!names.is_empty()).then(|| format!("views that {done}: {}", listed(names.iter())))
 }
