@@ -1,8 +1,9 @@
 //! Fuzzing of everything that reads foreign bytes: `make fuzz` for long, `make test` for a moment.
 //!
-//! Each family takes its fixtures, damages them at random and reads them. Whatever the bytes are, the answer is a value or a readable
-//! refusal, within time and memory. `RIDGELINE_FUZZ_SECONDS` says how long each family runs, `RIDGELINE_FUZZ_SEED` where it starts.
-//! What breaks is written to `target/fuzz-finds` and belongs into `tests/fixtures/finds`, which is read again in every run.
+//! Each family takes its fixtures, damages them at random and reads them. Whatever the bytes are, the answer is a
+//! value or a readable refusal, within time and memory. `RIDGELINE_FUZZ_SECONDS` says how long each family runs,
+//! `RIDGELINE_FUZZ_SEED` where it starts. What breaks is written to `target/fuzz-finds` and belongs into
+//! `tests/fixtures/finds`, which is read again in every run.
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::disallowed_methods)]
 

@@ -25,7 +25,8 @@ pub struct Distortion {
     pub radial_below: [f64; 3],
     /// p1, p2.
     pub tangential: [f64; 2],
-    /// Where the lens is centred, against the principal point, divided by the focal length: x and y above count from there.
+    /// Where the lens is centred, against the principal point, divided by the focal length: x and y above count from
+    /// there.
     pub center: [f64; 2],
 }
 

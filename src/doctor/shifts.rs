@@ -1,15 +1,17 @@
 //! How far each view is shifted against the others: a small bundle adjustment over the places found again.
 //!
-//! Places that one interest point has in several views make a track, whose world point X and whose views' shifts s are sought:
+//! Places that one interest point has in several views make a track, whose world point X and whose views' shifts s
+//! are sought:
 //!
 //! ```text
 //! sum over tracks and views  rho(x - (P X + s)) / sigma^2  ->  min
 //! ```
 //!
 //! Over a crop of a frame a small error of omega, phi or of the projection centre is a shift of the image; turns and
-//! changes of scale within the image are not sought. World points are eliminated track by track (Schur complement); rho is
-//! Huber's. A shift of all views that only moves the world is invisible: of all shifts that fit equally, those are taken that
-//! leave most views where they are (their lengths, not their squares, are summed: each round weights a view by 1 / |s|).
+//! changes of scale within the image are not sought. World points are eliminated track by track (Schur complement);
+//! rho is Huber's. A shift of all views that only moves the world is invisible: of all shifts that fit equally,
+//! those are taken that leave most views where they are (their lengths, not their squares, are summed: each round
+//! weights a view by 1 / |s|).
 
 use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3, Point2, Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,9 @@
 //! The model for drawing and mapping programs: DXF, footprints as GeoJSON, the 3D lines as CSV.
 //!
-//! Coordinates are those of the input's world frame, metres. GeoJSON (RFC 7946) wants longitude and latitude: footprints are in these
-//! where the frame's place on the Earth is known, else in the input's own coordinates, whose reference system is
-//! named in the older way (GeoJSON 2008, `crs`) where the input names it. DXF names it in a comment.
+//! Coordinates are those of the input's world frame, metres. GeoJSON (RFC 7946) wants longitude and latitude:
+//! footprints are in these where the frame's place on the Earth is known, else in the input's own coordinates, whose
+//! reference system is named in the older way (GeoJSON 2008, `crs`) where the input names it. DXF names it in a
+//! comment.
 
 use nalgebra::Point3;
 use serde_json::{Value, json};

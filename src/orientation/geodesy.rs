@@ -1,11 +1,12 @@
 //! Positions on the ellipsoid become a local metric frame: x east, y north, z up (ellipsoidal height at the anchor).
 //!
-//! * Geocentric coordinates (Metashape's chunks, many GNSS solutions) are known by their distance from the middle of the Earth, and by
-//!   cameras that look towards it.
+//! * Geocentric coordinates (Metashape's chunks, many GNSS solutions) are known by their distance from the middle of
+//!   the Earth, and by cameras that look towards it.
 //! * Longitude, latitude and height in lists: positions that differ by less than a degree, at flying heights.
 //!
-//! The frame is the tangent plane (WGS84) at the mean position, rounded to 0.001 degrees. Within a kilometre of the anchor the
-//! Earth falls by 8 cm below it. Rotations of geographic lists are taken as those against east, north and up at each camera.
+//! The frame is the tangent plane (WGS84) at the mean position, rounded to 0.001 degrees. Within a kilometre of the
+//! anchor the Earth falls by 8 cm below it. Rotations of geographic lists are taken as those against east, north and
+//! up at each camera.
 
 use nalgebra::{Matrix3, Point3, Vector3};
 use serde::{Deserialize, Serialize};

@@ -1,11 +1,12 @@
 //! INPHO's project file (`.prj`): keys `$KEY : value`, whose further values stand on the lines below.
 //!
-//! * `$CCD_INTERIOR_ORIENTATION` leads from millimetres in the image plane (x right, y up) to pixels: an affine map that flips y, and
-//!   turns the image where the sensor is mounted turned. `$PIXEL_REFERENCE` says which point of the first pixel is (0, 0).
+//! * `$CCD_INTERIOR_ORIENTATION` leads from millimetres in the image plane (x right, y up) to pixels: an affine map
+//!   that flips y, and turns the image where the sensor is mounted turned. `$PIXEL_REFERENCE` says which point of the
+//!   first pixel is (0, 0).
 //! * `$EXT_ORI`: focal length, X, Y, Z, and the matrix Rx(omega) Ry(phi) Rz(kappa), from the image to the world.
 //!
-//! `$CAMERA_MOUNT_ROTATION` belongs to the angles of the flight, not to the matrix, and is not read. Assumption: distortion tables
-//! were applied by the program that wrote the images; a warning says so.
+//! `$CAMERA_MOUNT_ROTATION` belongs to the angles of the flight, not to the matrix, and is not read. Assumption:
+//! distortion tables were applied by the program that wrote the images; a warning says so.
 
 use std::collections::BTreeMap;
 

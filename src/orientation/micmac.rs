@@ -1,9 +1,10 @@
 //! MicMac's `Orientation-IMAGE.xml`, one an image; the interior orientation stands in it or in a file that it names.
 //!
 //! * `CodageMatr` leads from the camera (x right, y down, z forward) to the world; `Centre` is the projection centre.
-//! * F and PP are pixels. Assumption: counted from the corner of the image, since MicMac's first guess of PP is half the size.
-//! * The polynomial about `CDist` leads from measured to ideal coordinates (`eConvApero_DistM2C`), in pixels. Ours goes the other way:
-//!   a polynomial about the same centre is fitted to the inverse.
+//! * F and PP are pixels. Assumption: counted from the corner of the image, since MicMac's first guess of PP is half
+//!   the size.
+//! * The polynomial about `CDist` leads from measured to ideal coordinates (`eConvApero_DistM2C`), in pixels. Ours
+//!   goes the other way: a polynomial about the same centre is fitted to the inverse.
 
 use std::collections::BTreeMap;
 
@@ -172,8 +173,8 @@ fn distortion(file: &Reader, model: Node, lens: &Lens) -> Result<Option<Distorti
     })
 }
 
-/// The radial polynomial (ideal to measured) about `middle` that undoes a map from measured to ideal pixels, by least squares over the
-/// image; `None` where it misses by more than a twentieth of a pixel.
+/// The radial polynomial (ideal to measured) about `middle` that undoes a map from measured to ideal pixels, by
+/// least squares over the image; `None` where it misses by more than a twentieth of a pixel.
 fn fit(
     ideal: impl Fn(&Point2<f64>) -> Point2<f64>,
     middle: Point2<f64>,

@@ -6,8 +6,8 @@
 //! 4F16.12             a23 a31 a32 a33
 //! ```
 //!
-//! The matrix is Rx(omega) Ry(phi) Rz(kappa), from the image (x right, y up) to the world. The interior orientation stands
-//! in the camera file of the photogrammetric list. Files that were edited separate by blanks: these are
+//! The matrix is Rx(omega) Ry(phi) Rz(kappa), from the image (x right, y up) to the world. The interior orientation
+//! stands in the camera file of the photogrammetric list. Files that were edited separate by blanks: these are
 //! taken where the columns hold no numbers.
 
 use nalgebra::{Matrix3, Point3, Vector3};

@@ -25,8 +25,8 @@ pub fn reference_of(kind: FileKind, text: &str) -> Option<u32> {
         .flatten()
 }
 
-/// EPSG's number of a system written as well-known text, as "EPSG:25832", or as the number alone. The last number is that of the whole;
-/// those before belong to its parts (ellipsoid, datum, units).
+/// EPSG's number of a system written as well-known text, as "EPSG:25832", or as the number alone. The last number is
+/// that of the whole; those before belong to its parts (ellipsoid, datum, units).
 pub fn epsg_of(text: &str) -> Option<u32> {
     if let Ok(number) = text.trim().parse::<u32>() {
         return is_plausible(number).then_some(number);

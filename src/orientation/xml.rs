@@ -1,7 +1,7 @@
 //! Orientations in XML: Metashape's `cameras.xml` and ContextCapture's BlocksExchange.
 //!
-//! * Metashape: 4 x 4 per camera, camera (y down, z forward) to chunk; the chunk's rotation, translation and scale lead to
-//!   the world. cx, cy count from the middle of the image; p1 and p2 are exchanged against ours.
+//! * Metashape: 4 x 4 per camera, camera (y down, z forward) to chunk; the chunk's rotation, translation and scale
+//!   lead to the world. cx, cy count from the middle of the image; p1 and p2 are exchanged against ours.
 //! * BlocksExchange: rotation world to camera (`XRightYDown` unless `CameraOrientation` says `XRightYUp`) and
 //!   centre; the principal point counts from the centre of the top-left pixel; the focal length is in
 //!   pixels, or in the unit of `SensorSize`, which belongs to the longer side. P1, P2 as Metashape's.

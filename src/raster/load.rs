@@ -87,7 +87,8 @@ pub(super) fn decode(file: &str, bytes: &[u8]) -> Result<DynamicImage> {
     DynamicImage::from_decoder(decoder).map_err(|e| unreadable(file, &e.to_string()))
 }
 
-/// Colours and grey values of decoded pixels; `brightest` is the brightest value of the whole image, where it has 16 bits.
+/// Colours and grey values of decoded pixels; `brightest` is the brightest value of the whole image, where it has 16
+/// bits.
 pub(super) fn finish(file: &str, image: DynamicImage, brightest: u16) -> Result<Photograph> {
     photograph(image, brightest).ok_or_else(|| Error::File {
         file: file.to_owned(),

@@ -1,8 +1,8 @@
 //! A part of a photograph, without holding all of it where the format allows.
 //!
-//! TIFF is stored in strips or tiles: only those that touch the part are decoded. JPEG and PNG are decoded whole and cut at once. TIFFs in
-//! other colours than grey, RGB and RGBA of 8 or 16 bits, or with separate planes, are decoded whole too. Of those with 16 bits every chunk is
-//! looked at once, for the brightest value.
+//! TIFF is stored in strips or tiles: only those that touch the part are decoded. JPEG and PNG are decoded whole and
+//! cut at once. TIFFs in other colours than grey, RGB and RGBA of 8 or 16 bits, or with separate planes, are decoded
+//! whole too. Of those with 16 bits every chunk is looked at once, for the brightest value.
 
 use std::io::Cursor;
 
@@ -84,7 +84,8 @@ fn open(bytes: &[u8]) -> Option<Tiff<'_>> {
     })
 }
 
-/// The part, from the chunks that touch it, and the brightest value of the whole where it has 16 bits; `None` where the file is none of those that can be read so.
+/// The part, from the chunks that touch it, and the brightest value of the whole where it has 16 bits; `None` where
+/// the file is none of those that can be read so.
 fn tiff_part(bytes: &[u8], part: Part) -> Option<(DynamicImage, u16)> {
     let mut tiff = open(bytes)?;
     let [_, _, width, height] = part;
@@ -117,7 +118,8 @@ fn tiff_part(bytes: &[u8], part: Part) -> Option<(DynamicImage, u16)> {
 }
 
 impl Tiff<'_> {
-    /// The brightest value of the whole image, chunk by chunk: parts of views must not be scaled each in its own way. Alpha does not count.
+    /// The brightest value of the whole image, chunk by chunk: parts of views must not be scaled each in its own
+    /// way. Alpha does not count.
     fn brightest(&mut self) -> Option<u16> {
         let (w, h) = self.decoder.chunk_dimensions();
         let count = self

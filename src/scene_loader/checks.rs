@@ -221,14 +221,16 @@ fn pair_heights(a: &Camera, b: &Camera) -> Vec<f64> {
     heights.collect()
 }
 
-/// Bytes that one pixel of a view takes at the peak: colours and grey values (7), and what the stages make of them. Measured over whole
-/// runs: 35 (a farmhouse) to 90 (a suburb, barns); the matches of lines and the cells of roofs take most.
+/// Bytes that one pixel of a view takes at the peak: colours and grey values (7), and what the stages make of them.
+/// Measured over whole runs: 35 (a farmhouse) to 90 (a suburb, barns); the matches of lines and the cells of roofs
+/// take most.
 const BYTES_PER_PIXEL: u64 = 90;
 
 /// Bytes that everything else takes.
 const BASE_BYTES: u64 = 20 << 20;
 
-/// Memory for a scene where nothing else is said, bytes. Assumption: browsers on small machines give a page no more than 1.5 GB.
+/// Memory for a scene where nothing else is said, bytes. Assumption: browsers on small machines give a page no more
+/// than 1.5 GB.
 const MEMORY_BYTES: u64 = if cfg!(target_arch = "wasm32") {
     3 << 29
 } else {

@@ -73,7 +73,8 @@ pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
     Ok(scene)
 }
 
-/// The views as whole images, without their pixels: names, cameras and what the files say. A region of interest and memory do not matter.
+/// The views as whole images, without their pixels: names, cameras and what the files say. A region of interest and
+/// memory do not matter.
 pub fn whole_views(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
     let options = LoadOptions {
         roi: None,

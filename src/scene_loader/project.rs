@@ -85,7 +85,8 @@ impl Project {
     }
 }
 
-/// If the files are those of a project, its input files at their own paths and what it asks for; else the files as they are.
+/// If the files are those of a project, its input files at their own paths and what it asks for; else the files as
+/// they are.
 pub fn open_project(files: Vec<InputFile>) -> Result<(Vec<InputFile>, Option<Project>)> {
     let is_project =
         |f: &&InputFile| f.name() == PROJECT_FILE && f.text().contains("\"ridgeline\"");

@@ -95,8 +95,8 @@ impl Region {
         Some([column, row, width, height])
     }
 
-    /// Does some place of the region on the ground lie in the image? The box of the projected corners alone says yes for tilted
-    /// views that see nothing of it.
+    /// Does some place of the region on the ground lie in the image? The box of the projected corners alone says yes
+    /// for tilted views that see nothing of it.
     fn is_seen_by(&self, camera: &Camera) -> bool {
         const STEPS: u32 = 8;
         let t = |i: u32| f64::from(i) / f64::from(STEPS);
@@ -125,7 +125,8 @@ impl Region {
         shown || heights.iter().any(shows)
     }
 
-    /// Points of the image whose box holds the region and its buildings: the corners, and where edges pass behind the camera.
+    /// Points of the image whose box holds the region and its buildings: the corners, and where edges pass behind
+    /// the camera.
     fn outline(&self, camera: &Camera) -> Vec<Point2<f64>> {
         const NEAR_M: f64 = 1.0;
         let corner = |i: usize| {

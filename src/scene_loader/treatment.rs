@@ -19,7 +19,8 @@ pub(super) struct Treated {
     pub warnings: Vec<String>,
 }
 
-/// Examines views and corrects what may be corrected. `refusal` is what the places of the cameras alone gave reason to say.
+/// Examines views and corrects what may be corrected. `refusal` is what the places of the cameras alone gave reason
+/// to say.
 pub(super) fn treat(
     mut patients: Vec<Patient>,
     refusal: Option<Error>,

@@ -145,7 +145,8 @@ fn are_same(a: (&Building, Vector3<f64>), b: (&Building, Vector3<f64>)) -> bool 
     shared.abs() > SAME_BUILDING * size(&a).min(size(&b))
 }
 
-/// The ground rings of a building in plan, in a frame whose origin lies `by` further; outer rings and holes run opposite ways.
+/// The ground rings of a building in plan, in a frame whose origin lies `by` further; outer rings and holes run
+/// opposite ways.
 fn footprint(building: &Building, by: &Vector3<f64>) -> Vec<Vec<[f64; 2]>> {
     let solid = &building.solid;
     let corner = |&i: &u32| {

@@ -285,7 +285,8 @@ impl Session {
         to_js(&model.map_or(&[][..], |m| &m.facets))
     }
 
-    /// Method "rectangles": the segmentation of a view, `{regions, vectors, initial_regions, moves}`; `null` before that stage.
+    /// Method "rectangles": the segmentation of a view, `{regions, vectors, initial_regions, moves}`; `null` before
+    /// that stage.
     pub fn regions(&self, view: usize) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().regions.as_ref();
         to_js(&found.and_then(|r| r.trace.get(view)))
