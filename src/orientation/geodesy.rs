@@ -68,8 +68,14 @@ pub fn to_metric_frame(orientations: &mut [Orientation]) -> Option<Anchor> {
 
 fn kind(orientations: &[Orientation]) -> Option<Kind> {
     let centers = || orientations.iter().map(|o| &o.center);
+    // Maps have such coordinates too (northings at 57 degrees), with oblique views to the south; but no height of 20 km.
     let looks_down = |o: &Orientation| {
-        o.r.row(2).transpose().dot(&o.center.coords) < -0.5 * o.center.coords.norm()
+        let least = if o.center.z.abs() > 20_000.0 {
+            0.5
+        } else {
+            0.95
+        };
+        o.r.row(2).transpose().dot(&o.center.coords) < -least * o.center.coords.norm()
     };
     let at_surface = |c: &Point3<f64>| (EARTH_M[0]..EARTH_M[1]).contains(&c.coords.norm());
     if orientations.is_empty() {
@@ -292,6 +298,12 @@ mod tests {
             let before = orientations.clone();
             assert_eq!(to_metric_frame(&mut orientations), None);
             assert_eq!(orientations, before);
+            // Nor when they look south, down by 40 degrees.
+            let tilt = nalgebra::Rotation3::from_euler_angles(-50f64.to_radians(), 0.0, 0.0);
+            orientations
+                .iter_mut()
+                .for_each(|o| o.r *= tilt.inverse().matrix());
+            assert_eq!(to_metric_frame(&mut orientations), None);
         }
     }
 }
