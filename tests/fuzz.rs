@@ -204,7 +204,8 @@ fn fuzz(family: &str, seeds: &[Vec<InputFile>], read: fn(&[InputFile])) {
             .unwrap_or(default)
     };
     let seconds: f64 = number("RIDGELINE_FUZZ_SECONDS", 1.0);
-    let mut dice = Dice(number("RIDGELINE_FUZZ_SEED", 1.0) as u64 * 0x9e37_79b9_7f4a_7c15 | 1);
+    let seed = number("RIDGELINE_FUZZ_SEED", 1.0) as u64;
+    let mut dice = Dice(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     let start = Instant::now();
     let mut inputs = 0u64;
     while start.elapsed().as_secs_f64() < seconds {

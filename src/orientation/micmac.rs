@@ -107,7 +107,7 @@ impl Lens {
         let numbers = |name: &str| {
             let found = child(node, name)
                 .ok_or_else(|| file.error(node, &format!("<{name}> is missing")))?;
-            Ok::<_, crate::Error>(file.numbers::<2>(found)?)
+            file.numbers::<2>(found)
         };
         let (pp, size) = (numbers("PP")?, numbers("SzIm")?);
         let f = file.number(node, "F")?;
