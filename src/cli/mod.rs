@@ -25,7 +25,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Reconstruct the roofs that the photographs in a folder show.
-    Reconstruct(ReconstructArgs),
+    Reconstruct(Box<ReconstructArgs>),
     /// Print all parameters with their defaults, as JSON for --params.
     Params,
 }
