@@ -46,6 +46,7 @@ pub mod scene;
 pub mod scene_loader;
 pub mod synthetic;
 pub mod texture;
+pub mod tiles;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;
 

@@ -14,13 +14,17 @@ use crate::objectspace::{Window, WindowTrace};
 use crate::params::{Method, Params};
 use crate::pipeline::{Run, Stage};
 use crate::progress::Listener;
-use crate::scene_loader::{InputFile, LoadOptions, inspect_files, load_scene, unpack};
+use crate::scene_loader::{
+    InputFile, LoadOptions, Project, inspect_files, load_scene, open_project, unpack,
+};
 
 /// Files, parameters and the reconstruction made of them.
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Session {
     files: Vec<InputFile>,
+    /// The project that was added last.
+    project: Option<Project>,
     params: Params,
     run: Option<Run>,
     /// Written on first request after the last stage.
@@ -28,13 +32,23 @@ pub struct Session {
 }
 
 /// What `load` may be told; see [`LoadOptions`].
-#[derive(Default, Deserialize)]
+#[derive(Default, Deserialize, Serialize)]
 #[serde(default, rename_all = "camelCase", deny_unknown_fields)]
 struct JsLoadOptions {
     orientation: Option<String>,
     views: Option<Vec<String>>,
     roi: Option<[f64; 4]>,
     ground_z: Option<f64>,
+    epsg: Option<u32>,
+    apply_fix: bool,
+    adjust: bool,
+}
+
+/// What `openedProject` returns.
+#[derive(Serialize)]
+struct OpenedProject<'a> {
+    options: JsLoadOptions,
+    params: &'a Params,
 }
 
 /// What `load` returns.
@@ -108,7 +122,15 @@ impl Session {
     /// Adds an image or orientation file, or an archive of them; a file of the same path is replaced.
     #[wasm_bindgen(js_name = addFile)]
     pub fn add_file(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), JsValue> {
-        for added in unpack(InputFile::new(path, bytes)).map_err(|e| input_error(&e))? {
+        let opened = unpack(InputFile::new(path, bytes)).and_then(open_project);
+        let (files, project) = opened.map_err(|e| input_error(&e))?;
+        if let Some(project) = project {
+            // A project is a whole state: nothing else stays.
+            self.clear_files();
+            self.params = project.params.clone();
+            self.project = Some(project);
+        }
+        for added in files {
             self.files.retain(|file| file.path != added.path);
             self.files.push(added);
         }
@@ -116,10 +138,34 @@ impl Session {
         Ok(())
     }
 
+    /// The wishes and parameters of the project among the added files, `{options, params}`; null where there is none.
+    #[wasm_bindgen(js_name = openedProject)]
+    pub fn opened_project(&self) -> Result<JsValue, JsValue> {
+        to_js(&self.project.as_ref().map(|project| OpenedProject {
+            options: JsLoadOptions::from(&project.options),
+            params: &project.params,
+        }))
+    }
+
+    /// The files, the options of `load`, the parameters and the results so far as a project file (.zip).
+    #[wasm_bindgen(js_name = exportProject)]
+    pub fn export_project(&self, options: JsValue) -> Result<Vec<u8>, JsValue> {
+        let project = Project::new(load_options(&options)?, self.params.clone());
+        let results = self
+            .run
+            .as_ref()
+            .map(|run| run.files(&[]))
+            .unwrap_or_default();
+        project
+            .pack(&self.files, &results)
+            .map_err(|e| input_error(&e))
+    }
+
     /// Forgets all files and all results.
     #[wasm_bindgen(js_name = clearFiles)]
     pub fn clear_files(&mut self) {
         self.files.clear();
+        self.project = None;
         self.run = None;
         self.outputs = None;
     }
@@ -239,7 +285,8 @@ impl Session {
         to_js(&model.map_or(&[][..], |m| &m.facets))
     }
 
-    /// Method "rectangles": the segmentation of a view, `{regions, vectors, initial_regions, moves}`; `null` before that stage.
+    /// Method "rectangles": the segmentation of a view, `{regions, vectors, initial_regions, moves}`; `null` before
+    /// that stage.
     pub fn regions(&self, view: usize) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().regions.as_ref();
         to_js(&found.and_then(|r| r.trace.get(view)))
@@ -325,7 +372,25 @@ fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
         views: options.views,
         roi: options.roi,
         ground_z: options.ground_z,
+        epsg: options.epsg,
+        memory_mb: None,
+        apply_fix: options.apply_fix,
+        adjust: options.adjust,
     })
+}
+
+impl From<&LoadOptions> for JsLoadOptions {
+    fn from(options: &LoadOptions) -> Self {
+        Self {
+            orientation: options.orientation.clone(),
+            views: options.views.clone(),
+            roi: options.roi,
+            ground_z: options.ground_z,
+            epsg: options.epsg,
+            apply_fix: options.apply_fix,
+            adjust: options.adjust,
+        }
+    }
 }
 
 fn not_loaded() -> JsValue {
