@@ -1,9 +1,17 @@
 /** The picked thing in numbers, with units and the paper's symbols. */
-import { LINE_STRIDE, SEGMENT_STRIDE, SUPPORT_KINDS, SUPPORT_STRIDE, type Vec3 } from "../shared/results";
+import { LINE_STRIDE, SEGMENT_STRIDE, type Vec3 } from "../shared/results";
 import type { Selection } from "../shared/selection";
-import { params, results, scene, selection } from "./state";
+import { lineOfSegment } from "./marks";
+import { params, pointing, results, scene, selection } from "./state";
+import { outcomeWords, PAIR_WORDS, REJECTION_WORDS } from "./words";
 
-type Row = readonly [label: string, value: string];
+/** A number of the picked thing, or other things that made it or that it made, to go on to. */
+type Row = readonly [label: string, value: string | readonly Related[]];
+
+interface Related {
+  name: string;
+  selection: Selection;
+}
 
 export function Inspector() {
   const picked = selection.value;
@@ -40,12 +48,59 @@ function Facts({ title, rows }: { title: string; rows: readonly Row[] }) {
         {rows.map(([label, value]) => (
           <div key={label}>
             <dt>{label}</dt>
-            <dd class="numbers">{value}</dd>
+            <dd class="numbers">{typeof value === "string" ? value : <Links to={value} />}</dd>
           </div>
         ))}
       </dl>
     </>
   );
+}
+
+const MOST_LINKS = 12;
+
+function Links({ to }: { to: readonly Related[] }) {
+  if (to.length === 0) {
+    return <>none</>;
+  }
+  return (
+    <span class="links">
+      {to.slice(0, MOST_LINKS).map(({ name, selection: next }) => (
+        <button
+          key={name}
+          type="button"
+          class="link"
+          onClick={() => {
+            selection.value = next;
+          }}
+        >
+          {name}
+        </button>
+      ))}
+      {to.length > MOST_LINKS && <span class="muted">+ {to.length - MOST_LINKS}</span>}
+    </span>
+  );
+}
+
+const linkToLine = (index: number): Related => ({ name: String(index), selection: { kind: "line", index } });
+const linkToHalfPlane = (index: number): Related => ({
+  name: String(index),
+  selection: { kind: "halfplane", index },
+});
+const linkToFacet = (index: number): Related => ({
+  name: String(index),
+  selection: { kind: "facet", index },
+});
+const linkToGroup = (index: number): Related => ({
+  name: String(index),
+  selection: { kind: "group", index },
+});
+
+/** The indices of the items that pass. */
+function indicesOf<T>(
+  items: readonly T[] | null | undefined,
+  test: (item: T, index: number) => boolean,
+): number[] {
+  return (items ?? []).flatMap((item, i) => (test(item, i) ? [i] : []));
 }
 
 function titleOf(picked: Selection): string {
@@ -54,6 +109,14 @@ function titleOf(picked: Selection): string {
       return `Segment ${picked.index} of ${viewName(picked.view)}`;
     case "line":
       return `3D line ${picked.index}`;
+    case "side":
+      return `3D line ${picked.line}, ${picked.side} side`;
+    case "group":
+      return `Group ${picked.index}`;
+    case "region":
+      return `Region ${picked.index} of ${viewName(picked.view)}`;
+    case "pair":
+      return `Pair of lines ${results.value.rectangles?.pairs[picked.index]?.lines.join(" and ") ?? ""}`;
     case "halfplane":
       return `Half-plane ${picked.index}`;
     case "facet":
@@ -71,6 +134,14 @@ function rowsOf(picked: Selection): Row[] {
       return segmentRows(picked.view, picked.index);
     case "line":
       return lineRows(picked.index);
+    case "side":
+      return sideRows(picked.line, picked.side);
+    case "group":
+      return groupRows(picked.index);
+    case "region":
+      return regionRows(picked.view, picked.index);
+    case "pair":
+      return pairRows(picked.index);
     case "halfplane":
       return halfPlaneRows(picked.index);
     case "facet":
@@ -94,6 +165,99 @@ function segmentRows(view: number, index: number): Row[] {
     ["Start", `${x0.toFixed(2)}, ${y0.toFixed(2)} px`],
     ["End", `${x1.toFixed(2)}, ${y1.toFixed(2)} px`],
     ["Direction", `${degrees(Math.atan2(y1 - y0, x1 - x0))} (y down)`],
+    ...historyOfSegment(view, index),
+  ];
+}
+
+function historyOfSegment(view: number, index: number): Row[] {
+  const { story } = pointing.value;
+  const lines = lineOfSegment(view, index).map(linkToLine);
+  return [
+    ...(story === null
+      ? []
+      : [
+          ["Fate", outcomeWords(story.outcome)] as const,
+          ["Candidates", String(story.candidates.length)] as const,
+        ]),
+    ...(results.value.lines === null ? [] : [["3D line", lines] as const]),
+  ];
+}
+
+function sideRows(line: number, side: string): Row[] {
+  const record = results.value.sides.find((one) => one.line === line && one.side === side);
+  const own = indicesOf(results.value.halfPlanes, (one) => one.line === line && one.side === side);
+  return [
+    ["3D line", [linkToLine(line)]],
+    ["Half-plane", own.map(linkToHalfPlane)],
+    ...(record?.rejection == null
+      ? []
+      : [["Refused", REJECTION_WORDS[record.rejection] ?? record.rejection] as const]),
+  ];
+}
+
+function groupRows(index: number): Row[] {
+  const group = results.value.grouping?.groups[index];
+  if (group === undefined) {
+    return [];
+  }
+  const lines = [...new Set(group.members.map(({ line }) => line))];
+  const halfPlanes = group.members.flatMap(({ half_plane }) => (half_plane === null ? [] : [half_plane]));
+  const facets = indicesOf(results.value.facets, (facet) =>
+    (facet.half_planes ?? []).some((one) => halfPlanes.includes(one)),
+  );
+  return [
+    ["Slope of the plane", slopeText(group.plane.normal)],
+    ["3D lines", lines.map(linkToLine)],
+    ["Half-planes", halfPlanes.map(linkToHalfPlane)],
+    ["Facets", facets.map(linkToFacet)],
+  ];
+}
+
+function regionRows(view: number, index: number): Row[] {
+  const found = results.value.regions[view];
+  const region = found?.regions[index];
+  return region === undefined
+    ? []
+    : [
+        ["Area", `${region.area_px.toLocaleString("en")} px`],
+        ["Perimeter", `${region.perimeter_px.toFixed(0)} px`],
+        ["Mean grey value", region.mean.toFixed(1)],
+        ["Standard deviation", Math.sqrt(region.variance).toFixed(1)],
+        ["Regions at first", found?.initial_regions.toLocaleString("en") ?? ""],
+        ...Object.entries(found?.moves ?? {}).map(
+          ([move, count]) => [MOVES[move] ?? move, count.toLocaleString("en")] as const,
+        ),
+      ];
+}
+
+const MOVES: Record<string, string> = { dropped: "Break points dropped", merged: "Regions merged" };
+
+function pairRows(index: number): Row[] {
+  const found = results.value.rectangles;
+  const pair = found?.pairs[index];
+  if (found == null || pair === undefined) {
+    return [];
+  }
+  const candidate = found.candidates.find(
+    ({ lines }) => lines.length === 2 && lines.every((line) => pair.lines.includes(line)),
+  );
+  const facets = indicesOf(
+    results.value.facets,
+    (facet) => facet.lines?.length === 2 && facet.lines.every((line) => pair.lines.includes(line)),
+  );
+  return [
+    ["3D lines", pair.lines.map(linkToLine)],
+    ["Lines that cross", String(pair.crossings.length)],
+    ["Ends found", String(pair.ends.length)],
+    ...(pair.rejection === null ? [] : [["Refused", PAIR_WORDS[pair.rejection] ?? pair.rejection] as const]),
+    ...(candidate === undefined
+      ? []
+      : [
+          ["Outline covered", `${Math.round(100 * candidate.support)} %`] as const,
+          ["Correlation inside", candidate.correlation.toFixed(2)] as const,
+          ["Measure M", `${candidate.measure.toFixed(1)} m²`] as const,
+        ]),
+    ["Facets", facets.map(linkToFacet)],
   ];
 }
 
@@ -112,17 +276,57 @@ function lineRows(index: number): Row[] {
       ["Azimuth", azimuth(dx, dy)],
       ["Start", worldText(p0)],
       ["End", worldText(p1)],
-      ["Half-planes", String(results.value.halfPlanes?.filter(({ line }) => line === index).length ?? "–")],
+      ...historyOfLine(index),
     );
   }
-  results.value.supports.forEach((supports, view) => {
-    for (let i = 0; i + SUPPORT_STRIDE <= supports.length; i += SUPPORT_STRIDE) {
-      if (supports[i + 5] === index) {
-        rows.push([viewName(view), SUPPORT_KINDS[supports[i + 4] as number] ?? ""]);
-      }
-    }
-  });
   return rows;
+}
+
+/** What made a line, view by view, and what it is part of. */
+function historyOfLine(index: number): Row[] {
+  const { records, halfPlanes, sides, grouping, facets } = results.value;
+  const record = records[index];
+  const refused = sides.filter(({ line, rejection }) => line === index && rejection !== null);
+  return [
+    ...(record === undefined ? [] : [["σ across", `${(100 * record.sigma_m).toFixed(1)} cm`] as const]),
+    ...(record?.supports ?? []).map(
+      ({ view, segments, kind, score }) =>
+        [
+          `${viewName(view)} · ${kind} ${score.toFixed(2)}`,
+          segments.map(
+            (segment): Related => ({
+              name: String(segment),
+              selection: { kind: "segment", view, index: segment },
+            }),
+          ),
+        ] as const,
+    ),
+    ...(halfPlanes === null
+      ? []
+      : [["Half-planes", indicesOf(halfPlanes, ({ line }) => line === index).map(linkToHalfPlane)] as const]),
+    ...refused.map(
+      ({ side, rejection }) =>
+        [`Refused, ${side}`, REJECTION_WORDS[rejection ?? ""] ?? rejection ?? ""] as const,
+    ),
+    ...(grouping === null
+      ? []
+      : [
+          [
+            "Groups",
+            indicesOf(grouping.groups, ({ members }) => members.some(({ line }) => line === index)).map(
+              linkToGroup,
+            ),
+          ] as const,
+        ]),
+    ...(facets === null
+      ? []
+      : [
+          [
+            "Facets",
+            indicesOf(facets, ({ lines }) => lines?.includes(index) === true).map(linkToFacet),
+          ] as const,
+        ]),
+  ];
 }
 
 function halfPlaneRows(index: number): Row[] {
@@ -132,13 +336,34 @@ function halfPlaneRows(index: number): Row[] {
   }
   const sigma = plane.sigma_theta === undefined ? "" : ` ± ${degrees(plane.sigma_theta)}`;
   return [
-    ["3D line", `${plane.line}, ${plane.side} side`],
+    ["3D line", [linkToLine(plane.line)]],
+    ["Side", plane.side],
     ["θ", `${degrees(plane.theta)}${sigma}`],
     ["Sim(θ)", `${plane.similarity.toFixed(3)}${threshold("min_similarity")}`],
     ["Curvature |Sim″|", `${plane.curvature.toFixed(1)}${threshold("min_curvature")}`],
     ["Amplitude", `${plane.amplitude.toFixed(3)}${threshold("min_amplitude")}`],
     ["Slope of the plane", slopeText(plane.plane.normal)],
     ["Views", plane.views.map(viewName).join(", ")],
+    ...(results.value.grouping === null
+      ? []
+      : [
+          [
+            "Group",
+            indicesOf(results.value.grouping.groups, ({ members }) =>
+              members.some(({ half_plane }) => half_plane === index),
+            ).map(linkToGroup),
+          ] as const,
+        ]),
+    ...(results.value.facets === null
+      ? []
+      : [
+          [
+            "Facets",
+            indicesOf(results.value.facets, ({ half_planes }) => half_planes?.includes(index) === true).map(
+              linkToFacet,
+            ),
+          ] as const,
+        ]),
   ];
 }
 
@@ -156,8 +381,10 @@ function facetRows(index: number): Row[] {
     ["Corners", String(facet.outer.length + facet.holes.flat().length)],
     ["Similarity", facet.similarity.toFixed(3)],
     ["τ real", facet.real_ratio === undefined ? "–" : facet.real_ratio.toFixed(2)],
-    ["3D lines", String(facet.lines?.length ?? "–")],
-    ["Half-planes", String(facet.half_planes?.length ?? "–")],
+    ["3D lines", (facet.lines ?? []).map(linkToLine)],
+    ...((facet.half_planes ?? []).length === 0
+      ? []
+      : [["Half-planes", (facet.half_planes ?? []).map(linkToHalfPlane)] as const]),
   ];
 }
 

@@ -4,7 +4,7 @@ import type { ImageReport } from "../shared/results";
 import { addFiles, clearProject, notify, openDemo, removeFile, setRunOptions } from "./actions";
 import { droppedFiles, pickedFiles } from "./files";
 import { OrientationChoice, PlaceFields } from "./RunOptionFields";
-import { files, inspection, projectName, runOptions, scene } from "./state";
+import { files, inspection, keptBytes, projectName, runOptions, scene } from "./state";
 import { Thumbnail } from "./Thumbnail";
 
 export function Project() {
@@ -15,6 +15,7 @@ export function Project() {
       {files.value.length > 0 && <Views />}
       {files.value.length > 0 && <OtherFiles />}
       <Warnings />
+      <KeptNote />
     </section>
   );
 }
@@ -177,6 +178,22 @@ function OtherFiles() {
         ))}
       </ul>
     </>
+  );
+}
+
+/** What the browser keeps, and how to have it forget. */
+function KeptNote() {
+  const bytes = keptBytes.value;
+  if (bytes === null || files.value.length === 0) {
+    return null;
+  }
+  return (
+    <p class="kept muted" data-testid="kept">
+      <span>Kept in this browser: {(bytes / 1e6).toFixed(1)} MB</span>
+      <button type="button" class="quiet" onClick={() => void clearProject()}>
+        Delete
+      </button>
+    </p>
   );
 }
 
