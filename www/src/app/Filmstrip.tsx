@@ -2,7 +2,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import { drawView } from "./drawing";
 import { type Mark, marksOf } from "./marks";
-import type { Viewport } from "./overlay";
+import { fitPoints } from "./overlay";
 import { images, pointing, results, scene, selection, shownView, tab } from "./state";
 
 const WIDTH_PX = 190;
@@ -48,7 +48,9 @@ function Frame({ view, marks }: { view: number; marks: readonly Mark[] }) {
   useEffect(() => {
     const context = canvas.current?.getContext("2d");
     if (context != null && image !== undefined) {
-      const viewport = around(marks);
+      const points = marks.flatMap((mark) => mark.points);
+      const box = { width: WIDTH_PX, height: HEIGHT_PX };
+      const viewport = fitPoints(points, box, MARGIN_PX, MAX_SCALE) ?? { scale: 1, x: 0, y: 0 };
       drawView(context, image, viewport, ratio(), { segments: null, supports: null }, null, marks);
     }
   });
@@ -65,21 +67,6 @@ function Frame({ view, marks }: { view: number; marks: readonly Mark[] }) {
 
 function ratio(): number {
   return Math.max(1, Math.round(window.devicePixelRatio));
-}
-
-/** The viewport that shows all marks. */
-function around(marks: readonly Mark[]): Viewport {
-  const [x0, y0, x1, y1] = boundsOf(marks);
-  const scale = Math.min(
-    MAX_SCALE,
-    WIDTH_PX / (x1 - x0 + 2 * MARGIN_PX),
-    HEIGHT_PX / (y1 - y0 + 2 * MARGIN_PX),
-  );
-  return {
-    scale,
-    x: WIDTH_PX / 2 - (scale * (x0 + x1)) / 2,
-    y: HEIGHT_PX / 2 - (scale * (y0 + y1)) / 2,
-  };
 }
 
 function boundsOf(marks: readonly Mark[]): [number, number, number, number] {

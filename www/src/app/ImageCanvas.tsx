@@ -7,6 +7,7 @@ import { drawView, type Overlay } from "./drawing";
 import type { Mark } from "./marks";
 import {
   fitImage,
+  fitPoints,
   nearestSegment,
   type Point,
   pan,
@@ -23,6 +24,8 @@ interface Props {
   overlay: Overlay;
   selection: Selection | null;
   marks: readonly Mark[];
+  /** Zooms to the marks until the reader moves the image. */
+  follows: boolean;
   onPick: (selection: Selection | null) => void;
 }
 
@@ -31,17 +34,23 @@ const PAN_STEP_PX = 40;
 const PICK_REACH_PX = 8;
 const CLICK_SLACK_PX = 4;
 
-export function ImageCanvas({ view, name, image, overlay, selection, marks, onPick }: Props) {
+export function ImageCanvas({ view, name, image, overlay, selection, marks, follows, onPick }: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const [box, setBox] = useState<Size>({ width: 0, height: 0 });
   const [moved, setMoved] = useState<Viewport | null>(null);
   const drag = useRef<{ last: Point; travelled: number } | null>(null);
   const fitted = fitImage(image, box);
-  const viewport = moved ?? fitted;
+  const viewport = moved ?? (follows ? around(marks, image, box) : null) ?? fitted;
 
   useEffect(() => observeSize(canvas.current, setBox), []);
   // Another image starts whole.
   useEffect(() => setMoved(null), [image]);
+  // So does another selection, where the image follows it.
+  useEffect(() => {
+    if (follows) {
+      setMoved(null);
+    }
+  }, [selection, follows]);
   useEffect(() => {
     const context = canvas.current?.getContext("2d");
     if (context && box.width > 0) {
@@ -111,6 +120,18 @@ export function ImageCanvas({ view, name, image, overlay, selection, marks, onPi
       </figcaption>
     </figure>
   );
+}
+
+/** Image pixels about marks that are zoomed to. */
+const MARGIN_PX = 45;
+const MAX_FOLLOW_SCALE = 3;
+
+/** The viewport of the marks; null where they are none of this image's. */
+function around(marks: readonly Mark[], image: Size, box: Size): Viewport | null {
+  // Dashed lines are endless: what they cross is shown anyway.
+  const inside = ([x, y]: Vec2) => x >= 0 && y >= 0 && x <= image.width && y <= image.height;
+  const points = marks.filter(({ dashed }) => dashed !== true).flatMap((mark) => mark.points.filter(inside));
+  return box.width === 0 ? null : fitPoints(points, box, MARGIN_PX, MAX_FOLLOW_SCALE);
 }
 
 /** The nearest line or segment, in the order that the overlay asks for; else the region below. */

@@ -5,7 +5,17 @@ import { ImageCanvas } from "./ImageCanvas";
 import { Legend } from "./Legend";
 import { marksOf } from "./marks";
 import { directionColours } from "./RectangleLabs";
-import { images, pointing, results, scene, selection, shownView, tab, withRejected } from "./state";
+import {
+  followsSelection,
+  images,
+  pointing,
+  results,
+  scene,
+  selection,
+  shownView,
+  tab,
+  withRejected,
+} from "./state";
 
 /** All views side by side. */
 export const ALL = -1;
@@ -23,6 +33,7 @@ export function ImageViews() {
       <div class="toolbar">
         <ViewPicker />
         {tab.value === "segments" && <RejectedSwitch />}
+        {shown.length > 1 && <FollowSwitch />}
         <span class="grow" />
         <Legend />
       </div>
@@ -36,6 +47,7 @@ export function ImageViews() {
             overlay={overlayOf(view)}
             selection={selection.value}
             marks={marksOf(selection.value, view)}
+            follows={followsSelection.value && shown.length > 1}
             onPick={(picked) => {
               selection.value = picked;
             }}
@@ -103,6 +115,21 @@ function ViewPicker() {
         </button>
       ))}
     </fieldset>
+  );
+}
+
+function FollowSwitch() {
+  return (
+    <button
+      type="button"
+      aria-pressed={followsSelection.value}
+      class="toggle"
+      onClick={() => {
+        followsSelection.value = !followsSelection.value;
+      }}
+    >
+      Zoom to selection
+    </button>
   );
 }
 

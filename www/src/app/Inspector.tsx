@@ -6,7 +6,7 @@ import { params, pointing, results, scene, selection } from "./state";
 import { outcomeWords, PAIR_WORDS, REJECTION_WORDS } from "./words";
 
 /** A number of the picked thing, or other things that made it or that it made, to go on to. */
-type Row = readonly [label: string, value: string | readonly Related[]];
+type Row = readonly [label: string, value: string | readonly Related[], note?: string];
 
 interface Related {
   name: string;
@@ -45,10 +45,13 @@ function Facts({ title, rows }: { title: string; rows: readonly Row[] }) {
     <>
       <h3 class="picked">{title}</h3>
       <dl class="facts">
-        {rows.map(([label, value]) => (
+        {rows.map(([label, value, note]) => (
           <div key={label}>
             <dt>{label}</dt>
-            <dd class="numbers">{typeof value === "string" ? value : <Links to={value} />}</dd>
+            <dd class="numbers">
+              {typeof value === "string" ? value : <Links to={value} />}
+              {note !== undefined && <span class="muted"> {note}</span>}
+            </dd>
           </div>
         ))}
       </dl>
@@ -60,7 +63,7 @@ const MOST_LINKS = 12;
 
 function Links({ to }: { to: readonly Related[] }) {
   if (to.length === 0) {
-    return <>none</>;
+    return <>–</>;
   }
   return (
     <span class="links">
@@ -292,13 +295,14 @@ function historyOfLine(index: number): Row[] {
     ...(record?.supports ?? []).map(
       ({ view, segments, kind, score }) =>
         [
-          `${viewName(view)} · ${kind} ${score.toFixed(2)}`,
+          viewName(view),
           segments.map(
             (segment): Related => ({
               name: String(segment),
               selection: { kind: "segment", view, index: segment },
             }),
           ),
+          `${kind} ${score.toFixed(2)}`,
         ] as const,
     ),
     ...(halfPlanes === null

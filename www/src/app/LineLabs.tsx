@@ -2,25 +2,23 @@
 import { category } from "../shared/palette";
 import type { Vec3 } from "../shared/results";
 import type { Grouping, Vec2 } from "../shared/traces";
-import { Chart, frameOf, pathOf, type Scale, xOf, yOf } from "./charts";
+import { Chart, Fit, type Frame, pathOf, type Scale, xOf, yOf } from "./charts";
 import { Filmstrip } from "./Filmstrip";
 import { results, selection } from "./state";
 import { facetRejectionWords } from "./words";
-
-const SMALL = frameOf(330, 200);
 
 /** The 3D lines by number of views, and the picked one in every view. */
 export function LineLab() {
   return (
     <div class="split-lab">
-      <Accuracy />
+      <Fit>{(frame) => <Accuracy frame={frame} />}</Fit>
       <Filmstrip />
     </div>
   );
 }
 
 /** Standard deviation of each line against the views that support it; the median of each column as a bar. */
-function Accuracy() {
+function Accuracy({ frame }: { frame: Frame }) {
   const { records } = results.value;
   if (records.length === 0) {
     return <p class="lab-hint muted">Run the stage: accuracy against views appears here.</p>;
@@ -36,10 +34,10 @@ function Accuracy() {
         0.98,
       ),
   };
-  const [toX, toY] = [xOf(SMALL, x), yOf(SMALL, y)];
+  const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
   return (
     <Chart
-      frame={SMALL}
+      frame={frame}
       x={x}
       y={y}
       xTitle="views that support the line"
@@ -54,7 +52,6 @@ function Accuracy() {
     >
       {records.map(({ sigma_m, supports }, i) => (
         <circle
-          // biome-ignore lint/suspicious/noArrayIndexKey: lines are their index
           key={i}
           class={`dot-line ${isPicked(i) ? "picked-dot" : ""}`}
           cx={toX(supports.length + scatter(i))}
@@ -120,7 +117,7 @@ export function GroupLab() {
     .map((group, index) => ({ group, index }))
     .sort((a, b) => b.group.members.length - a.group.members.length);
   return (
-    <div class="split-lab">
+    <div class="split-lab even">
       <ol class="groups" data-testid="groups">
         {order.map(({ group, index }) => {
           const isChosen = selection.value?.kind === "group" && selection.value.index === index;
@@ -139,8 +136,8 @@ export function GroupLab() {
                 <span class="dot" style={{ background: category(index) }} aria-hidden="true" />
                 <span>Group {index}</span>
                 <span class="muted numbers">
-                  {group.members.length} lines, {fans} half-planes,{" "}
-                  {((Math.atan2(Math.hypot(nx, ny), Math.abs(nz)) * 180) / Math.PI).toFixed(0)}° slope
+                  {group.members.length} lines · {fans} half-planes ·{" "}
+                  {((Math.atan2(Math.hypot(nx, ny), Math.abs(nz)) * 180) / Math.PI).toFixed(0)}°
                 </span>
               </button>
             </li>
@@ -152,8 +149,6 @@ export function GroupLab() {
   );
 }
 
-const PLAN = { width: 420, height: 230 };
-
 /** Figures 21 to 23: border lines by their kind, what they enclose, and what was withdrawn. */
 export function FacetLab() {
   const { grouping, facets } = results.value;
@@ -163,7 +158,9 @@ export function FacetLab() {
   return (
     <div class="split-lab">
       <figure class="plan">
-        <Plan grouping={grouping} outlines={facets.map(({ outer }) => outer)} />
+        <Fit>
+          {(frame) => <Plan frame={frame} grouping={grouping} outlines={facets.map(({ outer }) => outer)} />}
+        </Fit>
         <figcaption class="muted numbers">
           <ul class="legend">
             {(["real", "inplane", "intersection", "closing"] as const).map((kind) => (
@@ -187,7 +184,15 @@ const BORDER_WORDS = {
   closing: "closing",
 };
 
-function Plan({ grouping, outlines }: { grouping: Grouping; outlines: readonly (readonly Vec3[])[] }) {
+function Plan({
+  frame,
+  grouping,
+  outlines,
+}: {
+  frame: Frame;
+  grouping: Grouping;
+  outlines: readonly (readonly Vec3[])[];
+}) {
   const points: Vec2[] = [
     ...grouping.borders.flatMap(({ a, b }) => [a, b]),
     ...outlines.flat().map(([x, y]): Vec2 => [x, y]),
@@ -195,40 +200,47 @@ function Plan({ grouping, outlines }: { grouping: Grouping; outlines: readonly (
   const xs = points.map(([x]) => x);
   const ys = points.map(([, y]) => y);
   const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-  const scale = Math.min(PLAN.width / (x1 - x0 || 1), PLAN.height / (y1 - y0 || 1)) * 0.96;
+  const scale = Math.min(frame.width / (x1 - x0 || 1), frame.height / (y1 - y0 || 1)) * 0.96;
   const at = ([x, y]: readonly number[]): [number, number] => [
-    PLAN.width / 2 + ((x as number) - (x0 + x1) / 2) * scale,
-    PLAN.height / 2 - ((y as number) - (y0 + y1) / 2) * scale,
+    frame.width / 2 + ((x as number) - (x0 + x1) / 2) * scale,
+    frame.height / 2 - ((y as number) - (y0 + y1) / 2) * scale,
   ];
   const isChosen = (index: number) => selection.value?.kind === "facet" && selection.value.index === index;
   return (
     <svg
       class="chart plan-chart"
-      viewBox={`0 0 ${PLAN.width} ${PLAN.height}`}
-      role="img"
+      viewBox={`0 0 ${frame.width} ${frame.height}`}
+      // biome-ignore lint/a11y/useSemanticElements: SVG has no fieldset
+      role="group"
       aria-label={`Plan: ${grouping.borders.length} border lines cut it into ${grouping.cells} cells; ${outlines.length} facets, ${grouping.rejected.length} withdrawn`}
       data-testid="plan"
     >
       {outlines.map((ring, i) => (
-        // biome-ignore lint/suspicious/noArrayIndexKey: facets are their index
-        // biome-ignore lint/a11y/noStaticElementInteractions: the same facets are picked by key in the 3D view
         <path
           key={i}
+          // biome-ignore lint/a11y/useSemanticElements: SVG has no button
+          role="button"
+          tabIndex={0}
+          aria-label={`Facet ${i}`}
           class={`plan-facet ${isChosen(i) ? "chosen" : ""}`}
           d={`${pathOf(ring.map(at))}Z`}
           onClick={() => {
             selection.value = { kind: "facet", index: i };
           }}
+          onKeyDown={(event) => {
+            if (event.key === "Enter" || event.key === " ") {
+              event.preventDefault();
+              selection.value = { kind: "facet", index: i };
+            }
+          }}
         />
       ))}
       {grouping.rejected.map(({ outline, reason }, i) => (
-        // biome-ignore lint/suspicious/noArrayIndexKey: withdrawn facets have no name
         <path key={i} class="plan-rejected" d={`${pathOf(outline.map(at))}Z`}>
           <title>{`Withdrawn: ${facetRejectionWords(reason)}`}</title>
         </path>
       ))}
       {grouping.borders.map(({ kind, a, b }, i) => (
-        // biome-ignore lint/suspicious/noArrayIndexKey: border lines have no name
         <path key={i} class={`border-${kind}`} d={pathOf([at(a), at(b)])} />
       ))}
     </svg>

@@ -2,11 +2,11 @@
 import { category } from "../shared/palette";
 import { LINE_STRIDE } from "../shared/results";
 import type { ClusterTrace, MainDirections, PlaneTrace, Vec2 } from "../shared/traces";
-import { Chart, frameOf, pathOf, type Scale, xOf, yOf } from "./charts";
+import { Chart, Fit, type Frame, pathOf, type Scale, xOf, yOf } from "./charts";
+import { Filmstrip } from "./Filmstrip";
 import { results, scene, selection, shownPlane } from "./state";
 import { PAIR_WORDS } from "./words";
 
-const WIDE = frameOf(640, 200);
 const HALF = Math.PI / 2;
 
 export const degreesOf = (radians: number) => (radians * 180) / Math.PI;
@@ -30,17 +30,23 @@ export function DirectionLab() {
         }}
       />
       {histogram !== undefined && (
-        <Histogram values={histogram.histogram} binDeg={histogram.bin_deg} pairs={pairs} />
+        <Fit>
+          {(frame) => (
+            <Histogram frame={frame} values={histogram.histogram} binDeg={histogram.bin_deg} pairs={pairs} />
+          )}
+        </Fit>
       )}
     </div>
   );
 }
 
 function Histogram({
+  frame,
   values,
   binDeg,
   pairs,
 }: {
+  frame: Frame;
   values: readonly number[];
   binDeg: number;
   pairs: readonly MainDirections[];
@@ -48,12 +54,12 @@ function Histogram({
   const top = Math.max(...values, 1e-9);
   const x = { min: 0, max: 180 };
   const y = { min: 0, max: top };
-  const [toX, toY] = [xOf(WIDE, x), yOf(WIDE, y)];
+  const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
   const outline = values.map((value, i) => [toX((i + 0.5) * binDeg), toY(value)] as const);
   const floor = toY(0);
   return (
     <Chart
-      frame={WIDE}
+      frame={frame}
       x={x}
       y={y}
       xTitle="azimuth (degrees from X towards Y)"
@@ -70,8 +76,8 @@ function Histogram({
           const at = toX(degreesOf(angle) % 180);
           return (
             <g key={angle}>
-              <line x1={at} x2={at} y1={WIDE.top} y2={floor} stroke={category(axis)} class="peak" />
-              <text x={at + 4} y={WIDE.top + 10} class="peak-name">
+              <line x1={at} x2={at} y1={frame.top} y2={floor} stroke={category(axis)} class="peak" />
+              <text x={at + 4} y={frame.top + 10} class="peak-name">
                 {(degreesOf(angle) % 180).toFixed(1)}°{axis === 0 && ` · ${Math.round(100 * share)} %`}
               </text>
             </g>
@@ -130,7 +136,7 @@ export function ClusterLab() {
           shownPlane.value = i;
         }}
       />
-      <ClusterPlane trace={trace} />
+      <Fit>{(frame) => <ClusterPlane frame={frame} trace={trace} />}</Fit>
       <p class="muted numbers note-line">
         {trace.lines.length} image lines, {trace.proposals[0].toLocaleString("en")} intersections,{" "}
         {trace.proposals[1].toLocaleString("en")} looked at, {trace.selected.length} selected
@@ -139,14 +145,14 @@ export function ClusterLab() {
   );
 }
 
-function ClusterPlane({ trace }: { trace: ClusterTrace }) {
+function ClusterPlane({ frame, trace }: { frame: Frame; trace: ClusterTrace }) {
   const [x, y] = rangesOf([...trace.selected, ...trace.refused].map(([at]) => at));
-  const [toX, toY] = [xOf(WIDE, x), yOf(WIDE, y)];
+  const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
   const dot = ([across, height]: Vec2) => ({ cx: toX(across), cy: toY(height) });
   const chosen = lineOfSelection();
   return (
     <Chart
-      frame={WIDE}
+      frame={frame}
       x={x}
       y={y}
       xTitle="across the main direction (m)"
@@ -160,16 +166,15 @@ function ClusterPlane({ trace }: { trace: ClusterTrace }) {
     >
       <clipPath id="cluster-clip">
         <rect
-          x={WIDE.left}
-          y={WIDE.top}
-          width={WIDE.width - WIDE.left - WIDE.right}
-          height={WIDE.height - WIDE.top - WIDE.bottom}
+          x={frame.left}
+          y={frame.top}
+          width={frame.width - frame.left - frame.right}
+          height={frame.height - frame.top - frame.bottom}
         />
       </clipPath>
       <g clip-path="url(#cluster-clip)">
         {trace.lines.map(([view, [a, b]], i) => (
           <path
-            // biome-ignore lint/suspicious/noArrayIndexKey: the lines have no other name
             key={i}
             class="sight"
             d={pathOf(stretched(a, b).map(([across, height]) => [toX(across), toY(height)] as const))}
@@ -177,11 +182,9 @@ function ClusterPlane({ trace }: { trace: ClusterTrace }) {
           />
         ))}
         {trace.refused.map(([at], i) => (
-          // biome-ignore lint/suspicious/noArrayIndexKey: the clusters have no other name
           <circle key={i} class="refused-cluster" {...dot(at)} r={2.5} />
         ))}
         {trace.selected.map(([at, gain], i) => (
-          // biome-ignore lint/suspicious/noArrayIndexKey: the clusters have no other name
           <circle key={i} class="cluster" {...dot(at)} r={5}>
             <title>{`${at[0].toFixed(2)} m across, ${at[1].toFixed(2)} m high, gain ${gain.toFixed(0)} bit`}</title>
           </circle>
@@ -279,28 +282,31 @@ export function RectangleLab() {
   const isChosen = (index: number) =>
     found.chosen.some((k) => samePair(found.candidates[k]?.lines, found.pairs[index]?.lines));
   return (
-    <div class="chart-lab" data-testid="rectangle-lab">
-      <label class="pair-choice">
-        Pair of lines
-        <select
-          value={shown}
-          onChange={(event) => {
-            selection.value = { kind: "pair", index: Number(event.currentTarget.value) };
-          }}
-        >
-          {found.pairs.map((one, i) => (
-            <option key={one.lines.join()} value={i}>
-              {one.lines.join(" and ")}
-              {isChosen(i)
-                ? " · selected"
-                : one.rejection === null
-                  ? " · candidate"
-                  : ` · ${PAIR_WORDS[one.rejection]}`}
-            </option>
-          ))}
-        </select>
-      </label>
-      <PlaneWindow pair={pair} />
+    <div class="split-lab even">
+      <div class="chart-lab" data-testid="rectangle-lab">
+        <label class="pair-choice">
+          Pair of lines
+          <select
+            value={shown}
+            onChange={(event) => {
+              selection.value = { kind: "pair", index: Number(event.currentTarget.value) };
+            }}
+          >
+            {found.pairs.map((one, i) => (
+              <option key={one.lines.join()} value={i}>
+                {one.lines.join(" and ")}
+                {isChosen(i)
+                  ? " · selected"
+                  : one.rejection === null
+                    ? " · candidate"
+                    : ` · ${PAIR_WORDS[one.rejection]}`}
+              </option>
+            ))}
+          </select>
+        </label>
+        <Fit>{(frame) => <PlaneWindow outer={frame} pair={pair} />}</Fit>
+      </div>
+      <Filmstrip />
     </div>
   );
 }
@@ -327,14 +333,14 @@ function samePair(a: readonly number[] | undefined, b: readonly number[] | undef
   return a?.length === 2 && b !== undefined && a.includes(b[0] as number) && a.includes(b[1] as number);
 }
 
-function PlaneWindow({ pair }: { pair: PlaneTrace }) {
+function PlaneWindow({ outer, pair }: { outer: Frame; pair: PlaneTrace }) {
   const along = pair.crossings.flatMap(({ at }) => at);
   const width = Math.max(1, ...pair.crossings.flatMap(({ across }) => across));
   const x: Scale =
     along.length === 0
       ? { min: 0, max: 10 }
       : { min: Math.min(...along) - 0.5, max: Math.max(...along) + 0.5 };
-  const frame = { ...WIDE, bottom: 82 };
+  const frame = { ...outer, bottom: 82 };
   const y = { min: 0, max: width };
   const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
   const bins = histogramOf(
@@ -343,8 +349,8 @@ function PlaneWindow({ pair }: { pair: PlaneTrace }) {
     60,
   );
   const top = Math.max(...bins, 1);
-  const base = WIDE.height - WIDE.bottom;
-  const step = (WIDE.width - WIDE.left - WIDE.right) / bins.length;
+  const base = outer.height - outer.bottom;
+  const step = (outer.width - outer.left - outer.right) / bins.length;
   return (
     <Chart
       frame={frame}
@@ -358,7 +364,6 @@ function PlaneWindow({ pair }: { pair: PlaneTrace }) {
     >
       {pair.crossings.map(({ view, at, across, contrast }, i) => (
         <line
-          // biome-ignore lint/suspicious/noArrayIndexKey: the crossings have no other name
           key={i}
           class="crossing"
           x1={toX(at[0] + ((at[1] - at[0]) * across[0]) / width)}
@@ -382,10 +387,9 @@ function PlaneWindow({ pair }: { pair: PlaneTrace }) {
       ))}
       {bins.map((count, i) => (
         <rect
-          // biome-ignore lint/suspicious/noArrayIndexKey: bins are their places
           key={i}
           class="bin"
-          x={WIDE.left + i * step}
+          x={outer.left + i * step}
           width={Math.max(1, step - 1)}
           y={base - (44 * count) / top}
           height={(44 * count) / top}

@@ -2,12 +2,11 @@
 import { useEffect, useRef } from "preact/hooks";
 import { category } from "../shared/palette";
 import type { SideTrace, WarpedPicture } from "../shared/traces";
-import { Chart, frameOf, pathOf, xOf, yOf } from "./charts";
+import { Chart, Fit, type Frame, pathOf, xOf, yOf } from "./charts";
 import { bestTheta, sideOf, turnTo } from "./pointing";
 import { params, pointing, scene, selection } from "./state";
 import { REJECTION_WORDS } from "./words";
 
-const FRAME = frameOf(400, 212);
 const DEGREE = Math.PI / 180;
 
 export function SimLab() {
@@ -23,7 +22,7 @@ export function SimLab() {
     <div class="sim-lab" data-testid="sim-lab">
       <div class="sim-chart">
         <SideHead side={side} />
-        <SimChart side={side} theta={theta} />
+        <Fit>{(frame) => <SimChart frame={frame} side={side} theta={theta} />}</Fit>
         <label class="theta">
           <span>θ</span>
           <input
@@ -80,18 +79,18 @@ function SideHead({ side }: { side: SideTrace }) {
   );
 }
 
-function SimChart({ side, theta }: { side: SideTrace; theta: number }) {
+function SimChart({ frame, side, theta }: { frame: Frame; side: SideTrace; theta: number }) {
   const { thetas, similarity, views } = side.curve;
   const limit = 75;
   const x = { min: -limit, max: limit };
   const y = { min: 0, max: 1 };
-  const [toX, toY] = [xOf(FRAME, x), yOf(FRAME, y)];
+  const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
   const curve = (values: readonly number[]) =>
     pathOf(values.map((value, i) => [toX((thetas[i] ?? 0) / DEGREE), toY(value)]));
   const least = params.value["sweep"]?.["min_similarity"];
   return (
     <Chart
-      frame={FRAME}
+      frame={frame}
       x={x}
       y={y}
       xTitle="θ (degrees)"
@@ -104,8 +103,8 @@ function SimChart({ side, theta }: { side: SideTrace; theta: number }) {
       {typeof least === "number" && (
         <line
           class="threshold"
-          x1={FRAME.left}
-          x2={FRAME.width - FRAME.right}
+          x1={frame.left}
+          x2={frame.width - frame.right}
           y1={toY(least)}
           y2={toY(least)}
         />
@@ -125,10 +124,10 @@ function SimChart({ side, theta }: { side: SideTrace; theta: number }) {
         class="cursor"
         x1={toX(theta / DEGREE)}
         x2={toX(theta / DEGREE)}
-        y1={FRAME.top}
-        y2={FRAME.height - FRAME.bottom}
+        y1={frame.top}
+        y2={frame.height - frame.bottom}
       />
-      <circle class="cursor-knob" cx={toX(theta / DEGREE)} cy={FRAME.height - FRAME.bottom} r={6} />
+      <circle class="cursor-knob" cx={toX(theta / DEGREE)} cy={frame.height - frame.bottom} r={6} />
     </Chart>
   );
 }

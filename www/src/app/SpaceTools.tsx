@@ -124,7 +124,8 @@ function Photograph({ view }: { view: number }) {
       class="photograph"
       style={{ opacity: opacity.value }}
       data-testid="photograph"
-      aria-hidden="true"
+      role="img"
+      aria-label="The photograph over the model"
     />
   );
 }

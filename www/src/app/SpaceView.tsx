@@ -3,7 +3,7 @@ import { signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { THEME_COLOURS } from "../shared/palette";
 import type { Vec3 } from "../shared/results";
-import { boundsOf, boundsOfFacets, boundsOfLines } from "../viewer/bounds";
+import { boundsOf, boundsOfFacets, boundsOfLines, withCameras } from "../viewer/bounds";
 import { buildCameras } from "../viewer/cameras";
 import { buildFacets } from "../viewer/facets";
 import { buildFans, buildTurning } from "../viewer/fans";
@@ -88,7 +88,7 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
             <p class="muted">This view fills when its stage has run.</p>
           </div>
         )}
-        {!isEmpty && <SpaceTools viewer={viewer.value} onFit={() => viewer.value?.lookAt(boundsNow())} />}
+        {!isEmpty && <SpaceTools viewer={viewer.value} onFit={fitView} />}
         {!isEmpty && <span class="scale muted numbers">grid {GRID_STEP_M} m</span>}
       </div>
     </div>
@@ -225,6 +225,13 @@ async function showModel(glb: Uint8Array<ArrayBuffer> | null): Promise<void> {
   }
 }
 
+/** Looks at what is shown, the cameras with it where they are. */
+function fitView(): void {
+  const centres = scene.value?.views.map(({ center }) => center) ?? [];
+  const areShown = shown.value[tab.value].includes("cameras");
+  viewer.value?.lookAt(areShown ? withCameras(boundsNow(), centres) : boundsNow());
+}
+
 /** What the present tab shows, as a sphere in the viewer's frame. */
 function boundsNow() {
   const { lines, facets } = results.value;
@@ -261,6 +268,9 @@ function LayerSwitches() {
   const toggle = (name: LayerName) => () => {
     const next = visible.includes(name) ? visible.filter((one) => one !== name) : [...visible, name];
     shown.value = { ...shown.value, [tab.value]: next };
+    if (name === "cameras") {
+      fitView();
+    }
   };
   return (
     <fieldset class="choice">

@@ -1,6 +1,6 @@
 /** The charts of the figures: plain SVG, coloured by the style sheet, drawn from numbers that the core gave. */
 import type { ComponentChildren } from "preact";
-import { useRef } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 
 export interface Scale {
   min: number;
@@ -49,6 +49,31 @@ export function ticks({ min, max }: Scale, count = 5): number[] {
   const first = Math.ceil(min / step - 1e-9);
   const last = Math.floor(max / step + 1e-9);
   return Array.from({ length: Math.max(0, last - first + 1) }, (_, i) => (first + i) * step);
+}
+
+/** Gives what is drawn inside the size that there is, so that text has its own size. */
+export function Fit({ children }: { children: (frame: Frame) => ComponentChildren }) {
+  const box = useRef<HTMLDivElement>(null);
+  const [frame, setFrame] = useState<Frame | null>(null);
+  useEffect(() => {
+    const element = box.current;
+    if (element === null) {
+      return undefined;
+    }
+    const observer = new ResizeObserver(() => {
+      const { clientWidth, clientHeight } = element;
+      if (clientWidth > 0 && clientHeight > 0) {
+        setFrame(frameOf(clientWidth, clientHeight));
+      }
+    });
+    observer.observe(element);
+    return () => observer.disconnect();
+  }, []);
+  return (
+    <div class="fit" ref={box}>
+      {frame !== null && children(frame)}
+    </div>
+  );
 }
 
 interface ChartProps {

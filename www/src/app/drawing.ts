@@ -93,7 +93,7 @@ function drawMark(context: CanvasRenderingContext2D, mark: Mark, unit: number): 
     return;
   }
   const path = new Path2D();
-  mark.points.forEach(([x, y], i) => (i === 0 ? path.moveTo(x, y) : path.lineTo(x, y)));
+  trace(path, mark.points);
   if (mark.closed) {
     path.closePath();
   }
@@ -116,6 +116,16 @@ function drawMark(context: CanvasRenderingContext2D, mark: Mark, unit: number): 
   context.setLineDash([]);
   if (mark.label !== undefined) {
     drawLabel(context, mark.label, labelPlace(mark.points), mark.colour, unit);
+  }
+}
+
+function trace(path: Path2D, points: readonly Vec2[]): void {
+  for (const [i, [x, y]] of points.entries()) {
+    if (i === 0) {
+      path.moveTo(x, y);
+    } else {
+      path.lineTo(x, y);
+    }
   }
 }
 
@@ -151,7 +161,7 @@ function fillRegions(
   for (const { rings, colour } of regions) {
     const path = new Path2D();
     for (const ring of rings) {
-      ring.forEach(([x, y], i) => (i === 0 ? path.moveTo(x, y) : path.lineTo(x, y)));
+      trace(path, ring);
       path.closePath();
     }
     context.globalAlpha = before * 0.6;

@@ -15,9 +15,9 @@ interface Figure {
 const Sim = () => (
   <mrow>
     <mi mathvariant="normal">Sim</mi>
-    <mo>(</mo>
+    <mi mathvariant="normal">(</mi>
     <mi>θ</mi>
-    <mo>)</mo>
+    <mi mathvariant="normal">)</mi>
   </mrow>
 );
 
@@ -28,18 +28,24 @@ const FIGURES: Record<Tab, Figure> = {
     text: "Each view is a photograph with a known camera P. Lens distortion has been removed, so that a point X of the ground lies at x = P X. All later figures rest on this one equation.",
     equation: (
       <mrow>
-        <mi mathvariant="bold">x</mi>
+        <mi mathvariant="normal" class="v">
+          x
+        </mi>
         <mo>=</mo>
         <mi>P</mi>
-        <mi mathvariant="bold">X</mi>
+        <mi mathvariant="normal" class="v">
+          X
+        </mi>
         <mo>=</mo>
         <mi>K</mi>
         <mi>R</mi>
-        <mo>(</mo>
-        <mi mathvariant="bold">X</mi>
+        <mi mathvariant="normal">(</mi>
+        <mi mathvariant="normal" class="v">
+          X
+        </mi>
         <mo>−</mo>
         <mi>C</mi>
-        <mo>)</mo>
+        <mi mathvariant="normal">)</mi>
       </mrow>
     ),
     hint: "Scroll to zoom, drag to move. What is selected elsewhere is marked here.",
@@ -51,10 +57,14 @@ const FIGURES: Record<Tab, Figure> = {
     equation: (
       <mrow>
         <msup>
-          <mi mathvariant="bold">l</mi>
+          <mi mathvariant="normal" class="v">
+            l
+          </mi>
           <mi mathvariant="normal">T</mi>
         </msup>
-        <mi mathvariant="bold">x</mi>
+        <mi mathvariant="normal" class="v">
+          x
+        </mi>
         <mo>=</mo>
         <mn>0</mn>
       </mrow>
@@ -67,20 +77,20 @@ const FIGURES: Record<Tab, Figure> = {
     text: "The end points of a segment bound an epipolar beam in every other view. Candidates in it are compared point by point: x′ is where the epipolar line of x meets the candidate l′. A pair predicts the line in third views by its trifocal tensor; there it must be seen, too.",
     equation: (
       <mrow>
-        <msup>
-          <mi mathvariant="bold">x</mi>
-          <mo>′</mo>
-        </msup>
+        <mi mathvariant="normal" class="v">
+          x′
+        </mi>
         <mo>=</mo>
-        <msup>
-          <mi mathvariant="bold">l</mi>
-          <mo>′</mo>
-        </msup>
+        <mi mathvariant="normal" class="v">
+          l′
+        </mi>
         <mo>×</mo>
-        <mo>(</mo>
+        <mi mathvariant="normal">(</mi>
         <mi>F</mi>
-        <mi mathvariant="bold">x</mi>
-        <mo>)</mo>
+        <mi mathvariant="normal" class="v">
+          x
+        </mi>
+        <mi mathvariant="normal">)</mi>
       </mrow>
     ),
     hint: "Pick a segment; then choose a candidate and drag the point along it.",
@@ -103,9 +113,11 @@ const FIGURES: Record<Tab, Figure> = {
           <mi>d</mi>
           <mn>2</mn>
         </msup>
-        <mo>(</mo>
+        <mi mathvariant="normal">(</mi>
         <msup>
-          <mi mathvariant="bold">l</mi>
+          <mi mathvariant="normal" class="v">
+            l
+          </mi>
           <mi>i</mi>
         </msup>
         <mo>,</mo>
@@ -114,7 +126,7 @@ const FIGURES: Record<Tab, Figure> = {
           <mi>i</mi>
         </msup>
         <mi>L</mi>
-        <mo>)</mo>
+        <mi mathvariant="normal">)</mi>
       </mrow>
     ),
     hint: "Switch to Before growing to see what the segments alone give.",
@@ -136,25 +148,31 @@ const FIGURES: Record<Tab, Figure> = {
           <mi mathvariant="normal">POI</mi>
         </msub>
         <mi>w</mi>
-        <mo>(</mo>
-        <mi mathvariant="bold">x</mi>
-        <mo>)</mo>
+        <mi mathvariant="normal">(</mi>
+        <mi mathvariant="normal" class="v">
+          x
+        </mi>
+        <mi mathvariant="normal">)</mi>
         <msup>
           <mi mathvariant="normal">Cor</mi>
           <mn>2</mn>
         </msup>
-        <mo>(</mo>
-        <mi mathvariant="bold">x</mi>
+        <mi mathvariant="normal">(</mi>
+        <mi mathvariant="normal" class="v">
+          x
+        </mi>
         <mo>,</mo>
         <msup>
           <mi>H</mi>
           <mi>i</mi>
         </msup>
-        <mo>(</mo>
+        <mi mathvariant="normal">(</mi>
         <mi>θ</mi>
-        <mo>)</mo>
-        <mi mathvariant="bold">x</mi>
-        <mo>)</mo>
+        <mi mathvariant="normal">)</mi>
+        <mi mathvariant="normal" class="v">
+          x
+        </mi>
+        <mi mathvariant="normal">)</mi>
       </mrow>
     ),
     hint: "Pick a line or a fan, then drag θ: the windows below are alike only at the right angle.",
@@ -166,10 +184,14 @@ const FIGURES: Record<Tab, Figure> = {
     equation: (
       <mrow>
         <msup>
-          <mi mathvariant="bold">n</mi>
+          <mi mathvariant="normal" class="v">
+            n
+          </mi>
           <mi mathvariant="normal">T</mi>
         </msup>
-        <mi mathvariant="bold">X</mi>
+        <mi mathvariant="normal" class="v">
+          X
+        </mi>
         <mo>+</mo>
         <mi>d</mi>
         <mo>≈</mo>
@@ -216,21 +238,21 @@ const FIGURES: Record<Tab, Figure> = {
   regions: {
     title: "Regions (ORIS)",
     source: "W96 3.3, figure 3",
-    text: "The image becomes a partition into regions of constant grey value plus noise, with straight shared boundaries. Break points are dropped and regions merged, always the move that shortens the description most, until none does.",
+    text: "The image becomes a partition into regions of constant grey value plus noise, with straight shared boundaries. Break points are dropped and regions merged, always the move that shortens the description of model m and image I most, until none does.",
     equation: (
       <mrow>
         <mo>min</mo>
         <mi>L</mi>
-        <mo>(</mo>
-        <mi mathvariant="normal">model</mi>
-        <mo>)</mo>
+        <mi mathvariant="normal">(</mi>
+        <mi>m</mi>
+        <mi mathvariant="normal">)</mi>
         <mo>+</mo>
         <mi>L</mi>
-        <mo>(</mo>
-        <mi mathvariant="normal">image</mi>
-        <mo>|</mo>
-        <mi mathvariant="normal">model</mi>
-        <mo>)</mo>
+        <mi mathvariant="normal">(</mi>
+        <mi>I</mi>
+        <mi mathvariant="normal">|</mi>
+        <mi>m</mi>
+        <mi mathvariant="normal">)</mi>
       </mrow>
     ),
     hint: "Pick a region for its area, mean and variance.",
@@ -246,16 +268,16 @@ const FIGURES: Record<Tab, Figure> = {
           <mi>α</mi>
         </munder>
         <mi>h</mi>
-        <mo>(</mo>
+        <mi mathvariant="normal">(</mi>
         <mi>α</mi>
-        <mo>)</mo>
+        <mi mathvariant="normal">)</mi>
         <mo>+</mo>
         <mi>h</mi>
-        <mo>(</mo>
+        <mi mathvariant="normal">(</mi>
         <mi>α</mi>
         <mo>+</mo>
         <mn>90°</mn>
-        <mo>)</mo>
+        <mi mathvariant="normal">)</mi>
       </mrow>
     ),
     hint: "Blue and orange lines may follow the first and the second direction.",
@@ -302,9 +324,9 @@ const FIGURES: Record<Tab, Figure> = {
           </mrow>
         </munder>
         <mi>M</mi>
-        <mo>(</mo>
+        <mi mathvariant="normal">(</mi>
         <mi>p</mi>
-        <mo>)</mo>
+        <mi mathvariant="normal">)</mi>
       </mrow>
     ),
     hint: "Pick a facet or choose a pair of lines to see its window.",

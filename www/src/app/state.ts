@@ -159,6 +159,8 @@ export const pointing = signal<Pointing>(NOTHING_POINTED);
 export const shownPlane = signal(0);
 /** Whether the 3D lines are shown as the segments alone gave them (B99 figures 5 and 7). */
 export const beforeGrowing = signal(false);
+/** Whether the image tabs zoom to what is selected. */
+export const followsSelection = signal(true);
 /** Whether the refused lines of edgels are drawn too. */
 export const withRejected = signal(false);
 /** The step of the guided tour; null while it is closed. */

@@ -21,7 +21,7 @@ import { zUpGroup } from "./frame";
 import { disposeObject, type Layer } from "./layer";
 
 /** Where a photograph stands in its frustum: this far from the ground to the centre. */
-const PHOTO_HEIGHT = 0.12;
+const PHOTO_HEIGHT = 0.5;
 const PHOTO_OPACITY = 0.92;
 /** Longer side of a photograph's texture, pixels. */
 const TEXTURE_PX = 512;

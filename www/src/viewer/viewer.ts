@@ -34,6 +34,8 @@ export class Viewer {
   readonly #camera = new PerspectiveCamera(FIELD_OF_VIEW_DEG, 1, 0.5, 1e5);
   readonly #controls: OrbitControls;
   readonly #layers = new Map<string, Layer>();
+  /** Layers that are not shown, whether they exist yet or not. */
+  readonly #hidden = new Set<string>();
   readonly #observer: ResizeObserver;
   readonly #onPick: (selection: Selection | null) => void;
   #grid: GridHelper | null = null;
@@ -79,6 +81,7 @@ export class Viewer {
       this.#layers.delete(name);
     }
     if (layer !== null) {
+      layer.object.visible = !this.#hidden.has(name);
       this.#layers.set(name, layer);
       this.#scene.add(layer.object);
     }
@@ -86,6 +89,10 @@ export class Viewer {
   }
 
   showLayer(name: string, visible: boolean): void {
+    this.#hidden.delete(name);
+    if (!visible) {
+      this.#hidden.add(name);
+    }
     const layer = this.#layers.get(name);
     if (layer !== undefined) {
       layer.object.visible = visible;
