@@ -207,18 +207,18 @@ function Plan({
   ];
   const isChosen = (index: number) => selection.value?.kind === "facet" && selection.value.index === index;
   return (
+    // biome-ignore lint/a11y/useSemanticElements: SVG has no fieldset
     <svg
       class="chart plan-chart"
       viewBox={`0 0 ${frame.width} ${frame.height}`}
-      // biome-ignore lint/a11y/useSemanticElements: SVG has no fieldset
       role="group"
       aria-label={`Plan: ${grouping.borders.length} border lines cut it into ${grouping.cells} cells; ${outlines.length} facets, ${grouping.rejected.length} withdrawn`}
       data-testid="plan"
     >
       {outlines.map((ring, i) => (
+        // biome-ignore lint/a11y/useSemanticElements: SVG has no button
         <path
           key={i}
-          // biome-ignore lint/a11y/useSemanticElements: SVG has no button
           role="button"
           tabIndex={0}
           aria-label={`Facet ${i}`}

@@ -110,8 +110,8 @@ export function bestTheta(side: SideTrace | null): number {
     return own.theta;
   }
   const { thetas, similarity } = side.curve;
-  const best = similarity.indexOf(Math.max(...similarity));
-  return thetas[best] ?? 0;
+  const highest = Math.max(0, ...similarity);
+  return highest > 0 ? (thetas[similarity.indexOf(highest)] ?? 0) : 0;
 }
 
 function change(part: Partial<Pointing>): void {

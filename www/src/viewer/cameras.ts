@@ -20,8 +20,11 @@ import type { Selection } from "../shared/selection";
 import { zUpGroup } from "./frame";
 import { disposeObject, type Layer } from "./layer";
 
-/** Where a photograph stands in its frustum: this far from the ground to the centre. */
-const PHOTO_HEIGHT = 0.5;
+/**
+ * Width of a photograph at its camera over the distance of the nearest other camera: frusta of long focal lengths are so
+ * narrow that nothing could be seen at their own scale.
+ */
+const PHOTO_WIDTH = 0.4;
 const PHOTO_OPACITY = 0.92;
 /** Longer side of a photograph's texture, pixels. */
 const TEXTURE_PX = 512;
@@ -43,7 +46,8 @@ export function buildCameras(
   );
   const rays = views.map((view) => frustumEdges(view, target));
   const lines = rays.map((edges) => edgeLines(edges));
-  const photos = views.map((view, i) => photoMesh(view, target, images[i]));
+  const width = PHOTO_WIDTH * nearestDistance(centres);
+  const photos = views.map((view, i) => photoMesh(view, target, width, images[i]));
   object.add(points, ...lines, ...photos.filter((photo) => photo !== null));
 
   return {
@@ -72,8 +76,18 @@ export function buildCameras(
   };
 }
 
-/** The photograph on a plane that is parallel to the image: there it is undistorted. */
-function photoMesh(view: ViewInfo, target: Vector3, image: ImageBitmap | undefined): Mesh | null {
+function nearestDistance(centres: readonly Vector3[]): number {
+  const distances = centres.flatMap((a, i) => centres.slice(i + 1).map((b) => a.distanceTo(b)));
+  return Math.min(...distances, 1e4);
+}
+
+/** The photograph at its camera, enlarged, on a plane parallel to the image: there it is undistorted. */
+function photoMesh(
+  view: ViewInfo,
+  target: Vector3,
+  width: number,
+  image: ImageBitmap | undefined,
+): Mesh | null {
   const centre = new Vector3(...view.center);
   const corners = groundCorners(view, centre, target.z);
   if (image === undefined || corners === null) {
@@ -81,11 +95,13 @@ function photoMesh(view: ViewInfo, target: Vector3, image: ImageBitmap | undefin
   }
   // Corners at equal depth along the viewing axis, which is the third row of P.
   const axis = new Vector3(...(view.projection.slice(8, 11) as [number, number, number])).normalize();
-  const depths = corners.map((corner) => corner.clone().sub(centre).dot(axis));
-  const depth = (1 - PHOTO_HEIGHT) * Math.min(...depths);
-  const placed = corners.map((corner, i) =>
-    centre.clone().addScaledVector(corner.clone().sub(centre), depth / (depths[i] as number)),
-  );
+  const flat = corners.map((corner) => {
+    const ray = corner.clone().sub(centre);
+    return ray.divideScalar(ray.dot(axis));
+  });
+  const middle = flat.reduce((sum, corner) => sum.add(corner), new Vector3()).divideScalar(flat.length);
+  const scale = width / (flat[0] as Vector3).distanceTo(flat[1] as Vector3);
+  const placed = flat.map((corner) => corner.clone().sub(middle).multiplyScalar(scale).add(centre));
   const geometry = new BufferGeometry().setFromPoints(placed);
   geometry.setAttribute("uv", new BufferAttribute(Float32Array.from([0, 1, 1, 1, 1, 0, 0, 0]), 2));
   geometry.setIndex([0, 1, 2, 0, 2, 3]);

@@ -27,6 +27,8 @@ const FIELD_OF_VIEW_DEG = 35;
 const CLICK_SLACK_PX = 4;
 const PICK_REACH_PX = 7;
 export const GRID_STEP_M = 10;
+/** Farther out the grid would be a grey haze. */
+const MAX_GRID_M = 300;
 
 export class Viewer {
   readonly #renderer: WebGLRenderer;
@@ -282,7 +284,7 @@ export class Viewer {
       return;
     }
     const { center, radius } = this.#bounds;
-    const steps = 2 * Math.ceil((1.5 * radius) / GRID_STEP_M);
+    const steps = 2 * Math.ceil(Math.min(MAX_GRID_M, 1.5 * radius) / GRID_STEP_M);
     this.#grid = new GridHelper(steps * GRID_STEP_M, steps, this.#colours.grid, this.#colours.grid);
     const snapped = (value: number) => Math.round(value / GRID_STEP_M) * GRID_STEP_M;
     this.#grid.position.set(snapped(center.x), this.#floor(), snapped(center.z));
