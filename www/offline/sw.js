@@ -31,7 +31,7 @@ self.addEventListener("fetch", (event) => {
   }
   const answer = async () => {
     const cache = await caches.open(CACHE);
-    const known = await cache.match(request, { ignoreSearch: true });
+    const known = await cache.match(request, { ignoreSearch: true, ignoreVary: true });
     return known ?? fetch(request);
   };
   event.respondWith(answer());

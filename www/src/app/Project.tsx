@@ -3,6 +3,7 @@ import { useRef, useState } from "preact/hooks";
 import type { ImageReport } from "../shared/results";
 import { addFiles, clearProject, notify, openDemo, removeFile, setRunOptions } from "./actions";
 import { droppedFiles, pickedFiles } from "./files";
+import { isFixable } from "./notices";
 import { OrientationChoice, PlaceFields } from "./RunOptionFields";
 import { files, inspection, keptBytes, projectName, runOptions, scene } from "./state";
 import { Thumbnail } from "./Thumbnail";
@@ -15,6 +16,11 @@ export function Project() {
       {files.value.length > 0 && <Views />}
       {files.value.length > 0 && <OtherFiles />}
       <Warnings />
+      {runOptions.value.applyFix && (
+        <button type="button" onClick={() => void setRunOptions({ applyFix: false })}>
+          Take the orientation as it is
+        </button>
+      )}
       <KeptNote />
     </section>
   );
@@ -207,7 +213,14 @@ function Warnings() {
       <h3>Warnings</h3>
       <ul class="warnings">
         {[...all].map((text) => (
-          <li key={text}>{text}</li>
+          <li key={text}>
+            {text}
+            {isFixable(text) && !runOptions.value.applyFix && (
+              <button type="button" onClick={() => void setRunOptions({ applyFix: true })}>
+                Apply the fix
+              </button>
+            )}
+          </li>
         ))}
       </ul>
     </>

@@ -1,6 +1,7 @@
 /** The guided tour: eight steps through B99 and one through W96, in the views themselves, on the demo scene. */
+import { effect } from "@preact/signals";
 import { openDemo, runAll, setMethod } from "./actions";
-import { bestTheta } from "./pointing";
+import { bestTheta, turnTo } from "./pointing";
 import { through } from "./SpaceTools";
 import {
   beforeGrowing,
@@ -97,13 +98,11 @@ export const LESSONS: readonly LessonStep[] = [
     tab: "halfplanes",
     prepare: () => {
       selectClearHalfPlane();
-      setTimeout(() => {
-        pointing.value = { ...pointing.peek(), theta: pointing.peek().theta - 35 * DEGREE };
-      }, 400);
+      void turnAway();
     },
     isFound: () => {
-      const { side, theta } = pointing.value;
-      return side !== null && Math.abs(theta - bestTheta(side)) < 2 * DEGREE;
+      const { side, theta, isTurned } = pointing.value;
+      return side !== null && isTurned && Math.abs(theta - bestTheta(side)) < 2 * DEGREE;
     },
   },
   {
@@ -186,6 +185,20 @@ export async function goTo(step: number): Promise<void> {
     tab.value = lesson.tab;
     lesson.prepare?.();
   }
+}
+
+/** Turns the half-plane far off, as soon as its curve is known. */
+async function turnAway(): Promise<void> {
+  const known = new Promise<void>((resolve) => {
+    const stop = effect(() => {
+      if (pointing.value.warped !== null) {
+        queueMicrotask(() => stop());
+        resolve();
+      }
+    });
+  });
+  await known;
+  await turnTo(pointing.peek().theta - 35 * DEGREE, false);
 }
 
 /** Whether the tour runs on the scene that it was written for. */

@@ -39,9 +39,9 @@ export async function compareAt(candidate: number, at: number): Promise<void> {
   });
 }
 
-/** Turns the half-plane of the selected side to an angle, radians. */
-export async function turnTo(theta: number): Promise<void> {
-  change({ theta });
+/** Turns the half-plane of the selected side to an angle, radians; `isByHand` when the reader does it. */
+export async function turnTo(theta: number, isByHand = true): Promise<void> {
+  change({ theta, isTurned: isByHand });
   const side = pointing.peek().side;
   if (side === null) {
     return;
@@ -94,7 +94,7 @@ async function pointAtSide(line: number, side: SideName): Promise<void> {
   const now = sideOf(selection.peek());
   if (now?.line === line && now.side === side) {
     pointing.value = { ...NOTHING_POINTED, side: found, theta: bestTheta(found) };
-    await turnTo(bestTheta(found));
+    await turnTo(bestTheta(found), false);
   }
 }
 

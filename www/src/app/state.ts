@@ -18,6 +18,8 @@ import type {
   WarpedPicture,
 } from "../shared/traces";
 
+import type { Fix } from "./notices";
+
 /** The stage views of each method. */
 export const TABS = {
   lines: ["images", "segments", "matches", "lines", "halfplanes", "groups", "facets", "model"],
@@ -45,6 +47,8 @@ export interface Notice {
   text: string;
   /** What to do about it. */
   advice?: string;
+  /** A mistake in the orientation that can be undone at once. */
+  fix?: Fix;
 }
 
 /** What the stages have returned so far; arrays per view are empty until their stage has run. */
@@ -79,6 +83,8 @@ export interface Pointing {
   /** The side of the selected line or half-plane, its Sim(theta), and the angle that is tried, radians. */
   side: SideTrace | null;
   theta: number;
+  /** Whether the reader turned it. */
+  isTurned: boolean;
   warped: WarpedPicture | null;
 }
 
@@ -108,6 +114,7 @@ export const NOTHING_POINTED: Pointing = {
   correspondence: null,
   side: null,
   theta: 0,
+  isTurned: false,
   warped: null,
 };
 
@@ -121,9 +128,17 @@ export interface RunOptions {
   leftOut: readonly string[];
   roi: [number, number, number, number] | null;
   groundZ: number | null;
+  /** Undo the mistake in the orientation that the images give away. */
+  applyFix: boolean;
 }
 
-export const NO_OPTIONS: RunOptions = { orientation: null, leftOut: [], roi: null, groundZ: null };
+export const NO_OPTIONS: RunOptions = {
+  orientation: null,
+  leftOut: [],
+  roi: null,
+  groundZ: null,
+  applyFix: false,
+};
 
 export const runOptions = signal<RunOptions>(NO_OPTIONS);
 export const inspection = signal<Inspection | null>(null);

@@ -59,6 +59,8 @@ export interface LoadOptions {
   groundZ?: number;
   /** x0, y0, x1, y1, metres, in the frame of the orientation. */
   roi?: [number, number, number, number];
+  /** Undo the mistake in the orientation that the images give away. */
+  applyFix?: boolean;
 }
 
 export interface ViewInfo {

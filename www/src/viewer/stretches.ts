@@ -5,7 +5,8 @@ import { zUpGroup } from "./frame";
 import { strokes } from "./groups";
 import { disposeObject, type Layer } from "./layer";
 
-const WIDTH_PX = 2.75;
+/** As wide as the lines that they are compared with. */
+const WIDTH_PX = 2.25;
 
 /** @param stretches line, p0 and p1 of each stretch, local frame, metres */
 export function buildStretches(stretches: Float64Array): Layer {
