@@ -184,6 +184,9 @@ const BORDER_WORDS = {
   closing: "closing",
 };
 
+/** In SVG the attribute has no capital. */
+const FOCUSABLE = { tabindex: 0 };
+
 function Plan({
   frame,
   grouping,
@@ -220,7 +223,7 @@ function Plan({
         <path
           key={i}
           role="button"
-          tabIndex={0}
+          {...FOCUSABLE}
           aria-label={`Facet ${i}`}
           class={`plan-facet ${isChosen(i) ? "chosen" : ""}`}
           d={`${pathOf(ring.map(at))}Z`}

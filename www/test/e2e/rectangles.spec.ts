@@ -48,7 +48,7 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
 
   await test.step("figures 10 to 12: the window of a pair of lines, and why pairs are refused", async () => {
     await openTab(page, "Rectangles");
-    await expect(page.getByTestId("plane-window").locator(".end").first()).toBeVisible();
+    await expect(page.getByTestId("plane-window").locator(".end").first()).toBeAttached();
     const pairs = page.getByLabel("Pair of lines");
     const options = await pairs.getByRole("option").allTextContents();
     expect(options.some((text) => text.endsWith("selected"))).toBe(true);
