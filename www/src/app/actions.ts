@@ -103,7 +103,7 @@ export async function restoreProject(kept: Kept): Promise<void> {
  * Fetches the demo scene from this site and drops it in as if it were the user's; then runs it up to a stage: the last
  * one unless another is named, none for null.
  */
-export async function openDemo(target: string | null = stages.value.at(-1)?.name ?? null): Promise<void> {
+export async function openDemo(target?: string | null): Promise<void> {
   const fetched = await guarded("Fetching the demo scene", fetchDemo);
   if (fetched === undefined) {
     return;
@@ -112,7 +112,9 @@ export async function openDemo(target: string | null = stages.value.at(-1)?.name
   runOptions.value = NO_OPTIONS;
   await addFiles(fetched.files, fetched.title);
   isDemo.value = true;
-  if (target !== null) {
+  if (target === undefined) {
+    await runAll();
+  } else if (target !== null) {
     await runTo(target);
   }
 }

@@ -87,7 +87,8 @@ test("a run can be cancelled, and started again", async ({ page }) => {
   await page.getByRole("button", { name: "Demo scene" }).click();
   await expect(stage(page, "matches")).toHaveAttribute("data-status", "running", { timeout: 60_000 });
   await page.getByRole("button", { name: "Cancel" }).click();
-  await expect(stage(page, "matches")).toHaveAttribute("data-status", "waiting");
+  await expect(page.locator('[data-status="running"]')).toHaveCount(0);
+  await expect(stage(page, "model")).toHaveAttribute("data-status", "waiting");
   await expect(page.getByRole("alert")).toHaveCount(0);
   await page.getByRole("button", { name: "Run up to Segments" }).click();
   await waitForStage(page, "segments");
