@@ -6,13 +6,18 @@ import { notices } from "./state";
 export function Notices() {
   return (
     <div class="notices">
-      {notices.value.map(({ id, severity, title, text, advice, fix }) => (
+      {notices.value.map(({ id, severity, title, text, advice, fix, action }) => (
         <section key={id} class={`notice ${severity}`} role={severity === "error" ? "alert" : "status"}>
           <div>
             <strong>{title}</strong>
-            <p>{text}</p>
+            {text !== "" && <p>{text}</p>}
             {advice !== undefined && <p class="muted">{advice}</p>}
             {fix !== undefined && <Diagnosis fix={fix} />}
+            {action !== undefined && (
+              <button type="button" onClick={action.run}>
+                {action.name}
+              </button>
+            )}
           </div>
           <button type="button" class="quiet" aria-label={`Dismiss: ${title}`} onClick={() => dismiss(id)}>
             ✕

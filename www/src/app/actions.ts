@@ -80,12 +80,34 @@ export async function addFiles(added: InputFile[], name?: string): Promise<void>
 }
 
 export async function removeFile(path: string): Promise<void> {
-  await setProject(files.value.filter((file) => file.path !== path));
+  await removing(path.slice(path.lastIndexOf("/") + 1), () =>
+    setProject(files.value.filter((file) => file.path !== path)),
+  );
 }
 
 export async function clearProject(): Promise<void> {
-  projectName.value = "";
-  await setProject([]);
+  await removing("The project", async () => {
+    projectName.value = "";
+    await setProject([]);
+  });
+}
+
+/** Removes something, and offers to take that back. */
+async function removing(what: string, remove: () => Promise<void>): Promise<void> {
+  const before: Kept = {
+    name: projectName.value,
+    isDemo: isDemo.value,
+    files: files.value,
+    options: runOptions.value,
+    params: params.value,
+  };
+  await remove();
+  notify({
+    severity: "info",
+    title: `${what} was removed`,
+    text: "",
+    action: { name: "Undo", run: () => void restoreProject(before) },
+  });
 }
 
 /** Takes up the project of the last visit. */

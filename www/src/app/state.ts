@@ -49,6 +49,8 @@ export interface Notice {
   advice?: string;
   /** A mistake in the orientation that can be undone at once. */
   fix?: Fix;
+  /** Something that can be done about it. */
+  action?: { name: string; run: () => void };
 }
 
 /** What the stages have returned so far; arrays per view are empty until their stage has run. */

@@ -1,6 +1,6 @@
 /** Each figure of B99 shows what the core found, and follows what is pointed at. One run of the demo scene for all. */
 import { expect, type Locator, type Page, test } from "@playwright/test";
-import { lookOf, openTab, stage, waitForStage, watch } from "./helpers";
+import { axeFindings, lookOf, openTab, stage, waitForStage, watch } from "./helpers";
 
 test.describe.configure({ mode: "serial" });
 
@@ -217,6 +217,13 @@ test("the viewer: normals, cameras, measuring, a picture, and a view's own camer
   expect(photograph).not.toEqual(model);
   await page.getByRole("button", { name: "Fit" }).click();
   await expect(page.getByTestId("photograph")).toHaveCount(0);
+});
+
+test("nothing serious for axe in any figure", async () => {
+  for (const name of ["Segments", "Matches", "3D lines", "Half-planes", "Groups", "Facets", "Model"]) {
+    await openTab(page, name);
+    expect(await axeFindings(page), name).toEqual([]);
+  }
 });
 
 test("only the stages behind a changed parameter run again", async () => {

@@ -1,6 +1,7 @@
 /** What the page's tests share: its parts, files to give it, and the pixels that it shows. */
 import { readdirSync, readFileSync } from "node:fs";
 import { expect, type Locator, type Page } from "@playwright/test";
+import axe from "axe-core";
 
 export interface Upload {
   name: string;
@@ -46,6 +47,18 @@ export function housePmatrix(): Upload {
         `${name.replace(".P", ".jpg")} ${buffer.toString().trim().split(/\s+/).join(" ")}`,
     );
   return upload("house_pmatrix.txt", Buffer.from(`${lines.join("\n")}\n`));
+}
+
+/** Serious and critical findings of axe, as text. */
+export async function axeFindings(page: Page): Promise<string[]> {
+  await page.evaluate(axe.source);
+  return page.evaluate(async () => {
+    const { axe: runner } = window as unknown as { axe: typeof import("axe-core") };
+    const { violations } = await runner.run();
+    return violations
+      .filter(({ impact }) => impact === "serious" || impact === "critical")
+      .map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join(" | ")}`);
+  });
 }
 
 export async function give(page: Page, files: Upload[]): Promise<void> {

@@ -2,6 +2,24 @@
 import { expect, test } from "@playwright/test";
 import { give, houseFiles, stage, waitForStage, watch } from "./helpers";
 
+test("what was removed comes back on request", async ({ page }) => {
+  await page.goto("/");
+  await give(page, houseFiles());
+  await expect(page.locator(".view")).toHaveCount(6);
+  await page
+    .locator(".view")
+    .nth(1)
+    .getByRole("button", { name: /^Remove/ })
+    .click();
+  await expect(page.locator(".view")).toHaveCount(5);
+  await page.getByRole("button", { name: "Undo" }).click();
+  await expect(page.locator(".view")).toHaveCount(6);
+  await page.getByRole("button", { name: "Remove all" }).click();
+  await expect(page.locator(".view")).toHaveCount(0);
+  await page.getByRole("button", { name: "Undo" }).click();
+  await expect(page.locator(".status.good")).toHaveCount(6);
+});
+
 test("a reload keeps the project until it is deleted", async ({ page }) => {
   const { problems } = watch(page);
   await page.goto("/");
