@@ -1,4 +1,5 @@
 /** The layout: project on the left, the stage views in the middle, what they mean and parameters on the right. */
+import { Comparison } from "./Comparison";
 import { Downloads } from "./Downloads";
 import { AboutFigure } from "./figures";
 import { Header } from "./Header";
@@ -27,6 +28,7 @@ export function App() {
         </main>
         <aside class="column" aria-label="Details">
           {lessonStep.value !== null ? <Lesson /> : images.value.length > 0 && <AboutFigure />}
+          <Comparison />
           <Inspector />
           <Parameters />
         </aside>

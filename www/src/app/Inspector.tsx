@@ -1,6 +1,7 @@
 /** The picked thing in numbers, with units and the paper's symbols. */
 import { LINE_STRIDE, SEGMENT_STRIDE, type Vec3 } from "../shared/results";
 import type { Selection } from "../shared/selection";
+import { slopedArea } from "./geometry";
 import { lineOfSegment } from "./marks";
 import { params, pointing, results, scene, selection } from "./state";
 import { outcomeWords, PAIR_WORDS, REJECTION_WORDS } from "./words";
@@ -379,7 +380,7 @@ function facetRows(index: number): Row[] {
   const [nx, ny] = facet.plane.normal;
   return [
     ["Building", String(facet.building)],
-    ["Area", `${ringsArea(facet.outer, facet.holes, facet.plane.normal).toFixed(1)} m²`],
+    ["Area", `${slopedArea(facet).toFixed(1)} m²`],
     ["Slope", slopeText(facet.plane.normal)],
     ["Faces", Math.hypot(nx, ny) < 0.02 ? "level" : azimuth(nx, ny)],
     ["Corners", String(facet.outer.length + facet.holes.flat().length)],
@@ -446,17 +447,4 @@ function azimuth(east: number, north: number): string {
 
 function slopeText([x, y, z]: Vec3): string {
   return degrees(Math.atan2(Math.hypot(x, y), Math.abs(z)));
-}
-
-/** Sloped area: that of the plan over the cosine of the slope. */
-function ringsArea(outer: readonly Vec3[], holes: readonly Vec3[][], normal: Vec3): number {
-  const plan = Math.abs(planArea(outer)) - holes.reduce((sum, hole) => sum + Math.abs(planArea(hole)), 0);
-  return plan / Math.max(1e-6, Math.abs(normal[2]));
-}
-
-function planArea(ring: readonly Vec3[]): number {
-  return ring.reduce((sum, [x, y], i) => {
-    const [nextX, nextY] = ring[(i + 1) % ring.length] as Vec3;
-    return sum + (x * nextY - nextX * y) / 2;
-  }, 0);
 }

@@ -10,13 +10,25 @@ import { buildFans, buildTurning } from "../viewer/fans";
 import { buildGroups } from "../viewer/groups";
 import { buildLines } from "../viewer/lines";
 import { buildModel, type ModelLayer, type ModelMode } from "../viewer/model";
+import { buildOutlines } from "../viewer/outlines";
 import { buildStretches } from "../viewer/stretches";
 import { GRID_STEP_M, Viewer } from "../viewer/viewer";
 import { notify } from "./actions";
 import { Legend } from "./Legend";
 import { lineEnds, linesOfSelection } from "./marks";
 import { SpaceTools } from "./SpaceTools";
-import { beforeGrowing, images, method, pointing, results, scene, selection, type Tab, tab } from "./state";
+import {
+  beforeGrowing,
+  images,
+  keptResult,
+  method,
+  pointing,
+  results,
+  scene,
+  selection,
+  type Tab,
+  tab,
+} from "./state";
 import { theme } from "./theme";
 
 /** Layers that a person switches; "stretches" and "turning" follow other switches. */
@@ -160,6 +172,10 @@ function useLayers(): void {
   useSignalEffect(() => {
     const { stretches } = results.value;
     viewer.value?.setLayer("stretches", stretches === null ? null : buildStretches(stretches));
+  });
+  useSignalEffect(() => {
+    const kept = keptResult.value;
+    viewer.value?.setLayer("kept", kept === null ? null : buildOutlines(kept.facets));
   });
   useSignalEffect(() => {
     const { side, theta } = pointing.value;

@@ -1,5 +1,6 @@
 /** The stages in order: run, cancel, progress, time and counts. */
 import { cancel, runAll, runTo } from "./actions";
+import { KeepResult } from "./Comparison";
 import { stageWords } from "./stages";
 import {
   files,
@@ -40,6 +41,7 @@ export function StageRail() {
           </button>
         )}
         <span class="muted numbers">{totalTime(stages.value)}</span>
+        <KeepResult />
       </div>
       <ol>
         {stages.value.map((stage, position) => (

@@ -21,6 +21,7 @@ import {
   inspection,
   isBusy,
   isDemo,
+  keptResult,
   type Method,
   method,
   NO_OPTIONS,
@@ -307,6 +308,7 @@ function clearScene(): void {
   scene.value = null;
   images.value = [];
   shownView.value = 0;
+  keptResult.value = null;
   clearResults();
 }
 

@@ -44,7 +44,8 @@ export function failureNotice(message: string, kind: FailureKind): Omit<Notice, 
   const fix = kind === "input" ? fixOf(message) : null;
   return {
     ...notice,
-    ...(known !== undefined && { advice: known }),
+    // Where the page itself can undo the mistake, that is the advice.
+    ...(known !== undefined && fix === null && { advice: known }),
     ...(fix !== null && { fix }),
   };
 }

@@ -180,6 +180,16 @@ export const beforeGrowing = signal(false);
 export const followsSelection = signal(true);
 /** Whether the refused lines of edgels are drawn too. */
 export const withRejected = signal(false);
+/** A model that was kept, to compare others with it. */
+export interface KeptResult {
+  title: string;
+  facets: Facet[];
+  lines: number;
+  seconds: number;
+}
+
+export const keptResult = signal<KeptResult | null>(null);
+
 /** The step of the guided tour; null while it is closed. */
 export const lessonStep = signal<number | null>(null);
 /** Bytes that the browser keeps of the project; null when it keeps nothing. */

@@ -34,9 +34,7 @@ export function boundsOfLines(lines: Float64Array): Sphere {
 export function withCameras(sphere: Sphere, centres: readonly Vec3[]): Sphere {
   const box = new Box3().setFromPoints(centres.map(yUp));
   box.expandByPoint(sphere.center);
-  const grown = padded(box);
-  grown.radius *= 0.8;
-  return grown;
+  return padded(box);
 }
 
 function padded(box: Box3): Sphere {

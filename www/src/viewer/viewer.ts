@@ -57,6 +57,8 @@ export class Viewer {
     onPick: (selection: Selection | null) => void,
   ) {
     this.#renderer = new WebGLRenderer({ canvas, antialias: true });
+    // Asking for errors waits for the compiler: seconds where graphics are computed in software.
+    this.#renderer.debug.checkShaderErrors = import.meta.env.DEV;
     this.#onPick = onPick;
     this.#colours = colours;
     const sun = new DirectionalLight(0xffffff, 2.2);

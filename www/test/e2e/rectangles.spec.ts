@@ -68,11 +68,22 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
     await expect(stage(page, "rectangles")).toHaveAttribute("data-status", "outdated");
   });
 
-  await test.step("the other method begins anew on the same files", async () => {
+  await test.step("the other method begins anew on the same files, and is compared with this one", async () => {
+    const facets = /(\d+) facets/.exec((await stage(page, "rectangles").textContent()) ?? "")?.[1] ?? "";
+    await page.getByRole("button", { name: "Compare", exact: true }).click();
     await page.getByRole("button", { name: "Lines", exact: true }).click();
     await expect(stage(page, "segments")).toHaveAttribute("data-status", "waiting");
-    await page.getByRole("button", { name: "Run up to Segments" }).click();
-    await waitForStage(page, "segments");
+    await page.getByRole("button", { name: "Run up to Facets" }).click();
+    await waitForStage(page, "facets");
+    const others = /(\d+) facets/.exec((await stage(page, "facets").textContent()) ?? "")?.[1] ?? "";
+    const row = page.getByTestId("comparison").getByRole("row", { name: /^Facets/ });
+    await expect(row.getByRole("cell")).toHaveText([facets, others]);
+    const viewer = page.getByTestId("viewer");
+    const both = await lookOf(page, viewer);
+    await page.getByRole("button", { name: "Drop kept" }).click();
+    await expect(async () => {
+      expect((await lookOf(page, viewer)).drawn).toBeLessThan(both.drawn);
+    }).toPass({ timeout: 10_000 });
   });
   expect(problems).toEqual([]);
 });
