@@ -32,23 +32,24 @@ async function pickSegment(page) {
   await allViews(page);
 }
 
-/** The first half-plane of the first facet: one of a roof, not of the street. */
+/** A half-plane of a facet: one of a roof, not of the street. */
 async function pickHalfPlane(page) {
-  await page.locator(".plan-facet").first().press("Enter");
+  const facets = page.locator(".plan-facet");
   const row = page.getByTestId("inspector").locator("div", { hasText: /^Half-planes/ });
+  for (let i = 0; i < (await facets.count()) && (await row.count()) === 0; i += 1) {
+    await facets.nth(i).press("Enter");
+    await page.waitForTimeout(200);
+  }
   await row.getByRole("button").first().click();
 }
 
-/** Opens a link of the page itself: the state of a view is in its address. */
-const link = (fields) => async (page) => {
+/** Opens a link of the page itself, whose address holds the state of a view, and waits for the stage that it needs. */
+const link = (fields, stage) => async (page) => {
   await page.goto(`${SITE}#scene=demo&${fields}`);
   await page.reload();
-  await page.waitForFunction(
-    () => document.querySelector(".activity") === null && document.querySelector(".running") === null,
-  );
-  await page.waitForFunction(() => document.querySelectorAll(".stage.done").length > 0, null, {
-    timeout: 120_000,
-  });
+  const isDone = (name) => document.querySelector(`[data-stage="${name}"]`)?.dataset.status === "done";
+  await page.waitForFunction(isDone, stage, { timeout: 120_000 });
+  await page.waitForTimeout(1000);
 };
 
 /** Sections of the page: pictures, what the papers' figures show, and how to get there. */
@@ -93,7 +94,7 @@ const B99 = [
     figures: "10 to 14",
     shows:
       "the homography of a half-plane: points of interest, warped windows, Sim(theta) in total and per view",
-    steps: [link("tab=facets"), pickHalfPlane, tab("Half-planes")],
+    steps: [link("tab=facets", "facets"), pickHalfPlane, tab("Half-planes")],
   },
   {
     name: "fans",
@@ -106,7 +107,7 @@ const B99 = [
     figures: "16 to 20",
     shows: "collinear and coplanar grouping, and new lines in the planes",
     steps: [
-      link("tab=model"),
+      link("tab=model", "model"),
       tab("Groups"),
       async (page) => page.getByTestId("groups").getByRole("button").first().click(),
     ],
@@ -135,7 +136,7 @@ const W96 = [
     name: "regions",
     figures: "3",
     shows: "regions with straight shared boundaries",
-    steps: [link("method=rectangles&tab=model"), tab("Regions"), firstView],
+    steps: [link("method=rectangles&tab=model", "model"), tab("Regions"), firstView],
   },
   {
     name: "directions",
@@ -196,7 +197,7 @@ try {
     args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
   });
   const page = await browser.newPage({ viewport: { width: 1280, height: 860 }, colorScheme: "light" });
-  await link("tab=model")(page);
+  await link("tab=model", "model")(page);
   await picturesOf(page, B99, "b99");
   await picturesOf(page, W96, "w96");
   await browser.close();
