@@ -136,44 +136,54 @@ const FIGURES: Record<Tab, Figure> = {
     source: "B99 4.1, figures 10 to 15",
     text: "A 3D line leaves one angle open. Each θ induces a homography H(θ) between two views; where it is right, the neighbourhoods agree. Sim(θ) adds the squared correlations at points of interest, over the views that see the side.",
     equation: (
-      <mrow>
-        <Sim />
-        <mo>=</mo>
-        <munder>
-          <mo>∑</mo>
-          <mi>i</mi>
-        </munder>
-        <msub>
-          <mo>∫</mo>
-          <mi mathvariant="normal">POI</mi>
-        </msub>
-        <mi>w</mi>
-        <mi mathvariant="normal">(</mi>
-        <mi mathvariant="normal" class="v">
-          x
-        </mi>
-        <mi mathvariant="normal">)</mi>
-        <msup>
-          <mi mathvariant="normal">Cor</mi>
-          <mn>2</mn>
-        </msup>
-        <mi mathvariant="normal">(</mi>
-        <mi mathvariant="normal" class="v">
-          x
-        </mi>
-        <mo>,</mo>
-        <msup>
-          <mi>H</mi>
-          <mi>i</mi>
-        </msup>
-        <mi mathvariant="normal">(</mi>
-        <mi>θ</mi>
-        <mi mathvariant="normal">)</mi>
-        <mi mathvariant="normal" class="v">
-          x
-        </mi>
-        <mi mathvariant="normal">)</mi>
-      </mrow>
+      <mtable displaystyle>
+        <mtr>
+          <mtd>
+            <Sim />
+            <mo>=</mo>
+            <munder>
+              <mo>∑</mo>
+              <mi>i</mi>
+            </munder>
+            <msub>
+              <mo>∫</mo>
+              <mi mathvariant="normal">POI</mi>
+            </msub>
+            <mi>w</mi>
+            <mi mathvariant="normal">(</mi>
+            <mi mathvariant="normal" class="v">
+              x
+            </mi>
+            <mi mathvariant="normal">)</mi>
+          </mtd>
+        </mtr>
+        <mtr>
+          <mtd>
+            <mspace width="2em" />
+            <mo>·</mo>
+            <msup>
+              <mi mathvariant="normal">Cor</mi>
+              <mn>2</mn>
+            </msup>
+            <mi mathvariant="normal">(</mi>
+            <mi mathvariant="normal" class="v">
+              x
+            </mi>
+            <mo>,</mo>
+            <msup>
+              <mi>H</mi>
+              <mi>i</mi>
+            </msup>
+            <mi mathvariant="normal">(</mi>
+            <mi>θ</mi>
+            <mi mathvariant="normal">)</mi>
+            <mi mathvariant="normal" class="v">
+              x
+            </mi>
+            <mi mathvariant="normal">)</mi>
+          </mtd>
+        </mtr>
+      </mtable>
     ),
     hint: "Pick a line or a fan, then drag θ: the windows below are alike only at the right angle.",
   },

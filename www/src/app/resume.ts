@@ -5,7 +5,7 @@ import { readKept } from "./keep";
 import { goTo } from "./lessons";
 import { opened } from "./link";
 import { stageWords } from "./stages";
-import { results, scene, selection, shownView, stages, tab } from "./state";
+import { method, results, scene, selection, shownView, stages, TABS, type Tab, tab } from "./state";
 
 export async function resume(): Promise<void> {
   if (opened.scene === "demo") {
@@ -22,8 +22,11 @@ export async function resume(): Promise<void> {
   if (scene.value === null) {
     return;
   }
+  const tabs: readonly Tab[] = TABS[method.value];
   batch(() => {
-    tab.value = opened.tab ?? tab.value;
+    if (opened.tab !== null && tabs.includes(opened.tab)) {
+      tab.value = opened.tab;
+    }
     shownView.value = opened.view ?? shownView.value;
     selection.value = opened.selection;
   });
