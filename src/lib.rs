@@ -24,6 +24,7 @@
 //! would draw. [`pipeline`] alone orders the stages.
 
 pub mod camera;
+pub mod diagrams;
 pub mod doctor;
 pub mod error;
 pub mod export;

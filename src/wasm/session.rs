@@ -9,6 +9,8 @@ use wasm_bindgen::prelude::*;
 use super::convert::{
     end_points_px, from_js, input_error, line_array, named_error, row_major, segment_array, to_js,
 };
+use super::figures::{lines_of, segments_of};
+use crate::halfplane::PointsOfInterest;
 use crate::linematch::SupportKind;
 use crate::objectspace::{Window, WindowTrace};
 use crate::params::{Method, Params};
@@ -29,6 +31,8 @@ pub struct Session {
     run: Option<Run>,
     /// Written on first request after the last stage.
     outputs: Option<Vec<(String, Vec<u8>)>>,
+    /// Points of interest, found on first request for a figure.
+    pub(super) points: Option<Vec<PointsOfInterest>>,
 }
 
 /// What `load` may be told; see [`LoadOptions`].
@@ -168,6 +172,7 @@ impl Session {
         self.project = None;
         self.run = None;
         self.outputs = None;
+        self.points = None;
     }
 
     /// What the files are: their kinds, sizes, orientation status, and warnings; under the options of
@@ -182,6 +187,7 @@ impl Session {
         let options = load_options(&options)?;
         self.run = None;
         self.outputs = None;
+        self.points = None;
         let scene = load_scene(&self.files, &options).map_err(|e| input_error(&e))?;
         let views = scene.views.iter().map(|view| ViewInfo {
             name: view.name.clone(),
@@ -204,6 +210,7 @@ impl Session {
     pub fn set_params(&mut self, params: JsValue) -> Result<(), JsValue> {
         self.params = from_js(&params, "parameters")?;
         self.outputs = None;
+        self.points = None;
         if let Some(run) = &mut self.run {
             run.set_params(self.params.clone());
         }
@@ -227,13 +234,8 @@ impl Session {
 
     /// The segments of a view: x0, y0, x1, y1 each, pixels.
     pub fn segments(&self, view: usize) -> Result<Float32Array, JsValue> {
-        let results = self.loaded()?.results();
-        if let Some(regions) = &results.regions {
-            let lines = regions.value.get(view).map_or(&[][..], |l| l);
-            return Ok(segment_array(lines.iter().map(|l| &l.line.segment)));
-        }
-        let found = results.segments.as_ref();
-        let segments = found.and_then(|s| s.value.get(view)).map_or(&[][..], |s| s);
+        let all = segments_of(self.loaded()?);
+        let segments = all.get(view).map_or(&[][..], |s| s);
         Ok(segment_array(segments.iter().map(|s| &s.segment)))
     }
 
@@ -241,11 +243,14 @@ impl Session {
     /// kind (0 matched, 1 merged, 2 grown) and index of the line each.
     #[wasm_bindgen(js_name = matchedSegments)]
     pub fn matched_segments(&self, view: usize) -> Result<Float32Array, JsValue> {
-        let results = self.loaded()?.results();
-        let supports: Vec<_> = match (&results.lines, &results.matches) {
-            (Some(lines), _) => lines.value.iter().map(|l| &l.supports).collect(),
-            (None, Some(matches)) => matches.value.iter().map(|m| &m.supports).collect(),
-            (None, None) => Vec::new(),
+        let run = self.loaded()?;
+        let lines = lines_of(run);
+        let matches = run.results().matches.as_ref();
+        let supports: Vec<_> = match matches {
+            Some(matches) if lines.is_empty() => {
+                matches.value.iter().map(|m| &m.supports).collect()
+            }
+            _ => lines.iter().map(|l| &l.supports).collect(),
         };
         let mut numbers: Vec<f32> = Vec::new();
         for (line, supports) in supports.into_iter().enumerate() {
@@ -259,17 +264,7 @@ impl Session {
 
     /// The 3D lines: both end points each, metres, local frame.
     pub fn lines(&self) -> Result<Float64Array, JsValue> {
-        let results = self.loaded()?.results();
-        if let Some(found) = &results.clusters {
-            let ends = found
-                .value
-                .iter()
-                .flat_map(|f| [f.line.segment.p0, f.line.segment.p1]);
-            let numbers: Vec<f64> = ends.flat_map(|p| [p.x, p.y, p.z]).collect();
-            return Ok(Float64Array::from(&numbers[..]));
-        }
-        let lines = results.lines.as_ref();
-        Ok(line_array(lines.map_or(&[][..], |l| &l.value)))
+        Ok(line_array(&lines_of(self.loaded()?)))
     }
 
     /// The accepted half-planes, as an array of objects.
@@ -354,7 +349,7 @@ impl Session {
         })
     }
 
-    fn loaded(&self) -> Result<&Run, JsValue> {
+    pub(super) fn loaded(&self) -> Result<&Run, JsValue> {
         self.run.as_ref().ok_or_else(not_loaded)
     }
 
