@@ -262,20 +262,30 @@ impl Solver {
             let delineation = delineate(&self.arrangement, &labels, &self.planes);
             let mut facets = Vec::new();
             let mut withdrawn = Vec::new();
+            // No roof, but no other plane may have their place: they stay in the labelling.
+            let mut on_ground = Vec::new();
             for outline in &delineation.outlines {
                 let facet = self.facet(outline, &delineation, groups);
-                match self.verify(&facet, outline, ground, params) {
-                    Ok(()) => facets.push(facet),
-                    Err(reason) => {
-                        rejected.push(RejectedFacet {
-                            outline: facet.outer,
-                            reason,
-                        });
-                        withdrawn.push(outline);
+                let reason = match self.verify(&facet, outline, ground, params) {
+                    Ok(()) => {
+                        facets.push(facet);
+                        continue;
                     }
+                    Err(reason) => reason,
+                };
+                let refused = RejectedFacet {
+                    outline: facet.outer,
+                    reason,
+                };
+                if matches!(reason, FacetRejection::NearGround { .. }) {
+                    on_ground.push(refused);
+                } else {
+                    rejected.push(refused);
+                    withdrawn.push(outline);
                 }
             }
             if withdrawn.is_empty() || round == ROUNDS {
+                rejected.extend(on_ground);
                 return (facets, rejected);
             }
             for outline in withdrawn {
