@@ -8,13 +8,14 @@
 #   make identical  the demo scene natively and in wasm, compared byte for byte
 #   make golden     rewrite the hashes that the tests of whole runs expect (tests/golden)
 #   make score      all scenes against their truth; rewrites the tables of docs/results.md
+#   make fuzz       all readers on damaged files, FUZZ_SECONDS (600) for each family of formats
 #   make bench      time of every stage on the synthetic scene
 #   make clean      remove what was built (not the tool cache)
 
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: demo test build lint identical golden score bench native setup clean
+.PHONY: demo test build lint identical golden score bench fuzz native setup clean
 
 # The command-line tool must be of exactly the crate's version: stated once, in Cargo.toml.
 WASM_BINDGEN_VERSION := $(shell sed -n 's/^wasm-bindgen = "=\(.*\)"/\1/p' Cargo.toml)
@@ -59,6 +60,9 @@ score: native
 
 bench:
 	cargo bench --bench stages
+
+fuzz:
+	RIDGELINE_FUZZ_SECONDS=$${FUZZ_SECONDS:-600} cargo test --release --test fuzz -- --nocapture --test-threads 1
 
 native:
 	cargo build --release

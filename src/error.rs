@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
     /// A line of a text file is not what the format wants.
-    #[error("{file}, line {line}: {problem}; expected {expected}")]
+    #[error("{}, line {line}: {}; expected {expected}", one_line(.file), one_line(.problem))]
     Line {
         /// File name.
         file: String,
@@ -16,7 +16,7 @@ pub enum Error {
         expected: String,
     },
     /// A file as a whole cannot be used.
-    #[error("{file}: {problem}; {advice}")]
+    #[error("{}: {}; {}", one_line(.file), one_line(.problem), one_line(.advice))]
     File {
         /// File name.
         file: String,
@@ -26,13 +26,25 @@ pub enum Error {
         advice: String,
     },
     /// The files do not make a scene.
-    #[error("{problem}; {advice}")]
+    #[error("{}; {}", one_line(.problem), one_line(.advice))]
     Scene {
         /// What is wrong.
         problem: String,
         /// What to do.
         advice: String,
     },
+}
+
+/// Names and contents of files may hold anything: control characters become blanks, and long texts are shortened.
+fn one_line(text: &str) -> String {
+    const MOST: usize = 600;
+    let mut line: String = (text.chars().take(MOST))
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    if line.len() < text.len() {
+        line.push_str("...");
+    }
+    line
 }
 
 /// Result of reading.

@@ -24,6 +24,7 @@
 //! would draw. [`pipeline`] alone orders the stages.
 
 pub mod camera;
+pub mod diagrams;
 pub mod doctor;
 pub mod error;
 pub mod export;
@@ -46,6 +47,7 @@ pub mod scene;
 pub mod scene_loader;
 pub mod synthetic;
 pub mod texture;
+pub mod tiles;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;
 

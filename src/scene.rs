@@ -3,7 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::camera::Camera;
+use crate::doctor::ViewShift;
 use crate::ids::ViewId;
+use crate::orientation::Anchor;
 use crate::raster::Gray;
 
 /// One photograph with its orientation.
@@ -19,6 +21,17 @@ pub struct View {
     pub rgb: image::RgbImage,
 }
 
+/// What the files and the images say about the world and about the orientation, beyond the cameras.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Survey {
+    /// EPSG's number of the world's reference system, where it is known.
+    pub epsg: Option<u32>,
+    /// Where on the Earth the world's zero lies, for a world of x east, y north, z up.
+    pub anchor: Option<Anchor>,
+    /// How far each view is shifted against the others, where the images show enough to tell.
+    pub shifts: Vec<ViewShift>,
+}
+
 /// Oriented views and what is known about the ground.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -30,6 +43,26 @@ pub struct Scene {
     pub ground_z: Option<f64>,
     /// What the readers had to say (duplicate orientation, ignored files, ...).
     pub warnings: Vec<String>,
+    /// Reference system and quality of the orientation.
+    pub survey: Survey,
+}
+
+impl Survey {
+    /// What the coordinates of the results are, in words; `None` where the files do not say.
+    pub fn describe(&self) -> Option<String> {
+        let of_anchor = |a: &Anchor| {
+            let Anchor {
+                lon_deg,
+                lat_deg,
+                height_m,
+            } = a;
+            format!(
+                "east, north, up from longitude {lon_deg}, latitude {lat_deg}, ellipsoidal height {height_m} m (WGS84)"
+            )
+        };
+        let of_epsg = self.epsg.map(|epsg| format!("EPSG:{epsg}"));
+        of_epsg.or_else(|| self.anchor.as_ref().map(of_anchor))
+    }
 }
 
 impl Scene {
@@ -67,6 +100,7 @@ impl Scene {
             origin: self.origin,
             ground_z: self.ground_z,
             warnings: Vec::new(),
+            survey: Survey::default(),
         }
     }
 

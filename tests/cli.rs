@@ -49,6 +49,32 @@ impl Scene {
         fs::read(self.0.path().join("scene").join(path)).unwrap()
     }
 
+    /// The same images with the photogrammetric list instead, its angles changed.
+    fn with_list(angles: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
+        let scene = Self::new();
+        fs::remove_dir_all(scene.0.path().join("scene/colmap")).unwrap();
+        let (rendered, _) = ridgeline::synthetic::l_scene(common::SIZE_PX);
+        for (path, bytes) in ridgeline::synthetic::to_photogrammetric(&rendered) {
+            scene.write(&path, &bytes);
+        }
+        let path = "photogrammetric/exterior.txt";
+        let text = String::from_utf8(scene.read(path)).unwrap();
+        let line = |line: &str| {
+            let f: Vec<&str> = line.split(' ').collect();
+            if line.starts_with('#') {
+                return format!("{line}\n");
+            }
+            let [o, p, k] = angles([4, 5, 6].map(|i| f[i].parse().unwrap()));
+            format!("{} {o} {p} {k}\n", f[..4].join(" "))
+        };
+        scene.write(path, text.lines().map(line).collect::<String>().as_bytes());
+        scene
+    }
+
+    fn remove(&self, path: &str) {
+        fs::remove_file(self.0.path().join("scene").join(path)).unwrap();
+    }
+
     fn edit(&self, path: &str, from: &str, to: &str) {
         let text = String::from_utf8(self.read(path)).unwrap();
         assert!(text.contains(from));
@@ -79,7 +105,9 @@ impl Scene {
             assert!(message.contains(word), "'{word}' is not in: {message}");
         }
         assert!(!message.contains("panicked"), "{message}");
-        assert!(!self.out().join("model.glb").exists());
+        // Nothing is written, not even in part.
+        let written = self.out().is_dir().then(|| names_in(&self.out()));
+        assert_eq!(written.unwrap_or_default(), [""; 0]);
     }
 }
 
@@ -157,6 +185,16 @@ fn bad_arguments_are_explained() {
     scene.is_refused(&["--roi", "5,0,1,1"], &["x0 must be less than x1"]);
     scene.is_refused(&["--ground-z", "NaN"], &["not a number"]);
     scene.is_refused(&["--views", "nothing.png"], &["nothing.png"]);
+    scene.is_refused(&["--crs", "mercator"], &["EPSG:25832"]);
+    scene.is_refused(
+        &["--project", "no/such/folder/a.zip"],
+        &["no/such/folder/a.zip", "cannot be written"],
+    );
+    scene.is_refused(&["--tile", "50"], &["--roi"]);
+    scene.is_refused(
+        &["--tile", "5", "--roi", "-10,-10,10,10"],
+        &["tiles of 30 m or more"],
+    );
     let params = scene.0.path().join("params.json");
     fs::write(&params, r#"{"sweep": {"min_simularity": 0.5}}"#).unwrap();
     let words = ["params.json", "min_simularity", "min_similarity"];
@@ -182,4 +220,208 @@ fn the_printed_parameters_are_accepted() {
         .unwrap();
     let params: ridgeline::params::Params = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(params, ridgeline::params::Params::default());
+}
+
+#[test]
+fn an_orientation_without_its_image_leaves_too_few() {
+    let scene = Scene::new();
+    for name in ["s1_01", "s1_02", "s1_03", "s2_01"] {
+        scene.remove(&format!("images/{name}.png"));
+    }
+    scene.is_refused(&[], &["s2_02.png, s2_03.png", "three are needed"]);
+}
+
+#[test]
+fn what_is_no_image_is_refused() {
+    let scene = Scene::new();
+    scene.write("images/s1_02.png", b"<html>not found</html>");
+    scene.is_refused(&[], &["images/s1_02.png", "neither JPEG nor PNG nor TIFF"]);
+}
+
+#[test]
+fn duplicate_names_are_refused() {
+    let scene = Scene::new();
+    scene.write("more/s1_02.png", &scene.read("images/s1_02.png"));
+    scene.is_refused(&[], &["images/s1_02.png", "more/s1_02.png", "same name"]);
+}
+
+#[test]
+fn an_image_of_another_size_is_refused() {
+    let scene = Scene::new();
+    scene.edit(
+        "colmap/cameras.txt",
+        "3 PINHOLE 320 320",
+        "3 PINHOLE 640 480",
+    );
+    scene.is_refused(&[], &["images/s1_03.png", "320 x 320", "640 x 480"]);
+}
+
+#[test]
+fn a_singular_camera_is_refused() {
+    let scene = Scene::new();
+    fs::remove_dir_all(scene.0.path().join("scene/colmap")).unwrap();
+    let (rendered, _) = ridgeline::synthetic::l_scene(common::SIZE_PX);
+    for (path, bytes) in ridgeline::synthetic::to_projection(&rendered) {
+        scene.write(&path, &bytes);
+    }
+    scene.write("projection/s1_02.P", b"1 0 0 0\n0 1 0 0\n1 1 0 5\n");
+    scene.is_refused(&[], &["projection/s1_02.P", "singular"]);
+}
+
+#[test]
+fn cameras_in_impossible_places_are_refused() {
+    let scene = Scene::new();
+    scene.is_refused(
+        &["--ground-z", "1500"],
+        &["s1_01.png", "below the ground (1500.0 m)"],
+    );
+    // Two strips two kilometres apart, two views each: nowhere do three meet.
+    let scene = Scene::with_list(|a| a);
+    let path = "photogrammetric/exterior.txt";
+    let text = String::from_utf8(scene.read(path)).unwrap();
+    let line = |line: &str| match line.split(' ').collect::<Vec<_>>()[..] {
+        [name, x, y, z, o, p, k] if name.starts_with("s2") => {
+            let y: f64 = y.parse().unwrap();
+            format!("{name} {x} {} {z} {o} {p} {k}\n", y + 2000.0)
+        }
+        _ => format!("{line}\n"),
+    };
+    scene.write(path, text.lines().map(line).collect::<String>().as_bytes());
+    let views = "s1_01,s1_02,s2_01,s2_02";
+    scene.is_refused(&["--views", views], &["do not overlap"]);
+}
+
+#[test]
+fn an_orientation_that_contradicts_the_images_is_named() {
+    let named = |scene: Scene, word: &str| scene.is_refused(&[], &["contradict", word]);
+    named(Scene::with_list(|[o, p, k]| [p, o, k]), "phi, omega, kappa");
+    named(Scene::with_list(|a| a.map(|a| a / 0.9)), "kappa in gon");
+    let scene = Scene::new();
+    let (mut rendered, _) = ridgeline::synthetic::l_scene(common::SIZE_PX);
+    for view in &mut rendered.views {
+        let size = f64::from(view.camera.height);
+        view.camera.k[(1, 2)] = size - view.camera.k[(1, 2)];
+    }
+    for (path, bytes) in ridgeline::synthetic::to_colmap(&rendered) {
+        scene.write(&path, &bytes);
+    }
+    named(scene, "y up");
+}
+
+#[test]
+fn too_much_for_memory_is_refused_with_the_figure() {
+    let scene = Scene::new();
+    scene.is_refused(
+        &["--memory", "50"],
+        &["MB of memory, more than 50 MB", "region of interest"],
+    );
+}
+
+#[test]
+fn a_region_that_the_views_do_not_show_is_refused() {
+    let scene = Scene::new();
+    scene.is_refused(
+        &["--roi", "500,-800,520,-780"],
+        &["seen by 0 views", "510 m east", "-790 m north"],
+    );
+}
+
+#[test]
+fn a_corrected_scene_survives_the_way_through_a_project() {
+    let scene = Scene::with_list(|a| a.map(|a| a / 0.9));
+    let project = scene.0.path().join("house.zip");
+    let output = scene.run(&[
+        "--apply-fix",
+        "--crs",
+        "EPSG:25832",
+        "--project",
+        project.to_str().unwrap(),
+    ]);
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(
+        printed.contains("was corrected") && printed.contains("kappa in gon"),
+        "{printed}"
+    );
+    assert!(printed.contains("6 views, about"), "{printed}");
+    let again = scene.0.path().join("again");
+    let output = Command::new(env!("CARGO_BIN_EXE_ridgeline"))
+        .arg("reconstruct")
+        .args([&project, Path::new("--out"), &again])
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert_eq!(names_in(&again), OUTPUTS);
+    for name in OUTPUTS.into_iter().filter(|&name| name != "report.json") {
+        let read = |folder: &Path| fs::read(folder.join(name)).unwrap();
+        assert!(read(&scene.out()) == read(&again), "{name} differs");
+    }
+    let model = fs::read_to_string(again.join("model.city.json")).unwrap();
+    assert!(model.contains("https://www.opengis.net/def/crs/EPSG/0/25832"));
+}
+
+#[test]
+fn a_failure_of_writing_leaves_nothing_half() {
+    let scene = Scene::new();
+    // A folder stands where a file is to be written.
+    fs::create_dir_all(scene.out().join("model.glb/inside")).unwrap();
+    let output = scene.run(&[]);
+    assert_eq!(output.status.code(), Some(1));
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        message.contains("model.glb") && message.contains("cannot write"),
+        "{message}"
+    );
+    assert!(
+        names_in(&scene.out())
+            .iter()
+            .all(|name| !name.contains("part"))
+    );
+}
+
+#[test]
+fn earlier_results_within_the_scene_are_not_part_of_it() {
+    let scene = Scene::new();
+    scene.write("results/model_atlas.png", &scene.read("images/s1_01.png"));
+    let output = Command::new(env!("CARGO_BIN_EXE_ridgeline"))
+        .arg("reconstruct")
+        .arg(scene.0.path().join("scene"))
+        .arg("--out")
+        .arg(scene.0.path().join("scene/results"))
+        .args(["--memory", "30"])
+        .output()
+        .unwrap();
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(message.contains("MB of memory"), "{message}");
+}
+
+#[test]
+fn tiles_give_the_model_of_the_whole() {
+    let scene = Scene::new();
+    let output = scene.run(&["--roi", "-31,-31,31,31", "--tile", "31", "--ground-z", "0"]);
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(printed.contains("tile 4 of 4"), "{printed}");
+    assert_eq!(names_in(&scene.out()), OUTPUTS);
+    // The house stands in the middle, where four tiles meet: it is taken once, and whole.
+    let city: serde_json::Value =
+        serde_json::from_slice(&fs::read(scene.out().join("model.city.json")).unwrap()).unwrap();
+    let buildings = city["CityObjects"].as_object().unwrap();
+    assert_eq!(buildings.len(), 1, "{printed}");
+    let facets = buildings.values().next().unwrap()["attributes"]["roofFacets"]
+        .as_u64()
+        .unwrap();
+    assert!(facets >= 4, "{facets}");
 }

@@ -154,6 +154,7 @@ fn scene() -> Scene {
         origin: ORIGIN,
         ground_z: None,
         warnings: Vec::new(),
+        survey: ridgeline::scene::Survey::default(),
     }
 }
 
@@ -675,4 +676,54 @@ fn the_table_of_lines_reads_back() {
         assert!((row["length_m"] - line.segment.length()).abs() < 1e-4);
         assert_eq!(row["views"] as usize, line.supports.len());
     }
+}
+
+#[test]
+fn a_known_reference_system_is_written() {
+    let (_, model, _) = &planted_models()[0];
+    let mut scene = scene();
+    scene.survey.epsg = Some(25832);
+    let files = files_of(&scene, model);
+    let text = |name: &str| String::from_utf8_lossy(&files[name]).into_owned();
+    let city: Value = serde_json::from_slice(&files["model.city.json"]).unwrap();
+    assert_eq!(
+        city["metadata"]["referenceSystem"],
+        "https://www.opengis.net/def/crs/EPSG/0/25832"
+    );
+    assert!(cjval::CJValidator::from_str(&text("model.city.json")).is_valid());
+    let plan: Value = serde_json::from_slice(&files["footprints.geojson"]).unwrap();
+    assert_eq!(
+        plan["crs"]["properties"]["name"],
+        "urn:ogc:def:crs:EPSG::25832"
+    );
+    for name in ["model.obj", "model.ply", "model.dxf", "model.glb"] {
+        assert!(text(name).contains("EPSG:25832"), "{name}");
+    }
+    dxf::Drawing::load(&mut &files["model.dxf"][..]).unwrap();
+
+    // A local frame on the Earth: footprints in longitude and latitude, within a metre of its zero here.
+    scene.survey.epsg = None;
+    scene.origin = Vector3::zeros();
+    scene.survey.anchor = Some(ridgeline::orientation::Anchor {
+        lon_deg: 8.412,
+        lat_deg: 49.013,
+        height_m: 0.0,
+    });
+    let files = files_of(&scene, model);
+    let plan: Value = serde_json::from_slice(&files["footprints.geojson"]).unwrap();
+    let ring = plan["features"][0]["geometry"]["coordinates"][0]
+        .as_array()
+        .unwrap()
+        .clone();
+    let metres = |p: &Value| {
+        // A degree of latitude is 111.2 km there, one of longitude 73.1 km.
+        let [lon, lat] = [0, 1].map(|i| p[i].as_f64().unwrap());
+        ((lon - 8.412) * 73_133.0, (lat - 49.013) * 111_214.0)
+    };
+    let width = ring.iter().map(|p| metres(p).0).fold(0.0, f64::max);
+    let depth = ring.iter().map(|p| metres(p).1).fold(0.0, f64::max);
+    assert!(
+        (width - 10.0).abs() < 0.05 && (depth - 8.0).abs() < 0.05,
+        "{width} {depth}"
+    );
 }

@@ -76,6 +76,44 @@ fn the_files_have_the_native_bytes() {
     assert!(Array::from(&member(&facet, "outer")).length() >= 3);
     let image = session.image(2).unwrap();
     assert_eq!(image.rgba.length(), 4 * image.width * image.height);
+    the_figures_answer(&mut session, &half_plane);
+}
+
+/// What the live figures ask, about the line of an accepted half-plane.
+fn the_figures_answer(session: &mut Session, half_plane: &JsValue) {
+    let line = member(half_plane, "line").as_f64().unwrap();
+    let left = member(half_plane, "side") == JsValue::from("left");
+    let records = Array::from(&session.line_records().unwrap());
+    assert_eq!(records.length() * 6, session.lines().unwrap().length());
+    let supports = Array::from(&member(&records.get(line as u32), "supports"));
+    assert!(supports.length() >= 3);
+    let support = supports.get(0);
+    let view = member(&support, "view").as_f64().unwrap() as u32;
+    let segments = Array::from(&member(&support, "segments"));
+    if let Some(segment) = segments.get(0).as_f64() {
+        let story = session.segment_story(view, segment as u32).unwrap();
+        assert_eq!(
+            member(&member(&story, "outcome"), "fate"),
+            JsValue::from("matched")
+        );
+        assert_eq!(Array::from(&member(&story, "beams")).length(), 5);
+    }
+    assert!(session.detected_stretches().unwrap().length() >= 7);
+
+    let theta = member(half_plane, "theta").as_f64().unwrap();
+    let side = session.side(line as usize, left).unwrap();
+    assert!(member(&side, "rejection").is_null());
+    let picture = session.warped(line as usize, left, theta).unwrap().unwrap();
+    let number = |name: &str| member(&picture.about, name).as_f64().unwrap() as u32;
+    let views = Array::from(&member(&picture.about, "views")).length();
+    assert_eq!(
+        picture.rgba.length(),
+        4 * number("columns") * number("rows") * views
+    );
+    assert!(session.warped(9999, true, 0.0).is_err());
+    let groups = member(&session.grouping().unwrap(), "groups");
+    assert!(Array::from(&groups).length() > 0);
+    assert!(session.regions(0).unwrap().is_null());
 }
 
 #[wasm_bindgen_test]

@@ -9,7 +9,7 @@ export default defineConfig({
   testDir: "test/e2e",
   outputDir: "test-results",
   workers: 1,
-  timeout: 240_000,
+  timeout: 150_000,
   expect: { timeout: 20_000 },
   reporter: [["list"]],
   use: {

@@ -1,3 +1,6 @@
+import { createHash } from "node:crypto";
+import { readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { join, relative } from "node:path";
 import { fileURLToPath } from "node:url";
 import { type Alias, defineConfig, type Plugin } from "vite";
 
@@ -31,6 +34,37 @@ function contentSecurityPolicy(): Plugin {
   };
 }
 
+/**
+ * Writes `sw.js`: everything of the site is fetched once and served from the cache afterwards, under a name that changes with
+ * the content, so that a new version replaces the old one whole.
+ */
+function offline(): Plugin {
+  let outDir = "dist";
+  return {
+    name: "offline",
+    apply: "build",
+    configResolved: (config) => {
+      outDir = join(config.root, config.build.outDir);
+    },
+    closeBundle: () => {
+      const paths = readdirSync(outDir, { recursive: true, withFileTypes: true })
+        .filter((entry) => entry.isFile() && entry.name !== "sw.js")
+        .map((entry) => join(entry.parentPath, entry.name))
+        .sort();
+      const hash = createHash("sha256");
+      for (const path of paths) {
+        hash.update(relative(outDir, path)).update(readFileSync(path));
+      }
+      const files = paths.map((path) => `./${relative(outDir, path).replaceAll("\\", "/")}`);
+      const template = readFileSync(new URL("offline/sw.js", import.meta.url), "utf8");
+      const written = template
+        .replace("__VERSION__", hash.digest("hex").slice(0, 16))
+        .replace('["__FILES__"]', JSON.stringify(["./", ...files]));
+      writeFileSync(join(outDir, "sw.js"), written);
+    },
+  };
+}
+
 /** `npm run dev:fake`: the page without Rust, on a planted gable. Development only, never in a build. */
 function fakeCore(): Alias[] {
   const fake = (name: string) => fileURLToPath(new URL(`test/fake/${name}`, import.meta.url));
@@ -42,7 +76,7 @@ function fakeCore(): Alias[] {
 
 export default defineConfig(({ command, mode }) => ({
   base: "./",
-  plugins: [contentSecurityPolicy()],
+  plugins: [contentSecurityPolicy(), offline()],
   resolve: { alias: command === "serve" && mode === "fake" ? fakeCore() : [] },
   oxc: { jsx: { runtime: "automatic", importSource: "preact" } },
   worker: { format: "es" },

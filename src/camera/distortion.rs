@@ -25,6 +25,9 @@ pub struct Distortion {
     pub radial_below: [f64; 3],
     /// p1, p2.
     pub tangential: [f64; 2],
+    /// Where the lens is centred, against the principal point, divided by the focal length: x and y above count from
+    /// there.
+    pub center: [f64; 2],
 }
 
 impl Distortion {
@@ -35,19 +38,21 @@ impl Distortion {
             radial,
             radial_below: [0.0; 3],
             tangential,
+            center: [0.0; 2],
         })
     }
 
     /// Where the lens puts an ideal normalised image point.
     pub fn distort(&self, ideal: &Point2<f64>) -> Point2<f64> {
-        let (x, y) = (ideal.x, ideal.y);
+        let center = Vector2::from(self.center);
+        let (x, y) = (ideal.x - center.x, ideal.y - center.y);
         let r2 = x * x + y * y;
         let g = polynomial(&self.radial, r2) / polynomial(&self.radial_below, r2);
         let [p1, p2] = self.tangential;
         Point2::new(
             x * g + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
             y * g + 2.0 * p2 * x * y + p1 * (r2 + 2.0 * y * y),
-        )
+        ) + center
     }
 
     /// Does the lens keep the order of points over an image of this size? Beyond the turning point of
@@ -139,6 +144,7 @@ mod tests {
         radial: [-0.25, 0.03, 0.004],
         radial_below: [0.01, 0.0, 0.0],
         tangential: [0.001, -0.002],
+        center: [0.01, -0.02],
     };
 
     #[test]

@@ -12,21 +12,22 @@ use super::Failure;
 const IMAGE_EXTENSIONS: [&str; 5] = ["jpg", "jpeg", "png", "tif", "tiff"];
 
 /// What may hold an orientation; the readers look at the content.
-const ORIENTATION_EXTENSIONS: [&str; 10] = [
-    "txt", "p", "json", "xml", "out", "nvm", "camera", "bin", "xyz", "zip",
+const ORIENTATION_EXTENSIONS: [&str; 13] = [
+    "txt", "p", "json", "geojson", "xml", "out", "nvm", "camera", "bin", "xyz", "prj", "ori", "zip",
 ];
 
 /// Largest orientation file that is read, bytes: COLMAP writes some hundred bytes for every tie point.
 const MAX_ORIENTATION_BYTES: u64 = 1 << 30;
 
 /// All files below `folder` that may belong to a scene, sorted by path; paths are relative to the folder and
-/// have forward slashes.
-pub(super) fn read_scene(folder: &Path) -> Result<Vec<InputFile>, Failure> {
+/// have forward slashes. The folder of the results is not a part of the scene, wherever it lies.
+pub(super) fn read_scene(folder: &Path, results: &Path) -> Result<Vec<InputFile>, Failure> {
     let mut files = Vec::new();
     if folder.is_file() && is_archive(folder) {
         add(folder, "scene.zip", &mut files)?;
     } else if folder.is_dir() {
-        walk(folder, "", &mut files)?;
+        let results = fs::canonicalize(results).ok();
+        walk(folder, "", results.as_deref(), &mut files)?;
     } else {
         return Err(Failure::Input(format!(
             "{}: not a folder; give the folder (or .zip archive) that holds the images and their orientation",
@@ -47,13 +48,42 @@ pub(super) fn write_all(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<()
         ))
     };
     let temporary = |name: &str| folder.join(format!(".{name}.part"));
-    for (name, bytes) in files {
-        fs::write(temporary(name), bytes).map_err(|e| failure(name, e))?;
-    }
-    for (name, _) in files {
-        fs::rename(temporary(name), folder.join(name)).map_err(|e| failure(name, e))?;
+    let write = || {
+        for (name, bytes) in files {
+            fs::write(temporary(name), bytes).map_err(|e| failure(name, e))?;
+        }
+        for (name, _) in files {
+            fs::rename(temporary(name), folder.join(name)).map_err(|e| failure(name, e))?;
+        }
+        Ok(())
+    };
+    write().inspect_err(|_| {
+        // Those that are there: what cannot be removed either was never written.
+        for (name, _) in files {
+            let _ = fs::remove_file(temporary(name));
+        }
+    })
+}
+
+/// Can a file of this name be written? Asked before hours of work.
+pub(super) fn check_writable(path: &Path) -> Result<(), Failure> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+    if path.is_dir() || folder.is_some_and(|folder| !folder.is_dir()) {
+        let problem = "cannot be written: give a file in a folder that is there";
+        return Err(Failure::Input(format!("{}: {problem}", path.display())));
     }
     Ok(())
+}
+
+/// Writes one file in the same way.
+pub(super) fn write_one(path: &Path, bytes: Vec<u8>) -> Result<(), Failure> {
+    let folder = path
+        .parent()
+        .filter(|p| !p.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let name = path.file_name().map(|n| n.to_string_lossy().into_owned());
+    let name = name.ok_or_else(|| Failure::Input(format!("{}: names no file", path.display())))?;
+    write_all(folder, &[(name, bytes)])
 }
 
 /// Adds a file, or those of an archive.
@@ -73,7 +103,12 @@ fn is_archive(path: &Path) -> bool {
         .is_some_and(|e| e.eq_ignore_ascii_case("zip"))
 }
 
-fn walk(folder: &Path, prefix: &str, files: &mut Vec<InputFile>) -> Result<(), Failure> {
+fn walk(
+    folder: &Path,
+    prefix: &str,
+    results: Option<&Path>,
+    files: &mut Vec<InputFile>,
+) -> Result<(), Failure> {
     for entry in fs::read_dir(folder).map_err(|e| unreadable(folder, e))? {
         let entry = entry.map_err(|e| unreadable(folder, e))?;
         let (path, name) = (entry.path(), entry.file_name());
@@ -84,7 +119,11 @@ fn walk(folder: &Path, prefix: &str, files: &mut Vec<InputFile>) -> Result<(), F
         let relative = format!("{prefix}{name}");
         let kind = entry.file_type().map_err(|e| unreadable(&path, e))?;
         if kind.is_dir() {
-            walk(&path, &format!("{relative}/"), files)?;
+            let is_results =
+                results.is_some() && fs::canonicalize(&path).ok().as_deref() == results;
+            if !is_results {
+                walk(&path, &format!("{relative}/"), results, files)?;
+            }
         } else if is_wanted(&path) {
             add(&path, &relative, files)?;
         }

@@ -6,6 +6,7 @@
 mod files;
 mod reconstruct;
 mod table;
+mod tiles;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -24,7 +25,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Reconstruct the roofs that the photographs in a folder show.
-    Reconstruct(ReconstructArgs),
+    Reconstruct(Box<ReconstructArgs>),
     /// Print all parameters with their defaults, as JSON for --params.
     Params,
 }
@@ -49,9 +50,27 @@ struct ReconstructArgs {
     /// Reconstruct only this part of the ground plan, metres in the frame of the orientation.
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_roi, allow_hyphen_values = true)]
     roi: Option<[f64; 4]>,
+    /// Reference system of the orientation's world, as EPSG:25832; it is named in the results.
+    #[arg(long, value_name = "EPSG:N", value_parser = parse_crs)]
+    crs: Option<u32>,
+    /// Undo the mistake in the orientation that the images give away, instead of refusing the scene.
+    #[arg(long)]
+    apply_fix: bool,
+    /// Shift views back that are shifted against the others by up to a few pixels.
+    #[arg(long)]
+    adjust: bool,
+    /// Refuse what needs more memory than this, megabytes.
+    #[arg(long, value_name = "MB")]
+    memory: Option<u32>,
+    /// Reconstruct the region in overlapping tiles of about this size, metres, one after the other, into one model.
+    #[arg(long, value_name = "M", value_parser = parse_finite, conflicts_with = "project")]
+    tile: Option<f64>,
     /// JSON file with parameters; what it leaves out keeps its default.
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
+    /// Write a project file too: images, orientation, parameters and results in one .zip, which SCENE takes.
+    #[arg(long, value_name = "FILE.zip")]
+    project: Option<PathBuf>,
     /// Number of threads; by default one per core. It never changes the result.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -116,6 +135,11 @@ fn parse_finite(text: &str) -> Result<f64, String> {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err(format!("'{text}' is not a number in metres")),
     }
+}
+
+fn parse_crs(text: &str) -> Result<u32, String> {
+    ridgeline::orientation::epsg_of(text)
+        .ok_or_else(|| format!("'{text}' is not a number of EPSG, as EPSG:25832"))
 }
 
 fn parse_roi(text: &str) -> Result<[f64; 4], String> {

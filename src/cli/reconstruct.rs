@@ -8,37 +8,54 @@ use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::params::Params;
 use ridgeline::pipeline::{Run, Stage};
 use ridgeline::progress::Listener;
-use ridgeline::scene_loader::{LoadOptions, load_scene};
+use ridgeline::scene_loader::{LoadOptions, Project, inspect_files, load_scene, open_project};
 
-use super::{Failure, ReconstructArgs, files, table};
+use super::{Failure, ReconstructArgs, files, table, tiles};
 
 /// Steps of the progress bar per stage.
 const BAR_STEPS: f64 = 100.0;
 
 /// Reads the scene, runs every stage, writes the results and prints a summary.
 pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
-    let mut params = read_params(args)?;
+    let stated = read_params(args)?;
+    make_folder(args)?;
+    args.project
+        .as_deref()
+        .map_or(Ok(()), files::check_writable)?;
+    set_threads(args);
+    let start = Instant::now();
+    let input = files::read_scene(&args.scene, &args.out)?;
+    let (input, opened) = open_project(input).map_err(|e| Failure::Input(e.to_string()))?;
+    let opened = opened.unwrap_or_default();
+    let options = load_options(args, opened.options);
+    let mut params = stated.unwrap_or(opened.params);
     if let Some(method) = args.method {
         params.method = method.into();
     }
-    make_folder(args)?;
-    set_threads(args);
-    let start = Instant::now();
-    let input = files::read_scene(&args.scene)?;
-    let options = LoadOptions {
-        orientation: args.orientation.clone(),
-        views: args.views.clone(),
-        roi: args.roi,
-        ground_z: args.ground_z,
-    };
+    if let Some(tile_m) = args.tile {
+        return tiles::reconstruct_tiles(&input, &options, &params, tile_m, &args.out);
+    }
+    let inspection = inspect_files(&input, &options);
+    if inspection.errors.is_empty() {
+        println!(
+            "{} views, about {} MB of memory",
+            inspection.views, inspection.peak_mb
+        );
+    }
     let scene = load_scene(&input, &options).map_err(|e| Failure::Input(e.to_string()))?;
-    drop(input);
+    // Only a project needs the files once more.
+    let input = args.project.as_ref().map(|_| input);
     let load_seconds = start.elapsed().as_secs_f64();
 
     let mut run = Run::new(scene, params);
     let seconds = run_stages(&mut run);
     let written = run.files(&seconds);
     files::write_all(&args.out, &written)?;
+    if let (Some(path), Some(input)) = (&args.project, input) {
+        let project = Project::new(options, run.params().clone());
+        let packed = project.pack(&input, &written);
+        files::write_one(path, packed.map_err(|e| Failure::Output(e.to_string()))?)?;
+    }
     print!(
         "{}",
         table::summary(&run, load_seconds, &seconds, &written, &args.out)
@@ -46,13 +63,28 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-fn read_params(args: &ReconstructArgs) -> Result<Params, Failure> {
+/// What the arguments ask for; what they leave out is as in the project, where one is opened.
+fn load_options(args: &ReconstructArgs, project: LoadOptions) -> LoadOptions {
+    LoadOptions {
+        orientation: args.orientation.clone().or(project.orientation),
+        views: args.views.clone().or(project.views),
+        roi: args.roi.or(project.roi),
+        ground_z: args.ground_z.or(project.ground_z),
+        epsg: args.crs.or(project.epsg),
+        memory_mb: args.memory.or(project.memory_mb),
+        apply_fix: args.apply_fix || project.apply_fix,
+        adjust: args.adjust || project.adjust,
+    }
+}
+
+/// The parameters of `--params`.
+fn read_params(args: &ReconstructArgs) -> Result<Option<Params>, Failure> {
     let Some(path) = &args.params else {
-        return Ok(Params::default());
+        return Ok(None);
     };
     let bad = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
     let text = fs::read_to_string(path).map_err(|e| bad(format!("cannot read: {e}")))?;
-    serde_json::from_str(&text).map_err(|e| {
+    serde_json::from_str(&text).map(Some).map_err(|e| {
         bad(format!(
             "{e}; `ridgeline params` prints all parameters with their defaults"
         ))

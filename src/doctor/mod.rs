@@ -6,14 +6,18 @@
 //!   -> the same under every usual mistake (suspects), when the orientation as stated does not agree
 //! ```
 //!
-//! Nothing is matched from outside and nothing is corrected: the doctor measures, and names what fits. Only
+//! Where they agree, `fine` looks for half a pixel, and `shifts` measures how far each view is off.
+//!
+//! Nothing is matched from outside and nothing is corrected here: the doctor measures, and names what fits. Only
 //! images count: a mistake that moves the whole world (a wrong datum) leaves the views in agreement.
 
 mod epipolar;
 mod fine;
 mod points;
+mod shifts;
 mod suspects;
 
+pub use shifts::ViewShift;
 pub use suspects::{AngleOrder, Sequence, Suspect};
 
 use nalgebra::{Matrix3, Point2, Vector3};
@@ -73,6 +77,8 @@ pub enum Diagnosis {
     },
     /// They agree, but for an offset of a pixel's half.
     Offset {
+        /// The mistake.
+        suspect: Suspect,
         /// As stated.
         agreement: Agreement,
         /// Mean offset across the epipolar lines, pixels: as stated and without the mistake.
@@ -84,6 +90,24 @@ pub enum Diagnosis {
     Odd(Agreement, Vec<usize>),
     /// They do not agree, and none of the usual mistakes explains it.
     Unexplained(Agreement),
+}
+
+/// A diagnosis, and measurements that only sound views allow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Examination {
+    /// What the doctor found.
+    pub diagnosis: Diagnosis,
+    /// Shifts of the views against each other, pixels; empty where too little is found again.
+    pub shifts: Vec<ViewShift>,
+}
+
+impl From<Diagnosis> for Examination {
+    fn from(diagnosis: Diagnosis) -> Self {
+        Self {
+            diagnosis,
+            shifts: Vec::new(),
+        }
+    }
 }
 
 /// Longer side of the reduced images, pixels: enough to tell places apart, few enough to search fast.
@@ -109,10 +133,10 @@ const LEAST_GAIN: f64 = 0.12;
 const NEIGHBOURS: usize = 5;
 
 /// Examines views, and looks for the mistake where they do not agree.
-pub fn examine(patients: &[Patient]) -> Diagnosis {
+pub fn examine(patients: &[Patient]) -> Examination {
     let is_small = |p: &Patient| p.camera.width.min(p.camera.height) < SMALLEST_PX;
     if patients.iter().any(is_small) {
-        return Diagnosis::Unknown(Agreement::default());
+        return Diagnosis::Unknown(Agreement::default()).into();
     }
     let clinic = Clinic::new(patients);
     let stated: Vec<Camera> = patients.iter().map(|p| p.camera.clone()).collect();
@@ -120,17 +144,21 @@ pub fn examine(patients: &[Patient]) -> Diagnosis {
     let before = total(&counts);
     let odd = clinic.odd_views(&counts);
     if before.score >= SOUND && odd.is_empty() {
-        return match fine::half_pixel(&clinic, patients) {
+        let places = fine::places(&clinic, patients, &stated);
+        let shifts = shifts::shifts(&clinic, &places, &stated).unwrap_or_default();
+        let diagnosis = match fine::half_pixel(&clinic, patients, &stated, &places) {
             Some((suspect, offsets)) => Diagnosis::Offset {
+                suspect,
                 agreement: before,
                 offsets_px: offsets,
                 words: suspect.describe(patients),
             },
             None => Diagnosis::Sound(before),
         };
+        return Examination { diagnosis, shifts };
     }
     let (after, suspect) = clinic.interview(patients, &odd);
-    match suspect {
+    let diagnosis = match suspect {
         Some(suspect) if after.score >= SOUND && after.score >= before.score + LEAST_GAIN => {
             Diagnosis::Explained {
                 before,
@@ -142,7 +170,8 @@ pub fn examine(patients: &[Patient]) -> Diagnosis {
         _ if before.points < FEWEST_POINTS => Diagnosis::Unknown(before),
         _ if before.score >= SOUND => Diagnosis::Odd(before, odd),
         _ => Diagnosis::Unexplained(before),
-    }
+    };
+    diagnosis.into()
 }
 
 /// The reduced images and their points: what stays the same under every suspicion.

@@ -98,7 +98,7 @@ impl Suspect {
     }
 
     /// The cameras without this mistake; `None` where it cannot be.
-    pub(super) fn treated(self, patients: &[Patient]) -> Option<Vec<Camera>> {
+    pub fn treated(self, patients: &[Patient]) -> Option<Vec<Camera>> {
         let count = patients.len();
         let of_view = |i: usize| -> Option<Camera> {
             let patient = &patients[i];

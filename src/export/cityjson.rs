@@ -1,8 +1,8 @@
 //! CityJSON 2.0: one Building with an LoD 2.2 Solid per building of the model.
 //!
 //! Coordinates are those of the input's world frame, as whole numbers of 0.1 mm from the scene origin (coarser steps
-//! would bend planar roofs). The texture is the file [`ATLAS_FILE`] beside this one. The input's
-//! orientation files do not name a coordinate reference system, so none is written.
+//! would bend planar roofs). The texture is the file [`ATLAS_FILE`] beside this one. The reference
+//! system is written where the input names one.
 
 use serde_json::{Map, Value, json};
 
@@ -36,13 +36,34 @@ pub fn city_json(scene: &Scene, model: &RoofModel, textured: &TexturedModel) -> 
         "CityObjects": objects,
         "vertices": shared.vertices,
     });
+    let mut metadata = Map::new();
     if !shared.vertices.is_empty() {
-        file["metadata"] = json!({ "geographicalExtent": extent(scene, &shared.vertices) });
+        metadata.insert(
+            "geographicalExtent".into(),
+            json!(extent(scene, &shared.vertices)),
+        );
         file["appearance"] = json!({
             "default-theme-texture": THEME,
             "textures": [{ "type": "JPG", "image": ATLAS_FILE, "wrapMode": "none" }],
             "vertices-texture": shared.uv,
         });
+    }
+    match scene.survey.epsg {
+        Some(epsg) => {
+            let system = format!("https://www.opengis.net/def/crs/EPSG/0/{epsg}");
+            metadata.insert("referenceSystem".into(), json!(system));
+        }
+        // A local frame has no number; its place is told in words.
+        None => {
+            let title = scene
+                .survey
+                .describe()
+                .map(|system| format!("Roofs; coordinates {system}"));
+            metadata.extend(title.map(|title| ("title".to_owned(), json!(title))));
+        }
+    }
+    if !metadata.is_empty() {
+        file["metadata"] = Value::Object(metadata);
     }
     to_bytes(&file)
 }

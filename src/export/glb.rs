@@ -285,8 +285,11 @@ impl File {
     /// Adds the scene and puts header, JSON and buffer together.
     fn finish(mut self, nodes: Vec<Index<gltf::Node>>, scene: &Scene) -> Vec<u8> {
         self.root.asset.generator = Some(format!("ridgeline {}", env!("CARGO_PKG_VERSION")));
-        let origin =
+        let mut origin =
             json!({ "origin": scene.origin.as_slice(), "axes": "(x, y, z) -> (x, z, -y)" });
+        if let Some(system) = scene.survey.describe() {
+            origin["coordinates"] = json!(system);
+        }
         // The format forbids empty lists: a model without buildings is an asset without a scene.
         if nodes.is_empty() {
             self.root.extras = raw(&origin);

@@ -102,7 +102,11 @@ pub fn ply(scene: &Scene, model: &RoofModel, lines: &[Line3d]) -> Vec<u8> {
 
 fn comment(start: &str, scene: &Scene) -> String {
     let [x, y, z] = world(scene, &Point3::origin());
-    format!("{start}metres, Z up; origin of the local frame {x} {y} {z}\n")
+    let mut text = format!("{start}metres, Z up; origin of the local frame {x} {y} {z}\n");
+    if let Some(system) = scene.survey.describe() {
+        line(&mut text, format_args!("{start}coordinates: {system}"));
+    }
+    text
 }
 
 fn group(surface: Surface) -> String {

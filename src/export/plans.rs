@@ -1,8 +1,9 @@
 //! The model for drawing and mapping programs: DXF, footprints as GeoJSON, the 3D lines as CSV.
 //!
-//! Coordinates are those of the input's world frame, metres. GeoJSON (RFC 7946) wants longitude and latitude; the
-//! orientation files name no reference system, so footprints are in the input's own coordinates, which
-//! programs take when they are told the system.
+//! Coordinates are those of the input's world frame, metres. GeoJSON (RFC 7946) wants longitude and latitude:
+//! footprints are in these where the frame's place on the Earth is known, else in the input's own coordinates, whose
+//! reference system is named in the older way (GeoJSON 2008, `crs`) where the input names it. DXF names it in a
+//! comment.
 
 use nalgebra::Point3;
 use serde_json::{Value, json};
@@ -17,7 +18,11 @@ use crate::scene::Scene;
 /// DXF of AutoCAD R12, which every program reads: 3DFACE on the layers ROOF, WALL and GROUND, LINE on
 /// LINE3D.
 pub fn dxf(scene: &Scene, model: &RoofModel, lines: &[Line3d]) -> Vec<u8> {
-    let mut text = String::from("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n");
+    let mut text = String::new();
+    if let Some(system) = scene.survey.describe() {
+        line(&mut text, format_args!("999\ncoordinates: {system}"));
+    }
+    text.push_str("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n");
     // Layers with the colours red, yellow, grey and blue of the AutoCAD index.
     let layers = [("ROOF", 1), ("WALL", 2), ("GROUND", 8), ("LINE3D", 5)];
     text.push_str("0\nSECTION\n2\nTABLES\n0\nTABLE\n2\nLAYER\n70\n4\n");
@@ -73,7 +78,12 @@ pub fn footprints(scene: &Scene, model: &RoofModel) -> Vec<u8> {
     let features: Vec<Value> = (model.buildings.iter().enumerate())
         .flat_map(|(i, building)| building_footprints(scene, model, i, building))
         .collect();
-    to_bytes(&json!({ "type": "FeatureCollection", "features": features }))
+    let mut file = json!({ "type": "FeatureCollection", "features": features });
+    if let (None, Some(epsg)) = (scene.survey.anchor, scene.survey.epsg) {
+        let name = format!("urn:ogc:def:crs:EPSG::{epsg}");
+        file["crs"] = json!({ "type": "name", "properties": { "name": name } });
+    }
+    to_bytes(&file)
 }
 
 fn building_footprints(
@@ -111,8 +121,18 @@ fn building_footprints(
 /// A ring of a ground face from above: the other way round, the first corner again at its end.
 fn closed_ring(scene: &Scene, solid: &Solid, ring: &[u32]) -> Vec<[f64; 2]> {
     let corner = |&i: &u32| {
-        let [x, y, _] = world(scene, &solid.vertices[i as usize]);
-        [x, y]
+        let p = &solid.vertices[i as usize];
+        match &scene.survey.anchor {
+            Some(anchor) => {
+                let [lon, lat, _] = anchor.geographic(&(p + scene.origin));
+                // A tenth of a millimetre.
+                [rounded(lon, 9), rounded(lat, 9)]
+            }
+            None => {
+                let [x, y, _] = world(scene, p);
+                [x, y]
+            }
+        }
     };
     ring.iter().rev().chain(ring.last()).map(corner).collect()
 }

@@ -5,7 +5,8 @@
 //!   (figure 21), extended at both ends, since detected ends are unreliable (figure 22);
 //! * lines found in a plane from segments of several views ([`super::plane_lines`]);
 //! * new lines in which two neighbouring planes meet (figure 19);
-//! * closing lines across the ends of a supporting line. They stand for the sides of the paper's convex hull,
+//! * closing lines across the ends of a supporting line, and where the views cease to agree on a plane
+//!   ([`super::extent`]). They stand for the sides of the paper's convex hull,
 //!   where nothing was detected.
 //!
 //! A real line that runs along an intersection is moved onto it, so that ridge, hip and valley are where
@@ -14,6 +15,7 @@
 use nalgebra::{Point2, Vector2};
 use serde::Serialize;
 
+use super::extent::extent_lines;
 use super::grouping::{GroupingInput, Member, PlaneGroup};
 use super::hypothesis::Hypothesis;
 use super::{Side, ThetaFrame};
@@ -180,6 +182,12 @@ pub fn border_lines(
             add(&mut borders, border);
         }
     }
+    for border in outermost_lines(input, hypotheses, params) {
+        add(&mut borders, border);
+    }
+    for border in extent_lines(input, hypotheses) {
+        add(&mut borders, border);
+    }
     for border in closing_lines(input, hypotheses, params) {
         add(&mut borders, border);
     }
@@ -274,6 +282,49 @@ fn extended(kind: BorderKind, line: &Segment3, params: &RoofParams) -> Option<Bo
         a: a - extra,
         b: b + extra,
     })
+}
+
+/// The outermost lines of every group, as long as the whole group: an eave of which half was found goes on as far
+/// as the ridge does.
+fn outermost_lines(
+    input: &GroupingInput,
+    hypotheses: &[Hypothesis],
+    params: &RoofParams,
+) -> Vec<Border> {
+    let mut found = Vec::new();
+    for h in hypotheses {
+        let members = (h.group.members.iter()).map(|m| input.lines[m.line.index()].segment);
+        let lines: Vec<Segment3> = members.chain(h.lines.iter().map(|l| l.segment)).collect();
+        let ends: Vec<Point2<f64>> = (lines.iter())
+            .flat_map(|l| [l.p0.xy(), l.p1.xy()])
+            .collect();
+        for line in lines.iter().filter(|l| l.length() >= params.extension_m) {
+            let Some(border) = extended(BorderKind::Closing, line, params) else {
+                continue;
+            };
+            let (a, d) = (border.a, border.direction());
+            let beside = |p: &Point2<f64>| d.x * (p.y - a.y) - d.y * (p.x - a.x);
+            let outermost = ends.iter().all(|p| beside(p) < SAME_LINE)
+                || ends.iter().all(|p| beside(p) > -SAME_LINE);
+            if !outermost {
+                continue;
+            }
+            let along = ends.iter().map(|p| (p - a).dot(&d));
+            let (first, last) = along.fold((0.0f64, border.length()), |(low, high), t| {
+                (
+                    low.min(t - params.extension_m),
+                    high.max(t + params.extension_m),
+                )
+            });
+            found.push(Border {
+                a: a + d * first,
+                b: a + d * last,
+                ..border
+            });
+        }
+    }
+    found.sort_by(|a, b| b.length().total_cmp(&a.length()));
+    found
 }
 
 /// Lines across both ends of a group's longest lines, on the side that the plane covers.

@@ -12,6 +12,7 @@
 //!   within the window and n that of the noise.
 
 use nalgebra::Point3;
+use wide::f32x8;
 
 use super::plan::{PlanGrid, orthophoto};
 use crate::camera::Camera;
@@ -88,37 +89,60 @@ pub fn consistency_map_behind(
     combine(&windows.collect::<Vec<_>>(), grid)
 }
 
-/// The views in whose image some of the grid's window lies, frontal ones first, at most [`MAX_VIEWS`].
+/// Positions along each side of the window at which views are asked whether they see it.
+const SAMPLES: usize = 6;
+
+/// The views to compare: at most [`MAX_VIEWS`], such that every part of the window is seen by as many as
+/// possible, frontal ones first. Crops of large photographs often show a part only.
 fn views_of_plane(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> Vec<ViewId> {
-    let (w, h) = (
-        grid.width as f64 * grid.step,
-        grid.height as f64 * grid.step,
-    );
-    let at = |fx: f64, fy: f64| plane.lift(grid.origin.x + fx * w, grid.origin.y + fy * h);
-    let middle = at(0.5, 0.5);
-    let corners = [
-        middle,
-        at(0.1, 0.1),
-        at(0.9, 0.1),
-        at(0.9, 0.9),
-        at(0.1, 0.9),
-    ];
-    let mut scored: Vec<(f64, ViewId)> = scene
-        .view_ids()
-        .filter_map(|v| {
-            let camera: &Camera = scene.camera(v);
-            let seen = corners
-                .iter()
-                .filter(|p| camera.project(p).is_some_and(|x| camera.contains(&x, 1.0)))
-                .count();
-            let toward = (camera.center - middle).normalize().dot(&plane.normal);
-            // A plane seen at a grazing angle (below 15 degrees) has no usable pixels.
-            (seen > 0 && toward > 0.26).then_some((seen as f64 * toward, v))
-        })
+    let candidates: Vec<Candidate> = (scene.view_ids())
+        .filter_map(|v| Candidate::new(v, scene.camera(v), plane, grid))
         .collect();
-    scored.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    scored.truncate(MAX_VIEWS);
-    scored.into_iter().map(|(_, v)| v).collect()
+    let mut seen_by = [0u32; SAMPLES * SAMPLES];
+    let mut chosen: Vec<usize> = Vec::new();
+    while chosen.len() < MAX_VIEWS {
+        let best = (0..candidates.len())
+            .filter(|i| !chosen.contains(i))
+            .map(|i| (candidates[i].gain(&seen_by), i))
+            .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+        let Some((_, best)) = best else { break };
+        let sees = candidates[best].sees.iter();
+        (seen_by.iter_mut().zip(sees)).for_each(|(n, sees)| *n += u32::from(*sees));
+        chosen.push(best);
+    }
+    chosen.into_iter().map(|i| candidates[i].view).collect()
+}
+
+/// A view that sees some of the window.
+struct Candidate {
+    view: ViewId,
+    /// Cosine of the angle between the plane's normal and the direction to the camera.
+    toward: f64,
+    sees: [bool; SAMPLES * SAMPLES],
+}
+
+impl Candidate {
+    fn new(view: ViewId, camera: &Camera, plane: &Plane, grid: &PlanGrid) -> Option<Self> {
+        let at = |fx: f64, fy: f64| {
+            let (x, y) = (fx * grid.width as f64, fy * grid.height as f64);
+            plane.lift(grid.origin.x + x * grid.step, grid.origin.y + y * grid.step)
+        };
+        let middle = at(0.5, 0.5);
+        let toward = (camera.center - middle).normalize().dot(&plane.normal);
+        let sees = std::array::from_fn(|k| {
+            let part = |i: usize| (i as f64 + 0.5) / SAMPLES as f64;
+            let p = at(part(k % SAMPLES), part(k / SAMPLES));
+            (camera.project(&p)).is_some_and(|x| camera.contains(&x, 1.0))
+        });
+        // A plane seen at a grazing angle (below 15 degrees) has no usable pixels.
+        (toward > 0.26 && sees.contains(&true)).then_some(Self { view, toward, sees })
+    }
+
+    /// What the view adds: less where others see the position already.
+    fn gain(&self, seen_by: &[u32]) -> f64 {
+        let seen = seen_by.iter().zip(&self.sees).filter(|(_, sees)| **sees);
+        self.toward * seen.map(|(n, _)| 1.0 / f64::from(1 + n * n)).sum::<f64>()
+    }
 }
 
 /// One view on the grid with the mean and the variance of the window around every cell.
@@ -177,9 +201,9 @@ fn combine(windows: &[ViewWindows], grid: &PlanGrid) -> ConsistencyMap {
             for (k, c) in correlation.iter_mut().enumerate() {
                 *c = if a.valid[k] && b.valid[k] {
                     let covariance = *c / full - a.mean[k] * b.mean[k];
-                    covariance / (a.variance[k] * b.variance[k]).sqrt().max(1e-7)
+                    (covariance / (a.variance[k] * b.variance[k]).sqrt().max(1e-7)).clamp(-1.0, 1.0)
                 } else {
-                    f32::NAN
+                    UNSEEN
                 };
             }
             pairs.push(correlation);
@@ -191,26 +215,18 @@ fn combine(windows: &[ViewWindows], grid: &PlanGrid) -> ConsistencyMap {
         weight: vec![0; cells],
         common_weight: vec![0; cells],
     };
-    let mut sorted: Vec<f32> = Vec::with_capacity(pairs.len());
-    for k in 0..cells {
-        sorted.clear();
-        sorted.extend(pairs.iter().map(|p| p[k]).filter(|c| !c.is_nan()));
-        if sorted.is_empty() {
-            continue;
+    for start in (0..cells).step_by(LANES) {
+        let means = better_half_means(&pairs, start, cells);
+        for k in start..cells.min(start + LANES) {
+            let Some(mean) = means[k - start] else {
+                continue;
+            };
+            let (sum, seen) = (windows.iter().filter(|w| w.valid[k]))
+                .fold((0.0f32, 0.0f32), |(s, n), w| (s + w.variance[k], n + 1.0));
+            map.correlation[k] = (mean * 127.0).round().clamp(-127.0, 127.0) as i8;
+            map.weight[k] = weight_of(sum / seen);
+            map.common_weight[k] = weight_of(median_variance(windows, k));
         }
-        sorted.sort_unstable_by(|a, b| b.total_cmp(a));
-        let better = &sorted[..sorted.len().div_ceil(2)];
-        let mean = better.iter().sum::<f32>() / better.len() as f32;
-        map.correlation[k] = (mean * 127.0).round().clamp(-127.0, 127.0) as i8;
-        let mut seen: Vec<f32> = windows
-            .iter()
-            .filter(|w| w.valid[k])
-            .map(|w| w.variance[k])
-            .collect();
-        let variance = seen.iter().sum::<f32>() / seen.len() as f32;
-        map.weight[k] = weight_of(variance);
-        seen.sort_unstable_by(f32::total_cmp);
-        map.common_weight[k] = weight_of(seen[(seen.len() - 1) / 2]);
     }
     map
 }
@@ -219,6 +235,61 @@ fn combine(windows: &[ViewWindows], grid: &PlanGrid) -> ConsistencyMap {
 fn weight_of(variance: f32) -> u8 {
     let weight = variance / (variance + NOISE * NOISE);
     (weight * 255.0).round().max(1.0) as u8
+}
+
+/// The lower median of the variances of the windows that see a cell.
+fn median_variance(windows: &[ViewWindows], k: usize) -> f32 {
+    let mut seen = [0.0f32; MAX_VIEWS];
+    let mut count = 0;
+    for w in windows.iter().filter(|w| w.valid[k]) {
+        // Kept in order: six at most.
+        let mut at = count;
+        while at > 0 && seen[at - 1] > w.variance[k] {
+            seen[at] = seen[at - 1];
+            at -= 1;
+        }
+        seen[at] = w.variance[k];
+        count += 1;
+    }
+    seen[count.saturating_sub(1) / 2]
+}
+
+/// Cells that are sorted at once.
+const LANES: usize = 8;
+/// Pairs of [`MAX_VIEWS`] views.
+const MAX_PAIRS: usize = MAX_VIEWS * (MAX_VIEWS - 1) / 2;
+/// Below any correlation: the pair does not see the cell.
+const UNSEEN: f32 = -4.0;
+
+/// Mean of the better half of the pairs' correlations at the cells from `start`; `None` where no pair sees
+/// the cell.
+fn better_half_means(pairs: &[Vec<f32>], start: usize, cells: usize) -> [Option<f32>; LANES] {
+    let end = cells.min(start + LANES);
+    let mut columns = [f32x8::splat(UNSEEN); MAX_PAIRS];
+    for (column, pair) in columns.iter_mut().zip(pairs) {
+        let mut lanes = [UNSEEN; LANES];
+        lanes[..end - start].copy_from_slice(&pair[start..end]);
+        *column = f32x8::from(lanes);
+    }
+    let columns = &mut columns[..pairs.len()];
+    sort_descending(columns);
+    let sorted: Vec<[f32; LANES]> = columns.iter().map(|c| c.to_array()).collect();
+    std::array::from_fn(|lane| {
+        let seen = sorted.iter().filter(|c| c[lane] > UNSEEN).count();
+        let better = seen.div_ceil(2);
+        let sum: f32 = sorted[..better].iter().map(|c| c[lane]).sum();
+        (seen > 0).then(|| sum / better as f32)
+    })
+}
+
+/// Sorts every lane by comparisons of neighbours (a network of odd and even transpositions): no branches.
+fn sort_descending(columns: &mut [f32x8]) {
+    for round in 0..columns.len() {
+        for pair in columns[round % 2..].chunks_exact_mut(2) {
+            let (a, b) = (pair[0], pair[1]);
+            (pair[0], pair[1]) = (a.fast_max(b), a.fast_min(b));
+        }
+    }
 }
 
 /// Sum over the window around every cell, along rows and then along columns; windows that stick out of the

@@ -2,14 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::Point2;
-
 use super::ThetaFrame;
-use super::arrangement::{Arrangement, CellEdge};
+use super::arrangement::Arrangement;
+use super::border_cost::BorderCosts;
 use super::consistency::ConsistencyMap;
 use super::grouping::{GroupingInput, PlaneGroup};
 use super::hypothesis::Hypothesis;
-use super::labelling::{Energy, LabelEdge, NO_PLANE};
+use super::labelling::Energy;
 use super::line_index::LineIndex;
 use super::plan::PlanGrid;
 use crate::geometry::Plane;
@@ -81,7 +80,7 @@ impl Evidence {
         planes: &[Plane],
         index: &LineIndex,
         params: &RoofParams,
-    ) -> Energy {
+    ) -> Energy<BorderCosts> {
         let unary = self
             .cells
             .iter()
@@ -101,90 +100,16 @@ impl Evidence {
                     .collect()
             })
             .collect();
-        let edges = arrangement
-            .edges
-            .iter()
-            .map(|e| self.label_edge(e, arrangement, planes, index, params))
-            .collect();
-        Energy { unary, edges }
-    }
-
-    /// What different labels on both sides of a cell border cost.
-    fn label_edge(
-        &self,
-        edge: &CellEdge,
-        arrangement: &Arrangement,
-        planes: &[Plane],
-        index: &LineIndex,
-        params: &RoofParams,
-    ) -> LabelEdge {
-        let (a, b) = (arrangement.vertices[edge.a], arrangement.vertices[edge.b]);
-        let length = (b - a).norm();
-        let full = length * params.border_cost_m;
-        let heights = index.heights_along(&a, &b);
-        let on_line = |plane: &Plane, p: &Point2<f64>| {
-            let z = plane.z_at(p.x, p.y);
-            heights.iter().any(|h| (h - z).abs() < LINE_HEIGHT)
-        };
-        let middle = Point2::from((a.coords + b.coords) * 0.5);
-        let mut supported = Vec::new();
-        let labels = |cell: usize| self.cells[cell].iter().map(|c| c.0).chain([NO_PLANE]);
-        for p in labels(edge.left) {
-            for q in labels(edge.right).filter(|&q| q != p) {
-                let (pp, qq) = (planes.get(p as usize), planes.get(q as usize));
-                let factor = match (pp, qq) {
-                    // Two hypotheses of one roof plane: a border between them says nothing.
-                    (Some(p), Some(q))
-                        if p.angle_to(q) < SAME_PLANE && apart(p, q, &middle) < MEETING =>
-                    {
-                        DUPLICATE
-                    }
-                    (Some(p), Some(q)) => {
-                        let meets = [a, b]
-                            .iter()
-                            .all(|x| (p.z_at(x.x, x.y) - q.z_at(x.x, x.y)).abs() < MEETING);
-                        let real = on_line(p, &middle) || on_line(q, &middle);
-                        match (meets, real) {
-                            (true, true) => CREASE_ON_LINE,
-                            (true, false) => CREASE,
-                            (false, true) => ON_LINE,
-                            (false, false) => 1.0,
-                        }
-                    }
-                    (Some(p), None) | (None, Some(p)) if on_line(p, &middle) => ON_LINE,
-                    _ => 1.0,
-                };
-                if factor != 1.0 {
-                    supported.push((p, q, factor * full));
-                }
-            }
-        }
-        LabelEdge {
-            cells: [edge.left, edge.right],
-            unsupported: full,
-            supported,
+        let labels = |cell: usize| self.cells[cell].iter().map(|c| c.0);
+        Energy {
+            unary,
+            edges: (arrangement.edges.iter())
+                .map(|e| [e.left, e.right])
+                .collect(),
+            borders: BorderCosts::new(arrangement, labels, planes, index, params),
         }
     }
 }
-
-fn apart(p: &Plane, q: &Plane, at: &Point2<f64>) -> f64 {
-    (p.z_at(at.x, at.y) - q.z_at(at.x, at.y)).abs()
-}
-
-/// Planes at less than this angle, radians (6 degrees), that meet are one plane found twice.
-const SAME_PLANE: f64 = 6.0 * std::f64::consts::PI / 180.0;
-/// Share of the full border cost between two hypotheses of one plane.
-const DUPLICATE: f64 = 1.5;
-/// Share of the full border cost where two planes meet along a reconstructed line, ...
-const CREASE_ON_LINE: f64 = 0.1;
-/// ... where two planes meet, ...
-const CREASE: f64 = 0.3;
-/// ... and where a reconstructed line of one of the planes bounds it.
-const ON_LINE: f64 = 0.15;
-/// Planes meet when their heights differ by less, metres.
-const MEETING: f64 = 0.25;
-/// A line lies in a plane's border when their heights differ by less, metres.
-pub const LINE_HEIGHT: f64 = 0.35;
 
 /// How much of the ground's match counts. Assumption: half. Rows of tiles or seams that run along the parallax
 /// correlate at any height, so a match with the ground is weaker evidence than a half-plane's.

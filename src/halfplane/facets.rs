@@ -10,12 +10,14 @@ use serde::Serialize;
 
 use super::HalfPlane;
 use super::arrangement::Arrangement;
+use super::border_cost::{BorderCosts, LINE_HEIGHT};
 use super::borders::{Border, Region, border_lines};
 use super::consistency::{ConsistencyMap, consistency_map};
 use super::delineation::{Delineation, Outline, delineate, signed_area};
-use super::evidence::{Evidence, LINE_HEIGHT};
+use super::evidence::Evidence;
 use super::grouping::{GroupingInput, PlaneGroup, group_planes};
-use super::hypothesis::{bounding_lines, hypotheses};
+use super::hypothesis::{ON_SURFACE, TEXTURED, bounding_lines, hypotheses};
+use super::islands::without_islands;
 use super::labelling::{Energy, NO_PLANE};
 use super::line_index::LineIndex;
 use super::neighbourhood::line_neighbours;
@@ -48,7 +50,7 @@ pub enum FacetRejection {
         /// Mean correlation inside the outline.
         similarity: f64,
     },
-    /// Too little of its outline lies on reconstructed lines or on intersections with other facets.
+    /// Too little of its outline lies on reconstructed lines, and the images do not clearly show it.
     Unsupported {
         /// tau_real, 0 to 1.
         real_ratio: f64,
@@ -236,7 +238,7 @@ fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {
 }
 
 struct Solver {
-    energy: Energy,
+    energy: Energy<BorderCosts>,
     evidence: Evidence,
     arrangement: Arrangement,
     planes: Vec<Plane>,
@@ -256,23 +258,34 @@ impl Solver {
         let mut labels = vec![NO_PLANE; self.arrangement.cells];
         for round in 1..=ROUNDS {
             labels = self.energy.minimise(self.planes.len() as u32, labels);
+            labels = without_islands(&self.arrangement, labels, params.min_area_m2);
             let delineation = delineate(&self.arrangement, &labels, &self.planes);
             let mut facets = Vec::new();
             let mut withdrawn = Vec::new();
+            // No roof, but no other plane may have their place: they stay in the labelling.
+            let mut on_ground = Vec::new();
             for outline in &delineation.outlines {
                 let facet = self.facet(outline, &delineation, groups);
-                match self.verify(&facet, outline, ground, params) {
-                    Ok(()) => facets.push(facet),
-                    Err(reason) => {
-                        rejected.push(RejectedFacet {
-                            outline: facet.outer,
-                            reason,
-                        });
-                        withdrawn.push(outline);
+                let reason = match self.verify(&facet, outline, ground, params) {
+                    Ok(()) => {
+                        facets.push(facet);
+                        continue;
                     }
+                    Err(reason) => reason,
+                };
+                let refused = RejectedFacet {
+                    outline: facet.outer,
+                    reason,
+                };
+                if matches!(reason, FacetRejection::NearGround { .. }) {
+                    on_ground.push(refused);
+                } else {
+                    rejected.push(refused);
+                    withdrawn.push(outline);
                 }
             }
             if withdrawn.is_empty() || round == ROUNDS {
+                rejected.extend(on_ground);
                 return (facets, rejected);
             }
             for outline in withdrawn {
@@ -375,7 +388,10 @@ impl Solver {
                 similarity: facet.similarity,
             });
         }
-        if facet.real_ratio < params.min_real_ratio {
+        // Where the images show the surface itself, its outline need not lie on lines.
+        let shown = facet.similarity >= f64::from(ON_SURFACE)
+            && self.weight(outline) >= f64::from(TEXTURED) * area_m2 * facet.plane.normal.z;
+        if facet.real_ratio < params.min_real_ratio && !shown {
             return Err(FacetRejection::Unsupported {
                 real_ratio: facet.real_ratio,
             });

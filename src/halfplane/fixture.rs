@@ -42,6 +42,7 @@ pub(super) fn scene(surfaces: &[Surface]) -> Scene {
         origin: Vector3::zeros(),
         ground_z: None,
         warnings: Vec::new(),
+        survey: crate::scene::Survey::default(),
     }
 }
 

@@ -89,8 +89,9 @@ fn lies_in(plane: &Plane, line: &Segment3) -> bool {
 }
 
 /// Correlation and texture weight from which on a position clearly shows the plane's surface.
-const ON_SURFACE: f32 = 0.65;
-const TEXTURED: f32 = 0.3;
+pub const ON_SURFACE: f32 = 0.65;
+/// See [`ON_SURFACE`].
+pub const TEXTURED: f32 = 0.3;
 
 /// Does the plane's surface clearly go on at both sides of the line? Rows of tiles do that, borders do not.
 fn crosses_surface(map: &ConsistencyMap, line: &Segment3) -> bool {

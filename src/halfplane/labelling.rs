@@ -16,46 +16,39 @@
 
 use std::collections::BTreeMap;
 
-use petgraph::graph::{DiGraph, NodeIndex};
-use petgraph::unionfind::UnionFind;
-use petgraph::visit::EdgeRef;
+use ac_library::{Dsu, MfGraph};
 
 /// No plane covers the cell.
 pub const NO_PLANE: u32 = u32::MAX;
 
+/// What different labels on both sides of a border cost.
+pub trait Borders {
+    /// Cost of `left` and `right`, which differ, on the first and second cell of an edge.
+    fn cost(&self, edge: usize, left: u32, right: u32) -> f64;
+
+    /// The most that any two labels can cost there.
+    fn most(&self, edge: usize) -> f64;
+}
+
 /// The energy over cells and planes.
 #[derive(Clone, Debug)]
-pub struct Energy {
+pub struct Energy<B> {
     /// Per cell: (plane, D) for the planes that may cover it, ascending by plane. "No plane" costs 0.
     pub unary: Vec<Vec<(u32, f64)>>,
-    /// Neighbouring cells and the cost of different labels on them.
-    pub edges: Vec<LabelEdge>,
+    /// Pairs of neighbouring cells.
+    pub edges: Vec<[usize; 2]>,
+    /// The costs of the edges.
+    pub borders: B,
 }
 
-/// Two cells that touch.
-#[derive(Clone, Debug)]
-pub struct LabelEdge {
-    /// The cells.
-    pub cells: [usize; 2],
-    /// Cost when nothing supports the border.
-    pub unsupported: f64,
-    /// Costs of pairs of labels (first cell's, second cell's) that something supports.
-    pub supported: Vec<(u32, u32, f64)>,
-}
-
-impl LabelEdge {
-    fn cost(&self, a: u32, b: u32) -> f64 {
-        if a == b {
+impl<B: Borders> Energy<B> {
+    fn border(&self, edge: usize, left: u32, right: u32) -> f64 {
+        if left == right {
             return 0.0;
         }
-        self.supported
-            .iter()
-            .find(|(p, q, _)| *p == a && *q == b)
-            .map_or(self.unsupported, |s| s.2)
+        self.borders.cost(edge, left, right)
     }
-}
 
-impl Energy {
     fn unary(&self, cell: usize, label: u32) -> Option<f64> {
         if label == NO_PLANE {
             return Some(0.0);
@@ -77,7 +70,8 @@ impl Energy {
         let borders: f64 = self
             .edges
             .iter()
-            .map(|e| e.cost(labels[e.cells[0]], labels[e.cells[1]]))
+            .enumerate()
+            .map(|(e, cells)| self.border(e, labels[cells[0]], labels[cells[1]]))
             .sum();
         data + borders
     }
@@ -104,57 +98,51 @@ impl Energy {
         labels
     }
 
-    /// The best move in which any of `cells` may change to `alpha`.
+    /// The best move in which cells may change to `alpha`; returns those that do.
     fn expand(&self, alpha: u32, graph: &CellGraph, labels: &mut [u32]) -> Vec<usize> {
-        let cells = graph.cells_of(alpha);
-        let movable: Vec<usize> = cells
-            .iter()
-            .copied()
-            .filter(|&c| labels[c] != alpha)
+        let movable: Vec<usize> = (graph.cells_of(alpha).iter().copied())
+            .filter(|&c| labels[c] != alpha && self.may_gain(c, alpha, graph, labels))
             .collect();
-        if movable.is_empty() {
-            return Vec::new();
-        }
-        let mut node = BTreeMap::new();
-        let mut cut = Cut::default();
-        for &c in &movable {
-            node.insert(c, cut.node());
-        }
-        for &c in &movable {
+        // Ascending, so that a cell's node is found by bisection.
+        let node = |cell: usize| movable.binary_search(&cell).ok();
+        let mut cut = Cut::new(movable.len());
+        for (n, &c) in movable.iter().enumerate() {
             let keep = self.unary(c, labels[c]).unwrap_or(BLOCKED);
             let change = self.unary(c, alpha).unwrap_or(BLOCKED);
-            cut.unary(node[&c], keep, change);
+            cut.unary(n, keep, change);
             for &e in &graph.edges_of_cell[c] {
-                let edge = &self.edges[e];
-                let (i, j) = (edge.cells[0], edge.cells[1]);
+                let [i, j] = self.edges[e];
                 let (li, lj) = (labels[i], labels[j]);
-                match (node.get(&i), node.get(&j)) {
+                let stay = self.border(e, li, lj);
+                match node(if c == i { j } else { i }) {
                     // Both may move: handle the edge once, from its first cell.
-                    (Some(&ni), Some(&nj)) => {
-                        if c == i {
-                            cut.pair(
-                                ni,
-                                nj,
-                                edge.cost(li, lj),
-                                edge.cost(li, alpha),
-                                edge.cost(alpha, lj),
-                            );
-                        }
+                    Some(other) if c == i => {
+                        let (j_moves, i_moves) =
+                            (self.border(e, li, alpha), self.border(e, alpha, lj));
+                        cut.pair(n, other, stay, j_moves, i_moves);
                     }
-                    (Some(&ni), None) => cut.unary(ni, edge.cost(li, lj), edge.cost(alpha, lj)),
-                    (None, Some(&nj)) => cut.unary(nj, edge.cost(li, lj), edge.cost(li, alpha)),
-                    (None, None) => {}
+                    Some(_) => {}
+                    None if c == i => cut.unary(n, stay, self.border(e, alpha, lj)),
+                    None => cut.unary(n, stay, self.border(e, li, alpha)),
                 }
             }
         }
         let changed: Vec<usize> = movable
-            .into_iter()
+            .iter()
             .zip(cut.solve())
             .filter(|(_, moves)| *moves)
-            .map(|(c, _)| c)
+            .map(|(&c, _)| c)
             .collect();
         changed.iter().for_each(|&c| labels[c] = alpha);
         changed
+    }
+
+    /// Could the cell gain by `alpha` with all its borders? Most cells of a plane's region are nothing like the
+    /// plane and could not, whatever their neighbours do.
+    fn may_gain(&self, cell: usize, alpha: u32, graph: &CellGraph, labels: &[u32]) -> bool {
+        let keep = self.unary(cell, labels[cell]).unwrap_or(BLOCKED);
+        let change = self.unary(cell, alpha).unwrap_or(BLOCKED);
+        keep - change + graph.most_by_borders[cell] >= 0.0
     }
 }
 
@@ -165,10 +153,12 @@ struct CellGraph {
     surroundings_of_plane: Vec<Vec<usize>>,
     all: Vec<usize>,
     edges_of_cell: Vec<Vec<usize>>,
+    /// The most that a cell's borders can cost.
+    most_by_borders: Vec<f64>,
 }
 
 impl CellGraph {
-    fn new(energy: &Energy, planes: u32) -> Self {
+    fn new<B: Borders>(energy: &Energy<B>, planes: u32) -> Self {
         let mut cells_of_plane = vec![Vec::new(); planes as usize];
         for (cell, candidates) in energy.unary.iter().enumerate() {
             for (plane, _) in candidates {
@@ -177,8 +167,8 @@ impl CellGraph {
         }
         let mut edges_of_cell = vec![Vec::new(); energy.unary.len()];
         for (i, e) in energy.edges.iter().enumerate() {
-            edges_of_cell[e.cells[0]].push(i);
-            edges_of_cell[e.cells[1]].push(i);
+            edges_of_cell[e[0]].push(i);
+            edges_of_cell[e[1]].push(i);
         }
         let surroundings_of_plane = cells_of_plane
             .iter()
@@ -186,7 +176,7 @@ impl CellGraph {
                 let beside = cells
                     .iter()
                     .flat_map(|&c| &edges_of_cell[c])
-                    .flat_map(|&e| energy.edges[e].cells);
+                    .flat_map(|&e| energy.edges[e]);
                 let mut around: Vec<usize> = cells.iter().copied().chain(beside).collect();
                 around.sort_unstable();
                 around.dedup();
@@ -197,6 +187,9 @@ impl CellGraph {
             cells_of_plane,
             surroundings_of_plane,
             all: (0..energy.unary.len()).collect(),
+            most_by_borders: (edges_of_cell.iter())
+                .map(|edges| edges.iter().map(|&e| energy.borders.most(e)).sum())
+                .collect(),
             edges_of_cell,
         }
     }
@@ -259,7 +252,6 @@ const BLOCKED: f64 = 1e6;
 const UNIT: f64 = 1e6;
 
 /// A minimum cut over binary moves: 0 keeps the label, 1 takes the new one.
-#[derive(Default)]
 struct Cut {
     /// (cost of keeping, cost of moving) per node.
     unaries: Vec<(f64, f64)>,
@@ -268,9 +260,11 @@ struct Cut {
 }
 
 impl Cut {
-    fn node(&mut self) -> usize {
-        self.unaries.push((0.0, 0.0));
-        self.unaries.len() - 1
+    fn new(nodes: usize) -> Self {
+        Self {
+            unaries: vec![(0.0, 0.0); nodes],
+            arcs: Vec::new(),
+        }
     }
 
     fn unary(&mut self, node: usize, keep: f64, change: f64) {
@@ -365,16 +359,16 @@ impl OpenNodes {
     fn cut(mut self) -> Vec<bool> {
         let open: Vec<bool> = self.moves.iter().map(Option::is_none).collect();
         let arcs = || self.arcs.iter().filter(|(i, j, _)| open[*i] && open[*j]);
-        let mut connected = UnionFind::new(self.gain.len());
+        let mut connected = Dsu::new(self.gain.len());
         for (i, j, _) in arcs() {
-            connected.union(*i, *j);
+            connected.merge(*i, *j);
         }
         let mut parts: BTreeMap<usize, Part> = BTreeMap::new();
         for i in (0..self.gain.len()).filter(|&i| open[i]) {
-            parts.entry(connected.find(i)).or_default().nodes.push(i);
+            parts.entry(connected.leader(i)).or_default().nodes.push(i);
         }
         for arc in arcs() {
-            let part = parts.entry(connected.find(arc.0)).or_default();
+            let part = parts.entry(connected.leader(arc.0)).or_default();
             part.arcs.push(*arc);
         }
         for part in parts.values() {
@@ -399,46 +393,26 @@ impl Part {
     /// For each node: does it move?
     fn cut(&self, gain: &[i64]) -> Vec<bool> {
         let n = self.nodes.len();
-        let mut graph = DiGraph::<(), u64>::with_capacity(n + 2, n + self.arcs.len());
-        let place: Vec<NodeIndex> = (0..n).map(|_| graph.add_node(())).collect();
-        let (source, sink) = (graph.add_node(()), graph.add_node(()));
+        let (source, sink) = (n, n + 1);
+        let mut graph = MfGraph::<i64>::new(n + 2);
         // The source side keeps, the sink side moves.
-        for (&i, &at) in self.nodes.iter().zip(&place) {
+        for (place, &i) in self.nodes.iter().enumerate() {
             if gain[i] < 0 {
-                graph.add_edge(source, at, gain[i].unsigned_abs());
+                graph.add_edge(source, place, -gain[i]);
             } else if gain[i] > 0 {
-                graph.add_edge(at, sink, gain[i].unsigned_abs());
+                graph.add_edge(place, sink, gain[i]);
             }
         }
-        let of = |i: usize| {
-            place[self
-                .nodes
-                .binary_search(&i)
-                .expect("both ends are in the part")]
-        };
+        let of = |i: usize| (self.nodes.binary_search(&i)).expect("both ends are in the part");
         for &(i, j, capacity) in &self.arcs {
-            graph.add_edge(of(i), of(j), capacity.unsigned_abs());
+            graph.add_edge(of(i), of(j), capacity);
         }
-        let (_, flow) = petgraph::algo::dinics(&graph, source, sink);
+        graph.flow(source, sink);
         // Nodes that residual capacity still reaches from the source keep their label.
-        let mut keeps = vec![false; n + 2];
-        let mut stack = vec![source];
-        keeps[source.index()] = true;
-        while let Some(u) = stack.pop() {
-            let mut visit = |v: NodeIndex, free: bool| {
-                if free && !keeps[v.index()] {
-                    keeps[v.index()] = true;
-                    stack.push(v);
-                }
-            };
-            for e in graph.edges_directed(u, petgraph::Direction::Outgoing) {
-                visit(e.target(), flow[e.id().index()] < *e.weight());
-            }
-            for e in graph.edges_directed(u, petgraph::Direction::Incoming) {
-                visit(e.source(), flow[e.id().index()] > 0);
-            }
-        }
-        place.iter().map(|at| !keeps[at.index()]).collect()
+        graph.min_cut(source)[..n]
+            .iter()
+            .map(|keeps| !keeps)
+            .collect()
     }
 }
 
@@ -446,15 +420,36 @@ impl Part {
 mod tests {
     use super::*;
 
-    fn edge(a: usize, b: usize, unsupported: f64, supported: Vec<(u32, u32, f64)>) -> LabelEdge {
-        LabelEdge {
-            cells: [a, b],
-            unsupported,
-            supported,
+    /// Per edge: the cost when nothing supports it, and of pairs of labels that something supports.
+    struct Table(Vec<(f64, Vec<(u32, u32, f64)>)>);
+
+    impl Borders for Table {
+        fn cost(&self, edge: usize, left: u32, right: u32) -> f64 {
+            let (unsupported, supported) = &self.0[edge];
+            (supported.iter())
+                .find(|s| (s.0, s.1) == (left, right))
+                .map_or(*unsupported, |s| s.2)
+        }
+
+        fn most(&self, edge: usize) -> f64 {
+            let (unsupported, supported) = &self.0[edge];
+            supported.iter().fold(*unsupported, |most, s| most.max(s.2))
         }
     }
 
-    fn from_nothing(energy: &Energy) -> Vec<u32> {
+    /// A row of cells, each beside the next.
+    fn row(
+        unary: Vec<Vec<(u32, f64)>>,
+        borders: Vec<(f64, Vec<(u32, u32, f64)>)>,
+    ) -> Energy<Table> {
+        Energy {
+            edges: (1..unary.len()).map(|i| [i - 1, i]).collect(),
+            unary,
+            borders: Table(borders),
+        }
+    }
+
+    fn from_nothing(energy: &Energy<Table>) -> Vec<u32> {
         energy.minimise(2, vec![NO_PLANE; energy.unary.len()])
     }
 
@@ -462,14 +457,14 @@ mod tests {
     fn an_undecided_cell_follows_the_cheaper_border() {
         // Cells 0 - 1 - 2; plane 0 fits cell 0, plane 1 fits cell 2, cell 1 fits both equally; only the border
         // between 1 and 2 is supported.
-        let energy = Energy {
-            unary: vec![
+        let energy = row(
+            vec![
                 vec![(0, -5.0), (1, 5.0)],
                 vec![(0, -1.0), (1, -1.0)],
                 vec![(0, 5.0), (1, -5.0)],
             ],
-            edges: vec![edge(0, 1, 1.0, vec![]), edge(1, 2, 1.0, vec![(0, 1, 0.1)])],
-        };
+            vec![(1.0, vec![]), (1.0, vec![(0, 1, 0.1)])],
+        );
         assert_eq!(from_nothing(&energy), [0, 0, 1]);
     }
 
@@ -485,10 +480,8 @@ mod tests {
             let unary = (0..5)
                 .map(|_| (0..2).map(|p| (p, 2.0 * next() - 1.0)).collect())
                 .collect();
-            let edges = (0..4)
-                .map(|i| edge(i, i + 1, 0.2 + 0.5 * next(), vec![]))
-                .collect();
-            let energy = Energy { unary, edges };
+            let borders = (0..4).map(|_| (0.2 + 0.5 * next(), vec![])).collect();
+            let energy = row(unary, borders);
             let best = (0..243)
                 .map(|k: u32| {
                     let labels: Vec<u32> = (0..5)
@@ -504,10 +497,10 @@ mod tests {
 
     #[test]
     fn a_plane_never_covers_a_cell_that_it_may_not() {
-        let energy = Energy {
-            unary: vec![vec![(0, -5.0)], vec![(1, 0.5)], vec![(0, -5.0)]],
-            edges: vec![edge(0, 1, 3.0, vec![]), edge(1, 2, 3.0, vec![])],
-        };
+        let energy = row(
+            vec![vec![(0, -5.0)], vec![(1, 0.5)], vec![(0, -5.0)]],
+            vec![(3.0, vec![]), (3.0, vec![])],
+        );
         assert!(energy.of(&from_nothing(&energy)).is_finite());
     }
 }

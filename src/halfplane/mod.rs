@@ -18,25 +18,31 @@
 //!      grouping       collinear and coplanar grouping (figures 16 to 18)
 //!      plane_lines    new lines in a plane from segments of several views
 //!      borders        border lines, new lines by plane intersection (figures 19 to 22)
+//!      extent         closing lines where the views cease to agree on a plane
 //! 4.3  arrangement    the plan cut into cells by the border lines
 //!      consistency    similarity of a plane over the complete image set
 //!      hypothesis     planes with their regions, similarity and lines, ready to compete
 //!      evidence       what images and lines say for each plane over each cell
+//!      border_cost    what a border between two planes costs
 //!      labelling      conflicts: which plane covers which cell
+//!      islands        patches too small to be a facet or a hole
 //!      delineation    closed outlines
 //!      facets         verification; orders 4.2 and 4.3
 //! ```
 
 mod arrangement;
+mod border_cost;
 mod borders;
 mod consistency;
 mod delineation;
 mod evidence;
+mod extent;
 mod facets;
 #[cfg(test)]
 mod fixture;
 mod grouping;
 mod hypothesis;
+mod islands;
 mod labelling;
 mod line_index;
 mod neighbourhood;

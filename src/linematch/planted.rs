@@ -107,6 +107,7 @@ pub fn scene() -> Scene {
         origin: Vector3::zeros(),
         ground_z: None,
         warnings: Vec::new(),
+        survey: crate::scene::Survey::default(),
     }
 }
 

@@ -122,6 +122,7 @@ fn distortion(c: &[f64]) -> Option<Distortion> {
         radial: [at(0), at(1), at(4)],
         radial_below: [at(5), at(6), at(7)],
         tangential: [at(2), at(3)],
+        center: [0.0; 2],
     })
 }
 

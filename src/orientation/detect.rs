@@ -5,6 +5,7 @@
 
 use serde::Serialize;
 
+use super::patb;
 use super::text::{Line, data_lines};
 use crate::scene_loader::InputFile;
 
@@ -52,6 +53,20 @@ pub enum FileKind {
     BundlerList,
     /// Principal points of Bundler's images.
     PrincipalPoints,
+    /// ODM's shots.
+    Shots,
+    /// OpenSfM's cameras, beside the shots.
+    OpenSfmCameras,
+    /// INPHO's project.
+    Inpho,
+    /// PAT-B's exterior orientation.
+    Patb,
+    /// MicMac's orientation of one image.
+    Micmac,
+    /// MicMac's interior orientation.
+    MicmacCalibration,
+    /// A coordinate reference system.
+    ReferenceSystem,
     /// VisualSFM's model.
     Nvm,
     /// Strecha's camera.
@@ -88,6 +103,13 @@ impl FileKind {
             Self::Bundler => "Bundler cameras (bundle.out)",
             Self::BundlerList => "Bundler list of images (list.txt)",
             Self::PrincipalPoints => "principal points of the images",
+            Self::Shots => "ODM shots (shots.geojson)",
+            Self::OpenSfmCameras => "OpenSfM cameras (cameras.json)",
+            Self::Inpho => "INPHO project (.prj)",
+            Self::Patb => "PAT-B exterior orientation (.ori)",
+            Self::Micmac => "MicMac orientation",
+            Self::MicmacCalibration => "MicMac interior orientation",
+            Self::ReferenceSystem => "coordinate reference system",
             Self::Nvm => "VisualSFM model (.nvm)",
             Self::Strecha => "Strecha camera",
             Self::Middlebury => "Middlebury parameters",
@@ -130,6 +152,16 @@ fn by_content(text: &str) -> Option<FileKind> {
     if trimmed.starts_with("# Bundle file") {
         return Some(FileKind::Bundler);
     }
+    if trimmed.starts_with("$PROJECT") || (trimmed.starts_with('$') && text.contains("$EXT_ORI")) {
+        return Some(FileKind::Inpho);
+    }
+    if ["PROJC", "GEOG", "COMPD", "COMPOUNDCRS"]
+        .iter()
+        .any(|word| trimmed.starts_with(word))
+        && trimmed.contains('[')
+    {
+        return Some(FileKind::ReferenceSystem);
+    }
     if trimmed.starts_with("NVM_V3") {
         return Some(FileKind::Nvm);
     }
@@ -168,7 +200,8 @@ fn by_content(text: &str) -> Option<FileKind> {
     {
         return Some(FileKind::Projection);
     }
-    fields.iter().find_map(|f| by_fields(f))
+    let of_lines = fields.iter().find_map(|f| by_fields(f));
+    of_lines.or(patb::is_patb(text).then_some(FileKind::Patb))
 }
 
 /// The kind that one line of a list gives away.
@@ -199,6 +232,10 @@ fn by_tags(head: &str) -> Option<FileKind> {
         Some(FileKind::Blocks)
     } else if head.contains("<chunk") && head.contains("<sensor") {
         Some(FileKind::Metashape)
+    } else if head.contains("<OrientationConique") {
+        Some(FileKind::Micmac)
+    } else if head.contains("<CalibrationInternConique") {
+        Some(FileKind::MicmacCalibration)
     } else {
         None
     }
@@ -209,6 +246,10 @@ fn by_keys(text: &str) -> FileKind {
     let has = |keys: &[&str]| keys.iter().all(|key| text.contains(&format!("\"{key}\"")));
     if has(&["cameras", "shots", "projection_type"]) {
         FileKind::OpenSfm
+    } else if has(&["FeatureCollection", "filename", "translation", "rotation"]) {
+        FileKind::Shots
+    } else if has(&["projection_type", "width", "height"]) {
+        FileKind::OpenSfmCameras
     } else if has(&["frames", "transform_matrix"]) {
         FileKind::Nerfstudio
     } else if has(&["views", "K", "R", "C"]) {
@@ -260,9 +301,10 @@ fn by_name(file: &InputFile) -> FileKind {
         _ => match name.rsplit_once('.').map_or("", |(_, e)| e) {
             "p" => FileKind::Projection,
             "nvm" => FileKind::Nvm,
+            "ori" => FileKind::Patb,
             "camera" => FileKind::Strecha,
             "jpg" | "jpeg" | "png" | "tif" | "tiff" => FileKind::Image,
-            "json" => FileKind::Json,
+            "json" | "geojson" => FileKind::Json,
             _ => FileKind::Ignored,
         },
     }

@@ -2,6 +2,7 @@
 //!
 //! * OpenSfM: axis-angle and translation are `cam_from_world`; image coordinates are divided by the longer side and
 //!   counted from the centre of the image.
+//! * ODM's shots: the same rotation, but the translation is the projection centre in the projected frame.
 //! * nerfstudio: `transform_matrix` is `world_from_cam` with y up and z backwards (OpenGL); `applied_transform`
 //!   turned the world before and is undone. Intrinsics stand once or per frame.
 //! * K, R, C: our own conventions; `origin` is added to C.
@@ -12,7 +13,7 @@ use nalgebra::{Matrix3, Matrix4, Point3, Rotation3, Vector3};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-use super::{Orientation, pinhole};
+use super::{Anchor, Orientation, pinhole};
 use crate::camera::Distortion;
 use crate::{Error, Result};
 
@@ -48,6 +49,68 @@ pub(super) fn read_opensfm(path: &str, text: &str) -> Result<Vec<Orientation>> {
         })
     };
     model.shots.iter().map(shot).collect()
+}
+
+/// Where OpenSfM's frame touches the Earth: its `reference_lla`.
+pub(super) fn opensfm_anchor(text: &str) -> Option<Anchor> {
+    #[derive(Deserialize)]
+    struct Lla {
+        latitude: f64,
+        longitude: f64,
+        altitude: f64,
+    }
+    #[derive(Deserialize)]
+    struct Anchored {
+        reference_lla: Lla,
+    }
+    let models: Vec<Anchored> = serde_json::from_str(text).ok()?;
+    let lla = &models.first()?.reference_lla;
+    // A zero stands where the images have no positions.
+    let is_known = (lla.latitude, lla.longitude) != (0.0, 0.0) && lla.latitude.abs() <= 90.0;
+    is_known.then_some(Anchor {
+        lon_deg: lla.longitude,
+        lat_deg: lla.latitude,
+        height_m: lla.altitude,
+    })
+}
+
+/// Reads ODM's `shots.geojson`; `cameras` is `cameras.json`, without which the lens counts as free of distortion.
+pub(super) fn read_shots(
+    (path, text): (&str, &str),
+    cameras: Option<(&str, &str)>,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Orientation>> {
+    let shots: Shots = parse(path, text)?;
+    let cameras: BTreeMap<String, OpenSfmCamera> = match cameras {
+        Some((path, text)) => parse(path, text)?,
+        None => {
+            warnings.push(format!(
+                "{path}: there is no cameras.json: the principal point is taken to be in the middle, and the lens free of distortion"
+            ));
+            BTreeMap::new()
+        }
+    };
+    let shot = |feature: ShotFeature| {
+        let shot = feature.properties;
+        let known = shot.camera.as_ref().and_then(|name| cameras.get(name));
+        let camera = known
+            .cloned()
+            .unwrap_or_else(|| OpenSfmCamera::simple(&shot));
+        // Here the translation is the projection centre itself.
+        let r = Rotation3::new(Vector3::from(shot.rotation)).into_inner();
+        Ok(Orientation {
+            distortion: camera.distortion(),
+            size: Some((shot.width, shot.height)),
+            ..pinhole(
+                &shot.filename,
+                path,
+                camera.k(path)?,
+                r,
+                Point3::from(shot.translation),
+            )
+        })
+    };
+    shots.features.into_iter().map(shot).collect()
 }
 
 /// Reads a list of K, R, C.
@@ -107,6 +170,27 @@ struct Shot {
 }
 
 #[derive(Deserialize)]
+struct Shots {
+    features: Vec<ShotFeature>,
+}
+
+#[derive(Deserialize)]
+struct ShotFeature {
+    properties: ShotProperties,
+}
+
+#[derive(Deserialize)]
+struct ShotProperties {
+    filename: String,
+    camera: Option<String>,
+    focal: f64,
+    width: u32,
+    height: u32,
+    translation: [f64; 3],
+    rotation: [f64; 3],
+}
+
+#[derive(Clone, Deserialize)]
 struct OpenSfmCamera {
     projection_type: String,
     width: u32,
@@ -131,6 +215,25 @@ struct OpenSfmCamera {
 }
 
 impl OpenSfmCamera {
+    /// The camera of a shot about which nothing more is known.
+    fn simple(shot: &ShotProperties) -> Self {
+        Self {
+            projection_type: "perspective".to_owned(),
+            width: shot.width,
+            height: shot.height,
+            focal: Some(shot.focal),
+            focal_x: None,
+            focal_y: None,
+            c_x: 0.0,
+            c_y: 0.0,
+            k1: 0.0,
+            k2: 0.0,
+            k3: 0.0,
+            p1: 0.0,
+            p2: 0.0,
+        }
+    }
+
     fn k(&self, path: &str) -> Result<Matrix3<f64>> {
         if !["perspective", "brown", "simple_radial", "radial"].contains(&&*self.projection_type) {
             return Err(refuse(

@@ -4,9 +4,11 @@
 //! |---|---|---|
 //! | COLMAP text, binary | `cameras` + `images` | none: `x_cam = R X + t`, centre of the top-left pixel (0.5, 0.5) |
 //! | photogrammetric list | camera + exterior | omega, phi, kappa; mm from the frame's centre, y up; crops |
+//! | INPHO, PAT-B | text | see `inpho`, `patb` |
 //! | Metashape, BlocksExchange | XML | see `xml` |
+//! | MicMac | XML | see `micmac` |
 //! | Pix4D parameters, pmatrix | text | see `matrices` |
-//! | OpenSfM, nerfstudio, K R C | JSON | see `json` |
+//! | OpenSfM, ODM, nerfstudio, K R C | JSON | see `json` |
 //! | Bundler, VisualSFM | text | see `bundles` |
 //! | Strecha, Middlebury | text | see `matrices` |
 //! | projection matrices | one `.P` per image | 3 x 4 up to scale and sign; centre of the top-left pixel (0, 0) |
@@ -22,16 +24,23 @@ mod bundles;
 mod colmap;
 mod colmap_binary;
 mod detect;
+mod geodesy;
+mod inpho;
 mod json;
 mod matrices;
+mod micmac;
+mod patb;
 mod photogrammetric;
 mod projection;
+mod reference;
 mod sets;
 mod text;
 mod xml;
 
 pub use angles::{AngleUnit, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa};
 pub use detect::{FileKind, detect};
+pub use geodesy::{Anchor, to_metric_frame};
+pub use reference::{epsg_of, reference_of};
 pub use sets::{OrientationSet, orientation_sets};
 
 use nalgebra::{Matrix3, Point3};
@@ -49,6 +58,10 @@ pub enum Format {
     ColmapBinary,
     /// Camera file and list of X Y Z omega phi kappa.
     Photogrammetric,
+    /// INPHO's project.
+    Inpho,
+    /// Camera file and PAT-B's exterior orientation.
+    Patb,
     /// Metashape's `cameras.xml`.
     Metashape,
     /// ContextCapture's BlocksExchange.
@@ -57,6 +70,8 @@ pub enum Format {
     Pix4d,
     /// OpenSfM's `reconstruction.json`.
     OpenSfm,
+    /// ODM's `shots.geojson`, with `cameras.json` where it is there.
+    Shots,
     /// A JSON list of K, R, C.
     Krc,
     /// nerfstudio's `transforms.json`.
@@ -65,6 +80,8 @@ pub enum Format {
     Bundler,
     /// VisualSFM's `.nvm`.
     Nvm,
+    /// MicMac's `Orientation-*.xml`.
+    Micmac,
     /// Strecha's `.camera` files.
     Strecha,
     /// Middlebury's `_par.txt`.
@@ -82,14 +99,18 @@ impl Format {
             Self::Colmap => "COLMAP text model",
             Self::ColmapBinary => "COLMAP binary model",
             Self::Photogrammetric => "photogrammetric list",
+            Self::Inpho => "INPHO project",
+            Self::Patb => "PAT-B orientation",
             Self::Metashape => "Metashape cameras",
             Self::Blocks => "BlocksExchange",
             Self::Pix4d => "Pix4D camera parameters",
             Self::OpenSfm => "OpenSfM reconstruction",
+            Self::Shots => "ODM shots",
             Self::Krc => "JSON list of K, R, C",
             Self::Nerfstudio => "nerfstudio transforms",
             Self::Bundler => "Bundler model",
             Self::Nvm => "VisualSFM model",
+            Self::Micmac => "MicMac orientation",
             Self::Strecha => "Strecha cameras",
             Self::Middlebury => "Middlebury parameters",
             Self::Pmatrix => "Pix4D projection matrices",

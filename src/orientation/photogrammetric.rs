@@ -20,9 +20,10 @@ pub(super) fn read(
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Orientation>> {
     let frame = read_frame(camera.0, camera.1, warnings)?;
-    let poses: Vec<Pose> = data_lines(exterior.0, exterior.1)
-        .map(|line| read_pose(&line))
-        .collect::<Result<_>>()?;
+    let mut lines = data_lines(exterior.0, exterior.1).peekable();
+    // Some programs (Pix4D) name the columns first.
+    lines.next_if(is_heading);
+    let poses: Vec<Pose> = lines.map(|line| read_pose(&line)).collect::<Result<_>>()?;
     if poses.is_empty() {
         return Err(Error::File {
             file: exterior.0.to_owned(),
@@ -49,20 +50,57 @@ pub(super) fn read(
 
 /// Part of the frame that a view shows, pixels.
 #[derive(Clone, Copy)]
-struct Part {
+pub(super) struct Part {
     column: f64,
     row: f64,
-    size: (u32, u32),
+    pub size: (u32, u32),
 }
 
 /// Interior orientation of the full frame.
-struct Frame {
+pub(super) struct Frame {
     /// Principal distance in pixels along x and y.
     focal_px: [f64; 2],
     /// Principal point in the frame, pixels.
     principal_px: [f64; 2],
     whole: Part,
     crops: BTreeMap<String, Part>,
+}
+
+impl Frame {
+    /// The part that an image shows: its name in the camera file may have another extension, or none.
+    pub(super) fn part_of(&self, image: &str) -> &Part {
+        let stem = |name: &str| {
+            name.rsplit_once('.')
+                .map_or(name, |(stem, _)| stem)
+                .to_owned()
+        };
+        let alike = || {
+            self.crops
+                .iter()
+                .find(|(name, _)| stem(name) == stem(image))
+        };
+        let found = self
+            .crops
+            .get(image)
+            .or_else(|| alike().map(|(_, part)| part));
+        found.unwrap_or(&self.whole)
+    }
+
+    /// Calibration of a part, pixels.
+    pub(super) fn k(&self, part: &Part) -> Matrix3<f64> {
+        let ([fx, fy], [cx, cy]) = (self.focal_px, self.principal_px);
+        let (cx, cy) = (cx - part.column, cy - part.row);
+        Matrix3::new(fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0)
+    }
+
+    /// Where a part lies in the frame.
+    pub(super) fn crop(&self, part: &Part) -> Crop {
+        Crop {
+            column: part.column,
+            row: part.row,
+            frame: [self.whole.size.0, self.whole.size.1].map(f64::from),
+        }
+    }
 }
 
 /// The keys of a camera file that stand once, with the number of values that they may have.
@@ -73,7 +111,7 @@ const KEYS: [(&str, std::ops::RangeInclusive<usize>); 4] = [
     ("image_size_px", 2..=2),
 ];
 
-fn read_frame(file: &str, text: &str, warnings: &mut Vec<String>) -> Result<Frame> {
+pub(super) fn read_frame(file: &str, text: &str, warnings: &mut Vec<String>) -> Result<Frame> {
     let mut values: [Option<(Line, Vec<f64>)>; 4] = [const { None }; 4];
     let mut crops = BTreeMap::new();
     for line in data_lines(file, text) {
@@ -169,6 +207,15 @@ fn read_crop(line: &Line, fields: &[&str]) -> Result<(String, Part)> {
     Ok((fields[1].to_owned(), crop))
 }
 
+/// Does a line hold words where numbers should stand?
+fn is_heading(line: &Line) -> bool {
+    let fields = line.fields();
+    fields.len() > 1
+        && fields[1..]
+            .iter()
+            .all(|f| f.parse::<f64>().is_err() && f.starts_with(char::is_alphabetic))
+}
+
 /// One line of the exterior list; angles in the file's unit.
 struct Pose {
     image: String,
@@ -197,35 +244,19 @@ fn read_pose(line: &Line) -> Result<Pose> {
 
 impl Pose {
     fn orientation(&self, frame: &Frame, unit: AngleUnit) -> Orientation {
-        let crop = frame.crops.get(&self.image).unwrap_or(&frame.whole);
+        let part = frame.part_of(&self.image);
         let [omega, phi, kappa] = self.angles.map(|a| a * unit.radians());
-        let [fx, fy] = frame.focal_px;
-        let [cx, cy] = frame.principal_px;
         Orientation {
             image: self.image.clone(),
             source: self.source.clone(),
-            k: Matrix3::new(
-                fx,
-                0.0,
-                cx - crop.column,
-                0.0,
-                fy,
-                cy - crop.row,
-                0.0,
-                0.0,
-                1.0,
-            ),
+            k: frame.k(part),
             distortion: None,
             r: rotation_from_omega_phi_kappa(omega, phi, kappa).into_inner(),
             center: self.center,
-            size: Some(crop.size),
+            size: Some(part.size),
             from_middle: false,
             angles: Some(self.angles),
-            crop: Some(Crop {
-                column: crop.column,
-                row: crop.row,
-                frame: [frame.whole.size.0, frame.whole.size.1].map(f64::from),
-            }),
+            crop: Some(frame.crop(part)),
         }
     }
 }
@@ -352,6 +383,14 @@ mod tests {
                 assert!((o.r - view.camera.r).norm() < 1e-9);
             }
         }
+    }
+
+    #[test]
+    fn a_heading_is_skipped() {
+        let list = format!("imageName X Y Z Omega Phi Kappa\n{EXTERIOR}");
+        assert_eq!(read_both(CAMERA, &list).unwrap().len(), 1);
+        let damaged = read_both(CAMERA, &list.replace("Kappa", "3"));
+        assert!(damaged.unwrap_err().to_string().contains("line 1"));
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! Which files together orient images, and the reader of each format.
 
-use super::{FileKind, Format, Orientation};
-use super::{bundles, colmap, colmap_binary, json, matrices, photogrammetric, projection, xml};
+use super::{Anchor, FileKind, Format, Orientation};
+use super::{bundles, colmap, colmap_binary, inpho, json, matrices, micmac, patb, photogrammetric};
+use super::{projection, reference, xml};
 use crate::Result;
 use crate::scene_loader::InputFile;
 
@@ -19,10 +20,10 @@ pub struct OrientationSet {
 impl OrientationSet {
     /// The paths of its files, for messages and for choosing between sets: the folder when there are many.
     pub fn label(&self, inputs: &[InputFile]) -> String {
-        let what = if self.format == Format::Strecha {
-            ".camera"
-        } else {
-            ".P"
+        let what = match self.format {
+            Format::Strecha => ".camera",
+            Format::Micmac => ".xml",
+            _ => ".P",
         };
         match &self.files[..] {
             files if files.len() <= 2 || self.format == Format::Bundler => files
@@ -34,6 +35,17 @@ impl OrientationSet {
             files if self.folder.is_empty() => format!("{} files {what}", files.len()),
             files => format!("{}/ ({} files {what})", self.folder, files.len()),
         }
+    }
+
+    /// EPSG's number of the reference system that the files name.
+    pub fn reference(&self, inputs: &[InputFile]) -> Option<u32> {
+        reference::stated(self.format, &inputs[self.files[0]].text())
+    }
+
+    /// Zero of the local frame, where the files name it.
+    pub fn anchor(&self, inputs: &[InputFile]) -> Option<Anchor> {
+        let text = (self.format == Format::OpenSfm).then(|| inputs[self.files[0]].text())?;
+        json::opensfm_anchor(&text)
     }
 
     /// Reads the orientations of the set. Warnings are added to `warnings`.
@@ -57,16 +69,20 @@ impl OrientationSet {
                 colmap::read((path, &cameras), (texts[1].0, &images))
             }
             Format::Photogrammetric => photogrammetric::read(file(0), file(1), warnings),
+            Format::Inpho => inpho::read(path, text, warnings),
+            Format::Patb => patb::read(file(0), file(1), warnings),
             Format::Metashape => xml::read_metashape(path, text),
             Format::Blocks => xml::read_blocks(path, text),
             Format::Pix4d => matrices::read_pix4d(path, text),
             Format::OpenSfm => json::read_opensfm(path, text),
+            Format::Shots => json::read_shots(file(0), further(1), warnings),
             Format::Krc => json::read_krc(path, text),
             Format::Nerfstudio => json::read_nerfstudio(path, text),
             Format::Bundler => bundles::read_bundler(file(0), file(1), further(2)),
             Format::Nvm => bundles::read_nvm(path, text),
             Format::Middlebury => matrices::read_middlebury(path, text),
             Format::Pmatrix => matrices::read_pmatrix(file(0), further(1)),
+            Format::Micmac => micmac::read(&texts),
             Format::Strecha => each(&texts, matrices::read_strecha),
             Format::Projection => each(&texts, projection::read),
         }
@@ -106,6 +122,11 @@ pub fn orientation_sets(
             FileKind::PhotogrammetricCamera,
             FileKind::PhotogrammetricExterior,
         ),
+        (
+            Format::Patb,
+            FileKind::PhotogrammetricCamera,
+            FileKind::Patb,
+        ),
         (Format::Bundler, FileKind::Bundler, FileKind::BundlerList),
     ] {
         pairs(inputs, kinds, pair, &mut sets, &mut incomplete);
@@ -126,14 +147,29 @@ pub fn orientation_sets(
         FileKind::Projection,
     ));
     sets.extend(folders(inputs, kinds, Format::Strecha, FileKind::Strecha));
+    sets.extend(folders(inputs, kinds, Format::Micmac, FileKind::Micmac));
     for set in &mut sets {
         let extra = match set.format {
             Format::Bundler => FileKind::PrincipalPoints,
             Format::Pmatrix => FileKind::Offset,
+            Format::Shots => FileKind::OpenSfmCameras,
+            Format::Micmac => {
+                // Which of them belongs to an image stands in its file.
+                let lenses = (0..inputs.len()).filter(|&i| kinds[i] == FileKind::MicmacCalibration);
+                set.files.extend(lenses);
+                continue;
+            }
             _ => continue,
         };
         let beside = |&i: &usize| kinds[i] == extra && inputs[i].folder() == set.folder;
-        set.files.extend((0..inputs.len()).find(beside));
+        let alone = || {
+            (0..inputs.len())
+                .filter(|&i| kinds[i] == FileKind::OpenSfmCameras && set.format == Format::Shots)
+        };
+        // ODM keeps its cameras in another folder than its shots.
+        let only = || alone().next().filter(|_| alone().count() == 1);
+        let extra = (0..inputs.len()).find(beside).or_else(only);
+        set.files.extend(extra);
     }
     sets.sort_by(|a, b| (a.format, &a.folder, &a.files).cmp(&(b.format, &b.folder, &b.files)));
     (sets, incomplete)
@@ -146,6 +182,8 @@ fn alone(kind: FileKind) -> Option<Format> {
         FileKind::Blocks => Format::Blocks,
         FileKind::Pix4d => Format::Pix4d,
         FileKind::OpenSfm => Format::OpenSfm,
+        FileKind::Inpho => Format::Inpho,
+        FileKind::Shots => Format::Shots,
         FileKind::Krc => Format::Krc,
         FileKind::Nerfstudio => Format::Nerfstudio,
         FileKind::Nvm => Format::Nvm,
@@ -185,6 +223,14 @@ fn pairs(
                 first.describe()
             )),
         }
+    }
+    // A camera file serves two kinds of lists; it lacks one only where it has neither.
+    let has_list =
+        |&kind: &FileKind| [FileKind::Patb, FileKind::PhotogrammetricExterior].contains(&kind);
+    if first == FileKind::PhotogrammetricCamera
+        && (format == Format::Patb || kinds.iter().any(has_list))
+    {
+        return;
     }
     if of(second).next().is_none() {
         incomplete.extend(

@@ -71,6 +71,18 @@ pub(super) fn lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Li
         })
 }
 
+/// Lines as they are, for files whose columns count.
+pub(super) fn raw_lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Line<'a>> {
+    text.trim_start_matches('\u{feff}')
+        .lines()
+        .enumerate()
+        .map(move |(i, line)| Line {
+            file,
+            number: i + 1,
+            text: line.trim_end(),
+        })
+}
+
 /// Lines that hold data: neither empty nor a comment.
 pub(super) fn data_lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Line<'a>> {
     lines(file, text).filter(|line| !line.is_empty())

@@ -1,7 +1,7 @@
 //! Orientations in XML: Metashape's `cameras.xml` and ContextCapture's BlocksExchange.
 //!
-//! * Metashape: 4 x 4 per camera, camera (y down, z forward) to chunk; the chunk's rotation, translation and scale lead to
-//!   the world. cx, cy count from the middle of the image; p1 and p2 are exchanged against ours.
+//! * Metashape: 4 x 4 per camera, camera (y down, z forward) to chunk; the chunk's rotation, translation and scale
+//!   lead to the world. cx, cy count from the middle of the image; p1 and p2 are exchanged against ours.
 //! * BlocksExchange: rotation world to camera (`XRightYDown` unless `CameraOrientation` says `XRightYUp`) and
 //!   centre; the principal point counts from the centre of the top-left pixel; the focal length is in
 //!   pixels, or in the unit of `SensorSize`, which belongs to the longer side. P1, P2 as Metashape's.
@@ -106,8 +106,8 @@ struct Lens {
 }
 
 /// Reads elements of one file; refusals name it and the line.
-struct Reader<'a> {
-    path: &'a str,
+pub(super) struct Reader<'a> {
+    pub path: &'a str,
 }
 
 impl Reader<'_> {
@@ -224,13 +224,13 @@ impl Reader<'_> {
         Ok(m)
     }
 
-    fn number(&self, parent: Node, name: &str) -> Result<f64> {
+    pub(super) fn number(&self, parent: Node, name: &str) -> Result<f64> {
         let node = child(parent, name)
             .ok_or_else(|| self.error(parent, &format!("<{name}> is missing")))?;
         Ok(self.numbers::<1>(node)?[0])
     }
 
-    fn numbers<const N: usize>(&self, node: Node) -> Result<[f64; N]> {
+    pub(super) fn numbers<const N: usize>(&self, node: Node) -> Result<[f64; N]> {
         let text = node.text().unwrap_or_default();
         let numbers: Vec<f64> = text
             .split_whitespace()
@@ -245,7 +245,7 @@ impl Reader<'_> {
         format!("{}, line {}", self.path, line_of(node))
     }
 
-    fn error(&self, node: Node, problem: &str) -> Error {
+    pub(super) fn error(&self, node: Node, problem: &str) -> Error {
         Error::Line {
             file: self.path.to_owned(),
             line: line_of(node),
@@ -259,15 +259,15 @@ fn line_of(node: Node) -> usize {
     node.document().text_pos_at(node.range().start).row as usize
 }
 
-fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
+pub(super) fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
     node.children().find(|n| n.has_tag_name(name))
 }
 
-fn text_of<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
+pub(super) fn text_of<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
     child(node, name).and_then(|n| n.text()).map(str::trim)
 }
 
-fn parse<'a>(path: &str, text: &'a str) -> Result<Document<'a>> {
+pub(super) fn parse<'a>(path: &str, text: &'a str) -> Result<Document<'a>> {
     Document::parse(text.trim_start_matches('\u{feff}')).map_err(|e| Error::Line {
         file: path.to_owned(),
         line: e.pos().row as usize,

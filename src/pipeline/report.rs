@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::{Run, Stage, StageSummary};
+use crate::doctor::ViewShift;
 use crate::params::Params;
 
 /// The content of `report.json`.
@@ -13,6 +14,9 @@ struct Report<'a> {
     version: &'static str,
     views: Vec<ReportView<'a>>,
     origin: [f64; 3],
+    /// Reference system of the world, where it is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    coordinates: Option<String>,
     stages: &'a [StageSummary],
     /// Warnings of the readers; those of the stages stand with them.
     warnings: &'a [String],
@@ -26,19 +30,29 @@ struct ReportView<'a> {
     view: &'a str,
     width: u32,
     height: u32,
+    /// Shift against the other views, where they show enough to tell.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    orientation: Option<&'a ViewShift>,
 }
 
 /// The bytes of `report.json`; `seconds` may be empty.
 pub(super) fn report(run: &Run, seconds: &[(Stage, f64)]) -> Vec<u8> {
-    let views = run.scene.views.iter().map(|view| ReportView {
-        view: &view.name,
-        width: view.camera.width,
-        height: view.camera.height,
-    });
+    let views = run
+        .scene
+        .views
+        .iter()
+        .enumerate()
+        .map(|(i, view)| ReportView {
+            view: &view.name,
+            width: view.camera.width,
+            height: view.camera.height,
+            orientation: run.scene.survey.shifts.get(i),
+        });
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         views: views.collect(),
         origin: run.scene.origin.into(),
+        coordinates: run.scene.survey.describe(),
         stages: &run.summaries,
         warnings: &run.scene.warnings,
         params: &run.params,

@@ -46,6 +46,9 @@ pub struct ImageHeader {
 /// Most pixels in one image: larger than the largest aerial frame camera (about 450 megapixels).
 const MAX_PIXELS: u64 = 600_000_000;
 
+/// No encoding packs more pixels into a byte (deflate: a thousand bytes): what claims more would only cost memory.
+const MOST_PIXELS_PER_BYTE: u64 = 4096;
+
 /// The format of an image that can be read, by its first bytes.
 pub fn image_format(bytes: &[u8]) -> Option<ImageFormat> {
     image::guess_format(bytes)
@@ -69,14 +72,25 @@ pub fn image_header(file: &str, bytes: &[u8]) -> Result<ImageHeader> {
 
 /// Decodes an image. `file` is for messages.
 pub fn load_image(file: &str, bytes: &[u8]) -> Result<Photograph> {
+    let image = decode(file, bytes)?;
+    let brightest = brightest(&image);
+    finish(file, image, brightest)
+}
+
+/// The pixels as they are stored.
+pub(super) fn decode(file: &str, bytes: &[u8]) -> Result<DynamicImage> {
     if image_format(bytes) == Some(ImageFormat::Jpeg) && !jpeg_is_complete(bytes) {
         // The decoder would fill what is missing with grey, where no line is ever found.
         return Err(unreadable(file, "the JPEG is cut off before its end"));
     }
     let decoder = decoder(file, bytes)?;
-    let image =
-        DynamicImage::from_decoder(decoder).map_err(|e| unreadable(file, &e.to_string()))?;
-    photograph(image).ok_or_else(|| Error::File {
+    DynamicImage::from_decoder(decoder).map_err(|e| unreadable(file, &e.to_string()))
+}
+
+/// Colours and grey values of decoded pixels; `brightest` is the brightest value of the whole image, where it has 16
+/// bits.
+pub(super) fn finish(file: &str, image: DynamicImage, brightest: u16) -> Result<Photograph> {
+    photograph(image, brightest).ok_or_else(|| Error::File {
         file: file.to_owned(),
         problem: "it holds floating-point values, whose range is unknown".to_owned(),
         advice: "convert it to 8 or 16 bits per channel".to_owned(),
@@ -104,6 +118,13 @@ fn decoder<'a>(file: &str, bytes: &'a [u8]) -> Result<impl ImageDecoder + use<'a
                 MAX_PIXELS / 1_000_000
             ),
         });
+    }
+    if pixels / MOST_PIXELS_PER_BYTE > bytes.len() as u64 {
+        let problem = format!(
+            "{} bytes cannot hold {width} x {height} pixels",
+            bytes.len()
+        );
+        return Err(unreadable(file, &problem));
     }
     Ok(decoder)
 }
@@ -137,13 +158,13 @@ fn jpeg_is_complete(bytes: &[u8]) -> bool {
 }
 
 /// Colours in 8 bits and grey values; `None` for floating-point images.
-fn photograph(image: DynamicImage) -> Option<Photograph> {
+fn photograph(image: DynamicImage, brightest: u16) -> Option<Photograph> {
     match image {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => None,
         DynamicImage::ImageLuma16(_)
         | DynamicImage::ImageLumaA16(_)
         | DynamicImage::ImageRgb16(_)
-        | DynamicImage::ImageRgba16(_) => Some(scale_16_bits(&image.into_rgb16())),
+        | DynamicImage::ImageRgba16(_) => Some(scale_16_bits(&image.into_rgb16(), brightest)),
         _ => {
             let rgb = image.into_rgb8();
             let gray = Gray::from_rgb(&rgb);
@@ -152,8 +173,23 @@ fn photograph(image: DynamicImage) -> Option<Photograph> {
     }
 }
 
-fn scale_16_bits(deep: &image::ImageBuffer<image::Rgb<u16>, Vec<u16>>) -> Photograph {
-    let brightest = deep.as_raw().iter().copied().max().unwrap_or(0);
+/// The brightest value of an image of 16 bits, of whichever colour; 0 for others.
+pub(super) fn brightest(image: &DynamicImage) -> u16 {
+    match image {
+        DynamicImage::ImageLuma16(_)
+        | DynamicImage::ImageLumaA16(_)
+        | DynamicImage::ImageRgb16(_)
+        | DynamicImage::ImageRgba16(_) => {
+            image.to_rgb16().as_raw().iter().copied().max().unwrap_or(0)
+        }
+        _ => 0,
+    }
+}
+
+fn scale_16_bits(
+    deep: &image::ImageBuffer<image::Rgb<u16>, Vec<u16>>,
+    brightest: u16,
+) -> Photograph {
     let bits = (u16::BITS - brightest.leading_zeros()).max(8);
     let white = ((1u32 << bits) - 1) as f32;
     let rgb = image::RgbImage::from_fn(deep.width(), deep.height(), |x, y| {

@@ -2,9 +2,11 @@
 
 mod filter;
 mod load;
+mod part;
 
 pub use filter::gaussian_blur;
 pub use load::{ImageHeader, Photograph, image_format, image_header, load_image};
+pub use part::{Part, decoding_bytes, load_part};
 
 /// A raster of grey values (or of anything else in f32), row by row from the top.
 #[derive(Clone, Debug, PartialEq)]

@@ -393,18 +393,28 @@ mod tests {
     }
 
     #[test]
+    fn an_outline_that_folds_over_loses_the_fold_only() {
+        // The last corner lies beyond the first side: a triangle of 4 x 4 / 2 and a fold, turned inside out.
+        let folded = facet(
+            &[&[(30.0, 0.0), (34.0, 0.0), (34.0, 4.0), (33.0, -1.0)]],
+            5.0,
+            0.0,
+            0.0,
+        );
+        let (model, trace) = close_buildings(&[folded], |_| 0.0);
+        assert_eq!(trace.rejected, []);
+        assert_eq!(check_invariants(&model), []);
+        // Sides (34, 4) - (33, -1) and (30, 0) - (34, 0) cross at x = 33.2.
+        assert!((model.buildings[0].solid.volume() - 5.0 * 0.5 * 0.8 * 4.0).abs() < 1e-3);
+    }
+
+    #[test]
     fn hopeless_facets_are_refused_with_a_reason() {
         let mut nan = rectangle(0.0, 0.0, 4.0, 4.0, 5.0, 0.0, 0.0);
         nan.outer[1].x = f64::NAN;
         let steep = rectangle(10.0, 0.0, 14.0, 4.0, 5.0, 50.0, 0.0);
         let sliver = rectangle(20.0, 0.0, 24.0, 1e-4, 5.0, 0.0, 0.0);
-        let bow = facet(
-            &[&[(30.0, 0.0), (34.0, 0.0), (29.0, 4.0), (34.0, 5.0)]],
-            5.0,
-            0.0,
-            0.0,
-        );
-        let (model, trace) = close_buildings(&[nan, steep, sliver, bow], |_| 0.0);
+        let (model, trace) = close_buildings(&[nan, steep, sliver], |_| 0.0);
         assert!(model.buildings.is_empty() && model.facets.is_empty());
         let reasons: Vec<_> = trace.rejected.iter().map(|r| r.1).collect();
         assert_eq!(
@@ -412,8 +422,7 @@ mod tests {
             [
                 SolidRejection::NoOutline,
                 SolidRejection::TooSteep,
-                SolidRejection::TooSmall,
-                SolidRejection::Conflict
+                SolidRejection::TooSmall
             ]
         );
     }

@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use serde::{Deserialize, Serialize};
+
 /// A file in memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InputFile {
@@ -51,7 +53,8 @@ pub(super) fn stem(path: &str) -> &str {
 }
 
 /// What the user asks for beyond the files.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct LoadOptions {
     /// Part of the path of the orientation to take, where there are several.
     pub orientation: Option<String>,
@@ -61,4 +64,12 @@ pub struct LoadOptions {
     pub roi: Option<[f64; 4]>,
     /// Height of the ground, metres, world frame of the input.
     pub ground_z: Option<f64>,
+    /// EPSG's number of the reference system of the world; what the files say when absent.
+    pub epsg: Option<u32>,
+    /// Memory that may be taken, megabytes; 1500 in the browser and 32768 elsewhere when absent.
+    pub memory_mb: Option<u32>,
+    /// Undo the mistake in the orientation that the images give away, instead of refusing the scene.
+    pub apply_fix: bool,
+    /// Correct shifts of a few pixels between the views.
+    pub adjust: bool,
 }

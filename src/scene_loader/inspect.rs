@@ -19,6 +19,8 @@ pub struct Inspection {
     pub orientations: Vec<OrientationReport>,
     /// Number of views that a run would use.
     pub views: usize,
+    /// Memory that a run takes at its peak, about, megabytes; 0 where there are no views.
+    pub peak_mb: u64,
     /// What a run would warn of.
     pub warnings: Vec<String>,
     /// Why a run would refuse these files; empty when it would not.
@@ -83,6 +85,7 @@ pub fn inspect_files(files: &[InputFile], options: &LoadOptions) -> Inspection {
         orientation: plan.orientation,
         orientations: plan.candidates,
         views: plan.views.len(),
+        peak_mb: plan.peak_bytes >> 20,
         warnings: plan.warnings,
         errors: plan.errors.iter().map(ToString::to_string).collect(),
         is_implausible: plan.is_implausible,

@@ -8,8 +8,12 @@ use super::inspect::OrientationReport;
 use super::names::{best_match, listed, match_rank};
 use super::region;
 use crate::camera::{Camera, Distortion};
-use crate::orientation::{Crop, FileKind, Orientation, OrientationSet, detect, orientation_sets};
+use crate::orientation::{
+    Crop, FileKind, Orientation, OrientationSet, detect, orientation_sets, reference_of,
+    to_metric_frame,
+};
 use crate::raster::{ImageHeader, image_header};
+use crate::scene::Survey;
 use crate::{Error, Result};
 
 /// Everything about a scene but its pixels.
@@ -26,6 +30,10 @@ pub(super) struct Plan {
     pub views: Vec<PlannedView>,
     /// Added to local coordinates it gives the world of the input.
     pub origin: Vector3<f64>,
+    /// Reference system and place on the Earth.
+    pub survey: Survey,
+    /// Bytes that loading takes at its peak, the files included.
+    pub peak_bytes: u64,
     pub warnings: Vec<String>,
     /// Refusals, the one to report first in front.
     pub errors: Vec<Error>,
@@ -54,12 +62,19 @@ pub(super) struct PlannedView {
 }
 
 impl PlannedView {
+    /// Number of pixels of the part that is used.
+    pub(super) fn pixels(&self) -> u64 {
+        let [_, _, width, height] =
+            self.part
+                .unwrap_or([0, 0, self.whole.width, self.whole.height]);
+        u64::from(width) * u64::from(height)
+    }
+
     /// The camera of the part that is used.
     pub(super) fn camera(&self) -> Camera {
         let mut camera = self.whole.clone();
         if let Some([column, row, width, height]) = self.part {
-            camera.k[(0, 2)] -= f64::from(column);
-            camera.k[(1, 2)] -= f64::from(row);
+            camera.k = super::moved(&camera.k, [column, row]);
             (camera.width, camera.height) = (width, height);
         }
         camera
@@ -76,6 +91,8 @@ impl Plan {
             candidates: Vec::new(),
             views: Vec::new(),
             origin: Vector3::zeros(),
+            survey: Survey::default(),
+            peak_bytes: 0,
             warnings: Vec::new(),
             errors: Vec::new(),
             is_implausible: false,
@@ -207,9 +224,37 @@ impl Plan {
             ));
         }
         self.orientation = Some(format!("{}: {}", set.format.name(), set.label(files)));
-        set.read(files, &mut self.warnings)
-            .map_err(|e| self.errors.push(e))
-            .ok()
+        self.survey = Survey {
+            epsg: options
+                .epsg
+                .or_else(|| set.reference(files))
+                .or_else(|| self.stated_reference(files)),
+            anchor: set.anchor(files),
+            shifts: Vec::new(),
+        };
+        let read = set.read(files, &mut self.warnings);
+        let mut orientations = read.map_err(|e| self.errors.push(e)).ok()?;
+        if let Some(anchor) = to_metric_frame(&mut orientations) {
+            self.warnings.push(format!(
+                "the positions are places on the Earth; the model stands in metres east and north of {:.3} degrees of longitude, {:.3} \
+                 of latitude, heights above the ellipsoid",
+                anchor.lon_deg, anchor.lat_deg
+            ));
+            self.survey = Survey {
+                epsg: None,
+                anchor: Some(anchor),
+                shifts: Vec::new(),
+            };
+        }
+        Some(orientations)
+    }
+
+    /// The reference system that a file of its own names.
+    fn stated_reference(&self, files: &[InputFile]) -> Option<u32> {
+        let kinds = self.kinds.iter().zip(files);
+        kinds
+            .filter_map(|(&kind, file)| reference_of(kind, &file.text()))
+            .next()
     }
 
     fn warn_of_json(&mut self, files: &[InputFile]) {
@@ -301,14 +346,17 @@ impl Plan {
         self.is_implausible = self.errors.is_empty() && !found.errors.is_empty();
         self.errors.extend(found.errors);
         self.warnings.extend(found.warnings);
-        if let (Some(roi), Some(heights)) = (options.roi, found.heights) {
+        // A mistaken orientation shows the region elsewhere: then it is cut after the correction.
+        let cut_now = !options.apply_fix;
+        if let (Some(roi), Some(heights), true) = (options.roi, found.heights, cut_now) {
             let roi = region::Region::new(roi, &self.origin, heights);
             match roi.and_then(|roi| roi.cut(files, &mut views)) {
                 Ok(warnings) => self.warnings.extend(warnings),
                 Err(error) => self.errors.push(error),
             }
         }
-        let too_large = checks::check_memory(&views);
+        self.peak_bytes = checks::peak_bytes(files, &views);
+        let too_large = checks::check_memory(self.peak_bytes, &views, options.memory_mb);
         self.is_implausible &= too_large.is_none();
         self.errors.extend(too_large);
         self.views = views;

@@ -334,6 +334,7 @@ fn a_distorting_lens_is_removed() {
         radial: [-0.02, 0.001, 0.0],
         radial_below: [0.0; 3],
         tangential: [1e-4, -2e-4],
+        center: [0.0; 2],
     };
     for view in &mut scene.views {
         view.rgb = distorted(view, &lens);
@@ -359,4 +360,164 @@ fn a_distorting_lens_is_removed() {
     assert!(after < 0.006 && after < before / 3.0, "{before} {after}");
     edit(&mut files, "colmap/cameras.txt", "-0.02 0.001", "-80 0.001");
     refused(&files, &all(), &["s1_01.png: the lens distortion", "folds"]);
+}
+
+#[test]
+fn a_part_of_a_large_frame_has_the_pixels_of_the_whole() {
+    let (mut scene, truth) = gable_scene(400);
+    let lens = Distortion {
+        radial: [-0.02, 0.001, 0.0],
+        radial_below: [0.0; 3],
+        tangential: [1e-4, -2e-4],
+        center: [0.0; 2],
+    };
+    for view in &mut scene.views {
+        view.rgb = distorted(view, &lens);
+    }
+    let mut files = inputs(to_files(&scene));
+    for file in files.iter_mut().filter(|f| f.path.ends_with(".png")) {
+        let image = image::load_from_memory(&file.bytes).unwrap();
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        image
+            .write_to(&mut bytes, image::ImageFormat::Tiff)
+            .unwrap();
+        file.bytes = bytes.into_inner();
+    }
+    let cameras = find(&mut files, "colmap/cameras.txt");
+    let lines = cameras.text().replace(" PINHOLE", " OPENCV");
+    let lines = lines.lines().map(|line| match line.starts_with('#') {
+        true => format!("{line}\n"),
+        false => format!("{line} -0.02 0.001 1e-4 -2e-4\n"),
+    });
+    cameras.bytes = lines.collect::<String>().into_bytes();
+    let ground = LoadOptions {
+        ground_z: Some(truth.ground_z),
+        ..all()
+    };
+    let whole = load_scene(&files, &ground).unwrap();
+    let roi = LoadOptions {
+        roi: Some([-2.0, -1.0, 1.0, 1.0]),
+        ..ground
+    };
+    let cut = load_scene(&files, &roi).unwrap();
+    let mut moved = 0;
+    for (part, whole) in cut.views.iter().zip(&whole.views) {
+        let offset = [0, 1].map(|i| (whole.camera.k[(i, 2)] - part.camera.k[(i, 2)]) as u32);
+        assert!(part.camera.width * part.camera.height < 400 * 400);
+        moved += offset[0] + offset[1];
+        for (x, y, pixel) in part.rgb.enumerate_pixels() {
+            let expected = whole.rgb.get_pixel(x + offset[0], y + offset[1]);
+            assert!(
+                pixel
+                    .0
+                    .iter()
+                    .zip(expected.0)
+                    .all(|(a, b)| a.abs_diff(b) <= 1)
+            );
+        }
+    }
+    assert!(moved > 0);
+    // Less is needed for a part, and the figure says so.
+    let peak = |options: &LoadOptions| inspect_files(&files, options).peak_mb;
+    assert!(peak(&roi) < peak(&all()) && peak(&all()) > 100);
+}
+
+#[test]
+fn a_region_behind_tilted_views_is_not_shown_by_them() {
+    let (mut scene, truth) = gable_scene(48);
+    // The cameras fly south of the house and look north, down by 40 degrees.
+    let tilt = nalgebra::Rotation3::from_euler_angles(50f64.to_radians(), 0.0, 0.0);
+    for view in &mut scene.views {
+        view.camera.center = tilt * view.camera.center;
+        view.camera.r *= tilt.inverse().matrix();
+    }
+    let files = inputs(to_files(&scene));
+    let options = |roi| LoadOptions {
+        roi: Some(roi),
+        ground_z: Some(truth.ground_z),
+        ..all()
+    };
+    assert_eq!(
+        load_scene(&files, &options([-20.0, -20.0, 20.0, 20.0]))
+            .unwrap()
+            .views
+            .len(),
+        6
+    );
+    // Beside it, below the cameras, behind them, and near the horizon.
+    for (x, y) in [
+        (100.0, 0.0),
+        (0.0, -1000.0),
+        (0.0, -5000.0),
+        (0.0, 20_000.0),
+    ] {
+        let elsewhere = [x - 20.0, y - 20.0, x + 20.0, y + 20.0];
+        refused(
+            &files,
+            &options(elsewhere),
+            &["seen by 0 views", "three are needed"],
+        );
+    }
+}
+
+#[test]
+fn a_geocentric_scene_stands_on_the_ground() {
+    let (mut scene, truth) = gable_scene(48);
+    // East, north, up at 8.412 E, 49.013 N in geocentric coordinates, and that place itself.
+    let (lon, lat) = (8.412f64.to_radians(), 49.013f64.to_radians());
+    let ((sl, cl), (sp, cp)) = (crate::math::sin_cos(lon), crate::math::sin_cos(lat));
+    let axes = nalgebra::Matrix3::new(-sl, cl, 0.0, -sp * cl, -sp * sl, cp, cp * cl, cp * sl, sp);
+    let n = 6_378_137.0 / (1.0 - 6.694_379_990_141_316e-3 * sp * sp).sqrt();
+    let zero = nalgebra::Vector3::new(
+        n * cp * cl,
+        n * cp * sl,
+        n * (1.0 - 6.694_379_990_141_316e-3) * sp,
+    );
+    let planted = scene.clone();
+    for view in &mut scene.views {
+        view.camera.center = (axes.transpose() * view.camera.center.coords + zero).into();
+        view.camera.r *= axes;
+    }
+    let mut files = inputs(to_files(&planted));
+    files.retain(|f| !f.path.starts_with("colmap"));
+    files.extend(inputs(crate::synthetic::to_colmap(&scene)));
+    let found = load_scene(&files, &all()).unwrap();
+    assert!(
+        found.warnings[0].contains("8.412 degrees of longitude"),
+        "{:?}",
+        found.warnings
+    );
+    let anchor = found.survey.anchor.unwrap();
+    assert_eq!(
+        (anchor.lon_deg, anchor.lat_deg, found.survey.epsg),
+        (8.412, 49.013, None)
+    );
+    for (a, b) in found.views.iter().zip(&planted.views) {
+        for corner in truth.facets.iter().flat_map(|(_, ring)| ring) {
+            let (p, q) = (
+                a.camera.project(corner).unwrap(),
+                b.camera.project(corner).unwrap(),
+            );
+            assert!((p - q).norm() < 0.01, "{p} {q}");
+        }
+    }
+}
+
+#[test]
+fn the_reference_system_is_that_of_the_files_or_the_one_asked_for() {
+    let mut files = gable_files();
+    let epsg = |files: &[InputFile], options: &LoadOptions| {
+        load_scene(files, options).unwrap().survey.epsg
+    };
+    assert_eq!(epsg(&files, &all()), None);
+    files.push(InputFile::new(
+        "gable_wkt.prj",
+        br#"PROJCS["x",AUTHORITY["EPSG","31467"]]"#.to_vec(),
+    ));
+    assert_eq!(epsg(&files, &all()), Some(31467));
+    let asked = LoadOptions {
+        epsg: Some(25832),
+        ..all()
+    };
+    assert_eq!(epsg(&files, &asked), Some(25832));
 }

@@ -22,7 +22,8 @@ pub(super) fn verdict(
                 "the images contradict their orientation: they agree to {:.2} as it stands, and to {:.2} if {words}",
                 before.score, after.score
             ),
-            advice: "correct the orientation file, or export it again".to_owned(),
+            advice: "correct the orientation file, export it again, or have it corrected on loading (--apply-fix)"
+                .to_owned(),
         });
     }
     if let Some(refusal) = refusal {

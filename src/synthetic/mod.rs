@@ -92,6 +92,7 @@ fn scene_of(building: &building::Building, size: u32) -> (Scene, SyntheticTruth)
         origin: Vector3::zeros(),
         ground_z: None,
         warnings: Vec::new(),
+        survey: crate::scene::Survey::default(),
     };
     (scene, building.truth.clone())
 }

@@ -4,6 +4,8 @@
 //! geometry in it: a method parses, calls one stage, converts.
 
 mod convert;
+mod figures;
 mod session;
 
-pub use session::Session;
+pub use figures::Picture;
+pub use session::{Session, ViewImage};

@@ -9,32 +9,50 @@ use wasm_bindgen::prelude::*;
 use super::convert::{
     end_points_px, from_js, input_error, line_array, named_error, row_major, segment_array, to_js,
 };
+use super::figures::{lines_of, segments_of};
+use crate::halfplane::PointsOfInterest;
 use crate::linematch::SupportKind;
 use crate::objectspace::{Window, WindowTrace};
 use crate::params::{Method, Params};
 use crate::pipeline::{Run, Stage};
 use crate::progress::Listener;
-use crate::scene_loader::{InputFile, LoadOptions, inspect_files, load_scene, unpack};
+use crate::scene_loader::{
+    InputFile, LoadOptions, Project, inspect_files, load_scene, open_project, unpack,
+};
 
 /// Files, parameters and the reconstruction made of them.
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Session {
     files: Vec<InputFile>,
+    /// The project that was added last.
+    project: Option<Project>,
     params: Params,
     run: Option<Run>,
     /// Written on first request after the last stage.
     outputs: Option<Vec<(String, Vec<u8>)>>,
+    /// Points of interest, found on first request for a figure.
+    pub(super) points: Option<Vec<PointsOfInterest>>,
 }
 
 /// What `load` may be told; see [`LoadOptions`].
-#[derive(Default, Deserialize)]
+#[derive(Default, Deserialize, Serialize)]
 #[serde(default, rename_all = "camelCase", deny_unknown_fields)]
 struct JsLoadOptions {
     orientation: Option<String>,
     views: Option<Vec<String>>,
     roi: Option<[f64; 4]>,
     ground_z: Option<f64>,
+    epsg: Option<u32>,
+    apply_fix: bool,
+    adjust: bool,
+}
+
+/// What `openedProject` returns.
+#[derive(Serialize)]
+struct OpenedProject<'a> {
+    options: JsLoadOptions,
+    params: &'a Params,
 }
 
 /// What `load` returns.
@@ -108,7 +126,15 @@ impl Session {
     /// Adds an image or orientation file, or an archive of them; a file of the same path is replaced.
     #[wasm_bindgen(js_name = addFile)]
     pub fn add_file(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), JsValue> {
-        for added in unpack(InputFile::new(path, bytes)).map_err(|e| input_error(&e))? {
+        let opened = unpack(InputFile::new(path, bytes)).and_then(open_project);
+        let (files, project) = opened.map_err(|e| input_error(&e))?;
+        if let Some(project) = project {
+            // A project is a whole state: nothing else stays.
+            self.clear_files();
+            self.params = project.params.clone();
+            self.project = Some(project);
+        }
+        for added in files {
             self.files.retain(|file| file.path != added.path);
             self.files.push(added);
         }
@@ -116,12 +142,37 @@ impl Session {
         Ok(())
     }
 
+    /// The wishes and parameters of the project among the added files, `{options, params}`; null where there is none.
+    #[wasm_bindgen(js_name = openedProject)]
+    pub fn opened_project(&self) -> Result<JsValue, JsValue> {
+        to_js(&self.project.as_ref().map(|project| OpenedProject {
+            options: JsLoadOptions::from(&project.options),
+            params: &project.params,
+        }))
+    }
+
+    /// The files, the options of `load`, the parameters and the results so far as a project file (.zip).
+    #[wasm_bindgen(js_name = exportProject)]
+    pub fn export_project(&self, options: JsValue) -> Result<Vec<u8>, JsValue> {
+        let project = Project::new(load_options(&options)?, self.params.clone());
+        let results = self
+            .run
+            .as_ref()
+            .map(|run| run.files(&[]))
+            .unwrap_or_default();
+        project
+            .pack(&self.files, &results)
+            .map_err(|e| input_error(&e))
+    }
+
     /// Forgets all files and all results.
     #[wasm_bindgen(js_name = clearFiles)]
     pub fn clear_files(&mut self) {
         self.files.clear();
+        self.project = None;
         self.run = None;
         self.outputs = None;
+        self.points = None;
     }
 
     /// What the files are: their kinds, sizes, orientation status, and warnings; under the options of
@@ -136,6 +187,7 @@ impl Session {
         let options = load_options(&options)?;
         self.run = None;
         self.outputs = None;
+        self.points = None;
         let scene = load_scene(&self.files, &options).map_err(|e| input_error(&e))?;
         let views = scene.views.iter().map(|view| ViewInfo {
             name: view.name.clone(),
@@ -158,6 +210,7 @@ impl Session {
     pub fn set_params(&mut self, params: JsValue) -> Result<(), JsValue> {
         self.params = from_js(&params, "parameters")?;
         self.outputs = None;
+        self.points = None;
         if let Some(run) = &mut self.run {
             run.set_params(self.params.clone());
         }
@@ -181,13 +234,8 @@ impl Session {
 
     /// The segments of a view: x0, y0, x1, y1 each, pixels.
     pub fn segments(&self, view: usize) -> Result<Float32Array, JsValue> {
-        let results = self.loaded()?.results();
-        if let Some(regions) = &results.regions {
-            let lines = regions.value.get(view).map_or(&[][..], |l| l);
-            return Ok(segment_array(lines.iter().map(|l| &l.line.segment)));
-        }
-        let found = results.segments.as_ref();
-        let segments = found.and_then(|s| s.value.get(view)).map_or(&[][..], |s| s);
+        let all = segments_of(self.loaded()?);
+        let segments = all.get(view).map_or(&[][..], |s| s);
         Ok(segment_array(segments.iter().map(|s| &s.segment)))
     }
 
@@ -195,11 +243,14 @@ impl Session {
     /// kind (0 matched, 1 merged, 2 grown) and index of the line each.
     #[wasm_bindgen(js_name = matchedSegments)]
     pub fn matched_segments(&self, view: usize) -> Result<Float32Array, JsValue> {
-        let results = self.loaded()?.results();
-        let supports: Vec<_> = match (&results.lines, &results.matches) {
-            (Some(lines), _) => lines.value.iter().map(|l| &l.supports).collect(),
-            (None, Some(matches)) => matches.value.iter().map(|m| &m.supports).collect(),
-            (None, None) => Vec::new(),
+        let run = self.loaded()?;
+        let lines = lines_of(run);
+        let matches = run.results().matches.as_ref();
+        let supports: Vec<_> = match matches {
+            Some(matches) if lines.is_empty() => {
+                matches.value.iter().map(|m| &m.supports).collect()
+            }
+            _ => lines.iter().map(|l| &l.supports).collect(),
         };
         let mut numbers: Vec<f32> = Vec::new();
         for (line, supports) in supports.into_iter().enumerate() {
@@ -213,17 +264,7 @@ impl Session {
 
     /// The 3D lines: both end points each, metres, local frame.
     pub fn lines(&self) -> Result<Float64Array, JsValue> {
-        let results = self.loaded()?.results();
-        if let Some(found) = &results.clusters {
-            let ends = found
-                .value
-                .iter()
-                .flat_map(|f| [f.line.segment.p0, f.line.segment.p1]);
-            let numbers: Vec<f64> = ends.flat_map(|p| [p.x, p.y, p.z]).collect();
-            return Ok(Float64Array::from(&numbers[..]));
-        }
-        let lines = results.lines.as_ref();
-        Ok(line_array(lines.map_or(&[][..], |l| &l.value)))
+        Ok(line_array(&lines_of(self.loaded()?)))
     }
 
     /// The accepted half-planes, as an array of objects.
@@ -239,7 +280,8 @@ impl Session {
         to_js(&model.map_or(&[][..], |m| &m.facets))
     }
 
-    /// Method "rectangles": the segmentation of a view, `{regions, vectors, initial_regions, moves}`; `null` before that stage.
+    /// Method "rectangles": the segmentation of a view, `{regions, vectors, initial_regions, moves}`; `null` before
+    /// that stage.
     pub fn regions(&self, view: usize) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().regions.as_ref();
         to_js(&found.and_then(|r| r.trace.get(view)))
@@ -307,7 +349,7 @@ impl Session {
         })
     }
 
-    fn loaded(&self) -> Result<&Run, JsValue> {
+    pub(super) fn loaded(&self) -> Result<&Run, JsValue> {
         self.run.as_ref().ok_or_else(not_loaded)
     }
 
@@ -325,7 +367,25 @@ fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
         views: options.views,
         roi: options.roi,
         ground_z: options.ground_z,
+        epsg: options.epsg,
+        memory_mb: None,
+        apply_fix: options.apply_fix,
+        adjust: options.adjust,
     })
+}
+
+impl From<&LoadOptions> for JsLoadOptions {
+    fn from(options: &LoadOptions) -> Self {
+        Self {
+            orientation: options.orientation.clone(),
+            views: options.views.clone(),
+            roi: options.roi,
+            ground_z: options.ground_z,
+            epsg: options.epsg,
+            apply_fix: options.apply_fix,
+            adjust: options.adjust,
+        }
+    }
 }
 
 fn not_loaded() -> JsValue {

@@ -64,11 +64,40 @@ pub struct Partition {
 impl Partition {
     /// Builds the partition; also gives the facets that had to go, with the reason.
     pub fn new(facets: &[Facet]) -> (Self, Vec<(usize, SolidRejection)>) {
+        /// Welding moves edges by up to [`WELD_M`], so that some cross again; cutting those twice is enough.
+        const ROUNDS: usize = 3;
         let mut rejected = Vec::new();
-        let parts = without_overlaps(flat_parts(facets, &mut rejected));
+        let mut parts = flat_parts(facets, &mut rejected);
         let mut welder = Welder::default();
         let mut partition = Self::default();
-        for part in &parts {
+        for round in 1..=ROUNDS {
+            welder = Welder::default();
+            partition = Self::welded(&without_overlaps(parts), &mut welder);
+            partition.insert_t_junctions();
+            if round == ROUNDS || partition.conflicting().is_empty() {
+                break;
+            }
+            parts = partition.parts();
+        }
+        partition.drop_small(&mut rejected);
+        partition.drop_conflicts(&mut rejected);
+        partition.insert_height_crossings(&mut welder);
+        let lost = |source: &usize| {
+            partition.facets.iter().all(|f| f.source != *source)
+                && rejected.iter().all(|r| r.0 != *source)
+        };
+        let lost: Vec<usize> = (0..facets.len()).filter(lost).collect();
+        rejected.extend(
+            lost.into_iter()
+                .map(|source| (source, SolidRejection::TooSmall)),
+        );
+        (partition, rejected)
+    }
+
+    /// The parts' rings with positions closer than [`WELD_M`] made one.
+    fn welded(parts: &[Part], welder: &mut Welder) -> Self {
+        let mut partition = Self::default();
+        for part in parts {
             let edges: Vec<_> = part
                 .rings
                 .iter()
@@ -79,24 +108,28 @@ impl Partition {
                         .collect::<Vec<_>>()
                 })
                 .collect();
-            let (source, plane, region) = (part.source, part.plane, Vec::new());
             let whole = PlanFacet {
-                source,
-                plane,
-                region,
+                source: part.source,
+                plane: part.plane,
+                region: Vec::new(),
             };
             let regions = regions_from_edges(&edges, &welder.positions);
-            if regions.is_empty() {
-                rejected.push((source, SolidRejection::TooSmall));
-            }
             partition.facets.extend(whole.with_regions(regions));
         }
         partition.positions = welder.positions.clone();
-        partition.insert_t_junctions();
-        partition.drop_small(&mut rejected);
-        partition.drop_conflicts(&mut rejected);
-        partition.insert_height_crossings(&mut welder);
-        (partition, rejected)
+        partition
+    }
+
+    /// The facets as rings of positions that do not cross themselves.
+    fn parts(&self) -> Vec<Part> {
+        let ring = |ring: &Vec<u32>| ring.iter().map(|&v| self.positions[v as usize]).collect();
+        (self.facets.iter())
+            .map(|f| Part {
+                source: f.source,
+                plane: f.plane,
+                rings: simple(&f.region.iter().map(ring).collect::<Vec<_>>()),
+            })
+            .collect()
     }
 
     /// For every directed edge the facet on its left.
@@ -175,10 +208,25 @@ impl Partition {
 
     /// Takes out facets whose edges are taken already or cross those of an earlier facet.
     fn drop_conflicts(&mut self, rejected: &mut Vec<(usize, SolidRejection)>) {
+        let conflicting = self.conflicting();
+        let mut index = 0;
+        self.facets.retain(|facet| {
+            let conflict = conflicting.contains(&index);
+            index += 1;
+            if conflict {
+                rejected.push((facet.source, SolidRejection::Conflict));
+            }
+            !conflict
+        });
+    }
+
+    /// The facets whose edges are taken already or cross those of an earlier facet that is not one of them.
+    fn conflicting(&self) -> BTreeSet<usize> {
         let mut taken = BTreeSet::new();
         let mut tree: RTree<BoxedEdge> = RTree::new();
         let positions = &self.positions;
-        self.facets.retain(|facet| {
+        let mut conflicting = BTreeSet::new();
+        for (index, facet) in self.facets.iter().enumerate() {
             let edges: Vec<_> = facet.region.iter().flat_map(|r| ring_edges(r)).collect();
             let conflict = edges.iter().enumerate().any(|(i, &(a, b))| {
                 let envelope = edge_envelope(a, b, positions, 0.0);
@@ -191,8 +239,8 @@ impl Partition {
                         .any(|other| cross(positions, (a, b), other.data))
             });
             if conflict {
-                rejected.push((facet.source, SolidRejection::Conflict));
-                return false;
+                conflicting.insert(index);
+                continue;
             }
             for (a, b) in edges {
                 taken.insert((a, b));
@@ -200,8 +248,8 @@ impl Partition {
                 let corners = Rectangle::from_corners([p.x, p.y], [q.x, q.y]);
                 tree.insert(GeomWithData::new(corners, (a, b)));
             }
-            true
-        });
+        }
+        conflicting
     }
 
     /// Puts a vertex where the two roofs beside an edge change places in height.
@@ -344,11 +392,10 @@ fn flat_parts(facets: &[Facet], rejected: &mut Vec<(usize, SolidRejection)>) -> 
         } else if !upright {
             rejected.push((source, SolidRejection::TooSteep));
         } else {
-            let plane = facet.plane;
             parts.push(Part {
                 source,
-                plane,
-                rings,
+                plane: facet.plane,
+                rings: simple(&rings),
             });
         }
     }
@@ -363,6 +410,13 @@ fn oriented(ring: &[Point3<f64>], counter_clockwise: bool) -> Vec<Point2<f64>> {
         plan.reverse();
     }
     plan
+}
+
+/// Rings that neither cross themselves nor each other, around what the given ones (outer rings counter-clockwise,
+/// holes clockwise) enclose: an outline that folds over at one corner loses the fold, not the facet.
+fn simple(rings: &[Vec<Point2<f64>>]) -> Vec<Vec<Point2<f64>>> {
+    let shapes = overlay_filled(rings, &[], OverlayRule::Subject, FillRule::Positive);
+    shapes.into_iter().flatten().collect()
 }
 
 /// Takes every overlap from the lower of the two facets.
@@ -426,6 +480,15 @@ fn overlay(
     b: &[Vec<Point2<f64>>],
     rule: OverlayRule,
 ) -> Vec<Vec<Vec<Point2<f64>>>> {
+    overlay_filled(a, b, rule, FillRule::EvenOdd)
+}
+
+fn overlay_filled(
+    a: &[Vec<Point2<f64>>],
+    b: &[Vec<Point2<f64>>],
+    rule: OverlayRule,
+    fill: FillRule,
+) -> Vec<Vec<Vec<Point2<f64>>>> {
     let plain = |rings: &[Vec<Point2<f64>>]| -> Vec<Vec<[f64; 2]>> {
         rings
             .iter()
@@ -433,7 +496,7 @@ fn overlay(
             .collect()
     };
     plain(a)
-        .overlay_as::<i64>(&plain(b), rule, FillRule::EvenOdd)
+        .overlay_as::<i64>(&plain(b), rule, fill)
         .into_iter()
         .map(|shape| {
             shape

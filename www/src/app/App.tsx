@@ -1,13 +1,16 @@
-/** The layout: project on the left, the stage views in the middle, inspector and parameters on the right. */
+/** The layout: project on the left, the stage views in the middle, what they mean and parameters on the right. */
+import { Comparison } from "./Comparison";
 import { Downloads } from "./Downloads";
+import { AboutFigure } from "./figures";
 import { Header } from "./Header";
 import { Inspector } from "./Inspector";
+import { Lesson } from "./Lesson";
 import { Notices } from "./Notices";
 import { Parameters } from "./Parameters";
 import { Project } from "./Project";
 import { StageRail } from "./StageRail";
 import { StageView } from "./StageView";
-import { announcement } from "./state";
+import { announcement, images, lessonStep } from "./state";
 
 export function App() {
   return (
@@ -24,6 +27,8 @@ export function App() {
           <StageRail />
         </main>
         <aside class="column" aria-label="Details">
+          {lessonStep.value !== null ? <Lesson /> : images.value.length > 0 && <AboutFigure />}
+          <Comparison />
           <Inspector />
           <Parameters />
         </aside>

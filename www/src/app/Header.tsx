@@ -1,9 +1,20 @@
-/** The name, what the page does, and the theme. */
-import { activity } from "./state";
-import { theme, toggleTheme } from "./theme";
+/** The name, the method, the tour, and how the page looks. */
+import { setMethod } from "./actions";
+import { startTour } from "./lessons";
+import { activity, type Method, method } from "./state";
+import { biggerText, textScale, theme, toggleTheme } from "./theme";
+
+const METHODS: readonly (readonly [Method, string, string])[] = [
+  ["lines", "Lines", "Lines matched over the views, and half-planes at them (Baillard et al. 1999)"],
+  [
+    "rectangles",
+    "Rectangles",
+    "Regions, and planes between parallel lines in object space (Wiman, Axelsson 1996)",
+  ],
+];
 
 export function Header() {
-  const other = theme.value === "dark" ? "light" : "dark";
+  const other = theme.value === "dark" ? "Light" : "Dark";
   return (
     <header class="header">
       <img src="./icon.svg" alt="" width="22" height="22" />
@@ -15,8 +26,34 @@ export function Header() {
           {activity}
         </span>
       )}
+      <fieldset class="choice">
+        <legend class="visually-hidden">Method</legend>
+        {METHODS.map(([name, title, what]) => (
+          <button
+            key={name}
+            type="button"
+            title={what}
+            aria-pressed={method.value === name}
+            onClick={() => void setMethod(name)}
+          >
+            {title}
+          </button>
+        ))}
+      </fieldset>
+      <button type="button" onClick={startTour}>
+        Tour
+      </button>
+      <button
+        type="button"
+        class="quiet"
+        aria-label={`Text size: ${Math.round(100 * textScale.value)} %, next`}
+        title="Text size"
+        onClick={biggerText}
+      >
+        Aa
+      </button>
       <button type="button" class="quiet" onClick={toggleTheme}>
-        {other === "dark" ? "Dark" : "Light"}
+        {other}
       </button>
     </header>
   );

@@ -2,9 +2,12 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { SEGMENT_STRIDE, SUPPORT_STRIDE } from "../shared/results";
 import type { Selection } from "../shared/selection";
+import type { Vec2 } from "../shared/traces";
 import { drawView, type Overlay } from "./drawing";
+import type { Mark } from "./marks";
 import {
   fitImage,
+  fitPoints,
   nearestSegment,
   type Point,
   pan,
@@ -20,6 +23,9 @@ interface Props {
   image: ImageBitmap;
   overlay: Overlay;
   selection: Selection | null;
+  marks: readonly Mark[];
+  /** Zooms to the marks until the reader moves the image. */
+  follows: boolean;
   onPick: (selection: Selection | null) => void;
 }
 
@@ -28,23 +34,29 @@ const PAN_STEP_PX = 40;
 const PICK_REACH_PX = 8;
 const CLICK_SLACK_PX = 4;
 
-export function ImageCanvas({ view, name, image, overlay, selection, onPick }: Props) {
+export function ImageCanvas({ view, name, image, overlay, selection, marks, follows, onPick }: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const [box, setBox] = useState<Size>({ width: 0, height: 0 });
   const [moved, setMoved] = useState<Viewport | null>(null);
   const drag = useRef<{ last: Point; travelled: number } | null>(null);
   const fitted = fitImage(image, box);
-  const viewport = moved ?? fitted;
+  const viewport = moved ?? (follows ? around(marks, image, box) : null) ?? fitted;
 
   useEffect(() => observeSize(canvas.current, setBox), []);
   // Another image starts whole.
   useEffect(() => setMoved(null), [image]);
+  // So does another selection, where the image follows it.
+  useEffect(() => {
+    if (follows) {
+      setMoved(null);
+    }
+  }, [selection, follows]);
   useEffect(() => {
     const context = canvas.current?.getContext("2d");
     if (context && box.width > 0) {
       const ratio = window.devicePixelRatio;
       resizeBacking(context.canvas, box, ratio);
-      drawView(context, image, viewport, ratio, overlay, selection, view);
+      drawView(context, image, viewport, ratio, overlay, selection, marks);
     }
   });
 
@@ -110,16 +122,48 @@ export function ImageCanvas({ view, name, image, overlay, selection, onPick }: P
   );
 }
 
-/** The nearest matched line, or else the nearest segment. */
-function pickAt({ segments, supports }: Overlay, view: number, at: Point, reach: number): Selection | null {
-  if (supports !== null) {
-    const support = nearestSegment(supports, SUPPORT_STRIDE, at, reach);
-    if (support >= 0) {
-      return { kind: "line", index: supports[support * SUPPORT_STRIDE + 5] as number };
-    }
+/** Image pixels about marks that are zoomed to. */
+const MARGIN_PX = 45;
+const MAX_FOLLOW_SCALE = 3;
+
+/** The viewport of the marks; null where they are none of this image's. */
+function around(marks: readonly Mark[], image: Size, box: Size): Viewport | null {
+  // Dashed lines are endless: what they cross is shown anyway.
+  const inside = ([x, y]: Vec2) => x >= 0 && y >= 0 && x <= image.width && y <= image.height;
+  const points = marks.filter(({ dashed }) => dashed !== true).flatMap((mark) => mark.points.filter(inside));
+  return box.width === 0 ? null : fitPoints(points, box, MARGIN_PX, MAX_FOLLOW_SCALE);
+}
+
+/** The nearest line or segment, in the order that the overlay asks for; else the region below. */
+function pickAt(overlay: Overlay, view: number, at: Point, reach: number): Selection | null {
+  const { segments, supports, regions, segmentsFirst } = overlay;
+  const line = (): Selection | null => {
+    const support = supports === null ? -1 : nearestSegment(supports, SUPPORT_STRIDE, at, reach);
+    return support < 0 ? null : { kind: "line", index: supports?.[support * SUPPORT_STRIDE + 5] as number };
+  };
+  const segment = (): Selection | null => {
+    const index = segments === null ? -1 : nearestSegment(segments, SEGMENT_STRIDE, at, reach);
+    return index < 0 ? null : { kind: "segment", view, index };
+  };
+  const region = (): Selection | null => {
+    const index = regions?.findIndex(({ rings }) => holds(rings, at)) ?? -1;
+    return index < 0 ? null : { kind: "region", view, index };
+  };
+  return (segmentsFirst ? (segment() ?? line()) : (line() ?? segment())) ?? region();
+}
+
+/** Is the point inside the rings, holes left out? Counts the crossings of a ray to the right. */
+function holds(rings: readonly (readonly Vec2[])[], { x, y }: Point): boolean {
+  let inside = false;
+  for (const ring of rings) {
+    ring.forEach(([x0, y0], i) => {
+      const [x1, y1] = ring[(i + 1) % ring.length] as Vec2;
+      if (y0 > y !== y1 > y && x < x0 + ((y - y0) / (y1 - y0)) * (x1 - x0)) {
+        inside = !inside;
+      }
+    });
   }
-  const index = segments === null ? -1 : nearestSegment(segments, SEGMENT_STRIDE, at, reach);
-  return index < 0 ? null : { kind: "segment", view, index };
+  return inside;
 }
 
 /** Null: the whole image again; undefined: the key means nothing here. */

@@ -1,13 +1,27 @@
 /** The image tabs: one view or all of them, with what the tab's stage found drawn over. */
+import { category } from "../shared/palette";
 import type { Overlay } from "./drawing";
 import { ImageCanvas } from "./ImageCanvas";
 import { Legend } from "./Legend";
-import { images, results, scene, selection, shownView, tab } from "./state";
+import { marksOf } from "./marks";
+import { directionColours } from "./RectangleLabs";
+import {
+  followsSelection,
+  images,
+  pointing,
+  results,
+  scene,
+  selection,
+  shownView,
+  tab,
+  withRejected,
+} from "./state";
 
 /** All views side by side. */
-const ALL = -1;
+export const ALL = -1;
 
 export function ImageViews() {
+  void pointing.value;
   const views = scene.value?.views ?? [];
   if (views.length === 0 || images.value.length === 0) {
     return <Empty />;
@@ -18,6 +32,9 @@ export function ImageViews() {
     <div class="image-views">
       <div class="toolbar">
         <ViewPicker />
+        {tab.value === "segments" && <RejectedSwitch />}
+        {shown.length > 1 && <FollowSwitch />}
+        <span class="grow" />
         <Legend />
       </div>
       <div class={`image-grid ${shown.length > 1 ? "many" : ""}`}>
@@ -29,6 +46,8 @@ export function ImageViews() {
             image={images.value[view] as ImageBitmap}
             overlay={overlayOf(view)}
             selection={selection.value}
+            marks={marksOf(selection.value, view)}
+            follows={followsSelection.value && shown.length > 1}
             onPick={(picked) => {
               selection.value = picked;
             }}
@@ -39,12 +58,44 @@ export function ImageViews() {
   );
 }
 
+/** What the present tab draws over a view. */
 function overlayOf(view: number): Overlay {
-  const { segments, supports } = results.value;
-  return {
-    segments: tab.value === "images" ? null : (segments[view] ?? null),
-    supports: tab.value === "matches" ? (supports[view] ?? null) : null,
-  };
+  const { segments, supports, rejected, regions } = results.value;
+  const nothing: Overlay = { segments: null, supports: null };
+  const own = segments[view] ?? null;
+  switch (tab.value) {
+    case "segments":
+      return { ...nothing, segments: own, rejected: withRejected.value ? (rejected[view] ?? null) : null };
+    case "matches":
+      return { segments: own, supports: supports[view] ?? null, segmentsFirst: true };
+    case "regions":
+      return { ...nothing, regions: regionsOf(regions[view]) };
+    case "directions":
+      return { ...nothing, segments: own, colours: directionColours(view) };
+    case "clusters":
+      return { segments: own, supports: supports[view] ?? null };
+    default:
+      return nothing;
+  }
+}
+
+/** The regions with colours that tell neighbours apart; made once for each segmentation. */
+const tinted = new WeakMap<object, { rings: (readonly [number, number])[][]; colour: string }[]>();
+
+function regionsOf(segmentation: (typeof results.value.regions)[number] | undefined) {
+  if (segmentation === undefined) {
+    return null;
+  }
+  const known = tinted.get(segmentation);
+  if (known !== undefined) {
+    return known;
+  }
+  const made = segmentation.regions.map(({ rings, mean }, i) => ({
+    rings: rings.map((ring) => [...ring]),
+    colour: `color-mix(in oklab, ${category(i)} 45%, rgb(${mean}, ${mean}, ${mean}))`,
+  }));
+  tinted.set(segmentation, made);
+  return made;
 }
 
 function ViewPicker() {
@@ -64,6 +115,36 @@ function ViewPicker() {
         </button>
       ))}
     </fieldset>
+  );
+}
+
+function FollowSwitch() {
+  return (
+    <button
+      type="button"
+      aria-pressed={followsSelection.value}
+      class="toggle"
+      onClick={() => {
+        followsSelection.value = !followsSelection.value;
+      }}
+    >
+      Zoom to selection
+    </button>
+  );
+}
+
+function RejectedSwitch() {
+  return (
+    <button
+      type="button"
+      aria-pressed={withRejected.value}
+      class="toggle"
+      onClick={() => {
+        withRejected.value = !withRejected.value;
+      }}
+    >
+      Refused lines
+    </button>
   );
 }
 

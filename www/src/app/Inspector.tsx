@@ -1,9 +1,18 @@
 /** The picked thing in numbers, with units and the paper's symbols. */
-import { LINE_STRIDE, SEGMENT_STRIDE, SUPPORT_KINDS, SUPPORT_STRIDE, type Vec3 } from "../shared/results";
+import { LINE_STRIDE, SEGMENT_STRIDE, type Vec3 } from "../shared/results";
 import type { Selection } from "../shared/selection";
-import { params, results, scene, selection } from "./state";
+import { slopedArea } from "./geometry";
+import { lineOfSegment } from "./marks";
+import { params, pointing, results, scene, selection } from "./state";
+import { outcomeWords, PAIR_WORDS, REJECTION_WORDS } from "./words";
 
-type Row = readonly [label: string, value: string];
+/** A number of the picked thing, or other things that made it or that it made, to go on to. */
+type Row = readonly [label: string, value: string | readonly Related[], note?: string];
+
+interface Related {
+  name: string;
+  selection: Selection;
+}
 
 export function Inspector() {
   const picked = selection.value;
@@ -37,15 +46,65 @@ function Facts({ title, rows }: { title: string; rows: readonly Row[] }) {
     <>
       <h3 class="picked">{title}</h3>
       <dl class="facts">
-        {rows.map(([label, value]) => (
+        {rows.map(([label, value, note]) => (
           <div key={label}>
             <dt>{label}</dt>
-            <dd class="numbers">{value}</dd>
+            <dd class="numbers">
+              {typeof value === "string" ? value : <Links to={value} />}
+              {note !== undefined && <span class="muted"> {note}</span>}
+            </dd>
           </div>
         ))}
       </dl>
     </>
   );
+}
+
+const MOST_LINKS = 12;
+
+function Links({ to }: { to: readonly Related[] }) {
+  if (to.length === 0) {
+    return <>–</>;
+  }
+  return (
+    <span class="links">
+      {to.slice(0, MOST_LINKS).map(({ name, selection: next }) => (
+        <button
+          key={name}
+          type="button"
+          class="link"
+          onClick={() => {
+            selection.value = next;
+          }}
+        >
+          {name}
+        </button>
+      ))}
+      {to.length > MOST_LINKS && <span class="muted">+ {to.length - MOST_LINKS}</span>}
+    </span>
+  );
+}
+
+const linkToLine = (index: number): Related => ({ name: String(index), selection: { kind: "line", index } });
+const linkToHalfPlane = (index: number): Related => ({
+  name: String(index),
+  selection: { kind: "halfplane", index },
+});
+const linkToFacet = (index: number): Related => ({
+  name: String(index),
+  selection: { kind: "facet", index },
+});
+const linkToGroup = (index: number): Related => ({
+  name: String(index),
+  selection: { kind: "group", index },
+});
+
+/** The indices of the items that pass. */
+function indicesOf<T>(
+  items: readonly T[] | null | undefined,
+  test: (item: T, index: number) => boolean,
+): number[] {
+  return (items ?? []).flatMap((item, i) => (test(item, i) ? [i] : []));
 }
 
 function titleOf(picked: Selection): string {
@@ -54,6 +113,14 @@ function titleOf(picked: Selection): string {
       return `Segment ${picked.index} of ${viewName(picked.view)}`;
     case "line":
       return `3D line ${picked.index}`;
+    case "side":
+      return `3D line ${picked.line}, ${picked.side} side`;
+    case "group":
+      return `Group ${picked.index}`;
+    case "region":
+      return `Region ${picked.index} of ${viewName(picked.view)}`;
+    case "pair":
+      return `Pair of lines ${results.value.rectangles?.pairs[picked.index]?.lines.join(" and ") ?? ""}`;
     case "halfplane":
       return `Half-plane ${picked.index}`;
     case "facet":
@@ -71,6 +138,14 @@ function rowsOf(picked: Selection): Row[] {
       return segmentRows(picked.view, picked.index);
     case "line":
       return lineRows(picked.index);
+    case "side":
+      return sideRows(picked.line, picked.side);
+    case "group":
+      return groupRows(picked.index);
+    case "region":
+      return regionRows(picked.view, picked.index);
+    case "pair":
+      return pairRows(picked.index);
     case "halfplane":
       return halfPlaneRows(picked.index);
     case "facet":
@@ -94,6 +169,99 @@ function segmentRows(view: number, index: number): Row[] {
     ["Start", `${x0.toFixed(2)}, ${y0.toFixed(2)} px`],
     ["End", `${x1.toFixed(2)}, ${y1.toFixed(2)} px`],
     ["Direction", `${degrees(Math.atan2(y1 - y0, x1 - x0))} (y down)`],
+    ...historyOfSegment(view, index),
+  ];
+}
+
+function historyOfSegment(view: number, index: number): Row[] {
+  const { story } = pointing.value;
+  const lines = lineOfSegment(view, index).map(linkToLine);
+  return [
+    ...(story === null
+      ? []
+      : [
+          ["Fate", outcomeWords(story.outcome)] as const,
+          ["Candidates", String(story.candidates.length)] as const,
+        ]),
+    ...(results.value.lines === null ? [] : [["3D line", lines] as const]),
+  ];
+}
+
+function sideRows(line: number, side: string): Row[] {
+  const record = results.value.sides.find((one) => one.line === line && one.side === side);
+  const own = indicesOf(results.value.halfPlanes, (one) => one.line === line && one.side === side);
+  return [
+    ["3D line", [linkToLine(line)]],
+    ["Half-plane", own.map(linkToHalfPlane)],
+    ...(record?.rejection == null
+      ? []
+      : [["Refused", REJECTION_WORDS[record.rejection] ?? record.rejection] as const]),
+  ];
+}
+
+function groupRows(index: number): Row[] {
+  const group = results.value.grouping?.groups[index];
+  if (group === undefined) {
+    return [];
+  }
+  const lines = [...new Set(group.members.map(({ line }) => line))];
+  const halfPlanes = group.members.flatMap(({ half_plane }) => (half_plane === null ? [] : [half_plane]));
+  const facets = indicesOf(results.value.facets, (facet) =>
+    (facet.half_planes ?? []).some((one) => halfPlanes.includes(one)),
+  );
+  return [
+    ["Slope of the plane", slopeText(group.plane.normal)],
+    ["3D lines", lines.map(linkToLine)],
+    ["Half-planes", halfPlanes.map(linkToHalfPlane)],
+    ["Facets", facets.map(linkToFacet)],
+  ];
+}
+
+function regionRows(view: number, index: number): Row[] {
+  const found = results.value.regions[view];
+  const region = found?.regions[index];
+  return region === undefined
+    ? []
+    : [
+        ["Area", `${region.area_px.toLocaleString("en")} px`],
+        ["Perimeter", `${region.perimeter_px.toFixed(0)} px`],
+        ["Mean grey value", region.mean.toFixed(1)],
+        ["Standard deviation", Math.sqrt(region.variance).toFixed(1)],
+        ["Regions at first", found?.initial_regions.toLocaleString("en") ?? ""],
+        ...Object.entries(found?.moves ?? {}).map(
+          ([move, count]) => [MOVES[move] ?? move, count.toLocaleString("en")] as const,
+        ),
+      ];
+}
+
+const MOVES: Record<string, string> = { dropped: "Break points dropped", merged: "Regions merged" };
+
+function pairRows(index: number): Row[] {
+  const found = results.value.rectangles;
+  const pair = found?.pairs[index];
+  if (found == null || pair === undefined) {
+    return [];
+  }
+  const candidate = found.candidates.find(
+    ({ lines }) => lines.length === 2 && lines.every((line) => pair.lines.includes(line)),
+  );
+  const facets = indicesOf(
+    results.value.facets,
+    (facet) => facet.lines?.length === 2 && facet.lines.every((line) => pair.lines.includes(line)),
+  );
+  return [
+    ["3D lines", pair.lines.map(linkToLine)],
+    ["Lines that cross", String(pair.crossings.length)],
+    ["Ends found", String(pair.ends.length)],
+    ...(pair.rejection === null ? [] : [["Refused", PAIR_WORDS[pair.rejection] ?? pair.rejection] as const]),
+    ...(candidate === undefined
+      ? []
+      : [
+          ["Outline covered", `${Math.round(100 * candidate.support)} %`] as const,
+          ["Correlation inside", candidate.correlation.toFixed(2)] as const,
+          ["Measure M", `${candidate.measure.toFixed(1)} m²`] as const,
+        ]),
+    ["Facets", facets.map(linkToFacet)],
   ];
 }
 
@@ -112,17 +280,58 @@ function lineRows(index: number): Row[] {
       ["Azimuth", azimuth(dx, dy)],
       ["Start", worldText(p0)],
       ["End", worldText(p1)],
-      ["Half-planes", String(results.value.halfPlanes?.filter(({ line }) => line === index).length ?? "–")],
+      ...historyOfLine(index),
     );
   }
-  results.value.supports.forEach((supports, view) => {
-    for (let i = 0; i + SUPPORT_STRIDE <= supports.length; i += SUPPORT_STRIDE) {
-      if (supports[i + 5] === index) {
-        rows.push([viewName(view), SUPPORT_KINDS[supports[i + 4] as number] ?? ""]);
-      }
-    }
-  });
   return rows;
+}
+
+/** What made a line, view by view, and what it is part of. */
+function historyOfLine(index: number): Row[] {
+  const { records, halfPlanes, sides, grouping, facets } = results.value;
+  const record = records[index];
+  const refused = sides.filter(({ line, rejection }) => line === index && rejection !== null);
+  return [
+    ...(record === undefined ? [] : [["σ across", `${(100 * record.sigma_m).toFixed(1)} cm`] as const]),
+    ...(record?.supports ?? []).map(
+      ({ view, segments, kind, score }) =>
+        [
+          viewName(view),
+          segments.map(
+            (segment): Related => ({
+              name: String(segment),
+              selection: { kind: "segment", view, index: segment },
+            }),
+          ),
+          `${kind} ${score.toFixed(2)}`,
+        ] as const,
+    ),
+    ...(halfPlanes === null
+      ? []
+      : [["Half-planes", indicesOf(halfPlanes, ({ line }) => line === index).map(linkToHalfPlane)] as const]),
+    ...refused.map(
+      ({ side, rejection }) =>
+        [`Refused, ${side}`, REJECTION_WORDS[rejection ?? ""] ?? rejection ?? ""] as const,
+    ),
+    ...(grouping === null
+      ? []
+      : [
+          [
+            "Groups",
+            indicesOf(grouping.groups, ({ members }) => members.some(({ line }) => line === index)).map(
+              linkToGroup,
+            ),
+          ] as const,
+        ]),
+    ...(facets === null
+      ? []
+      : [
+          [
+            "Facets",
+            indicesOf(facets, ({ lines }) => lines?.includes(index) === true).map(linkToFacet),
+          ] as const,
+        ]),
+  ];
 }
 
 function halfPlaneRows(index: number): Row[] {
@@ -132,13 +341,34 @@ function halfPlaneRows(index: number): Row[] {
   }
   const sigma = plane.sigma_theta === undefined ? "" : ` ± ${degrees(plane.sigma_theta)}`;
   return [
-    ["3D line", `${plane.line}, ${plane.side} side`],
+    ["3D line", [linkToLine(plane.line)]],
+    ["Side", plane.side],
     ["θ", `${degrees(plane.theta)}${sigma}`],
     ["Sim(θ)", `${plane.similarity.toFixed(3)}${threshold("min_similarity")}`],
     ["Curvature |Sim″|", `${plane.curvature.toFixed(1)}${threshold("min_curvature")}`],
     ["Amplitude", `${plane.amplitude.toFixed(3)}${threshold("min_amplitude")}`],
     ["Slope of the plane", slopeText(plane.plane.normal)],
     ["Views", plane.views.map(viewName).join(", ")],
+    ...(results.value.grouping === null
+      ? []
+      : [
+          [
+            "Group",
+            indicesOf(results.value.grouping.groups, ({ members }) =>
+              members.some(({ half_plane }) => half_plane === index),
+            ).map(linkToGroup),
+          ] as const,
+        ]),
+    ...(results.value.facets === null
+      ? []
+      : [
+          [
+            "Facets",
+            indicesOf(results.value.facets, ({ half_planes }) => half_planes?.includes(index) === true).map(
+              linkToFacet,
+            ),
+          ] as const,
+        ]),
   ];
 }
 
@@ -150,14 +380,16 @@ function facetRows(index: number): Row[] {
   const [nx, ny] = facet.plane.normal;
   return [
     ["Building", String(facet.building)],
-    ["Area", `${ringsArea(facet.outer, facet.holes, facet.plane.normal).toFixed(1)} m²`],
+    ["Area", `${slopedArea(facet).toFixed(1)} m²`],
     ["Slope", slopeText(facet.plane.normal)],
     ["Faces", Math.hypot(nx, ny) < 0.02 ? "level" : azimuth(nx, ny)],
     ["Corners", String(facet.outer.length + facet.holes.flat().length)],
     ["Similarity", facet.similarity.toFixed(3)],
     ["τ real", facet.real_ratio === undefined ? "–" : facet.real_ratio.toFixed(2)],
-    ["3D lines", String(facet.lines?.length ?? "–")],
-    ["Half-planes", String(facet.half_planes?.length ?? "–")],
+    ["3D lines", (facet.lines ?? []).map(linkToLine)],
+    ...((facet.half_planes ?? []).length === 0
+      ? []
+      : [["Half-planes", (facet.half_planes ?? []).map(linkToHalfPlane)] as const]),
   ];
 }
 
@@ -215,17 +447,4 @@ function azimuth(east: number, north: number): string {
 
 function slopeText([x, y, z]: Vec3): string {
   return degrees(Math.atan2(Math.hypot(x, y), Math.abs(z)));
-}
-
-/** Sloped area: that of the plan over the cosine of the slope. */
-function ringsArea(outer: readonly Vec3[], holes: readonly Vec3[][], normal: Vec3): number {
-  const plan = Math.abs(planArea(outer)) - holes.reduce((sum, hole) => sum + Math.abs(planArea(hole)), 0);
-  return plan / Math.max(1e-6, Math.abs(normal[2]));
-}
-
-function planArea(ring: readonly Vec3[]): number {
-  return ring.reduce((sum, [x, y], i) => {
-    const [nextX, nextY] = ring[(i + 1) % ring.length] as Vec3;
-    return sum + (x * nextY - nextX * y) / 2;
-  }, 0);
 }

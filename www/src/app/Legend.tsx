@@ -13,7 +13,19 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
   halfplanes: [
     ["matched", "3D line"],
     ["half-plane", "half-plane"],
+    ["rejected", "refused side"],
   ],
+  groups: [["bar", "line found in a plane"]],
+  directions: [
+    ["first-direction", "first direction"],
+    ["second-direction", "second direction"],
+    ["unmatched", "neither"],
+  ],
+  clusters: [
+    ["unmatched", "region boundary"],
+    ["matched", "3D line"],
+  ],
+  rectangles: [["normals", "hue: azimuth, strength: slope"]],
   facets: [["normals", "hue: azimuth, strength: slope"]],
 };
 

@@ -1,14 +1,7 @@
 /** The parameters of every stage, from the core's own defaults; what differs from them is marked. */
 import { useState } from "preact/hooks";
 import { resetParams, setParam } from "./actions";
-import {
-  fieldText,
-  groupTitle,
-  type ParamField,
-  type ParamSection,
-  paramSections,
-  parseField,
-} from "./paramForm";
+import { fieldText, type ParamField, type ParamSection, paramSections, parseField } from "./paramForm";
 import { defaults, params } from "./state";
 
 export function Parameters() {
@@ -26,7 +19,7 @@ export function Parameters() {
       </div>
       <p class="muted">The defaults are the paper's. A change makes its stage and all later ones outdated.</p>
       {sections.map((section) => (
-        <Section key={section.group} section={section} />
+        <Section key={section.path} section={section} />
       ))}
     </section>
   );
@@ -36,24 +29,24 @@ function Section({ section }: { section: ParamSection }) {
   return (
     <details class="params" open={section.changed > 0}>
       <summary>
-        {groupTitle(section.group)}
+        {section.title}
         {section.changed > 0 && <span class="changed-mark">{section.changed} changed</span>}
       </summary>
       {section.fields.map((field) => (
-        <Field key={field.key} group={section.group} field={field} />
+        <Field key={field.key} path={section.path} field={field} />
       ))}
     </details>
   );
 }
 
-function Field({ group, field }: { group: string; field: ParamField }) {
+function Field({ path, field }: { path: string; field: ParamField }) {
   const [error, setError] = useState("");
-  const id = `param-${group}-${field.key}`;
+  const id = `param-${path.replaceAll(".", "-")}-${field.key}`;
   const change = (text: string) => {
     const parsed = parseField(field, text);
     setError("error" in parsed ? parsed.error : "");
     if ("value" in parsed) {
-      setParam(group, { ...params.value[group], [field.key]: parsed.value });
+      setParam(`${path}.${field.key}`, parsed.value);
     }
   };
   return (

@@ -3,8 +3,9 @@ import { useRef, useState } from "preact/hooks";
 import type { ImageReport } from "../shared/results";
 import { addFiles, clearProject, notify, openDemo, removeFile, setRunOptions } from "./actions";
 import { droppedFiles, pickedFiles } from "./files";
+import { isFixable } from "./notices";
 import { OrientationChoice, PlaceFields } from "./RunOptionFields";
-import { files, inspection, projectName, runOptions, scene } from "./state";
+import { files, inspection, keptBytes, projectName, runOptions, scene } from "./state";
 import { Thumbnail } from "./Thumbnail";
 
 export function Project() {
@@ -15,6 +16,12 @@ export function Project() {
       {files.value.length > 0 && <Views />}
       {files.value.length > 0 && <OtherFiles />}
       <Warnings />
+      {runOptions.value.applyFix && (
+        <button type="button" onClick={() => void setRunOptions({ applyFix: false })}>
+          Take the orientation as it is
+        </button>
+      )}
+      <KeptNote />
     </section>
   );
 }
@@ -180,6 +187,22 @@ function OtherFiles() {
   );
 }
 
+/** What the browser keeps, and how to have it forget. */
+function KeptNote() {
+  const bytes = keptBytes.value;
+  if (bytes === null || files.value.length === 0) {
+    return null;
+  }
+  return (
+    <p class="kept muted" data-testid="kept">
+      <span>Kept in this browser: {(bytes / 1e6).toFixed(1)} MB</span>
+      <button type="button" class="quiet" onClick={() => void clearProject()}>
+        Delete
+      </button>
+    </p>
+  );
+}
+
 function Warnings() {
   const all = new Set([...(inspection.value?.warnings ?? []), ...(scene.value?.warnings ?? [])]);
   if (all.size === 0) {
@@ -190,7 +213,14 @@ function Warnings() {
       <h3>Warnings</h3>
       <ul class="warnings">
         {[...all].map((text) => (
-          <li key={text}>{text}</li>
+          <li key={text}>
+            {text}
+            {isFixable(text) && !runOptions.value.applyFix && (
+              <button type="button" onClick={() => void setRunOptions({ applyFix: true })}>
+                Apply the fix
+              </button>
+            )}
+          </li>
         ))}
       </ul>
     </>

@@ -2,28 +2,50 @@
 import { signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { THEME_COLOURS } from "../shared/palette";
-import { boundsOf, boundsOfFacets, boundsOfLines } from "../viewer/bounds";
+import type { Vec3 } from "../shared/results";
+import { boundsOf, boundsOfFacets, boundsOfLines, withCameras } from "../viewer/bounds";
 import { buildCameras } from "../viewer/cameras";
 import { buildFacets } from "../viewer/facets";
-import { buildFans } from "../viewer/fans";
+import { buildFans, buildTurning } from "../viewer/fans";
+import { buildGroups } from "../viewer/groups";
 import { buildLines } from "../viewer/lines";
 import { buildModel, type ModelLayer, type ModelMode } from "../viewer/model";
+import { buildOutlines } from "../viewer/outlines";
+import { buildStretches } from "../viewer/stretches";
 import { GRID_STEP_M, Viewer } from "../viewer/viewer";
 import { notify } from "./actions";
 import { Legend } from "./Legend";
-import { results, scene, selection, type Tab, tab } from "./state";
+import { lineEnds, linesOfSelection } from "./marks";
+import { SpaceTools } from "./SpaceTools";
+import {
+  beforeGrowing,
+  images,
+  keptResult,
+  method,
+  pointing,
+  results,
+  scene,
+  selection,
+  type Tab,
+  tab,
+} from "./state";
 import { theme } from "./theme";
 
-const LAYERS = ["lines", "fans", "facets", "model", "cameras"] as const;
+/** Layers that a person switches; "stretches" and "turning" follow other switches. */
+const LAYERS = ["lines", "fans", "groups", "facets", "model", "cameras"] as const;
 type LayerName = (typeof LAYERS)[number];
 
 const LAYER_TITLES: Record<LayerName, string> = {
   lines: "3D lines",
   fans: "Half-planes",
+  groups: "Groups",
   facets: "Facets",
   model: "Model",
   cameras: "Cameras",
 };
+
+/** Layers that only one method fills. */
+const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "groups"];
 
 /** What each tab shows until a person switches something. */
 const shown = signal<Record<Tab, readonly LayerName[]>>({
@@ -32,12 +54,17 @@ const shown = signal<Record<Tab, readonly LayerName[]>>({
   matches: [],
   lines: ["lines"],
   halfplanes: ["lines", "fans"],
+  groups: ["groups"],
   facets: ["facets"],
+  regions: [],
+  directions: [],
+  clusters: [],
+  rectangles: ["facets", "lines"],
   model: ["model"],
 });
 const mode = signal<ModelMode>("textured");
 /** The viewer while it exists; the effects below wait for it. */
-const viewer = signal<Viewer | null>(null);
+export const viewer = signal<Viewer | null>(null);
 const model = signal<ModelLayer | null>(null);
 
 export function SpaceView({ hidden }: { hidden: boolean }) {
@@ -50,14 +77,9 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
       <div class="toolbar">
         <LayerSwitches />
         {shown.value[tab.value].includes("model") && <ModeSwitches />}
+        {tab.value === "lines" && <GrowingSwitch />}
         <span class="grow" />
         <Legend />
-        <button type="button" onClick={() => viewer.value?.lookAt(boundsNow())}>
-          Fit
-        </button>
-        <button type="button" onClick={() => viewer.value?.lookDown()}>
-          Top
-        </button>
       </div>
       <div class="space-canvas">
         <canvas
@@ -78,9 +100,31 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
             <p class="muted">This view fills when its stage has run.</p>
           </div>
         )}
+        {!isEmpty && <SpaceTools viewer={viewer.value} onFit={fitView} />}
         {!isEmpty && <span class="scale muted numbers">grid {GRID_STEP_M} m</span>}
       </div>
     </div>
+  );
+}
+
+/** B99 figures 5 and 7 against 6 and 8. */
+function GrowingSwitch() {
+  return (
+    <fieldset class="choice">
+      <legend class="visually-hidden">Before or after growing</legend>
+      {[true, false].map((before) => (
+        <button
+          key={String(before)}
+          type="button"
+          aria-pressed={beforeGrowing.value === before}
+          onClick={() => {
+            beforeGrowing.value = before;
+          }}
+        >
+          {before ? "Before growing" : "After"}
+        </button>
+      ))}
+    </fieldset>
   );
 }
 
@@ -110,15 +154,37 @@ function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefine
 function useLayers(): void {
   useSignalEffect(() => {
     const { lines } = results.value;
-    viewer.value?.setLayer("lines", lines === null ? null : buildLines(lines));
+    viewer.value?.setLayer("lines", lines === null ? null : buildLines(lines, linesOfSelection));
     if (lines !== null) {
       viewer.value?.lookAt(boundsOfLines(lines));
     }
   });
   useSignalEffect(() => {
-    const { lines, halfPlanes } = results.value;
+    const { lines, halfPlanes, sides } = results.value;
     const has = lines !== null && halfPlanes !== null;
-    viewer.value?.setLayer("fans", has ? buildFans(halfPlanes, lines) : null);
+    viewer.value?.setLayer("fans", has ? buildFans(halfPlanes, lines, sides) : null);
+  });
+  useSignalEffect(() => {
+    const { lines, grouping } = results.value;
+    const has = lines !== null && grouping !== null;
+    viewer.value?.setLayer("groups", has ? buildGroups(grouping, lines) : null);
+  });
+  useSignalEffect(() => {
+    const { stretches } = results.value;
+    viewer.value?.setLayer("stretches", stretches === null ? null : buildStretches(stretches));
+  });
+  useSignalEffect(() => {
+    const kept = keptResult.value;
+    viewer.value?.setLayer("kept", kept === null ? null : buildOutlines(kept.facets));
+  });
+  useSignalEffect(() => {
+    const { side, theta } = pointing.value;
+    const ends = side === null ? [] : lineEnds(side.line);
+    const turning =
+      side !== null && ends.length === 2 && tab.value === "halfplanes"
+        ? buildTurning(ends as unknown as [Vec3, Vec3], side.side, theta)
+        : null;
+    viewer.value?.setLayer("turning", turning);
   });
   useSignalEffect(() => {
     const { facets } = results.value;
@@ -129,7 +195,7 @@ function useLayers(): void {
     const target = boundsNow().center;
     // The bounds are in the viewer's frame, the cameras in the local one.
     const local = target.set(target.x, -target.z, target.y);
-    viewer.value?.setLayer("cameras", views === undefined ? null : buildCameras(views, local));
+    viewer.value?.setLayer("cameras", views === undefined ? null : buildCameras(views, local, images.value));
   });
   useSignalEffect(() => {
     void showModel(results.value.glb);
@@ -141,9 +207,14 @@ function useLayers(): void {
   });
   // Last, so that fresh layers are shown or hidden, and highlighted, as they should be.
   useSignalEffect(() => {
-    void [results.value, scene.value, model.value];
+    void [results.value, scene.value, images.value, model.value];
     for (const name of LAYERS) {
       viewer.value?.showLayer(name, shown.value[tab.value].includes(name));
+    }
+    const before = tab.value === "lines" && beforeGrowing.value;
+    viewer.value?.showLayer("stretches", before);
+    if (before) {
+      viewer.value?.showLayer("lines", false);
     }
     viewer.value?.highlight(selection.value);
   });
@@ -170,26 +241,36 @@ async function showModel(glb: Uint8Array<ArrayBuffer> | null): Promise<void> {
   }
 }
 
+/** Looks at what is shown, the cameras with it where they are. */
+function fitView(): void {
+  const centres = scene.value?.views.map(({ center }) => center) ?? [];
+  const areShown = shown.value[tab.value].includes("cameras");
+  viewer.value?.lookAt(areShown ? withCameras(boundsNow(), centres) : boundsNow());
+}
+
 /** What the present tab shows, as a sphere in the viewer's frame. */
 function boundsNow() {
   const { lines, facets } = results.value;
   if (tab.value === "model" && model.value !== null) {
     return boundsOf(model.value.object);
   }
-  if (tab.value === "facets" && facets !== null && facets.length > 0) {
+  if ((tab.value === "facets" || tab.value === "rectangles") && facets !== null && facets.length > 0) {
     return boundsOfFacets(facets);
   }
   return boundsOfLines(lines ?? new Float64Array());
 }
 
 function layerIsEmpty(name: Tab): boolean {
-  const { lines, halfPlanes, facets, glb } = results.value;
+  const { lines, halfPlanes, grouping, facets, glb } = results.value;
   switch (name) {
     case "lines":
       return lines === null;
     case "halfplanes":
       return halfPlanes === null;
+    case "groups":
+      return grouping === null;
     case "facets":
+    case "rectangles":
       return facets === null;
     case "model":
       return glb === null;
@@ -203,11 +284,14 @@ function LayerSwitches() {
   const toggle = (name: LayerName) => () => {
     const next = visible.includes(name) ? visible.filter((one) => one !== name) : [...visible, name];
     shown.value = { ...shown.value, [tab.value]: next };
+    if (name === "cameras") {
+      fitView();
+    }
   };
   return (
     <fieldset class="choice">
       <legend class="visually-hidden">Layers</legend>
-      {LAYERS.map((name) => (
+      {LAYERS.filter((name) => method.value === "lines" || !LAYERS_OF_LINES.includes(name)).map((name) => (
         <button key={name} type="button" aria-pressed={visible.includes(name)} onClick={toggle(name)}>
           {LAYER_TITLES[name]}
         </button>
@@ -220,6 +304,7 @@ const MODES: readonly (readonly [ModelMode, string])[] = [
   ["textured", "Textured"],
   ["plain", "Plain"],
   ["wireframe", "Wireframe"],
+  ["normals", "Normals"],
 ];
 
 function ModeSwitches() {

@@ -1,5 +1,6 @@
 /** The stages in order: run, cancel, progress, time and counts. */
 import { cancel, runAll, runTo } from "./actions";
+import { KeepResult } from "./Comparison";
 import { stageWords } from "./stages";
 import {
   files,
@@ -40,6 +41,7 @@ export function StageRail() {
           </button>
         )}
         <span class="muted numbers">{totalTime(stages.value)}</span>
+        <KeepResult />
       </div>
       <ol>
         {stages.value.map((stage, position) => (
@@ -63,18 +65,18 @@ function StageCard({ stage, position }: { stage: StageState; position: number })
       <button
         type="button"
         class="link"
+        title={words.section}
         onClick={() => {
           tab.value = words.tab;
         }}
       >
         {words.title}
       </button>
-      <span class="muted section">{words.section}</span>
       {stage.status === "running" ? (
         <progress max={1} value={stage.fraction} aria-label={`${words.title}: ${percent} %`} />
       ) : (
         <span class="numbers counts" title={countsText(stage)}>
-          {countsText(stage) || STATUS_WORDS[stage.status]}
+          {mainCount(stage) || STATUS_WORDS[stage.status]}
         </span>
       )}
       <span class="muted numbers">{statusLine(stage)}</span>
@@ -110,6 +112,22 @@ function countsText({ counts }: StageState): string {
     .map(([name, count]) => `${count.toLocaleString("en")} ${name.replaceAll("_", " ")}`)
     .join(", ");
 }
+
+/** What the stage is for, counted; the rest stands in the tooltip. */
+function mainCount({ name, counts }: StageState): string {
+  const entries = Object.entries(counts);
+  const [what, count] = entries.find(([one]) => one === MAIN_COUNTS[name]) ?? entries[0] ?? [];
+  return what === undefined || count === undefined
+    ? ""
+    : `${count.toLocaleString("en")} ${what.replaceAll("_", " ")}`;
+}
+
+const MAIN_COUNTS: Record<string, string> = {
+  segments: "segments",
+  regions: "regions",
+  directions: "pairs of directions",
+  model: "textured faces",
+};
 
 function totalTime(all: readonly StageState[]): string {
   const seconds = all.reduce((sum, stage) => sum + (stage.seconds ?? 0), 0);

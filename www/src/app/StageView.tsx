@@ -1,8 +1,14 @@
-/** The tabs, and below them either images with overlays or the 3D view. */
+/** The tabs, and below them either images with overlays or the 3D view, above the figure's own laboratory. */
+import type { ComponentType } from "preact";
 import { useRef } from "preact/hooks";
+import { Filmstrip } from "./Filmstrip";
 import { ImageViews } from "./ImageViews";
+import { FacetLab, GroupLab, LineLab } from "./LineLabs";
+import { PointLab } from "./PointLab";
+import { ClusterLab, DirectionLab, RectangleLab } from "./RectangleLabs";
+import { SimLab } from "./SimLab";
 import { SpaceView } from "./SpaceView";
-import { TABS, type Tab, tab } from "./state";
+import { images, method, TABS, type Tab, tab } from "./state";
 
 const TITLES: Record<Tab, string> = {
   images: "Images",
@@ -10,21 +16,42 @@ const TITLES: Record<Tab, string> = {
   matches: "Matches",
   lines: "3D lines",
   halfplanes: "Half-planes",
+  groups: "Groups",
   facets: "Facets",
+  regions: "Regions",
+  directions: "Directions",
+  clusters: "Clusters",
+  rectangles: "Rectangles",
   model: "Model",
 };
 
-const IMAGE_TABS: readonly Tab[] = ["images", "segments", "matches"];
+/** Tabs that show images; the others show space. */
+const IMAGE_TABS: readonly Tab[] = ["images", "segments", "matches", "regions", "directions", "clusters"];
+
+/** What stands below the images or the space of a tab. */
+const LABS: Partial<Record<Tab, ComponentType>> = {
+  matches: PointLab,
+  lines: LineLab,
+  halfplanes: SimLab,
+  groups: GroupLab,
+  facets: FacetLab,
+  directions: DirectionLab,
+  clusters: ClusterLab,
+  rectangles: RectangleLab,
+  model: Filmstrip,
+};
 
 export function StageView() {
   const list = useRef<HTMLDivElement>(null);
   const isImageTab = IMAGE_TABS.includes(tab.value);
+  const names: readonly Tab[] = TABS[method.value];
+  const Lab = images.value.length > 0 ? LABS[tab.value] : undefined;
   const onKeyDown = (event: KeyboardEvent) => {
     const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
     if (step !== 0) {
       event.preventDefault();
-      const next = (TABS.indexOf(tab.value) + step + TABS.length) % TABS.length;
-      tab.value = TABS[next] as Tab;
+      const next = (names.indexOf(tab.value) + step + names.length) % names.length;
+      tab.value = names[next] as Tab;
       (list.current?.children[next] as HTMLElement | undefined)?.focus();
     }
   };
@@ -38,7 +65,7 @@ export function StageView() {
         ref={list}
         onKeyDown={onKeyDown}
       >
-        {TABS.map((name) => (
+        {names.map((name) => (
           <button
             key={name}
             id={`tab-${name}`}
@@ -58,6 +85,11 @@ export function StageView() {
       <div id="stage-view" class="stage-view" role="tabpanel" aria-labelledby={`tab-${tab.value}`}>
         {isImageTab && <ImageViews />}
         <SpaceView hidden={isImageTab} />
+        {Lab !== undefined && (
+          <section class="lab" aria-label={`${TITLES[tab.value]}: figure`}>
+            <Lab />
+          </section>
+        )}
       </div>
     </>
   );

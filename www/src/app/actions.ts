@@ -1,9 +1,13 @@
 /** What a person can do, and what follows from it: the only place that talks to the worker. */
 import { batch } from "@preact/signals";
-import type { InputFile } from "../shared/messages";
-import type { Params, SceneInfo } from "../shared/results";
+import type { InputFile, Queries, QueryName } from "../shared/messages";
+import type { Params, ParamValue, SceneInfo } from "../shared/results";
 import { Engine, EngineError } from "./engine";
+import { save } from "./files";
+import type { Kept } from "./keep";
+import { linkedParams } from "./link";
 import { failureNotice } from "./notices";
+import { changedParams, paramsOf, withParam } from "./paramForm";
 import { loadOptions } from "./runOptions";
 import { firstStageOf, stageWords } from "./stages";
 import {
@@ -16,6 +20,10 @@ import {
   images,
   inspection,
   isBusy,
+  isDemo,
+  keptResult,
+  type Method,
+  method,
   NO_OPTIONS,
   NO_RESULTS,
   type Notice,
@@ -25,10 +33,12 @@ import {
   type Results,
   type RunOptions,
   results,
+  runningStage,
   runOptions,
   type StageState,
   scene,
   selection,
+  shownPlane,
   shownView,
   stages,
   tab,
@@ -71,16 +81,52 @@ export async function addFiles(added: InputFile[], name?: string): Promise<void>
 }
 
 export async function removeFile(path: string): Promise<void> {
-  await setProject(files.value.filter((file) => file.path !== path));
+  await removing(path.slice(path.lastIndexOf("/") + 1), () =>
+    setProject(files.value.filter((file) => file.path !== path)),
+  );
 }
 
 export async function clearProject(): Promise<void> {
-  projectName.value = "";
-  await setProject([]);
+  await removing("The project", async () => {
+    projectName.value = "";
+    await setProject([]);
+  });
 }
 
-/** Fetches the demo scene from this site and drops it in as if it were the user's. */
-export async function openDemo(): Promise<void> {
+/** Removes something, and offers to take that back. */
+async function removing(what: string, remove: () => Promise<void>): Promise<void> {
+  const before: Kept = {
+    name: projectName.value,
+    isDemo: isDemo.value,
+    files: files.value,
+    options: runOptions.value,
+    params: params.value,
+  };
+  await remove();
+  notify({
+    severity: "info",
+    title: `${what} was removed`,
+    text: "",
+    action: { name: "Undo", run: () => void restoreProject(before) },
+  });
+}
+
+/** Takes up the project of the last visit. */
+export async function restoreProject(kept: Kept): Promise<void> {
+  projectName.value = kept.name;
+  runOptions.value = kept.options;
+  const linked = linkedParams();
+  params.value = paramsOf(defaults.value, { ...changedParams(defaults.value, kept.params), ...linked });
+  await guarded("", listStages);
+  await setProject(kept.files);
+  isDemo.value = kept.isDemo;
+}
+
+/**
+ * Fetches the demo scene from this site and drops it in as if it were the user's; then runs it up to a stage: the last
+ * one unless another is named, none for null.
+ */
+export async function openDemo(target?: string | null): Promise<void> {
   const fetched = await guarded("Fetching the demo scene", fetchDemo);
   if (fetched === undefined) {
     return;
@@ -88,7 +134,12 @@ export async function openDemo(): Promise<void> {
   files.value = [];
   runOptions.value = NO_OPTIONS;
   await addFiles(fetched.files, fetched.title);
-  await runAll();
+  isDemo.value = true;
+  if (target === undefined) {
+    await runAll();
+  } else if (target !== null) {
+    await runTo(target);
+  }
 }
 
 /** Runs every stage up to `target` that the worker has not run with the present parameters. */
@@ -126,19 +177,33 @@ export async function cancel(): Promise<void> {
   await start();
 }
 
-/** Changes one parameter; stages that depend on it become outdated. */
-export function setParam(group: string, next: Params[string]): void {
-  params.value = { ...params.value, [group]: next };
+/** Changes the parameter at a path of names; stages that depend on it become outdated. */
+export function setParam(path: string, value: ParamValue): void {
+  params.value = withParam(params.value, path, value);
   outdateFrom(
     firstStageOf(
-      group,
+      path,
       stages.value.map(({ name }) => name),
     ),
   );
 }
 
+/** Chooses the method: its stages take the place of the other's, and begin anew. */
+export async function setMethod(next: Method): Promise<void> {
+  if (next === method.value) {
+    return;
+  }
+  stopWorker();
+  batch(() => {
+    params.value = { ...params.value, method: next as unknown as Params[string] };
+    clearResults();
+  });
+  await guarded("", listStages);
+}
+
 export function resetParams(): void {
-  params.value = structuredClone(defaults.value);
+  const chosen = method.value as unknown as Params[string];
+  params.value = { ...structuredClone(defaults.value), method: chosen };
   outdateFrom(0);
 }
 
@@ -162,13 +227,24 @@ export async function setRunOptions(change: Partial<RunOptions>): Promise<void> 
 export async function download(name: string): Promise<void> {
   await guarded(`Writing ${name}`, async () => {
     const bytes = await engine.call("exportFile", { name });
-    const url = URL.createObjectURL(new Blob([bytes], { type: mediaType(name) }));
-    const link = document.createElement("a");
-    link.href = url;
-    link.download = name;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(url), 10_000);
+    save(name, new Blob([bytes], { type: mediaType(name) }));
   });
+}
+
+/** Asks the core about its results; null while it has none, or is at work on others. */
+export async function ask<K extends QueryName>(
+  query: K,
+  ...of: Queries[K]["args"]
+): Promise<Queries[K]["result"] | null> {
+  if (!sceneInWorker || runningStage.peek() !== null) {
+    return null;
+  }
+  try {
+    return await engine.ask(query, ...of);
+  } catch (error) {
+    await report(error);
+    return null;
+  }
 }
 
 export function notify(notice: Omit<Notice, "id">): void {
@@ -195,6 +271,7 @@ async function setProject(next: InputFile[]): Promise<void> {
   freshStages.value = 0;
   batch(() => {
     files.value = next;
+    isDemo.value = false;
     inspection.value = null;
     notices.value = [];
     runOptions.value = next.length === 0 ? NO_OPTIONS : runOptions.value;
@@ -230,10 +307,17 @@ function clearScene(): void {
   }
   scene.value = null;
   images.value = [];
+  shownView.value = 0;
+  keptResult.value = null;
+  clearResults();
+}
+
+function clearResults(): void {
+  freshStages.value = 0;
   results.value = NO_RESULTS;
   exportNames.value = [];
   selection.value = null;
-  shownView.value = 0;
+  shownPlane.value = 0;
   tab.value = "images";
   stages.value = stages.value.map(({ name }) => freshStage(name));
 }
@@ -245,8 +329,18 @@ async function openEngine(): Promise<void> {
   const core = await engine.open();
   defaults.value = core.defaults;
   if (stages.value.length === 0) {
-    params.value = structuredClone(core.defaults);
-    stages.value = core.stages.map(freshStage);
+    params.value = paramsOf(core.defaults, linkedParams());
+    await listStages();
+  }
+}
+
+/** Asks the core for the stages of the chosen method. */
+async function listStages(): Promise<void> {
+  await openEngine();
+  await engine.call("setParams", { params: params.value });
+  const names = await engine.ask("chosenStages");
+  if (names.join() !== stages.value.map(({ name }) => name).join()) {
+    stages.value = names.map(freshStage);
   }
 }
 
@@ -317,20 +411,49 @@ async function runStage(name: string): Promise<void> {
 async function fetchResults(stage: string): Promise<Partial<Results>> {
   switch (stage) {
     case "segments":
-      return { segments: await perView("segments") };
+      return { segments: await perView("segments"), rejected: await askViews("rejectedSegments") };
     case "matches":
-      return { supports: await perView("matchedSegments") };
+      return { supports: await perView("matchedSegments"), matching: await engine.ask("matching") };
     case "lines":
-      return { supports: await perView("matchedSegments"), lines: await engine.call("lines", {}) };
+      return {
+        ...(await fetchLines()),
+        stretches: await engine.ask("detectedStretches"),
+      };
     case "halfplanes":
-      return { halfPlanes: await engine.call("halfPlanes", {}) };
+      return { halfPlanes: await engine.call("halfPlanes", {}), sides: await engine.ask("sides") };
     case "facets":
-      return { facets: await engine.call("facets", {}) };
+      return { facets: await engine.call("facets", {}), grouping: await engine.ask("grouping") };
+    case "regions":
+      return { segments: await perView("segments"), regions: (await askViews("regions")).filter(isPresent) };
+    case "directions":
+      return { directions: await engine.ask("directions") };
+    case "clusters":
+      return { ...(await fetchLines()), clusters: await engine.ask("clusters") };
+    case "rectangles":
+      return { facets: await engine.call("facets", {}), rectangles: await engine.ask("rectangles") };
     case "model":
       return { glb: await engine.call("exportFile", { name: "model.glb" }) };
     default:
       return {};
   }
+}
+
+async function fetchLines(): Promise<Partial<Results>> {
+  return {
+    supports: await perView("matchedSegments"),
+    lines: await engine.call("lines", {}),
+    records: await engine.ask("lineRecords"),
+  };
+}
+
+/** The answers for all views. */
+function askViews<K extends "rejectedSegments" | "regions">(query: K): Promise<Queries[K]["result"][]> {
+  const views = scene.value?.views ?? [];
+  return Promise.all(views.map((_, view) => engine.ask(query, view)));
+}
+
+function isPresent<T>(value: T | null): value is T {
+  return value !== null;
 }
 
 function perView(call: "segments" | "matchedSegments"): Promise<Float32Array[]> {

@@ -1,7 +1,9 @@
 /** Draws one view's image and overlay on a canvas. It computes nothing but where things lie on the screen. */
 import { PALETTE } from "../shared/palette";
-import { SEGMENT_STRIDE, SUPPORT_KINDS, SUPPORT_STRIDE } from "../shared/results";
+import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_KINDS, SUPPORT_STRIDE } from "../shared/results";
 import type { Selection } from "../shared/selection";
+import type { Vec2 } from "../shared/traces";
+import type { Mark } from "./marks";
 import type { Viewport } from "./overlay";
 
 export interface Overlay {
@@ -9,6 +11,14 @@ export interface Overlay {
   segments: Float32Array | null;
   /** x0, y0, x1, y1, kind, line per support. */
   supports: Float32Array | null;
+  /** x0, y0, x1, y1, reason per refused line of edgels. */
+  rejected?: Float32Array | null;
+  /** Regions: their rings, each with its colour. */
+  regions?: readonly { rings: readonly (readonly Vec2[])[]; colour: string }[] | null;
+  /** What a click finds first where both lie: lines, unless this is set. */
+  segmentsFirst?: boolean;
+  /** A colour for each segment; the palette's where there is none. */
+  colours?: readonly (string | null)[] | null;
 }
 
 const LINE_PX = 1.75;
@@ -25,7 +35,7 @@ export function drawView(
   pixelRatio: number,
   overlay: Overlay,
   selection: Selection | null,
-  view: number,
+  marks: readonly Mark[],
 ): void {
   const { canvas } = context;
   context.setTransform(1, 0, 0, 1, 0, 0);
@@ -37,9 +47,22 @@ export function drawView(
   context.drawImage(image, 0, 0);
   context.lineCap = "round";
   const unit = 1 / viewport.scale;
-  const { segments, supports } = overlay;
+  const { segments, supports, rejected, regions, colours } = overlay;
   context.globalAlpha = selection === null ? 1 : DIMMED;
-  if (segments !== null) {
+  if (regions != null) {
+    fillRegions(context, regions, unit);
+  }
+  if (rejected != null) {
+    strokeAll(context, rejected, REJECTED_STRIDE, () => true, PALETTE.rejected, THIN_PX * unit, 0.9);
+  }
+  if (segments !== null && colours != null) {
+    strokeAll(context, segments, SEGMENT_STRIDE, () => true, PALETTE.casing, (LINE_PX + 1.5) * unit, 0.35);
+    for (const colour of new Set(colours)) {
+      const isOfIt = (at: number) => colours[at / SEGMENT_STRIDE] === colour;
+      const [stroke, width] = colour === null ? [PALETTE.unmatched, THIN_PX] : [colour, LINE_PX];
+      strokeAll(context, segments, SEGMENT_STRIDE, isOfIt, stroke, width * unit, colour === null ? 0.7 : 1);
+    }
+  } else if (segments !== null) {
     const isAlone = supports === null;
     strokeAll(context, segments, SEGMENT_STRIDE, () => true, PALETTE.casing, (LINE_PX + 1.5) * unit, 0.35);
     const width = (isAlone ? LINE_PX : THIN_PX) * unit;
@@ -53,26 +76,103 @@ export function drawView(
     });
   }
   context.globalAlpha = 1;
-  drawSelection(context, overlay, selection, view, unit);
-}
-
-function drawSelection(
-  context: CanvasRenderingContext2D,
-  { segments, supports }: Overlay,
-  selection: Selection | null,
-  view: number,
-  unit: number,
-): void {
-  const strokeChosen = (data: Float32Array, stride: number, isChosen: (at: number) => boolean) => {
-    strokeAll(context, data, stride, isChosen, PALETTE.casing, (SELECTED_PX + 2.5) * unit, 0.9);
-    strokeAll(context, data, stride, isChosen, PALETTE.selected, SELECTED_PX * unit, 1);
-  };
-  if (selection?.kind === "segment" && selection.view === view && segments !== null) {
-    strokeChosen(segments, SEGMENT_STRIDE, (at) => at === selection.index * SEGMENT_STRIDE);
+  for (const mark of marks) {
+    drawMark(context, mark, unit);
   }
   if (selection?.kind === "line" && supports !== null) {
-    strokeChosen(supports, SUPPORT_STRIDE, (at) => supports[at + 5] === selection.index);
+    const isChosen = (at: number) => supports[at + 5] === selection.index;
+    strokeAll(context, supports, SUPPORT_STRIDE, isChosen, PALETTE.casing, (SELECTED_PX + 2.5) * unit, 0.9);
+    strokeAll(context, supports, SUPPORT_STRIDE, isChosen, PALETTE.selected, SELECTED_PX * unit, 1);
   }
+}
+
+/** A polyline with a dark casing, so that it stands on any photograph. */
+function drawMark(context: CanvasRenderingContext2D, mark: Mark, unit: number): void {
+  const [first] = mark.points;
+  if (first === undefined) {
+    return;
+  }
+  const path = new Path2D();
+  trace(path, mark.points);
+  if (mark.closed) {
+    path.closePath();
+  }
+  context.lineJoin = "round";
+  if (mark.fill !== undefined) {
+    context.globalAlpha = mark.fill;
+    context.fillStyle = mark.colour;
+    context.fill(path);
+  }
+  context.globalAlpha = 0.75;
+  context.strokeStyle = PALETTE.casing;
+  context.lineWidth = (mark.width + 2) * unit;
+  context.setLineDash([]);
+  context.stroke(path);
+  context.globalAlpha = 1;
+  context.strokeStyle = mark.colour;
+  context.lineWidth = mark.width * unit;
+  context.setLineDash(mark.dashed ? [7 * unit, 5 * unit] : []);
+  context.stroke(path);
+  context.setLineDash([]);
+  if (mark.label !== undefined) {
+    drawLabel(context, mark.label, labelPlace(mark.points), mark.colour, unit);
+  }
+}
+
+function trace(path: Path2D, points: readonly Vec2[]): void {
+  for (const [i, [x, y]] of points.entries()) {
+    if (i === 0) {
+      path.moveTo(x, y);
+    } else {
+      path.lineTo(x, y);
+    }
+  }
+}
+
+function labelPlace(points: readonly Vec2[]): Vec2 {
+  const [x, y] = points.reduce<[number, number]>(([sx, sy], [px, py]) => [sx + px, sy + py], [0, 0]);
+  return [x / points.length, y / points.length];
+}
+
+function drawLabel(
+  context: CanvasRenderingContext2D,
+  text: string,
+  [x, y]: Vec2,
+  colour: string,
+  unit: number,
+): void {
+  context.font = `600 ${11.5 * unit}px system-ui, "Liberation Sans", sans-serif`;
+  const width = context.measureText(text).width + 8 * unit;
+  context.globalAlpha = 0.85;
+  context.fillStyle = PALETTE.casing;
+  context.fillRect(x + 6 * unit, y - 19 * unit, width, 15 * unit);
+  context.globalAlpha = 1;
+  context.fillStyle = colour;
+  context.fillText(text, x + 10 * unit, y - 7.5 * unit);
+}
+
+function fillRegions(
+  context: CanvasRenderingContext2D,
+  regions: readonly { rings: readonly (readonly Vec2[])[]; colour: string }[],
+  unit: number,
+): void {
+  const before = context.globalAlpha;
+  const outlines = new Path2D();
+  for (const { rings, colour } of regions) {
+    const path = new Path2D();
+    for (const ring of rings) {
+      trace(path, ring);
+      path.closePath();
+    }
+    context.globalAlpha = before * 0.6;
+    context.fillStyle = colour;
+    context.fill(path, "evenodd");
+    outlines.addPath(path);
+  }
+  context.globalAlpha = before;
+  context.strokeStyle = PALETTE.beam;
+  context.lineWidth = 0.75 * unit;
+  context.stroke(outlines);
 }
 
 function strokeAll(

@@ -3,7 +3,16 @@
  * then opens it again and replays its inputs.
  */
 import wasmUrl from "../pkg/ridgeline_bg.wasm?url";
-import type { Args, CallName, FailureKind, Reply, Request, Result } from "../shared/messages";
+import type {
+  Args,
+  CallName,
+  FailureKind,
+  Queries,
+  QueryName,
+  Reply,
+  Request,
+  Result,
+} from "../shared/messages";
 
 /** A call that the worker refused, or that was cut short. */
 export class EngineError extends Error {
@@ -57,6 +66,11 @@ export class Engine {
       this.#pending.set(id, { resolve, reject });
       worker.postMessage({ type, id, args } as Request);
     });
+  }
+
+  /** Asks something about the results. */
+  async ask<K extends QueryName>(query: K, ...of: Queries[K]["args"]): Promise<Queries[K]["result"]> {
+    return (await this.call("ask", { query, of })) as Queries[K]["result"];
   }
 
   /** Ends the worker at once, whatever it is doing; every open call fails with `reason`. */

@@ -2,12 +2,30 @@
 import "../styles/base.css";
 import "../styles/layout.css";
 import "../styles/parts.css";
+import "../styles/figures.css";
 import { render } from "preact";
 import { App } from "./App";
 import { start } from "./actions";
+import { keepProject } from "./keep";
+import { followState } from "./link";
+import { followSelection } from "./pointing";
+import { resume } from "./resume";
 
 const root = document.getElementById("app");
 if (root !== null) {
   render(<App />, root);
-  void start();
+  void open();
+}
+
+async function open(): Promise<void> {
+  await start();
+  followSelection();
+  await resume();
+  followState();
+  keepProject();
+}
+
+// Offline after the first load; only the built site has one.
+if (import.meta.env.PROD && "serviceWorker" in navigator) {
+  void navigator.serviceWorker.register("./sw.js").catch(() => undefined);
 }

@@ -34,6 +34,27 @@ export function fitImage(image: Size, box: Size, marginPx = 8): Viewport {
   };
 }
 
+/** The viewport that shows some image points with a margin, no closer than `maxScale`; null where there are none. */
+export function fitPoints(
+  points: readonly (readonly [number, number])[],
+  box: Size,
+  marginPx: number,
+  maxScale: number,
+): Viewport | null {
+  if (points.length === 0) {
+    return null;
+  }
+  const xs = points.map(([x]) => x);
+  const ys = points.map(([, y]) => y);
+  const [x0, y0, x1, y1] = [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
+  const scale = Math.min(
+    maxScale,
+    box.width / (x1 - x0 + 2 * marginPx),
+    box.height / (y1 - y0 + 2 * marginPx),
+  );
+  return { scale, x: box.width / 2 - (scale * (x0 + x1)) / 2, y: box.height / 2 - (scale * (y0 + y1)) / 2 };
+}
+
 /** Zooms by `factor` so that the image point under `at` (CSS pixels) stays there. */
 export function zoomAt(viewport: Viewport, at: Point, factor: number, minScale: number): Viewport {
   const scale = Math.min(MAX_SCALE, Math.max(minScale, viewport.scale * factor));

@@ -12,7 +12,9 @@ export interface ParamField {
 }
 
 export interface ParamSection {
-  group: string;
+  /** Where its fields stand: names joined by dots. */
+  path: string;
+  title: string;
   fields: ParamField[];
   changed: number;
 }
@@ -26,28 +28,100 @@ const UNITS: readonly (readonly [string, string])[] = [
   ["_s", "s"],
 ];
 
-const GROUP_TITLES: Record<string, string> = {
+const TITLES: Record<string, string> = {
   segments: "Segments",
   matching: "Matching",
   lines3d: "3D lines",
   sweep: "Half-plane sweep",
   roof: "Grouping and facets",
   texture: "Texture",
+  "objectspace.oris": "Regions (ORIS)",
+  "objectspace.windows": "Windows",
+  "objectspace.directions": "Main directions",
+  "objectspace.clusters": "Clusters",
+  "objectspace.planes": "Planes",
 };
 
-export function groupTitle(group: string): string {
-  return GROUP_TITLES[group] ?? words(group);
+/** The groups that either method reads. */
+const GROUPS_OF_METHOD: Record<string, readonly string[]> = {
+  lines: ["segments", "matching", "lines3d", "sweep", "roof", "texture"],
+  rectangles: ["objectspace", "texture"],
+};
+
+/** One section a group, groups inside groups apart, in the core's order; only what the method reads. */
+export function paramSections(defaults: Params, values: Params): ParamSection[] {
+  const groups = GROUPS_OF_METHOD[String(values["method"] ?? "lines")];
+  return Object.entries(defaults)
+    .filter(([name, fallback]) => isGroup(fallback) && (groups?.includes(name) ?? true))
+    .flatMap(([name, fallback]) => sectionsOf(name, fallback, values[name] ?? {}));
 }
 
-/** One section a stage, in the core's order; a stage without parameters has none, nor has a single value beside the
- * groups. */
-export function paramSections(defaults: Params, values: Params): ParamSection[] {
-  return Object.entries(defaults)
-    .filter(([, fallback]) => typeof fallback === "object" && Object.keys(fallback).length > 0)
-    .map(([group, fallback]) => {
-      const fields = paramFields(fallback, values[group] ?? {});
-      return { group, fields, changed: fields.filter(({ changed }) => changed).length };
-    });
+function sectionsOf(path: string, defaults: ParamGroup, values: ParamGroup): ParamSection[] {
+  const own = Object.entries(defaults).filter(([, value]) => !isGroup(value));
+  const inner = Object.entries(defaults).filter(([, value]) => isGroup(value));
+  const fields = own.map(([key, fallback]) => paramField(key, fallback, values[key] ?? fallback));
+  const section = {
+    path,
+    title: TITLES[path] ?? innerTitle(path),
+    fields,
+    changed: fields.filter(({ changed }) => changed).length,
+  };
+  return [
+    ...(fields.length > 0 ? [section] : []),
+    ...inner.flatMap(([key, group]) =>
+      sectionsOf(`${path}.${key}`, group as ParamGroup, (values[key] ?? group) as ParamGroup),
+    ),
+  ];
+}
+
+/** "Segments: edgels". */
+function innerTitle(path: string): string {
+  const at = path.lastIndexOf(".");
+  const outer = TITLES[path.slice(0, at)];
+  const own = path.slice(at + 1).replaceAll("_", " ");
+  return outer === undefined ? words(path.slice(at + 1)) : `${outer}: ${own}`;
+}
+
+/** The parameters with another value at a path of names. */
+export function withParam(values: Params, path: string, value: ParamValue): Params {
+  const [first, ...rest] = path.split(".") as [string, ...string[]];
+  const set = (group: ParamValue | undefined, names: readonly string[]): ParamValue => {
+    const [name, ...deeper] = names;
+    return name === undefined
+      ? value
+      : { ...(group as ParamGroup), [name]: set((group as ParamGroup)[name], deeper) };
+  };
+  return { ...values, [first]: set(values[first] ?? {}, rest) as ParamGroup };
+}
+
+/** What differs from the defaults, by path: what a link carries. */
+export function changedParams(defaults: Params, values: Params): Record<string, ParamValue> {
+  const changed: Record<string, ParamValue> = {};
+  const walk = (path: string, fallback: ParamValue, value: ParamValue) => {
+    if (isGroup(fallback) && isGroup(value)) {
+      for (const [key, inner] of Object.entries(fallback)) {
+        walk(path === "" ? key : `${path}.${key}`, inner, value[key] ?? inner);
+      }
+    } else if (fieldText(value) !== fieldText(fallback)) {
+      changed[path] = value;
+    }
+  };
+  walk("", defaults, values);
+  return changed;
+}
+
+/** The defaults with what a link carries; paths that the core does not know are left out. */
+export function paramsOf(defaults: Params, changed: Record<string, ParamValue>): Params {
+  let values = structuredClone(defaults);
+  for (const [path, value] of Object.entries(changed)) {
+    const known = path
+      .split(".")
+      .reduce<ParamValue | undefined>((group, name) => (isGroup(group) ? group[name] : undefined), defaults);
+    if (known !== undefined && !isGroup(known) && (known === null || typeof known === typeof value)) {
+      values = withParam(values, path, value);
+    }
+  }
+  return values;
 }
 
 /** The value of a field's text, or why it cannot be one. */
@@ -71,20 +145,21 @@ export function fieldText(value: ParamValue): string {
   return typeof value === "object" ? JSON.stringify(value) : String(value);
 }
 
-function paramFields(fallback: ParamGroup, values: ParamGroup): ParamField[] {
-  return Object.entries(fallback).map(([key, standard]) => {
-    const value = values[key] ?? standard;
-    const { label, unit } = labelAndUnit(key);
-    return {
-      key,
-      label,
-      unit,
-      kind: fieldKind(standard),
-      value,
-      fallback: standard,
-      changed: fieldText(value) !== fieldText(standard),
-    };
-  });
+function paramField(key: string, fallback: ParamValue, value: ParamValue): ParamField {
+  const { label, unit } = labelAndUnit(key);
+  return {
+    key,
+    label,
+    unit,
+    kind: fieldKind(fallback),
+    value,
+    fallback,
+    changed: fieldText(value) !== fieldText(fallback),
+  };
+}
+
+function isGroup(value: ParamValue | undefined): value is ParamGroup {
+  return typeof value === "object" && value !== null && !Array.isArray(value);
 }
 
 function fieldKind(value: ParamValue): ParamField["kind"] {

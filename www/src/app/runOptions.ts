@@ -4,13 +4,14 @@ import type { RunOptions } from "./state";
 
 /** The core's options; the views are named only where some are left out. */
 export function loadOptions(wanted: RunOptions, inspection: Inspection | null): LoadOptions {
-  const { orientation, leftOut, roi, groundZ } = wanted;
+  const { orientation, leftOut, roi, groundZ, applyFix } = wanted;
   const used = (inspection?.images ?? []).filter(({ path }) => !leftOut.includes(path));
   return {
     ...(orientation !== null && { orientation }),
     ...(leftOut.length > 0 && { views: used.map(({ name }) => name) }),
     ...(roi !== null && { roi }),
     ...(groundZ !== null && { groundZ }),
+    ...(applyFix && { applyFix }),
   };
 }
 

@@ -3,9 +3,30 @@ import { computed, signal } from "@preact/signals";
 import type { InputFile } from "../shared/messages";
 import type { Facet, HalfPlane, Inspection, Params, SceneInfo } from "../shared/results";
 import type { Selection } from "../shared/selection";
+import type {
+  ClusterTrace,
+  Correspondence,
+  Directions,
+  Grouping,
+  LineRecord,
+  MatchRecord,
+  RectangleTrace,
+  Segmentation,
+  SegmentStory,
+  SideRecord,
+  SideTrace,
+  WarpedPicture,
+} from "../shared/traces";
 
-export const TABS = ["images", "segments", "matches", "lines", "halfplanes", "facets", "model"] as const;
-export type Tab = (typeof TABS)[number];
+import type { Fix } from "./notices";
+
+/** The stage views of each method. */
+export const TABS = {
+  lines: ["images", "segments", "matches", "lines", "halfplanes", "groups", "facets", "model"],
+  rectangles: ["images", "regions", "directions", "clusters", "rectangles", "model"],
+} as const;
+export type Method = keyof typeof TABS;
+export type Tab = (typeof TABS)[Method][number];
 
 export type StageStatus = "waiting" | "running" | "done" | "outdated" | "failed";
 
@@ -26,6 +47,10 @@ export interface Notice {
   text: string;
   /** What to do about it. */
   advice?: string;
+  /** A mistake in the orientation that can be undone at once. */
+  fix?: Fix;
+  /** Something that can be done about it. */
+  action?: { name: string; run: () => void };
 }
 
 /** What the stages have returned so far; arrays per view are empty until their stage has run. */
@@ -36,6 +61,33 @@ export interface Results {
   halfPlanes: HalfPlane[] | null;
   facets: Facet[] | null;
   glb: Uint8Array<ArrayBuffer> | null;
+  rejected: Float32Array[];
+  matching: MatchRecord | null;
+  records: LineRecord[];
+  stretches: Float64Array | null;
+  sides: SideRecord[];
+  grouping: Grouping | null;
+  regions: Segmentation[];
+  directions: Directions | null;
+  clusters: ClusterTrace[] | null;
+  rectangles: RectangleTrace | null;
+}
+
+/** What the reader points at in a figure, and what the core answered. */
+export interface Pointing {
+  /** The story of the selected segment. */
+  story: SegmentStory | null;
+  /** The candidate that is compared with it, by its place in the story. */
+  candidate: number;
+  /** Where on the segment the point is, 0 to 1. */
+  at: number;
+  correspondence: Correspondence | null;
+  /** The side of the selected line or half-plane, its Sim(theta), and the angle that is tried, radians. */
+  side: SideTrace | null;
+  theta: number;
+  /** Whether the reader turned it. */
+  isTurned: boolean;
+  warped: WarpedPicture | null;
 }
 
 export const NO_RESULTS: Results = {
@@ -45,9 +97,32 @@ export const NO_RESULTS: Results = {
   halfPlanes: null,
   facets: null,
   glb: null,
+  rejected: [],
+  matching: null,
+  records: [],
+  stretches: null,
+  sides: [],
+  grouping: null,
+  regions: [],
+  directions: null,
+  clusters: null,
+  rectangles: null,
+};
+
+export const NOTHING_POINTED: Pointing = {
+  story: null,
+  candidate: 0,
+  at: 0.5,
+  correspondence: null,
+  side: null,
+  theta: 0,
+  isTurned: false,
+  warped: null,
 };
 
 export const files = signal<InputFile[]>([]);
+/** Whether the project is the demo scene as it was fetched: a link may name that. */
+export const isDemo = signal(false);
 export const projectName = signal("");
 /** What the person asked for beyond the files; images are left out by their path. */
 export interface RunOptions {
@@ -55,9 +130,17 @@ export interface RunOptions {
   leftOut: readonly string[];
   roi: [number, number, number, number] | null;
   groundZ: number | null;
+  /** Undo the mistake in the orientation that the images give away. */
+  applyFix: boolean;
 }
 
-export const NO_OPTIONS: RunOptions = { orientation: null, leftOut: [], roi: null, groundZ: null };
+export const NO_OPTIONS: RunOptions = {
+  orientation: null,
+  leftOut: [],
+  roi: null,
+  groundZ: null,
+  applyFix: false,
+};
 
 export const runOptions = signal<RunOptions>(NO_OPTIONS);
 export const inspection = signal<Inspection | null>(null);
@@ -67,6 +150,12 @@ export const images = signal<ImageBitmap[]>([]);
 
 export const defaults = signal<Params>({});
 export const params = signal<Params>({});
+
+export const method = computed<Method>(() => methodOf(params.value));
+
+export function methodOf(values: Params): Method {
+  return (values["method"] as unknown) === "rectangles" ? "rectangles" : "lines";
+}
 
 export const stages = signal<StageState[]>([]);
 export const results = signal<Results>(NO_RESULTS);
@@ -82,6 +171,29 @@ export const tab = signal<Tab>("images");
 /** The view shown in the image tabs; -1: all of them side by side. */
 export const shownView = signal(0);
 export const selection = signal<Selection | null>(null);
+export const pointing = signal<Pointing>(NOTHING_POINTED);
+/** Which cluster plane, or histogram, of the rectangles method is shown. */
+export const shownPlane = signal(0);
+/** Whether the 3D lines are shown as the segments alone gave them (B99 figures 5 and 7). */
+export const beforeGrowing = signal(false);
+/** Whether the image tabs zoom to what is selected. */
+export const followsSelection = signal(true);
+/** Whether the refused lines of edgels are drawn too. */
+export const withRejected = signal(false);
+/** A model that was kept, to compare others with it. */
+export interface KeptResult {
+  title: string;
+  facets: Facet[];
+  lines: number;
+  seconds: number;
+}
+
+export const keptResult = signal<KeptResult | null>(null);
+
+/** The step of the guided tour; null while it is closed. */
+export const lessonStep = signal<number | null>(null);
+/** Bytes that the browser keeps of the project; null when it keeps nothing. */
+export const keptBytes = signal<number | null>(null);
 
 /** How many stages, from the first, the worker has run with the present files and parameters. */
 export const freshStages = signal(0);

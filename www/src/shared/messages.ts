@@ -10,6 +10,21 @@ import type {
   ViewImage,
 } from "./results";
 
+import type {
+  ClusterTrace,
+  Correspondence,
+  Directions,
+  Grouping,
+  LineRecord,
+  MatchRecord,
+  RectangleTrace,
+  Segmentation,
+  SegmentStory,
+  SideRecord,
+  SideTrace,
+  WarpedPicture,
+} from "./traces";
+
 /** A file of the project. The page keeps the handle, so that a new worker can be given it again. */
 export interface InputFile {
   path: string;
@@ -30,9 +45,53 @@ export interface Calls {
   lines: { args: object; result: Float64Array };
   halfPlanes: { args: object; result: HalfPlane[] };
   facets: { args: object; result: Facet[] };
+  ask: { args: { query: QueryName; of: readonly unknown[] }; result: Queries[QueryName]["result"] };
   exportNames: { args: object; result: string[] };
   exportFile: { args: { name: string }; result: Uint8Array<ArrayBuffer> };
 }
+
+/** Questions about the results, by the name of the session's method: they change nothing. */
+export interface Queries {
+  chosenStages: { args: []; result: string[] };
+  rejectedSegments: { args: [view: number]; result: Float32Array };
+  matching: { args: []; result: MatchRecord | null };
+  segmentStory: { args: [view: number, segment: number]; result: SegmentStory | null };
+  correspondence: {
+    args: [view: number, segment: number, otherView: number, otherSegment: number, t: number];
+    result: Correspondence | null;
+  };
+  lineRecords: { args: []; result: LineRecord[] };
+  detectedStretches: { args: []; result: Float64Array };
+  sides: { args: []; result: SideRecord[] };
+  side: { args: [line: number, left: boolean]; result: SideTrace | null };
+  warped: { args: [line: number, left: boolean, theta: number]; result: WarpedPicture | null };
+  grouping: { args: []; result: Grouping | null };
+  regions: { args: [view: number]; result: Segmentation | null };
+  directions: { args: []; result: Directions | null };
+  clusters: { args: []; result: ClusterTrace[] | null };
+  rectangles: { args: []; result: RectangleTrace | null };
+}
+
+export type QueryName = keyof Queries;
+
+/** The names at run time: the worker calls no other method by name. */
+export const QUERY_NAMES: readonly QueryName[] = [
+  "chosenStages",
+  "rejectedSegments",
+  "matching",
+  "segmentStory",
+  "correspondence",
+  "lineRecords",
+  "detectedStretches",
+  "sides",
+  "side",
+  "warped",
+  "grouping",
+  "regions",
+  "directions",
+  "clusters",
+  "rectangles",
+];
 
 export type CallName = keyof Calls;
 export type Args<K extends CallName> = Calls[K]["args"];

@@ -9,6 +9,8 @@ export const PALETTE = {
   grown: "#ff9d2e",
   halfPlane: "#14b8a0",
   rejected: "#e5484d",
+  bar: "#3fbf6f",
+  beam: "#f4f6f8",
   selected: "#ffe11a",
   casing: "#14171c",
   line: "#4aa8ff",
@@ -26,3 +28,19 @@ export const THEME_COLOURS: Record<"light" | "dark", ThemeColours> = {
   light: { background: "#eef0f2", grid: "#d3d8de", ink: "#2a2f36", clay: "#e6dfd6" },
   dark: { background: "#15181d", grid: "#2b3139", ink: "#d9dee5", clay: "#b3aca3" },
 };
+
+/** Hues for things that have no order: groups, regions, the two main directions. Equal weight, told apart without red and green. */
+export const CATEGORIES = [
+  "#4aa8ff",
+  "#ff9d2e",
+  "#c78bf2",
+  "#14b8a0",
+  "#f2c14e",
+  "#ef7fb0",
+  "#8fb8de",
+  "#b5c76a",
+] as const;
+
+export function category(index: number): string {
+  return CATEGORIES[index % CATEGORIES.length] as string;
+}

@@ -59,6 +59,8 @@ export interface LoadOptions {
   groundZ?: number;
   /** x0, y0, x1, y1, metres, in the frame of the orientation. */
   roi?: [number, number, number, number];
+  /** Undo the mistake in the orientation that the images give away. */
+  applyFix?: boolean;
 }
 
 export interface ViewInfo {
@@ -129,3 +131,10 @@ export type SupportKind = (typeof SUPPORT_KINDS)[number];
 export const SEGMENT_STRIDE = 4;
 export const SUPPORT_STRIDE = 6;
 export const LINE_STRIDE = 6;
+/** line, then p0 and p1 of a stretch. */
+export const STRETCH_STRIDE = 7;
+/** x0, y0, x1, y1, reason. */
+export const REJECTED_STRIDE = 5;
+
+/** Why a line of edgels is no segment, as `rejectedSegments` numbers it. */
+export const SEGMENT_REJECTIONS = ["curved", "not significant", "beside an edge"] as const;

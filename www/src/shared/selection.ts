@@ -1,8 +1,16 @@
 /** The thing that was picked, by its index in the results; anywhere it is picked, it lights up everywhere. */
+import type { SideName } from "./traces";
+
 export type Selection =
   | { kind: "segment"; view: number; index: number }
   | { kind: "line"; index: number }
+  /** A side of a 3D line, whether it has a half-plane or not. */
+  | { kind: "side"; line: number; side: SideName }
   | { kind: "halfplane"; index: number }
+  | { kind: "group"; index: number }
   | { kind: "facet"; index: number }
   | { kind: "surface"; surface: string; building: number | null; facet: number | null; areaM2: number }
-  | { kind: "view"; index: number };
+  | { kind: "view"; index: number }
+  /** W96: a region of a view; a pair of parallel lines. */
+  | { kind: "region"; view: number; index: number }
+  | { kind: "pair"; index: number };

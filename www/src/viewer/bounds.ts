@@ -1,6 +1,6 @@
 /** Spheres around what is shown, in the viewer's frame. */
 import { Box3, type Object3D, Sphere, Vector3 } from "three";
-import { type Facet, LINE_STRIDE } from "../shared/results";
+import { type Facet, LINE_STRIDE, type Vec3 } from "../shared/results";
 import { yUp } from "./frame";
 
 /** This share of the coordinates at either end is left out, so that one stray line does not set the scale. */
@@ -28,6 +28,13 @@ export function boundsOfLines(lines: Float64Array): Sphere {
       number,
     ];
   return padded(new Box3().setFromPoints([yUp(at(OUTLIERS)), yUp(at(1 - OUTLIERS))]));
+}
+
+/** A sphere that holds the cameras, too. */
+export function withCameras(sphere: Sphere, centres: readonly Vec3[]): Sphere {
+  const box = new Box3().setFromPoints(centres.map(yUp));
+  box.expandByPoint(sphere.center);
+  return padded(box);
 }
 
 function padded(box: Box3): Sphere {

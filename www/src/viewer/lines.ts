@@ -12,8 +12,14 @@ const WIDTH_PX = 2.25;
 const SELECTED_WIDTH_PX = 5;
 const DIMMED = 0.35;
 
-/** @param lines p0 and p1 of each line, local frame, metres */
-export function buildLines(lines: Float64Array): Layer {
+/**
+ * @param lines p0 and p1 of each line, local frame, metres
+ * @param linesOf the lines that belong to a selection
+ */
+export function buildLines(
+  lines: Float64Array,
+  linesOf: (selection: Selection | null) => readonly number[] = lineOf,
+): Layer {
   const object = zUpGroup();
   const all = segments(Float32Array.from(lines), PALETTE.line, WIDTH_PX);
   object.add(all);
@@ -28,13 +34,16 @@ export function buildLines(lines: Float64Array): Layer {
         disposeObject(chosen);
         chosen = null;
       }
-      const index = lineOf(selection);
       all.material.opacity = selection === null ? 1 : DIMMED;
-      if (index !== null && (index + 1) * LINE_STRIDE <= lines.length) {
-        const one = lines.subarray(index * LINE_STRIDE, (index + 1) * LINE_STRIDE);
-        chosen = segments(Float32Array.from(one), PALETTE.selected, SELECTED_WIDTH_PX);
+      const own = linesOf(selection).filter((index) => (index + 1) * LINE_STRIDE <= lines.length);
+      if (own.length > 0) {
+        const ends = own.flatMap((index) => [
+          ...lines.subarray(index * LINE_STRIDE, (index + 1) * LINE_STRIDE),
+        ]);
+        chosen = segments(Float32Array.from(ends), PALETTE.selected, SELECTED_WIDTH_PX);
         chosen.material.depthTest = false;
         chosen.renderOrder = 2;
+        chosen.raycast = () => undefined;
         object.add(chosen);
       }
     },
@@ -48,6 +57,6 @@ function segments(positions: Float32Array, colour: string, linewidth: number): L
   return new LineSegments2(geometry, new LineMaterial({ color: colour, linewidth, transparent: true }));
 }
 
-function lineOf(selection: Selection | null): number | null {
-  return selection?.kind === "line" ? selection.index : null;
+function lineOf(selection: Selection | null): readonly number[] {
+  return selection?.kind === "line" ? [selection.index] : [];
 }

@@ -18,9 +18,10 @@ import {
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { PALETTE, type ThemeColours } from "../shared/palette";
 import type { Selection } from "../shared/selection";
+import { normalTint } from "./facets";
 import { disposeObject, type Layer } from "./layer";
 
-export type ModelMode = "textured" | "plain" | "wireframe";
+export type ModelMode = "textured" | "plain" | "wireframe" | "normals";
 
 export interface ModelLayer extends Layer {
   setMode(mode: ModelMode): void;
@@ -44,6 +45,7 @@ export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLay
   });
   const textured = new Map(meshes.map((mesh) => [mesh, mesh.material as Material]));
   const plain = new MeshLambertMaterial({ flatShading: true, polygonOffset: true, polygonOffsetFactor: 1 });
+  const tints = new Map(meshes.map((mesh) => [mesh, normalMaterial(mesh)]));
   const hidden = new MeshBasicMaterial({
     polygonOffset: true,
     polygonOffsetFactor: 1,
@@ -76,7 +78,8 @@ export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLay
     setMode(mode: ModelMode) {
       for (const mesh of meshes) {
         const own = textured.get(mesh) as Material;
-        mesh.material = mode === "textured" ? own : mode === "plain" ? plain : hidden;
+        const others = { plain, wireframe: hidden, normals: tints.get(mesh) as Material };
+        mesh.material = mode === "textured" ? own : others[mode];
       }
       for (const edge of edges) {
         edge.visible = mode !== "textured";
@@ -90,7 +93,7 @@ export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLay
       }
     },
     dispose() {
-      for (const material of [...textured.values(), plain, hidden]) {
+      for (const material of [...textured.values(), ...tints.values(), plain, hidden]) {
         material.dispose();
       }
       disposeObject(object);
@@ -149,6 +152,17 @@ function areaOf(geometry: BufferGeometry): number {
     area += new Triangle(corner(i), corner(i + 1), corner(i + 2)).getArea();
   }
   return area;
+}
+
+/** The tint of a face's own normal, as facets have it. */
+function normalMaterial(mesh: Mesh): MeshBasicMaterial {
+  const positions = mesh.geometry.getAttribute("position");
+  const corner = (i: number) =>
+    new Vector3().fromBufferAttribute(positions, mesh.geometry.index?.getX(i) ?? i);
+  const normal = new Triangle(corner(0), corner(1), corner(2)).getNormal(new Vector3());
+  // The GLB is Y up: back to Z up.
+  const color = normalTint({ plane: { normal: [normal.x, -normal.z, normal.y], d: 0 } });
+  return new MeshBasicMaterial({ color, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
 }
 
 function edgesOf(mesh: Mesh): LineSegments<EdgesGeometry, LineBasicMaterial> {

@@ -16,14 +16,19 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { ThemeColours } from "../shared/palette";
+import type { ViewInfo } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import type { Layer } from "./layer";
+import { buildMeasure, type Measured, measure } from "./measure";
+import { clipFromViewer } from "./photo";
 
 const FIELD_OF_VIEW_DEG = 35;
 /** A press that moves less, in CSS pixels, is a click. */
 const CLICK_SLACK_PX = 4;
 const PICK_REACH_PX = 7;
 export const GRID_STEP_M = 10;
+/** Farther out the grid would be a grey haze. */
+const MAX_GRID_M = 300;
 
 export class Viewer {
   readonly #renderer: WebGLRenderer;
@@ -31,6 +36,8 @@ export class Viewer {
   readonly #camera = new PerspectiveCamera(FIELD_OF_VIEW_DEG, 1, 0.5, 1e5);
   readonly #controls: OrbitControls;
   readonly #layers = new Map<string, Layer>();
+  /** Layers that are not shown, whether they exist yet or not. */
+  readonly #hidden = new Set<string>();
   readonly #observer: ResizeObserver;
   readonly #onPick: (selection: Selection | null) => void;
   #grid: GridHelper | null = null;
@@ -38,6 +45,11 @@ export class Viewer {
   #bounds: Sphere | null = null;
   #frame = 0;
   #pressedAt = new Vector2();
+  /** The view whose camera is looked through; null for the free one. */
+  #photo: ViewInfo | null = null;
+  /** The points being measured; null while clicks pick. */
+  #measured: Vector3[] | null = null;
+  #onMeasure: (measured: Measured) => void = () => undefined;
 
   constructor(
     canvas: HTMLCanvasElement,
@@ -45,6 +57,8 @@ export class Viewer {
     onPick: (selection: Selection | null) => void,
   ) {
     this.#renderer = new WebGLRenderer({ canvas, antialias: true });
+    // Asking for errors waits for the compiler: seconds where graphics are computed in software.
+    this.#renderer.debug.checkShaderErrors = import.meta.env.DEV;
     this.#onPick = onPick;
     this.#colours = colours;
     const sun = new DirectionalLight(0xffffff, 2.2);
@@ -71,6 +85,7 @@ export class Viewer {
       this.#layers.delete(name);
     }
     if (layer !== null) {
+      layer.object.visible = !this.#hidden.has(name);
       this.#layers.set(name, layer);
       this.#scene.add(layer.object);
     }
@@ -78,6 +93,10 @@ export class Viewer {
   }
 
   showLayer(name: string, visible: boolean): void {
+    this.#hidden.delete(name);
+    if (!visible) {
+      this.#hidden.add(name);
+    }
     const layer = this.#layers.get(name);
     if (layer !== undefined) {
       layer.object.visible = visible;
@@ -120,6 +139,30 @@ export class Viewer {
     this.draw();
   }
 
+  /** Looks through a view's own camera, or freely again. */
+  lookThrough(view: ViewInfo | null): void {
+    this.#photo = view;
+    this.#controls.enabled = view === null;
+    if (view === null) {
+      this.#camera.matrixWorldAutoUpdate = true;
+      this.#controls.update();
+    }
+    this.draw();
+  }
+
+  /** From now on clicks measure, until it is called with null. */
+  measure(onMeasure: ((measured: Measured) => void) | null): void {
+    this.#measured = onMeasure === null ? null : [];
+    this.#onMeasure = onMeasure ?? (() => undefined);
+    this.setLayer("measure", null);
+  }
+
+  /** The present picture as a PNG. */
+  screenshot(): Promise<Blob | null> {
+    this.#render();
+    return new Promise((resolve) => this.#renderer.domElement.toBlob(resolve, "image/png"));
+  }
+
   draw(): void {
     if (this.#frame === 0) {
       this.#frame = requestAnimationFrame(() => this.#render());
@@ -143,7 +186,21 @@ export class Viewer {
     this.#camera.near = Math.max(0.1, distance / 200);
     this.#camera.far = Math.max(5000, distance * 20);
     this.#camera.updateProjectionMatrix();
+    if (this.#photo !== null) {
+      this.#usePhotoCamera(this.#photo);
+    }
     this.#renderer.render(this.#scene, this.#camera);
+  }
+
+  /** The whole map from the viewer's frame to clip space goes into the projection; the camera itself stands at the origin. */
+  #usePhotoCamera(view: ViewInfo): void {
+    const centre = new Vector3(view.center[0], view.center[2], -view.center[1]);
+    const depth = centre.distanceTo(this.#controls.target);
+    this.#camera.matrixWorldAutoUpdate = false;
+    this.#camera.matrixWorld.identity();
+    this.#camera.matrixWorldInverse.identity();
+    this.#camera.projectionMatrix.copy(clipFromViewer(view, this.#camera.aspect, 0.2 * depth, 2 * depth));
+    this.#camera.projectionMatrixInverse.copy(this.#camera.projectionMatrix).invert();
   }
 
   #resize(): void {
@@ -165,19 +222,31 @@ export class Viewer {
     }
     const { clientWidth, clientHeight } = this.#renderer.domElement;
     const at = new Vector2((event.offsetX / clientWidth) * 2 - 1, 1 - (event.offsetY / clientHeight) * 2);
-    this.#onPick(this.#pickAt(at));
+    if (this.#measured !== null) {
+      this.#measureAt(at);
+    } else {
+      this.#onPick(this.#pickAt(at));
+    }
+  }
+
+  #measureAt(at: Vector2): void {
+    const caster = this.#caster(at);
+    const hits = MEASURED.flatMap((name) => {
+      const layer = this.#layers.get(name);
+      return layer?.object.visible ? caster.intersectObject(layer.object, true) : [];
+    }).sort((a, b) => a.distance - b.distance);
+    const [hit] = hits;
+    if (hit !== undefined && this.#measured !== null) {
+      // On a line of constant width the hit lies beside it.
+      this.#measured.push((hit.pointOnLine ?? hit.point).clone());
+      this.setLayer("measure", buildMeasure(this.#measured));
+      this.#onMeasure(measure(this.#measured));
+    }
   }
 
   /** Thin things first: a line is picked even where a facet is in front of it by a hair. */
   #pickAt(at: Vector2): Selection | null {
-    const caster = new Raycaster();
-    caster.setFromCamera(at, this.#camera);
-    const distance = this.#camera.position.distanceTo(this.#controls.target);
-    const metresPerPx =
-      (2 * distance * Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360)) / this.#renderer.domElement.clientHeight;
-    caster.params.Line.threshold = PICK_REACH_PX * metresPerPx;
-    caster.params.Points.threshold = 2 * PICK_REACH_PX * metresPerPx;
-    (caster.params as { Line2?: { threshold: number } }).Line2 = { threshold: PICK_REACH_PX };
+    const caster = this.#caster(at);
     for (const name of PICK_ORDER) {
       const layer = this.#layers.get(name);
       const hit = layer?.object.visible ? caster.intersectObject(layer.object, true)[0] : undefined;
@@ -189,6 +258,25 @@ export class Viewer {
     return null;
   }
 
+  /** A ray through a place of the canvas, with the reach of a finger about thin things. */
+  #caster(at: Vector2): Raycaster {
+    const caster = new Raycaster();
+    caster.setFromCamera(at, this.#camera);
+    if (this.#photo !== null) {
+      const far = new Vector3(at.x, at.y, 1).applyMatrix4(this.#camera.projectionMatrixInverse);
+      const [x, y, z] = this.#photo.center;
+      const centre = new Vector3(x, z, -y);
+      caster.set(centre, far.sub(centre).normalize());
+    }
+    const distance = this.#camera.position.distanceTo(this.#controls.target);
+    const metresPerPx =
+      (2 * distance * Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360)) / this.#renderer.domElement.clientHeight;
+    caster.params.Line.threshold = PICK_REACH_PX * metresPerPx;
+    caster.params.Points.threshold = 2 * PICK_REACH_PX * metresPerPx;
+    (caster.params as { Line2?: { threshold: number } }).Line2 = { threshold: PICK_REACH_PX };
+    return caster;
+  }
+
   #buildGrid(): void {
     if (this.#grid !== null) {
       this.#scene.remove(this.#grid);
@@ -198,7 +286,7 @@ export class Viewer {
       return;
     }
     const { center, radius } = this.#bounds;
-    const steps = 2 * Math.ceil((1.5 * radius) / GRID_STEP_M);
+    const steps = 2 * Math.ceil(Math.min(MAX_GRID_M, 1.5 * radius) / GRID_STEP_M);
     this.#grid = new GridHelper(steps * GRID_STEP_M, steps, this.#colours.grid, this.#colours.grid);
     const snapped = (value: number) => Math.round(value / GRID_STEP_M) * GRID_STEP_M;
     this.#grid.position.set(snapped(center.x), this.#floor(), snapped(center.z));
@@ -218,4 +306,6 @@ export class Viewer {
 }
 
 /** Layers in the order in which a click tries them. */
-const PICK_ORDER = ["lines", "fans", "facets", "model", "cameras"] as const;
+const PICK_ORDER = ["groups", "stretches", "lines", "fans", "facets", "model", "cameras"] as const;
+/** Layers whose points can be measured. */
+const MEASURED = ["lines", "stretches", "groups", "facets", "model"] as const;

@@ -1,5 +1,13 @@
 /** Answers one request with the core's Session: parse, call, convert. No geometry, no state but the session. */
-import type { CallName, InputFile, Request, Result } from "../shared/messages";
+import {
+  type CallName,
+  type InputFile,
+  QUERY_NAMES,
+  type Queries,
+  type QueryName,
+  type Request,
+  type Result,
+} from "../shared/messages";
 import type {
   Facet,
   HalfPlane,
@@ -10,9 +18,13 @@ import type {
   StageSummary,
   ViewImage,
 } from "../shared/results";
+import type { WarpedPicture } from "../shared/traces";
+
+/** The session's methods that answer questions. */
+type Answers = { [K in QueryName]: (...args: Queries[K]["args"]) => Queries[K]["result"] | undefined };
 
 /** The part of the wasm class that the page uses. */
-export interface CoreSession {
+export interface CoreSession extends Answers {
   addFile(path: string, bytes: Uint8Array): void;
   clearFiles(): void;
   inspect(options: LoadOptions): Inspection;
@@ -75,6 +87,8 @@ export async function dispatch(
       return copied(session.halfPlanes());
     case "facets":
       return copied(session.facets());
+    case "ask":
+      return queryAnswer(session, request.args.query, request.args.of);
     case "exportNames":
       return copied(session.exportNames());
     case "exportFile":
@@ -112,6 +126,22 @@ function runStage(
       onProgress(stage, fraction);
     }
   });
+}
+
+/** What a query returns: pictures and arrays move, records are copied, nothing is null. */
+function queryAnswer(session: CoreSession, query: QueryName, of: readonly unknown[]): Answer {
+  if (!QUERY_NAMES.includes(query)) {
+    throw new Error(`There is no query '${query}'.`);
+  }
+  const result = (session[query] as (...args: readonly unknown[]) => unknown)(...of) ?? null;
+  if (result instanceof Float32Array || result instanceof Float64Array) {
+    return moved(result);
+  }
+  if (query === "warped" && result !== null) {
+    const { about, rgba } = result as WarpedPicture;
+    return { result: { about, rgba }, transfer: [rgba.buffer] };
+  }
+  return copied(result as Result<CallName>);
 }
 
 function imageAnswer(image: ViewImage): Answer {

@@ -1,29 +1,16 @@
-import { expect, type Page, test } from "@playwright/test";
-import axe from "axe-core";
-import { give, houseFiles, stage, waitForStage } from "./helpers";
-
-/** Serious and critical findings of axe, as text. */
-async function findings(page: Page): Promise<string[]> {
-  await page.evaluate(axe.source);
-  return page.evaluate(async () => {
-    const { axe: runner } = window as unknown as { axe: typeof import("axe-core") };
-    const { violations } = await runner.run();
-    return violations
-      .filter(({ impact }) => impact === "serious" || impact === "critical")
-      .map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join(" | ")}`);
-  });
-}
+import { expect, test } from "@playwright/test";
+import { axeFindings, give, houseFiles, stage, waitForStage } from "./helpers";
 
 for (const colorScheme of ["light", "dark"] as const) {
   test(`nothing serious for axe in ${colorScheme}`, async ({ page }) => {
     await page.emulateMedia({ colorScheme });
     await page.goto("/");
     await expect(stage(page, "segments")).toBeVisible();
-    expect(await findings(page)).toEqual([]);
+    expect(await axeFindings(page)).toEqual([]);
     await give(page, houseFiles());
     await page.getByRole("button", { name: "Run up to Segments" }).click();
     await waitForStage(page, "segments");
-    expect(await findings(page)).toEqual([]);
+    expect(await axeFindings(page)).toEqual([]);
   });
 }
 
@@ -44,6 +31,20 @@ test("nothing is cut off at 1024 pixels", async ({ page }) => {
   await page.setViewportSize({ width: 1024, height: 768 });
   await page.goto("/");
   await expect(stage(page, "model")).toBeVisible();
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+  expect(overflow).toBeLessThanOrEqual(0);
+});
+
+test("text grows on request, and stays so", async ({ page }) => {
+  const size = () =>
+    page.evaluate(() => Number.parseFloat(getComputedStyle(document.documentElement).fontSize));
+  await page.goto("/");
+  const usual = await size();
+  await page.getByRole("button", { name: /^Text size/ }).click();
+  await page.getByRole("button", { name: /^Text size/ }).click();
+  expect((await size()) / usual).toBeCloseTo(1.3, 2);
+  await page.reload();
+  expect((await size()) / usual).toBeCloseTo(1.3, 2);
   const overflow = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
   expect(overflow).toBeLessThanOrEqual(0);
 });

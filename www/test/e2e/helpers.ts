@@ -1,6 +1,7 @@
 /** What the page's tests share: its parts, files to give it, and the pixels that it shows. */
 import { readdirSync, readFileSync } from "node:fs";
 import { expect, type Locator, type Page } from "@playwright/test";
+import axe from "axe-core";
 
 export interface Upload {
   name: string;
@@ -48,6 +49,18 @@ export function housePmatrix(): Upload {
   return upload("house_pmatrix.txt", Buffer.from(`${lines.join("\n")}\n`));
 }
 
+/** Serious and critical findings of axe, as text. */
+export async function axeFindings(page: Page): Promise<string[]> {
+  await page.evaluate(axe.source);
+  return page.evaluate(async () => {
+    const { axe: runner } = window as unknown as { axe: typeof import("axe-core") };
+    const { violations } = await runner.run();
+    return violations
+      .filter(({ impact }) => impact === "serious" || impact === "critical")
+      .map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join(" | ")}`);
+  });
+}
+
 export async function give(page: Page, files: Upload[]): Promise<void> {
   await page.getByTestId("file-input").setInputFiles(files);
 }
@@ -69,6 +82,8 @@ export interface Look {
   drawn: number;
   /** Number of different colours, in steps of 16. */
   colours: number;
+  /** Share of pixels that are far from grey. */
+  vivid: number;
 }
 
 /** What an element shows on the screen, from a screenshot that the browser decodes. */
@@ -86,13 +101,30 @@ export async function lookOf(page: Page, element: Locator): Promise<Look> {
     const coarse = (at: number) =>
       ((data[at] ?? 0) >> 4) * 256 + ((data[at + 1] ?? 0) >> 4) * 16 + ((data[at + 2] ?? 0) >> 4);
     const counts = new Map<number, number>();
+    let vivid = 0;
     for (let at = 0; at < data.length; at += 4) {
       const colour = coarse(at);
       counts.set(colour, (counts.get(colour) ?? 0) + 1);
+      const rgb = [data[at] ?? 0, data[at + 1] ?? 0, data[at + 2] ?? 0];
+      vivid += Math.max(...rgb) - Math.min(...rgb) > 50 ? 1 : 0;
     }
     const pixels = data.length / 4;
-    return { drawn: 1 - Math.max(...counts.values()) / pixels, colours: counts.size };
+    return { drawn: 1 - Math.max(...counts.values()) / pixels, colours: counts.size, vivid: vivid / pixels };
   }, png);
+}
+
+/** The same once it no longer changes: textures and fonts arrive late. */
+export async function steadyLook(page: Page, element: Locator): Promise<Look> {
+  let last = await lookOf(page, element);
+  for (let i = 0; i < 20; i += 1) {
+    await page.waitForTimeout(250);
+    const next = await lookOf(page, element);
+    if (next.drawn === last.drawn && next.colours === last.colours) {
+      return next;
+    }
+    last = next;
+  }
+  return last;
 }
 
 /** Fails the test on a script error, and on a request to anywhere but the page's own origin. */

@@ -5,6 +5,16 @@
  */
 
 import type { Facet, HalfPlane, Params, SceneInfo, ViewImage } from "../../src/shared/results";
+import type {
+  Correspondence,
+  Grouping,
+  LineRecord,
+  MatchRecord,
+  SegmentStory,
+  SideRecord,
+  SideTrace,
+  WarpedPicture,
+} from "../../src/shared/traces";
 import type { CoreSession } from "../../src/worker/dispatch";
 import { glbOf } from "./glb";
 
@@ -155,6 +165,137 @@ export class Session implements CoreSession {
       rgba.set([shade, shade + 10, shade - 10, 255], 4 * i);
     }
     return { width: SIZE_PX, height: SIZE_PX, rgba };
+  }
+
+  chosenStages(): string[] {
+    return STAGES;
+  }
+
+  rejectedSegments(): Float32Array {
+    return Float32Array.from([20, 20, 60, 24, 1]);
+  }
+
+  matching(): MatchRecord {
+    const none = { number: 0, length_px: 0 };
+    return {
+      z_range_m: [0, 10],
+      view_pairs: [[0, 1]],
+      candidates: 7,
+      pairs: 7,
+      triples_before: 7,
+      triples_after: 7,
+      detected: none,
+      matched: none,
+      merged: none,
+      grown: none,
+    };
+  }
+
+  segmentStory(view: number, segment: number): SegmentStory {
+    const other = view === 0 ? 1 : 0;
+    const [a, b] = EDGES[segment] ?? EDGES[0];
+    const ends = [pixel(corner(a)), pixel(corner(b))] as const;
+    return {
+      outcome: { fate: "matched", line: segment },
+      beams: [{ view: other, corners: [ends[0], ends[0], ends[1], ends[1]] }],
+      candidates: [{ view: other, segment, score: 0.9, line: segment, predictions: [] }],
+    };
+  }
+
+  correspondence(
+    _view: number,
+    segment: number,
+    _otherView: number,
+    _other: number,
+    t: number,
+  ): Correspondence {
+    const [a, b] = EDGES[segment] ?? EDGES[0];
+    const [[x0, y0], [x1, y1]] = [pixel(corner(a)), pixel(corner(b))];
+    const x = [x0 + t * (x1 - x0), y0 + t * (y1 - y0)] as const;
+    const window = Array.from({ length: 225 }, (_, i) => (i % 15) / 15);
+    return { x, epipolar: [0, 1, -x[1]], other: x, window, other_window: window, correlation: 1 - t / 2 };
+  }
+
+  lineRecords(): LineRecord[] {
+    return EDGES.map((_, i) => ({
+      sigma_m: 0.01 * (i + 1),
+      supports: [0, 1, 2].map((view) => ({ view, segments: [i], score: 0.8, kind: "matched" as const })),
+    }));
+  }
+
+  detectedStretches(): Float64Array {
+    return Float64Array.from(EDGES.flatMap(([a, b], i) => [i, ...corner(a), ...corner(b)]));
+  }
+
+  sides(): SideRecord[] {
+    return EDGES.flatMap((_, line) =>
+      (["left", "right"] as const).map((side) => ({
+        line,
+        side,
+        rejection: HALF_PLANES.some((one) => one.line === line && one.side === side) ? null : "low_peak",
+      })),
+    );
+  }
+
+  side(line: number, left: boolean): SideTrace {
+    const side = left ? "left" : "right";
+    const thetas = Array.from({ length: 31 }, (_, i) => (i - 15) * 0.08);
+    const own = HALF_PLANES.find((one) => one.line === line && one.side === side);
+    const similarity = thetas.map((theta) => 0.7 / (1 + 20 * (theta - (own?.theta ?? 0)) ** 2));
+    return {
+      line,
+      side,
+      rejection: own === undefined ? "low_peak" : null,
+      curve: { reference: 0, points: [], thetas, similarity, views: [{ view: 1, valid: true, similarity }] },
+    };
+  }
+
+  warped(_line: number, _left: boolean, theta: number): WarpedPicture {
+    const [columns, rows] = [60, 24];
+    const rgba = new Uint8ClampedArray(4 * columns * rows * 2).fill(160);
+    const views = [0, 1].map((view) => ({
+      view,
+      similarity: view === 0 ? null : 0.7,
+      valid: true,
+      outline: null,
+    }));
+    return {
+      about: { theta, reference: 0, similarity: 0.7, points: [], line_row: 4, columns, rows, views },
+      rgba,
+    };
+  }
+
+  grouping(): Grouping {
+    const members = (lines: number[]) => lines.map((line) => ({ line, side: null, half_plane: null }));
+    return {
+      groups: [
+        { plane: SOUTH, members: members([0, 2, 3, 5]) },
+        { plane: NORTH, members: members([1, 2, 4, 6]) },
+      ],
+      plane_lines: [],
+      borders: EDGES.map(([a, b]) => {
+        const [p, q] = [corner(a), corner(b)];
+        return { kind: "real" as const, a: [p[0], p[1]] as const, b: [q[0], q[1]] as const };
+      }),
+      cells: 2,
+      rejected: [],
+    };
+  }
+
+  regions(): null {
+    return null;
+  }
+
+  directions(): null {
+    return null;
+  }
+
+  clusters(): null {
+    return null;
+  }
+
+  rectangles(): null {
+    return null;
   }
 
   exportFile(name: string): Uint8Array<ArrayBuffer> {

@@ -20,3 +20,21 @@ describe("failureNotice", () => {
     expect(failureNotice("odd", "internal").advice).toBeDefined();
   });
 });
+
+describe("the doctor's finding", () => {
+  const refusal =
+    "the images contradict their orientation: they agree to 0.04 as it stands, and to 0.61 if the angles are in gon; correct the orientation file";
+
+  it("is offered as a fix", () => {
+    expect(failureNotice(refusal, "input").fix).toEqual({
+      before: 0.04,
+      after: 0.61,
+      words: "the angles are in gon",
+    });
+  });
+
+  it("is offered for nothing else", () => {
+    expect(failureNotice("fewer than three views; add photographs", "input")).not.toHaveProperty("fix");
+    expect(failureNotice(refusal, "internal")).not.toHaveProperty("fix");
+  });
+});

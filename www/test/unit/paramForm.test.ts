@@ -1,5 +1,12 @@
 import { describe, expect, it } from "vitest";
-import { type ParamField, paramSections, parseField } from "../../src/app/paramForm";
+import {
+  changedParams,
+  type ParamField,
+  paramSections,
+  paramsOf,
+  parseField,
+  withParam,
+} from "../../src/app/paramForm";
 import { firstStageOf } from "../../src/app/stages";
 import type { Params } from "../../src/shared/results";
 
@@ -10,7 +17,7 @@ const DEFAULTS = {
 };
 
 function field(group: string, key: string, values = DEFAULTS): ParamField {
-  const section = paramSections(DEFAULTS, values).find((one) => one.group === group);
+  const section = paramSections(DEFAULTS, values).find((one) => one.path === group);
   const found = section?.fields.find((one) => one.key === key);
   if (found === undefined) {
     throw new Error(`no field ${group}.${key}`);
@@ -20,12 +27,12 @@ function field(group: string, key: string, values = DEFAULTS): ParamField {
 
 describe("paramSections", () => {
   it("leaves out stages without parameters", () => {
-    expect(paramSections(DEFAULTS, DEFAULTS).map(({ group }) => group)).toEqual(["segments", "sweep"]);
+    expect(paramSections(DEFAULTS, DEFAULTS).map(({ path }) => path)).toEqual(["segments", "sweep"]);
   });
 
   it("makes no section of a single value", () => {
     const withMethod: Params = JSON.parse(JSON.stringify({ method: "lines", ...DEFAULTS }));
-    expect(paramSections(withMethod, withMethod).map(({ group }) => group)).toEqual(["segments", "sweep"]);
+    expect(paramSections(withMethod, withMethod).map(({ path }) => path)).toEqual(["segments", "sweep"]);
   });
 
   it("reads the unit from the name", () => {
@@ -51,6 +58,39 @@ describe("paramSections", () => {
   });
 });
 
+describe("groups inside groups", () => {
+  const nested: Params = JSON.parse(
+    '{"segments": {"min_length_px": 15, "edgels": {"low": 2}}, "objectspace": {"oris": {"noise": 4}}, "method": "lines"}',
+  );
+
+  it("are sections of their own, and those of the other method are left out", () => {
+    expect(paramSections(nested, nested).map(({ path, title }) => [path, title])).toEqual([
+      ["segments", "Segments"],
+      ["segments.edgels", "Segments: edgels"],
+    ]);
+    const other = { ...nested, method: "rectangles" as unknown as Params[string] };
+    expect(paramSections(nested, other).map(({ path }) => path)).toEqual(["objectspace.oris"]);
+  });
+
+  it("are changed by path, and what was changed makes the same parameters again", () => {
+    const changed = withParam(nested, "segments.edgels.low", 3);
+    expect(changed["segments"]).toEqual({ min_length_px: 15, edgels: { low: 3 } });
+    expect(nested["segments"]).toMatchObject({ edgels: { low: 2 } });
+    expect(changedParams(nested, changed)).toEqual({ "segments.edgels.low": 3 });
+    expect(paramsOf(nested, changedParams(nested, changed))).toEqual(changed);
+  });
+
+  it("are not changed by a link that names what is not there, or of another type", () => {
+    const wrong = {
+      "segments.edgels": 3,
+      "segments.new": 1,
+      "segments.min_length_px": "15",
+      "__proto__.x": 1,
+    };
+    expect(paramsOf(nested, wrong)).toEqual(nested);
+  });
+});
+
 describe("parseField", () => {
   it("takes numbers, with either decimal mark", () => {
     expect(parseField(field("segments", "min_length_px"), " 12.5 ")).toEqual({ value: 12.5 });
@@ -73,6 +113,13 @@ describe("firstStageOf", () => {
   it("finds the stage that a group changes first", () => {
     expect(firstStageOf("sweep", stages)).toBe(3);
     expect(firstStageOf("texture", stages)).toBe(5);
+  });
+
+  it("tells parameters of one group apart, and leaves the other method alone", () => {
+    const rectangles = ["regions", "directions", "clusters", "rectangles", "model"];
+    expect(firstStageOf("objectspace.planes.min_measure_m2", rectangles)).toBe(3);
+    expect(firstStageOf("objectspace.planes.min_height_m", rectangles)).toBe(1);
+    expect(firstStageOf("sweep.min_similarity", rectangles)).toBe(5);
   });
 
   it("outdates everything for a group it does not know", () => {

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { loadOptions, parseHeight, parseRegion } from "../../src/app/runOptions";
 import type { Inspection } from "../../src/shared/results";
 
-const NONE = { orientation: null, leftOut: [], roi: null, groundZ: null };
+const NONE = { orientation: null, leftOut: [], roi: null, groundZ: null, applyFix: false };
 
 const image = (path: string) => ({ path, name: path.replace("in/", ""), size: null, orientation: null });
 const inspection = { images: ["in/a.jpg", "in/b.jpg", "in/c.jpg"].map(image) } as unknown as Inspection;
@@ -13,12 +13,19 @@ describe("run options", () => {
   });
 
   it("name the views that are left, the orientation, region and ground", () => {
-    const wanted = { orientation: "x/b.out", leftOut: ["in/b.jpg"], roi: [1, 2, 3, 4] as const, groundZ: 0 };
+    const wanted = {
+      orientation: "x/b.out",
+      leftOut: ["in/b.jpg"],
+      roi: [1, 2, 3, 4] as const,
+      groundZ: 0,
+      applyFix: true,
+    };
     expect(loadOptions({ ...wanted, roi: [...wanted.roi] }, inspection)).toEqual({
       orientation: "x/b.out",
       views: ["a.jpg", "c.jpg"],
       roi: [1, 2, 3, 4],
       groundZ: 0,
+      applyFix: true,
     });
   });
 

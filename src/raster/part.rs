@@ -1,0 +1,300 @@
+//! A part of a photograph, without holding all of it where the format allows.
+//!
+//! TIFF is stored in strips or tiles: only those that touch the part are decoded. JPEG and PNG are decoded whole and
+//! cut at once. TIFFs in other colours than grey, RGB and RGBA of 8 or 16 bits, or with separate planes, are decoded
+//! whole too. Of those with 16 bits every chunk is looked at once, for the brightest value.
+
+use std::io::Cursor;
+
+use image::{DynamicImage, ImageBuffer, ImageFormat};
+use tiff::ColorType;
+use tiff::decoder::{Decoder, DecodingResult};
+use tiff::tags::Tag;
+
+use super::load::{brightest, decode, finish};
+use super::{Photograph, image_format};
+use crate::Result;
+
+/// Column, row, width, height, pixels.
+pub type Part = [u32; 4];
+
+/// Decodes a part of an image; it must lie inside. `file` is for messages.
+pub fn load_part(file: &str, bytes: &[u8], part: Part) -> Result<Photograph> {
+    let (image, brightest) = match tiff_part(bytes, part) {
+        Some(found) => found,
+        None => {
+            let [column, row, width, height] = part;
+            let whole = decode(file, bytes)?;
+            let brightest = brightest(&whole);
+            (whole.crop_imm(column, row, width, height), brightest)
+        }
+    };
+    finish(file, image, brightest)
+}
+
+/// Bytes that decoding a part takes beyond the part itself: the whole image, or one strip or tile.
+pub fn decoding_bytes(bytes: &[u8], [width, height]: [u32; 2]) -> u64 {
+    const BYTES_PER_PIXEL: u64 = 6;
+    let chunk = open(bytes).map(|tiff| tiff.decoder.chunk_dimensions());
+    let (w, h) = chunk.unwrap_or((width, height));
+    u64::from(w.min(width)) * u64::from(h.min(height)) * BYTES_PER_PIXEL
+}
+
+struct Tiff<'a> {
+    decoder: Decoder<Cursor<&'a [u8]>>,
+    /// Samples of a pixel.
+    samples: usize,
+    bits: u8,
+    size: (u32, u32),
+}
+
+/// A TIFF that can be read chunk by chunk.
+fn open(bytes: &[u8]) -> Option<Tiff<'_>> {
+    if image_format(bytes) != Some(ImageFormat::Tiff) {
+        return None;
+    }
+    let mut decoder = Decoder::new(Cursor::new(bytes)).ok()?;
+    let (samples, bits) = match decoder.colortype().ok()? {
+        ColorType::Gray(bits) => (1, bits),
+        ColorType::RGB(bits) => (3, bits),
+        ColorType::RGBA(bits) => (4, bits),
+        _ => return None,
+    };
+    let tag = |decoder: &mut Decoder<_>, tag: Tag, default: u32| {
+        let value = decoder.find_tag_unsigned::<u32>(tag).ok()?;
+        Some(value.unwrap_or(default))
+    };
+    const CHUNKY: u32 = 1;
+    const UNSIGNED: u32 = 1;
+    let planes = tag(&mut decoder, Tag::PlanarConfiguration, CHUNKY)?;
+    // Black is zero, or RGB.
+    let photometric = tag(&mut decoder, Tag::PhotometricInterpretation, 0)?;
+    let formats = decoder
+        .find_tag_unsigned_vec::<u32>(Tag::SampleFormat)
+        .ok()?;
+    let is_plain = formats.iter().flatten().all(|&f| f == UNSIGNED);
+    let size = decoder.dimensions().ok()?;
+    let good =
+        planes == CHUNKY && [1, 2].contains(&photometric) && is_plain && [8, 16].contains(&bits);
+    good.then_some(Tiff {
+        decoder,
+        samples,
+        bits,
+        size,
+    })
+}
+
+/// The part, from the chunks that touch it, and the brightest value of the whole where it has 16 bits; `None` where
+/// the file is none of those that can be read so.
+fn tiff_part(bytes: &[u8], part: Part) -> Option<(DynamicImage, u16)> {
+    let mut tiff = open(bytes)?;
+    let [_, _, width, height] = part;
+    let (w, h, samples) = (width as usize, height as usize, tiff.samples);
+    if tiff.bits == 8 {
+        let mut pixels = vec![0u8; w * h * samples];
+        tiff.read(part, &mut pixels, |chunk| match chunk {
+            DecodingResult::U8(values) => Some(values),
+            _ => None,
+        })?;
+        let image = match samples {
+            1 => DynamicImage::ImageLuma8(ImageBuffer::from_raw(width, height, pixels)?),
+            3 => DynamicImage::ImageRgb8(ImageBuffer::from_raw(width, height, pixels)?),
+            _ => DynamicImage::ImageRgba8(ImageBuffer::from_raw(width, height, pixels)?),
+        };
+        Some((image, 0))
+    } else {
+        let mut pixels = vec![0u16; w * h * samples];
+        tiff.read(part, &mut pixels, |chunk| match chunk {
+            DecodingResult::U16(values) => Some(values),
+            _ => None,
+        })?;
+        let image = match samples {
+            1 => DynamicImage::ImageLuma16(ImageBuffer::from_raw(width, height, pixels)?),
+            3 => DynamicImage::ImageRgb16(ImageBuffer::from_raw(width, height, pixels)?),
+            _ => DynamicImage::ImageRgba16(ImageBuffer::from_raw(width, height, pixels)?),
+        };
+        Some((image, tiff.brightest()?))
+    }
+}
+
+impl Tiff<'_> {
+    /// The brightest value of the whole image, chunk by chunk: parts of views must not be scaled each in its own
+    /// way. Alpha does not count.
+    fn brightest(&mut self) -> Option<u16> {
+        let (w, h) = self.decoder.chunk_dimensions();
+        let count = self
+            .size
+            .0
+            .div_ceil(w)
+            .checked_mul(self.size.1.div_ceil(h))?;
+        let mut brightest = 0;
+        for index in 0..count {
+            let DecodingResult::U16(values) = self.decoder.read_chunk(index).ok()? else {
+                return None;
+            };
+            let colours = values
+                .chunks(self.samples)
+                .flat_map(|pixel| &pixel[..pixel.len().min(3)]);
+            brightest = brightest.max(colours.copied().max().unwrap_or(0));
+        }
+        Some(brightest)
+    }
+
+    /// Copies the part out of the chunks that touch it.
+    fn read<T: Copy>(
+        &mut self,
+        [column, row, width, height]: Part,
+        pixels: &mut [T],
+        values: impl Fn(DecodingResult) -> Option<Vec<T>>,
+    ) -> Option<()> {
+        let (chunk_w, chunk_h) = self.decoder.chunk_dimensions();
+        if chunk_w == 0 || chunk_h == 0 {
+            return None;
+        }
+        let across = self.size.0.div_ceil(chunk_w);
+        for j in row / chunk_h..(row + height).div_ceil(chunk_h) {
+            for i in column / chunk_w..(column + width).div_ceil(chunk_w) {
+                let index = j.checked_mul(across)?.checked_add(i)?;
+                let (data_w, data_h) = self.decoder.chunk_data_dimensions(index);
+                let chunk = values(self.decoder.read_chunk(index).ok()?)?;
+                let (left, top) = (i * chunk_w, j * chunk_h);
+                let columns = column.max(left)..(column + width).min(left + data_w);
+                for y in row.max(top)..(row + height).min(top + data_h) {
+                    let count = columns.len() * self.samples;
+                    let from = ((y - top) as usize * data_w as usize
+                        + (columns.start - left) as usize)
+                        * self.samples;
+                    let to = ((y - row) as usize * width as usize
+                        + (columns.start - column) as usize)
+                        * self.samples;
+                    pixels
+                        .get_mut(to..to + count)?
+                        .copy_from_slice(chunk.get(from..from + count)?);
+                }
+            }
+        }
+        Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raster::load_image;
+
+    /// An RGB image whose pixels name their place.
+    fn places(width: u32, height: u32) -> image::RgbImage {
+        image::RgbImage::from_fn(width, height, |x, y| {
+            image::Rgb([x as u8, y as u8, (x / 3 + y) as u8])
+        })
+    }
+
+    /// The same as an uncompressed TIFF in tiles of 16 x 16 pixels, padded at the right and at the bottom.
+    fn tiled(rgb: &image::RgbImage) -> Vec<u8> {
+        let (w, h) = rgb.dimensions();
+        let (across, down) = (w.div_ceil(16), h.div_ceil(16));
+        let mut data = Vec::new();
+        for tile in 0..across * down {
+            for p in 0..256 {
+                let (x, y) = ((tile % across) * 16 + p % 16, (tile / across) * 16 + p / 16);
+                let inside = x < w && y < h;
+                data.extend(if inside {
+                    rgb.get_pixel(x, y).0
+                } else {
+                    [255, 0, 255]
+                });
+            }
+        }
+        let tiles = across * down;
+        // Header, directory of ten entries, bits, offsets, counts, data.
+        let (bits_at, offsets_at) = (8 + 2 + 10 * 12 + 4, 8 + 2 + 10 * 12 + 4 + 6);
+        let counts_at = offsets_at + 4 * tiles;
+        let data_at = counts_at + 4 * tiles;
+        let mut out = b"II*\0\x08\0\0\0\x0a\0".to_vec();
+        let mut entry = |tag: u16, kind: u16, count: u32, value: u32| {
+            out.extend(tag.to_le_bytes());
+            out.extend(kind.to_le_bytes());
+            out.extend(count.to_le_bytes());
+            out.extend(value.to_le_bytes());
+        };
+        for (tag, kind, count, value) in [
+            (256, 3, 1, w),
+            (257, 3, 1, h),
+            (258, 3, 3, bits_at),
+            (259, 3, 1, 1),
+            (262, 3, 1, 2),
+            (277, 3, 1, 3),
+            (322, 3, 1, 16),
+            (323, 3, 1, 16),
+            (324, 4, tiles, offsets_at),
+            (325, 4, tiles, counts_at),
+        ] {
+            entry(tag, kind, count, value);
+        }
+        out.extend([0; 4]);
+        out.extend([8, 0, 8, 0, 8, 0]);
+        (0..tiles).for_each(|t| out.extend((data_at + t * 768).to_le_bytes()));
+        (0..tiles).for_each(|_| out.extend(768u32.to_le_bytes()));
+        out.extend(data);
+        out
+    }
+
+    fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+        let mut bytes = Cursor::new(Vec::new());
+        image.write_to(&mut bytes, format).unwrap();
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn a_part_has_the_pixels_of_the_whole() {
+        let rgb = places(101, 83);
+        let deep = DynamicImage::ImageRgb8(rgb.clone()).into_rgb16();
+        let files = [
+            tiled(&rgb),
+            encoded(&rgb.clone().into(), ImageFormat::Tiff),
+            encoded(
+                &DynamicImage::ImageRgb8(rgb.clone()).into_luma8().into(),
+                ImageFormat::Tiff,
+            ),
+            encoded(&deep.into(), ImageFormat::Tiff),
+            encoded(&rgb.clone().into(), ImageFormat::Png),
+            encoded(&rgb.into(), ImageFormat::Jpeg),
+        ];
+        for bytes in &files {
+            let whole = load_image("a", bytes).unwrap();
+            for part in [
+                [0, 0, 101, 83],
+                [17, 30, 40, 33],
+                [90, 70, 11, 13],
+                [16, 16, 16, 16],
+            ] {
+                assert_eq!(
+                    load_part("a", bytes, part).unwrap().rgb,
+                    whole.crop(part).rgb,
+                    "{part:?}"
+                );
+            }
+        }
+        assert!(
+            tiff_part(&files[0], [17, 30, 40, 33]).is_some(),
+            "tiles are read one by one"
+        );
+        assert_eq!(decoding_bytes(&files[0], [101, 83]), 16 * 16 * 6);
+        assert_eq!(decoding_bytes(&files[4], [101, 83]), 101 * 83 * 6);
+    }
+
+    #[test]
+    fn a_damaged_strip_is_refused_where_it_is_needed() {
+        let mut bytes = tiled(&places(64, 64));
+        let end = bytes.len();
+        bytes.truncate(end - 100);
+        assert!(load_part("a.tif", &bytes, [0, 0, 16, 16]).is_ok());
+        let message = load_part("a.tif", &bytes, [50, 50, 10, 10])
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.starts_with("a.tif: the image cannot be read"),
+            "{message}"
+        );
+    }
+}

@@ -1,0 +1,203 @@
+//! Project files: a zip that holds everything of a run, and opens again to the same state.
+//!
+//! ```text
+//! project.json      version, wishes and parameters
+//! input/...         images and orientation files, at their own paths
+//! results/...       what was written
+//! ```
+//!
+//! Results are for people and other programs; opening reads the input and reconstructs again, since the same input and
+//! parameters give the same bytes.
+
+use std::io::{Cursor, Write};
+
+use serde::{Deserialize, Serialize};
+use zip::CompressionMethod;
+use zip::write::{SimpleFileOptions, ZipWriter};
+
+use super::{InputFile, LoadOptions};
+use crate::orientation::{FileKind, detect};
+use crate::params::Params;
+use crate::{Error, Result};
+
+/// Name of the file that makes an archive a project.
+const PROJECT_FILE: &str = "project.json";
+
+/// Folders of a project.
+const INPUT: &str = "input/";
+const RESULTS: &str = "results/";
+
+/// What a run was asked for.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Project {
+    /// Version of the program that wrote it.
+    pub ridgeline: String,
+    /// Choice of views, orientation, region...
+    #[serde(default)]
+    pub options: LoadOptions,
+    /// Parameters of the stages.
+    #[serde(default)]
+    pub params: Params,
+}
+
+impl Project {
+    /// A project of this version.
+    pub fn new(options: LoadOptions, params: Params) -> Self {
+        Self {
+            ridgeline: env!("CARGO_PKG_VERSION").to_owned(),
+            options,
+            params,
+        }
+    }
+
+    /// The project as a zip file: the same content gives the same bytes. Files that are not used are left out.
+    pub fn pack(&self, files: &[InputFile], results: &[(String, Vec<u8>)]) -> Result<Vec<u8>> {
+        let json =
+            serde_json::to_vec_pretty(self).expect("wishes and parameters have string keys only");
+        let used = files.iter().filter(|f| detect(f) != FileKind::Ignored);
+        let inputs = used.map(|f| (format!("{INPUT}{}", f.path), &f.bytes[..]));
+        let results = results
+            .iter()
+            .map(|(name, bytes)| (format!("{RESULTS}{name}"), &bytes[..]));
+        let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+        for (path, bytes) in std::iter::once((PROJECT_FILE.to_owned(), &json[..]))
+            .chain(inputs)
+            .chain(results)
+        {
+            // Photographs do not get smaller.
+            let method = match crate::raster::image_format(bytes) {
+                Some(_) => CompressionMethod::Stored,
+                None => CompressionMethod::Deflated,
+            };
+            let options = SimpleFileOptions::default()
+                .compression_method(method)
+                .large_file(bytes.len() as u64 > u64::from(u32::MAX));
+            let written = zip
+                .start_file(path, options)
+                .and_then(|()| Ok(zip.write_all(bytes)?));
+            written.map_err(|e| refuse(&format!("it cannot be packed: {e}")))?;
+        }
+        let done = zip
+            .finish()
+            .map_err(|e| refuse(&format!("it cannot be packed: {e}")))?;
+        Ok(done.into_inner())
+    }
+}
+
+/// If the files are those of a project, its input files at their own paths and what it asks for; else the files as
+/// they are.
+pub fn open_project(files: Vec<InputFile>) -> Result<(Vec<InputFile>, Option<Project>)> {
+    let is_project =
+        |f: &&InputFile| f.name() == PROJECT_FILE && f.text().contains("\"ridgeline\"");
+    let Some(file) = files.iter().find(is_project) else {
+        return Ok((files, None));
+    };
+    let project: Project = serde_json::from_slice(&file.bytes).map_err(|e| Error::Line {
+        file: file.path.clone(),
+        line: e.line().max(1),
+        problem: e
+            .to_string()
+            .replace("; ", ", ")
+            .chars()
+            .take(200)
+            .collect(),
+        expected: "a project of this program".to_owned(),
+    })?;
+    let base = file
+        .path
+        .strip_suffix(PROJECT_FILE)
+        .unwrap_or_default()
+        .to_owned();
+    let input = format!("{base}{INPUT}");
+    let inputs: Vec<InputFile> = (files.into_iter())
+        .filter_map(|f| {
+            Some(InputFile {
+                path: f.path.strip_prefix(&input)?.to_owned(),
+                bytes: f.bytes,
+            })
+        })
+        .collect();
+    Ok((inputs, Some(project)))
+}
+
+fn refuse(problem: &str) -> Error {
+    Error::File {
+        file: "the project".to_owned(),
+        problem: problem.to_owned(),
+        advice: "write it without large files".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene_loader::{load_scene, unpack};
+    use crate::synthetic::{gable_scene, to_files};
+
+    fn project() -> (Project, Vec<InputFile>) {
+        let files = to_files(&gable_scene(48).0);
+        let mut files: Vec<InputFile> = files
+            .iter()
+            .map(|(path, bytes)| InputFile::new(path, bytes.clone()))
+            .collect();
+        files.push(InputFile::new(
+            "notes.txt",
+            b"nothing that is used".to_vec(),
+        ));
+        let mut params = Params::default();
+        params.sweep.min_similarity = 0.47;
+        let options = LoadOptions {
+            views: Some(vec!["s1_01".into(), "s1_02".into(), "s2_01".into()]),
+            ..LoadOptions::default()
+        };
+        (Project::new(options, params), files)
+    }
+
+    #[test]
+    fn a_project_opens_to_the_same_state() {
+        let (project, files) = project();
+        let results = [("model.obj".to_owned(), b"v 1 2 3".to_vec())];
+        let packed = project.pack(&files, &results).unwrap();
+        assert_eq!(packed, project.pack(&files, &results).unwrap());
+        let unpacked = unpack(InputFile::new("somewhere/my.zip", packed)).unwrap();
+        assert!(
+            unpacked
+                .iter()
+                .any(|f| f.path == "somewhere/my/results/model.obj")
+        );
+        let (inputs, opened) = open_project(unpacked).unwrap();
+        assert_eq!(opened.as_ref(), Some(&project));
+        let used: Vec<_> = files
+            .iter()
+            .filter(|f| f.path != "notes.txt")
+            .cloned()
+            .collect();
+        let mut sorted = used.clone();
+        sorted.sort_by(|a, b| a.path.cmp(&b.path));
+        assert_eq!(inputs, sorted);
+        let (a, b) = (
+            load_scene(&inputs, &project.options).unwrap(),
+            load_scene(&files, &project.options).unwrap(),
+        );
+        assert_eq!(
+            (a.views.len(), a.views[2].camera.clone()),
+            (3, b.views[2].camera.clone())
+        );
+    }
+
+    #[test]
+    fn what_is_no_project_stays_and_a_damaged_one_is_refused() {
+        let (_, files) = project();
+        assert_eq!(open_project(files.clone()).unwrap(), (files, None));
+        let damaged = InputFile::new(
+            "a/project.json",
+            br#"{"ridgeline": "1", "parms": {}}"#.to_vec(),
+        );
+        let message = open_project(vec![damaged]).unwrap_err().to_string();
+        assert!(
+            message.contains("a/project.json, line 1") && message.contains("parms"),
+            "{message}"
+        );
+    }
+}

@@ -1,0 +1,406 @@
+//! The parts of all tiles as one.
+
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::float::single::SingleFloatOverlay;
+use nalgebra::{Point3, Vector2, Vector3};
+
+use super::{Tile, append, middle, moved, moved_plane};
+use crate::export::{Results, export_all};
+use crate::geometry::Segment2;
+use crate::halfplane::HalfPlane;
+use crate::ids::{HalfPlaneId, LineId, ViewId};
+use crate::lines2d::ImageSegment;
+use crate::lines3d::Line3d;
+use crate::params::TextureParams;
+use crate::roof::{Building, RoofModel, Surface};
+use crate::scene::Scene;
+use crate::texture::TexturedModel;
+
+/// Two buildings that share more of the smaller one's footprint are the same building, found in two tiles.
+const SAME_BUILDING: f64 = 0.2;
+
+/// What was found in a tile.
+#[derive(Clone, Debug)]
+pub struct TilePart {
+    /// The tile.
+    pub tile: Tile,
+    /// Origin of its local frame.
+    pub origin: Vector3<f64>,
+    /// Of each of its views: the view of the whole scene, and column, row, width and height of its part, pixels.
+    pub views: Vec<(ViewId, [f64; 4])>,
+    /// Image segments of each of its views.
+    pub segments: Vec<Vec<ImageSegment>>,
+    /// 3D lines.
+    pub lines: Vec<Line3d>,
+    /// Half-planes at these.
+    pub half_planes: Vec<HalfPlane>,
+    /// The buildings that it may be responsible for.
+    pub model: RoofModel,
+    /// Their textures.
+    pub textured: TexturedModel,
+}
+
+/// One model of all tiles.
+#[derive(Clone, Debug)]
+pub struct Joined {
+    /// Names and cameras of the whole images, without pixels.
+    pub scene: Scene,
+    /// Image segments of each view, each stretch of an image once.
+    pub segments: Vec<Vec<ImageSegment>>,
+    /// 3D lines of the cores, and those that kept facets refer to.
+    pub lines: Vec<Line3d>,
+    /// Half-planes at these.
+    pub half_planes: Vec<HalfPlane>,
+    /// All buildings.
+    pub model: RoofModel,
+    /// Their textures, in one atlas.
+    pub textured: TexturedModel,
+}
+
+impl Joined {
+    /// The files of the model, but for the report: name and bytes.
+    pub fn files(&self, params: &TextureParams) -> Vec<(String, Vec<u8>)> {
+        let Self {
+            scene,
+            segments,
+            lines,
+            half_planes,
+            model,
+            textured,
+        } = self;
+        export_all(
+            &Results {
+                scene,
+                segments,
+                lines,
+                half_planes,
+                model,
+                textured,
+            },
+            params,
+        )
+    }
+}
+
+/// Joins the parts; `scene` has the views of all of them.
+pub fn join(scene: Scene, parts: &[TilePart]) -> Joined {
+    let mut joined = Joined {
+        segments: vec![Vec::new(); scene.views.len()],
+        scene,
+        lines: Vec::new(),
+        half_planes: Vec::new(),
+        model: RoofModel::default(),
+        textured: TexturedModel {
+            atlas: image::RgbImage::new(0, 0),
+            faces: Vec::new(),
+        },
+    };
+    let chosen = choose(parts);
+    let mut covered: Vec<Vec<[f64; 4]>> = vec![Vec::new(); joined.scene.views.len()];
+    let places = join_atlases(parts, &mut joined.textured);
+    for (part, (buildings, place)) in parts.iter().zip(chosen.iter().zip(places)) {
+        join_segments(part, &mut joined.segments, &mut covered);
+        let ids = join_lines(part, buildings, &mut joined);
+        join_buildings(part, buildings, &ids, place, &mut joined);
+    }
+    joined
+}
+
+/// For each part, the buildings to take: each building once, from the tile in whose core its middle lies deepest.
+fn choose(parts: &[TilePart]) -> Vec<Vec<usize>> {
+    let mut candidates: Vec<(f64, usize, usize)> = Vec::new();
+    for (p, part) in parts.iter().enumerate() {
+        for (b, building) in part.model.buildings.iter().enumerate() {
+            let depth = part.tile.depth(&(middle(building) + part.origin.xy()));
+            candidates.push((depth, p, b));
+        }
+    }
+    candidates.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut taken: Vec<(usize, usize)> = Vec::new();
+    for (_, p, b) in candidates {
+        let building = |(p, b): (usize, usize)| (&parts[p].model.buildings[b], parts[p].origin);
+        let is_same =
+            |&other: &(usize, usize)| other.0 != p && are_same(building(other), building((p, b)));
+        if !taken.iter().any(is_same) {
+            taken.push((p, b));
+        }
+    }
+    let of_part = |p: usize| {
+        let mut own: Vec<usize> = taken.iter().filter(|t| t.0 == p).map(|t| t.1).collect();
+        own.sort_unstable();
+        own
+    };
+    (0..parts.len()).map(of_part).collect()
+}
+
+/// Do the footprints of two buildings (and the origins of their frames) cover each other?
+fn are_same(a: (&Building, Vector3<f64>), b: (&Building, Vector3<f64>)) -> bool {
+    let by = a.1 - b.1;
+    let (a, b) = (footprint(a.0, &Vector3::zeros()), footprint(b.0, &by));
+    let shared: Vec<Vec<Vec<[f64; 2]>>> =
+        a.overlay_as::<i64>(&b, OverlayRule::Intersect, FillRule::NonZero);
+    let shared: f64 = shared.iter().flatten().map(|ring| area(ring)).sum();
+    let size = |rings: &[Vec<[f64; 2]>]| rings.iter().map(|ring| area(ring)).sum::<f64>().abs();
+    shared.abs() > SAME_BUILDING * size(&a).min(size(&b))
+}
+
+/// The ground rings of a building in plan, in a frame whose origin lies `by` further; outer rings and holes run
+/// opposite ways.
+fn footprint(building: &Building, by: &Vector3<f64>) -> Vec<Vec<[f64; 2]>> {
+    let solid = &building.solid;
+    let corner = |&i: &u32| {
+        let p: Point3<f64> = solid.vertices[i as usize] - by;
+        [p.x, p.y]
+    };
+    let grounds = solid.faces.iter().filter(|f| f.surface == Surface::Ground);
+    grounds
+        .flat_map(|f| &f.rings)
+        .map(|ring| ring.iter().map(corner).collect())
+        .collect()
+}
+
+fn area(ring: &[[f64; 2]]) -> f64 {
+    let next = ring.iter().cycle().skip(1);
+    ring.iter()
+        .zip(next)
+        .map(|(a, b)| 0.5 * (a[0] * b[1] - b[0] * a[1]))
+        .sum()
+}
+
+/// Puts the atlases below each other; the place of each: first row.
+fn join_atlases(parts: &[TilePart], to: &mut TexturedModel) -> Vec<u32> {
+    let sizes = || parts.iter().map(|p| p.textured.atlas.dimensions());
+    let width = sizes().map(|s| s.0).max().unwrap_or(0);
+    let height = sizes().map(|s| s.1).sum();
+    to.atlas = image::RgbImage::new(width.max(1), std::cmp::max(height, 1));
+    let mut top = 0;
+    let mut places = Vec::new();
+    for part in parts {
+        image::imageops::replace(&mut to.atlas, &part.textured.atlas, 0, i64::from(top));
+        places.push(top);
+        top += part.textured.atlas.height();
+    }
+    places
+}
+
+/// Adds the segments of the stretches of images that no earlier part has shown.
+fn join_segments(part: &TilePart, to: &mut [Vec<ImageSegment>], covered: &mut [Vec<[f64; 4]>]) {
+    for (&(view, place), segments) in part.views.iter().zip(&part.segments) {
+        let seen = &mut covered[view.index()];
+        for segment in segments {
+            let mut moved = segment.clone();
+            moved.segment = shifted(&segment.segment, &place);
+            let m = moved.segment.midpoint();
+            let inside =
+                |[x, y, w, h]: &[f64; 4]| m.x >= *x && m.y >= *y && m.x < x + w && m.y < y + h;
+            if !seen.iter().any(inside) {
+                to[view.index()].push(moved);
+            }
+        }
+        seen.push(place);
+    }
+}
+
+fn shifted(segment: &Segment2, [x, y, ..]: &[f64; 4]) -> Segment2 {
+    let by = Vector2::new(*x, *y);
+    Segment2::new(segment.p0 + by, segment.p1 + by)
+}
+
+/// New ids of lines and half-planes; `None` for those that are left out.
+struct NewIds {
+    lines: Vec<Option<LineId>>,
+    half_planes: Vec<Option<HalfPlaneId>>,
+}
+
+fn join_lines(part: &TilePart, buildings: &[usize], joined: &mut Joined) -> NewIds {
+    let by = joined.scene.origin - part.origin;
+    let facets = buildings
+        .iter()
+        .flat_map(|&b| &part.model.buildings[b].facets);
+    let mut needed = vec![false; part.lines.len()];
+    for line in facets.flat_map(|f| &part.model.facets[f.index()].lines) {
+        needed[line.index()] = true;
+    }
+    let mut ids = NewIds {
+        lines: vec![None; part.lines.len()],
+        half_planes: Vec::new(),
+    };
+    for (i, line) in part.lines.iter().enumerate() {
+        if !(needed[i] || part.tile.holds(&(line.at(0.5).xy() + part.origin.xy()))) {
+            continue;
+        }
+        ids.lines[i] = Some(LineId::from_index(joined.lines.len()));
+        let mut line = line.clone();
+        line.segment.p0 -= by;
+        line.segment.p1 -= by;
+        for support in &mut line.supports {
+            let (view, place) = part.views[support.view.index()];
+            support.view = view;
+            support.stretch = shifted(&support.stretch, &place);
+            // They count the segments of the part.
+            support.segments.clear();
+            support.edge = None;
+        }
+        joined.lines.push(line);
+    }
+    for half_plane in &part.half_planes {
+        let line = ids.lines[half_plane.line.index()];
+        ids.half_planes
+            .push(line.map(|_| HalfPlaneId::from_index(joined.half_planes.len())));
+        if let Some(line) = line {
+            let views = half_plane
+                .views
+                .iter()
+                .map(|v| part.views[v.index()].0)
+                .collect();
+            let plane = moved_plane(&half_plane.plane, &by);
+            joined.half_planes.push(HalfPlane {
+                line,
+                views,
+                plane,
+                ..half_plane.clone()
+            });
+        }
+    }
+    ids
+}
+
+fn join_buildings(
+    part: &TilePart,
+    buildings: &[usize],
+    ids: &NewIds,
+    top: u32,
+    joined: &mut Joined,
+) {
+    let mut model = moved(part.model.clone(), &(joined.scene.origin - part.origin));
+    for facet in &mut model.facets {
+        facet.lines = facet
+            .lines
+            .iter()
+            .filter_map(|l| ids.lines[l.index()])
+            .collect();
+        facet.half_planes = facet
+            .half_planes
+            .iter()
+            .filter_map(|h| ids.half_planes[h.index()])
+            .collect();
+    }
+    let (old, new) = (
+        part.textured.atlas.dimensions(),
+        joined.textured.atlas.dimensions(),
+    );
+    let place = |uv: &mut [f32; 2]| {
+        uv[0] *= old.0 as f32 / new.0 as f32;
+        uv[1] = (top as f32 + uv[1] * old.1 as f32) / new.1 as f32;
+    };
+    for &b in buildings {
+        append(&mut joined.model, &model, b);
+        let mut faces = part.textured.faces[b].clone();
+        for face in &mut faces {
+            face.uv.iter_mut().flatten().for_each(place);
+            face.view = face.view.map(|v| part.views[v.index()].0);
+        }
+        joined.textured.faces.push(faces);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::roof::check_invariants;
+    use crate::scene::Survey;
+    use crate::texture::FaceTexture;
+    use crate::tiles::tests::house;
+
+    fn part(tile: Tile, origin: [f64; 3], houses: &[[f64; 2]]) -> TilePart {
+        let origin = Vector3::from(origin);
+        let mut model = RoofModel::default();
+        for h in houses {
+            append(&mut model, &house([h[0] - origin.x, h[1] - origin.y]), 0);
+        }
+        let uv = |b: &Building| {
+            let faces = b.solid.faces.iter();
+            faces
+                .map(|f| FaceTexture {
+                    view: None,
+                    uv: f.rings.iter().map(|r| vec![[0.5, 0.5]; r.len()]).collect(),
+                })
+                .collect()
+        };
+        let faces = model.buildings.iter().map(uv).collect();
+        let textured = TexturedModel {
+            atlas: image::RgbImage::new(8, 4),
+            faces,
+        };
+        TilePart {
+            tile,
+            origin,
+            views: Vec::new(),
+            segments: Vec::new(),
+            lines: Vec::new(),
+            half_planes: Vec::new(),
+            model,
+            textured,
+        }
+    }
+
+    #[test]
+    fn a_house_on_the_seam_is_taken_once() {
+        let tiles = crate::tiles::plan_tiles([0.0, 0.0, 100.0, 50.0], 50.0).unwrap();
+        // One house in each core; one on the seam at x = 50, seen a little differently from both sides.
+        let west = part(tiles[0], [0.0; 3], &[[20.0, 20.0], [49.9, 25.0]]);
+        let east = part(tiles[1], [100.0, 0.0, 5.0], &[[50.2, 25.0], [80.0, 20.0]]);
+        let scene = Scene {
+            views: Vec::new(),
+            origin: Vector3::zeros(),
+            ground_z: None,
+            warnings: Vec::new(),
+            survey: Survey::default(),
+        };
+        let joined = join(scene, &[west, east]);
+        assert_eq!(joined.model.buildings.len(), 3);
+        assert_eq!(check_invariants(&joined.model), []);
+        let mut middles: Vec<i64> = joined
+            .model
+            .buildings
+            .iter()
+            .map(|b| (middle(b).x * 10.0).round() as i64)
+            .collect();
+        middles.sort_unstable();
+        assert_eq!(middles, [200, 502, 800]);
+        // Heights follow the frame: the eastern tile's zero is 5 m higher.
+        let lowest = |b: &Building| {
+            b.solid
+                .vertices
+                .iter()
+                .map(|p| p.z)
+                .fold(f64::INFINITY, f64::min)
+        };
+        assert!(
+            joined
+                .model
+                .buildings
+                .iter()
+                .all(|b| lowest(b) == b.ground_z)
+        );
+        assert_eq!(
+            joined
+                .model
+                .buildings
+                .iter()
+                .filter(|b| b.ground_z == 5.0)
+                .count(),
+            2
+        );
+        // The second atlas lies below the first.
+        assert_eq!(joined.textured.atlas.dimensions(), (8, 8));
+        let v: Vec<f32> = joined
+            .textured
+            .faces
+            .iter()
+            .map(|faces| faces[0].uv[0][0][1])
+            .collect();
+        assert_eq!(v, [0.25, 0.75, 0.75]);
+    }
+}

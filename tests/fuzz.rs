@@ -1,0 +1,379 @@
+//! Fuzzing of everything that reads foreign bytes: `make fuzz` for long, `make test` for a moment.
+//!
+//! Each family takes its fixtures, damages them at random and reads them. Whatever the bytes are, the answer is a
+//! value or a readable refusal, within time and memory. `RIDGELINE_FUZZ_SECONDS` says how long each family runs,
+//! `RIDGELINE_FUZZ_SEED` where it starts. What breaks is written to `target/fuzz-finds` and belongs into
+//! `tests/fixtures/finds`, which is read again in every run.
+#![cfg(not(target_arch = "wasm32"))]
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::disallowed_methods)]
+
+use std::fs;
+use std::io::Cursor;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use image::{DynamicImage, ImageFormat};
+use ridgeline::orientation::{detect, orientation_sets};
+use ridgeline::raster::{image_header, load_image, load_part};
+use ridgeline::scene_loader::{
+    InputFile, LoadOptions, Project, inspect_files, load_scene, open_project, unpack,
+};
+
+/// Longest time that one input may take: machines may be busy, but nothing hangs.
+const SLOWEST: Duration = Duration::from_secs(60);
+
+/// Most memory that the whole program may have taken, kilobytes.
+const MOST_KB: u64 = 4 << 20;
+
+fn fixtures() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures")
+}
+
+/// The files of a folder of the fixtures, by name.
+fn files_of(folder: &str) -> Vec<InputFile> {
+    let mut files: Vec<InputFile> = fs::read_dir(fixtures().join(folder))
+        .map(|entries| entries.map(|e| e.unwrap().path()).collect::<Vec<_>>())
+        .unwrap_or_default()
+        .iter()
+        .map(|path| {
+            let name = path.file_name().unwrap().to_string_lossy();
+            InputFile::new(&format!("{folder}/{name}"), fs::read(path).unwrap())
+        })
+        .collect();
+    files.sort_by(|a, b| a.path.cmp(&b.path));
+    files
+}
+
+/// Marsaglia's xorshift: short, and the same everywhere.
+struct Dice(u64);
+
+impl Dice {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        (self.next() % n.max(1) as u64) as usize
+    }
+}
+
+const WORDS: [&str; 24] = [
+    "nan",
+    "inf",
+    "-1",
+    "0",
+    "1e999",
+    "1e300",
+    "-1e-300",
+    "1e-320",
+    "99999999999999999999",
+    "4294967295",
+    "4294967296",
+    "\u{feff}",
+    "#",
+    "$",
+    "OPENCV",
+    "1 2 3",
+    "\n",
+    "0x10",
+    "\u{fc}",
+    "\"",
+    "<",
+    "]",
+    "}",
+    "; ",
+];
+
+/// Damages bytes in one place; `other` lends pieces.
+fn damage(dice: &mut Dice, bytes: &mut Vec<u8>, other: &[u8]) {
+    let at = dice.below(bytes.len() + 1);
+    let length = 1 << dice.below(10);
+    let end = (at + dice.below(length + 1)).min(bytes.len());
+    match dice.below(9) {
+        0 if at < bytes.len() => bytes[at] ^= 1 << dice.below(8),
+        1 if at < bytes.len() => bytes[at] = [0, 1, 0x7f, 0x80, 0xfe, 0xff][dice.below(6)],
+        2 => bytes.truncate(at),
+        3 => drop(bytes.drain(at..end)),
+        4 => {
+            let piece = bytes[at..end].to_vec();
+            bytes.splice(at..at, piece);
+        }
+        5 if !other.is_empty() => {
+            let from = dice.below(other.len());
+            let to = (from + length).min(other.len());
+            bytes.splice(at..end, other[from..to].iter().copied());
+        }
+        6 => {
+            let word = WORDS[dice.below(WORDS.len())];
+            bytes.splice(at..end, word.bytes());
+        }
+        7 => {
+            // A word in place of a field.
+            let is_blank = |b: &u8| b.is_ascii_whitespace() || b",<>\"[]:".contains(b);
+            let start = bytes[..at].iter().rposition(is_blank).map_or(0, |i| i + 1);
+            let stop = bytes[at..]
+                .iter()
+                .position(is_blank)
+                .map_or(bytes.len(), |i| at + i);
+            let word = WORDS[dice.below(WORDS.len())];
+            bytes.splice(start..stop, word.bytes());
+        }
+        _ => {
+            // Four bytes as a number: counts and offsets of binary formats.
+            let value = [
+                0u32,
+                1,
+                0x7fff_ffff,
+                0xffff_ffff,
+                0x10000,
+                dice.next() as u32,
+            ][dice.below(6)];
+            if at + 4 <= bytes.len() {
+                bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
+            }
+        }
+    }
+}
+
+/// Readable: one line, not empty, not endless, with something to do.
+fn check(outcome: ridgeline::Result<()>) {
+    if let Err(error) = outcome {
+        let message = error.to_string();
+        assert!(message.len() > 20 && message.len() < 2000, "{message}");
+        assert!(
+            message.contains("; ") && !message.contains('\n'),
+            "{message}"
+        );
+    }
+}
+
+/// Reads orientation files alone: quick.
+fn read_orientation(files: &[InputFile]) {
+    let kinds: Vec<_> = files.iter().map(detect).collect();
+    let (sets, _) = orientation_sets(files, &kinds);
+    for set in sets {
+        set.reference(files);
+        set.anchor(files);
+        check(set.read(files, &mut Vec::new()).map(|_| ()));
+    }
+}
+
+/// Reads a whole scene.
+fn read_scene(files: &[InputFile]) {
+    let options = LoadOptions::default();
+    let inspection = inspect_files(files, &options);
+    let outcome = load_scene(files, &options);
+    if outcome.is_ok() {
+        assert!(inspection.errors.is_empty(), "{:?}", inspection.errors);
+    }
+    check(outcome.map(|_| ()));
+}
+
+fn read_archive(files: &[InputFile]) {
+    for file in files {
+        check(unpack(file.clone()).and_then(open_project).map(|_| ()));
+    }
+}
+
+fn read_image(files: &[InputFile]) {
+    for file in files {
+        check(image_header(&file.path, &file.bytes).map(|_| ()));
+        check(load_image(&file.path, &file.bytes).map(|_| ()));
+        if let Ok(header) = image_header(&file.path, &file.bytes) {
+            let part = [
+                header.width / 3,
+                header.height / 3,
+                header.width.div_ceil(3),
+                header.height.div_ceil(3),
+            ];
+            check(load_part(&file.path, &file.bytes, part).map(|_| ()));
+        }
+    }
+}
+
+/// Runs a family for its time and says how many inputs it read.
+fn fuzz(family: &str, seeds: &[Vec<InputFile>], read: fn(&[InputFile])) {
+    let number = |name: &str, default| {
+        std::env::var(name)
+            .ok()
+            .and_then(|v| v.parse().ok())
+            .unwrap_or(default)
+    };
+    let seconds: f64 = number("RIDGELINE_FUZZ_SECONDS", 1.0);
+    let seed = number("RIDGELINE_FUZZ_SEED", 1.0) as u64;
+    let mut dice = Dice(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+    let start = Instant::now();
+    let mut inputs = 0u64;
+    while start.elapsed().as_secs_f64() < seconds {
+        let mut files = seeds[dice.below(seeds.len())].clone();
+        let other = &seeds[dice.below(seeds.len())];
+        let lender = other[dice.below(other.len())].bytes.clone();
+        for _ in 0..=dice.below(4) {
+            let victim = dice.below(files.len());
+            damage(&mut dice, &mut files[victim].bytes, &lender);
+        }
+        let begun = Instant::now();
+        let survived = catch_unwind(AssertUnwindSafe(|| read(&files)));
+        if survived.is_err() || begun.elapsed() > SLOWEST {
+            let folder = keep(family, inputs, &files);
+            panic!(
+                "{family}: input {inputs} (seconds {:.1}) is kept in {}",
+                begun.elapsed().as_secs_f64(),
+                folder.display()
+            );
+        }
+        inputs += 1;
+    }
+    println!(
+        "{family}: {inputs} inputs in {seconds} s, {} MB at the peak",
+        peak_kb() >> 10
+    );
+    assert!(peak_kb() < MOST_KB, "{family}: {} MB", peak_kb() >> 10);
+}
+
+fn keep(family: &str, number: u64, files: &[InputFile]) -> PathBuf {
+    let folder =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("target/fuzz-finds/{family}-{number}"));
+    fs::create_dir_all(&folder).unwrap();
+    for file in files {
+        fs::write(folder.join(file.name()), &file.bytes).unwrap();
+    }
+    folder
+}
+
+/// Most memory that the program has taken so far; 0 where the system does not say.
+fn peak_kb() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"));
+    line.and_then(|l| l.split_whitespace().nth(1)?.parse().ok())
+        .unwrap_or(0)
+}
+
+const TEXTS: [&str; 10] = [
+    "colmap",
+    "photogrammetric",
+    "patb",
+    "bundler",
+    "nvm",
+    "pix4d",
+    "pmatrix",
+    "middlebury",
+    "strecha",
+    "projection",
+];
+
+fn sets(folders: &[&str]) -> Vec<Vec<InputFile>> {
+    folders.iter().map(|folder| files_of(folder)).collect()
+}
+
+#[test]
+fn text_readers_survive_anything() {
+    fuzz("text", &sets(&TEXTS), read_orientation);
+}
+
+#[test]
+fn inpho_survives_anything() {
+    fuzz("inpho", &sets(&["inpho"]), read_orientation);
+}
+
+#[test]
+fn xml_readers_survive_anything() {
+    fuzz(
+        "xml",
+        &sets(&["metashape", "blocks", "micmac"]),
+        read_orientation,
+    );
+}
+
+#[test]
+fn json_readers_survive_anything() {
+    fuzz(
+        "json",
+        &sets(&["opensfm", "krc", "nerfstudio", "shots"]),
+        read_orientation,
+    );
+}
+
+#[test]
+fn binary_readers_survive_anything() {
+    fuzz("binary", &sets(&["colmap_binary"]), read_orientation);
+}
+
+#[test]
+fn archives_and_projects_survive_anything() {
+    let images = files_of("images");
+    let all = [images, files_of("colmap")].concat();
+    let packed = Project::new(LoadOptions::default(), Default::default())
+        .pack(&all, &[])
+        .unwrap();
+    let project = open_project(unpack(InputFile::new("a.zip", packed.clone())).unwrap()).unwrap();
+    assert!(project.1.is_some());
+    fuzz(
+        "archive",
+        &[vec![InputFile::new("a.zip", packed)]],
+        read_archive,
+    );
+}
+
+#[test]
+fn image_readers_survive_anything() {
+    let rgb = image::load_from_memory(&files_of("images")[0].bytes).unwrap();
+    let encoded = |image: DynamicImage, format: ImageFormat| {
+        let mut bytes = Cursor::new(Vec::new());
+        image.write_to(&mut bytes, format).unwrap();
+        vec![InputFile::new("a", bytes.into_inner())]
+    };
+    let deep = DynamicImage::ImageRgb16(rgb.to_rgb16());
+    let seeds = [
+        encoded(rgb.clone(), ImageFormat::Png),
+        encoded(rgb.clone(), ImageFormat::Jpeg),
+        encoded(rgb.clone(), ImageFormat::Tiff),
+        encoded(deep.clone(), ImageFormat::Tiff),
+        encoded(deep, ImageFormat::Png),
+        encoded(DynamicImage::ImageLuma8(rgb.to_luma8()), ImageFormat::Jpeg),
+    ];
+    fuzz("image", &seeds, read_image);
+}
+
+#[test]
+fn whole_scenes_survive_anything() {
+    let folders = [
+        "colmap",
+        "photogrammetric",
+        "patb",
+        "inpho",
+        "metashape",
+        "blocks",
+        "micmac",
+        "opensfm",
+        "shots",
+        "colmap_binary",
+    ];
+    let scenes: Vec<Vec<InputFile>> = folders
+        .iter()
+        .map(|f| [files_of(f), files_of("images")].concat())
+        .collect();
+    fuzz("scene", &scenes, read_scene);
+}
+
+/// What once broke something stays readable.
+#[test]
+fn earlier_finds_are_read() {
+    let folder = fixtures().join("finds");
+    let mut count = 0;
+    for entry in fs::read_dir(&folder).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        let files = files_of(&format!("finds/{name}"));
+        assert!(!files.is_empty(), "{name}");
+        read_orientation(&files);
+        read_archive(&files);
+        read_image(&files);
+        read_scene(&[files, files_of("images")].concat());
+        count += 1;
+    }
+    assert!(count > 0);
+}

@@ -1,0 +1,218 @@
+/**
+ * docs/figures.md: each figure of the papers, and the live view that shows it on the demo scene. Opens the built site in
+ * Chromium, takes the pictures and writes the page. `npm run build && npm run figures`
+ */
+import { spawn } from "node:child_process";
+import { existsSync, mkdirSync, writeFileSync } from "node:fs";
+import { chromium } from "@playwright/test";
+
+const DOCS = new URL("../../docs/", import.meta.url);
+const PORT = Number(process.env.PORT ?? 4179);
+const SITE = `http://127.0.0.1:${PORT}/`;
+const QUALITY = 74;
+
+const tab = (name) => async (page) => page.getByRole("tab", { name, exact: true }).click();
+const button = (name) => async (page) => page.getByRole("button", { name, exact: true }).click();
+const allViews = async (page) =>
+  page.getByRole("group", { name: "View" }).getByRole("button", { name: "All" }).click();
+const firstView = async (page) =>
+  page.getByRole("group", { name: "View" }).getByRole("button", { name: /_01/ }).first().click();
+
+/** Picks segments until one has several candidates. */
+async function pickSegment(page) {
+  await firstView(page);
+  const image = page.locator(".image-view canvas").first();
+  const box = await image.boundingBox();
+  for (let i = 0; i < 100 && (await page.locator(".candidates tbody tr").count()) < 4; i += 1) {
+    const x = box.width * (0.25 + 0.055 * (i % 10));
+    const y = box.height * (0.2 + 0.07 * Math.floor(i / 10));
+    await image.click({ position: { x, y } });
+    await page.waitForTimeout(80);
+  }
+  await allViews(page);
+}
+
+/** A half-plane of a facet: one of a roof, not of the street. */
+async function pickHalfPlane(page) {
+  const facets = page.locator(".plan-facet");
+  const row = page.getByTestId("inspector").locator("div", { hasText: /^Half-planes/ });
+  for (let i = 0; i < (await facets.count()) && (await row.count()) === 0; i += 1) {
+    await facets.nth(i).press("Enter");
+    await page.waitForTimeout(200);
+  }
+  await row.getByRole("button").first().click();
+}
+
+/** Opens a link of the page itself, whose address holds the state of a view, and waits for the stage that it needs. */
+const link = (fields, stage) => async (page) => {
+  await page.goto(`${SITE}#scene=demo&${fields}`);
+  await page.reload();
+  const isDone = (name) => document.querySelector(`[data-stage="${name}"]`)?.dataset.status === "done";
+  await page.waitForFunction(isDone, stage, { timeout: 120_000 });
+  await page.waitForTimeout(1000);
+};
+
+/** Sections of the page: pictures, what the papers' figures show, and how to get there. */
+const B99 = [
+  {
+    name: "segments",
+    figures: "3.2",
+    shows: "line segments of a view, and what was refused",
+    steps: [tab("Segments"), firstView, button("Refused lines")],
+  },
+  {
+    name: "beam",
+    figures: "1 to 4",
+    shows:
+      "the epipolar beam of a segment, point-wise correspondence, the reprojected line and its distance in third views",
+    steps: [tab("Matches"), pickSegment],
+  },
+  {
+    name: "matches",
+    figures: "5 and 6",
+    shows: "matched, merged and grown parts over all views",
+    steps: [button("Clear"), tab("Matches"), allViews],
+  },
+  {
+    name: "before",
+    figures: "5 and 7",
+    shows: "3D lines before merging and growing",
+    steps: [tab("3D lines"), button("Before growing")],
+  },
+  {
+    name: "lines",
+    figures: "6, 8 and 9",
+    shows: "3D lines after it; accuracy against the number of views; the picked line in every view",
+    steps: [
+      tab("3D lines"),
+      button("After"),
+      async (page) => page.getByTestId("accuracy").click({ position: { x: 190, y: 90 } }),
+    ],
+  },
+  {
+    name: "halfplane",
+    figures: "10 to 14",
+    shows:
+      "the homography of a half-plane: points of interest, warped windows, Sim(theta) in total and per view",
+    steps: [link("tab=facets", "facets"), pickHalfPlane, tab("Half-planes")],
+  },
+  {
+    name: "fans",
+    figures: "15",
+    shows: "accepted half-planes as fans, refused sides as thin red lines",
+    steps: [button("Clear")],
+  },
+  {
+    name: "groups",
+    figures: "16 to 20",
+    shows: "collinear and coplanar grouping, and new lines in the planes",
+    steps: [
+      link("tab=model", "model"),
+      tab("Groups"),
+      async (page) => page.getByTestId("groups").getByRole("button").first().click(),
+    ],
+  },
+  {
+    name: "facets",
+    figures: "21 to 23",
+    shows: "border lines by their kind, closed outlines, facets and what was withdrawn",
+    steps: [tab("Facets"), async (page) => page.locator(".plan-facet").nth(3).press("Enter")],
+  },
+  {
+    name: "model",
+    figures: "24 and 25",
+    shows: "the textured model",
+    steps: [button("Clear"), tab("Model")],
+  },
+  {
+    name: "photograph",
+    figures: "–",
+    shows: "the model under the photograph of a view, seen by its camera",
+    steps: [async (page) => page.getByLabel("Look through the camera of a view").selectOption("2")],
+  },
+];
+const W96 = [
+  {
+    name: "regions",
+    figures: "3",
+    shows: "regions with straight shared boundaries",
+    steps: [link("method=rectangles&tab=model", "model"), tab("Regions"), firstView],
+  },
+  {
+    name: "directions",
+    figures: "4 and 5",
+    shows: "main directions: the histogram of azimuths and its two perpendicular peaks",
+    steps: [tab("Directions")],
+  },
+  {
+    name: "clusters",
+    figures: "6 to 9",
+    shows: "the cluster plane with the selected clusters, and a line projected back into all views",
+    steps: [
+      tab("Clusters"),
+      allViews,
+      async (page) => page.locator(".cluster").nth(2).click({ force: true }),
+    ],
+  },
+  {
+    name: "rectangles",
+    figures: "10 to 12",
+    shows: "the window between two parallel lines, the histogram of positions, and the selected planes",
+    steps: [button("Clear"), tab("Rectangles")],
+  },
+];
+
+async function picturesOf(page, sections, prefix) {
+  for (const { name, steps } of sections) {
+    for (const step of steps) {
+      await step(page);
+    }
+    await page.waitForTimeout(900);
+    const path = new URL(`figures/${prefix}-${name}.jpg`, DOCS).pathname;
+    await page.locator(".stage-view").screenshot({ path, type: "jpeg", quality: QUALITY });
+    process.stdout.write(`${prefix}-${name}.jpg\n`);
+  }
+}
+
+function table(sections, prefix, paper) {
+  return sections
+    .map(
+      ({ name, figures, shows }) =>
+        `### ${paper} ${figures === "–" ? "(no figure)" : figures.includes(".") ? `section ${figures}` : `figure${figures.length > 2 ? "s" : ""} ${figures}`}\n\n${shows[0].toUpperCase()}${shows.slice(1)}.\n\n![${shows}](figures/${prefix}-${name}.jpg)\n`,
+    )
+    .join("\n");
+}
+
+const server = spawn(
+  "npx",
+  ["vite", "preview", "--host", "127.0.0.1", "--port", String(PORT), "--strictPort"],
+  { detached: true },
+);
+try {
+  await new Promise((resolve) => setTimeout(resolve, 2500));
+  mkdirSync(new URL("figures/", DOCS), { recursive: true });
+  const system = process.env.CHROMIUM ?? "/usr/bin/chromium";
+  const browser = await chromium.launch({
+    ...(existsSync(system) ? { executablePath: system } : {}),
+    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+  });
+  const page = await browser.newPage({ viewport: { width: 1280, height: 860 }, colorScheme: "light" });
+  await link("tab=model", "model")(page);
+  await picturesOf(page, B99, "b99");
+  await picturesOf(page, W96, "w96");
+  await browser.close();
+  const text = `# The figures of the papers, live
+
+Each view of the page draws what the papers draw, from the demo scene and from any other. The pictures are taken from the
+page itself by \`npm run figures\` (in www/, after \`npm run build\`).
+
+## B99: Baillard, Schmid, Zisserman, Fitzgibbon 1999
+
+${table(B99, "b99", "B99")}
+## W96: Wiman, Axelsson 1996
+
+${table(W96, "w96", "W96")}`;
+  writeFileSync(new URL("figures.md", DOCS), text);
+} finally {
+  process.kill(-server.pid);
+}

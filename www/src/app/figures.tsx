@@ -1,0 +1,359 @@
+/** What each stage view shows: a paragraph, its equation, and where it stands in the papers. */
+import type { ComponentChildren } from "preact";
+import { type Tab, tab } from "./state";
+
+interface Figure {
+  title: string;
+  /** Paper, section and figures. */
+  source: string;
+  text: string;
+  equation: ComponentChildren;
+  /** What to do here. */
+  hint: string;
+}
+
+const Sim = () => (
+  <mrow>
+    <mi mathvariant="normal">Sim</mi>
+    <mi mathvariant="normal">(</mi>
+    <mi>θ</mi>
+    <mi mathvariant="normal">)</mi>
+  </mrow>
+);
+
+const FIGURES: Record<Tab, Figure> = {
+  images: {
+    title: "Views",
+    source: "B99 2, figure 1; W96 3.2",
+    text: "Each view is a photograph with a known camera P. Lens distortion has been removed, so that a point X of the ground lies at x = P X. All later figures rest on this one equation.",
+    equation: (
+      <mrow>
+        <mi mathvariant="normal" class="v">
+          x
+        </mi>
+        <mo>=</mo>
+        <mi>P</mi>
+        <mi mathvariant="normal" class="v">
+          X
+        </mi>
+        <mo>=</mo>
+        <mi>K</mi>
+        <mi>R</mi>
+        <mi mathvariant="normal">(</mi>
+        <mi mathvariant="normal" class="v">
+          X
+        </mi>
+        <mo>−</mo>
+        <mi>C</mi>
+        <mi mathvariant="normal">)</mi>
+      </mrow>
+    ),
+    hint: "Scroll to zoom, drag to move. What is selected elsewhere is marked here.",
+  },
+  segments: {
+    title: "Line segments",
+    source: "B99 3.2",
+    text: "Edgels with sub-pixel positions are linked into chains, broken where the tangent turns, and fitted by orthogonal regression. Red: straight lines that were refused, as a curve or as texture.",
+    equation: (
+      <mrow>
+        <msup>
+          <mi mathvariant="normal" class="v">
+            l
+          </mi>
+          <mi mathvariant="normal">T</mi>
+        </msup>
+        <mi mathvariant="normal" class="v">
+          x
+        </mi>
+        <mo>=</mo>
+        <mn>0</mn>
+      </mrow>
+    ),
+    hint: "Pick a segment for its length and direction; before matching that is all we know.",
+  },
+  matches: {
+    title: "Matching over views",
+    source: "B99 3.1 to 3.4, figures 1 to 6",
+    text: "The end points of a segment bound an epipolar beam in every other view. Candidates in it are compared point by point: x′ is where the epipolar line of x meets the candidate l′. A pair predicts the line in third views by its trifocal tensor; there it must be seen, too.",
+    equation: (
+      <mrow>
+        <mi mathvariant="normal" class="v">
+          x′
+        </mi>
+        <mo>=</mo>
+        <mi mathvariant="normal" class="v">
+          l′
+        </mi>
+        <mo>×</mo>
+        <mi mathvariant="normal">(</mi>
+        <mi>F</mi>
+        <mi mathvariant="normal" class="v">
+          x
+        </mi>
+        <mi mathvariant="normal">)</mi>
+      </mrow>
+    ),
+    hint: "Pick a segment; then choose a candidate and drag the point along it.",
+  },
+  lines: {
+    title: "3D lines",
+    source: "B99 3.2 to 3.4, figures 4 to 9",
+    text: "A line has four parameters; they minimise the distances d between the measured segments and the reprojected line in all views. Merging and growing extend what the segments showed. Accuracy improves with the number of views.",
+    equation: (
+      <mrow>
+        <munder>
+          <mo>min</mo>
+          <mi>L</mi>
+        </munder>
+        <munder>
+          <mo>∑</mo>
+          <mi>i</mi>
+        </munder>
+        <msup>
+          <mi>d</mi>
+          <mn>2</mn>
+        </msup>
+        <mi mathvariant="normal">(</mi>
+        <msup>
+          <mi mathvariant="normal" class="v">
+            l
+          </mi>
+          <mi>i</mi>
+        </msup>
+        <mo>,</mo>
+        <msup>
+          <mi>P</mi>
+          <mi>i</mi>
+        </msup>
+        <mi>L</mi>
+        <mi mathvariant="normal">)</mi>
+      </mrow>
+    ),
+    hint: "Switch to Before growing to see what the segments alone give.",
+  },
+  halfplanes: {
+    title: "Half-planes",
+    source: "B99 4.1, figures 10 to 15",
+    text: "A 3D line leaves one angle open. Each θ induces a homography H(θ) between two views; where it is right, the neighbourhoods agree. Sim(θ) adds the squared correlations at points of interest, over the views that see the side.",
+    equation: (
+      <mtable displaystyle>
+        <mtr>
+          <mtd>
+            <Sim />
+            <mo>=</mo>
+            <munder>
+              <mo>∑</mo>
+              <mi>i</mi>
+            </munder>
+            <msub>
+              <mo>∫</mo>
+              <mi mathvariant="normal">POI</mi>
+            </msub>
+            <mi>w</mi>
+            <mi mathvariant="normal">(</mi>
+            <mi mathvariant="normal" class="v">
+              x
+            </mi>
+            <mi mathvariant="normal">)</mi>
+          </mtd>
+        </mtr>
+        <mtr>
+          <mtd>
+            <mspace width="2em" />
+            <mo>·</mo>
+            <msup>
+              <mi mathvariant="normal">Cor</mi>
+              <mn>2</mn>
+            </msup>
+            <mi mathvariant="normal">(</mi>
+            <mi mathvariant="normal" class="v">
+              x
+            </mi>
+            <mo>,</mo>
+            <msup>
+              <mi>H</mi>
+              <mi>i</mi>
+            </msup>
+            <mi mathvariant="normal">(</mi>
+            <mi>θ</mi>
+            <mi mathvariant="normal">)</mi>
+            <mi mathvariant="normal" class="v">
+              x
+            </mi>
+            <mi mathvariant="normal">)</mi>
+          </mtd>
+        </mtr>
+      </mtable>
+    ),
+    hint: "Pick a line or a fan, then drag θ: the windows below are alike only at the right angle.",
+  },
+  groups: {
+    title: "Grouping",
+    source: "B99 4.2, figures 16 to 20",
+    text: "Neighbouring half-planes that share a plane within its uncertainty form a group; the Delaunay triangulation constrained to the projected lines says who is a neighbour. In each plane, further lines are found where segments of several views coincide.",
+    equation: (
+      <mrow>
+        <msup>
+          <mi mathvariant="normal" class="v">
+            n
+          </mi>
+          <mi mathvariant="normal">T</mi>
+        </msup>
+        <mi mathvariant="normal" class="v">
+          X
+        </mi>
+        <mo>+</mo>
+        <mi>d</mi>
+        <mo>≈</mo>
+        <mn>0</mn>
+      </mrow>
+    ),
+    hint: "Pick a group: its lines light up in space and in every view. Green: lines found in a plane.",
+  },
+  facets: {
+    title: "Facets",
+    source: "B99 4.3, figures 21 to 23",
+    text: "Border lines (real lines, new lines, intersections of planes, closing lines) cut the plan into cells, and the planes compete for them. A facet is kept if the views agree inside and enough of its outline, τ, is real.",
+    equation: (
+      <mrow>
+        <mi>S</mi>
+        <mo>=</mo>
+        <mi>A</mi>
+        <mo>·</mo>
+        <msub>
+          <mi>τ</mi>
+          <mi mathvariant="normal">real</mi>
+        </msub>
+      </mrow>
+    ),
+    hint: "Hue: where a facet faces; strength: how steep it is. Red outlines in the plan were withdrawn.",
+  },
+  model: {
+    title: "Model",
+    source: "B99 5, figures 24 and 25",
+    text: "Facets become buildings by walls down to the ground. Every face takes its texture from the view that shows it best; hidden parts come from other views.",
+    equation: (
+      <mrow>
+        <mi>V</mi>
+        <mo>−</mo>
+        <mi>E</mi>
+        <mo>+</mo>
+        <mi>F</mi>
+        <mo>=</mo>
+        <mn>2</mn>
+      </mrow>
+    ),
+    hint: "Fly to a view to lay its photograph over the model. Measure distances, slopes and areas.",
+  },
+  regions: {
+    title: "Regions (ORIS)",
+    source: "W96 3.3, figure 3",
+    text: "The image becomes a partition into regions of constant grey value plus noise, with straight shared boundaries. Break points are dropped and regions merged, always the move that shortens the description of model m and image I most, until none does.",
+    equation: (
+      <mrow>
+        <mo>min</mo>
+        <mi>L</mi>
+        <mi mathvariant="normal">(</mi>
+        <mi>m</mi>
+        <mi mathvariant="normal">)</mi>
+        <mo>+</mo>
+        <mi>L</mi>
+        <mi mathvariant="normal">(</mi>
+        <mi>I</mi>
+        <mi mathvariant="normal">|</mi>
+        <mi>m</mi>
+        <mi mathvariant="normal">)</mi>
+      </mrow>
+    ),
+    hint: "Pick a region for its area, mean and variance.",
+  },
+  directions: {
+    title: "Main directions",
+    source: "W96 3.4, figures 4 and 5",
+    text: "The interpretation plane of every image line is cut with the XY plane. Horizontal lines give the same azimuth from every view; others scatter. Two perpendicular peaks of the histogram are found together.",
+    equation: (
+      <mrow>
+        <munder>
+          <mo>max</mo>
+          <mi>α</mi>
+        </munder>
+        <mi>h</mi>
+        <mi mathvariant="normal">(</mi>
+        <mi>α</mi>
+        <mi mathvariant="normal">)</mi>
+        <mo>+</mo>
+        <mi>h</mi>
+        <mi mathvariant="normal">(</mi>
+        <mi>α</mi>
+        <mo>+</mo>
+        <mn>90°</mn>
+        <mi mathvariant="normal">)</mi>
+      </mrow>
+    ),
+    hint: "Blue and orange lines may follow the first and the second direction.",
+  },
+  clusters: {
+    title: "Clusters",
+    source: "W96 3.5, figures 6 to 9",
+    text: "In the plane across a main direction, each image line of that direction is a straight line, and a 3D line is a point where lines of several images meet. The points compete by description length; colours are views.",
+    equation: (
+      <mrow>
+        <mi>G</mi>
+        <mo>=</mo>
+        <msub>
+          <mi>L</mi>
+          <mi mathvariant="normal">alone</mi>
+        </msub>
+        <mo>−</mo>
+        <msub>
+          <mi>L</mi>
+          <mi mathvariant="normal">cluster</mi>
+        </msub>
+        <mo>&gt;</mo>
+        <mn>0</mn>
+      </mrow>
+    ),
+    hint: "Pick a ring: its 3D line is projected back into every view.",
+  },
+  rectangles: {
+    title: "Rectangular planes",
+    source: "W96 3.6, figures 10 to 12",
+    text: "Two parallel lines span a plane that is open at two ends. Image lines that cross it at right angles vote for their position along it; the histogram's peaks are its ends. The best set of planes that do not overlap is the roof.",
+    equation: (
+      <mrow>
+        <munder>
+          <mo>max</mo>
+          <mi>S</mi>
+        </munder>
+        <munder>
+          <mo>∑</mo>
+          <mrow>
+            <mi>p</mi>
+            <mo>∈</mo>
+            <mi>S</mi>
+          </mrow>
+        </munder>
+        <mi>M</mi>
+        <mi mathvariant="normal">(</mi>
+        <mi>p</mi>
+        <mi mathvariant="normal">)</mi>
+      </mrow>
+    ),
+    hint: "Pick a facet or choose a pair of lines to see its window.",
+  },
+};
+
+export function AboutFigure() {
+  const { title, source, text, equation, hint } = FIGURES[tab.value];
+  return (
+    <details class="panel about" open data-testid="about">
+      <summary>
+        <h2>{title}</h2>
+        <span class="muted">{source}</span>
+      </summary>
+      <p>{text}</p>
+      <math display="block">{equation}</math>
+      <p class="muted">{hint}</p>
+    </details>
+  );
+}

@@ -1,0 +1,42 @@
+/** What the page begins with: the scene of a link, or the project of the last visit. */
+import { batch } from "@preact/signals";
+import { openDemo, restoreProject, runTo } from "./actions";
+import { readKept } from "./keep";
+import { goTo } from "./lessons";
+import { opened } from "./link";
+import { stageWords } from "./stages";
+import { method, results, scene, selection, shownView, stages, TABS, type Tab, tab } from "./state";
+
+export async function resume(): Promise<void> {
+  if (opened.scene === "demo") {
+    await openDemo(opened.tab === null ? null : stageOfTab());
+  } else {
+    const kept = await readKept();
+    if (kept !== null && kept.files.length > 0) {
+      await restoreProject(kept);
+      if (opened.tab !== null && opened.tab !== "images") {
+        await runTo(stageOfTab() ?? "");
+      }
+    }
+  }
+  if (scene.value === null) {
+    return;
+  }
+  const tabs: readonly Tab[] = TABS[method.value];
+  batch(() => {
+    if (opened.tab !== null && tabs.includes(opened.tab)) {
+      tab.value = opened.tab;
+    }
+    shownView.value = opened.view ?? shownView.value;
+    selection.value = opened.selection;
+  });
+  if (opened.lesson !== null && results.value.glb !== null) {
+    await goTo(opened.lesson);
+  }
+}
+
+/** The stage whose result the linked tab shows; none for the images. */
+function stageOfTab(): string | null {
+  const wanted = opened.tab === "groups" ? "facets" : opened.tab;
+  return stages.value.find(({ name }) => stageWords(name).tab === wanted)?.name ?? null;
+}

@@ -1,0 +1,65 @@
+/** The core's reasons in words. */
+import type { SegmentOutcome } from "../shared/traces";
+
+/** Why a side of a line has no half-plane (B99 4.1). */
+export const REJECTION_WORDS: Record<string, string> = {
+  no_frame: "the line is vertical",
+  too_short: "no view shows the whole line at sufficient length",
+  no_points_of_interest: "too little texture beside the line",
+  no_valid_view: "too few views agree at any angle",
+  at_interval_end: "Sim grows up to the end of the interval",
+  low_peak: "the peak is too low",
+  flat_curve: "the curve is too flat",
+  small_amplitude: "the amplitude is too small",
+};
+
+const NOT_VERIFIED: Record<string, string> = {
+  no_fit: "no line fits the segments",
+  ill_conditioned: "the line is not determined across itself",
+  unverified: "one view alone determines it",
+  too_few_views: "too few views support it",
+  too_short: "the supported stretch is too short",
+  outside_heights: "it leaves the height range",
+};
+
+export function outcomeWords(outcome: SegmentOutcome | null): string {
+  switch (outcome?.fate) {
+    case undefined:
+      return "not matched yet";
+    case "matched":
+      return `matched, in match ${outcome.line}`;
+    case "no_candidate":
+      return "refused: no segment in any beam";
+    case "below_threshold":
+      return `refused: best score ${outcome.best.toFixed(2)} is below the threshold`;
+    case "not_verified":
+      return `refused: ${NOT_VERIFIED[outcome.reason] ?? outcome.reason}`;
+    case "lost_to":
+      return `lost its partners to match ${outcome.line}`;
+  }
+}
+
+/** Why a pair of parallel lines gave no plane (W96 3.6). */
+export const PAIR_WORDS: Record<string, string> = {
+  shape: "too steep, too narrow or too wide",
+  near_ground: "not higher above the ground than a car",
+  no_ends: "crossing lines make no two ends",
+  weak: "its best measure is not positive",
+};
+
+export function facetRejectionWords(reason: Record<string, Record<string, number>>): string {
+  const [name, numbers] = Object.entries(reason)[0] ?? ["", {}];
+  const value = Object.values(numbers)[0] ?? 0;
+  switch (name) {
+    case "too_small":
+      return `too small (${value.toFixed(1)} m²)`;
+    case "near_ground":
+      return `near the ground (${value.toFixed(1)} m above it)`;
+    case "dissimilar":
+      return `the views do not agree inside (${value.toFixed(2)})`;
+    case "unsupported":
+      return `too little of its outline is real (τ = ${value.toFixed(2)})`;
+    default:
+      return name;
+  }
+}

@@ -1,0 +1,184 @@
+/**
+ * What the core tells of how its results came about: the traces that the live figures draw. Units as in
+ * `results.ts`; indices refer to views, segments of their view, 3D lines, half-planes, facets.
+ */
+import type { Plane, SupportKind, Vec3 } from "./results";
+
+export type Vec2 = readonly [number, number];
+
+export interface Segment2 {
+  p0: Vec2;
+  p1: Vec2;
+}
+
+export interface Segment3 {
+  p0: Vec3;
+  p1: Vec3;
+}
+
+export type SideName = "left" | "right";
+
+/** Number and total length in the images of some segments. */
+export interface StepCount {
+  number: number;
+  length_px: number;
+}
+
+export interface MatchRecord {
+  z_range_m: Vec2 | null;
+  view_pairs: Vec2[];
+  candidates: number;
+  pairs: number;
+  triples_before: number;
+  triples_after: number;
+  detected: StepCount;
+  matched: StepCount;
+  merged: StepCount;
+  grown: StepCount;
+}
+
+export type SegmentOutcome =
+  | { fate: "matched"; line: number }
+  | { fate: "no_candidate" }
+  | { fate: "below_threshold"; best: number }
+  | { fate: "not_verified"; reason: string }
+  | { fate: "lost_to"; line: number };
+
+export interface Prediction {
+  view: number;
+  segment: Segment2;
+  verified: number | null;
+  distance_px: number | null;
+}
+
+export interface Candidate {
+  view: number;
+  segment: number;
+  score: number;
+  line: number | null;
+  predictions: Prediction[];
+}
+
+export interface SegmentStory {
+  outcome: SegmentOutcome | null;
+  beams: { view: number; corners: Vec2[] }[];
+  candidates: Candidate[];
+}
+
+export interface Correspondence {
+  x: Vec2;
+  /** l with l . (x, y, 1) a distance in pixels. */
+  epipolar: Vec3;
+  other: Vec2;
+  window: number[];
+  other_window: number[];
+  correlation: number | null;
+}
+
+export interface LineRecord {
+  sigma_m: number;
+  supports: { view: number; segments: number[]; score: number; kind: SupportKind }[];
+}
+
+export interface SideRecord {
+  line: number;
+  side: SideName;
+  rejection: string | null;
+}
+
+export interface SimilarityCurve {
+  reference: number | null;
+  points: Vec2[];
+  thetas: number[];
+  similarity: number[];
+  views: { view: number; valid: boolean; similarity: number[] }[];
+}
+
+export interface SideTrace extends SideRecord {
+  curve: SimilarityCurve;
+}
+
+export interface WarpedViews {
+  theta: number;
+  reference: number;
+  similarity: number;
+  points: Vec2[];
+  line_row: number;
+  columns: number;
+  rows: number;
+  views: { view: number; similarity: number | null; valid: boolean; outline: Vec2[] | null }[];
+}
+
+/** Pictures one below the other, and what they show. */
+export interface WarpedPicture {
+  about: WarpedViews;
+  rgba: Uint8ClampedArray<ArrayBuffer>;
+}
+
+export interface PlaneGroup {
+  plane: Plane;
+  members: { line: number; side: SideName | null; half_plane: number | null }[];
+}
+
+export interface Grouping {
+  groups: PlaneGroup[];
+  plane_lines: { segment: Segment3; views: number[] }[];
+  borders: { kind: "real" | "inplane" | "intersection" | "closing"; a: Vec2; b: Vec2 }[];
+  cells: number;
+  rejected: { outline: Vec3[]; reason: Record<string, Record<string, number>> }[];
+}
+
+/** W96 3.3. */
+export interface Segmentation {
+  regions: { area_px: number; perimeter_px: number; mean: number; variance: number; rings: Vec2[][] }[];
+  vectors: { ends: [Vec2, Vec2]; sides: [number | null, number | null] }[];
+  initial_regions: number;
+  moves: Record<string, number>;
+}
+
+/** W96 3.4. */
+export interface MainDirections {
+  /** Of the first direction, from the X axis towards Y; the other is a right angle further. */
+  azimuth: number;
+  share: number;
+}
+
+export interface Directions {
+  windows: { min: Vec2; max: Vec2; z_range_m: Vec2; directions: MainDirections[] }[];
+  trace: {
+    histograms: { histogram: number[]; bin_deg: number; found: MainDirections[] }[];
+    lines: [Segment3, number | null][];
+  };
+}
+
+/** W96 3.5: (across, height) in metres. */
+export interface ClusterTrace {
+  azimuth: number;
+  lines: [number, [Vec2, Vec2]][];
+  proposals: Vec2;
+  selected: [Vec2, number][];
+  refused: [Vec2, number][];
+}
+
+/** W96 3.6. */
+export interface PlaneTrace {
+  lines: Vec2;
+  rejection: "shape" | "near_ground" | "no_ends" | "weak" | null;
+  crossings: { view: number; at: Vec2; across: Vec2; contrast: number }[];
+  ends: { at: Vec2; support: number }[];
+}
+
+export interface PlaneCandidate {
+  plane: Plane;
+  ring: Vec3[];
+  lines: number[];
+  support: number;
+  correlation: number;
+  measure: number;
+}
+
+export interface RectangleTrace {
+  pairs: PlaneTrace[];
+  candidates: PlaneCandidate[];
+  chosen: number[];
+}

@@ -1,0 +1,28 @@
+/** The orientation doctor: it names the mistake, and undoes it on request. */
+import { expect, test } from "@playwright/test";
+import { demoImages, demoOrientation, give, waitForStage, watch } from "./helpers";
+
+test("a mistake in the orientation is undone with one click", async ({ page }) => {
+  const { problems } = watch(page);
+  await page.goto("/");
+  const inDegreesAsGon = (text: string) =>
+    text.replace(/^(s\S+ \S+ \S+ \S+) (\S+) (\S+) (\S+)$/gm, (_, start, ...angles) =>
+      [start, ...angles.slice(0, 3).map((angle: string) => Number(angle) / 0.9)].join(" "),
+    );
+  await give(page, [...demoImages(6), ...demoOrientation(inDegreesAsGon)]);
+  const diagnosis = page.getByTestId("diagnosis");
+  await expect(diagnosis).toBeVisible({ timeout: 60_000 });
+  const [before, after] = (await diagnosis.locator("dd").allTextContents()).map(Number) as [number, number];
+  expect(before).toBeLessThan(0.25);
+  expect(after).toBeGreaterThan(0.3);
+
+  await diagnosis.getByRole("button", { name: "Apply the fix" }).click();
+  await expect(page.getByRole("alert")).toHaveCount(0, { timeout: 60_000 });
+  await expect(page.locator(".warnings")).toContainText("the orientation was corrected");
+  await page.getByRole("button", { name: "Run up to 3D lines" }).click();
+  await waitForStage(page, "lines");
+  await expect(page.locator('[data-stage="lines"]')).toContainText(/[1-9]\d* lines/);
+  await page.getByRole("button", { name: "Take the orientation as it is" }).click();
+  await expect(page.getByTestId("diagnosis")).toBeVisible({ timeout: 60_000 });
+  expect(problems).toEqual([]);
+});

@@ -1,0 +1,255 @@
+/** Each figure of B99 shows what the core found, and follows what is pointed at. One run of the demo scene for all. */
+import { expect, type Locator, type Page, test } from "@playwright/test";
+import { axeFindings, lookOf, openTab, stage, steadyLook, waitForStage, watch } from "./helpers";
+
+test.describe.configure({ mode: "serial" });
+
+let page: Page;
+let problems: string[];
+
+test.beforeAll(async ({ browser }) => {
+  page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+  ({ problems } = watch(page));
+  await page.goto("/");
+  await page.getByRole("button", { name: "Demo scene" }).click();
+  await waitForStage(page, "model");
+});
+
+test.afterAll(async () => {
+  expect(problems).toEqual([]);
+  await page.close();
+});
+
+const inspector = () => page.getByTestId("inspector");
+const allViews = () => page.getByRole("group", { name: "View" }).getByRole("button", { name: "All" });
+
+/** Clicks over an element until something is as wanted. */
+async function pickUntil(element: Locator, isFound: () => Promise<boolean>): Promise<void> {
+  const box = await element.boundingBox();
+  for (let i = 0; i < 90 && !(await isFound()); i += 1) {
+    const x = (box?.width ?? 0) * (0.25 + 0.055 * (i % 10));
+    const y = (box?.height ?? 0) * (0.2 + 0.07 * Math.floor(i / 10));
+    await element.click({ position: { x, y } });
+    await page.waitForTimeout(60);
+  }
+  expect(await isFound()).toBe(true);
+}
+
+/** Picks a matched segment of the first view. */
+async function pickMatchedSegment(): Promise<void> {
+  await openTab(page, "Matches");
+  await page.getByRole("group", { name: "View" }).getByRole("button", { name: /_01/ }).first().click();
+  const rows = page.locator(".candidates tbody tr");
+  await pickUntil(
+    page.locator(".image-view canvas").first(),
+    async () =>
+      (await rows.count()) >= 2 &&
+      (await inspector()
+        .getByText(/^matched, in match/)
+        .isVisible()),
+  );
+}
+
+test("figures 1 to 4: beams, candidates and their scores, pointwise correspondence", async () => {
+  await pickMatchedSegment();
+  const scores = await page.locator(".candidates tbody td:nth-child(2)").allTextContents();
+  const numbers = scores.map(Number);
+  expect(numbers.every((score) => score > 0 && score <= 1)).toBe(true);
+  expect(numbers).toEqual([...numbers].sort((a, b) => b - a));
+
+  await allViews().click();
+  const other = page.locator(".image-view canvas").nth(1);
+  const marked = await lookOf(page, other);
+  const correlation = page.getByTestId("correlation");
+  await expect(correlation).toHaveText(/^-?[01]\.\d\d$/);
+  const first = await correlation.textContent();
+  await page.getByTestId("along").fill("0.05");
+  await expect(correlation).not.toHaveText(first ?? "");
+  await page.getByRole("button", { name: "Clear" }).click();
+  await expect(page.getByTestId("point-lab")).toHaveCount(0);
+  const plain = await lookOf(page, other);
+  expect(marked).not.toEqual(plain);
+});
+
+test("a segment leads to its 3D line, and that to its segments, half-planes and facets", async () => {
+  await pickMatchedSegment();
+  const title = inspector().locator(".picked");
+  const segment = await title.textContent();
+  await inspector()
+    .locator("div", { hasText: /^3D line/ })
+    .getByRole("button")
+    .first()
+    .click();
+  await expect(title).toHaveText(/^3D line \d+$/);
+  const name = /^Segment (\d+) of (.*)$/.exec(segment ?? "");
+  const own = inspector()
+    .locator("div", { hasText: new RegExp(`^${name?.[2]}`) })
+    .getByRole("button", { name: name?.[1] ?? "", exact: true });
+  await expect(own).toBeVisible();
+  await expect(inspector().getByText("σ across")).toBeVisible();
+  await own.click();
+  await expect(title).toHaveText(segment ?? "");
+});
+
+test("figures 5 to 9: lines before and after growing, accuracy against views", async () => {
+  await openTab(page, "3D lines");
+  const viewer = page.getByTestId("viewer");
+  const after = await lookOf(page, viewer);
+  await page.getByRole("button", { name: "Before growing" }).click();
+  await expect(async () => {
+    const before = await lookOf(page, viewer);
+    expect(before.drawn).toBeLessThan(after.drawn);
+    expect(before.drawn).toBeGreaterThan(0.2 * after.drawn);
+  }).toPass({ timeout: 20_000 });
+  await page.getByRole("button", { name: "After", exact: true }).click();
+
+  const lines = Number(
+    /([\d,]+) lines/.exec((await stage(page, "lines").textContent()) ?? "")?.[1]?.replace(",", ""),
+  );
+  await expect(page.getByTestId("accuracy").locator(".dot-line")).toHaveCount(lines);
+  await page.getByTestId("accuracy").click({ position: { x: 200, y: 110 } });
+  await expect(inspector().locator(".picked")).toHaveText(/^3D line \d+$/);
+  // The picked line lights up in every view that shows it.
+  expect(await page.getByTestId("filmstrip").locator("canvas").count()).toBeGreaterThanOrEqual(3);
+});
+
+test("figures 10 to 14: theta is dragged, the windows and Sim follow", async () => {
+  await page.goto("/#scene=demo&tab=halfplanes&select=halfplane:0");
+  await page.reload();
+  await waitForStage(page, "halfplanes");
+  const lab = page.getByTestId("sim-lab");
+  await expect(lab.locator(".windows li")).toHaveCount(6);
+  const theta = page.getByTestId("theta");
+  const sims = lab.locator(".windows .numbers");
+  const best = await sims.allTextContents();
+  const start = await theta.textContent();
+  const look = await lookOf(page, lab.locator(".windows canvas").nth(1));
+
+  const chart = page.getByTestId("sim-chart");
+  const box = await chart.boundingBox();
+  await page.mouse.move((box?.x ?? 0) + 0.5 * (box?.width ?? 0), (box?.y ?? 0) + 60);
+  await page.mouse.down();
+  await page.mouse.move((box?.x ?? 0) + 0.93 * (box?.width ?? 0), (box?.y ?? 0) + 60, { steps: 5 });
+  await page.mouse.up();
+  await expect(theta).toHaveText(/^[56]\d\.\d°$/);
+  await expect(sims.nth(1)).not.toHaveText(best[1] ?? "");
+  const number = (texts: string[]) =>
+    texts.slice(1).reduce((sum, text) => sum + Number(text.replace("Sim ", "")), 0);
+  expect(number(await sims.allTextContents())).toBeLessThan(number(best));
+  expect(await lookOf(page, lab.locator(".windows canvas").nth(1))).not.toEqual(look);
+
+  await page.getByRole("button", { name: "Best" }).click();
+  await expect(theta).toHaveText(start ?? "");
+  await expect(sims.nth(1)).toHaveText(best[1] ?? "");
+  // By key as well.
+  await page.getByLabel(/Angle of the half-plane/).press("ArrowRight");
+  await expect(theta).not.toHaveText(start ?? "");
+});
+
+test("a link shows the stage, the method's parameters and the selection", async () => {
+  await expect(page).toHaveURL(/tab=halfplanes/);
+  await expect(page).toHaveURL(/select=halfplane%3A0/);
+  // Only what the link needs has run.
+  await expect(stage(page, "model")).toHaveAttribute("data-status", "waiting");
+});
+
+test("figures 16 to 23: groups, border lines and facets", async () => {
+  await page.getByRole("button", { name: "Run all" }).click();
+  await waitForStage(page, "model");
+  await openTab(page, "Groups");
+  await page.getByTestId("groups").getByRole("button").first().click();
+  await expect(inspector().locator(".picked")).toHaveText(/^Group \d+$/);
+  expect(await page.getByTestId("filmstrip").locator("canvas").count()).toBeGreaterThanOrEqual(3);
+
+  await openTab(page, "Facets");
+  const facets = Number(/(\d+) facets/.exec((await stage(page, "facets").textContent()) ?? "")?.[1]);
+  await expect(page.getByTestId("plan").locator(".plan-facet")).toHaveCount(facets);
+  expect(await page.getByTestId("plan").locator(".border-real").count()).toBeGreaterThan(facets);
+  await page.getByTestId("plan").locator(".plan-facet").first().press("Enter");
+  await expect(inspector().locator(".picked")).toHaveText("Facet 0");
+  await inspector()
+    .locator("div", { hasText: /^3D lines/ })
+    .getByRole("button")
+    .first()
+    .click();
+  await expect(inspector().locator(".picked")).toHaveText(/^3D line \d+$/);
+});
+
+test("the viewer: normals, cameras, measuring, a picture, and a view's own camera", async () => {
+  await openTab(page, "Model");
+  const viewer = page.getByTestId("viewer");
+  await page.getByRole("button", { name: "Clear" }).click();
+  await page.getByRole("button", { name: "Fit" }).click();
+  const textured = await steadyLook(page, viewer);
+  await page.getByRole("button", { name: "Normals" }).click();
+  await expect(async () => {
+    expect((await lookOf(page, viewer)).vivid).toBeGreaterThan(textured.vivid + 0.03);
+  }).toPass({ timeout: 20_000 });
+
+  await page.getByRole("button", { name: "Measure" }).click();
+  const reading = page.getByTestId("reading");
+  const box = await viewer.boundingBox();
+  for (let i = 0; i < 80 && !(await reading.isVisible()); i += 1) {
+    const x = (box?.width ?? 0) * (0.3 + 0.045 * (i % 10));
+    const y = (box?.height ?? 0) * (0.3 + 0.07 * Math.floor(i / 10));
+    await viewer.click({ position: { x, y } });
+  }
+  await expect(reading).toContainText(/Distance\d+\.\d\d m/);
+  await expect(reading).toContainText("Slope");
+  await page.getByRole("button", { name: "Measure" }).click();
+  await expect(reading).toHaveCount(0);
+
+  const [picture] = await Promise.all([
+    page.waitForEvent("download"),
+    page.getByRole("button", { name: "Picture" }).click(),
+  ]);
+  expect(picture.suggestedFilename()).toBe("model.png");
+
+  await page.getByRole("button", { name: "Textured" }).click();
+  await page.getByLabel("Look through the camera of a view").selectOption({ index: 1 });
+  const slider = page.getByLabel("Opacity of the photograph");
+  await slider.fill("0");
+  const model = await lookOf(page, page.locator(".space-canvas"));
+  await slider.fill("1");
+  await expect(page.getByTestId("photograph")).toHaveCSS("opacity", "1");
+  const photograph = await lookOf(page, page.locator(".space-canvas"));
+  expect(model.drawn).toBeGreaterThan(0.05);
+  expect(photograph).not.toEqual(model);
+  await page.getByRole("button", { name: "Fit" }).click();
+  await expect(page.getByTestId("photograph")).toHaveCount(0);
+});
+
+test("nothing serious for axe in any figure", async () => {
+  for (const name of ["Segments", "Matches", "3D lines", "Half-planes", "Groups", "Facets", "Model"]) {
+    await openTab(page, name);
+    expect(await axeFindings(page), name).toEqual([]);
+  }
+});
+
+test("only the stages behind a changed parameter run again", async () => {
+  const time = (name: string) => stage(page, name).locator(".muted.numbers").textContent();
+  const before = await time("matches");
+  await page.getByText("Grouping and facets", { exact: true }).click();
+  const field = page.locator("#param-roof-min_area_m2");
+  await field.fill("6");
+  await field.press("Enter");
+  await expect(stage(page, "halfplanes")).toHaveAttribute("data-status", "done");
+  await expect(stage(page, "facets")).toHaveAttribute("data-status", "outdated");
+  const ran: string[] = [];
+  await page.exposeFunction("ranStage", (name: string) => ran.push(name));
+  await page.evaluate(() => {
+    const watchStage = (window as unknown as { ranStage(name: string): void }).ranStage;
+    for (const card of document.querySelectorAll<HTMLElement>("[data-stage]")) {
+      new MutationObserver(() => {
+        if (card.dataset["status"] === "running") {
+          watchStage(card.dataset["stage"] ?? "");
+        }
+      }).observe(card, { attributes: true, attributeFilter: ["data-status"] });
+    }
+  });
+  await page.getByRole("button", { name: "Run all" }).click();
+  await waitForStage(page, "model");
+  expect([...new Set(ran)]).toEqual(["facets", "model"]);
+  expect(await time("matches")).toBe(before);
+  await expect(page).toHaveURL(/params=.*min_area_m2/);
+});

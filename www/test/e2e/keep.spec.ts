@@ -1,0 +1,108 @@
+/** What lasts: the project over reloads, the page without a network, the tour. */
+import { expect, test } from "@playwright/test";
+import { give, houseFiles, stage, waitForStage, watch } from "./helpers";
+
+test("what was removed comes back on request", async ({ page }) => {
+  await page.goto("/");
+  await give(page, houseFiles());
+  await expect(page.locator(".view")).toHaveCount(6);
+  await page
+    .locator(".view")
+    .nth(1)
+    .getByRole("button", { name: /^Remove/ })
+    .click();
+  await expect(page.locator(".view")).toHaveCount(5);
+  await page.getByRole("button", { name: "Undo" }).click();
+  await expect(page.locator(".view")).toHaveCount(6);
+  await page.getByRole("button", { name: "Remove all" }).click();
+  await expect(page.locator(".view")).toHaveCount(0);
+  await page.getByRole("button", { name: "Undo" }).click();
+  await expect(page.locator(".status.good")).toHaveCount(6);
+});
+
+test("a reload keeps the project until it is deleted", async ({ page }) => {
+  const { problems } = watch(page);
+  await page.goto("/");
+  await give(page, houseFiles());
+  await expect(page.locator(".status.good")).toHaveCount(6);
+  await page.locator(".view input[type=checkbox]").nth(2).uncheck();
+  await page.getByText("Texture", { exact: true }).click();
+  const field = page.locator("#param-texture-padding_px");
+  await field.fill("5");
+  await field.press("Enter");
+  await expect(page.getByTestId("kept")).toContainText(/0\.\d MB/);
+  await page.waitForTimeout(600);
+
+  await page.goto("about:blank");
+  await page.goto("/");
+  await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
+  await expect(page.locator("#param-texture-padding_px")).toHaveValue("5");
+  await page.getByRole("button", { name: "Run up to Segments" }).click();
+  await waitForStage(page, "segments");
+
+  await page.getByTestId("kept").getByRole("button", { name: "Delete" }).click();
+  await expect(page.locator(".view")).toHaveCount(0);
+  await page.waitForTimeout(600);
+  await page.reload();
+  await expect(stage(page, "segments")).toBeVisible();
+  await expect(page.locator(".view")).toHaveCount(0);
+  expect(problems).toEqual([]);
+});
+
+test("the page and the demo scene work without a network after the first load", async ({ page, context }) => {
+  await page.goto("/");
+  await page.evaluate(async () => {
+    await navigator.serviceWorker.ready;
+  });
+  await expect
+    .poll(() => page.evaluate(() => navigator.serviceWorker.controller !== null), { timeout: 20_000 })
+    .toBe(true);
+  await context.setOffline(true);
+  await page.reload();
+  await page.getByRole("button", { name: "Demo scene" }).click();
+  await waitForStage(page, "segments", 60_000);
+  await expect(page.getByRole("alert")).toHaveCount(0);
+});
+
+test("the tour leads through the views, and sees when an answer is found", async ({ page }) => {
+  const { problems } = watch(page);
+  await page.goto("/");
+  await page.getByRole("button", { name: "Tour" }).click();
+  const lesson = page.getByTestId("lesson");
+  await expect(lesson).toContainText("Step 1 of 9");
+  await waitForStage(page, "model");
+  await expect(page.getByRole("tab", { name: "Segments" })).toHaveAttribute("aria-selected", "true");
+  await expect(lesson).toContainText("Not found yet.");
+
+  await test.step("the point is dragged until the windows correlate", async () => {
+    await lesson.getByRole("button", { name: "Next" }).click();
+    await expect(lesson).toContainText("Step 2 of 9");
+    await lesson.getByRole("button", { name: "Next" }).click();
+    await expect(lesson).toContainText("Step 3 of 9");
+    const along = page.getByTestId("along");
+    await expect(along).toBeVisible();
+    for (let at = 0.05; at < 1 && !(await lesson.getByText("✓").isVisible()); at += 0.05) {
+      await along.fill(at.toFixed(2));
+      await page.waitForTimeout(80);
+    }
+    await expect(lesson.getByText("✓")).toBeVisible();
+  });
+
+  await test.step("theta is turned until it is right", async () => {
+    await lesson.getByRole("button", { name: "Next" }).click();
+    await lesson.getByRole("button", { name: "Next" }).click();
+    await expect(lesson).toContainText("Step 5 of 9");
+    const slider = page.getByLabel(/Angle of the half-plane/);
+    await expect(slider).toBeVisible();
+    await expect(page.getByTestId("theta")).not.toHaveText(/^0\.0/);
+    await expect(lesson).toContainText("Not found yet.");
+    for (let theta = -60; theta <= 60 && !(await lesson.getByText("✓").isVisible()); theta += 2) {
+      await slider.fill(String(theta));
+    }
+    await expect(lesson.getByText("✓")).toBeVisible();
+  });
+
+  await lesson.getByRole("button", { name: "End tour" }).click();
+  await expect(lesson).toHaveCount(0);
+  expect(problems).toEqual([]);
+});

@@ -1,0 +1,89 @@
+/** The other method (W96) and its four stages. */
+import { expect, test } from "@playwright/test";
+import { lookOf, openTab, stage, waitForStage, watch } from "./helpers";
+
+test("regions, directions, clusters and planes of the demo scene", async ({ page }) => {
+  const { problems } = watch(page);
+  await page.goto("/");
+  await page.getByRole("button", { name: "Rectangles", exact: true }).click();
+  await expect(page.getByRole("tab", { name: "Clusters" })).toBeVisible();
+  await expect(page.getByRole("tab", { name: "Half-planes" })).toHaveCount(0);
+  await expect(stage(page, "regions")).toBeVisible();
+  await expect(stage(page, "segments")).toHaveCount(0);
+  await page.getByRole("button", { name: "Demo scene" }).click();
+  await waitForStage(page, "model");
+  const inspector = page.getByTestId("inspector");
+  const image = page.locator(".image-view canvas").first();
+
+  await test.step("figure 3: regions over the image", async () => {
+    await openTab(page, "Images");
+    const plain = await lookOf(page, image);
+    await openTab(page, "Regions");
+    expect(await lookOf(page, image)).not.toEqual(plain);
+    const box = await image.boundingBox();
+    await image.click({ position: { x: (box?.width ?? 0) / 2, y: (box?.height ?? 0) / 2 } });
+    await expect(inspector.getByText(/^Region \d+ of /)).toBeVisible();
+    await expect(inspector.getByText(/^[\d,]+ px$/).first()).toBeVisible();
+  });
+
+  await test.step("figures 4 and 5: two peaks at right angles", async () => {
+    await openTab(page, "Directions");
+    await expect(page.getByTestId("histogram").locator(".peak-name")).toHaveCount(2);
+    const names = await page.getByTestId("histogram").locator(".peak-name").allTextContents();
+    const [first, second] = names.map((name) => Number.parseFloat(name)) as [number, number];
+    expect(Math.abs(Math.abs(first - second) - 90)).toBeLessThan(0.11);
+  });
+
+  await test.step("figures 6 to 9: a cluster's line is shown in every view", async () => {
+    await openTab(page, "Clusters");
+    await page.getByRole("group", { name: "View" }).getByRole("button", { name: "All" }).click();
+    const before = await lookOf(page, image);
+    await page.getByTestId("cluster-plane").locator(".cluster").first().click({ force: true });
+    await expect(inspector.locator(".picked")).toHaveText(/^3D line \d+$/);
+    await expect(page.locator(".chosen-cluster")).toHaveCount(1);
+    await expect(async () => {
+      expect(await lookOf(page, image)).not.toEqual(before);
+    }).toPass({ timeout: 10_000 });
+  });
+
+  await test.step("figures 10 to 12: the window of a pair of lines, and why pairs are refused", async () => {
+    await openTab(page, "Rectangles");
+    await expect(page.getByTestId("plane-window").locator(".end").first()).toBeAttached();
+    const pairs = page.getByLabel("Pair of lines");
+    const options = await pairs.getByRole("option").allTextContents();
+    expect(options.some((text) => text.endsWith("selected"))).toBe(true);
+    const refused = options.findIndex((text) => text.includes("near") || text.includes("steep"));
+    await pairs.selectOption({ index: refused });
+    await expect(inspector.getByText("Refused")).toBeVisible();
+  });
+
+  await test.step("its parameters stand in the place of the other method's", async () => {
+    await expect(page.getByText("Regions (ORIS)", { exact: true })).toBeVisible();
+    await expect(page.getByText("Half-plane sweep", { exact: true })).toHaveCount(0);
+    await page.getByText("Planes", { exact: true }).click();
+    const field = page.locator("#param-objectspace-planes-min_measure_m2");
+    await field.fill("9");
+    await field.press("Enter");
+    await expect(stage(page, "clusters")).toHaveAttribute("data-status", "done");
+    await expect(stage(page, "rectangles")).toHaveAttribute("data-status", "outdated");
+  });
+
+  await test.step("the other method begins anew on the same files, and is compared with this one", async () => {
+    const facets = /(\d+) facets/.exec((await stage(page, "rectangles").textContent()) ?? "")?.[1] ?? "";
+    await page.getByRole("button", { name: "Compare", exact: true }).click();
+    await page.getByRole("button", { name: "Lines", exact: true }).click();
+    await expect(stage(page, "segments")).toHaveAttribute("data-status", "waiting");
+    await page.getByRole("button", { name: "Run up to Facets" }).click();
+    await waitForStage(page, "facets");
+    const others = /(\d+) facets/.exec((await stage(page, "facets").textContent()) ?? "")?.[1] ?? "";
+    const row = page.getByTestId("comparison").getByRole("row", { name: /^Facets/ });
+    await expect(row.getByRole("cell")).toHaveText([facets, others]);
+    const viewer = page.getByTestId("viewer");
+    const both = await lookOf(page, viewer);
+    await page.getByRole("button", { name: "Drop kept" }).click();
+    await expect(async () => {
+      expect((await lookOf(page, viewer)).drawn).toBeLessThan(both.drawn);
+    }).toPass({ timeout: 10_000 });
+  });
+  expect(problems).toEqual([]);
+});
