@@ -233,7 +233,7 @@ impl Partition {
                 taken.contains(&(a, b))
                     || edges[..i]
                         .iter()
-                        .any(|&other| cross(positions, (a, b), other))
+                        .any(|&other| other == (a, b) || cross(positions, (a, b), other))
                     || tree
                         .locate_in_envelope_intersecting(&envelope)
                         .any(|other| cross(positions, (a, b), other.data))

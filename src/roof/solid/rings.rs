@@ -4,7 +4,7 @@
 //! clockwise. Where a region touches itself at a point, rings turn there so as to keep to the same
 //! stretch of outside: each hole and the outer ring then pass the point once and all rings stay simple.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use nalgebra::Point2;
 
@@ -17,10 +17,15 @@ pub type Region = Vec<Vec<u32>>;
 /// The regions to the left of `edges`. Edges that occur in both directions cancel; edges that
 /// close no ring, and holes outside every region, are left out.
 pub fn regions_from_edges(edges: &[(u32, u32)], positions: &[Point2<f64>]) -> Vec<Region> {
-    let all: BTreeSet<(u32, u32)> = edges.iter().copied().collect();
+    let mut net: BTreeMap<(u32, u32), i32> = BTreeMap::new();
+    for &(a, b) in edges {
+        *net.entry((a, b)).or_default() += 1;
+        *net.entry((b, a)).or_default() -= 1;
+    }
     let mut open: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-    for &(a, b) in all.iter().filter(|&&(a, b)| !all.contains(&(b, a))) {
-        open.entry(a).or_default().push(b);
+    // An edge that is run through twice closes two rings; as one it would leave both open.
+    for ((a, b), times) in net {
+        open.entry(a).or_default().extend((0..times).map(|_| b));
     }
     let mut rings = Vec::new();
     while let Some((&start, _)) = open.iter().find(|(_, ends)| !ends.is_empty()) {
@@ -69,7 +74,8 @@ fn trace_ring(
         if at == start && next == first {
             return Some(ring);
         }
-        open.get_mut(&at)?.retain(|&end| end != next);
+        let ends = open.get_mut(&at)?;
+        ends.remove(ends.iter().position(|&end| end == next)?);
         ring.push(at);
         (from, at) = (at, next);
     }
