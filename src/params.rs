@@ -468,10 +468,11 @@ pub struct PlaneParams {
     /// Least correlation of the views on a plane. Assumption: unrelated textures reach 0.45, since only the better half of all pairs of
     /// views counts.
     pub least_correlation: f64,
-    /// Planes that fall behind those beside them by more are refused whatever their sides say. Assumption: the error of the
-    /// comparison on weak texture.
+    /// Planes that fall behind those beside them by more are refused whatever their sides say. Assumption: twice the error of
+    /// the comparison on weak texture.
     pub min_rise: f64,
-    /// By how much the views agree better on a plane than beside it where an area speaks neither for nor against. Assumption.
+    /// By how much the views agree better on a plane than beside it where an area speaks neither for nor against. Assumption: the
+    /// error of the comparison on weak texture, so that the sides decide there.
     pub least_rise: f64,
     /// A plane is compared with those above and below it at a distance that moves the images against each other by this, px.
     /// Assumption: more than the error of a true plane, less than the windows.
@@ -504,8 +505,8 @@ impl Default for PlaneParams {
             min_support: 0.25,
             least_support: 0.3,
             least_correlation: 0.5,
-            min_rise: -0.05,
-            least_rise: 0.04,
+            min_rise: -0.1,
+            least_rise: -0.05,
             beside_px: 3.0,
             side_weight_m: 0.5,
             plane_cost_m2: 1.0,

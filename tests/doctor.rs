@@ -306,10 +306,9 @@ fn a_shifted_view_is_measured_and_shifted_back() {
                 } else {
                     [0.0; 2]
                 };
-                for axis in 0..2 {
-                    let error = shift.shift_px[axis] - expected[axis];
+                for (found, expected) in shift.shift_px.iter().zip(expected) {
                     assert!(
-                        error.abs() < 0.1,
+                        (found - expected).abs() < 0.1,
                         "view {i} of {view}, {planted:?}: {shift:?}"
                     );
                 }

@@ -82,7 +82,7 @@ fn the_files_have_the_native_bytes() {
 /// What the live figures ask, about the line of an accepted half-plane.
 fn the_figures_answer(session: &mut Session, half_plane: &JsValue) {
     let line = member(half_plane, "line").as_f64().unwrap();
-    let left = member(half_plane, "side") == JsValue::from("left");
+    let left = member(half_plane, "side").as_string().as_deref() == Some("left");
     let records = Array::from(&session.line_records().unwrap());
     assert_eq!(records.length() * 6, session.lines().unwrap().length());
     let supports = Array::from(&member(&records.get(line as u32), "supports"));

@@ -421,7 +421,9 @@ mod tests {
     use super::*;
 
     /// Per edge: the cost when nothing supports it, and of pairs of labels that something supports.
-    struct Table(Vec<(f64, Vec<(u32, u32, f64)>)>);
+    struct Table(Vec<Row>);
+
+    type Row = (f64, Vec<(u32, u32, f64)>);
 
     impl Borders for Table {
         fn cost(&self, edge: usize, left: u32, right: u32) -> f64 {
@@ -438,10 +440,7 @@ mod tests {
     }
 
     /// A row of cells, each beside the next.
-    fn row(
-        unary: Vec<Vec<(u32, f64)>>,
-        borders: Vec<(f64, Vec<(u32, u32, f64)>)>,
-    ) -> Energy<Table> {
+    fn row(unary: Vec<Vec<(u32, f64)>>, borders: Vec<Row>) -> Energy<Table> {
         Energy {
             edges: (1..unary.len()).map(|i| [i - 1, i]).collect(),
             unary,

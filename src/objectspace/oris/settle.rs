@@ -43,6 +43,9 @@ pub(super) fn settle(p: &mut Partition, code: &CodeLength) -> usize {
     moves
 }
 
+/// What a step gains, where it leads, and the pixels that each region wins by it.
+type Step = (f64, Lattice, Vec<(u32, Moments)>);
+
 /// The step with the largest gain, and the pixels that each region wins by it; `None` where none gains.
 fn best_step(
     p: &Partition,
@@ -51,7 +54,7 @@ fn best_step(
     node: u32,
 ) -> Option<(Lattice, Vec<(u32, Moments)>)> {
     let at = p.nodes[node as usize].at;
-    let mut steps: Vec<(f64, Lattice, Vec<(u32, Moments)>)> = Vec::new();
+    let mut steps: Vec<Step> = Vec::new();
     for (dx, dy) in offsets() {
         let to = Lattice {
             x: at.x + dx,
