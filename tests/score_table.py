@@ -34,23 +34,27 @@ def main():
     if args.only:
         names = [name for name in names if name in args.only.split(',')]
     runs = [run(args.binary.resolve(), args.scenes / name) for name in names]
+    rectangle_runs = [run(args.binary.resolve(), args.scenes / name, 'rectangles') for name in names
+                      if (args.scenes / name / 'truth').is_dir()]
     tables = {
         'rendered': rendered_table([(r, score(scorer, r)) for r in runs if (r['scene'] / 'truth').is_dir()]),
+        'rectangles': rectangle_table([(r, faces(scorer, r)) for r in rectangle_runs]),
         'real': real_table([(r, check(scorer, r)) for r in runs if (r['scene'] / 'check').is_dir()]),
     }
     for table in tables.values():
         print(table, end='\n\n')
     if not args.only:
         rewrite(tables)
-    return 1 if any(r['failed'] for r in runs) else 0
+    return 1 if any(r['failed'] for r in runs + rectangle_runs) else 0
 
 
-def run(binary, scene):
-    """Runs one scene; the outputs stand in target/score/<scene>."""
-    out = OUT / scene.name
-    print(f'{scene.name} ...', file=sys.stderr, flush=True)
+def run(binary, scene, method='lines'):
+    """Runs one scene; the outputs stand in target/score/<scene>, or target/score/<scene>-rectangles."""
+    out = OUT / (scene.name if method == 'lines' else f'{scene.name}-{method}')
+    print(f'{out.name} ...', file=sys.stderr, flush=True)
     start = time.monotonic()
-    done = subprocess.run([binary, 'reconstruct', scene, '--out', out], capture_output=True, text=True)
+    done = subprocess.run([binary, 'reconstruct', scene, '--out', out, '--method', method],
+                          capture_output=True, text=True)
     if done.returncode:
         print(f'{scene.name}: exit code {done.returncode}: {done.stderr.strip()}', file=sys.stderr)
     return {'scene': scene, 'out': out, 'seconds': time.monotonic() - start, 'failed': done.returncode != 0}
@@ -77,6 +81,10 @@ def score(scorer, run):
     return scores and segments and {**scores, 'segments': segments}
 
 
+def faces(scorer, run):
+    return None if run['failed'] else tool(scorer, 'score', run, run['out'] / 'model.city.json')
+
+
 def check(scorer, run):
     return None if run['failed'] else tool(scorer, 'check_real', run, run['out'] / 'model.city.json')
 
@@ -96,6 +104,18 @@ def rendered_row(s):
             percent(lines['edge_length_covered']), f'{large["found"]} of {large["reference"]}', percent(large['completeness']),
             percent(large['correctness']), percent(s['area']['covered_within_0_2m_fraction']), metres(geometry['rms_outline_m']),
             metres(geometry['rms_height_m'])]
+
+
+def rectangle_table(rows):
+    header = ['scene', 'time [s]', 'facets > 10 m²', 'complete', 'correct', 'outline RMS [m]', 'height RMS [m]']
+    return markdown(header, [[r['scene'].name, f'{r["seconds"]:.1f}'] + (rectangle_row(s) if s else ['failed'] + ['-'] * 4)
+                             for r, s in rows])
+
+
+def rectangle_row(s):
+    large, geometry = s['faces']['gt_10m2'], s['faces']['geometry']
+    return [f'{large["found"]} of {large["reference"]}', percent(large['completeness']), percent(large['correctness']),
+            metres(geometry['rms_outline_m']), metres(geometry['rms_height_m'])]
 
 
 def real_table(rows):
