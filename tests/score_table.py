@@ -36,7 +36,10 @@ def main():
     runs = [run(args.binary.resolve(), args.scenes / name) for name in names]
     rectangle_runs = [run(args.binary.resolve(), args.scenes / name, 'rectangles') for name in names
                       if (args.scenes / name / 'truth').is_dir()]
+    three_views = [run(args.binary.resolve(), r['scene'], views=first_views(r, 3)) for r in runs
+                   if (r['scene'] / 'truth').is_dir() and not r['failed'] and len(report(r)['views']) >= 6]
     tables = {
+        'lines': line_table([(r, lines(scorer, r)) for r in runs + three_views]),
         'rendered': rendered_table([(r, score(scorer, r)) for r in runs if (r['scene'] / 'truth').is_dir()]),
         'rectangles': rectangle_table([(r, faces(scorer, r)) for r in rectangle_runs]),
         'real': real_table([(r, check(scorer, r)) for r in runs if (r['scene'] / 'check').is_dir()]),
@@ -45,16 +48,16 @@ def main():
         print(table, end='\n\n')
     if not args.only:
         rewrite(tables)
-    return 1 if any(r['failed'] for r in runs + rectangle_runs) else 0
+    return 1 if any(r['failed'] for r in runs + rectangle_runs + three_views) else 0
 
 
-def run(binary, scene, method='lines'):
-    """Runs one scene; the outputs stand in target/score/<scene>, or target/score/<scene>-rectangles."""
-    out = OUT / (scene.name if method == 'lines' else f'{scene.name}-{method}')
+def run(binary, scene, method='lines', views=()):
+    """Runs one scene; the outputs stand in target/score/<scene>, or beside it with the method or the number of views."""
+    out = OUT / (scene.name + (f'-{method}' if method != 'lines' else '') + (f'-{len(views)}-views' if views else ''))
     print(f'{out.name} ...', file=sys.stderr, flush=True)
     start = time.monotonic()
-    done = subprocess.run([binary, 'reconstruct', scene, '--out', out, '--method', method],
-                          capture_output=True, text=True)
+    done = subprocess.run([binary, 'reconstruct', scene, '--out', out, '--method', method]
+                          + (['--views', ','.join(views)] if views else []), capture_output=True, text=True)
     if done.returncode:
         print(f'{scene.name}: exit code {done.returncode}: {done.stderr.strip()}', file=sys.stderr)
     return {'scene': scene, 'out': out, 'seconds': time.monotonic() - start, 'failed': done.returncode != 0}
@@ -81,6 +84,27 @@ def score(scorer, run):
     return scores and segments and {**scores, 'segments': segments}
 
 
+def report(run):
+    return json.loads((run['out'] / 'report.json').read_text())
+
+
+def first_views(run, count):
+    return [view['view'] for view in report(run)['views']][:count]
+
+
+def lines(scorer, run):
+    """What became of the segments (B99 3.3 and 3.4), with the scores of the lines where there is truth."""
+    if run['failed']:
+        return None
+    of_report, out = report(run), run['out']
+    counts = {name: count for stage in of_report['stages'][:3] for name, count in stage['counts'].items()}
+    truth = (run['scene'] / 'truth').is_dir()
+    scored = truth and tool(scorer, 'score', run, out / 'model.city.json', '--lines', out / 'lines.json')
+    found = json.loads((out / 'lines.json').read_text())['lines']
+    length = sum(sum((a - b) ** 2 for a, b in zip(line['p0'], line['p1'])) ** 0.5 for line in found)
+    return {**counts, 'length': length, 'scores': scored['lines'] if scored else None}
+
+
 def faces(scorer, run):
     return None if run['failed'] else tool(scorer, 'score', run, run['out'] / 'model.city.json')
 
@@ -104,6 +128,18 @@ def rendered_row(s):
             percent(lines['edge_length_covered']), f'{large["found"]} of {large["reference"]}', percent(large['completeness']),
             percent(large['correctness']), percent(s['area']['covered_within_0_2m_fraction']), metres(geometry['rms_outline_m']),
             metres(geometry['rms_height_m'])]
+
+
+def line_table(rows):
+    header = ['scene', 'views', 'segments', 'lines', 'wrong', 'supports a line', 'merged', 'grown', 'length [m]', 'roof edges covered']
+    return markdown(header, [[r['scene'].name] + (line_row(c) if c else ['failed'] + ['-'] * 8) for r, c in rows])
+
+
+def line_row(c):
+    scores, supports = c['scores'], c['supports']
+    return [str(c['views']), str(c['segments']), str(c['lines']), f'{100 * scores["wrong"]:.1f} %' if scores else '-',
+            f'{supports / c["lines"]:.1f}', percent(c['merged supports'] / supports), percent(c['grown supports'] / supports),
+            f'{c["length"]:.0f}', percent(scores['edge_length_covered']) if scores else '-']
 
 
 def rectangle_table(rows):

@@ -184,6 +184,7 @@ mod tests {
                     .dot(&(beyond - line.p0))
                     > 0.0;
                 assert_eq!(left, side == Side::Left);
+                assert!((frame.away(theta).z > 0.0) == (theta > 0.0) || theta == 0.0);
             }
         }
     }

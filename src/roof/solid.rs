@@ -409,6 +409,23 @@ mod tests {
     }
 
     #[test]
+    fn an_outline_that_runs_along_itself_keeps_its_area() {
+        // Around a square and then, along the same first side, around a triangle inside it.
+        let (a, b) = ((0.0, 0.0), (4.0, 0.0));
+        let twice = facet(
+            &[&[a, b, (4.0, 4.0), (0.0, 4.0), a, b, (2.0, 2.0)]],
+            5.0,
+            0.0,
+            0.0,
+        );
+        let beside = rectangle(4.0, 0.0, 8.0, 4.0, 5.0, 0.0, 0.0);
+        let (model, trace) = close_buildings(&[twice, beside], |_| 0.0);
+        assert_eq!(trace.rejected, []);
+        assert_eq!(check_invariants(&model), []);
+        assert!((model.buildings[0].solid.volume() - 5.0 * 32.0).abs() < 1e-6);
+    }
+
+    #[test]
     fn hopeless_facets_are_refused_with_a_reason() {
         let mut nan = rectangle(0.0, 0.0, 4.0, 4.0, 5.0, 0.0, 0.0);
         nan.outer[1].x = f64::NAN;
