@@ -1,5 +1,5 @@
-// Runs a scene through the wasm Session in Node and through the native command line, and compares every
-// file byte for byte (report.json without its part `seconds`).
+// Runs a scene by both methods through the wasm Session in Node and through the native command line, and compares
+// every file byte for byte (report.json without its part `seconds`).
 //
 //   node tests/identical.mjs BINARY [SCENE]     the scene is the demo's by default
 //
@@ -18,21 +18,28 @@ if (!binary) {
     process.exit(2);
 }
 
-const native = runNative();
-const wasm = await runWasm();
-const names = [...new Set([...native.keys(), ...wasm.keys()])].sort();
-if (!names.includes("model.glb")) throw new Error("no model was written");
-const differing = names.filter((name) => !same(name));
-for (const name of names) {
-    const verdict = differing.includes(name) ? "DIFFERS" : "identical";
-    console.log(`${verdict.padEnd(10)} ${name} (${native.get(name)?.length ?? "missing"} bytes)`);
-}
+const differing = [];
+for (const method of ["lines", "rectangles"]) differing.push(...(await compare(method)));
 process.exit(differing.length === 0 ? 0 : 1);
 
-function runNative() {
+// The names of the files that differ.
+async function compare(method) {
+    const native = runNative(method);
+    const wasm = await runWasm(method);
+    const names = [...new Set([...native.keys(), ...wasm.keys()])].sort();
+    if (!names.includes("model.glb")) throw new Error("no model was written");
+    const differing = names.filter((name) => !same(name, native.get(name), wasm.get(name)));
+    for (const name of names) {
+        const verdict = differing.includes(name) ? "DIFFERS" : "identical";
+        console.log(`${method}: ${verdict.padEnd(10)} ${name} (${native.get(name)?.length ?? "missing"} bytes)`);
+    }
+    return differing;
+}
+
+function runNative(method) {
     const out = mkdtempSync(join(tmpdir(), "ridgeline-"));
     try {
-        const args = ["reconstruct", scene, "--out", out];
+        const args = ["reconstruct", scene, "--out", out, "--method", method];
         const { status, error } = spawnSync(binary, args, { stdio: ["ignore", "ignore", "inherit"] });
         if (status !== 0) throw error ?? new Error(`${binary} ended with exit code ${status}`);
         return new Map(readdirSync(out).map((name) => [name, readFileSync(join(out, name))]));
@@ -41,7 +48,7 @@ function runNative() {
     }
 }
 
-async function runWasm() {
+async function runWasm(method) {
     const pkg = join(root, "www/src/pkg");
     const { initSync, Session } = await import(pathToFileURL(join(pkg, "ridgeline.js")).href);
     initSync({ module: readFileSync(join(pkg, "ridgeline_bg.wasm")) });
@@ -49,8 +56,9 @@ async function runWasm() {
     for (const path of filesBelow(scene)) {
         session.addFile(relative(scene, path).split(sep).join("/"), readFileSync(path));
     }
+    session.setParams({ method });
     session.load({});
-    for (const stage of Session.stages()) {
+    for (const stage of session.chosenStages()) {
         const start = performance.now();
         const { counts } = session.runStage(stage, () => {});
         const seconds = ((performance.now() - start) / 1000).toFixed(2);
@@ -61,14 +69,13 @@ async function runWasm() {
 
 // The files that the command line would read: it leaves out other kinds (src/cli/files.rs).
 function filesBelow(folder) {
-    const wanted = /\.(jpe?g|png|tiff?|txt|p|json|xml|out|nvm|csv|ori|prj|camera|bin|xyz)$/i;
+    const wanted = /\.(jpe?g|png|tiff?|txt|p|json|xml|out|nvm|csv|ori|prj|geojson|camera|bin|xyz)$/i;
     return readdirSync(folder, { recursive: true, withFileTypes: true })
         .filter((entry) => entry.isFile() && wanted.test(entry.name))
         .map((entry) => join(entry.parentPath ?? entry.path, entry.name));
 }
 
-function same(name) {
-    const [a, b] = [native.get(name), wasm.get(name)];
+function same(name, a, b) {
     if (a === undefined || b === undefined) return false;
     if (name !== "report.json") return a.equals(b);
     const content = (bytes) => ({ ...JSON.parse(bytes.toString()), seconds: undefined });
