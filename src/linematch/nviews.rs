@@ -24,8 +24,10 @@ const ROUNDS: usize = 2;
 /// makes it evidence, correlation without a segment then adds to it.
 const MIN_MEASURED: usize = 3;
 /// Least number of views with an edge and views with a detected segment, together: three of three, or two with
-/// four where the edge was found again.
+/// four where the edge was found again. Where there are three views in all, two with segments do: fewer chances to be
+/// wrong, and no fourth view to make up for a segment that was missed.
 const MIN_EVIDENCE: usize = 6;
+const MIN_EVIDENCE_OF_THREE: usize = 5;
 /// How far beside a line, in gates, a segment belongs to it and starts no other line.
 const OWN: f64 = 1.5;
 /// A stretch reaches past the detected segments by this much to count as grown, px: more than a piece of
@@ -90,7 +92,8 @@ pub fn complete_line(
     let (mut fit, mut edges) = context.measure_again(fit, &segments)?;
     let mut segments = context.adopt(&fit.line, &segments, OWN, &taken);
     loop {
-        if edges.len() < MIN_MEASURED || edges.len() + views_of(&segments) < MIN_EVIDENCE {
+        let evidence = edges.len() + views_of(&segments);
+        if edges.len() < MIN_MEASURED || evidence < context.least_evidence() {
             return Err(Rejection::TooFewViews);
         }
         let profile = context.profile(&fit.line, &segments, &edges)?;
@@ -445,6 +448,14 @@ impl Context<'_> {
             kind,
             edge: view.edge.clone(),
         })
+    }
+
+    fn least_evidence(&self) -> usize {
+        if self.scene.views.len() > MIN_MEASURED {
+            MIN_EVIDENCE
+        } else {
+            MIN_EVIDENCE_OF_THREE
+        }
     }
 
     /// Number of views that ought to support the line: `min_views` where six or more see it.
