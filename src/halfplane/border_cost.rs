@@ -141,3 +141,41 @@ const ON_LINE: f64 = 0.15;
 const MEETING: f64 = 0.25;
 /// A line lies in a plane's border when their heights differ by less, metres.
 pub const LINE_HEIGHT: f64 = 0.35;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point3;
+
+    /// A border of 2 m along y at x = 0, the planes with the given normals through a point of it, and at `lift` above it.
+    fn cost(normals: [[f64; 3]; 2], lift: f64, line: bool) -> f64 {
+        let ends = [Point2::new(0.0, 0.0), Point2::new(0.0, 2.0)];
+        let planes = [0.0, lift].into_iter().zip(normals).map(|(z, n)| {
+            Plane::from_point_normal(&Point3::new(0.0, 0.0, 5.0 + z), &Vector3::from(n)).unwrap()
+        });
+        let planes: Vec<Plane> = planes.collect();
+        let heights = if line { vec![5.0] } else { Vec::new() };
+        let beside = |l: u32| vec![Beside::new(l, &planes[l as usize], &ends, &heights)];
+        let costs = BorderCosts {
+            borders: vec![Border {
+                full: 2.0,
+                left: beside(0),
+                right: beside(1),
+            }],
+            normals: planes.iter().map(|p| p.normal).collect(),
+        };
+        costs.cost(0, 0, 1)
+    }
+
+    #[test]
+    fn borders_where_planes_meet_and_on_lines_are_cheap() {
+        let gable = [[-1.0, 0.0, 1.0], [1.0, 0.0, 1.0]];
+        let flat = [[0.0, 0.0, 1.0]; 2];
+        assert_eq!(cost(gable, 0.0, true), 2.0 * CREASE_ON_LINE);
+        assert_eq!(cost(gable, 0.0, false), 2.0 * CREASE);
+        assert_eq!(cost(flat, 3.0, true), 2.0 * ON_LINE);
+        assert_eq!(cost(flat, 3.0, false), 2.0);
+        // One plane found twice: dearer than no support at all.
+        assert_eq!(cost(flat, 0.1, true), 2.0 * DUPLICATE);
+    }
+}
