@@ -6,7 +6,7 @@ use crate::camera::Camera;
 use crate::doctor::ViewShift;
 use crate::ids::ViewId;
 use crate::orientation::Anchor;
-use crate::raster::Gray;
+use crate::raster::{Gray, noise_of};
 
 /// One photograph with its orientation.
 #[derive(Clone, Debug)]
@@ -19,6 +19,22 @@ pub struct View {
     pub gray: Gray,
     /// Colours for textures, of the camera's size.
     pub rgb: image::RgbImage,
+    /// Standard deviation of the noise of one pixel of `gray`.
+    pub noise: f64,
+}
+
+impl View {
+    /// A view, whose noise is measured.
+    pub fn new(name: String, camera: Camera, gray: Gray, rgb: image::RgbImage) -> Self {
+        let noise = noise_of(&gray);
+        Self {
+            name,
+            camera,
+            gray,
+            rgb,
+            noise,
+        }
+    }
 }
 
 /// What the files and the images say about the world and about the orientation, beyond the cameras.
@@ -88,12 +104,7 @@ impl Scene {
                 height: gray.height as u32,
                 ..v.camera.clone()
             };
-            View {
-                name: v.name.clone(),
-                camera,
-                gray,
-                rgb: image::RgbImage::new(0, 0),
-            }
+            View::new(v.name.clone(), camera, gray, image::RgbImage::new(0, 0))
         });
         Scene {
             views: views.collect(),

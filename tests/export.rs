@@ -140,12 +140,7 @@ fn map_view(name: &str, x: f64, y: f64) -> View {
         let grey = |v: f64| (100.0 + 5.0 * v).round().clamp(0.0, 255.0) as u8;
         image::Rgb([grey(p.x), grey(p.y), 40])
     });
-    View {
-        name: name.into(),
-        camera,
-        gray: Gray::from_rgb(&rgb),
-        rgb,
-    }
+    View::new(name.into(), camera, Gray::from_rgb(&rgb), rgb)
 }
 
 fn scene() -> Scene {

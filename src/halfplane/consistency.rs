@@ -9,7 +9,8 @@
 //!   something stands in front do not condemn a plane.
 //! * Weak texture: where the grey values vary no more than the noise, correlation says nothing for or
 //!   against; each position carries the weight `s^2 / (s^2 + n^2)` with s the standard deviation
-//!   within the window and n that of the noise.
+//!   within the window and n that of the noise. It is also about what the views of a true plane correlate
+//!   by more than chance, so that as little is asked of them ([`least_correlation`]).
 
 use nalgebra::Point3;
 use wide::f32x8;
@@ -51,8 +52,19 @@ impl ConsistencyMap {
     }
 }
 
-/// Standard deviation of the image noise as grey value. Assumption: 2.5 of 255, sensor and JPEG together.
-const NOISE: f32 = 2.5 / 255.0;
+/// What windows that hardly have anything in common correlate by, in the better half of the pairs. Measured: 0.2 to 0.4 on
+/// planes a metre beside the true ones.
+const CHANCE: f64 = 0.3;
+
+/// Correlation at which a plane is as good as no plane, for a texture `weight`: `textured` where the texture
+/// is strong, chance where there is none.
+pub fn least_correlation(weight: f64, textured: f64) -> f64 {
+    CHANCE + (textured - CHANCE) * weight
+}
+
+/// What keeps two views of one surface from being alike, against the noise of a pixel: besides the noise, the sampling and
+/// the shading. Measured on true planes.
+const UNLIKE: f64 = 1.25;
 /// Half the window side in cells: 11 x 11, a little smaller than the paper's 15 x 15, since its
 /// windows lie along lines and these must not reach far over the borders of small facets.
 const HALF_WINDOW: usize = 5;
@@ -64,7 +76,7 @@ pub fn consistency_map(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> Consist
     let views = views_of_plane(scene, plane, grid);
     let photo = |&v: &ViewId| orthophoto(&scene.view(v).gray, scene.camera(v), plane, grid);
     let windows = views.iter().map(|v| ViewWindows::new(photo(v), grid));
-    combine(&windows.collect::<Vec<_>>(), grid)
+    combine(&windows.collect::<Vec<_>>(), unlike(scene, &views), grid)
 }
 
 /// The same where something known stands in front of the plane: `hidden` says whether a view sees a point of it.
@@ -86,7 +98,7 @@ pub fn consistency_map_behind(
         photo
     };
     let windows = views.iter().map(|v| ViewWindows::new(photo(v), grid));
-    combine(&windows.collect::<Vec<_>>(), grid)
+    combine(&windows.collect::<Vec<_>>(), unlike(scene, &views), grid)
 }
 
 /// Positions along each side of the window at which views are asked whether they see it.
@@ -190,7 +202,14 @@ impl ViewWindows {
     }
 }
 
-fn combine(windows: &[ViewWindows], grid: &PlanGrid) -> ConsistencyMap {
+/// Variance by which the grey values of the views differ at random.
+fn unlike(scene: &Scene, views: &[ViewId]) -> f32 {
+    let sum: f64 = views.iter().map(|v| scene.view(*v).noise).sum();
+    let noise = UNLIKE * sum / views.len().max(1) as f64;
+    (noise * noise) as f32
+}
+
+fn combine(windows: &[ViewWindows], unlike: f32, grid: &PlanGrid) -> ConsistencyMap {
     let cells = grid.width * grid.height;
     let full = ((2 * HALF_WINDOW + 1) * (2 * HALF_WINDOW + 1)) as f32;
     let mut pairs: Vec<Vec<f32>> = Vec::new();
@@ -224,16 +243,16 @@ fn combine(windows: &[ViewWindows], grid: &PlanGrid) -> ConsistencyMap {
             let (sum, seen) = (windows.iter().filter(|w| w.valid[k]))
                 .fold((0.0f32, 0.0f32), |(s, n), w| (s + w.variance[k], n + 1.0));
             map.correlation[k] = (mean * 127.0).round().clamp(-127.0, 127.0) as i8;
-            map.weight[k] = weight_of(sum / seen);
-            map.common_weight[k] = weight_of(median_variance(windows, k));
+            map.weight[k] = weight_of(sum / seen, unlike);
+            map.common_weight[k] = weight_of(median_variance(windows, k), unlike);
         }
     }
     map
 }
 
 /// Weight of a window with this variance, in steps; 0 is kept for what is not seen at all.
-fn weight_of(variance: f32) -> u8 {
-    let weight = variance / (variance + NOISE * NOISE);
+fn weight_of(variance: f32, unlike: f32) -> u8 {
+    let weight = variance / (variance + unlike);
     (weight * 255.0).round().max(1.0) as u8
 }
 
@@ -368,6 +387,13 @@ impl RowSum {
 mod tests {
     use super::*;
     use nalgebra::Point2;
+
+    #[test]
+    fn less_is_asked_of_weak_texture() {
+        assert_eq!(least_correlation(1.0, 0.45), 0.45);
+        assert_eq!(least_correlation(0.0, 0.45), CHANCE);
+        assert!(least_correlation(0.3, 0.45) < least_correlation(0.6, 0.45));
+    }
 
     #[test]
     fn box_sum_agrees_with_direct_sums() {

@@ -1,11 +1,11 @@
 //! What images and lines say for each plane over each cell: the terms of the labelling energy.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::ThetaFrame;
 use super::arrangement::Arrangement;
 use super::border_cost::BorderCosts;
-use super::consistency::ConsistencyMap;
+use super::consistency::{ConsistencyMap, least_correlation};
 use super::grouping::{GroupingInput, PlaneGroup};
 use super::hypothesis::Hypothesis;
 use super::labelling::Energy;
@@ -23,6 +23,8 @@ pub struct CellEvidence {
     pub weight: f64,
     /// Sum of weight x correlation over the area.
     pub correlation: f64,
+    /// The same for the correlation at which the plane is as good as none.
+    pub least: f64,
     /// Metres of line on the cell's border whose half-plane lies over the cell.
     pub half_plane_m: f64,
 }
@@ -49,19 +51,25 @@ impl Evidence {
         let raster = arrangement.raster(grid);
         let ground = ground_evidence(ground, &raster, arrangement.cells, grid, params);
         let per_group = crate::parallel::map_part(hypotheses, 0.7..0.75, |_, h| {
-            let mut cells = sum_over_cells(h, &raster, grid);
+            let mut cells = sum_over_cells(h, &raster, grid, params);
             add_half_planes(&mut cells, input, &h.group, &raster, grid);
             cells
         });
+        let samples = samples_of_cells(&raster, arrangement.cells);
+        let sample_m2 = grid.step * grid.step;
         let mut cells = vec![Vec::new(); arrangement.cells];
         for (i, group_cells) in per_group.into_iter().enumerate() {
             for (cell, e) in group_cells {
-                // Most of the cell must lie in the plane's region and be seen.
-                if !arrangement.open[cell] && e.area >= 0.7 * arrangement.areas[cell] {
+                // Most of the cell must lie in the plane's region and be seen. Samples are counted, not areas: a
+                // splinter has few, and its area says little about how many.
+                let whole = f64::from(samples[cell]) * sample_m2;
+                if !arrangement.open[cell] && e.area >= 0.7 * whole {
                     cells[cell].push((i as u32, e));
                 }
             }
         }
+        let silent = |cell: usize| samples[cell] == 0 && !arrangement.open[cell];
+        cover_silent_cells(&mut cells, arrangement, silent);
         Self { cells, ground }
     }
 
@@ -90,7 +98,7 @@ impl Evidence {
                     .iter()
                     .map(|(plane, e)| {
                         // sum of weight x (least correlation - correlation): negative for a match.
-                        let mismatch = e.weight * params.min_correlation - e.correlation;
+                        let mismatch = e.least - e.correlation;
                         // "No plane" keeps the cost 0, so what speaks for the ground counts against roofs.
                         (
                             *plane,
@@ -108,6 +116,38 @@ impl Evidence {
                 .collect(),
             borders: BorderCosts::new(arrangement, labels, planes, index, params),
         }
+    }
+}
+
+/// Number of samples of the plan grid in each cell.
+fn samples_of_cells(raster: &[u32], cells: usize) -> Vec<u32> {
+    let mut samples = vec![0; cells];
+    for &cell in raster.iter().filter(|c| **c != u32::MAX) {
+        samples[cell as usize] += 1;
+    }
+    samples
+}
+
+/// Splinters between the samples say nothing for or against any plane: what may cover a cell beside one may
+/// cover it.
+fn cover_silent_cells(
+    cells: &mut [Vec<(u32, CellEvidence)>],
+    arrangement: &Arrangement,
+    silent: impl Fn(usize) -> bool,
+) {
+    let mut planes: BTreeMap<usize, BTreeSet<u32>> = BTreeMap::new();
+    for e in &arrangement.edges {
+        for (cell, beside) in [(e.left, e.right), (e.right, e.left)] {
+            if silent(cell) {
+                let around = cells[beside].iter().map(|c| c.0);
+                planes.entry(cell).or_default().extend(around);
+            }
+        }
+    }
+    for (cell, planes) in planes {
+        cells[cell] = (planes.into_iter())
+            .map(|plane| (plane, CellEvidence::default()))
+            .collect();
     }
 }
 
@@ -131,8 +171,9 @@ fn ground_evidence(
             .map(|m| (m.correlation(k), m.weight(k)))
             .max_by(|a, b| a.0.total_cmp(&b.0));
         if let Some((correlation, weight)) = best {
-            evidence[cell as usize] +=
-                f64::from(weight) * (f64::from(correlation) - params.min_correlation) * area;
+            let (correlation, weight) = (f64::from(correlation), f64::from(weight));
+            let least = least_correlation(weight, params.min_correlation);
+            evidence[cell as usize] += weight * (correlation - least) * area;
         }
     }
     evidence
@@ -145,6 +186,7 @@ fn sum_over_cells(
     hypothesis: &Hypothesis,
     raster: &[u32],
     grid: &PlanGrid,
+    params: &RoofParams,
 ) -> BTreeMap<usize, CellEvidence> {
     let (map, region) = (&hypothesis.map, &hypothesis.region);
     let window = &map.grid;
@@ -166,10 +208,12 @@ fn sum_over_cells(
                 continue;
             }
             let e = cells.entry(cell as usize).or_default();
-            let weight = f64::from(map.weight(k)) * area;
+            let textured = f64::from(map.weight(k));
+            let weight = textured * area;
             e.area += area;
             e.weight += weight;
             e.correlation += weight * f64::from(map.correlation(k));
+            e.least += weight * least_correlation(textured, params.min_correlation);
         }
     }
     cells
@@ -202,5 +246,58 @@ fn add_half_planes(
                 e.half_plane_m += line.length() / count;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::halfplane::borders::{Border, BorderKind};
+    use nalgebra::Point2;
+
+    /// A square of 10 m, cut by two lines so close to each other that no sample lies between them.
+    fn with_splinter() -> (Arrangement, PlanGrid) {
+        let line = |(x0, y0), (x1, y1)| Border {
+            kind: BorderKind::Real,
+            a: Point2::new(x0, y0),
+            b: Point2::new(x1, y1),
+        };
+        let frame = |low: f64, high: f64| {
+            let c = [(low, low), (high, low), (high, high), (low, high)];
+            (0..4).map(move |i| line(c[i], c[(i + 1) % 4]))
+        };
+        let cuts = [5.4, 5.6].map(|x| line((x, 0.0), (x, 10.0)));
+        let borders: Vec<Border> =
+            (frame(-5.0, 15.0).chain(frame(0.0, 10.0)).chain(cuts)).collect();
+        let grid = PlanGrid::covering(Point2::new(0.0, 0.0), Point2::new(10.0, 10.0), 0.5);
+        (Arrangement::new(&borders), grid)
+    }
+
+    #[test]
+    fn a_splinter_may_be_covered_by_what_covers_the_cells_beside_it() {
+        let (arrangement, grid) = with_splinter();
+        let samples = samples_of_cells(&arrangement.raster(&grid), arrangement.cells);
+        let cell = |x: f64| {
+            let fine = PlanGrid::covering(Point2::new(0.0, 0.0), Point2::new(10.0, 10.0), 0.05);
+            let (c, r) = fine.cell(&Point2::new(x, 5.0)).unwrap();
+            arrangement.raster(&fine)[r * fine.width + c] as usize
+        };
+        let [left, splinter, right] = [2.0, 5.5, 8.0].map(cell);
+        assert_eq!(samples[splinter], 0);
+        assert!(samples[left] > 100 && samples[right] > 50);
+
+        let seen = CellEvidence {
+            area: 1.0,
+            weight: 1.0,
+            ..CellEvidence::default()
+        };
+        let mut cells = vec![Vec::new(); arrangement.cells];
+        cells[left] = vec![(3, seen), (7, seen)];
+        cells[right] = vec![(4, seen)];
+        cover_silent_cells(&mut cells, &arrangement, |c| samples[c] == 0);
+        let planes: Vec<u32> = cells[splinter].iter().map(|c| c.0).collect();
+        assert_eq!(planes, [3, 4, 7]);
+        assert!(cells[splinter].iter().all(|c| c.1.weight == 0.0));
+        assert_eq!((cells[left].len(), cells[right].len()), (2, 1));
     }
 }

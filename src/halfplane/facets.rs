@@ -383,14 +383,15 @@ impl Solver {
             return Err(FacetRejection::NearGround { height_m });
         }
         // What little texture there is must not speak against the plane.
-        if facet.similarity < params.min_correlation && self.weight(outline) > 0.1 * area_m2 {
+        let (weight, least) = self.texture(outline);
+        if facet.similarity * weight < least && weight > 0.1 * area_m2 {
             return Err(FacetRejection::Dissimilar {
                 similarity: facet.similarity,
             });
         }
         // Where the images show the surface itself, its outline need not lie on lines.
         let shown = facet.similarity >= f64::from(ON_SURFACE)
-            && self.weight(outline) >= f64::from(TEXTURED) * area_m2 * facet.plane.normal.z;
+            && weight >= f64::from(TEXTURED) * area_m2 * facet.plane.normal.z;
         if facet.real_ratio < params.min_real_ratio && !shown {
             return Err(FacetRejection::Unsupported {
                 real_ratio: facet.real_ratio,
@@ -399,12 +400,9 @@ impl Solver {
         Ok(())
     }
 
-    fn weight(&self, outline: &Outline) -> f64 {
-        outline
-            .cells
-            .iter()
-            .filter_map(|&c| self.evidence.get(c, outline.plane))
-            .map(|e| e.weight)
-            .sum()
+    /// Texture weight over an outline, square metres, and its product with the least correlation.
+    fn texture(&self, outline: &Outline) -> (f64, f64) {
+        let evidence = (outline.cells.iter()).filter_map(|&c| self.evidence.get(c, outline.plane));
+        evidence.fold((0.0, 0.0), |(w, l), e| (w + e.weight, l + e.least))
     }
 }

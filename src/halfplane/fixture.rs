@@ -29,12 +29,9 @@ pub(super) fn scene(surfaces: &[Surface]) -> Scene {
         .enumerate()
         .map(|(i, &(x, y, kappa))| {
             let camera = camera(x, y, kappa);
-            View {
-                name: format!("{i}.jpg"),
-                gray: render(&camera, surfaces),
-                rgb: image::RgbImage::new(250, 250),
-                camera,
-            }
+            let gray = render(&camera, surfaces);
+            let rgb = image::RgbImage::new(250, 250);
+            View::new(format!("{i}.jpg"), camera, gray, rgb)
         })
         .collect();
     Scene {

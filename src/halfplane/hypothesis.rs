@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector2};
 
 use super::Side;
 use super::borders::Region;
-use super::consistency::{ConsistencyMap, consistency_map};
+use super::consistency::{ConsistencyMap, consistency_map, least_correlation};
 use super::grouping::{GroupingInput, PlaneGroup};
 use super::plan::PlanGrid;
 use super::plane_lines::{PlaneLine, lines_in_plane};
@@ -115,10 +115,11 @@ fn supported(
     let agreeing = group.members.iter().filter(|m| {
         let Some(side) = m.side else { return false };
         let seen = beside(map, &input.lines[m.line.index()].segment, side);
-        let (sum, weight) = seen
-            .iter()
-            .fold((0.0, 0.0), |(s, n), (c, w)| (s + c * w, n + w));
-        weight > 0.0 && f64::from(sum / weight) >= params.min_correlation
+        let excess = |(c, w): &(f32, f32)| {
+            let (c, w) = (f64::from(*c), f64::from(*w));
+            w * (c - least_correlation(w, params.min_correlation))
+        };
+        !seen.is_empty() && seen.iter().map(excess).sum::<f64>() >= 0.0
     });
     agreeing.count() >= 2
 }

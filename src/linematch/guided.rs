@@ -69,13 +69,23 @@ pub fn measure_edge(
     gray: &Gray,
     expected: &Segment2,
     core: [f64; 2],
+    against: bool,
     noise: f64,
 ) -> Option<GuidedEdge> {
     let count = (expected.length() / PIECE_PX) as usize;
     (count >= MIN_PIECES).then_some(())?;
     let size = expected.length() / count as f64;
     let pieces: Vec<Piece> = (0..count)
-        .filter_map(|i| measure_piece(gray, expected, (i as f64 + 0.5) * size, size, noise))
+        .filter_map(|i| {
+            measure_piece(
+                gray,
+                expected,
+                (i as f64 + 0.5) * size,
+                size,
+                against,
+                noise,
+            )
+        })
         .collect();
     let decides = |p: &&Piece| p.along >= core[0] && p.along <= core[1];
     let asked: Vec<Piece> = pieces.iter().filter(decides).copied().collect();
@@ -103,6 +113,7 @@ fn measure_piece(
     expected: &Segment2,
     along: f64,
     size: f64,
+    against: bool,
     noise: f64,
 ) -> Option<Piece> {
     let (direction, normal) = (expected.direction(), expected.normal());
@@ -117,7 +128,8 @@ fn measure_piece(
             *value += f64::from(gray.sample(p.x as f32, p.y as f32)?);
         }
     }
-    profile.iter_mut().for_each(|v| *v /= rows as f64);
+    let sign = if against { -1.0 } else { 1.0 };
+    profile.iter_mut().for_each(|v| *v *= sign / rows as f64);
     let least = SIGNIFICANT * noise * (2.0 / rows as f64).sqrt();
     Some(Piece {
         along,
@@ -278,7 +290,7 @@ mod tests {
         let core = [0.0, expected.length()];
         let strong = step(&edge(), 20.0 / 255.0, 2.0 / 255.0, 1);
         for (image, tolerance) in [(&gray, 0.4), (&strong, 0.1)] {
-            let found = measure_edge(ViewId(0), image, &expected, core, 0.006).unwrap();
+            let found = measure_edge(ViewId(0), image, &expected, core, false, 0.006).unwrap();
             let line = edge().line();
             for p in [found.segment.p0, found.segment.p1] {
                 let d = line.x * p.x + line.y * p.y + line.z;
@@ -292,12 +304,12 @@ mod tests {
         let gray = step(&edge(), 0.1, 0.004, 1);
         let against = Segment2::new(edge().p1, edge().p0);
         let core = [0.0, edge().length()];
-        assert!(measure_edge(ViewId(0), &gray, &against, core, 0.006).is_none());
+        assert!(measure_edge(ViewId(0), &gray, &against, core, false, 0.006).is_none());
         let flat = step(&edge(), 0.0, 0.004, 1);
-        assert!(measure_edge(ViewId(0), &flat, &edge(), core, 0.006).is_none());
+        assert!(measure_edge(ViewId(0), &flat, &edge(), core, false, 0.006).is_none());
         // An edge out of reach is another edge.
         let beside = shifted(4.0, 0.0);
-        assert!(measure_edge(ViewId(0), &gray, &beside, core, 0.006).is_none());
+        assert!(measure_edge(ViewId(0), &gray, &beside, core, false, 0.006).is_none());
     }
 
     #[test]
@@ -308,7 +320,7 @@ mod tests {
         let (mut sum, mut count) = (0.0, 0.0);
         for seed in 0..40 {
             let gray = step(&edge(), 0.05, 3.0 / 255.0, 977 * seed + 1);
-            let Some(found) = measure_edge(ViewId(0), &gray, &expected, core, 0.006) else {
+            let Some(found) = measure_edge(ViewId(0), &gray, &expected, core, false, 0.006) else {
                 continue;
             };
             let m = found.segment.at(0.5);

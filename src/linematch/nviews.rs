@@ -44,6 +44,12 @@ pub enum Rejection {
     IllConditioned,
     /// One view alone determines it in some direction: whatever segment lies there fits.
     Unverified,
+    /// The edge shows in fewer than three views.
+    TooFewEdges,
+    /// Too few views have a segment of their own on it.
+    TooFewSegments,
+    /// The neighbourhoods of its edges differ between the views.
+    NotAlike,
     /// Fewer than the minimum of views support it.
     TooFewViews,
     /// The supported stretch is shorter than the minimum of edgels.
@@ -93,8 +99,11 @@ pub fn complete_line(
     let mut segments = context.adopt(&fit.line, &segments, OWN, &taken);
     loop {
         let evidence = edges.len() + views_of(&segments);
-        if edges.len() < MIN_MEASURED || evidence < context.least_evidence() {
-            return Err(Rejection::TooFewViews);
+        if edges.len() < MIN_MEASURED {
+            return Err(Rejection::NotAlike);
+        }
+        if evidence < context.least_evidence() {
+            return Err(Rejection::TooFewSegments);
         }
         let profile = context.profile(&fit.line, &segments, &edges)?;
         let stretch = supported_stretch(&profile, context.params).ok_or(Rejection::TooFewViews)?;
@@ -186,7 +195,23 @@ impl Context<'_> {
         let along = |t: f64| Some((image.at(t)? - expected.p0).dot(&expected.direction()));
         let core = [along(core.0)?, along(core.1)?];
         let gray = &self.scene.view(view).gray;
-        measure_edge(view, gray, &expected, core, self.params.noise)
+        let against = self.against_contrast(&image, segments, view);
+        measure_edge(view, gray, &expected, core, against, self.params.noise)
+    }
+
+    /// Is the bright side of this view's own segments the other one than the line's?
+    fn against_contrast(
+        &self,
+        image: &ProjectedLine,
+        segments: &[SegmentRef],
+        view: ViewId,
+    ) -> bool {
+        let along = |s: &SegmentRef| {
+            let sight = self.sights.get(*s)?;
+            Some(sight.length_px * sight.segment.direction().dot(&image.direction))
+        };
+        let own = segments.iter().filter(|s| s.view == view);
+        own.filter_map(along).sum::<f64>() < 0.0
     }
 
     /// The stretch of a line, metres, along which a view must show an edge: that of its own segments, or what
@@ -213,7 +238,7 @@ impl Context<'_> {
         let mut kept = edges.to_vec();
         loop {
             if kept.len() < MIN_MEASURED {
-                return Err(Rejection::TooFewViews);
+                return Err(Rejection::TooFewEdges);
             }
             let fit = fit_line(&self.observed(kept.iter()), start, self.fitting)
                 .ok_or(Rejection::NoFit)?;

@@ -94,12 +94,8 @@ pub fn scene() -> Scene {
         .enumerate()
         .map(|(i, (x, y, kappa))| {
             let camera = camera(*x, *y, *kappa);
-            View {
-                name: format!("{i}.png"),
-                gray: render(&camera),
-                rgb: image::RgbImage::new(SIZE, SIZE),
-                camera,
-            }
+            let (gray, rgb) = (render(&camera), image::RgbImage::new(SIZE, SIZE));
+            View::new(format!("{i}.png"), camera, gray, rgb)
         })
         .collect();
     Scene {

@@ -2,10 +2,12 @@
 
 mod filter;
 mod load;
+mod noise;
 mod part;
 
 pub use filter::gaussian_blur;
 pub use load::{ImageHeader, Photograph, image_format, image_header, load_image};
+pub use noise::noise_of;
 pub use part::{Part, decoding_bytes, load_part};
 
 /// A raster of grey values (or of anything else in f32), row by row from the top.

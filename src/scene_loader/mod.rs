@@ -85,11 +85,10 @@ pub fn whole_views(files: &[InputFile], options: &LoadOptions) -> Result<Scene> 
     if let Some(error) = plan.errors.into_iter().next() {
         return Err(error);
     }
-    let view = |planned: &PlannedView| View {
-        name: files[planned.file].name().to_owned(),
-        camera: planned.whole.clone(),
-        gray: Gray::new(0, 0),
-        rgb: image::RgbImage::new(0, 0),
+    let view = |planned: &PlannedView| {
+        let name = files[planned.file].name().to_owned();
+        let none = (Gray::new(0, 0), image::RgbImage::new(0, 0));
+        View::new(name, planned.whole.clone(), none.0, none.1)
     };
     Ok(Scene {
         views: plan.views.iter().map(view).collect(),
@@ -155,12 +154,13 @@ fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
     if source != part {
         photograph = photograph.crop([column - source[0], row - source[1], width, height]);
     }
-    Ok(View {
-        name: file.name().to_owned(),
-        camera: planned.camera(),
-        gray: photograph.gray,
-        rgb: photograph.rgb,
-    })
+    let name = file.name().to_owned();
+    Ok(View::new(
+        name,
+        planned.camera(),
+        photograph.gray,
+        photograph.rgb,
+    ))
 }
 
 /// The calibration of a part that begins at this column and row.

@@ -80,12 +80,8 @@ fn scene_of(building: &building::Building, size: u32) -> (Scene, SyntheticTruth)
     let cameras = strip_cameras(size);
     let views = crate::parallel::map(&cameras, |_, (name, camera)| {
         let rgb = render::render(&building.faces, camera);
-        View {
-            name: name.clone(),
-            camera: camera.clone(),
-            gray: crate::raster::Gray::from_rgb(&rgb),
-            rgb,
-        }
+        let gray = crate::raster::Gray::from_rgb(&rgb);
+        View::new(name.clone(), camera.clone(), gray, rgb)
     });
     let scene = Scene {
         views,
