@@ -186,6 +186,7 @@ fn planted_evidence() -> (Vec<Vec<ImageSegment>>, Vec<Line3d>, Vec<HalfPlane>) {
         edge: None,
     };
     let line = Line3d {
+        origin: Default::default(),
         segment: Segment3::new([1.0, 2.0, 3.0].into(), [4.0, 5.0, 6.123_456].into()),
         sigma_m: 0.02,
         covariance: [Matrix3::zeros(); 2],
@@ -663,13 +664,15 @@ fn the_table_of_lines_reads_back() {
     let (_, lines, _) = planted_evidence();
     let files = files_of(&scene(), &planted_models()[0].1);
     let mut reader = csv::Reader::from_reader(&files["lines.csv"][..]);
-    let rows: Vec<BTreeMap<String, f64>> = reader.deserialize().map(Result::unwrap).collect();
+    let rows: Vec<BTreeMap<String, String>> = reader.deserialize().map(Result::unwrap).collect();
     assert_eq!(rows.len(), lines.len());
     for (row, line) in rows.iter().zip(&lines) {
-        let p = Vector3::new(row["x1_m"], row["y1_m"], row["z1_m"]) - ORIGIN;
+        assert_eq!(row["origin"], "matched");
+        let row = |name: &str| row[name].parse::<f64>().unwrap();
+        let p = Vector3::new(row("x1_m"), row("y1_m"), row("z1_m")) - ORIGIN;
         assert!((p - line.segment.p1.coords).norm() < 1e-4);
-        assert!((row["length_m"] - line.segment.length()).abs() < 1e-4);
-        assert_eq!(row["views"] as usize, line.supports.len());
+        assert!((row("length_m") - line.segment.length()).abs() < 1e-4);
+        assert_eq!(row("views") as usize, line.supports.len());
     }
 }
 

@@ -139,7 +139,7 @@ fn closed_ring(scene: &Scene, solid: &Solid, ring: &[u32]) -> Vec<[f64; 2]> {
 
 /// The 3D lines as CSV, one a line of text; columns are named in the first one.
 pub fn lines_csv(scene: &Scene, lines: &[Line3d]) -> Vec<u8> {
-    let mut text = String::from("id,x0_m,y0_m,z0_m,x1_m,y1_m,z1_m,length_m,sigma_m,views\n");
+    let mut text = String::from("id,x0_m,y0_m,z0_m,x1_m,y1_m,z1_m,length_m,sigma_m,views,origin\n");
     for (id, l) in lines.iter().enumerate() {
         let ([x0, y0, z0], [x1, y1, z1]) =
             (world(scene, &l.segment.p0), world(scene, &l.segment.p1));
@@ -147,8 +147,9 @@ pub fn lines_csv(scene: &Scene, lines: &[Line3d]) -> Vec<u8> {
         line(
             &mut text,
             format_args!(
-                "{id},{x0},{y0},{z0},{x1},{y1},{z1},{length},{sigma},{}",
-                l.supports.len()
+                "{id},{x0},{y0},{z0},{x1},{y1},{z1},{length},{sigma},{},{}",
+                l.supports.len(),
+                l.origin.name()
             ),
         );
     }

@@ -46,6 +46,7 @@ pub(super) fn scene(surfaces: &[Surface]) -> Scene {
 /// A line that only the sweep will read.
 pub(super) fn line(p0: Point3<f64>, p1: Point3<f64>) -> Line3d {
     Line3d {
+        origin: Default::default(),
         segment: Segment3::new(p0, p1),
         sigma_m: 0.01,
         covariance: [Matrix3::zeros(); 2],

@@ -63,6 +63,7 @@ mod tests {
 
     fn line(a: [f64; 2], b: [f64; 2]) -> Line3d {
         Line3d {
+            origin: Default::default(),
             segment: Segment3::new(Point3::new(a[0], a[1], 0.0), Point3::new(b[0], b[1], 0.0)),
             sigma_m: 0.05,
             covariance: [Matrix3::identity() * 0.0025; 2],

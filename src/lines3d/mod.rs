@@ -21,9 +21,35 @@ use crate::linematch::{LineMatch, LineSupport};
 use crate::params::Lines3dParams;
 use crate::scene::Scene;
 
+/// How a 3D line was found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LineOrigin {
+    /// From image segments that belong together (B99 3, W96 3.5).
+    #[default]
+    Matched,
+    /// Where two planes intersect (B99 4.2, new lines).
+    Intersection,
+    /// The border of a facet, found again in the images (B99 4.3).
+    Border,
+}
+
+impl LineOrigin {
+    /// One lower-case word, as in the files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Matched => "matched",
+            Self::Intersection => "intersection",
+            Self::Border => "border",
+        }
+    }
+}
+
 /// A reconstructed 3D line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Line3d {
+    /// How it was found.
+    pub origin: LineOrigin,
     /// End points, metres, local frame. Every support's stretch runs the same way.
     pub segment: Segment3,
     /// Standard deviation of the line's position across itself, metres, the larger of both ends.
@@ -129,6 +155,7 @@ fn reconstruct(
     }
     let squares: f64 = fit.residuals.iter().map(|r| r * r).sum();
     let line = Line3d {
+        origin: LineOrigin::Matched,
         segment: along_supports(scene, segment, &matched.supports),
         sigma_m,
         covariance: [fit.covariance_at(f0), fit.covariance_at(f1)],

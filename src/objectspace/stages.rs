@@ -283,6 +283,7 @@ fn world_line(sights: &[Sight], line: &ClusterLine) -> Line3d {
         }
     });
     Line3d {
+        origin: Default::default(),
         segment: line.segment,
         sigma_m: line.sigma_m,
         covariance: [Matrix3::identity() * variance; 2],

@@ -32,7 +32,7 @@ use crate::objectspace::{
 use crate::parallel;
 use crate::params::{Method, Params};
 use crate::progress::{self, Listener};
-use crate::roof::{RoofModel, RoofTrace, reconstruct_roofs};
+use crate::roof::{RoofModel, RoofTrace, new_lines, reconstruct_roofs};
 use crate::scene::Scene;
 use crate::texture::{TextureTrace, TexturedModel, texture_model};
 
@@ -166,6 +166,13 @@ impl Results {
         let lines = self.roof.as_ref().map(|r| &r.value);
         lines.or(self.rectangles.as_ref().map(|r| &r.value))
     }
+
+    /// The matched 3D lines of B99, by their ids, and then the new lines of the model.
+    pub fn all_lines(&self) -> Option<Vec<Line3d>> {
+        let mut lines = self.lines.as_ref()?.value.clone();
+        lines.extend_from_slice(&self.roof.as_ref()?.trace.new_lines);
+        Some(lines)
+    }
 }
 
 /// One reconstruction: a scene, the parameters, and the results so far.
@@ -278,7 +285,7 @@ impl Run {
         Some(match self.params.method {
             Method::Lines => Outputs {
                 segments: Cow::Borrowed(&r.segments.as_ref()?.value),
-                lines: Cow::Borrowed(&r.lines.as_ref()?.value),
+                lines: Cow::Owned(r.all_lines()?),
                 half_planes: &r.half_planes.as_ref()?.value,
                 model,
                 textured,
@@ -324,8 +331,11 @@ impl Run {
             Stage::Facets => {
                 let segments = before(&r.segments);
                 let (lines, half_planes) = (before(&r.lines), before(&r.half_planes));
-                let found = reconstruct_roofs(scene, segments, lines, half_planes, &params.roof);
-                r.roof = Some(found.into());
+                let (model, mut trace) =
+                    reconstruct_roofs(scene, segments, lines, half_planes, &params.roof);
+                trace.new_lines =
+                    new_lines(scene, lines, &model, &params.matching, &params.lines3d);
+                r.roof = Some((model, trace).into());
             }
             Stage::Regions => r.regions = Some(find_regions(scene, &params.objectspace).into()),
             Stage::Directions => {

@@ -2,11 +2,13 @@
 
 mod ground;
 mod invariants;
+mod new_lines;
 mod reconstruct;
 mod solid;
 
 pub use ground::Ground;
 pub use invariants::{PLANAR_M, Violation, check_invariants};
+pub use new_lines::new_lines;
 pub use reconstruct::{RoofTrace, reconstruct_roofs};
 pub use solid::{SolidRejection, SolidTrace, WELD_M, close_buildings};
 

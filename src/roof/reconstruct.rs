@@ -16,6 +16,8 @@ pub struct RoofTrace {
     pub facets: FacetTrace,
     /// Walls and ground.
     pub solids: SolidTrace,
+    /// Lines that the model adds to the matched ones (B99 4.2, 4.3).
+    pub new_lines: Vec<Line3d>,
 }
 
 /// Groups, delineates and verifies facets, estimates the ground below each building and closes the solids.
@@ -35,6 +37,7 @@ pub fn reconstruct_roofs(
         RoofTrace {
             facets: facet_trace,
             solids,
+            new_lines: Vec::new(),
         },
     )
 }
