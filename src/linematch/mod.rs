@@ -23,7 +23,7 @@ mod strip;
 mod trace;
 mod triples;
 
-pub use guided::GuidedEdge;
+pub use guided::{GuidedEdge, measure_edge};
 pub use nviews::Rejection;
 pub use sight::{SegmentRef, epipolar_beam};
 pub use strip::EdgelScore;

@@ -3,11 +3,16 @@
 mod ground;
 mod invariants;
 mod reconstruct;
+mod refine;
 mod solid;
 
 pub use ground::Ground;
 pub use invariants::{PLANAR_M, Violation, check_invariants};
 pub use reconstruct::{RoofTrace, reconstruct_roofs};
+pub use refine::{
+    BuildingRefinement, RefineRefusal, RefineTrace, RelationKind, SideKind, TestedRelation,
+    refine_roofs,
+};
 pub use solid::{SolidRejection, SolidTrace, WELD_M, close_buildings};
 
 use nalgebra::Point3;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Ground, RoofModel, SolidTrace, close_buildings};
+use super::{Facet, Ground, RefineTrace, RoofModel, SolidTrace, close_buildings, refine_roofs};
 use crate::halfplane::{FacetTrace, HalfPlane, reconstruct_facets};
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
@@ -14,11 +14,14 @@ use crate::scene::Scene;
 pub struct RoofTrace {
     /// Grouping, delineation and verification.
     pub facets: FacetTrace,
+    /// What was regularised and refined in each building.
+    pub refinement: RefineTrace,
     /// Walls and ground.
     pub solids: SolidTrace,
 }
 
-/// Groups, delineates and verifies facets, estimates the ground below each building and closes the solids.
+/// Groups, delineates and verifies facets, estimates the ground below each building, refines the buildings and closes
+/// the solids.
 pub fn reconstruct_roofs(
     scene: &Scene,
     segments: &[Vec<ImageSegment>],
@@ -29,11 +32,17 @@ pub fn reconstruct_roofs(
     let ground = Ground::estimate(scene, lines);
     let (facets, facet_trace) =
         reconstruct_facets(scene, segments, lines, half_planes, &ground, params);
-    let (model, solids) = close_buildings(&facets, |members| ground.below(members));
+    let below = |members: &[&Facet]| ground.below(members);
+    // Refinement needs facets that share vertices, and moves them; so the solids are made twice.
+    let (delineated, solids) = close_buildings(&facets, below);
+    let (refined, refinement) = refine_roofs(scene, lines, &delineated, &params.refine);
+    let (model, closed) = close_buildings(&refined, below);
+    let solids = solids.then(closed);
     (
         model,
         RoofTrace {
             facets: facet_trace,
+            refinement,
             solids,
         },
     )

@@ -1,0 +1,253 @@
+//! Regularisation and refinement of buildings: the wireframe is adjusted to the image edges of all views (B99 section 2:
+//! the partner in Leuven regularises the roofs and refines their corners by the reprojection error of the wireframe).
+//!
+//! ```text
+//! building -> wireframe -> edges of its sides in every view -> adjustment (free)
+//!          -> relations that the covariance allows -> adjustment (with them) -> tests -> building
+//! ```
+//!
+//! Delineation puts borders where lines were found or where correlation ends; the first are averages of what
+//! matching kept, the second lie off by half a window. Here every side is measured again, in every view that sees it, and
+//! all of a building's sides, planes and corners move together.
+//!
+//! A building keeps its old shape unless the new one has the smaller reprojection error, is a closed
+//! solid without a broken invariant, and the views agree inside its facets as well as before.
+
+mod accept;
+mod adjust;
+#[cfg(test)]
+mod fixture;
+mod relations;
+mod sight;
+mod sightings;
+mod wireframe;
+
+use nalgebra::Vector3;
+use serde::Serialize;
+
+pub use relations::{RelationKind, TestedRelation};
+pub use wireframe::SideKind;
+
+use self::accept::Judge;
+use self::adjust::{Problem, Solution, Term};
+use self::sight::Sight;
+use self::sightings::sight_sides;
+use self::wireframe::{State, Wireframe};
+use super::{Building, Facet, RoofModel};
+use crate::ids::BuildingId;
+use crate::lines3d::Line3d;
+use crate::params::RefineParams;
+use crate::scene::Scene;
+
+/// Why a building keeps the shape that it had.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "reason")]
+pub enum RefineRefusal {
+    /// More unknowns than are adjusted at once.
+    TooLarge {
+        /// Number of unknowns.
+        unknowns: usize,
+    },
+    /// Too few of its sides show in the images.
+    FewSightings {
+        /// Measured edges.
+        sightings: usize,
+    },
+    /// The adjustment has no solution.
+    Singular,
+    /// The reprojection error does not fall.
+    NoGain,
+    /// The new outlines fold, cross, or do not close.
+    Broken,
+    /// The views agree less inside the new facets.
+    Dissimilar {
+        /// Mean correlation inside the facets before.
+        before: f64,
+        /// ... and after.
+        after: f64,
+    },
+}
+
+/// What happened to one building.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BuildingRefinement {
+    /// The building.
+    pub building: BuildingId,
+    /// Straight sides of its wireframe.
+    pub sides: usize,
+    /// Edges measured for them over all views.
+    pub sightings: usize,
+    /// Root mean square distance of these edges from the images of the sides before, px.
+    pub error_before_px: f64,
+    /// ... and after the adjustment.
+    pub error_after_px: f64,
+    /// Largest move of a corner in plan, metres.
+    pub largest_move_m: f64,
+    /// Relations that were tested.
+    pub relations: Vec<TestedRelation>,
+    /// Why nothing of it was taken over; `None` when it was.
+    pub refused: Option<RefineRefusal>,
+}
+
+/// What happened to every building.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct RefineTrace {
+    /// In the order of the model's buildings.
+    pub buildings: Vec<BuildingRefinement>,
+}
+
+/// Refines the facets of a closed model, building by building. The result has as many facets in the same order, to be
+/// closed again.
+pub fn refine_roofs(
+    scene: &Scene,
+    lines: &[Line3d],
+    model: &RoofModel,
+    params: &RefineParams,
+) -> (Vec<Facet>, RefineTrace) {
+    let sight = Sight::new(&model.facets);
+    let mut facets = model.facets.clone();
+    let mut trace = RefineTrace::default();
+    if !params.refine {
+        return (facets, trace);
+    }
+    for (i, building) in model.buildings.iter().enumerate() {
+        let old: Vec<&Facet> = building
+            .facets
+            .iter()
+            .map(|f| &model.facets[f.index()])
+            .collect();
+        let mut report = BuildingRefinement {
+            building: BuildingId::from_index(i),
+            sides: 0,
+            sightings: 0,
+            error_before_px: 0.0,
+            error_after_px: 0.0,
+            largest_move_m: 0.0,
+            relations: Vec::new(),
+            refused: None,
+        };
+        match refined(scene, lines, &sight, building, &old, params, &mut report) {
+            Ok(new) => {
+                for (id, facet) in building.facets.iter().zip(new) {
+                    facets[id.index()] = facet;
+                }
+            }
+            Err(refusal) => report.refused = Some(refusal),
+        }
+        trace.buildings.push(report);
+    }
+    (facets, trace)
+}
+
+/// The refined facets of a building, or why there are none.
+fn refined(
+    scene: &Scene,
+    lines: &[Line3d],
+    sight: &Sight,
+    building: &Building,
+    old: &[&Facet],
+    params: &RefineParams,
+    report: &mut BuildingRefinement,
+) -> Result<Vec<Facet>, RefineRefusal> {
+    let (wireframe, start) = Wireframe::new(old);
+    report.sides = wireframe.sides.len();
+    if wireframe.size() > params.max_unknowns {
+        let unknowns = wireframe.size();
+        return Err(RefineRefusal::TooLarge { unknowns });
+    }
+    let heights = height_terms(&wireframe, &start, old, lines, params);
+    let problem = |state: &State, search: bool| {
+        let sightings = sight_sides(scene, sight, &wireframe, state, search, params);
+        let mut problem = Problem::new(scene, &wireframe, &start, sightings, params);
+        problem.terms.extend(heights.iter().cloned());
+        problem
+    };
+    // First to the edges that the views share near the sides, then measured again from there.
+    let near = problem(&start, true)
+        .solve(&start)
+        .ok_or(RefineRefusal::Singular)?;
+    let mut problem = problem(&near.state, false);
+    report.sightings = problem.sightings();
+    if report.sightings < params.min_sightings {
+        let sightings = report.sightings;
+        return Err(RefineRefusal::FewSightings { sightings });
+    }
+    let free = problem.solve(&near.state).ok_or(RefineRefusal::Singular)?;
+    let regular = regularised(&mut problem, &free, params, &mut report.relations)
+        .ok_or(RefineRefusal::Singular)?;
+
+    report.error_before_px = problem.error_px(&start, params.cap_px);
+    report.error_after_px = problem.error_px(&regular.state, params.cap_px);
+    let moves = (0..wireframe.vertices)
+        .map(|v| (wireframe.position(&regular.state, v) - wireframe.position(&start, v)).norm());
+    report.largest_move_m = moves.fold(0.0, f64::max);
+    let new = wireframe.facets(&regular.state, old);
+    let judge = Judge {
+        scene,
+        old,
+        ground_z: building.ground_z,
+        params,
+    };
+    // NaN fails the comparison.
+    if !(report.error_after_px < report.error_before_px) {
+        return Err(RefineRefusal::NoGain);
+    }
+    judge.accept(new)
+}
+
+/// Solves once more with the relations that the free solution allows.
+fn regularised(
+    problem: &mut Problem,
+    free: &Solution,
+    params: &RefineParams,
+    tested: &mut Vec<TestedRelation>,
+) -> Option<Solution> {
+    let proposed = relations::propose(problem.wireframe, &free.state, params);
+    let (adopted, tests) = relations::adopt(
+        problem.wireframe,
+        &free.state,
+        &free.covariance,
+        &proposed,
+        params,
+    );
+    *tested = tests;
+    let terms = adopted.into_iter().map(|r| Term::Relation(r, HELD_M));
+    problem.terms.extend(terms);
+    problem.solve(&free.state)
+}
+
+/// Standard deviation of an adopted relation, metres: it holds.
+const HELD_M: f64 = 1e-3;
+
+/// What the facets' lines say about their planes: heights at the ends of the lines, with the lines' covariance; and heights
+/// around each facet, loosely, so that no plane is free.
+fn height_terms(
+    wireframe: &Wireframe,
+    state: &State,
+    facets: &[&Facet],
+    lines: &[Line3d],
+    params: &RefineParams,
+) -> Vec<Term> {
+    let mut terms = Vec::new();
+    for (face, facet) in facets.iter().enumerate() {
+        let mut add = |p: &nalgebra::Point3<f64>, variance: f64| {
+            let at = p.xy();
+            terms.push(Term::Height {
+                face,
+                at,
+                z: wireframe.height(state, face, &at),
+                sigma_m: (variance + params.height_floor_m * params.height_floor_m).sqrt(),
+            });
+        };
+        let normal: Vector3<f64> = facet.plane.normal / facet.plane.normal.z;
+        for line in facet.lines.iter().map(|l| &lines[l.index()]) {
+            let ends = [&line.segment.p0, &line.segment.p1];
+            for (p, covariance) in ends.into_iter().zip(&line.covariance) {
+                add(p, normal.dot(&(covariance * normal)));
+            }
+        }
+        let loose = params.height_sigma_m * params.height_sigma_m;
+        facet.outer.iter().for_each(|p| add(p, loose));
+    }
+    terms
+}
