@@ -416,10 +416,13 @@ pub struct RefineParams {
     /// Least step across a side in a profile of one pixel, grey range 1; it falls with the root of the profiles.
     /// Assumption: four standard deviations of noise.
     pub least_contrast: f64,
-    /// Least mean step over the views against its own standard deviation. Assumption.
-    pub least_agreement: f64,
-    /// An edge farther out is preferred when it is at least this share of the strongest. Assumption.
-    pub distinct_share: f64,
+    /// What a border on the strongest edge earns, square metres for a metre. Assumption: what it saves in the labelling.
+    pub edge_gain_m: f64,
+    /// Correlation at which a plane is as good as no plane. Assumption: as in the labelling.
+    pub min_correlation: f64,
+    /// Sides shorter than this between longer ones are tried without, metres. Assumption: half a correlation window; what is nearer
+    /// cannot be told apart.
+    pub jog_m: f64,
     /// Standard deviation of a grey value, range 1. Assumption: an 8-bit camera and a good JPEG.
     pub noise: f64,
     /// Error of both ends of a measured edge that its scatter does not know, px. Assumption: fascias and gutters.
@@ -457,13 +460,14 @@ impl Default for RefineParams {
     fn default() -> Self {
         Self {
             refine: true,
-            search_m: 0.5,
+            search_m: 0.7,
             reach_px: 2.0,
             min_side_px: 15.0,
             min_views: 3,
             least_contrast: 0.04,
-            least_agreement: 3.0,
-            distinct_share: 0.5,
+            edge_gain_m: 0.2,
+            min_correlation: 0.45,
+            jog_m: 0.5,
             noise: 0.006,
             floor_px: 0.25,
             loss_sigmas: 2.0,

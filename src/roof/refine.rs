@@ -17,6 +17,7 @@ mod accept;
 mod adjust;
 #[cfg(test)]
 mod fixture;
+mod outline;
 mod relations;
 mod sight;
 mod sightings;
@@ -126,7 +127,15 @@ pub fn refine_roofs(
             relations: Vec::new(),
             refused: None,
         };
-        match refined(scene, lines, &sight, building, &old, params, &mut report) {
+        let case = Case {
+            scene,
+            lines,
+            sight: &sight,
+            building,
+            old: &old,
+            params,
+        };
+        match case.best(&mut report) {
             Ok(new) => {
                 for (id, facet) in building.facets.iter().zip(new) {
                     facets[id.index()] = facet;
@@ -139,60 +148,111 @@ pub fn refine_roofs(
     (facets, trace)
 }
 
-/// The refined facets of a building, or why there are none.
-fn refined(
-    scene: &Scene,
-    lines: &[Line3d],
-    sight: &Sight,
-    building: &Building,
-    old: &[&Facet],
-    params: &RefineParams,
-    report: &mut BuildingRefinement,
-) -> Result<Vec<Facet>, RefineRefusal> {
-    let (wireframe, start) = Wireframe::new(old);
-    report.sides = wireframe.sides.len();
-    if wireframe.size() > params.max_unknowns {
-        let unknowns = wireframe.size();
-        return Err(RefineRefusal::TooLarge { unknowns });
-    }
-    let heights = height_terms(&wireframe, &start, old, lines, params);
-    let problem = |state: &State, search: bool| {
-        let sightings = sight_sides(scene, sight, &wireframe, state, search, params);
-        let mut problem = Problem::new(scene, &wireframe, &start, sightings, params);
-        problem.terms.extend(heights.iter().cloned());
-        problem
-    };
-    // First to the edges that the views share near the sides, then measured again from there.
-    let near = problem(&start, true)
-        .solve(&start)
-        .ok_or(RefineRefusal::Singular)?;
-    let mut problem = problem(&near.state, false);
-    report.sightings = problem.sightings();
-    if report.sightings < params.min_sightings {
-        let sightings = report.sightings;
-        return Err(RefineRefusal::FewSightings { sightings });
-    }
-    let free = problem.solve(&near.state).ok_or(RefineRefusal::Singular)?;
-    let regular = regularised(&mut problem, &free, params, &mut report.relations)
-        .ok_or(RefineRefusal::Singular)?;
+/// A building to refine.
+struct Case<'a> {
+    scene: &'a Scene,
+    lines: &'a [Line3d],
+    sight: &'a Sight<'a>,
+    building: &'a Building,
+    old: &'a [&'a Facet],
+    params: &'a RefineParams,
+}
 
-    report.error_before_px = problem.error_px(&start, params.cap_px);
-    report.error_after_px = problem.error_px(&regular.state, params.cap_px);
-    let moves = (0..wireframe.vertices)
-        .map(|v| (wireframe.position(&regular.state, v) - wireframe.position(&start, v)).norm());
-    report.largest_move_m = moves.fold(0.0, f64::max);
-    let new = wireframe.facets(&regular.state, old);
-    let judge = Judge {
-        scene,
-        old,
-        ground_z: building.ground_z,
-        params,
-    };
-    // NaN fails the comparison.
-    if !(report.error_after_px < report.error_before_px) {
-        return Err(RefineRefusal::NoGain);
+impl Case<'_> {
+    /// The refined facets, or why there are none: with simpler outlines where the images allow them, else with the old ones, else
+    /// without looking farther than a guided measurement does.
+    fn best(&self, report: &mut BuildingRefinement) -> Result<Vec<Facet>, RefineRefusal> {
+        let (wireframe, state) = Wireframe::new(self.old);
+        report.sides = wireframe.sides.len();
+        if wireframe.size() > self.params.max_unknowns {
+            let unknowns = wireframe.size();
+            return Err(RefineRefusal::TooLarge { unknowns });
+        }
+        let simple = self.simplified(&wireframe, &state);
+        let simple: Vec<&Facet> = simple.iter().collect();
+        let changes = simple.iter().zip(self.old).any(|(s, o)| s.outer != o.outer);
+        let first = if changes {
+            self.refined(&simple, true, report)
+        } else {
+            Err(RefineRefusal::NoGain)
+        };
+        first
+            .or_else(|_| self.refined(self.old, true, report))
+            .or_else(|_| self.refined(self.old, false, report))
     }
-    judge.accept(new)
+
+    /// The facets, each with the simpler outline where the images show at least the same share of it.
+    fn simplified(&self, wireframe: &Wireframe, state: &State) -> Vec<Facet> {
+        let facets = outline::simplified(self.old, self.params.jog_m);
+        let simple: Vec<&Facet> = facets.iter().collect();
+        let shown = |w: &Wireframe, state: &State| {
+            let sightings = sight_sides(self.scene, self.sight, w, state, true, self.params);
+            w.shown(state, sightings.iter().map(|s| s.side))
+        };
+        let (simple_wireframe, simple_state) = Wireframe::new(&simple);
+        let before = shown(wireframe, state);
+        let after = shown(&simple_wireframe, &simple_state);
+        (0..facets.len())
+            .map(|i| {
+                if after[i] >= before[i] {
+                    facets[i].clone()
+                } else {
+                    self.old[i].clone()
+                }
+            })
+            .collect()
+    }
+
+    /// The refined facets of a building, or why there are none.
+    fn refined(
+        &self,
+        from: &[&Facet],
+        search: bool,
+        report: &mut BuildingRefinement,
+    ) -> Result<Vec<Facet>, RefineRefusal> {
+        let params = self.params;
+        let (wireframe, start) = Wireframe::new(from);
+        report.sides = wireframe.sides.len();
+        let heights = height_terms(&wireframe, &start, from, self.lines, params);
+        let problem = |state: &State, search: bool| {
+            let sightings = sight_sides(self.scene, self.sight, &wireframe, state, search, params);
+            let mut problem = Problem::new(self.scene, &wireframe, &start, sightings, params);
+            problem.terms.extend(heights.iter().cloned());
+            problem
+        };
+        // First to the edges that the views share near the sides, then measured again from there.
+        let near = problem(&start, search)
+            .solve(&start)
+            .ok_or(RefineRefusal::Singular)?;
+        let mut problem = problem(&near.state, false);
+        report.sightings = problem.sightings();
+        if report.sightings < params.min_sightings {
+            let sightings = report.sightings;
+            return Err(RefineRefusal::FewSightings { sightings });
+        }
+        let free = problem.solve(&near.state).ok_or(RefineRefusal::Singular)?;
+        let regular = regularised(&mut problem, &free, params, &mut report.relations)
+            .ok_or(RefineRefusal::Singular)?;
+
+        report.error_before_px = problem.error_px(&start, params.cap_px);
+        report.error_after_px = problem.error_px(&regular.state, params.cap_px);
+        let moves = (0..wireframe.vertices).map(|v| {
+            (wireframe.position(&regular.state, v) - wireframe.position(&start, v)).norm()
+        });
+        report.largest_move_m = moves.fold(0.0, f64::max);
+        // NaN fails the comparison.
+        if report.error_after_px < report.error_before_px {
+            let judge = Judge {
+                scene: self.scene,
+                old: self.old,
+                ground_z: self.building.ground_z,
+                params,
+            };
+            judge.accept(wireframe.facets(&regular.state, from))
+        } else {
+            Err(RefineRefusal::NoGain)
+        }
+    }
 }
 
 /// Solves once more with the relations that the free solution allows.

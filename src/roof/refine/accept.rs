@@ -126,5 +126,6 @@ fn plan_area(facet: &Facet) -> f64 {
 
 /// Did any corner move by more than this, metres?
 fn moved(old: &Facet, new: &Facet, least_m: f64) -> bool {
-    (old.outer.iter().zip(&new.outer)).any(|(p, q)| (p - q).norm() > least_m)
+    old.outer.len() != new.outer.len()
+        || (old.outer.iter().zip(&new.outer)).any(|(p, q)| (p - q).norm() > least_m)
 }

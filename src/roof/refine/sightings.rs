@@ -2,9 +2,8 @@
 //!
 //! The image of a side is where the model expects an edge. A side may lie off by more than a guided
 //! measurement reaches (a closing line where nothing was found, the correlation window that straddles a strong edge),
-//! so it is first moved in its facet's plane, and the profiles across it are compared over the views: an edge of
-//! the roof stands still then, whatever lies on the ground or on a wall moves. Of the edges that stand still the
-//! outermost distinct one bounds the facet. From there `measure_edge` (the second look of line matching)
+//! so it is first moved in its facet's plane, and the rows of grey values along it are compared over the views: on the roof
+//! they agree, and an edge of the roof stands still, whatever lies on the ground or on a wall moves. From there `measure_edge` (the second look of line matching)
 //! measures in every view.
 
 use nalgebra::{Matrix2, Point2, Vector2};
@@ -14,13 +13,14 @@ use super::wireframe::{Side, SideKind, State, Wireframe};
 use crate::geometry::{Segment2, Segment3};
 use crate::ids::ViewId;
 use crate::linematch::measure_edge;
+use crate::math;
 use crate::params::RefineParams;
 use crate::scene::Scene;
 
 /// Half the base of the difference across a side, in steps of half a pixel: one pixel.
 const BASE: usize = 2;
 /// Most places along a side at which the profile is sampled.
-const MAX_SAMPLES: usize = 48;
+const MAX_SAMPLES: usize = 96;
 /// Share of a side at either end that is not looked at: corners are where other edges begin.
 const END_SHARE: f64 = 0.06;
 /// Least share of a side that a view must see.
@@ -57,14 +57,23 @@ pub fn sight_sides(
         } else {
             params.reach_px * profiles.pixel_m
         };
-        let (offset, rising) = profiles.edge(reach, params)?;
-        Some(profiles.measure(scene, side, offset, rising, params))
+        let step = profiles.edge(reach, params)?;
+        Some(profiles.measure(scene, side, step, params))
     };
     crate::parallel::map(&sides, of_side)
         .into_iter()
         .flatten()
         .flatten()
         .collect()
+}
+
+/// What one view shows across a side, at steps from inside to outside; the middle one is at the side.
+struct Profile {
+    view: ViewId,
+    /// Grey values at every place along the side, step by step; NaN where the view does not see it.
+    rows: Vec<Vec<f32>>,
+    /// Mean difference across every step.
+    differences: Vec<f64>,
 }
 
 /// What the views show across a side.
@@ -75,8 +84,8 @@ struct Profiles {
     outward: nalgebra::Vector3<f64>,
     /// Size of a pixel on the side, metres.
     pixel_m: f64,
-    /// Per view the differences across the side, from inside to outside, at every step; the middle one is at the side.
-    views: Vec<(ViewId, Vec<f64>)>,
+    /// The views that see enough of it.
+    views: Vec<Profile>,
     /// Places along the side.
     samples: usize,
 }
@@ -112,7 +121,7 @@ impl Profiles {
         let steps = (params.search_m / (0.5 * pixel_m)).ceil() as usize + BASE + 1;
         profiles.views = scene
             .view_ids()
-            .filter_map(|v| Some((v, profiles.differences(scene, sight, v, steps)?)))
+            .filter_map(|v| profiles.profile(scene, sight, v, steps))
             .collect();
         Some(profiles)
     }
@@ -122,91 +131,106 @@ impl Profiles {
         0.5 * self.pixel_m
     }
 
-    /// Mean differences of grey values across the side in one view; `None` where it sees too little of it.
-    fn differences(
-        &self,
-        scene: &Scene,
-        sight: &Sight,
-        view: ViewId,
-        steps: usize,
-    ) -> Option<Vec<f64>> {
+    /// What one view shows; `None` where it sees too little of the side.
+    fn profile(&self, scene: &Scene, sight: &Sight, view: ViewId, steps: usize) -> Option<Profile> {
         let (camera, gray) = (scene.camera(view), &scene.view(view).gray);
         let count = 2 * steps + 1;
-        let mut sums = vec![0.0f64; count];
+        let mut rows = vec![vec![f32::NAN; self.samples]; count];
         let mut seen = 0usize;
-        let mut row = vec![0.0f64; count];
         let mut hidden = false;
         for i in 0..self.samples {
             let t = (i as f64 + 0.5) / self.samples as f64;
             let p = self.segment.at(END_SHARE + (1.0 - 2.0 * END_SHARE) * t);
-            if i % 4 == 0 {
+            if i % 8 == 0 {
                 hidden = sight.hidden(&p, &camera.center);
             }
-            if hidden {
+            let across = |k: usize| {
+                let s = (k as f64 - steps as f64) * self.step_m();
+                let x = camera.project(&(p + self.outward * s))?;
+                gray.sample(x.x as f32, x.y as f32)
+            };
+            // Seen from end to end or not at all.
+            if hidden || across(0).is_none() || across(count - 1).is_none() {
                 continue;
             }
-            let whole = row.iter_mut().enumerate().all(|(k, value)| {
-                let s = (k as f64 - steps as f64) * self.step_m();
-                let sample = camera
-                    .project(&(p + self.outward * s))
-                    .and_then(|x| gray.sample(x.x as f32, x.y as f32));
-                *value = f64::from(sample.unwrap_or(0.0));
-                sample.is_some()
-            });
-            if whole {
-                seen += 1;
-                sums.iter_mut().zip(&row).for_each(|(s, v)| *s += v);
+            seen += 1;
+            for (k, row) in rows.iter_mut().enumerate() {
+                row[i] = across(k).unwrap_or(f32::NAN);
             }
         }
         if (seen as f64) < MIN_SEEN * self.samples as f64 {
             return None;
         }
-        let mean = |k: usize| sums[k] / seen as f64;
-        Some(
-            (BASE..count - BASE)
-                .map(|k| mean(k + BASE) - mean(k - BASE))
-                .collect(),
-        )
+        let means: Vec<f64> = rows.iter().map(|row| mean(row)).collect();
+        let difference =
+            |k: usize| means[(k + BASE).min(count - 1)] - means[k.saturating_sub(BASE)];
+        Some(Profile {
+            view,
+            differences: (0..count).map(difference).collect(),
+            rows,
+        })
     }
 
-    /// Offset (metres of plan, outwards) of the edge that the views share within `reach_m`, and whether it
-    /// grows brighter outwards.
-    fn edge(&self, reach_m: f64, params: &RefineParams) -> Option<(f64, bool)> {
+    /// Step of the profile at which the facet ends best within `reach_m`; `None` where the views share no edge.
+    ///
+    /// The energy of the labelling in one dimension, square metres for a metre of side: what the views agree on inside
+    /// counts for the facet, and a border on an edge is cheap.
+    fn edge(&self, reach_m: f64, params: &RefineParams) -> Option<usize> {
         (self.views.len() >= params.min_views).then_some(())?;
-        let count = self.views[0].1.len();
-        let middle = (count - 1) / 2;
-        let steps = ((reach_m / self.step_m()) as usize).min(middle - 1);
-        let shared: Vec<(f64, f64)> = (0..count).map(|k| self.shared(k)).collect();
+        let middle = self.middle();
+        let steps = ((reach_m / self.step_m()) as usize).min(middle - 2);
+        let range = middle - steps..=middle + steps;
+        let shared: Vec<f64> = (0..=2 * middle).map(|k| self.shared(k)).collect();
         let least = params.least_contrast / (self.samples as f64).sqrt();
-        let peaks: Vec<usize> = (middle - steps..=middle + steps)
-            .filter(|&k| {
-                let [a, b, c] = [k - 1, k, k + 1].map(|i| shared[i].0.abs());
-                b >= a && b > c && b >= least && shared[k].1 >= params.least_agreement
+        let peaks = (range.clone())
+            .filter(|&k| shared[k] >= shared[k - 1] && shared[k] > shared[k + 1])
+            .filter(|&k| shared[k] >= least);
+        let strongest = peaks.clone().map(|k| shared[k]).fold(0.0, f64::max);
+        let mut inside = 0.0;
+        let agreement: Vec<f64> = range
+            .clone()
+            .map(|k| {
+                inside += self.agreement(k, params) * self.step_m();
+                inside
             })
             .collect();
-        let strength = |k: &usize| shared[*k].0.abs();
-        let strongest = peaks.iter().map(strength).fold(0.0, f64::max);
-        let chosen = peaks
-            .into_iter()
-            .filter(|k| strength(k) >= params.distinct_share * strongest)
-            .max()?;
-        let offset = (chosen as f64 - middle as f64) * self.step_m();
-        Some((offset, shared[chosen].0 > 0.0))
+        let gain = |k: usize| {
+            agreement[k - range.start()] + params.edge_gain_m * (shared[k] / strongest).min(1.0)
+        };
+        peaks.max_by(|&i, &j| gain(i).total_cmp(&gain(j)).then(j.cmp(&i)))
     }
 
-    /// Mean of the views' differences at a step, and how many standard deviations of that mean it is.
-    fn shared(&self, k: usize) -> (f64, f64) {
-        /// Standard deviation of a mean difference that texture leaves, grey range 1.
-        const FLOOR: f64 = 0.004;
-        let n = self.views.len() as f64;
-        let mean = self.views.iter().map(|v| v.1[k]).sum::<f64>() / n;
-        let squares: f64 = self
+    /// Mean correlation of the rows of all pairs of views at a step, less the correlation at which a plane is as good as none, and
+    /// weighted by texture: a row has no width, so unlike a window it does not reach over the edge.
+    fn agreement(&self, k: usize, params: &RefineParams) -> f64 {
+        let variance = params.noise * params.noise;
+        let (mut sum, mut pairs) = (0.0, 0.0f64);
+        for (i, a) in self.views.iter().enumerate() {
+            for b in &self.views[i + 1..] {
+                let [saa, sbb, sab] = covariances(&a.rows[k], &b.rows[k]);
+                let texture = (saa * sbb).sqrt();
+                let correlation = if texture > 0.0 { sab / texture } else { 0.0 };
+                sum += (correlation - params.min_correlation) * texture / (texture + variance);
+                pairs += 1.0;
+            }
+        }
+        sum / pairs.max(1.0)
+    }
+
+    /// The step at the side itself.
+    fn middle(&self) -> usize {
+        (self.views[0].rows.len() - 1) / 2
+    }
+
+    /// The difference that half of the views reach at a step, of either sign: the roof's side of an edge is the same in all
+    /// views, what lies behind it is not.
+    fn shared(&self, k: usize) -> f64 {
+        let mut strengths: Vec<f64> = self
             .views
             .iter()
-            .map(|v| (v.1[k] - mean) * (v.1[k] - mean))
-            .sum();
-        let variance = squares / (n - 1.0).max(1.0) + FLOOR * FLOOR;
-        (mean, mean.abs() / (variance / n).sqrt())
+            .map(|v| strongest_near(&v.differences, k).abs())
+            .collect();
+        math::median(&mut strengths).unwrap_or(0.0)
     }
 
     /// The edge in every view that shows it, sought around the side moved by `offset`.
@@ -214,12 +238,14 @@ impl Profiles {
         &self,
         scene: &Scene,
         side: usize,
-        offset: f64,
-        rising: bool,
+        step: usize,
         params: &RefineParams,
     ) -> Vec<Sighting> {
+        let offset = (step as f64 - self.middle() as f64) * self.step_m();
         let moved = |t: f64| self.segment.at(t) + self.outward * offset;
-        let of_view = |&(view, _): &(ViewId, Vec<f64>)| {
+        let of_view = |profile: &Profile| {
+            let view = profile.view;
+            let rising = strongest_near(&profile.differences, step) > 0.0;
             let camera = scene.camera(view);
             let image = |t: f64| camera.project(&moved(t));
             let expected = Segment2::new(image(END_SHARE)?, image(1.0 - END_SHARE)?);
@@ -243,6 +269,38 @@ impl Profiles {
         let found: Vec<Sighting> = self.views.iter().filter_map(of_view).collect();
         if found.len() < 2 { Vec::new() } else { found }
     }
+}
+
+/// Mean of the values that are seen.
+fn mean(row: &[f32]) -> f64 {
+    let seen = row.iter().filter(|v| !v.is_nan());
+    let (sum, n) = seen.fold((0.0, 0.0f64), |(s, n), &v| (s + f64::from(v), n + 1.0));
+    sum / n.max(1.0)
+}
+
+/// Variances and covariance of two rows where both are seen.
+fn covariances(a: &[f32], b: &[f32]) -> [f64; 3] {
+    let mut n = 0.0f64;
+    let mut sums = [0.0f64; 5];
+    for (&x, &y) in a.iter().zip(b) {
+        if x.is_nan() || y.is_nan() {
+            continue;
+        }
+        let (x, y) = (f64::from(x), f64::from(y));
+        n += 1.0;
+        for (sum, v) in sums.iter_mut().zip([x, y, x * x, y * y, x * y]) {
+            *sum += v;
+        }
+    }
+    let [sx, sy, xx, yy, xy] = sums.map(|s| s / n.max(1.0));
+    [xx - sx * sx, yy - sy * sy, xy - sx * sy].map(|v| if n > 2.0 { v } else { 0.0 })
+}
+
+/// The largest difference at a step and its neighbours, with its sign.
+fn strongest_near(differences: &[f64], k: usize) -> f64 {
+    let near = &differences[k.saturating_sub(1)..(k + 2).min(differences.len())];
+    near.iter()
+        .fold(0.0f64, |s, &d| if d.abs() > s.abs() { d } else { s })
 }
 
 /// Whitens (offset, angle) of an edge of `length` px with an error of `floor` px at both ends that its covariance does not know.

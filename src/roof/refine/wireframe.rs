@@ -172,6 +172,22 @@ impl Wireframe {
         ]
     }
 
+    /// Per facet the share of its sides without a neighbour, by length, that is among `seen`; all of it for a facet
+    /// without such sides.
+    pub fn shown(&self, state: &State, seen: impl Iterator<Item = usize>) -> Vec<f64> {
+        let seen: BTreeSet<usize> = seen.collect();
+        let mut lengths = vec![[0.0f64; 2]; self.faces.len()];
+        for (i, side) in self.sides.iter().enumerate() {
+            if side.kind == SideKind::Free {
+                let length = self.segment(state, side).length();
+                lengths[side.face][0] += length;
+                lengths[side.face][1] += if seen.contains(&i) { length } else { 0.0 };
+            }
+        }
+        let share = |[all, seen]: [f64; 2]| if all > 0.0 { seen / all } else { 1.0 };
+        lengths.into_iter().map(share).collect()
+    }
+
     /// The plane of a facet.
     pub fn plane(&self, state: &State, face: usize) -> Plane {
         let at = self.plane_at(face);
