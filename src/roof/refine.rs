@@ -159,9 +159,10 @@ struct Case<'a> {
 }
 
 impl Case<'_> {
-    /// The refined facets, or why there are none: with simpler outlines where the images allow them, else with the old ones, else
-    /// without looking farther than a guided measurement does.
+    /// The refined facets, or why there are none. Facets that spoil the result keep their outlines and are measured
+    /// near them only, and the others are tried again.
     fn best(&self, report: &mut BuildingRefinement) -> Result<Vec<Facet>, RefineRefusal> {
+        const ATTEMPTS: usize = 4;
         let (wireframe, state) = Wireframe::new(self.old);
         report.sides = wireframe.sides.len();
         if wireframe.size() > self.params.max_unknowns {
@@ -169,24 +170,32 @@ impl Case<'_> {
             return Err(RefineRefusal::TooLarge { unknowns });
         }
         let simple = self.simplified(&wireframe, &state);
-        let simple: Vec<&Facet> = simple.iter().collect();
-        let changes = simple.iter().zip(self.old).any(|(s, o)| s.outer != o.outer);
-        let first = if changes {
-            self.refined(&simple, true, report)
-        } else {
-            Err(RefineRefusal::NoGain)
-        };
-        first
-            .or_else(|_| self.refined(self.old, true, report))
-            .or_else(|_| self.refined(self.old, false, report))
+        let mut open = vec![true; self.old.len()];
+        for attempt in 1.. {
+            let (refusal, spoilers) = match self.refined(&simple, &open, report) {
+                Ok(new) => return Ok(new),
+                Err(why) => why,
+            };
+            let hopeless = spoilers.iter().all(|&f| !open[f]);
+            if attempt == ATTEMPTS || hopeless {
+                return Err(refusal);
+            }
+            // The last time all stay near.
+            if attempt + 1 == ATTEMPTS {
+                open.fill(false);
+            }
+            spoilers.into_iter().for_each(|f| open[f] = false);
+        }
+        unreachable!("the last attempt returns")
     }
 
     /// The facets, each with the simpler outline where the images show at least the same share of it.
     fn simplified(&self, wireframe: &Wireframe, state: &State) -> Vec<Facet> {
         let facets = outline::simplified(self.old, self.params.jog_m);
         let simple: Vec<&Facet> = facets.iter().collect();
+        let far = vec![true; facets.len()];
         let shown = |w: &Wireframe, state: &State| {
-            let sightings = sight_sides(self.scene, self.sight, w, state, true, self.params);
+            let sightings = sight_sides(self.scene, self.sight, w, state, &far, self.params);
             w.shown(state, sightings.iter().map(|s| s.side))
         };
         let (simple_wireframe, simple_state) = Wireframe::new(&simple);
@@ -203,36 +212,42 @@ impl Case<'_> {
             .collect()
     }
 
-    /// The refined facets of a building, or why there are none.
+    /// The refined facets of a building, or why there are none and which facets are the cause. Those not `open` keep their outlines.
     fn refined(
         &self,
-        from: &[&Facet],
-        search: bool,
+        simple: &[Facet],
+        open: &[bool],
         report: &mut BuildingRefinement,
-    ) -> Result<Vec<Facet>, RefineRefusal> {
+    ) -> Result<Vec<Facet>, (RefineRefusal, Vec<usize>)> {
         let params = self.params;
-        let (wireframe, start) = Wireframe::new(from);
+        let give_up = |why| (why, Vec::new());
+        let from: Vec<&Facet> = (0..open.len())
+            .map(|i| if open[i] { &simple[i] } else { self.old[i] })
+            .collect();
+        let (wireframe, start) = Wireframe::new(&from);
         report.sides = wireframe.sides.len();
-        let heights = height_terms(&wireframe, &start, from, self.lines, params);
-        let problem = |state: &State, search: bool| {
-            let sightings = sight_sides(self.scene, self.sight, &wireframe, state, search, params);
+        let heights = height_terms(&wireframe, &start, &from, self.lines, params);
+        let problem = |state: &State, far: &[bool]| {
+            let sightings = sight_sides(self.scene, self.sight, &wireframe, state, far, params);
             let mut problem = Problem::new(self.scene, &wireframe, &start, sightings, params);
             problem.terms.extend(heights.iter().cloned());
             problem
         };
         // First to the edges that the views share near the sides, then measured again from there.
-        let near = problem(&start, search)
+        let near = problem(&start, open)
             .solve(&start)
-            .ok_or(RefineRefusal::Singular)?;
-        let mut problem = problem(&near.state, false);
+            .ok_or(give_up(RefineRefusal::Singular))?;
+        let mut problem = problem(&near.state, &vec![false; open.len()]);
         report.sightings = problem.sightings();
         if report.sightings < params.min_sightings {
             let sightings = report.sightings;
-            return Err(RefineRefusal::FewSightings { sightings });
+            return Err(give_up(RefineRefusal::FewSightings { sightings }));
         }
-        let free = problem.solve(&near.state).ok_or(RefineRefusal::Singular)?;
+        let free = problem
+            .solve(&near.state)
+            .ok_or(give_up(RefineRefusal::Singular))?;
         let regular = regularised(&mut problem, &free, params, &mut report.relations)
-            .ok_or(RefineRefusal::Singular)?;
+            .ok_or(give_up(RefineRefusal::Singular))?;
 
         report.error_before_px = problem.error_px(&start, params.cap_px);
         report.error_after_px = problem.error_px(&regular.state, params.cap_px);
@@ -248,9 +263,9 @@ impl Case<'_> {
                 ground_z: self.building.ground_z,
                 params,
             };
-            judge.accept(wireframe.facets(&regular.state, from))
+            judge.accept(wireframe.facets(&regular.state, &from))
         } else {
-            Err(RefineRefusal::NoGain)
+            Err(give_up(RefineRefusal::NoGain))
         }
     }
 }

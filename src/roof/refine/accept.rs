@@ -22,59 +22,79 @@ pub struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// The new facets if they are sound and the views agree on them as well as before.
-    pub fn accept(&self, new: Vec<Facet>) -> Result<Vec<Facet>, RefineRefusal> {
-        if !self.is_sound(&new) {
-            return Err(RefineRefusal::Broken);
+    /// The new facets if they are sound and the views agree on them as well as before; otherwise why not, and which of
+    /// them are the cause.
+    pub fn accept(&self, new: Vec<Facet>) -> Result<Vec<Facet>, (RefineRefusal, Vec<usize>)> {
+        let broken = self.broken(&new);
+        if !broken.is_empty() {
+            return Err((RefineRefusal::Broken, broken));
         }
-        let (before, after) = self.similarities(&new);
-        if after < before - self.params.similarity_loss {
-            return Err(RefineRefusal::Dissimilar { before, after });
+        let [before, after, worse] = self.similarities(&new);
+        let mean = |sums: &[[f64; 2]]| {
+            let weight: f64 = sums.iter().map(|s| s[0]).sum();
+            let sum: f64 = sums.iter().map(|s| s[1]).sum();
+            if weight > 0.0 { sum / weight } else { 0.0 }
+        };
+        let (b, a) = (mean(&before), mean(&after));
+        if a < b - self.params.similarity_loss {
+            let lost = |i: &usize| worse[*i][0] > 0.0;
+            let spoilers = (0..new.len()).filter(lost).collect();
+            let (before, after) = (b, a);
+            return Err((RefineRefusal::Dissimilar { before, after }, spoilers));
         }
         Ok(new)
     }
 
-    /// Do the facets close to one solid without anything cut, dropped or folded?
-    fn is_sound(&self, new: &[Facet]) -> bool {
+    /// The facets that keep the new ones from closing to one solid with nothing cut, dropped or folded; none when they do.
+    fn broken(&self, new: &[Facet]) -> Vec<usize> {
         let finite = |f: &Facet| {
             f.outer
                 .iter()
                 .all(|p| p.coords.iter().all(|c| c.is_finite()))
         };
+        let all = || (0..new.len()).collect();
         if !new.iter().all(finite) {
-            return false;
+            return all();
         }
         let (model, trace) = close_buildings(new, |_| self.ground_z);
-        // Where the old outline had a facet in parts, the new one may; a facet that grows by half is another one.
-        let area = |f: &Facet| plan_area(f).abs();
-        trace.rejected.is_empty()
+        let mut closed = vec![0.0; new.len()];
+        for (facet, &source) in model.facets.iter().zip(&trace.sources) {
+            closed[source] += plan_area(facet);
+        }
+        // A facet that overlaps its neighbour or itself is cut; one that doubles is another one.
+        let spoils = |&i: &usize| {
+            let (area, old) = (plan_area(&new[i]), plan_area(self.old[i]));
+            (closed[i] - area).abs() > 0.01 || area < 0.5 * old || area > 2.0 * old
+        };
+        let cut: Vec<usize> = (0..new.len()).filter(spoils).collect();
+        if !cut.is_empty() {
+            return cut;
+        }
+        let sound = trace.rejected.is_empty()
             && model.buildings.len() == 1
             && model.facets.len() == new.len()
-            && (model.facets.iter().zip(new)).all(|(m, f)| (area(m) - area(f)).abs() < 0.01)
-            && (new.iter().zip(self.old)).all(|(n, o)| {
-                let ratio = plan_area(n) / plan_area(o);
-                (0.5..=2.0).contains(&ratio)
-            })
-            && check_invariants(&model).is_empty()
+            && check_invariants(&model).is_empty();
+        if sound { cut } else { all() }
     }
 
-    /// Mean correlation of the views inside the old and inside the new facets, weighted by texture. Facets that moved by
-    /// less than a fraction of a pixel are not compared.
-    fn similarities(&self, new: &[Facet]) -> (f64, f64) {
-        let (mut before, mut after) = ([0.0; 2], [0.0; 2]);
-        for (o, n) in self.old.iter().zip(new) {
-            let Some(step) = self.step(o) else { continue };
-            if !moved(o, n, 0.25 * step) {
+    /// Per facet (weight, weight x mean correlation) of the views inside, before and after, and whether that fell. Facets that
+    /// moved by less than a fraction of a pixel are not compared.
+    fn similarities(&self, new: &[Facet]) -> [Vec<[f64; 2]>; 3] {
+        let compared = crate::parallel::map(new, |i, n| {
+            let o = self.old[i];
+            let step = self.step(o).filter(|step| moved(o, n, 0.25 * step))?;
+            Some([self.agreement(o, step), self.agreement(n, step)])
+        });
+        let mut sums = [(); 3].map(|()| vec![[0.0; 2]; new.len()]);
+        for (i, pair) in compared.into_iter().enumerate() {
+            let Some([before, after]) = pair else {
                 continue;
-            }
-            for (sums, facet) in [(&mut before, *o), (&mut after, n)] {
-                let [weight, correlation] = self.agreement(facet, step);
-                sums[0] += weight;
-                sums[1] += correlation;
-            }
+            };
+            let lost = before[1] * after[0] > after[1] * before[0];
+            (sums[0][i], sums[1][i]) = (before, after);
+            sums[2][i][0] = f64::from(u8::from(lost));
         }
-        let mean = |[weight, sum]: [f64; 2]| if weight > 0.0 { sum / weight } else { 0.0 };
-        (mean(before), mean(after))
+        sums
     }
 
     /// Size of a pixel on the facet.

@@ -96,11 +96,27 @@ fn without_jogs(mut ring: Vec<Corner>, jog_m: f64) -> Vec<Corner> {
             .filter(|&i| length(i) < jog_m && ring[i].free && ring[(i + 1) % n].free)
             .collect();
         short.sort_by(|&i, &j| length(i).total_cmp(&length(j)).then(i.cmp(&j)));
-        let Some(shorter) = short.iter().find_map(|&i| without_side(&ring, i, jog_m)) else {
+        let shorter = (short.iter().find_map(|&i| without_side(&ring, i, jog_m)))
+            .or_else(|| without_spike(&ring, jog_m));
+        let Some(shorter) = shorter else {
             return ring;
         };
         ring = shorter;
     }
+}
+
+/// The ring without a corner between two neighbours that nearly touch: a wedge cut into the facet or standing out.
+fn without_spike(ring: &[Corner], jog_m: f64) -> Option<Vec<Corner>> {
+    let n = ring.len();
+    let is_spike = |&i: &usize| {
+        let [p, q, r] = [i + n - 1, i, i + 1].map(|k| ring[k % n]);
+        let sharp = (q.at - p.at).dot(&(r.at - q.at)) < 0.0;
+        q.free && sharp && (r.at - p.at).norm() < FARTHEST * jog_m
+    };
+    let i = (0..n).find(is_spike)?;
+    let mut shorter = ring.to_vec();
+    shorter.remove(i);
+    Some(shorter)
 }
 
 /// The ring without its side `i`; `None` where no simple change replaces it.
@@ -212,6 +228,16 @@ mod tests {
         let flat = outline(&slot);
         assert!(SQUARE.iter().all(|c| flat.contains(c)), "{flat:?}");
         assert!(!flat.contains(&[4.0, 1.0]) && !flat.contains(&[4.2, 1.0]));
+        let wedge = [
+            [0.0, 0.0],
+            [4.0, 0.0],
+            [4.2, 2.0],
+            [4.5, 0.0],
+            [8.0, 0.0],
+            [8.0, 6.0],
+            [0.0, 6.0],
+        ];
+        assert!(!outline(&wedge).contains(&[4.2, 2.0]));
         let cut = [[0.0, 0.0], [7.7, 0.0], [8.0, 0.3], [8.0, 6.0], [0.0, 6.0]];
         assert_eq!(outline(&cut), SQUARE);
     }

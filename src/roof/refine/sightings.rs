@@ -39,32 +39,116 @@ pub struct Sighting {
     pub whitening: Matrix2<f64>,
 }
 
-/// Measures all sides in all views. `search` allows free sides to move to another edge first.
+/// Measures all sides in all views. Sides without a neighbour may move to another edge first where `search` allows it for their
+/// facet.
 pub fn sight_sides(
     scene: &Scene,
     sight: &Sight,
     wireframe: &Wireframe,
     state: &State,
-    search: bool,
+    search: &[bool],
     params: &RefineParams,
 ) -> Vec<Sighting> {
-    let sides: Vec<usize> = (0..wireframe.sides.len()).collect();
-    let of_side = |_: usize, &side: &usize| {
-        let model = &wireframe.sides[side];
-        let profiles = Profiles::new(scene, sight, wireframe, state, model, params)?;
-        let reach = if search && model.kind != SideKind::Crease {
+    let pixel_m = pixel(scene, wireframe, state);
+    let profiles = crate::parallel::map(&wireframe.sides, |_, side| {
+        Profiles::new(scene, sight, wireframe, state, side, pixel_m, params)
+    });
+    let gains = crate::parallel::map(&profiles, |i, profiles| {
+        let side = &wireframe.sides[i];
+        let far = search[side.face] && side.kind != SideKind::Crease;
+        let reach = if far {
             params.search_m
         } else {
-            params.reach_px * profiles.pixel_m
+            params.reach_px * pixel_m
         };
-        let step = profiles.edge(reach, params)?;
-        Some(profiles.measure(scene, side, step, params))
+        profiles.as_ref()?.gains(reach, params)
+    });
+    let runs = aligned_runs(wireframe, state);
+    let of_side = |i: usize, profiles: &Option<Profiles>| {
+        let run = runs.iter().find(|run| run.contains(&i));
+        let together: Vec<&Gains> = match run {
+            Some(run) => run.iter().filter_map(|&j| gains[j].as_ref()).collect(),
+            None => gains[i].iter().collect(),
+        };
+        gains[i].as_ref()?;
+        let step = best_step(&together)?;
+        Some(profiles.as_ref()?.measure(scene, i, step, params))
     };
-    crate::parallel::map(&sides, of_side)
+    crate::parallel::map(&profiles, of_side)
         .into_iter()
         .flatten()
         .flatten()
         .collect()
+}
+
+/// Size of a pixel on the building, metres.
+fn pixel(scene: &Scene, wireframe: &Wireframe, state: &State) -> f64 {
+    let middle = wireframe.corner(state, 0, 0);
+    let pixels = scene.views.iter().map(|v| v.camera.ground_pixel(&middle));
+    pixels.fold(f64::INFINITY, f64::min)
+}
+
+/// Free sides of different facets that go on into each other, such as both halves of a gable's end: they are one edge.
+fn aligned_runs(wireframe: &Wireframe, state: &State) -> Vec<Vec<usize>> {
+    /// Sine of the angle below which sides are aligned (4 degrees).
+    const ALIGNED: f64 = 0.07;
+    let direction = |side: &Side| {
+        let s = wireframe.segment(state, side);
+        (s.p1.xy() - s.p0.xy()).normalize()
+    };
+    let mut runs: Vec<Vec<usize>> = Vec::new();
+    let mut taken = vec![false; wireframe.sides.len()];
+    for first in 0..wireframe.sides.len() {
+        if taken[first] || wireframe.sides[first].kind != SideKind::Free {
+            continue;
+        }
+        let mut run = vec![first];
+        taken[first] = true;
+        let mut next = 0;
+        while next < run.len() {
+            let side = &wireframe.sides[run[next]];
+            for (j, other) in wireframe.sides.iter().enumerate() {
+                let touch = other.ends[0] == side.ends[1] || other.ends[1] == side.ends[0];
+                if taken[j] || !touch || other.kind != SideKind::Free {
+                    continue;
+                }
+                let (d, e) = (direction(side), direction(other));
+                if d.perp(&e).abs() < ALIGNED && d.dot(&e) > 0.0 {
+                    taken[j] = true;
+                    run.push(j);
+                }
+            }
+            next += 1;
+        }
+        runs.push(run);
+    }
+    runs
+}
+
+/// What it is worth that a side lies at each step of its profile.
+struct Gains {
+    /// First step that is allowed.
+    first: usize,
+    /// For each step from there: the energy gained, square metres for the whole side.
+    gain: Vec<f64>,
+    /// For each step from there: how clearly the views share an edge, 1 for the clearest, times the side's length.
+    edge: Vec<f64>,
+}
+
+/// The best step at which there is an edge, for one side or for several that are one edge.
+fn best_step(sides: &[&Gains]) -> Option<usize> {
+    let first = sides.iter().map(|g| g.first).max()?;
+    let end = sides.iter().map(|g| g.first + g.gain.len()).min()?;
+    let sum = |of: fn(&Gains) -> &Vec<f64>, k: usize| -> f64 {
+        sides.iter().map(|g| of(g)[k - g.first]).sum()
+    };
+    let edge = |k: usize| sum(|g| &g.edge, k);
+    (first + 1..end.saturating_sub(1))
+        .filter(|&k| edge(k) > 0.0 && edge(k) >= edge(k - 1) && edge(k) > edge(k + 1))
+        .max_by(|&i, &j| {
+            let gain = |k| sum(|g| &g.gain, k);
+            gain(i).total_cmp(&gain(j)).then(j.cmp(&i))
+        })
 }
 
 /// What one view shows across a side, at steps from inside to outside; the middle one is at the side.
@@ -97,6 +181,7 @@ impl Profiles {
         wireframe: &Wireframe,
         state: &State,
         side: &Side,
+        pixel_m: f64,
         params: &RefineParams,
     ) -> Option<Self> {
         let segment = wireframe.segment(state, side);
@@ -106,9 +191,6 @@ impl Profiles {
         let at = wireframe.plane_at(side.face);
         let rise = state[at] * across.x + state[at + 1] * across.y;
         let outward = nalgebra::Vector3::new(across.x, across.y, rise);
-        let middle = segment.at(0.5);
-        let pixels = scene.views.iter().map(|v| v.camera.ground_pixel(&middle));
-        let pixel_m = pixels.fold(f64::INFINITY, f64::min);
         let length_px = segment.length() / pixel_m;
         (length_px >= params.min_side_px).then_some(())?;
         let mut profiles = Self {
@@ -171,33 +253,39 @@ impl Profiles {
         })
     }
 
-    /// Step of the profile at which the facet ends best within `reach_m`; `None` where the views share no edge.
+    /// What each step within `reach_m` is worth; `None` where too few views see the side, or none of them an edge.
     ///
-    /// The energy of the labelling in one dimension, square metres for a metre of side: what the views agree on inside
-    /// counts for the facet, and a border on an edge is cheap.
-    fn edge(&self, reach_m: f64, params: &RefineParams) -> Option<usize> {
+    /// The energy of the labelling in one dimension: what the views agree on inside counts for the facet, a border
+    /// on an edge is cheap. Besides, the border that delineation chose is taken for known to `search_m`.
+    fn gains(&self, reach_m: f64, params: &RefineParams) -> Option<Gains> {
         (self.views.len() >= params.min_views).then_some(())?;
         let middle = self.middle();
-        let steps = ((reach_m / self.step_m()) as usize).min(middle - 2);
-        let range = middle - steps..=middle + steps;
-        let shared: Vec<f64> = (0..=2 * middle).map(|k| self.shared(k)).collect();
+        let steps = ((reach_m / self.step_m()) as usize + 1).min(middle - 1);
+        let (first, last) = (middle - steps, middle + steps);
+        let shared: Vec<f64> = (first..=last).map(|k| self.shared(k)).collect();
         let least = params.least_contrast / (self.samples as f64).sqrt();
-        let peaks = (range.clone())
-            .filter(|&k| shared[k] >= shared[k - 1] && shared[k] > shared[k + 1])
-            .filter(|&k| shared[k] >= least);
-        let strongest = peaks.clone().map(|k| shared[k]).fold(0.0, f64::max);
-        let mut inside = 0.0;
-        let agreement: Vec<f64> = range
-            .clone()
-            .map(|k| {
-                inside += self.agreement(k, params) * self.step_m();
-                inside
-            })
-            .collect();
-        let gain = |k: usize| {
-            agreement[k - range.start()] + params.edge_gain_m * (shared[k] / strongest).min(1.0)
+        let strongest = shared.iter().copied().fold(0.0, f64::max);
+        (strongest >= least).then_some(())?;
+        let length = self.segment.length();
+        let edge = |s: &f64| {
+            if *s >= least {
+                s / strongest * length
+            } else {
+                0.0
+            }
         };
-        peaks.max_by(|&i, &j| gain(i).total_cmp(&gain(j)).then(j.cmp(&i)))
+        let edge: Vec<f64> = shared.iter().map(edge).collect();
+        let mut inside = 0.0;
+        let gain = (first..=last).map(|k| {
+            inside += self.agreement(k, params) * self.step_m() * length;
+            let moved = (k as f64 - middle as f64) * self.step_m() / params.search_m;
+            inside + params.edge_gain_m * (edge[k - first] - moved * moved * length)
+        });
+        Some(Gains {
+            first,
+            gain: gain.collect(),
+            edge,
+        })
     }
 
     /// Mean correlation of the rows of all pairs of views at a step, less the correlation at which a plane is as good as none, and
