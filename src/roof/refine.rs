@@ -326,3 +326,126 @@ fn height_terms(
     }
     terms
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::roof::{check_invariants, close_buildings};
+    use crate::synthetic::{SyntheticTruth, gable_scene, l_scene, skewed_scene};
+    use nalgebra::{Matrix3, Point3};
+
+    /// The true roof, each corner moved by `change`; affine changes keep facets planar and joined.
+    fn changed(truth: &SyntheticTruth, change: impl Fn(&Point3<f64>) -> Point3<f64>) -> RoofModel {
+        let facets: Vec<Facet> = (truth.facets.iter())
+            .map(|(_, ring)| fixture::facet(&ring.iter().map(&change).collect::<Vec<_>>()))
+            .collect();
+        let (model, trace) = close_buildings(&facets, |_| truth.ground_z);
+        assert_eq!((trace.rejected.len(), model.buildings.len()), (0, 1));
+        model
+    }
+
+    /// Shifted by 0.15 m, turned by half a degree, stretched by a hundredth.
+    fn displaced(p: &Point3<f64>) -> Point3<f64> {
+        let m = Matrix3::new(1.01, -0.009, 0.0, 0.008, 1.0, 0.0, 0.0, 0.0, 1.0);
+        Point3::from(m * p.coords + Vector3::new(0.12, -0.09, 0.1))
+    }
+
+    /// Refines and closes; gives the model and what happened to its only building.
+    fn refine(scene: &Scene, model: &RoofModel) -> (RoofModel, BuildingRefinement) {
+        let (facets, trace) = refine_roofs(scene, &[], model, &RefineParams::default());
+        let ground = model.buildings[0].ground_z;
+        let (closed, solids) = close_buildings(&facets, |_| ground);
+        assert_eq!(solids.rejected, []);
+        assert_eq!(check_invariants(&closed), []);
+        (closed, trace.buildings[0].clone())
+    }
+
+    /// Largest distance of a true corner from the nearest corner of the model, metres.
+    fn error_m(model: &RoofModel, truth: &SyntheticTruth) -> f64 {
+        let corners = truth.facets.iter().flat_map(|(_, ring)| ring);
+        let nearest = |p: &Point3<f64>| {
+            let found = model.facets.iter().flat_map(|f| &f.outer);
+            found.map(|q| (p - q).norm()).fold(f64::INFINITY, f64::min)
+        };
+        corners.map(nearest).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn a_displaced_roof_is_put_back() {
+        for (scene, truth) in [gable_scene(320), l_scene(320)] {
+            let model = changed(&truth, displaced);
+            let before = error_m(&model, &truth);
+            let (refined, report) = refine(&scene, &model);
+            let after = error_m(&refined, &truth);
+            // A pixel is 8.5 cm.
+            assert!(before > 0.2 && after < 0.06, "{before} {after} {report:#?}");
+            assert_eq!(report.refused, None);
+            assert!(report.error_after_px < 0.35 && report.error_before_px > 1.0);
+        }
+    }
+
+    #[test]
+    fn an_eave_out_of_reach_of_a_guided_measurement_is_found() {
+        let (scene, truth) = gable_scene(320);
+        // Both eaves half a metre out, in their planes, as where correlation windows straddle the edge.
+        let lowest = (truth.facets.iter().flat_map(|f| &f.1)).fold(f64::MAX, |l, p| l.min(p.z));
+        let ridge: Vec<Point3<f64>> = (truth.facets.iter().flat_map(|f| &f.1))
+            .filter(|p| p.z > lowest + 1.0)
+            .copied()
+            .collect();
+        let out = |p: &Point3<f64>| {
+            if p.z > lowest + 1.0 {
+                return *p;
+            }
+            let up = ridge
+                .iter()
+                .min_by(|a, b| (*a - p).norm().total_cmp(&(*b - p).norm()))
+                .unwrap();
+            p + (p - up).normalize() * 0.5
+        };
+        let model = changed(&truth, out);
+        let (refined, report) = refine(&scene, &model);
+        let after = error_m(&refined, &truth);
+        assert!(after < 0.06, "{after} {report:#?}");
+    }
+
+    fn tested(report: &BuildingRefinement, kind: RelationKind, adopted: bool) -> usize {
+        let same = |r: &&TestedRelation| r.kind == kind && r.adopted == adopted;
+        report.relations.iter().filter(same).count()
+    }
+
+    #[test]
+    fn relations_are_adopted_where_true_and_refused_where_the_images_contradict() {
+        use RelationKind::{Horizontal, Parallel, Perpendicular, Symmetric};
+        let (scene, truth) = gable_scene(320);
+        let (refined, report) = refine(&scene, &changed(&truth, displaced));
+        assert!(tested(&report, Perpendicular, true) > 0, "{report:#?}");
+        assert!(report.relations.iter().all(|r| r.adopted), "{report:#?}");
+        // What was adopted holds: the ridge is level and both facets have one slope.
+        let [f, g] = [0, 1].map(|i| refined.facets[i].plane.normal);
+        assert!((f.z - g.z).abs() < 1e-3 && f.cross(&g).normalize().z.abs() < 1e-3);
+
+        let (scene, truth) = skewed_scene(320);
+        let (refined, report) = refine(&scene, &changed(&truth, displaced));
+        assert_eq!(tested(&report, Perpendicular, true), 0, "{report:#?}");
+        assert!(tested(&report, Perpendicular, false) > 0, "{report:#?}");
+        for kind in [Horizontal, Parallel, Symmetric] {
+            assert_eq!(tested(&report, kind, false), 0, "{kind:?} {report:#?}");
+        }
+        let error = error_m(&refined, &truth);
+        assert!(error < 0.06, "{error}");
+    }
+
+    #[test]
+    fn images_that_show_nothing_change_nothing() {
+        let (mut scene, truth) = gable_scene(320);
+        for view in &mut scene.views {
+            view.gray.data.fill(0.5);
+        }
+        let model = changed(&truth, displaced);
+        let (facets, trace) = refine_roofs(&scene, &[], &model, &RefineParams::default());
+        assert_eq!(facets, model.facets);
+        let refused = trace.buildings[0].refused;
+        assert_eq!(refused, Some(RefineRefusal::FewSightings { sightings: 0 }));
+    }
+}
