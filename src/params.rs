@@ -452,6 +452,16 @@ pub struct RefineParams {
     pub min_sightings: usize,
     /// Most unknowns of a building; larger ones keep their shape. Assumption: seconds of one core.
     pub max_unknowns: usize,
+    /// A facet that ends at another one higher or lower is looked at over this distance from there: it may end earlier, and what
+    /// lies between is the ground, metres. Assumption: the width of an alley.
+    pub part_m: f64,
+    /// ... but not over less than this, metres. Assumption: overhangs and gutters.
+    pub least_part_m: f64,
+    /// Least gain for ending it earlier, square metres for a metre of side. Assumption: the error of a correlation (0.05) over a
+    /// metre.
+    pub part_gain_m: f64,
+    /// What a border costs that no edge supports, square metres for a metre. Assumption: as in the labelling.
+    pub border_cost_m: f64,
     /// How much the mean correlation inside the facets may fall. Assumption: its error.
     pub similarity_loss: f64,
 }
@@ -481,7 +491,11 @@ impl Default for RefineParams {
             relation_chi2: 6.63,
             cap_px: 5.0,
             min_sightings: 6,
-            max_unknowns: 1200,
+            max_unknowns: 6000,
+            part_m: 3.0,
+            least_part_m: 0.4,
+            part_gain_m: 0.05,
+            border_cost_m: 0.25,
             similarity_loss: 0.01,
         }
     }

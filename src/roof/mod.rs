@@ -10,8 +10,8 @@ pub use ground::Ground;
 pub use invariants::{PLANAR_M, Violation, check_invariants};
 pub use reconstruct::{RoofTrace, reconstruct_roofs};
 pub use refine::{
-    BuildingRefinement, RefineRefusal, RefineTrace, RelationKind, SideKind, TestedRelation,
-    refine_roofs,
+    BuildingRefinement, Parting, RefineRefusal, RefineTrace, RelationKind, SideKind,
+    TestedRelation, part_roofs, refine_roofs,
 };
 pub use solid::{SolidRejection, SolidTrace, WELD_M, close_buildings};
 

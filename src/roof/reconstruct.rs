@@ -2,7 +2,10 @@
 
 use serde::Serialize;
 
-use super::{Facet, Ground, RefineTrace, RoofModel, SolidTrace, close_buildings, refine_roofs};
+use super::{
+    Facet, Ground, Parting, RefineTrace, RoofModel, SolidTrace, close_buildings, part_roofs,
+    refine_roofs,
+};
 use crate::halfplane::{FacetTrace, HalfPlane, reconstruct_facets};
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
@@ -14,6 +17,8 @@ use crate::scene::Scene;
 pub struct RoofTrace {
     /// Grouping, delineation and verification.
     pub facets: FacetTrace,
+    /// Gaps between facets that delineation had closed.
+    pub partings: Vec<Parting>,
     /// What was regularised and refined in each building.
     pub refinement: RefineTrace,
     /// Walls and ground.
@@ -33,15 +38,18 @@ pub fn reconstruct_roofs(
     let (facets, facet_trace) =
         reconstruct_facets(scene, segments, lines, half_planes, &ground, params);
     let below = |members: &[&Facet]| ground.below(members);
-    // Refinement needs facets that share vertices, and moves them; so the solids are made twice.
+    // Refinement needs facets that share vertices, and moves them; so the solids are made again.
     let (delineated, solids) = close_buildings(&facets, below);
+    let (parted, partings) = part_roofs(scene, &delineated, &params.refine);
+    let (delineated, again) = close_buildings(&parted, below);
     let (refined, refinement) = refine_roofs(scene, lines, &delineated, &params.refine);
     let (model, closed) = close_buildings(&refined, below);
-    let solids = solids.then(closed);
+    let solids = solids.then(again).then(closed);
     (
         model,
         RoofTrace {
             facets: facet_trace,
+            partings,
             refinement,
             solids,
         },

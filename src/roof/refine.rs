@@ -15,9 +15,11 @@
 
 mod accept;
 mod adjust;
+mod envelope;
 #[cfg(test)]
 mod fixture;
 mod outline;
+mod parting;
 mod relations;
 mod sight;
 mod sightings;
@@ -26,6 +28,7 @@ mod wireframe;
 use nalgebra::Vector3;
 use serde::Serialize;
 
+pub use parting::{Parting, part_roofs};
 pub use relations::{RelationKind, TestedRelation};
 pub use wireframe::SideKind;
 
@@ -234,26 +237,25 @@ impl Case<'_> {
             problem
         };
         // First to the edges that the views share near the sides, then measured again from there.
-        let near = problem(&start, open)
-            .solve(&start)
-            .ok_or(give_up(RefineRefusal::Singular))?;
+        let singular = || give_up(RefineRefusal::Singular);
+        let far = problem(&start, open);
+        let pattern = far.pattern();
+        let near = far.solve(&start, &pattern).ok_or_else(singular)?;
         let mut problem = problem(&near.state, &vec![false; open.len()]);
         report.sightings = problem.sightings();
         if report.sightings < params.min_sightings {
             let sightings = report.sightings;
             return Err(give_up(RefineRefusal::FewSightings { sightings }));
         }
-        let free = problem
-            .solve(&near.state)
-            .ok_or(give_up(RefineRefusal::Singular))?;
-        let regular = regularised(&mut problem, &free, params, &mut report.relations)
-            .ok_or(give_up(RefineRefusal::Singular))?;
+        let pattern = problem.pattern();
+        let free = problem.solve(&near.state, &pattern).ok_or_else(singular)?;
+        let regular =
+            regularised(&mut problem, &free, params, &mut report.relations).ok_or_else(singular)?;
 
         report.error_before_px = problem.error_px(&start, params.cap_px);
-        report.error_after_px = problem.error_px(&regular.state, params.cap_px);
-        let moves = (0..wireframe.vertices).map(|v| {
-            (wireframe.position(&regular.state, v) - wireframe.position(&start, v)).norm()
-        });
+        report.error_after_px = problem.error_px(&regular, params.cap_px);
+        let moves = (0..wireframe.vertices)
+            .map(|v| (wireframe.position(&regular, v) - wireframe.position(&start, v)).norm());
         report.largest_move_m = moves.fold(0.0, f64::max);
         // NaN fails the comparison.
         if report.error_after_px < report.error_before_px {
@@ -263,7 +265,7 @@ impl Case<'_> {
                 ground_z: self.building.ground_z,
                 params,
             };
-            judge.accept(wireframe.facets(&regular.state, &from))
+            judge.accept(wireframe.facets(&regular, &from))
         } else {
             Err(give_up(RefineRefusal::NoGain))
         }
@@ -276,19 +278,15 @@ fn regularised(
     free: &Solution,
     params: &RefineParams,
     tested: &mut Vec<TestedRelation>,
-) -> Option<Solution> {
+) -> Option<State> {
     let proposed = relations::propose(problem.wireframe, &free.state, params);
-    let (adopted, tests) = relations::adopt(
-        problem.wireframe,
-        &free.state,
-        &free.covariance,
-        &proposed,
-        params,
-    );
+    let (adopted, tests) = relations::adopt(problem.wireframe, free, &proposed, params);
     *tested = tests;
     let terms = adopted.into_iter().map(|r| Term::Relation(r, HELD_M));
     problem.terms.extend(terms);
-    problem.solve(&free.state)
+    // Relations join unknowns that no image edge does.
+    let solution = problem.solve(&free.state, &problem.pattern())?.state;
+    Some(solution)
 }
 
 /// Standard deviation of an adopted relation, metres: it holds.

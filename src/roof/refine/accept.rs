@@ -5,8 +5,9 @@ use nalgebra::Point2;
 use super::RefineRefusal;
 use super::sight::inside;
 use crate::halfplane::{PlanGrid, consistency_map};
+use crate::ids::FacetId;
 use crate::params::RefineParams;
-use crate::roof::{Facet, check_invariants, close_buildings};
+use crate::roof::{Facet, Violation, check_invariants, close_buildings};
 use crate::scene::Scene;
 
 /// What a refined building is measured against.
@@ -70,11 +71,20 @@ impl Judge<'_> {
         if !cut.is_empty() {
             return cut;
         }
-        let sound = trace.rejected.is_empty()
-            && model.buildings.len() == 1
-            && model.facets.len() == new.len()
-            && check_invariants(&model).is_empty();
-        if sound { cut } else { all() }
+        let violations = check_invariants(&model);
+        if trace.rejected.is_empty() && violations.is_empty() {
+            return cut;
+        }
+        // Some name facets; where none does, it may be any.
+        let mut named: Vec<usize> = violations
+            .iter()
+            .flat_map(facets_of)
+            .map(|f| trace.sources[f.index()])
+            .chain(trace.rejected.iter().map(|r| r.0))
+            .collect();
+        named.sort_unstable();
+        named.dedup();
+        if named.is_empty() { all() } else { named }
     }
 
     /// Per facet (weight, weight x mean correlation) of the views inside, before and after, and whether that fell. Facets that
@@ -128,6 +138,18 @@ impl Judge<'_> {
             }
         }
         sums
+    }
+}
+
+/// The facets that a violation is about.
+fn facets_of(violation: &Violation) -> Vec<FacetId> {
+    match violation {
+        Violation::FacetPlane { facet }
+        | Violation::FacetNotPlanar { facet, .. }
+        | Violation::FacetRingNotSimple { facet, .. }
+        | Violation::FacetRingOrientation { facet, .. } => vec![*facet],
+        Violation::FacetsOverlap { first, second, .. } => vec![*first, *second],
+        _ => Vec::new(),
     }
 }
 

@@ -9,8 +9,9 @@
 //! rho is Cauchy's, so that one view that shows a gutter or a shadow does not move the side. Derivatives are central
 //! differences: a term depends on a dozen unknowns at most, and there are a few thousand terms.
 
-use nalgebra::{DMatrix, DVector, Point2};
+use nalgebra::{DVector, Point2};
 
+use super::envelope::{Envelope, Pattern};
 use super::relations::Relation;
 use super::sightings::Sighting;
 use super::wireframe::{Meet, State, Straight, Wireframe};
@@ -73,15 +74,24 @@ pub struct Problem<'a> {
 }
 
 /// A solved problem.
-pub struct Solution {
+pub struct Solution<'p> {
     /// The adjusted state.
     pub state: State,
-    /// Inverse of the normal matrix, times what the residuals scatter.
-    pub covariance: DMatrix<f64>,
+    /// Cholesky factor of the normal matrix.
+    factor: Envelope<'p>,
+    /// By how much the residuals scatter more than they should.
+    scatter: f64,
 }
 
-struct Normal {
-    matrix: DMatrix<f64>,
+impl Solution<'_> {
+    /// The covariance of the state times a vector.
+    pub fn spread(&self, gradient: &DVector<f64>) -> DVector<f64> {
+        self.factor.solve(gradient) * self.scatter
+    }
+}
+
+struct Normal<'p> {
+    matrix: Envelope<'p>,
     gradient: DVector<f64>,
     cost: f64,
 }
@@ -113,18 +123,21 @@ impl<'a> Problem<'a> {
         }
     }
 
+    /// Which unknowns meet in a term.
+    pub fn pattern(&self) -> Pattern {
+        let groups: Vec<Vec<usize>> = self.terms.iter().map(|t| self.unknowns(t)).collect();
+        Pattern::new(self.wireframe.size(), &groups)
+    }
+
     /// Solves from a state; `None` when the normal equations are singular.
-    pub fn solve(&self, start: &State) -> Option<Solution> {
+    pub fn solve<'p>(&self, start: &State, pattern: &'p Pattern) -> Option<Solution<'p>> {
         let mut state = start.clone();
-        let mut normal = self.normal(&state)?;
+        let mut normal = self.normal(&state, pattern)?;
         let mut damping = 1e-6;
         for _ in 0..MAX_ITERATIONS {
-            let mut system = normal.matrix.clone();
-            for i in 0..system.nrows() {
-                system[(i, i)] *= 1.0 + damping;
-            }
-            let moved = &state - system.cholesky()?.solve(&normal.gradient);
-            match self.normal(&moved) {
+            let factor = normal.matrix.damped(1.0 + damping).cholesky()?;
+            let moved = &state - factor.solve(&normal.gradient);
+            match self.normal(&moved, pattern) {
                 Some(next) if next.cost <= normal.cost => {
                     let gain = normal.cost - next.cost;
                     (state, normal) = (moved, next);
@@ -141,9 +154,13 @@ impl<'a> Problem<'a> {
         }
         // Residuals that scatter more than they should make the solution less certain.
         let redundancy = (2 * self.sightings()) as f64;
-        let factor = ((normal.cost + SCATTER_PRIOR) / (redundancy + SCATTER_PRIOR)).max(1.0);
-        let covariance = normal.matrix.cholesky()?.inverse() * factor;
-        Some(Solution { state, covariance })
+        let scatter = ((normal.cost + SCATTER_PRIOR) / (redundancy + SCATTER_PRIOR)).max(1.0);
+        let factor = normal.matrix.cholesky()?;
+        Some(Solution {
+            state,
+            factor,
+            scatter,
+        })
     }
 
     /// Number of measured edges.
@@ -153,11 +170,10 @@ impl<'a> Problem<'a> {
     }
 
     /// The normal equations at a state, with robust weights; `None` where a side is behind a camera.
-    fn normal(&self, state: &State) -> Option<Normal> {
-        let n = state.len();
+    fn normal<'p>(&self, state: &State, pattern: &'p Pattern) -> Option<Normal<'p>> {
         let mut normal = Normal {
-            matrix: DMatrix::zeros(n, n),
-            gradient: DVector::zeros(n),
+            matrix: pattern.zeros(),
+            gradient: DVector::zeros(state.len()),
             cost: 0.0,
         };
         let mut at = state.clone();
@@ -185,9 +201,9 @@ impl<'a> Problem<'a> {
             }
             for (i, &u) in unknowns.iter().enumerate() {
                 normal.gradient[u] += weight * (rows[0][i] * r0 + rows[1][i] * r1);
-                for (j, &v) in unknowns.iter().enumerate() {
-                    normal.matrix[(u, v)] +=
-                        weight * (rows[0][i] * rows[0][j] + rows[1][i] * rows[1][j]);
+                for (j, &v) in unknowns[..=i].iter().enumerate() {
+                    let product = rows[0][i] * rows[0][j] + rows[1][i] * rows[1][j];
+                    normal.matrix.add(u, v, weight * product);
                 }
             }
         }

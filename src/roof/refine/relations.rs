@@ -12,9 +12,10 @@
 //! when chi2 is below a quantile, and then C and x are updated (one step of a Kalman filter), so that the next
 //! relation is tested against what has been adopted. A relation is proposed only where the sides are near it anyway.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use serde::Serialize;
 
+use super::adjust::Solution;
 use super::wireframe::{Side, SideKind, State, Wireframe};
 use crate::geometry::Segment3;
 use crate::math;
@@ -160,7 +161,7 @@ pub fn propose(w: &Wireframe, state: &State, params: &RefineParams) -> Vec<Relat
 fn longest_first(w: &Wireframe, state: &State, params: &RefineParams) -> Vec<usize> {
     let length = |i: usize| w.segment(state, &w.sides[i]).length();
     let mut sides: Vec<usize> = (0..w.sides.len())
-        .filter(|&i| length(i) >= params.min_relation_m)
+        .filter(|&i| w.sides[i].kind != SideKind::Foot && length(i) >= params.min_relation_m)
         .collect();
     sides.sort_by(|&i, &j| length(j).total_cmp(&length(i)).then(i.cmp(&j)));
     sides
@@ -251,17 +252,21 @@ fn slope_deg(s: &Segment3) -> f64 {
 /// covariance of the free solution allows.
 pub fn adopt(
     w: &Wireframe,
-    state: &State,
-    covariance: &DMatrix<f64>,
+    solution: &Solution,
     proposed: &[Relation],
     params: &RefineParams,
 ) -> (Vec<Relation>, Vec<TestedRelation>) {
-    let (mut state, mut covariance) = (state.clone(), covariance.clone());
-    let free = state.clone();
+    let free = &solution.state;
+    let mut state = free.clone();
+    // What the relations adopted so far take from the covariance: spread spread' / variance each.
+    let mut taken: Vec<(DVector<f64>, f64)> = Vec::new();
     let (mut adopted, mut tested) = (Vec::new(), Vec::new());
     for relation in proposed {
         let gradient = gradient(relation, w, &state);
-        let spread = &covariance * &gradient;
+        let mut spread = solution.spread(&gradient);
+        for (earlier, variance) in &taken {
+            spread -= earlier * (earlier.dot(&gradient) / variance);
+        }
         let variance = gradient.dot(&spread) + params.relation_sigma_m * params.relation_sigma_m;
         let value = relation.value(w, &state);
         let chi2 = value * value / variance;
@@ -271,7 +276,7 @@ pub fn adopt(
             sides: relation
                 .sides()
                 .iter()
-                .map(|&i| w.segment(&free, &w.sides[i]))
+                .map(|&i| w.segment(free, &w.sides[i]))
                 .collect(),
             deviation_m: value,
             chi2,
@@ -279,7 +284,7 @@ pub fn adopt(
         });
         if accept {
             state -= &spread * (value / variance);
-            covariance -= &spread * spread.transpose() / variance;
+            taken.push((spread, variance));
             adopted.push(*relation);
         }
     }

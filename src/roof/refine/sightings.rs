@@ -51,7 +51,9 @@ pub fn sight_sides(
 ) -> Vec<Sighting> {
     let pixel_m = pixel(scene, wireframe, state);
     let profiles = crate::parallel::map(&wireframe.sides, |_, side| {
-        Profiles::new(scene, sight, wireframe, state, side, pixel_m, params)
+        (side.kind != SideKind::Foot).then_some(())?;
+        let reach = (params.search_m, pixel_m);
+        Profiles::new(scene, sight, wireframe, state, side, reach, params)
     });
     let gains = crate::parallel::map(&profiles, |i, profiles| {
         let side = &wireframe.sides[i];
@@ -63,7 +65,7 @@ pub fn sight_sides(
         };
         profiles.as_ref()?.gains(reach, params)
     });
-    let runs = aligned_runs(wireframe, state);
+    let runs = aligned_runs(wireframe, state, |kind| kind == SideKind::Free);
     let of_side = |i: usize, profiles: &Option<Profiles>| {
         let run = runs.iter().find(|run| run.contains(&i));
         let together: Vec<&Gains> = match run {
@@ -82,14 +84,18 @@ pub fn sight_sides(
 }
 
 /// Size of a pixel on the building, metres.
-fn pixel(scene: &Scene, wireframe: &Wireframe, state: &State) -> f64 {
+pub(super) fn pixel(scene: &Scene, wireframe: &Wireframe, state: &State) -> f64 {
     let middle = wireframe.corner(state, 0, 0);
     let pixels = scene.views.iter().map(|v| v.camera.ground_pixel(&middle));
     pixels.fold(f64::INFINITY, f64::min)
 }
 
-/// Free sides of different facets that go on into each other, such as both halves of a gable's end: they are one edge.
-fn aligned_runs(wireframe: &Wireframe, state: &State) -> Vec<Vec<usize>> {
+/// Sides of some kinds, of different facets, that go on into each other, such as both halves of a gable's end: they are one edge.
+pub(super) fn aligned_runs(
+    wireframe: &Wireframe,
+    state: &State,
+    of_kind: impl Fn(SideKind) -> bool,
+) -> Vec<Vec<usize>> {
     /// Sine of the angle below which sides are aligned (4 degrees).
     const ALIGNED: f64 = 0.07;
     let direction = |side: &Side| {
@@ -99,7 +105,7 @@ fn aligned_runs(wireframe: &Wireframe, state: &State) -> Vec<Vec<usize>> {
     let mut runs: Vec<Vec<usize>> = Vec::new();
     let mut taken = vec![false; wireframe.sides.len()];
     for first in 0..wireframe.sides.len() {
-        if taken[first] || wireframe.sides[first].kind != SideKind::Free {
+        if taken[first] || !of_kind(wireframe.sides[first].kind) {
             continue;
         }
         let mut run = vec![first];
@@ -109,7 +115,7 @@ fn aligned_runs(wireframe: &Wireframe, state: &State) -> Vec<Vec<usize>> {
             let side = &wireframe.sides[run[next]];
             for (j, other) in wireframe.sides.iter().enumerate() {
                 let touch = other.ends[0] == side.ends[1] || other.ends[1] == side.ends[0];
-                if taken[j] || !touch || other.kind != SideKind::Free {
+                if taken[j] || !touch || !of_kind(other.kind) {
                     continue;
                 }
                 let (d, e) = (direction(side), direction(other));
@@ -160,8 +166,17 @@ struct Profile {
     differences: Vec<f64>,
 }
 
+/// What it is worth to end a facet at a step before its side, in the energy of the labelling, square metres.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Worth {
+    /// What is cut off does not agree, and a border there costs what it does.
+    pub ending: f64,
+    /// What agrees in the rest, as far as the profile reaches.
+    pub inside: f64,
+}
+
 /// What the views show across a side.
-struct Profiles {
+pub(super) struct Profiles {
     /// The side.
     segment: Segment3,
     /// Change in space for a metre of plan across the side, outwards, in the facet's plane.
@@ -175,13 +190,14 @@ struct Profiles {
 }
 
 impl Profiles {
-    fn new(
+    /// Profiles as far as `reach_m` on both sides, in steps of half of `pixel_m`; `None` for a side that is too short.
+    pub(super) fn new(
         scene: &Scene,
         sight: &Sight,
         wireframe: &Wireframe,
         state: &State,
         side: &Side,
-        pixel_m: f64,
+        (reach_m, pixel_m): (f64, f64),
         params: &RefineParams,
     ) -> Option<Self> {
         let segment = wireframe.segment(state, side);
@@ -200,7 +216,7 @@ impl Profiles {
             views: Vec::new(),
             samples: (length_px.ceil() as usize).min(MAX_SAMPLES),
         };
-        let steps = (params.search_m / (0.5 * pixel_m)).ceil() as usize + BASE + 1;
+        let steps = (reach_m / (0.5 * pixel_m)).ceil() as usize + BASE + 1;
         profiles.views = scene
             .view_ids()
             .filter_map(|v| profiles.profile(scene, sight, v, steps))
@@ -209,7 +225,7 @@ impl Profiles {
     }
 
     /// The step of the profile in plan, metres.
-    fn step_m(&self) -> f64 {
+    pub(super) fn step_m(&self) -> f64 {
         0.5 * self.pixel_m
     }
 
@@ -286,6 +302,33 @@ impl Profiles {
             gain: gain.collect(),
             edge,
         })
+    }
+
+    /// For every step back from the side, what it is worth that the facet ends there instead. `None` where too few views see
+    /// it.
+    pub(super) fn worth_of_ending(&self, params: &RefineParams) -> Option<Vec<Worth>> {
+        (self.views.len() >= params.min_views).then_some(())?;
+        let middle = self.middle();
+        let shared: Vec<f64> = (0..=middle).map(|k| self.shared(k)).collect();
+        let least = params.least_contrast / (self.samples as f64).sqrt();
+        let strongest = shared.iter().copied().fold(least, f64::max);
+        let length = self.segment.length();
+        let agreement: Vec<f64> = (0..middle)
+            .map(|k| self.agreement(k, params) * self.step_m())
+            .collect();
+        let mut inside: f64 = agreement.iter().sum();
+        let mut strip = 0.0;
+        let mut worth = Vec::with_capacity(middle);
+        for k in (0..middle).rev() {
+            strip += agreement[k];
+            inside -= agreement[k];
+            let edge = params.edge_gain_m * shared[k] / strongest;
+            worth.push(Worth {
+                ending: length * (edge - params.border_cost_m - strip),
+                inside: length * inside,
+            });
+        }
+        Some(worth)
     }
 
     /// Mean correlation of the rows of all pairs of views at a step, less the correlation at which a plane is as good as none, and

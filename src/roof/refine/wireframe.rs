@@ -25,6 +25,8 @@ pub enum SideKind {
     Free,
     /// A lower facet of the same building.
     Step,
+    /// A higher facet of the same building: its side is what shows.
+    Foot,
     /// A facet of the same height: ridge, hip, valley.
     Crease,
 }
@@ -304,7 +306,7 @@ impl Wireframe {
         at
     }
 
-    /// What the edge from `u` to `v` of a facet is; `None` where it is the facet beyond that has the side.
+    /// What the edge from `u` to `v` of a facet is; `None` for a crease that is a side of the facet beyond.
     fn kind(
         &self,
         state: &State,
@@ -323,7 +325,12 @@ impl Wireframe {
         if above.iter().all(|d| d.abs() < SAME_HEIGHT_M) {
             return (face < beyond).then_some((SideKind::Crease, Some(beyond)));
         }
-        (above[0] + above[1] > 0.0).then_some((SideKind::Step, None))
+        let kind = if above[0] + above[1] > 0.0 {
+            SideKind::Step
+        } else {
+            SideKind::Foot
+        };
+        Some((kind, None))
     }
 
     fn is_straight(&self, state: &State, before: usize, at: usize, after: usize) -> bool {
