@@ -314,6 +314,11 @@ mod tests {
             .filter(|w| (w - 1.2).abs() < 0.2)
             .collect();
         assert_eq!(first.len(), 2, "{partings:?}");
+        // The first house is back where it was: the cut goes into the roof, not beyond the wall.
+        let corners: Vec<&Point3<f64>> = parted.iter().flat_map(|f| &f.outer).collect();
+        for p in rings[0].iter().chain(rings[1]) {
+            assert!(corners.iter().any(|q| (p - *q).norm() < 0.25), "{p}");
+        }
         let (closed, _) = close_buildings(&parted, |_| truth.ground_z);
         assert_eq!(closed.buildings.len(), 2);
     }
