@@ -430,7 +430,7 @@ fn boxes_meet(a: &[Vec<[f64; 2]>], b: &[Vec<[f64; 2]>]) -> bool {
 }
 
 /// Does a ring of at least three corners neither touch nor cross itself?
-fn is_simple(ring: &[Point2<f64>]) -> bool {
+pub(super) fn is_simple(ring: &[Point2<f64>]) -> bool {
     let n = ring.len();
     let distinct = (0..n).all(|i| (0..i).all(|j| (ring[i] - ring[j]).norm() > WELD_M / 100.0));
     let edge = |i: usize| (ring[i], ring[(i + 1) % n]);

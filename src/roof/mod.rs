@@ -4,12 +4,17 @@ mod ground;
 mod invariants;
 mod new_lines;
 mod reconstruct;
+mod refine;
 mod solid;
 
 pub use ground::Ground;
 pub use invariants::{PLANAR_M, Violation, check_invariants};
 pub use new_lines::new_lines;
 pub use reconstruct::{RoofTrace, reconstruct_roofs};
+pub use refine::{
+    BuildingRefinement, Parting, RefineRefusal, RefineTrace, RelationKind, SideKind,
+    TestedRelation, part_roofs, refine_roofs,
+};
 pub use solid::{SolidRejection, SolidTrace, WELD_M, close_buildings};
 
 use nalgebra::Point3;

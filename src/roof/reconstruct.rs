@@ -2,7 +2,10 @@
 
 use serde::Serialize;
 
-use super::{Ground, RoofModel, SolidTrace, close_buildings};
+use super::{
+    Facet, Ground, Parting, RefineTrace, RoofModel, SolidTrace, close_buildings, part_roofs,
+    refine_roofs,
+};
 use crate::halfplane::{FacetTrace, HalfPlane, reconstruct_facets};
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
@@ -14,13 +17,18 @@ use crate::scene::Scene;
 pub struct RoofTrace {
     /// Grouping, delineation and verification.
     pub facets: FacetTrace,
+    /// Gaps between facets that delineation had closed.
+    pub partings: Vec<Parting>,
+    /// What was regularised and refined in each building.
+    pub refinement: RefineTrace,
     /// Walls and ground.
     pub solids: SolidTrace,
     /// Lines that the model adds to the matched ones (B99 4.2, 4.3).
     pub new_lines: Vec<Line3d>,
 }
 
-/// Groups, delineates and verifies facets, estimates the ground below each building and closes the solids.
+/// Groups, delineates and verifies facets, estimates the ground below each building, refines the buildings and closes
+/// the solids.
 pub fn reconstruct_roofs(
     scene: &Scene,
     segments: &[Vec<ImageSegment>],
@@ -31,11 +39,20 @@ pub fn reconstruct_roofs(
     let ground = Ground::estimate(scene, lines);
     let (facets, facet_trace) =
         reconstruct_facets(scene, segments, lines, half_planes, &ground, params);
-    let (model, solids) = close_buildings(&facets, |members| ground.below(members));
+    let below = |members: &[&Facet]| ground.below(members);
+    // Refinement needs facets that share vertices, and moves them; so the solids are made again.
+    let (delineated, solids) = close_buildings(&facets, below);
+    let (parted, partings) = part_roofs(scene, &delineated, &params.refine);
+    let (delineated, again) = close_buildings(&parted, below);
+    let (refined, refinement) = refine_roofs(scene, lines, &delineated, &params.refine);
+    let (model, closed) = close_buildings(&refined, below);
+    let solids = solids.then(again).then(closed);
     (
         model,
         RoofTrace {
             facets: facet_trace,
+            partings,
+            refinement,
             solids,
             new_lines: Vec::new(),
         },

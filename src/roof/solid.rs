@@ -58,6 +58,21 @@ pub struct SolidTrace {
     pub ground_lowered: Vec<BuildingId>,
 }
 
+impl SolidTrace {
+    /// The trace of closing facets and of closing again what came of it.
+    pub fn then(self, again: SolidTrace) -> Self {
+        let source = |facet: usize| self.sources[facet];
+        let later = again.rejected.iter().map(|&(f, why)| (source(f), why));
+        let mut rejected: Vec<_> = self.rejected.iter().copied().chain(later).collect();
+        rejected.sort_by_key(|(source, _)| *source);
+        Self {
+            sources: again.sources.iter().map(|&f| source(f)).collect(),
+            rejected,
+            ground_lowered: again.ground_lowered,
+        }
+    }
+}
+
 /// Groups facets into buildings and closes them with walls and ground.
 ///
 /// `ground_z` gives the height of the ground (metres, local frame) below the facets of one building; where

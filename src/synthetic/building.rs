@@ -74,6 +74,11 @@ pub(super) fn sheared() -> Building {
     gable_at(HOME, [6.0, 4.5], 0.4, 1)
 }
 
+/// A gable roof whose ends are 3 degrees off square.
+pub(super) fn skewed() -> Building {
+    gable_at(HOME, [6.0, 4.5], 0.0524, 1)
+}
+
 /// A low gable roof close to a tower, which hides some of it from one strip.
 pub(super) fn tower_and_annex() -> Building {
     let beside = |v: f64, eave_z| Place {

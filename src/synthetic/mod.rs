@@ -66,6 +66,11 @@ pub fn sheared_scene(size: u32) -> (Scene, SyntheticTruth) {
     scene_of(&building::sheared(), size)
 }
 
+/// A gable roof whose ends are 3 degrees off square: too much for a carpenter, too little to be seen at a glance.
+pub fn skewed_scene(size: u32) -> (Scene, SyntheticTruth) {
+    scene_of(&building::skewed(), size)
+}
+
 /// A low gable roof beside a tower that hides some of it in every second view.
 pub fn tower_scene(size: u32) -> (Scene, SyntheticTruth) {
     scene_of(&building::tower_and_annex(), size)

@@ -1,0 +1,91 @@
+//! What roofs hide: is there a roof between a point and a camera?
+
+use nalgebra::{Point2, Point3};
+
+use crate::roof::Facet;
+
+/// A roof hides what lies deeper below it, metres: a side must not be hidden by its own facet, nor by a neighbour
+/// that is known to a few decimetres only.
+const LEAST_DEPTH_M: f64 = 0.3;
+/// Step along the ray in plan, metres: finer than any roof.
+const STEP_M: f64 = 0.4;
+
+/// The roofs of a model as seen by rays that go up.
+pub struct Sight<'a> {
+    roofs: Vec<(&'a Facet, [Point2<f64>; 2])>,
+    highest: f64,
+}
+
+impl<'a> Sight<'a> {
+    /// For these facets.
+    pub fn new(facets: &'a [Facet]) -> Self {
+        let bounds = |f: &'a Facet| {
+            let start = [
+                Point2::new(f64::MAX, f64::MAX),
+                Point2::new(f64::MIN, f64::MIN),
+            ];
+            let bounds = f.outer.iter().fold(start, |[low, high], p| {
+                [low.inf(&p.xy()), high.sup(&p.xy())]
+            });
+            (f, bounds)
+        };
+        let corners = facets.iter().flat_map(|f| &f.outer);
+        Self {
+            roofs: facets.iter().map(bounds).collect(),
+            highest: corners.fold(f64::MIN, |h, p| h.max(p.z)),
+        }
+    }
+
+    /// Does a roof stand between the point and the camera?
+    pub fn hidden(&self, point: &Point3<f64>, center: &Point3<f64>) -> bool {
+        let ray = center - point;
+        if ray.z <= 0.0 || self.highest <= point.z + LEAST_DEPTH_M {
+            return false;
+        }
+        // Up to the height of the highest roof.
+        let end = ((self.highest - point.z) / ray.z).min(1.0);
+        let steps = (ray.xy().norm() * end / STEP_M).ceil() as usize;
+        (1..=steps).any(|i| self.covers(&(point + ray * (end * i as f64 / steps as f64))))
+    }
+
+    /// Is the point inside or below a roof?
+    fn covers(&self, p: &Point3<f64>) -> bool {
+        let q = p.xy();
+        self.roofs.iter().any(|(f, [low, high])| {
+            q.x >= low.x
+                && q.y >= low.y
+                && q.x <= high.x
+                && q.y <= high.y
+                && f.plane.z_at(q.x, q.y) - p.z > LEAST_DEPTH_M
+                && inside(&f.outer, &q)
+        })
+    }
+}
+
+/// Is a plan position inside a ring (even-odd rule)?
+pub fn inside(ring: &[Point3<f64>], p: &Point2<f64>) -> bool {
+    let next = ring.iter().cycle().skip(1);
+    ring.iter().zip(next).fold(false, |odd, (a, b)| {
+        let crosses =
+            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y);
+        odd != crosses
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixture::gable;
+    use super::*;
+
+    #[test]
+    fn a_roof_hides_what_lies_behind_and_below() {
+        let roof = gable();
+        let sight = Sight::new(&roof);
+        let south = Point3::new(0.0, -1000.0, 1000.0);
+        // The gable reaches from y = -4 to 4, eaves at 6 m, ridge at 9 m; rays rise by a metre for a metre.
+        assert!(sight.hidden(&Point3::new(0.0, 5.0, 3.0), &south));
+        assert!(!sight.hidden(&Point3::new(0.0, 9.0, 3.0), &south));
+        assert!(!sight.hidden(&Point3::new(0.0, -6.0, 3.0), &south));
+        assert!(!sight.hidden(&Point3::new(0.0, 0.0, 9.0), &south));
+    }
+}

@@ -1,0 +1,445 @@
+//! The image edges that belong to the sides of a wireframe.
+//!
+//! The image of a side is where the model expects an edge. A side may lie off by more than a guided
+//! measurement reaches (a closing line where nothing was found, the correlation window that straddles a strong edge),
+//! so it is first moved in its facet's plane, and the rows of grey values along it are compared over the views: on the roof
+//! they agree, and an edge of the roof stands still, whatever lies on the ground or on a wall moves. From there `measure_edge` (the second look of line matching)
+//! measures in every view.
+
+use nalgebra::{Matrix2, Point2, Vector2};
+
+use super::sight::Sight;
+use super::wireframe::{Side, SideKind, State, Wireframe};
+use crate::geometry::{Segment2, Segment3};
+use crate::ids::ViewId;
+use crate::linematch::measure_edge;
+use crate::math;
+use crate::params::RefineParams;
+use crate::scene::Scene;
+
+/// Half the base of the difference across a side, in steps of half a pixel: one pixel.
+const BASE: usize = 2;
+/// Most places along a side at which the profile is sampled.
+const MAX_SAMPLES: usize = 96;
+/// Share of a side at either end that is not looked at: corners are where other edges begin.
+const END_SHARE: f64 = 0.06;
+/// Least share of a side that a view must see.
+const MIN_SEEN: f64 = 0.5;
+
+/// An edge measured in a view for a side.
+#[derive(Clone, Debug)]
+pub struct Sighting {
+    /// Index of the side.
+    pub side: usize,
+    /// The view.
+    pub view: ViewId,
+    /// The measured edge, px.
+    pub segment: Segment2,
+    /// Whitens (offset at the middle in px, angle in rad).
+    pub whitening: Matrix2<f64>,
+}
+
+/// Measures all sides in all views. Sides without a neighbour may move to another edge first where `search` allows it for their
+/// facet.
+pub fn sight_sides(
+    scene: &Scene,
+    sight: &Sight,
+    wireframe: &Wireframe,
+    state: &State,
+    search: &[bool],
+    params: &RefineParams,
+) -> Vec<Sighting> {
+    let pixel_m = pixel(scene, wireframe, state);
+    let profiles = crate::parallel::map(&wireframe.sides, |_, side| {
+        (side.kind != SideKind::Foot).then_some(())?;
+        let reach = (params.search_m, pixel_m);
+        Profiles::new(scene, sight, wireframe, state, side, reach, params)
+    });
+    let gains = crate::parallel::map(&profiles, |i, profiles| {
+        let side = &wireframe.sides[i];
+        let far = search[side.face] && side.kind != SideKind::Crease;
+        let reach = if far {
+            params.search_m
+        } else {
+            params.reach_px * pixel_m
+        };
+        profiles.as_ref()?.gains(reach, params)
+    });
+    let runs = aligned_runs(wireframe, state, |kind| kind == SideKind::Free);
+    let of_side = |i: usize, profiles: &Option<Profiles>| {
+        let run = runs.iter().find(|run| run.contains(&i));
+        let together: Vec<&Gains> = match run {
+            Some(run) => run.iter().filter_map(|&j| gains[j].as_ref()).collect(),
+            None => gains[i].iter().collect(),
+        };
+        gains[i].as_ref()?;
+        let step = best_step(&together)?;
+        Some(profiles.as_ref()?.measure(scene, i, step, params))
+    };
+    crate::parallel::map(&profiles, of_side)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .collect()
+}
+
+/// Size of a pixel on the building, metres.
+pub(super) fn pixel(scene: &Scene, wireframe: &Wireframe, state: &State) -> f64 {
+    let middle = wireframe.corner(state, 0, 0);
+    let pixels = scene.views.iter().map(|v| v.camera.ground_pixel(&middle));
+    pixels.fold(f64::INFINITY, f64::min)
+}
+
+/// Sides of some kinds, of different facets, that go on into each other, such as both halves of a gable's end: they are one edge.
+pub(super) fn aligned_runs(
+    wireframe: &Wireframe,
+    state: &State,
+    of_kind: impl Fn(SideKind) -> bool,
+) -> Vec<Vec<usize>> {
+    /// Sine of the angle below which sides are aligned (4 degrees).
+    const ALIGNED: f64 = 0.07;
+    let direction = |side: &Side| {
+        let s = wireframe.segment(state, side);
+        (s.p1.xy() - s.p0.xy()).normalize()
+    };
+    let mut runs: Vec<Vec<usize>> = Vec::new();
+    let mut taken = vec![false; wireframe.sides.len()];
+    for first in 0..wireframe.sides.len() {
+        if taken[first] || !of_kind(wireframe.sides[first].kind) {
+            continue;
+        }
+        let mut run = vec![first];
+        taken[first] = true;
+        let mut next = 0;
+        while next < run.len() {
+            let side = &wireframe.sides[run[next]];
+            for (j, other) in wireframe.sides.iter().enumerate() {
+                let touch = other.ends[0] == side.ends[1] || other.ends[1] == side.ends[0];
+                if taken[j] || !touch || !of_kind(other.kind) {
+                    continue;
+                }
+                let (d, e) = (direction(side), direction(other));
+                if d.perp(&e).abs() < ALIGNED && d.dot(&e) > 0.0 {
+                    taken[j] = true;
+                    run.push(j);
+                }
+            }
+            next += 1;
+        }
+        runs.push(run);
+    }
+    runs
+}
+
+/// What it is worth that a side lies at each step of its profile.
+struct Gains {
+    /// First step that is allowed.
+    first: usize,
+    /// For each step from there: the energy gained, square metres for the whole side.
+    gain: Vec<f64>,
+    /// For each step from there: how clearly the views share an edge, 1 for the clearest, times the side's length.
+    edge: Vec<f64>,
+}
+
+/// The best step at which there is an edge, for one side or for several that are one edge.
+fn best_step(sides: &[&Gains]) -> Option<usize> {
+    let first = sides.iter().map(|g| g.first).max()?;
+    let end = sides.iter().map(|g| g.first + g.gain.len()).min()?;
+    let sum = |of: fn(&Gains) -> &Vec<f64>, k: usize| -> f64 {
+        sides.iter().map(|g| of(g)[k - g.first]).sum()
+    };
+    let edge = |k: usize| sum(|g| &g.edge, k);
+    (first + 1..end.saturating_sub(1))
+        .filter(|&k| edge(k) > 0.0 && edge(k) >= edge(k - 1) && edge(k) > edge(k + 1))
+        .max_by(|&i, &j| {
+            let gain = |k| sum(|g| &g.gain, k);
+            gain(i).total_cmp(&gain(j)).then(j.cmp(&i))
+        })
+}
+
+/// What one view shows across a side, at steps from inside to outside; the middle one is at the side.
+struct Profile {
+    view: ViewId,
+    /// Grey values at every place along the side, step by step; NaN where the view does not see it.
+    rows: Vec<Vec<f32>>,
+    /// Mean difference across every step.
+    differences: Vec<f64>,
+}
+
+/// What it is worth to end a facet at a step before its side, in the energy of the labelling, square metres.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Worth {
+    /// What is cut off does not agree, and a border there costs what it does.
+    pub ending: f64,
+    /// What agrees in the rest, as far as the profile reaches.
+    pub inside: f64,
+}
+
+/// What the views show across a side.
+pub(super) struct Profiles {
+    /// The side.
+    segment: Segment3,
+    /// Change in space for a metre of plan across the side, outwards, in the facet's plane.
+    outward: nalgebra::Vector3<f64>,
+    /// Size of a pixel on the side, metres.
+    pixel_m: f64,
+    /// The views that see enough of it.
+    views: Vec<Profile>,
+    /// Places along the side.
+    samples: usize,
+}
+
+impl Profiles {
+    /// Profiles as far as `reach_m` on both sides, in steps of half of `pixel_m`; `None` for a side that is too short.
+    pub(super) fn new(
+        scene: &Scene,
+        sight: &Sight,
+        wireframe: &Wireframe,
+        state: &State,
+        side: &Side,
+        (reach_m, pixel_m): (f64, f64),
+        params: &RefineParams,
+    ) -> Option<Self> {
+        let segment = wireframe.segment(state, side);
+        let along = (segment.p1.xy() - segment.p0.xy()).try_normalize(1e-6)?;
+        // The facet lies on the left.
+        let across = Vector2::new(along.y, -along.x);
+        let at = wireframe.plane_at(side.face);
+        let rise = state[at] * across.x + state[at + 1] * across.y;
+        let outward = nalgebra::Vector3::new(across.x, across.y, rise);
+        let length_px = segment.length() / pixel_m;
+        (length_px >= params.min_side_px).then_some(())?;
+        let mut profiles = Self {
+            segment,
+            outward,
+            pixel_m,
+            views: Vec::new(),
+            samples: (length_px.ceil() as usize).min(MAX_SAMPLES),
+        };
+        let steps = (reach_m / (0.5 * pixel_m)).ceil() as usize + BASE + 1;
+        profiles.views = scene
+            .view_ids()
+            .filter_map(|v| profiles.profile(scene, sight, v, steps))
+            .collect();
+        Some(profiles)
+    }
+
+    /// The step of the profile in plan, metres.
+    pub(super) fn step_m(&self) -> f64 {
+        0.5 * self.pixel_m
+    }
+
+    /// What one view shows; `None` where it sees too little of the side.
+    fn profile(&self, scene: &Scene, sight: &Sight, view: ViewId, steps: usize) -> Option<Profile> {
+        let (camera, gray) = (scene.camera(view), &scene.view(view).gray);
+        let count = 2 * steps + 1;
+        let mut rows = vec![vec![f32::NAN; self.samples]; count];
+        let mut seen = 0usize;
+        let mut hidden = false;
+        for i in 0..self.samples {
+            let t = (i as f64 + 0.5) / self.samples as f64;
+            let p = self.segment.at(END_SHARE + (1.0 - 2.0 * END_SHARE) * t);
+            if i % 8 == 0 {
+                hidden = sight.hidden(&p, &camera.center);
+            }
+            let across = |k: usize| {
+                let s = (k as f64 - steps as f64) * self.step_m();
+                let x = camera.project(&(p + self.outward * s))?;
+                gray.sample(x.x as f32, x.y as f32)
+            };
+            // Seen from end to end or not at all.
+            if hidden || across(0).is_none() || across(count - 1).is_none() {
+                continue;
+            }
+            seen += 1;
+            for (k, row) in rows.iter_mut().enumerate() {
+                row[i] = across(k).unwrap_or(f32::NAN);
+            }
+        }
+        if (seen as f64) < MIN_SEEN * self.samples as f64 {
+            return None;
+        }
+        let means: Vec<f64> = rows.iter().map(|row| mean(row)).collect();
+        let difference =
+            |k: usize| means[(k + BASE).min(count - 1)] - means[k.saturating_sub(BASE)];
+        Some(Profile {
+            view,
+            differences: (0..count).map(difference).collect(),
+            rows,
+        })
+    }
+
+    /// What each step within `reach_m` is worth; `None` where too few views see the side, or none of them an edge.
+    ///
+    /// The energy of the labelling in one dimension: what the views agree on inside counts for the facet, a border
+    /// on an edge is cheap. Besides, the border that delineation chose is taken for known to `search_m`.
+    fn gains(&self, reach_m: f64, params: &RefineParams) -> Option<Gains> {
+        (self.views.len() >= params.min_views).then_some(())?;
+        let middle = self.middle();
+        let steps = ((reach_m / self.step_m()) as usize + 1).min(middle - 1);
+        let (first, last) = (middle - steps, middle + steps);
+        let shared: Vec<f64> = (first..=last).map(|k| self.shared(k)).collect();
+        let least = params.least_contrast / (self.samples as f64).sqrt();
+        let strongest = shared.iter().copied().fold(0.0, f64::max);
+        (strongest >= least).then_some(())?;
+        let length = self.segment.length();
+        let edge = |s: &f64| {
+            if *s >= least {
+                s / strongest * length
+            } else {
+                0.0
+            }
+        };
+        let edge: Vec<f64> = shared.iter().map(edge).collect();
+        let mut inside = 0.0;
+        let gain = (first..=last).map(|k| {
+            inside += self.agreement(k, params) * self.step_m() * length;
+            let moved = (k as f64 - middle as f64) * self.step_m() / params.search_m;
+            inside + params.edge_gain_m * (edge[k - first] - moved * moved * length)
+        });
+        Some(Gains {
+            first,
+            gain: gain.collect(),
+            edge,
+        })
+    }
+
+    /// For every step back from the side, what it is worth that the facet ends there instead. `None` where too few views see
+    /// it.
+    pub(super) fn worth_of_ending(&self, params: &RefineParams) -> Option<Vec<Worth>> {
+        (self.views.len() >= params.min_views).then_some(())?;
+        let middle = self.middle();
+        let shared: Vec<f64> = (0..=middle).map(|k| self.shared(k)).collect();
+        let least = params.least_contrast / (self.samples as f64).sqrt();
+        let strongest = shared.iter().copied().fold(least, f64::max);
+        let length = self.segment.length();
+        let agreement: Vec<f64> = (0..middle)
+            .map(|k| self.agreement(k, params) * self.step_m())
+            .collect();
+        let mut inside: f64 = agreement.iter().sum();
+        let mut strip = 0.0;
+        let mut worth = Vec::with_capacity(middle);
+        for k in (0..middle).rev() {
+            strip += agreement[k];
+            inside -= agreement[k];
+            let edge = params.edge_gain_m * shared[k] / strongest;
+            worth.push(Worth {
+                ending: length * (edge - params.border_cost_m - strip),
+                inside: length * inside,
+            });
+        }
+        Some(worth)
+    }
+
+    /// Mean correlation of the rows of all pairs of views at a step, less the correlation at which a plane is as good as none, and
+    /// weighted by texture: a row has no width, so unlike a window it does not reach over the edge.
+    fn agreement(&self, k: usize, params: &RefineParams) -> f64 {
+        let variance = params.noise * params.noise;
+        let (mut sum, mut pairs) = (0.0, 0.0f64);
+        for (i, a) in self.views.iter().enumerate() {
+            for b in &self.views[i + 1..] {
+                let [saa, sbb, sab] = covariances(&a.rows[k], &b.rows[k]);
+                let texture = (saa * sbb).sqrt();
+                let correlation = if texture > 0.0 { sab / texture } else { 0.0 };
+                sum += (correlation - params.min_correlation) * texture / (texture + variance);
+                pairs += 1.0;
+            }
+        }
+        sum / pairs.max(1.0)
+    }
+
+    /// The step at the side itself.
+    fn middle(&self) -> usize {
+        (self.views[0].rows.len() - 1) / 2
+    }
+
+    /// The difference that half of the views reach at a step, of either sign: the roof's side of an edge is the same in all
+    /// views, what lies behind it is not.
+    fn shared(&self, k: usize) -> f64 {
+        let mut strengths: Vec<f64> = self
+            .views
+            .iter()
+            .map(|v| strongest_near(&v.differences, k).abs())
+            .collect();
+        math::median(&mut strengths).unwrap_or(0.0)
+    }
+
+    /// The edge in every view that shows it, sought around the side moved by `offset`.
+    fn measure(
+        &self,
+        scene: &Scene,
+        side: usize,
+        step: usize,
+        params: &RefineParams,
+    ) -> Vec<Sighting> {
+        let offset = (step as f64 - self.middle() as f64) * self.step_m();
+        let moved = |t: f64| self.segment.at(t) + self.outward * offset;
+        let of_view = |profile: &Profile| {
+            let view = profile.view;
+            let rising = strongest_near(&profile.differences, step) > 0.0;
+            let camera = scene.camera(view);
+            let image = |t: f64| camera.project(&moved(t));
+            let expected = Segment2::new(image(END_SHARE)?, image(1.0 - END_SHARE)?);
+            let outside: Point2<f64> = camera.project(&(moved(0.5) + self.outward * 0.5))?;
+            let outwards = (outside - expected.midpoint()).dot(&expected.normal()) > 0.0;
+            // Directed by contrast: bright on the side of the normal.
+            let expected = if outwards == rising {
+                expected
+            } else {
+                expected.reversed()
+            };
+            let core = [0.0, expected.length()];
+            let edge = measure_edge(view, &scene.view(view).gray, &expected, core, params.noise)?;
+            Some(Sighting {
+                side,
+                view,
+                segment: edge.segment,
+                whitening: whitening(&edge.covariance, edge.segment.length(), params.floor_px),
+            })
+        };
+        let found: Vec<Sighting> = self.views.iter().filter_map(of_view).collect();
+        if found.len() < 2 { Vec::new() } else { found }
+    }
+}
+
+/// Mean of the values that are seen.
+fn mean(row: &[f32]) -> f64 {
+    let seen = row.iter().filter(|v| !v.is_nan());
+    let (sum, n) = seen.fold((0.0, 0.0f64), |(s, n), &v| (s + f64::from(v), n + 1.0));
+    sum / n.max(1.0)
+}
+
+/// Variances and covariance of two rows where both are seen.
+fn covariances(a: &[f32], b: &[f32]) -> [f64; 3] {
+    let mut n = 0.0f64;
+    let mut sums = [0.0f64; 5];
+    for (&x, &y) in a.iter().zip(b) {
+        if x.is_nan() || y.is_nan() {
+            continue;
+        }
+        let (x, y) = (f64::from(x), f64::from(y));
+        n += 1.0;
+        for (sum, v) in sums.iter_mut().zip([x, y, x * x, y * y, x * y]) {
+            *sum += v;
+        }
+    }
+    let [sx, sy, xx, yy, xy] = sums.map(|s| s / n.max(1.0));
+    [xx - sx * sx, yy - sy * sy, xy - sx * sy].map(|v| if n > 2.0 { v } else { 0.0 })
+}
+
+/// The largest difference at a step and its neighbours, with its sign.
+fn strongest_near(differences: &[f64], k: usize) -> f64 {
+    let near = &differences[k.saturating_sub(1)..(k + 2).min(differences.len())];
+    near.iter()
+        .fold(0.0f64, |s, &d| if d.abs() > s.abs() { d } else { s })
+}
+
+/// Whitens (offset, angle) of an edge of `length` px with an error of `floor` px at both ends that its covariance does not know.
+fn whitening(covariance: &Matrix2<f64>, length: f64, floor: f64) -> Matrix2<f64> {
+    let mut c = *covariance;
+    c[(0, 0)] += floor * floor;
+    c[(1, 1)] += 4.0 * floor * floor / (length * length);
+    c.cholesky()
+        .and_then(|l| l.l().try_inverse())
+        .unwrap_or_else(|| Matrix2::new(1.0 / floor, 0.0, 0.0, 0.5 * length / floor))
+}
