@@ -460,6 +460,9 @@ pub struct RefineParams {
     /// Least gain for ending it earlier, square metres for a metre of side. Assumption: the error of a correlation (0.05) over a
     /// metre.
     pub part_gain_m: f64,
+    /// ... and for a square metre that is given up. Assumption: twice the error of a correlation; shadow at the foot of a wall
+    /// costs a roof hardly that.
+    pub part_gain_share: f64,
     /// What a border costs that no edge supports, square metres for a metre. Assumption: as in the labelling.
     pub border_cost_m: f64,
     /// How much the mean correlation inside the facets may fall. Assumption: its error.
@@ -495,6 +498,7 @@ impl Default for RefineParams {
             part_m: 3.0,
             least_part_m: 0.4,
             part_gain_m: 0.05,
+            part_gain_share: 0.1,
             border_cost_m: 0.25,
             similarity_loss: 0.01,
         }

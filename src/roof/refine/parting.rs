@@ -126,7 +126,11 @@ fn cuts(
         let best = (first..steps).max_by(|&i, &j| worth(i).total_cmp(&worth(j)).then(j.cmp(&i)));
         // The views must agree on what is left: otherwise they tell nothing about this plane.
         let least = params.part_gain_m * length_m;
-        let clear = |&b: &usize| worth(b) > least && sum(|w| w.inside, b) > least;
+        let clear = |&b: &usize| {
+            let given_up_m2 = (b + 1) as f64 * step_m * length_m;
+            worth(b) > least.max(params.part_gain_share * given_up_m2)
+                && sum(|w| w.inside, b) > least
+        };
         let Some(back) = best.filter(clear) else {
             continue;
         };

@@ -389,7 +389,14 @@ impl Profiles {
                 expected.reversed()
             };
             let core = [0.0, expected.length()];
-            let edge = measure_edge(view, &scene.view(view).gray, &expected, core, false, params.noise)?;
+            let edge = measure_edge(
+                view,
+                &scene.view(view).gray,
+                &expected,
+                core,
+                false,
+                params.noise,
+            )?;
             Some(Sighting {
                 side,
                 view,
