@@ -13,7 +13,7 @@
 //! their planes meet.
 
 use nalgebra::{Point2, Vector2};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::extent::extent_lines;
 use super::grouping::{GroupingInput, Member, PlaneGroup};
@@ -69,13 +69,13 @@ impl Border {
 }
 
 /// The part of the plan that a group may cover: boxes beside its supporting lines.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Region {
     boxes: Vec<PlanBox>,
 }
 
 /// A rectangle beside a line: origin at the line's start, `along` its direction, `across` to the left.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct PlanBox {
     start: Point2<f64>,
     along: Vector2<f64>,

@@ -7,7 +7,7 @@
 //! grouping of coplanar lines; this is the cheaper direction of that combination, plane first.)
 
 use nalgebra::{Point2, Vector2};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::borders::Region;
 use crate::camera::Camera;
@@ -17,7 +17,7 @@ use crate::lines2d::ImageSegment;
 use crate::scene::Scene;
 
 /// A line in a plane that several views show.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlaneLine {
     /// End points in the plane, metres.
     pub segment: Segment3,

@@ -18,6 +18,7 @@ use crate::ids::LineId;
 use crate::lines3d::Line3d;
 use crate::params::SweepParams;
 use crate::scene::Scene;
+use crate::shares::map_shared;
 
 /// Half-planes of both sides of every line, in the order of the lines, left before right.
 pub fn sweep_half_planes(
@@ -29,7 +30,7 @@ pub fn sweep_half_planes(
     let sides: Vec<(usize, Side)> = (0..lines.len())
         .flat_map(|i| [(i, Side::Left), (i, Side::Right)])
         .collect();
-    let swept = crate::parallel::map_part(&sides, 0.05..1.0, |_, &(i, side)| {
+    let swept = map_shared("sides", &sides, 0.05..1.0, |_, &(i, side)| {
         let mut counts = SweepTrace::default();
         let half_plane = sweep_side(
             scene,

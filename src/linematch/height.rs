@@ -15,6 +15,7 @@ use crate::ids::ViewId;
 use crate::parallel;
 use crate::raster::{Gray, gaussian_blur};
 use crate::scene::Scene;
+use crate::shares::map_shared;
 
 /// Number of segments whose ends are swept, over all views.
 const SEGMENTS: usize = 360;
@@ -47,7 +48,7 @@ pub struct HeightRange {
 pub fn height_range(scene: &Scene, sights: &Sights) -> Option<HeightRange> {
     let blurred: Vec<Gray> = parallel::map(&scene.views, |_, v| gaussian_blur(&v.gray, 1.0));
     let points = interest_points(scene, sights);
-    let found = parallel::map_part(&points, 0.0..0.2, |_, (view, x)| {
+    let found = map_shared("heights", &points, 0.0..0.2, |_, (view, x)| {
         sweep(scene, &blurred, *view, x)
     });
     let mut heights: Vec<f64> = found.into_iter().flatten().collect();

@@ -22,7 +22,7 @@
 //! the least number of views support them; gaps up to `max_gap_m` are bridged (a chimney), longer ones part a line.
 
 use nalgebra::{Matrix2, Point2, Vector2, Vector3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::cluster_plane::{Axes, PlaneRay, covered, overlap};
 use super::cluster_proposals::Proposal;
@@ -33,7 +33,7 @@ use crate::params::ClusterParams;
 use crate::scene::Scene;
 
 /// A 3D line of a main direction.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ClusterLine {
     /// Its end points, metres; it runs along the main direction.
     pub segment: Segment3,
@@ -48,7 +48,7 @@ pub struct ClusterLine {
 }
 
 /// The plot of a cluster plane (figures 7 and 8).
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ClusterTrace {
     /// Azimuth of the direction, radians.
     pub azimuth: f64,

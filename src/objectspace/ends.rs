@@ -6,7 +6,7 @@
 //! parallelograms, trapezoids and the ends of hips.
 
 use nalgebra::{Point3, Vector3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::cluster_plane::{Axes, covered, overlap};
 use super::sight::Sight;
@@ -63,7 +63,7 @@ impl Strip {
 }
 
 /// An image line cut with the plane: where its line crosses the two lines, and the stretch across that it covers.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Crossing {
     /// The view.
     pub view: ViewId,
@@ -76,7 +76,7 @@ pub struct Crossing {
 }
 
 /// A cluster of crossings.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct End {
     /// Positions along the first and the second line, metres.
     pub at: [f64; 2],

@@ -10,8 +10,10 @@
 //! parameters and to the current results before it; what is out of date is dropped, never shown.
 
 mod report;
+mod shared;
 mod summary;
 
+pub use shared::PackedView;
 pub use summary::StageSummary;
 
 use std::borrow::Cow;
@@ -29,11 +31,11 @@ use crate::objectspace::{
     FoundLine, RectangleTrace, Window, WindowTrace, find_clusters, find_directions,
     find_rectangles, find_regions, image_segments, world_lines,
 };
-use crate::parallel;
 use crate::params::{Method, Params};
 use crate::progress::{self, Listener};
 use crate::roof::{RoofModel, RoofTrace, reconstruct_roofs};
 use crate::scene::Scene;
+use crate::shares::{Known, map_shared, with_known};
 use crate::texture::{TextureTrace, TexturedModel, texture_model};
 
 /// The stages, in their order.
@@ -227,6 +229,11 @@ impl Run {
     /// Runs one stage, after those before it that have not run yet, and drops the results of those behind
     /// it. `progress` hears fractions of this stage's work from 0 to 1.
     pub fn step(&mut self, stage: Stage, progress: &Listener) -> StageSummary {
+        self.step_with(stage, Known::default(), progress)
+    }
+
+    /// [`Self::step`], where other instances have done the stage's shared maps ([`Stage::shared_maps`]).
+    pub fn step_with(&mut self, stage: Stage, known: Known, progress: &Listener) -> StageSummary {
         for &earlier in self.stages().iter().filter(|&&s| s < stage) {
             if !self.has(earlier) {
                 self.run_stage(earlier);
@@ -234,7 +241,9 @@ impl Run {
         }
         self.drop_from(stage);
         progress(0.0);
-        progress::heard(Listener::clone(progress), || self.run_stage(stage));
+        progress::heard(Listener::clone(progress), || {
+            with_known(known, || self.run_stage(stage));
+        });
         progress(1.0);
         self.summaries.last().expect("just pushed").clone()
     }
@@ -301,7 +310,7 @@ impl Run {
         let (scene, params, r) = (&self.scene, &self.params, &mut self.results);
         match stage {
             Stage::Segments => {
-                let per_view = parallel::map_part(&scene.views, 0.0..1.0, |_, view| {
+                let per_view = map_shared("views", &scene.views, 0.0..1.0, |_, view| {
                     detect_segments(&view.gray, &params.segments)
                 });
                 let (value, trace) = per_view.into_iter().unzip();

@@ -229,13 +229,16 @@ fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3
     let heights: Vec<f64> = (0..levels)
         .map(|i| low + (high - low) * i as f64 / (levels - 1) as f64)
         .collect();
-    let maps = crate::parallel::map_part(&heights, 0.0..0.1, |_, &z| {
+    let maps = crate::shares::map_shared("ground", &heights, 0.0..0.1, |_, &z| {
         let plane = Plane {
             normal: Vector3::z(),
             d: -z,
         };
         consistency_map(&reduced, &plane, &grid)
     });
+    if maps.is_empty() {
+        return Vec::new();
+    }
     let mut samples = Vec::new();
     for row in 0..grid.height {
         for column in 0..grid.width {

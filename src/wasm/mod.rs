@@ -6,6 +6,7 @@
 mod convert;
 mod figures;
 mod session;
+mod sharing;
 
 pub use figures::Picture;
 pub use session::{Session, ViewImage};

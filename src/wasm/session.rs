@@ -19,6 +19,7 @@ use crate::progress::Listener;
 use crate::scene_loader::{
     InputFile, LoadOptions, Project, inspect_files, load_scene, open_project, unpack,
 };
+use crate::shares::Known;
 
 /// Files, parameters and the reconstruction made of them.
 #[wasm_bindgen]
@@ -27,10 +28,12 @@ pub struct Session {
     files: Vec<InputFile>,
     /// The project that was added last.
     project: Option<Project>,
-    params: Params,
-    run: Option<Run>,
+    pub(super) params: Params,
+    pub(super) run: Option<Run>,
+    /// What the sessions that share this run found of the next stage.
+    pub(super) known: Known,
     /// Written on first request after the last stage.
-    outputs: Option<Vec<(String, Vec<u8>)>>,
+    pub(super) outputs: Option<Vec<(String, Vec<u8>)>>,
     /// Points of interest, found on first request for a figure.
     pub(super) points: Option<Vec<PointsOfInterest>>,
 }
@@ -217,19 +220,14 @@ impl Session {
         Ok(())
     }
 
-    /// Runs a stage (after those before it that are missing); `{stage, counts, warnings}`.
+    /// Runs a stage (after those before it that are missing), with what was learnt of its maps; `{stage, counts, warnings}`.
     #[wasm_bindgen(js_name = runStage)]
     pub fn run_stage(&mut self, name: &str, on_progress: &Function) -> Result<JsValue, JsValue> {
-        let stage = Stage::from_name(name)
-            .ok_or_else(|| named_error("RangeError", &format!("no stage is called '{name}'")))?;
+        let stage = stage_of(name)?;
         self.outputs = None;
-        let run = self.run.as_mut().ok_or_else(not_loaded)?;
-        let on_progress = on_progress.clone();
-        let listener: Listener = Arc::new(move |fraction| {
-            // A listener that throws is the page's own fault, and no reason to lose the stage.
-            let _ = on_progress.call1(&JsValue::NULL, &fraction.into());
-        });
-        to_js(&run.step(stage, &listener))
+        let known = std::mem::take(&mut self.known);
+        let run = self.loaded_mut()?;
+        to_js(&run.step_with(stage, known, &listener_of(on_progress)))
     }
 
     /// The segments of a view: x0, y0, x1, y1 each, pixels.
@@ -353,10 +351,29 @@ impl Session {
         self.run.as_ref().ok_or_else(not_loaded)
     }
 
+    pub(super) fn loaded_mut(&mut self) -> Result<&mut Run, JsValue> {
+        self.run.as_mut().ok_or_else(not_loaded)
+    }
+
     fn outputs(&mut self) -> Result<&[(String, Vec<u8>)], JsValue> {
         let run = self.run.as_ref().ok_or_else(not_loaded)?;
         Ok(self.outputs.get_or_insert_with(|| run.files(&[])))
     }
+}
+
+/// The stage of this name.
+pub(super) fn stage_of(name: &str) -> Result<Stage, JsValue> {
+    Stage::from_name(name)
+        .ok_or_else(|| named_error("RangeError", &format!("no stage is called '{name}'")))
+}
+
+/// Tells the page how far a stage is.
+pub(super) fn listener_of(on_progress: &Function) -> Listener {
+    let on_progress = on_progress.clone();
+    Arc::new(move |fraction| {
+        // A listener that throws is the page's own fault, and no reason to lose the stage.
+        let _ = on_progress.call1(&JsValue::NULL, &fraction.into());
+    })
 }
 
 fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {

@@ -5,7 +5,7 @@
 //! finds their accuracy "rather poor".
 
 use nalgebra::{Matrix2, Point2, Vector2};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{ColorImage, Segmentation};
 use crate::geometry::Segment2;
@@ -16,7 +16,7 @@ use crate::raster::Gray;
 
 /// An image line on the boundary of two regions, directed by contrast: its right side is the brighter one (or the one of more
 /// red or blue, where colour shows it better).
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RegionLine {
     /// The line with its accuracy.
     pub line: ImageSegment,
