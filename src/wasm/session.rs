@@ -14,7 +14,7 @@ use crate::halfplane::PointsOfInterest;
 use crate::linematch::SupportKind;
 use crate::objectspace::{Window, WindowTrace};
 use crate::params::{Method, Params};
-use crate::pipeline::{Run, Stage};
+use crate::pipeline::{PackedView, Run, Stage};
 use crate::progress::Listener;
 use crate::scene_loader::{
     InputFile, LoadOptions, Project, inspect_files, load_scene, open_project, unpack,
@@ -30,6 +30,8 @@ pub struct Session {
     project: Option<Project>,
     pub(super) params: Params,
     pub(super) run: Option<Run>,
+    /// Views from another session, until they are all there.
+    pub(super) packed: Vec<PackedView>,
     /// What the sessions that share this run found of the next stage.
     pub(super) known: Known,
     /// Written on first request after the last stage.
@@ -172,6 +174,8 @@ impl Session {
     #[wasm_bindgen(js_name = clearFiles)]
     pub fn clear_files(&mut self) {
         self.files.clear();
+        self.packed.clear();
+        self.known = Known::default();
         self.project = None;
         self.run = None;
         self.outputs = None;

@@ -24,7 +24,7 @@ impl Session {
         Ok(stage_of(stage)?.shares_colours())
     }
 
-    /// A view of the loaded scene, for `takeViews` of another session.
+    /// A view of the loaded scene, for `takeView` of another session.
     #[wasm_bindgen(js_name = packView)]
     pub fn pack_view(&self, view: usize, with_colours: bool) -> Result<Vec<u8>, JsValue> {
         PackedView::new(self.loaded()?.scene(), view, with_colours)
@@ -32,16 +32,18 @@ impl Session {
             .ok_or_else(|| named_error("RangeError", &format!("there is no view {view}")))
     }
 
-    /// Makes a scene of the views that another session packed, all of them in their order.
-    #[wasm_bindgen(js_name = takeViews)]
-    pub fn take_views(&mut self, views: Vec<Uint8Array>) -> Result<(), JsValue> {
-        self.clear_files();
-        let unpacked = views
-            .into_iter()
-            .map(|bytes| PackedView::from_bytes(&bytes.to_vec()));
-        let unpacked: Option<Vec<PackedView>> = unpacked.collect();
-        let views = unpacked.ok_or_else(|| foreign("a packed view"))?;
-        self.run = Some(Run::of_packed(views, self.params.clone()));
+    /// Takes a view that another session packed, one after the other; with the last of them the scene is made.
+    #[wasm_bindgen(js_name = takeView)]
+    pub fn take_view(&mut self, view: usize, of: usize, packed: Vec<u8>) -> Result<(), JsValue> {
+        if view == 0 {
+            self.clear_files();
+        }
+        let unpacked = PackedView::from_bytes(&packed).ok_or_else(|| foreign("a packed view"))?;
+        self.packed.push(unpacked);
+        if view + 1 == of {
+            let views = std::mem::take(&mut self.packed);
+            self.run = Some(Run::of_packed(views, self.params.clone()));
+        }
         Ok(())
     }
 

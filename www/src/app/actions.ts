@@ -2,6 +2,7 @@
 import { batch } from "@preact/signals";
 import type { InputFile, Queries, QueryName } from "../shared/messages";
 import type { Params, ParamValue, SceneInfo } from "../shared/results";
+import { Crew } from "./crew";
 import { Engine, EngineError } from "./engine";
 import { save } from "./files";
 import type { Kept } from "./keep";
@@ -13,6 +14,7 @@ import { firstStageOf, stageWords } from "./stages";
 import {
   activity,
   announcement,
+  chosenWorkers,
   defaults,
   exportNames,
   files,
@@ -42,11 +44,14 @@ import {
   shownView,
   stages,
   tab,
+  workers,
 } from "./state";
 
-const engine = new Engine((stage, fraction) => {
-  if (stages.value.some(({ name, status }) => name === stage && status === "running")) {
-    updateStage(stage, { fraction });
+const engine = new Engine((stage, fraction) => crew.engineReached(stage, fraction));
+const crew = new Crew(engine, (name, fraction) => {
+  const running = stages.value.find((stage) => stage.name === name && stage.status === "running");
+  if (running !== undefined && fraction > running.fraction) {
+    updateStage(name, { fraction });
   }
 });
 
@@ -366,6 +371,7 @@ async function ensureScene(): Promise<void> {
       options: loadOptions(runOptions.value, inspection.value),
     });
     sceneInWorker = true;
+    crew.forgetViews();
     scene.value = loaded;
     if (images.value.length !== loaded.views.length) {
       images.value = await fetchImages(loaded);
@@ -388,7 +394,9 @@ async function runStage(name: string): Promise<void> {
   updateStage(name, { status: "running", fraction: 0, warnings: [] });
   say(`${stageWords(name).title} running`);
   try {
+    await shareStage(name);
     const summary = await engine.call("run", { stage: name });
+    crew.hasRun(name);
     const found = await fetchResults(name);
     const seconds = (performance.now() - started) / 1000;
     const names = await engine.call("exportNames", {});
@@ -404,6 +412,26 @@ async function runStage(name: string): Promise<void> {
     const cancelled = error instanceof EngineError && error.kind === "cancelled";
     updateStage(name, { status: cancelled ? "waiting" : "failed", fraction: 0 });
     throw error;
+  }
+}
+
+/** Has the helpers do their part of a stage. */
+async function shareStage(stage: string): Promise<void> {
+  const names = stages.value.map(({ name }) => name);
+  const shared = await crew.share({
+    stage,
+    earlier: names.slice(0, names.indexOf(stage)),
+    views: scene.value?.views.length ?? 0,
+    params: params.value,
+    workers: workers.value,
+  });
+  if (!shared) {
+    chosenWorkers.value = 1;
+    notify({
+      severity: "warning",
+      title: "A worker stopped",
+      text: "The computation goes on with one worker: there may not be memory for more.",
+    });
   }
 }
 
@@ -496,6 +524,7 @@ async function report(error: unknown): Promise<void> {
 }
 
 function forgetWorker(): void {
+  crew.close();
   filesInWorker = false;
   sceneInWorker = false;
   freshStages.value = 0;

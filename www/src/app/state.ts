@@ -19,6 +19,7 @@ import type {
 } from "../shared/traces";
 
 import type { Fix } from "./notices";
+import { automaticWorkers } from "./workers";
 
 /** The stage views of each method. */
 export const TABS = {
@@ -156,6 +157,15 @@ export const method = computed<Method>(() => methodOf(params.value));
 export function methodOf(values: Params): Method {
   return (values["method"] as unknown) === "rectangles" ? "rectangles" : "lines";
 }
+
+/** How many workers the person wants; 0: as many as are of use. */
+export const chosenWorkers = signal(0);
+export const usefulWorkers = computed(() => {
+  const views = scene.value?.views ?? [];
+  const pixels = views.reduce((sum, { width, height }) => sum + width * height, 0);
+  return automaticWorkers(navigator.hardwareConcurrency ?? 1, pixels);
+});
+export const workers = computed(() => chosenWorkers.value || usefulWorkers.value);
 
 export const stages = signal<StageState[]>([]);
 export const results = signal<Results>(NO_RESULTS);

@@ -31,6 +31,16 @@ export interface InputFile {
   blob: Blob;
 }
 
+export type Bytes = Uint8Array<ArrayBuffer>;
+
+/** Which items of a map in a stage a worker does: every `of`-th, from `index`. */
+export interface Share {
+  stage: string;
+  map: string;
+  index: number;
+  of: number;
+}
+
 /** Every call that the worker answers: its arguments and its result. */
 export interface Calls {
   open: { args: { wasmUrl: string }; result: { stages: string[]; defaults: Params } };
@@ -46,8 +56,15 @@ export interface Calls {
   halfPlanes: { args: object; result: HalfPlane[] };
   facets: { args: object; result: Facet[] };
   ask: { args: { query: QueryName; of: readonly unknown[] }; result: Queries[QueryName]["result"] };
+  sharedMaps: { args: { stage: string }; result: { maps: string[]; withColours: boolean } };
+  packView: { args: { view: number; withColours: boolean }; result: Bytes };
+  takeView: { args: { view: number; of: number; packed: Bytes }; result: null };
+  handOver: { args: { stage: string }; result: Bytes };
+  takeOver: { args: { stage: string; found: Bytes }; result: null };
+  share: { args: Share; result: Bytes };
+  learn: { args: { map: string; shares: Bytes[] }; result: null };
   exportNames: { args: object; result: string[] };
-  exportFile: { args: { name: string }; result: Uint8Array<ArrayBuffer> };
+  exportFile: { args: { name: string }; result: Bytes };
 }
 
 /** Questions about the results, by the name of the session's method: they change nothing. */

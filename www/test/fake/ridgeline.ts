@@ -167,6 +167,39 @@ export class Session implements CoreSession {
     return { width: SIZE_PX, height: SIZE_PX, rgba };
   }
 
+  sharedMaps(stage: string): string[] {
+    return stage === "segments" ? ["views"] : [];
+  }
+
+  sharesColours(): boolean {
+    return false;
+  }
+
+  packView(): Uint8Array<ArrayBuffer> {
+    return new Uint8Array([1]);
+  }
+
+  takeView(): void {}
+
+  handOver(): Uint8Array<ArrayBuffer> {
+    return new Uint8Array();
+  }
+
+  takeOver(): void {}
+
+  share(
+    _stage: string,
+    _map: string,
+    index: number,
+    of: number,
+    onProgress: (fraction: number) => void,
+  ): Uint8Array<ArrayBuffer> {
+    onProgress(1);
+    return new Uint8Array([index, of]);
+  }
+
+  learn(): void {}
+
   chosenStages(): string[] {
     return STAGES;
   }
