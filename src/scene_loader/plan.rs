@@ -230,7 +230,7 @@ impl Plan {
                 .or_else(|| set.reference(files))
                 .or_else(|| self.stated_reference(files)),
             anchor: set.anchor(files),
-            shifts: Vec::new(),
+            ..Survey::default()
         };
         let read = set.read(files, &mut self.warnings);
         let mut orientations = read.map_err(|e| self.errors.push(e)).ok()?;
@@ -241,9 +241,8 @@ impl Plan {
                 anchor.lon_deg, anchor.lat_deg
             ));
             self.survey = Survey {
-                epsg: None,
                 anchor: Some(anchor),
-                shifts: Vec::new(),
+                ..Survey::default()
             };
         }
         Some(orientations)

@@ -10,6 +10,7 @@ use super::convert::{
     end_points_px, from_js, input_error, line_array, named_error, row_major, segment_array, to_js,
 };
 use super::figures::{lines_of, segments_of};
+use crate::doctor;
 use crate::halfplane::PointsOfInterest;
 use crate::linematch::SupportKind;
 use crate::objectspace::{Window, WindowTrace};
@@ -66,6 +67,7 @@ struct SceneInfo {
     views: Vec<ViewInfo>,
     origin: [f64; 3],
     warnings: Vec<String>,
+    doctor: Option<doctor::Report>,
 }
 
 /// A view of the scene; its centre in metres, local frame, and its 3 x 4 matrix from there to pixels, row by row.
@@ -207,6 +209,7 @@ impl Session {
             views: views.collect(),
             origin: scene.origin.into(),
             warnings: scene.warnings.clone(),
+            doctor: scene.survey.doctor.clone(),
         });
         self.run = Some(Run::new(scene, self.params.clone()));
         info

@@ -5,7 +5,7 @@
  */
 import type { Bytes } from "../shared/messages";
 import type { Params } from "../shared/results";
-import { Engine } from "./engine";
+import { Engine, EngineError } from "./engine";
 
 /** A worker, and what it holds of the run. */
 interface Helper {
@@ -51,7 +51,8 @@ export class Crew {
       await this.#doMaps(wanted.stage, maps);
       return true;
     } catch (error) {
-      if (!this.#engine.isOpen) {
+      const cancelled = error instanceof EngineError && error.kind === "cancelled";
+      if (cancelled || !this.#engine.isOpen) {
         throw error;
       }
       this.close();

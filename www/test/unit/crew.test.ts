@@ -6,6 +6,7 @@ import type { Engine } from "../../src/app/engine";
 let calls: [number, string, Record<string, unknown>][] = [];
 /** The worker whose shares fail. */
 let broken = -1;
+let why = "crash";
 let made = 0;
 
 class FakeEngine {
@@ -32,7 +33,7 @@ class FakeEngine {
     }
     if (type === "share") {
       if (this.number === broken) {
-        throw new Error("out of memory");
+        throw new EngineError("stopped", why);
       }
       this.onProgress("matches", 0.5);
     }
@@ -40,7 +41,16 @@ class FakeEngine {
   }
 }
 
-vi.mock("../../src/app/engine", () => ({ Engine: FakeEngine }));
+class EngineError extends Error {
+  readonly kind: string;
+
+  constructor(message: string, kind: string) {
+    super(message);
+    this.kind = kind;
+  }
+}
+
+vi.mock("../../src/app/engine", () => ({ Engine: FakeEngine, EngineError }));
 
 const fractions: number[] = [];
 const wanted = { stage: "matches", earlier: ["segments"], views: 2, params: {}, workers: 3 };
@@ -59,6 +69,7 @@ describe("crew", () => {
     calls = [];
     fractions.length = 0;
     broken = -1;
+    why = "crash";
     made = 0;
   });
 
@@ -100,6 +111,13 @@ describe("crew", () => {
     await crew.share(wanted);
     expect(of("takeView").length).toBe(8);
     expect(of("takeOver").length).toBe(6);
+  });
+
+  it("ends with the run that is cancelled", async () => {
+    broken = 1;
+    why = "cancelled";
+    const crew = await crewOf();
+    await expect(crew.share(wanted)).rejects.toMatchObject({ kind: "cancelled" });
   });
 
   it("leaves the engine alone where a helper fails, or none is wanted", async () => {
