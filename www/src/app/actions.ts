@@ -512,11 +512,11 @@ async function guarded<T>(what: string, task: () => Promise<T>): Promise<T | und
 }
 
 async function report(error: unknown): Promise<void> {
-  const kind = error instanceof EngineError ? error.kind : "internal";
+  const { kind, doctor } = error instanceof EngineError ? error : { kind: "internal" as const, doctor: null };
   if (kind === "cancelled") {
     return;
   }
-  notify(failureNotice(error instanceof Error ? error.message : String(error), kind));
+  notify(failureNotice(error instanceof Error ? error.message : String(error), kind, doctor));
   if (kind === "crash") {
     forgetWorker();
     await start();

@@ -1,7 +1,7 @@
 /** All that the page knows, as signals. Components read them; `actions.ts` alone writes what the worker says. */
 import { computed, signal } from "@preact/signals";
 import type { InputFile } from "../shared/messages";
-import type { Facet, HalfPlane, Inspection, Params, SceneInfo } from "../shared/results";
+import type { DoctorReport, Facet, HalfPlane, Inspection, Params, SceneInfo } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import type {
   ClusterTrace,
@@ -18,7 +18,6 @@ import type {
   WarpedPicture,
 } from "../shared/traces";
 
-import type { Fix } from "./notices";
 import { automaticWorkers } from "./workers";
 
 /** The stage views of each method. */
@@ -48,8 +47,8 @@ export interface Notice {
   text: string;
   /** What to do about it. */
   advice?: string;
-  /** A mistake in the orientation that can be undone at once. */
-  fix?: Fix;
+  /** What the images say of the orientation. */
+  doctor?: DoctorReport;
   /** Something that can be done about it. */
   action?: { name: string; run: () => void };
 }

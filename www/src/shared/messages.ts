@@ -1,5 +1,6 @@
 /** What page and worker say to each other: one union each way, discriminated by `type`. */
 import type {
+  DoctorReport,
   Facet,
   HalfPlane,
   Inspection,
@@ -123,8 +124,15 @@ export type Request = { [K in CallName]: { type: K; id: number; args: Args<K> } 
  */
 export type FailureKind = "input" | "internal" | "crash";
 
+export interface Failure {
+  message: string;
+  kind: FailureKind;
+  /** What the images say, where they speak against the orientation. */
+  doctor: DoctorReport | null;
+}
+
 /** Worker to page. */
 export type Reply =
   | { type: "done"; id: number; result: Result<CallName> }
-  | { type: "failed"; id: number; message: string; kind: FailureKind }
+  | ({ type: "failed"; id: number } & Failure)
   | { type: "progress"; stage: string; fraction: number };

@@ -122,7 +122,7 @@ export class Session implements CoreSession {
       center: [0, 0, 4000 + i] as P,
       projection: downwards(4000 + i),
     }));
-    return { views, origin: [1000, 2000, 0], warnings: [] };
+    return { views, origin: [1000, 2000, 0], warnings: [], doctor: null };
   }
 
   setParams(): void {}
