@@ -2,7 +2,7 @@
 import { signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { THEME_COLOURS } from "../shared/palette";
-import type { Vec3 } from "../shared/results";
+import { LINE_STRIDE, type Vec3 } from "../shared/results";
 import { boundsOf, boundsOfFacets, boundsOfLines, withCameras } from "../viewer/bounds";
 import { buildCameras } from "../viewer/cameras";
 import { buildFacets } from "../viewer/facets";
@@ -12,6 +12,7 @@ import { buildLines } from "../viewer/lines";
 import { buildModel, type ModelLayer, type ModelMode } from "../viewer/model";
 import { buildOutlines } from "../viewer/outlines";
 import { buildStretches } from "../viewer/stretches";
+import { buildUncertainty, enlargement } from "../viewer/uncertainty";
 import { GRID_STEP_M, Viewer } from "../viewer/viewer";
 import { notify } from "./actions";
 import { Legend } from "./Legend";
@@ -32,11 +33,12 @@ import {
 import { theme } from "./theme";
 
 /** Layers that a person switches; "stretches" and "turning" follow other switches. */
-const LAYERS = ["lines", "fans", "groups", "facets", "model", "cameras"] as const;
+const LAYERS = ["lines", "uncertainty", "fans", "groups", "facets", "model", "cameras"] as const;
 type LayerName = (typeof LAYERS)[number];
 
 const LAYER_TITLES: Record<LayerName, string> = {
   lines: "3D lines",
+  uncertainty: "Uncertainty",
   fans: "Half-planes",
   groups: "Groups",
   facets: "Facets",
@@ -80,6 +82,12 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
         {tab.value === "lines" && <GrowingSwitch />}
         <span class="grow" />
         <Legend />
+        {shown.value[tab.value].includes("uncertainty") && results.value.records.length > 0 && (
+          <span class="legend-note">
+            <span class="swatch merged" aria-hidden="true" />1 σ, drawn {enlargement(results.value.records)} ×
+            as large
+          </span>
+        )}
       </div>
       <div class="space-canvas">
         <canvas
@@ -158,6 +166,13 @@ function useLayers(): void {
     if (lines !== null) {
       viewer.value?.lookAt(boundsOfLines(lines));
     }
+  });
+  useSignalEffect(() => {
+    const { lines, records } = results.value;
+    const has = lines !== null && records.length * LINE_STRIDE === lines.length;
+    const factor = enlargement(records);
+    const layer = has ? buildUncertainty(lines, records, factor, linesOfSelection) : null;
+    viewer.value?.setLayer("uncertainty", layer);
   });
   useSignalEffect(() => {
     const { lines, halfPlanes, sides } = results.value;

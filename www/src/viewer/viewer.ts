@@ -352,7 +352,16 @@ export class Viewer {
 }
 
 /** Layers in the order in which a click tries them. */
-const PICK_ORDER = ["groups", "stretches", "lines", "fans", "facets", "model", "cameras"] as const;
+const PICK_ORDER = [
+  "groups",
+  "stretches",
+  "lines",
+  "uncertainty",
+  "fans",
+  "facets",
+  "model",
+  "cameras",
+] as const;
 /** Layers whose points can be measured. */
 const MEASURED = ["lines", "stretches", "groups", "facets", "model"] as const;
 /** Layers of faces, which a cut goes through. */

@@ -252,6 +252,10 @@ export class Session implements CoreSession {
   lineRecords(): LineRecord[] {
     return EDGES.map((_, i) => ({
       sigma_m: 0.01 * (i + 1),
+      covariance: [
+        [1e-4, 0, 0, 1e-4, 0, 4e-4],
+        [1e-4, 0, 0, 1e-4, 0, 1e-4],
+      ],
       supports: [0, 1, 2].map((view) => ({ view, segments: [i], score: 0.8, kind: "matched" as const })),
     }));
   }
