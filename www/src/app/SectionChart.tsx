@@ -1,6 +1,6 @@
 /** The profile along a vertical cut, drawn to one scale both ways, with heights and slopes. */
 import type { ProfilePiece, Section } from "../viewer/section";
-import { Chart, type Frame, frameOf, xOf, yOf } from "./charts";
+import { Chart, type Frame, frameOf, type Scale, xOf, yOf } from "./charts";
 import { scene } from "./state";
 
 const WIDTH = 460;
@@ -18,7 +18,9 @@ export function SectionChart({ section }: { section: Section }) {
     return <p>Nothing between the two points is cut.</p>;
   }
   const [low, high] = [Math.min(...heights), Math.max(...heights)];
-  const { frame, x, y } = scales(section.lengthM, low + ground, high + ground);
+  const places = section.pieces.flatMap(({ from, to }) => [from[0], to[0]]);
+  const reach = { min: Math.min(...places), max: Math.max(...places) };
+  const { frame, x, y } = scales(reach, low + ground, high + ground);
   const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
   const at = ([along, height]: readonly [number, number]) => [toX(along), toY(height + ground)] as const;
   return (
@@ -56,16 +58,22 @@ export function SectionChart({ section }: { section: Section }) {
 }
 
 /** The same number of units per metre both ways: slopes look as steep as they are. */
-function scales(lengthM: number, low: number, high: number) {
+function scales(reach: Scale, low: number, high: number) {
   const empty = frameOf(WIDTH, 0);
   const inner = WIDTH - empty.left - empty.right;
   const range = Math.max(1, 1.15 * (high - low));
+  const lengthM = Math.max(1, 1.1 * (reach.max - reach.min));
   const perM = Math.min(inner / lengthM, MOST_INNER_HEIGHT / range);
+  const start = (reach.min + reach.max - inner / perM) / 2;
   const height = Math.max(LEAST_INNER_HEIGHT, range * perM);
   const frame: Frame = frameOf(WIDTH, height + empty.top + empty.bottom);
   const middle = (low + high) / 2;
   const half = height / perM / 2;
-  return { frame, x: { min: 0, max: inner / perM }, y: { min: middle - half, max: middle + half } };
+  return {
+    frame,
+    x: { min: start, max: start + inner / perM },
+    y: { min: middle - half, max: middle + half },
+  };
 }
 
 type At = (point: readonly [number, number]) => readonly [number, number];
