@@ -29,6 +29,7 @@ use crate::camera::Camera;
 use crate::orientation::Crop;
 use crate::parallel;
 use crate::raster::Gray;
+use crate::sorting::sort_by;
 use epipolar::{MARGIN, Reduced, SHIFTS, best_place};
 use points::interest_points;
 
@@ -285,7 +286,7 @@ impl Clinic {
         }
         let mut last = self.best_of(patients, self.focal_lengths(patients));
         last.trials.extend(best.trials);
-        last.trials.sort_by(|a, b| {
+        sort_by(&mut last.trials, |a, b| {
             let by_score = b.agreement.score.total_cmp(&a.agreement.score);
             b.all_pairs.cmp(&a.all_pairs).then(by_score)
         });
@@ -302,7 +303,7 @@ impl Clinic {
                 Some((total(&self.counts(&cameras, &few)), suspect, cameras))
             })
             .collect();
-        treated.sort_by(|a, b| b.0.score.total_cmp(&a.0.score));
+        sort_by(&mut treated, |a, b| b.0.score.total_cmp(&a.0.score));
         let trial = |agreement, suspect: Suspect, all_pairs| Trial {
             words: suspect.describe(patients),
             agreement,
@@ -317,7 +318,9 @@ impl Clinic {
                 best = (after, Some(*suspect));
             }
         }
-        trials.sort_by(|a, b| b.agreement.score.total_cmp(&a.agreement.score));
+        sort_by(&mut trials, |a, b| {
+            b.agreement.score.total_cmp(&a.agreement.score)
+        });
         let others = treated.iter().skip(FINALISTS);
         trials.extend(others.map(|(agreement, suspect, _)| trial(*agreement, *suspect, false)));
         Interview { best, trials }

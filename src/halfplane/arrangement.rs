@@ -12,6 +12,7 @@ use spade::{ConstrainedDelaunayTriangulation, HasPosition, Triangulation};
 
 use super::borders::Border;
 use super::plan::PlanGrid;
+use crate::sorting::sort_by;
 
 /// A vertex of the triangulation.
 #[derive(Clone, Copy, Debug)]
@@ -270,7 +271,7 @@ impl Snapper {
                     .then_some((t, v.data))
             })
             .collect();
-        on.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        sort_by(&mut on, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         on.into_iter().map(|(_, v)| v).collect()
     }
 }

@@ -31,6 +31,7 @@ use crate::geometry::Segment3;
 use crate::ids::ViewId;
 use crate::params::ClusterParams;
 use crate::scene::Scene;
+use crate::sorting::sort_by;
 
 /// A 3D line of a main direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -219,7 +220,9 @@ impl Search<'_> {
             events.push((s[0], true, view));
             events.push((s[1], false, view));
         }
-        events.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)).then(a.2.cmp(&b.2)));
+        sort_by(&mut events, |a, b| {
+            a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)).then(a.2.cmp(&b.2))
+        });
         let mut open = vec![0u32; self.scene.views.len()];
         let (mut views, mut start) = (0, 0.0);
         let mut runs: Vec<[f64; 2]> = Vec::new();

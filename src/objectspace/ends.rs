@@ -13,6 +13,7 @@ use super::sight::Sight;
 use crate::geometry::Plane;
 use crate::ids::ViewId;
 use crate::params::PlaneParams;
+use crate::sorting::sort_by;
 
 /// A plane between two parallel lines: u along them, w from the first to the second.
 #[derive(Clone, Copy, Debug)]
@@ -166,7 +167,7 @@ fn distinct(
         .into_iter()
         .map(|p| settle(strip, crossings, p, views, params))
         .collect();
-    found.sort_by(|a, b| {
+    sort_by(&mut found, |a, b| {
         b.support
             .total_cmp(&a.support)
             .then(a.at[0].total_cmp(&b.at[0]))

@@ -39,6 +39,7 @@ use crate::params::PlaneParams;
 use crate::roof::Ground;
 use crate::scene::Scene;
 use crate::shares::map_shared;
+use crate::sorting::sort_by;
 
 /// A polygon in a plane, with the evidence for it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -291,7 +292,7 @@ impl PlaneSearch<'_> {
                 })
             })
             .collect();
-        found.sort_by(|a, b| b.measure.total_cmp(&a.measure));
+        sort_by(&mut found, |a, b| b.measure.total_cmp(&a.measure));
         found.truncate(self.params.max_candidates);
         found
     }

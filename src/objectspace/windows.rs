@@ -17,6 +17,7 @@ use crate::params::ObjectSpaceParams;
 use crate::roof::Ground;
 use crate::scene::Scene;
 use crate::shares::map_shared;
+use crate::sorting::sort_by;
 
 /// A part of the ground plan that is analysed on its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -121,7 +122,7 @@ fn raised_lines(
         tile_lines(scene, sights, tile, params)
     });
     let mut lines: Vec<Segment3> = per_tile.into_iter().flatten().map(|l| l.segment).collect();
-    lines.sort_by(|a, b| {
+    sort_by(&mut lines, |a, b| {
         let key = |s: &Segment3| (s.p0.x, s.p0.y);
         b.length()
             .total_cmp(&a.length())

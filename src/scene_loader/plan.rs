@@ -14,6 +14,7 @@ use crate::orientation::{
 };
 use crate::raster::{ImageHeader, image_header};
 use crate::scene::Survey;
+use crate::sorting::sort_by_key;
 use crate::{Error, Result};
 
 /// Everything about a scene but its pixels.
@@ -110,7 +111,7 @@ impl Plan {
         let mut images: Vec<usize> = (0..files.len())
             .filter(|&i| self.kinds[i] == FileKind::Image)
             .collect();
-        images.sort_by_key(|&i| (files[i].name(), &files[i].path));
+        sort_by_key(&mut images, |&i| (files[i].name(), &files[i].path));
         if let Some(wanted) = &options.views {
             images = self.select(files, &images, wanted);
         }

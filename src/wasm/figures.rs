@@ -250,9 +250,9 @@ fn line_record(line: &Line3d) -> LineRecord<'_> {
     });
     LineRecord {
         sigma_m: line.sigma_m,
-        covariance: line.covariance.map(|c| {
-            [c.m11, c.m12, c.m13, c.m22, c.m23, c.m33]
-        }),
+        covariance: line
+            .covariance
+            .map(|c| [c.m11, c.m12, c.m13, c.m22, c.m23, c.m33]),
         supports: supports.collect(),
     }
 }

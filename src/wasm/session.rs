@@ -21,6 +21,7 @@ use crate::scene_loader::{
     InputFile, LoadOptions, Project, inspect_files, load_scene, open_project, unpack,
 };
 use crate::shares::Known;
+use crate::sorting::sort_by;
 
 /// Files, parameters and the reconstruction made of them.
 #[wasm_bindgen]
@@ -145,7 +146,7 @@ impl Session {
             self.files.retain(|file| file.path != added.path);
             self.files.push(added);
         }
-        self.files.sort_by(|a, b| a.path.cmp(&b.path));
+        sort_by(&mut self.files, |a, b| a.path.cmp(&b.path));
         Ok(())
     }
 

@@ -383,8 +383,7 @@ async function ensureScene(): Promise<void> {
 async function fetchImages(loaded: SceneInfo): Promise<ImageBitmap[]> {
   const bitmaps: ImageBitmap[] = [];
   for (let view = 0; view < loaded.views.length; view += 1) {
-    const { rgba, width, height } = await engine.call("image", { view });
-    bitmaps.push(await createImageBitmap(new ImageData(rgba, width, height)));
+    bitmaps.push(await engine.call("image", { view }));
   }
   return bitmaps;
 }

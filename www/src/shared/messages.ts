@@ -8,7 +8,6 @@ import type {
   Params,
   SceneInfo,
   StageSummary,
-  ViewImage,
 } from "./results";
 
 import type {
@@ -48,7 +47,7 @@ export interface Calls {
   setFiles: { args: { files: InputFile[] }; result: null };
   inspect: { args: { options: LoadOptions }; result: Inspection };
   load: { args: { options: LoadOptions }; result: SceneInfo };
-  image: { args: { view: number }; result: ViewImage };
+  image: { args: { view: number }; result: ImageBitmap };
   setParams: { args: { params: Params }; result: null };
   run: { args: { stage: string }; result: StageSummary };
   segments: { args: { view: number }; result: Float32Array };

@@ -41,6 +41,8 @@ export class Viewer {
   readonly #layers = new Map<string, Layer>();
   /** Layers that are not shown, whether they exist yet or not. */
   readonly #hidden = new Set<string>();
+  /** Layers whose shaders are not ready yet. */
+  readonly #compiling = new Set<Layer>();
   readonly #observer: ResizeObserver;
   readonly #onPick: (selection: Selection | null) => void;
   #grid: GridHelper | null = null;
@@ -90,11 +92,22 @@ export class Viewer {
       this.#layers.delete(name);
     }
     if (layer !== null) {
-      layer.object.visible = !this.#hidden.has(name);
+      layer.object.visible = false;
       this.#layers.set(name, layer);
       this.#scene.add(layer.object);
+      void this.#compile(name, layer);
     }
     this.draw();
+  }
+
+  /** Shows a layer once its shaders are ready: drawing it earlier would wait for them. */
+  async #compile(name: string, layer: Layer): Promise<void> {
+    this.#compiling.add(layer);
+    await this.#renderer.compileAsync(layer.object, this.#camera, this.#scene);
+    this.#compiling.delete(layer);
+    if (this.#layers.get(name) === layer) {
+      this.showLayer(name, !this.#hidden.has(name));
+    }
   }
 
   showLayer(name: string, visible: boolean): void {
@@ -104,7 +117,7 @@ export class Viewer {
     }
     const layer = this.#layers.get(name);
     if (layer !== undefined) {
-      layer.object.visible = visible;
+      layer.object.visible = visible && !this.#compiling.has(layer);
       this.draw();
     }
   }
@@ -228,6 +241,10 @@ export class Viewer {
 
   #render(): void {
     this.#frame = 0;
+    // What nobody sees costs nothing: once it is shown, the observer of its size has it drawn.
+    if (this.#renderer.domElement.clientWidth === 0) {
+      return;
+    }
     const distance = this.#camera.position.distanceTo(this.#controls.target);
     this.#camera.near = Math.max(0.1, distance / 200);
     this.#camera.far = Math.max(5000, distance * 20);
@@ -255,8 +272,12 @@ export class Viewer {
     if (clientWidth === 0 || clientHeight === 0) {
       return;
     }
-    this.#renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
-    this.#renderer.setSize(clientWidth, clientHeight, false);
+    const size = this.#renderer.getSize(new Vector2());
+    // Setting the same size would make the canvas anew, too.
+    if (size.x !== clientWidth || size.y !== clientHeight) {
+      this.#renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+      this.#renderer.setSize(clientWidth, clientHeight, false);
+    }
     this.#camera.aspect = clientWidth / clientHeight;
     cancelAnimationFrame(this.#frame);
     this.#render();

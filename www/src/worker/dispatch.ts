@@ -83,7 +83,7 @@ export async function dispatch(
     case "load":
       return copied(session.load(request.args.options));
     case "image":
-      return imageAnswer(session.image(request.args.view));
+      return await imageAnswer(session.image(request.args.view));
     case "setParams":
       session.setParams(request.args.params);
       return copied(null);
@@ -178,11 +178,10 @@ function queryAnswer(session: CoreSession, query: QueryName, of: readonly unknow
   return copied(result as Result<CallName>);
 }
 
-function imageAnswer(image: ViewImage): Answer {
-  return {
-    result: { width: image.width, height: image.height, rgba: image.rgba },
-    transfer: [image.rgba.buffer],
-  };
+/** The bitmap is made here: on the page it would hold everything else up. */
+async function imageAnswer({ rgba, width, height }: ViewImage): Promise<Answer> {
+  const bitmap = await createImageBitmap(new ImageData(rgba, width, height));
+  return { result: bitmap, transfer: [bitmap] };
 }
 
 /** Arrays that the core hands out are copies of its memory, so their buffers may move. */
