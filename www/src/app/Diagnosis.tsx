@@ -1,6 +1,6 @@
 /** The doctor's report: how well the images agree with their orientation, what else was tried, and the cure. */
 import type { Agreement, DoctorReport } from "../shared/results";
-import { setRunOptions } from "./actions";
+import { setRunOptions } from "./projectActions";
 
 /** Trials beyond these explain nothing. */
 const MOST_TRIALS = 10;

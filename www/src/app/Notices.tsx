@@ -1,5 +1,5 @@
 /** What went wrong or needs attention, in words, until it is dismissed. */
-import { dismiss } from "./actions";
+import { dismiss } from "./core";
 import { Diagnosis } from "./Diagnosis";
 import { notices } from "./state";
 

@@ -1,9 +1,10 @@
 /** The project: where files are dropped, and what each of them was recognised as. */
 import { useRef, useState } from "preact/hooks";
 import type { ImageReport } from "../shared/results";
-import { addFiles, clearProject, notify, openDemo, removeFile, setRunOptions } from "./actions";
+import { notify } from "./core";
 import { Diagnosis } from "./Diagnosis";
 import { droppedFiles, pickedFiles } from "./files";
+import { addFiles, clearProject, openDemo, removeFile, setRunOptions } from "./projectActions";
 import { OrientationChoice, PlaceFields } from "./RunOptionFields";
 import { files, inspection, keptBytes, projectName, runOptions, scene } from "./state";
 import { Thumbnail } from "./Thumbnail";

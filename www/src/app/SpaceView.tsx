@@ -7,7 +7,7 @@ import { boundsOf, boundsOfFacets, boundsOfLines, withCameras } from "../viewer/
 import { buildModel, type ModelLayer, type ModelMode } from "../viewer/model";
 import { enlargement } from "../viewer/uncertainty";
 import { GRID_STEP_M, Viewer } from "../viewer/viewer";
-import { notify } from "./actions";
+import { notify } from "./core";
 import { Legend } from "./Legend";
 import { followResults } from "./layers";
 import { SpaceTools } from "./SpaceTools";

@@ -1,6 +1,7 @@
 /** The stages in order: run, cancel, progress, time and counts. */
-import { cancel, runAll, runTo } from "./actions";
+
 import { KeepResult } from "./Comparison";
+import { cancel, runAll, runTo } from "./running";
 import { stageWords } from "./stages";
 import {
   chosenWorkers,

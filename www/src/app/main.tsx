@@ -5,7 +5,7 @@ import "../styles/parts.css";
 import "../styles/figures.css";
 import { render } from "preact";
 import { App } from "./App";
-import { start } from "./actions";
+import { start } from "./core";
 import { keepProject } from "./keep";
 import { followState } from "./link";
 import { followSelection } from "./pointing";

@@ -1,4 +1,4 @@
-/** All that the page knows, as signals. Components read them; `actions.ts` alone writes what the worker says. */
+/** All that the page knows, as signals. Components read them; `core.ts`, `running.ts` and `projectActions.ts` alone write what the worker says. */
 import { computed, signal } from "@preact/signals";
 import type { InputFile } from "../shared/messages";
 import type { DoctorReport, Facet, HalfPlane, Inspection, Params, SceneInfo } from "../shared/results";
