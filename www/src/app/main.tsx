@@ -3,6 +3,8 @@ import "../styles/base.css";
 import "../styles/layout.css";
 import "../styles/parts.css";
 import "../styles/figures.css";
+import "../styles/views.css";
+import "../styles/tools.css";
 import { render } from "preact";
 import { App } from "./App";
 import { start } from "./core";

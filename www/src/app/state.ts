@@ -3,20 +3,7 @@ import { computed, signal } from "@preact/signals";
 import type { InputFile } from "../shared/messages";
 import type { DoctorReport, Facet, HalfPlane, Inspection, Params, SceneInfo } from "../shared/results";
 import type { Selection } from "../shared/selection";
-import type {
-  ClusterTrace,
-  Correspondence,
-  Directions,
-  Grouping,
-  LineRecord,
-  MatchRecord,
-  RectangleTrace,
-  Segmentation,
-  SegmentStory,
-  SideRecord,
-  SideTrace,
-  WarpedPicture,
-} from "../shared/traces";
+import type * as traces from "../shared/traces";
 
 import { automaticWorkers } from "./workers";
 
@@ -62,32 +49,32 @@ export interface Results {
   facets: Facet[] | null;
   glb: Uint8Array<ArrayBuffer> | null;
   rejected: Float32Array[];
-  matching: MatchRecord | null;
-  records: LineRecord[];
+  matching: traces.MatchRecord | null;
+  records: traces.LineRecord[];
   stretches: Float64Array | null;
-  sides: SideRecord[];
-  grouping: Grouping | null;
-  regions: Segmentation[];
-  directions: Directions | null;
-  clusters: ClusterTrace[] | null;
-  rectangles: RectangleTrace | null;
+  sides: traces.SideRecord[];
+  grouping: traces.Grouping | null;
+  regions: traces.Segmentation[];
+  directions: traces.Directions | null;
+  clusters: traces.ClusterTrace[] | null;
+  rectangles: traces.RectangleTrace | null;
 }
 
 /** What the reader points at in a figure, and what the core answered. */
 export interface Pointing {
   /** The story of the selected segment. */
-  story: SegmentStory | null;
+  story: traces.SegmentStory | null;
   /** The candidate that is compared with it, by its place in the story. */
   candidate: number;
   /** Where on the segment the point is, 0 to 1. */
   at: number;
-  correspondence: Correspondence | null;
+  correspondence: traces.Correspondence | null;
   /** The side of the selected line or half-plane, its Sim(theta), and the angle that is tried, radians. */
-  side: SideTrace | null;
+  side: traces.SideTrace | null;
   theta: number;
   /** Whether the reader turned it. */
   isTurned: boolean;
-  warped: WarpedPicture | null;
+  warped: traces.WarpedPicture | null;
 }
 
 export const NO_RESULTS: Results = {

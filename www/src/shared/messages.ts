@@ -9,21 +9,7 @@ import type {
   SceneInfo,
   StageSummary,
 } from "./results";
-
-import type {
-  ClusterTrace,
-  Correspondence,
-  Directions,
-  Grouping,
-  LineRecord,
-  MatchRecord,
-  RectangleTrace,
-  Segmentation,
-  SegmentStory,
-  SideRecord,
-  SideTrace,
-  WarpedPicture,
-} from "./traces";
+import type * as traces from "./traces";
 
 /** A file of the project. The page keeps the handle, so that a new worker can be given it again. */
 export interface InputFile {
@@ -71,22 +57,22 @@ export interface Calls {
 export interface Queries {
   chosenStages: { args: []; result: string[] };
   rejectedSegments: { args: [view: number]; result: Float32Array };
-  matching: { args: []; result: MatchRecord | null };
-  segmentStory: { args: [view: number, segment: number]; result: SegmentStory | null };
+  matching: { args: []; result: traces.MatchRecord | null };
+  segmentStory: { args: [view: number, segment: number]; result: traces.SegmentStory | null };
   correspondence: {
     args: [view: number, segment: number, otherView: number, otherSegment: number, t: number];
-    result: Correspondence | null;
+    result: traces.Correspondence | null;
   };
-  lineRecords: { args: []; result: LineRecord[] };
+  lineRecords: { args: []; result: traces.LineRecord[] };
   detectedStretches: { args: []; result: Float64Array };
-  sides: { args: []; result: SideRecord[] };
-  side: { args: [line: number, left: boolean]; result: SideTrace | null };
-  warped: { args: [line: number, left: boolean, theta: number]; result: WarpedPicture | null };
-  grouping: { args: []; result: Grouping | null };
-  regions: { args: [view: number]; result: Segmentation | null };
-  directions: { args: []; result: Directions | null };
-  clusters: { args: []; result: ClusterTrace[] | null };
-  rectangles: { args: []; result: RectangleTrace | null };
+  sides: { args: []; result: traces.SideRecord[] };
+  side: { args: [line: number, left: boolean]; result: traces.SideTrace | null };
+  warped: { args: [line: number, left: boolean, theta: number]; result: traces.WarpedPicture | null };
+  grouping: { args: []; result: traces.Grouping | null };
+  regions: { args: [view: number]; result: traces.Segmentation | null };
+  directions: { args: []; result: traces.Directions | null };
+  clusters: { args: []; result: traces.ClusterTrace[] | null };
+  rectangles: { args: []; result: traces.RectangleTrace | null };
 }
 
 export type QueryName = keyof Queries;
