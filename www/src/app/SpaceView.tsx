@@ -65,10 +65,10 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
         <span class="grow" />
         <Legend />
         {shown.value[tab.value].includes("uncertainty") && results.value.records.length > 0 && (
-          <span class="legend-note">
+          <p class="legend">
             <span class="swatch merged" aria-hidden="true" />1 σ, drawn {enlargement(results.value.records)} ×
             as large
-          </span>
+          </p>
         )}
       </div>
       <div class="space-canvas">

@@ -12,10 +12,10 @@ import { disposeObject, type Layer } from "./layer";
 
 /** Corners of an ellipse. */
 const CORNERS = 16;
-const OPACITY = 0.42;
+const OPACITY = 0.5;
 const DIMMED = 0.12;
-/** The middle tube is to have about this radius, metres, to be seen beside a house. */
-const WANTED_M = 0.3;
+/** The middle tube is to have at most this radius, metres: seen beside a house, and smaller. */
+const WANTED_M = 1;
 const FACTORS = [1, 2, 5, 10, 20, 50, 100] as const;
 
 /** The round factor by which tubes of these lines are drawn larger. */

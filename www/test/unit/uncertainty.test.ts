@@ -34,9 +34,9 @@ const record = (sigma: number): LineRecord => {
 };
 
 it("enlarges by a round factor", () => {
-  expect(enlargement([record(0.012)])).toBe(20);
-  expect(enlargement([record(0.5)])).toBe(1);
-  expect(enlargement([record(0.001), record(0.02), record(1)])).toBe(10);
+  expect(enlargement([record(0.012)])).toBe(50);
+  expect(enlargement([record(0.6)])).toBe(1);
+  expect(enlargement([record(0.001), record(0.02), record(1)])).toBe(50);
   expect(enlargement([])).toBe(100);
 });
 
