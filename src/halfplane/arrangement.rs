@@ -202,7 +202,7 @@ fn split_at_crossings(borders: &[Border]) -> (Vec<Point2<f64>>, Vec<(usize, usiz
         let on = snapper.along(border);
         pieces.extend(on.windows(2).map(|w| (w[0].min(w[1]), w[0].max(w[1]))));
     }
-    pieces.sort_unstable();
+    sort_by(&mut pieces, Ord::cmp);
     pieces.dedup();
     (snapper.points, pieces)
 }

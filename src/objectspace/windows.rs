@@ -157,7 +157,7 @@ fn tiles(sights: &[Sight], z_range_m: [f64; 2], size: f64) -> Vec<Window> {
             [[c, r], [c - 1, r], [c, r - 1], [c - 1, r - 1]]
         })
         .collect();
-    corners.sort_unstable();
+    sort_by(&mut corners, Ord::cmp);
     corners.dedup();
     corners
         .into_iter()
