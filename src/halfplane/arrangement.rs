@@ -344,7 +344,7 @@ mod tests {
                 height: 80,
             };
             let mut seen: Vec<u32> = a.raster(&grid);
-            seen.sort_unstable();
+            sort_by(&mut seen, Ord::cmp);
             seen.dedup();
             seen.iter().map(|&c| a.areas[c as usize]).collect()
         };

@@ -46,7 +46,7 @@ impl PlaneGroup {
     /// The distinct lines, ascending.
     pub fn lines(&self) -> Vec<LineId> {
         let mut lines: Vec<LineId> = self.members.iter().map(|m| m.line).collect();
-        lines.sort_unstable();
+        sort_by(&mut lines, Ord::cmp);
         lines.dedup();
         lines
     }
@@ -54,7 +54,7 @@ impl PlaneGroup {
     /// The half-planes, ascending.
     pub fn half_planes(&self) -> Vec<HalfPlaneId> {
         let mut ids: Vec<HalfPlaneId> = self.members.iter().filter_map(|m| m.half_plane).collect();
-        ids.sort_unstable();
+        sort_by(&mut ids, Ord::cmp);
         ids
     }
 }

@@ -90,7 +90,7 @@ pub fn lines_in_plane(
             .filter(|&j| !used[j] && coincide(&casts[i], &casts[j], SAME_LINE_PX * pixel))
             .collect();
         let mut views: Vec<ViewId> = members.iter().map(|&j| casts[j].view).collect();
-        views.sort_unstable();
+        sort_by(&mut views, Ord::cmp);
         views.dedup();
         if views.len() < MIN_VIEWS {
             continue;

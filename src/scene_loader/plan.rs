@@ -14,7 +14,7 @@ use crate::orientation::{
 };
 use crate::raster::{ImageHeader, image_header};
 use crate::scene::Survey;
-use crate::sorting::sort_by_key;
+use crate::sorting::{sort_by, sort_by_key};
 use crate::{Error, Result};
 
 /// Everything about a scene but its pixels.
@@ -170,7 +170,7 @@ impl Plan {
             .iter()
             .map(|&i| (stem(&files[i].path).to_lowercase(), i))
             .collect();
-        keys.sort();
+        sort_by(&mut keys, Ord::cmp);
         for pair in keys.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
             self.errors.push(Error::Scene {
                 problem: format!(
