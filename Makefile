@@ -77,6 +77,7 @@ clean:
 
 $(PACKAGE): $(RUST_SOURCES) $(WASM32) $(WASM_BINDGEN) $(WASM_PACK) $(NPM)
 	wasm-pack build --mode no-install --target web --profile wasm --out-dir www/src/pkg --out-name ridgeline
+	node www/scripts/strip.mjs $@
 
 $(SITE): $(PACKAGE) $(NPM) $(WWW_SOURCES)
 	cd www && npm run build
