@@ -135,6 +135,7 @@ pub fn map_shared<T: Sync, R: Send + Serialize + DeserializeOwned>(
             }
             results
         }
+        Turn::Skipped => Vec::new(),
         Turn::Share(mine) => {
             let results = parallel::map_part(&mine, part, |_, &i| f(i, &items[i]));
             hand_in(items.len(), &results);
@@ -151,6 +152,8 @@ enum Turn<R> {
     Known(Vec<R>),
     /// This instance does these items.
     Share(Vec<usize>),
+    /// Its results would be thrown away.
+    Skipped,
 }
 
 fn turn<R: DeserializeOwned>(name: &str, items: usize) -> Turn<R> {
@@ -161,12 +164,14 @@ fn turn<R: DeserializeOwned>(name: &str, items: usize) -> Turn<R> {
         let call = dealing.called.entry(name.to_owned()).or_default();
         let this = *call;
         *call += 1;
-        match dealing.task.as_ref().filter(|task| task.map == name) {
-            Some(task) => Turn::Share((task.index..items).step_by(task.of.max(1)).collect()),
-            None => match dealing.known.results(name, this, items) {
-                Some(results) => Turn::Known(results),
-                None => Turn::Alone,
-            },
+        if let Some(task) = dealing.task.as_ref().filter(|task| task.map == name) {
+            return Turn::Share((task.index..items).step_by(task.of.max(1)).collect());
+        }
+        match dealing.known.results(name, this, items) {
+            Some(results) => Turn::Known(results),
+            // Behind the map of the task nothing matters any more.
+            None if dealing.task.is_some() => Turn::Skipped,
+            None => Turn::Alone,
         }
     })
 }
@@ -208,13 +213,12 @@ mod tests {
                 index,
                 of,
             };
+            let counted = AtomicUsize::new(0);
             let shares: Vec<Vec<u8>> = (0..of)
-                .map(|k| {
-                    share(task(k), known.clone(), || {
-                        stage(&AtomicUsize::new(0));
-                    })
-                })
+                .map(|k| share(task(k), known.clone(), || drop(stage(&counted))))
                 .collect();
+            // Nobody does another map than this one.
+            assert_eq!(counted.into_inner(), 11);
             assert!(shares.iter().all(|bytes| known.add(map, bytes)));
         }
         let counted = AtomicUsize::new(0);
