@@ -76,11 +76,8 @@ clean:
 # ---- the wasm package and the site -------------------------------------------------------------
 
 $(PACKAGE): $(RUST_SOURCES) $(WASM32) $(WASM_BINDGEN) $(WASM_PACK) $(NPM)
-	wasm-pack build --mode no-install --target web --release --out-dir www/src/pkg --out-name ridgeline
-	www/node_modules/.bin/wasm-opt -O3 --enable-simd --enable-bulk-memory --enable-sign-ext \
-		--enable-mutable-globals --enable-nontrapping-float-to-int --enable-reference-types \
-		--enable-multivalue $@ -o $@.opt
-	mv $@.opt $@
+	wasm-pack build --mode no-install --target web --profile wasm --out-dir www/src/pkg --out-name ridgeline
+	node www/scripts/strip.mjs $@
 
 $(SITE): $(PACKAGE) $(NPM) $(WWW_SOURCES)
 	cd www && npm run build

@@ -1,5 +1,7 @@
 //! Why an input was refused: which file, which line, what was expected, what to do.
 
+use crate::doctor;
+
 /// A refusal. Every message names the file and says what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
@@ -33,6 +35,28 @@ pub enum Error {
         /// What to do.
         advice: String,
     },
+    /// The images speak against their orientation.
+    #[error("{}; {}", one_line(.problem), one_line(.advice))]
+    Contradiction {
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        advice: String,
+        /// What the images were asked, and what they answered.
+        report: Box<doctor::Report>,
+    },
+}
+
+impl Error {
+    /// The kind of refusal, for programs.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Line { .. } => "line",
+            Self::File { .. } => "file",
+            Self::Scene { .. } => "scene",
+            Self::Contradiction { .. } => "contradiction",
+        }
+    }
 }
 
 /// Names and contents of files may hold anything: control characters become blanks, and long texts are shortened.

@@ -1,5 +1,6 @@
 //! Finite segments, infinite lines and planes. Points and vectors are nalgebra's.
 
+use crate::sorting::sort_by;
 use nalgebra::{Matrix3, Point2, Point3, Unit, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -137,7 +138,9 @@ impl Plane {
         });
         let eigen = scatter.symmetric_eigen();
         let mut order = [0, 1, 2];
-        order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+        sort_by(&mut order, |&a, &b| {
+            eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b])
+        });
         // Collinear points leave the second axis without extent: no plane.
         if eigen.eigenvalues[order[1]] <= 1e-9 * eigen.eigenvalues[order[2]] {
             return None;

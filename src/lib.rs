@@ -45,6 +45,8 @@ pub mod raster;
 pub mod roof;
 pub mod scene;
 pub mod scene_loader;
+pub mod shares;
+pub mod sorting;
 pub mod synthetic;
 pub mod texture;
 pub mod tiles;

@@ -28,13 +28,19 @@ pub fn map<T: Sync, R: Send>(items: &[T], f: impl Fn(usize, &T) -> R + Sync) -> 
         .collect()
 }
 
+/// The part of a map that is not worth speaking of.
+pub const SILENT: Range<f64> = 0.0..0.0;
+
 /// [`map`], as the part of a stage's work that runs from fraction `part.start` to `part.end`: the stage's
-/// listener hears of every item done.
+/// listener hears of every item done, unless the part is [`SILENT`].
 pub fn map_part<T: Sync, R: Send>(
     items: &[T],
     part: Range<f64>,
     f: impl Fn(usize, &T) -> R + Sync,
 ) -> Vec<R> {
+    if part.is_empty() {
+        return map(items, f);
+    }
     let results = progress::counted(|listener| {
         let Some(listener) = listener else {
             return map(items, f);

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::camera::Camera;
-use crate::doctor::ViewShift;
+use crate::doctor::{self, ViewShift};
 use crate::ids::ViewId;
 use crate::orientation::Anchor;
 use crate::raster::{Gray, noise_of};
@@ -46,6 +46,8 @@ pub struct Survey {
     pub anchor: Option<Anchor>,
     /// How far each view is shifted against the others, where the images show enough to tell.
     pub shifts: Vec<ViewShift>,
+    /// How well the images agree with the orientation that is used; `None` where nobody asked them.
+    pub doctor: Option<doctor::Report>,
 }
 
 /// Oriented views and what is known about the ground.

@@ -5,6 +5,7 @@
 use std::fmt::Write;
 
 use nalgebra::{Matrix3, Vector3};
+use ridgeline::doctor::Finding;
 use ridgeline::scene::Scene;
 use ridgeline::scene_loader::{InputFile, LoadOptions, load_scene};
 use ridgeline::synthetic::{
@@ -184,6 +185,31 @@ fn broken_orientations_are_named() {
         }
         assert!(unnamed.is_empty(), "{}", unnamed.join("\n"));
     }
+}
+
+#[test]
+fn a_refusal_says_what_was_tried() {
+    let (scene, _) = gable_scene(320);
+    let (what, orientation, name) = broken(&scene).into_iter().next().unwrap();
+    let refusal = load(&scene, orientation).unwrap_err();
+    assert_eq!(refusal.code(), "contradiction");
+    let ridgeline::Error::Contradiction { report, .. } = refusal else {
+        panic!("{what}: {refusal}");
+    };
+    assert_eq!(report.finding, Finding::Explained);
+    let best = &report.trials[0];
+    assert!(best.words.contains(name) && best.all_pairs, "{best:?}");
+    assert_eq!(Some(best.agreement), report.cured);
+    assert!(best.agreement.score > report.stated.score);
+    assert!(report.trials.len() > 4);
+
+    let sound = load(&scene, to_colmap(&scene))
+        .unwrap()
+        .survey
+        .doctor
+        .unwrap();
+    assert_eq!(sound.finding, Finding::Sound);
+    assert!(sound.trials.is_empty() && sound.mistake.is_none());
 }
 
 #[test]

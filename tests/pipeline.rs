@@ -8,11 +8,12 @@ mod common;
 use common::{GOLDEN, SIZE_PX, golden_of, synthetic_files};
 use nalgebra::{Point2, Point3};
 use ridgeline::geometry::{Plane, Segment3};
-use ridgeline::params::Params;
-use ridgeline::pipeline::{Run, Stage};
+use ridgeline::params::{Method, Params};
+use ridgeline::pipeline::{PackedView, Run, Stage};
 use ridgeline::progress::silent;
 use ridgeline::roof::{Facet, check_invariants};
 use ridgeline::scene_loader::{InputFile, LoadOptions, load_scene};
+use ridgeline::shares::{Known, Task};
 use ridgeline::synthetic::{SyntheticTruth, l_scene};
 
 /// Accuracy that six views at 8.5 cm ground pixel allow, metres.
@@ -103,6 +104,64 @@ fn one_thread_gives_the_bytes_of_many() {
         pool.install(|| finished().0.files(&[]))
     };
     assert_eq!(files_with(1), files_with(5));
+}
+
+/// A run shared by several instances, as the page's workers do it.
+fn shared(method: Method, of: usize) -> Run {
+    let (scene, _) = l_scene(SIZE_PX);
+    let params = Params {
+        method,
+        ..Params::default()
+    };
+    let mut first = Run::new(scene, params.clone());
+    let packed = || {
+        let views = (0..6).map(|v| PackedView::new(first.scene(), v, true).unwrap().to_bytes());
+        views
+            .map(|bytes| PackedView::from_bytes(&bytes).unwrap())
+            .collect()
+    };
+    let mut others: Vec<Run> = (1..of)
+        .map(|_| Run::of_packed(packed(), params.clone()))
+        .collect();
+    for &stage in Stage::of(method) {
+        let mut known = Known::default();
+        for map in stage.shared_maps() {
+            let runs = std::iter::once(&mut first).chain(&mut others);
+            let shares = runs.enumerate().map(|(index, run)| {
+                let map = map.to_string();
+                run.share(stage, Task { map, index, of }, known.clone(), &silent())
+            });
+            for share in shares.collect::<Vec<_>>() {
+                // Longer than a list of no calls: the map of this name was reached.
+                assert!(share.len() > 1, "{map} of {}", stage.name());
+                assert!(known.add(map, &share));
+            }
+        }
+        first.step_with(stage, known, &silent());
+        let found = first.hand_over(stage);
+        for run in others.iter_mut().filter(|_| !found.is_empty()) {
+            assert!(run.take_over(stage, &found));
+        }
+    }
+    first
+}
+
+#[test]
+fn instances_that_share_a_run_give_the_bytes_of_one() {
+    for method in [Method::Lines, Method::Rectangles] {
+        let (scene, _) = l_scene(SIZE_PX);
+        let mut alone = Run::new(
+            scene,
+            Params {
+                method,
+                ..Params::default()
+            },
+        );
+        alone.run_all();
+        for of in [2, 3] {
+            assert!(shared(method, of).files(&[]) == alone.files(&[]));
+        }
+    }
 }
 
 #[test]

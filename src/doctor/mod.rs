@@ -14,9 +14,11 @@
 mod epipolar;
 mod fine;
 mod points;
+mod report;
 mod shifts;
 mod suspects;
 
+pub use report::{Finding, Report, Trial};
 pub use shifts::ViewShift;
 pub use suspects::{AngleOrder, Sequence, Suspect};
 
@@ -27,6 +29,7 @@ use crate::camera::Camera;
 use crate::orientation::Crop;
 use crate::parallel;
 use crate::raster::Gray;
+use crate::sorting::sort_by;
 use epipolar::{MARGIN, Reduced, SHIFTS, best_place};
 use points::interest_points;
 
@@ -99,6 +102,8 @@ pub struct Examination {
     pub diagnosis: Diagnosis,
     /// Shifts of the views against each other, pixels; empty where too little is found again.
     pub shifts: Vec<ViewShift>,
+    /// Assumptions that were tried where the views do not agree, the best first.
+    pub trials: Vec<Trial>,
 }
 
 impl From<Diagnosis> for Examination {
@@ -106,6 +111,7 @@ impl From<Diagnosis> for Examination {
         Self {
             diagnosis,
             shifts: Vec::new(),
+            trials: Vec::new(),
         }
     }
 }
@@ -155,9 +161,15 @@ pub fn examine(patients: &[Patient]) -> Examination {
             },
             None => Diagnosis::Sound(before),
         };
-        return Examination { diagnosis, shifts };
+        return Examination {
+            shifts,
+            ..diagnosis.into()
+        };
     }
-    let (after, suspect) = clinic.interview(patients, &odd);
+    let Interview {
+        best: (after, suspect),
+        trials,
+    } = clinic.interview(patients, &odd);
     let diagnosis = match suspect {
         Some(suspect) if after.score >= SOUND && after.score >= before.score + LEAST_GAIN => {
             Diagnosis::Explained {
@@ -171,7 +183,10 @@ pub fn examine(patients: &[Patient]) -> Examination {
         _ if before.score >= SOUND => Diagnosis::Odd(before, odd),
         _ => Diagnosis::Unexplained(before),
     };
-    diagnosis.into()
+    Examination {
+        trials,
+        ..diagnosis.into()
+    }
 }
 
 /// The reduced images and their points: what stays the same under every suspicion.
@@ -180,6 +195,12 @@ struct Clinic {
     grays: Vec<Gray>,
     points: Vec<Vec<Point2<f64>>>,
     pairs: Vec<(usize, usize)>,
+}
+
+/// What came of trying suspects.
+struct Interview {
+    best: (Agreement, Option<Suspect>),
+    trials: Vec<Trial>,
 }
 
 /// Of the points of a view, those found again in another one, and those of them found on the line.
@@ -252,7 +273,7 @@ impl Clinic {
     }
 
     /// The suspect under whom the views agree best.
-    fn interview(&self, patients: &[Patient], odd: &[usize]) -> (Agreement, Option<Suspect>) {
+    fn interview(&self, patients: &[Patient], odd: &[usize]) -> Interview {
         // Where some views agree, only the others are suspects.
         let lineup = match *odd {
             [] => Suspect::lineup(patients),
@@ -260,36 +281,49 @@ impl Clinic {
             _ => Vec::new(),
         };
         let best = self.best_of(patients, lineup);
-        if best.0.score >= SOUND || !odd.is_empty() {
+        if best.best.0.score >= SOUND || !odd.is_empty() {
             return best;
         }
-        self.best_of(patients, self.focal_lengths(patients))
+        let mut last = self.best_of(patients, self.focal_lengths(patients));
+        last.trials.extend(best.trials);
+        sort_by(&mut last.trials, |a, b| {
+            let by_score = b.agreement.score.total_cmp(&a.agreement.score);
+            b.all_pairs.cmp(&a.all_pairs).then(by_score)
+        });
+        last
     }
 
     /// The best of many: a few pairs of views single out those worth asking all.
-    fn best_of(
-        &self,
-        patients: &[Patient],
-        suspects: Vec<Suspect>,
-    ) -> (Agreement, Option<Suspect>) {
+    fn best_of(&self, patients: &[Patient], suspects: Vec<Suspect>) -> Interview {
         const FINALISTS: usize = 4;
         let few = self.few_pairs();
-        let mut treated: Vec<(f64, Suspect, Vec<Camera>)> = (suspects.into_iter())
+        let mut treated: Vec<(Agreement, Suspect, Vec<Camera>)> = (suspects.into_iter())
             .filter_map(|suspect| {
                 let cameras = suspect.treated(patients)?;
-                let score = total(&self.counts(&cameras, &few)).score;
-                Some((score, suspect, cameras))
+                Some((total(&self.counts(&cameras, &few)), suspect, cameras))
             })
             .collect();
-        treated.sort_by(|a, b| b.0.total_cmp(&a.0));
+        sort_by(&mut treated, |a, b| b.0.score.total_cmp(&a.0.score));
+        let trial = |agreement, suspect: Suspect, all_pairs| Trial {
+            words: suspect.describe(patients),
+            agreement,
+            all_pairs,
+        };
         let mut best = (Agreement::default(), None);
-        for (_, suspect, cameras) in treated.into_iter().take(FINALISTS) {
-            let after = self.agreement(&cameras);
+        let mut trials = Vec::new();
+        for (_, suspect, cameras) in treated.iter().take(FINALISTS) {
+            let after = self.agreement(cameras);
+            trials.push(trial(after, *suspect, true));
             if after.score > best.0.score {
-                best = (after, Some(suspect));
+                best = (after, Some(*suspect));
             }
         }
-        best
+        sort_by(&mut trials, |a, b| {
+            b.agreement.score.total_cmp(&a.agreement.score)
+        });
+        let others = treated.iter().skip(FINALISTS);
+        trials.extend(others.map(|(agreement, suspect, _)| trial(*agreement, *suspect, false)));
+        Interview { best, trials }
     }
 
     /// Enough pairs of views for a first impression.

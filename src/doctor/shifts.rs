@@ -21,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use super::Clinic;
 use super::fine::Places;
 use crate::camera::Camera;
+use crate::sorting::sort_by;
 
 /// Standard deviation of a place, pixels. Assumption: what correlation of 9 x 9 windows reaches on roofs and ground.
 const SIGMA_PX: f64 = 0.2;
@@ -128,7 +129,7 @@ fn candidates(residuals: &[Vec<f64>], free: &[usize]) -> Vec<usize> {
         .filter(|i| !free.contains(i) && residuals[*i].len() >= FEWEST_PLACES)
         .filter_map(|i| Some((crate::math::median(&mut residuals[i].clone())?, i)))
         .collect();
-    ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    sort_by(&mut ranked, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     ranked.into_iter().take(MOST_TRIED).map(|r| r.1).collect()
 }
 

@@ -12,6 +12,7 @@ use spade::{ConstrainedDelaunayTriangulation, HasPosition, Triangulation};
 
 use super::borders::Border;
 use super::plan::PlanGrid;
+use crate::sorting::sort_by;
 
 /// A vertex of the triangulation.
 #[derive(Clone, Copy, Debug)]
@@ -201,7 +202,7 @@ fn split_at_crossings(borders: &[Border]) -> (Vec<Point2<f64>>, Vec<(usize, usiz
         let on = snapper.along(border);
         pieces.extend(on.windows(2).map(|w| (w[0].min(w[1]), w[0].max(w[1]))));
     }
-    pieces.sort_unstable();
+    sort_by(&mut pieces, Ord::cmp);
     pieces.dedup();
     (snapper.points, pieces)
 }
@@ -270,7 +271,7 @@ impl Snapper {
                     .then_some((t, v.data))
             })
             .collect();
-        on.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        sort_by(&mut on, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         on.into_iter().map(|(_, v)| v).collect()
     }
 }
@@ -343,7 +344,7 @@ mod tests {
                 height: 80,
             };
             let mut seen: Vec<u32> = a.raster(&grid);
-            seen.sort_unstable();
+            sort_by(&mut seen, Ord::cmp);
             seen.dedup();
             seen.iter().map(|&c| a.areas[c as usize]).collect()
         };

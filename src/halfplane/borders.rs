@@ -13,7 +13,7 @@
 //! their planes meet.
 
 use nalgebra::{Point2, Vector2};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::extent::extent_lines;
 use super::grouping::{GroupingInput, Member, PlaneGroup};
@@ -21,6 +21,7 @@ use super::hypothesis::Hypothesis;
 use super::{Side, ThetaFrame};
 use crate::geometry::Segment3;
 use crate::params::RoofParams;
+use crate::sorting::sort_by;
 
 /// Where a border line comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -69,13 +70,13 @@ impl Border {
 }
 
 /// The part of the plan that a group may cover: boxes beside its supporting lines.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Region {
     boxes: Vec<PlanBox>,
 }
 
 /// A rectangle beside a line: origin at the line's start, `along` its direction, `across` to the left.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct PlanBox {
     start: Point2<f64>,
     along: Vector2<f64>,
@@ -177,7 +178,7 @@ pub fn border_lines(
             .iter()
             .filter_map(|l| extended(kind, l, params))
             .collect();
-        real.sort_by(|a, b| b.length().total_cmp(&a.length()));
+        sort_by(&mut real, |a, b| b.length().total_cmp(&a.length()));
         for border in real {
             add(&mut borders, border);
         }
@@ -323,7 +324,7 @@ fn outermost_lines(
             });
         }
     }
-    found.sort_by(|a, b| b.length().total_cmp(&a.length()));
+    sort_by(&mut found, |a, b| b.length().total_cmp(&a.length()));
     found
 }
 
@@ -340,7 +341,9 @@ fn closing_lines(
             .iter()
             .map(|m| (input.lines[m.line.index()].segment.length(), m))
             .collect();
-        members.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.line.cmp(&b.1.line)));
+        sort_by(&mut members, |a, b| {
+            b.0.total_cmp(&a.0).then(a.1.line.cmp(&b.1.line))
+        });
         for (length, member) in members.into_iter().take(CLOSED_LINES) {
             let Some(side) = member.side else { continue };
             let line = &input.lines[member.line.index()].segment;

@@ -13,6 +13,7 @@
 //!   by more than chance, so that as little is asked of them ([`least_correlation`]).
 
 use nalgebra::Point3;
+use serde::{Deserialize, Serialize};
 use wide::f32x8;
 
 use super::plan::{PlanGrid, orthophoto};
@@ -22,7 +23,7 @@ use crate::ids::ViewId;
 use crate::scene::Scene;
 
 /// How well the views agree on a plane, at every cell of a plan grid.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ConsistencyMap {
     /// The window of the plan.
     pub grid: PlanGrid,

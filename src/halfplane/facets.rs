@@ -118,12 +118,12 @@ pub fn reconstruct_facets(
         .map(|v| v.camera.ground_pixel(&lines[0].at(0.5)))
         .fold(f64::INFINITY, f64::min);
     let reduced = scene.reduced(((grid.step / fine) as usize).max(1));
+    let ground_maps = ground_maps(&reduced, ground, &grid);
     let hypotheses = hypotheses(scene, &reduced, segments, &input, groups, grid.step, params);
     let bounding = bounding_lines(&input, &hypotheses);
     let borders = border_lines(&input, &hypotheses, &bounding, params);
     let arrangement = Arrangement::new(&with_frame(&borders, &grid));
 
-    let ground_maps = ground_maps(&reduced, ground, &grid);
     let evidence = Evidence::collect(
         &input,
         &hypotheses,
@@ -202,7 +202,7 @@ fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[Region]) -> Option<Pl
 fn ground_maps(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Vec<ConsistencyMap> {
     const OFFSETS: [f64; 3] = [-0.3, 0.0, 0.3];
     let plane = ground.plane();
-    crate::parallel::map_part(&OFFSETS, 0.6..0.7, |_, dz| {
+    crate::shares::map_shared("planes", &OFFSETS, 0.1..0.2, |_, dz| {
         consistency_map(
             scene,
             &Plane {

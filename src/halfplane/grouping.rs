@@ -15,6 +15,7 @@ use crate::geometry::Plane;
 use crate::ids::{HalfPlaneId, LineId};
 use crate::lines3d::Line3d;
 use crate::params::RoofParams;
+use crate::sorting::sort_by;
 
 /// A line that belongs to a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -45,7 +46,7 @@ impl PlaneGroup {
     /// The distinct lines, ascending.
     pub fn lines(&self) -> Vec<LineId> {
         let mut lines: Vec<LineId> = self.members.iter().map(|m| m.line).collect();
-        lines.sort_unstable();
+        sort_by(&mut lines, Ord::cmp);
         lines.dedup();
         lines
     }
@@ -53,7 +54,7 @@ impl PlaneGroup {
     /// The half-planes, ascending.
     pub fn half_planes(&self) -> Vec<HalfPlaneId> {
         let mut ids: Vec<HalfPlaneId> = self.members.iter().filter_map(|m| m.half_plane).collect();
-        ids.sort_unstable();
+        sort_by(&mut ids, Ord::cmp);
         ids
     }
 }
@@ -186,7 +187,9 @@ fn by_strength(input: &GroupingInput) -> Vec<HalfPlaneId> {
     let mut ids: Vec<HalfPlaneId> = (0..input.half_planes.len())
         .map(HalfPlaneId::from_index)
         .collect();
-    ids.sort_by(|a, b| strength(b).total_cmp(&strength(a)).then(a.cmp(b)));
+    sort_by(&mut ids, |a, b| {
+        strength(b).total_cmp(&strength(a)).then(a.cmp(b))
+    });
     ids
 }
 

@@ -12,6 +12,7 @@ use crate::geometry::{Plane, Segment3};
 use crate::lines2d::ImageSegment;
 use crate::params::RoofParams;
 use crate::scene::Scene;
+use crate::shares::map_shared;
 
 /// A plane with its evidence.
 pub struct Hypothesis {
@@ -36,7 +37,7 @@ pub fn hypotheses(
     step: f64,
     params: &RoofParams,
 ) -> Vec<Hypothesis> {
-    let built = crate::parallel::map_part(&groups, 0.1..0.45, |_, group| {
+    let built = map_shared("planes", &groups, 0.2..0.6, |_, group| {
         let region = Region::new(input, group, params);
         let (min, max) = region.bounds();
         let map = consistency_map(reduced, &group.plane, &PlanGrid::covering(min, max, step));

@@ -5,6 +5,7 @@ use rstar::RTree;
 use rstar::primitives::{GeomWithData, Rectangle};
 
 use crate::geometry::Segment3;
+use crate::sorting::sort_by;
 
 /// 3D lines by plan position.
 pub struct LineIndex {
@@ -59,7 +60,7 @@ impl LineIndex {
                     .then(|| line.at(t.clamp(0.0, 1.0)).z)
             })
             .collect();
-        heights.sort_by(f64::total_cmp);
+        sort_by(&mut heights, f64::total_cmp);
         heights
     }
 }

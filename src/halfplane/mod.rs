@@ -141,7 +141,7 @@ impl ThetaFrame {
 }
 
 /// A half-plane attached to one side of a 3D line, with what Sim(theta) looked like.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HalfPlane {
     /// The line.
     pub line: LineId,

@@ -8,6 +8,7 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use crate::ids::LineId;
 use crate::lines3d::Line3d;
+use crate::sorting::sort_by;
 
 /// For each line its neighbours in ascending order, itself left out.
 pub fn line_neighbours(lines: &[Line3d]) -> Vec<Vec<LineId>> {
@@ -49,7 +50,7 @@ pub fn line_neighbours(lines: &[Line3d]) -> Vec<Vec<LineId>> {
         link(shared, shared);
     }
     for list in &mut neighbours {
-        list.sort_unstable();
+        sort_by(list, Ord::cmp);
         list.dedup();
     }
     neighbours

@@ -1,13 +1,14 @@
 //! The plan grid: a raster of square cells on the XY plane in which plane hypotheses are compared.
 
 use nalgebra::{Matrix3, Point2};
+use serde::{Deserialize, Serialize};
 
 use crate::camera::Camera;
 use crate::geometry::Plane;
 use crate::raster::Gray;
 
 /// A window of plan positions; the centre of cell (column, row) is `origin + (column + 0.5, row + 0.5) step`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlanGrid {
     /// Least x and y, metres.
     pub origin: Point2<f64>,

@@ -7,7 +7,7 @@
 //! grouping of coplanar lines; this is the cheaper direction of that combination, plane first.)
 
 use nalgebra::{Point2, Vector2};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::borders::Region;
 use crate::camera::Camera;
@@ -15,9 +15,10 @@ use crate::geometry::{Plane, Segment3};
 use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;
 use crate::scene::Scene;
+use crate::sorting::sort_by;
 
 /// A line in a plane that several views show.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlaneLine {
     /// End points in the plane, metres.
     pub segment: Segment3,
@@ -73,7 +74,7 @@ pub fn lines_in_plane(
         }));
     }
     // Longest first: it is the best known direction.
-    casts.sort_by(|p, q| {
+    sort_by(&mut casts, |p, q| {
         q.length()
             .total_cmp(&p.length())
             .then(p.view.cmp(&q.view))
@@ -89,7 +90,7 @@ pub fn lines_in_plane(
             .filter(|&j| !used[j] && coincide(&casts[i], &casts[j], SAME_LINE_PX * pixel))
             .collect();
         let mut views: Vec<ViewId> = members.iter().map(|&j| casts[j].view).collect();
-        views.sort_unstable();
+        sort_by(&mut views, Ord::cmp);
         views.dedup();
         if views.len() < MIN_VIEWS {
             continue;
@@ -141,7 +142,7 @@ fn common_line(members: &[Cast]) -> Option<(Point2<f64>, Point2<f64>)> {
         ends.push(((c.a.coords - mean).dot(&direction), c.view, 1));
         ends.push(((c.b.coords - mean).dot(&direction), c.view, -1));
     }
-    ends.sort_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
+    sort_by(&mut ends, |p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
     // Open stretches per view, to count views rather than segments.
     let mut open: std::collections::BTreeMap<ViewId, i32> = std::collections::BTreeMap::new();
     let (mut start, mut end) = (None, None);

@@ -18,6 +18,8 @@ use crate::ids::LineId;
 use crate::lines3d::Line3d;
 use crate::params::SweepParams;
 use crate::scene::Scene;
+use crate::shares::map_shared;
+use crate::sorting::sort_by;
 
 /// Half-planes of both sides of every line, in the order of the lines, left before right.
 pub fn sweep_half_planes(
@@ -29,7 +31,7 @@ pub fn sweep_half_planes(
     let sides: Vec<(usize, Side)> = (0..lines.len())
         .flat_map(|i| [(i, Side::Left), (i, Side::Right)])
         .collect();
-    let swept = crate::parallel::map_part(&sides, 0.05..1.0, |_, &(i, side)| {
+    let swept = map_shared("sides", &sides, 0.05..1.0, |_, &(i, side)| {
         let mut counts = SweepTrace::default();
         let half_plane = sweep_side(
             scene,
@@ -202,7 +204,9 @@ impl<'a> Search<'a> {
                     && (i + 1 == sums.len() || sums[i] >= sums[i + 1])
             })
             .collect();
-        maxima.sort_by(|&a, &b| sums[b].total_cmp(&sums[a]).then(a.cmp(&b)));
+        sort_by(&mut maxima, |&a, &b| {
+            sums[b].total_cmp(&sums[a]).then(a.cmp(&b))
+        });
         let highest = maxima.first().map_or(0.0, |&i| sums[i]);
         maxima.truncate(self.params.max_peaks);
         // Half a step from its top, a peak still has half its height.

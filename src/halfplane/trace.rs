@@ -2,13 +2,13 @@
 //! of interest (figure 13b) and why a side has no half-plane.
 
 use nalgebra::Point2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Side;
 use crate::ids::{LineId, ViewId};
 
 /// Why a line side has no half-plane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SweepRejection {
     /// The line is vertical.
@@ -30,7 +30,7 @@ pub enum SweepRejection {
 }
 
 /// `Sim(theta)` of one view alone (B99 figure 14).
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ViewCurve {
     /// The view that is compared with the reference.
     pub view: ViewId,
@@ -42,7 +42,7 @@ pub struct ViewCurve {
 }
 
 /// `Sim(theta)` of a line side (B99 figure 12).
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SimilarityCurve {
     /// The first view of the homographies.
     pub reference: Option<ViewId>,
@@ -57,7 +57,7 @@ pub struct SimilarityCurve {
 }
 
 /// One side of one line.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SideTrace {
     /// The line.
     pub line: LineId,
@@ -70,7 +70,7 @@ pub struct SideTrace {
 }
 
 /// The whole sweep.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SweepTrace {
     /// Two entries a line, left then right, in the order of the lines.
     pub sides: Vec<SideTrace>,

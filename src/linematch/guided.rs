@@ -15,6 +15,7 @@ use nalgebra::{Matrix2, Point2};
 use crate::geometry::Segment2;
 use crate::ids::ViewId;
 use crate::raster::Gray;
+use crate::sorting::sort_by;
 
 /// Shortest piece whose profile is averaged, px.
 const PIECE_PX: f64 = 5.0;
@@ -174,7 +175,7 @@ impl OffsetLine {
             .collect();
         (points.len() >= MIN_PIECES).then_some(())?;
         let mut offsets: Vec<f64> = points.iter().map(|p| p.1).collect();
-        offsets.sort_by(f64::total_cmp);
+        sort_by(&mut offsets, f64::total_cmp);
         let mut line = Self {
             middle: 0.0,
             offset: offsets[offsets.len() / 2],

@@ -15,6 +15,8 @@ use crate::ids::ViewId;
 use crate::parallel;
 use crate::raster::{Gray, gaussian_blur};
 use crate::scene::Scene;
+use crate::shares::map_shared;
+use crate::sorting::sort_by;
 
 /// Number of segments whose ends are swept, over all views.
 const SEGMENTS: usize = 360;
@@ -47,11 +49,11 @@ pub struct HeightRange {
 pub fn height_range(scene: &Scene, sights: &Sights) -> Option<HeightRange> {
     let blurred: Vec<Gray> = parallel::map(&scene.views, |_, v| gaussian_blur(&v.gray, 1.0));
     let points = interest_points(scene, sights);
-    let found = parallel::map_part(&points, 0.0..0.2, |_, (view, x)| {
+    let found = map_shared("heights", &points, 0.0..0.2, |_, (view, x)| {
         sweep(scene, &blurred, *view, x)
     });
     let mut heights: Vec<f64> = found.into_iter().flatten().collect();
-    heights.sort_by(f64::total_cmp);
+    sort_by(&mut heights, f64::total_cmp);
     let company = |z: f64| {
         let from = heights.partition_point(|h| *h < z - COMPANY_M);
         heights.partition_point(|h| *h <= z + COMPANY_M) - from - 1
@@ -93,7 +95,9 @@ fn interest_points(scene: &Scene, sights: &Sights) -> Vec<(ViewId, Point2<f64>)>
     let mut points = Vec::new();
     for view in scene.view_ids() {
         let mut segments: Vec<_> = sights.of_view(view).collect();
-        segments.sort_by(|(a, s), (b, t)| t.length_px.total_cmp(&s.length_px).then(a.cmp(b)));
+        sort_by(&mut segments, |(a, s), (b, t)| {
+            t.length_px.total_cmp(&s.length_px).then(a.cmp(b))
+        });
         for (_, s) in segments.iter().take(each) {
             points.push((view, s.segment.p0));
             points.push((view, s.segment.p1));
@@ -120,7 +124,9 @@ fn sweep(scene: &Scene, images: &[Gray], view: ViewId, x: &Point2<f64>) -> Optio
     let mut maxima: Vec<usize> = (1..along.len().saturating_sub(1))
         .filter(|&i| along[i] >= CANDIDATE && along[i] >= along[i - 1] && along[i] > along[i + 1])
         .collect();
-    maxima.sort_by(|&a, &b| along[b].total_cmp(&along[a]).then(a.cmp(&b)));
+    sort_by(&mut maxima, |&a, &b| {
+        along[b].total_cmp(&along[a]).then(a.cmp(&b))
+    });
     maxima.truncate(12);
 
     // The step in the first partner may be several pixels in the others: look around each maximum.
@@ -143,7 +149,7 @@ fn sweep(scene: &Scene, images: &[Gray], view: ViewId, x: &Point2<f64>) -> Optio
             .max_by(|a, b| a.0.total_cmp(&b.0))
     };
     let mut confirmed: Vec<(f64, f64)> = maxima.iter().filter_map(|&i| confirm(i)).collect();
-    confirmed.sort_by(|a, b| b.0.total_cmp(&a.0));
+    sort_by(&mut confirmed, |a, b| b.0.total_cmp(&a.0));
     let (best, depth) = *confirmed.first()?;
     let second = confirmed.get(1).map_or(0.0, |c| c.0);
     (best >= ACCEPTED && best - second >= UNIQUE).then(|| (camera.center + camera.ray(x) * depth).z)
@@ -154,7 +160,9 @@ fn nearest_views(scene: &Scene, view: ViewId) -> Vec<ViewId> {
     let center = scene.camera(view).center;
     let distance = |v: &ViewId| (scene.camera(*v).center - center).norm();
     let mut others: Vec<ViewId> = scene.view_ids().filter(|v| *v != view).collect();
-    others.sort_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
+    sort_by(&mut others, |a, b| {
+        distance(a).total_cmp(&distance(b)).then(a.cmp(b))
+    });
     others
 }
 

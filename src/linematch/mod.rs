@@ -30,7 +30,7 @@ pub use strip::EdgelScore;
 pub use trace::{MatchTrace, PairTrace, SegmentOutcome, StepCount};
 pub use triples::Verification;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::geometry::Segment2;
 use crate::ids::{SegmentId, ViewId};
@@ -83,7 +83,7 @@ pub fn scene_heights(scene: &Scene, segments: &[Vec<ImageSegment>]) -> [f64; 2] 
 }
 
 /// How a stretch of a line came to be part of a match (the page colours it so).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SupportKind {
     /// A detected segment, matched.
@@ -95,7 +95,7 @@ pub enum SupportKind {
 }
 
 /// The evidence for a line in one view.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LineSupport {
     /// The view.
     pub view: ViewId,

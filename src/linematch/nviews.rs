@@ -16,6 +16,7 @@ use crate::lines2d::ImageSegment;
 use crate::lines3d::{LineFit, Observation, ProjectedLine, conditioning, doubly_covered, fit_line};
 use crate::params::{Lines3dParams, MatchParams};
 use crate::scene::Scene;
+use crate::sorting::sort_by_key;
 
 /// How often segments are adopted and the line fitted again. Assumption: the second round changes
 /// few lines, a third none.
@@ -412,7 +413,7 @@ impl Context<'_> {
         let mean = supports.iter().map(|s| s.score).sum::<f64>() / supports.len().max(1) as f64;
         let reference = &profile.views[profile.reference];
         supports.extend(self.support(profile, reference, stretch, Some(mean)));
-        supports.sort_by_key(|s| s.view);
+        sort_by_key(&mut supports, |s| s.view);
         supports
     }
 

@@ -9,6 +9,7 @@
 //! suburb), so that the work grows with segments x partners x density, not with their square.
 
 use nalgebra::{Point3, Vector3};
+use serde::{Deserialize, Serialize};
 
 use super::sight::{SegmentRef, Sight, Sights, epipolar_beam, ray_in_plane};
 use super::strip::{EdgelScore, Strip, StripFrame, StripSide, correlate};
@@ -16,12 +17,12 @@ use crate::camera::{Camera, Homography, homography_of_plane};
 use crate::geometry::{Plane, Segment3};
 use crate::halfplane::{Side, ThetaFrame};
 use crate::ids::ViewId;
-use crate::parallel;
 use crate::params::MatchParams;
 use crate::scene::Scene;
+use crate::shares::map_shared;
 
 /// Two segments that may be images of one line.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Pair {
     /// Segment of the view with the lower index.
     pub a: SegmentRef,
@@ -64,7 +65,7 @@ pub fn match_pairs(
         .view_ids()
         .flat_map(|view| sights.of_view(view))
         .collect();
-    let found = parallel::map_part(&tasks, 0.2..0.5, |_, (name, sight)| {
+    let found = map_shared("pairs", &tasks, 0.2..0.5, |_, (name, sight)| {
         search_one(scene, sights, partners, z_range, params, *name, sight)
     });
     let mut searches: Vec<Vec<PairSearch>> = sights

@@ -5,6 +5,7 @@ use nalgebra::Point2;
 use crate::ids::ViewId;
 use crate::params::MatchParams;
 use crate::scene::Scene;
+use crate::sorting::sort_by;
 
 /// Points of a grid over a view, each way, whose visibility in another view measures the overlap.
 const GRID: usize = 5;
@@ -27,11 +28,13 @@ pub fn partner_views(
             .view_ids()
             .filter(|v| *v != view && overlap(scene, view, *v, z) >= MIN_OVERLAP)
             .collect();
-        others.sort_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
+        sort_by(&mut others, |a, b| {
+            distance(a).total_cmp(&distance(b)).then(a.cmp(b))
+        });
         others.truncate(params.max_partners);
         pairs.extend(others.into_iter().map(|v| (view.min(v), view.max(v))));
     }
-    pairs.sort();
+    sort_by(&mut pairs, Ord::cmp);
     pairs.dedup();
     pairs
 }

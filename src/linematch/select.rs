@@ -13,8 +13,9 @@ use super::nviews::{Context, Line, Rejection, complete_line};
 use super::pairs::{Pair, Pairs};
 use super::sight::SegmentRef;
 use super::triples::Bundle;
-use crate::parallel;
+use crate::parallel::SILENT;
 use crate::progress::reached;
+use crate::shares::map_shared;
 
 /// What became of a bundle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +49,9 @@ pub fn winner_takes_all(context: &Context, pairs: &Pairs, bundles: &[Bundle]) ->
             .map(|v| vec![None; v.len()])
             .collect(),
     };
-    let weighed = parallel::map(bundles, |_, b| evidence(context, &pairs.pairs[b.pair], b));
+    let weighed = map_shared("bundles", bundles, SILENT, |_, b| {
+        evidence(context, &pairs.pairs[b.pair], b)
+    });
     let mut queue: BinaryHeap<Entry> = (weighed.into_iter().enumerate())
         .map(|(bundle, evidence)| Entry { evidence, bundle })
         .collect();

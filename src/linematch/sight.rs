@@ -1,7 +1,7 @@
 //! What matching asks of a detected segment again and again, computed once.
 
 use nalgebra::{Point2, Point3, Vector3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::index::SegmentIndex;
 use crate::camera::{Camera, plane_of_image_line};
@@ -11,7 +11,7 @@ use crate::lines2d::ImageSegment;
 use crate::scene::Scene;
 
 /// Names a segment of a view.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct SegmentRef {
     /// The view.
     pub view: ViewId,

@@ -11,6 +11,7 @@ use super::sight::SegmentRef;
 use super::triples::{Bundle, Verification};
 use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;
+use crate::sorting::sort_by;
 
 /// Most pairs kept in the trace, the best of each segment first.
 const MAX_PAIRS_PER_SEGMENT: usize = 12;
@@ -178,7 +179,7 @@ fn outcomes(
         .collect();
     // Weak pairs first, so that the best one has the last word.
     let mut order: Vec<usize> = (0..bundles.len()).collect();
-    order.sort_by(|&i, &j| {
+    sort_by(&mut order, |&i, &j| {
         let score = |b: usize| pairs.pairs[bundles[b].pair].score;
         score(i).total_cmp(&score(j)).then(j.cmp(&i))
     });
@@ -211,7 +212,7 @@ fn best_pairs(
     selection: &Selection,
 ) -> Vec<PairTrace> {
     let mut order: Vec<usize> = (0..bundles.len()).collect();
-    order.sort_by(|&i, &j| {
+    sort_by(&mut order, |&i, &j| {
         let score = |b: usize| pairs.pairs[bundles[b].pair].score;
         score(j).total_cmp(&score(i)).then(i.cmp(&j))
     });

@@ -11,22 +11,22 @@
 //! more other views, 28 % were wrong on six views with a base-to-height ratio of 0.2 to 0.4.
 
 use nalgebra::{Point3, Vector3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::pairs::{Pair, Pairs};
 use super::sight::{SegmentRef, Sight, Sights};
 use crate::geometry::Segment3;
 use crate::ids::ViewId;
 use crate::lines3d::ProjectedLine;
-use crate::parallel;
 use crate::params::MatchParams;
 use crate::scene::Scene;
+use crate::shares::map_shared;
 
 /// Predictions less certain than this many pixels (one standard deviation) verify nothing.
 const MAX_SIGMA_PX: f64 = 2.0;
 
 /// A segment at the position that a pair predicts in a third view.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verification {
     /// The segment.
     pub segment: SegmentRef,
@@ -35,7 +35,7 @@ pub struct Verification {
 }
 
 /// A pair with the segments of all third views that verify it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Bundle {
     /// Index into [`Pairs::pairs`].
     pub pair: usize,
@@ -61,7 +61,7 @@ pub fn verify_pairs(
     let strong: Vec<usize> = (0..pairs.pairs.len())
         .filter(|&i| pairs.pairs[i].score >= params.pair_score)
         .collect();
-    parallel::map_part(&strong, 0.5..0.6, |_, &index| {
+    map_shared("triples", &strong, 0.5..0.6, |_, &index| {
         let pair = &pairs.pairs[index];
         let others = scene
             .view_ids()

@@ -15,6 +15,7 @@ use super::trace::{RejectedSegment, SegmentRejection, SegmentTrace};
 use super::worm::tangent_breaks;
 use crate::geometry::Segment2;
 use crate::params::SegmentParams;
+use crate::sorting::sort_by_key;
 
 /// The lines of some edgels, those of the longest pieces first. `high` is the least strength of the strongest edgel
 /// of a chain, in local noise units.
@@ -32,7 +33,7 @@ pub fn significant_lines(
         .flat_map(|chain| seeds_of(chain, edgels, params, trace))
         .collect();
     // The longest first: they predict best. The sort is stable, equals stay in the order of their chains.
-    seeds.sort_by_key(|seed| std::cmp::Reverse(seed.len()));
+    sort_by_key(&mut seeds, |seed| std::cmp::Reverse(seed.len()));
     trace.edgels += edgels.len();
     trace.chains += chains.len();
     trace.seeds += seeds.len();

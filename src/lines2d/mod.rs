@@ -34,12 +34,12 @@ pub use segments::detect_segments;
 pub use trace::{RejectedSegment, SegmentRejection, SegmentTrace};
 
 use nalgebra::Matrix2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::geometry::Segment2;
 
 /// What a segment was found on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SegmentKind {
     /// A step between two grey values.
@@ -53,7 +53,7 @@ pub enum SegmentKind {
 
 /// A straight segment detected in one view, directed by contrast: the brighter side lies in the
 /// direction of [`Segment2::normal`], to the right of the direction as seen on the screen.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ImageSegment {
     /// Edge or bar. A bar runs along its middle and is directed by the difference between its two sides, which may
     /// be small: its direction is no more than a hint.

@@ -1,12 +1,12 @@
 //! What the segment stage did in a view, and why a line of edgels is no segment.
 
 use nalgebra::Point2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::geometry::Segment2;
 
 /// Why a straight line of edgels is not a segment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SegmentRejection {
     /// Shorter than the minimum length.
@@ -20,7 +20,7 @@ pub enum SegmentRejection {
 }
 
 /// A line that was refused, with the reason.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RejectedSegment {
     /// The line, px.
     pub segment: Segment2,
@@ -29,7 +29,7 @@ pub struct RejectedSegment {
 }
 
 /// What the detector did in one view.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SegmentTrace {
     /// Edgels above the low threshold.
     pub edgels: usize,

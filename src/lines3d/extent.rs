@@ -4,6 +4,7 @@ use super::ProjectedLine;
 use crate::geometry::Segment3;
 use crate::linematch::LineSupport;
 use crate::scene::Scene;
+use crate::sorting::sort_by;
 
 /// The outermost places along the line (metres from its start) that at least two views support, so
 /// that one over-long segment does not lengthen the line. `None` without such a place.
@@ -28,7 +29,7 @@ pub fn common_extent(
 /// First and last place where two intervals overlap, from their starts (+1) and ends (-1).
 pub fn doubly_covered(mut ends: Vec<(f64, i32)>) -> Option<(f64, f64)> {
     // At the same place an interval starts before another ends.
-    ends.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+    sort_by(&mut ends, |a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
     let (mut covered, mut first, mut last) = (0, None, None);
     for (t, change) in ends {
         covered += change;

@@ -16,6 +16,7 @@ use nalgebra::{Matrix2, Matrix3, Matrix4, Matrix4x2, Point3, Vector2, Vector3, V
 use crate::camera::Camera;
 use crate::geometry::{Segment2, Segment3};
 use crate::params::Lines3dParams;
+use crate::sorting::sort_by;
 
 /// Weight of the belief that the covariances are right, in residuals.
 const SCATTER_PRIOR: f64 = 4.0;
@@ -85,7 +86,9 @@ pub fn line_of_planes(observations: &[Observation]) -> Option<Segment3> {
     });
     let eigen = scatter.symmetric_eigen();
     let mut order = [0, 1, 2];
-    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+    sort_by(&mut order, |&a, &b| {
+        eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b])
+    });
     // Planes that are nearly one plane (all within about 0.1 degree) fix no line.
     if eigen.eigenvalues[order[1]] < 3e-6 * eigen.eigenvalues[order[2]] {
         return None;

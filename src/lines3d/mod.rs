@@ -14,7 +14,7 @@ pub use fit::{LineFit, Observation, conditioning, fit_line, line_of_planes};
 pub use projection::ProjectedLine;
 
 use nalgebra::{Matrix3, Point3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::geometry::Segment3;
 use crate::linematch::{LineMatch, LineSupport};
@@ -46,7 +46,7 @@ impl LineOrigin {
 }
 
 /// A reconstructed 3D line.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line3d {
     /// How it was found.
     pub origin: LineOrigin,

@@ -4,6 +4,7 @@ use nalgebra::{Matrix2, Point3, Vector2, Vector3};
 
 use super::sight::Sight;
 use crate::params::ClusterParams;
+use crate::sorting::sort_by;
 
 /// Axes of a cluster plane: along the main direction, across it and up.
 #[derive(Clone, Copy, Debug)]
@@ -100,7 +101,7 @@ pub(super) fn covered(stretches: impl Iterator<Item = [f64; 2]>, within: [f64; 2
         .map(|s| [s[0].max(within[0]), s[1].min(within[1])])
         .filter(|s| s[1] > s[0])
         .collect();
-    inside.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    sort_by(&mut inside, |a, b| a[0].total_cmp(&b[0]));
     let (mut sum, mut end) = (0.0, f64::NEG_INFINITY);
     for [a, b] in inside {
         sum += (b - a.max(end)).max(0.0);

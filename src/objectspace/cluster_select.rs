@@ -3,6 +3,7 @@
 use super::cluster_plane::overlap;
 use super::clusters::{Candidate, ClusterLine, ClusterTrace, Search};
 use crate::geometry::Segment3;
+use crate::sorting::sort_by;
 
 /// Most refused clusters kept for the plot.
 const MOST_REFUSED: usize = 200;
@@ -23,7 +24,7 @@ impl Search<'_> {
                 .then(a.at.x.total_cmp(&b.at.x))
                 .then(a.at.y.total_cmp(&b.at.y))
         };
-        candidates.sort_by(order);
+        sort_by(candidates, order);
         // Candidates from many proposals are the same cluster again.
         let mut queue: std::collections::VecDeque<Candidate> = std::mem::take(candidates).into();
         while let Some(best) = queue.pop_front() {

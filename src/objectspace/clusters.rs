@@ -22,7 +22,7 @@
 //! the least number of views support them; gaps up to `max_gap_m` are bridged (a chimney), longer ones part a line.
 
 use nalgebra::{Matrix2, Point2, Vector2, Vector3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::cluster_plane::{Axes, PlaneRay, covered, overlap};
 use super::cluster_proposals::Proposal;
@@ -31,9 +31,10 @@ use crate::geometry::Segment3;
 use crate::ids::ViewId;
 use crate::params::ClusterParams;
 use crate::scene::Scene;
+use crate::sorting::sort_by;
 
 /// A 3D line of a main direction.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ClusterLine {
     /// Its end points, metres; it runs along the main direction.
     pub segment: Segment3,
@@ -48,7 +49,7 @@ pub struct ClusterLine {
 }
 
 /// The plot of a cluster plane (figures 7 and 8).
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ClusterTrace {
     /// Azimuth of the direction, radians.
     pub azimuth: f64,
@@ -219,7 +220,9 @@ impl Search<'_> {
             events.push((s[0], true, view));
             events.push((s[1], false, view));
         }
-        events.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)).then(a.2.cmp(&b.2)));
+        sort_by(&mut events, |a, b| {
+            a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)).then(a.2.cmp(&b.2))
+        });
         let mut open = vec![0u32; self.scene.views.len()];
         let (mut views, mut start) = (0, 0.0);
         let mut runs: Vec<[f64; 2]> = Vec::new();

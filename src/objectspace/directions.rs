@@ -8,14 +8,14 @@
 //! W96 assumes one building. A window may hold several orientations: peaks are taken in turn while they stand out.
 
 use nalgebra::Vector3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::sight::Sight;
 use crate::math::{atan2, exp, sin_cos};
 use crate::params::DirectionParams;
 
 /// A pair of perpendicular horizontal directions.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MainDirections {
     /// Azimuth of the first direction from the X axis towards Y, radians, 0 to pi/2; the other is a right angle further.
     pub azimuth: f64,

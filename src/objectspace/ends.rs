@@ -6,13 +6,14 @@
 //! parallelograms, trapezoids and the ends of hips.
 
 use nalgebra::{Point3, Vector3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::cluster_plane::{Axes, covered, overlap};
 use super::sight::Sight;
 use crate::geometry::Plane;
 use crate::ids::ViewId;
 use crate::params::PlaneParams;
+use crate::sorting::sort_by;
 
 /// A plane between two parallel lines: u along them, w from the first to the second.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +64,7 @@ impl Strip {
 }
 
 /// An image line cut with the plane: where its line crosses the two lines, and the stretch across that it covers.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Crossing {
     /// The view.
     pub view: ViewId,
@@ -76,7 +77,7 @@ pub struct Crossing {
 }
 
 /// A cluster of crossings.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct End {
     /// Positions along the first and the second line, metres.
     pub at: [f64; 2],
@@ -166,7 +167,7 @@ fn distinct(
         .into_iter()
         .map(|p| settle(strip, crossings, p, views, params))
         .collect();
-    found.sort_by(|a, b| {
+    sort_by(&mut found, |a, b| {
         b.support
             .total_cmp(&a.support)
             .then(a.at[0].total_cmp(&b.at[0]))

@@ -24,7 +24,7 @@
 //! hip below its ridge.
 
 use nalgebra::Point3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::cluster_plane::{Axes, overlap};
 use super::clusters::ClusterLine;
@@ -34,12 +34,15 @@ use super::shapes::{Along, Shape, quadrilaterals, triangle};
 use super::sight::Sight;
 use super::solid::{Solid, partly_hidden};
 use crate::geometry::Plane;
+use crate::parallel::SILENT;
 use crate::params::PlaneParams;
 use crate::roof::Ground;
 use crate::scene::Scene;
+use crate::shares::map_shared;
+use crate::sorting::sort_by;
 
 /// A polygon in a plane, with the evidence for it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlaneCandidate {
     /// The plane.
     pub plane: Plane,
@@ -58,7 +61,7 @@ pub struct PlaneCandidate {
 }
 
 /// Why a plane hypothesis gave no candidate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PlaneRejection {
     /// Too steep, too narrow or too wide, or its lines stand beside each other.
@@ -72,7 +75,7 @@ pub enum PlaneRejection {
 }
 
 /// A pair of lines and what became of it (figure 11).
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlaneTrace {
     /// The two lines.
     pub lines: [usize; 2],
@@ -109,7 +112,7 @@ impl PlaneSearch<'_> {
         let pairs: Vec<[usize; 2]> = (0..members.len())
             .flat_map(|i| (i + 1..members.len()).map(move |j| [i, j]))
             .collect();
-        let results = crate::parallel::map(&pairs, |_, &[i, j]| {
+        let results = map_shared("planes", &pairs, SILENT, |_, &[i, j]| {
             let (mut candidates, mut trace) = self.pair(axes, [&along[i], &along[j]]);
             trace.lines = [members[i], members[j]];
             candidates
@@ -140,7 +143,7 @@ impl PlaneSearch<'_> {
         members: &[usize],
         apexes: &[Point3<f64>],
     ) -> Vec<PlaneCandidate> {
-        let found = crate::parallel::map(members, |_, &k| {
+        let found = map_shared("planes", members, SILENT, |_, &k| {
             let base = self.along(axes, &self.lines[k]);
             let mut found: Vec<PlaneCandidate> = apexes
                 .iter()
@@ -289,7 +292,7 @@ impl PlaneSearch<'_> {
                 })
             })
             .collect();
-        found.sort_by(|a, b| b.measure.total_cmp(&a.measure));
+        sort_by(&mut found, |a, b| b.measure.total_cmp(&a.measure));
         found.truncate(self.params.max_candidates);
         found
     }

@@ -10,6 +10,7 @@ use i_overlay::float::single::SingleFloatOverlay;
 
 use super::judge::area_2d;
 use super::planes::PlaneCandidate;
+use crate::sorting::sort_by;
 
 /// Candidates that overlap by more than this share of the smaller one exclude each other. Assumption: what errors of their
 /// ends do at shared sides.
@@ -86,7 +87,9 @@ fn tangles(conflicts: &[Vec<usize>]) -> Vec<Vec<usize>> {
 /// Branch and bound over a tangle, the heaviest first.
 fn exact(tangle: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
     let mut order = tangle.to_vec();
-    order.sort_by(|&a, &b| weights[b].total_cmp(&weights[a]).then(a.cmp(&b)));
+    sort_by(&mut order, |&a, &b| {
+        weights[b].total_cmp(&weights[a]).then(a.cmp(&b))
+    });
     let mut best = (0.0, Vec::new());
     branch(&order, conflicts, weights, 0.0, &mut Vec::new(), &mut best);
     best.1
@@ -131,7 +134,9 @@ fn branch(
 /// Greedy, then exchanges: one candidate for those that it excludes, or several for the one that excludes them.
 fn exchanged(tangle: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
     let mut order = tangle.to_vec();
-    order.sort_by(|&a, &b| weights[b].total_cmp(&weights[a]).then(a.cmp(&b)));
+    sort_by(&mut order, |&a, &b| {
+        weights[b].total_cmp(&weights[a]).then(a.cmp(&b))
+    });
     let mut inside = vec![false; conflicts.len()];
     // Each exchange raises the sum, so this ends.
     loop {

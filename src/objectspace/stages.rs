@@ -1,7 +1,7 @@
 //! The four stages of the method, each from typed input to `(value, trace)`.
 
 use nalgebra::{Matrix3, Point3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::cluster_plane::Axes;
 use super::clusters::{ClusterLine, ClusterTrace, cluster_lines};
@@ -16,17 +16,18 @@ use crate::ids::{BuildingId, LineId};
 use crate::linematch::{LineSupport, SupportKind, scene_heights};
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
-use crate::parallel;
 use crate::params::ObjectSpaceParams;
+use crate::progress::reached;
 use crate::roof::{Facet, Ground, RoofModel, SolidTrace, close_buildings};
 use crate::scene::Scene;
+use crate::shares::map_shared;
 
 /// Regions of every view and the lines on their boundaries (W96 3.3).
 pub fn find_regions(
     scene: &Scene,
     params: &ObjectSpaceParams,
 ) -> (Vec<Vec<RegionLine>>, Vec<Segmentation>) {
-    let per_view = parallel::map(&scene.views, |_, view| {
+    let per_view = map_shared("views", &scene.views, 0.0..1.0, |_, view| {
         let image = ColorImage::new(&view.gray, &view.rgb, params.oris.smoothing_px);
         let segmentation = segment_regions(&image, &params.oris);
         (
@@ -67,7 +68,7 @@ pub fn image_segments(lines: &[Vec<RegionLine>]) -> Vec<Vec<ImageSegment>> {
 }
 
 /// A 3D line with the main direction that it was found in.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FoundLine {
     /// Index of the window.
     pub window: usize,
@@ -92,7 +93,7 @@ pub fn find_clusters(
             (0..window.directions.len()).flat_map(move |d| [(w, [d, 0]), (w, [d, 1])])
         })
         .collect();
-    let results = parallel::map(&tasks, |_, &(w, [pair, axis])| {
+    let results = map_shared("clusters", &tasks, 0.0..1.0, |_, &(w, [pair, axis])| {
         let window = &windows[w];
         let shown: Vec<usize> = (0..sights.len())
             .filter(|&k| window.shows(&sights[k]))
@@ -163,8 +164,9 @@ pub fn find_rectangles(
         .flat_map(|w| (0..windows[w].directions.len()).map(move |d| [w, d]))
         .flat_map(|[w, d]| [[w, d, 0], [w, d, 1]])
         .collect();
-    for of in &searches {
+    for (done, of) in searches.iter().enumerate() {
         search_planes(&search, &axes(of), found, *of, &mut trace);
+        reached(0.1 + 0.7 * (done + 1) as f64 / searches.len() as f64);
     }
     trace.chosen = best_set(&trace.candidates);
     let chosen = trace.chosen.iter().map(|&k| &trace.candidates[k]);
@@ -224,7 +226,7 @@ fn search_behind(
     if search.solids.is_empty() {
         return false;
     }
-    let again = parallel::map(&weak, |_, &k| {
+    let again = map_shared("behind", &weak, 0.8..1.0, |_, &k| {
         let lines = trace.pairs[k].lines;
         search.again(&axes(lines), lines)
     });

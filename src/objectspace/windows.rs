@@ -6,20 +6,21 @@
 //! parallel or perpendicular; each connected group is a building, its box the window.
 
 use nalgebra::{Point2, Point3, Vector3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::clusters::{ClusterLine, cluster_lines};
 use super::directions::{DirectionTrace, MainDirections, main_directions};
 use super::sight::Sight;
 use crate::geometry::Segment3;
 use crate::math::atan2;
-use crate::parallel;
 use crate::params::ObjectSpaceParams;
 use crate::roof::Ground;
 use crate::scene::Scene;
+use crate::shares::map_shared;
+use crate::sorting::sort_by;
 
 /// A part of the ground plan that is analysed on its own.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Window {
     /// Least x and y, metres, local frame.
     pub min: Point2<f64>,
@@ -117,9 +118,11 @@ fn raised_lines(
     params: &ObjectSpaceParams,
 ) -> Vec<Segment3> {
     let tiles = tiles(sights, z_range_m, params.windows.tile_m);
-    let per_tile = parallel::map(&tiles, |_, tile| tile_lines(scene, sights, tile, params));
+    let per_tile = map_shared("tiles", &tiles, 0.2..1.0, |_, tile| {
+        tile_lines(scene, sights, tile, params)
+    });
     let mut lines: Vec<Segment3> = per_tile.into_iter().flatten().map(|l| l.segment).collect();
-    lines.sort_by(|a, b| {
+    sort_by(&mut lines, |a, b| {
         let key = |s: &Segment3| (s.p0.x, s.p0.y);
         b.length()
             .total_cmp(&a.length())
@@ -154,7 +157,7 @@ fn tiles(sights: &[Sight], z_range_m: [f64; 2], size: f64) -> Vec<Window> {
             [[c, r], [c - 1, r], [c, r - 1], [c - 1, r - 1]]
         })
         .collect();
-    corners.sort_unstable();
+    sort_by(&mut corners, Ord::cmp);
     corners.dedup();
     corners
         .into_iter()

@@ -5,6 +5,7 @@ use super::{bundles, colmap, colmap_binary, inpho, json, matrices, micmac, patb,
 use super::{projection, reference, xml};
 use crate::Result;
 use crate::scene_loader::InputFile;
+use crate::sorting::sort_by;
 
 /// Files that together orient images: one candidate for the orientation of a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -171,7 +172,9 @@ pub fn orientation_sets(
         let extra = (0..inputs.len()).find(beside).or_else(only);
         set.files.extend(extra);
     }
-    sets.sort_by(|a, b| (a.format, &a.folder, &a.files).cmp(&(b.format, &b.folder, &b.files)));
+    sort_by(&mut sets, |a, b| {
+        (a.format, &a.folder, &a.files).cmp(&(b.format, &b.folder, &b.files))
+    });
     (sets, incomplete)
 }
 

@@ -10,13 +10,15 @@
 //! parameters and to the current results before it; what is out of date is dropped, never shown.
 
 mod report;
+mod shared;
+mod stage;
 mod summary;
 
+pub use shared::PackedView;
+pub use stage::Stage;
 pub use summary::StageSummary;
 
 use std::borrow::Cow;
-
-use serde::{Deserialize, Serialize};
 
 use crate::export::{self, export_all};
 use crate::halfplane::{HalfPlane, SweepTrace, sweep_half_planes};
@@ -29,96 +31,12 @@ use crate::objectspace::{
     FoundLine, RectangleTrace, Window, WindowTrace, find_clusters, find_directions,
     find_rectangles, find_regions, image_segments, world_lines,
 };
-use crate::parallel;
 use crate::params::{Method, Params};
 use crate::progress::{self, Listener};
 use crate::roof::{RoofModel, RoofTrace, new_lines, reconstruct_roofs};
 use crate::scene::Scene;
+use crate::shares::{Known, map_shared, with_known};
 use crate::texture::{TextureTrace, TexturedModel, texture_model};
-
-/// The stages, in their order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Stage {
-    /// Straight image segments in every view (B99 3.2).
-    Segments,
-    /// Segments matched over the views (B99 3.1 - 3.4).
-    Matches,
-    /// 3D lines (B99 3.2).
-    Lines,
-    /// Half-planes at the 3D lines (B99 4.1).
-    HalfPlanes,
-    /// Roof facets and the closed buildings below them (B99 4.2, 4.3).
-    Facets,
-    /// Regions with straight boundaries in every view (W96 3.3).
-    Regions,
-    /// Windows and their main directions (W96 3.4).
-    Directions,
-    /// 3D lines by clustering (W96 3.5).
-    Clusters,
-    /// Planes between parallel lines and the closed buildings below them (W96 3.6).
-    Rectangles,
-    /// The textured model.
-    Model,
-}
-
-impl Stage {
-    /// All stages of all methods.
-    pub const ALL: [Self; 10] = [
-        Self::Segments,
-        Self::Matches,
-        Self::Lines,
-        Self::HalfPlanes,
-        Self::Facets,
-        Self::Regions,
-        Self::Directions,
-        Self::Clusters,
-        Self::Rectangles,
-        Self::Model,
-    ];
-
-    /// The stages of a method in their order, which is also the order of the enumeration.
-    pub fn of(method: Method) -> &'static [Self] {
-        match method {
-            Method::Lines => &[
-                Self::Segments,
-                Self::Matches,
-                Self::Lines,
-                Self::HalfPlanes,
-                Self::Facets,
-                Self::Model,
-            ],
-            Method::Rectangles => &[
-                Self::Regions,
-                Self::Directions,
-                Self::Clusters,
-                Self::Rectangles,
-                Self::Model,
-            ],
-        }
-    }
-
-    /// The name in messages, reports and the session: one lower-case word.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Segments => "segments",
-            Self::Matches => "matches",
-            Self::Lines => "lines",
-            Self::HalfPlanes => "halfplanes",
-            Self::Facets => "facets",
-            Self::Regions => "regions",
-            Self::Directions => "directions",
-            Self::Clusters => "clusters",
-            Self::Rectangles => "rectangles",
-            Self::Model => "model",
-        }
-    }
-
-    /// The stage of this name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|stage| stage.name() == name)
-    }
-}
 
 /// What a stage found, and its diary.
 #[derive(Clone, Debug)]
@@ -234,6 +152,11 @@ impl Run {
     /// Runs one stage, after those before it that have not run yet, and drops the results of those behind
     /// it. `progress` hears fractions of this stage's work from 0 to 1.
     pub fn step(&mut self, stage: Stage, progress: &Listener) -> StageSummary {
+        self.step_with(stage, Known::default(), progress)
+    }
+
+    /// [`Self::step`], where other instances have done the stage's shared maps ([`Stage::shared_maps`]).
+    pub fn step_with(&mut self, stage: Stage, known: Known, progress: &Listener) -> StageSummary {
         for &earlier in self.stages().iter().filter(|&&s| s < stage) {
             if !self.has(earlier) {
                 self.run_stage(earlier);
@@ -241,7 +164,9 @@ impl Run {
         }
         self.drop_from(stage);
         progress(0.0);
-        progress::heard(Listener::clone(progress), || self.run_stage(stage));
+        progress::heard(Listener::clone(progress), || {
+            with_known(known, || self.run_stage(stage));
+        });
         progress(1.0);
         self.summaries.last().expect("just pushed").clone()
     }
@@ -308,7 +233,7 @@ impl Run {
         let (scene, params, r) = (&self.scene, &self.params, &mut self.results);
         match stage {
             Stage::Segments => {
-                let per_view = parallel::map_part(&scene.views, 0.0..1.0, |_, view| {
+                let per_view = map_shared("views", &scene.views, 0.0..1.0, |_, view| {
                     detect_segments(&view.gray, &params.segments)
                 });
                 let (value, trace) = per_view.into_iter().unzip();

@@ -13,6 +13,7 @@ use crate::geometry::{Plane, Segment3};
 use crate::halfplane::{PlanGrid, consistency_map};
 use crate::lines3d::Line3d;
 use crate::scene::Scene;
+use crate::sorting::sort_by;
 
 /// Ground heights, metres, local frame, on a coarse grid over the scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -74,7 +75,7 @@ impl Ground {
         if ends.is_empty() {
             return Self::level(0.0);
         }
-        ends.sort_by(|a, b| a.z.total_cmp(&b.z));
+        sort_by(&mut ends, |a, b| a.z.total_cmp(&b.z));
         // A few wrong lines may lie far off.
         let share = |f: f64| ends[(f * (ends.len() - 1) as f64) as usize].z;
         let around_lines = [share(0.02) - 2.0, share(0.98) + 1.0];
@@ -129,7 +130,7 @@ impl Ground {
             .map(|k| (self.block(k), 1.0))
             .collect();
         let mut sorted = self.heights.clone();
-        sorted.sort_by(f64::total_cmp);
+        sort_by(&mut sorted, f64::total_cmp);
         let low = sorted
             .get(sorted.len() / 10)
             .copied()
@@ -199,7 +200,7 @@ fn low_height(heights: impl Iterator<Item = f64>) -> Option<f64> {
     if heights.len() < 30 {
         return None;
     }
-    heights.sort_by(f64::total_cmp);
+    sort_by(&mut heights, f64::total_cmp);
     Some(heights[(LOW_SHARE * heights.len() as f64) as usize])
 }
 
@@ -229,13 +230,16 @@ fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3
     let heights: Vec<f64> = (0..levels)
         .map(|i| low + (high - low) * i as f64 / (levels - 1) as f64)
         .collect();
-    let maps = crate::parallel::map_part(&heights, 0.0..0.1, |_, &z| {
+    let maps = crate::shares::map_shared("ground", &heights, 0.0..0.1, |_, &z| {
         let plane = Plane {
             normal: Vector3::z(),
             d: -z,
         };
         consistency_map(&reduced, &plane, &grid)
     });
+    if maps.is_empty() {
+        return Vec::new();
+    }
     let mut samples = Vec::new();
     for row in 0..grid.height {
         for column in 0..grid.width {

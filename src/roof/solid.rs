@@ -22,6 +22,7 @@ use self::rings::ring_edges;
 use self::walls::{FaceKind, Shell, shell_of};
 use super::{Building, Facet, RoofModel, Solid, SolidFace, Surface};
 use crate::ids::{BuildingId, FacetId};
+use crate::sorting::{sort_by, sort_by_key};
 
 /// Plan positions closer than this are one, metres. Ten times the step in which coordinates are written,
 /// so that no two corners of a solid become equal in a file.
@@ -114,7 +115,7 @@ pub fn close_buildings(
         add_building(&mut model, members, &group, shell, ground);
     }
     report_vanished(facets.len(), &mut trace);
-    trace.rejected.sort_by_key(|(source, _)| *source);
+    sort_by_key(&mut trace.rejected, |(source, _)| *source);
     (model, trace)
 }
 
@@ -151,7 +152,7 @@ fn connected(partition: &Partition) -> Vec<Vec<usize>> {
             }
             next += 1;
         }
-        group.sort_unstable();
+        sort_by(&mut group, Ord::cmp);
         groups.push(group);
     }
     groups

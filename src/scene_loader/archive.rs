@@ -5,6 +5,7 @@ use std::io::{Cursor, Read};
 use zip::ZipArchive;
 
 use super::InputFile;
+use crate::sorting::sort_by;
 use crate::{Error, Result};
 
 /// Unpacked bytes of one archive at most: a few bytes can be packed that unpack to any size.
@@ -57,7 +58,7 @@ pub fn unpack(file: InputFile) -> Result<Vec<InputFile>> {
             .ok_or_else(|| refuse(format!("it unpacks to more than {MOST_BYTES} bytes")))?;
         files.push(InputFile::new(&format!("{folder}/{name}"), bytes));
     }
-    files.sort_by(|a, b| a.path.cmp(&b.path));
+    sort_by(&mut files, |a, b| a.path.cmp(&b.path));
     Ok(files)
 }
 

@@ -12,6 +12,7 @@ use super::plan::PlannedView;
 use crate::Error;
 use crate::camera::Camera;
 use crate::raster::decoding_bytes;
+use crate::sorting::sort_by;
 
 /// What the cameras together gave reason to say.
 #[derive(Default)]
@@ -184,7 +185,7 @@ fn candidate_heights(cameras: &[&Camera]) -> Vec<f64> {
         .filter(|&(_, j)| j < cameras.len())
         .flat_map(|(i, j)| pair_heights(cameras[i], cameras[j]))
         .collect();
-    crossings.sort_by(f64::total_cmp);
+    sort_by(&mut crossings, f64::total_cmp);
     let step = crossings.len().div_ceil(MOST).max(1);
     let lowest = cameras
         .iter()

@@ -64,6 +64,7 @@ pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
         warnings: plan.warnings.into_iter().chain(treated.warnings).collect(),
         survey: Survey {
             shifts: treated.shifts,
+            doctor: Some(treated.report),
             ..plan.survey
         },
     };

@@ -14,6 +14,7 @@ use crate::orientation::{
 };
 use crate::raster::{ImageHeader, image_header};
 use crate::scene::Survey;
+use crate::sorting::{sort_by, sort_by_key};
 use crate::{Error, Result};
 
 /// Everything about a scene but its pixels.
@@ -110,7 +111,7 @@ impl Plan {
         let mut images: Vec<usize> = (0..files.len())
             .filter(|&i| self.kinds[i] == FileKind::Image)
             .collect();
-        images.sort_by_key(|&i| (files[i].name(), &files[i].path));
+        sort_by_key(&mut images, |&i| (files[i].name(), &files[i].path));
         if let Some(wanted) = &options.views {
             images = self.select(files, &images, wanted);
         }
@@ -169,7 +170,7 @@ impl Plan {
             .iter()
             .map(|&i| (stem(&files[i].path).to_lowercase(), i))
             .collect();
-        keys.sort();
+        sort_by(&mut keys, Ord::cmp);
         for pair in keys.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
             self.errors.push(Error::Scene {
                 problem: format!(
@@ -230,7 +231,7 @@ impl Plan {
                 .or_else(|| set.reference(files))
                 .or_else(|| self.stated_reference(files)),
             anchor: set.anchor(files),
-            shifts: Vec::new(),
+            ..Survey::default()
         };
         let read = set.read(files, &mut self.warnings);
         let mut orientations = read.map_err(|e| self.errors.push(e)).ok()?;
@@ -241,9 +242,8 @@ impl Plan {
                 anchor.lon_deg, anchor.lat_deg
             ));
             self.survey = Survey {
-                epsg: None,
                 anchor: Some(anchor),
-                shifts: Vec::new(),
+                ..Survey::default()
             };
         }
         Some(orientations)

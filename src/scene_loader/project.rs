@@ -93,7 +93,8 @@ pub fn open_project(files: Vec<InputFile>) -> Result<(Vec<InputFile>, Option<Pro
     let Some(file) = files.iter().find(is_project) else {
         return Ok((files, None));
     };
-    let project: Project = serde_json::from_slice(&file.bytes).map_err(|e| Error::Line {
+    // As text, like the page's parameters: the reader for bytes would be compiled beside that for text.
+    let project: Project = serde_json::from_str(&file.text()).map_err(|e| Error::Line {
         file: file.path.clone(),
         line: e.line().max(1),
         problem: e

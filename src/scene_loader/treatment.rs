@@ -7,7 +7,7 @@ use super::input::LoadOptions;
 use super::names::listed;
 use super::verdict::verdict;
 use crate::camera::Camera;
-use crate::doctor::{Diagnosis, Examination, Patient, ViewShift, examine};
+use crate::doctor::{Diagnosis, Examination, Patient, Report, ViewShift, examine};
 use crate::{Error, Result};
 
 /// Cameras as they are to be used, and what was found and done.
@@ -16,6 +16,7 @@ pub(super) struct Treated {
     /// To be added to the origin of the scene: other cameras may stand elsewhere.
     pub origin_change: Vector3<f64>,
     pub shifts: Vec<ViewShift>,
+    pub report: Report,
     pub warnings: Vec<String>,
 }
 
@@ -49,15 +50,16 @@ pub(super) fn treat(
             return Err(error);
         }
         found = examine(&patients);
-        warnings.extend(verdict(found.diagnosis.clone(), &patients, None)?);
+        warnings.extend(verdict(&found, &patients, None)?);
     } else {
-        warnings.extend(verdict(found.diagnosis.clone(), &patients, refusal)?);
+        warnings.extend(verdict(&found, &patients, refusal)?);
     }
     let mut cameras: Vec<Camera> = patients.iter().map(|p| p.camera.clone()).collect();
     warnings.extend(shift_views(&found, &patients, &mut cameras, options.adjust));
     Ok(Treated {
         cameras,
         origin_change,
+        report: Report::new(&found),
         shifts: found.shifts,
         warnings,
     })

@@ -1,45 +1,51 @@
 //! The doctor's diagnosis in the words of a refusal or a warning.
 
 use super::names::listed;
-use crate::doctor::{Diagnosis, Patient};
+use crate::doctor::{Diagnosis, Examination, Patient, Report};
 use crate::{Error, Result};
 
 /// A warning, or the refusal of the scene. `refusal` is what the places of the cameras alone gave reason to say.
 pub(super) fn verdict(
-    diagnosis: Diagnosis,
+    examination: &Examination,
     patients: &[Patient],
     refusal: Option<Error>,
 ) -> Result<Option<String>> {
+    let diagnosis = &examination.diagnosis;
+    let contradiction = |problem, advice: &str| Error::Contradiction {
+        problem,
+        advice: advice.to_owned(),
+        report: Box::new(Report::new(examination)),
+    };
     if let Diagnosis::Explained {
         before,
         after,
         words,
         ..
-    } = &diagnosis
+    } = diagnosis
     {
-        return Err(Error::Scene {
-            problem: format!(
+        return Err(contradiction(
+            format!(
                 "the images contradict their orientation: they agree to {:.2} as it stands, and to {:.2} if {words}",
                 before.score, after.score
             ),
-            advice: "correct the orientation file, export it again, or have it corrected on loading (--apply-fix)"
-                .to_owned(),
-        });
+            "correct the orientation file, export it again, or have it corrected on loading (--apply-fix)",
+        ));
     }
     if let Some(refusal) = refusal {
-        return Err(match diagnosis {
-            Diagnosis::Sound(agreement) | Diagnosis::Offset { agreement, .. } => Error::Scene {
-                problem: format!(
-                    "{} (but the images agree with one another to {:.2}, so it is the world that is turned or \
-                     displaced)",
-                    problem_of(&refusal),
-                    agreement.score
-                ),
-                advice:
-                    "export the orientation with Z up, in metres above the ground's height system"
-                        .to_owned(),
-            },
-            _ => refusal,
+        return Err(match (diagnosis, refusal) {
+            (Diagnosis::Sound(agreement) | Diagnosis::Offset { agreement, .. }, refusal) => {
+                contradiction(
+                    format!(
+                        "{} (but the images agree with one another to {:.2}, so it is the world that is turned or \
+                         displaced)",
+                        problem_of(&refusal),
+                        agreement.score
+                    ),
+                    "export the orientation with Z up, in metres above the ground's height system",
+                )
+            }
+            (_, Error::Scene { problem, advice }) => contradiction(problem, &advice),
+            (_, refusal) => refusal,
         });
     }
     Ok(match diagnosis {
@@ -68,6 +74,8 @@ pub(super) fn verdict(
 fn problem_of(error: &Error) -> String {
     match error {
         Error::File { file, problem, .. } => format!("{file}: {problem}"),
-        Error::Scene { problem, .. } | Error::Line { problem, .. } => problem.clone(),
+        Error::Scene { problem, .. }
+        | Error::Line { problem, .. }
+        | Error::Contradiction { problem, .. } => problem.clone(),
     }
 }

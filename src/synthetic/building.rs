@@ -7,6 +7,7 @@ use super::render::Face;
 use super::texture::Paint;
 use crate::geometry::Segment3;
 use crate::math;
+use crate::sorting::sort_by;
 
 /// A house on its ground, ready to render, and what should be found of it.
 pub(super) struct Building {
@@ -253,7 +254,7 @@ fn edges(corners: &[Point3<f64>], facets: &[(&[usize], Paint)]) -> Vec<Segment3>
             })
         })
         .collect();
-    sides.sort_unstable();
+    sort_by(&mut sides, Ord::cmp);
     sides.dedup();
     sides
         .into_iter()

@@ -9,6 +9,7 @@ use super::shadow::{Footprints, shadow_on};
 use crate::camera::Camera;
 use crate::ids::ViewId;
 use crate::scene::Scene;
+use crate::sorting::sort_by;
 
 /// Most samples along one side of a texel.
 const MAX_SUPERSAMPLING: usize = 4;
@@ -85,7 +86,7 @@ pub fn paint(
         }
     }
     // A stable sort: equal views stay in order.
-    seen.sort_by(|(a, _), (b, _)| {
+    sort_by(&mut seen, |(a, _), (b, _)| {
         (b.visible * b.pixels_per_m2).total_cmp(&(a.visible * a.pixels_per_m2))
     });
     let (colours, known) = compose(scene, plane, patch, &seen);

@@ -1,5 +1,6 @@
 //! Filling on small rasters: polygons into masks, gaps with smooth colours.
 
+use crate::sorting::sort_by;
 use nalgebra::Point2;
 
 /// Sets the pixels of a mask (`width * height`) whose centres lie inside the rings (even-odd).
@@ -21,7 +22,7 @@ pub fn mark_inside(rings: &[Vec<Point2<f64>>], width: usize, height: usize, mask
                 }
             }
         }
-        crossings.sort_by(f64::total_cmp);
+        sort_by(&mut crossings, f64::total_cmp);
         for span in crossings.chunks_exact(2) {
             let from = (span[0] - 0.5).ceil().max(0.0) as usize;
             let to = ((span[1] - 0.5).ceil().max(0.0) as usize).min(width);

@@ -1,6 +1,6 @@
 //! Between Rust's values and JavaScript's.
 
-use js_sys::{Float32Array, Float64Array};
+use js_sys::{Float32Array, Float64Array, Reflect};
 use nalgebra::Matrix3x4;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -11,9 +11,19 @@ use crate::geometry::Segment2;
 use crate::lines3d::Line3d;
 
 /// A JavaScript `Error` with the refusal's message, called "InputError": the page shows it as advice, and
-/// anything else as a fault of the program.
+/// anything else as a fault of the program. Its `code` is the kind of refusal, its `doctor` the doctor's report where the
+/// images speak against the orientation.
 pub(super) fn input_error(error: &Error) -> JsValue {
-    named_error("InputError", &error.to_string())
+    let thrown = named_error("InputError", &error.to_string());
+    let set = |name: &str, value: &JsValue| Reflect::set(&thrown, &name.into(), value);
+    let report = match error {
+        Error::Contradiction { report, .. } => to_js(report),
+        _ => Ok(JsValue::NULL),
+    };
+    // A plain object takes every property.
+    let _ = set("code", &error.code().into());
+    let _ = set("doctor", &report.unwrap_or(JsValue::NULL));
+    thrown
 }
 
 /// A JavaScript `Error` of this name.

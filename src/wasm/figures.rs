@@ -21,6 +21,8 @@ use crate::pipeline::Run;
 #[derive(Serialize)]
 struct LineRecord<'a> {
     sigma_m: f64,
+    /// Of the start and of the end point, m^2: xx, xy, xz, yy, yz, zz.
+    covariance: [[f64; 6]; 2],
     supports: Vec<SupportRecord<'a>>,
 }
 
@@ -248,6 +250,9 @@ fn line_record(line: &Line3d) -> LineRecord<'_> {
     });
     LineRecord {
         sigma_m: line.sigma_m,
+        covariance: line
+            .covariance
+            .map(|c| [c.m11, c.m12, c.m13, c.m22, c.m23, c.m33]),
         supports: supports.collect(),
     }
 }

@@ -5,7 +5,10 @@
 
 mod convert;
 mod figures;
+mod results;
 mod session;
+mod sharing;
 
 pub use figures::Picture;
-pub use session::{Session, ViewImage};
+pub use results::ViewImage;
+pub use session::Session;

@@ -39,7 +39,7 @@ impl CodeLength {
 }
 
 /// Moves made, by kind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Moves {
     /// Break points dropped.
     pub dropped: usize,

@@ -53,14 +53,14 @@ pub use integrals::Lattice;
 pub use minimise::Moves;
 pub use vectors::{RegionLine, region_lines};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use self::integrals::RowSums;
 use self::partition::{OUTSIDE, Partition};
 use crate::params::OrisParams;
 
 /// A region of constant grey level.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Region {
     /// Number of pixels.
     pub area_px: u32,
@@ -75,7 +75,7 @@ pub struct Region {
 }
 
 /// A straight piece of a boundary.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Vector {
     /// Start and end, pixels.
     pub ends: [[i32; 2]; 2],
@@ -93,7 +93,7 @@ impl Vector {
 }
 
 /// The segmentation of an image.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Segmentation {
     /// The regions.
     pub regions: Vec<Region>,

@@ -12,6 +12,7 @@ use super::edge_grid::EdgeGrid;
 use super::integrals::{Lattice, Moments};
 use super::minimise::{CodeLength, LEAST_GAIN};
 use super::partition::{OUTSIDE, Partition};
+use crate::sorting::sort_by;
 
 /// All steps up to this are tried in either axis, pixels: boundaries run in any direction, and a node that slides along one needs
 /// steps in that direction. Assumption.
@@ -69,7 +70,7 @@ fn best_step(
         }
     }
     // Steps that gain are few: whether they are free is asked of these only.
-    steps.sort_by(|a, b| b.0.total_cmp(&a.0));
+    sort_by(&mut steps, |a, b| b.0.total_cmp(&a.0));
     let free = |to: Lattice| p.may_move(node, to) && !grid.crossed(p, node, to);
     let best = steps.into_iter().find(|s| free(s.1));
     best.map(|(_, to, shift)| (to, shift))

@@ -5,7 +5,7 @@
 //! finds their accuracy "rather poor".
 
 use nalgebra::{Matrix2, Point2, Vector2};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{ColorImage, Segmentation};
 use crate::geometry::Segment2;
@@ -13,10 +13,11 @@ use crate::lines2d::{ImageSegment, SegmentKind};
 use crate::math::{hypot, median};
 use crate::params::OrisParams;
 use crate::raster::Gray;
+use crate::sorting::sort_by;
 
 /// An image line on the boundary of two regions, directed by contrast: its right side is the brighter one (or the one of more
 /// red or blue, where colour shows it better).
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RegionLine {
     /// The line with its accuracy.
     pub line: ImageSegment,
@@ -50,7 +51,7 @@ pub fn region_lines(
             Some(found)
         })
         .collect();
-    lines.sort_by(|a, b| {
+    sort_by(&mut lines, |a, b| {
         let length = |l: &RegionLine| l.line.segment.length();
         length(b)
             .total_cmp(&length(a))

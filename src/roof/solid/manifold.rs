@@ -14,6 +14,7 @@ use super::WELD_M;
 use super::rings::turn;
 use super::walls::{Face, FaceKind, Shell};
 use crate::math;
+use crate::sorting::sort_by;
 
 /// Corners within this distance of the straight line between their neighbours are left out where no other
 /// face needs them, metres: a tenth of the step in which coordinates are written.
@@ -209,7 +210,7 @@ impl HalfEdges {
             }
         }
         let mut seen = ring.clone();
-        seen.sort_unstable();
+        sort_by(&mut seen, Ord::cmp);
         seen.dedup();
         (ring.len() == border.len() && seen.len() == ring.len()).then_some(ring)
     }

@@ -20,6 +20,7 @@ use super::rings::{Region, doubled_area, regions_from_edges, ring_edges};
 use super::{SolidRejection, WELD_M};
 use crate::geometry::Plane;
 use crate::roof::Facet;
+use crate::sorting::sort_by;
 
 /// Parts of facets below this plan area are dropped, m^2. Assumption: a sliver of 10 cm x 10 cm is smaller than
 /// a pixel of any survey and only makes walls that nobody can see.
@@ -333,7 +334,7 @@ fn vertices_on_edge(
             on_edge.then_some((along, v.data))
         })
         .collect();
-    stops.sort_by(|s, t| s.0.total_cmp(&t.0).then(s.1.cmp(&t.1)));
+    sort_by(&mut stops, |s, t| s.0.total_cmp(&t.0).then(s.1.cmp(&t.1)));
     stops.into_iter().map(|(_, v)| v).collect()
 }
 

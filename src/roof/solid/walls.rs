@@ -10,6 +10,7 @@ use nalgebra::Point3;
 
 use super::partition::Partition;
 use super::rings::{Region, regions_from_edges, ring_edges};
+use crate::sorting::sort_by;
 
 /// Which face it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,7 +116,9 @@ impl Levels {
             of_facet: BTreeMap::new(),
         };
         for (v, mut at_vertex) in heights {
-            at_vertex.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            sort_by(&mut at_vertex, |a, b| {
+                a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
+            });
             let p = partition.positions[v as usize];
             let foot = levels.push(v, Point3::new(p.x, p.y, ground_z));
             levels.first.insert(v, foot);

@@ -1,5 +1,5 @@
 /** The output files, as soon as their stage has run. */
-import { download } from "./actions";
+import { download } from "./running";
 import { exportNames } from "./state";
 
 const WHAT: Record<string, string> = {

@@ -1,6 +1,7 @@
 /** The name, the method, the tour, and how the page looks. */
-import { setMethod } from "./actions";
+
 import { startTour } from "./lessons";
+import { setMethod } from "./running";
 import { activity, type Method, method } from "./state";
 import { biggerText, textScale, theme, toggleTheme } from "./theme";
 

@@ -1,10 +1,10 @@
 /** The image tabs: one view or all of them, with what the tab's stage found drawn over. */
 import { category } from "../shared/palette";
+import { directionColours } from "./DirectionLab";
 import type { Overlay } from "./drawing";
 import { ImageCanvas } from "./ImageCanvas";
 import { Legend } from "./Legend";
 import { marksOf } from "./marks";
-import { directionColours } from "./RectangleLabs";
 import {
   followsSelection,
   images,

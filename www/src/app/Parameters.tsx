@@ -1,7 +1,7 @@
 /** The parameters of every stage, from the core's own defaults; what differs from them is marked. */
 import { useState } from "preact/hooks";
-import { resetParams, setParam } from "./actions";
 import { fieldText, type ParamField, type ParamSection, paramSections, parseField } from "./paramForm";
+import { resetParams, setParam } from "./running";
 import { defaults, params } from "./state";
 
 export function Parameters() {

@@ -1,9 +1,10 @@
 /** The project: where files are dropped, and what each of them was recognised as. */
 import { useRef, useState } from "preact/hooks";
 import type { ImageReport } from "../shared/results";
-import { addFiles, clearProject, notify, openDemo, removeFile, setRunOptions } from "./actions";
+import { notify } from "./core";
+import { Diagnosis } from "./Diagnosis";
 import { droppedFiles, pickedFiles } from "./files";
-import { isFixable } from "./notices";
+import { addFiles, clearProject, openDemo, removeFile, setRunOptions } from "./projectActions";
 import { OrientationChoice, PlaceFields } from "./RunOptionFields";
 import { files, inspection, keptBytes, projectName, runOptions, scene } from "./state";
 import { Thumbnail } from "./Thumbnail";
@@ -213,18 +214,22 @@ function Warnings() {
       <h3>Warnings</h3>
       <ul class="warnings">
         {[...all].map((text) => (
-          <li key={text}>
-            {text}
-            {isFixable(text) && !runOptions.value.applyFix && (
-              <button type="button" onClick={() => void setRunOptions({ applyFix: true })}>
-                Apply the fix
-              </button>
-            )}
-          </li>
+          <li key={text}>{text}</li>
         ))}
       </ul>
+      <Doubts />
     </>
   );
+}
+
+/** The doctor's report on a scene that was not refused, where there is something to see. */
+function Doubts() {
+  const report = scene.value?.doctor ?? null;
+  const isCured = runOptions.value.applyFix;
+  if (report === null || isCured || (report.mistake === null && report.trials.length === 0)) {
+    return null;
+  }
+  return <Diagnosis report={report} />;
 }
 
 /** "6 views", or "4 of 6 views" where some are left out. */

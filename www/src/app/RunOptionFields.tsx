@@ -1,6 +1,6 @@
 /** Which orientation, which part of the ground, how high it lies. */
 import { useState } from "preact/hooks";
-import { setRunOptions } from "./actions";
+import { setRunOptions } from "./projectActions";
 import { type Parsed, parseHeight, parseRegion } from "./runOptions";
 import { inspection, runOptions } from "./state";
 

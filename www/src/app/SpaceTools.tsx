@@ -1,28 +1,32 @@
-/** The tools of the 3D view: fit, look down, look through a view's camera, measure, keep a picture. */
+/** The tools of the 3D view: fit, look down, look through a view's camera, measure, cut, keep a picture. */
 import { signal } from "@preact/signals";
-import { useEffect, useRef } from "preact/hooks";
 import type { Measured } from "../viewer/measure";
-import { fitShares } from "../viewer/photo";
+import type { Section } from "../viewer/section";
 import type { Viewer } from "../viewer/viewer";
 import { save } from "./files";
-import { images, scene, tab } from "./state";
+import { FlyTo, Photograph, through } from "./Photograph";
+import { SectionChart } from "./SectionChart";
+import { tab } from "./state";
 
-/** The view whose camera is looked through, and how opaque its photograph is. */
-export const through = signal<number | null>(null);
-const opacity = signal(0.5);
+/** What clicks in the space view do besides picking. */
+type Tool = "measure" | "section";
+
+const tool = signal<Tool | null>(null);
 const measured = signal<Measured | null>(null);
+const section = signal<Section | null>(null);
 
 export function SpaceTools({ viewer, onFit }: { viewer: Viewer | null; onFit: () => void }) {
   const leave = () => {
     through.value = null;
     viewer?.lookThrough(null);
   };
-  const toggleMeasure = () => {
-    const isOn = measured.value !== null;
-    measured.value = isOn
-      ? null
-      : { points: 0, distanceM: null, planM: null, heightM: null, slope: null, areaM2: null };
-    viewer?.measure(isOn ? null : (found) => (measured.value = found));
+  const choose = (next: Tool) => {
+    const isOn = tool.value === next;
+    measured.value = null;
+    section.value = null;
+    tool.value = isOn ? null : next;
+    viewer?.measure(isOn || next !== "measure" ? null : (found) => (measured.value = found));
+    viewer?.section(isOn || next !== "section" ? null : (found) => (section.value = found));
   };
   const keepPicture = async () => {
     const blob = await viewer?.screenshot();
@@ -52,89 +56,52 @@ export function SpaceTools({ viewer, onFit }: { viewer: Viewer | null; onFit: ()
         >
           Top
         </button>
-        <button type="button" aria-pressed={measured.value !== null} onClick={toggleMeasure}>
+        <button type="button" aria-pressed={tool.value === "measure"} onClick={() => choose("measure")}>
           Measure
+        </button>
+        <button type="button" aria-pressed={tool.value === "section"} onClick={() => choose("section")}>
+          Section
         </button>
         <button type="button" onClick={() => void keepPicture()}>
           Picture
         </button>
         <FlyTo viewer={viewer} />
       </div>
-      {measured.value !== null && <Reading measured={measured.value} />}
+      {tool.value === "measure" && <Reading measured={measured.value} />}
+      {tool.value === "section" && <Profile viewer={viewer} />}
     </>
   );
 }
 
-function FlyTo({ viewer }: { viewer: Viewer | null }) {
-  const views = scene.value?.views ?? [];
+/** The profile once there are two points, and which side of the cut is taken away. */
+function Profile({ viewer }: { viewer: Viewer | null }) {
+  if (section.value === null) {
+    return (
+      <p class="reading" role="status">
+        Click the two ends of the cut.
+      </p>
+    );
+  }
   return (
-    <div class="fly">
-      <select
-        aria-label="Look through the camera of a view"
-        value={through.value ?? ""}
-        onChange={(event) => {
-          const text = event.currentTarget.value;
-          through.value = text === "" ? null : Number(text);
-          viewer?.lookThrough(text === "" ? null : (views[Number(text)] ?? null));
-        }}
-      >
-        <option value="">Free camera</option>
-        {views.map(({ name }, view) => (
-          <option key={name} value={view}>
-            {name}
-          </option>
-        ))}
-      </select>
-      {through.value !== null && (
-        <input
-          type="range"
-          min={0}
-          max={1}
-          step={0.01}
-          value={opacity.value}
-          aria-label="Opacity of the photograph"
-          onInput={(event) => {
-            opacity.value = Number(event.currentTarget.value);
-          }}
-        />
-      )}
+    <div class="reading section" data-testid="section">
+      <SectionChart section={section.value} />
+      <div class="row">
+        <button type="button" onClick={() => viewer?.clip("other")}>
+          Other side
+        </button>
+        <button type="button" onClick={() => viewer?.clip("none")}>
+          Whole model
+        </button>
+      </div>
     </div>
   );
 }
 
-/** The photograph over the model, where the camera sees it. */
-function Photograph({ view }: { view: number }) {
-  const canvas = useRef<HTMLCanvasElement>(null);
-  const image = images.value[view];
-  useEffect(() => {
-    const context = canvas.current?.getContext("2d");
-    if (context != null && image !== undefined) {
-      const { clientWidth, clientHeight } = context.canvas;
-      const [sx, sy] = fitShares(image, clientWidth / clientHeight);
-      context.canvas.width = Math.round(clientWidth * window.devicePixelRatio);
-      context.canvas.height = Math.round(clientHeight * window.devicePixelRatio);
-      const { width, height } = context.canvas;
-      context.imageSmoothingQuality = "high";
-      context.drawImage(image, (width * (1 - sx)) / 2, (height * (1 - sy)) / 2, width * sx, height * sy);
-    }
-  }, [image, view]);
-  return (
-    <canvas
-      ref={canvas}
-      class="photograph"
-      style={{ opacity: opacity.value }}
-      data-testid="photograph"
-      role="img"
-      aria-label="The photograph over the model"
-    />
-  );
-}
-
-function Reading({ measured: found }: { measured: Measured }) {
-  if (found.distanceM === null || found.slope === null) {
+function Reading({ measured: found }: { measured: Measured | null }) {
+  if (found === null || found.distanceM === null || found.slope === null) {
     return (
       <p class="reading" role="status">
-        {found.points === 0 ? "Click two points, or more for an area." : "One more point."}
+        {found === null || found.points === 0 ? "Click two points, or more for an area." : "One more point."}
       </p>
     );
   }

@@ -1,42 +1,26 @@
 /** The 3D view: layers follow the results, the tab and the switches above it. */
-import { signal, useSignalEffect } from "@preact/signals";
+import { computed, signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { THEME_COLOURS } from "../shared/palette";
 import type { Vec3 } from "../shared/results";
 import { boundsOf, boundsOfFacets, boundsOfLines, withCameras } from "../viewer/bounds";
-import { buildCameras } from "../viewer/cameras";
-import { buildFacets } from "../viewer/facets";
-import { buildFans, buildTurning } from "../viewer/fans";
-import { buildGroups } from "../viewer/groups";
-import { buildLines } from "../viewer/lines";
 import { buildModel, type ModelLayer, type ModelMode } from "../viewer/model";
-import { buildOutlines } from "../viewer/outlines";
-import { buildStretches } from "../viewer/stretches";
+import { enlargement } from "../viewer/uncertainty";
 import { GRID_STEP_M, Viewer } from "../viewer/viewer";
-import { notify } from "./actions";
+import { notify } from "./core";
 import { Legend } from "./Legend";
-import { lineEnds, linesOfSelection } from "./marks";
+import { followResults } from "./layers";
 import { SpaceTools } from "./SpaceTools";
-import {
-  beforeGrowing,
-  images,
-  keptResult,
-  method,
-  pointing,
-  results,
-  scene,
-  selection,
-  type Tab,
-  tab,
-} from "./state";
+import { beforeGrowing, method, results, scene, selection, type Tab, tab } from "./state";
 import { theme } from "./theme";
 
 /** Layers that a person switches; "stretches" and "turning" follow other switches. */
-const LAYERS = ["lines", "fans", "groups", "facets", "model", "cameras"] as const;
+const LAYERS = ["lines", "uncertainty", "fans", "groups", "facets", "model", "cameras"] as const;
 type LayerName = (typeof LAYERS)[number];
 
 const LAYER_TITLES: Record<LayerName, string> = {
   lines: "3D lines",
+  uncertainty: "Uncertainty",
   fans: "Half-planes",
   groups: "Groups",
   facets: "Facets",
@@ -80,6 +64,12 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
         {tab.value === "lines" && <GrowingSwitch />}
         <span class="grow" />
         <Legend />
+        {shown.value[tab.value].includes("uncertainty") && results.value.records.length > 0 && (
+          <p class="legend">
+            <span class="swatch merged" aria-hidden="true" />1 σ, drawn {enlargement(results.value.records)} ×
+            as large
+          </p>
+        )}
       </div>
       <div class="space-canvas">
         <canvas
@@ -150,64 +140,26 @@ function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefine
   };
 }
 
+const lines = computed(() => results.value.lines);
+const glb = computed(() => results.value.glb);
+
 /** Keeps the viewer's layers, modes, theme and selection as the signals say. */
 function useLayers(): void {
+  useEffect(() => followResults(() => viewer.value, middleNow), []);
   useSignalEffect(() => {
-    const { lines } = results.value;
-    viewer.value?.setLayer("lines", lines === null ? null : buildLines(lines, linesOfSelection));
-    if (lines !== null) {
-      viewer.value?.lookAt(boundsOfLines(lines));
+    if (lines.value !== null) {
+      viewer.value?.lookAt(boundsOfLines(lines.value));
     }
   });
   useSignalEffect(() => {
-    const { lines, halfPlanes, sides } = results.value;
-    const has = lines !== null && halfPlanes !== null;
-    viewer.value?.setLayer("fans", has ? buildFans(halfPlanes, lines, sides) : null);
-  });
-  useSignalEffect(() => {
-    const { lines, grouping } = results.value;
-    const has = lines !== null && grouping !== null;
-    viewer.value?.setLayer("groups", has ? buildGroups(grouping, lines) : null);
-  });
-  useSignalEffect(() => {
-    const { stretches } = results.value;
-    viewer.value?.setLayer("stretches", stretches === null ? null : buildStretches(stretches));
-  });
-  useSignalEffect(() => {
-    const kept = keptResult.value;
-    viewer.value?.setLayer("kept", kept === null ? null : buildOutlines(kept.facets));
-  });
-  useSignalEffect(() => {
-    const { side, theta } = pointing.value;
-    const ends = side === null ? [] : lineEnds(side.line);
-    const turning =
-      side !== null && ends.length === 2 && tab.value === "halfplanes"
-        ? buildTurning(ends as unknown as [Vec3, Vec3], side.side, theta)
-        : null;
-    viewer.value?.setLayer("turning", turning);
-  });
-  useSignalEffect(() => {
-    const { facets } = results.value;
-    viewer.value?.setLayer("facets", facets === null ? null : buildFacets(facets));
-  });
-  useSignalEffect(() => {
-    const views = scene.value?.views;
-    const target = boundsNow().center;
-    // The bounds are in the viewer's frame, the cameras in the local one.
-    const local = target.set(target.x, -target.z, target.y);
-    viewer.value?.setLayer("cameras", views === undefined ? null : buildCameras(views, local, images.value));
-  });
-  useSignalEffect(() => {
-    void showModel(results.value.glb);
+    void showModel(glb.value);
   });
   useSignalEffect(() => {
     model.value?.setMode(mode.value);
     model.value?.setTheme(THEME_COLOURS[theme.value]);
     viewer.value?.setTheme(THEME_COLOURS[theme.value]);
   });
-  // Last, so that fresh layers are shown or hidden, and highlighted, as they should be.
   useSignalEffect(() => {
-    void [results.value, scene.value, images.value, model.value];
     for (const name of LAYERS) {
       viewer.value?.showLayer(name, shown.value[tab.value].includes(name));
     }
@@ -220,19 +172,20 @@ function useLayers(): void {
   });
 }
 
-async function showModel(glb: Uint8Array<ArrayBuffer> | null): Promise<void> {
-  if (glb === null) {
+async function showModel(bytes: Uint8Array<ArrayBuffer> | null): Promise<void> {
+  if (bytes === null) {
     model.value = null;
     viewer.peek()?.setLayer("model", null);
     return;
   }
   try {
-    const layer = await buildModel(glb);
-    if (results.peek().glb !== glb) {
+    const layer = await buildModel(bytes);
+    if (glb.peek() !== bytes) {
       layer.dispose();
       return;
     }
     layer.setMode(mode.peek());
+    layer.highlight(selection.peek());
     viewer.peek()?.setLayer("model", layer);
     model.value = layer;
     viewer.peek()?.lookAt(boundsOf(layer.object));
@@ -248,23 +201,29 @@ function fitView(): void {
   viewer.value?.lookAt(areShown ? withCameras(boundsNow(), centres) : boundsNow());
 }
 
+/** The middle of what is shown, local frame: the bounds are in the viewer's. */
+function middleNow(): Vec3 {
+  const { x, y, z } = boundsNow().center;
+  return [x, -z, y];
+}
+
 /** What the present tab shows, as a sphere in the viewer's frame. */
 function boundsNow() {
-  const { lines, facets } = results.value;
+  const { facets } = results.value;
   if (tab.value === "model" && model.value !== null) {
     return boundsOf(model.value.object);
   }
   if ((tab.value === "facets" || tab.value === "rectangles") && facets !== null && facets.length > 0) {
     return boundsOfFacets(facets);
   }
-  return boundsOfLines(lines ?? new Float64Array());
+  return boundsOfLines(lines.value ?? new Float64Array());
 }
 
 function layerIsEmpty(name: Tab): boolean {
-  const { lines, halfPlanes, grouping, facets, glb } = results.value;
+  const { halfPlanes, grouping, facets } = results.value;
   switch (name) {
     case "lines":
-      return lines === null;
+      return lines.value === null;
     case "halfplanes":
       return halfPlanes === null;
     case "groups":
@@ -273,7 +232,7 @@ function layerIsEmpty(name: Tab): boolean {
     case "rectangles":
       return facets === null;
     case "model":
-      return glb === null;
+      return glb.value === null;
     default:
       return false;
   }

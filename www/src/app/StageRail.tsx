@@ -1,8 +1,10 @@
 /** The stages in order: run, cancel, progress, time and counts. */
-import { cancel, runAll, runTo } from "./actions";
+
 import { KeepResult } from "./Comparison";
+import { cancel, runAll, runTo } from "./running";
 import { stageWords } from "./stages";
 import {
+  chosenWorkers,
   files,
   freshStages,
   isBusy,
@@ -11,6 +13,7 @@ import {
   type StageStatus,
   stages,
   tab,
+  usefulWorkers,
 } from "./state";
 
 const STATUS_WORDS: Record<StageStatus, string> = {
@@ -41,6 +44,7 @@ export function StageRail() {
           </button>
         )}
         <span class="muted numbers">{totalTime(stages.value)}</span>
+        <WorkerChoice />
         <KeepResult />
       </div>
       <ol>
@@ -49,6 +53,29 @@ export function StageRail() {
         ))}
       </ol>
     </section>
+  );
+}
+
+/** How many workers share a stage: the result is the same. */
+function WorkerChoice() {
+  const most = Math.max(navigator.hardwareConcurrency ?? 1, 3);
+  return (
+    <label class="workers" title="How many workers share a stage. The result does not depend on it.">
+      Workers
+      <select
+        value={String(chosenWorkers.value)}
+        onChange={(event) => {
+          chosenWorkers.value = Number(event.currentTarget.value);
+        }}
+      >
+        <option value="0">auto ({usefulWorkers.value})</option>
+        {Array.from({ length: most }, (_, i) => (
+          <option key={i + 1} value={String(i + 1)}>
+            {i + 1}
+          </option>
+        ))}
+      </select>
+    </label>
   );
 }
 

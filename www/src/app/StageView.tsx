@@ -1,11 +1,13 @@
 /** The tabs, and below them either images with overlays or the 3D view, above the figure's own laboratory. */
 import type { ComponentType } from "preact";
 import { useRef } from "preact/hooks";
+import { ClusterLab } from "./ClusterLab";
+import { DirectionLab } from "./DirectionLab";
 import { Filmstrip } from "./Filmstrip";
 import { ImageViews } from "./ImageViews";
 import { FacetLab, GroupLab, LineLab } from "./LineLabs";
 import { PointLab } from "./PointLab";
-import { ClusterLab, DirectionLab, RectangleLab } from "./RectangleLabs";
+import { RectangleLab } from "./RectangleLab";
 import { SimLab } from "./SimLab";
 import { SpaceView } from "./SpaceView";
 import { images, method, TABS, type Tab, tab } from "./state";

@@ -165,3 +165,15 @@ export function Chart(props: ChartProps) {
 function tickText(value: number): string {
   return Number(value.toFixed(6)).toLocaleString("en", { maximumFractionDigits: 3 });
 }
+
+/** How many values fall into each of `count` bins between two ends. */
+export function histogramOf(values: readonly number[], { min, max }: Scale, count: number): number[] {
+  const bins = new Array<number>(count).fill(0);
+  for (const value of values) {
+    const bin = Math.min(count - 1, Math.floor(((value - min) / (max - min)) * count));
+    if (bin >= 0) {
+      bins[bin] = (bins[bin] as number) + 1;
+    }
+  }
+  return bins;
+}

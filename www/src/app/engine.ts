@@ -13,14 +13,17 @@ import type {
   Request,
   Result,
 } from "../shared/messages";
+import type { DoctorReport } from "../shared/results";
 
 /** A call that the worker refused, or that was cut short. */
 export class EngineError extends Error {
   readonly kind: FailureKind | "cancelled";
+  readonly doctor: DoctorReport | null;
 
-  constructor(message: string, kind: FailureKind | "cancelled") {
+  constructor(message: string, kind: FailureKind | "cancelled", doctor: DoctorReport | null = null) {
     super(message);
     this.kind = kind;
+    this.doctor = doctor;
   }
 }
 
@@ -95,7 +98,7 @@ export class Engine {
       pending?.resolve(reply.result as never);
       return;
     }
-    const error = new EngineError(reply.message, reply.kind);
+    const error = new EngineError(reply.message, reply.kind, reply.doctor);
     pending?.reject(error);
     if (reply.kind === "crash") {
       this.close(error);

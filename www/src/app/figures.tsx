@@ -12,12 +12,25 @@ interface Figure {
   hint: string;
 }
 
+/** A vector: upright and bold. */
+const V = ({ children }: { children: ComponentChildren }) => (
+  <mi mathvariant="normal" class="v">
+    {children}
+  </mi>
+);
+
+/** A name that is no variable: upright. */
+const Up = ({ children }: { children: ComponentChildren }) => <mi mathvariant="normal">{children}</mi>;
+
+const Open = () => <Up>(</Up>;
+const Close = () => <Up>)</Up>;
+
 const Sim = () => (
   <mrow>
-    <mi mathvariant="normal">Sim</mi>
-    <mi mathvariant="normal">(</mi>
+    <Up>Sim</Up>
+    <Open />
     <mi>θ</mi>
-    <mi mathvariant="normal">)</mi>
+    <Close />
   </mrow>
 );
 
@@ -28,24 +41,18 @@ const FIGURES: Record<Tab, Figure> = {
     text: "Each view is a photograph with a known camera P. Lens distortion has been removed, so that a point X of the ground lies at x = P X. All later figures rest on this one equation.",
     equation: (
       <mrow>
-        <mi mathvariant="normal" class="v">
-          x
-        </mi>
+        <V>x</V>
         <mo>=</mo>
         <mi>P</mi>
-        <mi mathvariant="normal" class="v">
-          X
-        </mi>
+        <V>X</V>
         <mo>=</mo>
         <mi>K</mi>
         <mi>R</mi>
-        <mi mathvariant="normal">(</mi>
-        <mi mathvariant="normal" class="v">
-          X
-        </mi>
+        <Open />
+        <V>X</V>
         <mo>−</mo>
         <mi>C</mi>
-        <mi mathvariant="normal">)</mi>
+        <Close />
       </mrow>
     ),
     hint: "Scroll to zoom, drag to move. What is selected elsewhere is marked here.",
@@ -57,14 +64,10 @@ const FIGURES: Record<Tab, Figure> = {
     equation: (
       <mrow>
         <msup>
-          <mi mathvariant="normal" class="v">
-            l
-          </mi>
-          <mi mathvariant="normal">T</mi>
+          <V>l</V>
+          <Up>T</Up>
         </msup>
-        <mi mathvariant="normal" class="v">
-          x
-        </mi>
+        <V>x</V>
         <mo>=</mo>
         <mn>0</mn>
       </mrow>
@@ -77,20 +80,14 @@ const FIGURES: Record<Tab, Figure> = {
     text: "The end points of a segment bound an epipolar beam in every other view. Candidates in it are compared point by point: x′ is where the epipolar line of x meets the candidate l′. A pair predicts the line in third views by its trifocal tensor; there it must be seen, too.",
     equation: (
       <mrow>
-        <mi mathvariant="normal" class="v">
-          x′
-        </mi>
+        <V>x′</V>
         <mo>=</mo>
-        <mi mathvariant="normal" class="v">
-          l′
-        </mi>
+        <V>l′</V>
         <mo>×</mo>
-        <mi mathvariant="normal">(</mi>
+        <Open />
         <mi>F</mi>
-        <mi mathvariant="normal" class="v">
-          x
-        </mi>
-        <mi mathvariant="normal">)</mi>
+        <V>x</V>
+        <Close />
       </mrow>
     ),
     hint: "Pick a segment; then choose a candidate and drag the point along it.",
@@ -113,11 +110,9 @@ const FIGURES: Record<Tab, Figure> = {
           <mi>d</mi>
           <mn>2</mn>
         </msup>
-        <mi mathvariant="normal">(</mi>
+        <Open />
         <msup>
-          <mi mathvariant="normal" class="v">
-            l
-          </mi>
+          <V>l</V>
           <mi>i</mi>
         </msup>
         <mo>,</mo>
@@ -126,7 +121,7 @@ const FIGURES: Record<Tab, Figure> = {
           <mi>i</mi>
         </msup>
         <mi>L</mi>
-        <mi mathvariant="normal">)</mi>
+        <Close />
       </mrow>
     ),
     hint: "Switch to Before growing to see what the segments alone give.",
@@ -147,14 +142,12 @@ const FIGURES: Record<Tab, Figure> = {
             </munder>
             <msub>
               <mo>∫</mo>
-              <mi mathvariant="normal">POI</mi>
+              <Up>POI</Up>
             </msub>
             <mi>w</mi>
-            <mi mathvariant="normal">(</mi>
-            <mi mathvariant="normal" class="v">
-              x
-            </mi>
-            <mi mathvariant="normal">)</mi>
+            <Open />
+            <V>x</V>
+            <Close />
           </mtd>
         </mtr>
         <mtr>
@@ -162,25 +155,21 @@ const FIGURES: Record<Tab, Figure> = {
             <mspace width="2em" />
             <mo>·</mo>
             <msup>
-              <mi mathvariant="normal">Cor</mi>
+              <Up>Cor</Up>
               <mn>2</mn>
             </msup>
-            <mi mathvariant="normal">(</mi>
-            <mi mathvariant="normal" class="v">
-              x
-            </mi>
+            <Open />
+            <V>x</V>
             <mo>,</mo>
             <msup>
               <mi>H</mi>
               <mi>i</mi>
             </msup>
-            <mi mathvariant="normal">(</mi>
+            <Open />
             <mi>θ</mi>
-            <mi mathvariant="normal">)</mi>
-            <mi mathvariant="normal" class="v">
-              x
-            </mi>
-            <mi mathvariant="normal">)</mi>
+            <Close />
+            <V>x</V>
+            <Close />
           </mtd>
         </mtr>
       </mtable>
@@ -194,14 +183,10 @@ const FIGURES: Record<Tab, Figure> = {
     equation: (
       <mrow>
         <msup>
-          <mi mathvariant="normal" class="v">
-            n
-          </mi>
-          <mi mathvariant="normal">T</mi>
+          <V>n</V>
+          <Up>T</Up>
         </msup>
-        <mi mathvariant="normal" class="v">
-          X
-        </mi>
+        <V>X</V>
         <mo>+</mo>
         <mi>d</mi>
         <mo>≈</mo>
@@ -222,7 +207,7 @@ const FIGURES: Record<Tab, Figure> = {
         <mo>·</mo>
         <msub>
           <mi>τ</mi>
-          <mi mathvariant="normal">real</mi>
+          <Up>real</Up>
         </msub>
       </mrow>
     ),
@@ -253,16 +238,16 @@ const FIGURES: Record<Tab, Figure> = {
       <mrow>
         <mo>min</mo>
         <mi>L</mi>
-        <mi mathvariant="normal">(</mi>
+        <Open />
         <mi>m</mi>
-        <mi mathvariant="normal">)</mi>
+        <Close />
         <mo>+</mo>
         <mi>L</mi>
-        <mi mathvariant="normal">(</mi>
+        <Open />
         <mi>I</mi>
         <mi mathvariant="normal">|</mi>
         <mi>m</mi>
-        <mi mathvariant="normal">)</mi>
+        <Close />
       </mrow>
     ),
     hint: "Pick a region for its area, mean and variance.",
@@ -278,16 +263,16 @@ const FIGURES: Record<Tab, Figure> = {
           <mi>α</mi>
         </munder>
         <mi>h</mi>
-        <mi mathvariant="normal">(</mi>
+        <Open />
         <mi>α</mi>
-        <mi mathvariant="normal">)</mi>
+        <Close />
         <mo>+</mo>
         <mi>h</mi>
-        <mi mathvariant="normal">(</mi>
+        <Open />
         <mi>α</mi>
         <mo>+</mo>
         <mn>90°</mn>
-        <mi mathvariant="normal">)</mi>
+        <Close />
       </mrow>
     ),
     hint: "Blue and orange lines may follow the first and the second direction.",
@@ -302,12 +287,12 @@ const FIGURES: Record<Tab, Figure> = {
         <mo>=</mo>
         <msub>
           <mi>L</mi>
-          <mi mathvariant="normal">alone</mi>
+          <Up>alone</Up>
         </msub>
         <mo>−</mo>
         <msub>
           <mi>L</mi>
-          <mi mathvariant="normal">cluster</mi>
+          <Up>cluster</Up>
         </msub>
         <mo>&gt;</mo>
         <mn>0</mn>
@@ -334,9 +319,9 @@ const FIGURES: Record<Tab, Figure> = {
           </mrow>
         </munder>
         <mi>M</mi>
-        <mi mathvariant="normal">(</mi>
+        <Open />
         <mi>p</mi>
-        <mi mathvariant="normal">)</mi>
+        <Close />
       </mrow>
     ),
     hint: "Pick a facet or choose a pair of lines to see its window.",

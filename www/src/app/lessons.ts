@@ -1,8 +1,9 @@
 /** The guided tour: eight steps through B99 and one through W96, in the views themselves, on the demo scene. */
 import { effect } from "@preact/signals";
-import { openDemo, runAll, setMethod } from "./actions";
+import { through } from "./Photograph";
 import { bestTheta, turnTo } from "./pointing";
-import { through } from "./SpaceTools";
+import { openDemo } from "./projectActions";
+import { runAll, setMethod } from "./running";
 import {
   beforeGrowing,
   files,

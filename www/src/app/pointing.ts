@@ -1,7 +1,7 @@
 /** What follows from a selection: the figures ask the core about the thing that was picked. */
 import { effect } from "@preact/signals";
 import type { SideName, SideTrace } from "../shared/traces";
-import { ask } from "./actions";
+import { ask } from "./core";
 import { NOTHING_POINTED, type Pointing, pointing, results, runningStage, selection } from "./state";
 
 /** Follows the selection as long as the page is open. */

@@ -1,9 +1,10 @@
 /** What the page begins with: the scene of a link, or the project of the last visit. */
 import { batch } from "@preact/signals";
-import { openDemo, restoreProject, runTo } from "./actions";
 import { readKept } from "./keep";
 import { goTo } from "./lessons";
 import { opened } from "./link";
+import { openDemo, restoreProject } from "./projectActions";
+import { runTo } from "./running";
 import { stageWords } from "./stages";
 import { method, results, scene, selection, shownView, stages, TABS, type Tab, tab } from "./state";
 

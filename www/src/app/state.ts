@@ -1,24 +1,11 @@
-/** All that the page knows, as signals. Components read them; `actions.ts` alone writes what the worker says. */
+/** All that the page knows, as signals. Components read them; `core.ts`, `running.ts` and `projectActions.ts` alone write what the worker says. */
 import { computed, signal } from "@preact/signals";
 import type { InputFile } from "../shared/messages";
-import type { Facet, HalfPlane, Inspection, Params, SceneInfo } from "../shared/results";
+import type { DoctorReport, Facet, HalfPlane, Inspection, Params, SceneInfo } from "../shared/results";
 import type { Selection } from "../shared/selection";
-import type {
-  ClusterTrace,
-  Correspondence,
-  Directions,
-  Grouping,
-  LineRecord,
-  MatchRecord,
-  RectangleTrace,
-  Segmentation,
-  SegmentStory,
-  SideRecord,
-  SideTrace,
-  WarpedPicture,
-} from "../shared/traces";
+import type * as traces from "../shared/traces";
 
-import type { Fix } from "./notices";
+import { automaticWorkers } from "./workers";
 
 /** The stage views of each method. */
 export const TABS = {
@@ -47,8 +34,8 @@ export interface Notice {
   text: string;
   /** What to do about it. */
   advice?: string;
-  /** A mistake in the orientation that can be undone at once. */
-  fix?: Fix;
+  /** What the images say of the orientation. */
+  doctor?: DoctorReport;
   /** Something that can be done about it. */
   action?: { name: string; run: () => void };
 }
@@ -62,32 +49,32 @@ export interface Results {
   facets: Facet[] | null;
   glb: Uint8Array<ArrayBuffer> | null;
   rejected: Float32Array[];
-  matching: MatchRecord | null;
-  records: LineRecord[];
+  matching: traces.MatchRecord | null;
+  records: traces.LineRecord[];
   stretches: Float64Array | null;
-  sides: SideRecord[];
-  grouping: Grouping | null;
-  regions: Segmentation[];
-  directions: Directions | null;
-  clusters: ClusterTrace[] | null;
-  rectangles: RectangleTrace | null;
+  sides: traces.SideRecord[];
+  grouping: traces.Grouping | null;
+  regions: traces.Segmentation[];
+  directions: traces.Directions | null;
+  clusters: traces.ClusterTrace[] | null;
+  rectangles: traces.RectangleTrace | null;
 }
 
 /** What the reader points at in a figure, and what the core answered. */
 export interface Pointing {
   /** The story of the selected segment. */
-  story: SegmentStory | null;
+  story: traces.SegmentStory | null;
   /** The candidate that is compared with it, by its place in the story. */
   candidate: number;
   /** Where on the segment the point is, 0 to 1. */
   at: number;
-  correspondence: Correspondence | null;
+  correspondence: traces.Correspondence | null;
   /** The side of the selected line or half-plane, its Sim(theta), and the angle that is tried, radians. */
-  side: SideTrace | null;
+  side: traces.SideTrace | null;
   theta: number;
   /** Whether the reader turned it. */
   isTurned: boolean;
-  warped: WarpedPicture | null;
+  warped: traces.WarpedPicture | null;
 }
 
 export const NO_RESULTS: Results = {
@@ -156,6 +143,15 @@ export const method = computed<Method>(() => methodOf(params.value));
 export function methodOf(values: Params): Method {
   return (values["method"] as unknown) === "rectangles" ? "rectangles" : "lines";
 }
+
+/** How many workers the person wants; 0: as many as are of use. */
+export const chosenWorkers = signal(0);
+export const usefulWorkers = computed(() => {
+  const views = scene.value?.views ?? [];
+  const pixels = views.reduce((sum, { width, height }) => sum + width * height, 0);
+  return automaticWorkers(navigator.hardwareConcurrency ?? 1, pixels);
+});
+export const workers = computed(() => chosenWorkers.value || usefulWorkers.value);
 
 export const stages = signal<StageState[]>([]);
 export const results = signal<Results>(NO_RESULTS);

@@ -1,5 +1,6 @@
 /** What page and worker say to each other: one union each way, discriminated by `type`. */
 import type {
+  DoctorReport,
   Facet,
   HalfPlane,
   Inspection,
@@ -7,28 +8,23 @@ import type {
   Params,
   SceneInfo,
   StageSummary,
-  ViewImage,
 } from "./results";
-
-import type {
-  ClusterTrace,
-  Correspondence,
-  Directions,
-  Grouping,
-  LineRecord,
-  MatchRecord,
-  RectangleTrace,
-  Segmentation,
-  SegmentStory,
-  SideRecord,
-  SideTrace,
-  WarpedPicture,
-} from "./traces";
+import type * as traces from "./traces";
 
 /** A file of the project. The page keeps the handle, so that a new worker can be given it again. */
 export interface InputFile {
   path: string;
   blob: Blob;
+}
+
+export type Bytes = Uint8Array<ArrayBuffer>;
+
+/** Which items of a map in a stage a worker does: every `of`-th, from `index`. */
+export interface Share {
+  stage: string;
+  map: string;
+  index: number;
+  of: number;
 }
 
 /** Every call that the worker answers: its arguments and its result. */
@@ -37,7 +33,7 @@ export interface Calls {
   setFiles: { args: { files: InputFile[] }; result: null };
   inspect: { args: { options: LoadOptions }; result: Inspection };
   load: { args: { options: LoadOptions }; result: SceneInfo };
-  image: { args: { view: number }; result: ViewImage };
+  image: { args: { view: number }; result: ImageBitmap };
   setParams: { args: { params: Params }; result: null };
   run: { args: { stage: string }; result: StageSummary };
   segments: { args: { view: number }; result: Float32Array };
@@ -46,30 +42,37 @@ export interface Calls {
   halfPlanes: { args: object; result: HalfPlane[] };
   facets: { args: object; result: Facet[] };
   ask: { args: { query: QueryName; of: readonly unknown[] }; result: Queries[QueryName]["result"] };
+  sharedMaps: { args: { stage: string }; result: { maps: string[]; withColours: boolean } };
+  packView: { args: { view: number; withColours: boolean }; result: Bytes };
+  takeView: { args: { view: number; of: number; packed: Bytes }; result: null };
+  handOver: { args: { stage: string }; result: Bytes };
+  takeOver: { args: { stage: string; found: Bytes }; result: null };
+  share: { args: Share; result: Bytes };
+  learn: { args: { map: string; shares: Bytes[] }; result: null };
   exportNames: { args: object; result: string[] };
-  exportFile: { args: { name: string }; result: Uint8Array<ArrayBuffer> };
+  exportFile: { args: { name: string }; result: Bytes };
 }
 
 /** Questions about the results, by the name of the session's method: they change nothing. */
 export interface Queries {
   chosenStages: { args: []; result: string[] };
   rejectedSegments: { args: [view: number]; result: Float32Array };
-  matching: { args: []; result: MatchRecord | null };
-  segmentStory: { args: [view: number, segment: number]; result: SegmentStory | null };
+  matching: { args: []; result: traces.MatchRecord | null };
+  segmentStory: { args: [view: number, segment: number]; result: traces.SegmentStory | null };
   correspondence: {
     args: [view: number, segment: number, otherView: number, otherSegment: number, t: number];
-    result: Correspondence | null;
+    result: traces.Correspondence | null;
   };
-  lineRecords: { args: []; result: LineRecord[] };
+  lineRecords: { args: []; result: traces.LineRecord[] };
   detectedStretches: { args: []; result: Float64Array };
-  sides: { args: []; result: SideRecord[] };
-  side: { args: [line: number, left: boolean]; result: SideTrace | null };
-  warped: { args: [line: number, left: boolean, theta: number]; result: WarpedPicture | null };
-  grouping: { args: []; result: Grouping | null };
-  regions: { args: [view: number]; result: Segmentation | null };
-  directions: { args: []; result: Directions | null };
-  clusters: { args: []; result: ClusterTrace[] | null };
-  rectangles: { args: []; result: RectangleTrace | null };
+  sides: { args: []; result: traces.SideRecord[] };
+  side: { args: [line: number, left: boolean]; result: traces.SideTrace | null };
+  warped: { args: [line: number, left: boolean, theta: number]; result: traces.WarpedPicture | null };
+  grouping: { args: []; result: traces.Grouping | null };
+  regions: { args: [view: number]; result: traces.Segmentation | null };
+  directions: { args: []; result: traces.Directions | null };
+  clusters: { args: []; result: traces.ClusterTrace[] | null };
+  rectangles: { args: []; result: traces.RectangleTrace | null };
 }
 
 export type QueryName = keyof Queries;
@@ -106,8 +109,15 @@ export type Request = { [K in CallName]: { type: K; id: number; args: Args<K> } 
  */
 export type FailureKind = "input" | "internal" | "crash";
 
+export interface Failure {
+  message: string;
+  kind: FailureKind;
+  /** What the images say, where they speak against the orientation. */
+  doctor: DoctorReport | null;
+}
+
 /** Worker to page. */
 export type Reply =
   | { type: "done"; id: number; result: Result<CallName> }
-  | { type: "failed"; id: number; message: string; kind: FailureKind }
+  | ({ type: "failed"; id: number } & Failure)
   | { type: "progress"; stage: string; fraction: number };

@@ -72,10 +72,30 @@ export interface ViewInfo {
   projection: number[];
 }
 
+/** How well images agree with an orientation: 0 is chance, 1 perfect. */
+export interface Agreement {
+  points: number;
+  score: number;
+}
+
+/** What the images say of their orientation. */
+export interface DoctorReport {
+  finding: "sound" | "unknown" | "explained" | "offset" | "odd" | "unexplained";
+  stated: Agreement;
+  cured: Agreement | null;
+  /** Across the epipolar lines, as stated and without the mistake. */
+  offsets_px: readonly [number, number] | null;
+  /** The mistake that loading can undo. */
+  mistake: string | null;
+  /** What was assumed instead, the best first. */
+  trials: { words: string; agreement: Agreement; all_pairs: boolean }[];
+}
+
 export interface SceneInfo {
   views: ViewInfo[];
   origin: Vec3;
   warnings: string[];
+  doctor: DoctorReport | null;
 }
 
 export interface StageSummary {

@@ -75,8 +75,14 @@ export interface Correspondence {
   correlation: number | null;
 }
 
+/** xx, xy, xz, yy, yz, zz of a symmetric matrix, m². */
+export type Covariance = readonly [number, number, number, number, number, number];
+
 export interface LineRecord {
+  /** The larger semi-axis of both ends' ellipses across the line, one standard deviation. */
   sigma_m: number;
+  /** Of the start and of the end point. */
+  covariance: readonly [Covariance, Covariance];
   supports: { view: number; segments: number[]; score: number; kind: SupportKind }[];
 }
 

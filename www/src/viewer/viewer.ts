@@ -6,7 +6,9 @@ import {
   GridHelper,
   HemisphereLight,
   type LineBasicMaterial,
+  type Object3D,
   PerspectiveCamera,
+  Plane,
   Raycaster,
   Scene,
   type Sphere,
@@ -21,6 +23,7 @@ import type { Selection } from "../shared/selection";
 import type { Layer } from "./layer";
 import { buildMeasure, type Measured, measure } from "./measure";
 import { clipFromViewer } from "./photo";
+import { clippingPlane, type Section, sectionOf } from "./section";
 
 const FIELD_OF_VIEW_DEG = 35;
 /** A press that moves less, in CSS pixels, is a click. */
@@ -38,6 +41,8 @@ export class Viewer {
   readonly #layers = new Map<string, Layer>();
   /** Layers that are not shown, whether they exist yet or not. */
   readonly #hidden = new Set<string>();
+  /** Layers whose shaders are not ready yet. */
+  readonly #compiling = new Set<Layer>();
   readonly #observer: ResizeObserver;
   readonly #onPick: (selection: Selection | null) => void;
   #grid: GridHelper | null = null;
@@ -45,11 +50,13 @@ export class Viewer {
   #bounds: Sphere | null = null;
   #frame = 0;
   #pressedAt = new Vector2();
+  /** The plane of the section. */
+  #cut: Plane | null = null;
   /** The view whose camera is looked through; null for the free one. */
   #photo: ViewInfo | null = null;
-  /** The points being measured; null while clicks pick. */
-  #measured: Vector3[] | null = null;
-  #onMeasure: (measured: Measured) => void = () => undefined;
+  /** The points that were clicked for a tool; null while clicks pick. */
+  #points: Vector3[] | null = null;
+  #onPoint: (points: Vector3[]) => void = () => undefined;
 
   constructor(
     canvas: HTMLCanvasElement,
@@ -85,11 +92,22 @@ export class Viewer {
       this.#layers.delete(name);
     }
     if (layer !== null) {
-      layer.object.visible = !this.#hidden.has(name);
+      layer.object.visible = false;
       this.#layers.set(name, layer);
       this.#scene.add(layer.object);
+      void this.#compile(name, layer);
     }
     this.draw();
+  }
+
+  /** Shows a layer once its shaders are ready: drawing it earlier would wait for them. */
+  async #compile(name: string, layer: Layer): Promise<void> {
+    this.#compiling.add(layer);
+    await this.#renderer.compileAsync(layer.object, this.#camera, this.#scene);
+    this.#compiling.delete(layer);
+    if (this.#layers.get(name) === layer) {
+      this.showLayer(name, !this.#hidden.has(name));
+    }
   }
 
   showLayer(name: string, visible: boolean): void {
@@ -99,7 +117,7 @@ export class Viewer {
     }
     const layer = this.#layers.get(name);
     if (layer !== undefined) {
-      layer.object.visible = visible;
+      layer.object.visible = visible && !this.#compiling.has(layer);
       this.draw();
     }
   }
@@ -152,9 +170,50 @@ export class Viewer {
 
   /** From now on clicks measure, until it is called with null. */
   measure(onMeasure: ((measured: Measured) => void) | null): void {
-    this.#measured = onMeasure === null ? null : [];
-    this.#onMeasure = onMeasure ?? (() => undefined);
+    this.#collect(onMeasure && ((points) => onMeasure(measure(points))));
+  }
+
+  /** From now on every second click makes a vertical cut, until it is called with null. */
+  section(onSection: ((section: Section | null) => void) | null): void {
+    if (onSection === null) {
+      this.clip("none");
+      return;
+    }
+    this.#collect((points) => {
+      if (points.length > 2) {
+        points.splice(0, 2);
+      }
+      const [a, b] = points;
+      this.clip("none");
+      if (a === undefined || b === undefined) {
+        onSection(null);
+        return;
+      }
+      this.#cut = clippingPlane(a, b, this.#camera.position);
+      this.#renderer.clippingPlanes = [this.#cut];
+      onSection(sectionOf(this.#shown(CUT), a, b));
+    });
+  }
+
+  /** Shows what the cut hides, or the other side of it. */
+  clip(side: "none" | "other"): void {
+    if (side === "other") {
+      this.#cut?.negate();
+    }
+    this.#renderer.clippingPlanes = side === "none" || this.#cut === null ? [] : [this.#cut];
+    this.draw();
+  }
+
+  #collect(onPoint: ((points: Vector3[]) => void) | null): void {
+    this.#points = onPoint === null ? null : [];
+    this.#onPoint = onPoint ?? (() => undefined);
     this.setLayer("measure", null);
+  }
+
+  /** The objects of layers that are shown. */
+  #shown(names: readonly string[]): Object3D[] {
+    const objects = names.map((name) => this.#layers.get(name)?.object);
+    return objects.filter((object) => object?.visible === true) as Object3D[];
   }
 
   /** The present picture as a PNG. */
@@ -182,6 +241,10 @@ export class Viewer {
 
   #render(): void {
     this.#frame = 0;
+    // What nobody sees costs nothing: once it is shown, the observer of its size has it drawn.
+    if (this.#renderer.domElement.clientWidth === 0) {
+      return;
+    }
     const distance = this.#camera.position.distanceTo(this.#controls.target);
     this.#camera.near = Math.max(0.1, distance / 200);
     this.#camera.far = Math.max(5000, distance * 20);
@@ -209,8 +272,12 @@ export class Viewer {
     if (clientWidth === 0 || clientHeight === 0) {
       return;
     }
-    this.#renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
-    this.#renderer.setSize(clientWidth, clientHeight, false);
+    const size = this.#renderer.getSize(new Vector2());
+    // Setting the same size would make the canvas anew, too.
+    if (size.x !== clientWidth || size.y !== clientHeight) {
+      this.#renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+      this.#renderer.setSize(clientWidth, clientHeight, false);
+    }
     this.#camera.aspect = clientWidth / clientHeight;
     cancelAnimationFrame(this.#frame);
     this.#render();
@@ -222,25 +289,25 @@ export class Viewer {
     }
     const { clientWidth, clientHeight } = this.#renderer.domElement;
     const at = new Vector2((event.offsetX / clientWidth) * 2 - 1, 1 - (event.offsetY / clientHeight) * 2);
-    if (this.#measured !== null) {
-      this.#measureAt(at);
+    if (this.#points !== null) {
+      this.#pointAt(at, this.#points);
     } else {
       this.#onPick(this.#pickAt(at));
     }
   }
 
-  #measureAt(at: Vector2): void {
+  /** A point of what is shown, or of the ground beside it. */
+  #pointAt(at: Vector2, points: Vector3[]): void {
     const caster = this.#caster(at);
-    const hits = MEASURED.flatMap((name) => {
-      const layer = this.#layers.get(name);
-      return layer?.object.visible ? caster.intersectObject(layer.object, true) : [];
-    }).sort((a, b) => a.distance - b.distance);
-    const [hit] = hits;
-    if (hit !== undefined && this.#measured !== null) {
-      // On a line of constant width the hit lies beside it.
-      this.#measured.push((hit.pointOnLine ?? hit.point).clone());
-      this.setLayer("measure", buildMeasure(this.#measured));
-      this.#onMeasure(measure(this.#measured));
+    const hits = this.#shown(MEASURED).flatMap((object) => caster.intersectObject(object, true));
+    const [hit] = hits.sort((a, b) => a.distance - b.distance);
+    const floor = new Plane(new Vector3(0, 1, 0), -this.#floor());
+    // On a line of constant width the hit lies beside it.
+    const point = hit?.pointOnLine ?? hit?.point ?? caster.ray.intersectPlane(floor, new Vector3());
+    if (point !== null && point !== undefined) {
+      points.push(point.clone());
+      this.#onPoint(points);
+      this.setLayer("measure", buildMeasure(points));
     }
   }
 
@@ -306,6 +373,17 @@ export class Viewer {
 }
 
 /** Layers in the order in which a click tries them. */
-const PICK_ORDER = ["groups", "stretches", "lines", "fans", "facets", "model", "cameras"] as const;
+const PICK_ORDER = [
+  "groups",
+  "stretches",
+  "lines",
+  "uncertainty",
+  "fans",
+  "facets",
+  "model",
+  "cameras",
+] as const;
 /** Layers whose points can be measured. */
 const MEASURED = ["lines", "stretches", "groups", "facets", "model"] as const;
+/** Layers of faces, which a cut goes through. */
+const CUT = ["facets", "model"] as const;

@@ -1,5 +1,6 @@
 /** Answers one request with the core's Session: parse, call, convert. No geometry, no state but the session. */
 import {
+  type Bytes,
   type CallName,
   type InputFile,
   QUERY_NAMES,
@@ -7,6 +8,7 @@ import {
   type QueryName,
   type Request,
   type Result,
+  type Share,
 } from "../shared/messages";
 import type {
   Facet,
@@ -37,7 +39,15 @@ export interface CoreSession extends Answers {
   halfPlanes(): HalfPlane[];
   facets(): Facet[];
   image(view: number): ViewImage;
-  exportFile(name: string): Uint8Array<ArrayBuffer>;
+  sharedMaps(stage: string): string[];
+  sharesColours(stage: string): boolean;
+  packView(view: number, withColours: boolean): Bytes;
+  takeView(view: number, of: number, packed: Bytes): void;
+  handOver(stage: string): Bytes;
+  takeOver(stage: string, found: Bytes): void;
+  share(stage: string, map: string, index: number, of: number, onProgress: (fraction: number) => void): Bytes;
+  learn(map: string, shares: Bytes[]): void;
+  exportFile(name: string): Bytes;
   exportNames(): string[];
 }
 
@@ -56,11 +66,13 @@ export interface Answer {
 /** Progress is a message at most every so often: the page cannot draw more. */
 const PROGRESS_INTERVAL_MS = 40;
 
+type OnProgress = (stage: string, fraction: number) => void;
+
 /** Answers every request but `open`, which makes the core. */
 export async function dispatch(
   core: Core,
   request: Exclude<Request, { type: "open" }>,
-  onProgress: (stage: string, fraction: number) => void,
+  onProgress: OnProgress,
 ): Promise<Answer> {
   const { session } = core;
   switch (request.type) {
@@ -71,12 +83,29 @@ export async function dispatch(
     case "load":
       return copied(session.load(request.args.options));
     case "image":
-      return imageAnswer(session.image(request.args.view));
+      return await imageAnswer(session.image(request.args.view));
     case "setParams":
       session.setParams(request.args.params);
       return copied(null);
     case "run":
-      return copied(runStage(session, request.args.stage, onProgress));
+      return copied(session.runStage(request.args.stage, throttled(request.args.stage, onProgress)));
+    case "sharedMaps":
+      return copied(sharedMaps(session, request.args.stage));
+    case "packView":
+      return moved(session.packView(request.args.view, request.args.withColours));
+    case "takeView":
+      session.takeView(request.args.view, request.args.of, request.args.packed);
+      return copied(null);
+    case "handOver":
+      return moved(session.handOver(request.args.stage));
+    case "takeOver":
+      session.takeOver(request.args.stage, request.args.found);
+      return copied(null);
+    case "share":
+      return moved(shareOf(session, request.args, onProgress));
+    case "learn":
+      session.learn(request.args.map, request.args.shares);
+      return copied(null);
     case "segments":
       return moved(session.segments(request.args.view));
     case "matchedSegments":
@@ -113,19 +142,24 @@ async function readBlob(path: string, blob: Blob): Promise<ArrayBuffer> {
   }
 }
 
-function runStage(
-  session: CoreSession,
-  stage: string,
-  onProgress: (stage: string, fraction: number) => void,
-): StageSummary {
+function sharedMaps(session: CoreSession, stage: string): Result<"sharedMaps"> {
+  return { maps: session.sharedMaps(stage), withColours: session.sharesColours(stage) };
+}
+
+function shareOf(session: CoreSession, { stage, map, index, of }: Share, onProgress: OnProgress): Bytes {
+  return session.share(stage, map, index, of, throttled(stage, onProgress));
+}
+
+/** Passes a stage's progress on, but not more often than the page can draw it. */
+function throttled(stage: string, onProgress: OnProgress): (fraction: number) => void {
   let last = 0;
-  return session.runStage(stage, (fraction) => {
+  return (fraction) => {
     const now = performance.now();
     if (now - last >= PROGRESS_INTERVAL_MS || fraction >= 1) {
       last = now;
       onProgress(stage, fraction);
     }
-  });
+  };
 }
 
 /** What a query returns: pictures and arrays move, records are copied, nothing is null. */
@@ -144,11 +178,10 @@ function queryAnswer(session: CoreSession, query: QueryName, of: readonly unknow
   return copied(result as Result<CallName>);
 }
 
-function imageAnswer(image: ViewImage): Answer {
-  return {
-    result: { width: image.width, height: image.height, rgba: image.rgba },
-    transfer: [image.rgba.buffer],
-  };
+/** The bitmap is made here: on the page it would hold everything else up. */
+async function imageAnswer({ rgba, width, height }: ViewImage): Promise<Answer> {
+  const bitmap = await createImageBitmap(new ImageData(rgba, width, height));
+  return { result: bitmap, transfer: [bitmap] };
 }
 
 /** Arrays that the core hands out are copies of its memory, so their buffers may move. */

@@ -1,8 +1,8 @@
 /** The worker: one wasm instance with one Session. Requests are answered one after the other. */
 /// <reference lib="webworker" />
 import init, { Session } from "../pkg/ridgeline.js";
-import type { FailureKind, Reply, Request } from "../shared/messages";
-import type { Params } from "../shared/results";
+import type { Failure, Reply, Request } from "../shared/messages";
+import type { DoctorReport, Params } from "../shared/results";
 import { type Answer, type Core, type CoreSession, dispatch } from "./dispatch";
 
 declare const self: DedicatedWorkerGlobalScope;
@@ -39,14 +39,16 @@ async function perform(request: Request): Promise<Answer> {
   return dispatch(core, request, (stage, fraction) => post({ type: "progress", stage, fraction }));
 }
 
-function failureOf(error: unknown): { message: string; kind: FailureKind } {
+function failureOf(error: unknown): Failure {
   if (error instanceof WebAssembly.RuntimeError) {
-    return { message: `The reconstruction core stopped (${error.message}).`, kind: "crash" };
+    const message = `The reconstruction core stopped (${error.message}).`;
+    return { message, kind: "crash", doctor: null };
   }
   if (error instanceof Error) {
-    return { message: error.message, kind: error.name === "InputError" ? "input" : "internal" };
+    const { doctor = null } = error as Error & { doctor?: DoctorReport };
+    return { message: error.message, kind: error.name === "InputError" ? "input" : "internal", doctor };
   }
-  return { message: String(error), kind: "internal" };
+  return { message: String(error), kind: "internal", doctor: null };
 }
 
 function post(reply: Reply, transfer: Transferable[] = []): void {

@@ -1,5 +1,5 @@
 import { expect, test } from "@playwright/test";
-import { axeFindings, give, houseFiles, stage, waitForStage } from "./helpers";
+import { axeFindings, give, houseFiles, openTab, stage, waitForStage } from "./helpers";
 
 for (const colorScheme of ["light", "dark"] as const) {
   test(`nothing serious for axe in ${colorScheme}`, async ({ page }) => {
@@ -11,6 +11,29 @@ for (const colorScheme of ["light", "dark"] as const) {
     await page.getByRole("button", { name: "Run up to Segments" }).click();
     await waitForStage(page, "segments");
     expect(await axeFindings(page)).toEqual([]);
+  });
+}
+
+for (const [method, last] of [
+  ["Lines", "Model"],
+  ["Rectangles", "Rectangles"],
+] as const) {
+  test(`nothing serious for axe in any tab of method ${method}`, async ({ page }) => {
+    await page.goto("/");
+    await page.getByRole("button", { name: method, exact: true }).click();
+    await give(page, houseFiles());
+    await page.getByRole("button", { name: `Run up to ${last}` }).click();
+    await waitForStage(page, last.toLowerCase());
+    const tabs = await page.getByRole("tab").allTextContents();
+    expect(tabs.length).toBeGreaterThan(5);
+    for (const name of tabs) {
+      await openTab(page, name);
+      expect(await axeFindings(page), name).toEqual([]);
+    }
+    for (const tool of method === "Lines" ? ["Measure", "Section"] : []) {
+      await page.getByRole("button", { name: tool }).click();
+      expect(await axeFindings(page), tool).toEqual([]);
+    }
   });
 }
 

@@ -12,6 +12,11 @@ test("a mistake in the orientation is undone with one click", async ({ page }) =
   await give(page, [...demoImages(6), ...demoOrientation(inDegreesAsGon)]);
   const diagnosis = page.getByTestId("diagnosis");
   await expect(diagnosis).toBeVisible({ timeout: 60_000 });
+  await expect(diagnosis).toHaveAttribute("data-finding", "explained");
+  await diagnosis.getByText("What was tried").click();
+  const rows = diagnosis.locator("tbody tr");
+  expect(await rows.count()).toBeGreaterThan(4);
+  await expect(rows.first()).toContainText("in gon");
   const [before, after] = (await diagnosis.locator("dd").allTextContents()).map(Number) as [number, number];
   expect(before).toBeLessThan(0.25);
   expect(after).toBeGreaterThan(0.3);

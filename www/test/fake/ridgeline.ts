@@ -122,7 +122,7 @@ export class Session implements CoreSession {
       center: [0, 0, 4000 + i] as P,
       projection: downwards(4000 + i),
     }));
-    return { views, origin: [1000, 2000, 0], warnings: [] };
+    return { views, origin: [1000, 2000, 0], warnings: [], doctor: null };
   }
 
   setParams(): void {}
@@ -166,6 +166,39 @@ export class Session implements CoreSession {
     }
     return { width: SIZE_PX, height: SIZE_PX, rgba };
   }
+
+  sharedMaps(stage: string): string[] {
+    return stage === "segments" ? ["views"] : [];
+  }
+
+  sharesColours(): boolean {
+    return false;
+  }
+
+  packView(): Uint8Array<ArrayBuffer> {
+    return new Uint8Array([1]);
+  }
+
+  takeView(): void {}
+
+  handOver(): Uint8Array<ArrayBuffer> {
+    return new Uint8Array();
+  }
+
+  takeOver(): void {}
+
+  share(
+    _stage: string,
+    _map: string,
+    index: number,
+    of: number,
+    onProgress: (fraction: number) => void,
+  ): Uint8Array<ArrayBuffer> {
+    onProgress(1);
+    return new Uint8Array([index, of]);
+  }
+
+  learn(): void {}
 
   chosenStages(): string[] {
     return STAGES;
@@ -219,6 +252,10 @@ export class Session implements CoreSession {
   lineRecords(): LineRecord[] {
     return EDGES.map((_, i) => ({
       sigma_m: 0.01 * (i + 1),
+      covariance: [
+        [1e-4, 0, 0, 1e-4, 0, 4e-4],
+        [1e-4, 0, 0, 1e-4, 0, 1e-4],
+      ],
       supports: [0, 1, 2].map((view) => ({ view, segments: [i], score: 0.8, kind: "matched" as const })),
     }));
   }

@@ -1,7 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { frameOf, ticks, xOf, yOf } from "../../src/app/charts";
+import { frameOf, histogramOf, ticks, xOf, yOf } from "../../src/app/charts";
 import { quantile } from "../../src/app/LineLabs";
-import { histogramOf } from "../../src/app/RectangleLabs";
 
 describe("ticks", () => {
   it("are round and inside", () => {

@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { failureNotice, splitAdvice } from "../../src/app/notices";
+import type { DoctorReport } from "../../src/shared/results";
 
 describe("splitAdvice", () => {
   it("separates what is wrong from what to do", () => {
@@ -22,19 +23,24 @@ describe("failureNotice", () => {
 });
 
 describe("the doctor's finding", () => {
-  const refusal =
-    "the images contradict their orientation: they agree to 0.04 as it stands, and to 0.61 if the angles are in gon; correct the orientation file";
+  const report: DoctorReport = {
+    finding: "explained",
+    stated: { points: 900, score: 0.04 },
+    cured: { points: 910, score: 0.61 },
+    offsets_px: null,
+    mistake: "the angles are in gon",
+    trials: [],
+  };
 
-  it("is offered as a fix", () => {
-    expect(failureNotice(refusal, "input").fix).toEqual({
-      before: 0.04,
-      after: 0.61,
-      words: "the angles are in gon",
-    });
+  it("takes the place of the advice where the page can undo the mistake", () => {
+    const notice = failureNotice("the images contradict; correct the file", "input", report);
+    expect(notice.doctor).toEqual(report);
+    expect(notice).not.toHaveProperty("advice");
   });
 
-  it("is offered for nothing else", () => {
-    expect(failureNotice("fewer than three views; add photographs", "input")).not.toHaveProperty("fix");
-    expect(failureNotice(refusal, "internal")).not.toHaveProperty("fix");
+  it("stands beside the advice where it cannot", () => {
+    const notice = failureNotice("upside down; export again", "input", { ...report, mistake: null });
+    expect(notice.advice).toBe("Export again");
+    expect(failureNotice("fewer than three views; add some", "input")).not.toHaveProperty("doctor");
   });
 });

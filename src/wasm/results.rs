@@ -1,0 +1,164 @@
+//! What the stages of a session have found, and the files of a finished run.
+
+use js_sys::{Float32Array, Float64Array};
+use serde::Serialize;
+use wasm_bindgen::prelude::*;
+
+use super::convert::{end_points_px, line_array, named_error, segment_array, to_js};
+use super::figures::{lines_of, segments_of};
+use super::session::{Session, not_loaded};
+use crate::linematch::SupportKind;
+use crate::objectspace::{Window, WindowTrace};
+
+/// What `directions` returns.
+#[derive(Serialize)]
+struct Found<'a> {
+    windows: &'a [Window],
+    trace: &'a WindowTrace,
+}
+
+/// The pixels of a view, RGBA row by row: what `ImageData` takes.
+#[wasm_bindgen(getter_with_clone)]
+pub struct ViewImage {
+    /// Width, pixels.
+    pub width: u32,
+    /// Height, pixels.
+    pub height: u32,
+    /// `4 * width * height` bytes.
+    pub rgba: js_sys::Uint8ClampedArray,
+}
+
+#[wasm_bindgen]
+impl Session {
+    /// The segments of a view: x0, y0, x1, y1 each, pixels.
+    pub fn segments(&self, view: usize) -> Result<Float32Array, JsValue> {
+        let all = segments_of(self.loaded()?);
+        let segments = all.get(view).map_or(&[][..], |s| s);
+        Ok(segment_array(segments.iter().map(|s| &s.segment)))
+    }
+
+    /// The supports of the 3D lines (before that stage, of the matches) in a view: x0, y0, x1, y1 in pixels,
+    /// kind (0 matched, 1 merged, 2 grown) and index of the line each.
+    #[wasm_bindgen(js_name = matchedSegments)]
+    pub fn matched_segments(&self, view: usize) -> Result<Float32Array, JsValue> {
+        let run = self.loaded()?;
+        let lines = lines_of(run);
+        let matches = run.results().matches.as_ref();
+        let supports: Vec<_> = match matches {
+            Some(matches) if lines.is_empty() => {
+                matches.value.iter().map(|m| &m.supports).collect()
+            }
+            _ => lines.iter().map(|l| &l.supports).collect(),
+        };
+        let mut numbers: Vec<f32> = Vec::new();
+        for (line, supports) in supports.into_iter().enumerate() {
+            for support in supports.iter().filter(|s| s.view.index() == view) {
+                numbers.extend(end_points_px(&support.stretch));
+                numbers.extend([kind_number(support.kind), line as f32]);
+            }
+        }
+        Ok(Float32Array::from(&numbers[..]))
+    }
+
+    /// The 3D lines: both end points each, metres, local frame.
+    pub fn lines(&self) -> Result<Float64Array, JsValue> {
+        Ok(line_array(&lines_of(self.loaded()?)))
+    }
+
+    /// The accepted half-planes, as an array of objects.
+    #[wasm_bindgen(js_name = halfPlanes)]
+    pub fn half_planes(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().half_planes.as_ref();
+        to_js(&found.map_or(&[][..], |h| &h.value))
+    }
+
+    /// The roof facets, as an array of objects.
+    pub fn facets(&self) -> Result<JsValue, JsValue> {
+        let model = self.loaded()?.results().model();
+        to_js(&model.map_or(&[][..], |m| &m.facets))
+    }
+
+    /// Method "rectangles": the segmentation of a view, `{regions, vectors, initial_regions, moves}`; `null` before
+    /// that stage.
+    pub fn regions(&self, view: usize) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().regions.as_ref();
+        to_js(&found.and_then(|r| r.trace.get(view)))
+    }
+
+    /// Method "rectangles": the windows with their main directions and how they were found, `{windows, trace}`.
+    pub fn directions(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().directions.as_ref();
+        to_js(&found.map(|d| Found {
+            windows: &d.value,
+            trace: &d.trace,
+        }))
+    }
+
+    /// Method "rectangles": the cluster planes, one for each window and direction (figures 7 and 8).
+    pub fn clusters(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().clusters.as_ref();
+        to_js(&found.map(|c| &c.trace))
+    }
+
+    /// Method "rectangles": pairs of lines, candidates and the choice (figures 11 and 12).
+    pub fn rectangles(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().rectangles.as_ref();
+        to_js(&found.map(|r| &r.trace))
+    }
+
+    /// The pixels of a view, distortion removed.
+    pub fn image(&self, view: usize) -> Result<ViewImage, JsValue> {
+        let run = self.loaded()?;
+        let view = run
+            .scene()
+            .views
+            .get(view)
+            .ok_or_else(|| named_error("RangeError", &format!("there is no view {view}")))?;
+        let rgba: Vec<u8> = view
+            .rgb
+            .pixels()
+            .flat_map(|p| [p[0], p[1], p[2], 255])
+            .collect();
+        Ok(ViewImage {
+            width: view.rgb.width(),
+            height: view.rgb.height(),
+            rgba: js_sys::Uint8ClampedArray::from(&rgba[..]),
+        })
+    }
+
+    /// The names of the files that the finished run offers; none before its last stage.
+    #[wasm_bindgen(js_name = exportNames)]
+    pub fn export_names(&mut self) -> Result<Vec<String>, JsValue> {
+        Ok(self
+            .outputs()?
+            .iter()
+            .map(|(name, _)| name.clone())
+            .collect())
+    }
+
+    /// The bytes of one of these files.
+    #[wasm_bindgen(js_name = exportFile)]
+    pub fn export_file(&mut self, name: &str) -> Result<Vec<u8>, JsValue> {
+        let outputs = self.outputs()?;
+        let found = outputs.iter().find(|(n, _)| n == name);
+        found.map(|(_, bytes)| bytes.clone()).ok_or_else(|| {
+            let message = format!("there is no '{name}': run all stages first");
+            named_error("RangeError", &message)
+        })
+    }
+}
+
+impl Session {
+    fn outputs(&mut self) -> Result<&[(String, Vec<u8>)], JsValue> {
+        let run = self.run.as_ref().ok_or_else(not_loaded)?;
+        Ok(self.outputs.get_or_insert_with(|| run.files(&[])))
+    }
+}
+
+fn kind_number(kind: SupportKind) -> f32 {
+    match kind {
+        SupportKind::Matched => 0.0,
+        SupportKind::Merged => 1.0,
+        SupportKind::Grown => 2.0,
+    }
+}

@@ -1,0 +1,46 @@
+// Sizes of what a first visit fetches, compressed as static hosts serve it; fails where there is too much of it.
+//
+//   npm run size        after `npm run build`
+//
+// Counted is everything of the site but the demo scene, which is fetched on request.
+
+import { readdirSync, readFileSync } from "node:fs";
+import { join, relative } from "node:path";
+import { fileURLToPath } from "node:url";
+import { brotliCompressSync, constants, gzipSync } from "node:zlib";
+
+const MOST_WASM = 900_000;
+const MOST_IN_ALL = 1_200_000;
+
+const dist = fileURLToPath(new URL("../dist/", import.meta.url));
+const files = readdirSync(dist, { recursive: true, withFileTypes: true })
+  .filter((entry) => entry.isFile())
+  .map((entry) => relative(dist, join(entry.parentPath, entry.name)).replaceAll("\\", "/"))
+  .filter((path) => !path.startsWith("demo/"))
+  .sort();
+
+const brotli = (bytes) =>
+  brotliCompressSync(bytes, { params: { [constants.BROTLI_PARAM_LGWIN]: 22 } }).length;
+const rows = files.map((path) => {
+  const bytes = readFileSync(join(dist, path));
+  return { path, raw: bytes.length, gzip: gzipSync(bytes, { level: 9 }).length, brotli: brotli(bytes) };
+});
+const sum = (kind) => rows.reduce((total, row) => total + row[kind], 0);
+const total = { path: "in all", raw: sum("raw"), gzip: sum("gzip"), brotli: sum("brotli") };
+const wasm = rows.find(({ path }) => path.endsWith(".wasm"));
+
+const kB = (bytes) => `${(bytes / 1000).toFixed(1)} kB`.padStart(12);
+console.log(`${"".padEnd(40)}${"raw".padStart(12)}${"gzip".padStart(12)}${"brotli".padStart(12)}`);
+for (const { path, raw, gzip, brotli: br } of [...rows, total]) {
+  console.log(`${path.padEnd(40)}${kB(raw)}${kB(gzip)}${kB(br)}`);
+}
+
+const problems = [
+  wasm === undefined && "there is no wasm: run `npm run build` first",
+  wasm && wasm.brotli > MOST_WASM && `the wasm is larger than ${MOST_WASM / 1000} kB (brotli)`,
+  total.brotli > MOST_IN_ALL && `the first load is larger than ${MOST_IN_ALL / 1000} kB (brotli)`,
+].filter(Boolean);
+for (const problem of problems) {
+  console.error(problem);
+}
+process.exit(problems.length === 0 ? 0 : 1);

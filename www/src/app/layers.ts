@@ -1,0 +1,103 @@
+/** The layers of the 3D view, from the results: each is built anew when what it shows has changed, in a task of its own. */
+import { effect } from "@preact/signals";
+import { Vector3 } from "three";
+import { LINE_STRIDE, type Vec3 } from "../shared/results";
+import { buildCameras } from "../viewer/cameras";
+import { buildFacets } from "../viewer/facets";
+import { buildFans, buildTurning } from "../viewer/fans";
+import { buildGroups } from "../viewer/groups";
+import type { Layer } from "../viewer/layer";
+import { buildLines } from "../viewer/lines";
+import { buildOutlines } from "../viewer/outlines";
+import { buildStretches } from "../viewer/stretches";
+import { buildUncertainty, enlargement } from "../viewer/uncertainty";
+import type { Viewer } from "../viewer/viewer";
+import { lineEnds, linesOfSelection } from "./marks";
+import { images, keptResult, pointing, results, scene, selection, tab } from "./state";
+
+/** A function that makes a layer, and what it makes it of; null where there is nothing to show. */
+type Plan = readonly [build: () => Layer, ...of: unknown[]] | null;
+
+/** What every layer shows now. `middle` is where cameras look at, local frame. */
+const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
+  lines: () => {
+    const { lines } = results.value;
+    return lines && [() => buildLines(lines, linesOfSelection), lines];
+  },
+  uncertainty: () => {
+    const { lines, records } = results.value;
+    const has = lines !== null && records.length * LINE_STRIDE === lines.length;
+    return has
+      ? [() => buildUncertainty(lines, records, enlargement(records), linesOfSelection), records]
+      : null;
+  },
+  fans: () => {
+    const { lines, halfPlanes, sides } = results.value;
+    const has = lines !== null && halfPlanes !== null;
+    return has ? [() => buildFans(halfPlanes, lines, sides), halfPlanes, lines] : null;
+  },
+  groups: () => {
+    const { lines, grouping } = results.value;
+    return lines && grouping && [() => buildGroups(grouping, lines), grouping, lines];
+  },
+  stretches: () => {
+    const { stretches } = results.value;
+    return stretches && [() => buildStretches(stretches), stretches];
+  },
+  kept: () => {
+    const kept = keptResult.value;
+    return kept && [() => buildOutlines(kept.facets), kept];
+  },
+  turning: () => {
+    const { side, theta } = pointing.value;
+    const ends = side === null ? [] : lineEnds(side.line);
+    return side !== null && ends.length === 2 && tab.value === "halfplanes"
+      ? [() => buildTurning(ends as unknown as [Vec3, Vec3], side.side, theta), side, theta]
+      : null;
+  },
+  facets: () => {
+    const { facets } = results.value;
+    return facets && [() => buildFacets(facets), facets];
+  },
+  cameras: (middle) => {
+    const views = scene.value?.views;
+    const [x, y, z] = middle();
+    return views === undefined
+      ? null
+      : [() => buildCameras(views, new Vector3(x, y, z), images.value), views, images.value, x, y, z];
+  },
+};
+
+/** Keeps the viewer's layers as the results say, until the returned function is called. */
+export function followResults(viewer: () => Viewer | null, middle: () => Vec3): () => void {
+  const ends = Object.entries(PLANS).map(([name, plan]) => follow(name, viewer, () => plan(middle)));
+  return () => {
+    for (const end of ends) {
+      end();
+    }
+  };
+}
+
+function follow(name: string, viewer: () => Viewer | null, plan: () => Plan): () => void {
+  let shown: readonly unknown[] | null = null;
+  return effect(() => {
+    const space = viewer();
+    const next = plan();
+    const of = next === null || space === null ? null : [space, ...next.slice(1)];
+    if (space === null || isSame(of, shown)) {
+      return;
+    }
+    shown = of;
+    setTimeout(() => {
+      if (shown === of) {
+        const layer = next === null ? null : next[0]();
+        layer?.highlight(selection.peek());
+        space.setLayer(name, layer);
+      }
+    });
+  });
+}
+
+function isSame(a: readonly unknown[] | null, b: readonly unknown[] | null): boolean {
+  return a === b || (a !== null && b !== null && a.length === b.length && a.every((one, i) => one === b[i]));
+}
