@@ -54,7 +54,7 @@ mod tests {
         fn sorts_as_the_standard_library_does(items in prop::collection::vec((0u8..9, 0u32..1000), 0..80)) {
             let (mut own, mut standard) = (items.clone(), items);
             sort_by(&mut own, |a, b| b.0.cmp(&a.0));
-            standard.sort_by(|a, b| b.0.cmp(&a.0));
+            standard.sort_by_key(|b| std::cmp::Reverse(b.0));
             prop_assert_eq!(&own, &standard);
             sort_by_key(&mut own, |a| a.1);
             standard.sort_by_key(|a| a.1);

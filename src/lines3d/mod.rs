@@ -22,7 +22,7 @@ use crate::params::Lines3dParams;
 use crate::scene::Scene;
 
 /// How a 3D line was found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LineOrigin {
     /// From image segments that belong together (B99 3, W96 3.5).

@@ -77,16 +77,12 @@ impl PackedView {
     fn unpack(self) -> View {
         let (width, height) = (self.camera.width, self.camera.height);
         let rgb = image::RgbImage::from_raw(width, height, self.rgb);
-        View {
-            name: self.name,
-            gray: Gray {
-                width: width as usize,
-                height: height as usize,
-                data: self.gray,
-            },
-            rgb: rgb.unwrap_or_default(),
-            camera: self.camera,
-        }
+        let gray = Gray {
+            width: width as usize,
+            height: height as usize,
+            data: self.gray,
+        };
+        View::new(self.name, self.camera, gray, rgb.unwrap_or_default())
     }
 }
 

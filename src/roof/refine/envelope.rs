@@ -94,7 +94,7 @@ impl Envelope<'_> {
                 if j == i {
                     let square = row[i - begin] - dot(row, row);
                     // NaN fails the comparison.
-                    if !(square > 0.0) {
+                    if square.is_nan() || square <= 0.0 {
                         return None;
                     }
                     row[i - begin] = square.sqrt();
