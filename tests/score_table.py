@@ -93,16 +93,23 @@ def first_views(run, count):
 
 
 def lines(scorer, run):
-    """What became of the segments (B99 3.3 and 3.4), with the scores of the lines where there is truth."""
+    """What became of the segments (B99 3.3 and 3.4), with the scores of the lines, matched and all, where there is truth."""
     if run['failed']:
         return None
     of_report, out = report(run), run['out']
     counts = {name: count for stage in of_report['stages'][:3] for name, count in stage['counts'].items()}
     truth = (run['scene'] / 'truth').is_dir()
-    scored = truth and tool(scorer, 'score', run, out / 'model.city.json', '--lines', out / 'lines.json')
     found = json.loads((out / 'lines.json').read_text())['lines']
-    length = sum(sum((a - b) ** 2 for a, b in zip(line['p0'], line['p1'])) ** 0.5 for line in found)
-    return {**counts, 'length': length, 'scores': scored['lines'] if scored else None}
+    matched = [line for line in found if line['origin'] == 'matched']
+    (out / 'matched.json').write_text(json.dumps({'lines': matched}))
+
+    def scored(name):
+        scores = truth and tool(scorer, 'score', run, out / 'model.city.json', '--lines', out / name)
+        return scores['lines'] if scores else None
+
+    length = sum(sum((a - b) ** 2 for a, b in zip(line['p0'], line['p1'])) ** 0.5 for line in matched)
+    return {**counts, 'length': length, 'new': len(found) - len(matched), 'scores': scored('matched.json'),
+            'all': scored('lines.json')}
 
 
 def faces(scorer, run):
@@ -131,15 +138,17 @@ def rendered_row(s):
 
 
 def line_table(rows):
-    header = ['scene', 'views', 'segments', 'lines', 'wrong', 'supports a line', 'merged', 'grown', 'length [m]', 'roof edges covered']
-    return markdown(header, [[r['scene'].name] + (line_row(c) if c else ['failed'] + ['-'] * 8) for r, c in rows])
+    header = ['scene', 'views', 'segments', 'lines', 'wrong', 'supports a line', 'merged', 'grown', 'length [m]', 'roof edges covered', 'new lines',
+              'covered with them']
+    return markdown(header, [[r['scene'].name] + (line_row(c) if c else ['failed'] + ['-'] * 10) for r, c in rows])
 
 
 def line_row(c):
     scores, supports = c['scores'], c['supports']
     return [str(c['views']), str(c['segments']), str(c['lines']), f'{100 * scores["wrong"]:.1f} %' if scores else '-',
             f'{supports / c["lines"]:.1f}', percent(c['merged supports'] / supports), percent(c['grown supports'] / supports),
-            f'{c["length"]:.0f}', percent(scores['edge_length_covered']) if scores else '-']
+            f'{c["length"]:.0f}', percent(scores['edge_length_covered']) if scores else '-', str(c['new']),
+            percent(c['all']['edge_length_covered']) if c['all'] else '-']
 
 
 def rectangle_table(rows):
