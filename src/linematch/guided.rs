@@ -64,7 +64,8 @@ struct Piece {
 
 /// Seeks the edge along `expected` (directed by contrast: bright on the side of its normal). `core` is the
 /// stretch, px from the start, that decides whether there is one; beyond it pieces that lie on the same edge
-/// are kept. `noise` is the standard deviation of a grey value.
+/// are kept. In a view that shows the line `against` its contrast the dark side is sought there. `noise` is the standard
+/// deviation of a grey value.
 pub fn measure_edge(
     view: ViewId,
     gray: &Gray,
@@ -308,6 +309,13 @@ mod tests {
         assert!(measure_edge(ViewId(0), &gray, &against, core, false, 0.006).is_none());
         let flat = step(&edge(), 0.0, 0.004, 1);
         assert!(measure_edge(ViewId(0), &flat, &edge(), core, false, 0.006).is_none());
+        // Where the view is known to show the other contrast it is one, in the same place.
+        let found = measure_edge(ViewId(0), &gray, &against, core, true, 0.006).unwrap();
+        for p in [found.segment.p0, found.segment.p1] {
+            let line = edge().line();
+            assert!((line.x * p.x + line.y * p.y + line.z).abs() < 0.1);
+        }
+        assert!(measure_edge(ViewId(0), &gray, &edge(), core, true, 0.006).is_none());
         // An edge out of reach is another edge.
         let beside = shifted(4.0, 0.0);
         assert!(measure_edge(ViewId(0), &gray, &beside, core, false, 0.006).is_none());

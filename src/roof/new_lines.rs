@@ -443,4 +443,36 @@ mod tests {
         }
         assert!(found(&scene, &[], &model(&truth, &[])).is_empty());
     }
+
+    #[test]
+    fn of_two_roofs_side_by_side_the_higher_one_has_the_edge() {
+        let flat = |x0: f64, x1: f64, z: f64| {
+            let corners = [(x0, 0.0), (x1, 0.0), (x1, 6.0), (x0, 6.0)];
+            Facet {
+                building: BuildingId(0),
+                plane: crate::geometry::Plane {
+                    normal: nalgebra::Vector3::z(),
+                    d: -z,
+                },
+                outer: corners.map(|(x, y)| Point3::new(x, y, z)).to_vec(),
+                holes: Vec::new(),
+                similarity: 1.0,
+                real_ratio: 1.0,
+                lines: Vec::new(),
+                half_planes: Vec::new(),
+            }
+        };
+        let edges = model_edges(&[flat(0.0, 4.0, 5.0), flat(4.0, 9.0, 8.0)]);
+        // Three sides of the lower roof, four of the higher one; where they touch, the higher one's alone.
+        assert_eq!(edges.len(), 7);
+        let between = |e: &&ModelEdge| e.segment.p0.x == 4.0 && e.segment.p1.x == 4.0;
+        let shared: Vec<&ModelEdge> = edges.iter().filter(between).collect();
+        assert_eq!(shared.len(), 1);
+        assert_eq!(shared[0].facets, [FacetId(1)]);
+        // At one height they meet, and the edge is listed once with both.
+        let edges = model_edges(&[flat(0.0, 4.0, 5.0), flat(4.0, 9.0, 5.0)]);
+        let shared: Vec<&ModelEdge> = edges.iter().filter(between).collect();
+        assert_eq!(shared.len(), 1);
+        assert_eq!(shared[0].facets, [FacetId(0), FacetId(1)]);
+    }
 }
