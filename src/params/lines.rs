@@ -1,0 +1,230 @@
+//! Tunables from edges to 3D lines (B99 3).
+
+use serde::{Deserialize, Serialize};
+
+/// B99 3.2: segments.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SegmentParams {
+    /// The edgels that segments are made of.
+    pub edgels: EdgelParams,
+    /// Thin lines, the second source of segments.
+    pub bars: BarParams,
+    /// Shortest segment, px. B99 3.2: "above a minimum length (here 15 pixels)".
+    pub min_length_px: f64,
+    /// Edgels in each of the worm's two arms. Assumption: a third of the shortest segment.
+    pub worm_arm_edgels: usize,
+    /// Tangent break, degrees. Assumption: several times the noise of an arm's direction (2 degrees).
+    pub worm_bend_deg: f64,
+    /// Largest distance of an edgel from its line, px. B99 3.2: "a very tight threshold"; Assumption:
+    /// more than twice the largest rms.
+    pub max_residual_px: f64,
+    /// Largest root mean square distance of the edgels from their line, px. Assumption: what noise
+    /// does to the weakest edges that are worth having.
+    pub max_rms_px: f64,
+    /// Fewest edgels of a straight piece from which a line is grown. Assumption: what still
+    /// predicts a direction.
+    pub seed_edgels: usize,
+    /// Largest gap over which a line is grown, px. B99 3.2 jumps "up to a one pixel gap" when linking;
+    /// Assumption: along a line already fitted twice that is safe. Longer gaps (6, 12) tripled the wrong 3D
+    /// lines: pieces of different edges in one line; what belongs together is merged over the views (B99 3.3).
+    pub grow_gap_px: usize,
+    /// Largest turn of an edgel against the line that takes it up, degrees. Assumption: what texture
+    /// does to the gradient of a weak edge.
+    pub grow_turn_deg: f64,
+    /// Smallest radius of curvature of a line that bends significantly, px. Assumption: over
+    /// 60 px it bends by 1.5 px.
+    pub min_radius_px: f64,
+    /// Natural logarithm of the expected number of lines by chance in an image, a line above which
+    /// is refused. Assumption: a few too many, because matching over several views refuses
+    /// what is accidental, and nothing brings back a lost edge.
+    pub max_ln_false_alarms: f64,
+    /// Distance off the line at which the contrast is measured, px. Assumption: outside the blur.
+    pub contrast_distance_px: f64,
+    /// Least standard deviation of an edgel, px. Assumption: what sampling leaves without noise.
+    pub edgel_floor_px: f64,
+    /// Least shift of a stretch of a line to the crest of the unsmoothed edge, in standard deviations of that
+    /// crest. Assumption: of 0.3, 0.8, 1.3 and 2.5 the second brought lines nearer to true roof edges without following noise.
+    pub refine_sigmas: f64,
+    /// Standard deviation of the edge that the image shows about the edge that is meant, px, at either end of a segment.
+    /// Assumption: what fascias, gutters and ridge caps do on aerial photographs: two thirds of
+    /// the segments lie within one standard deviation of the true edge.
+    pub edge_floor_px: f64,
+}
+
+impl Default for SegmentParams {
+    fn default() -> Self {
+        Self {
+            edgels: EdgelParams::default(),
+            bars: BarParams::default(),
+            min_length_px: 15.0,
+            worm_arm_edgels: 5,
+            worm_bend_deg: 20.0,
+            max_residual_px: 1.2,
+            max_rms_px: 0.5,
+            seed_edgels: 8,
+            grow_gap_px: 2,
+            grow_turn_deg: 30.0,
+            min_radius_px: 300.0,
+            max_ln_false_alarms: 7.0,
+            contrast_distance_px: 2.5,
+            edgel_floor_px: 0.05,
+            refine_sigmas: 0.8,
+            edge_floor_px: 0.1,
+        }
+    }
+}
+
+/// B99 3.2: edgels. Thresholds are multiples of the local standard deviation of a gradient component.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct EdgelParams {
+    /// Standard deviation of the smoothing Gaussian, px. Assumption: more displaces edges that are
+    /// 2 px apart, as an eave and its gutter are. Of 0.7, 0.8, 1.0 and 1.2 the first two covered most of the
+    /// true roof edges of rendered scenes.
+    pub smoothing_px: f64,
+    /// Least gradient of an edgel, in local noise units. Assumption: noise alone
+    /// exceeds 1.8 at one pixel in five; the significance of the whole line is tested later.
+    pub low: f64,
+    /// Least gradient of the strongest edgel in a chain, in local noise units. Assumption: noise
+    /// alone exceeds 2.5 at one pixel in twenty.
+    pub high: f64,
+}
+
+impl Default for EdgelParams {
+    fn default() -> Self {
+        Self {
+            smoothing_px: 0.8,
+            low: 1.8,
+            high: 2.5,
+        }
+    }
+}
+
+/// B99 5: bars. Thresholds are multiples of the local scale of the second derivative.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct BarParams {
+    /// Look for bars at all? Assumption: no. On rendered scenes they add 2 % to the true roof edges covered for half as many
+    /// segments again; more and weaker edges add as much for less.
+    pub detect: bool,
+    /// Least second derivative of a point of a bar. Assumption: above what tiles do.
+    pub low: f64,
+    /// Least second derivative of the strongest point in a chain. Assumption.
+    pub high: f64,
+    /// A bar is refused that has a segment on an edge so near along half of it, px. Assumption: the edges
+    /// of a gutter's two sides.
+    pub clear_px: f64,
+}
+
+impl Default for BarParams {
+    fn default() -> Self {
+        Self {
+            detect: false,
+            low: 2.5,
+            high: 3.5,
+            clear_px: 2.0,
+        }
+    }
+}
+
+/// B99 3.1 - 3.4: matching.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MatchParams {
+    /// Side of the correlation window, px. B99 3.2: "15 x 15".
+    pub window_px: usize,
+    /// Least correlation of an edgel that counts. B99 3.2: "the threshold value is 0.6".
+    pub edgel_correlation: f64,
+    /// Least number of such edgels. B99 3.2: "the minimum is 15 edgels". B99 4.1 relaxes it to 10 where
+    /// planes are built on the lines; here that adds wrong lines and hardly any roof edges.
+    pub min_edgels: usize,
+    /// Least score of a pair, see [`crate::linematch::EdgelScore`]. Assumption: the paper gives no value; at 0.5 a line
+    /// is seen unoccluded over more than half of its edgels.
+    pub pair_score: f64,
+    /// Share of `pair_score` asked of a third view with a segment at the predicted position. B99 3.2:
+    /// "about 50% of its value".
+    pub with_segment: f64,
+    /// The same without a segment. B99 3.2: "about 50% more than its value".
+    pub without_segment: f64,
+    /// Least number of views of a line where six or more see it. B99 3.4: "here 4". Three where
+    /// fewer do.
+    pub min_views: usize,
+    /// Must the bright side be the same in all views? Assumption: one flight, one sun.
+    pub same_contrast: bool,
+    /// Grey-value noise that windows are trusted against, 0 to 1. Assumption: an 8-bit camera and a
+    /// good JPEG.
+    pub noise: f64,
+    /// Angles of the planes tried on either side of the line, degrees, the horizontal one first
+    /// (Schmid and Zisserman 1997). Assumption: up to the slopes of roofs, so close that a window's edge is
+    /// less than a pixel off at a base-to-height ratio of 0.4.
+    pub plane_angles_deg: Vec<f64>,
+    /// Least sine of the angle at which a ray meets the other segment's interpretation plane:
+    /// baseline over height times the sine of the line's angle to the epipolar lines. Assumption:
+    /// below 0.04 an error of one pixel moves the line by 25 ground pixels in depth.
+    pub min_intersection_sine: f64,
+    /// Steepest line, degrees. Assumption: roof edges; verticals have no plane across them.
+    pub max_slope_deg: f64,
+    /// Distance at which a segment lies "at the predicted position", px, where the prediction itself is
+    /// certain; three standard deviations where it is not. Assumption.
+    pub gate_px: f64,
+    /// Longest gap bridged by correlation, px. Assumption: B99 3.3 asks for correlation support only; beyond
+    /// about four windows neighbouring houses' edges in one line become likelier than one line.
+    pub max_gap_px: f64,
+    /// Largest number of partner views of a view. Assumption: keeps the work linear in the number of views.
+    pub max_partners: usize,
+    /// Heights between which lines are sought, metres in the scene's frame; estimated where `None`.
+    pub z_range_m: Option<[f64; 2]>,
+}
+
+impl Default for MatchParams {
+    fn default() -> Self {
+        Self {
+            window_px: 15,
+            edgel_correlation: 0.6,
+            min_edgels: 15,
+            pair_score: 0.5,
+            with_segment: 0.5,
+            without_segment: 1.5,
+            min_views: 4,
+            same_contrast: true,
+            noise: 0.006,
+            plane_angles_deg: vec![0.0, -20.0, 20.0, -40.0, 40.0, -55.0, 55.0],
+            min_intersection_sine: 0.04,
+            max_slope_deg: 75.0,
+            gate_px: 1.0,
+            max_gap_px: 30.0,
+            max_partners: 8,
+            z_range_m: None,
+        }
+    }
+}
+
+/// B99 3.2, figure 4: 3D lines.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Lines3dParams {
+    /// Error of a segment's ends that its own covariance does not know, px: calibration,
+    /// compression, edges that are not quite straight. Assumption.
+    pub position_floor_px: f64,
+    /// Scale c of the Cauchy loss, standard deviations. Assumption: the usual 2.4 (95 % efficiency).
+    pub loss_scale: f64,
+    /// Most Levenberg-Marquardt steps. Assumption: a good start converges in fewer than ten.
+    pub max_iterations: usize,
+    /// Residual, in standard deviations, beyond which a segment is not of this line. Assumption.
+    pub max_residual: f64,
+    /// Largest standard deviation of a line across itself, ground pixels. Assumption.
+    pub max_sigma_px: f64,
+}
+
+impl Default for Lines3dParams {
+    fn default() -> Self {
+        Self {
+            position_floor_px: 0.1,
+            loss_scale: 2.4,
+            max_iterations: 20,
+            max_residual: 4.0,
+            max_sigma_px: 1.5,
+        }
+    }
+}

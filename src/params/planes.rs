@@ -1,0 +1,138 @@
+//! Tunables from half-planes to facets (B99 4).
+
+use serde::{Deserialize, Serialize};
+
+use super::RefineParams;
+
+/// B99 4.1: half-planes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SweepParams {
+    /// Largest |theta|, degrees. B99 figure 15: "over the interval [-75; +75]".
+    pub max_theta_deg: f64,
+    /// First step of the subdivision, degrees. Assumption: a point at the far end of the neighbourhood
+    /// moves by 2 to 4 px in a step, about the width of a correlation peak; near points move less.
+    pub first_step_deg: f64,
+    /// The subdivision ends below this step, degrees. B99 4.1: "a termination criterion of
+    /// `Delta theta < 1`" degree.
+    pub last_step_deg: f64,
+    /// Maxima of the first pass that are subdivided. Assumption: the highest few, since the first
+    /// pass sees a narrow peak only in part.
+    pub max_peaks: usize,
+    /// Side of the correlation window, px, odd, at most 15. B99 3.2: "15 x 15".
+    pub window_px: usize,
+    /// Depth of the neighbourhood away from the line, px. Assumption: the weight 1/distance leaves little to
+    /// points beyond.
+    pub depth_px: f64,
+    /// Depth of the neighbourhood, metres on the ground. Assumption: facets are rarely deeper.
+    pub depth_m: f64,
+    /// Strip beside the line that is not used, px. Assumption: the line's own blur and position error.
+    pub margin_px: f64,
+    /// Shortest projected line, px. Assumption: a window is not wider than the line is long.
+    pub min_length_px: f64,
+    /// Blur before the edge detector, standard deviation in px. Assumption: the least that keeps
+    /// single-pixel noise from becoming edges.
+    pub poi_blur_px: f64,
+    /// Least gradient of an edge that gives points of interest, grey range per px. B99 4.1: "a very low
+    /// threshold on gradient". Assumption: one grey level of 256 per pixel, three times the noise
+    /// that a good photograph leaves after the blur.
+    pub poi_min_gradient: f64,
+    /// Every how many edgels there is a point of interest. B99 4.1: "regularly sampled".
+    pub poi_spacing_px: usize,
+    /// Least number of points of interest. Assumption: as many as the edgels that verify a line
+    /// match for planes (B99 4.1: "only 10").
+    pub min_points: usize,
+    /// A correlation from here on is high. Assumption: the threshold for edgels of a line match (B99 3.2).
+    pub high_correlation: f64,
+    /// Least share of points of interest with a high correlation in a valid view. B99 4.1: "at
+    /// least a threshold number"; Assumption: a share, because the number of points varies widely.
+    pub min_high_share: f64,
+    /// Least number of valid views besides the reference. Assumption: a single pair has nothing to
+    /// confirm it.
+    pub min_valid_views: usize,
+    /// Least peak. B99 figure 12: `Sim(theta_max) >= 0.4`.
+    pub min_similarity: f64,
+    /// Least curvature at the peak, per radian squared. B99 figure 12: `|Sim''| >= 4.0`.
+    pub min_curvature: f64,
+    /// Least amplitude. B99 figure 12: `Sim(theta_max) - Sim(theta_min) >= 0.2`.
+    pub min_amplitude: f64,
+}
+
+impl Default for SweepParams {
+    fn default() -> Self {
+        Self {
+            max_theta_deg: 75.0,
+            first_step_deg: 5.0,
+            last_step_deg: 1.0,
+            max_peaks: 2,
+            window_px: 15,
+            depth_px: 40.0,
+            depth_m: 6.0,
+            margin_px: 1.5,
+            min_length_px: 15.0,
+            poi_blur_px: 1.0,
+            poi_min_gradient: 0.004,
+            poi_spacing_px: 3,
+            min_points: 10,
+            high_correlation: 0.6,
+            min_high_share: 0.2,
+            min_valid_views: 2,
+            min_similarity: 0.4,
+            min_curvature: 4.0,
+            min_amplitude: 0.2,
+        }
+    }
+}
+
+/// B99 4.2, 4.3: from half-planes to facets.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RoofParams {
+    /// Half-planes within this angle, degrees, may share a plane. B99 4.4: theta is known to 2 degrees
+    /// on textured faces and to 5 on weak ones; two of them may differ by somewhat more than either.
+    pub coplanar_angle_deg: f64,
+    /// Least distance within which a line counts as lying in a plane, metres. Assumption: eaves have
+    /// gutters and ridges have caps of about this size.
+    pub coplanar_distance_m: f64,
+    /// A facet may reach at least this far from its supporting line, metres. Assumption.
+    pub min_facet_depth_m: f64,
+    /// ... and at most this far, metres. Assumption: larger facets have lines on both sides.
+    pub max_facet_depth_m: f64,
+    /// Lines are extended by at least this much at both ends to meet others, metres (B99 figure 22). Assumption.
+    pub extension_m: f64,
+    /// Correlation at which a plane is as good as no plane. Assumption: half-way between what true planes and
+    /// chance reach; B99 accepts half-planes from `Sim = 0.4` on.
+    pub min_correlation: f64,
+    /// What a metre of facet border costs that no line supports, in square metres of mismatch. Assumption.
+    pub border_cost_m: f64,
+    /// What a metre of line earns whose half-plane is honoured, in square metres of match. Assumption.
+    pub half_plane_gain_m: f64,
+    /// Facets smaller than this are not reported, square metres. Assumption.
+    pub min_area_m2: f64,
+    /// Least share of a facet's outline that lies on reconstructed lines (tau_real, B99 4.3). Assumption.
+    pub min_real_ratio: f64,
+    /// Facets whose middle is lower than this above the ground are not roofs, metres. Assumption: higher than
+    /// cars, lower than garages.
+    pub min_height_m: f64,
+    /// Regularisation and refinement of the buildings.
+    pub refine: RefineParams,
+}
+
+impl Default for RoofParams {
+    fn default() -> Self {
+        Self {
+            coplanar_angle_deg: 8.0,
+            coplanar_distance_m: 0.15,
+            min_facet_depth_m: 5.0,
+            max_facet_depth_m: 15.0,
+            extension_m: 1.5,
+            min_correlation: 0.45,
+            border_cost_m: 0.25,
+            half_plane_gain_m: 0.1,
+            min_area_m2: 1.5,
+            min_real_ratio: 0.25,
+            min_height_m: 2.0,
+            refine: RefineParams::default(),
+        }
+    }
+}
