@@ -77,6 +77,7 @@ pub fn half_planes_json(scene: &Scene, half_planes: &[HalfPlane]) -> Vec<u8> {
                 "similarity": rounded(h.similarity, 4),
                 "curvature": rounded(h.curvature, 4),
                 "amplitude": rounded(h.amplitude, 4),
+                "probability": rounded(h.probability, 4),
                 "views": views,
                 "plane": [n.x, n.y, n.z, h.plane.d - n.dot(&scene.origin)],
             })

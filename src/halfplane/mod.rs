@@ -12,6 +12,7 @@
 //!      windows        correlations of all windows of two strips by running sums
 //!      similarity     Sim(theta) of one line side, view by view
 //!      peak           parabola, uncertainty and acceptance of a maximum
+//!      posterior      probability density over theta, and of a plane at all (B99 5)
 //!      sweep          the search over theta
 //!      trace          what the page draws (B99 figures 12 and 14)
 //! 4.2  neighbourhood  Delaunay triangulation constrained to the projected lines
@@ -50,6 +51,7 @@ mod peak;
 mod plan;
 mod plane_lines;
 mod poi;
+mod posterior;
 mod similarity;
 mod strip;
 mod sweep;
@@ -63,6 +65,7 @@ pub use grouping::{Member, PlaneGroup};
 pub use plan::{PlanGrid, image_from_plan, orthophoto};
 pub use plane_lines::PlaneLine;
 pub use poi::PointsOfInterest;
+pub use posterior::Posterior;
 pub use sweep::{similarity_curve, sweep_half_planes, sweep_side};
 pub use trace::{SideTrace, SimilarityCurve, SweepRejection, SweepTrace, ViewCurve};
 
@@ -157,6 +160,8 @@ pub struct HalfPlane {
     pub curvature: f64,
     /// `Sim(theta_max) - Sim(theta_min)`.
     pub amplitude: f64,
+    /// Posterior probability that there is a plane at theta, 0 to 1.
+    pub probability: f64,
     /// The valid views.
     pub views: Vec<ViewId>,
     /// The plane at theta, oriented upwards.

@@ -67,13 +67,13 @@ pub(super) struct Peak {
 }
 
 impl Peak {
-    /// The three validity criteria of figure 12.
-    pub fn check(&self, params: &SweepParams) -> Result<(), SweepRejection> {
-        if self.similarity < params.min_similarity {
+    /// The three validity criteria of figure 12, each at this share of its threshold.
+    pub fn check(&self, params: &SweepParams, share: f64) -> Result<(), SweepRejection> {
+        if self.similarity < share * params.min_similarity {
             Err(SweepRejection::LowPeak)
-        } else if self.curvature < params.min_curvature {
+        } else if self.curvature < share * params.min_curvature {
             Err(SweepRejection::FlatCurve)
-        } else if self.amplitude < params.min_amplitude {
+        } else if self.amplitude < share * params.min_amplitude {
             Err(SweepRejection::SmallAmplitude)
         } else {
             Ok(())
@@ -134,8 +134,8 @@ mod tests {
             curvature: 8.0,
             amplitude: 0.3,
         };
-        assert_eq!(good.check(&params), Ok(()));
-        let check = |peak: Peak| peak.check(&params).unwrap_err();
+        assert_eq!(good.check(&params, 1.0), Ok(()));
+        let check = |peak: Peak| peak.check(&params, 1.0).unwrap_err();
         assert_eq!(
             check(Peak {
                 similarity: 0.39,

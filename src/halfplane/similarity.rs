@@ -11,13 +11,14 @@
 use nalgebra::Point2;
 
 use super::poi::PointsOfInterest;
+use super::posterior::{WindowModel, evidence_of_view};
 use super::strip::{Patch, Strip, corners};
 use super::windows::Windows;
 use super::{Side, SweepRejection, ThetaFrame};
 use crate::camera::homography_of_plane;
 use crate::geometry::Segment3;
 use crate::ids::ViewId;
-use crate::params::SweepParams;
+use crate::params::{Acceptance, SweepParams};
 use crate::scene::Scene;
 
 /// What one view says about one theta.
@@ -28,6 +29,8 @@ pub(super) struct ViewScore {
     pub similarity: f64,
     /// Share of the points of interest with a high correlation, 0 to 1.
     pub high: f64,
+    /// Evidence for the plane, see [`super::posterior`]; 0 where the view does not see the half-plane.
+    pub evidence: f64,
 }
 
 /// One line side, ready to be compared at any theta.
@@ -45,6 +48,8 @@ pub(super) struct LineSide<'a> {
     windows: Windows,
     /// Normalised weight of every site.
     weights: Vec<f64>,
+    /// What every site correlates by on a plane.
+    models: Vec<WindowModel>,
     warped: Patch,
     correlations: Vec<f64>,
     /// Correlations computed so far.
@@ -85,9 +90,15 @@ impl<'a> LineSide<'a> {
             .collect();
         let sum: f64 = weights.iter().sum();
         weights.iter_mut().for_each(|w| *w /= sum);
+        let noise = scene.view(reference).noise;
+        let sites = windows.sites.iter();
+        let models = sites
+            .map(|s| WindowModel::new(s.contrast(), noise))
+            .collect();
         Ok(Self {
             scene,
             params,
+            models,
             line: *line,
             frame,
             reference,
@@ -160,14 +171,16 @@ impl<'a> LineSide<'a> {
     /// Weighted mean over the sites that the view shows.
     fn reduce(&self, is_inside: impl Fn(usize) -> bool) -> ViewScore {
         let (mut weight, mut similarity) = (0.0, 0.0);
-        let (mut points, mut high) = (0.0, 0.0);
+        let (mut points, mut high, mut evidence) = (0.0, 0.0, 0.0);
         for (i, (&w, &cor)) in self.weights.iter().zip(&self.correlations).enumerate() {
             if is_inside(i) {
+                let model = &self.models[i];
+                evidence += w * model.evidence(cor);
                 let cor = cor.max(0.0);
                 weight += w;
                 similarity += w * cor * cor;
                 points += 1.0;
-                high += f64::from(u8::from(cor >= self.params.high_correlation));
+                high += f64::from(u8::from(cor >= self.high_correlation(model)));
             }
         }
         // A view that shows less than half of the neighbourhood does not see it.
@@ -177,7 +190,26 @@ impl<'a> LineSide<'a> {
         ViewScore {
             similarity: similarity / weight,
             high: high / points,
+            evidence: evidence_of_view(evidence / weight, self.windows_side_by_side()),
         }
+    }
+
+    /// The correlation from which on a site counts as high: less than usual where noise keeps it down, unless the printed
+    /// thresholds alone decide.
+    fn high_correlation(&self, model: &WindowModel) -> f64 {
+        // Half-way between chance and a surface, about.
+        const OF_EXPECTED: f64 = 0.75;
+        match self.params.acceptance {
+            Acceptance::Printed => self.params.high_correlation,
+            _ => (OF_EXPECTED * model.rho()).min(self.params.high_correlation),
+        }
+    }
+
+    /// How many windows the neighbourhood holds that do not overlap, at most one a site.
+    fn windows_side_by_side(&self) -> f64 {
+        let area = (self.strip.columns * self.strip.rows) as f64;
+        let window = (self.params.window_px * self.params.window_px).max(1) as f64;
+        (area / window).min(self.windows.sites.len() as f64)
     }
 
     fn window_is_inside(

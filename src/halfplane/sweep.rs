@@ -10,13 +10,14 @@
 
 use super::peak::{Parabola, Peak, sigma_of_maximum};
 use super::poi::PointsOfInterest;
+use super::posterior::Posterior;
 use super::similarity::{LineSide, ViewScore};
 use super::trace::{SideTrace, SimilarityCurve, SweepRejection, SweepTrace, ViewCurve};
 use super::{HalfPlane, Side};
 use crate::geometry::Segment3;
 use crate::ids::LineId;
 use crate::lines3d::Line3d;
-use crate::params::SweepParams;
+use crate::params::{Acceptance, SweepParams};
 use crate::scene::Scene;
 use crate::shares::map_shared;
 use crate::sorting::sort_by;
@@ -126,6 +127,7 @@ struct Search<'a> {
 struct Found {
     peak: Peak,
     sigma_theta: f64,
+    probability: f64,
 }
 
 impl<'a> Search<'a> {
@@ -274,7 +276,8 @@ impl<'a> Search<'a> {
             curvature: -wide.curvature,
             amplitude: similarity - lowest,
         };
-        peak.check(self.params)?;
+        let probability = self.probability(peak.theta, step);
+        self.decide(&peak, probability)?;
         let slopes: Vec<f64> = (0..self.valid.len())
             .filter(|&v| self.valid[v])
             .filter_map(|v| {
@@ -288,7 +291,42 @@ impl<'a> Search<'a> {
         Ok(Found {
             peak,
             sigma_theta: sigma_of_maximum(&slopes, narrow.curvature, reach),
+            probability,
         })
+    }
+
+    /// Accepts a maximum by the printed thresholds, by its probability, or by both.
+    fn decide(&self, peak: &Peak, probability: f64) -> Result<(), SweepRejection> {
+        let probable = match probability >= self.params.min_probability {
+            true => Ok(()),
+            false => Err(SweepRejection::Improbable),
+        };
+        // What passes the thresholds but is no likelier than not is refused too.
+        let likely = probability >= 0.5;
+        match self.params.acceptance {
+            Acceptance::Printed => peak.check(self.params, 1.0),
+            Acceptance::Posterior => probable,
+            Acceptance::Both => match peak.check(self.params, 1.0) {
+                Ok(()) if likely => Ok(()),
+                Ok(()) => Err(SweepRejection::Improbable),
+                Err(reason) => {
+                    peak.check(self.params, self.params.ambiguous_share)?;
+                    probable.map_err(|_| reason)
+                }
+            },
+        }
+    }
+
+    /// Posterior probability of a plane within `reach` of `theta`.
+    fn probability(&self, theta: f64, reach: f64) -> f64 {
+        let thetas: Vec<f64> = self.samples.iter().map(|s| s.theta).collect();
+        self.posterior(&thetas).probability(&thetas, theta, reach)
+    }
+
+    fn posterior(&self, thetas: &[f64]) -> Posterior {
+        let sum = |s: &Sample| s.scores.iter().map(|v| v.evidence).sum();
+        let evidence: Vec<f64> = self.samples.iter().map(sum).collect();
+        Posterior::new(thetas, &evidence)
     }
 
     fn curve(&self) -> SimilarityCurve {
@@ -306,10 +344,12 @@ impl<'a> Search<'a> {
                     .map(|s| s.scores[v].similarity)
                     .collect(),
             });
+        let thetas: Vec<f64> = self.samples.iter().map(|s| s.theta).collect();
         SimilarityCurve {
             reference: Some(self.line_side.reference),
             points: self.line_side.points(),
-            thetas: self.samples.iter().map(|s| s.theta).collect(),
+            posterior: self.posterior(&thetas),
+            thetas,
             similarity: self.samples.iter().map(|s| self.similarity(s)).collect(),
             views: views.collect(),
         }
@@ -334,6 +374,7 @@ impl Found {
             similarity: self.peak.similarity,
             curvature: self.peak.curvature,
             amplitude: self.peak.amplitude,
+            probability: self.probability,
             views: views.filter(|(_, v)| **v).map(|(&id, _)| id).collect(),
             plane,
         }

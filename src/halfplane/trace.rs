@@ -5,6 +5,7 @@ use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 
 use super::Side;
+use super::posterior::Posterior;
 use crate::ids::{LineId, ViewId};
 
 /// Why a line side has no half-plane.
@@ -27,6 +28,8 @@ pub enum SweepRejection {
     FlatCurve,
     /// `Sim(theta_max) - Sim(theta_min)` is too small.
     SmallAmplitude,
+    /// The posterior probability of a plane there is too small.
+    Improbable,
 }
 
 /// `Sim(theta)` of one view alone (B99 figure 14).
@@ -54,6 +57,8 @@ pub struct SimilarityCurve {
     pub similarity: Vec<f64>,
     /// Each view alone.
     pub views: Vec<ViewCurve>,
+    /// The posterior over theta at the samples.
+    pub posterior: Posterior,
 }
 
 /// One side of one line.

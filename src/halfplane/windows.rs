@@ -17,6 +17,9 @@ use super::strip::Patch;
 /// is nothing but the rounding of the values.
 const MIN_VARIANCE: f64 = 0.25;
 
+/// Units of the patches in the range of grey values.
+const UNITS: f64 = 510.0;
+
 /// A window of the reference patch that is correlated.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Site {
@@ -125,6 +128,11 @@ impl Windows {
 }
 
 impl Site {
+    /// Standard deviation of the window in the reference, grey values 0 to 1.
+    pub fn contrast(&self) -> f64 {
+        self.scatter.sqrt() / self.count / UNITS
+    }
+
     fn correlation(&self, [b, bb, ab]: [f64; 3]) -> f64 {
         let scatter = self.count * bb - b * b;
         if scatter <= MIN_VARIANCE * self.count * self.count {

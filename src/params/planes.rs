@@ -56,6 +56,27 @@ pub struct SweepParams {
     pub min_curvature: f64,
     /// Least amplitude. B99 figure 12: `Sim(theta_max) - Sim(theta_min) >= 0.2`.
     pub min_amplitude: f64,
+    /// What accepts a maximum.
+    pub acceptance: Acceptance,
+    /// Least posterior probability of a plane at the maximum, where that decides. Assumption: a wrong half-plane in ten
+    /// is what grouping bears.
+    pub min_probability: f64,
+    /// Share of a printed threshold from which on failing it is ambiguous. Assumption: half; Sim is a squared correlation,
+    /// and noise as strong as three quarters of the texture halves it.
+    pub ambiguous_share: f64,
+}
+
+/// What accepts a maximum of Sim(theta) as a half-plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Acceptance {
+    /// The three thresholds of B99 figure 12.
+    Printed,
+    /// The posterior over theta (B99 5).
+    Posterior,
+    /// The thresholds and, where one of them is nearly reached, the posterior.
+    #[default]
+    Both,
 }
 
 impl Default for SweepParams {
@@ -80,6 +101,9 @@ impl Default for SweepParams {
             min_similarity: 0.4,
             min_curvature: 4.0,
             min_amplitude: 0.2,
+            acceptance: Acceptance::default(),
+            min_probability: 0.9,
+            ambiguous_share: 0.5,
         }
     }
 }
