@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""How the time of the object-space method grows with the number and the size of the images; writes docs/growth.svg.
+"""How the time of a method grows with the number of images and with what they hold; writes docs/growth*.svg.
 
-    python3 tests/growth.py --binary target/release/ridgeline --scenes FOLDER
+    python3 tests/growth.py --binary target/release/ridgeline --scenes FOLDER [--method lines|rectangles]
 
-The number of images: house-gable with its first 3 to 6 views. The size: three scenes of six views. Times are
-processor seconds of one thread, so that a busy machine changes little: the share of each stage of the run times the processor
-time of the process. The script needs Python alone.
+rectangles (W96): the stages over the number of images, house-gable with its first 3 to 6 views, and over the megapixels of
+three scenes of six views. lines (B99 3): segments, matching and 3D lines over the number of images, detached with its first
+3 to 6 views, and over the number of segments of those three scenes. Times are processor seconds of one thread, so that a busy
+machine changes little: the share of each stage of the run times the processor time of the process. The script needs Python
+alone.
 """
 import argparse
 import json
@@ -15,38 +17,48 @@ import subprocess
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-STAGES = ['regions', 'directions', 'clusters', 'rectangles']
-# Colours that remain apart for the colour-blind (Okabe and Ito).
-COLOURS = {'regions': '#0072b2', 'directions': '#e69f00', 'clusters': '#009e73', 'rectangles': '#d55e00'}
 # Six images each: 256 x 256, 600 x 600 and 1200 x 1200.
 SIZES = ['house-gable', 'detached', 'suburb']
+# Stages with colours that remain apart for the colour-blind (Okabe and Ito), what the second plot counts, and the file.
+METHODS = {
+    'rectangles': {
+        'stages': {'regions': '#0072b2', 'directions': '#e69f00', 'clusters': '#009e73', 'rectangles': '#d55e00'},
+        'views_of': 'house-gable', 'size': 'megapixels', 'file': 'growth.svg',
+    },
+    'lines': {
+        'stages': {'segments': '#0072b2', 'matches': '#e69f00', 'lines': '#009e73'},
+        'views_of': 'detached', 'size': 'segments', 'file': 'growth-lines.svg',
+    },
+}
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--binary', required=True, type=pathlib.Path)
     parser.add_argument('--scenes', required=True, type=pathlib.Path)
+    parser.add_argument('--method', choices=METHODS, default='rectangles')
     args = parser.parse_args()
-    binary = args.binary.resolve()
-    small = args.scenes / SIZES[0]
-    names = sorted(p.name for p in (small / 'images').iterdir())
-    by_views = [measure(binary, small, '--views', ','.join(names[:n])) for n in range(3, len(names) + 1)]
-    by_size = [by_views[-1]]
-    for scene in SIZES[1:]:
-        # Drawn after each, since the large ones take their time.
-        by_size.append(measure(binary, args.scenes / scene))
-        figure = [
-            plot(0, f'number of images ({SIZES[0]})', [(m['views'], m['seconds']) for m in by_views]),
-            plot(1, f'megapixels of all images ({", ".join(SIZES[:len(by_size)])})',
-                 [(m['megapixels'], m['seconds']) for m in by_size]),
-        ]
-        (ROOT / 'docs' / 'growth.svg').write_text(svg(figure))
+    method = METHODS[args.method]
+    stages = method['stages']
+
+    def run(scene, *options):
+        return measure(args.binary.resolve(), args.scenes / scene, args.method, stages, *options)
+
+    names = sorted(p.name for p in (args.scenes / method['views_of'] / 'images').iterdir())
+    by_views = [run(method['views_of'], '--views', ','.join(names[:n])) for n in range(3, len(names) + 1)]
+    by_size = [run(scene) for scene in SIZES]
+    figure = [
+        plot(0, f'number of images ({method["views_of"]})', stages, [(m['views'], m['seconds']) for m in by_views]),
+        plot(1, f'{method["size"]} of all images ({", ".join(SIZES)})', stages,
+             [(m[method['size']], m['seconds']) for m in by_size]),
+    ]
+    (ROOT / 'docs' / method['file']).write_text(svg(figure, stages))
 
 
-def measure(binary, scene, *options):
+def measure(binary, scene, method, stages, *options):
     """One run on one thread: processor seconds of every stage."""
     with tempfile.TemporaryDirectory() as out:
-        process = subprocess.Popen([binary, 'reconstruct', scene, '--method', 'rectangles', '--threads', '1', '--out', out,
+        process = subprocess.Popen([binary, 'reconstruct', scene, '--method', method, '--threads', '1', '--out', out,
                                     *options], stdout=subprocess.PIPE, text=True)
         text = process.stdout.read()
         _, status, usage = os.wait4(process.pid, 0)
@@ -57,17 +69,18 @@ def measure(binary, scene, *options):
     lines = [line.split() for line in text.splitlines()]
     total = next(float(words[1]) for words in lines if words[:1] == ['total'])
     share = (usage.ru_utime + usage.ru_stime) / total
-    seconds = {s: report['seconds'][s] * share for s in STAGES}
+    seconds = {s: report['seconds'][s] * share for s in stages}
     megapixels = sum(v['width'] * v['height'] for v in report['views']) / 1e6
-    print(f'{len(report["views"])} images, {megapixels:.2f} megapixels:',
+    segments = report['stages'][0]['counts'].get('segments', 0)
+    print(f'{len(report["views"])} images, {megapixels:.2f} megapixels, {segments} segments:',
           ', '.join(f'{s} {t:.2f} s' for s, t in seconds.items()), flush=True)
-    return {'views': len(report['views']), 'megapixels': megapixels, 'seconds': seconds}
+    return {'views': len(report['views']), 'megapixels': megapixels, 'segments': segments, 'seconds': seconds}
 
 
 WIDTH, HEIGHT, LEFT, TOP = 300, 190, 46, 16
 
 
-def plot(column, caption, points):
+def plot(column, caption, stages, points):
     """Stacked areas of the stages over x."""
     x0 = LEFT + column * (WIDTH + 80)
     largest_x = max(x for x, _ in points)
@@ -75,10 +88,10 @@ def plot(column, caption, points):
     at = lambda x, y: f'{x0 + WIDTH * x / largest_x:.1f},{TOP + HEIGHT * (1 - y / largest_y):.1f}'
     parts = []
     base = [0.0] * len(points)
-    for stage in STAGES:
+    for stage, colour in stages.items():
         top = [b + s[stage] for b, (_, s) in zip(base, points)]
         ring = [at(x, y) for (x, _), y in zip(points, top)] + [at(x, y) for (x, _), y in reversed(list(zip(points, base)))]
-        parts.append(f'<polygon points="{" ".join(ring)}" fill="{COLOURS[stage]}" fill-opacity="0.75"/>')
+        parts.append(f'<polygon points="{" ".join(ring)}" fill="{colour}" fill-opacity="0.75"/>')
         base = top
     for (x, _), y in zip(points, base):
         px, py = at(x, y).split(',')
@@ -104,10 +117,10 @@ def nice(x):
         step *= 10
 
 
-def svg(plots):
+def svg(plots, stages):
     legend = ''.join(
-        f'<rect x="{LEFT + 10}" y="{TOP + 4 + 16 * k}" width="10" height="10" fill="{COLOURS[s]}" fill-opacity="0.75"/>'
-        f'<text x="{LEFT + 26}" y="{TOP + 13 + 16 * k}">{s}</text>' for k, s in enumerate(STAGES))
+        f'<rect x="{LEFT + 10}" y="{TOP + 4 + 16 * k}" width="10" height="10" fill="{colour}" fill-opacity="0.75"/>'
+        f'<text x="{LEFT + 26}" y="{TOP + 13 + 16 * k}">{s}</text>' for k, (s, colour) in enumerate(stages.items()))
     width, height = LEFT + 2 * WIDTH + 100, TOP + HEIGHT + 48
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" '
             f'font-family="sans-serif" font-size="12">\n<rect width="100%" height="100%" fill="white"/>\n'

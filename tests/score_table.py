@@ -11,9 +11,12 @@ the program says so and ends well.
 import argparse
 import json
 import pathlib
+import statistics
 import subprocess
 import sys
 import time
+
+import half_planes
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / 'docs' / 'results.md'
@@ -42,6 +45,8 @@ def main():
         'lines': line_table([(r, lines(scorer, r)) for r in runs + three_views]),
         'rendered': rendered_table([(r, score(scorer, r)) for r in runs if (r['scene'] / 'truth').is_dir()]),
         'rectangles': rectangle_table([(r, faces(scorer, r)) for r in rectangle_runs]),
+        'halfplanes': half_plane_table([(r, half_planes.angles(scorer, r['scene'], r['out'])) for r in runs
+                                        if (r['scene'] / 'truth').is_dir() and not r['failed']]),
         'real': real_table([(r, check(scorer, r)) for r in runs if (r['scene'] / 'check').is_dir()]),
     }
     for table in tables.values():
@@ -149,6 +154,23 @@ def line_row(c):
             f'{supports / c["lines"]:.1f}', percent(c['merged supports'] / supports), percent(c['grown supports'] / supports),
             f'{c["length"]:.0f}', percent(scores['edge_length_covered']) if scores else '-', str(c['new']),
             percent(c['all']['edge_length_covered']) if c['all'] else '-']
+
+
+def half_plane_table(rows):
+    header = ['scene', 'half-planes', 'on roofs', 'median angle [deg]', 'within 2 deg', 'within 5 deg', 'within sigma', 'within 2 sigma']
+    return markdown(header, [[r['scene'].name, *half_plane_row(*found)] for r, found in rows])
+
+
+def half_plane_row(found, count):
+    if not found:
+        return [str(count), '0'] + ['-'] * 5
+
+    def share(test):
+        return percent(sum(test(angle, sigma) for angle, sigma in found) / len(found))
+
+    return [str(count), str(len(found)), f'{statistics.median(angle for angle, _ in found):.1f}',
+            share(lambda angle, _: angle <= 2), share(lambda angle, _: angle <= 5),
+            share(lambda angle, sigma: angle <= sigma), share(lambda angle, sigma: angle <= 2 * sigma)]
 
 
 def rectangle_table(rows):

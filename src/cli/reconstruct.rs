@@ -66,7 +66,11 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
 /// What the arguments ask for; what they leave out is as in the project, where one is opened.
 fn load_options(args: &ReconstructArgs, project: LoadOptions) -> LoadOptions {
     LoadOptions {
-        orientation: args.orientation.clone().or(project.orientation),
+        orientation: args
+            .orientation
+            .as_deref()
+            .map(|path| below(&args.scene, path))
+            .or(project.orientation),
         views: args.views.clone().or(project.views),
         roi: args.roi.or(project.roi),
         ground_z: args.ground_z.or(project.ground_z),
@@ -75,6 +79,15 @@ fn load_options(args: &ReconstructArgs, project: LoadOptions) -> LoadOptions {
         apply_fix: args.apply_fix || project.apply_fix,
         adjust: args.adjust || project.adjust,
     }
+}
+
+/// A path as it stands in the scene's folder, also where the whole path was given.
+fn below(scene: &std::path::Path, path: &str) -> String {
+    let inner = std::path::Path::new(path).strip_prefix(scene);
+    inner.map_or_else(
+        |_| path.to_owned(),
+        |inner| inner.to_string_lossy().into_owned(),
+    )
 }
 
 /// The parameters of `--params`.

@@ -195,9 +195,9 @@ impl Context<'_> {
         let core = self.core(line, segments, view)?;
         let along = |t: f64| Some((image.at(t)? - expected.p0).dot(&expected.direction()));
         let core = [along(core.0)?, along(core.1)?];
-        let gray = &self.scene.view(view).gray;
+        let seen = self.scene.view(view);
         let against = self.against_contrast(&image, segments, view);
-        measure_edge(view, gray, &expected, core, against, self.params.noise)
+        measure_edge(view, &seen.gray, &expected, core, against, seen.noise)
     }
 
     /// Is the bright side of this view's own segments the other one than the line's?

@@ -28,8 +28,6 @@ pub struct RefineParams {
     /// Sides shorter than this between longer ones are tried without, metres. Assumption: half a correlation window; what is nearer
     /// cannot be told apart.
     pub jog_m: f64,
-    /// Standard deviation of a grey value, range 1. Assumption: an 8-bit camera and a good JPEG.
-    pub noise: f64,
     /// Error of both ends of a measured edge that its scatter does not know, px. Assumption: fascias and gutters.
     pub floor_px: f64,
     /// Scale of the robust loss, standard deviations. Assumption.
@@ -86,7 +84,6 @@ impl Default for RefineParams {
             edge_gain_m: 0.2,
             min_correlation: 0.45,
             jog_m: 0.5,
-            noise: 0.006,
             floor_px: 0.25,
             loss_sigmas: 2.0,
             vertex_sigma_m: 0.3,

@@ -58,8 +58,8 @@ pub struct SweepParams {
     pub min_amplitude: f64,
     /// What accepts a maximum.
     pub acceptance: Acceptance,
-    /// Least posterior probability of a plane at the maximum, where that decides. Assumption: a wrong half-plane in ten
-    /// is what grouping bears.
+    /// Least posterior probability of a plane at the maximum, where that decides. Assumption: measured, one in twenty of
+    /// these is wrong then, which grouping bears.
     pub min_probability: f64,
     /// Share of a printed threshold from which on failing it is ambiguous. Assumption: half; Sim is a squared correlation,
     /// and noise as strong as three quarters of the texture halves it.
@@ -102,7 +102,7 @@ impl Default for SweepParams {
             min_curvature: 4.0,
             min_amplitude: 0.2,
             acceptance: Acceptance::default(),
-            min_probability: 0.9,
+            min_probability: 0.98,
             ambiguous_share: 0.5,
         }
     }

@@ -164,16 +164,8 @@ impl Context<'_> {
         let image = ProjectedLine::new(&seen.camera, part)?;
         let expected = Segment2::new(image.at(0.0)?, image.at(part.length())?);
         let core = [0.0, expected.length()];
-        let found = [false, true].map(|against| {
-            measure_edge(
-                view,
-                &seen.gray,
-                &expected,
-                core,
-                against,
-                self.matching.noise,
-            )
-        });
+        let found = [false, true]
+            .map(|against| measure_edge(view, &seen.gray, &expected, core, against, seen.noise));
         let pieces = |e: &Option<GuidedEdge>| e.as_ref().map_or(0, |e| e.pieces.len());
         let [along, against] = found;
         if pieces(&against) > pieces(&along) {

@@ -160,6 +160,8 @@ fn best_step(sides: &[&Gains]) -> Option<usize> {
 /// What one view shows across a side, at steps from inside to outside; the middle one is at the side.
 struct Profile {
     view: ViewId,
+    /// Standard deviation of the noise of a grey value.
+    noise: f64,
     /// Grey values at every place along the side, step by step; NaN where the view does not see it.
     rows: Vec<Vec<f32>>,
     /// Mean difference across every step.
@@ -264,6 +266,7 @@ impl Profiles {
             |k: usize| means[(k + BASE).min(count - 1)] - means[k.saturating_sub(BASE)];
         Some(Profile {
             view,
+            noise: scene.view(view).noise,
             differences: (0..count).map(difference).collect(),
             rows,
         })
@@ -334,12 +337,11 @@ impl Profiles {
     /// Mean correlation of the rows of all pairs of views at a step, less the correlation at which a plane is as good as none, and
     /// weighted by texture: a row has no width, so unlike a window it does not reach over the edge.
     fn agreement(&self, k: usize, params: &RefineParams) -> f64 {
-        let variance = params.noise * params.noise;
         let (mut sum, mut pairs) = (0.0, 0.0f64);
         for (i, a) in self.views.iter().enumerate() {
             for b in &self.views[i + 1..] {
                 let [saa, sbb, sab] = covariances(&a.rows[k], &b.rows[k]);
-                let texture = (saa * sbb).sqrt();
+                let (texture, variance) = ((saa * sbb).sqrt(), a.noise * b.noise);
                 let correlation = if texture > 0.0 { sab / texture } else { 0.0 };
                 sum += (correlation - params.min_correlation) * texture / (texture + variance);
                 pairs += 1.0;
@@ -395,7 +397,7 @@ impl Profiles {
                 &expected,
                 core,
                 false,
-                params.noise,
+                scene.view(view).noise,
             )?;
             Some(Sighting {
                 side,

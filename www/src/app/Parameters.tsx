@@ -61,6 +61,17 @@ function Field({ path, field }: { path: string; field: ParamField }) {
           checked={field.value === true}
           onChange={(event) => change(String(event.currentTarget.checked))}
         />
+      ) : field.kind === "choice" ? (
+        <select
+          id={id}
+          value={fieldText(field.value)}
+          aria-describedby={`${id}-note`}
+          onChange={(event) => change(event.currentTarget.value)}
+        >
+          {field.choices.map((choice) => (
+            <option key={choice}>{choice}</option>
+          ))}
+        </select>
       ) : (
         <input
           id={id}

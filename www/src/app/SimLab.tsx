@@ -60,6 +60,10 @@ function SideHead({ side }: { side: SideTrace }) {
     <div class="row spread">
       <h3>
         Line {side.line}, {side.side} side
+        <span class="muted" data-testid="plane-probability">
+          {" "}
+          · P(plane) {side.curve.posterior.plane.toFixed(2)}
+        </span>
         {side.rejection !== null && (
           <span class="refused"> · {REJECTION_WORDS[side.rejection] ?? side.rejection}</span>
         )}
@@ -80,13 +84,15 @@ function SideHead({ side }: { side: SideTrace }) {
 }
 
 function SimChart({ frame, side, theta }: { frame: Frame; side: SideTrace; theta: number }) {
-  const { thetas, similarity, views } = side.curve;
+  const { thetas, similarity, views, posterior } = side.curve;
   const limit = 75;
   const x = { min: -limit, max: limit };
   const y = { min: 0, max: 1 };
   const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
   const curve = (values: readonly number[]) =>
     pathOf(values.map((value, i) => [toX((thetas[i] ?? 0) / DEGREE), toY(value)]));
+  const first = toX((thetas[0] ?? 0) / DEGREE);
+  const last = toX((thetas[thetas.length - 1] ?? 0) / DEGREE);
   const least = params.value["sweep"]?.["min_similarity"];
   return (
     <Chart
@@ -100,6 +106,13 @@ function SimChart({ frame, side, theta }: { frame: Frame; side: SideTrace; theta
       testid="sim-chart"
       onDrag={(value) => void turnTo(Math.round(2 * value) * 0.5 * DEGREE)}
     >
+      <path
+        class="posterior"
+        data-testid="posterior"
+        d={`${curve(scaled(posterior))} L${last} ${toY(0)} L${first} ${toY(0)} Z`}
+      >
+        <title>Posterior over θ (B99 5), as high as the probability that a plane is there</title>
+      </path>
       {typeof least === "number" && (
         <line
           class="threshold"
@@ -130,6 +143,12 @@ function SimChart({ frame, side, theta }: { frame: Frame; side: SideTrace; theta
       <circle class="cursor-knob" cx={toX(theta / DEGREE)} cy={frame.height - frame.bottom} r={6} />
     </Chart>
   );
+}
+
+/** The density scaled so that its top is the probability that a plane is there. */
+function scaled({ density, plane }: SideTrace["curve"]["posterior"]): number[] {
+  const top = Math.max(...density, Number.MIN_VALUE);
+  return density.map((value) => (value / top) * plane);
 }
 
 /** The reference first, then every other view under H(theta), with its own Sim at this angle. */

@@ -276,6 +276,7 @@ function halfPlaneRows(index: number): Row[] {
     ["Sim(θ)", `${plane.similarity.toFixed(3)}${threshold("min_similarity")}`],
     ["Curvature |Sim″|", `${plane.curvature.toFixed(1)}${threshold("min_curvature")}`],
     ["Amplitude", `${plane.amplitude.toFixed(3)}${threshold("min_amplitude")}`],
+    ["P(plane at θ)", `${plane.probability.toFixed(3)}${threshold("min_probability")}`],
     ["Slope of the plane", slopeText(plane.plane.normal)],
     ["Views", plane.views.map(viewName).join(", ")],
     ...(results.value.grouping === null

@@ -5,7 +5,9 @@ export interface ParamField {
   key: string;
   label: string;
   unit: string;
-  kind: "number" | "boolean" | "text" | "json";
+  kind: "number" | "boolean" | "choice" | "text" | "json";
+  /** The words that a choice may be. */
+  choices: readonly string[];
   value: ParamValue;
   fallback: ParamValue;
   changed: boolean;
@@ -40,6 +42,11 @@ const TITLES: Record<string, string> = {
   "objectspace.directions": "Main directions",
   "objectspace.clusters": "Clusters",
   "objectspace.planes": "Planes",
+};
+
+/** Fields that are one of a few words. */
+const CHOICES: Record<string, readonly string[]> = {
+  acceptance: ["printed", "posterior", "both"],
 };
 
 /** The groups that either method reads. */
@@ -133,6 +140,7 @@ export function parseField(field: ParamField, text: string): { value: ParamValue
     }
     case "boolean":
       return { value: text === "true" };
+    case "choice":
     case "text":
       return { value: text };
     case "json":
@@ -151,7 +159,8 @@ function paramField(key: string, fallback: ParamValue, value: ParamValue): Param
     key,
     label,
     unit,
-    kind: fieldKind(fallback),
+    kind: key in CHOICES ? "choice" : fieldKind(fallback),
+    choices: CHOICES[key] ?? [],
     value,
     fallback,
     changed: fieldText(value) !== fieldText(fallback),

@@ -11,6 +11,7 @@ export const REJECTION_WORDS: Record<string, string> = {
   low_peak: "the peak is too low",
   flat_curve: "the curve is too flat",
   small_amplitude: "the amplitude is too small",
+  improbable: "the posterior probability is too low",
 };
 
 const NOT_VERIFIED: Record<string, string> = {

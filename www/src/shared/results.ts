@@ -117,6 +117,8 @@ export interface HalfPlane {
   similarity: number;
   curvature: number;
   amplitude: number;
+  /** Posterior probability of a plane there. */
+  probability: number;
   views: number[];
   plane: Plane;
 }

@@ -98,6 +98,8 @@ export interface SimilarityCurve {
   thetas: number[];
   similarity: number[];
   views: { view: number; valid: boolean; similarity: number[] }[];
+  /** Density over theta at the samples, per radian, and the probability that a plane is there. */
+  posterior: { density: number[]; plane: number };
 }
 
 export interface SideTrace extends SideRecord {

@@ -120,6 +120,10 @@ test("figures 10 to 14: theta is dragged, the windows and Sim follow", async () 
   const lab = page.getByTestId("sim-lab");
   await expect(lab.locator(".windows li")).toHaveCount(6);
   const theta = page.getByTestId("theta");
+  // The posterior of a side with a half-plane: a plane is there, and most of the area is near one angle.
+  await expect(page.getByTestId("plane-probability")).toHaveText(/P\(plane\) (0\.[5-9]\d|1\.00)/);
+  const area = await page.getByTestId("posterior").boundingBox();
+  expect(area?.height).toBeGreaterThan(40);
   const sims = lab.locator(".windows .numbers");
   const best = await sims.allTextContents();
   const start = await theta.textContent();
