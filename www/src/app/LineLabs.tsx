@@ -1,7 +1,7 @@
 /** B99 figure 9: accuracy against the number of views; figures 17 to 23: groups and border lines in plan. */
 import { category } from "../shared/palette";
 import type { Vec3 } from "../shared/results";
-import type { Grouping, Vec2 } from "../shared/traces";
+import type { Grouping, LineRecord, Vec2 } from "../shared/traces";
 import { Chart, Fit, type Frame, pathOf, type Scale, xOf, yOf } from "./charts";
 import { Filmstrip } from "./Filmstrip";
 import { results, selection } from "./state";
@@ -19,7 +19,7 @@ export function LineLab() {
 
 /** Standard deviation of each line against the views that support it; the median of each column as a bar. */
 function Accuracy({ frame }: { frame: Frame }) {
-  const { records } = results.value;
+  const records = matchedRecords();
   if (records.length === 0) {
     return <p class="lab-hint muted">Run the stage: accuracy against views appears here.</p>;
   }
@@ -79,6 +79,11 @@ function Accuracy({ frame }: { frame: Frame }) {
   );
 }
 
+/** The matched lines: new ones come after them. */
+function matchedRecords(): LineRecord[] {
+  return results.value.records.filter(({ origin }) => origin === "matched");
+}
+
 function isPicked(line: number): boolean {
   return selection.value?.kind === "line" && selection.value.index === line;
 }
@@ -89,7 +94,7 @@ function scatter(i: number): number {
 }
 
 function nearest(views: number, sigma: number, x: Scale, y: Scale): number {
-  const { records } = results.value;
+  const records = matchedRecords();
   const distance = (i: number) => {
     const { sigma_m = 0, supports = [] } = records[i] ?? {};
     return Math.hypot(

@@ -85,6 +85,7 @@ interface ChartProps {
   /** What the chart shows, for those who do not see it. */
   label: string;
   xTicks?: readonly number[];
+  yTicks?: readonly number[];
   children: ComponentChildren;
   /** Hears the value under the pointer while it is pressed. */
   onDrag?: (x: number, y: number) => void;
@@ -129,7 +130,7 @@ export function Chart(props: ChartProps) {
       }}
       onPointerMove={drag}
     >
-      {ticks(y, 4).map((value) => (
+      {(props.yTicks ?? ticks(y, 4)).map((value) => (
         <g key={value}>
           <line class="grid" x1={frame.left} x2={frame.width - frame.right} y1={toY(value)} y2={toY(value)} />
           <text class="tick" x={frame.left - 5} y={toY(value) + 3.5} text-anchor="end">

@@ -2,9 +2,17 @@
 import { LINE_STRIDE, SEGMENT_STRIDE, type Vec3 } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import { slopedArea } from "./geometry";
-import { lineOfSegment } from "./marks";
+import { lineOfSegment, refinedFacets } from "./marks";
+import { buildingOfFacet, relationLimit } from "./RefinementLab";
 import { params, pointing, results, scene } from "./state";
-import { outcomeWords, PAIR_WORDS, REJECTION_WORDS } from "./words";
+import {
+  ORIGIN_WORDS,
+  outcomeWords,
+  PAIR_WORDS,
+  REJECTION_WORDS,
+  RELATION_WORDS,
+  refinementWords,
+} from "./words";
 
 /** A number of the picked thing, or other things that made it or that it made, to go on to. */
 export type Row = readonly [label: string, value: string | readonly Related[], note?: string];
@@ -22,6 +30,10 @@ const linkToHalfPlane = (index: number): Related => ({
 const linkToFacet = (index: number): Related => ({
   name: String(index),
   selection: { kind: "facet", index },
+});
+const linkToRefinement = (index: number): Related => ({
+  name: String(index),
+  selection: { kind: "refinement", index },
 });
 const linkToGroup = (index: number): Related => ({
   name: String(index),
@@ -54,6 +66,10 @@ export function titleOf(picked: Selection): string {
       return `Half-plane ${picked.index}`;
     case "facet":
       return `Facet ${picked.index}`;
+    case "refinement":
+      return `Building ${picked.index}, refined`;
+    case "relation":
+      return `Relation ${picked.index} of building ${picked.building}`;
     case "surface":
       return picked.surface.charAt(0).toUpperCase() + picked.surface.slice(1);
     case "view":
@@ -79,6 +95,10 @@ export function rowsOf(picked: Selection): Row[] {
       return halfPlaneRows(picked.index);
     case "facet":
       return facetRows(picked.index);
+    case "refinement":
+      return refinementRows(picked.index);
+    case "relation":
+      return relationRows(picked.building, picked.index);
     case "surface":
       return surfaceRows(picked);
     case "view":
@@ -221,6 +241,7 @@ function historyOfLine(index: number): Row[] {
   const record = records[index];
   const refused = sides.filter(({ line, rejection }) => line === index && rejection !== null);
   return [
+    ...(record === undefined ? [] : [["Found", ORIGIN_WORDS[record.origin]] as const]),
     ...(record === undefined ? [] : [["σ across", `${(100 * record.sigma_m).toFixed(1)} cm`] as const]),
     ...(record?.supports ?? []).map(
       ({ view, segments, kind, score }) =>
@@ -316,9 +337,50 @@ function facetRows(index: number): Row[] {
     ["Similarity", facet.similarity.toFixed(3)],
     ["τ real", facet.real_ratio === undefined ? "–" : facet.real_ratio.toFixed(2)],
     ["3D lines", (facet.lines ?? []).map(linkToLine)],
+    ...refinedRow(index),
     ...((facet.half_planes ?? []).length === 0
       ? []
       : [["Half-planes", (facet.half_planes ?? []).map(linkToHalfPlane)] as const]),
+  ];
+}
+
+/** The refinement of the building that a facet is part of. */
+function refinedRow(facet: number): Row[] {
+  const building = buildingOfFacet(facet);
+  const found = results.value.refinement?.trace.buildings[building ?? -1];
+  return building === undefined || found === undefined
+    ? []
+    : [["Refinement", [linkToRefinement(building)], refinementWords(found)]];
+}
+
+function refinementRows(index: number): Row[] {
+  const found = results.value.refinement?.trace.buildings[index];
+  if (found === undefined) {
+    return [];
+  }
+  const adopted = found.relations.filter((one) => one.adopted).length;
+  return [
+    ["Reprojection error", refinementWords(found)],
+    ["Straight sides", String(found.sides)],
+    ["Edges measured", String(found.sightings), "over all views"],
+    ["Largest move", `${found.largest_move_m.toFixed(2)} m`],
+    ["Relations adopted", `${adopted} of ${found.relations.length}`],
+    ["Facets", refinedFacets(index).map(linkToFacet)],
+  ];
+}
+
+function relationRows(building: number, index: number): Row[] {
+  const found = results.value.refinement?.trace.buildings[building]?.relations[index];
+  if (found === undefined) {
+    return [];
+  }
+  const limit = relationLimit();
+  return [
+    ["Says", RELATION_WORDS[found.kind]],
+    ["Free solution off by", `${(100 * found.deviation_m).toFixed(1)} cm`],
+    ["χ²", `${found.chi2.toFixed(2)}${limit === null ? "" : ` (≤ ${limit})`}`],
+    ["Verdict", found.adopted ? "adopted: it now holds" : "refused: the images contradict it"],
+    ["Building", [linkToRefinement(building)]],
   ];
 }
 

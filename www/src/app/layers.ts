@@ -9,6 +9,7 @@ import { buildGroups } from "../viewer/groups";
 import type { Layer } from "../viewer/layer";
 import { buildLines } from "../viewer/lines";
 import { buildOutlines } from "../viewer/outlines";
+import { buildRefinement } from "../viewer/refinement";
 import { buildStretches } from "../viewer/stretches";
 import { buildUncertainty, enlargement } from "../viewer/uncertainty";
 import type { Viewer } from "../viewer/viewer";
@@ -21,8 +22,8 @@ type Plan = readonly [build: () => Layer, ...of: unknown[]] | null;
 /** What every layer shows now. `middle` is where cameras look at, local frame. */
 const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   lines: () => {
-    const { lines } = results.value;
-    return lines && [() => buildLines(lines, linesOfSelection), lines];
+    const { lines, records } = results.value;
+    return lines && [() => buildLines(lines, records, linesOfSelection), lines, records];
   },
   uncertainty: () => {
     const { lines, records } = results.value;
@@ -43,6 +44,10 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   stretches: () => {
     const { stretches } = results.value;
     return stretches && [() => buildStretches(stretches), stretches];
+  },
+  refinement: () => {
+    const { refinement } = results.value;
+    return refinement && [() => buildRefinement(refinement), refinement];
   },
   kept: () => {
     const kept = keptResult.value;

@@ -175,6 +175,57 @@ test("figures 16 to 23: groups, border lines and facets", async () => {
   await expect(inspector().locator(".picked")).toHaveText(/^3D line \d+$/);
 });
 
+test("refinement: outlines before, relations by their chi-square, adopted and refused", async () => {
+  await openTab(page, "Refinement");
+  const lab = page.getByTestId("refinement-lab");
+  await expect(lab.locator("option").first()).toHaveText(/\d\.\d\d → \d\.\d\d px|not refined/);
+  const limit = Number(
+    await page
+      .locator("#param-roof-refine-relation_chi2")
+      .evaluate((input) => (input as HTMLInputElement).value),
+  );
+  const dots = lab.locator(".relation");
+  expect(await dots.count()).toBeGreaterThan(3);
+  for (const dot of await dots.all()) {
+    const [, chi2, verdict] =
+      /χ² ([\d.]+), (adopted|refused)$/.exec((await dot.getAttribute("aria-label")) ?? "") ?? [];
+    expect(Number(chi2) <= limit + 0.05).toBe(verdict === "adopted");
+  }
+  const viewer = page.getByTestId("viewer");
+  await page.getByRole("button", { name: "Clear" }).click();
+  const plain = await steadyLook(page, viewer);
+  await dots.first().press("Enter");
+  await expect(inspector().locator(".picked")).toHaveText(/^Relation \d+ of building \d+$/);
+  await expect(inspector().getByText("Free solution off by")).toBeVisible();
+  expect(await page.getByTestId("filmstrip").locator("canvas").count()).toBeGreaterThanOrEqual(3);
+  expect(await steadyLook(page, viewer)).not.toEqual(plain);
+  await inspector()
+    .locator("div", { hasText: /^Building/ })
+    .getByRole("button")
+    .click();
+  await inspector()
+    .locator("div", { hasText: /^Facets/ })
+    .getByRole("button")
+    .first()
+    .click();
+  await expect(inspector().locator(".picked")).toHaveText(/^Facet \d+$/);
+  await expect(inspector().locator("div", { hasText: /^Refinement/ })).toBeVisible();
+});
+
+test("new lines of the model stand behind the matched ones, and say where they come from", async () => {
+  const matched = Number(/(\d+) lines/.exec((await stage(page, "lines").textContent()) ?? "")?.[1]);
+  // Such a link needs more than its tab: the line comes with the model.
+  await page.goto(`/#scene=demo&tab=lines&select=line:${matched}`);
+  await page.reload();
+  await waitForStage(page, "facets");
+  await expect(page.getByRole("tab", { name: "3D lines" })).toHaveAttribute("aria-selected", "true");
+  await expect(inspector().locator(".picked")).toHaveText(`3D line ${matched}`);
+  await expect(inspector().locator("div", { hasText: /^Found/ })).toContainText("new: ");
+  await expect(page.getByTestId("accuracy").locator(".dot-line")).toHaveCount(matched);
+  await page.getByRole("button", { name: "Run all" }).click();
+  await waitForStage(page, "model");
+});
+
 test("the viewer: normals, cameras, measuring, a picture, and a view's own camera", async () => {
   await openTab(page, "Model");
   const viewer = page.getByTestId("viewer");
