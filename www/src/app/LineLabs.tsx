@@ -2,7 +2,7 @@
 import { category } from "../shared/palette";
 import type { Vec3 } from "../shared/results";
 import type { Grouping, LineRecord, Vec2 } from "../shared/traces";
-import { Chart, Fit, type Frame, pathOf, type Scale, xOf, yOf } from "./charts";
+import { Chart, dotsOf, Fit, type Frame, pathOf, type Scale, xOf, yOf } from "./charts";
 import { Filmstrip } from "./Filmstrip";
 import { results, selection } from "./state";
 import { facetRejectionWords } from "./words";
@@ -35,6 +35,10 @@ function Accuracy({ frame }: { frame: Frame }) {
       ),
   };
   const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
+  const places = records.map(
+    ({ sigma_m, supports }, i) =>
+      [toX(supports.length + scatter(i)), toY(Math.min(y.max, 100 * sigma_m))] as const,
+  );
   return (
     <Chart
       frame={frame}
@@ -50,15 +54,7 @@ function Accuracy({ frame }: { frame: Frame }) {
         selection.value = { kind: "line", index };
       }}
     >
-      {records.map(({ sigma_m, supports }, i) => (
-        <circle
-          key={i}
-          class={`dot-line ${isPicked(i) ? "picked-dot" : ""}`}
-          cx={toX(supports.length + scatter(i))}
-          cy={toY(Math.min(y.max, 100 * sigma_m))}
-          r={isPicked(i) ? 5 : 2.2}
-        />
-      ))}
+      <path class="dot-line" d={dotsOf(places)} data-count={places.length} />
       {counts.map((count) => {
         const own = records
           .filter(({ supports }) => supports.length === count)
@@ -75,6 +71,11 @@ function Accuracy({ frame }: { frame: Frame }) {
           />
         );
       })}
+      {places
+        .filter((_, i) => isPicked(i))
+        .map(([cx, cy]) => (
+          <circle key={cx} class="picked-dot" cx={cx} cy={cy} r={5} />
+        ))}
     </Chart>
   );
 }
@@ -168,7 +169,7 @@ export function FacetLab() {
         </Fit>
         <figcaption class="muted numbers">
           <ul class="legend">
-            {(["real", "inplane", "intersection", "closing"] as const).map((kind) => (
+            {BORDER_KINDS.map((kind) => (
               <li key={kind}>
                 <span class={`swatch border-${kind}`} aria-hidden="true" />
                 {BORDER_WORDS[kind]} {grouping.borders.filter((border) => border.kind === kind).length}
@@ -182,6 +183,7 @@ export function FacetLab() {
   );
 }
 
+const BORDER_KINDS = ["real", "inplane", "intersection", "closing"] as const;
 const BORDER_WORDS = {
   real: "3D lines",
   inplane: "new lines",
@@ -248,9 +250,11 @@ function Plan({
           <title>{`Withdrawn: ${facetRejectionWords(reason)}`}</title>
         </path>
       ))}
-      {grouping.borders.map(({ kind, a, b }, i) => (
-        <path key={i} class={`border-${kind}`} d={pathOf([at(a), at(b)])} />
-      ))}
+      {BORDER_KINDS.map((kind) => {
+        const own = grouping.borders.filter((border) => border.kind === kind);
+        const path = own.map(({ a, b }) => pathOf([at(a), at(b)])).join("");
+        return <path key={kind} class={`border-${kind}`} d={path} data-count={own.length} />;
+      })}
     </svg>
   );
 }

@@ -38,6 +38,11 @@ export function pathOf(points: readonly (readonly [number, number])[]): string {
   return points.map(([x, y], i) => `${i === 0 ? "M" : "L"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
 }
 
+/** Dots as one path, for a style with round ends: thousands of elements would hold the page up. */
+export function dotsOf(points: readonly (readonly [number, number])[]): string {
+  return points.map(([x, y]) => `M${x.toFixed(1)} ${y.toFixed(1)}h0`).join("");
+}
+
 /** Round numbers within a range, about `count` of them. */
 export function ticks({ min, max }: Scale, count = 5): number[] {
   const raw = (max - min) / count;

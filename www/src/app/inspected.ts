@@ -350,7 +350,7 @@ function refinedRow(facet: number): Row[] {
   const found = results.value.refinement?.trace.buildings[building ?? -1];
   return building === undefined || found === undefined
     ? []
-    : [["Refinement", [linkToRefinement(building)], refinementWords(found)]];
+    : [["Refined", [linkToRefinement(building)], refinementWords(found)]];
 }
 
 function refinementRows(index: number): Row[] {
@@ -377,7 +377,7 @@ function relationRows(building: number, index: number): Row[] {
   const limit = relationLimit();
   return [
     ["Says", RELATION_WORDS[found.kind]],
-    ["Free solution off by", `${(100 * found.deviation_m).toFixed(1)} cm`],
+    ["Free solution off by", `${(100 * Math.abs(found.deviation_m)).toFixed(1)} cm`],
     ["χ²", `${found.chi2.toFixed(2)}${limit === null ? "" : ` (≤ ${limit})`}`],
     ["Verdict", found.adopted ? "adopted: it now holds" : "refused: the images contradict it"],
     ["Building", [linkToRefinement(building)]],
