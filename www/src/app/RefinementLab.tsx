@@ -2,7 +2,8 @@
 import type { BuildingRefinement, TestedRelation } from "../shared/traces";
 import { Chart, Fit, type Frame, xOf, yOf } from "./charts";
 import { Filmstrip } from "./Filmstrip";
-import { params, results, selection } from "./state";
+import { buildingOfFacet, relationLimit } from "./refined";
+import { results, selection } from "./state";
 import { RELATION_WORDS, refinementWords } from "./words";
 
 const KINDS = ["horizontal", "parallel", "perpendicular", "equal_height", "symmetric"] as const;
@@ -61,12 +62,6 @@ export function shownBuilding(): number {
         0,
       );
   }
-}
-
-/** The building that a facet of the model belonged to before refinement. */
-export function buildingOfFacet(facet: number): number | undefined {
-  const before = results.value.refinement?.before;
-  return before?.facets[before.sources[facet] ?? -1]?.building;
 }
 
 /** A row for each kind of relation; left of the dashed line is adopted. */
@@ -171,11 +166,4 @@ function isPicked(building: number, index: number): boolean {
 /** Moves the dots of a row apart, the same way every time. */
 function spread(i: number): number {
   return (((i * 0.618034) % 1) - 0.5) * 12;
-}
-
-/** Up to this chi-square a relation is adopted, as the present parameters have it. */
-export function relationLimit(): number | null {
-  const refine = params.value["roof"]?.["refine"];
-  const limit = (refine as Record<string, unknown> | undefined)?.["relation_chi2"];
-  return typeof limit === "number" ? limit : null;
 }

@@ -9,14 +9,10 @@ import { enlargement } from "../viewer/uncertainty";
 import { GRID_STEP_M, Viewer } from "../viewer/viewer";
 import { notify } from "./core";
 import { Legend } from "./Legend";
-import { followResults } from "./layers";
+import { followResults, LAYERS, type LayerName, shown } from "./layers";
 import { SpaceTools } from "./SpaceTools";
 import { beforeGrowing, method, results, scene, selection, type Tab, tab } from "./state";
 import { theme } from "./theme";
-
-/** Layers that a person switches; "stretches" and "turning" follow other switches. */
-const LAYERS = ["lines", "uncertainty", "fans", "groups", "facets", "model", "cameras"] as const;
-type LayerName = (typeof LAYERS)[number];
 
 const LAYER_TITLES: Record<LayerName, string> = {
   lines: "3D lines",
@@ -31,22 +27,6 @@ const LAYER_TITLES: Record<LayerName, string> = {
 /** Layers that only one method fills. */
 const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "groups"];
 
-/** What each tab shows until a person switches something. */
-const shown = signal<Record<Tab, readonly LayerName[]>>({
-  images: [],
-  segments: [],
-  matches: [],
-  lines: ["lines"],
-  halfplanes: ["lines", "fans"],
-  groups: ["groups"],
-  facets: ["facets"],
-  refinement: ["facets"],
-  regions: [],
-  directions: [],
-  clusters: [],
-  rectangles: ["facets", "lines"],
-  model: ["model"],
-});
 const mode = signal<ModelMode>("textured");
 /** The viewer while it exists; the effects below wait for it. */
 export const viewer = signal<Viewer | null>(null);

@@ -2,43 +2,11 @@
 import { LINE_STRIDE, SEGMENT_STRIDE, type Vec3 } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import { slopedArea } from "./geometry";
-import { lineOfSegment, refinedFacets } from "./marks";
-import { buildingOfFacet, relationLimit } from "./RefinementLab";
+import { lineOfSegment } from "./marks";
+import { refinedRow, refinementRows, relationRows } from "./refined";
+import { linkToFacet, linkToGroup, linkToHalfPlane, linkToLine, type Related, type Row } from "./related";
 import { params, pointing, results, scene } from "./state";
-import {
-  ORIGIN_WORDS,
-  outcomeWords,
-  PAIR_WORDS,
-  REJECTION_WORDS,
-  RELATION_WORDS,
-  refinementWords,
-} from "./words";
-
-/** A number of the picked thing, or other things that made it or that it made, to go on to. */
-export type Row = readonly [label: string, value: string | readonly Related[], note?: string];
-
-export interface Related {
-  name: string;
-  selection: Selection;
-}
-
-const linkToLine = (index: number): Related => ({ name: String(index), selection: { kind: "line", index } });
-const linkToHalfPlane = (index: number): Related => ({
-  name: String(index),
-  selection: { kind: "halfplane", index },
-});
-const linkToFacet = (index: number): Related => ({
-  name: String(index),
-  selection: { kind: "facet", index },
-});
-const linkToRefinement = (index: number): Related => ({
-  name: String(index),
-  selection: { kind: "refinement", index },
-});
-const linkToGroup = (index: number): Related => ({
-  name: String(index),
-  selection: { kind: "group", index },
-});
+import { ORIGIN_WORDS, outcomeWords, PAIR_WORDS, REJECTION_WORDS } from "./words";
 
 /** The indices of the items that pass. */
 function indicesOf<T>(
@@ -341,46 +309,6 @@ function facetRows(index: number): Row[] {
     ...((facet.half_planes ?? []).length === 0
       ? []
       : [["Half-planes", (facet.half_planes ?? []).map(linkToHalfPlane)] as const]),
-  ];
-}
-
-/** The refinement of the building that a facet is part of. */
-function refinedRow(facet: number): Row[] {
-  const building = buildingOfFacet(facet);
-  const found = results.value.refinement?.trace.buildings[building ?? -1];
-  return building === undefined || found === undefined
-    ? []
-    : [["Refined", [linkToRefinement(building)], refinementWords(found)]];
-}
-
-function refinementRows(index: number): Row[] {
-  const found = results.value.refinement?.trace.buildings[index];
-  if (found === undefined) {
-    return [];
-  }
-  const adopted = found.relations.filter((one) => one.adopted).length;
-  return [
-    ["Reprojection error", refinementWords(found)],
-    ["Straight sides", String(found.sides)],
-    ["Edges measured", String(found.sightings), "over all views"],
-    ["Largest move", `${found.largest_move_m.toFixed(2)} m`],
-    ["Relations adopted", `${adopted} of ${found.relations.length}`],
-    ["Facets", refinedFacets(index).map(linkToFacet)],
-  ];
-}
-
-function relationRows(building: number, index: number): Row[] {
-  const found = results.value.refinement?.trace.buildings[building]?.relations[index];
-  if (found === undefined) {
-    return [];
-  }
-  const limit = relationLimit();
-  return [
-    ["Says", RELATION_WORDS[found.kind]],
-    ["Free solution off by", `${(100 * Math.abs(found.deviation_m)).toFixed(1)} cm`],
-    ["χ²", `${found.chi2.toFixed(2)}${limit === null ? "" : ` (≤ ${limit})`}`],
-    ["Verdict", found.adopted ? "adopted: it now holds" : "refused: the images contradict it"],
-    ["Building", [linkToRefinement(building)]],
   ];
 }
 

@@ -216,23 +216,6 @@ test("refinement: outlines before, relations by their chi-square, adopted and re
   await expect(inspector().locator("div", { hasText: /^Refined/ })).toBeVisible();
 });
 
-test("new lines of the model stand behind the matched ones, and say where they come from", async () => {
-  const matched = Number(/(\d+) lines/.exec((await stage(page, "lines").textContent()) ?? "")?.[1]);
-  // Such a link needs more than its tab: the line comes with the model.
-  await page.goto(`/#scene=demo&tab=lines&select=line:${matched}`);
-  await page.reload();
-  await waitForStage(page, "facets");
-  await expect(page.getByRole("tab", { name: "3D lines" })).toHaveAttribute("aria-selected", "true");
-  await expect(inspector().locator(".picked")).toHaveText(`3D line ${matched}`);
-  await expect(inspector().locator("div", { hasText: /^Found/ })).toContainText("new: ");
-  await expect(page.getByTestId("accuracy").locator(".dot-line")).toHaveAttribute(
-    "data-count",
-    String(matched),
-  );
-  await page.getByRole("button", { name: "Run all" }).click();
-  await waitForStage(page, "model");
-});
-
 test("the viewer: normals, cameras, measuring, a picture, and a view's own camera", async () => {
   await openTab(page, "Model");
   const viewer = page.getByTestId("viewer");
@@ -310,4 +293,19 @@ test("only the stages behind a changed parameter run again", async () => {
   expect([...new Set(ran)]).toEqual(["facets", "model"]);
   expect(await time("matches")).toBe(before);
   await expect(page).toHaveURL(/params=.*min_area_m2/);
+});
+
+test("new lines of the model stand behind the matched ones, and say where they come from", async () => {
+  const matched = Number(/(\d+) lines/.exec((await stage(page, "lines").textContent()) ?? "")?.[1]);
+  // Such a link needs more than its tab: the line comes with the model.
+  await page.goto(`/#scene=demo&tab=lines&select=line:${matched}`);
+  await page.reload();
+  await waitForStage(page, "facets");
+  await expect(page.getByRole("tab", { name: "3D lines" })).toHaveAttribute("aria-selected", "true");
+  await expect(inspector().locator(".picked")).toHaveText(`3D line ${matched}`);
+  await expect(inspector().locator("div", { hasText: /^Found/ })).toContainText("new: ");
+  await expect(page.getByTestId("accuracy").locator(".dot-line")).toHaveAttribute(
+    "data-count",
+    String(matched),
+  );
 });
