@@ -75,10 +75,10 @@ clean:
 
 # ---- the wasm package and the site -------------------------------------------------------------
 
-# What makes the linked whole smaller and no slower: few of its loops gain by being unrolled or by vectors that are not
-# written as such, and most functions that ask to be inlined are cold.
+# What makes the linked whole smaller and no slower: few of its loops gain by being unrolled, or straight code by vectors
+# that are not written as such.
 SMALL := -C no-vectorize-slp $(addprefix -C llvm-args=-,unroll-runtime=false unroll-threshold-default=100 \
-	unroll-threshold-aggressive=100 inlinehint-threshold=60)
+	unroll-threshold-aggressive=100)
 
 $(PACKAGE): $(RUST_SOURCES) $(WASM32) $(WASM_BINDGEN) $(NPM)
 	cargo rustc --lib --profile wasm --target wasm32-unknown-unknown -- $(SMALL)
