@@ -1,6 +1,8 @@
 /** The charts of the figures: plain SVG, coloured by the style sheet, drawn from numbers that the core gave. */
+
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
+import { grouped } from "./numbers";
 
 export interface Scale {
   min: number;
@@ -139,7 +141,7 @@ export function Chart(props: ChartProps) {
         <g key={value}>
           <line class="grid" x1={frame.left} x2={frame.width - frame.right} y1={toY(value)} y2={toY(value)} />
           <text class="tick" x={frame.left - 5} y={toY(value) + 3.5} text-anchor="end">
-            {tickText(value)}
+            {grouped(value)}
           </text>
         </g>
       ))}
@@ -153,7 +155,7 @@ export function Chart(props: ChartProps) {
             x2={toX(value)}
           />
           <text class="tick" x={toX(value)} y={frame.height - frame.bottom + 13} text-anchor="middle">
-            {tickText(value)}
+            {grouped(value)}
           </text>
         </g>
       ))}
@@ -166,10 +168,6 @@ export function Chart(props: ChartProps) {
       {children}
     </svg>
   );
-}
-
-function tickText(value: number): string {
-  return Number(value.toFixed(6)).toLocaleString("en", { maximumFractionDigits: 3 });
 }
 
 /** How many values fall into each of `count` bins between two ends. */

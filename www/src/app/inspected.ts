@@ -1,8 +1,10 @@
 /** What the inspector says of the picked thing: its numbers, what made it and what it made. */
+
 import { LINE_STRIDE, SEGMENT_STRIDE, type Vec3 } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import { slopedArea } from "./geometry";
 import { lineOfSegment } from "./marks";
+import { grouped } from "./numbers";
 import { refinedRow, refinementRows, relationRows } from "./refined";
 import { linkToFacet, linkToGroup, linkToHalfPlane, linkToLine, type Related, type Row } from "./related";
 import { params, pointing, results, scene } from "./state";
@@ -140,13 +142,13 @@ function regionRows(view: number, index: number): Row[] {
   return region === undefined
     ? []
     : [
-        ["Area", `${region.area_px.toLocaleString("en")} px`],
+        ["Area", `${grouped(region.area_px)} px`],
         ["Perimeter", `${region.perimeter_px.toFixed(0)} px`],
         ["Mean grey value", region.mean.toFixed(1)],
         ["Standard deviation", Math.sqrt(region.variance).toFixed(1)],
-        ["Regions at first", found?.initial_regions.toLocaleString("en") ?? ""],
+        ["Regions at first", grouped(found?.initial_regions ?? 0)],
         ...Object.entries(found?.moves ?? {}).map(
-          ([move, count]) => [MOVES[move] ?? move, count.toLocaleString("en")] as const,
+          ([move, count]) => [MOVES[move] ?? move, grouped(count)] as const,
         ),
       ];
 }
