@@ -4,8 +4,8 @@
 //! map whose items are worth dealing out is written as [`map_shared`]. For each such map of a stage
 //!
 //! ```text
-//! share    every instance k of n runs the stage with a Task: at the map it does the items k, k + n, k + 2 n, ...,
-//!          keeps them as bytes, and the map returns nothing; what the stage makes of nothing is thrown away
+//! share    every instance of n runs the stage with a Task: at the map it does the items that are dealt to it (one
+//!          of every n), keeps them as bytes, and the map returns nothing; what the stage makes of nothing is thrown away
 //! run      one instance is given the bytes of all (Known), runs the stage, and takes the items from them
 //! ```
 //!
@@ -21,6 +21,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -42,7 +43,7 @@ pub struct Task {
 /// The results of shared maps: for each map the bytes of all instances, in their order.
 #[derive(Clone, Debug, Default)]
 pub struct Known {
-    maps: BTreeMap<String, Vec<Vec<Call>>>,
+    maps: BTreeMap<String, Vec<Arc<Vec<Call>>>>,
 }
 
 impl Known {
@@ -50,7 +51,8 @@ impl Known {
     pub fn add(&mut self, map: &str, share: &[u8]) -> bool {
         let calls: Option<Vec<Call>> = postcard::from_bytes(share).ok();
         let is_share = calls.is_some();
-        self.maps.entry(map.to_owned()).or_default().extend(calls);
+        let instances = self.maps.entry(map.to_owned()).or_default();
+        instances.extend(calls.map(Arc::new));
         is_share
     }
 
@@ -69,7 +71,20 @@ impl Known {
         });
         let mut parts: Vec<std::vec::IntoIter<R>> = parts.collect::<Option<_>>()?;
         let of = parts.len();
-        (0..items).map(|i| parts.get_mut(i % of)?.next()).collect()
+        (0..items)
+            .map(|i| parts.get_mut(dealt_to(i, of))?.next())
+            .collect()
+    }
+}
+
+/// Which of the instances does an item. They are dealt to and fro, so that where two kinds of items take turns (the two
+/// sides of lines) nobody gets one kind only.
+fn dealt_to(item: usize, of: usize) -> usize {
+    let of = of.max(1);
+    let place = item % of;
+    match (item / of).is_multiple_of(2) {
+        true => place,
+        false => of - 1 - place,
     }
 }
 
@@ -165,7 +180,8 @@ fn turn<R: DeserializeOwned>(name: &str, items: usize) -> Turn<R> {
         let this = *call;
         *call += 1;
         if let Some(task) = dealing.task.as_ref().filter(|task| task.map == name) {
-            return Turn::Share((task.index..items).step_by(task.of.max(1)).collect());
+            let mine = |i: &usize| dealt_to(*i, task.of) == task.index;
+            return Turn::Share((0..items).filter(mine).collect());
         }
         match dealing.known.results(name, this, items) {
             Some(results) => Turn::Known(results),
@@ -233,6 +249,16 @@ mod tests {
         assert_eq!(counted.into_inner(), 22);
         for of in [1, 2, 3, 20] {
             assert_eq!(shared(of), (alone.clone(), 0), "{of} instances");
+        }
+    }
+
+    #[test]
+    fn everybody_gets_items_of_both_kinds() {
+        for of in 1..5 {
+            let mut dealt = vec![[0; 2]; of];
+            (0..8 * of).for_each(|i| dealt[dealt_to(i, of)][i % 2] += 1);
+            let is_fair = |[a, b]: &[i32; 2]| a + b == 8 && (of > 2 || a == b);
+            assert!(dealt.iter().all(is_fair), "{of} {dealt:?}");
         }
     }
 

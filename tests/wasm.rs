@@ -114,6 +114,24 @@ fn the_figures_answer(session: &mut Session, half_plane: &JsValue) {
     let groups = member(&session.grouping().unwrap(), "groups");
     assert!(Array::from(&groups).length() > 0);
     assert!(session.regions(0).unwrap().is_null());
+
+    let refinement = session.refinement().unwrap();
+    let sources = Array::from(&member(&member(&refinement, "before"), "sources"));
+    assert_eq!(
+        sources.length(),
+        Array::from(&session.facets().unwrap()).length()
+    );
+    let buildings = Array::from(&member(&member(&refinement, "trace"), "buildings"));
+    let relations = Array::from(&member(&buildings.get(0), "relations"));
+    assert!(
+        member(&relations.get(0), "chi2")
+            .as_f64()
+            .is_some_and(|c| c >= 0.0)
+    );
+    let new = records
+        .iter()
+        .filter(|r| member(r, "origin") != JsValue::from("matched"));
+    assert!(new.count() > 0);
 }
 
 #[wasm_bindgen_test]

@@ -45,9 +45,11 @@ pub(super) fn best_set(candidates: &[PlaneCandidate]) -> Vec<usize> {
 
 /// Do two candidates cover the same ground?
 fn exclude(a: &PlaneCandidate, b: &PlaneCandidate) -> bool {
-    let ring =
-        |c: &PlaneCandidate| -> Vec<[f64; 2]> { c.ring.iter().map(|p| [p.x, p.y]).collect() };
-    let shared = ring(a).overlay(&ring(b), OverlayRule::Intersect, FillRule::NonZero);
+    // As every other call in the project has it: another type would be compiled anew, 0.2 MB of wasm.
+    let rings = |c: &PlaneCandidate| -> Vec<Vec<[f64; 2]>> {
+        vec![c.ring.iter().map(|p| [p.x, p.y]).collect()]
+    };
+    let shared = rings(a).overlay_as::<i64>(&rings(b), OverlayRule::Intersect, FillRule::NonZero);
     let area: f64 = shared.iter().flatten().map(|r| ring_area(r)).sum();
     area.abs() > MOST_OVERLAP * area_2d(&a.ring).min(area_2d(&b.ring))
 }

@@ -7,9 +7,12 @@
 
 use std::io::Cursor;
 
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
+use image::codecs::png::PngDecoder;
+use image::codecs::tiff::TiffDecoder;
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageResult, Limits};
 
 use super::Gray;
+use super::jpeg::Jpeg;
 use crate::{Error, Result};
 
 /// A decoded photograph.
@@ -100,13 +103,7 @@ pub(super) fn finish(file: &str, image: DynamicImage, brightest: u16) -> Result<
 fn decoder<'a>(file: &str, bytes: &'a [u8]) -> Result<impl ImageDecoder + use<'a>> {
     let format = image_format(bytes)
         .ok_or_else(|| unreadable(file, "its content is neither JPEG nor PNG nor TIFF"))?;
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    let mut limits = image::Limits::no_limits();
-    limits.max_alloc = Some(MAX_PIXELS * 8);
-    reader.limits(limits);
-    let decoder = reader
-        .into_decoder()
-        .map_err(|e| unreadable(file, &e.to_string()))?;
+    let decoder = decoder_of(format, bytes).map_err(|e| unreadable(file, &e.to_string()))?;
     let (width, height) = decoder.dimensions();
     let pixels = u64::from(width) * u64::from(height);
     if pixels > MAX_PIXELS || pixels == 0 {
@@ -126,6 +123,19 @@ fn decoder<'a>(file: &str, bytes: &'a [u8]) -> Result<impl ImageDecoder + use<'a
         );
         return Err(unreadable(file, &problem));
     }
+    Ok(decoder)
+}
+
+fn decoder_of<'a>(format: ImageFormat, bytes: &'a [u8]) -> ImageResult<Box<dyn ImageDecoder + 'a>> {
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(MAX_PIXELS * 8);
+    let file = Cursor::new(bytes);
+    let mut decoder: Box<dyn ImageDecoder> = match format {
+        ImageFormat::Jpeg => Box::new(Jpeg::new(bytes)?),
+        ImageFormat::Png => Box::new(PngDecoder::with_limits(file, limits.clone())?),
+        _ => Box::new(TiffDecoder::new(file)?),
+    };
+    decoder.set_limits(limits)?;
     Ok(decoder)
 }
 

@@ -1,6 +1,7 @@
 //! Pixel rasters in f32 and the filters on them. Grey values run from 0 to 1.
 
 mod filter;
+mod jpeg;
 mod load;
 mod noise;
 mod part;

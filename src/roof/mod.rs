@@ -10,7 +10,7 @@ mod solid;
 pub use ground::Ground;
 pub use invariants::{PLANAR_M, Violation, check_invariants};
 pub use new_lines::new_lines;
-pub use reconstruct::{RoofTrace, reconstruct_roofs};
+pub use reconstruct::{RoofTrace, Unrefined, reconstruct_roofs};
 pub use refine::{
     BuildingRefinement, Parting, RefineRefusal, RefineTrace, RelationKind, SideKind,
     TestedRelation, part_roofs, refine_roofs,

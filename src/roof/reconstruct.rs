@@ -19,12 +19,23 @@ pub struct RoofTrace {
     pub facets: FacetTrace,
     /// Gaps between facets that delineation had closed.
     pub partings: Vec<Parting>,
+    /// The facets that refinement was given.
+    pub unrefined: Unrefined,
     /// What was regularised and refined in each building.
     pub refinement: RefineTrace,
     /// Walls and ground.
     pub solids: SolidTrace,
     /// Lines that the model adds to the matched ones (B99 4.2, 4.3).
     pub new_lines: Vec<Line3d>,
+}
+
+/// The facets before refinement, whose buildings are those of [`RefineTrace`].
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Unrefined {
+    /// Closed and parted, not refined.
+    pub facets: Vec<Facet>,
+    /// For every facet of the model which of these it was.
+    pub sources: Vec<usize>,
 }
 
 /// Groups, delineates and verifies facets, estimates the ground below each building, refines the buildings and closes
@@ -46,12 +57,17 @@ pub fn reconstruct_roofs(
     let (delineated, again) = close_buildings(&parted, below);
     let (refined, refinement) = refine_roofs(scene, lines, &delineated, &params.refine);
     let (model, closed) = close_buildings(&refined, below);
+    let unrefined = Unrefined {
+        facets: delineated.facets,
+        sources: closed.sources.clone(),
+    };
     let solids = solids.then(again).then(closed);
     (
         model,
         RoofTrace {
             facets: facet_trace,
             partings,
+            unrefined,
             refinement,
             solids,
             new_lines: Vec::new(),

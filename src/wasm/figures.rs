@@ -13,13 +13,15 @@ use crate::halfplane::{PointsOfInterest, Side, SweepRejection};
 use crate::ids::{SegmentId, ViewId};
 use crate::linematch::{MatchTrace, SegmentRef, StepCount, SupportKind};
 use crate::lines2d::{ImageSegment, SegmentRejection};
-use crate::lines3d::Line3d;
+use crate::lines3d::{Line3d, LineOrigin};
 use crate::objectspace::{image_segments, world_lines};
 use crate::pipeline::Run;
+use crate::roof::{Parting, RefineTrace, Unrefined};
 
 /// A 3D line without its geometry, which `lines` gives.
 #[derive(Serialize)]
 struct LineRecord<'a> {
+    origin: LineOrigin,
     sigma_m: f64,
     /// Of the start and of the end point, m^2: xx, xy, xz, yy, yz, zz.
     covariance: [[f64; 6]; 2],
@@ -73,6 +75,14 @@ struct SideRecord {
     line: usize,
     side: Side,
     rejection: Option<SweepRejection>,
+}
+
+/// What became of the buildings after delineation.
+#[derive(Serialize)]
+struct Refined<'a> {
+    partings: &'a [Parting],
+    before: &'a Unrefined,
+    trace: &'a RefineTrace,
 }
 
 /// A picture and what it shows.
@@ -230,6 +240,17 @@ impl Session {
         to_js(&found.map(|r| &r.trace.facets))
     }
 
+    /// Method "lines": the buildings before refinement, what their images said, the relations that were tested, and the gaps
+    /// that were opened (B99 2); `null` before that stage.
+    pub fn refinement(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().roof.as_ref();
+        to_js(&found.map(|r| Refined {
+            partings: &r.trace.partings,
+            before: &r.trace.unrefined,
+            trace: &r.trace.refinement,
+        }))
+    }
+
     /// The points of interest of all views, once for each set of parameters.
     fn detect_points(&mut self) -> Result<(), JsValue> {
         if self.points.is_none() {
@@ -249,6 +270,7 @@ fn line_record(line: &Line3d) -> LineRecord<'_> {
         kind: s.kind,
     });
     LineRecord {
+        origin: line.origin,
         sigma_m: line.sigma_m,
         covariance: line
             .covariance
@@ -267,11 +289,13 @@ pub(super) fn segments_of(run: &Run) -> Cow<'_, [Vec<ImageSegment>]> {
     }
 }
 
-/// The 3D lines of either method.
+/// The 3D lines of either method, with the new lines of the model once there is one.
 pub(super) fn lines_of(run: &Run) -> Cow<'_, [Line3d]> {
     let r = run.results();
     match (&r.lines, &r.regions, &r.clusters) {
-        (Some(lines), ..) => Cow::Borrowed(&lines.value),
+        (Some(lines), ..) => r
+            .all_lines()
+            .map_or(Cow::Borrowed(&lines.value[..]), Cow::Owned),
         (None, Some(regions), Some(found)) => {
             Cow::Owned(world_lines(run.scene(), &regions.value, &found.value))
         }

@@ -63,7 +63,7 @@ impl Session {
         }
     }
 
-    /// Does the items `index`, `index + of`, ... of a map of a stage; their results, for `learn` of all sessions.
+    /// Does the items of a map of a stage that are dealt to instance `index` of so many; their results, for `learn` of all sessions.
     pub fn share(
         &mut self,
         stage: &str,

@@ -119,10 +119,26 @@ const B99 = [
     steps: [tab("Facets"), async (page) => page.locator(".plan-facet").nth(3).press("Enter")],
   },
   {
+    name: "refinement",
+    figures: "2",
+    shows: "a building before and after refinement, and the relations that were tested by their chi-square",
+    steps: [
+      button("Clear"),
+      tab("Refinement"),
+      async (page) => page.locator(".relation").first().press("Enter"),
+    ],
+  },
+  {
+    name: "new-lines",
+    figures: "17 to 20",
+    shows: "new lines of the model beside the matched ones: intersections of planes, and borders seen again",
+    steps: [button("Clear"), tab("3D lines"), button("After")],
+  },
+  {
     name: "model",
     figures: "24 and 25",
     shows: "the textured model",
-    steps: [button("Clear"), tab("Model")],
+    steps: [tab("Model")],
   },
   {
     name: "photograph",
@@ -178,7 +194,7 @@ function table(sections, prefix, paper) {
   return sections
     .map(
       ({ name, figures, shows }) =>
-        `### ${paper} ${figures === "–" ? "(no figure)" : figures.includes(".") ? `section ${figures}` : `figure${figures.length > 2 ? "s" : ""} ${figures}`}\n\n${shows[0].toUpperCase()}${shows.slice(1)}.\n\n![${shows}](figures/${prefix}-${name}.jpg)\n`,
+        `### ${paper} ${figures === "–" ? "(no figure)" : figures.includes(".") || figures === "2" ? `section ${figures}` : `figure${figures.length > 2 ? "s" : ""} ${figures}`}\n\n${shows[0].toUpperCase()}${shows.slice(1)}.\n\n![${shows}](figures/${prefix}-${name}.jpg)\n`,
     )
     .join("\n");
 }

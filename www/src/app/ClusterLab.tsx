@@ -1,9 +1,11 @@
 /** W96 3.5: the plane across a main direction, its image lines and its clusters (figures 7 and 8). */
+
 import { category } from "../shared/palette";
 import { LINE_STRIDE } from "../shared/results";
 import type { ClusterTrace, Vec2 } from "../shared/traces";
 import { Chart, Fit, type Frame, pathOf, type Scale, xOf, yOf } from "./charts";
 import { degreesOf } from "./geometry";
+import { grouped } from "./numbers";
 import { PlaneChoice } from "./PlaneChoice";
 import { results, selection, shownPlane } from "./state";
 
@@ -26,8 +28,8 @@ export function ClusterLab() {
       />
       <Fit>{(frame) => <ClusterPlane frame={frame} trace={trace} />}</Fit>
       <p class="muted numbers note-line">
-        {trace.lines.length} image lines, {trace.proposals[0].toLocaleString("en")} intersections,{" "}
-        {trace.proposals[1].toLocaleString("en")} looked at, {trace.selected.length} selected
+        {trace.lines.length} image lines, {grouped(trace.proposals[0])} intersections,{" "}
+        {grouped(trace.proposals[1])} looked at, {trace.selected.length} selected
       </p>
     </div>
   );

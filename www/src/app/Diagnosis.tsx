@@ -1,5 +1,7 @@
 /** The doctor's report: how well the images agree with their orientation, what else was tried, and the cure. */
+
 import type { Agreement, DoctorReport } from "../shared/results";
+import { grouped } from "./numbers";
 import { setRunOptions } from "./projectActions";
 
 /** Trials beyond these explain nothing. */
@@ -41,7 +43,7 @@ export function Diagnosis({ report }: { report: DoctorReport }) {
                   <td>{words}</td>
                   <td class="numbers">{agreement.score.toFixed(2)}</td>
                   <td class="numbers">
-                    {agreement.points.toLocaleString("en")}
+                    {grouped(agreement.points)}
                     {!all_pairs && " (few views)"}
                   </td>
                 </tr>

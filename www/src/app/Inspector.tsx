@@ -1,5 +1,6 @@
 /** The picked thing in numbers, with units and the paper's symbols. */
-import { type Related, type Row, rowsOf, titleOf } from "./inspected";
+import { rowsOf, titleOf } from "./inspected";
+import type { Related, Row } from "./related";
 import { selection } from "./state";
 
 export function Inspector() {

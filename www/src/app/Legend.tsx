@@ -9,7 +9,11 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
     ["merged", "merged"],
     ["grown", "grown"],
   ],
-  lines: [["matched", "3D line"]],
+  lines: [
+    ["matched", "matched"],
+    ["border-intersection", "intersection of planes"],
+    ["border-inplane", "border seen again"],
+  ],
   halfplanes: [
     ["matched", "3D line"],
     ["half-plane", "half-plane"],
@@ -27,6 +31,11 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
   ],
   rectangles: [["normals", "hue: azimuth, strength: slope"]],
   facets: [["normals", "hue: azimuth, strength: slope"]],
+  refinement: [
+    ["grown", "before"],
+    ["bar", "adopted"],
+    ["rejected", "refused; gap"],
+  ],
 };
 
 export function Legend() {

@@ -1,8 +1,8 @@
 /** B99 figure 9: accuracy against the number of views; figures 17 to 23: groups and border lines in plan. */
 import { category } from "../shared/palette";
 import type { Vec3 } from "../shared/results";
-import type { Grouping, Vec2 } from "../shared/traces";
-import { Chart, Fit, type Frame, pathOf, type Scale, xOf, yOf } from "./charts";
+import type { Grouping, LineRecord, Vec2 } from "../shared/traces";
+import { Chart, dotsOf, Fit, type Frame, pathOf, type Scale, xOf, yOf } from "./charts";
 import { Filmstrip } from "./Filmstrip";
 import { results, selection } from "./state";
 import { facetRejectionWords } from "./words";
@@ -19,7 +19,7 @@ export function LineLab() {
 
 /** Standard deviation of each line against the views that support it; the median of each column as a bar. */
 function Accuracy({ frame }: { frame: Frame }) {
-  const { records } = results.value;
+  const records = matchedRecords();
   if (records.length === 0) {
     return <p class="lab-hint muted">Run the stage: accuracy against views appears here.</p>;
   }
@@ -35,6 +35,10 @@ function Accuracy({ frame }: { frame: Frame }) {
       ),
   };
   const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
+  const places = records.map(
+    ({ sigma_m, supports }, i) =>
+      [toX(supports.length + scatter(i)), toY(Math.min(y.max, 100 * sigma_m))] as const,
+  );
   return (
     <Chart
       frame={frame}
@@ -50,15 +54,7 @@ function Accuracy({ frame }: { frame: Frame }) {
         selection.value = { kind: "line", index };
       }}
     >
-      {records.map(({ sigma_m, supports }, i) => (
-        <circle
-          key={i}
-          class={`dot-line ${isPicked(i) ? "picked-dot" : ""}`}
-          cx={toX(supports.length + scatter(i))}
-          cy={toY(Math.min(y.max, 100 * sigma_m))}
-          r={isPicked(i) ? 5 : 2.2}
-        />
-      ))}
+      <path class="dot-line" d={dotsOf(places)} data-count={places.length} />
       {counts.map((count) => {
         const own = records
           .filter(({ supports }) => supports.length === count)
@@ -75,8 +71,18 @@ function Accuracy({ frame }: { frame: Frame }) {
           />
         );
       })}
+      {places
+        .filter((_, i) => isPicked(i))
+        .map(([cx, cy]) => (
+          <circle key={cx} class="picked-dot" cx={cx} cy={cy} r={5} />
+        ))}
     </Chart>
   );
+}
+
+/** The matched lines: new ones come after them. */
+function matchedRecords(): LineRecord[] {
+  return results.value.records.filter(({ origin }) => origin === "matched");
 }
 
 function isPicked(line: number): boolean {
@@ -89,7 +95,7 @@ function scatter(i: number): number {
 }
 
 function nearest(views: number, sigma: number, x: Scale, y: Scale): number {
-  const { records } = results.value;
+  const records = matchedRecords();
   const distance = (i: number) => {
     const { sigma_m = 0, supports = [] } = records[i] ?? {};
     return Math.hypot(
@@ -163,7 +169,7 @@ export function FacetLab() {
         </Fit>
         <figcaption class="muted numbers">
           <ul class="legend">
-            {(["real", "inplane", "intersection", "closing"] as const).map((kind) => (
+            {BORDER_KINDS.map((kind) => (
               <li key={kind}>
                 <span class={`swatch border-${kind}`} aria-hidden="true" />
                 {BORDER_WORDS[kind]} {grouping.borders.filter((border) => border.kind === kind).length}
@@ -177,6 +183,7 @@ export function FacetLab() {
   );
 }
 
+const BORDER_KINDS = ["real", "inplane", "intersection", "closing"] as const;
 const BORDER_WORDS = {
   real: "3D lines",
   inplane: "new lines",
@@ -243,9 +250,11 @@ function Plan({
           <title>{`Withdrawn: ${facetRejectionWords(reason)}`}</title>
         </path>
       ))}
-      {grouping.borders.map(({ kind, a, b }, i) => (
-        <path key={i} class={`border-${kind}`} d={pathOf([at(a), at(b)])} />
-      ))}
+      {BORDER_KINDS.map((kind) => {
+        const own = grouping.borders.filter((border) => border.kind === kind);
+        const path = own.map(({ a, b }) => pathOf([at(a), at(b)])).join("");
+        return <path key={kind} class={`border-${kind}`} d={path} data-count={own.length} />;
+      })}
     </svg>
   );
 }

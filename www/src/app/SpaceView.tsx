@@ -9,14 +9,10 @@ import { enlargement } from "../viewer/uncertainty";
 import { GRID_STEP_M, Viewer } from "../viewer/viewer";
 import { notify } from "./core";
 import { Legend } from "./Legend";
-import { followResults } from "./layers";
+import { followResults, LAYERS, type LayerName, shown } from "./layers";
 import { SpaceTools } from "./SpaceTools";
 import { beforeGrowing, method, results, scene, selection, type Tab, tab } from "./state";
 import { theme } from "./theme";
-
-/** Layers that a person switches; "stretches" and "turning" follow other switches. */
-const LAYERS = ["lines", "uncertainty", "fans", "groups", "facets", "model", "cameras"] as const;
-type LayerName = (typeof LAYERS)[number];
 
 const LAYER_TITLES: Record<LayerName, string> = {
   lines: "3D lines",
@@ -31,21 +27,6 @@ const LAYER_TITLES: Record<LayerName, string> = {
 /** Layers that only one method fills. */
 const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "groups"];
 
-/** What each tab shows until a person switches something. */
-const shown = signal<Record<Tab, readonly LayerName[]>>({
-  images: [],
-  segments: [],
-  matches: [],
-  lines: ["lines"],
-  halfplanes: ["lines", "fans"],
-  groups: ["groups"],
-  facets: ["facets"],
-  regions: [],
-  directions: [],
-  clusters: [],
-  rectangles: ["facets", "lines"],
-  model: ["model"],
-});
 const mode = signal<ModelMode>("textured");
 /** The viewer while it exists; the effects below wait for it. */
 export const viewer = signal<Viewer | null>(null);
@@ -141,14 +122,17 @@ function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefine
 }
 
 const lines = computed(() => results.value.lines);
+/** Changes when a stage has found the lines anew, but not when the model adds some. */
+const lineStage = computed(() => results.value.stretches ?? results.value.clusters);
 const glb = computed(() => results.value.glb);
 
 /** Keeps the viewer's layers, modes, theme and selection as the signals say. */
 function useLayers(): void {
   useEffect(() => followResults(() => viewer.value, middleNow), []);
   useSignalEffect(() => {
-    if (lines.value !== null) {
-      viewer.value?.lookAt(boundsOfLines(lines.value));
+    const found = lines.peek();
+    if (lineStage.value !== null && found !== null) {
+      viewer.value?.lookAt(boundsOfLines(found));
     }
   });
   useSignalEffect(() => {
@@ -165,6 +149,7 @@ function useLayers(): void {
     }
     const before = tab.value === "lines" && beforeGrowing.value;
     viewer.value?.showLayer("stretches", before);
+    viewer.value?.showLayer("refinement", tab.value === "refinement");
     if (before) {
       viewer.value?.showLayer("lines", false);
     }
@@ -207,13 +192,16 @@ function middleNow(): Vec3 {
   return [x, -z, y];
 }
 
+/** Tabs about facets. */
+const FACET_TABS: readonly Tab[] = ["facets", "refinement", "rectangles"];
+
 /** What the present tab shows, as a sphere in the viewer's frame. */
 function boundsNow() {
   const { facets } = results.value;
   if (tab.value === "model" && model.value !== null) {
     return boundsOf(model.value.object);
   }
-  if ((tab.value === "facets" || tab.value === "rectangles") && facets !== null && facets.length > 0) {
+  if (FACET_TABS.includes(tab.value) && facets !== null && facets.length > 0) {
     return boundsOfFacets(facets);
   }
   return boundsOfLines(lines.value ?? new Float64Array());
@@ -228,6 +216,8 @@ function layerIsEmpty(name: Tab): boolean {
       return halfPlanes === null;
     case "groups":
       return grouping === null;
+    case "refinement":
+      return results.value.refinement === null;
     case "facets":
     case "rectangles":
       return facets === null;

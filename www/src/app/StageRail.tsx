@@ -1,6 +1,7 @@
 /** The stages in order: run, cancel, progress, time and counts. */
 
 import { KeepResult } from "./Comparison";
+import { grouped } from "./numbers";
 import { cancel, runAll, runTo } from "./running";
 import { stageWords } from "./stages";
 import {
@@ -136,7 +137,7 @@ function statusLine(stage: StageState): string {
 
 function countsText({ counts }: StageState): string {
   return Object.entries(counts)
-    .map(([name, count]) => `${count.toLocaleString("en")} ${name.replaceAll("_", " ")}`)
+    .map(([name, count]) => `${grouped(count)} ${name.replaceAll("_", " ")}`)
     .join(", ");
 }
 
@@ -144,9 +145,7 @@ function countsText({ counts }: StageState): string {
 function mainCount({ name, counts }: StageState): string {
   const entries = Object.entries(counts);
   const [what, count] = entries.find(([one]) => one === MAIN_COUNTS[name]) ?? entries[0] ?? [];
-  return what === undefined || count === undefined
-    ? ""
-    : `${count.toLocaleString("en")} ${what.replaceAll("_", " ")}`;
+  return what === undefined || count === undefined ? "" : `${grouped(count)} ${what.replaceAll("_", " ")}`;
 }
 
 const MAIN_COUNTS: Record<string, string> = {

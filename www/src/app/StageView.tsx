@@ -8,6 +8,7 @@ import { ImageViews } from "./ImageViews";
 import { FacetLab, GroupLab, LineLab } from "./LineLabs";
 import { PointLab } from "./PointLab";
 import { RectangleLab } from "./RectangleLab";
+import { RefinementLab } from "./RefinementLab";
 import { SimLab } from "./SimLab";
 import { SpaceView } from "./SpaceView";
 import { images, method, TABS, type Tab, tab } from "./state";
@@ -20,6 +21,7 @@ const TITLES: Record<Tab, string> = {
   halfplanes: "Half-planes",
   groups: "Groups",
   facets: "Facets",
+  refinement: "Refinement",
   regions: "Regions",
   directions: "Directions",
   clusters: "Clusters",
@@ -37,6 +39,7 @@ const LABS: Partial<Record<Tab, ComponentType>> = {
   halfplanes: SimLab,
   groups: GroupLab,
   facets: FacetLab,
+  refinement: RefinementLab,
   directions: DirectionLab,
   clusters: ClusterLab,
   rectangles: RectangleLab,

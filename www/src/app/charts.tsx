@@ -1,6 +1,8 @@
 /** The charts of the figures: plain SVG, coloured by the style sheet, drawn from numbers that the core gave. */
+
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
+import { grouped } from "./numbers";
 
 export interface Scale {
   min: number;
@@ -36,6 +38,11 @@ export const yOf = (frame: Frame, scale: Scale) => (value: number) =>
 /** "M x y L x y ..." */
 export function pathOf(points: readonly (readonly [number, number])[]): string {
   return points.map(([x, y], i) => `${i === 0 ? "M" : "L"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
+}
+
+/** Dots as one path, for a style with round ends: thousands of elements would hold the page up. */
+export function dotsOf(points: readonly (readonly [number, number])[]): string {
+  return points.map(([x, y]) => `M${x.toFixed(1)} ${y.toFixed(1)}h0`).join("");
 }
 
 /** Round numbers within a range, about `count` of them. */
@@ -85,6 +92,7 @@ interface ChartProps {
   /** What the chart shows, for those who do not see it. */
   label: string;
   xTicks?: readonly number[];
+  yTicks?: readonly number[];
   children: ComponentChildren;
   /** Hears the value under the pointer while it is pressed. */
   onDrag?: (x: number, y: number) => void;
@@ -129,11 +137,11 @@ export function Chart(props: ChartProps) {
       }}
       onPointerMove={drag}
     >
-      {ticks(y, 4).map((value) => (
+      {(props.yTicks ?? ticks(y, 4)).map((value) => (
         <g key={value}>
           <line class="grid" x1={frame.left} x2={frame.width - frame.right} y1={toY(value)} y2={toY(value)} />
           <text class="tick" x={frame.left - 5} y={toY(value) + 3.5} text-anchor="end">
-            {tickText(value)}
+            {grouped(value)}
           </text>
         </g>
       ))}
@@ -147,7 +155,7 @@ export function Chart(props: ChartProps) {
             x2={toX(value)}
           />
           <text class="tick" x={toX(value)} y={frame.height - frame.bottom + 13} text-anchor="middle">
-            {tickText(value)}
+            {grouped(value)}
           </text>
         </g>
       ))}
@@ -160,10 +168,6 @@ export function Chart(props: ChartProps) {
       {children}
     </svg>
   );
-}
-
-function tickText(value: number): string {
-  return Number(value.toFixed(6)).toLocaleString("en", { maximumFractionDigits: 3 });
 }
 
 /** How many values fall into each of `count` bins between two ends. */

@@ -213,6 +213,40 @@ const FIGURES: Record<Tab, Figure> = {
     ),
     hint: "Hue: where a facet faces; strength: how steep it is. Red outlines in the plan were withdrawn.",
   },
+  refinement: {
+    title: "Regularisation and refinement",
+    source: "B99 2",
+    text: "All sides of a building are measured again in every view that sees them, and its planes and corners are adjusted together until the wireframe fits the edges. What roofs mostly are (level, parallel, square, symmetric) is tested one by one: c is how far the free solution is from it. A relation that the images allow is adopted and holds exactly.",
+    equation: (
+      <mrow>
+        <msup>
+          <mi>χ</mi>
+          <mn>2</mn>
+        </msup>
+        <mo>=</mo>
+        <mfrac>
+          <msup>
+            <mi>c</mi>
+            <mn>2</mn>
+          </msup>
+          <mrow>
+            <mi>J</mi>
+            <mi>C</mi>
+            <msup>
+              <mi>J</mi>
+              <Up>T</Up>
+            </msup>
+            <mo>+</mo>
+            <msup>
+              <mi>σ</mi>
+              <mn>2</mn>
+            </msup>
+          </mrow>
+        </mfrac>
+      </mrow>
+    ),
+    hint: "Orange: outlines before. Pick a dot: its sides light up in space and in every view; left of the dashed line is adopted.",
+  },
   model: {
     title: "Model",
     source: "B99 5, figures 24 and 25",

@@ -1,32 +1,14 @@
 /** What the inspector says of the picked thing: its numbers, what made it and what it made. */
+
 import { LINE_STRIDE, SEGMENT_STRIDE, type Vec3 } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import { slopedArea } from "./geometry";
 import { lineOfSegment } from "./marks";
+import { grouped } from "./numbers";
+import { refinedRow, refinementRows, relationRows } from "./refined";
+import { linkToFacet, linkToGroup, linkToHalfPlane, linkToLine, type Related, type Row } from "./related";
 import { params, pointing, results, scene } from "./state";
-import { outcomeWords, PAIR_WORDS, REJECTION_WORDS } from "./words";
-
-/** A number of the picked thing, or other things that made it or that it made, to go on to. */
-export type Row = readonly [label: string, value: string | readonly Related[], note?: string];
-
-export interface Related {
-  name: string;
-  selection: Selection;
-}
-
-const linkToLine = (index: number): Related => ({ name: String(index), selection: { kind: "line", index } });
-const linkToHalfPlane = (index: number): Related => ({
-  name: String(index),
-  selection: { kind: "halfplane", index },
-});
-const linkToFacet = (index: number): Related => ({
-  name: String(index),
-  selection: { kind: "facet", index },
-});
-const linkToGroup = (index: number): Related => ({
-  name: String(index),
-  selection: { kind: "group", index },
-});
+import { ORIGIN_WORDS, outcomeWords, PAIR_WORDS, REJECTION_WORDS } from "./words";
 
 /** The indices of the items that pass. */
 function indicesOf<T>(
@@ -54,6 +36,10 @@ export function titleOf(picked: Selection): string {
       return `Half-plane ${picked.index}`;
     case "facet":
       return `Facet ${picked.index}`;
+    case "refinement":
+      return `Building ${picked.index}, refined`;
+    case "relation":
+      return `Relation ${picked.index} of building ${picked.building}`;
     case "surface":
       return picked.surface.charAt(0).toUpperCase() + picked.surface.slice(1);
     case "view":
@@ -79,6 +65,10 @@ export function rowsOf(picked: Selection): Row[] {
       return halfPlaneRows(picked.index);
     case "facet":
       return facetRows(picked.index);
+    case "refinement":
+      return refinementRows(picked.index);
+    case "relation":
+      return relationRows(picked.building, picked.index);
     case "surface":
       return surfaceRows(picked);
     case "view":
@@ -152,13 +142,13 @@ function regionRows(view: number, index: number): Row[] {
   return region === undefined
     ? []
     : [
-        ["Area", `${region.area_px.toLocaleString("en")} px`],
+        ["Area", `${grouped(region.area_px)} px`],
         ["Perimeter", `${region.perimeter_px.toFixed(0)} px`],
         ["Mean grey value", region.mean.toFixed(1)],
         ["Standard deviation", Math.sqrt(region.variance).toFixed(1)],
-        ["Regions at first", found?.initial_regions.toLocaleString("en") ?? ""],
+        ["Regions at first", grouped(found?.initial_regions ?? 0)],
         ...Object.entries(found?.moves ?? {}).map(
-          ([move, count]) => [MOVES[move] ?? move, count.toLocaleString("en")] as const,
+          ([move, count]) => [MOVES[move] ?? move, grouped(count)] as const,
         ),
       ];
 }
@@ -221,6 +211,7 @@ function historyOfLine(index: number): Row[] {
   const record = records[index];
   const refused = sides.filter(({ line, rejection }) => line === index && rejection !== null);
   return [
+    ...(record === undefined ? [] : [["Found", ORIGIN_WORDS[record.origin]] as const]),
     ...(record === undefined ? [] : [["σ across", `${(100 * record.sigma_m).toFixed(1)} cm`] as const]),
     ...(record?.supports ?? []).map(
       ({ view, segments, kind, score }) =>
@@ -317,6 +308,7 @@ function facetRows(index: number): Row[] {
     ["Similarity", facet.similarity.toFixed(3)],
     ["τ real", facet.real_ratio === undefined ? "–" : facet.real_ratio.toFixed(2)],
     ["3D lines", (facet.lines ?? []).map(linkToLine)],
+    ...refinedRow(index),
     ...((facet.half_planes ?? []).length === 0
       ? []
       : [["Half-planes", (facet.half_planes ?? []).map(linkToHalfPlane)] as const]),

@@ -1,5 +1,5 @@
 /** The layers of the 3D view, from the results: each is built anew when what it shows has changed, in a task of its own. */
-import { effect } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import { Vector3 } from "three";
 import { LINE_STRIDE, type Vec3 } from "../shared/results";
 import { buildCameras } from "../viewer/cameras";
@@ -9,24 +9,47 @@ import { buildGroups } from "../viewer/groups";
 import type { Layer } from "../viewer/layer";
 import { buildLines } from "../viewer/lines";
 import { buildOutlines } from "../viewer/outlines";
+import { buildRefinement } from "../viewer/refinement";
 import { buildStretches } from "../viewer/stretches";
 import { buildUncertainty, enlargement } from "../viewer/uncertainty";
 import type { Viewer } from "../viewer/viewer";
 import { lineEnds, linesOfSelection } from "./marks";
-import { images, keptResult, pointing, results, scene, selection, tab } from "./state";
+import { images, keptResult, pointing, results, scene, selection, type Tab, tab } from "./state";
 
+/** Layers that a person switches; "stretches" and "turning" follow other switches. */
+export const LAYERS = ["lines", "uncertainty", "fans", "groups", "facets", "model", "cameras"] as const;
+export type LayerName = (typeof LAYERS)[number];
+
+/** What each tab shows until a person switches something. */
+export const shown = signal<Record<Tab, readonly LayerName[]>>({
+  images: [],
+  segments: [],
+  matches: [],
+  lines: ["lines"],
+  halfplanes: ["lines", "fans"],
+  groups: ["groups"],
+  facets: ["facets"],
+  refinement: ["facets"],
+  regions: [],
+  directions: [],
+  clusters: [],
+  rectangles: ["facets", "lines"],
+  model: ["model"],
+});
 /** A function that makes a layer, and what it makes it of; null where there is nothing to show. */
 type Plan = readonly [build: () => Layer, ...of: unknown[]] | null;
 
 /** What every layer shows now. `middle` is where cameras look at, local frame. */
 const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   lines: () => {
-    const { lines } = results.value;
-    return lines && [() => buildLines(lines, linesOfSelection), lines];
+    const { lines, records } = results.value;
+    return lines && [() => buildLines(lines, records, linesOfSelection), lines, records];
   },
   uncertainty: () => {
     const { lines, records } = results.value;
-    const has = lines !== null && records.length * LINE_STRIDE === lines.length;
+    // Thousands of tubes that few look at: not before somebody does.
+    const isShown = shown.value[tab.value].includes("uncertainty");
+    const has = isShown && lines !== null && records.length * LINE_STRIDE === lines.length;
     return has
       ? [() => buildUncertainty(lines, records, enlargement(records), linesOfSelection), records]
       : null;
@@ -43,6 +66,10 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   stretches: () => {
     const { stretches } = results.value;
     return stretches && [() => buildStretches(stretches), stretches];
+  },
+  refinement: () => {
+    const { refinement } = results.value;
+    return refinement && [() => buildRefinement(refinement), refinement];
   },
   kept: () => {
     const kept = keptResult.value;

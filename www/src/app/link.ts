@@ -75,6 +75,8 @@ export function formatSelection(picked: Selection): string | null {
     case "segment":
     case "region":
       return `${picked.kind}:${picked.view}.${picked.index}`;
+    case "relation":
+      return `relation:${picked.building}.${picked.index}`;
     case "side":
       return `side:${picked.line}.${picked.side}`;
     case "surface":
@@ -95,11 +97,14 @@ export function parseSelection(text: string | null): Selection | null {
     case "segment":
     case "region":
       return /^\d+$/.test(second ?? "") ? { kind, view: index, index: Number(second) } : null;
+    case "relation":
+      return /^\d+$/.test(second ?? "") ? { kind, building: index, index: Number(second) } : null;
     case "side":
       return second === "left" || second === "right" ? { kind, line: index, side: second } : null;
     case "line":
     case "halfplane":
     case "group":
+    case "refinement":
     case "facet":
     case "view":
     case "pair":

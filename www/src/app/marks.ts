@@ -5,8 +5,9 @@
 import { PALETTE } from "../shared/palette";
 import { type HalfPlane, LINE_STRIDE, SEGMENT_STRIDE, type Vec3, type ViewInfo } from "../shared/results";
 import type { Selection } from "../shared/selection";
-import type { Vec2 } from "../shared/traces";
+import type { Segment3, Vec2 } from "../shared/traces";
 import { fanCorners } from "../viewer/fans";
+import { outlinesOf } from "../viewer/refinement";
 import { type Pointing, pointing, type Results, results, scene } from "./state";
 
 /** A polyline over an image, pixels. */
@@ -66,6 +67,17 @@ export function marksOf(picked: Selection | null, view: number): Mark[] {
       return facetRings(picked.index).flatMap((ring) => shape(ring, area()));
     case "surface":
       return picked.facet === null ? [] : facetRings(picked.facet).flatMap((ring) => shape(ring, area()));
+    case "refinement":
+      return [
+        ...ringsBefore(picked.index).flatMap((ring) =>
+          shape(ring, { colour: PALETTE.grown, width: THIN_PX, closed: true }),
+        ),
+        ...refinedFacets(picked.index)
+          .flatMap(facetRings)
+          .flatMap((ring) => shape(ring, { ...chosen(), width: THIN_PX, closed: true })),
+      ];
+    case "relation":
+      return relationOf(picked.building, picked.index).flatMap(({ p0, p1 }) => shape([p0, p1], chosen()));
     case "region":
       return picked.view === view
         ? (results.value.regions[view]?.regions[picked.index]?.rings ?? []).map((ring) => ({
@@ -135,6 +147,23 @@ export function lineOfSegment(view: number, segment: number): number[] {
 export function groupLines(index: number): number[] {
   const members = results.value.grouping?.groups[index]?.members ?? [];
   return [...new Set(members.map(({ line }) => line))];
+}
+
+/** The facets of the model that refinement made of a building. */
+export function refinedFacets(building: number): number[] {
+  const before = results.value.refinement?.before;
+  return (before?.sources ?? []).flatMap((source, facet) =>
+    before?.facets[source]?.building === building ? [facet] : [],
+  );
+}
+
+function ringsBefore(building: number): readonly (readonly Vec3[])[] {
+  const { refinement } = results.value;
+  return refinement === null ? [] : outlinesOf(refinement, building);
+}
+
+function relationOf(building: number, index: number): readonly Segment3[] {
+  return results.value.refinement?.trace.buildings[building]?.relations[index]?.sides ?? [];
 }
 
 function facetRings(index: number): readonly (readonly Vec3[])[] {

@@ -36,6 +36,7 @@ const TITLES: Record<string, string> = {
   lines3d: "3D lines",
   sweep: "Half-plane sweep",
   roof: "Grouping and facets",
+  "roof.refine": "Regularisation and refinement",
   texture: "Texture",
   "objectspace.oris": "Regions (ORIS)",
   "objectspace.windows": "Windows",

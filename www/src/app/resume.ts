@@ -1,8 +1,10 @@
 /** What the page begins with: the scene of a link, or the project of the last visit. */
 import { batch } from "@preact/signals";
+import type { Selection } from "../shared/selection";
 import { readKept } from "./keep";
 import { goTo } from "./lessons";
 import { opened } from "./link";
+import { lineEnds } from "./marks";
 import { openDemo, restoreProject } from "./projectActions";
 import { runTo } from "./running";
 import { stageWords } from "./stages";
@@ -23,6 +25,9 @@ export async function resume(): Promise<void> {
   if (scene.value === null) {
     return;
   }
+  if (isNewLine(opened.selection)) {
+    await runTo("facets");
+  }
   const tabs: readonly Tab[] = TABS[method.value];
   batch(() => {
     if (opened.tab !== null && tabs.includes(opened.tab)) {
@@ -36,8 +41,14 @@ export async function resume(): Promise<void> {
   }
 }
 
+/** A line that the model adds to the matched ones? */
+function isNewLine(picked: Selection | null): boolean {
+  const { lines, facets } = results.value;
+  return picked?.kind === "line" && lines !== null && facets === null && lineEnds(picked.index).length === 0;
+}
+
 /** The stage whose result the linked tab shows; none for the images. */
 function stageOfTab(): string | null {
-  const wanted = opened.tab === "groups" ? "facets" : opened.tab;
+  const wanted = opened.tab === "groups" || opened.tab === "refinement" ? "facets" : opened.tab;
   return stages.value.find(({ name }) => stageWords(name).tab === wanted)?.name ?? null;
 }

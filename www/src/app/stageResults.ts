@@ -18,7 +18,13 @@ export async function fetchResults(stage: string): Promise<Partial<Results>> {
     case "halfplanes":
       return { halfPlanes: await engine.call("halfPlanes", {}), sides: await engine.ask("sides") };
     case "facets":
-      return { facets: await engine.call("facets", {}), grouping: await engine.ask("grouping") };
+      return {
+        facets: await engine.call("facets", {}),
+        grouping: await engine.ask("grouping"),
+        refinement: await engine.ask("refinement"),
+        // The model adds new lines to the matched ones.
+        ...(await fetchLines()),
+      };
     case "regions":
       return { segments: await perView("segments"), regions: (await askViews("regions")).filter(isPresent) };
     case "directions":

@@ -9,7 +9,7 @@ import { automaticWorkers } from "./workers";
 
 /** The stage views of each method. */
 export const TABS = {
-  lines: ["images", "segments", "matches", "lines", "halfplanes", "groups", "facets", "model"],
+  lines: ["images", "segments", "matches", "lines", "halfplanes", "groups", "facets", "refinement", "model"],
   rectangles: ["images", "regions", "directions", "clusters", "rectangles", "model"],
 } as const;
 export type Method = keyof typeof TABS;
@@ -54,6 +54,7 @@ export interface Results {
   stretches: Float64Array | null;
   sides: traces.SideRecord[];
   grouping: traces.Grouping | null;
+  refinement: traces.Refinement | null;
   regions: traces.Segmentation[];
   directions: traces.Directions | null;
   clusters: traces.ClusterTrace[] | null;
@@ -90,6 +91,7 @@ export const NO_RESULTS: Results = {
   stretches: null,
   sides: [],
   grouping: null,
+  refinement: null,
   regions: [],
   directions: null,
   clusters: null,

@@ -1,5 +1,5 @@
 /** The core's reasons in words. */
-import type { SegmentOutcome } from "../shared/traces";
+import type { BuildingRefinement, LineOrigin, SegmentOutcome, TestedRelation } from "../shared/traces";
 
 /** Why a side of a line has no half-plane (B99 4.1). */
 export const REJECTION_WORDS: Record<string, string> = {
@@ -41,6 +41,38 @@ export function outcomeWords(outcome: SegmentOutcome | null): string {
     case "lost_to":
       return `lost its partners to match ${outcome.line}`;
   }
+}
+
+/** How a 3D line was found. */
+export const ORIGIN_WORDS: Record<LineOrigin, string> = {
+  matched: "matched over the views",
+  intersection: "new: two planes intersect here",
+  border: "new: a border, seen again in the views",
+};
+
+export const RELATION_WORDS: Record<TestedRelation["kind"], string> = {
+  horizontal: "level",
+  parallel: "parallel",
+  perpendicular: "perpendicular",
+  equal_height: "equal height",
+  symmetric: "symmetric",
+};
+
+/** Why a building keeps the shape that it had (B99 2). */
+const UNREFINED: Record<string, string> = {
+  too_large: "too many unknowns",
+  few_sightings: "too few sides show",
+  singular: "no solution",
+  no_gain: "the images fit no better",
+  broken: "the new outline does not close",
+  dissimilar: "the views agree less inside",
+};
+
+/** What refinement made of a building, in a line. */
+export function refinementWords({ error_before_px, error_after_px, refused }: BuildingRefinement): string {
+  return refused === null
+    ? `${error_before_px.toFixed(2)} → ${error_after_px.toFixed(2)} px`
+    : `not refined: ${UNREFINED[refused.reason] ?? refused.reason}`;
 }
 
 /** Why a pair of parallel lines gave no plane (W96 3.6). */

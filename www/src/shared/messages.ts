@@ -69,6 +69,7 @@ export interface Queries {
   side: { args: [line: number, left: boolean]; result: traces.SideTrace | null };
   warped: { args: [line: number, left: boolean, theta: number]; result: traces.WarpedPicture | null };
   grouping: { args: []; result: traces.Grouping | null };
+  refinement: { args: []; result: traces.Refinement | null };
   regions: { args: [view: number]; result: traces.Segmentation | null };
   directions: { args: []; result: traces.Directions | null };
   clusters: { args: []; result: traces.ClusterTrace[] | null };
@@ -90,6 +91,7 @@ export const QUERY_NAMES: readonly QueryName[] = [
   "side",
   "warped",
   "grouping",
+  "refinement",
   "regions",
   "directions",
   "clusters",

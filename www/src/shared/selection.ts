@@ -9,6 +9,9 @@ export type Selection =
   | { kind: "halfplane"; index: number }
   | { kind: "group"; index: number }
   | { kind: "facet"; index: number }
+  /** What refinement made of a building; one of the relations tested there. */
+  | { kind: "refinement"; index: number }
+  | { kind: "relation"; building: number; index: number }
   | { kind: "surface"; surface: string; building: number | null; facet: number | null; areaM2: number }
   | { kind: "view"; index: number }
   /** W96: a region of a view; a pair of parallel lines. */

@@ -2,7 +2,7 @@
  * What the core tells of how its results came about: the traces that the live figures draw. Units as in
  * `results.ts`; indices refer to views, segments of their view, 3D lines, half-planes, facets.
  */
-import type { Plane, SupportKind, Vec3 } from "./results";
+import type { Facet, Plane, SupportKind, Vec3 } from "./results";
 
 export type Vec2 = readonly [number, number];
 
@@ -78,7 +78,11 @@ export interface Correspondence {
 /** xx, xy, xz, yy, yz, zz of a symmetric matrix, m². */
 export type Covariance = readonly [number, number, number, number, number, number];
 
+/** How a 3D line was found: from segments, or with the model (B99 4.2, 4.3). */
+export type LineOrigin = "matched" | "intersection" | "border";
+
 export interface LineRecord {
+  origin: LineOrigin;
   /** The larger semi-axis of both ends' ellipses across the line, one standard deviation. */
   sigma_m: number;
   /** Of the start and of the end point. */
@@ -134,6 +138,38 @@ export interface Grouping {
   borders: { kind: "real" | "inplane" | "intersection" | "closing"; a: Vec2; b: Vec2 }[];
   cells: number;
   rejected: { outline: Vec3[]; reason: Record<string, Record<string, number>> }[];
+}
+
+/** A relation between sides of a building that was tested (B99 2). */
+export interface TestedRelation {
+  kind: "horizontal" | "parallel" | "perpendicular" | "equal_height" | "symmetric";
+  sides: Segment3[];
+  deviation_m: number;
+  chi2: number;
+  adopted: boolean;
+}
+
+/** What refinement made of a building. */
+export interface BuildingRefinement {
+  building: number;
+  sides: number;
+  sightings: number;
+  error_before_px: number;
+  error_after_px: number;
+  largest_move_m: number;
+  relations: TestedRelation[];
+  refused: ({ reason: string } & Record<string, number | string>) | null;
+}
+
+export interface Refinement {
+  /** Facets that were thought to meet, and the gap between them. */
+  partings: { side: Segment3; width_m: number; gain_m2: number }[];
+  before: {
+    facets: Facet[];
+    /** For every facet of the model which of these it was. */
+    sources: number[];
+  };
+  trace: { buildings: BuildingRefinement[] };
 }
 
 /** W96 3.3. */

@@ -15,6 +15,7 @@ import {
 import { PALETTE } from "../shared/palette";
 import type { Facet, Vec3 } from "../shared/results";
 import type { Selection } from "../shared/selection";
+import { Chosen } from "./chosen";
 import { zUpGroup } from "./frame";
 import { disposeObject, type Layer } from "./layer";
 
@@ -31,7 +32,7 @@ export function buildFacets(facets: readonly Facet[]): Layer {
   );
   const all = facetMesh(triangles, facets.map(normalTint));
   object.add(all, outlines(facets));
-  let chosen: Mesh | null = null;
+  const chosen = new Chosen(object);
 
   return {
     object,
@@ -40,17 +41,9 @@ export function buildFacets(facets: readonly Facet[]): Layer {
       return index === undefined ? null : { kind: "facet", index };
     },
     highlight(selection: Selection | null) {
-      if (chosen !== null) {
-        object.remove(chosen);
-        disposeObject(chosen);
-        chosen = null;
-      }
       all.material.opacity = selection === null ? OPACITY : DIMMED;
       const one = selection?.kind === "facet" ? triangles[selection.index] : undefined;
-      if (one !== undefined) {
-        chosen = facetMesh([one], [new Color(PALETTE.selected)]);
-        object.add(chosen);
-      }
+      chosen.show(one === undefined ? null : facetMesh([one], [new Color(PALETTE.selected)]));
     },
     dispose: () => disposeObject(object),
   };

@@ -1,16 +1,31 @@
-/** 3D lines as lines of constant width on the screen. */
-import { LineMaterial } from "three/addons/lines/LineMaterial.js";
-import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
-import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
+/** 3D lines, matched and new, as lines of constant width on the screen. */
+import type { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { PALETTE } from "../shared/palette";
 import { LINE_STRIDE } from "../shared/results";
 import type { Selection } from "../shared/selection";
+import type { LineOrigin, LineRecord } from "../shared/traces";
+import { Chosen } from "./chosen";
 import { zUpGroup } from "./frame";
 import { disposeObject, type Layer } from "./layer";
+import { endsOf, strokes } from "./strokes";
 
 const WIDTH_PX = 2.25;
 const SELECTED_WIDTH_PX = 5;
 const DIMMED = 0.35;
+/** Of lines that no view shows, metres. */
+const DASH_M = 0.4;
+
+/** As the border lines in plan. */
+export const ORIGIN_COLOURS: Record<LineOrigin, string> = {
+  matched: PALETTE.line,
+  intersection: PALETTE.merged,
+  border: PALETTE.bar,
+};
+
+/** A line without support in any view: it is where two planes intersect, and drawn dashed. */
+export function isUnseen({ origin, supports }: Pick<LineRecord, "origin" | "supports">): boolean {
+  return origin !== "matched" && supports.length === 0;
+}
 
 /**
  * @param lines p0 and p1 of each line, local frame, metres
@@ -18,45 +33,55 @@ const DIMMED = 0.35;
  */
 export function buildLines(
   lines: Float64Array,
-  linesOf: (selection: Selection | null) => readonly number[] = lineOf,
+  records: readonly LineRecord[],
+  linesOf: (selection: Selection | null) => readonly number[],
 ): Layer {
   const object = zUpGroup();
-  const all = segments(Float32Array.from(lines), PALETTE.line, WIDTH_PX);
-  object.add(all);
-  let chosen: LineSegments2 | null = null;
+  const count = Math.floor(lines.length / LINE_STRIDE);
+  const indices = Array.from({ length: count }, (_, i) => i);
+  const unseen = (index: number) => records[index] !== undefined && isUnseen(records[index]);
+  const colour = (index: number) => ORIGIN_COLOURS[records[index]?.origin ?? "matched"];
+  const parts = [indices.filter((i) => !unseen(i)), indices.filter(unseen)].map((own, k) => {
+    const drawn = strokes(
+      own.flatMap((i) => endsOf(lines, i)),
+      own.map(colour),
+      WIDTH_PX,
+    );
+    return { own, drawn: k === 0 ? drawn : dashed(drawn) };
+  });
+  object.add(...parts.filter(({ own }) => own.length > 0).map(({ drawn }) => drawn));
+  const chosen = new Chosen(object);
 
   return {
     object,
-    pick: (hit) => ({ kind: "line", index: hit.faceIndex ?? 0 }),
+    pick: (hit) => {
+      const part = parts.find(({ drawn }) => drawn === hit.object);
+      const index = part?.own[hit.faceIndex ?? -1];
+      return index === undefined ? null : { kind: "line", index };
+    },
     highlight(selection: Selection | null) {
-      if (chosen !== null) {
-        object.remove(chosen);
-        disposeObject(chosen);
-        chosen = null;
+      for (const { drawn } of parts) {
+        drawn.material.opacity = selection === null ? 1 : DIMMED;
       }
-      all.material.opacity = selection === null ? 1 : DIMMED;
-      const own = linesOf(selection).filter((index) => (index + 1) * LINE_STRIDE <= lines.length);
-      if (own.length > 0) {
-        const ends = own.flatMap((index) => [
-          ...lines.subarray(index * LINE_STRIDE, (index + 1) * LINE_STRIDE),
-        ]);
-        chosen = segments(Float32Array.from(ends), PALETTE.selected, SELECTED_WIDTH_PX);
-        chosen.material.depthTest = false;
-        chosen.renderOrder = 2;
-        chosen.raycast = () => undefined;
-        object.add(chosen);
-      }
+      const own = linesOf(selection).filter((index) => index < count);
+      chosen.show(own.length === 0 ? null : above(own.flatMap((index) => endsOf(lines, index))));
     },
     dispose: () => disposeObject(object),
   };
 }
 
-function segments(positions: Float32Array, colour: string, linewidth: number): LineSegments2 {
-  const geometry = new LineSegmentsGeometry();
-  geometry.setPositions(positions);
-  return new LineSegments2(geometry, new LineMaterial({ color: colour, linewidth, transparent: true }));
+function dashed(drawn: LineSegments2): LineSegments2 {
+  drawn.computeLineDistances();
+  drawn.material.dashed = true;
+  drawn.material.dashSize = DASH_M;
+  drawn.material.gapSize = DASH_M / 2;
+  return drawn;
 }
 
-function lineOf(selection: Selection | null): readonly number[] {
-  return selection?.kind === "line" ? [selection.index] : [];
+/** Selected lines, over whatever lies before them. */
+function above(positions: number[]): LineSegments2 {
+  const drawn = strokes(positions, PALETTE.selected, SELECTED_WIDTH_PX);
+  drawn.material.depthTest = false;
+  drawn.renderOrder = 2;
+  return drawn;
 }

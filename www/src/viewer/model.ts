@@ -1,6 +1,7 @@
 /** The textured model, read from the very GLB that can be downloaded. */
 import {
-  type BufferGeometry,
+  BufferAttribute,
+  BufferGeometry,
   Color,
   EdgesGeometry,
   Group,
@@ -18,6 +19,7 @@ import {
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { PALETTE, type ThemeColours } from "../shared/palette";
 import type { Selection } from "../shared/selection";
+import { Chosen } from "./chosen";
 import { normalTint } from "./facets";
 import { disposeObject, type Layer } from "./layer";
 
@@ -31,6 +33,7 @@ export interface ModelLayer extends Layer {
 const DIMMED = new Color(0.45, 0.45, 0.45);
 /** Edges where the faces on both sides differ by less are not drawn, degrees. */
 const EDGE_ANGLE_DEG = 2;
+const TASK_MS = 12;
 
 export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLayer> {
   const bytes = glb.buffer.slice(glb.byteOffset, glb.byteOffset + glb.byteLength);
@@ -44,56 +47,51 @@ export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLay
     }
   });
   const textured = new Map(meshes.map((mesh) => [mesh, mesh.material as Material]));
+  await inShortTasks(meshes, addTint);
+  const normals = new MeshBasicMaterial({
+    vertexColors: true,
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+  });
   const plain = new MeshLambertMaterial({ flatShading: true, polygonOffset: true, polygonOffsetFactor: 1 });
-  const tints = new Map(meshes.map((mesh) => [mesh, normalMaterial(mesh)]));
   const hidden = new MeshBasicMaterial({
     polygonOffset: true,
     polygonOffsetFactor: 1,
     polygonOffsetUnits: 1,
   });
-  const edges = meshes.map(edgesOf);
-  object.add(...edges);
-  let marker: Object3D | null = null;
+  const positions: number[] = [];
+  await inShortTasks(meshes, (mesh) => positions.push(...edgePositions(mesh)));
+  const edges = edgeLines(positions);
+  object.add(edges);
+  const marker = new Chosen(object);
 
   return {
     object,
     pick: describeHit,
     highlight(selection: Selection | null) {
-      if (marker !== null) {
-        object.remove(marker);
-        disposeObject(marker);
-        marker = null;
-      }
       const isChosen = (mesh: Mesh) => matches(mesh, selection);
       const chosen = meshes.filter(isChosen);
       for (const material of new Set(textured.values())) {
         const tint = chosen.length > 0 ? DIMMED : new Color(1, 1, 1);
         (material as MeshBasicMaterial).color?.copy(tint);
       }
-      if (chosen.length > 0) {
-        marker = markerOf(chosen);
-        object.add(marker);
-      }
+      marker.show(chosen.length === 0 ? null : markerOf(chosen));
     },
     setMode(mode: ModelMode) {
+      const others = { plain, wireframe: hidden, normals };
       for (const mesh of meshes) {
-        const own = textured.get(mesh) as Material;
-        const others = { plain, wireframe: hidden, normals: tints.get(mesh) as Material };
-        mesh.material = mode === "textured" ? own : others[mode];
+        mesh.material = mode === "textured" ? (textured.get(mesh) as Material) : others[mode];
       }
-      for (const edge of edges) {
-        edge.visible = mode !== "textured";
-      }
+      edges.visible = mode !== "textured";
     },
     setTheme(colours: ThemeColours) {
       plain.color.set(colours.clay);
       hidden.color.set(colours.background);
-      for (const edge of edges) {
-        edge.material.color.set(colours.ink);
-      }
+      edges.material.color.set(colours.ink);
     },
     dispose() {
-      for (const material of [...textured.values(), ...tints.values(), plain, hidden]) {
+      for (const material of [...textured.values(), normals, plain, hidden]) {
         material.dispose();
       }
       disposeObject(object);
@@ -154,24 +152,43 @@ function areaOf(geometry: BufferGeometry): number {
   return area;
 }
 
-/** The tint of a face's own normal, as facets have it. */
-function normalMaterial(mesh: Mesh): MeshBasicMaterial {
-  const positions = mesh.geometry.getAttribute("position");
-  const corner = (i: number) =>
-    new Vector3().fromBufferAttribute(positions, mesh.geometry.index?.getX(i) ?? i);
+/** Gives every corner of a face the tint of the face's own normal, as facets have it. */
+function addTint({ geometry }: Mesh): void {
+  const positions = geometry.getAttribute("position");
+  const corner = (i: number) => new Vector3().fromBufferAttribute(positions, geometry.index?.getX(i) ?? i);
   const normal = new Triangle(corner(0), corner(1), corner(2)).getNormal(new Vector3());
   // The GLB is Y up: back to Z up.
-  const color = normalTint({ plane: { normal: [normal.x, -normal.z, normal.y], d: 0 } });
-  return new MeshBasicMaterial({ color, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+  const tint = normalTint({ plane: { normal: [normal.x, -normal.z, normal.y], d: 0 } }).toArray();
+  const colours = Float32Array.from({ length: 3 * positions.count }, (_, i) => tint[i % 3] as number);
+  geometry.setAttribute("color", new BufferAttribute(colours, 3));
 }
 
-function edgesOf(mesh: Mesh): LineSegments<EdgesGeometry, LineBasicMaterial> {
-  const edges = new LineSegments(new EdgesGeometry(mesh.geometry, EDGE_ANGLE_DEG), new LineBasicMaterial());
+/** Both ends of every edge of a face, in the model's frame. */
+function edgePositions(mesh: Mesh): ArrayLike<number> & Iterable<number> {
   mesh.updateWorldMatrix(true, false);
-  edges.applyMatrix4(mesh.matrixWorld);
+  const geometry = new EdgesGeometry(mesh.geometry, EDGE_ANGLE_DEG).applyMatrix4(mesh.matrixWorld);
+  return geometry.getAttribute("position").array;
+}
+
+function edgeLines(positions: readonly number[]): LineSegments<BufferGeometry, LineBasicMaterial> {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(Float32Array.from(positions), 3));
+  const edges = new LineSegments(geometry, new LineBasicMaterial());
   edges.visible = false;
   edges.raycast = () => undefined;
   return edges;
+}
+
+/** A large model has thousands of faces: between some of them the page may answer. */
+async function inShortTasks<T>(items: readonly T[], work: (item: T) => void): Promise<void> {
+  let start = performance.now();
+  for (const item of items) {
+    work(item);
+    if (performance.now() - start > TASK_MS) {
+      await new Promise((resolve) => setTimeout(resolve));
+      start = performance.now();
+    }
+  }
 }
 
 function markerOf(meshes: readonly Mesh[]): Object3D {

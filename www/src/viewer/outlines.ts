@@ -2,20 +2,15 @@
 import { PALETTE } from "../shared/palette";
 import type { Facet } from "../shared/results";
 import { zUpGroup } from "./frame";
-import { strokes } from "./groups";
 import { disposeObject, type Layer } from "./layer";
+import { sidesOf, strokes } from "./strokes";
 
 const WIDTH_PX = 3;
 
 export function buildOutlines(facets: readonly Facet[]): Layer {
   const object = zUpGroup();
-  const positions: number[] = [];
-  for (const ring of facets.flatMap(({ outer, holes }) => [outer, ...holes])) {
-    ring.forEach((corner, i) => {
-      positions.push(...corner, ...(ring[(i + 1) % ring.length] ?? corner));
-    });
-  }
-  const lines = strokes(positions, new Array<string>(positions.length / 6).fill(PALETTE.merged), WIDTH_PX);
+  const sides = sidesOf(facets.flatMap(({ outer, holes }) => [outer, ...holes]));
+  const lines = strokes(sides, PALETTE.merged, WIDTH_PX);
   lines.material.depthTest = false;
   lines.renderOrder = 3;
   lines.raycast = () => undefined;

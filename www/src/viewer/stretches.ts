@@ -2,8 +2,8 @@
 import { PALETTE } from "../shared/palette";
 import { STRETCH_STRIDE } from "../shared/results";
 import { zUpGroup } from "./frame";
-import { strokes } from "./groups";
 import { disposeObject, type Layer } from "./layer";
+import { strokes } from "./strokes";
 
 /** As wide as the lines that they are compared with. */
 const WIDTH_PX = 2.25;
@@ -16,7 +16,7 @@ export function buildStretches(stretches: Float64Array): Layer {
   for (let i = 0; i < count; i += 1) {
     positions.push(...stretches.subarray(i * STRETCH_STRIDE + 1, (i + 1) * STRETCH_STRIDE));
   }
-  object.add(strokes(positions, new Array<string>(count).fill(PALETTE.line), WIDTH_PX));
+  object.add(strokes(positions, PALETTE.line, WIDTH_PX));
   return {
     object,
     pick: (hit) => {

@@ -7,6 +7,7 @@ import { PALETTE } from "../shared/palette";
 import { LINE_STRIDE } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import type { Covariance, LineRecord } from "../shared/traces";
+import { Chosen } from "./chosen";
 import { zUpGroup } from "./frame";
 import { disposeObject, type Layer } from "./layer";
 
@@ -39,23 +40,14 @@ export function buildUncertainty(
   const tubes = records.map((record, i) => tubeOf(lines, i, record, factor));
   const all = meshOf(tubes, PALETTE.merged);
   object.add(all);
-  let chosen: Mesh | null = null;
+  const chosen = new Chosen(object);
   return {
     object,
     pick: (hit) => ({ kind: "line", index: Math.floor((hit.faceIndex ?? 0) / (2 * CORNERS)) }),
     highlight(selection: Selection | null) {
-      if (chosen !== null) {
-        object.remove(chosen);
-        disposeObject(chosen);
-        chosen = null;
-      }
       all.material.opacity = selection === null ? OPACITY : DIMMED;
       const own = linesOf(selection).flatMap((index) => tubes[index] ?? []);
-      if (own.length > 0) {
-        chosen = meshOf([own], PALETTE.selected);
-        chosen.raycast = () => undefined;
-        object.add(chosen);
-      }
+      chosen.show(own.length === 0 ? null : meshOf([own], PALETTE.selected));
     },
     dispose: () => disposeObject(object),
   };

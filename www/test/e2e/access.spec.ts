@@ -56,6 +56,10 @@ test("nothing is cut off at 1024 pixels", async ({ page }) => {
   await expect(stage(page, "model")).toBeVisible();
   const overflow = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
   expect(overflow).toBeLessThanOrEqual(0);
+  const hidden = await page
+    .getByRole("tablist", { name: "Stage views" })
+    .evaluate((list) => list.scrollWidth - list.clientWidth);
+  expect(hidden).toBeLessThanOrEqual(0);
 });
 
 test("text grows on request, and stays so", async ({ page }) => {

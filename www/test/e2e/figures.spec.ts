@@ -106,7 +106,10 @@ test("figures 5 to 9: lines before and after growing, accuracy against views", a
   const lines = Number(
     /([\d,]+) lines/.exec((await stage(page, "lines").textContent()) ?? "")?.[1]?.replace(",", ""),
   );
-  await expect(page.getByTestId("accuracy").locator(".dot-line")).toHaveCount(lines);
+  await expect(page.getByTestId("accuracy").locator(".dot-line")).toHaveAttribute(
+    "data-count",
+    String(lines),
+  );
   await page.getByTestId("accuracy").click({ position: { x: 200, y: 110 } });
   await expect(inspector().locator(".picked")).toHaveText(/^3D line \d+$/);
   // The picked line lights up in every view that shows it.
@@ -168,7 +171,8 @@ test("figures 16 to 23: groups, border lines and facets", async () => {
   await openTab(page, "Facets");
   const facets = Number(/(\d+) facets/.exec((await stage(page, "facets").textContent()) ?? "")?.[1]);
   await expect(page.getByTestId("plan").locator(".plan-facet")).toHaveCount(facets);
-  expect(await page.getByTestId("plan").locator(".border-real").count()).toBeGreaterThan(facets);
+  const borders = page.getByTestId("plan").locator(".border-real");
+  expect(Number(await borders.getAttribute("data-count"))).toBeGreaterThan(facets);
   await page.getByTestId("plan").locator(".plan-facet").first().press("Enter");
   await expect(inspector().locator(".picked")).toHaveText("Facet 0");
   await inspector()
@@ -177,6 +181,43 @@ test("figures 16 to 23: groups, border lines and facets", async () => {
     .first()
     .click();
   await expect(inspector().locator(".picked")).toHaveText(/^3D line \d+$/);
+});
+
+test("refinement: outlines before, relations by their chi-square, adopted and refused", async () => {
+  await openTab(page, "Refinement");
+  const lab = page.getByTestId("refinement-lab");
+  await expect(lab.locator("option").first()).toHaveText(/\d\.\d\d → \d\.\d\d px|not refined/);
+  const limit = Number(
+    await page
+      .locator("#param-roof-refine-relation_chi2")
+      .evaluate((input) => (input as HTMLInputElement).value),
+  );
+  const dots = lab.locator(".relation");
+  expect(await dots.count()).toBeGreaterThan(3);
+  for (const dot of await dots.all()) {
+    const [, chi2, verdict] =
+      /χ² ([\d.]+), (adopted|refused)$/.exec((await dot.getAttribute("aria-label")) ?? "") ?? [];
+    expect(Number(chi2) <= limit + 0.05).toBe(verdict === "adopted");
+  }
+  const viewer = page.getByTestId("viewer");
+  await page.getByRole("button", { name: "Clear" }).click();
+  const plain = await steadyLook(page, viewer);
+  await dots.first().press("Enter");
+  await expect(inspector().locator(".picked")).toHaveText(/^Relation \d+ of building \d+$/);
+  await expect(inspector().getByText("Free solution off by")).toBeVisible();
+  expect(await page.getByTestId("filmstrip").locator("canvas").count()).toBeGreaterThanOrEqual(3);
+  expect(await steadyLook(page, viewer)).not.toEqual(plain);
+  await inspector()
+    .locator("div", { hasText: /^Building/ })
+    .getByRole("button")
+    .click();
+  await inspector()
+    .locator("div", { hasText: /^Facets/ })
+    .getByRole("button")
+    .first()
+    .click();
+  await expect(inspector().locator(".picked")).toHaveText(/^Facet \d+$/);
+  await expect(inspector().locator("div", { hasText: /^Refined/ })).toBeVisible();
 });
 
 test("the viewer: normals, cameras, measuring, a picture, and a view's own camera", async () => {
@@ -256,4 +297,19 @@ test("only the stages behind a changed parameter run again", async () => {
   expect([...new Set(ran)]).toEqual(["facets", "model"]);
   expect(await time("matches")).toBe(before);
   await expect(page).toHaveURL(/params=.*min_area_m2/);
+});
+
+test("new lines of the model stand behind the matched ones, and say where they come from", async () => {
+  const matched = Number(/(\d+) lines/.exec((await stage(page, "lines").textContent()) ?? "")?.[1]);
+  // Such a link needs more than its tab: the line comes with the model.
+  await page.goto(`/#scene=demo&tab=lines&select=line:${matched}`);
+  await page.reload();
+  await waitForStage(page, "facets");
+  await expect(page.getByRole("tab", { name: "3D lines" })).toHaveAttribute("aria-selected", "true");
+  await expect(inspector().locator(".picked")).toHaveText(`3D line ${matched}`);
+  await expect(inspector().locator("div", { hasText: /^Found/ })).toContainText("new: ");
+  await expect(page.getByTestId("accuracy").locator(".dot-line")).toHaveAttribute(
+    "data-count",
+    String(matched),
+  );
 });

@@ -10,6 +10,7 @@ import type {
   Grouping,
   LineRecord,
   MatchRecord,
+  Refinement,
   SegmentStory,
   SideRecord,
   SideTrace,
@@ -251,6 +252,7 @@ export class Session implements CoreSession {
 
   lineRecords(): LineRecord[] {
     return EDGES.map((_, i) => ({
+      origin: "matched" as const,
       sigma_m: 0.01 * (i + 1),
       covariance: [
         [1e-4, 0, 0, 1e-4, 0, 4e-4],
@@ -299,6 +301,32 @@ export class Session implements CoreSession {
     return {
       about: { theta, reference: 0, similarity: 0.7, points: [], line_row: 4, columns, rows, views },
       rgba,
+    };
+  }
+
+  refinement(): Refinement {
+    const facets = this.facets();
+    const [a, b] = EDGES[0] as (typeof EDGES)[number];
+    const [p0, p1] = [corner(a), corner(b)];
+    return {
+      partings: [],
+      before: { facets, sources: facets.map((_, i) => i) },
+      trace: {
+        buildings: [
+          {
+            building: 0,
+            sides: EDGES.length,
+            sightings: 3 * EDGES.length,
+            error_before_px: 0.8,
+            error_after_px: 0.2,
+            largest_move_m: 0.1,
+            relations: [
+              { kind: "horizontal", sides: [{ p0, p1 }], deviation_m: 0.01, chi2: 0.4, adopted: true },
+            ],
+            refused: null,
+          },
+        ],
+      },
     };
   }
 

@@ -22,6 +22,8 @@ describe("links", () => {
     { kind: "facet", index: 0 },
     { kind: "group", index: 9 },
     { kind: "pair", index: 5 },
+    { kind: "refinement", index: 2 },
+    { kind: "relation", building: 2, index: 11 },
   ] as const)("carry a selection: $kind", (selection) => {
     expect(parseLink(formatLink({ ...LINK, selection })).selection).toEqual(selection);
   });

@@ -30,7 +30,7 @@ describe("ellipse", () => {
 
 const record = (sigma: number): LineRecord => {
   const covariance: Covariance = [sigma ** 2, 0, 0, sigma ** 2, 0, sigma ** 2];
-  return { sigma_m: sigma, covariance: [covariance, covariance], supports: [] };
+  return { origin: "matched", sigma_m: sigma, covariance: [covariance, covariance], supports: [] };
 };
 
 it("enlarges by a round factor", () => {
