@@ -11,8 +11,8 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
   ],
   lines: [
     ["matched", "matched"],
-    ["border-intersection", "intersection of planes"],
-    ["border-inplane", "border seen again"],
+    ["border-intersection", "intersection"],
+    ["border-inplane", "border"],
   ],
   halfplanes: [
     ["matched", "3D line"],
