@@ -114,22 +114,10 @@ pub fn refine_roofs(
     if !params.refine {
         return (facets, trace);
     }
-    for (i, building) in model.buildings.iter().enumerate() {
-        let old: Vec<&Facet> = building
-            .facets
-            .iter()
+    let refined = crate::parallel::map(&model.buildings, |i, building| {
+        let old: Vec<&Facet> = (building.facets.iter())
             .map(|f| &model.facets[f.index()])
             .collect();
-        let mut report = BuildingRefinement {
-            building: BuildingId::from_index(i),
-            sides: 0,
-            sightings: 0,
-            error_before_px: 0.0,
-            error_after_px: 0.0,
-            largest_move_m: 0.0,
-            relations: Vec::new(),
-            refused: None,
-        };
         let case = Case {
             scene,
             lines,
@@ -138,7 +126,12 @@ pub fn refine_roofs(
             old: &old,
             params,
         };
-        match case.best(&mut report) {
+        let mut report = BuildingRefinement::of(BuildingId::from_index(i));
+        let new = case.best(&mut report);
+        (new, report)
+    });
+    for (building, (new, mut report)) in model.buildings.iter().zip(refined) {
+        match new {
             Ok(new) => {
                 for (id, facet) in building.facets.iter().zip(new) {
                     facets[id.index()] = facet;
@@ -149,6 +142,22 @@ pub fn refine_roofs(
         trace.buildings.push(report);
     }
     (facets, trace)
+}
+
+impl BuildingRefinement {
+    /// Nothing done yet.
+    fn of(building: BuildingId) -> Self {
+        Self {
+            building,
+            sides: 0,
+            sightings: 0,
+            error_before_px: 0.0,
+            error_after_px: 0.0,
+            largest_move_m: 0.0,
+            relations: Vec::new(),
+            refused: None,
+        }
+    }
 }
 
 /// A building to refine.
