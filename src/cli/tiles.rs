@@ -6,10 +6,10 @@ use std::time::Instant;
 use ridgeline::ids::ViewId;
 use ridgeline::objectspace::{image_segments, world_lines};
 use ridgeline::params::{Method, Params};
-use ridgeline::pipeline::{Run, Stage};
+use ridgeline::pipeline::{Run, Stage, load_adjusted};
 use ridgeline::progress::silent;
 use ridgeline::scene::Scene;
-use ridgeline::scene_loader::{InputFile, LoadOptions, load_scene, whole_views};
+use ridgeline::scene_loader::{InputFile, LoadOptions, whole_views};
 use ridgeline::texture::texture_model;
 use ridgeline::tiles::{Tile, TilePart, join, plan_tiles};
 use serde_json::json;
@@ -43,7 +43,8 @@ pub(super) fn reconstruct_tiles(
             roi: Some(tile.region),
             ..options.clone()
         };
-        let outcome = load_scene(input, &options).map(|scene| part(scene, params, tile, &whole));
+        let outcome =
+            load_adjusted(input, &options, params).map(|scene| part(scene, params, tile, &whole));
         let told = match &outcome {
             Ok(part) => format!("{} buildings", part.model.buildings.len()),
             Err(e) => e.to_string(),

@@ -13,6 +13,7 @@
 
 mod epipolar;
 mod fine;
+mod network;
 mod points;
 mod report;
 mod shifts;
@@ -150,8 +151,9 @@ pub fn examine(patients: &[Patient]) -> Examination {
     let before = total(&counts);
     let odd = clinic.odd_views(&counts);
     if before.score >= SOUND && odd.is_empty() {
-        let places = fine::places(&clinic, patients, &stated);
-        let shifts = shifts::shifts(&clinic, &places, &stated).unwrap_or_default();
+        let coarse = shifts::coarse_shifts(&clinic, &stated);
+        let places = fine::places(&clinic, patients, &shifts::shifted(&stated, &coarse));
+        let shifts = shifts::shifts(&clinic, &places, &stated, &coarse).unwrap_or_default();
         let diagnosis = match fine::half_pixel(&clinic, patients, &stated, &places) {
             Some((suspect, offsets)) => Diagnosis::Offset {
                 suspect,

@@ -10,11 +10,9 @@ use super::convert::{from_js, input_error, named_error, row_major, to_js};
 use crate::doctor;
 use crate::halfplane::PointsOfInterest;
 use crate::params::{Method, Params};
-use crate::pipeline::{PackedView, Run, Stage};
+use crate::pipeline::{PackedView, Run, Stage, load_adjusted};
 use crate::progress::Listener;
-use crate::scene_loader::{
-    InputFile, LoadOptions, Project, inspect_files, load_scene, open_project, unpack,
-};
+use crate::scene_loader::{InputFile, LoadOptions, Project, inspect_files, open_project, unpack};
 use crate::shares::Known;
 use crate::sorting::sort_by;
 
@@ -175,7 +173,8 @@ impl Session {
         self.run = None;
         self.outputs = None;
         self.points = None;
-        let scene = load_scene(&self.files, &options).map_err(|e| input_error(&e))?;
+        let scene =
+            load_adjusted(&self.files, &options, &self.params).map_err(|e| input_error(&e))?;
         let views = scene.views.iter().map(|view| ViewInfo {
             name: view.name.clone(),
             width: view.camera.width,
