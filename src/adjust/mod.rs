@@ -25,7 +25,7 @@ use crate::scene::Scene;
 use system::{Bundle, State};
 
 /// Share of the cost that freeing a view must take away. Assumption: see docs/adjustment.md for what sound scenes show.
-const LEAST_GAIN: f64 = 0.12;
+const LEAST_GAIN: f64 = 0.05;
 
 /// Least motion of a view's edges that matters, pixels: lines are found to about a tenth of a pixel.
 const LEAST_MOTION_PX: f64 = 0.15;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use nalgebra::Matrix3;
 use ridgeline::Error;
 use ridgeline::doctor::{Finding, Report};
 use ridgeline::pipeline::load_adjusted;
@@ -29,16 +30,25 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
         .map_err(|error| Failure::Input(error.to_string()))
 }
 
+/// The findings, and the cameras as they are used: an orientation file of its own (docs/formats.md, K, R, C).
 fn of_scene(scene: &Scene) -> Value {
     let views = scene.views.iter().enumerate().map(|(i, view)| {
+        let camera = &view.camera;
+        let rows = |m: &Matrix3<f64>| [0, 1, 2].map(|i| [m[(i, 0)], m[(i, 1)], m[(i, 2)]]);
         json!({
-            "view": view.name,
+            "file": view.name,
+            "width": camera.width,
+            "height": camera.height,
+            "K": rows(&camera.k),
+            "R": rows(&camera.r),
+            "C": camera.center.coords.as_slice(),
             "shift": scene.survey.shifts.get(i),
             "adjustment": scene.survey.adjustments.get(i),
         })
     });
     json!({
         "doctor": scene.survey.doctor,
+        "origin": scene.origin.as_slice(),
         "views": views.collect::<Vec<_>>(),
         "warnings": scene.warnings,
     })
