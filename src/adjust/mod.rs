@@ -159,3 +159,58 @@ fn rms(motions: &[Vector2<f64>]) -> f64 {
 fn middle_of(camera: &Camera, line: &crate::geometry::Segment3) -> Option<Point2<f64>> {
     camera.project(&line.at(0.5))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::Params;
+    use crate::pipeline::{Run, Stage};
+    use crate::progress::silent;
+    use crate::synthetic::l_scene;
+
+    /// Largest distance between the places where two cameras put points of the scene, pixels.
+    fn difference_px(a: &Camera, b: &Camera) -> f64 {
+        let corners = [-8.0, 0.0, 8.0].map(|x| [-8.0, 8.0].map(|y| Point2::new(x, y)));
+        let points = corners.iter().flatten();
+        let distances = points.map(|p| {
+            let world = nalgebra::Point3::new(p.x, p.y, 6.0);
+            (a.project(&world).unwrap() - b.project(&world).unwrap()).norm()
+        });
+        distances.fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn a_planted_turn_and_move_are_taken_back_and_nothing_else() {
+        let mut run = Run::new(l_scene(320).0, Params::default());
+        run.step(Stage::Lines, &silent());
+        let lines = run.results().lines.as_ref().unwrap().value.clone();
+        let params = Params::default().lines3d;
+        let (sound, records) = adjust_views(run.scene(), &lines, &params);
+        assert!(
+            records.iter().all(|r| r.rms_motion_px == 0.0),
+            "{records:?}"
+        );
+        assert_eq!(sound[2], run.scene().views[2].camera);
+
+        let error = PoseChange {
+            turn: Vector3::new(3e-5, -2e-5, 2e-3),
+            shift_m: Vector3::new(0.1, -0.05, 0.1),
+        };
+        let mut scene = run.scene().clone();
+        scene.views[2].camera = error.apply(&sound[2]);
+        let planted = difference_px(&scene.views[2].camera, &sound[2]);
+        let (found, records) = adjust_views(&scene, &lines, &params);
+        let left = difference_px(&found[2], &sound[2]);
+        assert!(
+            planted > 0.8 && left < 0.2,
+            "{planted} px, {left} px: {records:?}"
+        );
+        assert!(
+            records[2].after_px < 0.5 * records[2].before_px,
+            "{records:?}"
+        );
+        for view in [0, 1, 3, 4, 5] {
+            assert_eq!(found[view], sound[view]);
+        }
+    }
+}
