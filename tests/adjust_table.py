@@ -3,7 +3,7 @@
 
     python3 tests/adjust_table.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...] [--models]
 
-FOLDER holds one folder per scene with images/ and cameras.json (K, R, C). Prints a table for docs/adjustment.md: how far
+FOLDER holds one folder per scene with images/ and cameras.json (K, R, C). Prints a table for docs/formats.md: how far
 the error moves the view's image, what is left of it in the other views' world, and, with --models, the score of the model
 as stated, with the error, and adjusted (`score/` beside FOLDER, as in score_table.py).
 """
@@ -116,6 +116,14 @@ def model(args, scene, work, more):
     subprocess.run(['python3', args.scenes.parent / 'score' / f'{name}.py', scene, out / 'model.city.json', '--json', result],
                    capture_output=True, check=True)
     return words(name, json.loads(result.read_text()))
+
+
+def words(name, s):
+    """Rendered: facets above 10 m² found, area right within 0.2 m; real: tie points within 0.25 m, their median error."""
+    if name == 'check_real':
+        return f"{100 * s['points_within_0_25m']:.0f} %, {s['median_abs_dz_m']:.2f} m"
+    large = s['faces']['gt_10m2']
+    return f"{large['found']} of {large['reference']}, {100 * s['area']['covered_within_0_2m_fraction']:.0f} %"
 
 
 if __name__ == '__main__':

@@ -283,7 +283,7 @@ fn text_readers_survive_anything() {
 
 #[test]
 fn inpho_survives_anything() {
-    fuzz("inpho", &sets(&["inpho"]), read_orientation);
+    fuzz("inpho", &sets(&["inpho", "inpho_lens"]), read_orientation);
 }
 
 #[test]
