@@ -50,6 +50,8 @@ def cameras(change):
     """K, R and C with a change of each view."""
     def broken(scene, work):
         found = json.loads((scene / 'cameras.json').read_text())
+        # An inverted pose has lost the origin, too.
+        found.pop('origin', None)
         for view in found['views']:
             k, r, c = change(*(np.array(view[key], float) for key in 'KRC'), view)
             view['K'], view['R'], view['C'] = k.tolist(), r.tolist(), c.tolist()
@@ -113,9 +115,12 @@ def main():
                 cells.append('-')
                 continue
             tried[name] += word is not None
-            good = word in said if word else said == ''
+            # Images of several sizes tell that they were exchanged before anything is looked at.
+            by_size = 'pixels, but' in said
+            good = (word in said or by_size) if word else said == ''
             named[name] += good and word is not None
-            cells.append((('named' if word else 'left alone') if good else f'**{said[:60] or "nothing said"}**') + f' ({score})')
+            verdict = 'refused for the sizes' if by_size else 'named' if word else 'left alone'
+            cells.append((verdict if good else f'**{said[:60] or "nothing said"}**') + (f' ({score})' if score != '-' else ''))
         print(f'| {what} | ' + ' | '.join(cells) + ' |', flush=True)
     print('| named | ' + ' | '.join(f'{named[name]} of {tried[name]}' for name in names) + ' |')
     return 0 if all(named[name] >= tried[name] - 1 for name in names) else 1

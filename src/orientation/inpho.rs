@@ -482,9 +482,11 @@ mod tests {
 
     #[test]
     fn a_lens_that_no_formula_fits_is_refused() {
-        let table = " $RADIAL_DISTORTION :\n 0 0\n 5 -90\n 10 200\n 15 -300\n 20 500\n";
+        let row = |i: i32| format!(" {} {}\n", 2 * i, if i % 2 == 0 { 90 } else { -90 });
+        let rows: String = (1..=10).map(row).collect();
+        let table = format!(" $RADIAL_DISTORTION :\n{rows}");
         assert!(
-            with(table, false)
+            with(&table, false)
                 .unwrap_err()
                 .to_string()
                 .contains("Brown")
