@@ -23,6 +23,7 @@
 //! Each stage is one function from typed input to `(value, Trace)`; the Trace holds what a teacher
 //! would draw. [`pipeline`] alone orders the stages.
 
+pub mod adjust;
 pub mod camera;
 pub mod diagrams;
 pub mod doctor;

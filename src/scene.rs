@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::adjust::ViewAdjustment;
 use crate::camera::Camera;
 use crate::doctor::{self, ViewShift};
 use crate::ids::ViewId;
@@ -46,6 +47,8 @@ pub struct Survey {
     pub anchor: Option<Anchor>,
     /// How far each view is shifted against the others, where the images show enough to tell.
     pub shifts: Vec<ViewShift>,
+    /// How each view was adjusted to its matched lines; empty where nobody asked for it.
+    pub adjustments: Vec<ViewAdjustment>,
     /// How well the images agree with the orientation that is used; `None` where nobody asked them.
     pub doctor: Option<doctor::Report>,
 }

@@ -425,3 +425,49 @@ fn tiles_give_the_model_of_the_whole() {
         .unwrap();
     assert!(facets >= 4, "{facets}");
 }
+
+#[test]
+fn a_check_says_what_the_images_say() {
+    let check = |scene: &Scene, more: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_ridgeline"))
+            .arg("check")
+            .arg(scene.0.path().join("scene"))
+            .args(more)
+            .output()
+            .unwrap()
+    };
+    let scene = Scene::new();
+    let printed = check(&scene, &[]);
+    let words = String::from_utf8_lossy(&printed.stdout);
+    assert!(printed.status.success());
+    assert!(
+        words.contains("images and orientation agree:") && words.contains("s2_03.png"),
+        "{words}"
+    );
+    let json = check(&scene, &["--json"]).stdout;
+    let found: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    assert_eq!(found["doctor"]["finding"], "sound");
+    // What it prints is an orientation itself.
+    fs::remove_dir_all(scene.0.path().join("scene/colmap")).unwrap();
+    scene.write("checked.json", &json);
+    let again = check(&scene, &["--json"]).stdout;
+    let again: serde_json::Value = serde_json::from_slice(&again).unwrap();
+    for (a, b) in found["views"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(again["views"].as_array().unwrap())
+    {
+        assert_eq!(
+            (&a["file"], &a["K"], &a["R"]),
+            (&b["file"], &b["K"], &b["R"])
+        );
+    }
+
+    let broken = Scene::with_list(|a| a.map(|a| a / 0.9));
+    let refused = check(&broken, &["--json"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let found: serde_json::Value = serde_json::from_slice(&refused.stdout).unwrap();
+    assert_eq!(found["doctor"]["finding"], "explained");
+    assert!(found["refusal"].as_str().unwrap().contains("kappa in gon"));
+}

@@ -6,6 +6,8 @@ use std::fmt::Write;
 
 use nalgebra::{Matrix3, Vector3};
 use ridgeline::doctor::Finding;
+use ridgeline::params::Params;
+use ridgeline::pipeline::{Run, load_adjusted};
 use ridgeline::scene::Scene;
 use ridgeline::scene_loader::{InputFile, LoadOptions, load_scene};
 use ridgeline::synthetic::{
@@ -358,6 +360,63 @@ fn a_shifted_view_is_measured_and_shifted_back() {
                 );
             }
         }
+    }
+}
+
+/// A small error of a view, in words, and the camera with it.
+type SmallError = (&'static str, fn(&mut ridgeline::camera::Camera));
+
+/// A turn of 0.005 degrees about the camera's own x axis (1.4 px), a move of 0.1 m, a shift of 1.5 px: what images of 320 pixels allow.
+const SMALL_ERRORS: [SmallError; 3] = [
+    ("turned", |c| {
+        let (s, cos) = ridgeline::math::sin_cos(0.005_f64.to_radians());
+        c.r = Matrix3::new(1.0, 0.0, 0.0, 0.0, cos, -s, 0.0, s, cos) * c.r;
+    }),
+    ("moved", |c| c.center.x += 0.1),
+    ("shifted", |c| c.k[(0, 2)] += 1.5),
+];
+
+#[test]
+fn small_errors_of_a_view_are_found_and_the_model_comes_back() {
+    let (scene, truth) = l_scene(320);
+    let corners: Vec<_> = (truth.facets.iter())
+        .flat_map(|(_, ring)| ring.clone())
+        .collect();
+    let adjusted = |orientation: Files| {
+        let files: Vec<InputFile> = (to_files(&scene).into_iter())
+            .filter(|(path, _)| path.starts_with("images/"))
+            .chain(orientation)
+            .map(|(path, bytes)| InputFile::new(&path, bytes))
+            .collect();
+        let options = LoadOptions {
+            adjust: true,
+            ..LoadOptions::default()
+        };
+        load_adjusted(&files, &options, &Params::default()).unwrap()
+    };
+    // What is sound stays as it is.
+    let sound = adjusted(to_colmap(&scene));
+    assert!(difference_px(&sound, &scene, &corners) < 1e-6 && sound.warnings.is_empty());
+    for (what, error) in SMALL_ERRORS {
+        let broken = || colmap(&scene, |s| error(&mut s.views[3].camera));
+        let before = difference_px(&load(&scene, broken()).unwrap(), &scene, &corners);
+        let found = adjusted(broken());
+        let after = difference_px(&found, &scene, &corners);
+        assert!(
+            after < 0.3 * before && after < 0.35,
+            "{what}: {before} px, {after} px, {:?}",
+            found.warnings
+        );
+        assert!(found.warnings[0].contains("s2_01"), "{:?}", found.warnings);
+        let mut run = Run::new(found, Params::default());
+        run.run_all();
+        let model = run.results().model().unwrap();
+        assert_eq!((what, model.buildings.len()), (what, 1));
+        assert!(
+            model.facets.len() >= 4,
+            "{what}: {} facets",
+            model.facets.len()
+        );
     }
 }
 

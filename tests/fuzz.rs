@@ -208,8 +208,11 @@ fn fuzz(family: &str, seeds: &[Vec<InputFile>], read: fn(&[InputFile])) {
     let mut dice = Dice(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     let start = Instant::now();
     let mut inputs = 0u64;
+    let mut of_seed = vec![0u64; seeds.len()];
     while start.elapsed().as_secs_f64() < seconds {
-        let mut files = seeds[dice.below(seeds.len())].clone();
+        let seed = dice.below(seeds.len());
+        of_seed[seed] += 1;
+        let mut files = seeds[seed].clone();
         let other = &seeds[dice.below(seeds.len())];
         let lender = other[dice.below(other.len())].bytes.clone();
         for _ in 0..=dice.below(4) {
@@ -232,6 +235,9 @@ fn fuzz(family: &str, seeds: &[Vec<InputFile>], read: fn(&[InputFile])) {
         "{family}: {inputs} inputs in {seconds} s, {} MB at the peak",
         peak_kb() >> 10
     );
+    for (count, files) in of_seed.iter().zip(seeds) {
+        println!("  {}: {count}", files[0].path);
+    }
     assert!(peak_kb() < MOST_KB, "{family}: {} MB", peak_kb() >> 10);
 }
 
@@ -277,7 +283,7 @@ fn text_readers_survive_anything() {
 
 #[test]
 fn inpho_survives_anything() {
-    fuzz("inpho", &sets(&["inpho"]), read_orientation);
+    fuzz("inpho", &sets(&["inpho", "inpho_lens"]), read_orientation);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 //! Exit codes: 0 done, 1 the outputs could not be written, 2 the input or the arguments are bad.
 #![allow(clippy::print_stdout, clippy::print_stderr)] // The one place that talks to a terminal.
 
+mod check;
 mod files;
 mod reconstruct;
 mod table;
@@ -26,24 +27,20 @@ struct Cli {
 enum Command {
     /// Reconstruct the roofs that the photographs in a folder show.
     Reconstruct(Box<ReconstructArgs>),
+    /// Ask the images whether they agree with their orientation, and tell how far each view is off.
+    Check(Box<CheckArgs>),
     /// Print all parameters with their defaults, as JSON for --params.
     Params,
 }
 
-/// The arguments of `reconstruct`.
+/// What is read, and how.
 #[derive(Args)]
-struct ReconstructArgs {
+struct InputArgs {
     /// Folder or .zip archive with images and orientation files, anywhere in it.
     scene: PathBuf,
-    /// Folder for the results; made if missing.
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
     /// Which orientation to take where the folder holds several: a part of its path.
     #[arg(long, value_name = "PATH")]
     orientation: Option<String>,
-    /// How roofs are found; by default as the parameters say: lines.
-    #[arg(long, value_enum)]
-    method: Option<Method>,
     /// Use only these views (image names, separated by commas).
     #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
     views: Option<Vec<String>>,
@@ -56,27 +53,50 @@ struct ReconstructArgs {
     /// Undo the mistake in the orientation that the images give away, instead of refusing the scene.
     #[arg(long)]
     apply_fix: bool,
-    /// Shift views back that are shifted against the others by up to a few pixels.
+    /// Adjust views that are turned or moved against the others by up to a few pixels.
     #[arg(long)]
     adjust: bool,
     /// Refuse what needs more memory than this, megabytes.
     #[arg(long, value_name = "MB")]
     memory: Option<u32>,
-    /// Reconstruct the region in overlapping tiles of about this size, metres, one after the other, into one model.
-    #[arg(long, value_name = "M", value_parser = parse_finite, conflicts_with = "project")]
-    tile: Option<f64>,
     /// JSON file with parameters; what it leaves out keeps its default.
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
-    /// Write a project file too: images, orientation, parameters and results in one .zip, which SCENE takes.
-    #[arg(long, value_name = "FILE.zip")]
-    project: Option<PathBuf>,
-    /// Number of threads; by default one per core. It never changes the result.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
     /// Height of the ground, metres in the frame of the orientation; estimated if not given.
     #[arg(long, value_name = "H", value_parser = parse_finite, allow_hyphen_values = true)]
     ground_z: Option<f64>,
+    /// Number of threads; by default one per core. It never changes the result.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+/// The arguments of `check`.
+#[derive(Args)]
+struct CheckArgs {
+    #[command(flatten)]
+    input: InputArgs,
+    /// Print everything as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// The arguments of `reconstruct`.
+#[derive(Args)]
+struct ReconstructArgs {
+    #[command(flatten)]
+    input: InputArgs,
+    /// Folder for the results; made if missing.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// How roofs are found; by default as the parameters say: lines.
+    #[arg(long, value_enum)]
+    method: Option<Method>,
+    /// Reconstruct the region in overlapping tiles of about this size, metres, one after the other, into one model.
+    #[arg(long, value_name = "M", value_parser = parse_finite, conflicts_with = "project")]
+    tile: Option<f64>,
+    /// Write a project file too: images, orientation, parameters and results in one .zip, which SCENE takes.
+    #[arg(long, value_name = "FILE.zip")]
+    project: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -108,6 +128,7 @@ enum Failure {
 pub fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Reconstruct(args) => reconstruct::reconstruct(&args),
+        Command::Check(args) => check::check(&args),
         Command::Params => print_params(),
     };
     match outcome {

@@ -1,34 +1,34 @@
 //! `ridgeline reconstruct`: folder in, folder out.
 
 use std::fs;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::params::Params;
-use ridgeline::pipeline::{Run, Stage};
+use ridgeline::pipeline::{Run, Stage, load_adjusted};
 use ridgeline::progress::Listener;
-use ridgeline::scene_loader::{LoadOptions, Project, inspect_files, load_scene, open_project};
+use ridgeline::scene_loader::{InputFile, LoadOptions, Project, inspect_files, open_project};
 
-use super::{Failure, ReconstructArgs, files, table, tiles};
+use super::{Failure, InputArgs, ReconstructArgs, files, table, tiles};
 
 /// Steps of the progress bar per stage.
 const BAR_STEPS: f64 = 100.0;
 
 /// Reads the scene, runs every stage, writes the results and prints a summary.
 pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
-    let stated = read_params(args)?;
+    let params = read_params(&args.input)?;
     make_folder(args)?;
     args.project
         .as_deref()
         .map_or(Ok(()), files::check_writable)?;
-    set_threads(args);
     let start = Instant::now();
-    let input = files::read_scene(&args.scene, &args.out)?;
-    let (input, opened) = open_project(input).map_err(|e| Failure::Input(e.to_string()))?;
-    let opened = opened.unwrap_or_default();
-    let options = load_options(args, opened.options);
-    let mut params = stated.unwrap_or(opened.params);
+    let Opened {
+        files: input,
+        options,
+        mut params,
+    } = open(&args.input, params, &args.out)?;
     if let Some(method) = args.method {
         params.method = method.into();
     }
@@ -42,7 +42,8 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
             inspection.views, inspection.peak_mb
         );
     }
-    let scene = load_scene(&input, &options).map_err(|e| Failure::Input(e.to_string()))?;
+    let scene = load_adjusted(&input, &options, &params);
+    let scene = scene.map_err(|e| Failure::Input(e.to_string()))?;
     // Only a project needs the files once more.
     let input = args.project.as_ref().map(|_| input);
     let load_seconds = start.elapsed().as_secs_f64();
@@ -63,27 +64,48 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What the arguments ask for; what they leave out is as in the project, where one is opened.
-fn load_options(args: &ReconstructArgs, project: LoadOptions) -> LoadOptions {
-    LoadOptions {
+/// A scene's files and what is wanted of them.
+pub(super) struct Opened {
+    pub files: Vec<InputFile>,
+    pub options: LoadOptions,
+    pub params: Params,
+}
+
+/// Reads the files. What the arguments leave out is as in the project, where one is opened.
+pub(super) fn open(
+    args: &InputArgs,
+    params: Option<Params>,
+    results: &Path,
+) -> Result<Opened, Failure> {
+    set_threads(args);
+    let files = files::read_scene(&args.scene, results)?;
+    let (files, project) = open_project(files).map_err(|e| Failure::Input(e.to_string()))?;
+    let project = project.unwrap_or_default();
+    let stated = project.options;
+    let options = LoadOptions {
         orientation: args
             .orientation
             .as_deref()
             .map(|path| below(&args.scene, path))
-            .or(project.orientation),
-        views: args.views.clone().or(project.views),
-        roi: args.roi.or(project.roi),
-        ground_z: args.ground_z.or(project.ground_z),
-        epsg: args.crs.or(project.epsg),
-        memory_mb: args.memory.or(project.memory_mb),
-        apply_fix: args.apply_fix || project.apply_fix,
-        adjust: args.adjust || project.adjust,
-    }
+            .or(stated.orientation),
+        views: args.views.clone().or(stated.views),
+        roi: args.roi.or(stated.roi),
+        ground_z: args.ground_z.or(stated.ground_z),
+        epsg: args.crs.or(stated.epsg),
+        memory_mb: args.memory.or(stated.memory_mb),
+        apply_fix: args.apply_fix || stated.apply_fix,
+        adjust: args.adjust || stated.adjust,
+    };
+    Ok(Opened {
+        files,
+        options,
+        params: params.unwrap_or(project.params),
+    })
 }
 
 /// A path as it stands in the scene's folder, also where the whole path was given.
-fn below(scene: &std::path::Path, path: &str) -> String {
-    let inner = std::path::Path::new(path).strip_prefix(scene);
+fn below(scene: &Path, path: &str) -> String {
+    let inner = Path::new(path).strip_prefix(scene);
     inner.map_or_else(
         |_| path.to_owned(),
         |inner| inner.to_string_lossy().into_owned(),
@@ -91,7 +113,7 @@ fn below(scene: &std::path::Path, path: &str) -> String {
 }
 
 /// The parameters of `--params`.
-fn read_params(args: &ReconstructArgs) -> Result<Option<Params>, Failure> {
+pub(super) fn read_params(args: &InputArgs) -> Result<Option<Params>, Failure> {
     let Some(path) = &args.params else {
         return Ok(None);
     };
@@ -113,7 +135,7 @@ fn make_folder(args: &ReconstructArgs) -> Result<(), Failure> {
     })
 }
 
-fn set_threads(args: &ReconstructArgs) {
+fn set_threads(args: &InputArgs) {
     if let Some(threads) = args.threads {
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads.into())

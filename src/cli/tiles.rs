@@ -3,16 +3,10 @@
 use std::path::Path;
 use std::time::Instant;
 
-use ridgeline::ids::ViewId;
-use ridgeline::objectspace::{image_segments, world_lines};
-use ridgeline::params::{Method, Params};
-use ridgeline::pipeline::{Run, Stage};
+use ridgeline::params::Params;
 use ridgeline::progress::silent;
-use ridgeline::scene::Scene;
-use ridgeline::scene_loader::{InputFile, LoadOptions, load_scene, whole_views};
-use ridgeline::texture::texture_model;
-use ridgeline::tiles::{Tile, TilePart, join, plan_tiles};
-use serde_json::json;
+use ridgeline::scene_loader::{InputFile, LoadOptions};
+use ridgeline::tiles::Area;
 
 use super::{Failure, files};
 
@@ -25,129 +19,24 @@ pub(super) fn reconstruct_tiles(
     out: &Path,
 ) -> Result<(), Failure> {
     let refuse = |e: ridgeline::Error| Failure::Input(e.to_string());
-    let area = options.roi.ok_or_else(|| {
-        Failure::Input("--tile needs the area; give it as --roi x0,y0,x1,y1".to_owned())
-    })?;
-    if options.apply_fix {
-        let advice = "--tile takes the orientation as it is; correct it first (--apply-fix without --tile names the mistake)";
-        return Err(Failure::Input(advice.to_owned()));
-    }
-    let tiles = plan_tiles(area, tile_m).map_err(refuse)?;
-    let whole = whole_views(input, options).map_err(refuse)?;
-    let mut parts = Vec::new();
-    let mut report = Vec::new();
-    let mut refused = None;
-    for (i, tile) in tiles.iter().enumerate() {
+    let mut area = Area::plan(input, options, params, tile_m).map_err(refuse)?;
+    let count = area.tiles().len();
+    let mut seconds = Vec::new();
+    loop {
         let start = Instant::now();
-        let options = LoadOptions {
-            roi: Some(tile.region),
-            ..options.clone()
+        let Some(tile) = area.step(input, &silent()) else {
+            break;
         };
-        let outcome = load_scene(input, &options).map(|scene| part(scene, params, tile, &whole));
-        let told = match &outcome {
-            Ok(part) => format!("{} buildings", part.model.buildings.len()),
-            Err(e) => e.to_string(),
-        };
+        let time = start.elapsed().as_secs_f64();
+        seconds.push(time);
         println!(
-            "tile {} of {}: {told} ({:.1} s)",
-            i + 1,
-            tiles.len(),
-            start.elapsed().as_secs_f64()
+            "tile {} of {count}: {} ({time:.1} s)",
+            seconds.len(),
+            tile.outcome
         );
-        report.push(
-            json!({ "core": tile.core, "outcome": told, "seconds": start.elapsed().as_secs_f64() }),
-        );
-        match outcome {
-            Ok(part) => parts.push(part),
-            Err(error) => refused = refused.or(Some(error)),
-        }
     }
-    if let (true, Some(error)) = (parts.is_empty(), refused) {
-        return Err(refuse(error));
-    }
-    let joined = join(whole, &parts);
-    let mut written = joined.files(&params.texture);
-    let report = json!({
-        "version": env!("CARGO_PKG_VERSION"),
-        "origin": joined.scene.origin.as_slice(),
-        "coordinates": joined.scene.survey.describe(),
-        "buildings": joined.model.buildings.len(),
-        "facets": joined.model.facets.len(),
-        "tiles": report,
-        "warnings": joined.scene.warnings,
-        "params": params,
-    });
-    let report = serde_json::to_vec_pretty(&report).expect("a report has string keys only");
-    written.push(("report.json".to_owned(), report));
+    let written = area.finish(&seconds).map_err(refuse)?;
     files::write_all(out, &written)?;
-    println!(
-        "{} buildings, {} facets, written to {}",
-        joined.model.buildings.len(),
-        joined.model.facets.len(),
-        out.display()
-    );
+    println!("written to {}", out.display());
     Ok(())
-}
-
-/// What one tile shows.
-fn part(scene: Scene, params: &Params, tile: &Tile, whole: &Scene) -> TilePart {
-    let mut run = Run::new(scene, params.clone());
-    for &stage in run.stages().iter().filter(|&&stage| stage != Stage::Model) {
-        run.step(stage, &silent());
-    }
-    let (scene, results) = (run.scene(), run.results());
-    let all = results.model().expect("the stages have run");
-    let model = tile.keep(all, &scene.origin);
-    let (textured, _) = texture_model(scene, &model, &params.texture);
-    let found = "the stages have run";
-    let (segments, lines, half_planes) = match params.method {
-        Method::Lines => (
-            results.segments.as_ref().expect(found).value.clone(),
-            results.lines.as_ref().expect(found).value.clone(),
-            results.half_planes.as_ref().expect(found).value.clone(),
-        ),
-        Method::Rectangles => {
-            let lines = &results.regions.as_ref().expect(found).value;
-            let clusters = &results.clusters.as_ref().expect(found).value;
-            (
-                image_segments(lines),
-                world_lines(scene, lines, clusters),
-                Vec::new(),
-            )
-        }
-    };
-    TilePart {
-        tile: *tile,
-        origin: scene.origin,
-        views: places(scene, whole),
-        segments,
-        lines,
-        half_planes,
-        model,
-        textured,
-    }
-}
-
-/// Where the parts of the views lie in the whole images, pixels.
-fn places(scene: &Scene, whole: &Scene) -> Vec<(ViewId, [f64; 4])> {
-    let place = |view: &ridgeline::scene::View| {
-        let index = whole
-            .views
-            .iter()
-            .position(|w| w.name == view.name)
-            .expect("tiles show views of the scene");
-        let (a, b) = (&whole.views[index].camera, &view.camera);
-        // Adjusted views are shifted by fractions of a pixel.
-        let offset = [0, 1].map(|i| (a.k[(i, 2)] - b.k[(i, 2)]).round());
-        (
-            ViewId::from_index(index),
-            [
-                offset[0],
-                offset[1],
-                f64::from(b.width),
-                f64::from(b.height),
-            ],
-        )
-    };
-    scene.views.iter().map(place).collect()
 }

@@ -13,6 +13,7 @@
 
 mod epipolar;
 mod fine;
+mod network;
 mod points;
 mod report;
 mod shifts;
@@ -149,9 +150,19 @@ pub fn examine(patients: &[Patient]) -> Examination {
     let counts = clinic.counts(&stated, &clinic.pairs);
     let before = total(&counts);
     let odd = clinic.odd_views(&counts);
-    if before.score >= SOUND && odd.is_empty() {
-        let places = fine::places(&clinic, patients, &stated);
-        let shifts = shifts::shifts(&clinic, &places, &stated).unwrap_or_default();
+    let coarse = match before.score >= SOUND {
+        true => shifts::coarse_shifts(&clinic, &stated),
+        false => Vec::new(),
+    };
+    // A view that is only shifted is no odd one.
+    let nearly = shifts::shifted(&stated, &coarse);
+    let is_odd = !odd.is_empty() && {
+        let counts = clinic.counts(&nearly, &clinic.pairs);
+        !clinic.odd_views(&counts).is_empty()
+    };
+    if before.score >= SOUND && !is_odd {
+        let places = fine::places(&clinic, patients, &nearly);
+        let shifts = shifts::shifts(&clinic, &places, &stated, &coarse).unwrap_or_default();
         let diagnosis = match fine::half_pixel(&clinic, patients, &stated, &places) {
             Some((suspect, offsets)) => Diagnosis::Offset {
                 suspect,

@@ -7,7 +7,7 @@
 //! sum over tracks and views  rho(x - (P X + s)) / sigma^2  ->  min
 //! ```
 //!
-//! Over a crop of a frame a small error of omega, phi or of the projection centre is a shift of the image; turns and
+//! Shifts of several pixels are found in the reduced images first. Over a crop of a frame a small error of omega, phi or of the projection centre is a shift of the image; turns and
 //! changes of scale within the image are not sought. World points are eliminated track by track (Schur complement);
 //! rho is Huber's.
 //!
@@ -15,38 +15,40 @@
 //! shifts of three pixels on sound photographs (real-barns), which fitted hardly better. Therefore views are freed one
 //! by one, the one first that helps most, as long as it helps much; most views stay where they are.
 
-use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3, Point2, Point3, Vector2, Vector3};
+use nalgebra::{Point2, Vector2};
 use serde::{Deserialize, Serialize};
 
-use super::Clinic;
-use super::fine::Places;
+use super::fine::{Place as Pair, Places};
+use super::network::{Network, Scale};
+use super::{Clinic, epipolar, mean_axis};
 use crate::camera::Camera;
-use crate::sorting::sort_by;
+use crate::parallel;
 
-/// Standard deviation of a place, pixels. Assumption: what correlation of 9 x 9 windows reaches on roofs and ground.
-const SIGMA_PX: f64 = 0.2;
+/// Places in the images as they are. Assumption: 0.2 px is what correlation of 9 x 9 windows reaches on roofs and ground.
+const FINE: Scale = Scale {
+    sigma_px: 0.2,
+    huber_px: 0.4,
+    gross_px: 3.0,
+};
 
-/// Residuals beyond this count linearly, pixels.
-const HUBER_PX: f64 = 0.4;
+/// Places in the reduced images are whole pixels of theirs.
+fn coarse_scale(factor: usize) -> Scale {
+    let reduced_px = factor as f64;
+    Scale {
+        sigma_px: 0.5 * reduced_px,
+        huber_px: 0.7 * reduced_px,
+        gross_px: COARSE_SHIFT as f64 * reduced_px,
+    }
+}
 
-/// Residuals beyond this are other places, pixels.
-const GROSS_PX: f64 = 3.0;
+/// Farthest line on which the coarse search believes a place, pixels of the reduced images.
+const COARSE_SHIFT: i32 = 4;
 
-/// Share of the sum that freeing a view must take away. Assumption: half a pixel in one of six views takes a third; noise
-/// and relief take a few percent.
-const LEAST_GAIN: f64 = 0.15;
+/// What the coarse search finds below this, the fine one finds better, pixels.
+const LEAST_COARSE_PX: f64 = 1.5;
 
-/// Most views that are tried at a time: those with the largest residuals.
-const MOST_TRIED: usize = 8;
-
-/// Fewest residuals beyond the unknowns for a statement about a scene.
-const FEWEST_FREE: usize = 60;
-
-/// Fewest places of a view for a statement about it.
-const FEWEST_PLACES: usize = 12;
-
-/// Rounds of linearising and weighting.
-const ROUNDS: usize = 5;
+/// Larger shifts are no small errors, pixels.
+const MOST_PX: f64 = 20.0;
 
 /// Shift of a view against the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -69,7 +71,7 @@ impl ViewShift {
         let [x, y] = self.shift_px;
         let length = (x * x + y * y).sqrt();
         length > LEAST_SHIFT_PX.max(SIGNIFICANT_SIGMAS * self.sigma_px)
-            && length < GROSS_PX
+            && length < MOST_PX
             && self.after_px < self.before_px
     }
 }
@@ -80,283 +82,80 @@ const LEAST_SHIFT_PX: f64 = 0.15;
 /// A shift is believed from so many standard deviations on.
 const SIGNIFICANT_SIGMAS: f64 = 4.0;
 
-/// A place in a view.
-type Place = (usize, Point2<f64>);
-
-/// The shifts of all views; `None` where too little is found again.
+/// The shifts of all views; `None` where too little is found again. `coarse` are the shifts with which the places were
+/// looked for.
 pub(super) fn shifts(
     clinic: &Clinic,
     places: &[Places],
-    cameras: &[Camera],
+    stated: &[Camera],
+    coarse: &[Vector2<f64>],
 ) -> Option<Vec<ViewShift>> {
-    let tracks = tracks(clinic, places, cameras);
-    let observations: usize = tracks.iter().map(Vec::len).sum();
-    let free = (2 * observations).checked_sub(3 * tracks.len() + 2 * cameras.len())?;
-    if free < FEWEST_FREE {
-        return None;
-    }
-    let mut best = Trial::none(&tracks, cameras);
-    let before = residuals(&tracks, cameras, &best.shifts);
-    // Views that are free are the exception.
-    while 2 * (best.free.len() + 1) <= cameras.len() {
-        let trials = candidates(&before, &best.free).into_iter();
-        let next = trials
-            .filter_map(|view| Trial::freeing(view, &best, &tracks, cameras))
-            .min_by(|a, b| a.cost.total_cmp(&b.cost));
-        match next.filter(|next| next.cost < (1.0 - LEAST_GAIN) * best.cost) {
-            Some(next) => best = next,
-            None => break,
-        }
-    }
-    let after = residuals(&tracks, cameras, &best.shifts);
+    let cameras = shifted(stated, coarse);
+    let network = Network::new(clinic, places, &cameras, FINE)?;
+    let best = network.free_views();
+    let before = network.residuals(&coarse.iter().map(|s| -s).collect::<Vec<_>>());
+    let after = network.residuals(&best.shifts);
     let of_view = |i: usize| {
         let (mut before, mut after) = (before[i].clone(), after[i].clone());
         let places = after.len();
         ViewShift {
-            shift_px: best.shifts[i].into(),
-            sigma_px: best.sigmas[i],
+            shift_px: (coarse[i] + best.shifts[i]).into(),
+            sigma_px: match coarse[i] == Vector2::zeros() {
+                true => best.sigmas[i],
+                false => best.sigmas[i].max(FINE.sigma_px),
+            },
             before_px: crate::math::median(&mut before).unwrap_or(0.0),
             after_px: crate::math::median(&mut after).unwrap_or(0.0),
             places,
         }
     };
-    Some((0..cameras.len()).map(of_view).collect())
+    Some((0..stated.len()).map(of_view).collect())
 }
 
-/// Views that may be freed next: enough places, the largest residuals first.
-fn candidates(residuals: &[Vec<f64>], free: &[usize]) -> Vec<usize> {
-    let mut ranked: Vec<(f64, usize)> = (0..residuals.len())
-        .filter(|i| !free.contains(i) && residuals[*i].len() >= FEWEST_PLACES)
-        .filter_map(|i| Some((crate::math::median(&mut residuals[i].clone())?, i)))
-        .collect();
-    sort_by(&mut ranked, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    ranked.into_iter().take(MOST_TRIED).map(|r| r.1).collect()
-}
-
-/// Some views free, the others where they are.
-struct Trial {
-    free: Vec<usize>,
-    shifts: Vec<Vector2<f64>>,
-    /// Standard deviations of the shifts, pixels.
-    sigmas: Vec<f64>,
-    /// Sum of rho, pixels^2.
-    cost: f64,
-}
-
-impl Trial {
-    fn none(tracks: &[Vec<Place>], cameras: &[Camera]) -> Self {
-        let shifts = vec![Vector2::zeros(); cameras.len()];
-        Self {
-            cost: cost(tracks, cameras, &shifts),
-            sigmas: vec![0.0; cameras.len()],
-            free: Vec::new(),
-            shifts,
-        }
+/// Shifts of several pixels, from places in the reduced images; zero where the fine search finds them itself.
+pub(super) fn coarse_shifts(clinic: &Clinic, cameras: &[Camera]) -> Vec<Vector2<f64>> {
+    let none = || vec![Vector2::zeros(); cameras.len()];
+    let factor = *clinic.factors.iter().max().unwrap_or(&1);
+    if factor < 2 {
+        return none();
     }
-
-    /// The same with one more view free.
-    fn freeing(
-        view: usize,
-        from: &Self,
-        tracks: &[Vec<Place>],
-        cameras: &[Camera],
-    ) -> Option<Self> {
-        let mut free = from.free.clone();
-        free.push(view);
-        let (mut shifts, mut sigmas) = (from.shifts.clone(), from.sigmas.clone());
-        for _ in 0..ROUNDS {
-            let (changes, found) = System::of(tracks, cameras, &shifts).solve(&free)?;
-            for ((&i, change), sigma) in free.iter().zip(changes).zip(found) {
-                shifts[i] += change;
-                sigmas[i] = sigma;
-            }
-        }
-        let cost = cost(tracks, cameras, &shifts);
-        Some(Self {
-            free,
-            shifts,
-            sigmas,
-            cost,
-        })
-    }
-}
-
-/// The sum of rho over all places, pixels^2.
-fn cost(tracks: &[Vec<Place>], cameras: &[Camera], shifts: &[Vector2<f64>]) -> f64 {
-    let rho = |length: f64| match length <= HUBER_PX {
-        true => 0.5 * length * length,
-        false => HUBER_PX * (length - 0.5 * HUBER_PX),
+    let places = coarse_places(clinic, cameras);
+    let Some(network) = Network::new(clinic, &places, cameras, coarse_scale(factor)) else {
+        return none();
     };
-    let of_track = |track: &Vec<Place>| -> f64 {
-        let world = triangulate(track, cameras, shifts);
-        let of_place = |place: &Place| {
-            let r = world.and_then(|world| residual(place, &world, cameras, shifts));
-            rho(r.map_or(GROSS_PX, |r| r.norm()))
+    let matters = |s: Vector2<f64>| (s.norm() > LEAST_COARSE_PX).then_some(s);
+    let found = network.free_views().shifts;
+    found
+        .into_iter()
+        .map(|s| matters(s).unwrap_or_default())
+        .collect()
+}
+
+/// Places as the reduced images show them.
+fn coarse_places(clinic: &Clinic, cameras: &[Camera]) -> Vec<Places> {
+    let (reduced, axis) = (clinic.reduced(cameras), mean_axis(cameras));
+    parallel::map(&clinic.pairs, |_, &(i, j)| {
+        let scale = [i, j].map(|v| clinic.factors[v] as f64);
+        let found = |(point, x): (usize, &Point2<f64>)| {
+            let place = epipolar::best_place(&reduced[i], &reduced[j], &axis, x)?;
+            (place.shift.abs() <= COARSE_SHIFT).then(|| Pair {
+                point,
+                first: x * scale[0],
+                second: place.at * scale[1],
+            })
         };
-        track.iter().map(of_place).sum()
+        let points = clinic.points[i].iter().enumerate();
+        points.filter_map(found).collect()
+    })
+}
+
+/// Cameras whose images are shifted.
+pub(super) fn shifted(cameras: &[Camera], shifts: &[Vector2<f64>]) -> Vec<Camera> {
+    let moved = |(camera, shift): (&Camera, &Vector2<f64>)| {
+        let mut camera = camera.clone();
+        camera.k[(0, 2)] += shift.x;
+        camera.k[(1, 2)] += shift.y;
+        camera
     };
-    tracks.iter().map(of_track).sum()
-}
-
-/// The places of each interest point, its own first; points whose rays do not meet are left out.
-fn tracks(clinic: &Clinic, places: &[Places], cameras: &[Camera]) -> Vec<Vec<Place>> {
-    let mut tracks: Vec<(usize, usize, Vec<Place>)> = Vec::new();
-    for (&(i, j), places) in clinic.pairs.iter().zip(places) {
-        for place in places {
-            match tracks.iter_mut().find(|t| (t.0, t.1) == (i, place.point)) {
-                Some(track) => track.2.push((j, place.second)),
-                None => tracks.push((i, place.point, vec![(i, place.first), (j, place.second)])),
-            }
-        }
-    }
-    let none = vec![Vector2::zeros(); cameras.len()];
-    let meets = |track: &Vec<Place>| {
-        let world = triangulate(track, cameras, &none);
-        let near = |world: &Point3<f64>| {
-            track
-                .iter()
-                .all(|p| residual(p, world, cameras, &none).is_some_and(|r| r.norm() < GROSS_PX))
-        };
-        world.filter(near).is_some()
-    };
-    tracks.into_iter().map(|t| t.2).filter(meets).collect()
-}
-
-/// x - (P X + s), pixels.
-fn residual(
-    (view, x): &Place,
-    world: &Point3<f64>,
-    cameras: &[Camera],
-    shifts: &[Vector2<f64>],
-) -> Option<Vector2<f64>> {
-    Some(x - cameras[*view].project(world)? - shifts[*view])
-}
-
-/// The world point of a track: nearest to its rays, then least squares in the images.
-fn triangulate(
-    track: &[Place],
-    cameras: &[Camera],
-    shifts: &[Vector2<f64>],
-) -> Option<Point3<f64>> {
-    let base = cameras[track[0].0].center;
-    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
-    for (view, x) in track {
-        let camera = &cameras[*view];
-        let ray = camera.ray(&(x - shifts[*view]));
-        let across = Matrix3::identity() - ray * ray.transpose();
-        normal += across;
-        right += across * (camera.center - base);
-    }
-    let mut world = base + normal.lu().solve(&right)?;
-    for _ in 0..3 {
-        let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
-        for place in track {
-            let r = residual(place, &world, cameras, shifts)?;
-            let j = cameras[place.0].project_jacobian(&world)?;
-            let w = huber(&r);
-            normal += j.transpose() * j * w;
-            right += j.transpose() * r * w;
-        }
-        world += normal.cholesky()?.solve(&right);
-    }
-    world.coords.iter().all(|v| v.is_finite()).then_some(world)
-}
-
-/// Weight of a residual under Huber's norm.
-fn huber(residual: &Vector2<f64>) -> f64 {
-    let length = residual.norm();
-    if length <= HUBER_PX {
-        1.0
-    } else {
-        HUBER_PX / length
-    }
-}
-
-/// Lengths of the residuals of each view, pixels.
-fn residuals(tracks: &[Vec<Place>], cameras: &[Camera], shifts: &[Vector2<f64>]) -> Vec<Vec<f64>> {
-    let mut lengths = vec![Vec::new(); cameras.len()];
-    for track in tracks {
-        let Some(world) = triangulate(track, cameras, shifts) else {
-            continue;
-        };
-        for place in track {
-            if let Some(r) = residual(place, &world, cameras, shifts) {
-                lengths[place.0].push(r.norm());
-            }
-        }
-    }
-    lengths
-}
-
-/// Normal equations of changes of the shifts, world points eliminated; in units of 1 / [`SIGMA_PX`]^2.
-struct System {
-    normal: DMatrix<f64>,
-    right: DVector<f64>,
-}
-
-impl System {
-    fn of(tracks: &[Vec<Place>], cameras: &[Camera], shifts: &[Vector2<f64>]) -> Self {
-        let size = 2 * cameras.len();
-        let mut system = Self {
-            normal: DMatrix::zeros(size, size),
-            right: DVector::zeros(size),
-        };
-        for track in tracks {
-            system.add(track, cameras, shifts);
-        }
-        system
-    }
-
-    /// Adds a track; one whose point cannot be found tells nothing.
-    fn add(&mut self, track: &[Place], cameras: &[Camera], shifts: &[Vector2<f64>]) -> Option<()> {
-        let world = triangulate(track, cameras, shifts)?;
-        let mut rows: Vec<(usize, Matrix2x3<f64>, Vector2<f64>, f64)> = Vec::new();
-        for place in track {
-            let r = residual(place, &world, cameras, shifts)?;
-            rows.push((
-                place.0,
-                cameras[place.0].project_jacobian(&world)?,
-                r,
-                huber(&r) / (SIGMA_PX * SIGMA_PX),
-            ));
-        }
-        let sum = |f: &dyn Fn(&Matrix2x3<f64>, f64) -> Matrix3<f64>| {
-            rows.iter()
-                .map(|(_, j, _, w)| f(j, *w))
-                .sum::<Matrix3<f64>>()
-        };
-        let point = sum(&|j, w| j.transpose() * j * w).try_inverse()?;
-        let point_right: Vector3<f64> =
-            rows.iter().map(|(_, j, r, w)| j.transpose() * r * *w).sum();
-        for (a, ja, ra, wa) in &rows {
-            let mut at = self.right.fixed_rows_mut::<2>(2 * a);
-            at += (ra - ja * point * point_right) * *wa;
-            let mut diagonal = self.normal.fixed_view_mut::<2, 2>(2 * a, 2 * a);
-            diagonal += nalgebra::Matrix2::identity() * *wa;
-            for (b, jb, _, wb) in &rows {
-                let mut block = self.normal.fixed_view_mut::<2, 2>(2 * a, 2 * b);
-                block -= ja * point * jb.transpose() * (wa * wb);
-            }
-        }
-        Some(())
-    }
-
-    /// Changes of the shifts of these views, the others staying, and their standard deviations, pixels.
-    fn solve(&self, free: &[usize]) -> Option<(Vec<Vector2<f64>>, Vec<f64>)> {
-        let place = |k: usize| 2 * free[k / 2] + k % 2;
-        let size = 2 * free.len();
-        let normal = DMatrix::from_fn(size, size, |a, b| self.normal[(place(a), place(b))]);
-        let right = DVector::from_fn(size, |a, _| self.right[place(a)]);
-        let factors = normal.cholesky()?;
-        let change = factors.solve(&right);
-        let inverse = factors.inverse();
-        let of_view = |k: usize| {
-            let variance = inverse[(2 * k, 2 * k)].max(inverse[(2 * k + 1, 2 * k + 1)]);
-            (
-                Vector2::new(change[2 * k], change[2 * k + 1]),
-                variance.sqrt(),
-            )
-        };
-        Some((0..free.len()).map(of_view).unzip())
-    }
+    cameras.iter().zip(shifts).map(moved).collect()
 }

@@ -185,7 +185,7 @@ pub fn conditioning(
         .iter()
         .map(|o| Weighted::new(o, params))
         .collect();
-    let across = across(&line.direction());
+    let across = line_frame(&line.direction());
     let mut information = Matrix4::zeros();
     for o in &weighted {
         let (_, j) = o.residual(line, &across)?;
@@ -216,7 +216,7 @@ fn finish(line: Segment3, state: Normal) -> Option<LineFit> {
 }
 
 /// An observation with its projection matrix and the whitening of its two residuals.
-struct Weighted {
+pub(crate) struct Weighted {
     m: Matrix3<f64>,
     center: Point3<f64>,
     segment: Segment2,
@@ -225,7 +225,7 @@ struct Weighted {
 }
 
 impl Weighted {
-    fn new(o: &Observation, params: &Lines3dParams) -> Self {
+    pub fn new(o: &Observation, params: &Lines3dParams) -> Self {
         let length = o.segment.length().max(1.0);
         let floor = params.position_floor_px;
         let mut c = o.covariance;
@@ -246,7 +246,7 @@ impl Weighted {
     }
 
     /// Whitened (offset, angle) and its 4 x 2 transposed Jacobian; `None` behind the camera.
-    fn residual(
+    pub fn residual(
         &self,
         line: &Segment3,
         across: &[Vector3<f64>; 2],
@@ -295,7 +295,7 @@ fn normal_equations(
     line: &Segment3,
     params: &Lines3dParams,
 ) -> Option<Normal> {
-    let across = across(&line.direction());
+    let across = line_frame(&line.direction());
     let c2 = params.loss_scale * params.loss_scale;
     let mut normal = Normal {
         across,
@@ -325,7 +325,7 @@ fn displace(line: &Segment3, across: &[Vector3<f64>; 2], step: &Vector4<f64>) ->
 }
 
 /// Two unit vectors across a direction, built on the coordinate axis farthest from it.
-fn across(direction: &Vector3<f64>) -> [Vector3<f64>; 2] {
+pub(crate) fn line_frame(direction: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let axis = direction.iamin();
     let mut e = Vector3::zeros();
     e[axis] = 1.0;
@@ -414,7 +414,7 @@ mod tests {
         let cameras = cameras();
         let observations = observe(&cameras, 0.3, &mut 7);
         let line = planted();
-        let across = across(&line.direction());
+        let across = line_frame(&line.direction());
         for o in &observations {
             let o = Weighted::new(o, &Lines3dParams::default());
             let (_, j) = o.residual(&line, &across).unwrap();

@@ -11,6 +11,7 @@ mod projection;
 
 pub(crate) use extent::doubly_covered;
 pub use fit::{LineFit, Observation, conditioning, fit_line, line_of_planes};
+pub(crate) use fit::{Weighted, line_frame};
 pub use projection::ProjectedLine;
 
 use nalgebra::{Matrix3, Point3};

@@ -5,29 +5,35 @@
 //!   first pixel is (0, 0).
 //! * `$EXT_ORI`: focal length, X, Y, Z, and the matrix Rx(omega) Ry(phi) Rz(kappa), from the image to the world.
 //!
-//! `$CAMERA_MOUNT_ROTATION` belongs to the angles of the flight, not to the matrix, and is not read. Assumption:
-//! distortion tables were applied by the program that wrote the images; a warning says so.
+//! * `$RADIAL_COEFFS` (k0, k1, ...) and `$DECENTRE_COEFFS` (p1, p2) of `$DISTORTION_TYPE : Polynomial`, or a table of radius and
+//!   distortion (a key of DISTORTION with rows of two numbers).
+//!
+//! ```text
+//! measured - ideal = (x, y) (k0 + k1 r^2 + k2 r^4 + ...) + (p1 (r^2 + 2 x^2) + 2 p2 x y, p2 (r^2 + 2 y^2) + 2 p1 x y)
+//! ```
+//!
+//! Assumption: x, y and r are the measured place in mm from the principal point, as is usual in photogrammetry, and the
+//! distortion is positive outwards, as on calibration certificates. A table's distortion is in mm, or in micrometres where mm would
+//! be more than a twentieth of the radius. If the images are free of distortion already, the doctor will see it.
+//!
+//! `$CAMERA_MOUNT_ROTATION` belongs to the angles of the flight, not to the matrix, and is not read.
 
 use std::collections::BTreeMap;
 
-use nalgebra::{Matrix2, Matrix3, Point3, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3};
 
+use super::lens::fit;
 use super::projection::decompose;
 use super::text::{Line, data_lines};
 use super::{Orientation, pinhole};
-use crate::Result;
+use crate::camera::Distortion;
+use crate::{Result, math};
 
 /// Reads the photos of a project.
 pub(super) fn read(path: &str, text: &str, warnings: &mut Vec<String>) -> Result<Vec<Orientation>> {
     let blocks = blocks(path, text);
     let cameras: Vec<&Block> = blocks.iter().filter(|b| b.is_camera).collect();
-    let distorts = |b: &&Block| b.values.keys().any(|key| key.contains("DISTORTION"));
-    if cameras.iter().any(distorts) {
-        warnings.push(format!(
-            "{path}: its distortion tables are not read: the images must be free of distortion"
-        ));
-    }
-    let mut found = Vec::new();
+    let (mut found, mut distorts) = (Vec::new(), false);
     for photo in blocks.iter().filter(|b| !b.is_camera) {
         // Photos without it were not oriented.
         let Some(exterior) = photo.values.get("EXT_ORI") else {
@@ -41,7 +47,14 @@ pub(super) fn read(path: &str, text: &str, warnings: &mut Vec<String>) -> Result
             let problem = format!("its camera {} is missing", id.unwrap_or("(without name)"));
             return Err(photo.start.error(problem, "a $CAMERA block of this $ID"));
         };
-        found.push(orientation(photo, exterior, &Interior::read(camera)?)?);
+        let interior = Interior::read(camera)?;
+        distorts |= interior.lens != Lens::None;
+        found.push(orientation(photo, exterior, &interior)?);
+    }
+    if distorts {
+        warnings.push(format!(
+            "{path}: the distortion that it states is removed from the images (if they are free of it already, delete it there)"
+        ));
     }
     Ok(found)
 }
@@ -101,6 +114,15 @@ impl Block<'_> {
         (!text.is_empty()).then_some(text)
     }
 
+    /// All numbers of a key and below it; none where it is missing.
+    fn all_numbers(&self, key: &str) -> Result<Vec<f64>> {
+        let mut values = Vec::new();
+        for line in self.values.get(key).map_or(&[][..], |lines| lines) {
+            values.extend(line.numbers(&line.fields(), "a number")?);
+        }
+        Ok(values)
+    }
+
     /// The numbers of a key.
     fn numbers<const N: usize>(&self, key: &str) -> Result<[f64; N]> {
         let lines = self.values.get(key);
@@ -138,6 +160,89 @@ struct Interior {
     principal_mm: Vector2<f64>,
     focal_mm: f64,
     size: (u32, u32),
+    lens: Lens,
+}
+
+/// Measured against ideal places, mm.
+#[derive(Clone, Debug, PartialEq)]
+enum Lens {
+    None,
+    /// Radial k0, k1, ..., and p1, p2.
+    Polynomial(Vec<f64>, [f64; 2]),
+    /// Radius and distortion.
+    Table(Vec<[f64; 2]>),
+}
+
+impl Lens {
+    fn read(camera: &Block) -> Result<Self> {
+        if camera.values.contains_key("RADIAL_COEFFS") {
+            let radial = camera.all_numbers("RADIAL_COEFFS")?;
+            let decentre = camera.all_numbers("DECENTRE_COEFFS")?;
+            let at = |i: usize| decentre.get(i).copied().unwrap_or(0.0);
+            let lens = Self::Polynomial(radial, [at(0), at(1)]);
+            return Ok(if lens.is_zero() { Self::None } else { lens });
+        }
+        let mut tables = (camera.values.iter())
+            .filter(|(key, lines)| key.contains("DISTORTION") && lines.len() > 2)
+            .map(|(key, _)| *key);
+        let Some(key) = tables.next() else {
+            return Ok(Self::None);
+        };
+        let numbers = camera.all_numbers(key)?;
+        if numbers.len() % 2 != 0 {
+            let problem = format!("${key} has {} numbers", numbers.len());
+            return Err(camera.start.error(problem, "pairs: radius and distortion"));
+        }
+        let rows = || numbers.chunks(2).map(|pair| [pair[0], pair[1]]);
+        let is_mm = rows().all(|[radius, d]| d.abs() <= 0.05 * radius.abs());
+        let unit = if is_mm { 1.0 } else { 1e-3 };
+        let lens = Self::Table(rows().map(|[radius, d]| [radius, d * unit]).collect());
+        Ok(if lens.is_zero() { Self::None } else { lens })
+    }
+
+    fn is_zero(&self) -> bool {
+        match self {
+            Self::None => true,
+            Self::Polynomial(radial, decentre) => radial.iter().chain(decentre).all(|&v| v == 0.0),
+            Self::Table(rows) => rows.iter().all(|row| row[1] == 0.0),
+        }
+    }
+
+    /// Radii at which the lens is known or may be asked, mm, up to the farthest corner.
+    fn radii(&self, farthest_mm: f64) -> Vec<f64> {
+        const STEPS: i32 = 24;
+        match self {
+            Self::None => Vec::new(),
+            Self::Polynomial(..) => {
+                let radius = |i| farthest_mm * f64::from(i) / f64::from(STEPS);
+                (1..=STEPS).map(radius).collect()
+            }
+            Self::Table(rows) => rows.iter().map(|row| row[0]).filter(|&r| r > 0.0).collect(),
+        }
+    }
+
+    /// The ideal place of a measured one, mm from the principal point.
+    fn ideal(&self, measured: &Vector2<f64>) -> Vector2<f64> {
+        let (x, y, r2) = (measured.x, measured.y, measured.norm_squared());
+        match self {
+            Self::None => *measured,
+            Self::Polynomial(radial, [p1, p2]) => {
+                let g = radial.iter().rev().fold(0.0, |sum, k| sum * r2 + k);
+                let aside = Vector2::new(
+                    p1 * (r2 + 2.0 * x * x) + 2.0 * p2 * x * y,
+                    p2 * (r2 + 2.0 * y * y) + 2.0 * p1 * x * y,
+                );
+                measured * (1.0 - g) - aside
+            }
+            // Asked at the radii of the rows only.
+            Self::Table(rows) => {
+                let radius = r2.sqrt();
+                let gap = |row: &[f64; 2]| (row[0] - radius).abs();
+                let row = rows.iter().min_by(|a, b| gap(a).total_cmp(&gap(b)));
+                measured * (1.0 - row.map_or(0.0, |row| row[1]) / radius)
+            }
+        }
+    }
 }
 
 impl Interior {
@@ -166,7 +271,32 @@ impl Interior {
             principal_mm: Vector2::from(principal),
             focal_mm: camera.numbers::<1>("FOCAL_LENGTH")?[0],
             size: (side("CCD_COLUMNS")?, side("CCD_ROWS")?),
+            lens: Lens::read(camera)?,
         })
+    }
+
+    /// Pairs of (ideal, measured) places, pixels.
+    fn lens_pairs(&self) -> Option<Vec<(Vector2<f64>, Vector2<f64>)>> {
+        const DIRECTIONS: i32 = 16;
+        let mm_from_pixel = self.pixel_from_mm.try_inverse()?;
+        let (w, h) = (f64::from(self.size.0), f64::from(self.size.1));
+        let corners = [[0.0, 0.0], [w, 0.0], [0.0, h], [w, h]].map(Vector2::from);
+        let radius = |corner: &Vector2<f64>| {
+            (mm_from_pixel * (corner - self.pixel_of_zero) - self.principal_mm).norm()
+        };
+        let farthest = corners.iter().map(radius).fold(0.0, f64::max);
+        let pixel =
+            |mm: &Vector2<f64>| self.pixel_from_mm * (mm + self.principal_mm) + self.pixel_of_zero;
+        let mut pairs = Vec::new();
+        for radius in self.lens.radii(farthest) {
+            for i in 0..DIRECTIONS {
+                let (s, c) =
+                    math::sin_cos(f64::from(i) * std::f64::consts::TAU / f64::from(DIRECTIONS));
+                let measured = Vector2::new(c, s) * radius;
+                pairs.push((pixel(&self.lens.ideal(&measured)), pixel(&measured)));
+            }
+        }
+        Some(pairs)
     }
 
     /// From directions (x right, y up, z back) to pixels: x ~ K (x, y, -z).
@@ -207,10 +337,48 @@ fn orientation(photo: &Block, exterior: &[Line], interior: &Interior) -> Result<
         .unwrap_or_default();
     let image = file.rsplit(['/', '\\']).next().unwrap_or(file);
     let source = format!("{}, line {}", photo.start.file, photo.start.number);
+    let (k, distortion) = with_lens(photo, k, interior)?;
     Ok(Orientation {
         size: Some(interior.size),
+        distortion,
         ..pinhole(image, &source, k, r, Point3::new(n[1], n[2], n[3]))
     })
+}
+
+/// The calibration and the distortion that stand for the lens of the file.
+fn with_lens(
+    photo: &Block,
+    mut k: Matrix3<f64>,
+    interior: &Interior,
+) -> Result<(Matrix3<f64>, Option<Distortion>)> {
+    // Tables are rounded to a micrometre or a tenth of it.
+    let allowed_px = match interior.lens {
+        Lens::None => return Ok((k, None)),
+        Lens::Polynomial(..) => 0.05,
+        Lens::Table(_) => 0.5,
+    };
+    let refusal = || {
+        let problem =
+            "its distortion is none that Brown's formula with three coefficients comes near";
+        photo
+            .start
+            .error(problem, "free the images of distortion, and delete it here")
+    };
+    let inverse = k.try_inverse().ok_or_else(refusal)?;
+    let normalised = |p: &Vector2<f64>| Point2::from((inverse * Vector3::new(p.x, p.y, 1.0)).xy());
+    let pairs = interior.lens_pairs().ok_or_else(refusal)?;
+    let pairs: Vec<_> = pairs
+        .iter()
+        .map(|(a, b)| (normalised(a), normalised(b)))
+        .collect();
+    let focal_px = k[(0, 0)].abs();
+    let lens = fit(&pairs)
+        .filter(|lens| lens.worst * focal_px < allowed_px)
+        .ok_or_else(refusal)?;
+    for at in [(0, 0), (0, 1), (1, 1)] {
+        k[at] *= lens.focal_factor;
+    }
+    Ok((k, Some(lens.distortion)))
 }
 
 #[cfg(test)]
@@ -243,6 +411,90 @@ mod tests {
                 && (p.y - (-250.0 * x + 5300.5)).abs() < 1e-6,
             "{p}"
         );
+    }
+
+    /// A camera of 100 mm and 5 micrometres, whose image is turned where `turned` says so.
+    fn with(lens: &str, turned: bool) -> Result<Orientation> {
+        let interior = match turned {
+            true => "0 -200 3000\n -200 0 2000",
+            false => "200 0 3000\n 0 -200 2000",
+        };
+        let text = format!(
+            "$PROJECT 6\n$CAMERA\n $CCD_INTERIOR_ORIENTATION :\n {interior}\n $CCD_COLUMNS : 6000\n $CCD_ROWS : 4000\n $FOCAL_LENGTH : 50\n \
+             $PRINCIPAL_POINT_PPA : 0.1 -0.2\n{lens}$END\n$PHOTO\n $PHOTO_NUM : a\n $EXT_ORI :\n 50 0 0 1000\n 1 0 0\n 0 1 0\n 0 0 1\n$END\n"
+        );
+        Ok(read("a.prj", &text, &mut Vec::new())?.remove(0))
+    }
+
+    /// Where the camera puts the ray that is ideally at this place of the image plane, mm.
+    fn pixel(found: &Orientation, ideal_mm: Vector2<f64>) -> Vector2<f64> {
+        let ray = found.r * Vector3::new(ideal_mm.x, ideal_mm.y, -50.0);
+        let seen = found
+            .distortion
+            .unwrap()
+            .distort(&Point2::new(ray.x / ray.z, ray.y / ray.z));
+        (found.k * Vector3::new(seen.x, seen.y, 1.0)).xy()
+    }
+
+    #[test]
+    fn a_polynomial_and_a_table_put_points_where_the_lens_does() {
+        let (k0, k1, k2, p1, p2) = (1e-4, -1.5e-5, 4e-9, 3.4e-6, -4.4e-6);
+        let polynomial = format!(
+            " $DISTORTION_TYPE : Polynomial\n $RADIAL_COEFFS :\n {k0} {k1} {k2} 0\n 0 0 0 0\n $DECENTRE_COEFFS :\n {p1} {p2} 0 0\n"
+        );
+        let rows = (0..=20).map(|i| f64::from(i) * 1.0);
+        let row = |r: f64| {
+            format!(
+                "  {r} {:.4}\n",
+                1e3 * (k1 * r * r * r + k2 * r * r * r * r * r)
+            )
+        };
+        let table = format!(
+            " $RADIAL_DISTORTION :\n{}",
+            rows.map(row).collect::<String>()
+        );
+        for turned in [false, true] {
+            for (lens, [k0, p1, p2], bound_px) in
+                [(&polynomial, [k0, p1, p2], 0.01), (&table, [0.0; 3], 0.01)]
+            {
+                let found = with(lens, turned).unwrap();
+                for (x, y) in [(12.0, 7.0), (-14.0, 3.0), (5.0, -9.0), (0.5, 0.2)] {
+                    let r2: f64 = x * x + y * y;
+                    let g = k0 + k1 * r2 + k2 * r2 * r2;
+                    let ideal = Vector2::new(
+                        x - x * g - p1 * (r2 + 2.0 * x * x) - 2.0 * p2 * x * y,
+                        y - y * g - p2 * (r2 + 2.0 * y * y) - 2.0 * p1 * x * y,
+                    );
+                    let (u, v) = (x + 0.1, y - 0.2);
+                    let (column, row) = match turned {
+                        true => (-200.0 * v + 3000.5, -200.0 * u + 2000.5),
+                        false => (200.0 * u + 3000.5, -200.0 * v + 2000.5),
+                    };
+                    let error = (pixel(&found, ideal) - Vector2::new(column, row)).norm();
+                    assert!(
+                        error < bound_px,
+                        "{error} px at ({x}, {y}), turned {turned}: {lens}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_lens_that_no_formula_fits_is_refused() {
+        let row = |i: i32| format!(" {} {}\n", 2 * i, if i % 2 == 0 { 90 } else { -90 });
+        let rows: String = (1..=10).map(row).collect();
+        let table = format!(" $RADIAL_DISTORTION :\n{rows}");
+        assert!(
+            with(&table, false)
+                .unwrap_err()
+                .to_string()
+                .contains("Brown")
+        );
+        let odd = " $RADIAL_DISTORTION :\n 0 0\n 5 1\n 10 2 3\n 15 4\n";
+        assert!(with(odd, false).unwrap_err().to_string().contains("pairs"));
+        let zero = " $RADIAL_COEFFS :\n 0 0 0 0\n $DECENTRE_COEFFS :\n 0 0\n";
+        assert_eq!(with(zero, false).unwrap().distortion, None);
     }
 
     #[test]

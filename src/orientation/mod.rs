@@ -27,6 +27,7 @@ mod detect;
 mod geodesy;
 mod inpho;
 mod json;
+mod lens;
 mod matrices;
 mod micmac;
 mod patb;

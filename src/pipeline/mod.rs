@@ -9,11 +9,13 @@
 //! Invariant: no geometry here. Invariant: a result in a [`Run`] always belongs to the current
 //! parameters and to the current results before it; what is out of date is dropped, never shown.
 
+mod adjustment;
 mod report;
 mod shared;
 mod stage;
 mod summary;
 
+pub use adjustment::{adjust_orientation, load_adjusted};
 pub use shared::PackedView;
 pub use stage::Stage;
 pub use summary::StageSummary;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::{Run, Stage, StageSummary};
+use crate::adjust::ViewAdjustment;
 use crate::doctor::ViewShift;
 use crate::params::Params;
 
@@ -33,6 +34,9 @@ struct ReportView<'a> {
     /// Shift against the other views, where they show enough to tell.
     #[serde(skip_serializing_if = "Option::is_none")]
     orientation: Option<&'a ViewShift>,
+    /// What the adjustment to matched lines did, where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    adjustment: Option<&'a ViewAdjustment>,
 }
 
 /// The bytes of `report.json`; `seconds` may be empty.
@@ -47,6 +51,7 @@ pub(super) fn report(run: &Run, seconds: &[(Stage, f64)]) -> Vec<u8> {
             width: view.camera.width,
             height: view.camera.height,
             orientation: run.scene.survey.shifts.get(i),
+            adjustment: run.scene.survey.adjustments.get(i),
         });
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),

@@ -3,6 +3,7 @@
 //! ```text
 //! plan_tiles   cores that cover the area without gap or overlap, and regions with a margin around them
 //! Tile::keep   of the buildings of a region, those whose middle lies in the core or next to it
+//! Area         one tile after the other
 //! join         one model: each building once, ids renumbered, image positions of the whole images, one atlas
 //! ```
 //!
@@ -10,8 +11,10 @@
 //! beyond the core; so there is no seam through a building. Buildings that touch each other and come from different
 //! tiles may overlap by the accuracy of their eaves.
 
+mod area;
 mod join;
 
+pub use area::{Area, TileReport};
 pub use join::{Joined, TilePart, join};
 
 use nalgebra::{Point2, Vector3};

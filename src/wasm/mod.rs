@@ -8,6 +8,7 @@ mod figures;
 mod results;
 mod session;
 mod sharing;
+mod tiles;
 
 pub use figures::Picture;
 pub use results::ViewImage;

@@ -150,8 +150,12 @@ impl Session {
 
 impl Session {
     fn outputs(&mut self) -> Result<&[(String, Vec<u8>)], JsValue> {
-        let run = self.run.as_ref().ok_or_else(not_loaded)?;
-        Ok(self.outputs.get_or_insert_with(|| run.files(&[])))
+        // Joined tiles have files and no run.
+        if self.outputs.is_none() {
+            let run = self.run.as_ref().ok_or_else(not_loaded)?;
+            self.outputs = Some(run.files(&[]));
+        }
+        Ok(self.outputs.as_deref().unwrap_or_default())
     }
 }
 

@@ -10,25 +10,26 @@ use super::convert::{from_js, input_error, named_error, row_major, to_js};
 use crate::doctor;
 use crate::halfplane::PointsOfInterest;
 use crate::params::{Method, Params};
-use crate::pipeline::{PackedView, Run, Stage};
+use crate::pipeline::{PackedView, Run, Stage, load_adjusted};
 use crate::progress::Listener;
-use crate::scene_loader::{
-    InputFile, LoadOptions, Project, inspect_files, load_scene, open_project, unpack,
-};
+use crate::scene_loader::{InputFile, LoadOptions, Project, inspect_files, open_project, unpack};
 use crate::shares::Known;
 use crate::sorting::sort_by;
+use crate::tiles::Area;
 
 /// Files, parameters and the reconstruction made of them.
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Session {
-    files: Vec<InputFile>,
+    pub(super) files: Vec<InputFile>,
     /// The project that was added last.
     project: Option<Project>,
     pub(super) params: Params,
     pub(super) run: Option<Run>,
     /// Views from another session, until they are all there.
     pub(super) packed: Vec<PackedView>,
+    /// A large area that is worked off in tiles.
+    pub(super) area: Option<Area>,
     /// What the sessions that share this run found of the next stage.
     pub(super) known: Known,
     /// Written on first request after the last stage.
@@ -140,11 +141,8 @@ impl Session {
     #[wasm_bindgen(js_name = exportProject)]
     pub fn export_project(&self, options: JsValue) -> Result<Vec<u8>, JsValue> {
         let project = Project::new(load_options(&options)?, self.params.clone());
-        let results = self
-            .run
-            .as_ref()
-            .map(|run| run.files(&[]))
-            .unwrap_or_default();
+        let of_run = || self.run.as_ref().map(|run| run.files(&[]));
+        let results = self.outputs.clone().or_else(of_run).unwrap_or_default();
         project
             .pack(&self.files, &results)
             .map_err(|e| input_error(&e))
@@ -157,6 +155,7 @@ impl Session {
         self.packed.clear();
         self.known = Known::default();
         self.project = None;
+        self.area = None;
         self.run = None;
         self.outputs = None;
         self.points = None;
@@ -172,10 +171,12 @@ impl Session {
     /// warnings}` out.
     pub fn load(&mut self, options: JsValue) -> Result<JsValue, JsValue> {
         let options = load_options(&options)?;
+        self.area = None;
         self.run = None;
         self.outputs = None;
         self.points = None;
-        let scene = load_scene(&self.files, &options).map_err(|e| input_error(&e))?;
+        let scene =
+            load_adjusted(&self.files, &options, &self.params).map_err(|e| input_error(&e))?;
         let views = scene.views.iter().map(|view| ViewInfo {
             name: view.name.clone(),
             width: view.camera.width,
@@ -239,7 +240,7 @@ pub(super) fn listener_of(on_progress: &Function) -> Listener {
     })
 }
 
-fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
+pub(super) fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
     let options: Option<JsLoadOptions> = from_js(options, "options of load")?;
     let options = options.unwrap_or_default();
     Ok(LoadOptions {

@@ -1,6 +1,7 @@
 /** The output files, as soon as their stage has run. */
+import { saveProject } from "./projectActions";
 import { download } from "./running";
-import { exportNames } from "./state";
+import { exportNames, inspection, isBusy } from "./state";
 
 const WHAT: Record<string, string> = {
   "model.glb": "textured model, glTF 2.0",
@@ -21,7 +22,18 @@ const WHAT: Record<string, string> = {
 export function Downloads() {
   return (
     <section class="panel">
-      <h2>Output</h2>
+      <div class="row spread">
+        <h2>Output</h2>
+        <button
+          type="button"
+          class="quiet"
+          disabled={inspection.value === null || isBusy.value}
+          title="Images, orientation, choices, parameters and results in one file, which opens here and on the command line"
+          onClick={() => void saveProject()}
+        >
+          Save project
+        </button>
+      </div>
       {exportNames.value.length === 0 ? (
         <p class="muted">Files appear here once their stage has run.</p>
       ) : (

@@ -1,7 +1,7 @@
 /** Which orientation, which part of the ground, how high it lies. */
 import { useState } from "preact/hooks";
 import { setRunOptions } from "./projectActions";
-import { type Parsed, parseHeight, parseRegion } from "./runOptions";
+import { type Parsed, parseHeight, parseRegion, parseTile } from "./runOptions";
 import { inspection, runOptions } from "./state";
 
 /** Where the files hold the orientation several times: which one is taken. */
@@ -30,9 +30,9 @@ export function OrientationChoice() {
 
 /** Region of interest and height of the ground, both in the frame of the orientation. */
 export function PlaceFields() {
-  const { roi, groundZ } = runOptions.value;
+  const { roi, groundZ, tileM, adjust } = runOptions.value;
   return (
-    <details class="params" open={roi !== null || groundZ !== null}>
+    <details class="params" open={roi !== null || groundZ !== null || adjust}>
       <summary>Region and ground</summary>
       <OptionField
         id="roi"
@@ -50,6 +50,18 @@ export function PlaceFields() {
         parse={parseHeight}
         onValue={(value) => void setRunOptions({ groundZ: value })}
       />
+      <OptionField
+        id="tile"
+        label="In tiles of (m)"
+        placeholder="in one"
+        shown={tileM?.toString() ?? ""}
+        parse={parseTile}
+        onValue={(value) => void setRunOptions({ tileM: value })}
+      />
+      <label class="option">
+        <input type="checkbox" checked={adjust} onChange={() => void setRunOptions({ adjust: !adjust })} />
+        Adjust small errors of single views
+      </label>
     </details>
   );
 }

@@ -1,12 +1,14 @@
 /** What a person can do with the project: files, the demo scene, and what is asked for beyond the files. */
 import { batch } from "@preact/signals";
 import type { InputFile } from "../shared/messages";
-import { ensureInspected, ensureScene, guarded, held, listStages, notify, stopWorker } from "./core";
+import { engine, ensureInspected, ensureScene, guarded, held, listStages, notify, stopWorker } from "./core";
+import { save } from "./files";
 import type { Kept } from "./keep";
 import { linkedParams } from "./link";
 import { failureNotice } from "./notices";
 import { changedParams, paramsOf } from "./paramForm";
 import { clearResults, runAll, runTo } from "./running";
+import { loadOptions, wishesOf } from "./runOptions";
 import {
   defaults,
   files,
@@ -40,7 +42,34 @@ export async function addFiles(added: InputFile[], name?: string): Promise<void>
   if (name !== undefined || projectName.value === "") {
     projectName.value = name ?? "Own files";
   }
-  await setProject([...byPath.values()]);
+  await setProject([...byPath.values()], adoptProject);
+}
+
+/** Takes up what a project file among the added ones asks for. */
+async function adoptProject(): Promise<void> {
+  const opened = await engine.call("openedProject", {});
+  if (opened === null || inspection.value === null) {
+    return;
+  }
+  const wishes = wishesOf(opened.options, inspection.value);
+  batch(() => {
+    runOptions.value = wishes;
+    params.value = paramsOf(defaults.value, changedParams(defaults.value, opened.params));
+    inspection.value = null;
+  });
+  await listStages();
+  await ensureInspected();
+}
+
+/** Saves files, wishes, parameters and results as one file, which opens to the same state. */
+export async function saveProject(): Promise<void> {
+  await guarded("Writing the project", async () => {
+    await ensureInspected();
+    await engine.call("setParams", { params: params.value });
+    const options = loadOptions(runOptions.value, inspection.value);
+    const bytes = await engine.call("exportProject", { options });
+    save("ridgeline-project.zip", new Blob([bytes], { type: "application/zip" }));
+  });
 }
 
 export async function removeFile(path: string): Promise<void> {
@@ -77,7 +106,7 @@ async function removing(what: string, remove: () => Promise<void>): Promise<void
 /** Takes up the project of the last visit. */
 export async function restoreProject(kept: Kept): Promise<void> {
   projectName.value = kept.name;
-  runOptions.value = kept.options;
+  runOptions.value = { ...NO_OPTIONS, ...kept.options };
   const linked = linkedParams();
   params.value = paramsOf(defaults.value, { ...changedParams(defaults.value, kept.params), ...linked });
   await guarded("", listStages);
@@ -121,7 +150,7 @@ export async function setRunOptions(change: Partial<RunOptions>): Promise<void> 
   await loadProject("Loading");
 }
 
-async function setProject(next: InputFile[]): Promise<void> {
+async function setProject(next: InputFile[], adopt?: () => Promise<void>): Promise<void> {
   stopWorker();
   held.files = false;
   held.scene = false;
@@ -134,22 +163,24 @@ async function setProject(next: InputFile[]): Promise<void> {
     runOptions.value = next.length === 0 ? NO_OPTIONS : runOptions.value;
     clearScene();
   });
-  await loadProject("Reading files");
+  await loadProject("Reading files", adopt);
 }
 
 /** Inspects the files, says what stands against them, or loads the scene. */
-async function loadProject(what: string): Promise<void> {
+async function loadProject(what: string, adopt?: () => Promise<void>): Promise<void> {
   if (files.value.length === 0) {
     return;
   }
   await guarded(what, async () => {
     await ensureInspected();
+    await adopt?.();
     const problems = inspection.value?.errors ?? [];
     // The inspection is of all images, and does not look into them: where that matters, loading says
     // what is wrong.
     const isFinal = runOptions.value.leftOut.length === 0 && inspection.value?.is_implausible !== true;
     if (problems.length === 0 || !isFinal) {
-      await ensureScene();
+      // A large area may be too much to load at once.
+      await (runOptions.value.tileM === null ? ensureScene() : Promise.resolve());
       return;
     }
     for (const problem of problems.slice(0, MAX_PROBLEMS)) {

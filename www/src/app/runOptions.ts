@@ -1,10 +1,10 @@
 /** What a person asks for beyond the files, as text in fields and as the core takes it. */
-import type { Inspection, LoadOptions } from "../shared/results";
+import type { Inspection, LoadOptions, OpenedProject } from "../shared/results";
 import type { RunOptions } from "./state";
 
 /** The core's options; the views are named only where some are left out. */
 export function loadOptions(wanted: RunOptions, inspection: Inspection | null): LoadOptions {
-  const { orientation, leftOut, roi, groundZ, applyFix } = wanted;
+  const { orientation, leftOut, roi, groundZ, applyFix, adjust, epsg } = wanted;
   const used = (inspection?.images ?? []).filter(({ path }) => !leftOut.includes(path));
   return {
     ...(orientation !== null && { orientation }),
@@ -12,8 +12,41 @@ export function loadOptions(wanted: RunOptions, inspection: Inspection | null): 
     ...(roi !== null && { roi }),
     ...(groundZ !== null && { groundZ }),
     ...(applyFix && { applyFix }),
+    ...(adjust && { adjust }),
+    ...(epsg !== null && { epsg }),
   };
 }
+
+/** What a project file asks for, as the page has it; images are left out that it does not name. */
+export function wishesOf(opened: OpenedProject["options"], inspection: Inspection): RunOptions {
+  const { orientation, views, roi, groundZ, epsg } = opened;
+  const isNamed = (name: string) => (views ?? []).some((view) => stem(view) === stem(name));
+  const leftOut = views === null ? [] : inspection.images.filter(({ name }) => !isNamed(name));
+  return {
+    orientation,
+    leftOut: leftOut.map(({ path }) => path),
+    roi,
+    groundZ,
+    epsg,
+    applyFix: opened.applyFix === true,
+    adjust: opened.adjust === true,
+    tileM: null,
+  };
+}
+
+function stem(name: string): string {
+  return name.replace(/\.[^.]*$/, "");
+}
+
+/** The size of a tile in metres; nothing is no tiles. */
+export function parseTile(text: string): Parsed<number> {
+  const parsed = parseHeight(text);
+  const isTooSmall = "value" in parsed && parsed.value !== null && parsed.value < LEAST_TILE_M;
+  return isTooSmall ? { error: `${LEAST_TILE_M} m or more` } : parsed;
+}
+
+/** Tiles have margins of this width. */
+const LEAST_TILE_M = 30;
 
 export type Parsed<T> = { value: T | null } | { error: string };
 

@@ -31,6 +31,7 @@ import {
   NO_RESULTS,
   params,
   results,
+  runOptions,
   scene,
   selection,
   shownPlane,
@@ -38,6 +39,7 @@ import {
   tab,
   workers,
 } from "./state";
+import { runTiles } from "./tiles";
 
 /** Runs every stage up to `target` that the worker has not run with the present parameters. */
 export async function runTo(target: string): Promise<void> {
@@ -53,6 +55,10 @@ export async function runTo(target: string): Promise<void> {
 }
 
 export async function runAll(): Promise<void> {
+  if (runOptions.value.tileM !== null) {
+    await guarded("", () => runTiles(runOptions.value.tileM as number));
+    return;
+  }
   const last = stages.value.at(-1);
   if (last !== undefined) {
     await runTo(last.name);

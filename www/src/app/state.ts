@@ -121,6 +121,12 @@ export interface RunOptions {
   groundZ: number | null;
   /** Undo the mistake in the orientation that the images give away. */
   applyFix: boolean;
+  /** Adjust small errors of single views. */
+  adjust: boolean;
+  /** Size of the tiles in which the region is worked off, metres; null: in one. */
+  tileM: number | null;
+  /** As a project file says. */
+  epsg: number | null;
 }
 
 export const NO_OPTIONS: RunOptions = {
@@ -129,6 +135,9 @@ export const NO_OPTIONS: RunOptions = {
   roi: null,
   groundZ: null,
   applyFix: false,
+  adjust: false,
+  tileM: null,
+  epsg: null,
 };
 
 export const runOptions = signal<RunOptions>(NO_OPTIONS);

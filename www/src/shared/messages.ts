@@ -5,9 +5,12 @@ import type {
   HalfPlane,
   Inspection,
   LoadOptions,
+  OpenedProject,
   Params,
+  Region,
   SceneInfo,
   StageSummary,
+  TileReport,
 } from "./results";
 import type * as traces from "./traces";
 
@@ -51,6 +54,12 @@ export interface Calls {
   learn: { args: { map: string; shares: Bytes[] }; result: null };
   exportNames: { args: object; result: string[] };
   exportFile: { args: { name: string }; result: Bytes };
+  planTiles: { args: { options: LoadOptions; tileM: number }; result: Region[] };
+  /** The next tile, which is the `index`-th of `of`; null when all are done. */
+  runTile: { args: { stage: string; index: number; of: number }; result: TileReport | null };
+  joinTiles: { args: object; result: null };
+  exportProject: { args: { options: LoadOptions }; result: Bytes };
+  openedProject: { args: object; result: OpenedProject | null };
 }
 
 /** Questions about the results, by the name of the session's method: they change nothing. */

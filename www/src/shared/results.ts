@@ -58,9 +58,28 @@ export interface LoadOptions {
   /** Height of the ground, metres, in the frame of the orientation. */
   groundZ?: number;
   /** x0, y0, x1, y1, metres, in the frame of the orientation. */
-  roi?: [number, number, number, number];
+  roi?: Region;
   /** Undo the mistake in the orientation that the images give away. */
   applyFix?: boolean;
+  /** Adjust views that are turned or moved against the others by up to a few pixels. */
+  adjust?: boolean;
+  /** EPSG's number of the world's reference system. */
+  epsg?: number;
+}
+
+/** x0, y0, x1, y1, metres. */
+export type Region = [number, number, number, number];
+
+/** What became of a tile of a large area. */
+export interface TileReport {
+  core: Region;
+  outcome: string;
+}
+
+/** What a project file asks for; null stands for what it leaves open. */
+export interface OpenedProject {
+  options: { [K in keyof LoadOptions]-?: LoadOptions[K] | null };
+  params: Params;
 }
 
 export interface ViewInfo {

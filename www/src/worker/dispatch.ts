@@ -1,5 +1,6 @@
 /** Answers one request with the core's Session: parse, call, convert. No geometry, no state but the session. */
 import {
+  type Args,
   type Bytes,
   type CallName,
   type InputFile,
@@ -15,9 +16,12 @@ import type {
   HalfPlane,
   Inspection,
   LoadOptions,
+  OpenedProject,
   Params,
+  Region,
   SceneInfo,
   StageSummary,
+  TileReport,
   ViewImage,
 } from "../shared/results";
 import type { WarpedPicture } from "../shared/traces";
@@ -49,6 +53,11 @@ export interface CoreSession extends Answers {
   learn(map: string, shares: Bytes[]): void;
   exportFile(name: string): Bytes;
   exportNames(): string[];
+  planTiles(options: LoadOptions, tileM: number): Region[];
+  runTile(onProgress: (fraction: number) => void): TileReport | null | undefined;
+  joinTiles(): void;
+  exportProject(options: LoadOptions): Bytes;
+  openedProject(): OpenedProject | null | undefined;
 }
 
 /** The wasm module once compiled: its class and what hangs on the class itself. */
@@ -122,6 +131,17 @@ export async function dispatch(
       return copied(session.exportNames());
     case "exportFile":
       return moved(session.exportFile(request.args.name));
+    case "planTiles":
+      return copied(session.planTiles(request.args.options, request.args.tileM));
+    case "runTile":
+      return copied(runTile(session, request.args, onProgress));
+    case "joinTiles":
+      session.joinTiles();
+      return copied(null);
+    case "exportProject":
+      return moved(session.exportProject(request.args.options));
+    case "openedProject":
+      return copied(session.openedProject() ?? null);
   }
 }
 
@@ -148,6 +168,16 @@ function sharedMaps(session: CoreSession, stage: string): Result<"sharedMaps"> {
 
 function shareOf(session: CoreSession, { stage, map, index, of }: Share, onProgress: OnProgress): Bytes {
   return session.share(stage, map, index, of, throttled(stage, onProgress));
+}
+
+/** A tile's progress as a part of the whole area's. */
+function runTile(
+  session: CoreSession,
+  { stage, index, of }: Args<"runTile">,
+  onProgress: OnProgress,
+): TileReport | null {
+  const heard = throttled(stage, onProgress);
+  return session.runTile((fraction) => heard((index + fraction) / of)) ?? null;
 }
 
 /** Passes a stage's progress on, but not more often than the page can draw it. */

@@ -22,12 +22,15 @@ export function demoImages(count: number): Upload[] {
   return names.map((name) => upload(name, readFileSync(new URL(name, folder))));
 }
 
-/** The demo's orientation; `change` edits its list of exterior orientations. */
-export function demoOrientation(change = (text: string) => text): Upload[] {
+/** The demo's orientation; `change` edits its list of exterior orientations, `changeCamera` the camera file. */
+export function demoOrientation(
+  change = (text: string) => text,
+  changeCamera = (text: string) => text,
+): Upload[] {
   const folder = new URL("orientation/photogrammetric/", DEMO);
   const text = (name: string) => readFileSync(new URL(name, folder), "utf8");
   return [
-    upload("camera.txt", Buffer.from(text("camera.txt"))),
+    upload("camera.txt", Buffer.from(changeCamera(text("camera.txt")))),
     upload("exterior.txt", Buffer.from(change(text("exterior.txt")))),
   ];
 }

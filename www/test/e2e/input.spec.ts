@@ -1,3 +1,4 @@
+import { deflateSync } from "node:zlib";
 import { expect, test } from "@playwright/test";
 import {
   demoImages,
@@ -32,6 +33,64 @@ const truncated = (): Upload[] => {
   return [upload(first.name, first.buffer.subarray(0, 20_000)), ...others, ...demoOrientation()];
 };
 
+/** Three black images of 36 million pixels: small files, and far too much to compute with. */
+function largeScene(): Upload[] {
+  const size = 6000;
+  const png = blackPng(size);
+  const views = [-100, 0, 100].map((x) => ({
+    file: `at${x}.png`,
+    width: size,
+    height: size,
+    K: [
+      [6000, 0, 3000],
+      [0, 6000, 3000],
+      [0, 0, 1],
+    ],
+    R: [
+      [1, 0, 0],
+      [0, -1, 0],
+      [0, 0, -1],
+    ],
+    C: [x, 0, 1000],
+  }));
+  const orientation = upload("cameras.json", Buffer.from(JSON.stringify({ views })));
+  return [...views.map(({ file }) => upload(file, png)), orientation];
+}
+
+function blackPng(size: number): Buffer {
+  const header = Buffer.alloc(13);
+  header.writeUInt32BE(size, 0);
+  header.writeUInt32BE(size, 4);
+  header[8] = 8;
+  const chunk = (type: string, data: Buffer) => {
+    const body = Buffer.concat([Buffer.from(type), data]);
+    const ends = Buffer.alloc(8);
+    ends.writeUInt32BE(data.length, 0);
+    ends.writeUInt32BE(crc32(body), 4);
+    return Buffer.concat([ends.subarray(0, 4), body, ends.subarray(4)]);
+  };
+  const signature = Buffer.from("89504e470d0a1a0a", "hex");
+  const pixels = deflateSync(Buffer.alloc((size + 1) * size));
+  return Buffer.concat([
+    signature,
+    chunk("IHDR", header),
+    chunk("IDAT", pixels),
+    chunk("IEND", Buffer.alloc(0)),
+  ]);
+}
+
+/** The check sum of PNG. */
+function crc32(bytes: Buffer): number {
+  let crc = 0xffffffff;
+  for (const byte of bytes) {
+    crc ^= byte;
+    for (let bit = 0; bit < 8; bit += 1) {
+      crc = (crc >>> 1) ^ (crc & 1 ? 0xedb88320 : 0);
+    }
+  }
+  return (crc ^ 0xffffffff) >>> 0;
+}
+
 const BAD_INPUTS: { what: string; files: () => Upload[]; says: RegExp }[] = [
   {
     what: "an image without orientation",
@@ -50,6 +109,78 @@ const BAD_INPUTS: { what: string; files: () => Upload[]; says: RegExp }[] = [
       ...demoOrientation((text) => text.replace(/^(s1_01\.jpg) \S+/m, "$1 NaN")),
     ],
     says: /exterior\.txt/,
+  },
+  {
+    what: "an orientation whose images are missing",
+    files: () => [...demoImages(2), ...demoOrientation()],
+    says: /three are needed/,
+  },
+  {
+    what: "a file that is no image",
+    files: () => [
+      ...demoImages(3).slice(1),
+      upload("s1_01.jpg", Buffer.from("<html>not found</html>")),
+      ...demoOrientation(),
+    ],
+    says: /s1_01\.jpg.*neither JPEG nor PNG nor TIFF/,
+  },
+  {
+    what: "two images of the same name",
+    files: () => [
+      ...demoImages(3),
+      ...demoImages(1).map(({ buffer }) => upload("s1_01.jpeg", buffer)),
+      ...demoOrientation(),
+    ],
+    says: /s1_01\.jpe?g.*same name/,
+  },
+  {
+    what: "an image of another size than the orientation says",
+    files: () => [
+      ...demoImages(3),
+      ...demoOrientation(undefined, (text) => text.replace(/^(crop s1_02.*) 600 600$/m, "$1 640 480")),
+    ],
+    says: /s1_02\.jpg.*600 x 600.*640 x 480/,
+  },
+  {
+    what: "a singular camera",
+    files: () => [
+      ...houseFiles().filter(({ name }) => name !== "s1_02.P"),
+      upload("s1_02.P", Buffer.from("1 0 0 0\n0 1 0 0\n1 1 0 5\n")),
+    ],
+    says: /s1_02\.P.*singular/,
+  },
+  {
+    what: "views that do not overlap",
+    files: () => [
+      ...demoImages(6).filter(({ name }) => !name.includes("_03")),
+      ...demoOrientation((text) =>
+        text.replace(/^(s2_\S+ \S+) (\S+)/gm, (_, start, y) => `${start} ${Number(y) + 5000}`),
+      ),
+    ],
+    says: /do not overlap/,
+  },
+  {
+    what: "angles in the wrong order",
+    files: () => [
+      ...demoImages(6),
+      ...demoOrientation((text) => text.replace(/^(s\S+ \S+ \S+ \S+) (\S+) (\S+)/gm, "$1 $3 $2")),
+    ],
+    says: /contradict.*phi, omega, kappa/,
+  },
+  {
+    what: "rows counted from the bottom",
+    files: () => [
+      ...demoImages(6),
+      ...demoOrientation(undefined, (text) =>
+        text.replace(/^(crop \S+ \S+) (\S+)/gm, (_, start, row) => `${start} ${9000 - 600 - Number(row)}`),
+      ),
+    ],
+    says: /contradict.*from the bottom/,
+  },
+  {
+    what: "more than the memory holds",
+    files: largeScene,
+    says: /MB of memory, more than 1536 MB.*region of interest/,
   },
   {
     what: "no image at all",

@@ -4,7 +4,7 @@
  * part of a build.
  */
 
-import type { Facet, HalfPlane, Params, SceneInfo, ViewImage } from "../../src/shared/results";
+import type { Facet, HalfPlane, Params, SceneInfo, TileReport, ViewImage } from "../../src/shared/results";
 import type {
   Correspondence,
   Grouping,
@@ -369,6 +369,25 @@ export class Session implements CoreSession {
 
   exportNames(): string[] {
     return ["model.glb", "report.json"];
+  }
+
+  planTiles(): [number, number, number, number][] {
+    return [[0, 0, 50, 50]];
+  }
+
+  runTile(onProgress: (fraction: number) => void): TileReport {
+    onProgress(1);
+    return { core: [0, 0, 50, 50], outcome: "1 buildings" };
+  }
+
+  joinTiles(): void {}
+
+  exportProject(): Uint8Array<ArrayBuffer> {
+    return new Uint8Array();
+  }
+
+  openedProject(): null {
+    return null;
   }
 
   #images(): string[] {

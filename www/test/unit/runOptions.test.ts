@@ -2,7 +2,16 @@ import { describe, expect, it } from "vitest";
 import { loadOptions, parseHeight, parseRegion } from "../../src/app/runOptions";
 import type { Inspection } from "../../src/shared/results";
 
-const NONE = { orientation: null, leftOut: [], roi: null, groundZ: null, applyFix: false };
+const NONE = {
+  orientation: null,
+  leftOut: [],
+  roi: null,
+  groundZ: null,
+  applyFix: false,
+  adjust: false,
+  tileM: null,
+  epsg: null,
+};
 
 const image = (path: string) => ({ path, name: path.replace("in/", ""), size: null, orientation: null });
 const inspection = { images: ["in/a.jpg", "in/b.jpg", "in/c.jpg"].map(image) } as unknown as Inspection;
@@ -19,6 +28,9 @@ describe("run options", () => {
       roi: [1, 2, 3, 4] as const,
       groundZ: 0,
       applyFix: true,
+      adjust: true,
+      tileM: 50,
+      epsg: 25832,
     };
     expect(loadOptions({ ...wanted, roi: [...wanted.roi] }, inspection)).toEqual({
       orientation: "x/b.out",
@@ -26,6 +38,8 @@ describe("run options", () => {
       roi: [1, 2, 3, 4],
       groundZ: 0,
       applyFix: true,
+      adjust: true,
+      epsg: 25832,
     });
   });
 

@@ -1,0 +1,199 @@
+//! A large area, worked off tile by tile: the command line and the page both go this way.
+//!
+//! Only one tile is in memory at a time, beside what earlier ones found: its views are read anew from the files.
+
+use std::sync::Arc;
+
+use serde::Serialize;
+use serde_json::json;
+
+use super::{Tile, TilePart, join, plan_tiles};
+use crate::ids::ViewId;
+use crate::objectspace::{image_segments, world_lines};
+use crate::params::{Method, Params};
+use crate::pipeline::{Run, Stage, load_adjusted};
+use crate::progress::Listener;
+use crate::scene::{Scene, View};
+use crate::scene_loader::{InputFile, LoadOptions, whole_views};
+use crate::texture::texture_model;
+use crate::{Error, Result};
+
+/// An area, its tiles, and what those that are done have found.
+#[derive(Clone, Debug)]
+pub struct Area {
+    whole: Scene,
+    options: LoadOptions,
+    params: Params,
+    tiles: Vec<Tile>,
+    parts: Vec<TilePart>,
+    told: Vec<TileReport>,
+    refused: Option<Error>,
+}
+
+/// What became of a tile.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TileReport {
+    /// The part of the area that it is responsible for: x0, y0, x1, y1, metres.
+    pub core: [f64; 4],
+    /// How many buildings it found, or why it was left out.
+    pub outcome: String,
+}
+
+impl Area {
+    /// Divides the region of interest into tiles of about `tile_m` metres.
+    pub fn plan(
+        files: &[InputFile],
+        options: &LoadOptions,
+        params: &Params,
+        tile_m: f64,
+    ) -> Result<Self> {
+        let refusal = |problem: &str, advice: &str| Error::Scene {
+            problem: problem.to_owned(),
+            advice: advice.to_owned(),
+        };
+        let area = options.roi.ok_or_else(|| {
+            refusal(
+                "tiles need to know the area",
+                "give the region of interest (--roi x0,y0,x1,y1)",
+            )
+        })?;
+        if options.apply_fix {
+            return Err(refusal(
+                "tiles take the orientation as it is",
+                "correct it first (without tiles, --apply-fix names the mistake)",
+            ));
+        }
+        Ok(Self {
+            tiles: plan_tiles(area, tile_m)?,
+            whole: whole_views(files, options)?,
+            options: options.clone(),
+            params: params.clone(),
+            parts: Vec::new(),
+            told: Vec::new(),
+            refused: None,
+        })
+    }
+
+    /// All tiles, in their order.
+    pub fn tiles(&self) -> &[Tile] {
+        &self.tiles
+    }
+
+    /// What became of the tiles that are done.
+    pub fn reports(&self) -> &[TileReport] {
+        &self.told
+    }
+
+    /// Works off the next tile; `None` when all are done. A tile that the views do not show is left out. `progress` hears
+    /// fractions of this tile's work.
+    pub fn step(&mut self, files: &[InputFile], progress: &Listener) -> Option<&TileReport> {
+        let tile = *self.tiles.get(self.told.len())?;
+        let options = LoadOptions {
+            roi: Some(tile.region),
+            ..self.options.clone()
+        };
+        let outcome = match load_adjusted(files, &options, &self.params) {
+            Ok(scene) => {
+                let part = part(scene, &self.params, &tile, &self.whole, progress);
+                let outcome = format!("{} buildings", part.model.buildings.len());
+                self.parts.push(part);
+                outcome
+            }
+            Err(error) => {
+                let outcome = error.to_string();
+                self.refused.get_or_insert(error);
+                outcome
+            }
+        };
+        progress(1.0);
+        let core = tile.core;
+        self.told.push(TileReport { core, outcome });
+        self.told.last()
+    }
+
+    /// One model of all tiles, as files; the first refusal where no tile could be read. `seconds` of each tile go into
+    /// `report.json` and may be empty.
+    pub fn finish(self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
+        if let (true, Some(error)) = (self.parts.is_empty(), self.refused) {
+            return Err(error);
+        }
+        let joined = join(self.whole, &self.parts);
+        let mut files = joined.files(&self.params.texture);
+        let report = json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "origin": joined.scene.origin.as_slice(),
+            "coordinates": joined.scene.survey.describe(),
+            "buildings": joined.model.buildings.len(),
+            "facets": joined.model.facets.len(),
+            "tiles": self.told,
+            "seconds": seconds,
+            "warnings": joined.scene.warnings,
+            "params": self.params,
+        });
+        let report = serde_json::to_vec_pretty(&report).expect("a report has string keys only");
+        files.push(("report.json".to_owned(), report));
+        Ok(files)
+    }
+}
+
+/// What one tile shows.
+fn part(
+    scene: Scene,
+    params: &Params,
+    tile: &Tile,
+    whole: &Scene,
+    progress: &Listener,
+) -> TilePart {
+    let mut run = Run::new(scene, params.clone());
+    let stages: Vec<Stage> = (run.stages().iter().copied())
+        .filter(|&stage| stage != Stage::Model)
+        .collect();
+    for (i, &stage) in stages.iter().enumerate() {
+        let (done, all) = (i as f64, stages.len() as f64);
+        let heard = Listener::clone(progress);
+        let listener: Listener = Arc::new(move |fraction| heard((done + fraction) / all));
+        run.step(stage, &listener);
+    }
+    let (scene, results) = (run.scene(), run.results());
+    let all = results.model().expect("the stages have run");
+    let model = tile.keep(all, &scene.origin);
+    let (textured, _) = texture_model(scene, &model, &params.texture);
+    let found = "the stages have run";
+    let (segments, lines, half_planes) = match params.method {
+        Method::Lines => (
+            results.segments.as_ref().expect(found).value.clone(),
+            results.lines.as_ref().expect(found).value.clone(),
+            results.half_planes.as_ref().expect(found).value.clone(),
+        ),
+        Method::Rectangles => {
+            let lines = &results.regions.as_ref().expect(found).value;
+            let clusters = &results.clusters.as_ref().expect(found).value;
+            let segments = image_segments(lines);
+            (segments, world_lines(scene, lines, clusters), Vec::new())
+        }
+    };
+    TilePart {
+        tile: *tile,
+        origin: scene.origin,
+        views: places(scene, whole),
+        segments,
+        lines,
+        half_planes,
+        model,
+        textured,
+    }
+}
+
+/// Where the parts of the views lie in the whole images, pixels.
+fn places(scene: &Scene, whole: &Scene) -> Vec<(ViewId, [f64; 4])> {
+    let place = |view: &View| {
+        let named = whole.views.iter().position(|w| w.name == view.name);
+        let index = named.expect("tiles show views of the scene");
+        let (a, b) = (&whole.views[index].camera, &view.camera);
+        // Adjusted views are shifted by fractions of a pixel.
+        let [x, y] = [0, 1].map(|i| (a.k[(i, 2)] - b.k[(i, 2)]).round());
+        let place = [x, y, f64::from(b.width), f64::from(b.height)];
+        (ViewId::from_index(index), place)
+    };
+    scene.views.iter().map(place).collect()
+}

@@ -1,0 +1,147 @@
+#!/usr/bin/env python3
+"""Break the orientation of every scene in the usual ways, and see what the orientation doctor calls it.
+
+    python3 tests/doctor_table.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
+
+FOLDER holds one folder per scene with images/ and cameras.json (K, R, C). Prints the table of docs/formats.md:
+a row for each mistake, a column for each scene; the first row is the sound scene, which must be left alone. "-": the
+list of angles has one camera for all images, and the scene has several.
+"""
+import argparse
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+class NotExpressible(Exception):
+    """A format cannot hold the orientation of a scene."""
+
+
+UP = np.diag([1.0, -1.0, -1.0])
+
+
+def angles(change):
+    """The photogrammetric list (omega, phi, kappa in degrees; the images as crops of one frame) with changed angles."""
+    def broken(scene, work):
+        found = json.loads((scene / 'cameras.json').read_text())
+        frame, pixel_mm, origin = (20000, 20000), 0.012, np.array(found.get('origin', [0, 0, 0]))
+        if len({round(view['K'][0][0], 3) for view in found['views']}) > 1:
+            raise NotExpressible('the list has one camera for all images')
+        focal_mm = found['views'][0]['K'][0][0] * pixel_mm
+        camera = [f'principal_distance_mm {focal_mm!r}', f'pixel_size_mm {pixel_mm}', f'image_size_px {frame[0]} {frame[1]}']
+        exterior = ['# angles in degrees']
+        for view in found['views']:
+            (k, r, c), name = (np.array(view[key], float) for key in 'KRC'), view['file']
+            m = r.T @ UP
+            stated = np.degrees([np.arctan2(-m[1, 2], m[2, 2]), np.arcsin(m[0, 2]), np.arctan2(-m[0, 1], m[0, 0])])
+            column, row = frame[0] / 2 - k[0, 2], frame[1] / 2 - k[1, 2]
+            camera.append(f'crop {name} {float(column)!r} {float(row)!r} {view["width"]} {view["height"]}')
+            exterior.append(' '.join([name, *(repr(float(x)) for x in (*(c + origin), *change(*stated)))]))
+        (work / 'camera.txt').write_text('\n'.join(camera) + '\n')
+        (work / 'exterior.txt').write_text('\n'.join(exterior) + '\n')
+    return broken
+
+
+def cameras(change):
+    """K, R and C with a change of each view."""
+    def broken(scene, work):
+        found = json.loads((scene / 'cameras.json').read_text())
+        # An inverted pose has lost the origin, too.
+        found.pop('origin', None)
+        for view in found['views']:
+            k, r, c = change(*(np.array(view[key], float) for key in 'KRC'), view)
+            view['K'], view['R'], view['C'] = k.tolist(), r.tolist(), c.tolist()
+        (work / 'cameras.json').write_text(json.dumps(found))
+    return broken
+
+
+def order(places):
+    """The orientation of other images: `places` makes a new order of the numbers of the views, sorted by name."""
+    def broken(scene, work):
+        found = json.loads((scene / 'cameras.json').read_text())
+        views = sorted(found['views'], key=lambda view: view['file'])
+        names = [view['file'] for view in views]
+        found['views'] = [{**views[place], 'file': name} for name, place in zip(names, places(len(names)))]
+        (work / 'cameras.json').write_text(json.dumps(found))
+    return broken
+
+
+def with_k(k, *, cx=None, cy=None, factor=1.0):
+    k = k.copy()
+    k[0, 0], k[1, 1] = k[0, 0] * factor, k[1, 1] * factor
+    k[0, 2] = k[0, 2] if cx is None else cx
+    k[1, 2] = k[1, 2] if cy is None else cy
+    return k
+
+
+# What is done, and a word of what it is called.
+MISTAKES = {
+    'none': (cameras(lambda k, r, c, v: (k, r, c)), None),
+    'gon called degrees': (angles(lambda o, p, k: [a / 0.9 for a in (o, p, k)]), 'in gon'),
+    'radians called degrees': (angles(lambda o, p, k: [float(np.radians(a)) for a in (o, p, k)]), 'radians'),
+    'phi before omega': (angles(lambda o, p, k: (p, o, k)), 'phi, omega, kappa'),
+    'kappa before phi and omega': (angles(lambda o, p, k: (k, p, o)), 'kappa, phi, omega'),
+    'transposed rotation': (cameras(lambda k, r, c, v: (k, r.T, c)), 'transposed'),
+    'inverse pose': (cameras(lambda k, r, c, v: (k, r.T, -r @ c)), 'inverted'),
+    'camera y up': (cameras(lambda k, r, c, v: (k, UP @ r, c)), 'y axis runs up'),
+    'principal point from the bottom': (cameras(lambda k, r, c, v: (with_k(k, cy=v['height'] - k[1, 2]), r, c)), 'y up'),
+    'corner taken for centre': (cameras(lambda k, r, c, v: (with_k(k, cx=k[0, 2] + 0.5, cy=k[1, 2] + 0.5), r, c)), 'half a pixel'),
+    'images in reverse order': (order(lambda n: range(n - 1, -1, -1)), 'reverse order'),
+    'two images exchanged': (order(lambda n: [0, n - 2, *range(2, n - 2), 1, n - 1]), "have each other"),
+    'focal length in mm of 12 µm': (cameras(lambda k, r, c, v: (with_k(k, factor=0.012), r, c)), 'not in pixels'),
+}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('--binary', required=True, type=pathlib.Path)
+    parser.add_argument('--scenes', required=True, type=pathlib.Path)
+    parser.add_argument('--only', help='names of scenes, separated by commas')
+    args = parser.parse_args()
+    names = sorted(p.name for p in args.scenes.iterdir() if (p / 'cameras.json').exists())
+    names = [name for name in names if not args.only or name in args.only.split(',')]
+    print('| mistake | ' + ' | '.join(names) + ' |\n|---|' + '---|' * len(names))
+    named, tried = dict.fromkeys(names, 0), dict.fromkeys(names, 0)
+    for what, (broken, word) in MISTAKES.items():
+        cells = []
+        for name in names:
+            try:
+                said, score = examine(args.binary, args.scenes / name, broken)
+            except NotExpressible:
+                cells.append('-')
+                continue
+            tried[name] += word is not None
+            # Images of several sizes tell that they were exchanged before anything is looked at.
+            by_size = 'pixels, but' in said
+            good = (word in said or by_size) if word else said == ''
+            named[name] += good and word is not None
+            verdict = 'refused for the sizes' if by_size else 'named' if word else 'left alone'
+            cells.append((verdict if good else f'**{said[:60] or "nothing said"}**') + (f' ({score})' if score != '-' else ''))
+        print(f'| {what} | ' + ' | '.join(cells) + ' |', flush=True)
+    print('| named | ' + ' | '.join(f'{named[name]} of {tried[name]}' for name in names) + ' |')
+    return 0 if all(named[name] >= tried[name] - 1 for name in names) else 1
+
+
+def examine(binary, scene, broken):
+    """What the doctor says about the orientation, and the agreement as it is stated and without the mistake."""
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        shutil.copytree(scene / 'images', work / 'images')
+        broken(scene, work)
+        done = subprocess.run([binary, 'check', work, '--json'], capture_output=True, text=True)
+        found = json.loads(done.stdout)
+        doctor = found['doctor'] or {}
+        scores = [doctor.get('stated'), doctor.get('cured')]
+        score = ' → '.join(f"{s['score']:.2f}" for s in scores if s)
+        if doctor.get('offsets_px'):
+            score = ' → '.join(f'{x:.2f} px' for x in doctor['offsets_px'])
+        said = found.get('refusal') or '; '.join(w for w in found['warnings'] if 'ignored' not in w)
+        return said, score or '-'
+
+
+if __name__ == '__main__':
+    sys.exit(main())

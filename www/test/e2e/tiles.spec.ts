@@ -1,0 +1,103 @@
+/** Large areas in tiles, and projects: the page and the command line give each other the same. */
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { expect, type Page, test } from "@playwright/test";
+import { give, houseFiles, stage, upload, waitForStage, watch } from "./helpers";
+
+const built = (profile: string) =>
+  fileURLToPath(new URL(`../../../target/${profile}/ridgeline`, import.meta.url));
+const BINARY =
+  process.env["RIDGELINE"] ?? ["debug", "release"].map(built).find(existsSync) ?? built("release");
+const REGION = "-31, -31, 31, 31";
+
+/** Runs the command line on files; the folder of its results. */
+function reconstruct(files: { name: string; buffer: Buffer }[], scene: string, more: string[]): string {
+  const folder = mkdtempSync(join(tmpdir(), "ridgeline-"));
+  for (const { name, buffer } of files) {
+    writeFileSync(join(folder, name), buffer);
+  }
+  const out = join(folder, "out");
+  execFileSync(BINARY, ["reconstruct", join(folder, scene), "--out", out, ...more]);
+  return out;
+}
+
+/** The bytes of an output file, as a person saves them. */
+async function saved(page: Page, name: string): Promise<Buffer> {
+  const downloading = page.waitForEvent("download");
+  await page.getByRole("button", { name, exact: true }).click();
+  return readFileSync(await (await downloading).path());
+}
+
+async function askFor(page: Page, label: RegExp, value: string): Promise<void> {
+  await page.getByLabel(label).fill(value);
+  await page.getByLabel(label).press("Enter");
+}
+
+test("tiles run one after the other into the model of the command line", async ({ page }) => {
+  test.setTimeout(400_000);
+  const { problems } = watch(page);
+  await page.goto("/");
+  await give(page, houseFiles());
+  await expect(page.locator(".status.good")).toHaveCount(6);
+  await page.getByText("Region and ground").click();
+  await askFor(page, /In tiles of/, "10");
+  await expect(page.getByText("30 m or more")).toBeVisible();
+  await askFor(page, /Region/, REGION);
+  await askFor(page, /Height of the ground/, "100");
+  await askFor(page, /In tiles of/, "31");
+
+  // Cancelled in the middle, and begun again.
+  await page.getByRole("button", { name: "Run all" }).click();
+  await expect(stage(page, "model")).toHaveAttribute("data-status", "running");
+  await expect(stage(page, "model")).toContainText(/[1-9]\d* %/, { timeout: 120_000 });
+  await page.getByRole("button", { name: "Cancel" }).click();
+  await expect(stage(page, "model")).toHaveAttribute("data-status", "waiting");
+  await page.getByRole("button", { name: "Run all" }).click();
+  await waitForStage(page, "model", 300_000);
+  await expect(stage(page, "model")).toContainText("4 tiles");
+  const model = await saved(page, "model.city.json");
+  const atlas = await saved(page, "model_atlas.jpg");
+  expect(Object.keys(JSON.parse(model.toString()).CityObjects)).toHaveLength(1);
+  expect(problems).toEqual([]);
+
+  test.skip(!existsSync(BINARY), `there is no ${BINARY} to compare with`);
+  const region = REGION.replaceAll(" ", "");
+  const out = reconstruct(houseFiles(), ".", ["--roi", region, "--ground-z", "100", "--tile", "31"]);
+  expect(model.equals(readFileSync(join(out, "model.city.json")))).toBe(true);
+  expect(atlas.equals(readFileSync(join(out, "model_atlas.jpg")))).toBe(true);
+});
+
+test("a project opens again to the same state, here and on the command line", async ({ page }) => {
+  test.setTimeout(300_000);
+  const { problems } = watch(page);
+  await page.goto("/");
+  await give(page, houseFiles());
+  await expect(page.locator(".status.good")).toHaveCount(6);
+  await page.locator(".view input[type=checkbox]").nth(2).uncheck();
+  await page.getByText("Region and ground").click();
+  await askFor(page, /Height of the ground/, "100");
+  await page.getByText("Texture", { exact: true }).click();
+  await page.locator("#param-texture-padding_px").fill("5");
+  await page.locator("#param-texture-padding_px").press("Enter");
+  await page.getByRole("button", { name: "Run all" }).click();
+  await waitForStage(page, "model");
+  const model = await saved(page, "model.city.json");
+  const project = await saved(page, "Save project");
+
+  await page.getByRole("button", { name: "Remove all" }).click();
+  await give(page, [upload("house.zip", project)]);
+  await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
+  await expect(page.getByLabel(/Height of the ground/)).toHaveValue("100");
+  await expect(page.locator("#param-texture-padding_px")).toHaveValue("5");
+  await page.getByRole("button", { name: "Run all" }).click();
+  await waitForStage(page, "model");
+  expect((await saved(page, "model.city.json")).equals(model)).toBe(true);
+  expect(problems).toEqual([]);
+
+  test.skip(!existsSync(BINARY), `there is no ${BINARY} to compare with`);
+  const out = reconstruct([{ name: "house.zip", buffer: project }], "house.zip", []);
+  expect(model.equals(readFileSync(join(out, "model.city.json")))).toBe(true);
+});
