@@ -200,6 +200,7 @@ fn planted_evidence() -> (Vec<Vec<ImageSegment>>, Vec<Line3d>, Vec<HalfPlane>) {
         similarity: 0.8,
         curvature: 12.0,
         amplitude: 0.5,
+        probability: 0.97,
         views: vec![ViewId(0), ViewId(1)],
         plane: facet(&[&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]], 3.0, 0.2, 0.1).plane,
     };
