@@ -41,7 +41,7 @@ mod xml;
 pub use angles::{AngleUnit, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa};
 pub use detect::{FileKind, detect};
 pub use geodesy::{Anchor, to_metric_frame};
-pub use reference::{epsg_of, reference_of};
+pub use reference::epsg_of;
 pub use sets::{OrientationSet, orientation_sets};
 
 use nalgebra::{Matrix3, Point3};

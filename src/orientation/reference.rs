@@ -1,6 +1,6 @@
 //! The coordinate reference system that files name: EPSG's number.
 
-use super::{FileKind, Format};
+use super::Format;
 
 /// EPSG's number in what the file of a format says about its world; `None` where it says nothing.
 pub(super) fn stated(format: Format, text: &str) -> Option<u32> {
@@ -16,13 +16,6 @@ pub(super) fn stated(format: Format, text: &str) -> Option<u32> {
         _ => return None,
     };
     epsg_of(part)
-}
-
-/// EPSG's number of a file of this kind.
-pub fn reference_of(kind: FileKind, text: &str) -> Option<u32> {
-    (kind == FileKind::ReferenceSystem)
-        .then(|| epsg_of(text))
-        .flatten()
 }
 
 /// EPSG's number of a system written as well-known text, as "EPSG:25832", or as the number alone. The last number is

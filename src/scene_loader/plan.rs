@@ -9,8 +9,7 @@ use super::names::{best_match, listed, match_rank};
 use super::region;
 use crate::camera::{Camera, Distortion};
 use crate::orientation::{
-    Crop, FileKind, Orientation, OrientationSet, detect, orientation_sets, reference_of,
-    to_metric_frame,
+    Crop, FileKind, Orientation, OrientationSet, detect, epsg_of, orientation_sets, to_metric_frame,
 };
 use crate::raster::{ImageHeader, image_header};
 use crate::scene::Survey;
@@ -251,10 +250,10 @@ impl Plan {
 
     /// The reference system that a file of its own names.
     fn stated_reference(&self, files: &[InputFile]) -> Option<u32> {
-        let kinds = self.kinds.iter().zip(files);
-        kinds
-            .filter_map(|(&kind, file)| reference_of(kind, &file.text()))
-            .next()
+        // Photographs are not looked at as text.
+        (self.kinds.iter().zip(files))
+            .filter(|(kind, _)| **kind == FileKind::ReferenceSystem)
+            .find_map(|(_, file)| epsg_of(&file.text()))
     }
 
     fn warn_of_json(&mut self, files: &[InputFile]) {

@@ -1,0 +1,80 @@
+/**
+ * Pictures of a model from four sides: gives the page a folder with images and orientation, reconstructs it, and turns the camera
+ * of the viewer by quarters. `npm run build && npm run pictures -- FOLDER OUT.jpg`
+ */
+import { spawn } from "node:child_process";
+import { existsSync, readdirSync } from "node:fs";
+import { join } from "node:path";
+import { chromium } from "@playwright/test";
+
+const PORT = Number(process.env.PORT ?? 4180);
+const SITE = `http://127.0.0.1:${PORT}/`;
+const QUALITY = 80;
+/** A large scene takes minutes where WebGL is drawn in software. */
+const LONGEST_MS = 900_000;
+
+const [folder, out] = process.argv.slice(2);
+if (folder === undefined || out === undefined) {
+  throw new Error("pictures.mjs FOLDER OUT.jpg");
+}
+
+/** Images, and one orientation of them: the camera file beside the folders. */
+function filesOf(scene) {
+  const images = join(scene, "images");
+  return [...readdirSync(images).map((name) => join(images, name)), join(scene, "cameras.json")];
+}
+
+async function fourSides(page) {
+  const canvas = page.locator(".space-view canvas, .stage-view canvas").first();
+  const box = await canvas.boundingBox();
+  const middle = [box.x + box.width / 2, box.y + box.height * 0.7];
+  const shots = [];
+  for (let side = 0; side < 4; side += 1) {
+    shots.push(await canvas.screenshot({ type: "jpeg", quality: 90 }));
+    // The height of the canvas is one turn.
+    await page.mouse.move(...middle);
+    await page.mouse.down();
+    await page.mouse.move(middle[0] + box.height / 4, middle[1], { steps: 12 });
+    await page.mouse.up();
+    await page.waitForTimeout(1500);
+  }
+  return shots;
+}
+
+/** Two by two in one picture. */
+async function composed(browser, shots) {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+  const images = shots.map((s) => `<img src="data:image/jpeg;base64,${s.toString("base64")}">`).join("");
+  await page.setContent(
+    `<style>body{margin:0;display:grid;grid-template-columns:1fr 1fr;gap:2px}img{width:100%;display:block}</style>${images}`,
+  );
+  const height = await page.evaluate("document.body.scrollHeight");
+  await page.setViewportSize({ width: 1280, height });
+  await page.screenshot({ path: out, type: "jpeg", quality: QUALITY });
+}
+
+const server = spawn(
+  "npx",
+  ["vite", "preview", "--host", "127.0.0.1", "--port", String(PORT), "--strictPort"],
+  { detached: true },
+);
+try {
+  await new Promise((resolve) => setTimeout(resolve, 2500));
+  const system = process.env.CHROMIUM ?? "/usr/bin/chromium";
+  const browser = await chromium.launch({
+    ...(existsSync(system) ? { executablePath: system } : {}),
+    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+  });
+  const page = await browser.newPage({ viewport: { width: 1440, height: 860 }, colorScheme: "light" });
+  await page.goto(SITE);
+  await page.locator('input[type="file"]').first().setInputFiles(filesOf(folder));
+  await page.getByRole("button", { name: "Run all" }).click();
+  const isDone = () => document.querySelector('[data-stage="model"]')?.dataset.status === "done";
+  await page.waitForFunction(isDone, undefined, { timeout: LONGEST_MS });
+  await page.getByRole("tab", { name: "Model", exact: true }).click();
+  await page.waitForTimeout(3000);
+  await composed(browser, await fourSides(page));
+  await browser.close();
+} finally {
+  process.kill(-server.pid);
+}
