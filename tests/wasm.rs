@@ -130,7 +130,7 @@ fn the_figures_answer(session: &mut Session, half_plane: &JsValue) {
     );
     let new = records
         .iter()
-        .filter(|r| member(r, "origin") != JsValue::from("matched"));
+        .filter(|r| member(r, "origin") != "matched");
     assert!(new.count() > 0);
 }
 

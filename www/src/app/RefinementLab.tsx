@@ -84,6 +84,7 @@ function Relations({ outer, building, of }: { outer: Frame; building: number; of
       yTitle=""
       yTicks={[]}
       label={`${of.relations.length} tested relations by their chi-square, ${of.relations.filter(({ adopted }) => adopted).length} adopted`}
+      interactive
       testid="relations"
     >
       {KINDS.map((kind) => (

@@ -97,6 +97,8 @@ interface ChartProps {
   /** Hears the value under the pointer while it is pressed. */
   onDrag?: (x: number, y: number) => void;
   onClick?: (x: number, y: number) => void;
+  /** Holds buttons: then it is a group of them, not one picture. */
+  interactive?: boolean;
   testid?: string;
 }
 
@@ -125,7 +127,7 @@ export function Chart(props: ChartProps) {
       ref={svg}
       class={`chart ${onDrag === undefined ? "" : "draggable"}`}
       viewBox={`0 0 ${frame.width} ${frame.height}`}
-      role="img"
+      role={props.interactive === true ? "group" : "img"}
       aria-label={label}
       data-testid={props.testid}
       onPointerDown={(event) => {

@@ -64,6 +64,7 @@ const HALF_PLANES: HalfPlane[] = [
   similarity: 0.7,
   curvature: 9,
   amplitude: 0.5,
+  probability: 0.99,
   views: [0, 1, 2],
 }));
 
@@ -285,7 +286,14 @@ export class Session implements CoreSession {
       line,
       side,
       rejection: own === undefined ? "low_peak" : null,
-      curve: { reference: 0, points: [], thetas, similarity, views: [{ view: 1, valid: true, similarity }] },
+      curve: {
+        reference: 0,
+        points: [],
+        thetas,
+        similarity,
+        views: [{ view: 1, valid: true, similarity }],
+        posterior: { density: similarity, plane: own === undefined ? 0.2 : 0.99 },
+      },
     };
   }
 

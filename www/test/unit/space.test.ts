@@ -94,6 +94,7 @@ describe("buildTurning", () => {
         similarity: 1,
         curvature: 9,
         amplitude: 1,
+        probability: 1,
         views: [],
         plane: { normal: [0, -sign * Math.sin(theta), Math.cos(theta)], d: 0 },
       },

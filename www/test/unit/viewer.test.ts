@@ -28,6 +28,7 @@ describe("fanCorners", () => {
     similarity: 1,
     curvature: 9,
     amplitude: 1,
+    probability: 1,
     views: [],
     plane: { normal, d: -5 },
   });
