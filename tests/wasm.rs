@@ -128,9 +128,7 @@ fn the_figures_answer(session: &mut Session, half_plane: &JsValue) {
             .as_f64()
             .is_some_and(|c| c >= 0.0)
     );
-    let new = records
-        .iter()
-        .filter(|r| member(r, "origin") != "matched");
+    let new = records.iter().filter(|r| member(r, "origin") != "matched");
     assert!(new.count() > 0);
 }
 
