@@ -16,9 +16,10 @@ import statistics
 import subprocess
 import tempfile
 
+from growth import HEIGHT, LEFT, TOP, WIDTH, document
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00']
-WIDTH, HEIGHT, LEFT, TOP = 300, 190, 46, 16
 
 
 def main():
@@ -117,10 +118,7 @@ def svg(plots, names):
     legend = ''.join(
         f'<circle cx="{LEFT + WIDTH - 95}" cy="{TOP + 9 + 16 * k}" r="4" fill="{colour}"/>'
         f'<text x="{LEFT + WIDTH - 85}" y="{TOP + 13 + 16 * k}">{name}</text>' for k, (name, colour) in enumerate(zip(names, COLOURS)))
-    width, height = LEFT + 2 * WIDTH + 100, TOP + HEIGHT + 48
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" '
-            f'font-family="sans-serif" font-size="12">\n<rect width="100%" height="100%" fill="white"/>\n'
-            + '\n'.join(plots) + '\n' + legend + '\n</svg>\n')
+    return document(plots, legend)
 
 
 if __name__ == '__main__':

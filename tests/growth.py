@@ -121,6 +121,11 @@ def svg(plots, stages):
     legend = ''.join(
         f'<rect x="{LEFT + 10}" y="{TOP + 4 + 16 * k}" width="10" height="10" fill="{colour}" fill-opacity="0.75"/>'
         f'<text x="{LEFT + 26}" y="{TOP + 13 + 16 * k}">{s}</text>' for k, (s, colour) in enumerate(stages.items()))
+    return document(plots, legend)
+
+
+def document(plots, legend):
+    """Two plots side by side, with a legend."""
     width, height = LEFT + 2 * WIDTH + 100, TOP + HEIGHT + 48
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" '
             f'font-family="sans-serif" font-size="12">\n<rect width="100%" height="100%" fill="white"/>\n'

@@ -164,3 +164,16 @@ fn run_stages(run: &mut Run) -> Vec<(Stage, f64)> {
     bar.finish_and_clear();
     seconds
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_whole_path_counts_from_the_scene() {
+        let scene = Path::new("data/scene");
+        assert_eq!(below(scene, "data/scene/a/cameras.json"), "a/cameras.json");
+        assert_eq!(below(scene, "cameras.json"), "cameras.json");
+        assert_eq!(below(scene, "data/scenery/a.json"), "data/scenery/a.json");
+    }
+}

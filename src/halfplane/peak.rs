@@ -1,7 +1,7 @@
 //! The maximum of a sampled `Sim(theta)`: position, curvature, uncertainty, acceptance (B99 figure 12).
 
 use super::SweepRejection;
-use crate::params::SweepParams;
+use crate::params::{Acceptance, SweepParams};
 
 /// A parabola `value + slope (theta - at) + curvature (theta - at)^2 / 2`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,8 +67,29 @@ pub(super) struct Peak {
 }
 
 impl Peak {
+    /// Accepts the maximum by the printed thresholds, by its posterior probability, or by both.
+    pub fn accept(&self, probability: f64, params: &SweepParams) -> Result<(), SweepRejection> {
+        // What passes the thresholds but is no likelier than not is refused.
+        const LIKELY: f64 = 0.5;
+        let at_least = |least: f64| match probability >= least {
+            true => Ok(()),
+            false => Err(SweepRejection::Improbable),
+        };
+        match params.acceptance {
+            Acceptance::Printed => self.check(params, 1.0),
+            Acceptance::Posterior => at_least(params.min_probability),
+            Acceptance::Both => match self.check(params, 1.0) {
+                Ok(()) => at_least(LIKELY),
+                Err(reason) => {
+                    self.check(params, params.ambiguous_share)?;
+                    at_least(params.min_probability).map_err(|_| reason)
+                }
+            },
+        }
+    }
+
     /// The three validity criteria of figure 12, each at this share of its threshold.
-    pub fn check(&self, params: &SweepParams, share: f64) -> Result<(), SweepRejection> {
+    fn check(&self, params: &SweepParams, share: f64) -> Result<(), SweepRejection> {
         if self.similarity < share * params.min_similarity {
             Err(SweepRejection::LowPeak)
         } else if self.curvature < share * params.min_curvature {
@@ -123,6 +144,36 @@ mod tests {
         let variance = maxima.iter().map(|m| (m - 0.13) * (m - 0.13)).sum::<f64>() / 3.0;
         let sigma = sigma_of_maximum(&slopes, -5.0, 0.1);
         assert!((sigma - (variance * 1.25).sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_posterior_decides_where_a_threshold_is_nearly_reached() {
+        let of = |acceptance| SweepParams {
+            acceptance,
+            ..SweepParams::default()
+        };
+        let peak = |similarity| Peak {
+            theta: 0.0,
+            similarity,
+            curvature: 8.0,
+            amplitude: 0.3,
+        };
+        use Acceptance::{Both, Posterior, Printed};
+        use SweepRejection::{Improbable, LowPeak};
+        for (acceptance, similarity, probability, expected) in [
+            (Printed, 0.6, 0.0, Ok(())),
+            (Printed, 0.3, 1.0, Err(LowPeak)),
+            (Posterior, 0.1, 0.99, Ok(())),
+            (Posterior, 0.6, 0.9, Err(Improbable)),
+            (Both, 0.6, 0.6, Ok(())),
+            (Both, 0.6, 0.4, Err(Improbable)),
+            (Both, 0.3, 0.99, Ok(())),
+            (Both, 0.3, 0.9, Err(LowPeak)),
+            (Both, 0.1, 1.0, Err(LowPeak)),
+        ] {
+            let found = peak(similarity).accept(probability, &of(acceptance));
+            assert_eq!(found, expected, "{acceptance:?} {similarity} {probability}");
+        }
     }
 
     #[test]

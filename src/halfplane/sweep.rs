@@ -17,7 +17,7 @@ use super::{HalfPlane, Side};
 use crate::geometry::Segment3;
 use crate::ids::LineId;
 use crate::lines3d::Line3d;
-use crate::params::{Acceptance, SweepParams};
+use crate::params::SweepParams;
 use crate::scene::Scene;
 use crate::shares::map_shared;
 use crate::sorting::sort_by;
@@ -277,7 +277,7 @@ impl<'a> Search<'a> {
             amplitude: similarity - lowest,
         };
         let probability = self.probability(peak.theta, step);
-        self.decide(&peak, probability)?;
+        peak.accept(probability, self.params)?;
         let slopes: Vec<f64> = (0..self.valid.len())
             .filter(|&v| self.valid[v])
             .filter_map(|v| {
@@ -293,28 +293,6 @@ impl<'a> Search<'a> {
             sigma_theta: sigma_of_maximum(&slopes, narrow.curvature, reach),
             probability,
         })
-    }
-
-    /// Accepts a maximum by the printed thresholds, by its probability, or by both.
-    fn decide(&self, peak: &Peak, probability: f64) -> Result<(), SweepRejection> {
-        let probable = match probability >= self.params.min_probability {
-            true => Ok(()),
-            false => Err(SweepRejection::Improbable),
-        };
-        // What passes the thresholds but is no likelier than not is refused too.
-        let likely = probability >= 0.5;
-        match self.params.acceptance {
-            Acceptance::Printed => peak.check(self.params, 1.0),
-            Acceptance::Posterior => probable,
-            Acceptance::Both => match peak.check(self.params, 1.0) {
-                Ok(()) if likely => Ok(()),
-                Ok(()) => Err(SweepRejection::Improbable),
-                Err(reason) => {
-                    peak.check(self.params, self.params.ambiguous_share)?;
-                    probable.map_err(|_| reason)
-                }
-            },
-        }
     }
 
     /// Posterior probability of a plane within `reach` of `theta`.

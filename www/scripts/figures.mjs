@@ -2,9 +2,8 @@
  * docs/figures.md: each figure of the papers, and the live view that shows it on the demo scene. Opens the built site in
  * Chromium, takes the pictures and writes the page. `npm run build && npm run figures`
  */
-import { spawn } from "node:child_process";
-import { existsSync, mkdirSync, writeFileSync } from "node:fs";
-import { chromium } from "@playwright/test";
+import { mkdirSync, writeFileSync } from "node:fs";
+import { withSite } from "./site.mjs";
 
 const DOCS = new URL("../../docs/", import.meta.url);
 const PORT = Number(process.env.PORT ?? 4179);
@@ -199,24 +198,12 @@ function table(sections, prefix, paper) {
     .join("\n");
 }
 
-const server = spawn(
-  "npx",
-  ["vite", "preview", "--host", "127.0.0.1", "--port", String(PORT), "--strictPort"],
-  { detached: true },
-);
-try {
-  await new Promise((resolve) => setTimeout(resolve, 2500));
+await withSite(PORT, async (browser) => {
   mkdirSync(new URL("figures/", DOCS), { recursive: true });
-  const system = process.env.CHROMIUM ?? "/usr/bin/chromium";
-  const browser = await chromium.launch({
-    ...(existsSync(system) ? { executablePath: system } : {}),
-    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-  });
   const page = await browser.newPage({ viewport: { width: 1280, height: 860 }, colorScheme: "light" });
   await link("tab=model", "model")(page);
   await picturesOf(page, B99, "b99");
   await picturesOf(page, W96, "w96");
-  await browser.close();
   const text = `# The figures of the papers, live
 
 Each view of the page draws what the papers draw, from the demo scene and from any other. The pictures are taken from the
@@ -229,6 +216,4 @@ ${table(B99, "b99", "B99")}
 
 ${table(W96, "w96", "W96")}`;
   writeFileSync(new URL("figures.md", DOCS), text);
-} finally {
-  process.kill(-server.pid);
-}
+});

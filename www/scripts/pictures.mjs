@@ -2,10 +2,9 @@
  * Pictures of a model from four sides: gives the page a folder with images and orientation, reconstructs it, and turns the camera
  * of the viewer by quarters. `npm run build && npm run pictures -- FOLDER OUT.jpg`
  */
-import { spawn } from "node:child_process";
-import { existsSync, readdirSync } from "node:fs";
+import { readdirSync } from "node:fs";
 import { join } from "node:path";
-import { chromium } from "@playwright/test";
+import { withSite } from "./site.mjs";
 
 const PORT = Number(process.env.PORT ?? 4180);
 const SITE = `http://127.0.0.1:${PORT}/`;
@@ -53,18 +52,7 @@ async function composed(browser, shots) {
   await page.screenshot({ path: out, type: "jpeg", quality: QUALITY });
 }
 
-const server = spawn(
-  "npx",
-  ["vite", "preview", "--host", "127.0.0.1", "--port", String(PORT), "--strictPort"],
-  { detached: true },
-);
-try {
-  await new Promise((resolve) => setTimeout(resolve, 2500));
-  const system = process.env.CHROMIUM ?? "/usr/bin/chromium";
-  const browser = await chromium.launch({
-    ...(existsSync(system) ? { executablePath: system } : {}),
-    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-  });
+await withSite(PORT, async (browser) => {
   const page = await browser.newPage({ viewport: { width: 1440, height: 860 }, colorScheme: "light" });
   await page.goto(SITE);
   await page.locator('input[type="file"]').first().setInputFiles(filesOf(folder));
@@ -74,7 +62,4 @@ try {
   await page.getByRole("tab", { name: "Model", exact: true }).click();
   await page.waitForTimeout(3000);
   await composed(browser, await fourSides(page));
-  await browser.close();
-} finally {
-  process.kill(-server.pid);
-}
+});
