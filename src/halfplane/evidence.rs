@@ -89,32 +89,31 @@ impl Evidence {
         index: &LineIndex,
         params: &RoofParams,
     ) -> Energy<BorderCosts> {
-        let unary = self
+        let unary: Vec<Vec<(u32, f64)>> = self
             .cells
             .iter()
             .zip(&self.ground)
             .map(|(candidates, ground)| {
+                let cost = |e: &CellEvidence| {
+                    // sum of weight x (least correlation - correlation): negative for a match. "No plane" keeps
+                    // the cost 0, so what speaks for the ground counts against roofs.
+                    let mismatch = e.least - e.correlation;
+                    mismatch + ground - params.half_plane_gain_m * e.half_plane_m
+                };
                 candidates
                     .iter()
-                    .map(|(plane, e)| {
-                        // sum of weight x (least correlation - correlation): negative for a match.
-                        let mismatch = e.least - e.correlation;
-                        // "No plane" keeps the cost 0, so what speaks for the ground counts against roofs.
-                        (
-                            *plane,
-                            mismatch + ground - params.half_plane_gain_m * e.half_plane_m,
-                        )
-                    })
+                    .map(|(plane, e)| (*plane, cost(e)))
                     .collect()
             })
             .collect();
         let labels = |cell: usize| self.cells[cell].iter().map(|c| c.0);
+        let borders = BorderCosts::new(arrangement, labels, planes, index, params);
         Energy {
             unary,
             edges: (arrangement.edges.iter())
                 .map(|e| [e.left, e.right])
                 .collect(),
-            borders: BorderCosts::new(arrangement, labels, planes, index, params),
+            borders,
         }
     }
 }
@@ -155,6 +154,9 @@ fn cover_silent_cells(
 /// correlate at any height, so a match with the ground is weaker evidence than a half-plane's.
 const GROUND_SHARE: f64 = 0.8;
 
+/// How much of the ground's mismatch counts for roofs. Assumption: a quarter. What is no ground may be a tree.
+const NOT_GROUND_SHARE: f64 = 0.25;
+
 /// What the ground explains at least as well as a roof could, per cell.
 fn ground_evidence(
     maps: &[ConsistencyMap],
@@ -176,9 +178,13 @@ fn ground_evidence(
             evidence[cell as usize] += weight * (correlation - least) * area;
         }
     }
-    evidence
-        .iter_mut()
-        .for_each(|e| *e = GROUND_SHARE * e.max(0.0));
+    evidence.iter_mut().for_each(|e| {
+        *e *= if *e > 0.0 {
+            GROUND_SHARE
+        } else {
+            NOT_GROUND_SHARE
+        }
+    });
     evidence
 }
 

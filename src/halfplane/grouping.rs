@@ -10,6 +10,8 @@
 
 use serde::Serialize;
 
+use super::borders::Region;
+use super::neighbourhood::Neighbours;
 use super::{HalfPlane, Side, ThetaFrame};
 use crate::geometry::Plane;
 use crate::ids::{HalfPlaneId, LineId};
@@ -66,7 +68,7 @@ pub struct GroupingInput<'a> {
     /// Accepted half-planes.
     pub half_planes: &'a [HalfPlane],
     /// Neighbours of each line.
-    pub neighbours: &'a [Vec<LineId>],
+    pub neighbours: &'a Neighbours,
 }
 
 /// Groups all half-planes; every half-plane ends in exactly one group.
@@ -82,7 +84,10 @@ pub fn group_planes(input: &GroupingInput, params: &RoofParams) -> Vec<PlaneGrou
     let mut groups = merge_groups(input, groups, params);
     add_line_pairs(input, &by_line, &mut groups, params);
     groups.iter_mut().for_each(|g| infer_sides(input, g));
-    groups
+    crate::parallel::map(&groups, |_, g| match g.half_planes().is_empty() {
+        true => with_lines_around(input, g, params),
+        false => g.clone(),
+    })
 }
 
 /// Planes of two neighbouring coplanar lines that no half-plane explains (B99 5: "an efficient and robust approach
@@ -94,9 +99,11 @@ fn add_line_pairs(
     params: &RoofParams,
 ) {
     let mut none_free = vec![false; input.half_planes.len()];
-    for (i, neighbours) in input.neighbours.iter().enumerate() {
-        let first = LineId::from_index(i);
-        for &second in neighbours.iter().filter(|&&n| n > first) {
+    for first in (0..input.lines.len()).map(LineId::from_index) {
+        let around = (input.neighbours.around_corners[first.index()].iter())
+            .filter(|&&second| unexplained(input, by_line, first, second));
+        let neighbours = input.neighbours.direct[first.index()].iter();
+        for &second in neighbours.chain(around).filter(|&&n| n > first) {
             if groups
                 .iter()
                 .any(|g| g.contains(first) && g.contains(second))
@@ -113,6 +120,58 @@ fn add_line_pairs(
             extend(input, by_line, &mut group, &mut none_free, params);
             groups.push(group);
         }
+    }
+}
+
+/// Has neither of two lines a half-plane on the side of the other?
+fn unexplained(
+    input: &GroupingInput,
+    by_line: &[Vec<HalfPlaneId>],
+    first: LineId,
+    second: LineId,
+) -> bool {
+    let explained = |line: LineId, other: LineId| {
+        let segment = &input.lines[line.index()].segment;
+        let to = input.lines[other.index()].at(0.5).xy() - segment.p0.xy();
+        let left = segment.direction().xy().perp(&to) > 0.0;
+        let side = if left { Side::Left } else { Side::Right };
+        let half_planes = by_line[line.index()].iter();
+        half_planes
+            .map(|h| input.half_planes[h.index()].side)
+            .any(|s| s == side)
+    };
+    !explained(first, second) && !explained(second, first)
+}
+
+/// A group without a half-plane with all lines in its plane that lie where it may reach: clutter on a roof or below it, which the
+/// plan does not tell apart, comes between lines that are neighbours on the roof.
+fn with_lines_around(input: &GroupingInput, group: &PlaneGroup, params: &RoofParams) -> PlaneGroup {
+    let mut group = group.clone();
+    loop {
+        let region = Region::new(input, &group, params);
+        let inside = |line: &Line3d| {
+            let seen = (0..5).filter(|i| region.contains(&line.at(f64::from(*i) / 4.0).xy()));
+            seen.count() >= 3
+        };
+        let around = (0..input.lines.len()).map(LineId::from_index).filter(|&l| {
+            !group.contains(l)
+                && inside(&input.lines[l.index()])
+                && lies_in_plane(input, &group, l, params)
+        });
+        let mut larger = group.clone();
+        for line in around {
+            let mut members = larger.members.clone();
+            members.push(member(input, line, None));
+            let plane = fit_plane(input, &members);
+            if let Some(plane) = plane.filter(|p| all_lie_in(input, p, &members, params)) {
+                larger = PlaneGroup { plane, members };
+            }
+        }
+        if larger.members.len() == group.members.len() {
+            return group;
+        }
+        infer_sides(input, &mut larger);
+        group = larger;
     }
 }
 
@@ -229,7 +288,7 @@ fn extend(
     let mut queue: std::collections::VecDeque<LineId> =
         group.members.iter().map(|m| m.line).collect();
     while let Some(line) = queue.pop_front() {
-        for &next in &input.neighbours[line.index()] {
+        for &next in &input.neighbours.direct[line.index()] {
             if group.contains(next) || !lies_in_plane(input, group, next, params) {
                 continue;
             }
@@ -387,7 +446,7 @@ fn are_neighbours(input: &GroupingInput, a: &PlaneGroup, b: &PlaneGroup) -> bool
     let lines = b.lines();
     a.members.iter().any(|m| {
         lines.contains(&m.line)
-            || input.neighbours[m.line.index()]
+            || input.neighbours.direct[m.line.index()]
                 .iter()
                 .any(|n| lines.binary_search(n).is_ok())
     })

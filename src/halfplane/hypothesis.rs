@@ -113,17 +113,22 @@ fn supported(
     map: &ConsistencyMap,
     params: &RoofParams,
 ) -> bool {
-    let agreeing = group.members.iter().filter(|m| {
-        let Some(side) = m.side else { return false };
-        let seen = beside(map, &input.lines[m.line.index()].segment, side);
+    let excesses = group.members.iter().filter_map(|m| {
+        let seen = beside(map, &input.lines[m.line.index()].segment, m.side?);
         let excess = |(c, w): &(f32, f32)| {
             let (c, w) = (f64::from(*c), f64::from(*w));
             w * (c - least_correlation(w, params.min_correlation))
         };
-        !seen.is_empty() && seen.iter().map(excess).sum::<f64>() >= 0.0
+        let weight: f64 = seen.iter().map(|(_, w)| f64::from(*w)).sum();
+        (weight > 0.0).then(|| (seen.iter().map(excess).sum::<f64>(), weight))
     });
-    agreeing.count() >= 2
+    let excesses: Vec<(f64, f64)> = excesses.collect();
+    let agreeing = excesses.iter().filter(|(e, w)| *e >= -SCATTER * w);
+    agreeing.clone().count() >= 2 && agreeing.map(|(e, _)| e).sum::<f64>() >= 0.0
 }
+
+/// Scatter of the mean correlation beside a line. Assumption: some ten independent windows.
+const SCATTER: f64 = 0.05;
 
 /// Correlation and weight at positions beside a line, farther from it than half a window.
 fn beside(map: &ConsistencyMap, line: &Segment3, side: Side) -> Vec<(f32, f32)> {

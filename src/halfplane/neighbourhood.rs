@@ -11,16 +11,32 @@ use crate::lines3d::Line3d;
 use crate::sorting::sort_by;
 
 /// For each line its neighbours in ascending order, itself left out.
-pub fn line_neighbours(lines: &[Line3d]) -> Vec<Vec<LineId>> {
+#[derive(Clone, Debug, Default)]
+pub struct Neighbours {
+    /// Those that the triangulation joins.
+    pub direct: Vec<Vec<LineId>>,
+    /// Those that it would join if its vertex at a corner belonged to every line that ends there.
+    pub around_corners: Vec<Vec<LineId>>,
+}
+
+/// The topological neighbourhood of lines in plan.
+pub fn line_neighbours(lines: &[Line3d]) -> Neighbours {
     let mut cdt = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
     // Which lines run through each vertex of the triangulation.
     let mut owners: Vec<Vec<LineId>> = Vec::new();
+    let mut ends_at: Vec<End> = Vec::new();
     for (i, line) in lines.iter().enumerate() {
         let ends = [line.segment.p0, line.segment.p1].map(|p| cdt.insert(Point2::new(p.x, p.y)));
         let [Ok(from), Ok(to)] = ends else { continue };
         if from == to {
             continue;
         }
+        let length = (line.segment.p1 - line.segment.p0).xy().norm();
+        ends_at.extend([from, to].map(|vertex| End {
+            line: LineId::from_index(i),
+            vertex: vertex.index(),
+            length,
+        }));
         let edges = cdt.add_constraint_and_split(from, to, |p| p);
         owners.resize(cdt.num_vertices(), Vec::new());
         for edge in edges {
@@ -30,8 +46,28 @@ pub fn line_neighbours(lines: &[Line3d]) -> Vec<Vec<LineId>> {
         }
     }
     owners.resize(cdt.num_vertices(), Vec::new());
+    let neighbours = joined(&cdt, &owners, lines.len());
+    let positions: Vec<Point2<f64>> = cdt.vertices().map(|v| v.position()).collect();
+    for (vertex, line) in meeting(&ends_at, &positions) {
+        owners[vertex].push(line);
+    }
+    let mut around_corners = joined(&cdt, &owners, lines.len());
+    for (around, direct) in around_corners.iter_mut().zip(&neighbours) {
+        around.retain(|l| direct.binary_search(l).is_err());
+    }
+    Neighbours {
+        direct: neighbours,
+        around_corners,
+    }
+}
 
-    let mut neighbours = vec![Vec::new(); lines.len()];
+/// Lines whose vertices an edge of the triangulation joins, or that share one: for each line, ascending, itself left out.
+fn joined(
+    cdt: &ConstrainedDelaunayTriangulation<Point2<f64>>,
+    owners: &[Vec<LineId>],
+    lines: usize,
+) -> Vec<Vec<LineId>> {
+    let mut neighbours = vec![Vec::new(); lines];
     let mut link = |a: &[LineId], b: &[LineId]| {
         for &i in a {
             for &j in b {
@@ -46,7 +82,7 @@ pub fn line_neighbours(lines: &[Line3d]) -> Vec<Vec<LineId>> {
         let [a, b] = edge.vertices().map(|v| v.fix().index());
         link(&owners[a], &owners[b]);
     }
-    for shared in &owners {
+    for shared in owners {
         link(shared, shared);
     }
     for list in &mut neighbours {
@@ -55,6 +91,40 @@ pub fn line_neighbours(lines: &[Line3d]) -> Vec<Vec<LineId>> {
     }
     neighbours
 }
+
+/// Where a line ends.
+struct End {
+    line: LineId,
+    vertex: usize,
+    /// Of the line in plan, metres.
+    length: f64,
+}
+
+/// Lines that end so near to a vertex at which another ends that the two are one corner. Which of them the
+/// triangulation joins to what lies around the corner is left to chance by the uncertainty of ends.
+fn meeting(ends: &[End], positions: &[Point2<f64>]) -> Vec<(usize, LineId)> {
+    let mut order: Vec<usize> = (0..ends.len()).collect();
+    let x = |i: usize| positions[ends[i].vertex].x;
+    sort_by(&mut order, |&a, &b| x(a).total_cmp(&x(b)).then(a.cmp(&b)));
+    let longest = ends.iter().map(|e| e.length).fold(0.0, f64::max);
+    let mut found = Vec::new();
+    for (k, &i) in order.iter().enumerate() {
+        let (a, p) = (&ends[i], positions[ends[i].vertex]);
+        let following = order[k + 1..].iter();
+        for &j in following.take_while(|&&j| x(j) - p.x <= CORNER_SHARE * longest) {
+            let (b, q) = (&ends[j], positions[ends[j].vertex]);
+            let reach = CORNER_SHARE * a.length.min(b.length);
+            let apart2 = (q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y);
+            if a.vertex != b.vertex && apart2 <= reach * reach {
+                found.extend([(a.vertex, b.line), (b.vertex, a.line)]);
+            }
+        }
+    }
+    found
+}
+
+/// Ends within this share of the shorter line are one corner. Assumption: ends are known to a tenth of the length.
+const CORNER_SHARE: f64 = 0.1;
 
 #[cfg(test)]
 mod tests {
@@ -79,7 +149,7 @@ mod tests {
             line([-20.0, 2.0], [30.0, 2.0]),
             line([0.0, 4.0], [10.0, 4.0]),
         ];
-        let n = line_neighbours(&lines);
+        let n = line_neighbours(&lines).direct;
         assert_eq!(n[0], [LineId(1)]);
         assert_eq!(n[1], [LineId(0), LineId(2)]);
         assert_eq!(n[2], [LineId(1)]);
@@ -92,8 +162,33 @@ mod tests {
             line([5.0, -5.0], [5.0, 5.0]),
             line([10.0, 0.0], [10.0, 9.0]),
         ];
-        let n = line_neighbours(&lines);
+        let n = line_neighbours(&lines).direct;
         assert!(n[0].contains(&LineId(1)) && n[1].contains(&LineId(0)));
         assert!(n[0].contains(&LineId(2)));
+    }
+
+    #[test]
+    fn two_hips_are_neighbours_though_others_end_at_their_corners() {
+        // A hipped roof without its ridge: the upper ends of hips 0 and 2 belong to hips 1 and 3 as well.
+        let lines = [
+            line([0.0, 0.0], [4.0, 3.9]),
+            line([0.0, 8.0], [4.0, 4.0]),
+            line([14.0, 0.0], [10.0, 3.9]),
+            line([14.0, 8.0], [10.0, 4.0]),
+            line([-1.0, -0.1], [15.0, -0.1]),
+            line([-1.0, 8.1], [15.0, 8.1]),
+        ];
+        let n = line_neighbours(&lines);
+        let joined = |a: usize, b: u32| {
+            n.direct[a].contains(&LineId(b)) || n.around_corners[a].contains(&LineId(b))
+        };
+        assert!(joined(0, 2) && joined(2, 0) && joined(1, 3));
+        assert!(
+            n.direct
+                .iter()
+                .zip(&n.around_corners)
+                .all(|(d, c)| c.iter().all(|l| !d.contains(l)))
+        );
+        assert!(n.around_corners.iter().any(|c| !c.is_empty()));
     }
 }
