@@ -18,6 +18,7 @@ use zip::write::{SimpleFileOptions, ZipWriter};
 use super::{InputFile, LoadOptions};
 use crate::orientation::{FileKind, detect};
 use crate::params::Params;
+use crate::plain_json;
 use crate::{Error, Result};
 
 /// Name of the file that makes an archive a project.
@@ -93,10 +94,9 @@ pub fn open_project(files: Vec<InputFile>) -> Result<(Vec<InputFile>, Option<Pro
     let Some(file) = files.iter().find(is_project) else {
         return Ok((files, None));
     };
-    // As text, like the page's parameters: the reader for bytes would be compiled beside that for text.
-    let project: Project = serde_json::from_str(&file.text()).map_err(|e| Error::Line {
+    let project: Project = plain_json::read(&file.text()).map_err(|e| Error::Line {
         file: file.path.clone(),
-        line: e.line().max(1),
+        line: e.line.unwrap_or(1),
         problem: e
             .to_string()
             .replace("; ", ", ")

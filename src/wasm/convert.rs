@@ -48,7 +48,7 @@ pub(super) fn from_js<T: DeserializeOwned>(value: &JsValue, what: &str) -> Resul
     } else {
         String::from(js_sys::JSON::stringify(value)?)
     };
-    serde_json::from_str(&text).map_err(|e| named_error("InputError", &format!("{what}: {e}")))
+    crate::plain_json::read(&text).map_err(|e| named_error("InputError", &format!("{what}: {e}")))
 }
 
 /// (x0, y0, x1, y1) per segment, pixels.
