@@ -82,7 +82,10 @@ fn free_vertices(facets: &[&Facet]) -> BTreeSet<[u64; 2]> {
         *uses.entry(key(&p)).or_default() += 1;
     }
     let single = uses.into_iter().filter(|(_, n)| *n == 1);
-    single.map(|(k, _)| k).collect()
+    // Not collected: that would sort the corners again, by one more sort.
+    let mut free = BTreeSet::new();
+    free.extend(single.map(|(k, _)| k));
+    free
 }
 
 /// Takes out short sides, the shortest first, until none is left that can go.
