@@ -11,7 +11,7 @@
 
 use std::io::{Cursor, Write};
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use zip::CompressionMethod;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
@@ -19,6 +19,7 @@ use super::{InputFile, LoadOptions};
 use crate::orientation::{FileKind, detect};
 use crate::params::Params;
 use crate::plain_json;
+use crate::readable;
 use crate::{Error, Result};
 
 /// Name of the file that makes an archive a project.
@@ -28,18 +29,17 @@ const PROJECT_FILE: &str = "project.json";
 const INPUT: &str = "input/";
 const RESULTS: &str = "results/";
 
+readable! {
 /// What a run was asked for.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Project {
     /// Version of the program that wrote it.
     pub ridgeline: String,
     /// Choice of views, orientation, region...
-    #[serde(default)]
     pub options: LoadOptions,
     /// Parameters of the stages.
-    #[serde(default)]
     pub params: Params,
+}
 }
 
 impl Project {

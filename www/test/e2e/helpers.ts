@@ -93,6 +93,18 @@ export async function openTab(page: Page, name: string): Promise<void> {
   await page.getByRole("tab", { name, exact: true }).click();
 }
 
+/** Clicks over an element until something is as wanted. */
+export async function pickUntil(element: Locator, isFound: () => Promise<boolean>): Promise<void> {
+  const box = await element.boundingBox();
+  for (let i = 0; i < 90 && !(await isFound()); i += 1) {
+    const x = (box?.width ?? 0) * (0.25 + 0.055 * (i % 10));
+    const y = (box?.height ?? 0) * (0.2 + 0.07 * Math.floor(i / 10));
+    await element.click({ position: { x, y } });
+    await element.page().waitForTimeout(60);
+  }
+  expect(await isFound()).toBe(true);
+}
+
 export interface Look {
   /** Share of pixels that differ from the most frequent colour. */
   drawn: number;

@@ -6,8 +6,6 @@ import {
   give,
   houseFiles,
   housePmatrix,
-  lookOf,
-  stage,
   type Upload,
   upload,
   waitForStage,

@@ -1,6 +1,15 @@
 /** Own files in every format of docs/formats.md become a model, and the same one: all say the same of one house. */
 import { expect, type Page, test } from "@playwright/test";
-import { give, HOUSE_FORMATS, houseFiles, lookOf, stage, visualSfmFiles, waitForStage, watch } from "./helpers";
+import {
+  give,
+  HOUSE_FORMATS,
+  houseFiles,
+  lookOf,
+  stage,
+  visualSfmFiles,
+  waitForStage,
+  watch,
+} from "./helpers";
 
 /** What the stages found, in words and numbers, without their times. */
 async function found(page: Page): Promise<string> {
