@@ -57,6 +57,6 @@ test("files of VisualSFM are read", async ({ page }) => {
   await page.goto("/");
   await give(page, visualSfmFiles());
   await expect(page.locator(".view .status.good")).toHaveCount(6);
-  await expect(page.locator(".view .status.good").first()).toHaveAttribute("title", /model\.nvm$/);
+  await expect(page.locator(".view .status.good").first()).toHaveAttribute("title", /^model\.nvm, line \d+$/);
   expect(problems).toEqual([]);
 });
