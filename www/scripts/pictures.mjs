@@ -57,8 +57,16 @@ await withSite(PORT, async (browser) => {
   await page.goto(SITE);
   await page.locator('input[type="file"]').first().setInputFiles(filesOf(folder));
   await page.getByRole("button", { name: "Run all" }).click();
-  const isDone = () => document.querySelector('[data-stage="model"]')?.dataset.status === "done";
-  await page.waitForFunction(isDone, undefined, { timeout: LONGEST_MS });
+  const outcome = () => {
+    const refusal = document.querySelector('[role="alert"]')?.textContent;
+    const isDone = document.querySelector('[data-stage="model"]')?.dataset.status === "done";
+    return refusal ?? (isDone ? "done" : null);
+  };
+  const handle = await page.waitForFunction(outcome, undefined, { timeout: LONGEST_MS });
+  const said = await handle.jsonValue();
+  if (said !== "done") {
+    throw new Error(said);
+  }
   await page.getByRole("tab", { name: "Model", exact: true }).click();
   await page.waitForTimeout(3000);
   await composed(browser, await fourSides(page));
