@@ -3,7 +3,7 @@ import { computed, signal } from "@preact/signals";
 import { METHOD_COLOURS } from "../shared/palette";
 import type { Facet } from "../shared/results";
 import type { ModelMode } from "../viewer/model";
-import { keptResult, type Method, results } from "./state";
+import { keptResult, type Method, method, results } from "./state";
 
 export const mode = signal<ModelMode>("textured");
 
@@ -17,13 +17,13 @@ const MODES: readonly (readonly [ModelMode, string])[] = [
 
 const METHOD_TITLES: Record<Method, string> = { lines: "Lines (B99)", rectangles: "Rectangles (W96)" };
 
-/** The method that made a facet, by what it was made of: rectangles come without half-planes. */
-export function methodOfFacet({ half_planes }: Pick<Facet, "half_planes">): Method {
-  return (half_planes ?? []).length > 0 ? "lines" : "rectangles";
+/** The method that made a facet: what has half-planes is of lines, anything else of the method that ran. */
+function methodOfFacet({ half_planes }: Facet, ran: Method): Method {
+  return (half_planes ?? []).length > 0 ? "lines" : ran;
 }
 
-export function facetColours(facets: readonly Facet[] | null): string[] {
-  return (facets ?? []).map((facet) => METHOD_COLOURS[methodOfFacet(facet)]);
+export function facetColours(facets: readonly Facet[] | null, ran: Method): string[] {
+  return (facets ?? []).map((facet) => METHOD_COLOURS[methodOfFacet(facet, ran)]);
 }
 
 export function ModeSwitches() {
@@ -48,7 +48,7 @@ export function ModeSwitches() {
 
 /** The numbers of facets that each method made. */
 const made = computed(() => {
-  const methods = (results.value.facets ?? []).map(methodOfFacet);
+  const methods = (results.value.facets ?? []).map((facet) => methodOfFacet(facet, method.value));
   const names = Object.keys(METHOD_TITLES) as Method[];
   return names.map((name) => [name, methods.filter((one) => one === name).length] as const);
 });

@@ -166,7 +166,7 @@ async function showModel(bytes: Uint8Array<ArrayBuffer> | null): Promise<void> {
     return;
   }
   try {
-    const layer = await buildModel(bytes, facetColours(results.peek().facets));
+    const layer = await buildModel(bytes, facetColours(results.peek().facets, method.peek()));
     if (glb.peek() !== bytes) {
       layer.dispose();
       return;

@@ -181,7 +181,7 @@ test("refinement: outlines before, relations by their chi-square, adopted and re
       .evaluate((input) => (input as HTMLInputElement).value),
   );
   const dots = lab.locator(".relation");
-  expect(await dots.count()).toBeGreaterThan(3);
+  await expect(dots.nth(3)).toBeVisible();
   for (const dot of await dots.all()) {
     const [, chi2, verdict] =
       /χ² ([\d.]+), (adopted|refused)$/.exec((await dot.getAttribute("aria-label")) ?? "") ?? [];
@@ -217,6 +217,16 @@ test("the viewer: normals, cameras, measuring, a picture, and a view's own camer
   await page.getByRole("button", { name: "Normals" }).click();
   await expect(async () => {
     expect((await lookOf(page, viewer)).vivid).toBeGreaterThan(textured.vivid + 0.03);
+  }).toPass({ timeout: 20_000 });
+
+  const facets = /(\d+) facets/.exec((await stage(page, "facets").textContent()) ?? "")?.[1];
+  const normals = await lookOf(page, viewer);
+  await page.getByRole("button", { name: "By method" }).click();
+  await expect(page.getByTestId("method-legend")).toHaveText(
+    `Lines (B99): ${facets} facetsRectangles (W96): 0 facets`,
+  );
+  await expect(async () => {
+    expect(await lookOf(page, viewer)).not.toEqual(normals);
   }).toPass({ timeout: 20_000 });
 
   await page.getByRole("button", { name: "Measure" }).click();
