@@ -10,7 +10,7 @@ const PORT = Number(process.env.PORT ?? 4180);
 const SITE = `http://127.0.0.1:${PORT}/`;
 const QUALITY = 80;
 /** So far the wheel is turned: the view as it is fitted leaves room for orbiting. */
-const NEARER = -500;
+const NEARER = -350;
 /** A large scene takes minutes where WebGL is drawn in software. */
 const LONGEST_MS = 900_000;
 
