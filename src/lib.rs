@@ -41,6 +41,8 @@ pub mod orientation;
 pub mod parallel;
 pub mod params;
 pub mod pipeline;
+pub mod plain_json;
+pub mod plan_index;
 pub mod progress;
 pub mod raster;
 pub mod roof;

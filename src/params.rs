@@ -13,10 +13,14 @@ pub use objectspace::*;
 pub use planes::*;
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
+use crate::plain_json::{Problem, Readable, read_name};
+use crate::readable;
+
+readable! {
 /// The parameters of a whole run. Missing fields of a JSON file take their defaults.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Params {
     /// Which of the methods finds the roofs.
     pub method: Method,
@@ -35,6 +39,7 @@ pub struct Params {
     /// Texture atlas.
     pub texture: TextureParams,
 }
+}
 
 /// How roofs are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -45,4 +50,11 @@ pub enum Method {
     Lines,
     /// Regions, and planes between parallel lines in object space (W96).
     Rectangles,
+}
+
+impl Readable for Method {
+    fn read_from(&mut self, value: &Value) -> Result<(), Problem> {
+        *self = read_name(value)?;
+        Ok(())
+    }
 }

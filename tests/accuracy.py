@@ -8,7 +8,6 @@ made from planes) and lies at a true roof edge (within 3 degrees, at most 5 grou
 distance in plan and one in height from its middle to the edge; the plots show the medians in ground pixels. The script needs Python
 alone.
 """
-import argparse
 import json
 import math
 import pathlib
@@ -17,21 +16,18 @@ import subprocess
 import tempfile
 
 from growth import HEIGHT, LEFT, TOP, WIDTH, document
+from on_scenes import is_wanted, parser_of
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00']
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('--binary', required=True, type=pathlib.Path)
-    parser.add_argument('--scenes', required=True, type=pathlib.Path)
-    parser.add_argument('--only', help='names of scenes, separated by commas')
-    args = parser.parse_args()
+    args = parser_of(__doc__).parse_args()
     curves = {}
     for scene in sorted(p.parent for p in args.scenes.glob('*/truth')):
         names = sorted(p.name for p in (scene / 'images').iterdir())
-        if len(names) >= 6 and (not args.only or scene.name in args.only.split(',')):
+        if len(names) >= 6 and is_wanted(args, scene.name):
             curves[scene.name] = [errors(args.binary.resolve(), scene, names[:n]) for n in range(3, len(names) + 1)]
     plots = [plot(0, 'in plan', curves, 'plan'), plot(1, 'in height', curves, 'height')]
     (ROOT / 'docs' / 'accuracy.svg').write_text(svg(plots, list(curves)))

@@ -7,7 +7,6 @@ FOLDER holds one folder per scene with images/ and cameras.json (K, R, C). Print
 the error moves the view's image, what is left of it in the other views' world, and, with --models, the score of the model
 as stated, with the error, and adjusted (`score/` beside FOLDER, as in score_table.py).
 """
-import argparse
 import json
 import math
 import pathlib
@@ -17,18 +16,16 @@ import tempfile
 
 import numpy as np
 
+from on_scenes import names_of, parser_of
+
 PLANTED = {'none': {}, 'turned 0.02 degrees': {'turn': 0.02}, 'moved 0.1 m': {'move': 0.1}, 'shifted 1.5 px': {'shift': 1.5}}
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('--binary', required=True, type=pathlib.Path)
-    parser.add_argument('--scenes', required=True, type=pathlib.Path)
-    parser.add_argument('--only', help='names of scenes, separated by commas')
+    parser = parser_of(__doc__)
     parser.add_argument('--models', action='store_true', help='reconstruct and score, too')
     args = parser.parse_args()
-    names = sorted(p.name for p in args.scenes.iterdir() if (p / 'cameras.json').exists())
-    names = [name for name in names if not args.only or name in args.only.split(',')]
+    names = names_of(args)
     print('| scene | planted | moves its image | adjusted | left in it | left in any view |' + (' model as it is, adjusted |' if args.models else ''))
     print('|---|---|---|---|---|---|' + ('---|' if args.models else ''))
     for name in names:

@@ -50,6 +50,7 @@ if [ "${1:-all}" = all ]; then
     step wasm cargo wasm-pack test --node --release --mode no-install -- --test wasm
     step identical check node tests/identical.mjs target/debug/ridgeline
     step typescript node www test:unit
+    step size check www size
     step page playwright www test:e2e
 fi
 

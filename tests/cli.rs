@@ -218,7 +218,8 @@ fn the_printed_parameters_are_accepted() {
         .arg("params")
         .output()
         .unwrap();
-    let params: ridgeline::params::Params = serde_json::from_slice(&output.stdout).unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    let params: ridgeline::params::Params = ridgeline::plain_json::read(&text).unwrap();
     assert_eq!(params, ridgeline::params::Params::default());
 }
 

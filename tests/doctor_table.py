@@ -7,7 +7,6 @@ FOLDER holds one folder per scene with images/ and cameras.json (K, R, C). Print
 a row for each mistake, a column for each scene; the first row is the sound scene, which must be left alone. "-": the
 list of angles has one camera for all images, and the scene has several.
 """
-import argparse
 import json
 import pathlib
 import shutil
@@ -16,6 +15,8 @@ import sys
 import tempfile
 
 import numpy as np
+
+from on_scenes import names_of, parser_of
 
 class NotExpressible(Exception):
     """A format cannot hold the orientation of a scene."""
@@ -97,13 +98,8 @@ MISTAKES = {
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('--binary', required=True, type=pathlib.Path)
-    parser.add_argument('--scenes', required=True, type=pathlib.Path)
-    parser.add_argument('--only', help='names of scenes, separated by commas')
-    args = parser.parse_args()
-    names = sorted(p.name for p in args.scenes.iterdir() if (p / 'cameras.json').exists())
-    names = [name for name in names if not args.only or name in args.only.split(',')]
+    args = parser_of(__doc__).parse_args()
+    names = names_of(args)
     print('| mistake | ' + ' | '.join(names) + ' |\n|---|' + '---|' * len(names))
     named, tried = dict.fromkeys(names, 0), dict.fromkeys(names, 0)
     for what, (broken, word) in MISTAKES.items():

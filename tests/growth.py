@@ -9,12 +9,13 @@ three scenes of six views. lines (B99 3): segments, matching and 3D lines over t
 machine changes little: the share of each stage of the run times the processor time of the process. The script needs Python
 alone.
 """
-import argparse
 import json
 import os
 import pathlib
 import subprocess
 import tempfile
+
+from on_scenes import parser_of
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 # Six images each: 256 x 256, 600 x 600 and 1200 x 1200.
@@ -33,9 +34,7 @@ METHODS = {
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('--binary', required=True, type=pathlib.Path)
-    parser.add_argument('--scenes', required=True, type=pathlib.Path)
+    parser = parser_of(__doc__, only=None)
     parser.add_argument('--method', choices=METHODS, default='rectangles')
     args = parser.parse_args()
     method = METHODS[args.method]

@@ -8,7 +8,6 @@ and check_real.py (scenes with check/), which need numpy and shapely. The tables
 docs/results.md are rewritten when all scenes were run. Without FOLDER there is nothing to score, and
 the program says so and ends well.
 """
-import argparse
 import json
 import pathlib
 import statistics
@@ -18,17 +17,15 @@ import time
 
 import half_planes
 
+from on_scenes import parser_of
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / 'docs' / 'results.md'
 OUT = ROOT / 'target' / 'score'
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('--binary', required=True, type=pathlib.Path)
-    parser.add_argument('--scenes', required=True, type=pathlib.Path)
-    parser.add_argument('--only', help='names of scenes, separated by commas; docs/results.md is left alone')
-    args = parser.parse_args()
+    args = parser_of(__doc__, only='names of scenes, separated by commas; docs/results.md is left alone').parse_args()
     scorer = args.scenes.parent / 'score'
     if not args.scenes.is_dir() or not scorer.is_dir():
         print(f'score: skipped, there is no {args.scenes} with a {scorer} beside it')

@@ -7,23 +7,12 @@
 //! separates make a cell.
 
 use nalgebra::{Point2, Vector2};
-use rstar::{RTree, primitives::GeomWithData};
-use spade::{ConstrainedDelaunayTriangulation, HasPosition, Triangulation};
+use spade::{ConstrainedDelaunayTriangulation, Triangulation};
 
 use super::borders::Border;
 use super::plan::PlanGrid;
+use crate::plan_index::PlanIndex;
 use crate::sorting::sort_by;
-
-/// A vertex of the triangulation.
-#[derive(Clone, Copy, Debug)]
-struct Vertex(Point2<f64>);
-
-impl HasPosition for Vertex {
-    type Scalar = f64;
-    fn position(&self) -> spade::Point2<f64> {
-        spade::Point2::new(self.0.x, self.0.y)
-    }
-}
 
 /// A border between two cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +44,9 @@ pub struct Arrangement {
     pub open: Vec<bool>,
 }
 
+/// Of the same vertices as everywhere in this crate, so that it is compiled once.
+type Triangles = ConstrainedDelaunayTriangulation<spade::Point2<f64>>;
+
 /// Crossings nearer than this become one vertex, metres.
 const SNAP: f64 = 0.06;
 
@@ -62,20 +54,24 @@ impl Arrangement {
     /// Cuts the plan by the borders.
     pub fn new(borders: &[Border]) -> Self {
         let (points, edges) = split_at_crossings(borders);
-        let mut cdt = ConstrainedDelaunayTriangulation::<Vertex>::new();
-        let handles: Vec<_> = points.iter().map(|&p| cdt.insert(Vertex(p))).collect();
+        let mut cdt = Triangles::new();
+        let handles: Vec<_> = (points.iter())
+            .map(|p| cdt.insert(spade::Point2::new(p.x, p.y)))
+            .collect();
         for (a, b) in edges {
             if let (Ok(a), Ok(b)) = (handles[a], handles[b])
                 && a != b
             {
-                cdt.add_constraint_and_split(a, b, |p| Vertex(Point2::new(p.x, p.y)));
+                cdt.add_constraint_and_split(a, b, |p| p);
             }
         }
         Self::from_triangulation(&cdt)
     }
 
-    fn from_triangulation(cdt: &ConstrainedDelaunayTriangulation<Vertex>) -> Self {
-        let vertices: Vec<Point2<f64>> = cdt.vertices().map(|v| v.data().0).collect();
+    fn from_triangulation(cdt: &Triangles) -> Self {
+        let vertices: Vec<Point2<f64>> = (cdt.vertices().map(|v| v.position()))
+            .map(|p| Point2::new(p.x, p.y))
+            .collect();
         let faces: Vec<[usize; 3]> = cdt
             .inner_faces()
             .map(|f| f.vertices().map(|v| v.fix().index()))
@@ -231,19 +227,17 @@ fn crossing(p: &Border, q: &Border) -> Option<Point2<f64>> {
 #[derive(Default)]
 struct Snapper {
     points: Vec<Point2<f64>>,
-    tree: RTree<GeomWithData<[f64; 2], usize>>,
+    index: PlanIndex,
 }
 
 impl Snapper {
     fn vertex(&mut self, p: Point2<f64>) {
-        let near = self
-            .tree
-            .locate_within_distance([p.x, p.y], SNAP * SNAP)
-            .map(|v| v.data)
-            .next();
-        if near.is_none() {
-            self.tree
-                .insert(GeomWithData::new([p.x, p.y], self.points.len()));
+        let is_near = self
+            .index
+            .touching([p; 2], SNAP)
+            .any(|v| (self.points[v as usize] - p).norm_squared() <= SNAP * SNAP);
+        if !is_near {
+            self.index.insert([p; 2], self.points.len() as u32);
             self.points.push(p);
         }
     }
@@ -253,22 +247,14 @@ impl Snapper {
         let d = border.b - border.a;
         let length = d.norm().max(1e-12);
         let d = d / length;
-        let low = [
-            border.a.x.min(border.b.x) - SNAP,
-            border.a.y.min(border.b.y) - SNAP,
-        ];
-        let high = [
-            border.a.x.max(border.b.x) + SNAP,
-            border.a.y.max(border.b.y) + SNAP,
-        ];
         let mut on: Vec<(f64, usize)> = self
-            .tree
-            .locate_in_envelope_intersecting(&rstar::AABB::from_corners(low, high))
+            .index
+            .touching([border.a, border.b], SNAP)
             .filter_map(|v| {
-                let r = self.points[v.data] - border.a;
+                let v = v as usize;
+                let r = self.points[v] - border.a;
                 let t = r.dot(&d);
-                (d.perp(&r).abs() <= SNAP && t >= -SNAP && t <= length + SNAP)
-                    .then_some((t, v.data))
+                (d.perp(&r).abs() <= SNAP && t >= -SNAP && t <= length + SNAP).then_some((t, v))
             })
             .collect();
         sort_by(&mut on, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

@@ -1,16 +1,15 @@
 //! Real lines by plan position: which of them run along a border.
 
 use nalgebra::Point2;
-use rstar::RTree;
-use rstar::primitives::{GeomWithData, Rectangle};
 
 use crate::geometry::Segment3;
+use crate::plan_index::PlanIndex;
 use crate::sorting::sort_by;
 
 /// 3D lines by plan position.
 pub struct LineIndex {
     lines: Vec<Segment3>,
-    tree: RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>,
+    index: PlanIndex,
 }
 
 /// A border lies on a line within this distance in plan, metres, and this sine of the angle.
@@ -20,20 +19,8 @@ const LINE_SINE: f64 = 0.12;
 impl LineIndex {
     /// Indexes the lines.
     pub fn new(lines: Vec<Segment3>) -> Self {
-        let boxes = lines
-            .iter()
-            .enumerate()
-            .map(|(i, l)| {
-                let (a, b) = (l.p0, l.p1);
-                let low = [a.x.min(b.x) - BESIDE_LINE, a.y.min(b.y) - BESIDE_LINE];
-                let high = [a.x.max(b.x) + BESIDE_LINE, a.y.max(b.y) + BESIDE_LINE];
-                GeomWithData::new(Rectangle::from_corners(low, high), i)
-            })
-            .collect();
-        Self {
-            lines,
-            tree: RTree::bulk_load(boxes),
-        }
+        let index = PlanIndex::new(lines.iter().map(|l| [l.p0.xy(), l.p1.xy()]));
+        Self { lines, index }
     }
 
     /// Heights of the lines that run along a -> b at its middle, ascending.
@@ -41,10 +28,10 @@ impl LineIndex {
         let middle = Point2::from((a.coords + b.coords) * 0.5);
         let d = (b - a) / (b - a).norm().max(1e-12);
         let mut heights: Vec<f64> = self
-            .tree
-            .locate_all_at_point(&[middle.x, middle.y])
-            .filter_map(|g| {
-                let line = &self.lines[g.data];
+            .index
+            .touching([middle; 2], BESIDE_LINE)
+            .filter_map(|i| {
+                let line = &self.lines[i as usize];
                 let e = line.p1.xy() - line.p0.xy();
                 let length = e.norm();
                 if length < 1e-9 {

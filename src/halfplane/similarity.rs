@@ -253,14 +253,17 @@ fn most_textured(
             continue;
         };
         let (min, max) = strip.bounds();
-        let mut pixels: Vec<(usize, usize)> = points[id.index()]
+        let columns = strip.columns;
+        let mut places: Vec<usize> = points[id.index()]
             .within(min, max)
             .filter_map(|p| strip.pixel_of(&p))
+            .map(|(column, row)| row * columns + column)
             .collect();
-        pixels.sort_unstable_by_key(|&(column, row)| (row, column));
-        pixels.dedup();
-        if best.as_ref().is_none_or(|b| pixels.len() > b.2.len()) {
-            best = Some((id, strip, pixels));
+        places.sort_unstable();
+        places.dedup();
+        if best.as_ref().is_none_or(|b| places.len() > b.2.len()) {
+            let pixels = places.iter().map(|&p| (p % columns, p / columns));
+            best = Some((id, strip, pixels.collect()));
         }
     }
     best

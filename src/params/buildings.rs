@@ -1,11 +1,13 @@
 //! Tunables of buildings: refinement (B99 2) and textures.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
+use crate::readable;
+
+readable! {
 /// B99 section 2 (the partner in Leuven): regularisation, and refinement by the reprojection error of the wireframe. The paper gives
 /// no numbers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RefineParams {
     /// Refine at all?
     pub refine: bool,
@@ -71,6 +73,7 @@ pub struct RefineParams {
     /// How much the mean correlation inside the facets may fall. Assumption: its error.
     pub similarity_loss: f64,
 }
+}
 
 impl Default for RefineParams {
     fn default() -> Self {
@@ -107,9 +110,9 @@ impl Default for RefineParams {
     }
 }
 
+readable! {
 /// Texture atlas.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TextureParams {
     /// Largest side of the atlas, px. Assumption: what every WebGL 2 device can hold.
     pub max_atlas_px: u32,
@@ -121,6 +124,7 @@ pub struct TextureParams {
     pub padding_px: u32,
     /// Quality of the atlas as JPEG, 1 to 100. Assumption: 90, where its blocks cannot be seen.
     pub jpeg_quality: u8,
+}
 }
 
 impl Default for TextureParams {

@@ -1,10 +1,12 @@
 //! Tunables from edges to 3D lines (B99 3).
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
+use crate::readable;
+
+readable! {
 /// B99 3.2: segments.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SegmentParams {
     /// The edgels that segments are made of.
     pub edgels: EdgelParams,
@@ -51,6 +53,7 @@ pub struct SegmentParams {
     /// the segments lie within one standard deviation of the true edge.
     pub edge_floor_px: f64,
 }
+}
 
 impl Default for SegmentParams {
     fn default() -> Self {
@@ -75,9 +78,9 @@ impl Default for SegmentParams {
     }
 }
 
+readable! {
 /// B99 3.2: edgels. Thresholds are multiples of the local standard deviation of a gradient component.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EdgelParams {
     /// Standard deviation of the smoothing Gaussian, px. Assumption: more displaces edges that are
     /// 2 px apart, as an eave and its gutter are. Of 0.7, 0.8, 1.0 and 1.2 the first two covered most of the
@@ -90,6 +93,7 @@ pub struct EdgelParams {
     /// alone exceeds 2.5 at one pixel in twenty.
     pub high: f64,
 }
+}
 
 impl Default for EdgelParams {
     fn default() -> Self {
@@ -101,9 +105,9 @@ impl Default for EdgelParams {
     }
 }
 
+readable! {
 /// B99 5: bars. Thresholds are multiples of the local scale of the second derivative.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BarParams {
     /// Look for bars at all? Assumption: no. On rendered scenes they add 2 % to the true roof edges covered for half as many
     /// segments again; more and weaker edges add as much for less.
@@ -115,6 +119,7 @@ pub struct BarParams {
     /// A bar is refused that has a segment on an edge so near along half of it, px. Assumption: the edges
     /// of a gutter's two sides.
     pub clear_px: f64,
+}
 }
 
 impl Default for BarParams {
@@ -128,9 +133,9 @@ impl Default for BarParams {
     }
 }
 
+readable! {
 /// B99 3.1 - 3.4: matching.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MatchParams {
     /// Side of the correlation window, px. B99 3.2: "15 x 15".
     pub window_px: usize,
@@ -176,6 +181,7 @@ pub struct MatchParams {
     /// Heights between which lines are sought, metres in the scene's frame; estimated where `None`.
     pub z_range_m: Option<[f64; 2]>,
 }
+}
 
 impl Default for MatchParams {
     fn default() -> Self {
@@ -200,9 +206,9 @@ impl Default for MatchParams {
     }
 }
 
+readable! {
 /// B99 3.2, figure 4: 3D lines.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Lines3dParams {
     /// Error of a segment's ends that its own covariance does not know, px: calibration,
     /// compression, edges that are not quite straight. Assumption.
@@ -215,6 +221,7 @@ pub struct Lines3dParams {
     pub max_residual: f64,
     /// Largest standard deviation of a line across itself, ground pixels. Assumption.
     pub max_sigma_px: f64,
+}
 }
 
 impl Default for Lines3dParams {

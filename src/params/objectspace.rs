@@ -1,10 +1,12 @@
 //! Tunables of the object-space method (W96 3).
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
+use crate::readable;
+
+readable! {
 /// W96: the object-space method.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ObjectSpaceParams {
     /// Regions and their lines.
     pub oris: OrisParams,
@@ -17,10 +19,11 @@ pub struct ObjectSpaceParams {
     /// Planes.
     pub planes: PlaneParams,
 }
+}
 
+readable! {
 /// W96 3.6: planes between parallel lines.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlaneParams {
     /// By how much the window of a plane is enlarged, metres. W96 3.6: "appr. 0.5 m".
     pub margin_m: f64,
@@ -69,6 +72,7 @@ pub struct PlaneParams {
     /// Smallest plane, square metres. Assumption.
     pub min_area_m2: f64,
 }
+}
 
 impl Default for PlaneParams {
     fn default() -> Self {
@@ -98,9 +102,9 @@ impl Default for PlaneParams {
     }
 }
 
+readable! {
 /// W96 3.1: where buildings are. The paper assumes it known.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WindowParams {
     /// Buildings' boxes x0, y0, x1, y1, metres in the frame of the orientation; found where there are none.
     pub given_m: Vec<[f64; 4]>,
@@ -113,6 +117,7 @@ pub struct WindowParams {
     pub link_m: f64,
     /// The window reaches beyond the lines by this, metres. Assumption: lines that were not found.
     pub margin_m: f64,
+}
 }
 
 impl Default for WindowParams {
@@ -127,9 +132,9 @@ impl Default for WindowParams {
     }
 }
 
+readable! {
 /// W96 3.4: main directions.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DirectionParams {
     /// Most pairs of directions in a window. W96 has one. Assumption: a few, for neighbours that stand askew.
     pub max_pairs: usize,
@@ -139,6 +144,7 @@ pub struct DirectionParams {
     pub tolerance_deg: f64,
     /// Pairs are at least so far apart, degrees. Assumption.
     pub apart_deg: f64,
+}
 }
 
 impl Default for DirectionParams {
@@ -152,9 +158,9 @@ impl Default for DirectionParams {
     }
 }
 
+readable! {
 /// W96 3.5: clusters of lines.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ClusterParams {
     /// An image line within this of a main direction belongs to it, degrees. Assumption.
     pub angle_deg: f64,
@@ -183,6 +189,7 @@ pub struct ClusterParams {
     /// Shortest line, metres. Assumption.
     pub min_length_m: f64,
 }
+}
 
 impl Default for ClusterParams {
     fn default() -> Self {
@@ -204,9 +211,9 @@ impl Default for ClusterParams {
     }
 }
 
+readable! {
 /// W96 3.3: region segmentation. W96 gives no numbers ("Wiman 1995").
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OrisParams {
     /// Standard deviation of the blur before gradients are taken, px. Assumption: 0.8, as for edgels.
     pub smoothing_px: f64,
@@ -225,6 +232,7 @@ pub struct OrisParams {
     pub min_contrast: f64,
     /// Largest root mean square distance of the gradient's crest from the line, px; otherwise the vector itself is taken. Assumption.
     pub max_rms_px: f64,
+}
 }
 
 impl Default for OrisParams {

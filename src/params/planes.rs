@@ -1,12 +1,16 @@
 //! Tunables from half-planes to facets (B99 4).
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::plain_json::{Problem, Readable, read_name};
+use crate::readable;
 
 use super::RefineParams;
 
+readable! {
 /// B99 4.1: half-planes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SweepParams {
     /// Largest |theta|, degrees. B99 figure 15: "over the interval [-75; +75]".
     pub max_theta_deg: f64,
@@ -65,6 +69,7 @@ pub struct SweepParams {
     /// and noise as strong as three quarters of the texture halves it.
     pub ambiguous_share: f64,
 }
+}
 
 /// What accepts a maximum of Sim(theta) as a half-plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -77,6 +82,13 @@ pub enum Acceptance {
     /// The thresholds and, where one of them is nearly reached, the posterior.
     #[default]
     Both,
+}
+
+impl Readable for Acceptance {
+    fn read_from(&mut self, value: &Value) -> Result<(), Problem> {
+        *self = read_name(value)?;
+        Ok(())
+    }
 }
 
 impl Default for SweepParams {
@@ -108,9 +120,9 @@ impl Default for SweepParams {
     }
 }
 
+readable! {
 /// B99 4.2, 4.3: from half-planes to facets.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RoofParams {
     /// Half-planes within this angle, degrees, may share a plane. B99 4.4: theta is known to 2 degrees
     /// on textured faces and to 5 on weak ones; two of them may differ by somewhat more than either.
@@ -140,6 +152,7 @@ pub struct RoofParams {
     pub min_height_m: f64,
     /// Regularisation and refinement of the buildings.
     pub refine: RefineParams,
+}
 }
 
 impl Default for RoofParams {

@@ -53,6 +53,8 @@ pub(super) fn report(run: &Run, seconds: &[(Stage, f64)]) -> Vec<u8> {
             orientation: run.scene.survey.shifts.get(i),
             adjustment: run.scene.survey.adjustments.get(i),
         });
+    let mut by_stage = BTreeMap::new();
+    by_stage.extend(seconds.iter().map(|(stage, s)| (stage.name(), *s)));
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         views: views.collect(),
@@ -61,10 +63,7 @@ pub(super) fn report(run: &Run, seconds: &[(Stage, f64)]) -> Vec<u8> {
         stages: &run.summaries,
         warnings: &run.scene.warnings,
         params: &run.params,
-        seconds: seconds
-            .iter()
-            .map(|(stage, s)| (stage.name(), *s))
-            .collect(),
+        seconds: by_stage,
     };
     let mut bytes =
         serde_json::to_vec_pretty(&report).expect("a report holds only numbers and strings");

@@ -9,10 +9,12 @@ use std::io::Cursor;
 
 use image::codecs::png::PngDecoder;
 use image::codecs::tiff::TiffDecoder;
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageResult, Limits};
+use image::error::{LimitError, LimitErrorKind};
+use image::{ImageDecoder, ImageError, ImageFormat, ImageResult, Limits};
 
 use super::Gray;
 use super::jpeg::Jpeg;
+use super::samples::Samples;
 use crate::{Error, Result};
 
 /// A decoded photograph.
@@ -62,49 +64,80 @@ pub fn image_format(bytes: &[u8]) -> Option<ImageFormat> {
 /// Reads the size from the header alone. `file` is for messages.
 pub fn image_header(file: &str, bytes: &[u8]) -> Result<ImageHeader> {
     let mut decoder = decoder(file, bytes)?;
-    let (width, height) = decoder.dimensions();
-    let turned = decoder
-        .orientation()
-        .is_ok_and(|o| o != image::metadata::Orientation::NoTransforms);
+    let (width, height) = decoder.size();
     Ok(ImageHeader {
         width,
         height,
-        turned,
+        turned: decoder.turned(),
     })
 }
 
 /// Decodes an image. `file` is for messages.
 pub fn load_image(file: &str, bytes: &[u8]) -> Result<Photograph> {
-    let image = decode(file, bytes)?;
-    let brightest = brightest(&image);
-    finish(file, image, brightest)
+    let samples = decode(file, bytes)?;
+    let brightest = samples.brightest();
+    Ok(samples.photograph(brightest))
 }
 
-/// The pixels as they are stored.
-pub(super) fn decode(file: &str, bytes: &[u8]) -> Result<DynamicImage> {
+/// The samples as they are stored.
+pub(super) fn decode(file: &str, bytes: &[u8]) -> Result<Samples> {
     if image_format(bytes) == Some(ImageFormat::Jpeg) && !jpeg_is_complete(bytes) {
         // The decoder would fill what is missing with grey, where no line is ever found.
         return Err(unreadable(file, "the JPEG is cut off before its end"));
     }
     let decoder = decoder(file, bytes)?;
-    DynamicImage::from_decoder(decoder).map_err(|e| unreadable(file, &e.to_string()))
-}
-
-/// Colours and grey values of decoded pixels; `brightest` is the brightest value of the whole image, where it has 16
-/// bits.
-pub(super) fn finish(file: &str, image: DynamicImage, brightest: u16) -> Result<Photograph> {
-    photograph(image, brightest).ok_or_else(|| Error::File {
+    let samples = decoder
+        .samples()
+        .map_err(|e| unreadable(file, &e.to_string()))?;
+    samples.ok_or_else(|| Error::File {
         file: file.to_owned(),
         problem: "it holds floating-point values, whose range is unknown".to_owned(),
         advice: "convert it to 8 or 16 bits per channel".to_owned(),
     })
 }
 
-fn decoder<'a>(file: &str, bytes: &'a [u8]) -> Result<impl ImageDecoder + use<'a>> {
+/// What is asked of a decoder. All else that crate `image` can ask of one stays out of the wasm.
+trait Source {
+    /// Width and height, pixels.
+    fn size(&self) -> (u32, u32);
+    /// Does EXIF ask viewers to turn the image?
+    fn turned(&mut self) -> bool;
+    /// All samples; `None` for floating-point values.
+    fn samples(self: Box<Self>) -> ImageResult<Option<Samples>>;
+}
+
+impl<D: ImageDecoder> Source for D {
+    fn size(&self) -> (u32, u32) {
+        self.dimensions()
+    }
+
+    fn turned(&mut self) -> bool {
+        self.orientation()
+            .is_ok_and(|o| o != image::metadata::Orientation::NoTransforms)
+    }
+
+    fn samples(self: Box<Self>) -> ImageResult<Option<Samples>> {
+        let (size, color) = (self.dimensions(), self.color_type());
+        let mut bytes = room(self.total_bytes())?;
+        (*self).read_image(&mut bytes)?;
+        Ok(Samples::from_bytes(size, color, bytes))
+    }
+}
+
+fn room(total_bytes: u64) -> ImageResult<Vec<u8>> {
+    let most = isize::MAX as u64;
+    if total_bytes > most {
+        let kind = LimitErrorKind::InsufficientMemory;
+        return Err(ImageError::Limits(LimitError::from_kind(kind)));
+    }
+    Ok(vec![0; total_bytes as usize])
+}
+
+fn decoder<'a>(file: &str, bytes: &'a [u8]) -> Result<Box<dyn Source + 'a>> {
     let format = image_format(bytes)
         .ok_or_else(|| unreadable(file, "its content is neither JPEG nor PNG nor TIFF"))?;
     let decoder = decoder_of(format, bytes).map_err(|e| unreadable(file, &e.to_string()))?;
-    let (width, height) = decoder.dimensions();
+    let (width, height) = decoder.size();
     let pixels = u64::from(width) * u64::from(height);
     if pixels > MAX_PIXELS || pixels == 0 {
         return Err(Error::File {
@@ -126,17 +159,23 @@ fn decoder<'a>(file: &str, bytes: &'a [u8]) -> Result<impl ImageDecoder + use<'a
     Ok(decoder)
 }
 
-fn decoder_of<'a>(format: ImageFormat, bytes: &'a [u8]) -> ImageResult<Box<dyn ImageDecoder + 'a>> {
+fn decoder_of<'a>(format: ImageFormat, bytes: &'a [u8]) -> ImageResult<Box<dyn Source + 'a>> {
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(MAX_PIXELS * 8);
     let file = Cursor::new(bytes);
-    let mut decoder: Box<dyn ImageDecoder> = match format {
-        ImageFormat::Jpeg => Box::new(Jpeg::new(bytes)?),
-        ImageFormat::Png => Box::new(PngDecoder::with_limits(file, limits.clone())?),
-        _ => Box::new(TiffDecoder::new(file)?),
-    };
+    match format {
+        ImageFormat::Jpeg => limited(Jpeg::new(bytes)?, limits),
+        ImageFormat::Png => limited(PngDecoder::with_limits(file, limits.clone())?, limits),
+        _ => limited(TiffDecoder::new(file)?, limits),
+    }
+}
+
+fn limited<'a>(
+    mut decoder: impl ImageDecoder + 'a,
+    limits: Limits,
+) -> ImageResult<Box<dyn Source + 'a>> {
     decoder.set_limits(limits)?;
-    Ok(decoder)
+    Ok(Box::new(decoder))
 }
 
 fn unreadable(file: &str, problem: &str) -> Error {
@@ -167,67 +206,10 @@ fn jpeg_is_complete(bytes: &[u8]) -> bool {
     false
 }
 
-/// Colours in 8 bits and grey values; `None` for floating-point images.
-fn photograph(image: DynamicImage, brightest: u16) -> Option<Photograph> {
-    match image {
-        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => None,
-        DynamicImage::ImageLuma16(_)
-        | DynamicImage::ImageLumaA16(_)
-        | DynamicImage::ImageRgb16(_)
-        | DynamicImage::ImageRgba16(_) => Some(scale_16_bits(&image.into_rgb16(), brightest)),
-        _ => {
-            let rgb = image.into_rgb8();
-            let gray = Gray::from_rgb(&rgb);
-            Some(Photograph { rgb, gray })
-        }
-    }
-}
-
-/// The brightest value of an image of 16 bits, of whichever colour; 0 for others.
-pub(super) fn brightest(image: &DynamicImage) -> u16 {
-    match image {
-        DynamicImage::ImageLuma16(_)
-        | DynamicImage::ImageLumaA16(_)
-        | DynamicImage::ImageRgb16(_)
-        | DynamicImage::ImageRgba16(_) => {
-            image.to_rgb16().as_raw().iter().copied().max().unwrap_or(0)
-        }
-        _ => 0,
-    }
-}
-
-fn scale_16_bits(
-    deep: &image::ImageBuffer<image::Rgb<u16>, Vec<u16>>,
-    brightest: u16,
-) -> Photograph {
-    let bits = (u16::BITS - brightest.leading_zeros()).max(8);
-    let white = ((1u32 << bits) - 1) as f32;
-    let rgb = image::RgbImage::from_fn(deep.width(), deep.height(), |x, y| {
-        image::Rgb(
-            deep.get_pixel(x, y)
-                .0
-                .map(|v| (f32::from(v) * 255.0 / white).round() as u8),
-        )
-    });
-    let (width, height) = (deep.width() as usize, deep.height() as usize);
-    let data = deep
-        .pixels()
-        .map(|p| {
-            (0.299 * f32::from(p[0]) + 0.587 * f32::from(p[1]) + 0.114 * f32::from(p[2])) / white
-        })
-        .collect();
-    let gray = Gray {
-        width,
-        height,
-        data,
-    };
-    Photograph { rgb, gray }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use image::{ImageBuffer, Luma, Rgb, Rgba};
+    use image::{DynamicImage, ImageBuffer, Luma, Rgb, Rgba};
 
     fn encode(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());

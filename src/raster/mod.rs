@@ -5,6 +5,7 @@ mod jpeg;
 mod load;
 mod noise;
 mod part;
+mod samples;
 
 pub use filter::gaussian_blur;
 pub use load::{ImageHeader, Photograph, image_format, image_header, load_image};

@@ -6,12 +6,13 @@
 
 use std::io::Cursor;
 
-use image::{DynamicImage, ImageBuffer, ImageFormat};
+use image::ImageFormat;
 use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::Tag;
 
-use super::load::{brightest, decode, finish};
+use super::load::decode;
+use super::samples::{Samples, Values, brightest};
 use super::{Photograph, image_format};
 use crate::Result;
 
@@ -20,16 +21,14 @@ pub type Part = [u32; 4];
 
 /// Decodes a part of an image; it must lie inside. `file` is for messages.
 pub fn load_part(file: &str, bytes: &[u8], part: Part) -> Result<Photograph> {
-    let (image, brightest) = match tiff_part(bytes, part) {
+    let (samples, brightest) = match tiff_part(bytes, part) {
         Some(found) => found,
         None => {
-            let [column, row, width, height] = part;
             let whole = decode(file, bytes)?;
-            let brightest = brightest(&whole);
-            (whole.crop_imm(column, row, width, height), brightest)
+            (whole.crop(part), whole.brightest())
         }
     };
-    finish(file, image, brightest)
+    Ok(samples.photograph(brightest))
 }
 
 /// Bytes that decoding a part takes beyond the part itself: the whole image, or one strip or tile.
@@ -86,35 +85,32 @@ fn open(bytes: &[u8]) -> Option<Tiff<'_>> {
 
 /// The part, from the chunks that touch it, and the brightest value of the whole where it has 16 bits; `None` where
 /// the file is none of those that can be read so.
-fn tiff_part(bytes: &[u8], part: Part) -> Option<(DynamicImage, u16)> {
+fn tiff_part(bytes: &[u8], part: Part) -> Option<(Samples, u16)> {
     let mut tiff = open(bytes)?;
     let [_, _, width, height] = part;
-    let (w, h, samples) = (width as usize, height as usize, tiff.samples);
-    if tiff.bits == 8 {
-        let mut pixels = vec![0u8; w * h * samples];
+    let count = width as usize * height as usize * tiff.samples;
+    let (values, brightest) = if tiff.bits == 8 {
+        let mut pixels = vec![0u8; count];
         tiff.read(part, &mut pixels, |chunk| match chunk {
             DecodingResult::U8(values) => Some(values),
             _ => None,
         })?;
-        let image = match samples {
-            1 => DynamicImage::ImageLuma8(ImageBuffer::from_raw(width, height, pixels)?),
-            3 => DynamicImage::ImageRgb8(ImageBuffer::from_raw(width, height, pixels)?),
-            _ => DynamicImage::ImageRgba8(ImageBuffer::from_raw(width, height, pixels)?),
-        };
-        Some((image, 0))
+        (Values::Eight(pixels), 0)
     } else {
-        let mut pixels = vec![0u16; w * h * samples];
+        let mut pixels = vec![0u16; count];
         tiff.read(part, &mut pixels, |chunk| match chunk {
             DecodingResult::U16(values) => Some(values),
             _ => None,
         })?;
-        let image = match samples {
-            1 => DynamicImage::ImageLuma16(ImageBuffer::from_raw(width, height, pixels)?),
-            3 => DynamicImage::ImageRgb16(ImageBuffer::from_raw(width, height, pixels)?),
-            _ => DynamicImage::ImageRgba16(ImageBuffer::from_raw(width, height, pixels)?),
-        };
-        Some((image, tiff.brightest()?))
-    }
+        (Values::Sixteen(pixels), tiff.brightest()?)
+    };
+    let samples = Samples {
+        width,
+        height,
+        channels: tiff.samples,
+        values,
+    };
+    Some((samples, brightest))
 }
 
 impl Tiff<'_> {
@@ -127,17 +123,14 @@ impl Tiff<'_> {
             .0
             .div_ceil(w)
             .checked_mul(self.size.1.div_ceil(h))?;
-        let mut brightest = 0;
+        let mut most = 0;
         for index in 0..count {
             let DecodingResult::U16(values) = self.decoder.read_chunk(index).ok()? else {
                 return None;
             };
-            let colours = values
-                .chunks(self.samples)
-                .flat_map(|pixel| &pixel[..pixel.len().min(3)]);
-            brightest = brightest.max(colours.copied().max().unwrap_or(0));
+            most = most.max(brightest(&values, self.samples));
         }
-        Some(brightest)
+        Some(most)
     }
 
     /// Copies the part out of the chunks that touch it.
@@ -179,6 +172,8 @@ impl Tiff<'_> {
 
 #[cfg(test)]
 mod tests {
+    use image::DynamicImage;
+
     use super::*;
     use crate::raster::load_image;
 

@@ -1,6 +1,6 @@
 //! What every roof model must fulfil, whichever method made it. Tests call this after each pipeline run.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::solid::WELD_M;
 use super::{Facet, RoofModel, Solid, SolidFace, Surface};
 use crate::ids::{BuildingId, FacetId};
+use crate::sorting::sort_by;
 
 /// Faces of solids are planar within this distance, metres. Welding moves a corner by up to 1 mm in plan, and two
 /// steep roofs that meet there are welded in height by a few millimetres; writers of city models
@@ -224,7 +225,7 @@ fn check_overlaps(facets: &[Facet], found: &mut Vec<Violation>) {
 fn check_building(id: BuildingId, model: &RoofModel, found: &mut Vec<Violation>) {
     let building = &model.buildings[id.index()];
     let solid = &building.solid;
-    let roofs: Vec<FacetId> = solid
+    let mut roofs: Vec<FacetId> = solid
         .faces
         .iter()
         .filter_map(|face| match face.surface {
@@ -238,8 +239,11 @@ fn check_building(id: BuildingId, model: &RoofModel, found: &mut Vec<Violation>)
             .get(f.index())
             .is_some_and(|facet| facet.building == id)
     });
-    let own: BTreeSet<_> = building.facets.iter().collect();
-    if !known || own.len() != roofs.len() || own != roofs.iter().collect() {
+    let mut own = building.facets.clone();
+    sort_by(&mut own, Ord::cmp);
+    own.dedup();
+    sort_by(&mut roofs, Ord::cmp);
+    if !known || own != roofs {
         found.push(Violation::Membership { building: id });
     }
     let all_rings = solid.faces.iter().flat_map(|f| &f.rings);

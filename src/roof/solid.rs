@@ -65,7 +65,7 @@ impl SolidTrace {
         let source = |facet: usize| self.sources[facet];
         let later = again.rejected.iter().map(|&(f, why)| (source(f), why));
         let mut rejected: Vec<_> = self.rejected.iter().copied().chain(later).collect();
-        rejected.sort_by_key(|(source, _)| *source);
+        sort_by_key(&mut rejected, |(source, _)| *source);
         Self {
             sources: again.sources.iter().map(|&f| source(f)).collect(),
             rejected,

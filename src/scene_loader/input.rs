@@ -2,7 +2,9 @@
 
 use std::borrow::Cow;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
+
+use crate::readable;
 
 /// A file in memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,9 +54,9 @@ pub(super) fn stem(path: &str) -> &str {
     }
 }
 
+readable! {
 /// What the user asks for beyond the files.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LoadOptions {
     /// Part of the path of the orientation to take, where there are several.
     pub orientation: Option<String>,
@@ -72,4 +74,5 @@ pub struct LoadOptions {
     pub apply_fix: bool,
     /// Correct shifts of a few pixels between the views.
     pub adjust: bool,
+}
 }

@@ -11,13 +11,15 @@
 
 use std::io::{Cursor, Write};
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use zip::CompressionMethod;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
 use super::{InputFile, LoadOptions};
 use crate::orientation::{FileKind, detect};
 use crate::params::Params;
+use crate::plain_json;
+use crate::readable;
 use crate::{Error, Result};
 
 /// Name of the file that makes an archive a project.
@@ -27,18 +29,17 @@ const PROJECT_FILE: &str = "project.json";
 const INPUT: &str = "input/";
 const RESULTS: &str = "results/";
 
+readable! {
 /// What a run was asked for.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Project {
     /// Version of the program that wrote it.
     pub ridgeline: String,
     /// Choice of views, orientation, region...
-    #[serde(default)]
     pub options: LoadOptions,
     /// Parameters of the stages.
-    #[serde(default)]
     pub params: Params,
+}
 }
 
 impl Project {
@@ -93,10 +94,9 @@ pub fn open_project(files: Vec<InputFile>) -> Result<(Vec<InputFile>, Option<Pro
     let Some(file) = files.iter().find(is_project) else {
         return Ok((files, None));
     };
-    // As text, like the page's parameters: the reader for bytes would be compiled beside that for text.
-    let project: Project = serde_json::from_str(&file.text()).map_err(|e| Error::Line {
+    let project: Project = plain_json::read(&file.text()).map_err(|e| Error::Line {
         file: file.path.clone(),
-        line: e.line().max(1),
+        line: e.line.unwrap_or(1),
         problem: e
             .to_string()
             .replace("; ", ", ")

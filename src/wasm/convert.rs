@@ -3,12 +3,12 @@
 use js_sys::{Float32Array, Float64Array, Reflect};
 use nalgebra::Matrix3x4;
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 use wasm_bindgen::{JsError, JsValue};
 
 use crate::Error;
 use crate::geometry::Segment2;
 use crate::lines3d::Line3d;
+use crate::plain_json::{self, Readable};
 
 /// A JavaScript `Error` with the refusal's message, called "InputError": the page shows it as advice, and
 /// anything else as a fault of the program. Its `code` is the kind of refusal, its `doctor` the doctor's report where the
@@ -33,22 +33,21 @@ pub(super) fn named_error(name: &str, message: &str) -> JsValue {
     error.into()
 }
 
-/// A plain JavaScript object, as `JSON.parse` would give it.
+/// A plain JavaScript object, by way of JSON: the writer of it is there anyway.
 pub(super) fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
-    value
-        .serialize(&serde_wasm_bindgen::Serializer::json_compatible())
-        .map_err(|e| JsError::from(e).into())
+    let text = serde_json::to_string(value).map_err(JsError::from)?;
+    js_sys::JSON::parse(&text)
 }
 
 /// A Rust value from a plain JavaScript object; `what` names it in the message. By way of JSON, so that the
 /// page's parameters are read, and misspelt names refused, exactly as the command line's.
-pub(super) fn from_js<T: DeserializeOwned>(value: &JsValue, what: &str) -> Result<T, JsValue> {
+pub(super) fn from_js<T: Readable + Default>(value: &JsValue, what: &str) -> Result<T, JsValue> {
     let text = if value.is_undefined() {
         "null".to_owned()
     } else {
         String::from(js_sys::JSON::stringify(value)?)
     };
-    serde_json::from_str(&text).map_err(|e| named_error("InputError", &format!("{what}: {e}")))
+    plain_json::read(&text).map_err(|e| named_error("InputError", &format!("{what}: {e}")))
 }
 
 /// (x0, y0, x1, y1) per segment, pixels.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use js_sys::Function;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use wasm_bindgen::prelude::*;
 
 use super::convert::{from_js, input_error, named_error, row_major, to_js};
@@ -11,6 +11,7 @@ use crate::doctor;
 use crate::halfplane::PointsOfInterest;
 use crate::params::{Method, Params};
 use crate::pipeline::{PackedView, Run, Stage, load_adjusted};
+use crate::plain_json::{Problem, Readable, read_fields};
 use crate::progress::Listener;
 use crate::scene_loader::{InputFile, LoadOptions, Project, inspect_files, open_project, unpack};
 use crate::shares::Known;
@@ -39,8 +40,8 @@ pub struct Session {
 }
 
 /// What `load` may be told; see [`LoadOptions`].
-#[derive(Default, Deserialize, Serialize)]
-#[serde(default, rename_all = "camelCase", deny_unknown_fields)]
+#[derive(Default, Serialize)]
+#[serde(rename_all = "camelCase")]
 struct JsLoadOptions {
     orientation: Option<String>,
     views: Option<Vec<String>>,
@@ -49,6 +50,21 @@ struct JsLoadOptions {
     epsg: Option<u32>,
     apply_fix: bool,
     adjust: bool,
+}
+
+impl Readable for JsLoadOptions {
+    fn read_from(&mut self, value: &serde_json::Value) -> Result<(), Problem> {
+        let fields: &mut [(&str, &mut dyn Readable)] = &mut [
+            ("orientation", &mut self.orientation),
+            ("views", &mut self.views),
+            ("roi", &mut self.roi),
+            ("groundZ", &mut self.ground_z),
+            ("epsg", &mut self.epsg),
+            ("applyFix", &mut self.apply_fix),
+            ("adjust", &mut self.adjust),
+        ];
+        read_fields(value, fields)
+    }
 }
 
 /// What `openedProject` returns.

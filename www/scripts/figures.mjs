@@ -1,6 +1,6 @@
 /**
- * docs/figures.md: each figure of the papers, and the live view that shows it on the demo scene. Opens the built site in
- * Chromium, takes the pictures and writes the page. `npm run build && npm run figures`
+ * docs/figures.md: each figure of the papers, and the live view that shows it on the demo scene; and docs/model.png. Opens the
+ * built site in Chromium, takes the pictures and writes the page. `npm run build && npm run figures`
  */
 import { mkdirSync, writeFileSync } from "node:fs";
 import { withSite } from "./site.mjs";
@@ -200,8 +200,11 @@ function table(sections, prefix, paper) {
 
 await withSite(PORT, async (browser) => {
   mkdirSync(new URL("figures/", DOCS), { recursive: true });
-  const page = await browser.newPage({ viewport: { width: 1280, height: 860 }, colorScheme: "light" });
+  const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, colorScheme: "light" });
   await link("tab=model", "model")(page);
+  await page.waitForTimeout(3000);
+  await page.screenshot({ path: new URL("model.png", DOCS).pathname });
+  await page.setViewportSize({ width: 1280, height: 860 });
   await picturesOf(page, B99, "b99");
   await picturesOf(page, W96, "w96");
   const text = `# The figures of the papers, live

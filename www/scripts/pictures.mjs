@@ -9,6 +9,8 @@ import { withSite } from "./site.mjs";
 const PORT = Number(process.env.PORT ?? 4180);
 const SITE = `http://127.0.0.1:${PORT}/`;
 const QUALITY = 80;
+/** So far the wheel is turned: the view as it is fitted leaves room for orbiting. */
+const NEARER = -350;
 /** A large scene takes minutes where WebGL is drawn in software. */
 const LONGEST_MS = 900_000;
 
@@ -27,6 +29,12 @@ async function fourSides(page) {
   const canvas = page.locator(".space-view canvas, .stage-view canvas").first();
   const box = await canvas.boundingBox();
   const middle = [box.x + box.width / 2, box.y + box.height * 0.7];
+  await page.locator(".space-tools").evaluate((tools) => {
+    tools.style.visibility = "hidden";
+  });
+  await page.mouse.move(...middle);
+  await page.mouse.wheel(0, NEARER);
+  await page.waitForTimeout(1500);
   const shots = [];
   for (let side = 0; side < 4; side += 1) {
     shots.push(await canvas.screenshot({ type: "jpeg", quality: 90 }));
@@ -42,7 +50,7 @@ async function fourSides(page) {
 
 /** Two by two in one picture. */
 async function composed(browser, shots) {
-  const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+  const page = await browser.newPage({ viewport: { width: 1280, height: 100 } });
   const images = shots.map((s) => `<img src="data:image/jpeg;base64,${s.toString("base64")}">`).join("");
   await page.setContent(
     `<style>body{margin:0;display:grid;grid-template-columns:1fr 1fr;gap:2px}img{width:100%;display:block}</style>${images}`,
@@ -57,8 +65,16 @@ await withSite(PORT, async (browser) => {
   await page.goto(SITE);
   await page.locator('input[type="file"]').first().setInputFiles(filesOf(folder));
   await page.getByRole("button", { name: "Run all" }).click();
-  const isDone = () => document.querySelector('[data-stage="model"]')?.dataset.status === "done";
-  await page.waitForFunction(isDone, undefined, { timeout: LONGEST_MS });
+  const outcome = () => {
+    const refusal = document.querySelector('[role="alert"]')?.textContent;
+    const isDone = document.querySelector('[data-stage="model"]')?.dataset.status === "done";
+    return refusal ?? (isDone ? "done" : null);
+  };
+  const handle = await page.waitForFunction(outcome, undefined, { timeout: LONGEST_MS });
+  const said = await handle.jsonValue();
+  if (said !== "done") {
+    throw new Error(said);
+  }
   await page.getByRole("tab", { name: "Model", exact: true }).click();
   await page.waitForTimeout(3000);
   await composed(browser, await fourSides(page));

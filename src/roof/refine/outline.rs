@@ -12,6 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Point2, Point3, Vector2};
 
 use crate::roof::Facet;
+use crate::sorting::sort_by;
 
 /// Sides at less than this angle run on into each other, sine (25 degrees).
 const ALIGNED_SINE: f64 = 0.42;
@@ -81,7 +82,10 @@ fn free_vertices(facets: &[&Facet]) -> BTreeSet<[u64; 2]> {
         *uses.entry(key(&p)).or_default() += 1;
     }
     let single = uses.into_iter().filter(|(_, n)| *n == 1);
-    single.map(|(k, _)| k).collect()
+    // Not collected: that would sort the corners again, by one more sort.
+    let mut free = BTreeSet::new();
+    free.extend(single.map(|(k, _)| k));
+    free
 }
 
 /// Takes out short sides, the shortest first, until none is left that can go.
@@ -95,7 +99,9 @@ fn without_jogs(mut ring: Vec<Corner>, jog_m: f64) -> Vec<Corner> {
         let mut short: Vec<usize> = (0..n)
             .filter(|&i| length(i) < jog_m && ring[i].free && ring[(i + 1) % n].free)
             .collect();
-        short.sort_by(|&i, &j| length(i).total_cmp(&length(j)).then(i.cmp(&j)));
+        sort_by(&mut short, |&i, &j| {
+            length(i).total_cmp(&length(j)).then(i.cmp(&j))
+        });
         let shorter = (short.iter().find_map(|&i| without_side(&ring, i, jog_m)))
             .or_else(|| without_spike(&ring, jog_m));
         let Some(shorter) = shorter else {

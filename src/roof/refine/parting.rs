@@ -16,6 +16,7 @@ use crate::params::RefineParams;
 use crate::roof::invariants::is_simple;
 use crate::roof::{Facet, RoofModel};
 use crate::scene::Scene;
+use crate::sorting::sort_by;
 
 /// A facet that ends before the neighbour at which it was thought to end.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -153,7 +154,9 @@ fn best_cuts<'c>(
     face: usize,
     mut cuts: Vec<&'c Cut>,
 ) -> Option<(Vec<CutCorner>, Vec<&'c Cut>)> {
-    cuts.sort_by(|a, b| b.gain_m2.total_cmp(&a.gain_m2).then(a.side.cmp(&b.side)));
+    sort_by(&mut cuts, |a, b| {
+        b.gain_m2.total_cmp(&a.gain_m2).then(a.side.cmp(&b.side))
+    });
     let (mut ring, mut taken) = (None, Vec::new());
     for cut in cuts {
         taken.push(cut);

@@ -20,6 +20,7 @@ use super::wireframe::{Side, SideKind, State, Wireframe};
 use crate::geometry::Segment3;
 use crate::math;
 use crate::params::RefineParams;
+use crate::sorting::sort_by;
 
 /// Step of the differences.
 const STEP: f64 = 1e-4;
@@ -163,7 +164,9 @@ fn longest_first(w: &Wireframe, state: &State, params: &RefineParams) -> Vec<usi
     let mut sides: Vec<usize> = (0..w.sides.len())
         .filter(|&i| w.sides[i].kind != SideKind::Foot && length(i) >= params.min_relation_m)
         .collect();
-    sides.sort_by(|&i, &j| length(j).total_cmp(&length(i)).then(i.cmp(&j)));
+    sort_by(&mut sides, |&i, &j| {
+        length(j).total_cmp(&length(i)).then(i.cmp(&j))
+    });
     sides
 }
 

@@ -11,6 +11,7 @@ use nalgebra::{DVector, Point2, Point3, Vector2};
 
 use crate::geometry::{Plane, Segment3};
 use crate::roof::Facet;
+use crate::sorting::sort_by;
 
 /// Heights that differ by less are one, metres: what welding leaves.
 const SAME_HEIGHT_M: f64 = 0.02;
@@ -177,13 +178,14 @@ impl Wireframe {
     /// Per facet the share of its sides without a neighbour, by length, that is among `seen`; all of it for a facet
     /// without such sides.
     pub fn shown(&self, state: &State, seen: impl Iterator<Item = usize>) -> Vec<f64> {
-        let seen: BTreeSet<usize> = seen.collect();
+        let mut is_seen = vec![false; self.sides.len()];
+        seen.for_each(|i| is_seen[i] = true);
         let mut lengths = vec![[0.0f64; 2]; self.faces.len()];
         for (i, side) in self.sides.iter().enumerate() {
             if side.kind == SideKind::Free {
                 let length = self.segment(state, side).length();
                 lengths[side.face][0] += length;
-                lengths[side.face][1] += if seen.contains(&i) { length } else { 0.0 };
+                lengths[side.face][1] += if is_seen[i] { length } else { 0.0 };
             }
         }
         let share = |[all, seen]: [f64; 2]| if all > 0.0 { seen / all } else { 1.0 };
@@ -265,7 +267,7 @@ impl Wireframe {
                 .iter()
                 .map(|&f| (self.height(state, f, &p), f))
                 .collect();
-            heights.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            sort_by(&mut heights, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let joined = heights
                 .windows(2)
                 .filter(|w| w[1].0 - w[0].0 < SAME_HEIGHT_M);

@@ -13,12 +13,11 @@ use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;
 use nalgebra::{Point2, Point3, Vector2};
-use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree};
 
 use super::rings::{Region, doubled_area, regions_from_edges, ring_edges};
 use super::{SolidRejection, WELD_M};
 use crate::geometry::Plane;
+use crate::plan_index::PlanIndex;
 use crate::roof::Facet;
 use crate::sorting::sort_by;
 
@@ -49,9 +48,6 @@ impl PlanFacet {
         })
     }
 }
-
-/// A directed edge with the box around it.
-type BoxedEdge = GeomWithData<Rectangle<[f64; 2]>, (u32, u32)>;
 
 /// A partition of the plan into facets.
 #[derive(Clone, Debug, Default)]
@@ -135,15 +131,13 @@ impl Partition {
 
     /// For every directed edge the facet on its left.
     pub fn facet_left_of(&self) -> BTreeMap<(u32, u32), usize> {
-        self.facets
-            .iter()
-            .enumerate()
-            .flat_map(|(i, f)| {
-                f.region
-                    .iter()
-                    .flat_map(move |r| ring_edges(r).map(move |e| (e, i)))
-            })
-            .collect()
+        let mut left_of = BTreeMap::new();
+        for (i, facet) in self.facets.iter().enumerate() {
+            let edges = facet.region.iter().flat_map(|r| ring_edges(r));
+            // Not collected: that would sort them first, by one more sort.
+            left_of.extend(edges.map(|e| (e, i)));
+        }
+        left_of
     }
 
     /// Height of a facet at a plan vertex, metres.
@@ -169,19 +163,13 @@ impl Partition {
     fn insert_t_junctions(&mut self) {
         // An edge moves by up to WELD_M when a vertex is put in and may meet another one; rarely twice.
         for _ in 0..4 {
-            let tree = RTree::bulk_load(
-                self.positions
-                    .iter()
-                    .enumerate()
-                    .map(|(i, p)| GeomWithData::new([p.x, p.y], i as u32))
-                    .collect(),
-            );
+            let index = PlanIndex::new(self.positions.iter().map(|&p| [p; 2]));
             let mut changed = false;
             let mut facets = Vec::with_capacity(self.facets.len());
             for facet in &self.facets {
                 let mut edges = Vec::new();
                 for (a, b) in facet.region.iter().flat_map(|ring| ring_edges(ring)) {
-                    let stops = vertices_on_edge(a, b, &self.positions, &tree);
+                    let stops = vertices_on_edge(a, b, &self.positions, &index);
                     changed |= !stops.is_empty();
                     let path: Vec<u32> = [a].into_iter().chain(stops).chain([b]).collect();
                     edges.extend(path.windows(2).map(|w| (w[0], w[1])));
@@ -224,20 +212,20 @@ impl Partition {
     /// The facets whose edges are taken already or cross those of an earlier facet that is not one of them.
     fn conflicting(&self) -> BTreeSet<usize> {
         let mut taken = BTreeSet::new();
-        let mut tree: RTree<BoxedEdge> = RTree::new();
+        let (mut index_of_taken, mut taken_edges) = (PlanIndex::default(), Vec::new());
         let positions = &self.positions;
         let mut conflicting = BTreeSet::new();
         for (index, facet) in self.facets.iter().enumerate() {
             let edges: Vec<_> = facet.region.iter().flat_map(|r| ring_edges(r)).collect();
             let conflict = edges.iter().enumerate().any(|(i, &(a, b))| {
-                let envelope = edge_envelope(a, b, positions, 0.0);
+                let ends = [a, b].map(|v| positions[v as usize]);
                 taken.contains(&(a, b))
                     || edges[..i]
                         .iter()
                         .any(|&other| other == (a, b) || cross(positions, (a, b), other))
-                    || tree
-                        .locate_in_envelope_intersecting(&envelope)
-                        .any(|other| cross(positions, (a, b), other.data))
+                    || index_of_taken
+                        .touching(ends, 0.0)
+                        .any(|other| cross(positions, (a, b), taken_edges[other as usize]))
             });
             if conflict {
                 conflicting.insert(index);
@@ -245,9 +233,9 @@ impl Partition {
             }
             for (a, b) in edges {
                 taken.insert((a, b));
-                let (p, q) = (positions[a as usize], positions[b as usize]);
-                let corners = Rectangle::from_corners([p.x, p.y], [q.x, q.y]);
-                tree.insert(GeomWithData::new(corners, (a, b)));
+                let ends = [a, b].map(|v| positions[v as usize]);
+                index_of_taken.insert(ends, taken_edges.len() as u32);
+                taken_edges.push((a, b));
             }
         }
         conflicting
@@ -305,33 +293,19 @@ fn cross(positions: &[Point2<f64>], (a, b): (u32, u32), (c, d): (u32, u32)) -> b
     side(p, q, r) * side(p, q, s) < 0.0 && side(r, s, p) * side(r, s, q) < 0.0
 }
 
-/// Box around an edge, grown by a margin.
-fn edge_envelope(a: u32, b: u32, positions: &[Point2<f64>], margin: f64) -> AABB<[f64; 2]> {
-    let (p, q) = (positions[a as usize], positions[b as usize]);
-    AABB::from_corners(
-        [p.x.min(q.x) - margin, p.y.min(q.y) - margin],
-        [p.x.max(q.x) + margin, p.y.max(q.y) + margin],
-    )
-}
-
 /// Vertices strictly between the ends of an edge and on it within [`WELD_M`], in order.
-fn vertices_on_edge(
-    a: u32,
-    b: u32,
-    positions: &[Point2<f64>],
-    tree: &RTree<GeomWithData<[f64; 2], u32>>,
-) -> Vec<u32> {
+fn vertices_on_edge(a: u32, b: u32, positions: &[Point2<f64>], index: &PlanIndex) -> Vec<u32> {
     let (p, q) = (positions[a as usize], positions[b as usize]);
     let length = (q - p).norm();
     let direction = (q - p) / length;
-    let mut stops: Vec<(f64, u32)> = tree
-        .locate_in_envelope(&edge_envelope(a, b, positions, WELD_M))
-        .filter(|v| v.data != a && v.data != b)
+    let mut stops: Vec<(f64, u32)> = index
+        .touching([p, q], WELD_M)
+        .filter(|&v| v != a && v != b)
         .filter_map(|v| {
-            let r = positions[v.data as usize] - p;
+            let r = positions[v as usize] - p;
             let along = r.dot(&direction);
             let on_edge = along > 0.0 && along < length && r.perp(&direction).abs() < WELD_M;
-            on_edge.then_some((along, v.data))
+            on_edge.then_some((along, v))
         })
         .collect();
     sort_by(&mut stops, |s, t| s.0.total_cmp(&t.0).then(s.1.cmp(&t.1)));

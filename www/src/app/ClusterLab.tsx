@@ -3,7 +3,7 @@
 import { category } from "../shared/palette";
 import { LINE_STRIDE } from "../shared/results";
 import type { ClusterTrace, Vec2 } from "../shared/traces";
-import { Chart, Fit, type Frame, pathOf, type Scale, xOf, yOf } from "./charts";
+import { axesOf, Chart, Fit, type Frame, pathOf, type Scale } from "./charts";
 import { degreesOf } from "./geometry";
 import { grouped } from "./numbers";
 import { PlaneChoice } from "./PlaneChoice";
@@ -37,7 +37,7 @@ export function ClusterLab() {
 
 function ClusterPlane({ frame, trace }: { frame: Frame; trace: ClusterTrace }) {
   const [x, y] = rangesOf([...trace.selected, ...trace.refused].map(([at]) => at));
-  const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
+  const [toX, toY] = axesOf(frame, x, y);
   const dot = ([across, height]: Vec2) => ({ cx: toX(across), cy: toY(height) });
   const chosen = lineOfSelection();
   return (

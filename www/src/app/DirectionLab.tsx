@@ -1,7 +1,7 @@
 /** W96 3.4: the histogram of azimuths (figures 4 and 5), and which direction an image line follows. */
 import { category } from "../shared/palette";
 import type { MainDirections } from "../shared/traces";
-import { Chart, Fit, type Frame, pathOf, xOf, yOf } from "./charts";
+import { axesOf, Chart, Fit, type Frame, pathOf } from "./charts";
 import { degreesOf } from "./geometry";
 import { PlaneChoice } from "./PlaneChoice";
 import { results, scene, shownPlane } from "./state";
@@ -51,7 +51,7 @@ function Histogram({
   const top = Math.max(...values, 1e-9);
   const x = { min: 0, max: 180 };
   const y = { min: 0, max: top };
-  const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
+  const [toX, toY] = axesOf(frame, x, y);
   const outline = values.map((value, i) => [toX((i + 0.5) * binDeg), toY(value)] as const);
   const floor = toY(0);
   return (

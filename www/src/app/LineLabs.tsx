@@ -2,7 +2,7 @@
 import { category } from "../shared/palette";
 import type { Vec3 } from "../shared/results";
 import type { Grouping, LineRecord, Vec2 } from "../shared/traces";
-import { Chart, dotsOf, Fit, type Frame, pathOf, type Scale, xOf, yOf } from "./charts";
+import { axesOf, Chart, dotsOf, Fit, type Frame, pathOf, type Scale } from "./charts";
 import { Filmstrip } from "./Filmstrip";
 import { results, selection } from "./state";
 import { facetRejectionWords } from "./words";
@@ -34,7 +34,7 @@ function Accuracy({ frame }: { frame: Frame }) {
         0.98,
       ),
   };
-  const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
+  const [toX, toY] = axesOf(frame, x, y);
   const places = records.map(
     ({ sigma_m, supports }, i) =>
       [toX(supports.length + scatter(i)), toY(Math.min(y.max, 100 * sigma_m))] as const,

@@ -1,7 +1,7 @@
 /** W96 3.6: the window of a plane between parallel lines, and the histogram of positions (figures 10 and 11). */
 import { category } from "../shared/palette";
 import type { PlaneTrace } from "../shared/traces";
-import { Chart, Fit, type Frame, histogramOf, type Scale, xOf, yOf } from "./charts";
+import { axesOf, Chart, Fit, type Frame, histogramOf, type Scale } from "./charts";
 import { Filmstrip } from "./Filmstrip";
 import { results, selection } from "./state";
 import { PAIR_WORDS } from "./words";
@@ -77,7 +77,7 @@ function PlaneWindow({ outer, pair }: { outer: Frame; pair: PlaneTrace }) {
       : { min: Math.min(...along) - 0.5, max: Math.max(...along) + 0.5 };
   const frame = { ...outer, bottom: 82 };
   const y = { min: 0, max: width };
-  const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
+  const [toX, toY] = axesOf(frame, x, y);
   const bins = histogramOf(
     pair.crossings.map(({ at }) => (at[0] + at[1]) / 2),
     x,

@@ -1,6 +1,6 @@
 /** B99 2: what refinement made of a building, and the relations that were tested there, each by its chi-square. */
 import type { BuildingRefinement, TestedRelation } from "../shared/traces";
-import { Chart, Fit, type Frame, xOf, yOf } from "./charts";
+import { axesOf, Chart, Fit, type Frame } from "./charts";
 import { Filmstrip } from "./Filmstrip";
 import { buildingOfFacet, relationLimit } from "./refined";
 import { results, selection } from "./state";
@@ -69,7 +69,7 @@ function Relations({ outer, building, of }: { outer: Frame; building: number; of
   const frame = { ...outer, left: NAMES_PX };
   const x = { min: LEAST, max: MOST };
   const y = { min: 0.5, max: KINDS.length + 0.5 };
-  const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
+  const [toX, toY] = axesOf(frame, x, y);
   const row = (kind: TestedRelation["kind"]) => KINDS.length - KINDS.indexOf(kind);
   const limit = relationLimit();
   if (of.relations.length === 0) {

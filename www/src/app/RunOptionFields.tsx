@@ -38,25 +38,25 @@ export function PlaceFields() {
         id="roi"
         label="Region x0, y0, x1, y1 (m)"
         placeholder="all"
-        shown={roi?.join(", ") ?? ""}
+        value={roi}
         parse={parseRegion}
-        onValue={(value) => void setRunOptions({ roi: value })}
+        onValue={(roi) => void setRunOptions({ roi })}
       />
       <OptionField
         id="ground-z"
         label="Height of the ground (m)"
         placeholder="estimated"
-        shown={groundZ?.toString() ?? ""}
+        value={groundZ}
         parse={parseHeight}
-        onValue={(value) => void setRunOptions({ groundZ: value })}
+        onValue={(groundZ) => void setRunOptions({ groundZ })}
       />
       <OptionField
         id="tile"
         label="In tiles of (m)"
         placeholder="in one"
-        shown={tileM?.toString() ?? ""}
+        value={tileM}
         parse={parseTile}
-        onValue={(value) => void setRunOptions({ tileM: value })}
+        onValue={(tileM) => void setRunOptions({ tileM })}
       />
       <label class="option">
         <input type="checkbox" checked={adjust} onChange={() => void setRunOptions({ adjust: !adjust })} />
@@ -70,12 +70,12 @@ interface FieldProps<T> {
   id: string;
   label: string;
   placeholder: string;
-  shown: string;
+  value: T | null;
   parse: (text: string) => Parsed<T>;
   onValue: (value: T | null) => void;
 }
 
-function OptionField<T>({ id, label, placeholder, shown, parse, onValue }: FieldProps<T>) {
+function OptionField<T>({ id, label, placeholder, value, parse, onValue }: FieldProps<T>) {
   const [error, setError] = useState("");
   const change = (text: string) => {
     const parsed = parse(text);
@@ -90,7 +90,7 @@ function OptionField<T>({ id, label, placeholder, shown, parse, onValue }: Field
       <input
         id={id}
         type="text"
-        value={shown}
+        value={Array.isArray(value) ? value.join(", ") : String(value ?? "")}
         placeholder={placeholder}
         aria-invalid={error !== ""}
         aria-describedby={`${id}-note`}

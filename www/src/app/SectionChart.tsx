@@ -1,6 +1,6 @@
 /** The profile along a vertical cut, drawn to one scale both ways, with heights and slopes. */
 import type { ProfilePiece, Section } from "../viewer/section";
-import { Chart, type Frame, frameOf, type Scale, xOf, yOf } from "./charts";
+import { axesOf, Chart, type Frame, frameOf, type Scale } from "./charts";
 import { scene } from "./state";
 
 const WIDTH = 460;
@@ -21,7 +21,7 @@ export function SectionChart({ section }: { section: Section }) {
   const places = section.pieces.flatMap(({ from, to }) => [from[0], to[0]]);
   const reach = { min: Math.min(...places), max: Math.max(...places) };
   const { frame, x, y } = scales(reach, low + ground, high + ground);
-  const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
+  const [toX, toY] = axesOf(frame, x, y);
   const at = ([along, height]: readonly [number, number]) => [toX(along), toY(height + ground)] as const;
   return (
     <>

@@ -2,7 +2,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import { category } from "../shared/palette";
 import type { SideTrace, WarpedPicture } from "../shared/traces";
-import { Chart, Fit, type Frame, pathOf, xOf, yOf } from "./charts";
+import { axesOf, Chart, Fit, type Frame, pathOf } from "./charts";
 import { bestTheta, sideOf, turnTo } from "./pointing";
 import { params, pointing, scene, selection } from "./state";
 import { REJECTION_WORDS } from "./words";
@@ -88,7 +88,7 @@ function SimChart({ frame, side, theta }: { frame: Frame; side: SideTrace; theta
   const limit = 75;
   const x = { min: -limit, max: limit };
   const y = { min: 0, max: 1 };
-  const [toX, toY] = [xOf(frame, x), yOf(frame, y)];
+  const [toX, toY] = axesOf(frame, x, y);
   const curve = (values: readonly number[]) =>
     pathOf(values.map((value, i) => [toX((thetas[i] ?? 0) / DEGREE), toY(value)]));
   const first = toX((thetas[0] ?? 0) / DEGREE);

@@ -4,12 +4,14 @@ import { useEffect, useRef } from "preact/hooks";
 import { THEME_COLOURS } from "../shared/palette";
 import type { Vec3 } from "../shared/results";
 import { boundsOf, boundsOfFacets, boundsOfLines, withCameras } from "../viewer/bounds";
-import { buildModel, type ModelLayer, type ModelMode } from "../viewer/model";
+import { GRID_STEP_M } from "../viewer/grid";
+import { buildModel, type ModelLayer } from "../viewer/model";
 import { enlargement } from "../viewer/uncertainty";
-import { GRID_STEP_M, Viewer } from "../viewer/viewer";
+import { Viewer } from "../viewer/viewer";
 import { notify } from "./core";
 import { Legend } from "./Legend";
 import { followResults, LAYERS, type LayerName, shown } from "./layers";
+import { facetColours, ModeLegend, ModeSwitches, mode } from "./ModelModes";
 import { SpaceTools } from "./SpaceTools";
 import { beforeGrowing, method, results, scene, selection, type Tab, tab } from "./state";
 import { theme } from "./theme";
@@ -27,7 +29,6 @@ const LAYER_TITLES: Record<LayerName, string> = {
 /** Layers that only one method fills. */
 const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "groups"];
 
-const mode = signal<ModelMode>("textured");
 /** The viewer while it exists; the effects below wait for it. */
 export const viewer = signal<Viewer | null>(null);
 const model = signal<ModelLayer | null>(null);
@@ -45,6 +46,7 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
         {tab.value === "lines" && <GrowingSwitch />}
         <span class="grow" />
         <Legend />
+        {shown.value[tab.value].includes("model") && <ModeLegend />}
         {shown.value[tab.value].includes("uncertainty") && results.value.records.length > 0 && (
           <p class="legend">
             <span class="swatch merged" aria-hidden="true" />1 σ, drawn {enlargement(results.value.records)} ×
@@ -164,7 +166,7 @@ async function showModel(bytes: Uint8Array<ArrayBuffer> | null): Promise<void> {
     return;
   }
   try {
-    const layer = await buildModel(bytes);
+    const layer = await buildModel(bytes, facetColours(results.peek().facets, method.peek()));
     if (glb.peek() !== bytes) {
       layer.dispose();
       return;
@@ -243,33 +245,6 @@ function LayerSwitches() {
       {LAYERS.filter((name) => method.value === "lines" || !LAYERS_OF_LINES.includes(name)).map((name) => (
         <button key={name} type="button" aria-pressed={visible.includes(name)} onClick={toggle(name)}>
           {LAYER_TITLES[name]}
-        </button>
-      ))}
-    </fieldset>
-  );
-}
-
-const MODES: readonly (readonly [ModelMode, string])[] = [
-  ["textured", "Textured"],
-  ["plain", "Plain"],
-  ["wireframe", "Wireframe"],
-  ["normals", "Normals"],
-];
-
-function ModeSwitches() {
-  return (
-    <fieldset class="choice">
-      <legend class="visually-hidden">Appearance</legend>
-      {MODES.map(([name, title]) => (
-        <button
-          key={name}
-          type="button"
-          aria-pressed={mode.value === name}
-          onClick={() => {
-            mode.value = name;
-          }}
-        >
-          {title}
         </button>
       ))}
     </fieldset>

@@ -30,10 +30,14 @@ export function place(value: number, { min, max }: Scale, from: number, to: numb
   return from + ((value - min) / (max - min || 1)) * (to - from);
 }
 
-export const xOf = (frame: Frame, scale: Scale) => (value: number) =>
-  place(value, scale, frame.left, frame.width - frame.right);
-export const yOf = (frame: Frame, scale: Scale) => (value: number) =>
-  place(value, scale, frame.height - frame.bottom, frame.top);
+/** From values to the places of a chart, across and up. */
+export function axesOf(frame: Frame, x: Scale, y: Scale) {
+  const { width, height, left, right, top, bottom } = frame;
+  return [
+    (value: number) => place(value, x, left, width - right),
+    (value: number) => place(value, y, height - bottom, top),
+  ] as const;
+}
 
 /** "M x y L x y ..." */
 export function pathOf(points: readonly (readonly [number, number])[]): string {
@@ -106,8 +110,7 @@ interface ChartProps {
 export function Chart(props: ChartProps) {
   const { frame, x, y, xTitle, yTitle, label, children, onDrag, onClick } = props;
   const svg = useRef<SVGSVGElement>(null);
-  const toX = xOf(frame, x);
-  const toY = yOf(frame, y);
+  const [toX, toY] = axesOf(frame, x, y);
   const valueAt = (event: PointerEvent): [number, number] => {
     const matrix = svg.current?.getScreenCTM()?.inverse();
     const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix ?? undefined);

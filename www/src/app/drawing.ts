@@ -115,7 +115,7 @@ function drawMark(context: CanvasRenderingContext2D, mark: Mark, unit: number): 
   context.stroke(path);
   context.setLineDash([]);
   if (mark.label !== undefined) {
-    drawLabel(context, mark.label, labelPlace(mark.points), mark.colour, unit);
+    drawLabel(context, mark.label, labelPlace(mark.points), mark, unit);
   }
 }
 
@@ -138,17 +138,18 @@ function drawLabel(
   context: CanvasRenderingContext2D,
   text: string,
   [x, y]: Vec2,
-  colour: string,
+  { colour, labelSide }: Mark,
   unit: number,
 ): void {
   context.font = `600 ${11.5 * unit}px system-ui, "Liberation Sans", sans-serif`;
   const width = context.measureText(text).width + 8 * unit;
   context.globalAlpha = 0.85;
   context.fillStyle = PALETTE.casing;
-  context.fillRect(x + 6 * unit, y - 19 * unit, width, 15 * unit);
+  const left = labelSide === "left" ? x - width - 6 * unit : x + 6 * unit;
+  context.fillRect(left, y - 19 * unit, width, 15 * unit);
   context.globalAlpha = 1;
   context.fillStyle = colour;
-  context.fillText(text, x + 10 * unit, y - 7.5 * unit);
+  context.fillText(text, left + 4 * unit, y - 7.5 * unit);
 }
 
 function fillRegions(

@@ -127,9 +127,8 @@ export const LESSONS: readonly LessonStep[] = [
     tab: "groups",
     isFound: () => {
       const picked = selection.value;
-      return (
-        picked?.kind === "group" && (results.value.grouping?.groups[picked.index]?.members.length ?? 0) >= 4
-      );
+      const members = picked?.kind === "group" ? results.value.grouping?.groups[picked.index]?.members : [];
+      return new Set(members?.map(({ line }) => line)).size >= 4;
     },
   },
   {

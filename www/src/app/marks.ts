@@ -21,6 +21,8 @@ export interface Mark {
   /** Opacity of the area inside. */
   fill?: number;
   label?: string;
+  /** On which side of the mark; points have the left one, so that lines through them keep theirs. */
+  labelSide?: "left" | "right";
 }
 
 const SELECTED_PX = 3.5;
@@ -285,6 +287,7 @@ function point([x, y]: Vec2, label: string): Mark[] {
       width: 2,
       fill: 0.5,
       label,
+      labelSide: "left",
     },
   ];
 }

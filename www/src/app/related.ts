@@ -9,23 +9,15 @@ export interface Related {
   selection: Selection;
 }
 
-export const linkToLine = (index: number): Related => ({
-  name: String(index),
-  selection: { kind: "line", index },
-});
-export const linkToHalfPlane = (index: number): Related => ({
-  name: String(index),
-  selection: { kind: "halfplane", index },
-});
-export const linkToFacet = (index: number): Related => ({
-  name: String(index),
-  selection: { kind: "facet", index },
-});
-export const linkToRefinement = (index: number): Related => ({
-  name: String(index),
-  selection: { kind: "refinement", index },
-});
-export const linkToGroup = (index: number): Related => ({
-  name: String(index),
-  selection: { kind: "group", index },
-});
+/** To the thing of this kind at an index. */
+const linkTo =
+  (kind: IndexedKind) =>
+  (index: number): Related => ({ name: String(index), selection: { kind, index } });
+
+export const linkToLine = linkTo("line");
+export const linkToHalfPlane = linkTo("halfplane");
+export const linkToFacet = linkTo("facet");
+export const linkToRefinement = linkTo("refinement");
+export const linkToGroup = linkTo("group");
+
+type IndexedKind = "line" | "halfplane" | "facet" | "refinement" | "group";

@@ -3,7 +3,6 @@ import {
   BufferAttribute,
   BufferGeometry,
   CanvasTexture,
-  DoubleSide,
   LineBasicMaterial,
   LineSegments,
   Matrix3,
@@ -18,7 +17,7 @@ import { PALETTE } from "../shared/palette";
 import type { ViewInfo } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import { zUpGroup } from "./frame";
-import { disposeObject, type Layer } from "./layer";
+import { BOTH_SIDES, disposeObject, type Layer } from "./layer";
 
 /**
  * Width of a photograph at its camera over the distance of the nearest other camera: frusta of long focal lengths are so
@@ -107,7 +106,7 @@ function photoMesh(
   geometry.setIndex([0, 1, 2, 0, 2, 3]);
   const material = new MeshBasicMaterial({
     map: textureOf(image),
-    side: DoubleSide,
+    ...BOTH_SIDES,
     transparent: true,
     opacity: PHOTO_OPACITY,
   });

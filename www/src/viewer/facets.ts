@@ -3,7 +3,6 @@ import {
   BufferAttribute,
   BufferGeometry,
   Color,
-  DoubleSide,
   LineBasicMaterial,
   LineSegments,
   Mesh,
@@ -17,7 +16,7 @@ import type { Facet, Vec3 } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import { Chosen } from "./chosen";
 import { zUpGroup } from "./frame";
-import { disposeObject, type Layer } from "./layer";
+import { BOTH_SIDES, disposeObject, type Layer } from "./layer";
 
 /** From this slope on, radians, the tint has its full strength. */
 const FULL_TINT_SLOPE = (40 * Math.PI) / 180;
@@ -97,7 +96,7 @@ function facetMesh(
   geometry.setAttribute("color", new BufferAttribute(Float32Array.from(colours), 3));
   const material = new MeshBasicMaterial({
     vertexColors: true,
-    side: DoubleSide,
+    ...BOTH_SIDES,
     transparent: true,
     opacity: OPACITY,
     polygonOffset: true,

@@ -2,7 +2,6 @@
 import {
   BufferAttribute,
   BufferGeometry,
-  DoubleSide,
   LineBasicMaterial,
   LineSegments,
   Mesh,
@@ -14,7 +13,7 @@ import { type HalfPlane, LINE_STRIDE, type Vec3 } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import type { SideName, SideRecord } from "../shared/traces";
 import { zUpGroup } from "./frame";
-import { disposeObject, type Layer, rgb } from "./layer";
+import { BOTH_SIDES, disposeObject, type Layer, rgb } from "./layer";
 
 /** Width of a fan over the length of its line, and its limits in metres: for the eye only. */
 const RELATIVE_WIDTH = 0.35;
@@ -143,7 +142,7 @@ function fanMesh(corners: readonly Vector3[][], colour: string): Mesh<BufferGeom
   const material = new MeshBasicMaterial({
     vertexColors: true,
     transparent: true,
-    side: DoubleSide,
+    ...BOTH_SIDES,
     depthWrite: false,
   });
   return new Mesh(geometry, material);

@@ -2,6 +2,7 @@
 import {
   BufferGeometry,
   Color,
+  DoubleSide,
   type Intersection,
   type Material,
   type Mesh,
@@ -19,6 +20,9 @@ export interface Layer {
   highlight(selection: Selection | null): void;
   dispose(): void;
 }
+
+/** Seen from both sides by one shader: what is transparent would be drawn in two passes, each with its own. */
+export const BOTH_SIDES = { side: DoubleSide, forceSinglePass: true } as const;
 
 /** Frees the GPU memory of an object and of all below it. */
 export function disposeObject(root: Object3D): void {

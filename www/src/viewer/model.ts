@@ -23,7 +23,7 @@ import { Chosen } from "./chosen";
 import { normalTint } from "./facets";
 import { disposeObject, type Layer } from "./layer";
 
-export type ModelMode = "textured" | "plain" | "wireframe" | "normals";
+export type ModelMode = "textured" | "plain" | "wireframe" | "normals" | "method";
 
 export interface ModelLayer extends Layer {
   setMode(mode: ModelMode): void;
@@ -35,7 +35,11 @@ const DIMMED = new Color(0.45, 0.45, 0.45);
 const EDGE_ANGLE_DEG = 2;
 const TASK_MS = 12;
 
-export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLayer> {
+/** `facetColours` are those of the facets by the method that made them. */
+export async function buildModel(
+  glb: Uint8Array<ArrayBuffer>,
+  facetColours: readonly string[],
+): Promise<ModelLayer> {
   const bytes = glb.buffer.slice(glb.byteOffset, glb.byteOffset + glb.byteLength);
   const { scene } = await new GLTFLoader().parseAsync(bytes, "");
   const object = new Group();
@@ -54,7 +58,12 @@ export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLay
     polygonOffsetFactor: 1,
     polygonOffsetUnits: 1,
   });
-  const plain = new MeshLambertMaterial({ flatShading: true, polygonOffset: true, polygonOffsetFactor: 1 });
+  const plain = clay();
+  const painted = new Map([...new Set(facetColours)].map((colour) => [colour, clay(colour)]));
+  const paintOf = (mesh: Mesh) => {
+    const facet = numberOrNull(extra(mesh, "facet"));
+    return painted.get(facetColours[facet ?? -1] ?? "") ?? plain;
+  };
   const hidden = new MeshBasicMaterial({
     polygonOffset: true,
     polygonOffsetFactor: 1,
@@ -79,9 +88,15 @@ export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLay
       marker.show(chosen.length === 0 ? null : markerOf(chosen));
     },
     setMode(mode: ModelMode) {
-      const others = { plain, wireframe: hidden, normals };
+      const of: Record<ModelMode, (mesh: Mesh) => Material> = {
+        textured: (mesh) => textured.get(mesh) as Material,
+        plain: () => plain,
+        wireframe: () => hidden,
+        normals: () => normals,
+        method: paintOf,
+      };
       for (const mesh of meshes) {
-        mesh.material = mode === "textured" ? (textured.get(mesh) as Material) : others[mode];
+        mesh.material = of[mode](mesh);
       }
       edges.visible = mode !== "textured";
     },
@@ -91,12 +106,22 @@ export async function buildModel(glb: Uint8Array<ArrayBuffer>): Promise<ModelLay
       edges.material.color.set(colours.ink);
     },
     dispose() {
-      for (const material of [...textured.values(), normals, plain, hidden]) {
+      for (const material of [...textured.values(), normals, plain, hidden, ...painted.values()]) {
         material.dispose();
       }
       disposeObject(object);
     },
   };
+}
+
+/** A dull material that the sun shades. */
+function clay(colour?: string): MeshLambertMaterial {
+  return new MeshLambertMaterial({
+    flatShading: true,
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    ...(colour !== undefined && { color: colour }),
+  });
 }
 
 /** Which face was hit, from the extras that the export wrote, and its area. */

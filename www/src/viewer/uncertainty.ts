@@ -2,14 +2,14 @@
  * The uncertainty of 3D lines: a tube between the error ellipses of both ends, drawn larger than it is by a factor that
  * the legend states.
  */
-import { BufferAttribute, BufferGeometry, DoubleSide, Mesh, MeshBasicMaterial, Vector3 } from "three";
+import { BufferAttribute, BufferGeometry, Mesh, MeshBasicMaterial, Vector3 } from "three";
 import { PALETTE } from "../shared/palette";
 import { LINE_STRIDE } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import type { Covariance, LineRecord } from "../shared/traces";
 import { Chosen } from "./chosen";
 import { zUpGroup } from "./frame";
-import { disposeObject, type Layer } from "./layer";
+import { BOTH_SIDES, disposeObject, type Layer } from "./layer";
 
 /** Corners of an ellipse. */
 const CORNERS = 16;
@@ -117,7 +117,7 @@ function meshOf(tubes: readonly number[][], colour: string): Mesh<BufferGeometry
     color: colour,
     transparent: true,
     opacity: OPACITY,
-    side: DoubleSide,
+    ...BOTH_SIDES,
     depthWrite: false,
   });
   return new Mesh(geometry, material);

@@ -3,9 +3,7 @@ import {
   Box3,
   Color,
   DirectionalLight,
-  GridHelper,
   HemisphereLight,
-  type LineBasicMaterial,
   type Object3D,
   PerspectiveCamera,
   Plane,
@@ -20,6 +18,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { ThemeColours } from "../shared/palette";
 import type { ViewInfo } from "../shared/results";
 import type { Selection } from "../shared/selection";
+import { buildGrid } from "./grid";
 import type { Layer } from "./layer";
 import { buildMeasure, type Measured, measure } from "./measure";
 import { clipFromViewer } from "./photo";
@@ -29,9 +28,6 @@ const FIELD_OF_VIEW_DEG = 35;
 /** A press that moves less, in CSS pixels, is a click. */
 const CLICK_SLACK_PX = 4;
 const PICK_REACH_PX = 7;
-export const GRID_STEP_M = 10;
-/** Farther out the grid would be a grey haze. */
-const MAX_GRID_M = 300;
 
 export class Viewer {
   readonly #renderer: WebGLRenderer;
@@ -45,7 +41,6 @@ export class Viewer {
   readonly #compiling = new Set<Layer>();
   readonly #observer: ResizeObserver;
   readonly #onPick: (selection: Selection | null) => void;
-  #grid: GridHelper | null = null;
   #colours: ThemeColours;
   #bounds: Sphere | null = null;
   #frame = 0;
@@ -78,7 +73,7 @@ export class Viewer {
     this.#controls.addEventListener("change", () => this.draw());
     canvas.addEventListener("pointerdown", (event) => this.#pressedAt.set(event.clientX, event.clientY));
     canvas.addEventListener("pointerup", (event) => this.#click(event));
-    this.#observer = new ResizeObserver(() => this.#resize());
+    this.#observer = new ResizeObserver(() => void this.#resize());
     this.#observer.observe(canvas);
     this.setTheme(colours);
   }
@@ -88,23 +83,29 @@ export class Viewer {
     const old = this.#layers.get(name);
     if (old !== undefined) {
       this.#scene.remove(old.object);
-      old.dispose();
       this.#layers.delete(name);
     }
-    if (layer !== null) {
+    if (layer === null) {
+      old?.dispose();
+    } else {
       layer.object.visible = false;
       this.#layers.set(name, layer);
       this.#scene.add(layer.object);
-      void this.#compile(name, layer);
+      void this.#compile(name, layer, old);
     }
     this.draw();
   }
 
-  /** Shows a layer once its shaders are ready: drawing it earlier would wait for them. */
-  async #compile(name: string, layer: Layer): Promise<void> {
+  /**
+   * Shows a layer once its shaders are ready: drawing it earlier would wait for them. The layer that it replaces goes only
+   * then, because the last material of a kind takes its shader along.
+   */
+  async #compile(name: string, layer: Layer, old: Layer | undefined): Promise<void> {
     this.#compiling.add(layer);
     await this.#renderer.compileAsync(layer.object, this.#camera, this.#scene);
+    await finished(this.#renderer.getContext() as WebGL2RenderingContext);
     this.#compiling.delete(layer);
+    old?.dispose();
     if (this.#layers.get(name) === layer) {
       this.showLayer(name, !this.#hidden.has(name));
     }
@@ -266,14 +267,17 @@ export class Viewer {
     this.#camera.projectionMatrixInverse.copy(this.#camera.projectionMatrix).invert();
   }
 
-  #resize(): void {
+  async #resize(): Promise<void> {
     const canvas = this.#renderer.domElement;
+    const size = this.#renderer.getSize(new Vector2());
+    // Setting the same size would make the canvas anew, too; and setting any waits for the graphics card.
+    if (size.x !== canvas.clientWidth || size.y !== canvas.clientHeight) {
+      await finished(this.#renderer.getContext() as WebGL2RenderingContext);
+    }
     const { clientWidth, clientHeight } = canvas;
     if (clientWidth === 0 || clientHeight === 0) {
       return;
     }
-    const size = this.#renderer.getSize(new Vector2());
-    // Setting the same size would make the canvas anew, too.
     if (size.x !== clientWidth || size.y !== clientHeight) {
       this.#renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
       this.#renderer.setSize(clientWidth, clientHeight, false);
@@ -345,21 +349,9 @@ export class Viewer {
   }
 
   #buildGrid(): void {
-    if (this.#grid !== null) {
-      this.#scene.remove(this.#grid);
-      this.#grid.dispose();
+    if (this.#bounds !== null) {
+      this.setLayer("grid", buildGrid(this.#bounds, this.#floor(), this.#colours.grid));
     }
-    if (this.#bounds === null) {
-      return;
-    }
-    const { center, radius } = this.#bounds;
-    const steps = 2 * Math.ceil(Math.min(MAX_GRID_M, 1.5 * radius) / GRID_STEP_M);
-    this.#grid = new GridHelper(steps * GRID_STEP_M, steps, this.#colours.grid, this.#colours.grid);
-    const snapped = (value: number) => Math.round(value / GRID_STEP_M) * GRID_STEP_M;
-    this.#grid.position.set(snapped(center.x), this.#floor(), snapped(center.z));
-    (this.#grid.material as LineBasicMaterial).depthWrite = false;
-    this.#grid.raycast = () => undefined;
-    this.#scene.add(this.#grid);
   }
 
   /** The lowest point of the model, or the bottom of the sphere while there is none. */
@@ -371,6 +363,22 @@ export class Viewer {
     return (this.#bounds?.center.y ?? 0) - 0.35 * (this.#bounds?.radius ?? 0);
   }
 }
+
+/** Once the graphics card has done all that it was told so far: a question about a shader would wait for that. */
+async function finished(gl: WebGL2RenderingContext): Promise<void> {
+  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+  gl.flush();
+  while (
+    fence !== null &&
+    !gl.isContextLost() &&
+    gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED
+  ) {
+    await new Promise((resolve) => setTimeout(resolve, POLL_MS));
+  }
+  gl.deleteSync(fence);
+}
+
+const POLL_MS = 10;
 
 /** Layers in the order in which a click tries them. */
 const PICK_ORDER = [

@@ -1,6 +1,6 @@
 /** Each figure of B99 shows what the core found, and follows what is pointed at. One run of the demo scene for all. */
-import { expect, type Locator, type Page, test } from "@playwright/test";
-import { axeFindings, lookOf, openTab, stage, steadyLook, waitForStage, watch } from "./helpers";
+import { expect, type Page, test } from "@playwright/test";
+import { axeFindings, lookOf, openTab, pickUntil, stage, steadyLook, waitForStage, watch } from "./helpers";
 
 test.describe.configure({ mode: "serial" });
 
@@ -22,18 +22,6 @@ test.afterAll(async () => {
 
 const inspector = () => page.getByTestId("inspector");
 const allViews = () => page.getByRole("group", { name: "View" }).getByRole("button", { name: "All" });
-
-/** Clicks over an element until something is as wanted. */
-async function pickUntil(element: Locator, isFound: () => Promise<boolean>): Promise<void> {
-  const box = await element.boundingBox();
-  for (let i = 0; i < 90 && !(await isFound()); i += 1) {
-    const x = (box?.width ?? 0) * (0.25 + 0.055 * (i % 10));
-    const y = (box?.height ?? 0) * (0.2 + 0.07 * Math.floor(i / 10));
-    await element.click({ position: { x, y } });
-    await page.waitForTimeout(60);
-  }
-  expect(await isFound()).toBe(true);
-}
 
 /** Picks a matched segment of the first view. */
 async function pickMatchedSegment(): Promise<void> {
@@ -193,7 +181,7 @@ test("refinement: outlines before, relations by their chi-square, adopted and re
       .evaluate((input) => (input as HTMLInputElement).value),
   );
   const dots = lab.locator(".relation");
-  expect(await dots.count()).toBeGreaterThan(3);
+  await expect(dots.nth(3)).toBeVisible();
   for (const dot of await dots.all()) {
     const [, chi2, verdict] =
       /χ² ([\d.]+), (adopted|refused)$/.exec((await dot.getAttribute("aria-label")) ?? "") ?? [];
@@ -229,6 +217,16 @@ test("the viewer: normals, cameras, measuring, a picture, and a view's own camer
   await page.getByRole("button", { name: "Normals" }).click();
   await expect(async () => {
     expect((await lookOf(page, viewer)).vivid).toBeGreaterThan(textured.vivid + 0.03);
+  }).toPass({ timeout: 20_000 });
+
+  const facets = /(\d+) facets/.exec((await stage(page, "facets").textContent()) ?? "")?.[1];
+  const normals = await lookOf(page, viewer);
+  await page.getByRole("button", { name: "By method" }).click();
+  await expect(page.getByTestId("method-legend")).toHaveText(
+    `Lines (B99): ${facets} facetsRectangles (W96): 0 facets`,
+  );
+  await expect(async () => {
+    expect(await lookOf(page, viewer)).not.toEqual(normals);
   }).toPass({ timeout: 20_000 });
 
   await page.getByRole("button", { name: "Measure" }).click();

@@ -11,6 +11,7 @@ export interface Upload {
 
 const DEMO = new URL("../../public/demo/", import.meta.url);
 const HOUSE = new URL("../fixtures/house/", import.meta.url);
+const FIXTURES = new URL("../../../tests/fixtures/", import.meta.url);
 
 export function upload(name: string, buffer: Buffer): Upload {
   return { name, mimeType: "application/octet-stream", buffer };
@@ -35,10 +36,22 @@ export function demoOrientation(
   ];
 }
 
-/** A small scene of its own, with its orientation as 3 x 4 matrices. */
-export function houseFiles(): Upload[] {
-  const names = readdirSync(HOUSE).filter((name) => !name.endsWith(".md"));
-  return names.map((name) => upload(name, readFileSync(new URL(name, HOUSE))));
+/** The formats in which the house's orientation is at hand (docs/formats.md), by the names of their folders. */
+export const HOUSE_FORMATS = readdirSync(new URL("orientation/", HOUSE)).sort();
+
+/** A small scene of its own, with its orientation as 3 x 4 matrices or in another format. */
+export function houseFiles(format = "projection"): Upload[] {
+  return [...filesIn(HOUSE, /\.jpg$/), ...filesIn(new URL(`orientation/${format}/`, HOUSE), /./)];
+}
+
+/** The 48 pixels wide scene of the readers' tests, with its orientation as VisualSFM writes it. */
+export function visualSfmFiles(): Upload[] {
+  return [...filesIn(new URL("images/", FIXTURES), /./), ...filesIn(new URL("nvm/", FIXTURES), /./)];
+}
+
+function filesIn(folder: URL, wanted: RegExp): Upload[] {
+  const names = readdirSync(folder).filter((name) => wanted.test(name));
+  return names.sort().map((name) => upload(name, readFileSync(new URL(name, folder))));
 }
 
 /** The same matrices in one file, as Pix4D writes them. */
@@ -78,6 +91,18 @@ export async function waitForStage(page: Page, name: string, timeout = 200_000):
 
 export async function openTab(page: Page, name: string): Promise<void> {
   await page.getByRole("tab", { name, exact: true }).click();
+}
+
+/** Clicks over an element until something is as wanted. */
+export async function pickUntil(element: Locator, isFound: () => Promise<boolean>): Promise<void> {
+  const box = await element.boundingBox();
+  for (let i = 0; i < 90 && !(await isFound()); i += 1) {
+    const x = (box?.width ?? 0) * (0.25 + 0.055 * (i % 10));
+    const y = (box?.height ?? 0) * (0.2 + 0.07 * Math.floor(i / 10));
+    await element.click({ position: { x, y } });
+    await element.page().waitForTimeout(60);
+  }
+  expect(await isFound()).toBe(true);
 }
 
 export interface Look {

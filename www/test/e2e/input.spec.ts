@@ -6,27 +6,11 @@ import {
   give,
   houseFiles,
   housePmatrix,
-  lookOf,
-  stage,
   type Upload,
   upload,
   waitForStage,
   watch,
 } from "./helpers";
-
-test("own files with another kind of orientation become a model", async ({ page }) => {
-  const { problems } = watch(page);
-  await page.goto("/");
-  await give(page, houseFiles());
-  await expect(page.locator(".status.good")).toHaveCount(6);
-  await page.getByRole("button", { name: "Run all" }).click();
-  await waitForStage(page, "model");
-  await expect(stage(page, "lines")).toContainText(/[1-9]\d* .*lines?/);
-  await expect(async () => {
-    expect((await lookOf(page, page.getByTestId("viewer"))).drawn).toBeGreaterThan(0.02);
-  }).toPass({ timeout: 20_000 });
-  expect(problems).toEqual([]);
-});
 
 const truncated = (): Upload[] => {
   const [first, ...others] = demoImages(3) as [Upload, ...Upload[]];

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { frameOf, histogramOf, ticks, xOf, yOf } from "../../src/app/charts";
+import { axesOf, frameOf, histogramOf, ticks } from "../../src/app/charts";
 import { quantile } from "../../src/app/LineLabs";
 
 describe("ticks", () => {
@@ -14,10 +14,11 @@ describe("axes", () => {
   it("run to the right and upwards", () => {
     const frame = frameOf(400, 200);
     const scale = { min: 0, max: 10 };
-    expect(xOf(frame, scale)(0)).toBe(frame.left);
-    expect(xOf(frame, scale)(10)).toBe(frame.width - frame.right);
-    expect(yOf(frame, scale)(0)).toBe(frame.height - frame.bottom);
-    expect(yOf(frame, scale)(10)).toBe(frame.top);
+    const [toX, toY] = axesOf(frame, scale, scale);
+    expect(toX(0)).toBe(frame.left);
+    expect(toX(10)).toBe(frame.width - frame.right);
+    expect(toY(0)).toBe(frame.height - frame.bottom);
+    expect(toY(10)).toBe(frame.top);
   });
 });
 

@@ -1,24 +1,14 @@
 import { describe, expect, it } from "vitest";
 import { loadOptions, parseHeight, parseRegion } from "../../src/app/runOptions";
+import { NO_OPTIONS } from "../../src/app/state";
 import type { Inspection } from "../../src/shared/results";
-
-const NONE = {
-  orientation: null,
-  leftOut: [],
-  roi: null,
-  groundZ: null,
-  applyFix: false,
-  adjust: false,
-  tileM: null,
-  epsg: null,
-};
 
 const image = (path: string) => ({ path, name: path.replace("in/", ""), size: null, orientation: null });
 const inspection = { images: ["in/a.jpg", "in/b.jpg", "in/c.jpg"].map(image) } as unknown as Inspection;
 
 describe("run options", () => {
   it("say nothing where nothing is asked for", () => {
-    expect(loadOptions(NONE, inspection)).toEqual({});
+    expect(loadOptions(NO_OPTIONS, inspection)).toEqual({});
   });
 
   it("name the views that are left, the orientation, region and ground", () => {

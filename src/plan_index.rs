@@ -1,0 +1,88 @@
+//! Boxes in plan, found by where they are.
+//!
+//! One R-tree serves whoever asks: each further kind of tree would be compiled anew, sorts and all, some 25 kB of wasm. Points
+//! are boxes without extent.
+
+use nalgebra::Point2;
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+
+/// Numbered boxes.
+#[derive(Default)]
+pub struct PlanIndex {
+    tree: RTree<Numbered>,
+}
+
+type Numbered = GeomWithData<Rectangle<[f64; 2]>, u32>;
+
+impl PlanIndex {
+    /// Indexes the boxes between two corners, numbered in their order.
+    pub fn new(boxes: impl Iterator<Item = [Point2<f64>; 2]>) -> Self {
+        let numbered = boxes.enumerate().map(|(i, b)| numbered(b, i as u32));
+        Self {
+            tree: RTree::bulk_load(numbered.collect()),
+        }
+    }
+
+    /// Adds a box under a number.
+    pub fn insert(&mut self, corners: [Point2<f64>; 2], number: u32) {
+        self.tree.insert(numbered(corners, number));
+    }
+
+    /// The numbers of the boxes that share a point, be it on the border, with the box widened by `margin` on all sides; in
+    /// no order.
+    pub fn touching(
+        &self,
+        [a, b]: [Point2<f64>; 2],
+        margin: f64,
+    ) -> impl Iterator<Item = u32> + use<'_> {
+        let low = [a.x.min(b.x) - margin, a.y.min(b.y) - margin];
+        let high = [a.x.max(b.x) + margin, a.y.max(b.y) + margin];
+        self.tree
+            .locate_in_envelope_intersecting(&AABB::from_corners(low, high))
+            .map(|found| found.data)
+    }
+}
+
+fn numbered([a, b]: [Point2<f64>; 2], number: u32) -> Numbered {
+    GeomWithData::new(Rectangle::from_corners([a.x, a.y], [b.x, b.y]), number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn point() -> impl Strategy<Value = Point2<f64>> {
+        (0u8..40, 0u8..40).prop_map(|(x, y)| Point2::new(f64::from(x), f64::from(y)))
+    }
+
+    fn touch([a, b]: [Point2<f64>; 2], [c, d]: [Point2<f64>; 2], margin: f64) -> bool {
+        (0..2).all(|k| {
+            a[k].min(b[k]) <= c[k].max(d[k]) + margin && a[k].max(b[k]) >= c[k].min(d[k]) - margin
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn finds_what_looking_at_every_box_finds(
+            boxes in prop::collection::vec([point(), point()], 0..60),
+            late in prop::collection::vec(point(), 0..20),
+            question in [point(), point()],
+            margin in 0u8..4,
+        ) {
+            let mut index = PlanIndex::new(boxes.iter().copied());
+            let mut all = boxes.clone();
+            for p in late {
+                index.insert([p, p], all.len() as u32);
+                all.push([p, p]);
+            }
+            let mut found: Vec<u32> = index.touching(question, f64::from(margin)).collect();
+            crate::sorting::sort_by(&mut found, Ord::cmp);
+            let expected: Vec<u32> = (0..all.len() as u32)
+                .filter(|&i| touch(all[i as usize], question, f64::from(margin)))
+                .collect();
+            prop_assert_eq!(found, expected);
+        }
+    }
+}

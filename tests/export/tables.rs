@@ -1,0 +1,111 @@
+//! What is no mesh: lines and half-planes as JSON, footprints as GeoJSON, lines as CSV.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector3;
+use ridgeline::roof::Surface;
+use serde_json::Value;
+
+use crate::planted::{ORIGIN, files_of, planted_evidence, planted_models, scene};
+
+#[test]
+fn evidence_is_written_in_the_world_frame_of_the_input() {
+    let (_, model, _) = planted_models().remove(0);
+    let files = files_of(&scene(), &model);
+    let parse = |name: &str| serde_json::from_slice::<Value>(&files[name]).unwrap();
+    let line = &parse("lines.json")["lines"][0];
+    assert_eq!(
+        line["p1"],
+        serde_json::json!([432_104.0, 5_412_305.0, 6.1235])
+    );
+    assert_eq!(line["views"][0]["view"], "b.jpg");
+    assert_eq!(
+        line["views"][0]["segment"],
+        serde_json::json!([1.0, 2.0, 30.25, 4.0])
+    );
+    let segments = parse("segments.json");
+    assert_eq!(segments["views"][0]["segments"], serde_json::json!([]));
+    assert_eq!(segments["views"][1]["segments"][0][2], 30.25);
+    let half_plane = &parse("halfplanes.json")["half_planes"][0];
+    assert_eq!(half_plane["side"], "left");
+    let plane: Vec<f64> = half_plane["plane"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|v| v.as_f64().unwrap())
+        .collect();
+    let world = ORIGIN + Vector3::new(2.0, 4.0, 3.8);
+    let distance = Vector3::new(plane[0], plane[1], plane[2]).dot(&world) + plane[3];
+    assert!(distance.abs() < 1e-6);
+}
+
+#[test]
+fn footprints_read_back_with_the_plan_area() {
+    let scene = scene();
+    let ring_area = |ring: &Vec<geojson::Position>| -> f64 {
+        assert_eq!(ring.first(), ring.last(), "rings are closed");
+        ring.windows(2)
+            .map(|e| {
+                let [a, b] = [0, 1].map(|i| [e[i][0] - ORIGIN.x, e[i][1] - ORIGIN.y]);
+                0.5 * (a[0] * b[1] - b[0] * a[1])
+            })
+            .sum()
+    };
+    for (name, model, _) in planted_models() {
+        let files = files_of(&scene, &model);
+        let text = std::str::from_utf8(&files["footprints.geojson"]).unwrap();
+        let collection: geojson::FeatureCollection = text
+            .parse::<geojson::GeoJson>()
+            .unwrap()
+            .try_into()
+            .unwrap();
+        let mut area = 0.0;
+        for feature in &collection.features {
+            let Some(geojson::GeometryValue::Polygon { coordinates }) =
+                feature.geometry.as_ref().map(|g| &g.value)
+            else {
+                panic!("{name}: no polygon");
+            };
+            // Outer rings counter-clockwise, holes clockwise (RFC 7946, 3.1.6).
+            assert!(ring_area(&coordinates[0]) > 0.0);
+            assert!(coordinates[1..].iter().all(|hole| ring_area(hole) < 0.0));
+            area += coordinates.iter().map(ring_area).sum::<f64>();
+            assert_eq!(feature.property("ground_m").unwrap().as_f64(), Some(0.0));
+        }
+        let plan: f64 = model
+            .buildings
+            .iter()
+            .map(|b| {
+                let ground = b
+                    .solid
+                    .faces
+                    .iter()
+                    .filter(|f| f.surface == Surface::Ground);
+                ground
+                    .map(|f| b.solid.vector_area(&f.rings).norm())
+                    .sum::<f64>()
+            })
+            .sum();
+        assert!(
+            (area - plan).abs() < 1e-6,
+            "{name}: {area} instead of {plan}"
+        );
+    }
+}
+
+#[test]
+fn the_table_of_lines_reads_back() {
+    let (_, lines, _) = planted_evidence();
+    let files = files_of(&scene(), &planted_models()[0].1);
+    let mut reader = csv::Reader::from_reader(&files["lines.csv"][..]);
+    let rows: Vec<BTreeMap<String, String>> = reader.deserialize().map(Result::unwrap).collect();
+    assert_eq!(rows.len(), lines.len());
+    for (row, line) in rows.iter().zip(&lines) {
+        assert_eq!(row["origin"], "matched");
+        let row = |name: &str| row[name].parse::<f64>().unwrap();
+        let p = Vector3::new(row("x1_m"), row("y1_m"), row("z1_m")) - ORIGIN;
+        assert!((p - line.segment.p1.coords).norm() < 1e-4);
+        assert!((row("length_m") - line.segment.length()).abs() < 1e-4);
+        assert_eq!(row("views") as usize, line.supports.len());
+    }
+}

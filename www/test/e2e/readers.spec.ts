@@ -1,0 +1,62 @@
+/** Own files in every format of docs/formats.md become a model, and the same one: all say the same of one house. */
+import { expect, type Page, test } from "@playwright/test";
+import {
+  give,
+  HOUSE_FORMATS,
+  houseFiles,
+  lookOf,
+  stage,
+  visualSfmFiles,
+  waitForStage,
+  watch,
+} from "./helpers";
+
+/** What the stages found, in words and numbers, without their times. */
+async function found(page: Page): Promise<string> {
+  const of = async (name: string) => (await stage(page, name).locator(".counts").getAttribute("title")) ?? "";
+  return `${await of("lines")}; ${await of("facets")}`;
+}
+
+async function reconstruct(page: Page, format: string): Promise<string> {
+  await page.goto("/");
+  await give(page, houseFiles(format));
+  await expect(page.locator(".view .status.good")).toHaveCount(6);
+  await page.getByRole("button", { name: "Run all" }).click();
+  await waitForStage(page, "model");
+  await expect(page.getByRole("alert")).toHaveCount(0);
+  return found(page);
+}
+
+let expected = "";
+
+test.beforeAll(async ({ browser }) => {
+  const page = await browser.newPage();
+  expected = await reconstruct(page, "krc");
+  await page.close();
+});
+
+for (const format of HOUSE_FORMATS) {
+  test(`files of the format ${format} become the same model`, async ({ page }) => {
+    const { problems } = watch(page);
+    expect(await reconstruct(page, format)).toBe(expected);
+    await expect(stage(page, "facets")).toContainText(/[3-9] facets/);
+    expect(problems).toEqual([]);
+  });
+}
+
+test("the model of own files is drawn", async ({ page }) => {
+  await reconstruct(page, "colmap");
+  await expect(async () => {
+    expect((await lookOf(page, page.getByTestId("viewer"))).drawn).toBeGreaterThan(0.02);
+  }).toPass({ timeout: 20_000 });
+});
+
+// The format knows no principal point, and the samples are crops: they can be read, but no model comes of them.
+test("files of VisualSFM are read", async ({ page }) => {
+  const { problems } = watch(page);
+  await page.goto("/");
+  await give(page, visualSfmFiles());
+  await expect(page.locator(".view .status.good")).toHaveCount(6);
+  await expect(page.locator(".view .status.good").first()).toHaveAttribute("title", /^model\.nvm, line \d+$/);
+  expect(problems).toEqual([]);
+});
