@@ -150,7 +150,7 @@ fn cover_silent_cells(
     }
 }
 
-/// How much of the ground's match counts. Assumption: half. Rows of tiles or seams that run along the parallax
+/// How much of the ground's match counts. Assumption: most of it. Rows of tiles or seams that run along the parallax
 /// correlate at any height, so a match with the ground is weaker evidence than a half-plane's.
 const GROUND_SHARE: f64 = 0.8;
 

@@ -10,7 +10,7 @@
 
 use serde::Serialize;
 
-use super::borders::Region;
+use super::line_pairs::{add_line_pairs, with_lines_around};
 use super::neighbourhood::Neighbours;
 use super::{HalfPlane, Side, ThetaFrame};
 use crate::geometry::Plane;
@@ -90,117 +90,8 @@ pub fn group_planes(input: &GroupingInput, params: &RoofParams) -> Vec<PlaneGrou
     })
 }
 
-/// Planes of two neighbouring coplanar lines that no half-plane explains (B99 5: "an efficient and robust approach
-/// would use both"): hipped roofs without texture have ridges and eaves, but no half-plane.
-fn add_line_pairs(
-    input: &GroupingInput,
-    by_line: &[Vec<HalfPlaneId>],
-    groups: &mut Vec<PlaneGroup>,
-    params: &RoofParams,
-) {
-    let mut none_free = vec![false; input.half_planes.len()];
-    for first in (0..input.lines.len()).map(LineId::from_index) {
-        let around = (input.neighbours.around_corners[first.index()].iter())
-            .filter(|&&second| unexplained(input, by_line, first, second));
-        let neighbours = input.neighbours.direct[first.index()].iter();
-        for &second in neighbours.chain(around).filter(|&&n| n > first) {
-            if groups
-                .iter()
-                .any(|g| g.contains(first) && g.contains(second))
-            {
-                continue;
-            }
-            let members = vec![member(input, first, None), member(input, second, None)];
-            let Some(plane) = plane_of_pair(input, first, second)
-                .filter(|p| all_lie_in(input, p, &members, params))
-            else {
-                continue;
-            };
-            let mut group = PlaneGroup { plane, members };
-            extend(input, by_line, &mut group, &mut none_free, params);
-            groups.push(group);
-        }
-    }
-}
-
-/// Has neither of two lines a half-plane on the side of the other?
-fn unexplained(
-    input: &GroupingInput,
-    by_line: &[Vec<HalfPlaneId>],
-    first: LineId,
-    second: LineId,
-) -> bool {
-    let explained = |line: LineId, other: LineId| {
-        let segment = &input.lines[line.index()].segment;
-        let to = input.lines[other.index()].at(0.5).xy() - segment.p0.xy();
-        let left = segment.direction().xy().perp(&to) > 0.0;
-        let side = if left { Side::Left } else { Side::Right };
-        let half_planes = by_line[line.index()].iter();
-        half_planes
-            .map(|h| input.half_planes[h.index()].side)
-            .any(|s| s == side)
-    };
-    !explained(first, second) && !explained(second, first)
-}
-
-/// A group without a half-plane with all lines in its plane that lie where it may reach: clutter on a roof or below it, which the
-/// plan does not tell apart, comes between lines that are neighbours on the roof.
-fn with_lines_around(input: &GroupingInput, group: &PlaneGroup, params: &RoofParams) -> PlaneGroup {
-    let mut group = group.clone();
-    loop {
-        let region = Region::new(input, &group, params);
-        let inside = |line: &Line3d| {
-            let seen = (0..5).filter(|i| region.contains(&line.at(f64::from(*i) / 4.0).xy()));
-            seen.count() >= 3
-        };
-        let around = (0..input.lines.len()).map(LineId::from_index).filter(|&l| {
-            !group.contains(l)
-                && inside(&input.lines[l.index()])
-                && lies_in_plane(input, &group, l, params)
-        });
-        let mut larger = group.clone();
-        for line in around {
-            let mut members = larger.members.clone();
-            members.push(member(input, line, None));
-            let plane = fit_plane(input, &members);
-            if let Some(plane) = plane.filter(|p| all_lie_in(input, p, &members, params)) {
-                larger = PlaneGroup { plane, members };
-            }
-        }
-        if larger.members.len() == group.members.len() {
-            return group;
-        }
-        infer_sides(input, &mut larger);
-        group = larger;
-    }
-}
-
-/// The plane through two lines that span one: at an angle, or parallel and apart.
-fn plane_of_pair(input: &GroupingInput, first: LineId, second: LineId) -> Option<Plane> {
-    /// Lines at less than this sine (10 degrees) are parallel; ...
-    const PARALLEL_SINE: f64 = 0.17;
-    /// ... then they must be this far apart, metres.
-    const APART: f64 = 1.0;
-    /// Roof planes are less steep than this (normal's z of 75 degrees, B99 figure 15).
-    const STEEP: f64 = 0.26;
-    let (a, b) = (
-        &input.lines[first.index()].segment,
-        &input.lines[second.index()].segment,
-    );
-    let sine = a.direction().cross(&b.direction()).norm();
-    let apart = a.line_distance(&b.at(0.5)).max(b.line_distance(&a.at(0.5)));
-    if sine < PARALLEL_SINE && apart < APART {
-        return None;
-    }
-    fit_plane(
-        input,
-        &[member(input, first, None), member(input, second, None)],
-    )
-    .filter(|p| p.normal.z > STEEP)
-}
-
 /// A line that lies in the plane without a half-plane has the plane on the side of the other members.
-fn infer_sides(input: &GroupingInput, group: &mut PlaneGroup) {
+pub fn infer_sides(input: &GroupingInput, group: &mut PlaneGroup) {
     /// Nearer than this to the line the others do not tell, metres.
     const UNDECIDED: f64 = 0.5;
     let middle = |m: &Member| input.lines[m.line.index()].at(0.5);
@@ -269,7 +160,7 @@ fn grow(
     group
 }
 
-fn member(input: &GroupingInput, line: LineId, half_plane: Option<HalfPlaneId>) -> Member {
+pub fn member(input: &GroupingInput, line: LineId, half_plane: Option<HalfPlaneId>) -> Member {
     Member {
         line,
         side: half_plane.map(|h| input.half_planes[h.index()].side),
@@ -278,7 +169,7 @@ fn member(input: &GroupingInput, line: LineId, half_plane: Option<HalfPlaneId>) 
 }
 
 /// Adds neighbouring lines and half-planes that lie in the group's plane until there are no more.
-fn extend(
+pub fn extend(
     input: &GroupingInput,
     by_line: &[Vec<HalfPlaneId>],
     group: &mut PlaneGroup,
@@ -316,7 +207,7 @@ fn extend(
 }
 
 /// Does the line lie in the group's plane as far as the group's plane is known there?
-fn lies_in_plane(
+pub fn lies_in_plane(
     input: &GroupingInput,
     group: &PlaneGroup,
     line: LineId,
@@ -350,7 +241,7 @@ fn lies_in_plane(
 }
 
 /// After the regression every member must still lie in the plane.
-fn all_lie_in(
+pub fn all_lie_in(
     input: &GroupingInput,
     plane: &Plane,
     members: &[Member],

@@ -46,6 +46,7 @@ mod hypothesis;
 mod islands;
 mod labelling;
 mod line_index;
+mod line_pairs;
 mod neighbourhood;
 mod peak;
 mod plan;

@@ -3,6 +3,9 @@
 //! "In grouping operations, thresholds on distances are avoided by using a topological neighbourhood
 //! between projected lines, defined by a Delaunay triangulation constrained to fit the line segments."
 //! The lines are projected onto the XY plane, which every view shares.
+//!
+//! Where several lines end at one corner, their ends differ by what ends are uncertain by, and it is chance which of them the
+//! triangulation joins to the lines across. Such neighbours around a corner are kept apart.
 
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
