@@ -33,7 +33,7 @@ pub struct CellEvidence {
 pub struct Evidence {
     /// Per cell: (plane, evidence), ascending by plane.
     cells: Vec<Vec<(u32, CellEvidence)>>,
-    /// Per cell: sum of weight x (correlation - least correlation) on the ground, square metres; at least 0.
+    /// Per cell: what the ground costs a roof, from the sum of weight x (correlation - least correlation), square metres.
     ground: Vec<f64>,
 }
 
@@ -89,31 +89,32 @@ impl Evidence {
         index: &LineIndex,
         params: &RoofParams,
     ) -> Energy<BorderCosts> {
-        let unary: Vec<Vec<(u32, f64)>> = self
+        let unary = self
             .cells
             .iter()
             .zip(&self.ground)
             .map(|(candidates, ground)| {
-                let cost = |e: &CellEvidence| {
-                    // sum of weight x (least correlation - correlation): negative for a match. "No plane" keeps
-                    // the cost 0, so what speaks for the ground counts against roofs.
-                    let mismatch = e.least - e.correlation;
-                    mismatch + ground - params.half_plane_gain_m * e.half_plane_m
-                };
                 candidates
                     .iter()
-                    .map(|(plane, e)| (*plane, cost(e)))
+                    .map(|(plane, e)| {
+                        // sum of weight x (least correlation - correlation): negative for a match.
+                        let mismatch = e.least - e.correlation;
+                        // "No plane" keeps the cost 0, so what speaks for the ground counts against roofs.
+                        (
+                            *plane,
+                            mismatch + ground - params.half_plane_gain_m * e.half_plane_m,
+                        )
+                    })
                     .collect()
             })
             .collect();
         let labels = |cell: usize| self.cells[cell].iter().map(|c| c.0);
-        let borders = BorderCosts::new(arrangement, labels, planes, index, params);
         Energy {
             unary,
             edges: (arrangement.edges.iter())
                 .map(|e| [e.left, e.right])
                 .collect(),
-            borders,
+            borders: BorderCosts::new(arrangement, labels, planes, index, params),
         }
     }
 }
@@ -178,14 +179,16 @@ fn ground_evidence(
             evidence[cell as usize] += weight * (correlation - least) * area;
         }
     }
-    evidence.iter_mut().for_each(|e| {
-        *e *= if *e > 0.0 {
-            GROUND_SHARE
-        } else {
-            NOT_GROUND_SHARE
-        }
-    });
-    evidence
+    evidence.into_iter().map(against_roofs).collect()
+}
+
+/// What the agreement of the views on the ground, summed over a cell, costs every roof there.
+fn against_roofs(agreement: f64) -> f64 {
+    if agreement > 0.0 {
+        GROUND_SHARE * agreement
+    } else {
+        NOT_GROUND_SHARE * agreement
+    }
 }
 
 fn sum_over_cells(
@@ -277,6 +280,13 @@ mod tests {
             (frame(-5.0, 15.0).chain(frame(0.0, 10.0)).chain(cuts)).collect();
         let grid = PlanGrid::covering(Point2::new(0.0, 0.0), Point2::new(10.0, 10.0), 0.5);
         (Arrangement::new(&borders), grid)
+    }
+
+    #[test]
+    fn ground_costs_a_roof_and_what_is_no_ground_earns_it_less() {
+        let (agreeing, contrary) = (against_roofs(2.0), against_roofs(-2.0));
+        assert!(agreeing > 0.0 && contrary < 0.0);
+        assert!(-contrary < 0.5 * agreeing, "a tree is no roof");
     }
 
     #[test]
