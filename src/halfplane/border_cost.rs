@@ -5,10 +5,10 @@
 //! when they are asked for, from the heights of both planes at the border: a list of all pairs would grow with
 //! the square of the planes.
 
-use nalgebra::{Point2, Vector3};
+use nalgebra::Point2;
 
 use super::arrangement::{Arrangement, CellEdge};
-use super::labelling::{Borders, NO_PLANE};
+use super::labelling::Borders;
 use super::line_index::LineIndex;
 use crate::geometry::Plane;
 use crate::params::RoofParams;
@@ -17,49 +17,43 @@ use crate::params::RoofParams;
 pub struct BorderCosts {
     /// In the order of [`Arrangement::edges`].
     borders: Vec<Border>,
-    /// Normals of the planes, by label.
-    normals: Vec<Vector3<f64>>,
+    /// By label.
+    planes: Vec<Plane>,
 }
 
 impl BorderCosts {
-    /// Prepares the borders; `labels` are the planes that may cover a cell, ascending.
-    pub fn new<L: Iterator<Item = u32>>(
+    /// Prepares the borders; `index` holds the reconstructed lines.
+    pub fn new(
         arrangement: &Arrangement,
-        labels: impl Fn(usize) -> L,
         planes: &[Plane],
         index: &LineIndex,
         params: &RoofParams,
     ) -> Self {
         let border = |e: &CellEdge| {
             let ends = [e.a, e.b].map(|v| arrangement.vertices[v]);
-            let heights = index.heights_along(&ends[0], &ends[1]);
-            let beside = |cell| {
-                labels(cell)
-                    .map(|l| Beside::new(l, &planes[l as usize], &ends, &heights))
-                    .collect()
-            };
             Border {
                 full: (ends[1] - ends[0]).norm() * params.border_cost_m,
-                left: beside(e.left),
-                right: beside(e.right),
+                heights: index.heights_along(&ends[0], &ends[1]),
+                ends,
             }
         };
         Self {
             borders: arrangement.edges.iter().map(border).collect(),
-            normals: planes.iter().map(|p| p.normal).collect(),
+            planes: planes.to_vec(),
         }
     }
 
     /// Share of the full cost between two planes.
-    fn between(&self, a: &Beside, b: &Beside) -> f64 {
+    fn between(&self, border: &Border, a: &Plane, b: &Plane) -> f64 {
         let near = |a: f64, b: f64| (a - b).abs() < MEETING;
-        let cosine = || self.normals[a.label as usize].dot(&self.normals[b.label as usize]);
+        let heights = [a, b].map(|plane| border.ends.map(|p| plane.z_at(p.x, p.y)));
+        let middles = heights.map(middle);
         // Two hypotheses of one roof plane: a border between them says nothing.
-        if near(a.middle(), b.middle()) && cosine() > SAME_PLANE_COSINE {
+        if near(middles[0], middles[1]) && a.normal.dot(&b.normal) > SAME_PLANE_COSINE {
             return DUPLICATE;
         }
-        let meets = near(a.ends[0], b.ends[0]) && near(a.ends[1], b.ends[1]);
-        match (meets, a.on_line || b.on_line) {
+        let meets = near(heights[0][0], heights[1][0]) && near(heights[0][1], heights[1][1]);
+        match (meets, middles.iter().any(|z| border.has_line_at(*z))) {
             (true, true) => CREASE_ON_LINE,
             (true, false) => CREASE,
             (false, true) => ON_LINE,
@@ -71,10 +65,10 @@ impl BorderCosts {
 impl Borders for BorderCosts {
     fn cost(&self, edge: usize, left: u32, right: u32) -> f64 {
         let border = &self.borders[edge];
-        let share = match (find(&border.left, left), find(&border.right, right)) {
-            (Some(a), Some(b)) => self.between(a, b),
-            (Some(one), None) if right == NO_PLANE && one.on_line => ON_LINE,
-            (None, Some(one)) if left == NO_PLANE && one.on_line => ON_LINE,
+        let plane = |label: u32| self.planes.get(label as usize);
+        let share = match (plane(left), plane(right)) {
+            (Some(a), Some(b)) => self.between(border, a, b),
+            (Some(one), None) | (None, Some(one)) if border.bounds(one) => ON_LINE,
             _ => 1.0,
         };
         share * border.full
@@ -85,46 +79,31 @@ impl Borders for BorderCosts {
     }
 }
 
-/// The planes on both sides of a border between cells.
+/// A border between two cells.
 struct Border {
     /// Cost when nothing supports the border.
     full: f64,
-    /// Ascending by label.
-    left: Vec<Beside>,
-    /// Ascending by label.
-    right: Vec<Beside>,
+    /// Plan positions, metres.
+    ends: [Point2<f64>; 2],
+    /// Heights of the reconstructed lines along it, metres.
+    heights: Vec<f64>,
 }
 
-fn find(side: &[Beside], label: u32) -> Option<&Beside> {
-    let place = side.binary_search_by_key(&label, |b| b.label).ok()?;
-    Some(&side[place])
-}
+impl Border {
+    /// Does a reconstructed line run along the border at a height?
+    fn has_line_at(&self, z: f64) -> bool {
+        self.heights.iter().any(|h| (h - z).abs() < LINE_HEIGHT)
+    }
 
-/// A plane beside a border.
-struct Beside {
-    label: u32,
     /// Does a reconstructed line in the plane run along the border?
-    on_line: bool,
-    /// Heights at both ends of the border, metres.
-    ends: [f64; 2],
+    fn bounds(&self, plane: &Plane) -> bool {
+        !self.heights.is_empty()
+            && self.has_line_at(middle(self.ends.map(|p| plane.z_at(p.x, p.y))))
+    }
 }
 
-impl Beside {
-    /// `heights` are those of the real lines along the border.
-    fn new(label: u32, plane: &Plane, ends: &[Point2<f64>; 2], heights: &[f64]) -> Self {
-        let mut beside = Self {
-            label,
-            on_line: false,
-            ends: ends.map(|p| plane.z_at(p.x, p.y)),
-        };
-        let middle = beside.middle();
-        beside.on_line = heights.iter().any(|h| (h - middle).abs() < LINE_HEIGHT);
-        beside
-    }
-
-    fn middle(&self) -> f64 {
-        0.5 * (self.ends[0] + self.ends[1])
-    }
+fn middle(heights: [f64; 2]) -> f64 {
+    0.5 * (heights[0] + heights[1])
 }
 
 /// Planes at less than 6 degrees that meet are one plane found twice: the cosine of that angle.
@@ -145,37 +124,45 @@ pub const LINE_HEIGHT: f64 = 0.35;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Point3;
+    use crate::halfplane::labelling::NO_PLANE;
+    use nalgebra::{Point3, Vector3};
 
     /// A border of 2 m along y at x = 0, the planes with the given normals through a point of it, and at `lift` above it.
-    fn cost(normals: [[f64; 3]; 2], lift: f64, line: bool) -> f64 {
+    fn costs(normals: [[f64; 3]; 2], lift: f64, line: bool) -> BorderCosts {
         let ends = [Point2::new(0.0, 0.0), Point2::new(0.0, 2.0)];
         let planes = [0.0, lift].into_iter().zip(normals).map(|(z, n)| {
             Plane::from_point_normal(&Point3::new(0.0, 0.0, 5.0 + z), &Vector3::from(n)).unwrap()
         });
-        let planes: Vec<Plane> = planes.collect();
         let heights = if line { vec![5.0] } else { Vec::new() };
-        let beside = |l: u32| vec![Beside::new(l, &planes[l as usize], &ends, &heights)];
-        let costs = BorderCosts {
-            borders: vec![Border {
-                full: 2.0,
-                left: beside(0),
-                right: beside(1),
-            }],
-            normals: planes.iter().map(|p| p.normal).collect(),
+        let border = Border {
+            full: 2.0,
+            ends,
+            heights,
         };
-        costs.cost(0, 0, 1)
+        BorderCosts {
+            borders: vec![border],
+            planes: planes.collect(),
+        }
     }
 
     #[test]
     fn borders_where_planes_meet_and_on_lines_are_cheap() {
         let gable = [[-1.0, 0.0, 1.0], [1.0, 0.0, 1.0]];
         let flat = [[0.0, 0.0, 1.0]; 2];
+        let cost = |normals, lift, line| costs(normals, lift, line).cost(0, 0, 1);
         assert_eq!(cost(gable, 0.0, true), 2.0 * CREASE_ON_LINE);
         assert_eq!(cost(gable, 0.0, false), 2.0 * CREASE);
         assert_eq!(cost(flat, 3.0, true), 2.0 * ON_LINE);
         assert_eq!(cost(flat, 3.0, false), 2.0);
         // One plane found twice: dearer than no support at all.
         assert_eq!(cost(flat, 0.1, true), 2.0 * DUPLICATE);
+    }
+
+    #[test]
+    fn where_a_roof_ends_a_line_in_its_plane_makes_the_border_cheap() {
+        let costs = costs([[0.0, 0.0, 1.0]; 2], 3.0, true);
+        assert_eq!(costs.cost(0, 0, NO_PLANE), 2.0 * ON_LINE);
+        assert_eq!(costs.cost(0, NO_PLANE, 0), 2.0 * ON_LINE);
+        assert_eq!(costs.cost(0, 1, NO_PLANE), 2.0);
     }
 }

@@ -108,13 +108,12 @@ impl Evidence {
                     .collect()
             })
             .collect();
-        let labels = |cell: usize| self.cells[cell].iter().map(|c| c.0);
         Energy {
             unary,
             edges: (arrangement.edges.iter())
                 .map(|e| [e.left, e.right])
                 .collect(),
-            borders: BorderCosts::new(arrangement, labels, planes, index, params),
+            borders: BorderCosts::new(arrangement, planes, index, params),
         }
     }
 }

@@ -18,7 +18,7 @@ use super::evidence::Evidence;
 use super::grouping::{GroupingInput, PlaneGroup, group_planes};
 use super::hypothesis::{ON_SURFACE, TEXTURED, bounding_lines, hypotheses};
 use super::islands::without_islands;
-use super::labelling::{Energy, NO_PLANE};
+use super::labelling::Labelling;
 use super::line_index::LineIndex;
 use super::neighbourhood::line_neighbours;
 use super::plan::PlanGrid;
@@ -142,7 +142,7 @@ pub fn reconstruct_facets(
     let index = LineIndex::new(real.collect());
     let energy = evidence.energy(&arrangement, &planes, &index, params);
     let mut solver = Solver {
-        energy,
+        labelling: Labelling::new(energy, planes.len() as u32),
         evidence,
         arrangement,
         planes,
@@ -238,7 +238,7 @@ fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {
 }
 
 struct Solver {
-    energy: Energy<BorderCosts>,
+    labelling: Labelling<BorderCosts>,
     evidence: Evidence,
     arrangement: Arrangement,
     planes: Vec<Plane>,
@@ -255,11 +255,12 @@ impl Solver {
     ) -> (Vec<Facet>, Vec<RejectedFacet>) {
         const ROUNDS: usize = 4;
         let mut rejected = Vec::new();
-        let mut labels = vec![NO_PLANE; self.arrangement.cells];
         for round in 1..=ROUNDS {
-            labels = self.energy.minimise(self.planes.len() as u32, labels);
-            labels = without_islands(&self.arrangement, labels, params.min_area_m2);
+            self.labelling.minimise();
+            let labels = self.labelling.labels().to_vec();
+            let labels = without_islands(&self.arrangement, labels, params.min_area_m2);
             let delineation = delineate(&self.arrangement, &labels, &self.planes);
+            self.labelling.relabel(labels);
             let mut facets = Vec::new();
             let mut withdrawn = Vec::new();
             // No roof, but no other plane may have their place: they stay in the labelling.
@@ -289,10 +290,7 @@ impl Solver {
                 return (facets, rejected);
             }
             for outline in withdrawn {
-                for &cell in &outline.cells {
-                    self.energy.unary[cell].retain(|u| u.0 != outline.plane);
-                    labels[cell] = NO_PLANE;
-                }
+                self.labelling.withdraw(outline.plane, &outline.cells);
             }
         }
         unreachable!("the last round returns")

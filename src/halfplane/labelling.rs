@@ -14,9 +14,7 @@
 //! real lines (tau_real) and area counts as in S(P). The minimum is found by alpha-expansion
 //! (Boykov, Veksler, Zabih 2001), each expansion a minimum cut.
 
-use std::collections::BTreeMap;
-
-use ac_library::{Dsu, MfGraph};
+use super::cut::Cut;
 
 /// No plane covers the cell.
 pub const NO_PLANE: u32 = u32::MAX;
@@ -75,55 +73,97 @@ impl<B: Borders> Energy<B> {
             .sum();
         data + borders
     }
+}
 
-    /// A labelling that no single expansion improves, starting from `labels`.
-    pub fn minimise(&self, planes: u32, mut labels: Vec<u32>) -> Vec<u32> {
-        let graph = CellGraph::new(self, planes);
-        let mut clock = Clock::new(self.unary.len(), planes);
+/// A labelling on its way to the least energy. It remembers what was tried, so that after a small change only the planes
+/// around it are tried again.
+pub struct Labelling<B> {
+    energy: Energy<B>,
+    graph: CellGraph,
+    clock: Clock,
+    labels: Vec<u32>,
+}
+
+impl<B: Borders> Labelling<B> {
+    /// No plane covers any cell; `planes` is the number of planes.
+    pub fn new(energy: Energy<B>, planes: u32) -> Self {
+        let cells = energy.unary.len();
+        Self {
+            graph: CellGraph::new(&energy, planes),
+            clock: Clock::new(cells, planes),
+            labels: vec![NO_PLANE; cells],
+            energy,
+        }
+    }
+
+    /// The plane of each cell, or [`NO_PLANE`].
+    pub fn labels(&self) -> &[u32] {
+        &self.labels
+    }
+
+    /// Goes on until no single expansion improves.
+    pub fn minimise(&mut self) {
         const ROUNDS: usize = 8;
+        let planes = self.graph.cells_of_plane.len() as u32;
         for _ in 0..ROUNDS {
-            let start = clock.now;
+            let start = self.clock.now;
             for plane in (0..planes).chain([NO_PLANE]) {
                 // Nothing changed where this plane may lie since it was last tried: it would fail again.
-                if clock.worth_trying(plane, &graph) {
-                    let changed = self.expand(plane, &graph, &mut labels);
-                    clock.tried(plane, &changed);
+                if self.clock.worth_trying(plane, &self.graph) {
+                    let changed = self.expand(plane);
+                    self.clock.tried(plane, &changed);
                 }
             }
-            if clock.changed_since(start) {
-                continue;
+            if !self.clock.changed_since(start) {
+                break;
             }
-            break;
         }
-        labels
+    }
+
+    /// Sets the labels to others.
+    pub fn relabel(&mut self, labels: Vec<u32>) {
+        let differs = |c: &usize| labels[*c] != self.labels[*c];
+        let changed: Vec<usize> = (0..labels.len()).filter(differs).collect();
+        self.clock.changed(&changed);
+        self.labels = labels;
+    }
+
+    /// The plane may no longer cover the cells; no plane does for now.
+    pub fn withdraw(&mut self, plane: u32, cells: &[usize]) {
+        for &cell in cells {
+            self.energy.unary[cell].retain(|u| u.0 != plane);
+            self.labels[cell] = NO_PLANE;
+        }
+        self.clock.changed(cells);
     }
 
     /// The best move in which cells may change to `alpha`; returns those that do.
-    fn expand(&self, alpha: u32, graph: &CellGraph, labels: &mut [u32]) -> Vec<usize> {
+    fn expand(&mut self, alpha: u32) -> Vec<usize> {
+        let (energy, graph, labels) = (&self.energy, &self.graph, &self.labels);
         let movable: Vec<usize> = (graph.cells_of(alpha).iter().copied())
-            .filter(|&c| labels[c] != alpha && self.may_gain(c, alpha, graph, labels))
+            .filter(|&c| labels[c] != alpha && self.may_gain(c, alpha))
             .collect();
         // Ascending, so that a cell's node is found by bisection.
         let node = |cell: usize| movable.binary_search(&cell).ok();
         let mut cut = Cut::new(movable.len());
         for (n, &c) in movable.iter().enumerate() {
-            let keep = self.unary(c, labels[c]).unwrap_or(BLOCKED);
-            let change = self.unary(c, alpha).unwrap_or(BLOCKED);
+            let keep = energy.unary(c, labels[c]).unwrap_or(BLOCKED);
+            let change = energy.unary(c, alpha).unwrap_or(BLOCKED);
             cut.unary(n, keep, change);
             for &e in &graph.edges_of_cell[c] {
-                let [i, j] = self.edges[e];
+                let [i, j] = energy.edges[e];
                 let (li, lj) = (labels[i], labels[j]);
-                let stay = self.border(e, li, lj);
+                let stay = energy.border(e, li, lj);
                 match node(if c == i { j } else { i }) {
                     // Both may move: handle the edge once, from its first cell.
                     Some(other) if c == i => {
-                        let (j_moves, i_moves) =
-                            (self.border(e, li, alpha), self.border(e, alpha, lj));
+                        let j_moves = energy.border(e, li, alpha);
+                        let i_moves = energy.border(e, alpha, lj);
                         cut.pair(n, other, stay, j_moves, i_moves);
                     }
                     Some(_) => {}
-                    None if c == i => cut.unary(n, stay, self.border(e, alpha, lj)),
-                    None => cut.unary(n, stay, self.border(e, li, alpha)),
+                    None if c == i => cut.unary(n, stay, energy.border(e, alpha, lj)),
+                    None => cut.unary(n, stay, energy.border(e, li, alpha)),
                 }
             }
         }
@@ -133,18 +173,21 @@ impl<B: Borders> Energy<B> {
             .filter(|(_, moves)| *moves)
             .map(|(&c, _)| c)
             .collect();
-        changed.iter().for_each(|&c| labels[c] = alpha);
+        changed.iter().for_each(|&c| self.labels[c] = alpha);
         changed
     }
 
     /// Could the cell gain by `alpha` with all its borders? Most cells of a plane's region are nothing like the
     /// plane and could not, whatever their neighbours do.
-    fn may_gain(&self, cell: usize, alpha: u32, graph: &CellGraph, labels: &[u32]) -> bool {
-        let keep = self.unary(cell, labels[cell]).unwrap_or(BLOCKED);
-        let change = self.unary(cell, alpha).unwrap_or(BLOCKED);
-        keep - change + graph.most_by_borders[cell] >= 0.0
+    fn may_gain(&self, cell: usize, alpha: u32) -> bool {
+        let keep = (self.energy.unary(cell, self.labels[cell])).unwrap_or(BLOCKED);
+        let change = self.energy.unary(cell, alpha).unwrap_or(BLOCKED);
+        keep - change + self.graph.most_by_borders[cell] >= 0.0
     }
 }
+
+/// More than any sum of real costs.
+const BLOCKED: f64 = 1e6;
 
 /// Which cells a plane may cover, and which edges a cell has.
 struct CellGraph {
@@ -233,10 +276,14 @@ impl Clock {
             .any(|&c| self.changed[c] > last)
     }
 
-    fn tried(&mut self, plane: u32, changed: &[usize]) {
-        // The plane's own changes do not make it worth trying again.
+    fn changed(&mut self, cells: &[usize]) {
         self.now += 1;
-        changed.iter().for_each(|&c| self.changed[c] = self.now);
+        cells.iter().for_each(|&c| self.changed[c] = self.now);
+    }
+
+    fn tried(&mut self, plane: u32, changed: &[usize]) {
+        self.changed(changed);
+        // The plane's own changes do not make it worth trying again.
         let slot = self.slot(plane);
         self.tried[slot] = self.now;
     }
@@ -246,181 +293,12 @@ impl Clock {
     }
 }
 
-/// More than any sum of real costs.
-const BLOCKED: f64 = 1e6;
-/// Capacities are integers, so that the cut is exact: a millionth of a square metre.
-const UNIT: f64 = 1e6;
-
-/// A minimum cut over binary moves: 0 keeps the label, 1 takes the new one.
-struct Cut {
-    /// (cost of keeping, cost of moving) per node.
-    unaries: Vec<(f64, f64)>,
-    /// (from, to, capacity): paid when `from` keeps and `to` moves.
-    arcs: Vec<(usize, usize, f64)>,
-}
-
-impl Cut {
-    fn new(nodes: usize) -> Self {
-        Self {
-            unaries: vec![(0.0, 0.0); nodes],
-            arcs: Vec::new(),
-        }
-    }
-
-    fn unary(&mut self, node: usize, keep: f64, change: f64) {
-        self.unaries[node].0 += keep;
-        self.unaries[node].1 += change;
-    }
-
-    /// Costs of (keep, keep), (keep, move), (move, keep); (move, move) is 0.
-    fn pair(&mut self, i: usize, j: usize, stay: f64, j_moves: f64, i_moves: f64) {
-        // stay = A, j_moves = B, i_moves = C, D = 0. Submodular when A <= B + C; a border
-        // that is cheap twice is made as dear as needed.
-        let stay = stay.min(j_moves + i_moves);
-        self.unaries[i].0 += stay;
-        self.unaries[i].1 += i_moves;
-        self.unaries[j].1 -= i_moves;
-        self.arcs.push((i, j, j_moves + i_moves - stay));
-    }
-
-    /// For each node: does it move? Decides what needs no cut first; a tie moves.
-    fn solve(self) -> Vec<bool> {
-        let units = |c: f64| (c * UNIT).round() as i64;
-        let mut open = OpenNodes {
-            gain: (self.unaries.iter())
-                .map(|(keep, change)| units(*keep) - units(*change))
-                .collect(),
-            arcs: (self.arcs.iter())
-                .map(|&(i, j, c)| (i, j, units(c)))
-                .filter(|a| a.2 > 0)
-                .collect(),
-            moves: vec![None; self.unaries.len()],
-        };
-        open.decide();
-        open.cut()
-    }
-}
-
-/// The nodes of a cut that nothing has decided yet.
-struct OpenNodes {
-    /// What moving saves in unaries, units.
-    gain: Vec<i64>,
-    /// (from, to, capacity): paid when `from` keeps and `to` moves.
-    arcs: Vec<(usize, usize, i64)>,
-    moves: Vec<Option<bool>>,
-}
-
-impl OpenNodes {
-    /// Fixes every node whose own cost outweighs all its arcs, whatever its neighbours do, charges the
-    /// neighbours for it, and goes on with them. Most cells of a plane's region are nothing like the plane:
-    /// few are left for the cut, whose result is the same.
-    fn decide(&mut self) {
-        let n = self.gain.len();
-        let mut arcs_of = vec![Vec::new(); n];
-        let (mut saved, mut paid) = (vec![0i64; n], vec![0i64; n]);
-        for (k, &(i, j, capacity)) in self.arcs.iter().enumerate() {
-            arcs_of[i].push(k);
-            arcs_of[j].push(k);
-            saved[i] += capacity;
-            paid[j] += capacity;
-        }
-        let mut queue: std::collections::VecDeque<usize> = (0..n).collect();
-        while let Some(i) = queue.pop_front() {
-            if self.moves[i].is_some() {
-                continue;
-            }
-            let moves = if self.gain[i] + saved[i] < 0 {
-                false
-            } else if self.gain[i] - paid[i] >= 0 {
-                true
-            } else {
-                continue;
-            };
-            self.moves[i] = Some(moves);
-            for &k in &arcs_of[i] {
-                let (from, to, capacity) = self.arcs[k];
-                let other = if from == i { to } else { from };
-                if self.moves[other].is_some() {
-                    continue;
-                }
-                if from == i {
-                    paid[to] -= capacity;
-                    self.gain[to] -= if moves { 0 } else { capacity };
-                } else {
-                    saved[from] -= capacity;
-                    self.gain[from] += if moves { capacity } else { 0 };
-                }
-                queue.push_back(other);
-            }
-        }
-    }
-
-    /// The minimum cut of the undecided nodes, one connected part after the other.
-    fn cut(mut self) -> Vec<bool> {
-        let open: Vec<bool> = self.moves.iter().map(Option::is_none).collect();
-        let arcs = || self.arcs.iter().filter(|(i, j, _)| open[*i] && open[*j]);
-        let mut connected = Dsu::new(self.gain.len());
-        for (i, j, _) in arcs() {
-            connected.merge(*i, *j);
-        }
-        let mut parts: BTreeMap<usize, Part> = BTreeMap::new();
-        for i in (0..self.gain.len()).filter(|&i| open[i]) {
-            parts.entry(connected.leader(i)).or_default().nodes.push(i);
-        }
-        for arc in arcs() {
-            let part = parts.entry(connected.leader(arc.0)).or_default();
-            part.arcs.push(*arc);
-        }
-        for part in parts.values() {
-            for (i, moves) in part.nodes.iter().zip(part.cut(&self.gain)) {
-                self.moves[*i] = Some(moves);
-            }
-        }
-        self.moves.iter().map(|m| *m == Some(true)).collect()
-    }
-}
-
-/// A connected part of the undecided nodes.
-#[derive(Default)]
-struct Part {
-    /// Ascending.
-    nodes: Vec<usize>,
-    /// As in [`OpenNodes`].
-    arcs: Vec<(usize, usize, i64)>,
-}
-
-impl Part {
-    /// For each node: does it move?
-    fn cut(&self, gain: &[i64]) -> Vec<bool> {
-        let n = self.nodes.len();
-        let (source, sink) = (n, n + 1);
-        let mut graph = MfGraph::<i64>::new(n + 2);
-        // The source side keeps, the sink side moves.
-        for (place, &i) in self.nodes.iter().enumerate() {
-            if gain[i] < 0 {
-                graph.add_edge(source, place, -gain[i]);
-            } else if gain[i] > 0 {
-                graph.add_edge(place, sink, gain[i]);
-            }
-        }
-        let of = |i: usize| (self.nodes.binary_search(&i)).expect("both ends are in the part");
-        for &(i, j, capacity) in &self.arcs {
-            graph.add_edge(of(i), of(j), capacity);
-        }
-        graph.flow(source, sink);
-        // Nodes that residual capacity still reaches from the source keep their label.
-        graph.min_cut(source)[..n]
-            .iter()
-            .map(|keeps| !keeps)
-            .collect()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     /// Per edge: the cost when nothing supports it, and of pairs of labels that something supports.
+    #[derive(Clone)]
     struct Table(Vec<Row>);
 
     type Row = (f64, Vec<(u32, u32, f64)>);
@@ -449,7 +327,9 @@ mod tests {
     }
 
     fn from_nothing(energy: &Energy<Table>) -> Vec<u32> {
-        energy.minimise(2, vec![NO_PLANE; energy.unary.len()])
+        let mut labelling = Labelling::new(energy.clone(), 2);
+        labelling.minimise();
+        labelling.labels
     }
 
     #[test]

@@ -35,6 +35,7 @@ mod arrangement;
 mod border_cost;
 mod borders;
 mod consistency;
+mod cut;
 mod delineation;
 mod evidence;
 mod extent;
