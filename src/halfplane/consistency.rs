@@ -16,6 +16,7 @@ use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
 use wide::f32x8;
 
+use super::box_sum::{HALF_WINDOW, box_sum};
 use super::plan::{PlanGrid, orthophoto};
 use crate::camera::Camera;
 use crate::geometry::Plane;
@@ -66,9 +67,6 @@ pub fn least_correlation(weight: f64, textured: f64) -> f64 {
 /// What keeps two views of one surface from being alike, against the noise of a pixel: besides the noise, the sampling and
 /// the shading. Measured on true planes.
 const UNLIKE: f64 = 1.25;
-/// Half the window side in cells: 11 x 11, a little smaller than the paper's 15 x 15, since its
-/// windows lie along lines and these must not reach far over the borders of small facets.
-const HALF_WINDOW: usize = 5;
 /// Most views compared: pairs grow with the square and six views saturate the measure.
 const MAX_VIEWS: usize = 6;
 
@@ -160,11 +158,19 @@ impl Candidate {
 
 /// One view on the grid with the mean and the variance of the window around every cell.
 struct ViewWindows {
+    /// Centred; 0 where the view does not reach.
     gray: Vec<f32>,
     mean: Vec<f32>,
+    /// [`UNSEEN`] where the view does not reach all of the window.
     variance: Vec<f32>,
-    valid: Vec<bool>,
+    /// 1 / standard deviation; NaN where the view does not reach all of the window.
+    inverse_deviation: Vec<f32>,
 }
+
+/// Cells of a window.
+const FULL: f32 = ((2 * HALF_WINDOW + 1) * (2 * HALF_WINDOW + 1)) as f32;
+/// Least variance that is not the rounding of a constant.
+const LEAST_VARIANCE: f32 = 1e-7;
 
 impl ViewWindows {
     fn new(mut gray: Vec<f32>, grid: &PlanGrid) -> Self {
@@ -173,8 +179,6 @@ impl ViewWindows {
             .map(|g| if g.is_nan() { 0.0 } else { 1.0 })
             .collect();
         let count = box_sum(&inside, grid);
-        let full = ((2 * HALF_WINDOW + 1) * (2 * HALF_WINDOW + 1)) as f32;
-        let valid: Vec<bool> = count.iter().map(|&c| c > full - 0.5).collect();
         // Centring keeps the running sums of squares small.
         let (sum, n) = gray
             .iter()
@@ -187,18 +191,29 @@ impl ViewWindows {
         };
         gray.iter_mut()
             .for_each(|g| *g = if g.is_nan() { 0.0 } else { *g - center });
-        let mean: Vec<f32> = box_sum(&gray, grid).iter().map(|s| s / full).collect();
+        let mean: Vec<f32> = box_sum(&gray, grid).iter().map(|s| s / FULL).collect();
         let squares: Vec<f32> = gray.iter().map(|g| g * g).collect();
-        let variance = box_sum(&squares, grid)
-            .iter()
-            .zip(&mean)
-            .map(|(s, m)| (s / full - m * m).max(0.0))
-            .collect();
+        let mut variance = box_sum(&squares, grid);
+        for ((v, m), c) in variance.iter_mut().zip(&mean).zip(&count) {
+            let is_whole = *c > FULL - 0.5;
+            *v = if is_whole {
+                (*v / FULL - m * m).max(0.0)
+            } else {
+                UNSEEN
+            };
+        }
+        let inverse = |v: &f32| {
+            if *v > UNSEEN {
+                1.0 / v.max(LEAST_VARIANCE).sqrt()
+            } else {
+                f32::NAN
+            }
+        };
         Self {
+            inverse_deviation: variance.iter().map(inverse).collect(),
             gray,
             mean,
             variance,
-            valid,
         }
     }
 }
@@ -210,25 +225,31 @@ fn unlike(scene: &Scene, views: &[ViewId]) -> f32 {
     (noise * noise) as f32
 }
 
+/// Correlation of two views at every cell; [`UNSEEN`] where one of them does not see all of the window.
+fn correlations(a: &ViewWindows, b: &ViewWindows, grid: &PlanGrid) -> Vec<f32> {
+    let product: Vec<f32> = a.gray.iter().zip(&b.gray).map(|(x, y)| x * y).collect();
+    let mut out = box_sum(&product, grid);
+    let means = a.mean.iter().zip(&b.mean);
+    let inverses = a.inverse_deviation.iter().zip(&b.inverse_deviation);
+    for ((c, (mean_a, mean_b)), (by_a, by_b)) in out.iter_mut().zip(means).zip(inverses) {
+        let r = (*c / FULL - mean_a * mean_b) * (by_a * by_b);
+        *c = if r.is_nan() {
+            UNSEEN
+        } else {
+            r.clamp(-1.0, 1.0)
+        };
+    }
+    out
+}
+
 fn combine(windows: &[ViewWindows], unlike: f32, grid: &PlanGrid) -> ConsistencyMap {
     let cells = grid.width * grid.height;
-    let full = ((2 * HALF_WINDOW + 1) * (2 * HALF_WINDOW + 1)) as f32;
-    let mut pairs: Vec<Vec<f32>> = Vec::new();
-    for (i, a) in windows.iter().enumerate() {
-        for b in &windows[i + 1..] {
-            let product: Vec<f32> = a.gray.iter().zip(&b.gray).map(|(x, y)| x * y).collect();
-            let mut correlation = box_sum(&product, grid);
-            for (k, c) in correlation.iter_mut().enumerate() {
-                *c = if a.valid[k] && b.valid[k] {
-                    let covariance = *c / full - a.mean[k] * b.mean[k];
-                    (covariance / (a.variance[k] * b.variance[k]).sqrt().max(1e-7)).clamp(-1.0, 1.0)
-                } else {
-                    UNSEEN
-                };
-            }
-            pairs.push(correlation);
-        }
-    }
+    let pairs: Vec<Vec<f32>> = (windows.iter().enumerate())
+        .flat_map(|(i, a)| windows[i + 1..].iter().map(move |b| (a, b)))
+        .map(|(a, b)| correlations(a, b, grid))
+        .collect();
+    let pairs: Vec<&[f32]> = pairs.iter().map(Vec::as_slice).collect();
+    let variances: Vec<&[f32]> = windows.iter().map(|w| w.variance.as_slice()).collect();
     let mut map = ConsistencyMap {
         grid: *grid,
         correlation: vec![0; cells],
@@ -236,158 +257,120 @@ fn combine(windows: &[ViewWindows], unlike: f32, grid: &PlanGrid) -> Consistency
         common_weight: vec![0; cells],
     };
     for start in (0..cells).step_by(LANES) {
-        let means = better_half_means(&pairs, start, cells);
-        for k in start..cells.min(start + LANES) {
-            let Some(mean) = means[k - start] else {
-                continue;
-            };
-            let (sum, seen) = (windows.iter().filter(|w| w.valid[k]))
-                .fold((0.0f32, 0.0f32), |(s, n), w| (s + w.variance[k], n + 1.0));
-            map.correlation[k] = (mean * 127.0).round().clamp(-127.0, 127.0) as i8;
-            map.weight[k] = weight_of(sum / seen, unlike);
-            map.common_weight[k] = weight_of(median_variance(windows, k), unlike);
+        let (mean, seen) = better_half(&pairs, start);
+        let (variance, median) = texture(&variances, start);
+        let [mean, seen, variance, median] = [
+            mean,
+            seen,
+            weight_of(variance, unlike),
+            weight_of(median, unlike),
+        ]
+        .map(|x| x.to_array());
+        for (lane, k) in (start..cells.min(start + LANES)).enumerate() {
+            if seen[lane] > 0.0 {
+                map.correlation[k] = (mean[lane] * 127.0).round() as i8;
+                map.weight[k] = variance[lane] as u8;
+                map.common_weight[k] = median[lane] as u8;
+            }
         }
     }
     map
 }
 
-/// Weight of a window with this variance, in steps; 0 is kept for what is not seen at all.
-fn weight_of(variance: f32, unlike: f32) -> u8 {
-    let weight = variance / (variance + unlike);
-    (weight * 255.0).round().max(1.0) as u8
+/// Weights of windows with these variances, in steps; 0 is kept for what is not seen at all.
+fn weight_of(variance: f32x8, unlike: f32) -> f32x8 {
+    let weight = variance / (variance + f32x8::splat(unlike));
+    (weight * f32x8::splat(255.0)).round().fast_max(f32x8::ONE)
 }
 
-/// The lower median of the variances of the windows that see a cell.
-fn median_variance(windows: &[ViewWindows], k: usize) -> f32 {
-    let mut seen = [0.0f32; MAX_VIEWS];
-    let mut count = 0;
-    for w in windows.iter().filter(|w| w.valid[k]) {
-        // Kept in order: six at most.
-        let mut at = count;
-        while at > 0 && seen[at - 1] > w.variance[k] {
-            seen[at] = seen[at - 1];
-            at -= 1;
-        }
-        seen[at] = w.variance[k];
-        count += 1;
-    }
-    seen[count.saturating_sub(1) / 2]
-}
-
-/// Cells that are sorted at once.
+/// Cells that are looked at at once.
 const LANES: usize = 8;
 /// Pairs of [`MAX_VIEWS`] views.
 const MAX_PAIRS: usize = MAX_VIEWS * (MAX_VIEWS - 1) / 2;
-/// Below any correlation: the pair does not see the cell.
+/// In place of a correlation or a variance, and below all of them: not seen.
 const UNSEEN: f32 = -4.0;
 
-/// Mean of the better half of the pairs' correlations at the cells from `start`; `None` where no pair sees
-/// the cell.
-fn better_half_means(pairs: &[Vec<f32>], start: usize, cells: usize) -> [Option<f32>; LANES] {
-    let end = cells.min(start + LANES);
-    let mut columns = [f32x8::splat(UNSEEN); MAX_PAIRS];
-    for (column, pair) in columns.iter_mut().zip(pairs) {
+/// The values of each row at the cells from `start`; [`UNSEEN`] behind the last cell.
+fn columns<const N: usize>(rows: &[&[f32]], start: usize) -> [f32x8; N] {
+    let mut columns = [f32x8::splat(UNSEEN); N];
+    for (column, row) in columns.iter_mut().zip(rows) {
         let mut lanes = [UNSEEN; LANES];
-        lanes[..end - start].copy_from_slice(&pair[start..end]);
+        let values = &row[start..row.len().min(start + LANES)];
+        lanes[..values.len()].copy_from_slice(values);
         *column = f32x8::from(lanes);
     }
-    let columns = &mut columns[..pairs.len()];
-    sort_descending(columns);
-    let sorted: Vec<[f32; LANES]> = columns.iter().map(|c| c.to_array()).collect();
-    std::array::from_fn(|lane| {
-        let seen = sorted.iter().filter(|c| c[lane] > UNSEEN).count();
-        let better = seen.div_ceil(2);
-        let sum: f32 = sorted[..better].iter().map(|c| c[lane]).sum();
-        (seen > 0).then(|| sum / better as f32)
+    columns
+}
+
+/// Sum of the values that are seen, and their number.
+fn sum_of_seen(columns: &[f32x8]) -> (f32x8, f32x8) {
+    let zero = f32x8::ZERO;
+    columns.iter().fold((zero, zero), |(sum, count), c| {
+        let seen = c.simd_gt(f32x8::splat(UNSEEN));
+        (
+            sum + seen.select(*c, zero),
+            count + seen.select(f32x8::ONE, zero),
+        )
     })
 }
 
-/// Sorts every lane by comparisons of neighbours (a network of odd and even transpositions): no branches.
+/// Mean of the better half of the pairs' correlations, and the number of pairs that see the cell.
+fn better_half(pairs: &[&[f32]], start: usize) -> (f32x8, f32x8) {
+    let mut columns = columns::<MAX_PAIRS>(pairs, start);
+    let columns = &mut columns[..pairs.len()];
+    sort_descending(columns);
+    let (_, seen) = sum_of_seen(columns);
+    let better = ((seen + f32x8::ONE) * f32x8::splat(0.5)).floor();
+    let sum = columns
+        .iter()
+        .enumerate()
+        .fold(f32x8::ZERO, |sum, (place, c)| {
+            let counts = f32x8::splat(place as f32).simd_lt(better);
+            sum + counts.select(*c, f32x8::ZERO)
+        });
+    (sum / better.fast_max(f32x8::ONE), seen)
+}
+
+/// Mean and lower median of the variances of the windows that see a cell.
+fn texture(variances: &[&[f32]], start: usize) -> (f32x8, f32x8) {
+    let mut columns = columns::<MAX_VIEWS>(variances, start);
+    let columns = &mut columns[..variances.len()];
+    let (sum, seen) = sum_of_seen(columns);
+    sort_descending(columns);
+    let place = (seen * f32x8::splat(0.5)).floor();
+    let median = columns
+        .iter()
+        .enumerate()
+        .fold(f32x8::ZERO, |found, (i, c)| {
+            f32x8::splat(i as f32).simd_eq(place).select(*c, found)
+        });
+    (sum / seen.fast_max(f32x8::ONE), median)
+}
+
+/// Sorts every lane without branches: merge exchange (Batcher; Knuth 5.2.2 M).
 fn sort_descending(columns: &mut [f32x8]) {
-    for round in 0..columns.len() {
-        for pair in columns[round % 2..].chunks_exact_mut(2) {
-            let (a, b) = (pair[0], pair[1]);
-            (pair[0], pair[1]) = (a.fast_max(b), a.fast_min(b));
-        }
-    }
-}
-
-/// Sum over the window around every cell, along rows and then along columns; windows that stick out of the
-/// grid are cut off.
-fn box_sum(values: &[f32], grid: &PlanGrid) -> Vec<f32> {
-    let (w, h, r) = (grid.width, grid.height, HALF_WINDOW);
-    let mut rows = vec![0.0f32; w * h];
-    let mut line = RowSum::new(w);
-    for y in 0..h {
-        line.sum(&values[y * w..(y + 1) * w], &mut rows[y * w..(y + 1) * w]);
-    }
-    let mut out = vec![0.0f32; w * h];
-    let mut sums = vec![0.0f32; w];
-    for y in 0..r.min(h) {
-        for (s, v) in sums.iter_mut().zip(&rows[y * w..(y + 1) * w]) {
-            *s += v;
-        }
-    }
-    for y in 0..h {
-        if y + r < h {
-            for (s, v) in sums.iter_mut().zip(&rows[(y + r) * w..(y + r + 1) * w]) {
-                *s += v;
+    let n = columns.len();
+    let largest = n.next_power_of_two() / 2;
+    let mut p = largest;
+    while p > 0 {
+        let (mut q, mut r, mut d) = (largest, 0, p);
+        loop {
+            for i in (0..n.saturating_sub(d)).filter(|i| i & p == r) {
+                let (a, b) = (columns[i], columns[i + d]);
+                (columns[i], columns[i + d]) = (a.fast_max(b), a.fast_min(b));
             }
-        }
-        if y > r {
-            for (s, v) in sums.iter_mut().zip(&rows[(y - r - 1) * w..(y - r) * w]) {
-                *s -= v;
+            if q == p {
+                break;
             }
+            (d, q, r) = (q - p, q / 2, p);
         }
-        out[y * w..(y + 1) * w].copy_from_slice(&sums);
-    }
-    out
-}
-
-/// Sums of 11 neighbours in a row, by doubling: 2, 4, 8, 8 + 2 + 1. No sum waits for the one before it,
-/// so the compiler adds many at once.
-struct RowSum {
-    padded: Vec<f32>,
-    two: Vec<f32>,
-    four: Vec<f32>,
-}
-
-impl RowSum {
-    fn new(width: usize) -> Self {
-        let n = width + 2 * HALF_WINDOW;
-        Self {
-            padded: vec![0.0; n],
-            two: vec![0.0; n],
-            four: vec![0.0; n],
-        }
-    }
-
-    fn sum(&mut self, row: &[f32], out: &mut [f32]) {
-        const { assert!(2 * HALF_WINDOW + 1 == 8 + 2 + 1) };
-        let (w, n) = (row.len(), self.padded.len());
-        self.padded[HALF_WINDOW..HALF_WINDOW + w].copy_from_slice(row);
-        let p = &self.padded[..n];
-        for ((t, a), b) in self.two[..n - 1].iter_mut().zip(p).zip(&p[1..]) {
-            *t = a + b;
-        }
-        for ((f, a), b) in self.four[..n - 3]
-            .iter_mut()
-            .zip(&self.two)
-            .zip(&self.two[2..])
-        {
-            *f = a + b;
-        }
-        let (four, two) = (&self.four, &self.two);
-        for (x, o) in out.iter_mut().enumerate() {
-            *o = (four[x] + four[x + 4]) + (two[x + 8] + p[x + 10]);
-        }
+        p /= 2;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Point2;
 
     #[test]
     fn less_is_asked_of_weak_texture() {
@@ -397,23 +380,41 @@ mod tests {
     }
 
     #[test]
-    fn box_sum_agrees_with_direct_sums() {
-        let grid = PlanGrid {
-            origin: Point2::origin(),
-            step: 1.0,
-            width: 17,
-            height: 14,
-        };
-        let values: Vec<f32> = (0..17 * 14).map(|i| ((i * 37) % 11) as f32).collect();
-        let sums = box_sum(&values, &grid);
-        for (x, y) in [(0, 0), (5, 5), (8, 7), (16, 13), (3, 12)] {
-            let mut direct = 0.0;
-            for v in y.max(HALF_WINDOW) - HALF_WINDOW..=(y + HALF_WINDOW).min(13) {
-                for u in x.max(HALF_WINDOW) - HALF_WINDOW..=(x + HALF_WINDOW).min(16) {
-                    direct += values[v * 17 + u];
-                }
+    fn every_number_of_columns_is_sorted() {
+        for n in 0..=MAX_PAIRS {
+            // All lanes differ; multiples of a prime give every order of the residues.
+            let mut columns: Vec<f32x8> = (0..n)
+                .map(|i| f32x8::from(std::array::from_fn(|lane| ((i * (lane + 2)) % 17) as f32)))
+                .collect();
+            sort_descending(&mut columns);
+            for pair in columns.windows(2) {
+                let (a, b) = (pair[0].to_array(), pair[1].to_array());
+                assert!((0..8).all(|lane| a[lane] >= b[lane]), "{n} columns");
             }
-            assert!((sums[y * 17 + x] - direct).abs() < 1e-3, "at {x}, {y}");
         }
+    }
+
+    #[test]
+    fn the_better_half_and_the_median_are_of_what_is_seen() {
+        let rows = [
+            [0.5, UNSEEN],
+            [0.9, UNSEEN],
+            [UNSEEN, UNSEEN],
+            [0.1, UNSEEN],
+        ];
+        let rows = rows.each_ref().map(|r| r.as_slice());
+        let (mean, seen) = better_half(&rows, 0);
+        assert_eq!(
+            (mean.to_array()[0], seen.to_array()[0]),
+            ((0.9 + 0.5) / 2.0, 3.0)
+        );
+        assert_eq!(seen.to_array()[1..], [0.0; 7]);
+        let (mean, median) = texture(&rows, 0);
+        assert_eq!(
+            (mean.to_array()[0], median.to_array()[0]),
+            ((0.5 + 0.9 + 0.1) / 3.0, 0.5)
+        );
+        let (_, median) = texture(&rows[..2], 0);
+        assert_eq!(median.to_array()[0], 0.5, "the lower one of two");
     }
 }

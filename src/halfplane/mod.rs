@@ -21,11 +21,13 @@
 //!      borders        border lines, new lines by plane intersection (figures 19 to 22)
 //!      extent         closing lines where the views cease to agree on a plane
 //! 4.3  arrangement    the plan cut into cells by the border lines
+//!      box_sum        sums over windows
 //!      consistency    similarity of a plane over the complete image set
 //!      hypothesis     planes with their regions, similarity and lines, ready to compete
 //!      evidence       what images and lines say for each plane over each cell
 //!      border_cost    what a border between two planes costs
 //!      labelling      conflicts: which plane covers which cell
+//!      cut            one step of it: the best of all moves to one plane
 //!      islands        patches too small to be a facet or a hole
 //!      delineation    closed outlines
 //!      facets         verification; orders 4.2 and 4.3
@@ -34,6 +36,7 @@
 mod arrangement;
 mod border_cost;
 mod borders;
+mod box_sum;
 mod consistency;
 mod cut;
 mod delineation;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::camera::Camera;
 use crate::geometry::Plane;
-use crate::raster::Gray;
+use crate::raster::{Gray, Warp};
 
 /// A window of plan positions; the centre of cell (column, row) is `origin + (column + 0.5, row + 0.5) step`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -79,24 +79,29 @@ pub fn image_from_plan(camera: &Camera, plane: &Plane) -> Matrix3<f64> {
 }
 
 /// The image seen from straight above under the hypothesis that the surface is `plane`: grey values
-/// on the grid, NaN where the image does not reach.
+/// on the grid, NaN where the image does not reach, or everywhere when the plane rises to the camera within the grid.
 pub fn orthophoto(gray: &Gray, camera: &Camera, plane: &Plane, grid: &PlanGrid) -> Vec<f32> {
-    let m = image_from_plan(camera, plane);
+    let plan_from_grid = Matrix3::new(
+        grid.step,
+        0.0,
+        grid.origin.x,
+        0.0,
+        grid.step,
+        grid.origin.y,
+        0.0,
+        0.0,
+        1.0,
+    );
+    let m = image_from_plan(camera, plane) * plan_from_grid;
     let mut out = Vec::with_capacity(grid.width * grid.height);
-    let step = m.column(0) * grid.step;
+    let Some(warp) = Warp::new(gray, &m, [grid.width, grid.height]) else {
+        out.resize(grid.width * grid.height, f32::NAN);
+        return out;
+    };
+    let mut line = vec![0.0; grid.width.next_multiple_of(8)];
     for row in 0..grid.height {
-        let start = grid.center(0, row);
-        let mut x = m * nalgebra::Vector3::new(start.x, start.y, 1.0);
-        for _ in 0..grid.width {
-            let value = if x.z > 1e-9 {
-                let inverse = 1.0 / x.z;
-                gray.sample((x.x * inverse) as f32, (x.y * inverse) as f32)
-            } else {
-                None
-            };
-            out.push(value.unwrap_or(f32::NAN));
-            x += step;
-        }
+        warp.fill(row, &mut line, |at| warp.or_nan(at));
+        out.extend_from_slice(&line[..grid.width]);
     }
     out
 }

@@ -12,13 +12,14 @@ use nalgebra::Point2;
 
 use super::poi::PointsOfInterest;
 use super::posterior::{WindowModel, evidence_of_view};
-use super::strip::{Patch, Strip, corners};
+use super::strip::{Patch, Strip};
 use super::windows::Windows;
 use super::{Side, SweepRejection, ThetaFrame};
 use crate::camera::homography_of_plane;
 use crate::geometry::Segment3;
 use crate::ids::ViewId;
 use crate::params::{Acceptance, SweepParams};
+use crate::raster::corners;
 use crate::scene::Scene;
 
 /// What one view says about one theta.

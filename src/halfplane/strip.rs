@@ -6,14 +6,14 @@
 //! run away from it, at the scale of the first view. Windows are therefore aligned with the line,
 //! which the paper leaves open.
 
-use nalgebra::{Matrix3, Point2, Vector2, Vector3};
+use nalgebra::{Matrix3, Point2, Vector2};
 use wide::f32x8;
 
 use super::ThetaFrame;
 use crate::camera::Camera;
 use crate::geometry::{Segment2, Segment3};
 use crate::params::SweepParams;
-use crate::raster::Gray;
+use crate::raster::{Gray, Warp, bounds, corners};
 
 /// Grey values are held in units of 1/510, centred and rounded: whole numbers from -255 to 255. A
 /// sum of 225 products of two is then a whole number below 2^24, which f32 holds exactly: running
@@ -127,34 +127,6 @@ impl Strip {
     }
 }
 
-/// Where the corners of a rectangle go under a homography; `None` when one is beyond the horizon.
-pub(super) fn corners(h: &Matrix3<f64>, min: [f64; 2], max: [f64; 2]) -> Option<[Point2<f64>; 4]> {
-    let mut out = [Point2::origin(); 4];
-    let rectangle = [
-        [min[0], min[1]],
-        [max[0], min[1]],
-        [max[0], max[1]],
-        [min[0], max[1]],
-    ];
-    for (o, [x, y]) in out.iter_mut().zip(rectangle) {
-        let p = h * Vector3::new(x, y, 1.0);
-        if p.z <= 1e-9 {
-            return None;
-        }
-        *o = Point2::new(p.x / p.z, p.y / p.z);
-    }
-    Some(out)
-}
-
-fn bounds(points: &[Point2<f64>; 4]) -> (Point2<f64>, Point2<f64>) {
-    let mut b = (points[0], points[0]);
-    for p in points {
-        b.0 = b.0.inf(p);
-        b.1 = b.1.sup(p);
-    }
-    b
-}
-
 /// Grey values of a strip in whole units of 1/510, row by row; rows are padded with zeros to a
 /// multiple of eight.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -177,12 +149,12 @@ impl Patch {
         self.rows = strip.rows;
         self.stride = strip.columns.next_multiple_of(8);
         self.data.resize(self.rows * self.stride, 0.0);
-        let Some(sampler) = Sampler::new(image, strip, image_from_strip) else {
+        let Some(warp) = Warp::new(image, image_from_strip, [strip.columns, strip.rows]) else {
             self.data.fill(0.0);
             return;
         };
         for (row, out) in self.data.chunks_exact_mut(self.stride).enumerate() {
-            sampler.fill(row, out);
+            warp.fill(row, out, |at| in_levels(warp.bordered(at)));
             out[strip.columns..].fill(0.0);
         }
     }
@@ -193,94 +165,19 @@ impl Patch {
     }
 }
 
-/// A homography in f32, relative to a whole pixel near the strip so that no digits are lost.
-struct Sampler<'a> {
-    image: &'a Gray,
-    m: [[f32; 3]; 3],
-    /// Index of the pixel that the f32 coordinates start from.
-    first: usize,
-    /// Largest f32 coordinates with a right and a lower neighbour.
-    limit: [f32; 2],
-}
-
-impl<'a> Sampler<'a> {
-    fn new(image: &'a Gray, strip: &Strip, image_from_strip: &Matrix3<f64>) -> Option<Self> {
-        let (w, h) = (strip.columns as f64, strip.rows as f64);
-        let (min, _) = bounds(&corners(image_from_strip, [0.0, 0.0], [w, h])?);
-        if image.width < 2 || image.height < 2 {
-            return None;
-        }
-        let start = |value: f64, size: usize| value.floor().clamp(0.0, (size - 2) as f64);
-        let (x, y) = (start(min.x, image.width), start(min.y, image.height));
-        // Pixel centres are at + 0.5 on both sides.
-        let to_index = Matrix3::new(1.0, 0.0, -0.5 - x, 0.0, 1.0, -0.5 - y, 0.0, 0.0, 1.0);
-        let to_centre = Matrix3::new(1.0, 0.0, 0.5, 0.0, 1.0, 0.5, 0.0, 0.0, 1.0);
-        let m = to_index * image_from_strip * to_centre;
-        let scale = m[(2, 0)] * w * 0.5 + m[(2, 1)] * h * 0.5 + m[(2, 2)];
-        let m = m / scale;
-        Some(Self {
-            image,
-            m: std::array::from_fn(|r| std::array::from_fn(|c| m[(r, c)] as f32)),
-            first: y as usize * image.width + x as usize,
-            limit: [
-                ((image.width - 1) as f32 - x as f32).next_down(),
-                ((image.height - 1) as f32 - y as f32).next_down(),
-            ],
-        })
-    }
-
-    /// One row of the strip.
-    fn fill(&self, row: usize, out: &mut [f32]) {
-        let v = row as f32;
-        let at = |r: usize| f32x8::splat(self.m[r][1] * v + self.m[r][2]);
-        let slope = |r: usize| f32x8::splat(self.m[r][0]);
-        let (x0, y0, w0) = (at(0), at(1), at(2));
-        let (dx, dy, dw) = (slope(0), slope(1), slope(2));
-        let mut u = f32x8::from([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
-        for out in out.chunks_exact_mut(8) {
-            let inverse = f32x8::ONE / (w0 + dw * u);
-            let x = (x0 + dx * u) * inverse;
-            let y = (y0 + dy * u) * inverse;
-            out.copy_from_slice(self.bilinear(x, y).as_array());
-            u += f32x8::splat(8.0);
-        }
-    }
-
-    /// Eight samples in whole units of 1/510.
-    fn bilinear(&self, x: f32x8, y: f32x8) -> f32x8 {
-        let x = x
-            .fast_max(f32x8::ZERO)
-            .fast_min(f32x8::splat(self.limit[0]));
-        let y = y
-            .fast_max(f32x8::ZERO)
-            .fast_min(f32x8::splat(self.limit[1]));
-        let (column, row) = (x.fast_trunc_int(), y.fast_trunc_int());
-        let (fx, fy) = (x - column.round_float(), y - row.round_float());
-        let (column, row) = (column.to_array(), row.to_array());
-        let width = self.image.width;
-        let mut corner = [[0.0f32; 8]; 4];
-        for lane in 0..8 {
-            let i = self.first + row[lane] as usize * width + column[lane] as usize;
-            let pixels = &self.image.data[i..i + width + 2];
-            corner[0][lane] = pixels[0];
-            corner[1][lane] = pixels[1];
-            corner[2][lane] = pixels[width];
-            corner[3][lane] = pixels[width + 1];
-        }
-        let [a, b, c, d] = corner.map(f32x8::from);
-        let top = a + (b - a) * fx;
-        let bottom = c + (d - c) * fx;
-        let value = (top + (bottom - top) * fy) * f32x8::splat(LEVELS) - f32x8::splat(LEVELS / 2.0);
-        // Adding 1.5 x 2^23 leaves no fractional bits: rounds to the nearest whole number.
-        let shift = f32x8::splat(12_582_912.0);
-        (value + shift) - shift
-    }
+/// Grey values in whole units of 1/510.
+#[inline]
+fn in_levels(gray: f32x8) -> f32x8 {
+    let value = gray * f32x8::splat(LEVELS) - f32x8::splat(LEVELS / 2.0);
+    // Adding 1.5 x 2^23 leaves no fractional bits: rounds to the nearest whole number.
+    let shift = f32x8::splat(12_582_912.0);
+    (value + shift) - shift
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Point3;
+    use nalgebra::{Point3, Vector3};
 
     fn strip(columns: usize, rows: usize) -> Strip {
         Strip {

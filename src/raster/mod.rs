@@ -6,11 +6,13 @@ mod load;
 mod noise;
 mod part;
 mod samples;
+mod warp;
 
 pub use filter::gaussian_blur;
 pub use load::{ImageHeader, Photograph, image_format, image_header, load_image};
 pub use noise::noise_of;
 pub use part::{Part, decoding_bytes, load_part};
+pub use warp::{Eight, Warp, bounds, corners};
 
 /// A raster of grey values (or of anything else in f32), row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
