@@ -9,11 +9,12 @@ import { buildGroups } from "../viewer/groups";
 import type { Layer } from "../viewer/layer";
 import { buildLines } from "../viewer/lines";
 import { buildOutlines } from "../viewer/outlines";
+import { buildPicked } from "../viewer/picked";
 import { buildRefinement } from "../viewer/refinement";
 import { buildStretches } from "../viewer/stretches";
 import { buildUncertainty, enlargement } from "../viewer/uncertainty";
 import type { Viewer } from "../viewer/viewer";
-import { lineEnds, linesOfSelection } from "./marks";
+import { lineEnds, linesOfSelection, shapesOf } from "./shapes";
 import { images, keptResult, pointing, results, scene, selection, type Tab, tab } from "./state";
 
 /** Layers that a person switches; "stretches" and "turning" follow other switches. */
@@ -74,6 +75,11 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   kept: () => {
     const kept = keptResult.value;
     return kept && [() => buildOutlines(kept.facets), kept];
+  },
+  picked: () => {
+    const shapes = shapesOf(selection.value).filter(({ role }) => role !== "before");
+    const polylines = shapes.map(({ points, role }) => ({ points, closed: role === "area" }));
+    return polylines.length === 0 ? null : [() => buildPicked(polylines), selection.value, results.value];
   },
   turning: () => {
     const { side, theta } = pointing.value;

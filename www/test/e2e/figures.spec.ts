@@ -1,23 +1,13 @@
 /** Each figure of B99 shows what the core found, and follows what is pointed at. One run of the demo scene for all. */
 import { expect, type Page, test } from "@playwright/test";
-import { axeFindings, lookOf, openTab, pickUntil, stage, steadyLook, waitForStage, watch } from "./helpers";
-
-test.describe.configure({ mode: "serial" });
+import { axeFindings, lookOf, onePage, openTab, pickUntil, stage, steadyLook, waitForStage } from "./helpers";
 
 let page: Page;
-let problems: string[];
 
-test.beforeAll(async ({ browser }) => {
-  page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
-  ({ problems } = watch(page));
-  await page.goto("/");
+onePage(async (opened) => {
+  page = opened;
   await page.getByRole("button", { name: "Demo scene" }).click();
   await waitForStage(page, "model");
-});
-
-test.afterAll(async () => {
-  expect(problems).toEqual([]);
-  await page.close();
 });
 
 const inspector = () => page.getByTestId("inspector");
