@@ -41,7 +41,7 @@ export function RectangleLab() {
         </label>
         <Fit>{(frame) => <PlaneWindow outer={frame} pair={pair} />}</Fit>
       </div>
-      <Filmstrip />
+      <Filmstrip unpicked={{ kind: "pair", index: shown }} />
     </div>
   );
 }

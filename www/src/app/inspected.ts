@@ -321,11 +321,20 @@ function facetRows(index: number): Row[] {
     ["Similarity", facet.similarity.toFixed(3)],
     ["τ real", facet.real_ratio === undefined ? "–" : facet.real_ratio.toFixed(2)],
     ["3D lines", (facet.lines ?? []).map(linkToLine)],
+    ...groupsOfFacet(facet.half_planes ?? []),
     ...refinedRow(index),
     ...((facet.half_planes ?? []).length === 0
       ? []
       : [["Half-planes", (facet.half_planes ?? []).map(linkToHalfPlane)] as const]),
   ];
+}
+
+/** The groups of the half-planes that a facet was made from. */
+function groupsOfFacet(halfPlanes: readonly number[]): Row[] {
+  const groups = indicesOf(results.value.grouping?.groups, ({ members }) =>
+    members.some(({ half_plane }) => half_plane !== null && halfPlanes.includes(half_plane)),
+  );
+  return groups.length === 0 ? [] : [["Groups", groups.map(linkToGroup)]];
 }
 
 function surfaceRows(picked: Extract<Selection, { kind: "surface" }>): Row[] {

@@ -78,8 +78,11 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   },
   picked: () => {
     const shapes = shapesOf(selection.value).filter(({ role }) => role !== "before");
-    const polylines = shapes.map(({ points, role }) => ({ points, closed: role === "area" }));
-    return polylines.length === 0 ? null : [() => buildPicked(polylines), selection.value, results.value];
+    const areas = shapes.map(({ points, role }) => ({ points, closed: role === "area" }));
+    // A segment is in no place of space, but its line is.
+    const lines = selection.value?.kind === "segment" ? linesOfSelection(selection.value).map(lineEnds) : [];
+    const all = [...areas, ...lines.map((points) => ({ points, closed: false }))];
+    return all.length === 0 ? null : [() => buildPicked(all), selection.value, results.value];
   },
   turning: () => {
     const { side, theta } = pointing.value;

@@ -8,6 +8,7 @@ import type { Selection } from "../shared/selection";
 import type { Vec2 } from "../shared/traces";
 import { type Shape, shapesOf } from "./shapes";
 import { type Pointing, pointing, type Results, results, scene } from "./state";
+import { windowOf } from "./window";
 
 /** A polyline over an image, pixels. */
 export interface Mark {
@@ -64,11 +65,26 @@ export function marksOf(picked: Selection | null, view: number): Mark[] {
       const style = (role: Shape["role"]) =>
         role === "area" && picked.kind === "refinement" ? OUTLINE : STYLES[role];
       return [
+        ...(picked.kind === "pair" ? windowMarks(info, view, picked.index) : []),
         ...shapes.flatMap(({ points, role }) => seenFrom(info, points, style(role))),
         ...warpedMarks(view, pointing.value),
       ];
     }
   }
+}
+
+/** The window of a pair of lines and what crosses it in this view (W96 figure 10). */
+function windowMarks(info: ViewInfo, view: number, index: number): Mark[] {
+  const pair = results.value.rectangles?.pairs[index];
+  const found = pair === undefined ? null : windowOf(pair);
+  return found === null
+    ? []
+    : [
+        ...seenFrom(info, found.outline, { colour: PALETTE.beam, width: 1, closed: true, fill: 0.1 }),
+        ...found.crossings
+          .filter((one) => one.view === view)
+          .flatMap(({ ends }) => seenFrom(info, ends, { colour: PALETTE.grown, width: 2 })),
+      ];
 }
 
 /** A polyline of the local frame in a view; none where a part lies behind the camera. */
