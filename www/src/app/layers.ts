@@ -97,10 +97,13 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   },
   cameras: (middle) => {
     const views = scene.value?.views;
+    // Every photograph is drawn anew: not before somebody looks.
+    if (views === undefined || !shown.value[tab.value].includes("cameras")) {
+      return null;
+    }
     const [x, y, z] = middle();
-    return views === undefined
-      ? null
-      : [() => buildCameras(views, new Vector3(x, y, z), images.value), views, images.value, x, y, z];
+    const pictures = images.value;
+    return [() => buildCameras(views, new Vector3(x, y, z), pictures), views, pictures, x, y, z];
   },
 };
 

@@ -204,6 +204,8 @@ test("everything is reached by key, and lights up in tabs that are not about it"
   await page.getByRole("button", { name: "Clear" }).click();
   await page.waitForTimeout(300);
   expect(await steadyLook(page, viewer)).not.toEqual(marked);
+  await page.getByRole("button", { name: "Previous item" }).press("Enter");
+  await expect(title).toHaveText(/^Facet \d+$/);
 });
 
 test("refinement: outlines before, relations by their chi-square, adopted and refused", async () => {
