@@ -53,7 +53,7 @@ function ClusterPlane({ frame, plane, trace }: { frame: Frame; plane: number; tr
       onClick={(across, height) => {
         const distance = ([u, v]: Vec2) =>
           Math.hypot((u - across) / (x.max - x.min), (v - height) / (y.max - y.min));
-        selection.value = nearestLine(trace, distance) ?? nearestRefused(plane, trace, distance);
+        selection.value = nearest([...linesOf(trace), ...refusedOf(plane, trace)], distance);
       }}
     >
       <clipPath id="cluster-clip">
@@ -144,23 +144,16 @@ function isAlong(line: number, { azimuth }: ClusterTrace): boolean {
 /** Share of the chart's sides within which a click finds something. */
 const REACH = 0.03;
 
-/** The 3D line of this direction nearest to a place of the plane. */
-function nearestLine(trace: ClusterTrace, distance: (place: Vec2) => number): Selection | null {
+/** The 3D lines of this direction and where they lie in the plane. */
+function linesOf(trace: ClusterTrace): Place[] {
   const lines = Array.from({ length: (results.value.lines?.length ?? 0) / LINE_STRIDE }, (_, line) => line);
-  const places = lines
+  return lines
     .filter((line) => isAlong(line, trace))
     .map((index): Place => [{ kind: "line", index }, placeOf(index, trace)]);
-  return nearest(places, distance);
 }
 
-/** The refused cluster nearest to a place of the plane. */
-function nearestRefused(
-  plane: number,
-  trace: ClusterTrace,
-  distance: (place: Vec2) => number,
-): Selection | null {
-  const places = trace.refused.map(([at], index): Place => [{ kind: "cluster", plane, index }, at]);
-  return nearest(places, distance);
+function refusedOf(plane: number, trace: ClusterTrace): Place[] {
+  return trace.refused.map(([at], index): Place => [{ kind: "cluster", plane, index }, at]);
 }
 
 type Place = readonly [Selection, Vec2];
