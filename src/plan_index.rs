@@ -1,32 +1,41 @@
 //! Boxes in plan, found by where they are.
 //!
 //! One R-tree serves whoever asks: each further kind of tree would be compiled anew, sorts and all, some 25 kB of wasm. Points
-//! are boxes without extent.
+//! are boxes without extent. The tree is only ever built whole, because its insertion would be another 20 kB of wasm: boxes
+//! that come later are looked at one by one until they are many, and then a tree is built of all.
 
 use nalgebra::Point2;
 use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree};
+use rstar::{AABB, Envelope, RTree, RTreeObject};
 
 /// Numbered boxes.
 #[derive(Default)]
 pub struct PlanIndex {
+    boxes: Vec<Numbered>,
+    /// Of the first boxes; the others came later.
     tree: RTree<Numbered>,
 }
 
 type Numbered = GeomWithData<Rectangle<[f64; 2]>, u32>;
 
+/// So many boxes beyond the tree, and an eighth of those in it, are looked at one by one.
+const LATE: usize = 32;
+
 impl PlanIndex {
     /// Indexes the boxes between two corners, numbered in their order.
     pub fn new(boxes: impl Iterator<Item = [Point2<f64>; 2]>) -> Self {
-        let numbered = boxes.enumerate().map(|(i, b)| numbered(b, i as u32));
-        Self {
-            tree: RTree::bulk_load(numbered.collect()),
-        }
+        let boxes: Vec<_> = (boxes.enumerate().map(|(i, b)| numbered(b, i as u32))).collect();
+        let tree = RTree::bulk_load(boxes.clone());
+        Self { boxes, tree }
     }
 
     /// Adds a box under a number.
     pub fn insert(&mut self, corners: [Point2<f64>; 2], number: u32) {
-        self.tree.insert(numbered(corners, number));
+        self.boxes.push(numbered(corners, number));
+        let grown = self.tree.size();
+        if self.boxes.len() > grown + grown / 8 + LATE {
+            self.tree = RTree::bulk_load(self.boxes.clone());
+        }
     }
 
     /// The numbers of the boxes that share a point, be it on the border, with the box widened by `margin` on all sides; in
@@ -38,8 +47,14 @@ impl PlanIndex {
     ) -> impl Iterator<Item = u32> + use<'_> {
         let low = [a.x.min(b.x) - margin, a.y.min(b.y) - margin];
         let high = [a.x.max(b.x) + margin, a.y.max(b.y) + margin];
+        let around = AABB::from_corners(low, high);
+        let late = &self.boxes[self.tree.size()..];
         self.tree
-            .locate_in_envelope_intersecting(&AABB::from_corners(low, high))
+            .locate_in_envelope_intersecting(&around)
+            .chain(
+                late.iter()
+                    .filter(move |b| b.envelope().intersects(&around)),
+            )
             .map(|found| found.data)
     }
 }
@@ -67,7 +82,7 @@ mod tests {
         #[test]
         fn finds_what_looking_at_every_box_finds(
             boxes in prop::collection::vec([point(), point()], 0..60),
-            late in prop::collection::vec(point(), 0..20),
+            late in prop::collection::vec(point(), 0..90),
             question in [point(), point()],
             margin in 0u8..4,
         ) {

@@ -2,6 +2,7 @@
 
 import { category } from "../shared/palette";
 import { LINE_STRIDE } from "../shared/results";
+import type { Selection } from "../shared/selection";
 import type { ClusterTrace, Vec2 } from "../shared/traces";
 import { axesOf, Chart, Fit, type Frame, pathOf, type Scale } from "./charts";
 import { degreesOf } from "./geometry";
@@ -26,7 +27,7 @@ export function ClusterLab() {
           shownPlane.value = i;
         }}
       />
-      <Fit>{(frame) => <ClusterPlane frame={frame} trace={trace} />}</Fit>
+      <Fit>{(frame) => <ClusterPlane frame={frame} plane={shown} trace={trace} />}</Fit>
       <p class="muted numbers note-line">
         {trace.lines.length} image lines, {grouped(trace.proposals[0])} intersections,{" "}
         {grouped(trace.proposals[1])} looked at, {trace.selected.length} selected
@@ -35,11 +36,11 @@ export function ClusterLab() {
   );
 }
 
-function ClusterPlane({ frame, trace }: { frame: Frame; trace: ClusterTrace }) {
+function ClusterPlane({ frame, plane, trace }: { frame: Frame; plane: number; trace: ClusterTrace }) {
   const [x, y] = rangesOf([...trace.selected, ...trace.refused].map(([at]) => at));
   const [toX, toY] = axesOf(frame, x, y);
   const dot = ([across, height]: Vec2) => ({ cx: toX(across), cy: toY(height) });
-  const chosen = lineOfSelection();
+  const chosen = placeOfSelection(plane, trace);
   return (
     <Chart
       frame={frame}
@@ -50,8 +51,9 @@ function ClusterPlane({ frame, trace }: { frame: Frame; trace: ClusterTrace }) {
       label={`Cluster plane: ${trace.lines.length} image lines and ${trace.selected.length} selected clusters`}
       testid="cluster-plane"
       onClick={(across, height) => {
-        const line = nearestLine(trace, [across, height], x, y);
-        selection.value = line === null ? null : { kind: "line", index: line };
+        const distance = ([u, v]: Vec2) =>
+          Math.hypot((u - across) / (x.max - x.min), (v - height) / (y.max - y.min));
+        selection.value = nearest([...linesOf(trace), ...refusedOf(plane, trace)], distance);
       }}
     >
       <clipPath id="cluster-clip">
@@ -79,9 +81,7 @@ function ClusterPlane({ frame, trace }: { frame: Frame; trace: ClusterTrace }) {
             <title>{`${at[0].toFixed(2)} m across, ${at[1].toFixed(2)} m high, gain ${gain.toFixed(0)} bit`}</title>
           </circle>
         ))}
-        {chosen !== null && isAlong(chosen, trace) && (
-          <circle class="chosen-cluster" {...dot(placeOf(chosen, trace))} r={8} />
-        )}
+        {chosen !== null && <circle class="chosen-cluster" {...dot(chosen)} r={8} />}
       </g>
     </Chart>
   );
@@ -141,22 +141,44 @@ function isAlong(line: number, { azimuth }: ClusterTrace): boolean {
   return Math.abs(Math.sin(turn)) < 0.02;
 }
 
-/** The 3D line of this direction nearest to a place of the plane, within reach of a click. */
-function nearestLine(trace: ClusterTrace, [across, height]: Vec2, x: Scale, y: Scale): number | null {
-  const reach = 0.03;
-  let best: { line: number; distance: number } | null = null;
-  for (let line = 0; line < (results.value.lines?.length ?? 0) / LINE_STRIDE; line += 1) {
-    if (isAlong(line, trace)) {
-      const [u, v] = placeOf(line, trace);
-      const distance = Math.hypot((u - across) / (x.max - x.min), (v - height) / (y.max - y.min));
-      if (distance < (best?.distance ?? reach)) {
-        best = { line, distance };
-      }
-    }
-  }
-  return best?.line ?? null;
+/** Share of the chart's sides within which a click finds something. */
+const REACH = 0.03;
+
+/** The 3D lines of this direction and where they lie in the plane. */
+function linesOf(trace: ClusterTrace): Place[] {
+  const lines = Array.from({ length: (results.value.lines?.length ?? 0) / LINE_STRIDE }, (_, line) => line);
+  return lines
+    .filter((line) => isAlong(line, trace))
+    .map((index): Place => [{ kind: "line", index }, placeOf(index, trace)]);
 }
 
-function lineOfSelection(): number | null {
-  return selection.value?.kind === "line" ? selection.value.index : null;
+function refusedOf(plane: number, trace: ClusterTrace): Place[] {
+  return trace.refused.map(([at], index): Place => [{ kind: "cluster", plane, index }, at]);
+}
+
+type Place = readonly [Selection, Vec2];
+
+function nearest(places: readonly Place[], distance: (place: Vec2) => number): Selection | null {
+  let best: Selection | null = null;
+  let least = REACH;
+  for (const [picked, at] of places) {
+    if (distance(at) < least) {
+      best = picked;
+      least = distance(at);
+    }
+  }
+  return best;
+}
+
+/** Where the selected thing lies in this plane; null where it does not. */
+function placeOfSelection(plane: number, trace: ClusterTrace): Vec2 | null {
+  const picked = selection.value;
+  switch (picked?.kind) {
+    case "line":
+      return isAlong(picked.index, trace) ? placeOf(picked.index, trace) : null;
+    case "cluster":
+      return picked.plane === plane ? (trace.refused[picked.index]?.[0] ?? null) : null;
+    default:
+      return null;
+  }
 }

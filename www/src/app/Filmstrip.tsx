@@ -1,5 +1,6 @@
 /** The selected thing in every view, each picture zoomed to it: "it lights up in every image". */
 import { useEffect, useRef } from "preact/hooks";
+import type { Selection } from "../shared/selection";
 import { drawView } from "./drawing";
 import { type Mark, marksOf } from "./marks";
 import { fitPoints } from "./overlay";
@@ -11,9 +12,10 @@ const HEIGHT_PX = 128;
 const MARGIN_PX = 30;
 const MAX_SCALE = 5;
 
-export function Filmstrip() {
+/** `unpicked` is shown while nothing is selected. */
+export function Filmstrip({ unpicked = null }: { unpicked?: Selection | null }) {
   void [results.value, pointing.value];
-  const picked = selection.value;
+  const picked = selection.value ?? unpicked;
   const shown = (scene.value?.views ?? [])
     .map(({ name }, view) => ({ name, view, marks: marksOf(picked, view) }))
     .filter(({ view, marks }) => marks.length > 0 && isInside(marks, view));

@@ -1,6 +1,6 @@
 /** One view, to zoom (wheel, + and -), pan (drag, arrows), fit (0) and pick (click). */
 import { useEffect, useRef, useState } from "preact/hooks";
-import { SEGMENT_STRIDE, SUPPORT_STRIDE } from "../shared/results";
+import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_STRIDE } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import type { Vec2 } from "../shared/traces";
 import { drawView, type Overlay } from "./drawing";
@@ -134,9 +134,9 @@ function around(marks: readonly Mark[], image: Size, box: Size): Viewport | null
   return box.width === 0 ? null : fitPoints(points, box, MARGIN_PX, MAX_FOLLOW_SCALE);
 }
 
-/** The nearest line or segment, in the order that the overlay asks for; else the region below. */
+/** The nearest line or segment, in the order that the overlay asks for; else what was refused, or the region below. */
 function pickAt(overlay: Overlay, view: number, at: Point, reach: number): Selection | null {
-  const { segments, supports, regions, segmentsFirst } = overlay;
+  const { segments, supports, rejected, regions, segmentsFirst } = overlay;
   const line = (): Selection | null => {
     const support = supports === null ? -1 : nearestSegment(supports, SUPPORT_STRIDE, at, reach);
     return support < 0 ? null : { kind: "line", index: supports?.[support * SUPPORT_STRIDE + 5] as number };
@@ -145,11 +145,15 @@ function pickAt(overlay: Overlay, view: number, at: Point, reach: number): Selec
     const index = segments === null ? -1 : nearestSegment(segments, SEGMENT_STRIDE, at, reach);
     return index < 0 ? null : { kind: "segment", view, index };
   };
+  const refused = (): Selection | null => {
+    const index = rejected == null ? -1 : nearestSegment(rejected, REJECTED_STRIDE, at, reach);
+    return index < 0 ? null : { kind: "refused", view, index };
+  };
   const region = (): Selection | null => {
     const index = regions?.findIndex(({ rings }) => holds(rings, at)) ?? -1;
     return index < 0 ? null : { kind: "region", view, index };
   };
-  return (segmentsFirst ? (segment() ?? line()) : (line() ?? segment())) ?? region();
+  return (segmentsFirst ? (segment() ?? line()) : (line() ?? segment())) ?? refused() ?? region();
 }
 
 /** Is the point inside the rings, holes left out? Counts the crossings of a ray to the right. */

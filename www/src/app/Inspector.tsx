@@ -2,6 +2,7 @@
 import { rowsOf, titleOf } from "./inspected";
 import type { Related, Row } from "./related";
 import { selection } from "./state";
+import { placeAmong, siblingsOf } from "./steps";
 
 export function Inspector() {
   const picked = selection.value;
@@ -9,6 +10,8 @@ export function Inspector() {
     <section class="panel" data-testid="inspector">
       <div class="row spread">
         <h2>Inspector</h2>
+        <span class="grow" />
+        <Steps />
         {picked !== null && (
           <button
             type="button"
@@ -27,6 +30,33 @@ export function Inspector() {
         <Facts title={titleOf(picked)} rows={rowsOf(picked)} />
       )}
     </section>
+  );
+}
+
+/** To the previous and the next thing of the kind: what can be picked with a pointer can be reached with keys. */
+function Steps() {
+  const items = siblingsOf(selection.value);
+  const at = placeAmong(items, selection.value);
+  if (items.length === 0) {
+    return null;
+  }
+  const go = (step: number) => () => {
+    const next = at < 0 ? (step > 0 ? 0 : items.length - 1) : (at + step + items.length) % items.length;
+    selection.value = items[next] ?? null;
+  };
+  return (
+    <fieldset class="steps-through">
+      <legend class="visually-hidden">Go through</legend>
+      <button type="button" class="quiet" aria-label="Previous item" title="Previous" onClick={go(-1)}>
+        ‹
+      </button>
+      <span class="muted numbers">
+        {at < 0 ? "–" : at + 1} / {items.length}
+      </span>
+      <button type="button" class="quiet" aria-label="Next item" title="Next" onClick={go(1)}>
+        ›
+      </button>
+    </fieldset>
   );
 }
 

@@ -175,6 +175,10 @@ export function FacetLab() {
                 {BORDER_WORDS[kind]} {grouping.borders.filter((border) => border.kind === kind).length}
               </li>
             ))}
+            <li>
+              <span class="swatch rejected" aria-hidden="true" />
+              withdrawn {grouping.rejected.length}
+            </li>
           </ul>
         </figcaption>
       </figure>
@@ -215,7 +219,6 @@ function Plan({
     frame.width / 2 + ((x as number) - (x0 + x1) / 2) * scale,
     frame.height / 2 - ((y as number) - (y0 + y1) / 2) * scale,
   ];
-  const isChosen = (index: number) => selection.value?.kind === "facet" && selection.value.index === index;
   return (
     // biome-ignore lint/a11y/useSemanticElements: SVG has no fieldset
     <svg
@@ -226,29 +229,22 @@ function Plan({
       data-testid="plan"
     >
       {outlines.map((ring, i) => (
-        // biome-ignore lint/a11y/useSemanticElements: SVG has no button
-        <path
+        <PlanArea
           key={i}
-          role="button"
-          {...FOCUSABLE}
-          aria-label={`Facet ${i}`}
-          class={`plan-facet ${isChosen(i) ? "chosen" : ""}`}
+          picks={{ kind: "facet", index: i }}
+          name={`Facet ${i}`}
+          className="plan-facet"
           d={`${pathOf(ring.map(at))}Z`}
-          onClick={() => {
-            selection.value = { kind: "facet", index: i };
-          }}
-          onKeyDown={(event) => {
-            if (event.key === "Enter" || event.key === " ") {
-              event.preventDefault();
-              selection.value = { kind: "facet", index: i };
-            }
-          }}
         />
       ))}
       {grouping.rejected.map(({ outline, reason }, i) => (
-        <path key={i} class="plan-rejected" d={`${pathOf(outline.map(at))}Z`}>
-          <title>{`Withdrawn: ${facetRejectionWords(reason)}`}</title>
-        </path>
+        <PlanArea
+          key={i}
+          picks={{ kind: "withdrawn", index: i }}
+          name={`Withdrawn: ${facetRejectionWords(reason)}`}
+          className="plan-rejected"
+          d={`${pathOf(outline.map(at))}Z`}
+        />
       ))}
       {BORDER_KINDS.map((kind) => {
         const own = grouping.borders.filter((border) => border.kind === kind);
@@ -256,5 +252,40 @@ function Plan({
         return <path key={kind} class={`border-${kind}`} d={path} data-count={own.length} />;
       })}
     </svg>
+  );
+}
+
+/** An outline that can be picked, by key as well. */
+function PlanArea(of: {
+  picks: { kind: "facet" | "withdrawn"; index: number };
+  name: string;
+  className: string;
+  d: string;
+}) {
+  const { kind, index } = of.picks;
+  const picked = selection.value;
+  const isChosen = picked?.kind === kind && picked.index === index;
+  const pick = () => {
+    selection.value = of.picks;
+  };
+  return (
+    // biome-ignore lint/a11y/useSemanticElements: SVG has no button
+    <path
+      role="button"
+      {...FOCUSABLE}
+      aria-label={of.name}
+      aria-pressed={isChosen}
+      class={`${of.className} ${isChosen ? "chosen" : ""}`}
+      d={of.d}
+      onClick={pick}
+      onKeyDown={(event) => {
+        if (event.key === "Enter" || event.key === " ") {
+          event.preventDefault();
+          pick();
+        }
+      }}
+    >
+      <title>{of.name}</title>
+    </path>
   );
 }

@@ -1,5 +1,5 @@
 /** The project: where files are dropped, and what each of them was recognised as. */
-import { useRef, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import type { ImageReport } from "../shared/results";
 import { notify } from "./core";
 import { Diagnosis } from "./Diagnosis";
@@ -28,20 +28,11 @@ export function Project() {
 }
 
 function DropZone() {
-  const [isOver, setOver] = useState(false);
+  const isOver = useFileDrop();
   const fileInput = useRef<HTMLInputElement>(null);
   const folderInput = useRef<HTMLInputElement>(null);
   const isEmpty = files.value.length === 0;
 
-  const onDrop = (event: DragEvent) => {
-    event.preventDefault();
-    setOver(false);
-    if (event.dataTransfer !== null) {
-      droppedFiles(event.dataTransfer).then(addFiles, (error: unknown) =>
-        notify({ severity: "error", title: "The dropped files cannot be read", text: String(error) }),
-      );
-    }
-  };
   const onPick = (event: Event) => {
     const input = event.currentTarget as HTMLInputElement;
     const picked = pickedFiles(input.files ?? new DataTransfer().files);
@@ -50,19 +41,10 @@ function DropZone() {
   };
 
   return (
-    <section
-      class={`dropzone ${isOver ? "over" : ""}`}
-      aria-label="Add files"
-      onDragOver={(event) => {
-        event.preventDefault();
-        setOver(true);
-      }}
-      onDragLeave={() => setOver(false)}
-      onDrop={onDrop}
-    >
+    <section class={`dropzone ${isOver ? "over" : ""}`} aria-label="Add files">
       <p>
         {isEmpty
-          ? "Drop three or more overlapping photographs and their orientation files here: files or a folder, in one go."
+          ? "Drop three or more overlapping photographs and their orientation files: files or a folder, in one go, anywhere on the page."
           : "Drop more files here."}
       </p>
       {isEmpty && (
@@ -93,6 +75,39 @@ function DropZone() {
       />
     </section>
   );
+}
+
+/** Takes files that are dropped anywhere, which the browser would open in the page's place; tells whether some are held over it. */
+function useFileDrop(): boolean {
+  const [isOver, setOver] = useState(false);
+  useEffect(() => {
+    const end = new AbortController();
+    const on = (name: "dragover" | "dragleave" | "drop", hear: (event: DragEvent) => void) =>
+      window.addEventListener(name, hear, { signal: end.signal });
+    on("dragover", (event) => {
+      if (event.dataTransfer?.types.includes("Files")) {
+        event.preventDefault();
+        setOver(true);
+      }
+    });
+    // From part to part of the page nothing is left.
+    on("dragleave", ({ relatedTarget }) => {
+      if (relatedTarget === null) {
+        setOver(false);
+      }
+    });
+    on("drop", (event) => {
+      setOver(false);
+      if (event.dataTransfer?.types.includes("Files")) {
+        event.preventDefault();
+        droppedFiles(event.dataTransfer).then(addFiles, (error: unknown) =>
+          notify({ severity: "error", title: "The dropped files cannot be read", text: String(error) }),
+        );
+      }
+    });
+    return () => end.abort();
+  }, []);
+  return isOver;
 }
 
 function Views() {

@@ -41,7 +41,7 @@ export function RectangleLab() {
         </label>
         <Fit>{(frame) => <PlaneWindow outer={frame} pair={pair} />}</Fit>
       </div>
-      <Filmstrip />
+      <Filmstrip unpicked={{ kind: "pair", index: shown }} />
     </div>
   );
 }
@@ -75,7 +75,7 @@ function PlaneWindow({ outer, pair }: { outer: Frame; pair: PlaneTrace }) {
     along.length === 0
       ? { min: 0, max: 10 }
       : { min: Math.min(...along) - 0.5, max: Math.max(...along) + 0.5 };
-  const frame = { ...outer, bottom: 82 };
+  const frame = { ...outer, bottom: 92 };
   const y = { min: 0, max: width };
   const [toX, toY] = axesOf(frame, x, y);
   const bins = histogramOf(
@@ -91,9 +91,8 @@ function PlaneWindow({ outer, pair }: { outer: Frame; pair: PlaneTrace }) {
       frame={frame}
       x={x}
       y={y}
-      xTitle="along the lines (m); below: histogram of positions"
+      xTitle="along the lines (m), and the histogram of positions"
       yTitle="across (m)"
-      xTicks={[]}
       label={`${pair.crossings.length} image lines cross the window, ${pair.ends.length} ends were found`}
       testid="plane-window"
     >

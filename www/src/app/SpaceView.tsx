@@ -8,12 +8,13 @@ import { GRID_STEP_M } from "../viewer/grid";
 import { buildModel, type ModelLayer } from "../viewer/model";
 import { enlargement } from "../viewer/uncertainty";
 import { Viewer } from "../viewer/viewer";
+import { warmLayers } from "../viewer/warm";
 import { notify } from "./core";
 import { Legend } from "./Legend";
 import { followResults, LAYERS, type LayerName, shown } from "./layers";
 import { facetColours, ModeLegend, ModeSwitches, mode } from "./ModelModes";
 import { SpaceTools } from "./SpaceTools";
-import { beforeGrowing, method, results, scene, selection, type Tab, tab } from "./state";
+import { beforeGrowing, isBusy, method, results, scene, selection, type Tab, tab } from "./state";
 import { theme } from "./theme";
 
 const LAYER_TITLES: Record<LayerName, string> = {
@@ -101,14 +102,26 @@ function GrowingSwitch() {
   );
 }
 
+/** Of the height of a tab that the canvas has, more or less: the rest is its figure's. */
+const CANVAS_SHARE = 0.6;
+/** Between two stages nothing runs for a moment. */
+const PAUSE_MS = 400;
+
 function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefined {
   if (canvas === null) {
     return undefined;
   }
   try {
-    viewer.value = new Viewer(canvas, THEME_COLOURS[theme.peek()], (picked) => {
+    const made = new Viewer(canvas, THEME_COLOURS[theme.peek()], (picked) => {
       selection.value = picked;
     });
+    const { clientWidth = 0, clientHeight = 0 } = canvas.closest(".stage-view") ?? {};
+    made.prepareSize(clientWidth, Math.round(CANVAS_SHARE * clientHeight));
+    warmLayers().forEach((layer, i) => {
+      made.showLayer(`warm ${i}`, false);
+      made.setLayer(`warm ${i}`, layer);
+    });
+    viewer.value = made;
   } catch {
     notify({
       severity: "warning",
@@ -131,6 +144,12 @@ const glb = computed(() => results.value.glb);
 /** Keeps the viewer's layers, modes, theme and selection as the signals say. */
 function useLayers(): void {
   useEffect(() => followResults(() => viewer.value, middleNow), []);
+  useSignalEffect(() => {
+    const space = viewer.value;
+    const isRunning = isBusy.value;
+    const timer = setTimeout(() => space?.holdSize(isRunning), isRunning ? 0 : PAUSE_MS);
+    return () => clearTimeout(timer);
+  });
   useSignalEffect(() => {
     const found = lines.peek();
     if (lineStage.value !== null && found !== null) {

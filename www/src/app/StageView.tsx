@@ -43,7 +43,7 @@ const LABS: Partial<Record<Tab, ComponentType>> = {
   directions: DirectionLab,
   clusters: ClusterLab,
   rectangles: RectangleLab,
-  model: Filmstrip,
+  model: () => <Filmstrip />,
 };
 
 export function StageView() {

@@ -38,11 +38,11 @@ const FIGURES: Record<Tab, Figure> = {
   images: {
     title: "Views",
     source: "B99 2, figure 1; W96 3.2",
-    text: "Each view is a photograph with a known camera P. Lens distortion has been removed, so that a point X of the ground lies at x = P X. All later figures rest on this one equation.",
+    text: "Each view is a photograph with a known camera P. Lens distortion has been removed, so that a point X, seen from C, lies at x ≃ P X: both are homogeneous, so the scale is free. All later figures rest on this one equation.",
     equation: (
       <mrow>
         <V>x</V>
-        <mo>=</mo>
+        <mo>≃</mo>
         <mi>P</mi>
         <V>X</V>
         <mo>=</mo>
@@ -51,7 +51,7 @@ const FIGURES: Record<Tab, Figure> = {
         <Open />
         <V>X</V>
         <mo>−</mo>
-        <mi>C</mi>
+        <V>C</V>
         <Close />
       </mrow>
     ),
@@ -60,7 +60,7 @@ const FIGURES: Record<Tab, Figure> = {
   segments: {
     title: "Line segments",
     source: "B99 3.2",
-    text: "Edgels with sub-pixel positions are linked into chains, broken where the tangent turns, and fitted by orthogonal regression. Red: straight lines that were refused, as a curve or as texture.",
+    text: "Edgels with sub-pixel positions are linked into chains, broken where the tangent turns, and fitted by orthogonal regression: the line l leaves the smallest distances to its edgels x. Red: lines that were refused, as part of a curve or as texture.",
     equation: (
       <mrow>
         <msup>
@@ -72,12 +72,12 @@ const FIGURES: Record<Tab, Figure> = {
         <mn>0</mn>
       </mrow>
     ),
-    hint: "Pick a segment for its length and direction; before matching that is all we know.",
+    hint: "Pick a segment for its length and direction; before matching that is all we know. Refused lines say why.",
   },
   matches: {
     title: "Matching over views",
-    source: "B99 3.1 to 3.4, figures 1 to 6",
-    text: "The end points of a segment bound an epipolar beam in every other view. Candidates in it are compared point by point: x′ is where the epipolar line of x meets the candidate l′. A pair predicts the line in third views by its trifocal tensor; there it must be seen, too.",
+    source: "B99 3.1 to 3.4, figures 1 to 5 and 7",
+    text: "The end points of a segment bound an epipolar beam in every other view. Candidates in it are compared point by point: x′ is where the epipolar line of x meets the candidate l′. A pair predicts the line in third views, by their trifocal tensors; there a segment or, without one, a higher correlation must confirm it.",
     equation: (
       <mrow>
         <V>x′</V>
@@ -94,8 +94,8 @@ const FIGURES: Record<Tab, Figure> = {
   },
   lines: {
     title: "3D lines",
-    source: "B99 3.2 to 3.4, figures 4 to 9",
-    text: "A line has four parameters; they minimise the distances d between the measured segments and the reprojected line in all views. Merging and growing extend what the segments showed. Accuracy improves with the number of views.",
+    source: "B99 3.2 to 3.4, figures 4, 6, 8 and 9",
+    text: "A line L has four parameters. They minimise the distances d from the ends of the measured segments (m) to the image of L, over all views j. Merging and growing extend what the segments showed. Accuracy improves with the number of views.",
     equation: (
       <mrow>
         <munder>
@@ -104,23 +104,23 @@ const FIGURES: Record<Tab, Figure> = {
         </munder>
         <munder>
           <mo>∑</mo>
-          <mi>i</mi>
+          <mi>j</mi>
         </munder>
         <msup>
           <mi>d</mi>
           <mn>2</mn>
         </msup>
         <Open />
-        <msup>
+        <msubsup>
           <V>l</V>
-          <mi>i</mi>
-        </msup>
+          <Up>m</Up>
+          <mi>j</mi>
+        </msubsup>
         <mo>,</mo>
         <msup>
-          <mi>P</mi>
-          <mi>i</mi>
+          <V>l</V>
+          <mi>j</mi>
         </msup>
-        <mi>L</mi>
         <Close />
       </mrow>
     ),
@@ -129,9 +129,37 @@ const FIGURES: Record<Tab, Figure> = {
   halfplanes: {
     title: "Half-planes",
     source: "B99 4.1, figures 10 to 15",
-    text: "A 3D line leaves one angle open. Each θ induces a homography H(θ) between two views; where it is right, the neighbourhoods agree. Sim(θ) adds the squared correlations at points of interest, over the views that see the side.",
+    text: "A line leaves one angle of its plane open. Each θ induces a homography between the first view [I | 0] and view i, [A | a]; v is the plane's normal over its distance. At the right θ the neighbourhoods agree: Sim(θ) averages the squared correlations at points of interest, weighted by w, the inverse of their distance from the line, over the views that see the side.",
     equation: (
       <mtable displaystyle>
+        <mtr>
+          <mtd>
+            <msup>
+              <mi>H</mi>
+              <mi>i</mi>
+            </msup>
+            <Open />
+            <mi>θ</mi>
+            <Close />
+            <mo>=</mo>
+            <msup>
+              <mi>A</mi>
+              <mi>i</mi>
+            </msup>
+            <mo>+</mo>
+            <msup>
+              <V>a</V>
+              <mi>i</mi>
+            </msup>
+            <msup>
+              <V>v</V>
+              <Up>T</Up>
+            </msup>
+            <Open />
+            <mi>θ</mi>
+            <Close />
+          </mtd>
+        </mtr>
         <mtr>
           <mtd>
             <Sim />
@@ -179,7 +207,7 @@ const FIGURES: Record<Tab, Figure> = {
   groups: {
     title: "Grouping",
     source: "B99 4.2, figures 16 to 20",
-    text: "Neighbouring half-planes that share a plane within its uncertainty form a group; the Delaunay triangulation constrained to the projected lines says who is a neighbour. In each plane, further lines are found where segments of several views coincide.",
+    text: "Collinear lines with a common half-plane are joined; neighbours that lie in one plane within its uncertainty form a group, which gets a new plane by regression over points X of all its lines. The Delaunay triangulation constrained to the projected lines says who is a neighbour. In each plane, further lines are found where segments of several views coincide.",
     equation: (
       <mrow>
         <msup>
@@ -198,7 +226,7 @@ const FIGURES: Record<Tab, Figure> = {
   facets: {
     title: "Facets",
     source: "B99 4.3, figures 21 to 23",
-    text: "Border lines (real lines, new lines, intersections of planes, closing lines) cut the plan into cells, and the planes compete for them. A facet is kept if the views agree inside and enough of its outline, τ, is real.",
+    text: "Border lines (real lines, new lines, intersections of planes, closing lines) cut the plan into cells, and the planes compete for them. A facet is kept if the views agree inside and enough of its outline, τ, is real. The paper settles conflicts pair by pair, by area times that share; here the same evidence decides for all cells at once.",
     equation: (
       <mrow>
         <mi>S</mi>
@@ -249,8 +277,8 @@ const FIGURES: Record<Tab, Figure> = {
   },
   model: {
     title: "Model",
-    source: "B99 5, figures 24 and 25",
-    text: "Facets become buildings by walls down to the ground. Every face takes its texture from the view that shows it best; hidden parts come from other views.",
+    source: "B99 4.4, figures 24 and 25",
+    text: "Walls down to the ground make facets into buildings: closed solids, whose V corners, E edges and F faces satisfy Euler's formula wherever no courtyard pierces them. Every face takes its texture from the view that shows it best; hidden parts come from other views.",
     equation: (
       <mrow>
         <mi>V</mi>
@@ -267,7 +295,7 @@ const FIGURES: Record<Tab, Figure> = {
   regions: {
     title: "Regions (ORIS)",
     source: "W96 3.3, figure 3",
-    text: "The image becomes a partition into regions of constant grey value plus noise, with straight shared boundaries. Break points are dropped and regions merged, always the move that shortens the description of model m and image I most, until none does.",
+    text: "The image becomes a partition into regions of constant grey value plus noise, with straight shared boundaries. Break points are dropped and regions merged, always the move that shortens the description most: the length L of the model m and of what remains of the image I. It ends when no move does.",
     equation: (
       <mrow>
         <mo>min</mo>
@@ -284,12 +312,12 @@ const FIGURES: Record<Tab, Figure> = {
         <Close />
       </mrow>
     ),
-    hint: "Pick a region for its area, mean and variance.",
+    hint: "Pick a region for its area, mean and variance. Tints only tell neighbours apart.",
   },
   directions: {
     title: "Main directions",
     source: "W96 3.4, figures 4 and 5",
-    text: "The interpretation plane of every image line is cut with the XY plane. Horizontal lines give the same azimuth from every view; others scatter. Two perpendicular peaks of the histogram are found together.",
+    text: "The interpretation plane of every image line is cut with the XY plane. Horizontal lines give the same azimuth α from every view; others scatter. Two perpendicular peaks of the histogram h are found together.",
     equation: (
       <mrow>
         <munder>
@@ -314,7 +342,7 @@ const FIGURES: Record<Tab, Figure> = {
   clusters: {
     title: "Clusters",
     source: "W96 3.5, figures 6 to 9",
-    text: "In the plane across a main direction, each image line of that direction is a straight line, and a 3D line is a point where lines of several images meet. The points compete by description length; colours are views.",
+    text: "In the plane across a main direction, each image line of that direction is a straight line, and a 3D line is a point where lines of several images meet. The points compete by description length: G is how many bits shorter the image lines are told as one cluster than alone. Colours are views.",
     equation: (
       <mrow>
         <mi>G</mi>
@@ -332,12 +360,12 @@ const FIGURES: Record<Tab, Figure> = {
         <mn>0</mn>
       </mrow>
     ),
-    hint: "Pick a ring: its 3D line is projected back into every view.",
+    hint: "Pick a ring: its 3D line is projected back into every view. Small red rings were refused.",
   },
   rectangles: {
     title: "Rectangular planes",
     source: "W96 3.6, figures 10 to 12",
-    text: "Two parallel lines span a plane that is open at two ends. Image lines that cross it at right angles vote for their position along it; the histogram's peaks are its ends. The best set of planes that do not overlap is the roof.",
+    text: "Two parallel lines span a plane that is open at two ends. Image lines that cross it at right angles vote for their position along it; the histogram's peaks are its ends. The set S of planes p that do not overlap, with the largest sum of measures M, is the roof.",
     equation: (
       <mrow>
         <munder>

@@ -3,10 +3,11 @@
 import { LINE_STRIDE, SEGMENT_STRIDE, type Vec3 } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import { slopedArea } from "./geometry";
-import { lineOfSegment } from "./marks";
 import { grouped } from "./numbers";
 import { refinedRow, refinementRows, relationRows } from "./refined";
+import { clusterRows, refusedSegmentRows, withdrawnRows } from "./refused";
 import { linkToFacet, linkToGroup, linkToHalfPlane, linkToLine, type Related, type Row } from "./related";
+import { lineOfSegment } from "./shapes";
 import { params, pointing, results, scene } from "./state";
 import { ORIGIN_WORDS, outcomeWords, PAIR_WORDS, REJECTION_WORDS } from "./words";
 
@@ -22,6 +23,8 @@ export function titleOf(picked: Selection): string {
   switch (picked.kind) {
     case "segment":
       return `Segment ${picked.index} of ${viewName(picked.view)}`;
+    case "refused":
+      return `Refused line ${picked.index} of ${viewName(picked.view)}`;
     case "line":
       return `3D line ${picked.index}`;
     case "side":
@@ -36,6 +39,10 @@ export function titleOf(picked: Selection): string {
       return `Half-plane ${picked.index}`;
     case "facet":
       return `Facet ${picked.index}`;
+    case "withdrawn":
+      return `Withdrawn facet ${picked.index}`;
+    case "cluster":
+      return `Refused cluster ${picked.index} of plane ${picked.plane}`;
     case "refinement":
       return `Building ${picked.index}, refined`;
     case "relation":
@@ -51,6 +58,8 @@ export function rowsOf(picked: Selection): Row[] {
   switch (picked.kind) {
     case "segment":
       return segmentRows(picked.view, picked.index);
+    case "refused":
+      return refusedSegmentRows(picked.view, picked.index);
     case "line":
       return lineRows(picked.index);
     case "side":
@@ -65,6 +74,10 @@ export function rowsOf(picked: Selection): Row[] {
       return halfPlaneRows(picked.index);
     case "facet":
       return facetRows(picked.index);
+    case "withdrawn":
+      return withdrawnRows(picked.index);
+    case "cluster":
+      return clusterRows(picked.plane, picked.index);
     case "refinement":
       return refinementRows(picked.index);
     case "relation":
@@ -308,11 +321,20 @@ function facetRows(index: number): Row[] {
     ["Similarity", facet.similarity.toFixed(3)],
     ["τ real", facet.real_ratio === undefined ? "–" : facet.real_ratio.toFixed(2)],
     ["3D lines", (facet.lines ?? []).map(linkToLine)],
+    ...groupsOfFacet(facet.half_planes ?? []),
     ...refinedRow(index),
     ...((facet.half_planes ?? []).length === 0
       ? []
       : [["Half-planes", (facet.half_planes ?? []).map(linkToHalfPlane)] as const]),
   ];
+}
+
+/** The groups of the half-planes that a facet was made from. */
+function groupsOfFacet(halfPlanes: readonly number[]): Row[] {
+  const groups = indicesOf(results.value.grouping?.groups, ({ members }) =>
+    members.some(({ half_plane }) => half_plane !== null && halfPlanes.includes(half_plane)),
+  );
+  return groups.length === 0 ? [] : [["Groups", groups.map(linkToGroup)]];
 }
 
 function surfaceRows(picked: Extract<Selection, { kind: "surface" }>): Row[] {

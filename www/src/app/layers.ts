@@ -9,11 +9,12 @@ import { buildGroups } from "../viewer/groups";
 import type { Layer } from "../viewer/layer";
 import { buildLines } from "../viewer/lines";
 import { buildOutlines } from "../viewer/outlines";
+import { buildPicked } from "../viewer/picked";
 import { buildRefinement } from "../viewer/refinement";
 import { buildStretches } from "../viewer/stretches";
 import { buildUncertainty, enlargement } from "../viewer/uncertainty";
 import type { Viewer } from "../viewer/viewer";
-import { lineEnds, linesOfSelection } from "./marks";
+import { lineEnds, linesOfSelection, shapesOf } from "./shapes";
 import { images, keptResult, pointing, results, scene, selection, type Tab, tab } from "./state";
 
 /** Layers that a person switches; "stretches" and "turning" follow other switches. */
@@ -75,6 +76,14 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
     const kept = keptResult.value;
     return kept && [() => buildOutlines(kept.facets), kept];
   },
+  picked: () => {
+    const shapes = shapesOf(selection.value).filter(({ role }) => role !== "before");
+    const areas = shapes.map(({ points, role }) => ({ points, closed: role === "area" }));
+    // A segment is in no place of space, but its line is.
+    const lines = selection.value?.kind === "segment" ? linesOfSelection(selection.value).map(lineEnds) : [];
+    const all = [...areas, ...lines.map((points) => ({ points, closed: false }))];
+    return all.length === 0 ? null : [() => buildPicked(all), selection.value, results.value];
+  },
   turning: () => {
     const { side, theta } = pointing.value;
     const ends = side === null ? [] : lineEnds(side.line);
@@ -88,10 +97,13 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   },
   cameras: (middle) => {
     const views = scene.value?.views;
+    // Every photograph is drawn anew: not before somebody looks.
+    if (views === undefined || !shown.value[tab.value].includes("cameras")) {
+      return null;
+    }
     const [x, y, z] = middle();
-    return views === undefined
-      ? null
-      : [() => buildCameras(views, new Vector3(x, y, z), images.value), views, images.value, x, y, z];
+    const pictures = images.value;
+    return [() => buildCameras(views, new Vector3(x, y, z), pictures), views, pictures, x, y, z];
   },
 };
 

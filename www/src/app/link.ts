@@ -73,8 +73,11 @@ export function formatLink(link: Link): string {
 export function formatSelection(picked: Selection): string | null {
   switch (picked.kind) {
     case "segment":
+    case "refused":
     case "region":
       return `${picked.kind}:${picked.view}.${picked.index}`;
+    case "cluster":
+      return `cluster:${picked.plane}.${picked.index}`;
     case "relation":
       return `relation:${picked.building}.${picked.index}`;
     case "side":
@@ -95,8 +98,11 @@ export function parseSelection(text: string | null): Selection | null {
   const index = Number(first);
   switch (kind) {
     case "segment":
+    case "refused":
     case "region":
       return /^\d+$/.test(second ?? "") ? { kind, view: index, index: Number(second) } : null;
+    case "cluster":
+      return /^\d+$/.test(second ?? "") ? { kind, plane: index, index: Number(second) } : null;
     case "relation":
       return /^\d+$/.test(second ?? "") ? { kind, building: index, index: Number(second) } : null;
     case "side":
@@ -106,6 +112,7 @@ export function parseSelection(text: string | null): Selection | null {
     case "group":
     case "refinement":
     case "facet":
+    case "withdrawn":
     case "view":
     case "pair":
       return { kind, index };

@@ -3,12 +3,12 @@
  * matrix, as the viewer's graphics card does; everything else is drawn as the core gave it.
  */
 import { PALETTE } from "../shared/palette";
-import { type HalfPlane, LINE_STRIDE, SEGMENT_STRIDE, type Vec3, type ViewInfo } from "../shared/results";
+import { REJECTED_STRIDE, SEGMENT_STRIDE, type Vec3, type ViewInfo } from "../shared/results";
 import type { Selection } from "../shared/selection";
-import type { Segment3, Vec2 } from "../shared/traces";
-import { fanCorners } from "../viewer/fans";
-import { outlinesOf } from "../viewer/refinement";
+import type { Vec2 } from "../shared/traces";
+import { type Shape, shapesOf } from "./shapes";
 import { type Pointing, pointing, type Results, results, scene } from "./state";
+import { windowOf } from "./window";
 
 /** A polyline over an image, pixels. */
 export interface Mark {
@@ -45,146 +45,73 @@ export function marksOf(picked: Selection | null, view: number): Mark[] {
   if (picked === null || info === undefined) {
     return [];
   }
-  const inView = (points: readonly Vec3[]) => points.map((point) => project(info, point));
-  const shape = (points: readonly Vec3[], style: Omit<Mark, "points">): Mark[] => {
-    const seen = inView(points);
-    return seen.every((p) => p !== null) ? [{ points: seen as Vec2[], ...style }] : [];
-  };
   switch (picked.kind) {
     case "segment":
       return segmentMarks(picked.view, picked.index, view, results.value, pointing.value);
-    case "line":
-      return [...shape(lineEnds(picked.index), chosen()), ...warpedMarks(view, pointing.value)];
-    case "side":
-      return [...shape(lineEnds(picked.line), chosen()), ...warpedMarks(view, pointing.value)];
-    case "halfplane": {
-      const halfPlane = results.value.halfPlanes?.[picked.index];
-      return halfPlane === undefined
-        ? []
-        : [...shape(fanOf(halfPlane), area()), ...warpedMarks(view, pointing.value)];
-    }
-    case "group":
-      return groupLines(picked.index).flatMap((line) => shape(lineEnds(line), chosen()));
-    case "facet":
-      return facetRings(picked.index).flatMap((ring) => shape(ring, area()));
-    case "surface":
-      return picked.facet === null ? [] : facetRings(picked.facet).flatMap((ring) => shape(ring, area()));
-    case "refinement":
-      return [
-        ...ringsBefore(picked.index).flatMap((ring) =>
-          shape(ring, { colour: PALETTE.grown, width: THIN_PX, closed: true }),
-        ),
-        ...refinedFacets(picked.index)
-          .flatMap(facetRings)
-          .flatMap((ring) => shape(ring, { ...chosen(), width: THIN_PX, closed: true })),
-      ];
-    case "relation":
-      return relationOf(picked.building, picked.index).flatMap(({ p0, p1 }) => shape([p0, p1], chosen()));
+    case "refused":
+      return picked.view === view
+        ? [{ points: ends(results.value.rejected[view], picked.index, REJECTED_STRIDE), ...CHOSEN }]
+        : [];
     case "region":
       return picked.view === view
         ? (results.value.regions[view]?.regions[picked.index]?.rings ?? []).map((ring) => ({
             points: ring,
-            ...area(),
+            ...AREA,
           }))
         : [];
-    case "pair": {
-      const pair = results.value.rectangles?.pairs[picked.index];
-      return pair === undefined ? [] : pair.lines.flatMap((line) => shape(lineEnds(line), chosen()));
+    default: {
+      const shapes = shapesOf(picked);
+      // Of a building the outlines matter, not the areas.
+      const style = (role: Shape["role"]) =>
+        role === "area" && picked.kind === "refinement" ? OUTLINE : STYLES[role];
+      return [
+        ...(picked.kind === "pair" ? windowMarks(info, view, picked.index) : []),
+        ...shapes.flatMap(({ points, role }) => seenFrom(info, points, style(role))),
+        ...warpedMarks(view, pointing.value),
+      ];
     }
-    case "view":
-      return [];
   }
 }
 
-/** The end points of a 3D line; none where there is no such line. */
-export function lineEnds(index: number): Vec3[] {
-  const lines = results.value.lines;
-  const at = index * LINE_STRIDE;
-  if (lines === null || at + LINE_STRIDE > lines.length) {
-    return [];
-  }
-  const n = [...lines.subarray(at, at + LINE_STRIDE)] as [number, number, number, number, number, number];
-  return [
-    [n[0], n[1], n[2]],
-    [n[3], n[4], n[5]],
-  ];
+/** The window of a pair of lines and what crosses it in this view (W96 figure 10). */
+function windowMarks(info: ViewInfo, view: number, index: number): Mark[] {
+  const pair = results.value.rectangles?.pairs[index];
+  const found = pair === undefined ? null : windowOf(pair);
+  return found === null
+    ? []
+    : [
+        ...seenFrom(info, found.outline, { colour: PALETTE.beam, width: 1, closed: true, fill: 0.1 }),
+        ...found.crossings
+          .filter((one) => one.view === view)
+          .flatMap(({ ends }) => seenFrom(info, ends, { colour: PALETTE.grown, width: 2 })),
+      ];
 }
 
-/** The 3D lines that belong to a selection. */
-export function linesOfSelection(picked: Selection | null): readonly number[] {
-  const { halfPlanes, facets, rectangles, matching } = results.peek();
-  switch (picked?.kind) {
-    case "line":
-      return [picked.index];
-    case "side":
-      return [picked.line];
-    case "halfplane":
-      return [halfPlanes?.[picked.index]?.line ?? -1].filter((line) => line >= 0);
-    case "group":
-      return groupLines(picked.index);
-    case "facet":
-      return facets?.[picked.index]?.lines ?? [];
-    case "surface":
-      return picked.facet === null ? [] : (facets?.[picked.facet]?.lines ?? []);
-    case "pair":
-      return rectangles?.pairs[picked.index]?.lines ?? [];
-    case "segment":
-      return matching === null ? [] : lineOfSegment(picked.view, picked.index);
-    default:
-      return [];
-  }
+/** A polyline of the local frame in a view; none where a part lies behind the camera. */
+function seenFrom(info: ViewInfo, points: readonly Vec3[], style: Omit<Mark, "points">): Mark[] {
+  const seen = points.map((point) => project(info, point));
+  return seen.every((p) => p !== null) ? [{ points: seen as Vec2[], ...style }] : [];
 }
 
-/** The 3D line that a segment supports, if any. */
-export function lineOfSegment(view: number, segment: number): number[] {
-  const line = results
-    .peek()
-    .records.findIndex(({ supports }) =>
-      supports.some((support) => support.view === view && support.segments.includes(segment)),
-    );
-  return line < 0 ? [] : [line];
-}
+const CHOSEN: Omit<Mark, "points"> = { colour: PALETTE.selected, width: SELECTED_PX };
+const AREA: Omit<Mark, "points"> = { ...CHOSEN, width: SELECTED_PX - 1, closed: true, fill: 0.14 };
+const OUTLINE: Omit<Mark, "points"> = { ...CHOSEN, width: THIN_PX, closed: true };
+const STYLES: Record<Shape["role"], Omit<Mark, "points">> = {
+  line: CHOSEN,
+  area: AREA,
+  before: { ...OUTLINE, colour: PALETTE.grown },
+};
 
-/** The 3D lines of a plane group, each once. */
-export function groupLines(index: number): number[] {
-  const members = results.value.grouping?.groups[index]?.members ?? [];
-  return [...new Set(members.map(({ line }) => line))];
+/** The end points of a segment in a list of them; none where it has fewer. */
+function ends(data: Float32Array | undefined, index: number, stride: number): Vec2[] {
+  const [x0, y0, x1, y1] = data?.subarray(index * stride, index * stride + 4) ?? [];
+  return x0 === undefined || y0 === undefined || x1 === undefined || y1 === undefined
+    ? []
+    : [
+        [x0, y0],
+        [x1, y1],
+      ];
 }
-
-/** The facets of the model that refinement made of a building. */
-export function refinedFacets(building: number): number[] {
-  const before = results.value.refinement?.before;
-  return (before?.sources ?? []).flatMap((source, facet) =>
-    before?.facets[source]?.building === building ? [facet] : [],
-  );
-}
-
-function ringsBefore(building: number): readonly (readonly Vec3[])[] {
-  const { refinement } = results.value;
-  return refinement === null ? [] : outlinesOf(refinement, building);
-}
-
-function relationOf(building: number, index: number): readonly Segment3[] {
-  return results.value.refinement?.trace.buildings[building]?.relations[index]?.sides ?? [];
-}
-
-function facetRings(index: number): readonly (readonly Vec3[])[] {
-  const facet = results.value.facets?.[index];
-  return facet === undefined ? [] : [facet.outer, ...facet.holes];
-}
-
-function fanOf(halfPlane: HalfPlane): Vec3[] {
-  const { lines } = results.value;
-  return lines === null ? [] : fanCorners(halfPlane, lines).map(({ x, y, z }) => [x, y, z]);
-}
-
-const chosen = (): Omit<Mark, "points"> => ({ colour: PALETTE.selected, width: SELECTED_PX });
-const area = (): Omit<Mark, "points"> => ({
-  colour: PALETTE.selected,
-  width: SELECTED_PX - 1,
-  closed: true,
-  fill: 0.14,
-});
 
 /** In its own view the segment; in others its beam, its candidates with their scores, and where it should be. */
 function segmentMarks(
@@ -195,18 +122,10 @@ function segmentMarks(
   { story, candidate, correspondence }: Pointing,
 ): Mark[] {
   const marks: Mark[] = [];
-  const segment = (of: number, i: number): Vec2[] => {
-    const data = segments[of]?.subarray(i * SEGMENT_STRIDE, (i + 1) * SEGMENT_STRIDE);
-    return data?.length === SEGMENT_STRIDE
-      ? [
-          [data[0] as number, data[1] as number],
-          [data[2] as number, data[3] as number],
-        ]
-      : [];
-  };
+  const segment = (of: number, i: number) => ends(segments[of], i, SEGMENT_STRIDE);
   const compared = story?.candidates[candidate];
   if (view === own) {
-    marks.push({ points: segment(own, index), ...chosen() });
+    marks.push({ points: segment(own, index), ...CHOSEN });
     if (correspondence !== null) {
       marks.push(...point(correspondence.x, "x"));
     }

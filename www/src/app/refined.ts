@@ -1,6 +1,7 @@
 /** What refinement made of buildings (B99 2), for the inspector and the figure. */
-import { refinedFacets } from "./marks";
+
 import { linkToFacet, linkToRefinement, type Row } from "./related";
+import { refinedFacets } from "./shapes";
 import { params, results } from "./state";
 import { RELATION_WORDS, refinementWords } from "./words";
 

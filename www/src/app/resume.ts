@@ -4,9 +4,9 @@ import type { Selection } from "../shared/selection";
 import { readKept } from "./keep";
 import { goTo } from "./lessons";
 import { opened } from "./link";
-import { lineEnds } from "./marks";
 import { openDemo, restoreProject } from "./projectActions";
 import { runTo } from "./running";
+import { lineEnds } from "./shapes";
 import { stageWords } from "./stages";
 import { method, results, scene, selection, shownView, stages, TABS, type Tab, tab } from "./state";
 

@@ -41,6 +41,8 @@ export class Viewer {
   readonly #compiling = new Set<Layer>();
   readonly #observer: ResizeObserver;
   readonly #onPick: (selection: Selection | null) => void;
+  /** Whether the canvas keeps the pixels that it has. */
+  #holdsSize = false;
   #colours: ThemeColours;
   #bounds: Sphere | null = null;
   #frame = 0;
@@ -78,6 +80,21 @@ export class Viewer {
     this.setTheme(colours);
   }
 
+  /**
+   * While it holds, the canvas keeps its pixels, and what is drawn is stretched to the canvas: pixels anew are waited for, up to
+   * a second where graphics are computed in software beside a busy pipeline.
+   */
+  holdSize(holds: boolean): void {
+    this.#holdsSize = holds;
+    void this.#resize();
+  }
+
+  /** The pixels to begin with, before the canvas is seen. */
+  prepareSize(width: number, height: number): void {
+    this.#renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.#renderer.setSize(width, height, false);
+  }
+
   /** Puts a layer in place of the one of this name, if any. */
   setLayer(name: string, layer: Layer | null): void {
     const old = this.#layers.get(name);
@@ -104,10 +121,21 @@ export class Viewer {
     this.#compiling.add(layer);
     await this.#renderer.compileAsync(layer.object, this.#camera, this.#scene);
     await finished(this.#renderer.getContext() as WebGL2RenderingContext);
+    this.#learnPrograms();
     this.#compiling.delete(layer);
     old?.dispose();
     if (this.#layers.get(name) === layer) {
       this.showLayer(name, !this.#hidden.has(name));
+    }
+  }
+
+  /** Asks for what the first picture would ask each shader for, while no other picture has to be waited for. */
+  #learnPrograms(): void {
+    for (const program of this.#renderer.info.programs ?? []) {
+      if ((program as unknown as { isReady(): boolean }).isReady()) {
+        program.getUniforms();
+        program.getAttributes();
+      }
     }
   }
 
@@ -219,6 +247,7 @@ export class Viewer {
 
   /** The present picture as a PNG. */
   screenshot(): Promise<Blob | null> {
+    this.#takeSize();
     this.#render();
     return new Promise((resolve) => this.#renderer.domElement.toBlob(resolve, "image/png"));
   }
@@ -268,23 +297,32 @@ export class Viewer {
   }
 
   async #resize(): Promise<void> {
-    const canvas = this.#renderer.domElement;
-    const size = this.#renderer.getSize(new Vector2());
-    // Setting the same size would make the canvas anew, too; and setting any waits for the graphics card.
-    if (size.x !== canvas.clientWidth || size.y !== canvas.clientHeight) {
+    // Setting any size waits for what the graphics card has to do.
+    if (this.#wantsSize()) {
       await finished(this.#renderer.getContext() as WebGL2RenderingContext);
     }
-    const { clientWidth, clientHeight } = canvas;
-    if (clientWidth === 0 || clientHeight === 0) {
-      return;
+    if (this.#wantsSize()) {
+      this.#takeSize();
     }
-    if (size.x !== clientWidth || size.y !== clientHeight) {
-      this.#renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
-      this.#renderer.setSize(clientWidth, clientHeight, false);
+    const { clientWidth, clientHeight } = this.#renderer.domElement;
+    if (clientWidth > 0 && clientHeight > 0) {
+      this.#camera.aspect = clientWidth / clientHeight;
+      cancelAnimationFrame(this.#frame);
+      this.#render();
     }
-    this.#camera.aspect = clientWidth / clientHeight;
-    cancelAnimationFrame(this.#frame);
-    this.#render();
+  }
+
+  /** Setting the size that it has would make the canvas anew, too. */
+  #wantsSize(): boolean {
+    const { clientWidth, clientHeight } = this.#renderer.domElement;
+    const { x, y } = this.#renderer.getSize(new Vector2());
+    const isSeen = clientWidth > 0 && clientHeight > 0;
+    return isSeen && !this.#holdsSize && (x !== clientWidth || y !== clientHeight);
+  }
+
+  #takeSize(): void {
+    const { clientWidth, clientHeight } = this.#renderer.domElement;
+    this.prepareSize(clientWidth, clientHeight);
   }
 
   #click(event: PointerEvent): void {

@@ -1,27 +1,25 @@
 /** Each figure of B99 shows what the core found, and follows what is pointed at. One run of the demo scene for all. */
 import { expect, type Page, test } from "@playwright/test";
-import { axeFindings, lookOf, openTab, pickUntil, stage, steadyLook, waitForStage, watch } from "./helpers";
-
-test.describe.configure({ mode: "serial" });
+import { axeFindings, lookOf, onePage, openTab, pickUntil, stage, steadyLook, waitForStage } from "./helpers";
 
 let page: Page;
-let problems: string[];
 
-test.beforeAll(async ({ browser }) => {
-  page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
-  ({ problems } = watch(page));
-  await page.goto("/");
+onePage(async (opened) => {
+  page = opened;
   await page.getByRole("button", { name: "Demo scene" }).click();
   await waitForStage(page, "model");
 });
 
-test.afterAll(async () => {
-  expect(problems).toEqual([]);
-  await page.close();
-});
-
 const inspector = () => page.getByTestId("inspector");
 const allViews = () => page.getByRole("group", { name: "View" }).getByRole("button", { name: "All" });
+
+/** Nothing selected, whatever was. */
+async function clear(): Promise<void> {
+  const button = page.getByRole("button", { name: "Clear" });
+  if (await button.isVisible()) {
+    await button.click();
+  }
+}
 
 /** Picks a matched segment of the first view. */
 async function pickMatchedSegment(): Promise<void> {
@@ -171,6 +169,51 @@ test("figures 16 to 23: groups, border lines and facets", async () => {
   await expect(inspector().locator(".picked")).toHaveText(/^3D line \d+$/);
 });
 
+test("what was refused is picked, too: it says why, and shows in every view and in space", async () => {
+  const title = inspector().locator(".picked");
+  await openTab(page, "Segments");
+  await page.getByRole("button", { name: "Refused lines" }).click();
+  await page.getByRole("group", { name: "View" }).getByRole("button", { name: /_01/ }).first().click();
+  await pickUntil(page.locator(".image-view canvas").first(), async () =>
+    /^Refused line/.test((await title.allTextContents())[0] ?? ""),
+  );
+  await expect(inspector().locator("div", { hasText: /^Refused/ })).toContainText(/curve|texture|bar beside/);
+
+  await openTab(page, "Facets");
+  await clear();
+  const withdrawn = page.getByTestId("plan").locator(".plan-rejected");
+  await expect(page.locator(".plan .legend")).toContainText(`withdrawn ${await withdrawn.count()}`);
+  const plain = await steadyLook(page, page.getByTestId("viewer"));
+  await withdrawn.first().press("Enter");
+  await expect(title).toHaveText("Withdrawn facet 0");
+  await expect(inspector().locator("div", { hasText: /^Withdrawn/ })).toContainText(
+    /too small|near the ground|do not agree|too little of its outline/,
+  );
+  expect(await page.getByTestId("filmstrip").locator("canvas").count()).toBeGreaterThanOrEqual(3);
+  expect((await steadyLook(page, page.getByTestId("viewer"))).vivid).not.toEqual(plain.vivid);
+});
+
+test("everything is reached by key, and lights up in tabs that are not about it", async () => {
+  await openTab(page, "Half-planes");
+  await clear();
+  const next = page.getByRole("button", { name: "Next item" });
+  const title = inspector().locator(".picked");
+  const seen = new Set<string>();
+  for (let i = 0; i < 30 && seen.size < 2; i += 1) {
+    await next.press("Enter");
+    seen.add(/^Half-plane/.test((await title.textContent()) ?? "") ? "accepted" : "refused");
+  }
+  // The sides of all lines, those without a half-plane among them.
+  expect([...seen].sort()).toEqual(["accepted", "refused"]);
+  await page.getByRole("button", { name: "Previous item" }).press("Enter");
+  await openTab(page, "Model");
+  const viewer = page.getByTestId("viewer");
+  const marked = await steadyLook(page, viewer);
+  await clear();
+  await page.waitForTimeout(300);
+  expect(await steadyLook(page, viewer)).not.toEqual(marked);
+});
+
 test("refinement: outlines before, relations by their chi-square, adopted and refused", async () => {
   await openTab(page, "Refinement");
   const lab = page.getByTestId("refinement-lab");
@@ -188,7 +231,7 @@ test("refinement: outlines before, relations by their chi-square, adopted and re
     expect(Number(chi2) <= limit + 0.05).toBe(verdict === "adopted");
   }
   const viewer = page.getByTestId("viewer");
-  await page.getByRole("button", { name: "Clear" }).click();
+  await clear();
   const plain = await steadyLook(page, viewer);
   await dots.first().press("Enter");
   await expect(inspector().locator(".picked")).toHaveText(/^Relation \d+ of building \d+$/);
@@ -211,7 +254,7 @@ test("refinement: outlines before, relations by their chi-square, adopted and re
 test("the viewer: normals, cameras, measuring, a picture, and a view's own camera", async () => {
   await openTab(page, "Model");
   const viewer = page.getByTestId("viewer");
-  await page.getByRole("button", { name: "Clear" }).click();
+  await clear();
   await page.getByRole("button", { name: "Fit" }).click();
   const textured = await steadyLook(page, viewer);
   await page.getByRole("button", { name: "Normals" }).click();

@@ -1,6 +1,6 @@
 /** What the page's tests share: its parts, files to give it, and the pixels that it shows. */
 import { readdirSync, readFileSync } from "node:fs";
-import { expect, type Locator, type Page } from "@playwright/test";
+import { expect, type Locator, type Page, test } from "@playwright/test";
 import axe from "axe-core";
 
 export interface Upload {
@@ -179,4 +179,25 @@ export function watch(page: Page): { problems: string[] } {
     }
   });
   return { problems };
+}
+
+/**
+ * One page for all tests of a file, in their order: prepared before them, left after them. It fails the last one where `watch`
+ * has found a problem.
+ */
+export function onePage(prepare: (page: Page) => Promise<void>, leave = async () => {}): void {
+  test.describe.configure({ mode: "serial" });
+  let page: Page;
+  let problems: string[];
+  test.beforeAll(async ({ browser }) => {
+    page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+    ({ problems } = watch(page));
+    await page.goto("/");
+    await prepare(page);
+  });
+  test.afterAll(async () => {
+    await leave();
+    expect(problems).toEqual([]);
+    await page.close();
+  });
 }

@@ -188,6 +188,25 @@ for (const { what, files, says } of BAD_INPUTS) {
   });
 }
 
+test("files may be dropped anywhere on the page", async ({ page }) => {
+  await page.goto("/");
+  await expect(page.getByRole("button", { name: "Demo scene" })).toBeEnabled();
+  const given = houseFiles().map(({ name, buffer }) => ({ name, base64: buffer.toString("base64") }));
+  const dataTransfer = await page.evaluateHandle((files) => {
+    const transfer = new DataTransfer();
+    for (const { name, base64 } of files) {
+      transfer.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], name));
+    }
+    return transfer;
+  }, given);
+  const zone = page.getByRole("region", { name: "Add files" });
+  await page.dispatchEvent("main", "dragover", { dataTransfer });
+  await expect(zone).toHaveClass(/over/);
+  await page.dispatchEvent("main", "drop", { dataTransfer });
+  await expect(zone).not.toHaveClass(/over/);
+  await expect(page.locator(".view .status.good")).toHaveCount(6);
+});
+
 test("a file name is text, whatever it says", async ({ page }) => {
   const { problems } = watch(page);
   const names = [

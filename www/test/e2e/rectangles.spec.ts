@@ -44,11 +44,26 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
     await expect(async () => {
       expect(await lookOf(page, image)).not.toEqual(before);
     }).toPass({ timeout: 10_000 });
+    // A refused one says what it would have gained.
+    const picked = inspector.locator(".picked");
+    const rings = page.getByTestId("cluster-plane").locator(".refused-cluster");
+    for (
+      let i = 0;
+      i < (await rings.count()) && !/^Refused/.test((await picked.textContent()) ?? "");
+      i += 1
+    ) {
+      await rings.nth(i).click({ force: true });
+    }
+    await expect(picked).toHaveText(/^Refused cluster \d+ of plane 0$/);
+    await expect(inspector.locator("div", { hasText: /^Gain/ })).toContainText(/-?[\d.]+ bit/);
+    await page.getByRole("button", { name: "Clear" }).click();
   });
 
   await test.step("figures 10 to 12: the window of a pair of lines, and why pairs are refused", async () => {
     await openTab(page, "Rectangles");
     await expect(page.getByTestId("plane-window").locator(".end").first()).toBeAttached();
+    // The best pair's window in the views, before anything is picked.
+    expect(await page.getByTestId("filmstrip").locator("canvas").count()).toBeGreaterThanOrEqual(3);
     const pairs = page.getByLabel("Pair of lines");
     const options = await pairs.getByRole("option").allTextContents();
     expect(options.some((text) => text.endsWith("selected"))).toBe(true);

@@ -1,27 +1,21 @@
 /** The guided tour: every question can be answered in the view that it is about, and not by anything else. */
 import { expect, type Locator, type Page, test } from "@playwright/test";
-import { pickUntil, waitForStage, watch } from "./helpers";
-
-test.describe.configure({ mode: "serial" });
+import { onePage, pickUntil, waitForStage } from "./helpers";
 
 let page: Page;
-let problems: string[];
 
-test.beforeAll(async ({ browser }) => {
-  page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
-  ({ problems } = watch(page));
-  await page.goto("/");
-  await page.getByRole("button", { name: "Tour" }).click();
-  await expect(lesson()).toContainText("Step 1 of 9");
-  await waitForStage(page, "model");
-});
-
-test.afterAll(async () => {
-  await lesson().getByRole("button", { name: "End tour" }).click();
-  await expect(lesson()).toHaveCount(0);
-  expect(problems).toEqual([]);
-  await page.close();
-});
+onePage(
+  async (opened) => {
+    page = opened;
+    await page.getByRole("button", { name: "Tour" }).click();
+    await expect(lesson()).toContainText("Step 1 of 9");
+    await waitForStage(page, "model");
+  },
+  async () => {
+    await lesson().getByRole("button", { name: "End tour" }).click();
+    await expect(lesson()).toHaveCount(0);
+  },
+);
 
 const lesson = () => page.getByTestId("lesson");
 const answer = () => lesson().getByText("✓");
