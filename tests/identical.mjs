@@ -8,10 +8,9 @@
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { dirname, join, relative, sep } from "node:path";
-import { fileURLToPath, pathToFileURL } from "node:url";
+import { join } from "node:path";
+import { addFiles, openSession, root } from "./session.mjs";
 
-const root = join(dirname(fileURLToPath(import.meta.url)), "..");
 const [binary, scene = join(root, "www/public/demo")] = process.argv.slice(2);
 if (!binary) {
     console.error("usage: node tests/identical.mjs BINARY [SCENE]");
@@ -49,13 +48,8 @@ function runNative(method) {
 }
 
 async function runWasm(method) {
-    const pkg = join(root, "www/src/pkg");
-    const { initSync, Session } = await import(pathToFileURL(join(pkg, "ridgeline.js")).href);
-    initSync({ module: readFileSync(join(pkg, "ridgeline_bg.wasm")) });
-    const session = new Session();
-    for (const path of filesBelow(scene)) {
-        session.addFile(relative(scene, path).split(sep).join("/"), readFileSync(path));
-    }
+    const { session } = await openSession();
+    addFiles(session, scene);
     session.setParams({ method });
     session.load({});
     for (const stage of session.chosenStages()) {
@@ -65,14 +59,6 @@ async function runWasm(method) {
         console.log(`wasm ${stage.padEnd(10)} ${seconds.padStart(7)} s  ${JSON.stringify(counts)}`);
     }
     return new Map(session.exportNames().map((name) => [name, Buffer.from(session.exportFile(name))]));
-}
-
-// The files that the command line would read: it leaves out other kinds (src/cli/files.rs).
-function filesBelow(folder) {
-    const wanted = /\.(jpe?g|png|tiff?|txt|p|json|xml|out|nvm|csv|ori|prj|geojson|camera|bin|xyz)$/i;
-    return readdirSync(folder, { recursive: true, withFileTypes: true })
-        .filter((entry) => entry.isFile() && wanted.test(entry.name))
-        .map((entry) => join(entry.parentPath ?? entry.path, entry.name));
 }
 
 function same(name, a, b) {
