@@ -1,12 +1,13 @@
 // Runs a scene by both methods through the wasm Session in Node and through the native command line, and compares
-// every file byte for byte (report.json without its part `seconds`).
+// every file byte for byte (report.json without its part `seconds`). What model.glb is wrong in, the validator of glTF's makers says.
 //
 //   node tests/identical.mjs BINARY [SCENE]     the scene is the demo's by default
 //
-// Ends with exit code 1 and the names of the files that differ.
+// Ends with exit code 1 and the names of the files that differ or are wrong.
 
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { addFiles, openSession, root } from "./session.mjs";
@@ -17,11 +18,12 @@ if (!binary) {
     process.exit(2);
 }
 
-const differing = [];
-for (const method of ["lines", "rectangles"]) differing.push(...(await compare(method)));
-process.exit(differing.length === 0 ? 0 : 1);
+const validator = createRequire(join(root, "www/package.json"))("gltf-validator");
+const bad = [];
+for (const method of ["lines", "rectangles"]) bad.push(...(await compare(method)));
+process.exit(bad.length === 0 ? 0 : 1);
 
-// The names of the files that differ.
+// The names of the files that differ or are wrong.
 async function compare(method) {
     const native = runNative(method);
     const wasm = await runWasm(method);
@@ -32,7 +34,16 @@ async function compare(method) {
         const verdict = differing.includes(name) ? "DIFFERS" : "identical";
         console.log(`${method}: ${verdict.padEnd(10)} ${name} (${native.get(name)?.length ?? "missing"} bytes)`);
     }
-    return differing;
+    return [...differing, ...(await wrongIn(native.get("model.glb")))];
+}
+
+// Errors and warnings of the validator, one line each.
+async function wrongIn(glb) {
+    const { issues } = await validator.validateBytes(new Uint8Array(glb));
+    const worst = issues.messages.filter(({ severity }) => severity <= 1);
+    for (const { code, message, pointer } of worst) console.log(`model.glb: ${code} ${message} ${pointer ?? ""}`);
+    console.log(`model.glb: ${issues.numErrors} errors, ${issues.numWarnings} warnings of the glTF validator`);
+    return worst.map(({ code }) => code);
 }
 
 function runNative(method) {
