@@ -108,7 +108,7 @@ function Views() {
           Remove all
         </button>
       </div>
-      {peakMb.value !== null && <p class="muted numbers">about {peakMb} MB of memory</p>}
+      {peakMb.value !== null && <p class="muted numbers">about {peakMb} MB of memory in each worker</p>}
       <ul class="views">
         {report.images.map((image) => (
           <ViewRow key={image.path} image={image} />
