@@ -8,7 +8,7 @@
 #   make identical  the demo scene natively and in wasm, compared byte for byte
 #   make golden     rewrite the hashes that the tests of whole runs expect (tests/golden)
 #   make score      all scenes against their truth; rewrites the tables of docs/results.md
-#   make fuzz       all readers on damaged files, FUZZ_SECONDS (600) for each family of formats
+#   make fuzz       all readers on damaged files, FUZZ_SECONDS (600) for each format
 #   make bench      time of every stage on the synthetic scene
 #   make clean      remove what was built (not the tool cache)
 

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use common::synthetic_files;
+use common::{synthetic_files, zipped};
 
 /// What a run writes.
 const OUTPUTS: [&str; 13] = [
@@ -139,6 +139,26 @@ fn a_good_scene_gives_all_files() {
     assert!(report["seconds"]["matches"].as_f64().unwrap() > 0.0);
     assert!(report["stages"][4]["counts"]["facets"].as_u64().unwrap() >= 4);
     assert_eq!(report["params"]["sweep"]["min_similarity"], 0.4);
+}
+
+#[test]
+fn archives_and_folders_stand_for_their_files() {
+    let scene = Scene::new();
+    let (images, others): (Vec<_>, Vec<_>) =
+        (synthetic_files().into_iter()).partition(|(path, _)| path.starts_with("images/"));
+    fs::remove_dir_all(scene.0.path().join("scene/images")).unwrap();
+    scene.write("flight/photographs.zip", &zipped(&images));
+    assert!(!others.is_empty());
+    let checked = Command::new(env!("CARGO_BIN_EXE_ridgeline"))
+        .arg("check")
+        .arg(scene.0.path().join("scene"))
+        .output()
+        .unwrap();
+    let printed = String::from_utf8_lossy(&checked.stdout);
+    assert!(
+        printed.contains("agree:") && printed.contains("s2_03.png"),
+        "{printed}"
+    );
 }
 
 #[test]

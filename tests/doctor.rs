@@ -189,6 +189,60 @@ fn broken_orientations_are_named() {
     }
 }
 
+/// The scene with these views only.
+fn some_views(scene: &Scene, views: &[usize]) -> Scene {
+    let mut some = scene.clone();
+    some.views = views.iter().map(|&i| scene.views[i].clone()).collect();
+    some
+}
+
+/// What is said of the scene with these two of its views exchanged, and what names them.
+fn exchanged(scene: &Scene, [a, b]: [usize; 2]) -> (String, String) {
+    let broken = colmap(scene, |s| {
+        s.views[a].camera = scene.views[b].camera.clone();
+        s.views[b].camera = scene.views[a].camera.clone();
+    });
+    let name = |i: usize| &scene.views[i].name;
+    let expected = format!("{} and {} have each other's", name(a), name(b));
+    (words(scene, broken), expected)
+}
+
+#[test]
+fn two_exchanged_views_are_named_among_few_and_small_ones() {
+    let all: &[usize] = &[0, 1, 2, 3, 4, 5];
+    let of_four: &[usize] = &[1, 2, 4, 5];
+    let mut unnamed = Vec::new();
+    for (scene, views, pair) in [
+        (gable_scene(320).0, all, [0, 1]),
+        (gable_scene(256).0, all, [1, 4]),
+        (gable_scene(320).0, of_four, [1, 2]),
+    ] {
+        let (said, expected) = exchanged(&some_views(&scene, views), pair);
+        if !said.contains(&expected) {
+            unnamed.push(format!("{expected}: {said}"));
+        }
+    }
+    assert!(unnamed.is_empty(), "{}", unnamed.join("\n"));
+    // Views at a like place of two strips may agree by half: that is called a shift.
+    let (said, _) = exchanged(&some_views(&l_scene(480).0, of_four), [0, 3]);
+    assert!(!said.is_empty());
+}
+
+#[test]
+fn a_view_that_agrees_with_none_is_named_where_the_others_agree() {
+    let scene = some_views(&gable_scene(320).0, &[0, 1, 2, 3]);
+    let turned = colmap(&scene, |s| {
+        let (sine, cosine) = ridgeline::math::sin_cos(0.1_f64.to_radians());
+        let camera = &mut s.views[2].camera;
+        camera.r = Matrix3::new(1.0, 0.0, 0.0, 0.0, cosine, -sine, 0.0, sine, cosine) * camera.r;
+    });
+    let said = words(&scene, turned);
+    assert!(
+        said.contains("none of the others") && said.contains("s1_03.png"),
+        "{said}"
+    );
+}
+
 #[test]
 fn a_refusal_says_what_was_tried() {
     let (scene, _) = gable_scene(320);

@@ -4,8 +4,9 @@
     python3 tests/doctor_table.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
 
 FOLDER holds one folder per scene with images/ and cameras.json (K, R, C). Prints the table of docs/formats.md:
-a row for each mistake, a column for each scene; the first row is the sound scene, which must be left alone. "-": the
-list of angles has one camera for all images, and the scene has several.
+a row for each mistake, a column for each scene; the first row is the sound scene, which must be left alone. A list of angles
+has one camera for all images, and images of several sizes cannot be exchanged: where a scene cannot hold a mistake as it is,
+its images are resampled to one focal length and one size before (marked by a star). "-": the mistake changes nothing.
 """
 import json
 import pathlib
@@ -15,11 +16,17 @@ import sys
 import tempfile
 
 import numpy as np
+from PIL import Image
 
 from on_scenes import names_of, parser_of
 
+
 class NotExpressible(Exception):
-    """A format cannot hold the orientation of a scene."""
+    """A scene cannot hold a mistake as it is."""
+
+
+class ChangesNothing(Exception):
+    """What is called a mistake is right for a scene."""
 
 
 UP = np.diag([1.0, -1.0, -1.0])
@@ -31,7 +38,7 @@ def angles(change):
         found = json.loads((scene / 'cameras.json').read_text())
         frame, pixel_mm, origin = (20000, 20000), 0.012, np.array(found.get('origin', [0, 0, 0]))
         if len({round(view['K'][0][0], 3) for view in found['views']}) > 1:
-            raise NotExpressible('the list has one camera for all images')
+            raise NotExpressible
         focal_mm = found['views'][0]['K'][0][0] * pixel_mm
         camera = [f'principal_distance_mm {focal_mm!r}', f'pixel_size_mm {pixel_mm}', f'image_size_px {frame[0]} {frame[1]}']
         exterior = ['# angles in degrees']
@@ -47,15 +54,20 @@ def angles(change):
     return broken
 
 
-def cameras(change):
+def cameras(change, is_sound=False):
     """K, R and C with a change of each view."""
     def broken(scene, work):
         found = json.loads((scene / 'cameras.json').read_text())
         # An inverted pose has lost the origin, too.
         found.pop('origin', None)
+        differs = False
         for view in found['views']:
-            k, r, c = change(*(np.array(view[key], float) for key in 'KRC'), view)
-            view['K'], view['R'], view['C'] = k.tolist(), r.tolist(), c.tolist()
+            stated = [np.array(view[key], float) for key in 'KRC']
+            changed = change(*stated, view)
+            differs |= not all(np.allclose(a, b) for a, b in zip(stated, changed))
+            view['K'], view['R'], view['C'] = (a.tolist() for a in changed)
+        if not differs and not is_sound:
+            raise ChangesNothing
         (work / 'cameras.json').write_text(json.dumps(found))
     return broken
 
@@ -65,10 +77,32 @@ def order(places):
     def broken(scene, work):
         found = json.loads((scene / 'cameras.json').read_text())
         views = sorted(found['views'], key=lambda view: view['file'])
+        if len({(view['width'], view['height']) for view in views}) > 1:
+            raise NotExpressible
         names = [view['file'] for view in views]
         found['views'] = [{**views[place], 'file': name} for name, place in zip(names, places(len(names)))]
         (work / 'cameras.json').write_text(json.dumps(found))
     return broken
+
+
+def alike(scene, work):
+    """A copy of a scene whose images have one focal length and one size: scaled to the shortest, and the middles cut out."""
+    found = json.loads((scene / 'cameras.json').read_text())
+    shortest = min(view['K'][0][0] for view in found['views'])
+    scales = [shortest / view['K'][0][0] for view in found['views']]
+    size = [min(int(view[side] * scale) for view, scale in zip(found['views'], scales)) for side in ('width', 'height')]
+    (work / 'images').mkdir(parents=True)
+    for view, scale in zip(found['views'], scales):
+        of = np.array([view['width'], view['height']])
+        start = (of - np.array(size) / scale) / 2
+        box = (*start, *(start + np.array(size) / scale))
+        image = Image.open(scene / 'images' / view['file']).resize(size, Image.Resampling.LANCZOS, box=box)
+        image.save(work / 'images' / view['file'], quality=95)
+        k = np.array(view['K'], float)
+        k[:2, 2] -= start
+        k[:2] *= scale
+        view['K'], (view['width'], view['height']) = k.tolist(), size
+    (work / 'cameras.json').write_text(json.dumps(found))
 
 
 def with_k(k, *, cx=None, cy=None, factor=1.0):
@@ -81,7 +115,7 @@ def with_k(k, *, cx=None, cy=None, factor=1.0):
 
 # What is done, and a word of what it is called.
 MISTAKES = {
-    'none': (cameras(lambda k, r, c, v: (k, r, c)), None),
+    'none': (cameras(lambda k, r, c, v: (k, r, c), is_sound=True), None),
     'gon called degrees': (angles(lambda o, p, k: [a / 0.9 for a in (o, p, k)]), 'in gon'),
     'radians called degrees': (angles(lambda o, p, k: [float(np.radians(a)) for a in (o, p, k)]), 'radians'),
     'phi before omega': (angles(lambda o, p, k: (p, o, k)), 'phi, omega, kappa'),
@@ -102,33 +136,47 @@ def main():
     names = names_of(args)
     print('| mistake | ' + ' | '.join(names) + ' |\n|---|' + '---|' * len(names))
     named, tried = dict.fromkeys(names, 0), dict.fromkeys(names, 0)
-    for what, (broken, word) in MISTAKES.items():
-        cells = []
-        for name in names:
-            try:
-                said, score = examine(args.binary, args.scenes / name, broken)
-            except NotExpressible:
-                cells.append('-')
-                continue
-            tried[name] += word is not None
-            # Images of several sizes tell that they were exchanged before anything is looked at.
-            by_size = 'pixels, but' in said
-            good = (word in said or by_size) if word else said == ''
-            named[name] += good and word is not None
-            verdict = 'refused for the sizes' if by_size else 'named' if word else 'left alone'
-            cells.append((verdict if good else f'**{said[:60] or "nothing said"}**') + (f' ({score})' if score != '-' else ''))
-        print(f'| {what} | ' + ' | '.join(cells) + ' |', flush=True)
+    was_harmed = False
+    with tempfile.TemporaryDirectory() as folder:
+        for what, (broken, word) in MISTAKES.items():
+            cells = []
+            for name in names:
+                try:
+                    said, score, star = examine_any(args, name, broken, pathlib.Path(folder))
+                except ChangesNothing:
+                    cells.append('-')
+                    continue
+                good = word in said if word else said == ''
+                tried[name] += word is not None
+                named[name] += good and word is not None
+                was_harmed |= word is None and not good
+                verdict = ('named' if word else 'left alone') if good else f'**{said[:60] or "nothing said"}**'
+                cells.append(f'{verdict}{star} ({score})')
+            print(f'| {what} | ' + ' | '.join(cells) + ' |', flush=True)
     print('| named | ' + ' | '.join(f'{named[name]} of {tried[name]}' for name in names) + ' |')
-    return 0 if all(named[name] >= tried[name] - 1 for name in names) else 1
+    return 1 if was_harmed or any(named[name] < tried[name] - 1 for name in names) else 0
+
+
+def examine_any(args, name, broken, folder):
+    """As `examine`, of a scene as it is or else with images that are alike; a star tells the latter."""
+    try:
+        return *examine(args.binary, args.scenes / name, broken), ''
+    except NotExpressible:
+        copy = folder / name
+        if not copy.exists():
+            alike(args.scenes / name, copy)
+        return *examine(args.binary, copy, broken), '*'
 
 
 def examine(binary, scene, broken):
     """What the doctor says about the orientation, and the agreement as it is stated and without the mistake."""
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
-        shutil.copytree(scene / 'images', work / 'images')
         broken(scene, work)
+        shutil.copytree(scene / 'images', work / 'images')
         done = subprocess.run([binary, 'check', work, '--json'], capture_output=True, text=True)
+        if done.returncode not in (0, 2):
+            return f'failed: {done.stderr}', '-'
         found = json.loads(done.stdout)
         doctor = found['doctor'] or {}
         scores = [doctor.get('stated'), doctor.get('cured')]

@@ -1,28 +1,29 @@
 // Runs a scene by both methods through the wasm Session in Node and through the native command line, and compares
-// every file byte for byte (report.json without its part `seconds`).
+// every file byte for byte (report.json without its part `seconds`). What model.glb is wrong in, the validator of glTF's makers says.
 //
 //   node tests/identical.mjs BINARY [SCENE]     the scene is the demo's by default
 //
-// Ends with exit code 1 and the names of the files that differ.
+// Ends with exit code 1 and the names of the files that differ or are wrong.
 
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
-import { dirname, join, relative, sep } from "node:path";
-import { fileURLToPath, pathToFileURL } from "node:url";
+import { join } from "node:path";
+import { addFiles, openSession, root } from "./session.mjs";
 
-const root = join(dirname(fileURLToPath(import.meta.url)), "..");
 const [binary, scene = join(root, "www/public/demo")] = process.argv.slice(2);
 if (!binary) {
     console.error("usage: node tests/identical.mjs BINARY [SCENE]");
     process.exit(2);
 }
 
-const differing = [];
-for (const method of ["lines", "rectangles"]) differing.push(...(await compare(method)));
-process.exit(differing.length === 0 ? 0 : 1);
+const validator = createRequire(join(root, "www/package.json"))("gltf-validator");
+const bad = [];
+for (const method of ["lines", "rectangles"]) bad.push(...(await compare(method)));
+process.exit(bad.length === 0 ? 0 : 1);
 
-// The names of the files that differ.
+// The names of the files that differ or are wrong.
 async function compare(method) {
     const native = runNative(method);
     const wasm = await runWasm(method);
@@ -33,7 +34,16 @@ async function compare(method) {
         const verdict = differing.includes(name) ? "DIFFERS" : "identical";
         console.log(`${method}: ${verdict.padEnd(10)} ${name} (${native.get(name)?.length ?? "missing"} bytes)`);
     }
-    return differing;
+    return [...differing, ...(await wrongIn(native.get("model.glb")))];
+}
+
+// Errors and warnings of the validator, one line each.
+async function wrongIn(glb) {
+    const { issues } = await validator.validateBytes(new Uint8Array(glb));
+    const worst = issues.messages.filter(({ severity }) => severity <= 1);
+    for (const { code, message, pointer } of worst) console.log(`model.glb: ${code} ${message} ${pointer ?? ""}`);
+    console.log(`model.glb: ${issues.numErrors} errors, ${issues.numWarnings} warnings of the glTF validator`);
+    return worst.map(({ code }) => code);
 }
 
 function runNative(method) {
@@ -49,13 +59,8 @@ function runNative(method) {
 }
 
 async function runWasm(method) {
-    const pkg = join(root, "www/src/pkg");
-    const { initSync, Session } = await import(pathToFileURL(join(pkg, "ridgeline.js")).href);
-    initSync({ module: readFileSync(join(pkg, "ridgeline_bg.wasm")) });
-    const session = new Session();
-    for (const path of filesBelow(scene)) {
-        session.addFile(relative(scene, path).split(sep).join("/"), readFileSync(path));
-    }
+    const { session } = await openSession();
+    addFiles(session, scene);
     session.setParams({ method });
     session.load({});
     for (const stage of session.chosenStages()) {
@@ -65,14 +70,6 @@ async function runWasm(method) {
         console.log(`wasm ${stage.padEnd(10)} ${seconds.padStart(7)} s  ${JSON.stringify(counts)}`);
     }
     return new Map(session.exportNames().map((name) => [name, Buffer.from(session.exportFile(name))]));
-}
-
-// The files that the command line would read: it leaves out other kinds (src/cli/files.rs).
-function filesBelow(folder) {
-    const wanted = /\.(jpe?g|png|tiff?|txt|p|json|xml|out|nvm|csv|ori|prj|geojson|camera|bin|xyz)$/i;
-    return readdirSync(folder, { recursive: true, withFileTypes: true })
-        .filter((entry) => entry.isFile() && wanted.test(entry.name))
-        .map((entry) => join(entry.parentPath ?? entry.path, entry.name));
 }
 
 function same(name, a, b) {

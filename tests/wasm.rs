@@ -7,7 +7,7 @@
 
 mod common;
 
-use common::{GOLDEN, golden_of, synthetic_files};
+use common::{GOLDEN, golden_of, synthetic_files, zipped};
 use js_sys::{Array, Error, Function, Object, Reflect};
 use ridgeline::wasm::Session;
 use wasm_bindgen::{JsCast, JsValue};
@@ -130,6 +130,13 @@ fn the_figures_answer(session: &mut Session, half_plane: &JsValue) {
     );
     let new = records.iter().filter(|r| member(r, "origin") != "matched");
     assert!(new.count() > 0);
+}
+
+#[wasm_bindgen_test]
+fn an_archive_stands_for_its_files() {
+    let mut session = session_of(&[("scene.zip".to_owned(), zipped(&synthetic_files()))]);
+    let info = session.load(JsValue::UNDEFINED).unwrap();
+    assert_eq!(Array::from(&member(&info, "views")).length(), 6);
 }
 
 #[wasm_bindgen_test]

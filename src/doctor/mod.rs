@@ -23,7 +23,7 @@ pub use report::{Finding, Report, Trial};
 pub use shifts::ViewShift;
 pub use suspects::{AngleOrder, Sequence, Suspect};
 
-use nalgebra::{Matrix3, Point2, Vector3};
+use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 use serde::Serialize;
 
 use crate::camera::Camera;
@@ -152,7 +152,7 @@ pub fn examine(patients: &[Patient]) -> Examination {
     let odd = clinic.odd_views(&counts);
     let coarse = match before.score >= SOUND {
         true => shifts::coarse_shifts(&clinic, &stated),
-        false => Vec::new(),
+        false => vec![Vector2::zeros(); stated.len()],
     };
     // A view that is only shifted is no odd one.
     let nearly = shifts::shifted(&stated, &coarse);
@@ -180,7 +180,7 @@ pub fn examine(patients: &[Patient]) -> Examination {
     let Interview {
         best: (after, suspect),
         trials,
-    } = clinic.interview(patients, &odd);
+    } = clinic.interview(patients, &odd, before);
     let diagnosis = match suspect {
         Some(suspect) if after.score >= SOUND && after.score >= before.score + LEAST_GAIN => {
             Diagnosis::Explained {
@@ -191,7 +191,7 @@ pub fn examine(patients: &[Patient]) -> Examination {
             }
         }
         _ if before.points < FEWEST_POINTS => Diagnosis::Unknown(before),
-        _ if before.score >= SOUND => Diagnosis::Odd(before, odd),
+        _ if !odd.is_empty() => Diagnosis::Odd(before, odd),
         _ => Diagnosis::Unexplained(before),
     };
     Examination {
@@ -212,6 +212,18 @@ struct Clinic {
 struct Interview {
     best: (Agreement, Option<Suspect>),
     trials: Vec<Trial>,
+}
+
+impl Interview {
+    /// This one's best, and the trials of both.
+    fn or(mut self, earlier: Self) -> Self {
+        self.trials.extend(earlier.trials);
+        sort_by(&mut self.trials, |a, b| {
+            let by_score = b.agreement.score.total_cmp(&a.agreement.score);
+            b.all_pairs.cmp(&a.all_pairs).then(by_score)
+        });
+        self
+    }
 }
 
 /// Of the points of a view, those found again in another one, and those of them found on the line.
@@ -269,39 +281,40 @@ impl Clinic {
 
     /// Views that agree with no other one, although those agree among themselves.
     fn odd_views(&self, counts: &[Count]) -> Vec<usize> {
-        let of_view = |view: usize| {
+        let of_pairs = |is_meant: &dyn Fn(usize, usize) -> bool| {
             let pairs = self.pairs.iter().zip(counts);
-            let own = pairs.filter(|((i, j), _)| *i == view || *j == view);
-            agreement_of(own.fold([0, 0], |sum, (_, c)| [sum[0] + c[0], sum[1] + c[1]]))
+            let meant = pairs.filter(|((i, j), _)| is_meant(*i, *j));
+            agreement_of(meant.fold([0, 0], |sum, (_, c)| [sum[0] + c[0], sum[1] + c[1]]))
         };
-        let views: Vec<Agreement> = (0..self.grays.len()).map(of_view).collect();
-        if total(counts).points < FEWEST_POINTS || views.iter().all(|v| v.score < SOUND) {
-            return Vec::new();
+        let is_odd = |view: usize| {
+            let own = of_pairs(&|i, j| i == view || j == view);
+            own.points >= FEWEST_POINTS && own.score < ODD
+        };
+        let odd: Vec<usize> = (0..self.grays.len()).filter(|&i| is_odd(i)).collect();
+        let others = of_pairs(&|i, j| !odd.contains(&i) && !odd.contains(&j));
+        match others.points >= FEWEST_POINTS && others.score >= SOUND {
+            true => odd,
+            false => Vec::new(),
         }
-        (0..views.len())
-            .filter(|&i| views[i].points >= FEWEST_POINTS && views[i].score < ODD)
-            .collect()
     }
 
     /// The suspect under whom the views agree best.
-    fn interview(&self, patients: &[Patient], odd: &[usize]) -> Interview {
-        // Where some views agree, only the others are suspects.
-        let lineup = match *odd {
-            [] => Suspect::lineup(patients),
+    fn interview(&self, patients: &[Patient], odd: &[usize], before: Agreement) -> Interview {
+        // Where some views agree, the others are suspects first.
+        let exchanged = match *odd {
             [a, b] => vec![Suspect::Swapped(a, b)],
             _ => Vec::new(),
         };
-        let best = self.best_of(patients, lineup);
-        if best.best.0.score >= SOUND || !odd.is_empty() {
+        let best = self.best_of(patients, exchanged);
+        if best.best.0.score >= SOUND || before.score >= SOUND {
             return best;
         }
-        let mut last = self.best_of(patients, self.focal_lengths(patients));
-        last.trials.extend(best.trials);
-        sort_by(&mut last.trials, |a, b| {
-            let by_score = b.agreement.score.total_cmp(&a.agreement.score);
-            b.all_pairs.cmp(&a.all_pairs).then(by_score)
-        });
-        last
+        let best = self.best_of(patients, Suspect::lineup(patients)).or(best);
+        if best.best.0.score >= SOUND {
+            return best;
+        }
+        self.best_of(patients, self.focal_lengths(patients))
+            .or(best)
     }
 
     /// The best of many: a few pairs of views single out those worth asking all.
@@ -353,7 +366,11 @@ impl Clinic {
         let units = PIXEL_SIZES_UM.map(|size| 1000.0 / size);
         let units = units.into_iter().chain([longer, longer / 36.0]);
         let mut best = (0.0, 1.0);
-        for factor in units.flat_map(|unit| [unit, 1.0 / unit]) {
+        let is_possible = |factor: &f64| {
+            let focal_px = factor * camera.k[(0, 0)];
+            focal_px > SHORTEST_FOCAL * longer && focal_px < LONGEST_FOCAL_PX
+        };
+        for factor in (units.flat_map(|unit| [unit, 1.0 / unit])).filter(is_possible) {
             if let Some(cameras) = Suspect::Focal(factor).treated(patients) {
                 let score = total(&self.counts(&cameras, &few)).score;
                 if score > best.0 {
@@ -365,6 +382,14 @@ impl Clinic {
         near.map(|f| Suspect::Focal(best.1 * f)).to_vec()
     }
 }
+
+/// Shortest focal length that a unit may stand for, in longer sides of the image. Assumption: no aerial camera sees more than a
+/// hundred and twenty degrees.
+const SHORTEST_FOCAL: f64 = 0.3;
+
+/// Longest one, pixels: a lens of 300 mm over pixels of 1.5 micrometres. Beyond, views are all but parallel projections, and
+/// crops of one place agree under any of them.
+const LONGEST_FOCAL_PX: f64 = 200_000.0;
 
 /// Sizes of a pixel that occur, micrometres: small and large sensors, scanners.
 const PIXEL_SIZES_UM: [f64; 30] = [

@@ -66,6 +66,9 @@ pub enum Sequence {
     KappaFirst,
 }
 
+/// Among more views than these, exchanged ones are told by the agreement of the others: pairs of views are many.
+const MOST_SWAPPED: usize = 8;
+
 impl Suspect {
     /// Every suspect that these views may suffer from.
     pub(super) fn lineup(patients: &[Patient]) -> Vec<Self> {
@@ -93,7 +96,11 @@ impl Suspect {
         if patients.iter().all(|p| p.crop.is_some()) {
             all.extend([Self::CropFromBottom, Self::CropExchanged, Self::CropTwice]);
         }
-        all.extend((1..patients.len()).map(Self::Cycled));
+        let count = patients.len();
+        all.extend((1..count).map(Self::Cycled));
+        if count <= MOST_SWAPPED {
+            all.extend((0..count).flat_map(|a| (a + 1..count).map(move |b| Self::Swapped(a, b))));
+        }
         all
     }
 

@@ -1,7 +1,8 @@
 //! What the tests of whole runs share, natively and in wasm.
 #![allow(dead_code)] // Not every test uses all of it.
 
-use std::fmt::Write;
+use std::fmt::Write as _;
+use std::io::Write as _;
 
 /// Hashes of the files that the synthetic scene gives, one line a file: FNV-1a, bytes, name.
 /// Rewritten by `make golden`.
@@ -14,6 +15,19 @@ pub const SIZE_PX: u32 = 320;
 pub fn synthetic_files() -> Vec<(String, Vec<u8>)> {
     let (scene, _) = ridgeline::synthetic::l_scene(SIZE_PX);
     ridgeline::synthetic::to_files(&scene)
+}
+
+/// These files as an archive.
+pub fn zipped(files: &[(String, Vec<u8>)]) -> Vec<u8> {
+    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    for (path, bytes) in files {
+        let options = zip::write::SimpleFileOptions::default();
+        archive
+            .start_file(path.as_str(), options)
+            .expect("the names differ");
+        archive.write_all(bytes).expect("memory takes all");
+    }
+    archive.finish().expect("memory takes all").into_inner()
 }
 
 /// The golden text of these files.

@@ -6,7 +6,7 @@ import { Diagnosis } from "./Diagnosis";
 import { droppedFiles, pickedFiles } from "./files";
 import { addFiles, clearProject, openDemo, removeFile, setRunOptions } from "./projectActions";
 import { OrientationChoice, PlaceFields } from "./RunOptionFields";
-import { files, inspection, keptBytes, projectName, runOptions, scene } from "./state";
+import { files, inspection, keptBytes, peakMb, projectName, runOptions, scene } from "./state";
 import { Thumbnail } from "./Thumbnail";
 
 export function Project() {
@@ -123,6 +123,7 @@ function Views() {
           Remove all
         </button>
       </div>
+      {peakMb.value !== null && <p class="muted numbers">about {peakMb} MB of memory in each worker</p>}
       <ul class="views">
         {report.images.map((image) => (
           <ViewRow key={image.path} image={image} />

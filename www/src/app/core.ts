@@ -19,6 +19,7 @@ import {
   type Notice,
   notices,
   params,
+  peakMb,
   runningStage,
   runOptions,
   type StageState,
@@ -26,8 +27,8 @@ import {
   stages,
 } from "./state";
 
-/** Whether the present worker holds the project's files, and has the scene loaded. */
-export const held = { files: false, scene: false };
+/** Whether the present worker holds the project's files, has the scene loaded, and was asked about them as they are wanted now. */
+export const held = { files: false, scene: false, inspection: false };
 
 export const engine = new Engine((stage, fraction) => crew.engineReached(stage, fraction));
 export const crew = new Crew(engine, (name, fraction) => {
@@ -128,9 +129,11 @@ export async function ensureInspected(): Promise<void> {
     held.files = true;
     inspection.value = null;
   }
-  if (inspection.value === null) {
-    const { orientation } = runOptions.value;
-    inspection.value = await engine.call("inspect", { options: orientation === null ? {} : { orientation } });
+  if (inspection.value === null || !held.inspection) {
+    // Of all images, also of those that are left out.
+    const options = loadOptions({ ...runOptions.value, leftOut: [] }, null);
+    inspection.value = await engine.call("inspect", { options });
+    held.inspection = true;
   }
 }
 
@@ -138,9 +141,9 @@ export async function ensureInspected(): Promise<void> {
 export async function ensureScene(): Promise<void> {
   await ensureInspected();
   if (!held.scene) {
-    const loaded = await engine.call("load", {
-      options: loadOptions(runOptions.value, inspection.value),
-    });
+    const options = loadOptions(runOptions.value, inspection.value);
+    peakMb.value = (await engine.call("inspect", { options })).peak_mb;
+    const loaded = await engine.call("load", { options });
     held.scene = true;
     crew.forgetViews();
     scene.value = loaded;

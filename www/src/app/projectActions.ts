@@ -20,6 +20,7 @@ import {
   NO_OPTIONS,
   notices,
   params,
+  peakMb,
   projectName,
   type RunOptions,
   runOptions,
@@ -138,6 +139,7 @@ export async function openDemo(target?: string | null): Promise<void> {
 export async function setRunOptions(change: Partial<RunOptions>): Promise<void> {
   stopWorker();
   held.scene = false;
+  held.inspection = false;
   freshStages.value = 0;
   batch(() => {
     runOptions.value = { ...runOptions.value, ...change };
@@ -177,10 +179,17 @@ async function loadProject(what: string, adopt?: () => Promise<void>): Promise<v
     const problems = inspection.value?.errors ?? [];
     // The inspection is of all images, and does not look into them: where that matters, loading says
     // what is wrong.
-    const isFinal = runOptions.value.leftOut.length === 0 && inspection.value?.is_implausible !== true;
+    const { leftOut, tileM } = runOptions.value;
+    const isFinal = leftOut.length === 0 && inspection.value?.is_implausible !== true;
+    if (tileM !== null) {
+      // A large area may be too much to load at once: where something stands against the whole, the plan of the tiles says
+      // whether it does against them.
+      const options = loadOptions(runOptions.value, inspection.value);
+      await (problems.length === 0 || engine.call("planTiles", { options, tileM }));
+      return;
+    }
     if (problems.length === 0 || !isFinal) {
-      // A large area may be too much to load at once.
-      await (runOptions.value.tileM === null ? ensureScene() : Promise.resolve());
+      await ensureScene();
       return;
     }
     for (const problem of problems.slice(0, MAX_PROBLEMS)) {
@@ -194,6 +203,7 @@ function clearScene(): void {
     image.close();
   }
   scene.value = null;
+  peakMb.value = null;
   images.value = [];
   shownView.value = 0;
   keptResult.value = null;

@@ -142,6 +142,8 @@ export const NO_OPTIONS: RunOptions = {
 
 export const runOptions = signal<RunOptions>(NO_OPTIONS);
 export const inspection = signal<Inspection | null>(null);
+/** Memory that the views in use will take at most, megabytes; null until they are read. */
+export const peakMb = signal<number | null>(null);
 export const scene = signal<SceneInfo | null>(null);
 /** The undistorted images of the loaded scene, by view. */
 export const images = signal<ImageBitmap[]>([]);

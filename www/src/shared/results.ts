@@ -42,6 +42,8 @@ export interface Inspection {
   orientations: OrientationReport[];
   /** Number of views that a run would use. */
   views: number;
+  /** Memory that a run takes at its peak, about, megabytes; 0 where there are no views. */
+  peak_mb: number;
   warnings: string[];
   /** Why a run would refuse these files; empty when it would not. */
   errors: string[];

@@ -288,6 +288,34 @@ test("the orientation, the views and the region can be chosen", async ({ page })
   expect(problems).toEqual([]);
 });
 
+test("what is too large is loaded by a region of it", async ({ page }) => {
+  const { problems } = watch(page);
+  await page.goto("/");
+  await give(page, largeScene());
+  await expect(page.getByRole("alert")).toContainText("MB of memory");
+  const ask = async (label: RegExp, value: string) => {
+    await page.getByLabel(label).fill(value);
+    await page.getByLabel(label).press("Enter");
+  };
+  await page.getByText("Region and ground").click();
+  await ask(/Height of the ground/, "0");
+  await expect(page.getByRole("alert")).toContainText("MB of memory");
+  await ask(/Region/, "5000, 0, 5040, 40");
+  await expect(page.getByRole("alert")).toContainText("seen by 0 views");
+  await ask(/Region/, "-20, -20, 20, 20");
+  await expect(page.getByRole("alert")).toHaveCount(0);
+  await expect(page.getByText(/about [2-9]\d\d MB of memory/)).toBeVisible();
+  await expect(page.getByRole("button", { name: "Run all" })).toBeEnabled();
+  // The parts of the views that show the region.
+  await expect(page.getByRole("group", { name: "View" }).getByRole("button")).toHaveCount(4);
+  // In tiles, all of it.
+  await ask(/Region/, "-400, -400, 400, 400");
+  await expect(page.getByRole("alert")).toContainText("MB of memory");
+  await ask(/In tiles of/, "50");
+  await expect(page.getByRole("alert")).toHaveCount(0);
+  expect(problems).toEqual([]);
+});
+
 test("angles in the wrong unit are named", async ({ page }) => {
   await page.goto("/");
   await give(page, [

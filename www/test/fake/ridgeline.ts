@@ -107,6 +107,7 @@ export class Session implements CoreSession {
       orientation: "planted",
       orientations: [{ label: "planted", path: "planted" }],
       views: images.length,
+      peak_mb: 54,
       warnings: [],
       is_implausible: false,
       errors: images.length < 3 ? ["fewer than three views; add photographs"] : [],
