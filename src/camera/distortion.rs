@@ -4,12 +4,12 @@
 //! `r^2 = x^2 + y^2`:
 //!
 //! ```text
-//! g  = (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
+//! g  = (1 + k1 r^2 + k2 r^4 + k3 r^6 + l4 r^8) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
 //! x' = x g + 2 p1 x y + p2 (r^2 + 2 x^2)
 //! y' = y g + 2 p2 x y + p1 (r^2 + 2 y^2)
 //! ```
 //!
-//! x', y' is where the lens puts the point. Images are resampled once on loading to a pinhole of the same
+//! x', y' is where the lens puts the point; l4 is what Metashape calls k4. Images are resampled once on loading to a pinhole of the same
 //! size and calibration: each new pixel looks up one place of the photograph, so no inverse is needed.
 
 use nalgebra::{Matrix3, Point2, Vector2};
@@ -19,8 +19,8 @@ use crate::raster::{Gray, Photograph};
 /// Coefficients of the formula above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distortion {
-    /// k1, k2, k3: above the fraction line.
-    pub radial: [f64; 3],
+    /// k1, k2, k3, l4: above the fraction line.
+    pub radial: [f64; 4],
     /// k4, k5, k6: below it.
     pub radial_below: [f64; 3],
     /// p1, p2.
@@ -31,11 +31,12 @@ pub struct Distortion {
 }
 
 impl Distortion {
-    /// Radial k1, k2, k3 and tangential p1, p2; `None` where all are zero.
-    pub fn brown(radial: [f64; 3], tangential: [f64; 2]) -> Option<Self> {
+    /// Radial k1, k2, k3, l4, as many as there are, and tangential p1, p2; `None` where all are zero.
+    pub fn brown<const N: usize>(radial: [f64; N], tangential: [f64; 2]) -> Option<Self> {
+        const { assert!(N <= 4) };
         let any = radial.iter().chain(&tangential).any(|&v| v != 0.0);
-        any.then_some(Self {
-            radial,
+        any.then(|| Self {
+            radial: std::array::from_fn(|i| radial.get(i).copied().unwrap_or(0.0)),
             radial_below: [0.0; 3],
             tangential,
             center: [0.0; 2],
@@ -78,9 +79,9 @@ impl Distortion {
     }
 }
 
-/// 1 + c1 t + c2 t^2 + c3 t^3.
-fn polynomial(c: &[f64; 3], t: f64) -> f64 {
-    1.0 + t * (c[0] + t * (c[1] + t * c[2]))
+/// 1 + c1 t + c2 t^2 + c3 t^3 ...
+fn polynomial(c: &[f64], t: f64) -> f64 {
+    1.0 + t * c.iter().rev().fold(0.0, |sum, c| c + t * sum)
 }
 
 /// The photograph as a pinhole of calibration `k` would have taken it, of the same size. Where the
@@ -141,7 +142,7 @@ mod tests {
     use super::*;
 
     const LENS: Distortion = Distortion {
-        radial: [-0.25, 0.03, 0.004],
+        radial: [-0.25, 0.03, 0.004, -0.05],
         radial_below: [0.01, 0.0, 0.0],
         tangential: [0.001, -0.002],
         center: [0.01, -0.02],
@@ -194,7 +195,7 @@ mod tests {
         let k = Matrix3::new(200.0, 0.0, 100.0, 0.0, 200.0, 75.0, 0.0, 0.0, 1.0);
         assert!(LENS.is_plausible(&k, 200, 150));
         let folded = Distortion {
-            radial: [-3.0, 0.0, 0.0],
+            radial: [-3.0, 0.0, 0.0, 0.0],
             ..LENS
         };
         assert!(!folded.is_plausible(&k, 200, 150));

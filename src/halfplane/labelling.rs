@@ -375,6 +375,33 @@ mod tests {
     }
 
     #[test]
+    fn what_is_not_tried_again_would_not_have_helped() {
+        for seed in 1..40u32 {
+            let mut state = seed.wrapping_mul(2_654_435_761);
+            let mut next = || {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                f64::from(state >> 16) / 65536.0
+            };
+            let unary = (0..12)
+                .map(|_| (0..4).map(|p| (p, 2.0 * next() - 1.2)).collect())
+                .collect();
+            let borders = (0..11).map(|_| (0.1 + 0.3 * next(), vec![])).collect();
+            let energy: Energy<Table> = row(unary, borders);
+            let mut labelling = Labelling::new(energy, 4);
+            labelling.minimise();
+            let withdrawn = labelling.labels[6];
+            let its = |c: &usize| labelling.labels[*c] == withdrawn;
+            let cells: Vec<usize> = (0..12).filter(its).collect();
+            labelling.withdraw(withdrawn, &cells);
+            labelling.minimise();
+            let found = labelling.energy.of(&labelling.labels);
+            labelling.clock = Clock::new(12, 4);
+            labelling.minimise();
+            assert_eq!(labelling.energy.of(&labelling.labels), found, "seed {seed}");
+        }
+    }
+
+    #[test]
     fn a_plane_never_covers_a_cell_that_it_may_not() {
         let energy = row(
             vec![vec![(0, -5.0)], vec![(1, 0.5)], vec![(0, -5.0)]],

@@ -84,7 +84,10 @@ pub(super) fn read_nvm(path: &str, text: &str) -> Result<Vec<Orientation>> {
             .into_inner();
         let k = v[8];
         Ok(Orientation {
-            distortion: Distortion::brown([-k, 3.0 * k * k, -12.0 * k * k * k], [0.0, 0.0]),
+            distortion: Distortion::brown(
+                [-k, 3.0 * k * k, -12.0 * k * k * k, 55.0 * k * k * k * k],
+                [0.0, 0.0],
+            ),
             from_middle: true,
             ..pinhole(
                 fields[0],

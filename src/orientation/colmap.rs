@@ -119,7 +119,7 @@ fn read_model(
 fn distortion(c: &[f64]) -> Option<Distortion> {
     let at = |i: usize| c.get(i).copied().unwrap_or(0.0);
     c.iter().any(|&v| v != 0.0).then(|| Distortion {
-        radial: [at(0), at(1), at(4)],
+        radial: [at(0), at(1), at(4), 0.0],
         radial_below: [at(5), at(6), at(7)],
         tangential: [at(2), at(3)],
         center: [0.0; 2],
@@ -204,7 +204,7 @@ mod tests {
         let d = found[1].distortion.unwrap();
         assert_eq!(
             (d.radial, d.tangential),
-            ([0.1, -0.01, 0.0], [0.001, 0.002])
+            ([0.1, -0.01, 0.0, 0.0], [0.001, 0.002])
         );
         assert_eq!(found[1].source, "images.txt, line 3");
     }

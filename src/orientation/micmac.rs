@@ -209,6 +209,7 @@ fn fit(
             c[0] * unit2,
             c[1] * unit2 * unit2,
             c[2] * unit2 * unit2 * unit2,
+            0.0,
         ],
         radial_below: [0.0; 3],
         tangential: [0.0; 2],

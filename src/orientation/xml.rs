@@ -137,9 +137,6 @@ impl Reader<'_> {
             };
             let (cx, cy) = (or_zero("cx")?, or_zero("cy")?);
             let (b1, b2) = (or_zero("b1")?, or_zero("b2")?);
-            if or_zero("k4")? != 0.0 {
-                return Err(self.error(calibration, "the coefficient k4 is not supported"));
-            }
             let (w, h) = (f64::from(size.0), f64::from(size.1));
             let lens = Lens {
                 k: Matrix3::new(
@@ -154,7 +151,12 @@ impl Reader<'_> {
                     1.0,
                 ),
                 distortion: Distortion::brown(
-                    [or_zero("k1")?, or_zero("k2")?, or_zero("k3")?],
+                    [
+                        or_zero("k1")?,
+                        or_zero("k2")?,
+                        or_zero("k3")?,
+                        or_zero("k4")?,
+                    ],
                     [or_zero("p2")?, or_zero("p1")?],
                 ),
                 size,
@@ -274,4 +276,49 @@ pub(super) fn parse<'a>(path: &str, text: &'a str) -> Result<Document<'a>> {
         problem: super::text::quoted_long(&e.to_string()),
         expected: "well-formed XML; export it again".to_owned(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point2;
+
+    #[test]
+    fn the_lens_of_metashape_puts_points_where_its_manual_says() {
+        let terms = [
+            ("f", 1500.0),
+            ("cx", 12.0),
+            ("cy", -7.0),
+            ("b1", 0.8),
+            ("b2", -0.3),
+            ("k1", -0.06),
+            ("k2", 0.02),
+            ("k3", -0.004),
+            ("k4", 0.03),
+            ("p1", 0.0012),
+            ("p2", -0.0007),
+        ];
+        let calibration: String = terms.map(|(n, v)| format!("<{n}>{v}</{n}>")).concat();
+        let found = read_metashape(
+            "cameras.xml",
+            &format!(
+                "<document><chunk><sensors><sensor id=\"0\" type=\"frame\"><calibration class=\"adjusted\">\
+                 <resolution width=\"1200\" height=\"900\"/>{calibration}</calibration></sensor></sensors><cameras>\
+                 <camera id=\"0\" sensor_id=\"0\" label=\"a\">\
+                 <transform>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</transform></camera></cameras></chunk></document>"
+            ),
+        )
+        .unwrap();
+        let [f, cx, cy, b1, b2, k1, k2, k3, k4, p1, p2] = terms.map(|t| t.1);
+        for (x, y) in [(0.31, 0.22), (-0.35, 0.1), (0.05, -0.28)] {
+            let r2: f64 = x * x + y * y;
+            let g = 1.0 + k1 * r2 + k2 * r2 * r2 + (k3 + k4 * r2) * r2 * r2 * r2;
+            let u = x * g + p1 * (r2 + 2.0 * x * x) + 2.0 * p2 * x * y;
+            let v = y * g + p2 * (r2 + 2.0 * y * y) + 2.0 * p1 * x * y;
+            let (column, row) = (600.0 + cx + u * (f + b1) + v * b2, 450.0 + cy + v * f);
+            let put = found[0].distortion.unwrap().distort(&Point2::new(x, y));
+            let pixel = found[0].k * Vector3::new(put.x, put.y, 1.0);
+            assert!((pixel.x - column).abs() < 1e-9 && (pixel.y - row).abs() < 1e-9);
+        }
+    }
 }
