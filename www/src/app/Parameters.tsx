@@ -3,6 +3,7 @@ import { useState } from "preact/hooks";
 import { fieldText, type ParamField, type ParamSection, paramSections, parseField } from "./paramForm";
 import { resetParams, setParam } from "./running";
 import { defaults, params } from "./state";
+import { TextField } from "./TextField";
 
 export function Parameters() {
   const sections = paramSections(defaults.value, params.value);
@@ -48,6 +49,7 @@ function Field({ path, field }: { path: string; field: ParamField }) {
     if ("value" in parsed) {
       setParam(`${path}.${field.key}`, parsed.value);
     }
+    return "value" in parsed;
   };
   return (
     <div class={`field ${field.changed ? "changed" : ""}`}>
@@ -73,14 +75,12 @@ function Field({ path, field }: { path: string; field: ParamField }) {
           ))}
         </select>
       ) : (
-        <input
+        <TextField
           id={id}
-          type="text"
           inputMode={field.kind === "number" ? "decimal" : "text"}
           value={fieldText(field.value)}
-          aria-invalid={error !== ""}
-          aria-describedby={`${id}-note`}
-          onChange={(event) => change(event.currentTarget.value)}
+          isInvalid={error !== ""}
+          onTake={change}
         />
       )}
       <span class="unit muted">{field.unit}</span>

@@ -68,7 +68,7 @@ export function PointLab() {
               step={0.01}
               value={at}
               data-testid="along"
-              onInput={(event) => void compareAt(candidate, Number(event.currentTarget.value))}
+              onInput={(event) => void compareAt(candidate, Number(event.currentTarget.value), true)}
             />
           </label>
           {correspondence === null ? (

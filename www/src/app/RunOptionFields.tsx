@@ -3,6 +3,7 @@ import { useState } from "preact/hooks";
 import { setRunOptions } from "./projectActions";
 import { type Parsed, parseHeight, parseRegion, parseTile } from "./runOptions";
 import { inspection, runOptions } from "./state";
+import { TextField } from "./TextField";
 
 /** Where the files hold the orientation several times: which one is taken. */
 export function OrientationChoice() {
@@ -83,18 +84,17 @@ function OptionField<T>({ id, label, placeholder, value, parse, onValue }: Field
     if ("value" in parsed) {
       onValue(parsed.value);
     }
+    return "value" in parsed;
   };
   return (
     <div class="option">
       <label for={id}>{label}</label>
-      <input
+      <TextField
         id={id}
-        type="text"
         value={Array.isArray(value) ? value.join(", ") : String(value ?? "")}
         placeholder={placeholder}
-        aria-invalid={error !== ""}
-        aria-describedby={`${id}-note`}
-        onChange={(event) => change(event.currentTarget.value)}
+        isInvalid={error !== ""}
+        onTake={change}
       />
       <span id={`${id}-note`} class="error note">
         {error}

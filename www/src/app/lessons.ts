@@ -75,7 +75,10 @@ export const LESSONS: readonly LessonStep[] = [
       shownView.value = ALL_VIEWS;
       selectMatchedSegment();
     },
-    isFound: () => (pointing.value.correspondence?.correlation ?? 0) > 0.9,
+    isFound: () => {
+      const { isMoved, correspondence } = pointing.value;
+      return isMoved && (correspondence?.correlation ?? 0) > 0.9;
+    },
   },
   {
     title: "Merging and growing",

@@ -22,9 +22,13 @@ export function followSelection(): void {
   });
 }
 
-/** Compares the selected segment with another candidate, or at another of its points. */
-export async function compareAt(candidate: number, at: number): Promise<void> {
-  change({ candidate, at });
+/** Compares the selected segment with another candidate, or at another of its points; `isMoved` when the reader moved it. */
+export async function compareAt(
+  candidate: number,
+  at: number,
+  isMoved = pointing.peek().isMoved,
+): Promise<void> {
+  change({ candidate, at, isMoved });
   const picked = selection.peek();
   const found = pointing.peek().story?.candidates[candidate];
   if (picked?.kind !== "segment" || found === undefined) {
@@ -81,7 +85,7 @@ async function pointAtSegment(view: number, segment: number): Promise<void> {
   const now = selection.peek();
   if (now?.kind === "segment" && now.view === view && now.index === segment) {
     pointing.value = { ...NOTHING_POINTED, story };
-    await compareAt(0, NOTHING_POINTED.at);
+    await compareAt(0, NOTHING_POINTED.at, false);
   }
 }
 

@@ -69,6 +69,8 @@ export interface Pointing {
   candidate: number;
   /** Where on the segment the point is, 0 to 1. */
   at: number;
+  /** Whether the reader moved it. */
+  isMoved: boolean;
   correspondence: traces.Correspondence | null;
   /** The side of the selected line or half-plane, its Sim(theta), and the angle that is tried, radians. */
   side: traces.SideTrace | null;
@@ -102,6 +104,7 @@ export const NOTHING_POINTED: Pointing = {
   story: null,
   candidate: 0,
   at: 0.5,
+  isMoved: false,
   correspondence: null,
   side: null,
   theta: 0,

@@ -288,6 +288,20 @@ test("the orientation, the views and the region can be chosen", async ({ page })
   expect(problems).toEqual([]);
 });
 
+test("what is being typed stays while the page is drawn anew", async ({ page }) => {
+  await page.goto("/");
+  await give(page, houseFiles());
+  await expect(page.locator(".status.good")).toHaveCount(6);
+  await page.getByText("Region and ground").click();
+  const height = page.getByLabel(/Height of the ground/);
+  await height.fill("99999");
+  await give(page, [upload("notes.txt", Buffer.from("of the flight"))]);
+  await expect(page.getByText("notes.txt").first()).toBeVisible();
+  await expect(height).toHaveValue("99999");
+  await height.press("Enter");
+  await expect(page.getByRole("alert")).toContainText("below the ground");
+});
+
 test("what is too large is loaded by a region of it", async ({ page }) => {
   const { problems } = watch(page);
   await page.goto("/");
