@@ -7,7 +7,7 @@ use crate::camera::Camera;
 use crate::doctor::{self, ViewShift};
 use crate::ids::ViewId;
 use crate::orientation::Anchor;
-use crate::raster::{Gray, noise_of};
+use crate::raster::{Channel, Gray, Warmth, noise_of};
 
 /// One photograph with its orientation.
 #[derive(Clone, Debug)]
@@ -22,18 +22,30 @@ pub struct View {
     pub rgb: image::RgbImage,
     /// Standard deviation of the noise of one pixel of `gray`.
     pub noise: f64,
+    /// The warmth of the colours, of the camera's size; `None` for a photograph without colour.
+    pub warmth: Option<Warmth>,
 }
 
 impl View {
     /// A view, whose noise is measured.
     pub fn new(name: String, camera: Camera, gray: Gray, rgb: image::RgbImage) -> Self {
-        let noise = noise_of(&gray);
+        let (noise, warmth) = (noise_of(&gray), Warmth::of(&rgb));
         Self {
             name,
             camera,
             gray,
             rgb,
             noise,
+            warmth,
+        }
+    }
+
+    /// A channel of the view, and the standard deviation of the noise of one of its pixels. Grey values stand for a
+    /// warmth that is not there.
+    pub fn channel(&self, channel: Channel) -> (&Gray, f64) {
+        match (&self.warmth, channel) {
+            (Some(warmth), Channel::Warmth) => (&warmth.image, warmth.noise),
+            _ => (&self.gray, self.noise),
         }
     }
 }

@@ -186,7 +186,7 @@ mod tests {
         let segments: Vec<_> = scene
             .views
             .iter()
-            .map(|v| detect_segments(&v.gray, &params).0)
+            .map(|v| detect_segments(&v.gray, None, &params).0)
             .collect();
         let (fitting, matching) = (Lines3dParams::default(), MatchParams::default());
         let (_, trace) = crate::linematch::match_lines(&scene, &segments, &matching, &fitting);

@@ -195,9 +195,12 @@ impl Context<'_> {
         let core = self.core(line, segments, view)?;
         let along = |t: f64| Some((image.at(t)? - expected.p0).dot(&expected.direction()));
         let core = [along(core.0)?, along(core.1)?];
-        let seen = self.scene.view(view);
+        let (seen, noise) = self
+            .scene
+            .view(view)
+            .channel(self.sights.channel(segments)?);
         let against = self.against_contrast(&image, segments, view);
-        measure_edge(view, &seen.gray, &expected, core, against, seen.noise)
+        measure_edge(view, seen, &expected, core, against, noise)
     }
 
     /// Is the bright side of this view's own segments the other one than the line's?
@@ -344,6 +347,7 @@ impl Context<'_> {
         taken: &impl Fn(SegmentRef) -> bool,
     ) -> Vec<SegmentRef> {
         let mut found = Vec::new();
+        let channel = self.sights.channel(known);
         for view in self.scene.view_ids() {
             let Some((image, extent)) = self.extent(line, known, view) else {
                 continue;
@@ -362,7 +366,8 @@ impl Context<'_> {
                 let on_line = |s: &Sight| {
                     let ahead = |p: nalgebra::Point2<f64>| (p - from).dot(&image.direction);
                     let (s0, s1) = (ahead(s.segment.p0), ahead(s.segment.p1));
-                    s0.max(s1) >= 0.0
+                    Some(s.channel) == channel
+                        && s0.max(s1) >= 0.0
                         && s0.min(s1) <= stretch.length()
                         && self.lies_on(&image, s, reach)
                 };

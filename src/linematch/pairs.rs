@@ -18,6 +18,7 @@ use crate::geometry::{Plane, Segment3};
 use crate::halfplane::{Side, ThetaFrame};
 use crate::ids::ViewId;
 use crate::params::MatchParams;
+use crate::raster::Channel;
 use crate::scene::Scene;
 use crate::shares::map_shared;
 
@@ -99,7 +100,8 @@ fn search_one(
 ) -> Vec<Pair> {
     let first = scene.view(name.view);
     let frame = StripFrame::new(&sight.segment, params.window_px);
-    let strip = Strip::reference(&first.gray, &frame);
+    let channel = sight.channel;
+    let strip = Strip::reference(first.channel(channel).0, &frame);
     let mut pairs = Vec::new();
     for (_, other) in partners.iter().filter(|(view, _)| *view == name.view) {
         let camera = scene.camera(*other);
@@ -108,7 +110,8 @@ fn search_one(
         };
         let view = &sights.views[other.index()];
         for id in view.index.near_quad(&beam, params.gate_px) {
-            let Some(candidate) = view.sights[id as usize].as_ref() else {
+            let candidate = view.sights[id as usize].as_ref();
+            let Some(candidate) = candidate.filter(|c| c.channel == channel) else {
                 continue;
             };
             let Some(geometry) =
@@ -116,7 +119,8 @@ fn search_one(
             else {
                 continue;
             };
-            let score = pair_score(scene, name.view, *other, &frame, &strip, &geometry, params);
+            let views = [name.view, *other];
+            let score = pair_score(scene, views, channel, &frame, &strip, &geometry, params);
             pairs.push(Pair {
                 a: name,
                 b: SegmentRef {
@@ -197,8 +201,8 @@ impl PairGeometry {
 /// of its planes.
 fn pair_score(
     scene: &Scene,
-    first: ViewId,
-    second: ViewId,
+    views: [ViewId; 2],
+    channel: Channel,
     frame: &StripFrame,
     strip: &Strip,
     geometry: &PairGeometry,
@@ -211,8 +215,8 @@ fn pair_score(
     let score = |side: StripSide, theta_deg: f64| {
         side_correlation(
             scene,
-            first,
-            second,
+            views,
+            channel,
             &part,
             &strip,
             &geometry.overlap,
@@ -241,8 +245,8 @@ fn pair_score(
 #[allow(clippy::too_many_arguments)] // Every one is another thing; a struct would be used once.
 fn side_correlation(
     scene: &Scene,
-    first: ViewId,
-    second: ViewId,
+    views: [ViewId; 2],
+    channel: Channel,
     frame: &StripFrame,
     strip: &Strip,
     line: &Segment3,
@@ -250,16 +254,16 @@ fn side_correlation(
     theta_deg: f64,
     params: &MatchParams,
 ) -> Option<Vec<f32>> {
-    let warped = side_strip(scene, first, second, frame, line, side, theta_deg)?;
+    let warped = side_strip(scene, views, channel, frame, line, side, theta_deg)?;
     Some(correlate(strip, &warped, side, params.noise))
 }
 
-/// One side of a line's strip in another view, warped by the half-plane at `theta_deg`. `None` for
+/// One side of a line's strip in another view (the second of the two), warped by the half-plane at `theta_deg`. `None` for
 /// a line without such a plane.
 pub fn side_strip(
     scene: &Scene,
-    first: ViewId,
-    second: ViewId,
+    [first, second]: [ViewId; 2],
+    channel: Channel,
     frame: &StripFrame,
     line: &Segment3,
     side: StripSide,
@@ -267,7 +271,7 @@ pub fn side_strip(
 ) -> Option<Strip> {
     let view = scene.view(second);
     let h = side_homography(scene.camera(first), &view.camera, line, side, theta_deg)?;
-    Some(Strip::warped(&view.gray, &h, frame, side))
+    Some(Strip::warped(view.channel(channel).0, &h, frame, side))
 }
 
 /// The homography of the half-plane at `theta_deg` on one side of a line, the side as seen in

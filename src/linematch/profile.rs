@@ -10,6 +10,7 @@ use crate::geometry::{Segment2, Segment3};
 use crate::ids::{SegmentId, ViewId};
 use crate::lines3d::ProjectedLine;
 use crate::params::MatchParams;
+use crate::raster::Channel;
 use crate::scene::Scene;
 
 /// What one view says along the line.
@@ -99,7 +100,8 @@ impl Profile {
             view.detected = t.iter().map(on_edge).collect();
         }
         let stretch = stretch_of(line, from, to);
-        let strips = Strips::new(scene, &stretch, &frame, longest, &views, params)?;
+        let channel = sights.channel(segments)?;
+        let strips = Strips::new(scene, channel, &stretch, &frame, longest, &views, params)?;
         let reference = strips.compare(&mut views, params)?;
         Some(Self {
             t,
@@ -163,6 +165,7 @@ struct Strips {
 impl Strips {
     fn new(
         scene: &Scene,
+        channel: Channel,
         line: &Segment3,
         frame: &StripFrame,
         grid: usize,
@@ -172,12 +175,14 @@ impl Strips {
         let first = views[grid].view;
         let measured: Vec<usize> = with_segments(views).collect();
         let pairs = (measured.len() * (measured.len() - 1) / 2) as f64;
+        let warped =
+            |view, side, theta| side_strip(scene, [first, view], channel, frame, line, side, theta);
         let best = |side: StripSide| {
             let mut chosen: Option<(f64, f64)> = None;
             for &theta in &params.plane_angles_deg {
                 let strips: Vec<Strip> = measured
                     .iter()
-                    .map(|&i| side_strip(scene, first, views[i].view, frame, line, side, theta))
+                    .map(|&i| warped(views[i].view, side, theta))
                     .collect::<Option<_>>()?;
                 let total: f64 = (0..strips.len())
                     .flat_map(|i| (0..i).map(move |j| (i, j)))
@@ -194,7 +199,7 @@ impl Strips {
             let theta = chosen?.1;
             views
                 .iter()
-                .map(|v| side_strip(scene, first, v.view, frame, line, side, theta))
+                .map(|v| warped(v.view, side, theta))
                 .collect::<Option<Vec<Strip>>>()
         };
         let [left, right] = StripSide::BOTH.map(best);

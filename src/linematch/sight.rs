@@ -8,6 +8,7 @@ use crate::camera::{Camera, plane_of_image_line};
 use crate::geometry::{Plane, Segment2};
 use crate::ids::{SegmentId, ViewId};
 use crate::lines2d::ImageSegment;
+use crate::raster::Channel;
 use crate::scene::Scene;
 
 /// Names a segment of a view.
@@ -23,6 +24,8 @@ pub struct SegmentRef {
 pub struct Sight {
     /// The segment, directed by contrast.
     pub segment: Segment2,
+    /// The channel that shows it; segments of different channels are no images of one line.
+    pub channel: Channel,
     /// Its length, pixels.
     pub length_px: f64,
     /// The plane through the projection centre and the segment.
@@ -42,6 +45,7 @@ impl Sight {
         (length_px > 1.0 && variance.is_finite()).then_some(())?;
         Some(Self {
             segment,
+            channel: detected.kind.channel(),
             length_px,
             plane: plane_of_image_line(camera, &segment.line())?,
             rays: [camera.ray(&segment.p0), camera.ray(&segment.p1)],
@@ -93,6 +97,11 @@ impl Sights {
     /// The segment of this name; `None` for one without length.
     pub fn get(&self, name: SegmentRef) -> Option<&Sight> {
         self.views[name.view.index()].sights[name.segment.index()].as_ref()
+    }
+
+    /// The channel that shows a line's segments, which is the same for all; `None` without segments.
+    pub fn channel(&self, segments: &[SegmentRef]) -> Option<Channel> {
+        segments.iter().find_map(|s| Some(self.get(*s)?.channel))
     }
 
     /// The names of all segments of a view that can be matched.

@@ -8,14 +8,17 @@
 //!    -> grow     pieces grown along their line through the edgels ahead
 //!    -> lines    length, curvature and significance decide
 //!    -> refine   lines moved to the crest of the unsmoothed edge
-//!    -> segments covariance and contrast; bars that edges stand for are refused
+//!    -> segments covariance and contrast
 //!
+//! colour         the same on the warmth of the pixels (`raster::warmth`): edges between colours of one grey value
 //! bar            thin bright or dark lines as edgels, on the same way from chain to lines
+//! clear          what edges in grey values stand for already is refused
 //! ```
 
 mod bar;
 mod canny;
 mod chain;
+mod clear;
 mod fit;
 mod grow;
 mod lines;
@@ -37,6 +40,7 @@ use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Segment2;
+use crate::raster::Channel;
 
 /// What a segment was found on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -45,22 +49,36 @@ pub enum SegmentKind {
     /// A step between two grey values.
     #[default]
     Edge,
+    /// A step between two colours that differ little in grey value.
+    Color,
     /// A thin line brighter than both its sides.
     BrightBar,
     /// A thin line darker than both its sides.
     DarkBar,
 }
 
-/// A straight segment detected in one view, directed by contrast: the brighter side lies in the
-/// direction of [`Segment2::normal`], to the right of the direction as seen on the screen.
+impl SegmentKind {
+    /// The channel that shows such a segment.
+    pub fn channel(self) -> Channel {
+        match self {
+            Self::Color => Channel::Warmth,
+            Self::Edge | Self::BrightBar | Self::DarkBar => Channel::Grey,
+        }
+    }
+}
+
+/// A straight segment detected in one view, directed by contrast: the brighter side (with [`SegmentKind::Color`] the
+/// warmer one, of more red than blue) lies in the direction of [`Segment2::normal`], to the right of the direction as
+/// seen on the screen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ImageSegment {
-    /// Edge or bar. A bar runs along its middle and is directed by the difference between its two sides, which may
+    /// Edge in grey values or in colour, or bar. A bar runs along its middle and is directed by the difference between its two sides, which may
     /// be small: its direction is no more than a hint.
     pub kind: SegmentKind,
     /// End points, pixels.
     pub segment: Segment2,
-    /// Mean grey-value difference across the edge, bright minus dark side, 0 to 1.
+    /// Mean difference across the edge, bright minus dark side, grey values 0 to 1; of a colour edge, warm minus cool side,
+    /// half the difference of red and blue.
     pub contrast: f32,
     /// Number of edgels that the line was fitted to.
     pub edgels: u32,

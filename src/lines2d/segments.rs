@@ -3,6 +3,11 @@
 //! Deviations: lines grow past the ends of their chains ([`super::grow`]), and a test of significance
 //! ([`super::significance`]) stands in for a global threshold of contrast.
 //!
+//! B99 has grey photographs. Where there is colour, the same detector also runs on the warmth of the pixels
+//! ([`crate::raster::Warmth`]), and what it finds beside no edge in grey values is a segment too: on the six views of a rendered
+//! suburb the segments then cover 81 % of the true roof edges instead of 62 %. Each kind is matched with its own, in its own
+//! channel: lines of both together lay up to 0.2 m off on photographs whose lens does not focus red and blue alike.
+//!
 //! What limits the position of a segment is the roof, not the image: measured along true edges of two rendered
 //! scenes, the crest of the mean profile itself scatters by 0.2 to 0.3 px on eaves and rakes, whose visible fascias and
 //! gutters are half a pixel to two pixels wide. Hips, which have none, scatter by 0.08 to 0.15 px. The covariance holds
@@ -16,35 +21,45 @@ use nalgebra::{Matrix2, Point2};
 
 use super::bar::{Fan, Hessian, bar_points, fan_edgels};
 use super::canny::{Gradient, suppress};
+use super::clear::add_clear;
 use super::grow::Grown;
 use super::lines::significant_lines;
 use super::refine::refine;
-use super::trace::{RejectedSegment, SegmentRejection, SegmentTrace};
+use super::trace::SegmentTrace;
 use super::{ImageSegment, SegmentKind};
 use crate::geometry::Segment2;
 use crate::params::SegmentParams;
 use crate::raster::{Gray, gaussian_blur};
 
-/// The straight segments of an image, directed by contrast: edges first, then bars.
-pub fn detect_segments(gray: &Gray, params: &SegmentParams) -> (Vec<ImageSegment>, SegmentTrace) {
+/// The straight segments of an image, directed by contrast: edges in grey values first, then in colour, then bars. `gray` and
+/// `warmth` are of one size; there is no `warmth` where there is no colour.
+pub fn detect_segments(
+    gray: &Gray,
+    warmth: Option<&Gray>,
+    params: &SegmentParams,
+) -> (Vec<ImageSegment>, SegmentTrace) {
     let smooth = gaussian_blur(gray, params.edgels.smoothing_px);
     let mut trace = SegmentTrace::default();
-    let mut segments = edge_segments(gray, &smooth, params, &mut trace);
+    let mut segments = edge_segments(gray, &smooth, SegmentKind::Edge, params, &mut trace);
+    if params.colors.detect
+        && let Some(warmth) = warmth
+    {
+        let smooth = gaussian_blur(warmth, params.edgels.smoothing_px);
+        let found = edge_segments(warmth, &smooth, SegmentKind::Color, params, &mut trace);
+        add_clear(&mut segments, found, params.colors.clear_px, &mut trace);
+    }
     if params.bars.detect {
-        let bars = bar_segments(gray, &smooth, params, &mut trace);
-        let new: Vec<_> = bars
-            .into_iter()
-            .filter(|bar| is_clear(bar, &segments, params, &mut trace))
-            .collect();
-        segments.extend(new);
+        let found = bar_segments(gray, &smooth, params, &mut trace);
+        add_clear(&mut segments, found, params.bars.clear_px, &mut trace);
     }
     (segments, trace)
 }
 
-/// Segments on steps.
+/// Segments on steps of `image`, which is `smooth` before smoothing.
 fn edge_segments(
-    gray: &Gray,
+    image: &Gray,
     smooth: &Gray,
+    kind: SegmentKind,
     params: &SegmentParams,
     trace: &mut SegmentTrace,
 ) -> Vec<ImageSegment> {
@@ -54,8 +69,8 @@ fn edge_segments(
     significant_lines(&edgels, &local, params.edgels.high, params, trace)
         .into_iter()
         .map(|mut line| {
-            let noise = refine(&mut line, &edgels, gray, params.refine_sigmas);
-            let mut segment = finish(&line, SegmentKind::Edge, gray, params);
+            let noise = refine(&mut line, &edgels, image, params.refine_sigmas);
+            let mut segment = finish(&line, kind, image, params);
             segment.covariance += noise;
             segment
         })
@@ -84,49 +99,11 @@ fn bar_segments(
     segments
 }
 
-/// Whether no edge runs along the bar; traced where one does.
-fn is_clear(
-    bar: &ImageSegment,
-    edges: &[ImageSegment],
-    params: &SegmentParams,
-    trace: &mut SegmentTrace,
-) -> bool {
-    let beside: f64 = edges
-        .iter()
-        .map(|edge| shared_length(&bar.segment, &edge.segment, params.bars.clear_px))
-        .sum();
-    let clear = beside <= 0.5 * bar.segment.length();
-    if !clear {
-        trace.refuse(RejectedSegment {
-            segment: bar.segment,
-            reason: SegmentRejection::BesideEdge,
-        });
-    }
-    clear
-}
-
-/// Length of `a` along which `b` stays within a distance of it, taken at the ends of the overlap.
-fn shared_length(a: &Segment2, b: &Segment2, distance_px: f64) -> f64 {
-    let (direction, normal) = (a.direction(), a.normal());
-    let along = |p: &Point2<f64>| direction.dot(&(p - a.p0));
-    let (t0, t1) = (along(&b.p0), along(&b.p1));
-    let (from, to) = (t0.min(t1).max(0.0), t0.max(t1).min(a.length()));
-    if to <= from {
-        return 0.0;
-    }
-    let across = |t: f64| normal.dot(&(b.at((t - t0) / (t1 - t0)) - a.p0)).abs();
-    if across(from).max(across(to)) <= distance_px {
-        to - from
-    } else {
-        0.0
-    }
-}
-
 fn finish(grown: &Grown, kind: SegmentKind, gray: &Gray, params: &SegmentParams) -> ImageSegment {
     let line = &grown.line;
     let mut segment = grown.extent();
     let mut contrast = contrast(gray, &segment, params.contrast_distance_px);
-    if kind == SegmentKind::Edge {
+    if matches!(kind, SegmentKind::Edge | SegmentKind::Color) {
         contrast = contrast.max(0.0);
     } else if contrast < 0.0 {
         segment = Segment2::new(segment.p1, segment.p0);
@@ -176,9 +153,40 @@ mod tests {
     use super::super::testing::{add_noise, distance_to_edge, step_edge};
     use super::*;
 
+    /// The segments of a photograph without colour.
+    fn detect_in_grey(gray: &Gray, params: &SegmentParams) -> (Vec<ImageSegment>, SegmentTrace) {
+        detect_segments(gray, None, params)
+    }
+
+    /// A planted edge between two colours of one grey value, the warm one on the side where a step edge is bright.
+    #[test]
+    fn an_edge_between_colours_of_one_grey_is_found() {
+        for step in 0..12 {
+            let angle = f64::from(step) * 30f64.to_radians() + 0.02;
+            let mut warm = step_edge(64, 64, angle, 0.2);
+            let mut gray = Gray::from_fn(64, 64, |_, _| 0.5);
+            add_noise(&mut warm, 2.0 / 255.0, step as u64);
+            add_noise(&mut gray, 2.0 / 255.0, 100 + step as u64);
+            let (segments, _) = detect_segments(&gray, Some(&warm), &SegmentParams::default());
+            assert_eq!(segments.len(), 1, "at {angle}");
+            let found = &segments[0];
+            assert_eq!(found.kind, SegmentKind::Color);
+            assert!((found.contrast - 0.2).abs() < 0.02, "{}", found.contrast);
+            assert!(found.segment.length() > 50.0);
+            let miss = distance_to_edge(&gray, angle, &found.segment.midpoint());
+            assert!(miss.abs() < 0.1, "{miss} px at {angle}");
+            let turn = turn(found, angle).to_degrees();
+            assert!(turn.abs() < 0.3, "{turn} degrees at {angle}");
+            // Where grey values show it too, the edge in grey values stands for it.
+            let (both, trace) = detect_segments(&warm, Some(&warm), &SegmentParams::default());
+            assert!(both.iter().all(|s| s.kind == SegmentKind::Edge));
+            assert!(trace.beside_edge > 0);
+        }
+    }
+
     /// The segment on the planted edge; there must be exactly one.
     fn planted(gray: &Gray, angle: f64, params: &SegmentParams) -> ImageSegment {
-        let (segments, _) = detect_segments(gray, params);
+        let (segments, _) = detect_in_grey(gray, params);
         let on_edge = |s: &&ImageSegment| {
             let end = |p| distance_to_edge(gray, angle, p).abs() < 1.5;
             end(&s.segment.p0) && end(&s.segment.p1)
@@ -254,7 +262,7 @@ mod tests {
             grow_gap_px: 12,
             ..SegmentParams::default()
         };
-        let (segments, _) = detect_segments(&gray, &params);
+        let (segments, _) = detect_in_grey(&gray, &params);
         let on_edge = |s: &&ImageSegment| {
             distance_to_edge(&gray, 0.4, &s.segment.midpoint()).abs() < 1.0
                 && turn(s, 0.4).abs() < 0.1
@@ -271,7 +279,7 @@ mod tests {
     fn noise_has_few_segments_and_none_that_are_long() {
         let mut gray = Gray::from_fn(400, 400, |_, _| 0.5);
         add_noise(&mut gray, 0.05, 11);
-        let (segments, trace) = detect_segments(&gray, &SegmentParams::default());
+        let (segments, trace) = detect_in_grey(&gray, &SegmentParams::default());
         assert!(trace.edgels > 5000);
         assert!(segments.len() <= 150, "{}", segments.len());
         assert!(segments.iter().all(|s| s.segment.length() < 100.0));
@@ -284,7 +292,7 @@ mod tests {
                 let d = crate::math::hypot(x as f64 - 150.0, y as f64 - 150.0) - radius;
                 (0.4 + 0.3 * (0.5 - 0.5 * libm::erf(d))) as f32
             });
-            let (segments, trace) = detect_segments(&gray, &SegmentParams::default());
+            let (segments, trace) = detect_in_grey(&gray, &SegmentParams::default());
             assert!(trace.chains > 0);
             assert!(
                 segments.is_empty(),
@@ -310,7 +318,7 @@ mod tests {
             ..SegmentParams::default()
         };
         let longest = |params: &SegmentParams| {
-            let (segments, _) = detect_segments(&gray, params);
+            let (segments, _) = detect_in_grey(&gray, params);
             let lengths = segments.iter().map(|s| s.segment.length());
             lengths.fold(0.0, f64::max)
         };
@@ -328,7 +336,7 @@ mod tests {
             let inside = |v: usize| (20..60).contains(&v);
             if inside(x) && inside(y) { 0.7 } else { 0.3 }
         });
-        let (segments, trace) = detect_segments(&gray, &SegmentParams::default());
+        let (segments, trace) = detect_in_grey(&gray, &SegmentParams::default());
         assert_eq!(segments.len(), 4);
         for s in &segments {
             let inwards = Point2::new(40.0, 40.0) - s.segment.midpoint();
@@ -360,7 +368,7 @@ mod tests {
             let angle = f64::from(step) * 15f64.to_radians() + 0.02;
             for (contrast, kind) in [(0.2, SegmentKind::BrightBar), (-0.2, SegmentKind::DarkBar)] {
                 let gray = bar(angle, contrast);
-                let (segments, _) = detect_segments(&gray, &params);
+                let (segments, _) = detect_in_grey(&gray, &params);
                 let miss = |s: &ImageSegment| distance_to_edge(&gray, angle, &s.segment.midpoint());
                 let found = |s: &&ImageSegment| s.kind == kind && miss(s).abs() < 0.1;
                 let found: Vec<_> = segments.iter().filter(found).collect();
@@ -375,7 +383,7 @@ mod tests {
         let mut params = SegmentParams::default();
         params.bars.detect = true;
         let gray = bar(0.4, 0.2);
-        let (segments, trace) = detect_segments(&gray, &params);
+        let (segments, trace) = detect_in_grey(&gray, &params);
         assert!(trace.beside_edge > 0);
         let in_the_middle = |s: &ImageSegment| {
             s.kind == SegmentKind::BrightBar
@@ -389,9 +397,9 @@ mod tests {
     fn empty_and_broken_rasters_have_no_segments() {
         let params = SegmentParams::default();
         for (w, h) in [(0, 0), (1, 70), (70, 1), (4, 4)] {
-            assert!(detect_segments(&Gray::new(w, h), &params).0.is_empty());
+            assert!(detect_in_grey(&Gray::new(w, h), &params).0.is_empty());
         }
         let nan = Gray::from_fn(50, 50, |_, _| f32::NAN);
-        assert!(detect_segments(&nan, &params).0.is_empty());
+        assert!(detect_in_grey(&nan, &params).0.is_empty());
     }
 }

@@ -10,7 +10,9 @@ readable! {
 pub struct SegmentParams {
     /// The edgels that segments are made of.
     pub edgels: EdgelParams,
-    /// Thin lines, the second source of segments.
+    /// Edges between colours, the second source of segments.
+    pub colors: ColorParams,
+    /// Thin lines, the third source of segments.
     pub bars: BarParams,
     /// Shortest segment, px. B99 3.2: "above a minimum length (here 15 pixels)".
     pub min_length_px: f64,
@@ -59,6 +61,7 @@ impl Default for SegmentParams {
     fn default() -> Self {
         Self {
             edgels: EdgelParams::default(),
+            colors: ColorParams::default(),
             bars: BarParams::default(),
             min_length_px: 15.0,
             worm_arm_edgels: 5,
@@ -101,6 +104,28 @@ impl Default for EdgelParams {
             smoothing_px: 0.8,
             low: 1.8,
             high: 2.5,
+        }
+    }
+}
+
+readable! {
+/// Edges between colours of about the same grey value. Thresholds are those of [`EdgelParams`], on the difference of red and blue.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ColorParams {
+    /// Look for them at all? B99 has grey photographs; where there is colour, a seventh of the roof edges of rendered scenes
+    /// shows in it alone.
+    pub detect: bool,
+    /// One is refused that has a segment in grey values so near along half of it, px. Assumption: compression leaves
+    /// colour at half the resolution.
+    pub clear_px: f64,
+}
+}
+
+impl Default for ColorParams {
+    fn default() -> Self {
+        Self {
+            detect: true,
+            clear_px: 2.0,
         }
     }
 }

@@ -30,7 +30,7 @@ impl Stage {
 
     /// Does this stage need colours of the views where it is shared, or grey values only?
     pub fn shares_colours(self) -> bool {
-        self == Self::Regions
+        matches!(self, Self::Segments | Self::Matches | Self::Regions)
     }
 }
 

@@ -6,12 +6,14 @@ mod load;
 mod noise;
 mod part;
 mod samples;
+mod warmth;
 mod warp;
 
 pub use filter::gaussian_blur;
 pub use load::{ImageHeader, Photograph, image_format, image_header, load_image};
 pub use noise::noise_of;
 pub use part::{Part, decoding_bytes, load_part};
+pub use warmth::{Channel, Warmth};
 pub use warp::{Eight, Warp, bounds, corners};
 
 /// A raster of grey values (or of anything else in f32), row by row from the top.

@@ -18,6 +18,7 @@ use crate::ids::{FacetId, ViewId};
 use crate::linematch::{GuidedEdge, LineSupport, SupportKind, measure_edge};
 use crate::lines3d::{Line3d, LineFit, LineOrigin, Observation, ProjectedLine, fit_line};
 use crate::params::{Lines3dParams, MatchParams};
+use crate::raster::Channel;
 use crate::scene::Scene;
 
 /// Least number of views that must show a border.
@@ -158,21 +159,24 @@ impl Context<'_> {
         edges.iter().map(observe).collect()
     }
 
-    /// The edge along the image of `part`, of whichever contrast has more of it.
+    /// The edge along the image of `part`, of whichever channel and contrast has more of it.
     fn measure(&self, part: &Segment3, view: ViewId) -> Option<GuidedEdge> {
         let seen = self.scene.view(view);
         let image = ProjectedLine::new(&seen.camera, part)?;
         let expected = Segment2::new(image.at(0.0)?, image.at(part.length())?);
         let core = [0.0, expected.length()];
-        let found = [false, true]
-            .map(|against| measure_edge(view, &seen.gray, &expected, core, against, seen.noise));
-        let pieces = |e: &Option<GuidedEdge>| e.as_ref().map_or(0, |e| e.pieces.len());
-        let [along, against] = found;
-        if pieces(&against) > pieces(&along) {
-            against
-        } else {
-            along
+        let mut best: Option<GuidedEdge> = None;
+        for channel in [Channel::Grey, Channel::Warmth] {
+            let (image, noise) = seen.channel(channel);
+            for against in [false, true] {
+                let found = measure_edge(view, image, &expected, core, against, noise);
+                let pieces = |e: &Option<GuidedEdge>| e.as_ref().map_or(0, |e| e.pieces.len());
+                if pieces(&found) > pieces(&best) {
+                    best = found;
+                }
+            }
         }
+        best
     }
 
     fn line(&self, fit: &LineFit, part: &Segment3, sigma_m: f64, edges: &[GuidedEdge]) -> Line3d {

@@ -1,0 +1,48 @@
+//! Segments of the second sources (colour, bars) only count where no edge in grey values stands for them.
+
+use nalgebra::Point2;
+
+use super::ImageSegment;
+use super::trace::{RejectedSegment, SegmentRejection, SegmentTrace};
+use crate::geometry::Segment2;
+
+/// Adds the candidates that no segment runs along; the others are traced.
+pub fn add_clear(
+    segments: &mut Vec<ImageSegment>,
+    candidates: Vec<ImageSegment>,
+    clear_px: f64,
+    trace: &mut SegmentTrace,
+) {
+    let (clear, beside): (Vec<_>, Vec<_>) =
+        (candidates.into_iter()).partition(|c| is_clear(c, segments, clear_px));
+    segments.extend(clear);
+    for candidate in beside {
+        trace.refuse(RejectedSegment {
+            segment: candidate.segment,
+            reason: SegmentRejection::BesideEdge,
+        });
+    }
+}
+
+/// Do the edges run along less than half of the candidate?
+fn is_clear(candidate: &ImageSegment, edges: &[ImageSegment], clear_px: f64) -> bool {
+    let shared = |edge: &ImageSegment| shared_length(&candidate.segment, &edge.segment, clear_px);
+    edges.iter().map(shared).sum::<f64>() <= 0.5 * candidate.segment.length()
+}
+
+/// Length of `a` along which `b` stays within a distance of it, taken at the ends of the overlap.
+fn shared_length(a: &Segment2, b: &Segment2, distance_px: f64) -> f64 {
+    let (direction, normal) = (a.direction(), a.normal());
+    let along = |p: &Point2<f64>| direction.dot(&(p - a.p0));
+    let (t0, t1) = (along(&b.p0), along(&b.p1));
+    let (from, to) = (t0.min(t1).max(0.0), t0.max(t1).min(a.length()));
+    if to <= from {
+        return 0.0;
+    }
+    let across = |t: f64| normal.dot(&(b.at((t - t0) / (t1 - t0)) - a.p0)).abs();
+    if across(from).max(across(to)) <= distance_px {
+        to - from
+    } else {
+        0.0
+    }
+}
