@@ -82,6 +82,8 @@ pub struct Labelling<B> {
     graph: CellGraph,
     clock: Clock,
     labels: Vec<u32>,
+    /// The node of each cell in the cut that is being made; none between cuts.
+    nodes: Vec<Option<usize>>,
 }
 
 impl<B: Borders> Labelling<B> {
@@ -92,6 +94,7 @@ impl<B: Borders> Labelling<B> {
             graph: CellGraph::new(&energy, planes),
             clock: Clock::new(cells, planes),
             labels: vec![NO_PLANE; cells],
+            nodes: vec![None; cells],
             energy,
         }
     }
@@ -143,8 +146,8 @@ impl<B: Borders> Labelling<B> {
         let movable: Vec<usize> = (graph.cells_of(alpha).iter().copied())
             .filter(|&c| labels[c] != alpha && self.may_gain(c, alpha))
             .collect();
-        // Ascending, so that a cell's node is found by bisection.
-        let node = |cell: usize| movable.binary_search(&cell).ok();
+        let nodes = &mut self.nodes;
+        (movable.iter().enumerate()).for_each(|(n, &c)| nodes[c] = Some(n));
         let mut cut = Cut::new(movable.len());
         for (n, &c) in movable.iter().enumerate() {
             let keep = energy.unary(c, labels[c]).unwrap_or(BLOCKED);
@@ -154,7 +157,7 @@ impl<B: Borders> Labelling<B> {
                 let [i, j] = energy.edges[e];
                 let (li, lj) = (labels[i], labels[j]);
                 let stay = energy.border(e, li, lj);
-                match node(if c == i { j } else { i }) {
+                match nodes[if c == i { j } else { i }] {
                     // Both may move: handle the edge once, from its first cell.
                     Some(other) if c == i => {
                         let j_moves = energy.border(e, li, alpha);
@@ -167,6 +170,7 @@ impl<B: Borders> Labelling<B> {
                 }
             }
         }
+        movable.iter().for_each(|&c| nodes[c] = None);
         let changed: Vec<usize> = movable
             .iter()
             .zip(cut.solve())
@@ -296,6 +300,7 @@ impl Clock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::uniform;
 
     /// Per edge: the cost when nothing supports it, and of pairs of labels that something supports.
     #[derive(Clone)]
@@ -351,11 +356,7 @@ mod tests {
     fn expansion_reaches_the_global_minimum_of_small_chains() {
         // All labellings of five cells and three labels, compared.
         for seed in 0..40u32 {
-            let mut state = seed.wrapping_mul(2_654_435_761).wrapping_add(12345);
-            let mut next = || {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                f64::from(state >> 16) / 65536.0
-            };
+            let mut next = uniform(seed.wrapping_mul(2_654_435_761).wrapping_add(12345));
             let unary = (0..5)
                 .map(|_| (0..2).map(|p| (p, 2.0 * next() - 1.0)).collect())
                 .collect();
@@ -377,11 +378,7 @@ mod tests {
     #[test]
     fn what_is_not_tried_again_would_not_have_helped() {
         for seed in 1..40u32 {
-            let mut state = seed.wrapping_mul(2_654_435_761);
-            let mut next = || {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                f64::from(state >> 16) / 65536.0
-            };
+            let mut next = uniform(seed.wrapping_mul(2_654_435_761));
             let unary = (0..12)
                 .map(|_| (0..4).map(|p| (p, 2.0 * next() - 1.2)).collect())
                 .collect();
