@@ -87,14 +87,19 @@ impl<'a> Warp<'a> {
             at.x.simd_ge(zero) & at.x.simd_le(limit_x) & at.y.simd_ge(zero) & at.y.simd_le(limit_y);
         // Where the horizon lies behind the raster, positions are no numbers.
         let [x, y] = [at.x, at.y].map(|x| inside.select(x, zero));
-        inside.select(self.bordered(Eight { x, y }), f32x8::splat(f32::NAN))
+        inside.select(self.inside(x, y), f32x8::splat(f32::NAN))
     }
 
     /// Bilinear values; outside the image those of its border.
     #[inline]
     pub fn bordered(&self, at: Eight) -> f32x8 {
         let clamp = |x: f32x8, limit: f32| x.fast_max(f32x8::ZERO).fast_min(f32x8::splat(limit));
-        let (x, y) = (clamp(at.x, self.limit[0]), clamp(at.y, self.limit[1]));
+        self.inside(clamp(at.x, self.limit[0]), clamp(at.y, self.limit[1]))
+    }
+
+    /// Bilinear values at coordinates between 0 and the limits.
+    #[inline(always)]
+    fn inside(&self, x: f32x8, y: f32x8) -> f32x8 {
         let (column, row) = (x.fast_trunc_int(), y.fast_trunc_int());
         let (fx, fy) = (x - column.round_float(), y - row.round_float());
         let (column, row) = (column.to_array(), row.to_array());
