@@ -51,6 +51,8 @@ pub mod scene_loader;
 pub mod shares;
 pub mod sorting;
 pub mod synthetic;
+#[cfg(test)]
+mod testing;
 pub mod texture;
 pub mod tiles;
 #[cfg(target_arch = "wasm32")]

@@ -9,7 +9,10 @@
 //! Windows are turned and scaled as a plane across the views' mean axis at the place asks for: strips flown in
 //! opposite directions differ by half a turn.
 
+use std::ops::Range;
+
 use nalgebra::{Matrix2, Point2, Point3, Vector2, Vector3};
+use wide::f32x8;
 
 use crate::camera::{Camera, fundamental, homography_of_plane};
 use crate::geometry::Plane;
@@ -68,16 +71,13 @@ pub(super) fn best_place(
     let first_from_path = path.map_to_first(&first.camera, &second.camera, &world, axis)?;
     let template = template(first.gray, x, &first_from_path)?;
     let strip = Strip::new(second.gray, &path);
-    let mut best = (LEAST_CORRELATION, None);
-    for v in 0..=2 * SHIFTS {
-        for u in 0..strip.places() {
-            let correlation = strip.correlation(&template, u, v);
-            if correlation > best.0 {
-                best = (correlation, Some((u, v)));
-            }
-        }
-    }
-    best.1.map(|(u, v)| {
+    let best = strip.best(
+        &template,
+        0..strip.places(),
+        0..2 * SHIFTS + 1,
+        LEAST_CORRELATION,
+    );
+    best.map(|(u, v)| {
         let shift = v as i32 - SHIFTS as i32;
         Place {
             at: path.start + path.along * u as f64 + path.across * f64::from(shift),
@@ -109,17 +109,13 @@ pub(super) fn fine_place(
     let first_from_path = path.map_to_first(&first.camera, &second.camera, &world, axis)?;
     let template = template(first.gray, x, &first_from_path)?;
     let strip = Strip::new(second.gray, &path);
-    let mut best = (LEAST_FINE_CORRELATION, None);
-    for v in 1..2 * SHIFTS {
-        for u in 1..strip.places() - 1 {
-            let correlation = strip.correlation(&template, u, v);
-            if correlation > best.0 {
-                best = (correlation, Some((u, v)));
-            }
-        }
-    }
-    let (u, v) = best.1?;
-    let at = |u: usize, v: usize| f64::from(strip.correlation(&template, u, v));
+    let (u, v) = strip.best(
+        &template,
+        1..strip.places() - 1,
+        1..2 * SHIFTS,
+        LEAST_FINE_CORRELATION,
+    )?;
+    let at = |u: usize, v: usize| f64::from(strip.correlations(&template, u, v)[0]);
     let top = at(u, v);
     let du = summit(at(u - 1, v), top, at(u + 1, v))?;
     let dv = summit(at(u, v - 1), top, at(u, v + 1))?;
@@ -282,9 +278,13 @@ fn template(
     Some(values)
 }
 
+/// Places that are compared at once.
+const LANES: usize = 8;
+
 /// The image around a path, resampled along it.
 struct Strip {
     width: usize,
+    /// Row by row, and [`LANES`] zeros.
     data: Vec<f32>,
 }
 
@@ -292,13 +292,18 @@ impl Strip {
     fn new(gray: &Gray, path: &Path) -> Self {
         let width = path.length as usize + 1 + 2 * HALF;
         let height = 2 * SHIFTS + SIDE;
-        let mut data = Vec::with_capacity(width * height);
-        for v in 0..height {
+        let mut data = vec![0.0; width * height + LANES];
+        for (v, out) in data.chunks_exact_mut(width).take(height).enumerate() {
             let row = path.start + path.across * (v as f64 - (SHIFTS + HALF) as f64);
-            for u in 0..width {
-                let p = row + path.along * (u as f64 - HALF as f64);
+            for (first, out) in out.chunks_mut(LANES).enumerate() {
+                let places: [Point2<f64>; LANES] = std::array::from_fn(|lane| {
+                    row + path.along * ((LANES * first + lane) as f64 - HALF as f64)
+                });
+                let [x, y] = [places.map(|p| p.x as f32), places.map(|p| p.y as f32)];
+                let samples = gray.sample_eight(x, y);
                 // The margin keeps all of it inside the image.
-                data.push(gray.sample(p.x as f32, p.y as f32).unwrap_or(0.0));
+                let samples = samples.is_nan().select(f32x8::ZERO, samples).to_array();
+                out.copy_from_slice(&samples[..out.len()]);
             }
         }
         Self { width, data }
@@ -309,23 +314,46 @@ impl Strip {
         self.width - 2 * HALF
     }
 
-    /// Normalised correlation of the template with the window at a place.
-    fn correlation(&self, template: &[f32; SIDE * SIDE], u: usize, v: usize) -> f32 {
-        let (mut product, mut sum, mut squares) = (0.0f32, 0.0f32, 0.0f32);
-        for row in 0..SIDE {
-            let from = (v + row) * self.width + u;
-            let window = &self.data[from..from + SIDE];
-            for (value, t) in window.iter().zip(&template[row * SIDE..(row + 1) * SIDE]) {
-                product += value * t;
-                sum += value;
-                squares += value * value;
+    /// The first of the places most like the template: (along, across), if they correlate by more than `least`.
+    fn best(
+        &self,
+        template: &[f32; SIDE * SIDE],
+        along: Range<usize>,
+        across: Range<usize>,
+        least: f32,
+    ) -> Option<(usize, usize)> {
+        let mut best = (least, None);
+        for v in across {
+            for first in along.clone().step_by(LANES) {
+                let correlations = self.correlations(template, first, v);
+                for (u, correlation) in (first..along.end).zip(correlations) {
+                    if correlation > best.0 {
+                        best = (correlation, Some((u, v)));
+                    }
+                }
             }
         }
-        let count = (SIDE * SIDE) as f32;
-        let variance = squares / count - sum * sum / (count * count);
-        if variance < LEAST_CONTRAST * LEAST_CONTRAST {
-            return 0.0;
+        best.1
+    }
+
+    /// Normalised correlation of the template with the windows at eight places, from `u` on along the path; behind the last place
+    /// any value.
+    fn correlations(&self, template: &[f32; SIDE * SIDE], u: usize, v: usize) -> [f32; LANES] {
+        let [mut product, mut sum, mut squares] = [f32x8::ZERO; 3];
+        for row in 0..SIDE {
+            let from = (v + row) * self.width + u;
+            let windows = self.data[from..from + SIDE + LANES - 1].windows(LANES);
+            for (values, t) in windows.zip(&template[row * SIDE..(row + 1) * SIDE]) {
+                let values = f32x8::from(<[f32; LANES]>::try_from(values).expect("eight"));
+                product += values * f32x8::splat(*t);
+                sum += values;
+                squares += values * values;
+            }
         }
-        product / (variance * count).sqrt()
+        let count = f32x8::splat((SIDE * SIDE) as f32);
+        let variance = squares / count - sum * sum / (count * count);
+        let flat = variance.simd_lt(f32x8::splat(LEAST_CONTRAST * LEAST_CONTRAST));
+        let correlation = product / (variance * count).sqrt();
+        flat.select(f32x8::ZERO, correlation).to_array()
     }
 }

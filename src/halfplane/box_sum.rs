@@ -1,4 +1,7 @@
-//! Sums over the window around every cell of a plan grid, by running sums.
+//! Sums over the window around every cell of a plan grid, by running sums, one row after the other.
+//!
+//! Only the rows of one window are kept: a plane is compared in many views, and rasters of all their sums would
+//! not stay near the processor.
 
 use super::plan::PlanGrid;
 
@@ -6,48 +9,75 @@ use super::plan::PlanGrid;
 /// windows lie along lines and these must not reach far over the borders of small facets.
 pub const HALF_WINDOW: usize = 5;
 
+/// Rows of a window, and the one that leaves it.
+const KEPT_ROWS: usize = 2 * HALF_WINDOW + 2;
+
 /// Sum over the window around every cell, along rows and then along columns; windows that stick out of the
 /// grid are cut off.
-pub fn box_sum(values: &[f32], grid: &PlanGrid) -> Vec<f32> {
-    let (w, h, r) = (grid.width, grid.height, HALF_WINDOW);
-    let mut rows = vec![0.0f32; w * h];
-    let mut line = RowSum::new(w);
-    for y in 0..h {
-        line.sum(&values[y * w..(y + 1) * w], &mut rows[y * w..(y + 1) * w]);
-    }
-    let mut out = vec![0.0f32; w * h];
-    let mut sums = vec![0.0f32; w];
-    for y in 0..r.min(h) {
-        for (s, v) in sums.iter_mut().zip(&rows[y * w..(y + 1) * w]) {
-            *s += v;
+pub struct BoxSum {
+    width: usize,
+    height: usize,
+    /// Sums along the last rows that entered, row y at y modulo [`KEPT_ROWS`].
+    rows: Vec<f32>,
+    /// Sums over the window.
+    sums: Vec<f32>,
+    /// Rows that have entered.
+    entered: usize,
+    /// The next row to be asked for.
+    next: usize,
+}
+
+impl BoxSum {
+    /// Above the first row.
+    pub fn new(grid: &PlanGrid) -> Self {
+        Self {
+            width: grid.width,
+            height: grid.height,
+            rows: vec![0.0; KEPT_ROWS * grid.width],
+            sums: vec![0.0; grid.width],
+            entered: 0,
+            next: 0,
         }
     }
-    for y in 0..h {
-        if y + r < h {
-            for (s, v) in sums.iter_mut().zip(&rows[(y + r) * w..(y + r + 1) * w]) {
-                *s += v;
+
+    /// The sums around the cells of the next row; `fill` writes the values of a row of the grid.
+    pub fn next_row(
+        &mut self,
+        line: &mut RowSum,
+        mut fill: impl FnMut(usize, &mut [f32]),
+    ) -> &[f32] {
+        let (w, r) = (self.width, HALF_WINDOW);
+        while self.entered < self.height.min(self.next + r + 1) {
+            let row = &mut self.rows[self.entered % KEPT_ROWS * w..][..w];
+            fill(self.entered, line.values());
+            line.sum(row);
+            for (sum, value) in self.sums.iter_mut().zip(row) {
+                *sum += *value;
+            }
+            self.entered += 1;
+        }
+        if self.next > r {
+            let row = &self.rows[(self.next - r - 1) % KEPT_ROWS * w..][..w];
+            for (sum, value) in self.sums.iter_mut().zip(row) {
+                *sum -= value;
             }
         }
-        if y > r {
-            for (s, v) in sums.iter_mut().zip(&rows[(y - r - 1) * w..(y - r) * w]) {
-                *s -= v;
-            }
-        }
-        out[y * w..(y + 1) * w].copy_from_slice(&sums);
+        self.next += 1;
+        &self.sums
     }
-    out
 }
 
 /// Sums of 11 neighbours in a row, by doubling: 2, 4, 8, 8 + 2 + 1. No sum waits for the one before it,
 /// so the compiler adds many at once.
-struct RowSum {
+pub struct RowSum {
     padded: Vec<f32>,
     two: Vec<f32>,
     four: Vec<f32>,
 }
 
 impl RowSum {
-    fn new(width: usize) -> Self {
+    /// For rows of `width` cells.
+    pub fn new(width: usize) -> Self {
         let n = width + 2 * HALF_WINDOW;
         Self {
             padded: vec![0.0; n],
@@ -56,10 +86,15 @@ impl RowSum {
         }
     }
 
-    fn sum(&mut self, row: &[f32], out: &mut [f32]) {
+    /// The values that are summed.
+    fn values(&mut self) -> &mut [f32] {
+        let end = self.padded.len() - HALF_WINDOW;
+        &mut self.padded[HALF_WINDOW..end]
+    }
+
+    fn sum(&mut self, out: &mut [f32]) {
         const { assert!(2 * HALF_WINDOW + 1 == 8 + 2 + 1) };
-        let (w, n) = (row.len(), self.padded.len());
-        self.padded[HALF_WINDOW..HALF_WINDOW + w].copy_from_slice(row);
+        let n = self.padded.len();
         let p = &self.padded[..n];
         for ((t, a), b) in self.two[..n - 1].iter_mut().zip(p).zip(&p[1..]) {
             *t = a + b;
@@ -71,9 +106,10 @@ impl RowSum {
         {
             *f = a + b;
         }
-        let (four, two) = (&self.four, &self.two);
-        for (x, o) in out.iter_mut().enumerate() {
-            *o = (four[x] + four[x + 4]) + (two[x + 8] + p[x + 10]);
+        let fours = self.four.iter().zip(&self.four[4..]);
+        let rest = self.two[8..].iter().zip(&p[10..]);
+        for ((o, (a, b)), (c, d)) in out.iter_mut().zip(fours).zip(rest) {
+            *o = (a + b) + (c + d);
         }
     }
 }
@@ -85,22 +121,32 @@ mod tests {
 
     #[test]
     fn box_sum_agrees_with_direct_sums() {
-        let grid = PlanGrid {
-            origin: Point2::origin(),
-            step: 1.0,
-            width: 17,
-            height: 14,
-        };
-        let values: Vec<f32> = (0..17 * 14).map(|i| ((i * 37) % 11) as f32).collect();
-        let sums = box_sum(&values, &grid);
-        for (x, y) in [(0, 0), (5, 5), (8, 7), (16, 13), (3, 12)] {
-            let mut direct = 0.0;
-            for v in y.max(HALF_WINDOW) - HALF_WINDOW..=(y + HALF_WINDOW).min(13) {
-                for u in x.max(HALF_WINDOW) - HALF_WINDOW..=(x + HALF_WINDOW).min(16) {
-                    direct += values[v * 17 + u];
+        for (width, height) in [(17, 14), (3, 40), (30, 4), (1, 1)] {
+            let grid = PlanGrid {
+                origin: Point2::origin(),
+                step: 1.0,
+                width,
+                height,
+            };
+            let values: Vec<f32> = (0..width * height)
+                .map(|i| ((i * 37) % 11) as f32)
+                .collect();
+            let (mut sums, mut line) = (BoxSum::new(&grid), RowSum::new(width));
+            for y in 0..height {
+                let row = sums.next_row(&mut line, |y, out| {
+                    out.copy_from_slice(&values[y * width..(y + 1) * width]);
+                });
+                for (x, sum) in row.iter().enumerate() {
+                    let mut direct = 0.0;
+                    for v in y.max(HALF_WINDOW) - HALF_WINDOW..=(y + HALF_WINDOW).min(height - 1) {
+                        for u in x.max(HALF_WINDOW) - HALF_WINDOW..=(x + HALF_WINDOW).min(width - 1)
+                        {
+                            direct += values[v * width + u];
+                        }
+                    }
+                    assert_eq!(*sum, direct, "at {x}, {y} of {width} x {height}");
                 }
             }
-            assert!((sums[y * 17 + x] - direct).abs() < 1e-3, "at {x}, {y}");
         }
     }
 }

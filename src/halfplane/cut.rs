@@ -74,6 +74,40 @@ impl Cut {
 /// From, to, capacity in units: paid when `from` keeps and `to` moves.
 type Arc = (usize, usize, i64);
 
+/// Which arcs begin or end at each node, in one list.
+struct ArcsOfNodes {
+    /// The arcs of node i are `arcs[starts[i]..starts[i + 1]]`, ascending.
+    starts: Vec<usize>,
+    arcs: Vec<usize>,
+}
+
+impl ArcsOfNodes {
+    fn new(nodes: usize, arcs: &[Arc]) -> Self {
+        let mut starts = vec![0; nodes + 1];
+        for node in arcs.iter().flat_map(|a| [a.0, a.1]) {
+            starts[node + 1] += 1;
+        }
+        for node in 0..nodes {
+            starts[node + 1] += starts[node];
+        }
+        let (mut next, mut of_nodes) = (starts.clone(), vec![0; 2 * arcs.len()]);
+        for (k, arc) in arcs.iter().enumerate() {
+            for node in [arc.0, arc.1] {
+                of_nodes[next[node]] = k;
+                next[node] += 1;
+            }
+        }
+        Self {
+            starts,
+            arcs: of_nodes,
+        }
+    }
+
+    fn of(&self, node: usize) -> &[usize] {
+        &self.arcs[self.starts[node]..self.starts[node + 1]]
+    }
+}
+
 /// The nodes of a cut that nothing has decided yet.
 struct OpenNodes {
     /// What moving saves in unaries, units.
@@ -88,11 +122,9 @@ impl OpenNodes {
     /// few are left for the cut, whose result is the same.
     fn decide(&mut self) {
         let n = self.gain.len();
-        let mut arcs_of = vec![Vec::new(); n];
+        let arcs_of = ArcsOfNodes::new(n, &self.arcs);
         let (mut saved, mut paid) = (vec![0i64; n], vec![0i64; n]);
-        for (k, &(i, j, capacity)) in self.arcs.iter().enumerate() {
-            arcs_of[i].push(k);
-            arcs_of[j].push(k);
+        for &(i, j, capacity) in &self.arcs {
             saved[i] += capacity;
             paid[j] += capacity;
         }
@@ -109,7 +141,7 @@ impl OpenNodes {
                 continue;
             };
             self.moves[i] = Some(moves);
-            for &k in &arcs_of[i] {
+            for &k in arcs_of.of(i) {
                 let (from, to, capacity) = self.arcs[k];
                 let other = if from == i { to } else { from };
                 if self.moves[other].is_some() {
@@ -191,6 +223,7 @@ impl Part {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::uniform;
 
     /// Costs of keeping and moving, and per pair those of staying, of the second moving and of the first moving.
     type Pair = (usize, usize, [f64; 3]);
@@ -225,11 +258,7 @@ mod tests {
 
     #[test]
     fn no_other_choice_of_moves_is_cheaper() {
-        let mut state = 7u32;
-        let mut next = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state >> 16) / 65536.0
-        };
+        let mut next = uniform(7);
         for _ in 0..50 {
             let unaries: Vec<(f64, f64)> = (0..7).map(|_| (next(), next())).collect();
             let pairs: Vec<Pair> = (0..10)

@@ -7,7 +7,7 @@ use super::borders::Region;
 use super::consistency::{ConsistencyMap, consistency_map, least_correlation};
 use super::grouping::{GroupingInput, PlaneGroup};
 use super::plan::PlanGrid;
-use super::plane_lines::{PlaneLine, lines_in_plane};
+use super::plane_lines::{PlaneLine, lines_in_plane, rays_through_ends};
 use crate::geometry::{Plane, Segment3};
 use crate::lines2d::ImageSegment;
 use crate::params::RoofParams;
@@ -37,6 +37,7 @@ pub fn hypotheses(
     step: f64,
     params: &RoofParams,
 ) -> Vec<Hypothesis> {
+    let rays = rays_through_ends(scene, segments);
     let built = map_shared("planes", &groups, 0.2..0.6, |_, group| {
         let region = Region::new(input, group, params);
         let (min, max) = region.bounds();
@@ -44,7 +45,7 @@ pub fn hypotheses(
         if group.half_planes().is_empty() && !supported(input, group, &map, params) {
             return None;
         }
-        let mut lines = lines_in_plane(scene, segments, &group.plane, &region);
+        let mut lines = lines_in_plane(scene, &rays, &group.plane, &region);
         lines.retain(|l| !crosses_surface(&map, &l.segment));
         Some((region, map, lines))
     });

@@ -82,6 +82,10 @@ pub struct Labelling<B> {
     graph: CellGraph,
     clock: Clock,
     labels: Vec<u32>,
+    /// What each cell's label costs there.
+    costs: Vec<f64>,
+    /// The node of each cell in the cut that is being made; none between cuts.
+    nodes: Vec<Option<usize>>,
 }
 
 impl<B: Borders> Labelling<B> {
@@ -92,6 +96,8 @@ impl<B: Borders> Labelling<B> {
             graph: CellGraph::new(&energy, planes),
             clock: Clock::new(cells, planes),
             labels: vec![NO_PLANE; cells],
+            costs: vec![0.0; cells],
+            nodes: vec![None; cells],
             energy,
         }
     }
@@ -126,13 +132,19 @@ impl<B: Borders> Labelling<B> {
         let changed: Vec<usize> = (0..labels.len()).filter(differs).collect();
         self.clock.changed(&changed);
         self.labels = labels;
+        for cell in changed {
+            let cost = self.energy.unary(cell, self.labels[cell]);
+            self.costs[cell] = cost.unwrap_or(BLOCKED);
+        }
     }
 
     /// The plane may no longer cover the cells; no plane does for now.
     pub fn withdraw(&mut self, plane: u32, cells: &[usize]) {
         for &cell in cells {
             self.energy.unary[cell].retain(|u| u.0 != plane);
+            self.graph.block(cell, plane);
             self.labels[cell] = NO_PLANE;
+            self.costs[cell] = 0.0;
         }
         self.clock.changed(cells);
     }
@@ -140,49 +152,45 @@ impl<B: Borders> Labelling<B> {
     /// The best move in which cells may change to `alpha`; returns those that do.
     fn expand(&mut self, alpha: u32) -> Vec<usize> {
         let (energy, graph, labels) = (&self.energy, &self.graph, &self.labels);
-        let movable: Vec<usize> = (graph.cells_of(alpha).iter().copied())
-            .filter(|&c| labels[c] != alpha && self.may_gain(c, alpha))
+        let may_gain = |c: usize, change: f64| {
+            // Most cells of a plane's region are nothing like the plane and could not, whatever their neighbours do.
+            labels[c] != alpha && self.costs[c] - change + graph.most_by_borders[c] >= 0.0
+        };
+        let movable: Vec<(usize, f64)> = (graph.cells_of(alpha).iter().copied())
+            .filter(|&(c, change)| may_gain(c, change))
             .collect();
-        // Ascending, so that a cell's node is found by bisection.
-        let node = |cell: usize| movable.binary_search(&cell).ok();
+        let nodes = &mut self.nodes;
+        (movable.iter().enumerate()).for_each(|(n, &(c, _))| nodes[c] = Some(n));
         let mut cut = Cut::new(movable.len());
-        for (n, &c) in movable.iter().enumerate() {
-            let keep = energy.unary(c, labels[c]).unwrap_or(BLOCKED);
-            let change = energy.unary(c, alpha).unwrap_or(BLOCKED);
-            cut.unary(n, keep, change);
+        for (n, &(c, change)) in movable.iter().enumerate() {
+            cut.unary(n, self.costs[c], change);
             for &e in &graph.edges_of_cell[c] {
                 let [i, j] = energy.edges[e];
                 let (li, lj) = (labels[i], labels[j]);
-                let stay = energy.border(e, li, lj);
-                match node(if c == i { j } else { i }) {
+                let stay = || energy.border(e, li, lj);
+                match nodes[if c == i { j } else { i }] {
                     // Both may move: handle the edge once, from its first cell.
                     Some(other) if c == i => {
                         let j_moves = energy.border(e, li, alpha);
                         let i_moves = energy.border(e, alpha, lj);
-                        cut.pair(n, other, stay, j_moves, i_moves);
+                        cut.pair(n, other, stay(), j_moves, i_moves);
                     }
                     Some(_) => {}
-                    None if c == i => cut.unary(n, stay, energy.border(e, alpha, lj)),
-                    None => cut.unary(n, stay, energy.border(e, li, alpha)),
+                    None if c == i => cut.unary(n, stay(), energy.border(e, alpha, lj)),
+                    None => cut.unary(n, stay(), energy.border(e, li, alpha)),
                 }
             }
         }
-        let changed: Vec<usize> = movable
-            .iter()
-            .zip(cut.solve())
-            .filter(|(_, moves)| *moves)
-            .map(|(&c, _)| c)
-            .collect();
-        changed.iter().for_each(|&c| self.labels[c] = alpha);
+        movable.iter().for_each(|&(c, _)| nodes[c] = None);
+        let mut changed = Vec::new();
+        for (&(c, change), moves) in movable.iter().zip(cut.solve()) {
+            if moves {
+                self.labels[c] = alpha;
+                self.costs[c] = change;
+                changed.push(c);
+            }
+        }
         changed
-    }
-
-    /// Could the cell gain by `alpha` with all its borders? Most cells of a plane's region are nothing like the
-    /// plane and could not, whatever their neighbours do.
-    fn may_gain(&self, cell: usize, alpha: u32) -> bool {
-        let keep = (self.energy.unary(cell, self.labels[cell])).unwrap_or(BLOCKED);
-        let change = self.energy.unary(cell, alpha).unwrap_or(BLOCKED);
-        keep - change + self.graph.most_by_borders[cell] >= 0.0
     }
 }
 
@@ -191,10 +199,13 @@ const BLOCKED: f64 = 1e6;
 
 /// Which cells a plane may cover, and which edges a cell has.
 struct CellGraph {
-    cells_of_plane: Vec<Vec<usize>>,
+    /// The cells of each plane, ascending, with what it costs there.
+    cells_of_plane: Vec<Vec<(usize, f64)>>,
     /// The planes' cells and the cells beside them: where a change concerns the plane.
     surroundings_of_plane: Vec<Vec<usize>>,
+    /// All cells, and the same with what no plane costs there.
     all: Vec<usize>,
+    cells_of_no_plane: Vec<(usize, f64)>,
     edges_of_cell: Vec<Vec<usize>>,
     /// The most that a cell's borders can cost.
     most_by_borders: Vec<f64>,
@@ -204,8 +215,8 @@ impl CellGraph {
     fn new<B: Borders>(energy: &Energy<B>, planes: u32) -> Self {
         let mut cells_of_plane = vec![Vec::new(); planes as usize];
         for (cell, candidates) in energy.unary.iter().enumerate() {
-            for (plane, _) in candidates {
-                cells_of_plane[*plane as usize].push(cell);
+            for (plane, cost) in candidates {
+                cells_of_plane[*plane as usize].push((cell, *cost));
             }
         }
         let mut edges_of_cell = vec![Vec::new(); energy.unary.len()];
@@ -218,9 +229,10 @@ impl CellGraph {
             .map(|cells| {
                 let beside = cells
                     .iter()
-                    .flat_map(|&c| &edges_of_cell[c])
+                    .flat_map(|&(c, _)| &edges_of_cell[c])
                     .flat_map(|&e| energy.edges[e]);
-                let mut around: Vec<usize> = cells.iter().copied().chain(beside).collect();
+                let own = cells.iter().map(|c| c.0);
+                let mut around: Vec<usize> = own.chain(beside).collect();
                 around.sort_unstable();
                 around.dedup();
                 around
@@ -230,6 +242,7 @@ impl CellGraph {
             cells_of_plane,
             surroundings_of_plane,
             all: (0..energy.unary.len()).collect(),
+            cells_of_no_plane: (0..energy.unary.len()).map(|c| (c, 0.0)).collect(),
             most_by_borders: (edges_of_cell.iter())
                 .map(|edges| edges.iter().map(|&e| energy.borders.most(e)).sum())
                 .collect(),
@@ -237,8 +250,16 @@ impl CellGraph {
         }
     }
 
-    fn cells_of(&self, plane: u32) -> &[usize] {
-        self.cells_of_plane.get(plane as usize).unwrap_or(&self.all)
+    fn cells_of(&self, plane: u32) -> &[(usize, f64)] {
+        (self.cells_of_plane.get(plane as usize)).unwrap_or(&self.cells_of_no_plane)
+    }
+
+    /// The plane may no longer cover the cell.
+    fn block(&mut self, cell: usize, plane: u32) {
+        let cells = &mut self.cells_of_plane[plane as usize];
+        if let Ok(at) = cells.binary_search_by_key(&cell, |c| c.0) {
+            cells[at].1 = BLOCKED;
+        }
     }
 
     fn surroundings_of(&self, plane: u32) -> &[usize] {
@@ -296,6 +317,7 @@ impl Clock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::uniform;
 
     /// Per edge: the cost when nothing supports it, and of pairs of labels that something supports.
     #[derive(Clone)]
@@ -351,11 +373,7 @@ mod tests {
     fn expansion_reaches_the_global_minimum_of_small_chains() {
         // All labellings of five cells and three labels, compared.
         for seed in 0..40u32 {
-            let mut state = seed.wrapping_mul(2_654_435_761).wrapping_add(12345);
-            let mut next = || {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                f64::from(state >> 16) / 65536.0
-            };
+            let mut next = uniform(seed.wrapping_mul(2_654_435_761).wrapping_add(12345));
             let unary = (0..5)
                 .map(|_| (0..2).map(|p| (p, 2.0 * next() - 1.0)).collect())
                 .collect();
@@ -377,11 +395,7 @@ mod tests {
     #[test]
     fn what_is_not_tried_again_would_not_have_helped() {
         for seed in 1..40u32 {
-            let mut state = seed.wrapping_mul(2_654_435_761);
-            let mut next = || {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                f64::from(state >> 16) / 65536.0
-            };
+            let mut next = uniform(seed.wrapping_mul(2_654_435_761));
             let unary = (0..12)
                 .map(|_| (0..4).map(|p| (p, 2.0 * next() - 1.2)).collect())
                 .collect();

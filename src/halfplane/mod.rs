@@ -22,6 +22,7 @@
 //!      extent         closing lines where the views cease to agree on a plane
 //! 4.3  arrangement    the plan cut into cells by the border lines
 //!      box_sum        sums over windows
+//!      agreement      correlations of several views of a plane by running sums
 //!      consistency    similarity of a plane over the complete image set
 //!      hypothesis     planes with their regions, similarity and lines, ready to compete
 //!      evidence       what images and lines say for each plane over each cell
@@ -33,6 +34,7 @@
 //!      facets         verification; orders 4.2 and 4.3
 //! ```
 
+mod agreement;
 mod arrangement;
 mod border_cost;
 mod borders;

@@ -93,15 +93,11 @@ pub fn orthophoto(gray: &Gray, camera: &Camera, plane: &Plane, grid: &PlanGrid) 
         1.0,
     );
     let m = image_from_plan(camera, plane) * plan_from_grid;
-    let mut out = Vec::with_capacity(grid.width * grid.height);
-    let Some(warp) = Warp::new(gray, &m, [grid.width, grid.height]) else {
-        out.resize(grid.width * grid.height, f32::NAN);
-        return out;
-    };
-    let mut line = vec![0.0; grid.width.next_multiple_of(8)];
-    for row in 0..grid.height {
-        warp.fill(row, &mut line, |at| warp.or_nan(at));
-        out.extend_from_slice(&line[..grid.width]);
+    let mut out = vec![f32::NAN; grid.width * grid.height];
+    if let Some(warp) = Warp::new(gray, &m, [grid.width, grid.height]) {
+        for (row, line) in out.chunks_exact_mut(grid.width).enumerate() {
+            warp.fill(row, line, |at| warp.or_nan(at));
+        }
     }
     out
 }

@@ -6,11 +6,10 @@
 //! above or below it are driven apart by parallax. (B99 5 asks to combine the single-line method with the
 //! grouping of coplanar lines; this is the cheaper direction of that combination, plane first.)
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::borders::Region;
-use crate::camera::Camera;
 use crate::geometry::{Plane, Segment3};
 use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;
@@ -47,10 +46,23 @@ impl Cast {
     }
 }
 
-/// The lines in `plane` over `region` that at least three views show.
+/// Rays through the ends of every view's segments.
+pub type EndRays = Vec<Vec<[Vector3<f64>; 2]>>;
+
+/// The rays through the ends of the segments, which every plane is cut by.
+pub fn rays_through_ends(scene: &Scene, segments: &[Vec<ImageSegment>]) -> EndRays {
+    let of_view = |(view, list): (ViewId, &Vec<ImageSegment>)| {
+        let camera = scene.camera(view);
+        let rays = |s: &ImageSegment| [&s.segment.p0, &s.segment.p1].map(|p| camera.ray(p));
+        list.iter().map(rays).collect()
+    };
+    scene.view_ids().zip(segments).map(of_view).collect()
+}
+
+/// The lines in `plane` over `region` that at least three views show; `rays` are those through the ends of all segments.
 pub fn lines_in_plane(
     scene: &Scene,
-    segments: &[Vec<ImageSegment>],
+    rays: &EndRays,
     plane: &Plane,
     region: &Region,
 ) -> Vec<PlaneLine> {
@@ -62,13 +74,12 @@ pub fn lines_in_plane(
         .map(|v| v.camera.ground_pixel(&plane.lift(middle.x, middle.y)))
         .fold(f64::INFINITY, f64::min);
     let mut casts: Vec<Cast> = Vec::new();
-    for (view, list) in scene.view_ids().zip(segments) {
-        let camera = scene.camera(view);
-        casts.extend(list.iter().filter_map(|s| {
-            let (a, b) = (
-                cast(camera, plane, &s.segment.p0)?,
-                cast(camera, plane, &s.segment.p1)?,
-            );
+    for (view, list) in scene.view_ids().zip(rays) {
+        let center = scene.camera(view).center;
+        let above = -plane.signed_distance(&center);
+        casts.extend(list.iter().filter_map(|[p0, p1]| {
+            let cast = |ray: &Vector3<f64>| cast(&center, above, plane, ray);
+            let (a, b) = (cast(p0)?, cast(p1)?);
             let inside = region.contains(&a) && region.contains(&b);
             (inside && (b - a).norm() > 1e-6).then_some(Cast { view, a, b })
         }));
@@ -107,11 +118,15 @@ pub fn lines_in_plane(
     found
 }
 
-/// Where the ray through an image point meets the plane, in plan.
-fn cast(camera: &Camera, plane: &Plane, image: &Point2<f64>) -> Option<Point2<f64>> {
-    let ray = camera.ray(image);
-    let t = -plane.signed_distance(&camera.center) / plane.normal.dot(&ray);
-    (t.is_finite() && t > 0.0).then(|| (camera.center + ray * t).xy())
+/// Where a ray from a centre meets the plane, in plan; `above` is minus the centre's signed distance from it.
+fn cast(
+    center: &Point3<f64>,
+    above: f64,
+    plane: &Plane,
+    ray: &Vector3<f64>,
+) -> Option<Point2<f64>> {
+    let t = above / plane.normal.dot(ray);
+    (t.is_finite() && t > 0.0).then(|| (center + ray * t).xy())
 }
 
 /// Same direction (by contrast too), same line, overlapping.

@@ -9,7 +9,8 @@
 //! Windows are cut at the border of the strip: B99 does not say what a window that crosses the line
 //! does, but its pixels beyond the line belong to another surface and would pull the peak away.
 
-use wide::f32x8;
+use wide::bytemuck::cast;
+use wide::{f32x4, f32x8};
 
 use super::strip::Patch;
 
@@ -178,13 +179,26 @@ impl ColumnSums {
 
     /// `[Sb, Sbb, Sab]` over the columns that `mask` keeps of the sixteen from `column - 7` on. The sums
     /// are whole numbers, so the order in which the lanes are added does not matter.
+    #[inline]
     fn window(&self, column: usize, mask: &[f32x8; 2]) -> [f64; 3] {
         let first = PADDING + column - MAX_HALF;
-        [&self.b, &self.bb, &self.ab].map(|sums| {
-            let (low, high) = sums[first..first + 16].split_at(8);
-            f64::from((load(low) * mask[0] + load(high) * mask[1]).reduce_add())
-        })
+        let [b, bb, ab] = [
+            quarters(&self.b[first..first + 16], mask),
+            quarters(&self.bb[first..first + 16], mask),
+            quarters(&self.ab[first..first + 16], mask),
+        ];
+        let [p, q, r, s] = f32x4::transpose([b, bb, ab, f32x4::ZERO]);
+        let [b, bb, ab, _] = ((p + q) + (r + s)).to_array();
+        [f64::from(b), f64::from(bb), f64::from(ab)]
     }
+}
+
+/// Four sums of four of the sixteen values each, of those that `mask` keeps.
+#[inline(always)]
+fn quarters(sums: &[f32], mask: &[f32x8; 2]) -> f32x4 {
+    let (low, high) = sums.split_at(8);
+    let [a, b]: [f32x4; 2] = cast(load(low) * mask[0] + load(high) * mask[1]);
+    a + b
 }
 
 /// Ones at the columns of a window that starts `MAX_HALF - half` after the first of sixteen.
@@ -199,6 +213,7 @@ fn window_mask(half: usize) -> [f32x8; 2] {
     [0, 8].map(|start| f32x8::from(std::array::from_fn::<f32, 8, _>(|i| lane(start + i))))
 }
 
+#[inline(always)]
 fn load(values: &[f32]) -> f32x8 {
     let values: [f32; 8] = values.try_into().expect("chunks of eight");
     f32x8::from(values)

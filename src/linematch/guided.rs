@@ -124,10 +124,20 @@ fn measure_piece(
     for row in 0..rows {
         let at = along + (row as f64 + 0.5) / rows as f64 * size - 0.5 * size;
         let centre = expected.p0 + direction * at;
-        for (k, value) in profile.iter_mut().enumerate() {
-            let across = (k as f64 - 0.5 * (SAMPLES - 1) as f64) * STEP_PX;
-            let p = centre + normal * across;
-            *value += f64::from(gray.sample(p.x as f32, p.y as f32)?);
+        for (first, values) in profile.chunks_mut(8).enumerate() {
+            // Lanes behind the last sample repeat it.
+            let places: [Point2<f64>; 8] = std::array::from_fn(|lane| {
+                let k = (8 * first + lane).min(SAMPLES - 1);
+                let across = (k as f64 - 0.5 * (SAMPLES - 1) as f64) * STEP_PX;
+                centre + normal * across
+            });
+            let samples = gray.sample_eight(places.map(|p| p.x as f32), places.map(|p| p.y as f32));
+            if samples.is_nan().any() {
+                return None;
+            }
+            for (value, sample) in values.iter_mut().zip(samples.to_array()) {
+                *value += f64::from(sample);
+            }
         }
     }
     let sign = if against { -1.0 } else { 1.0 };
@@ -259,18 +269,16 @@ impl OffsetLine {
 mod tests {
     use super::*;
     use crate::math;
+    use crate::testing::uniform;
 
     /// A soft step of `height` across `edge`, bright on its right, with reproducible noise.
     fn step(edge: &Segment2, height: f32, noise: f64, seed: u32) -> Gray {
         let line = edge.line();
-        let mut state = seed;
+        let mut next = uniform(seed);
         Gray::from_fn(120, 120, |x, y| {
             let d = line.x * (x as f64 + 0.5) + line.y * (y as f64 + 0.5) + line.z;
-            let mut uniform = || {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                f64::from(state >> 8) / f64::from(1u32 << 24) - 0.5
-            };
-            let white = (uniform() + uniform() + uniform()) * 2.0 * noise;
+            let mut even = || next() - 0.5;
+            let white = (even() + even() + even()) * 2.0 * noise;
             0.4 + height * (1.0 / (1.0 + math::exp(-2.5 * d))) as f32 + white as f32
         })
     }

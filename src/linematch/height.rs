@@ -253,14 +253,19 @@ fn jacobian(h: &Matrix3<f64>, x: &Point2<f64>, y: &Point2<f64>) -> Matrix2<f64> 
     Matrix2::from_fn(|r, c| (h[(r, c)] - y[r] * h[(2, c)]) / w)
 }
 
+/// A row of a patch at a time; the eighth lane repeats the seventh.
 fn sample(image: &Gray, x: &Point2<f64>, j: &Matrix2<f64>) -> Option<Vec<f64>> {
     let mut values = Vec::with_capacity(49);
     for row in -3..=3 {
-        for column in -3..=3 {
-            let d = j * Vector2::new(f64::from(column), f64::from(row)) * STRIDE_PX;
-            let p = x + d;
-            values.push(f64::from(image.sample(p.x as f32, p.y as f32)?));
+        let places: [Point2<f64>; 8] = std::array::from_fn(|lane| {
+            let column = lane.min(6) as f64 - 3.0;
+            x + j * Vector2::new(column, f64::from(row)) * STRIDE_PX
+        });
+        let samples = image.sample_eight(places.map(|p| p.x as f32), places.map(|p| p.y as f32));
+        if samples.is_nan().any() {
+            return None;
         }
+        values.extend(samples.to_array()[..7].iter().map(|v| f64::from(*v)));
     }
     Some(values)
 }

@@ -178,7 +178,7 @@ impl Strips {
         let warped =
             |view, side, theta| side_strip(scene, [first, view], channel, frame, line, side, theta);
         let best = |side: StripSide| {
-            let mut chosen: Option<(f64, f64)> = None;
+            let mut chosen: Option<(f64, f64, Vec<Strip>)> = None;
             for &theta in &params.plane_angles_deg {
                 let strips: Vec<Strip> = measured
                     .iter()
@@ -188,19 +188,22 @@ impl Strips {
                     .flat_map(|i| (0..i).map(move |j| (i, j)))
                     .map(|(i, j)| side_score(&strips[i], &strips[j], side, params))
                     .sum();
-                if chosen.is_none_or(|(t, _)| total > t) {
-                    chosen = Some((total, theta));
+                if chosen.as_ref().is_none_or(|c| total > c.0) {
+                    chosen = Some((total, theta, strips));
                 }
                 // Where a plane explains the side well enough, no other need be tried.
                 if total >= 0.8 * pairs {
                     break;
                 }
             }
-            let theta = chosen?.1;
-            views
-                .iter()
-                .map(|v| warped(v.view, side, theta))
-                .collect::<Option<Vec<Strip>>>()
+            let (_, theta, strips) = chosen?;
+            let mut sampled = strips.into_iter();
+            let strip = |v: &ViewProfile| {
+                // Views with segments are in the order of all views.
+                let known = v.measured().then(|| sampled.next()).flatten();
+                known.or_else(|| warped(v.view, side, theta))
+            };
+            views.iter().map(strip).collect::<Option<Vec<Strip>>>()
         };
         let [left, right] = StripSide::BOTH.map(best);
         Some(Self {
@@ -221,9 +224,18 @@ impl Strips {
     /// Fills in the agreements and the correlations with the reference view, and names it.
     fn compare(&self, views: &mut [ViewProfile], params: &MatchParams) -> Option<usize> {
         let measured: Vec<usize> = with_segments(views).collect();
-        for &i in &measured {
-            let others = measured.iter().filter(|j| **j != i);
-            let sum: f64 = others.map(|&j| self.correlations(i, j, params).0).sum();
+        // Two views agree as well one way as the other.
+        let mut scores = vec![0.0; measured.len() * measured.len()];
+        for (p, &i) in measured.iter().enumerate() {
+            for (q, &j) in measured[..p].iter().enumerate() {
+                let score = self.correlations(i, j, params).0;
+                scores[p * measured.len() + q] = score;
+                scores[q * measured.len() + p] = score;
+            }
+        }
+        for (&i, scores) in measured.iter().zip(scores.chunks(measured.len().max(1))) {
+            let others = measured.iter().zip(scores).filter(|(j, _)| **j != i);
+            let sum: f64 = others.map(|(_, score)| score).sum();
             views[i].agreement = sum / (measured.len() - 1).max(1) as f64;
         }
         let agreement = |i: &usize| views[*i].agreement;

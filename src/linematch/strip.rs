@@ -11,7 +11,10 @@
 //! the window (the line itself belongs to both), because beyond an eave or a rake the background
 //! moves.
 
+use std::ops::Range;
+
 use nalgebra::{Point2, Vector2, Vector3};
+use wide::f32x8;
 
 use crate::camera::Homography;
 use crate::geometry::Segment2;
@@ -67,10 +70,12 @@ impl StripFrame {
     }
 }
 
-/// Grey values of a strip, row by row; the rows reach half a window past the first and last edgel.
+/// Grey values of a strip, column by column: what is done row by row is done for eight rows at once. The rows reach half a
+/// window past the first and last edgel.
 pub struct Strip {
-    width: usize,
     half: usize,
+    /// Length of a column: the number of rows, made a multiple of eight.
+    stride: usize,
     values: Vec<f32>,
     /// Which rows lie inside the image.
     valid: Vec<bool>,
@@ -92,7 +97,7 @@ impl StripSide {
 
     /// The columns of a side: its half of the window and one pixel beyond the line, which makes the
     /// edge profile part of both.
-    fn columns(self, half: usize) -> std::ops::Range<usize> {
+    fn columns(self, half: usize) -> Range<usize> {
         match self {
             StripSide::Left => 0..half + 2,
             StripSide::Right => half - 1..2 * half + 1,
@@ -114,82 +119,103 @@ impl Strip {
         Self::sample(gray, h, frame, side.columns(frame.half))
     }
 
-    fn sample(
-        gray: &Gray,
-        h: &Homography,
-        frame: &StripFrame,
-        columns: std::ops::Range<usize>,
-    ) -> Self {
-        let (width, rows) = (frame.width(), frame.rows());
-        let mut values = vec![0.0; width * rows];
-        let mut valid = vec![false; rows];
+    fn sample(gray: &Gray, h: &Homography, frame: &StripFrame, columns: Range<usize>) -> Self {
+        let rows = frame.rows();
+        let stride = rows.next_multiple_of(8);
+        let mut strip = Self {
+            half: frame.half,
+            stride,
+            values: vec![0.0; frame.width() * stride],
+            valid: vec![false; rows],
+        };
         let start = frame.origin - frame.along * frame.half as f64;
         // Homogeneous coordinates are linear along the row of edgels and across it.
         let first = h.0 * Vector3::new(start.x, start.y, 1.0);
         let along = h.0 * Vector3::new(frame.along.x, frame.along.y, 0.0);
         let across = h.0 * Vector3::new(frame.across.x, frame.across.y, 0.0);
         let left = columns.start as f64 - frame.half as f64;
-        for row in 0..rows {
-            let x = first + along * row as f64;
-            if x.z <= 1e-12 {
-                continue;
+        for eight in (0..rows).step_by(8) {
+            let mut places = [RowPlace::default(); 8];
+            for (row, place) in (eight..rows).zip(&mut places) {
+                let x = first + along * row as f64;
+                if x.z <= 1e-12 {
+                    continue;
+                }
+                // To first order across the line: over seven pixels the second order is below 0.01 px.
+                let centre = x.xy() / x.z;
+                let step = (across.xy() - centre * across.z) / x.z;
+                let inside = RowPlace::new(gray, centre + step * left, step, columns.len());
+                strip.valid[row] = inside.is_some();
+                *place = inside.unwrap_or_default();
             }
-            // To first order across the line: over seven pixels the second order is below 0.01 px.
-            let centre = x.xy() / x.z;
-            let step = (across.xy() - centre * across.z) / x.z;
-            let out = &mut values[row * width + columns.start..row * width + columns.end];
-            valid[row] = sample_row(gray, &(centre + step * left), &step, out);
+            if strip.valid[eight..rows.min(eight + 8)].contains(&true) {
+                strip.fill(gray, eight, &places, columns.clone());
+            }
         }
-        Self {
-            width,
-            half: frame.half,
-            values,
-            valid,
+        strip
+    }
+
+    /// Samples eight rows from `first` on.
+    fn fill(&mut self, gray: &Gray, first: usize, places: &[RowPlace; 8], columns: Range<usize>) {
+        let of = |value: fn(&RowPlace) -> f32| f32x8::from(places.each_ref().map(value));
+        let (mut x, mut y) = (of(|p| p.x), of(|p| p.y));
+        let (dx, dy) = (of(|p| p.dx), of(|p| p.dy));
+        for column in columns {
+            let out = &mut self.values[column * self.stride + first..][..8];
+            out.copy_from_slice(gray.between(x, y).as_array());
+            x += dx;
+            y += dy;
         }
     }
 
-    fn row(&self, row: usize) -> &[f32] {
-        &self.values[row * self.width..(row + 1) * self.width]
+    /// Rows of a column from `first` on.
+    fn eight(&self, column: usize, first: usize) -> f32x8 {
+        let values = &self.values[column * self.stride + first..][..8];
+        f32x8::from(<[f32; 8]>::try_from(values).expect("eight rows"))
     }
 
     /// The part of the strip that belongs to [`StripFrame::part`].
     pub fn part(&self, first: usize, edgels: usize) -> Self {
         let rows = first..first + edgels + 2 * self.half;
+        let stride = rows.len().next_multiple_of(8);
+        let mut values = Vec::with_capacity(self.values.len() / self.stride * stride);
+        for column in self.values.chunks_exact(self.stride) {
+            values.extend_from_slice(&column[rows.clone()]);
+            values.resize(values.len() + stride - rows.len(), 0.0);
+        }
         Self {
-            width: self.width,
             half: self.half,
-            values: self.values[rows.start * self.width..rows.end * self.width].to_vec(),
+            stride,
+            values,
             valid: self.valid[rows].to_vec(),
         }
     }
 }
 
-/// Bilinear samples at `start`, `start + step`, ...; false (and no samples) if any leaves the
-/// image.
-fn sample_row(gray: &Gray, start: &Vector2<f64>, step: &Vector2<f64>, out: &mut [f32]) -> bool {
-    let end = start + step * (out.len() - 1) as f64;
-    let (right, bottom) = (gray.width as f64 - 0.5, gray.height as f64 - 0.5);
-    let inside =
-        |p: &Vector2<f64>| p.x >= 0.5 && p.y >= 0.5 && p.x < right - 1e-3 && p.y < bottom - 1e-3;
-    if !inside(start) || !inside(&end) {
-        return false;
+/// Where the samples of a row lie: from the first one on, counted from the centre of the top-left pixel.
+#[derive(Clone, Copy, Default)]
+struct RowPlace {
+    x: f32,
+    y: f32,
+    dx: f32,
+    dy: f32,
+}
+
+impl RowPlace {
+    /// `None` if any of the samples leaves the image.
+    fn new(gray: &Gray, start: Vector2<f64>, step: Vector2<f64>, samples: usize) -> Option<Self> {
+        let end = start + step * (samples - 1) as f64;
+        let (right, bottom) = (gray.width as f64 - 0.5, gray.height as f64 - 0.5);
+        let inside = |p: &Vector2<f64>| {
+            p.x >= 0.5 && p.y >= 0.5 && p.x < right - 1e-3 && p.y < bottom - 1e-3
+        };
+        (inside(&start) && inside(&end)).then(|| Self {
+            x: start.x as f32 - 0.5,
+            y: start.y as f32 - 0.5,
+            dx: step.x as f32,
+            dy: step.y as f32,
+        })
     }
-    let (mut x, mut y) = (start.x as f32 - 0.5, start.y as f32 - 0.5);
-    let (dx, dy) = (step.x as f32, step.y as f32);
-    let (w, last) = (gray.width, gray.data.len() - 1);
-    for o in out {
-        let (column, row) = (x as usize, y as usize);
-        let (fx, fy) = (x - column as f32, y - row as f32);
-        let i = row * w + column;
-        // The clamp is for rounding in the last row only; it never moves an interior sample.
-        let (i, j) = (i.min(last - 1), (i + w).min(last - 1));
-        let top = gray.data[i] + (gray.data[i + 1] - gray.data[i]) * fx;
-        let low = gray.data[j] + (gray.data[j + 1] - gray.data[j]) * fx;
-        *o = top + (low - top) * fy;
-        x += dx;
-        y += dy;
-    }
-    true
 }
 
 /// Running sums of a window on one side of two strips.
@@ -204,25 +230,31 @@ struct Sums {
 }
 
 impl Sums {
-    fn of_row(a: &[f32], b: &[f32]) -> Self {
-        let (mut sa, mut sb, mut saa, mut sbb, mut sab) = (0.0f32, 0.0f32, 0.0f32, 0.0f32, 0.0f32);
-        for (x, y) in a.iter().zip(b) {
+    /// The sums of eight rows each, from `first` on, over some columns.
+    fn of_rows(a: &Strip, b: &Strip, columns: Range<usize>, first: usize) -> [Self; 8] {
+        let [mut sa, mut sb, mut saa, mut sbb, mut sab] = [f32x8::ZERO; 5];
+        for column in columns {
             // Centred on mid grey, squares keep their digits in f32.
-            let (x, y) = (x - 0.5, y - 0.5);
+            let middle = f32x8::splat(0.5);
+            let (x, y) = (
+                a.eight(column, first) - middle,
+                b.eight(column, first) - middle,
+            );
             sa += x;
             sb += y;
             saa += x * x;
             sbb += y * y;
             sab += x * y;
         }
-        Self {
+        let [sa, sb, saa, sbb, sab] = [sa, sb, saa, sbb, sab].map(|s| s.to_array());
+        std::array::from_fn(|row| Self {
             rows: 1.0,
-            a: f64::from(sa),
-            b: f64::from(sb),
-            aa: f64::from(saa),
-            bb: f64::from(sbb),
-            ab: f64::from(sab),
-        }
+            a: f64::from(sa[row]),
+            b: f64::from(sb[row]),
+            aa: f64::from(saa[row]),
+            bb: f64::from(sbb[row]),
+            ab: f64::from(sab[row]),
+        })
     }
 
     fn add(&mut self, o: &Self, sign: f64) {
@@ -250,15 +282,16 @@ impl Sums {
 pub fn correlate(a: &Strip, b: &Strip, side: StripSide, noise: f64) -> Vec<f32> {
     let columns = side.columns(a.half);
     let window = 2 * a.half + 1;
-    let rows: Vec<Sums> = (0..a.valid.len())
-        .map(|r| {
-            if a.valid[r] && b.valid[r] {
-                Sums::of_row(&a.row(r)[columns.clone()], &b.row(r)[columns.clone()])
-            } else {
-                Sums::default()
-            }
-        })
-        .collect();
+    let mut rows: Vec<Sums> = Vec::with_capacity(a.stride);
+    for first in (0..a.valid.len()).step_by(8) {
+        rows.extend(Sums::of_rows(a, b, columns.clone(), first));
+    }
+    rows.truncate(a.valid.len());
+    for (row, (a, b)) in rows.iter_mut().zip(a.valid.iter().zip(&b.valid)) {
+        if !(*a && *b) {
+            *row = Sums::default();
+        }
+    }
     let mut sums = Sums::default();
     rows[..window - 1].iter().for_each(|r| sums.add(r, 1.0));
     let mut out = Vec::with_capacity(rows.len() + 1 - window);

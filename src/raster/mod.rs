@@ -16,6 +16,9 @@ pub use part::{Part, decoding_bytes, load_part};
 pub use warmth::{Channel, Warmth};
 pub use warp::{Eight, Warp, bounds, corners};
 
+use warp::bilinear;
+use wide::f32x8;
+
 /// A raster of grey values (or of anything else in f32), row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gray {
@@ -103,6 +106,36 @@ impl Gray {
         let bottom = self.data[j] + (self.data[j + 1] - self.data[j]) * fx;
         Some(top + (bottom - top) * fy)
     }
+
+    /// Bilinear values at eight positions, counted from the centre of the top-left pixel, which must not lie outside the
+    /// image by more than rounding.
+    pub fn between(&self, x: f32x8, y: f32x8) -> f32x8 {
+        let (column, row) = (x.fast_trunc_int(), y.fast_trunc_int());
+        let fractions = [x - column.round_float(), y - row.round_float()];
+        let (column, row) = (column.to_array(), row.to_array());
+        // Rounding may lead to the pixel behind the last one; no sample inside is moved.
+        let end = self.data.len() - 2;
+        let (mut upper, mut lower) = ([0; 8], [0; 8]);
+        for lane in 0..8 {
+            let i = row[lane] as usize * self.width + column[lane] as usize;
+            (upper[lane], lower[lane]) = (i.min(end), (i + self.width).min(end));
+        }
+        bilinear(&self.data, upper, lower, fractions)
+    }
+
+    /// [`Self::sample`] at eight positions at once; NaN in place of `None`.
+    pub fn sample_eight(&self, x: [f32; 8], y: [f32; 8]) -> f32x8 {
+        let zero = f32x8::ZERO;
+        let [x, y] = [x, y].map(|x| f32x8::from(x) - f32x8::splat(0.5));
+        let [last_x, last_y] =
+            [self.width, self.height].map(|n| f32x8::splat(n.saturating_sub(1) as f32));
+        let inside = x.simd_ge(zero) & y.simd_ge(zero) & x.simd_lt(last_x) & y.simd_lt(last_y);
+        if !inside.any() {
+            return f32x8::splat(f32::NAN);
+        }
+        let [x, y] = [x, y].map(|x| inside.select(x, zero));
+        inside.select(self.between(x, y), f32x8::splat(f32::NAN))
+    }
 }
 
 #[cfg(test)]
@@ -118,5 +151,29 @@ mod tests {
         assert!((v - (0.33 + 0.094)).abs() < 1e-5);
         assert!(g.sample(0.4, 3.0).is_none() && g.sample(8.6, 3.0).is_none());
         assert!(g.sample(f32::NAN, 3.0).is_none());
+    }
+
+    #[test]
+    fn eight_samples_are_those_one_by_one() {
+        let g = Gray::from_fn(9, 7, |x, y| ((x * 7 + y * 13) % 31) as f32 / 31.0);
+        let x = [0.4, 0.5, 3.3, 8.499, 8.5, 2.0, f32::NAN, 6.999];
+        for y in [
+            [1.0; 8],
+            [0.5, 6.499, 4.7, 5.2, 3.0, 6.5, 3.0, 0.499],
+            [-3.0; 8],
+        ] {
+            let eight = g.sample_eight(x, y).to_array();
+            for lane in 0..8 {
+                let one = g.sample(x[lane], y[lane]);
+                assert_eq!(
+                    one.is_none(),
+                    eight[lane].is_nan(),
+                    "{} {}",
+                    x[lane],
+                    y[lane]
+                );
+                assert!(one.is_none_or(|v| v == eight[lane]));
+            }
+        }
     }
 }

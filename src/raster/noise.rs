@@ -34,16 +34,13 @@ fn response(gray: &Gray, x: usize, y: usize) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::uniform;
 
     /// A slope, a step and white noise of known size.
     fn noisy(sigma: f32) -> Gray {
-        let mut state = 7u32;
-        let mut uniform = move || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) as f32 / (1u32 << 24) as f32 - 0.5
-        };
+        let mut next = uniform(7);
         Gray::from_fn(200, 160, |x, y| {
-            let white = (0..12).map(|_| uniform()).sum::<f32>() * sigma;
+            let white = (0..12).map(|_| next() as f32 - 0.5).sum::<f32>() * sigma;
             0.2 + 0.001 * x as f32 + if x + y > 170 { 0.3 } else { 0.0 } + white
         })
     }

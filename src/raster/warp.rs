@@ -1,7 +1,8 @@
 //! Rasters filled from an image by a homography, eight bilinear samples at a time.
 
 use nalgebra::{Matrix3, Point2, Vector3};
-use wide::f32x8;
+use wide::bytemuck::cast;
+use wide::{f32x4, f32x8};
 
 use super::Gray;
 
@@ -53,7 +54,7 @@ impl<'a> Warp<'a> {
         })
     }
 
-    /// Fills a row of the raster, whose length is a multiple of eight, by what `value` makes of each eight positions.
+    /// Fills a row of the raster by what `value` makes of each eight positions.
     #[inline]
     pub fn fill(&self, row: usize, out: &mut [f32], value: impl Fn(Eight) -> f32x8) {
         let v = row as f32;
@@ -62,13 +63,17 @@ impl<'a> Warp<'a> {
         let (x0, y0, w0) = (at(0), at(1), at(2));
         let (dx, dy, dw) = (slope(0), slope(1), slope(2));
         let mut u = f32x8::from([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
-        for out in out.chunks_exact_mut(8) {
+        for out in out.chunks_mut(8) {
             let inverse = f32x8::ONE / (w0 + dw * u);
             let at = Eight {
                 x: (x0 + dx * u) * inverse,
                 y: (y0 + dy * u) * inverse,
             };
-            out.copy_from_slice(value(at).as_array());
+            let values = value(at).to_array();
+            match <&mut [f32; 8]>::try_from(&mut *out) {
+                Ok(out) => *out = values,
+                Err(_) => out.copy_from_slice(&values[..out.len()]),
+            }
             u += f32x8::splat(8.0);
         }
     }
@@ -82,32 +87,68 @@ impl<'a> Warp<'a> {
             at.x.simd_ge(zero) & at.x.simd_le(limit_x) & at.y.simd_ge(zero) & at.y.simd_le(limit_y);
         // Where the horizon lies behind the raster, positions are no numbers.
         let [x, y] = [at.x, at.y].map(|x| inside.select(x, zero));
-        inside.select(self.bordered(Eight { x, y }), f32x8::splat(f32::NAN))
+        inside.select(self.inside(x, y), f32x8::splat(f32::NAN))
     }
 
     /// Bilinear values; outside the image those of its border.
     #[inline]
     pub fn bordered(&self, at: Eight) -> f32x8 {
         let clamp = |x: f32x8, limit: f32| x.fast_max(f32x8::ZERO).fast_min(f32x8::splat(limit));
-        let (x, y) = (clamp(at.x, self.limit[0]), clamp(at.y, self.limit[1]));
+        self.inside(clamp(at.x, self.limit[0]), clamp(at.y, self.limit[1]))
+    }
+
+    /// Bilinear values at coordinates between 0 and the limits.
+    #[inline(always)]
+    fn inside(&self, x: f32x8, y: f32x8) -> f32x8 {
         let (column, row) = (x.fast_trunc_int(), y.fast_trunc_int());
         let (fx, fy) = (x - column.round_float(), y - row.round_float());
         let (column, row) = (column.to_array(), row.to_array());
         let width = self.image.width;
-        let mut corner = [[0.0f32; 8]; 4];
+        let (mut upper, mut lower) = ([0; 8], [0; 8]);
         for lane in 0..8 {
-            let i = self.first + row[lane] as usize * width + column[lane] as usize;
-            let pixels = &self.image.data[i..i + width + 2];
-            corner[0][lane] = pixels[0];
-            corner[1][lane] = pixels[1];
-            corner[2][lane] = pixels[width];
-            corner[3][lane] = pixels[width + 1];
+            upper[lane] = self.first + row[lane] as usize * width + column[lane] as usize;
+            lower[lane] = upper[lane] + width;
         }
-        let [a, b, c, d] = corner.map(f32x8::from);
-        let top = a + (b - a) * fx;
-        let bottom = c + (d - c) * fx;
-        top + (bottom - top) * fy
+        bilinear(&self.image.data, upper, lower, [fx, fy])
     }
+}
+
+/// Between the pixels `upper` and their right neighbours, `lower` and theirs, at these fractions.
+// Everything below is inlined by force: called for every eight samples, the calls took longer than the samples.
+#[inline(always)]
+pub(super) fn bilinear(
+    data: &[f32],
+    upper: [usize; 8],
+    lower: [usize; 8],
+    [fx, fy]: [f32x8; 2],
+) -> f32x8 {
+    let [a, b] = with_right_neighbours(data, upper);
+    let [c, d] = with_right_neighbours(data, lower);
+    let top = a + (b - a) * fx;
+    let bottom = c + (d - c) * fx;
+    top + (bottom - top) * fy
+}
+
+/// Eight pixels and the pixels to the right of them.
+#[inline(always)]
+fn with_right_neighbours(data: &[f32], at: [usize; 8]) -> [f32x8; 2] {
+    let [i, j, k, l, m, n, o, p] = at;
+    let ([a, c], [b, d]) = (four(data, [i, j, k, l]), four(data, [m, n, o, p]));
+    [cast([a, b]), cast([c, d])]
+}
+
+/// Four pixels and the pixels to the right of them, two neighbours read at once.
+#[inline(always)]
+fn four(data: &[f32], [i, j, k, l]: [usize; 4]) -> [f32x4; 2] {
+    let first: f32x4 = cast([two(data, i), two(data, j)]);
+    let last: f32x4 = cast([two(data, k), two(data, l)]);
+    let (even, odd) = (first.unpack_lo(last), first.unpack_hi(last));
+    [even.unpack_lo(odd), even.unpack_hi(odd)]
+}
+
+#[inline(always)]
+fn two(data: &[f32], i: usize) -> [f32; 2] {
+    data[i..i + 2].try_into().expect("two pixels")
 }
 
 /// Where the corners of a rectangle go under a homography; `None` when one is beyond the horizon.

@@ -246,16 +246,22 @@ impl Profiles {
             }
             let across = |k: usize| {
                 let s = (k as f64 - steps as f64) * self.step_m();
-                let x = camera.project(&(p + self.outward * s))?;
-                gray.sample(x.x as f32, x.y as f32)
+                let x = camera.project(&(p + self.outward * s));
+                x.map_or([f32::NAN; 2], |x| [x.x as f32, x.y as f32])
             };
+            let is_seen = |[x, y]: [f32; 2]| gray.sample(x, y).is_some();
             // Seen from end to end or not at all.
-            if hidden || across(0).is_none() || across(count - 1).is_none() {
+            if hidden || !is_seen(across(0)) || !is_seen(across(count - 1)) {
                 continue;
             }
             seen += 1;
-            for (k, row) in rows.iter_mut().enumerate() {
-                row[i] = across(k).unwrap_or(f32::NAN);
+            for (first, rows) in rows.chunks_mut(8).enumerate() {
+                let places: [[f32; 2]; 8] =
+                    std::array::from_fn(|lane| across((8 * first + lane).min(count - 1)));
+                let samples = gray.sample_eight(places.map(|p| p[0]), places.map(|p| p[1]));
+                for (row, sample) in rows.iter_mut().zip(samples.to_array()) {
+                    row[i] = sample;
+                }
             }
         }
         if (seen as f64) < MIN_SEEN * self.samples as f64 {
