@@ -116,7 +116,19 @@ export interface Look {
 
 /** What an element shows on the screen, from a screenshot that the browser decodes. */
 export async function lookOf(page: Page, element: Locator): Promise<Look> {
-  const png = (await element.screenshot()).toString("base64");
+  return lookOfPicture(page, await element.screenshot());
+}
+
+/** The left and the right half of what an element shows. */
+export async function looksOfHalves(page: Page, element: Locator): Promise<[Look, Look]> {
+  const { x, y, width, height } = (await element.boundingBox()) ?? { x: 0, y: 0, width: 0, height: 0 };
+  const half = async (left: number) =>
+    lookOfPicture(page, await page.screenshot({ clip: { x: left, y, width: width / 2, height } }));
+  return [await half(x), await half(x + width / 2)];
+}
+
+async function lookOfPicture(page: Page, picture: Buffer): Promise<Look> {
+  const png = picture.toString("base64");
   return page.evaluate(async (base64) => {
     const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
     const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));

@@ -1,6 +1,6 @@
 /** The other method (W96) and its four stages. */
 import { expect, test } from "@playwright/test";
-import { lookOf, openTab, stage, waitForStage, watch } from "./helpers";
+import { lookOf, looksOfHalves, openTab, stage, steadyLook, waitForStage, watch } from "./helpers";
 
 test("regions, directions, clusters and planes of the demo scene", async ({ page }) => {
   const { problems } = watch(page);
@@ -94,6 +94,21 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
     const row = page.getByTestId("comparison").getByRole("row", { name: /^Facets/ });
     await expect(row.getByRole("cell")).toHaveText([facets, others]);
     const viewer = page.getByTestId("viewer");
+    const halves = page.getByTestId("halves");
+    await expect(halves.getByRole("paragraph")).toHaveText(["Kept: Rectangles", "Now: Lines"]);
+    // Without the present facets the right half is empty, and the kept ones stay in the left.
+    const present = page.getByRole("group", { name: "Layers" }).getByRole("button", { name: "Facets" });
+    await steadyLook(page, viewer);
+    const [kept, now] = await looksOfHalves(page, viewer);
+    await present.click();
+    await steadyLook(page, viewer);
+    const [keptAlone, without] = await looksOfHalves(page, viewer);
+    expect(keptAlone.vivid).toBe(kept.vivid);
+    expect(kept.vivid).toBeGreaterThan(0.01);
+    expect(without.vivid).toBeLessThan(0.1 * now.vivid);
+    await present.click();
+    await page.getByRole("button", { name: "Outlines over it" }).click();
+    await expect(halves).toHaveCount(0);
     const both = await lookOf(page, viewer);
     await page.getByRole("button", { name: "Drop kept" }).click();
     await expect(async () => {
