@@ -29,7 +29,10 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
     ["unmatched", "region boundary"],
     ["matched", "3D line"],
   ],
-  rectangles: [["normals", "hue: azimuth, strength: slope"]],
+  rectangles: [
+    ["normals", "hue: azimuth, strength: slope"],
+    ["plane-end", "end of a plane"],
+  ],
   facets: [["normals", "hue: azimuth, strength: slope"]],
   refinement: [
     ["grown", "before"],

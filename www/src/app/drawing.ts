@@ -57,11 +57,14 @@ export function drawView(
     strokeAll(context, rejected, REJECTED_STRIDE, () => true, PALETTE.rejected, THIN_PX * unit, 0.9);
   }
   if (segments !== null && colours != null) {
-    strokeAll(context, segments, SEGMENT_STRIDE, () => true, PALETTE.casing, (LINE_PX + 1.5) * unit, 0.35);
+    const ofColour = (colour: string | null) => (at: number) => colours[at / SEGMENT_STRIDE] === colour;
+    strokeAll(context, segments, SEGMENT_STRIDE, ofColour(null), PALETTE.unmatched, THIN_PX * unit, 0.7);
+    const isColoured = (at: number) => colours[at / SEGMENT_STRIDE] !== null;
+    strokeAll(context, segments, SEGMENT_STRIDE, isColoured, PALETTE.casing, (LINE_PX + 1.5) * unit, 0.6);
     for (const colour of new Set(colours)) {
-      const isOfIt = (at: number) => colours[at / SEGMENT_STRIDE] === colour;
-      const [stroke, width] = colour === null ? [PALETTE.unmatched, THIN_PX] : [colour, LINE_PX];
-      strokeAll(context, segments, SEGMENT_STRIDE, isOfIt, stroke, width * unit, colour === null ? 0.7 : 1);
+      if (colour !== null) {
+        strokeAll(context, segments, SEGMENT_STRIDE, ofColour(colour), colour, LINE_PX * unit, 1);
+      }
     }
   } else if (segments !== null) {
     const isAlone = supports === null;

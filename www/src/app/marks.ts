@@ -184,7 +184,7 @@ function epipolarMark([a, b, c]: Vec3, view: number): Mark[] {
           [-c / a, 0],
           [-(b * height + c) / a, height],
         ];
-  return [{ points: ends, colour: PALETTE.beam, width: 1.25, dashed: true, label: "F x" }];
+  return [{ points: ends, colour: PALETTE.beam, width: 1.25, dashed: true, label: "F x", labelSide: "left" }];
 }
 
 /** Where the warped picture of a side lies in a view. */

@@ -11,11 +11,18 @@ const METHOD_TITLES: Record<Method, string> = { lines: "Lines", rectangles: "Rec
 const presentParams = computed(() => results.value.madeWith ?? params.value);
 export const presentTitle = computed(() => titleOf(presentParams.value));
 
-/** The method, and how many parameters are not the defaults. */
+/** The method, and which parameter is not the default; of several, how many. */
 function titleOf(values: Params): string {
-  const count = paramSections(defaults.value, values).reduce((sum, { changed }) => sum + changed, 0);
   const name = METHOD_TITLES[methodOf(values)];
-  return count === 0 ? name : `${name}, ${count} changed`;
+  const changed = paramSections(defaults.value, values).flatMap(({ fields }) =>
+    fields.filter((field) => field.changed),
+  );
+  const [only] = changed;
+  if (only === undefined) {
+    return name;
+  }
+  const what = `${only.label.toLowerCase()} ${fieldText(only.value)} ${only.unit}`.trimEnd();
+  return `${name}, ${changed.length === 1 ? what : `${changed.length} changed`}`;
 }
 
 /** The present result, to be kept; null while there are no facets. */
