@@ -85,7 +85,7 @@ const B99 = [
     steps: [
       tab("3D lines"),
       button("After"),
-      async (page) => page.getByTestId("accuracy").click({ position: { x: 190, y: 90 } }),
+      async (page) => page.getByTestId("accuracy").click({ position: { x: 245, y: 150 } }),
     ],
   },
   {
@@ -166,7 +166,7 @@ const W96 = [
     steps: [
       tab("Clusters"),
       allViews,
-      async (page) => page.locator(".cluster").nth(2).click({ force: true }),
+      async (page) => page.locator(".cluster").first().click({ force: true }),
     ],
   },
   {

@@ -1,5 +1,5 @@
 /** What the colours of the present tab mean. */
-import { type Tab, tab } from "./state";
+import { type Tab, tab, withRejected } from "./state";
 
 const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
   segments: [["unmatched", "segment"]],
@@ -42,7 +42,8 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
 };
 
 export function Legend() {
-  const entries = ENTRIES[tab.value] ?? [];
+  const refused = tab.value === "segments" && withRejected.value ? [["rejected", "refused"] as const] : [];
+  const entries = [...(ENTRIES[tab.value] ?? []), ...refused];
   if (entries.length === 0) {
     return null;
   }
