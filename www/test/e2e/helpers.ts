@@ -121,15 +121,14 @@ export async function lookOf(page: Page, element: Locator): Promise<Look> {
 
 /** The left and the right half of what an element shows. */
 export async function looksOfHalves(page: Page, element: Locator): Promise<[Look, Look]> {
-  const { x, y, width, height } = (await element.boundingBox()) ?? { x: 0, y: 0, width: 0, height: 0 };
-  const half = async (left: number) =>
-    lookOfPicture(page, await page.screenshot({ clip: { x: left, y, width: width / 2, height } }));
-  return [await half(x), await half(x + width / 2)];
+  const picture = await element.screenshot();
+  return [await lookOfPicture(page, picture, 0, 0.5), await lookOfPicture(page, picture, 0.5, 1)];
 }
 
-async function lookOfPicture(page: Page, picture: Buffer): Promise<Look> {
-  const png = picture.toString("base64");
-  return page.evaluate(async (base64) => {
+/** A picture between two shares of its width. */
+async function lookOfPicture(page: Page, picture: Buffer, from = 0, to = 1): Promise<Look> {
+  const part = { base64: picture.toString("base64"), from, to };
+  return page.evaluate(async ({ base64, from, to }) => {
     const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
     const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
     const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
@@ -137,7 +136,8 @@ async function lookOfPicture(page: Page, picture: Buffer): Promise<Look> {
       throw new Error("no 2D context");
     }
     context.drawImage(bitmap, 0, 0);
-    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    const [left, right] = [Math.round(from * bitmap.width), Math.round(to * bitmap.width)];
+    const { data } = context.getImageData(left, 0, right - left, bitmap.height);
     const coarse = (at: number) =>
       ((data[at] ?? 0) >> 4) * 256 + ((data[at + 1] ?? 0) >> 4) * 16 + ((data[at + 2] ?? 0) >> 4);
     const counts = new Map<number, number>();
@@ -150,7 +150,7 @@ async function lookOfPicture(page: Page, picture: Buffer): Promise<Look> {
     }
     const pixels = data.length / 4;
     return { drawn: 1 - Math.max(...counts.values()) / pixels, colours: counts.size, vivid: vivid / pixels };
-  }, png);
+  }, part);
 }
 
 /** The same once it no longer changes: textures and fonts arrive late. */
