@@ -82,11 +82,7 @@ const B99 = [
     name: "lines",
     figures: "6, 8 and 9",
     shows: "3D lines after it; accuracy against the number of views; the picked line in every view",
-    steps: [
-      tab("3D lines"),
-      button("After"),
-      async (page) => page.getByTestId("accuracy").click({ position: { x: 190, y: 90 } }),
-    ],
+    steps: [link("tab=lines&select=line:7", "lines")],
   },
   {
     name: "halfplane",
@@ -166,7 +162,7 @@ const W96 = [
     steps: [
       tab("Clusters"),
       allViews,
-      async (page) => page.locator(".cluster").nth(2).click({ force: true }),
+      async (page) => page.locator(".cluster").first().click({ force: true }),
     ],
   },
   {

@@ -53,7 +53,10 @@ function ClusterPlane({ frame, plane, trace }: { frame: Frame; plane: number; tr
       onClick={(across, height) => {
         const distance = ([u, v]: Vec2) =>
           Math.hypot((u - across) / (x.max - x.min), (v - height) / (y.max - y.min));
-        selection.value = nearest([...linesOf(trace), ...refusedOf(plane, trace)], distance);
+        selection.value = nearest(
+          [...linesOf(trace), ...refusedOf(plane, trace)],
+          ([one, at]) => distance(at) - (one.kind === "line" ? RING : 0),
+        );
       }}
     >
       <clipPath id="cluster-clip">
@@ -143,6 +146,8 @@ function isAlong(line: number, { azimuth }: ClusterTrace): boolean {
 
 /** Share of the chart's sides within which a click finds something. */
 const REACH = 0.03;
+/** So much of it a selected cluster's ring takes up: inside, the ring is meant, and not what was refused for its sake. */
+const RING = 0.012;
 
 /** The 3D lines of this direction and where they lie in the plane. */
 function linesOf(trace: ClusterTrace): Place[] {
@@ -158,13 +163,14 @@ function refusedOf(plane: number, trace: ClusterTrace): Place[] {
 
 type Place = readonly [Selection, Vec2];
 
-function nearest(places: readonly Place[], distance: (place: Vec2) => number): Selection | null {
+function nearest(places: readonly Place[], distance: (place: Place) => number): Selection | null {
   let best: Selection | null = null;
   let least = REACH;
-  for (const [picked, at] of places) {
-    if (distance(at) < least) {
-      best = picked;
-      least = distance(at);
+  for (const place of places) {
+    const away = distance(place);
+    if (away < least) {
+      best = place[0];
+      least = away;
     }
   }
   return best;

@@ -1,8 +1,6 @@
-/** Two results side by side: one is kept, its outlines stay in space, and its numbers stand beside the present ones. */
-import type { Facet } from "../shared/results";
-import { slopedArea } from "./geometry";
-import { changedParams } from "./paramForm";
-import { defaults, keptResult, method, params, results, stages } from "./state";
+/** Two results: one is kept, and its numbers stand beside the present ones. In space it stands beside them, too (`beside.ts`). */
+import { comparedRows, presentResult, presentTitle } from "./resultNumbers";
+import { keptResult, results } from "./state";
 
 /** Keeps the present model, or lets go of the kept one. */
 export function KeepResult() {
@@ -11,16 +9,14 @@ export function KeepResult() {
   if (!isKept && (facets === null || facets.length === 0)) {
     return null;
   }
-  const toggle = () => {
-    keptResult.value = isKept || facets === null ? null : { ...numbers(), facets };
-  };
   return (
     <button
       type="button"
-      class="quiet"
       aria-pressed={isKept}
       title="Keep this result, to compare another method or other parameters with it"
-      onClick={toggle}
+      onClick={() => {
+        keptResult.value = isKept ? null : presentResult();
+      }}
     >
       {isKept ? "Drop kept" : "Compare"}
     </button>
@@ -33,14 +29,6 @@ export function Comparison() {
   if (kept === null) {
     return null;
   }
-  const now = numbers();
-  const { facets } = results.value;
-  const rows: [string, string, string][] = [
-    ["Facets", String(kept.facets.length), facets === null ? "–" : String(facets.length)],
-    ["Roof area", areaText(kept.facets), facets === null ? "–" : areaText(facets)],
-    ["3D lines", String(kept.lines), String(now.lines)],
-    ["Time", `${kept.seconds.toFixed(1)} s`, `${now.seconds.toFixed(1)} s`],
-  ];
   return (
     <section class="panel" data-testid="comparison">
       <h2>Comparison</h2>
@@ -50,35 +38,22 @@ export function Comparison() {
             <td />
             <th scope="col">
               <span class="swatch merged" aria-hidden="true" /> {kept.title}
+              <span class="muted"> (kept)</span>
             </th>
-            <th scope="col">{now.title}</th>
+            <th scope="col">{presentTitle}</th>
           </tr>
         </thead>
         <tbody>
-          {rows.map(([name, before, after]) => (
+          {comparedRows(kept).map(([name, before, now]) => (
             <tr key={name}>
               <th scope="row">{name}</th>
               <td class="numbers">{before}</td>
-              <td class="numbers">{after}</td>
+              <td class="numbers">{now}</td>
             </tr>
           ))}
         </tbody>
       </table>
+      <p class="muted">Change the method or parameters, and run: the results stand side by side in space.</p>
     </section>
   );
-}
-
-function numbers() {
-  const { method: _, ...changed } = changedParams(defaults.value, params.value);
-  const count = Object.keys(changed).length;
-  const name = method.value === "lines" ? "Lines" : "Rectangles";
-  return {
-    title: count === 0 ? name : `${name}, ${count} changed`,
-    lines: (results.value.lines?.length ?? 0) / 6,
-    seconds: stages.value.reduce((sum, { seconds }) => sum + (seconds ?? 0), 0),
-  };
-}
-
-function areaText(facets: readonly Facet[]): string {
-  return `${facets.reduce((sum, facet) => sum + slopedArea(facet), 0).toFixed(0)} m²`;
 }

@@ -4,7 +4,7 @@ import type { Selection } from "../shared/selection";
 import { drawView } from "./drawing";
 import { type Mark, marksOf } from "./marks";
 import { fitPoints } from "./overlay";
-import { images, pointing, results, scene, selection, shownView, tab } from "./state";
+import { images, pointing, results, scene, selection, shownView, tab, textScale } from "./state";
 
 const WIDTH_PX = 190;
 const HEIGHT_PX = 128;
@@ -14,7 +14,7 @@ const MAX_SCALE = 5;
 
 /** `unpicked` is shown while nothing is selected. */
 export function Filmstrip({ unpicked = null }: { unpicked?: Selection | null }) {
-  void [results.value, pointing.value];
+  void [results.value, pointing.value, textScale.value];
   const picked = selection.value ?? unpicked;
   const shown = (scene.value?.views ?? [])
     .map(({ name }, view) => ({ name, view, marks: marksOf(picked, view) }))

@@ -2,8 +2,8 @@
 
 import { startTour } from "./lessons";
 import { setMethod } from "./running";
-import { activity, type Method, method } from "./state";
-import { biggerText, textScale, theme, toggleTheme } from "./theme";
+import { activity, type Method, method, textScale } from "./state";
+import { biggerText, theme, toggleTheme } from "./theme";
 
 const METHODS: readonly (readonly [Method, string, string])[] = [
   ["lines", "Lines", "Lines matched over the views, and half-planes at them (Baillard et al. 1999)"],

@@ -17,6 +17,8 @@ import {
   zoomAt,
 } from "./overlay";
 
+import { textScale } from "./state";
+
 interface Props {
   view: number;
   name: string;
@@ -36,6 +38,7 @@ const CLICK_SLACK_PX = 4;
 
 export function ImageCanvas({ view, name, image, overlay, selection, marks, follows, onPick }: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
+  void textScale.value;
   const [box, setBox] = useState<Size>({ width: 0, height: 0 });
   const [moved, setMoved] = useState<Viewport | null>(null);
   const drag = useRef<{ last: Point; travelled: number } | null>(null);

@@ -4,7 +4,9 @@ import { directionColours } from "./DirectionLab";
 import type { Overlay } from "./drawing";
 import { ImageCanvas } from "./ImageCanvas";
 import { Legend } from "./Legend";
+import { startTour } from "./lessons";
 import { marksOf } from "./marks";
+import { openDemo } from "./projectActions";
 import {
   followsSelection,
   images,
@@ -153,8 +155,15 @@ function Empty() {
     <div class="empty">
       <p>No oriented views yet.</p>
       <p class="muted">
-        Add photographs with their orientation on the left, or open the demo scene: six aerial views of
-        detached houses, reconstructed with one click.
+        Add photographs with their orientation on the left, or begin with six aerial views of detached houses.
+      </p>
+      <p class="row">
+        <button type="button" class="primary" onClick={() => void openDemo()}>
+          Reconstruct the example
+        </button>
+        <button type="button" onClick={startTour}>
+          Be shown how it works
+        </button>
       </p>
     </div>
   );

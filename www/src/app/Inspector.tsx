@@ -8,7 +8,7 @@ export function Inspector() {
   const picked = selection.value;
   return (
     <section class="panel" data-testid="inspector">
-      <div class="row spread">
+      <div class="row">
         <h2>Inspector</h2>
         <span class="grow" />
         <Steps />

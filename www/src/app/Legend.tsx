@@ -1,5 +1,5 @@
 /** What the colours of the present tab mean. */
-import { type Tab, tab } from "./state";
+import { type Tab, tab, withRejected } from "./state";
 
 const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
   segments: [["unmatched", "segment"]],
@@ -29,7 +29,10 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
     ["unmatched", "region boundary"],
     ["matched", "3D line"],
   ],
-  rectangles: [["normals", "hue: azimuth, strength: slope"]],
+  rectangles: [
+    ["normals", "hue: azimuth, strength: slope"],
+    ["plane-end", "end of a plane"],
+  ],
   facets: [["normals", "hue: azimuth, strength: slope"]],
   refinement: [
     ["grown", "before"],
@@ -39,7 +42,8 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
 };
 
 export function Legend() {
-  const entries = ENTRIES[tab.value] ?? [];
+  const refused = tab.value === "segments" && withRejected.value ? [["rejected", "refused"] as const] : [];
+  const entries = [...(ENTRIES[tab.value] ?? []), ...refused];
   if (entries.length === 0) {
     return null;
   }

@@ -162,7 +162,7 @@ export function FacetLab() {
     return <p class="lab-hint muted">Run the stage: the border lines in plan appear here.</p>;
   }
   return (
-    <div class="split-lab">
+    <div class="split-lab even">
       <figure class="plan">
         <Fit>
           {(frame) => <Plan frame={frame} grouping={grouping} outlines={facets.map(({ outer }) => outer)} />}

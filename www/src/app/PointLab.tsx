@@ -75,14 +75,14 @@ export function PointLab() {
             <p class="muted">Here the two lines have no common point.</p>
           ) : (
             <div class="pair-of-windows">
-              <Grey values={correspondence.window} title="about x" />
-              <Grey values={correspondence.other_window} title="about x′ = l′ × F x" />
               <p>
                 Correlation
                 <strong class="numbers" data-testid="correlation">
                   {correspondence.correlation === null ? "–" : correspondence.correlation.toFixed(2)}
                 </strong>
               </p>
+              <Grey values={correspondence.window} title="about x" />
+              <Grey values={correspondence.other_window} title="about x′ = l′ × F x" />
             </div>
           )}
         </div>
@@ -91,14 +91,15 @@ export function PointLab() {
   );
 }
 
-/** A window of grey values, each pixel a square. */
+/** A window of grey values, each pixel a square; stretched to its own range, as correlation takes it. */
 function Grey({ values, title }: { values: readonly number[]; title: string }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
     const context = canvas.current?.getContext("2d");
     const image = new ImageData(WINDOW_PX, WINDOW_PX);
+    const [low, high] = [Math.min(...values), Math.max(...values)];
     values.forEach((value, i) => {
-      const grey = Math.round(255 * value);
+      const grey = Math.round((255 * (value - low)) / (high - low || 1));
       image.data.set([grey, grey, grey, 255], 4 * i);
     });
     context?.putImageData(image, 0, 0);

@@ -91,7 +91,7 @@ function PlaneWindow({ outer, pair }: { outer: Frame; pair: PlaneTrace }) {
       frame={frame}
       x={x}
       y={y}
-      xTitle="along the lines (m), and the histogram of positions"
+      xTitle="position along the lines (m)"
       yTitle="across (m)"
       label={`${pair.crossings.length} image lines cross the window, ${pair.ends.length} ends were found`}
       testid="plane-window"

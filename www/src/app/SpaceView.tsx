@@ -5,16 +5,18 @@ import { THEME_COLOURS } from "../shared/palette";
 import type { Vec3 } from "../shared/results";
 import { boundsOf, boundsOfFacets, boundsOfLines, withCameras } from "../viewer/bounds";
 import { GRID_STEP_M } from "../viewer/grid";
-import { buildModel, type ModelLayer } from "../viewer/model";
 import { enlargement } from "../viewer/uncertainty";
 import { Viewer } from "../viewer/viewer";
 import { warmLayers } from "../viewer/warm";
+import { canStandBeside, isBeside, wantsBeside } from "./beside";
 import { notify } from "./core";
 import { Legend } from "./Legend";
 import { followResults, LAYERS, type LayerName, shown } from "./layers";
-import { facetColours, ModeLegend, ModeSwitches, mode } from "./ModelModes";
+import { ModeLegend, ModeSwitches } from "./ModelModes";
+import { model, showsKeptFacets, useModels } from "./models";
+import { presentTitle } from "./resultNumbers";
 import { SpaceTools } from "./SpaceTools";
-import { beforeGrowing, isBusy, method, results, scene, selection, type Tab, tab } from "./state";
+import { beforeGrowing, isBusy, keptResult, method, results, scene, selection, type Tab, tab } from "./state";
 import { theme } from "./theme";
 
 const LAYER_TITLES: Record<LayerName, string> = {
@@ -32,7 +34,6 @@ const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "groups"];
 
 /** The viewer while it exists; the effects below wait for it. */
 export const viewer = signal<Viewer | null>(null);
-const model = signal<ModelLayer | null>(null);
 
 export function SpaceView({ hidden }: { hidden: boolean }) {
   const canvas = useRef<HTMLCanvasElement>(null);
@@ -45,6 +46,7 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
         <LayerSwitches />
         {shown.value[tab.value].includes("model") && <ModeSwitches />}
         {tab.value === "lines" && <GrowingSwitch />}
+        {canStandBeside.value && <BesideSwitch />}
         <span class="grow" />
         <Legend />
         {shown.value[tab.value].includes("model") && <ModeLegend />}
@@ -55,7 +57,17 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
           </p>
         )}
       </div>
-      <div class="space-canvas">
+      {isBeside.value && (
+        <div class="halves" data-testid="halves">
+          <p>
+            <span class="muted">Kept:</span> {keptResult.value?.title}
+          </p>
+          <p>
+            <span class="muted">Now:</span> {presentTitle.value}
+          </p>
+        </div>
+      )}
+      <div class={`space-canvas ${isBeside.value ? "halved" : ""}`}>
         <canvas
           ref={canvas}
           tabIndex={0}
@@ -102,6 +114,27 @@ function GrowingSwitch() {
   );
 }
 
+/** The kept result beside the present one, or its outlines over it. */
+function BesideSwitch() {
+  return (
+    <fieldset class="choice">
+      <legend class="visually-hidden">Where the kept result stands</legend>
+      {[true, false].map((beside) => (
+        <button
+          key={String(beside)}
+          type="button"
+          aria-pressed={wantsBeside.value === beside}
+          onClick={() => {
+            wantsBeside.value = beside;
+          }}
+        >
+          {beside ? "Side by side" : "Outlines over it"}
+        </button>
+      ))}
+    </fieldset>
+  );
+}
+
 /** Of the height of a tab that the canvas has, more or less: the rest is its figure's. */
 const CANVAS_SHARE = 0.6;
 /** Between two stages nothing runs for a moment. */
@@ -139,7 +172,6 @@ function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefine
 const lines = computed(() => results.value.lines);
 /** Changes when a stage has found the lines anew, but not when the model adds some. */
 const lineStage = computed(() => results.value.stretches ?? results.value.clusters);
-const glb = computed(() => results.value.glb);
 
 /** Keeps the viewer's layers, modes, theme and selection as the signals say. */
 function useLayers(): void {
@@ -156,13 +188,11 @@ function useLayers(): void {
       viewer.value?.lookAt(boundsOfLines(found));
     }
   });
+  useModels(viewer);
+  useSignalEffect(() => viewer.value?.setTheme(THEME_COLOURS[theme.value]));
   useSignalEffect(() => {
-    void showModel(glb.value);
-  });
-  useSignalEffect(() => {
-    model.value?.setMode(mode.value);
-    model.value?.setTheme(THEME_COLOURS[theme.value]);
-    viewer.value?.setTheme(THEME_COLOURS[theme.value]);
+    viewer.value?.halve(isBeside.value ? ["kept", "keptModel"] : null);
+    viewer.value?.showLayer("kept", !isBeside.value || showsKeptFacets.value);
   });
   useSignalEffect(() => {
     for (const name of LAYERS) {
@@ -176,28 +206,6 @@ function useLayers(): void {
     }
     viewer.value?.highlight(selection.value);
   });
-}
-
-async function showModel(bytes: Uint8Array<ArrayBuffer> | null): Promise<void> {
-  if (bytes === null) {
-    model.value = null;
-    viewer.peek()?.setLayer("model", null);
-    return;
-  }
-  try {
-    const layer = await buildModel(bytes, facetColours(results.peek().facets, method.peek()));
-    if (glb.peek() !== bytes) {
-      layer.dispose();
-      return;
-    }
-    layer.setMode(mode.peek());
-    layer.highlight(selection.peek());
-    viewer.peek()?.setLayer("model", layer);
-    model.value = layer;
-    viewer.peek()?.lookAt(boundsOf(layer.object));
-  } catch (error) {
-    notify({ severity: "error", title: "The model cannot be shown", text: String(error) });
-  }
 }
 
 /** Looks at what is shown, the cameras with it where they are. */
@@ -243,7 +251,7 @@ function layerIsEmpty(name: Tab): boolean {
     case "rectangles":
       return facets === null;
     case "model":
-      return glb.value === null;
+      return results.value.glb === null;
     default:
       return false;
   }

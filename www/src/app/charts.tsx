@@ -3,6 +3,7 @@
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { grouped } from "./numbers";
+import { textScale } from "./state";
 
 export interface Scale {
   min: number;
@@ -62,10 +63,11 @@ export function ticks({ min, max }: Scale, count = 5): number[] {
   return Array.from({ length: Math.max(0, last - first + 1) }, (_, i) => (first + i) * step);
 }
 
-/** Gives what is drawn inside the size that there is, so that text has its own size. */
+/** Gives what is drawn inside the size that there is, in units of the text's scale: so text has its own size, and grows as elsewhere. */
 export function Fit({ children }: { children: (frame: Frame) => ComponentChildren }) {
   const box = useRef<HTMLDivElement>(null);
-  const [frame, setFrame] = useState<Frame | null>(null);
+  const [size, setSize] = useState<readonly [width: number, height: number] | null>(null);
+  const scale = textScale.value;
   useEffect(() => {
     const element = box.current;
     if (element === null) {
@@ -74,7 +76,7 @@ export function Fit({ children }: { children: (frame: Frame) => ComponentChildre
     const observer = new ResizeObserver(() => {
       const { clientWidth, clientHeight } = element;
       if (clientWidth > 0 && clientHeight > 0) {
-        setFrame(frameOf(clientWidth, clientHeight));
+        setSize([clientWidth, clientHeight]);
       }
     });
     observer.observe(element);
@@ -82,7 +84,7 @@ export function Fit({ children }: { children: (frame: Frame) => ComponentChildre
   }, []);
   return (
     <div class="fit" ref={box}>
-      {frame !== null && children(frame)}
+      {size !== null && children(frameOf(size[0] / scale, size[1] / scale))}
     </div>
   );
 }

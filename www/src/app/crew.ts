@@ -106,7 +106,9 @@ export class Crew {
     const lacking = this.#helpers.filter(({ views }) => views !== "colour" && views !== wanted);
     for (let view = 0; view < count && lacking.length > 0; view += 1) {
       const packed = await this.#engine.call("packView", { view, withColours });
-      await Promise.all(lacking.map(({ worker }) => worker.call("takeView", { view, of: count, packed })));
+      await giveAll(workersOf(lacking), [packed], (worker, transfer) =>
+        worker.call("takeView", { view, of: count, packed }, transfer),
+      );
     }
     for (const helper of lacking) {
       helper.views = wanted;
@@ -122,7 +124,9 @@ export class Crew {
       const lacking = this.#helpers.filter(({ taken }) => taken.get(stage) !== run);
       const found = lacking.length > 0 ? await this.#engine.call("handOver", { stage }) : new Uint8Array();
       if (found.length > 0) {
-        await Promise.all(lacking.map(({ worker }) => worker.call("takeOver", { stage, found })));
+        await giveAll(workersOf(lacking), [found], (worker, transfer) =>
+          worker.call("takeOver", { stage, found }, transfer),
+        );
       }
       for (const { taken } of lacking) {
         taken.set(stage, run);
@@ -131,7 +135,7 @@ export class Crew {
   }
 
   async #doMaps(stage: string, maps: readonly string[]): Promise<void> {
-    const workers = [this.#engine, ...this.#helpers.map(({ worker }) => worker)];
+    const workers = [this.#engine, ...workersOf(this.#helpers)];
     this.#heard = workers.map(() => 0);
     const of = workers.length;
     for (const [step, map] of maps.entries()) {
@@ -140,7 +144,7 @@ export class Crew {
       );
       // After the last map only the engine goes on.
       const learners = step + 1 < maps.length ? workers : [this.#engine];
-      await Promise.all(learners.map((worker) => worker.call("learn", { map, shares })));
+      await giveAll(learners, shares, (worker, transfer) => worker.call("learn", { map, shares }, transfer));
     }
     this.#heard = [];
   }
@@ -154,4 +158,18 @@ export class Crew {
     this.#heard[index] = Math.max(this.#heard[index] ?? 0, fraction);
     this.#onProgress(stage, this.#heard.reduce((sum, heard) => sum + heard, 0) / this.#heard.length);
   }
+}
+
+/** Gives all workers the same bytes: the last one gets them themselves, since copying tens of megabytes holds the page up. */
+async function giveAll(
+  workers: readonly Engine[],
+  bytes: readonly Bytes[],
+  give: (worker: Engine, transfer: readonly Transferable[]) => Promise<unknown>,
+): Promise<void> {
+  const buffers = bytes.map(({ buffer }) => buffer);
+  await Promise.all(workers.map((worker, i) => give(worker, i + 1 < workers.length ? [] : buffers)));
+}
+
+function workersOf(helpers: readonly Helper[]): Engine[] {
+  return helpers.map(({ worker }) => worker);
 }

@@ -5,6 +5,7 @@ import type { Selection } from "../shared/selection";
 import type { Vec2 } from "../shared/traces";
 import type { Mark } from "./marks";
 import type { Viewport } from "./overlay";
+import { textScale } from "./state";
 
 export interface Overlay {
   /** x0, y0, x1, y1 per segment. */
@@ -46,7 +47,7 @@ export function drawView(
   context.imageSmoothingQuality = "high";
   context.drawImage(image, 0, 0);
   context.lineCap = "round";
-  const unit = 1 / viewport.scale;
+  const unit = textScale.peek() / viewport.scale;
   const { segments, supports, rejected, regions, colours } = overlay;
   context.globalAlpha = selection === null ? 1 : DIMMED;
   if (regions != null) {
@@ -56,11 +57,14 @@ export function drawView(
     strokeAll(context, rejected, REJECTED_STRIDE, () => true, PALETTE.rejected, THIN_PX * unit, 0.9);
   }
   if (segments !== null && colours != null) {
-    strokeAll(context, segments, SEGMENT_STRIDE, () => true, PALETTE.casing, (LINE_PX + 1.5) * unit, 0.35);
+    const ofColour = (colour: string | null) => (at: number) => colours[at / SEGMENT_STRIDE] === colour;
+    strokeAll(context, segments, SEGMENT_STRIDE, ofColour(null), PALETTE.unmatched, THIN_PX * unit, 0.7);
+    const isColoured = (at: number) => colours[at / SEGMENT_STRIDE] !== null;
+    strokeAll(context, segments, SEGMENT_STRIDE, isColoured, PALETTE.casing, (LINE_PX + 1.5) * unit, 0.6);
     for (const colour of new Set(colours)) {
-      const isOfIt = (at: number) => colours[at / SEGMENT_STRIDE] === colour;
-      const [stroke, width] = colour === null ? [PALETTE.unmatched, THIN_PX] : [colour, LINE_PX];
-      strokeAll(context, segments, SEGMENT_STRIDE, isOfIt, stroke, width * unit, colour === null ? 0.7 : 1);
+      if (colour !== null) {
+        strokeAll(context, segments, SEGMENT_STRIDE, ofColour(colour), colour, LINE_PX * unit, 1);
+      }
     }
   } else if (segments !== null) {
     const isAlone = supports === null;
@@ -115,7 +119,7 @@ function drawMark(context: CanvasRenderingContext2D, mark: Mark, unit: number): 
   context.stroke(path);
   context.setLineDash([]);
   if (mark.label !== undefined) {
-    drawLabel(context, mark.label, labelPlace(mark.points), mark, unit);
+    drawLabel(context, mark.label, mark, unit);
   }
 }
 
@@ -129,27 +133,51 @@ function trace(path: Path2D, points: readonly Vec2[]): void {
   }
 }
 
-function labelPlace(points: readonly Vec2[]): Vec2 {
-  const [x, y] = points.reduce<[number, number]>(([sx, sy], [px, py]) => [sx + px, sy + py], [0, 0]);
-  return [x / points.length, y / points.length];
-}
-
+/** Beside the right end of what is seen of the mark, or the left one: there it hides none of it. */
 function drawLabel(
   context: CanvasRenderingContext2D,
   text: string,
-  [x, y]: Vec2,
-  { colour, labelSide }: Mark,
+  { points, colour, labelSide = "right" }: Mark,
   unit: number,
 ): void {
   context.font = `600 ${11.5 * unit}px system-ui, "Liberation Sans", sans-serif`;
   const width = context.measureText(text).width + 8 * unit;
+  const isLeft = labelSide === "left";
+  const [x, y] = labelPlace(context, points, isLeft, width + 8 * unit, 19 * unit);
+  const left = isLeft ? x - width - 4 * unit : x + 4 * unit;
+  const top = labelSide === "below" ? y + 2 * unit : y - 17 * unit;
   context.globalAlpha = 0.85;
   context.fillStyle = PALETTE.casing;
-  const left = labelSide === "left" ? x - width - 6 * unit : x + 6 * unit;
-  context.fillRect(left, y - 19 * unit, width, 15 * unit);
+  context.fillRect(left, top, width, 15 * unit);
   context.globalAlpha = 1;
   context.fillStyle = colour;
-  context.fillText(text, left + 4 * unit, y - 7.5 * unit);
+  context.fillText(text, left + 4 * unit, top + 11.5 * unit);
+}
+
+/** In so many steps a side of a mark is gone along, to find a place for its label. */
+const LABEL_STEPS = 48;
+
+/** The outermost place of a polyline that leaves room for a label in the picture; the middle where none does. */
+function labelPlace(
+  context: CanvasRenderingContext2D,
+  points: readonly Vec2[],
+  isLeft: boolean,
+  width: number,
+  height: number,
+): Vec2 {
+  const { a, d, e, f } = context.getTransform();
+  const [x0, x1] = [-e / a + (isLeft ? width : 0), (context.canvas.width - e) / a - (isLeft ? 0 : width)];
+  const [y0, y1] = [-f / d + height, (context.canvas.height - f) / d - height];
+  const places = points.flatMap(([px, py], i): Vec2[] => {
+    const [qx, qy] = points[i + 1] ?? [px, py];
+    return Array.from({ length: LABEL_STEPS + 1 }, (_, k) => {
+      const t = k / LABEL_STEPS;
+      return [px + t * (qx - px), py + t * (qy - py)];
+    });
+  });
+  const seen = places.filter(([x, y]) => x >= x0 && x <= x1 && y >= y0 && y <= y1);
+  const outermost = seen.sort(([p], [q]) => (isLeft ? p - q : q - p))[0];
+  return outermost ?? places[Math.floor(places.length / 2)] ?? [0, 0];
 }
 
 function fillRegions(

@@ -58,7 +58,12 @@ export class Engine {
     return this.call("open", { wasmUrl: new URL(wasmUrl, document.baseURI).href });
   }
 
-  call<K extends CallName>(type: K, args: Args<K>): Promise<Result<K>> {
+  /** What `transfer` names moves to the worker instead of being copied. */
+  call<K extends CallName>(
+    type: K,
+    args: Args<K>,
+    transfer: readonly Transferable[] = [],
+  ): Promise<Result<K>> {
     const worker = this.#worker;
     if (worker === undefined) {
       return Promise.reject(new EngineError("No worker is running.", "cancelled"));
@@ -67,7 +72,7 @@ export class Engine {
     const id = this.#lastId;
     return new Promise((resolve, reject) => {
       this.#pending.set(id, { resolve, reject });
-      worker.postMessage({ type, id, args } as Request);
+      worker.postMessage({ type, id, args } as Request, [...transfer]);
     });
   }
 

@@ -377,7 +377,7 @@ function threshold(name: string): string {
 /** A point of the local frame in the frame of the input. */
 function worldText([x, y, z]: Vec3): string {
   const [ox, oy, oz] = scene.value?.origin ?? [0, 0, 0];
-  return `${(x + ox).toFixed(2)}, ${(y + oy).toFixed(2)}, ${(z + oz).toFixed(2)} m`;
+  return `${(x + ox).toFixed(2)}, ${(y + oy).toFixed(2)}, ${(z + oz).toFixed(2)}\u00a0m`;
 }
 
 function degrees(radians: number): string {

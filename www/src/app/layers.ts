@@ -1,12 +1,12 @@
 /** The layers of the 3D view, from the results: each is built anew when what it shows has changed, in a task of its own. */
 import { effect, signal } from "@preact/signals";
 import { Vector3 } from "three";
-import { LINE_STRIDE, type Vec3 } from "../shared/results";
+import { type Facet, LINE_STRIDE, type Vec3 } from "../shared/results";
 import { buildCameras } from "../viewer/cameras";
 import { buildFacets } from "../viewer/facets";
 import { buildFans, buildTurning } from "../viewer/fans";
 import { buildGroups } from "../viewer/groups";
-import type { Layer } from "../viewer/layer";
+import { type Layer, unpicked } from "../viewer/layer";
 import { buildLines } from "../viewer/lines";
 import { buildOutlines } from "../viewer/outlines";
 import { buildPicked } from "../viewer/picked";
@@ -14,6 +14,7 @@ import { buildRefinement } from "../viewer/refinement";
 import { buildStretches } from "../viewer/stretches";
 import { buildUncertainty, enlargement } from "../viewer/uncertainty";
 import type { Viewer } from "../viewer/viewer";
+import { isBeside } from "./beside";
 import { lineEnds, linesOfSelection, shapesOf } from "./shapes";
 import { images, keptResult, pointing, results, scene, selection, type Tab, tab } from "./state";
 
@@ -74,7 +75,10 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   },
   kept: () => {
     const kept = keptResult.value;
-    return kept && [() => buildOutlines(kept.facets), kept];
+    const beside = isBeside.value;
+    const build = (facets: readonly Facet[]) =>
+      beside ? unpicked(buildFacets(facets)) : buildOutlines(facets);
+    return kept && [() => build(kept.facets), kept, beside];
   },
   picked: () => {
     const shapes = shapesOf(selection.value).filter(({ role }) => role !== "before");

@@ -21,8 +21,11 @@ export interface Mark {
   /** Opacity of the area inside. */
   fill?: number;
   label?: string;
-  /** On which side of the mark; points have the left one, so that lines through them keep theirs. */
-  labelSide?: "left" | "right";
+  /**
+   * Above the right end, below it, or above the left one: predictions are below the candidates that they meet, points left of the
+   * lines through them.
+   */
+  labelSide?: "left" | "right" | "below";
 }
 
 const SELECTED_PX = 3.5;
@@ -151,6 +154,7 @@ function segmentMarks(
       colour: PALETTE.grown,
       width: 2,
       dashed: true,
+      labelSide: "below",
       label: prediction.distance_px === null ? "predicted" : `${prediction.distance_px.toFixed(2)} px`,
     });
     if (prediction.verified !== null) {
@@ -180,7 +184,7 @@ function epipolarMark([a, b, c]: Vec3, view: number): Mark[] {
           [-c / a, 0],
           [-(b * height + c) / a, height],
         ];
-  return [{ points: ends, colour: PALETTE.beam, width: 1.25, dashed: true, label: "F x" }];
+  return [{ points: ends, colour: PALETTE.beam, width: 1.25, dashed: true, label: "F x", labelSide: "left" }];
 }
 
 /** Where the warped picture of a side lies in a view. */

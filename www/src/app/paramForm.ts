@@ -102,6 +102,14 @@ export function withParam(values: Params, path: string, value: ParamValue): Para
   return { ...values, [first]: set(values[first] ?? {}, rest) as ParamGroup };
 }
 
+/** A parameter in words, with its group: "Half-plane sweep: Min similarity". */
+export function paramName(path: string): string {
+  const at = path.lastIndexOf(".");
+  const [group, key] = [path.slice(0, at), path.slice(at + 1)];
+  const { label, unit } = labelAndUnit(key);
+  return `${TITLES[group] ?? innerTitle(group)}: ${label}${unit === "" ? "" : ` (${unit})`}`;
+}
+
 /** What differs from the defaults, by path: what a link carries. */
 export function changedParams(defaults: Params, values: Params): Record<string, ParamValue> {
   const changed: Record<string, ParamValue> = {};

@@ -36,6 +36,7 @@ export async function addFiles(added: InputFile[], name?: string): Promise<void>
   if (added.length === 0) {
     return;
   }
+  removals = [];
   const byPath = new Map(files.value.map((file) => [file.path, file]));
   for (const file of added) {
     byPath.set(file.path, file);
@@ -86,6 +87,11 @@ export async function clearProject(): Promise<void> {
   });
 }
 
+const UNDO = "Undo";
+
+/** What was removed since files came last, and the project before that; the last removal is taken back first. */
+let removals: { what: string; before: Kept }[] = [];
+
 /** Removes something, and offers to take that back. */
 async function removing(what: string, remove: () => Promise<void>): Promise<void> {
   const before: Kept = {
@@ -95,13 +101,31 @@ async function removing(what: string, remove: () => Promise<void>): Promise<void
     options: runOptions.value,
     params: params.value,
   };
-  await remove();
-  notify({
-    severity: "info",
-    title: `${what} was removed`,
-    text: "",
-    action: { name: "Undo", run: () => void restoreProject(before) },
-  });
+  removals = [...removals, { what, before }];
+  // It is gone at once; reading what is left takes its time.
+  const reading = remove();
+  offerUndo();
+  await reading;
+}
+
+/** Offers to take back the last removal, in place of any other one. */
+function offerUndo(): void {
+  notices.value = notices.value.filter(({ action }) => action?.name !== UNDO);
+  const last = removals.at(-1);
+  if (last !== undefined) {
+    notify({
+      severity: "info",
+      title: `${last.what} was removed`,
+      text: "",
+      action: { name: UNDO, run: () => void undo(last.before) },
+    });
+  }
+}
+
+async function undo(before: Kept): Promise<void> {
+  removals = removals.slice(0, -1);
+  await restoreProject(before);
+  offerUndo();
 }
 
 /** Takes up the project of the last visit. */

@@ -1,7 +1,7 @@
 /** What a stage adds to the results. */
 import type { Queries } from "../shared/messages";
 import { engine } from "./core";
-import { type Results, scene } from "./state";
+import { params, type Results, scene } from "./state";
 
 /** What a stage adds to the results. */
 export async function fetchResults(stage: string): Promise<Partial<Results>> {
@@ -20,6 +20,7 @@ export async function fetchResults(stage: string): Promise<Partial<Results>> {
     case "facets":
       return {
         facets: await engine.call("facets", {}),
+        madeWith: params.value,
         grouping: await engine.ask("grouping"),
         refinement: await engine.ask("refinement"),
         // The model adds new lines to the matched ones.
@@ -32,7 +33,11 @@ export async function fetchResults(stage: string): Promise<Partial<Results>> {
     case "clusters":
       return { ...(await fetchLines()), clusters: await engine.ask("clusters") };
     case "rectangles":
-      return { facets: await engine.call("facets", {}), rectangles: await engine.ask("rectangles") };
+      return {
+        facets: await engine.call("facets", {}),
+        madeWith: params.value,
+        rectangles: await engine.ask("rectangles"),
+      };
     case "model":
       return { glb: await engine.call("exportFile", { name: "model.glb" }) };
     default:

@@ -47,6 +47,8 @@ export interface Results {
   lines: Float64Array | null;
   halfPlanes: HalfPlane[] | null;
   facets: Facet[] | null;
+  /** The parameters that the facets were found with. */
+  madeWith: Params | null;
   glb: Uint8Array<ArrayBuffer> | null;
   rejected: Float32Array[];
   matching: traces.MatchRecord | null;
@@ -86,6 +88,7 @@ export const NO_RESULTS: Results = {
   lines: null,
   halfPlanes: null,
   facets: null,
+  madeWith: null,
   glb: null,
   rejected: [],
   matching: null,
@@ -195,12 +198,19 @@ export const withRejected = signal(false);
 /** A model that was kept, to compare others with it. */
 export interface KeptResult {
   title: string;
+  method: Method;
   facets: Facet[];
+  /** The textured model; null where it was kept before there was one. */
+  glb: Results["glb"];
   lines: number;
   seconds: number;
+  params: Params;
 }
 
 export const keptResult = signal<KeptResult | null>(null);
+
+/** How large text and lines are: for projectors more than 1. */
+export const textScale = signal(1);
 
 /** The step of the guided tour; null while it is closed. */
 export const lessonStep = signal<number | null>(null);

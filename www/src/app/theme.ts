@@ -1,5 +1,6 @@
 /** Dark or light: what the system prefers, until the person chooses. */
 import { computed, effect, signal } from "@preact/signals";
+import { textScale } from "./state";
 
 export type Theme = "light" | "dark";
 
@@ -23,7 +24,7 @@ effect(() => {
 const SCALES = [1, 1.15, 1.3, 1.5] as const;
 const SCALE_KEY = "ridgeline.text";
 
-export const textScale = signal(storedScale());
+textScale.value = storedScale();
 
 effect(() => {
   document.documentElement.style.setProperty("--scale", String(textScale.value));

@@ -21,6 +21,11 @@ export interface Layer {
   dispose(): void;
 }
 
+/** The layer for looking at only: a selection is not of its things. */
+export function unpicked({ object, dispose }: Pick<Layer, "object" | "dispose">): Layer {
+  return { object, pick: () => null, highlight: () => undefined, dispose };
+}
+
 /** Seen from both sides by one shader: what is transparent would be drawn in two passes, each with its own. */
 export const BOTH_SIDES = { side: DoubleSide, forceSinglePass: true } as const;
 

@@ -195,7 +195,7 @@ function edgePositions(mesh: Mesh): ArrayLike<number> & Iterable<number> {
   return geometry.getAttribute("position").array;
 }
 
-function edgeLines(positions: readonly number[]): LineSegments<BufferGeometry, LineBasicMaterial> {
+export function edgeLines(positions: readonly number[]): LineSegments<BufferGeometry, LineBasicMaterial> {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(Float32Array.from(positions), 3));
   const edges = new LineSegments(geometry, new LineBasicMaterial());

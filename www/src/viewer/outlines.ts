@@ -2,7 +2,7 @@
 import { PALETTE } from "../shared/palette";
 import type { Facet } from "../shared/results";
 import { zUpGroup } from "./frame";
-import { disposeObject, type Layer } from "./layer";
+import { disposeObject, type Layer, unpicked } from "./layer";
 import { sidesOf, strokes } from "./strokes";
 
 const WIDTH_PX = 3;
@@ -15,5 +15,5 @@ export function buildOutlines(facets: readonly Facet[]): Layer {
   lines.renderOrder = 3;
   lines.raycast = () => undefined;
   object.add(lines);
-  return { object, pick: () => null, highlight: () => undefined, dispose: () => disposeObject(object) };
+  return unpicked({ object, dispose: () => disposeObject(object) });
 }

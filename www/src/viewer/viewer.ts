@@ -18,10 +18,13 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { ThemeColours } from "../shared/palette";
 import type { ViewInfo } from "../shared/results";
 import type { Selection } from "../shared/selection";
+import { clipPlace, drawHalves } from "./beside";
+import { finished } from "./finished";
 import { buildGrid } from "./grid";
 import type { Layer } from "./layer";
 import { buildMeasure, type Measured, measure } from "./measure";
 import { clipFromViewer } from "./photo";
+import { CUT, MEASURED, OF_BOTH_HALVES, PICK_ORDER } from "./roles";
 import { clippingPlane, type Section, sectionOf } from "./section";
 
 const FIELD_OF_VIEW_DEG = 35;
@@ -51,6 +54,8 @@ export class Viewer {
   #cut: Plane | null = null;
   /** The view whose camera is looked through; null for the free one. */
   #photo: ViewInfo | null = null;
+  /** Layers of the left half; null while the canvas is whole. */
+  #left: ReadonlySet<string> | null = null;
   /** The points that were clicked for a tool; null while clicks pick. */
   #points: Vector3[] | null = null;
   #onPoint: (points: Vector3[]) => void = () => undefined;
@@ -151,6 +156,12 @@ export class Viewer {
     }
   }
 
+  /** Halves the canvas: these layers are seen in the left half, all others but those of the place itself in the right one. */
+  halve(left: readonly string[] | null): void {
+    this.#left = left === null ? null : new Set(left);
+    this.draw();
+  }
+
   highlight(selection: Selection | null): void {
     for (const layer of this.#layers.values()) {
       layer.highlight(selection);
@@ -168,7 +179,10 @@ export class Viewer {
   /** Looks at a sphere from the south-west, as from a low aeroplane, and lays the grid below it. */
   lookAt(bounds: Sphere): void {
     this.#bounds = bounds.clone();
-    const distance = bounds.radius / Math.sin((FIELD_OF_VIEW_DEG * Math.PI) / 360);
+    this.#takeAspect();
+    const upright = (FIELD_OF_VIEW_DEG * Math.PI) / 360;
+    const level = Math.atan(Math.tan(upright) * this.#camera.aspect);
+    const distance = bounds.radius / Math.sin(Math.min(upright, level));
     this.#controls.target.copy(bounds.center);
     this.#camera.position
       .copy(bounds.center)
@@ -278,11 +292,39 @@ export class Viewer {
     const distance = this.#camera.position.distanceTo(this.#controls.target);
     this.#camera.near = Math.max(0.1, distance / 200);
     this.#camera.far = Math.max(5000, distance * 20);
+    this.#takeAspect();
     this.#camera.updateProjectionMatrix();
     if (this.#photo !== null) {
       this.#usePhotoCamera(this.#photo);
     }
-    this.#renderer.render(this.#scene, this.#camera);
+    if (this.#left === null) {
+      this.#renderer.render(this.#scene, this.#camera);
+    } else {
+      drawHalves(
+        this.#renderer,
+        this.#scene,
+        this.#camera,
+        this.#objectsOf("left"),
+        this.#objectsOf("right"),
+      );
+    }
+  }
+
+  /** The shape of what the camera fills: of the canvas, or of half of it. */
+  #takeAspect(): void {
+    const { clientWidth, clientHeight } = this.#renderer.domElement;
+    if (clientWidth > 0 && clientHeight > 0) {
+      this.#camera.aspect = clientWidth / clientHeight / (this.#left === null ? 1 : 2);
+    }
+  }
+
+  /** The objects that belong to one half. */
+  #objectsOf(side: "left" | "right"): Object3D[] {
+    return this.#shown([...this.#layers.keys()].filter((name) => this.#sideOf(name) === side));
+  }
+
+  #sideOf(name: string): "left" | "right" | null {
+    return this.#left === null || OF_BOTH_HALVES.has(name) ? null : this.#left.has(name) ? "left" : "right";
   }
 
   /** The whole map from the viewer's frame to clip space goes into the projection; the camera itself stands at the origin. */
@@ -306,7 +348,6 @@ export class Viewer {
     }
     const { clientWidth, clientHeight } = this.#renderer.domElement;
     if (clientWidth > 0 && clientHeight > 0) {
-      this.#camera.aspect = clientWidth / clientHeight;
       cancelAnimationFrame(this.#frame);
       this.#render();
     }
@@ -329,19 +370,21 @@ export class Viewer {
     if (this.#pressedAt.distanceTo(new Vector2(event.clientX, event.clientY)) > CLICK_SLACK_PX) {
       return;
     }
-    const { clientWidth, clientHeight } = this.#renderer.domElement;
-    const at = new Vector2((event.offsetX / clientWidth) * 2 - 1, 1 - (event.offsetY / clientHeight) * 2);
+    const { clientWidth: width, clientHeight: height } = this.#renderer.domElement;
+    const clicked = { x: event.offsetX, y: event.offsetY };
+    const { at, side } = clipPlace(clicked, { width, height }, this.#left !== null);
     if (this.#points !== null) {
-      this.#pointAt(at, this.#points);
-    } else {
+      const names = MEASURED.filter((name) => this.#sideOf(name) === side);
+      this.#pointAt(at, this.#points, names);
+    } else if (side !== "left") {
       this.#onPick(this.#pickAt(at));
     }
   }
 
   /** A point of what is shown, or of the ground beside it. */
-  #pointAt(at: Vector2, points: Vector3[]): void {
+  #pointAt(at: Vector2, points: Vector3[], names: readonly string[]): void {
     const caster = this.#caster(at);
-    const hits = this.#shown(MEASURED).flatMap((object) => caster.intersectObject(object, true));
+    const hits = this.#shown(names).flatMap((object) => caster.intersectObject(object, true));
     const [hit] = hits.sort((a, b) => a.distance - b.distance);
     const floor = new Plane(new Vector3(0, 1, 0), -this.#floor());
     // On a line of constant width the hit lies beside it.
@@ -401,35 +444,3 @@ export class Viewer {
     return (this.#bounds?.center.y ?? 0) - 0.35 * (this.#bounds?.radius ?? 0);
   }
 }
-
-/** Once the graphics card has done all that it was told so far: a question about a shader would wait for that. */
-async function finished(gl: WebGL2RenderingContext): Promise<void> {
-  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-  gl.flush();
-  while (
-    fence !== null &&
-    !gl.isContextLost() &&
-    gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED
-  ) {
-    await new Promise((resolve) => setTimeout(resolve, POLL_MS));
-  }
-  gl.deleteSync(fence);
-}
-
-const POLL_MS = 10;
-
-/** Layers in the order in which a click tries them. */
-const PICK_ORDER = [
-  "groups",
-  "stretches",
-  "lines",
-  "uncertainty",
-  "fans",
-  "facets",
-  "model",
-  "cameras",
-] as const;
-/** Layers whose points can be measured. */
-const MEASURED = ["lines", "stretches", "groups", "facets", "model"] as const;
-/** Layers of faces, which a cut goes through. */
-const CUT = ["facets", "model"] as const;

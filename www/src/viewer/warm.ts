@@ -2,14 +2,17 @@
  * One thing of each layer, never shown: its shaders are made when the page opens. Otherwise each is made when a stage first
  * fills its layer, and asking for it waits for the graphics beside the running pipeline.
  */
-import { Mesh, MeshBasicMaterial, type Object3D, SphereGeometry, Texture } from "three";
+import { Mesh, MeshBasicMaterial, type Object3D, Sphere, SphereGeometry, Texture, Vector3 } from "three";
+import { PALETTE } from "../shared/palette";
 import type { Facet, HalfPlane } from "../shared/results";
 import type { Grouping, LineRecord, SideRecord } from "../shared/traces";
 import { buildFacets } from "./facets";
 import { buildFans } from "./fans";
+import { buildGrid } from "./grid";
 import { buildGroups } from "./groups";
-import { disposeObject, type Layer } from "./layer";
+import { disposeObject, type Layer, unpicked } from "./layer";
 import { buildLines } from "./lines";
+import { edgeLines } from "./model";
 import { buildOutlines } from "./outlines";
 import { buildPicked } from "./picked";
 
@@ -63,10 +66,12 @@ export function warmLayers(): Layer[] {
     buildFacets([FACET]),
     buildOutlines([FACET]),
     buildPicked([{ points: FACET.outer, closed: true }]),
-    unpicked(new Mesh(new SphereGeometry(), new MeshBasicMaterial({ map: new Texture() }))),
+    buildGrid(new Sphere(new Vector3(), 1), 0, PALETTE.unmatched),
+    onlySeen(edgeLines([...LINES])),
+    onlySeen(new Mesh(new SphereGeometry(), new MeshBasicMaterial({ map: new Texture() }))),
   ];
 }
 
-function unpicked(object: Object3D): Layer {
-  return { object, pick: () => null, highlight: () => undefined, dispose: () => disposeObject(object) };
+function onlySeen(object: Object3D): Layer {
+  return unpicked({ object, dispose: () => disposeObject(object) });
 }

@@ -116,8 +116,19 @@ export interface Look {
 
 /** What an element shows on the screen, from a screenshot that the browser decodes. */
 export async function lookOf(page: Page, element: Locator): Promise<Look> {
-  const png = (await element.screenshot()).toString("base64");
-  return page.evaluate(async (base64) => {
+  return lookOfPicture(page, await element.screenshot());
+}
+
+/** The left and the right half of what an element shows. */
+export async function looksOfHalves(page: Page, element: Locator): Promise<[Look, Look]> {
+  const picture = await element.screenshot();
+  return [await lookOfPicture(page, picture, 0, 0.5), await lookOfPicture(page, picture, 0.5, 1)];
+}
+
+/** A picture between two shares of its width. */
+async function lookOfPicture(page: Page, picture: Buffer, from = 0, to = 1): Promise<Look> {
+  const part = { base64: picture.toString("base64"), from, to };
+  return page.evaluate(async ({ base64, from, to }) => {
     const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
     const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
     const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
@@ -125,7 +136,8 @@ export async function lookOf(page: Page, element: Locator): Promise<Look> {
       throw new Error("no 2D context");
     }
     context.drawImage(bitmap, 0, 0);
-    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    const [left, right] = [Math.round(from * bitmap.width), Math.round(to * bitmap.width)];
+    const { data } = context.getImageData(left, 0, right - left, bitmap.height);
     const coarse = (at: number) =>
       ((data[at] ?? 0) >> 4) * 256 + ((data[at + 1] ?? 0) >> 4) * 16 + ((data[at + 2] ?? 0) >> 4);
     const counts = new Map<number, number>();
@@ -138,7 +150,7 @@ export async function lookOf(page: Page, element: Locator): Promise<Look> {
     }
     const pixels = data.length / 4;
     return { drawn: 1 - Math.max(...counts.values()) / pixels, colours: counts.size, vivid: vivid / pixels };
-  }, png);
+  }, part);
 }
 
 /** The same once it no longer changes: textures and fonts arrive late. */

@@ -1,6 +1,6 @@
 /** The page stays at hand while the pipeline runs: no task of the main thread over 100 ms. */
 import { expect, test } from "@playwright/test";
-import { waitForStage } from "./helpers";
+import { steadyLook, waitForStage } from "./helpers";
 
 const MOST_MS = 100;
 
@@ -14,6 +14,8 @@ interface LongTask {
 declare global {
   interface Window {
     longTasks: LongTask[];
+    /** How many shaders were asked for so far. */
+    shaders: number;
   }
 }
 
@@ -21,6 +23,7 @@ declare global {
 function observe(): void {
   const waits: [start: number, ms: number][] = [];
   let depth = 0;
+  window.shaders = 0;
   const timed = <T>(call: () => T): T => {
     const start = performance.now();
     depth += 1;
@@ -38,6 +41,7 @@ function observe(): void {
     const { value } = Object.getOwnPropertyDescriptor(gl, name) ?? {};
     if (typeof value === "function" && name !== "constructor") {
       gl[name] = function (this: unknown, ...args: unknown[]) {
+        window.shaders += name === "linkProgram" ? 1 : 0;
         return timed(() => value.apply(this, args));
       };
     }
@@ -74,4 +78,16 @@ test("nothing holds the page up while the pipeline runs", async ({ page }) => {
   const tasks = await page.evaluate(() => window.longTasks);
   test.info().annotations.push({ type: "long tasks", description: JSON.stringify(tasks) });
   expect(tasks.filter(({ ms, glMs }) => ms - glMs > MOST_MS)).toEqual([]);
+});
+
+test("all shaders are made before there is anything to show", async ({ page }) => {
+  await page.addInitScript(observe);
+  await page.goto("/");
+  const made = () => page.evaluate(() => window.shaders);
+  await expect.poll(made).toBeGreaterThan(0);
+  const before = await made();
+  await page.getByRole("button", { name: "Demo scene" }).click();
+  await waitForStage(page, "model");
+  await steadyLook(page, page.getByTestId("viewer"));
+  expect(await made()).toBe(before);
 });

@@ -1,8 +1,10 @@
 /** The other method (W96) and its four stages. */
 import { expect, test } from "@playwright/test";
-import { lookOf, openTab, stage, waitForStage, watch } from "./helpers";
+import { lookOf, looksOfHalves, openTab, stage, steadyLook, waitForStage, watch } from "./helpers";
 
 test("regions, directions, clusters and planes of the demo scene", async ({ page }) => {
+  // Both methods run, where graphics are computed in software, too.
+  test.slow();
   const { problems } = watch(page);
   await page.goto("/");
   await page.getByRole("button", { name: "Rectangles", exact: true }).click();
@@ -38,22 +40,22 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
     await openTab(page, "Clusters");
     await page.getByRole("group", { name: "View" }).getByRole("button", { name: "All" }).click();
     const before = await lookOf(page, image);
-    await page.getByTestId("cluster-plane").locator(".cluster").first().click({ force: true });
-    await expect(inspector.locator(".picked")).toHaveText(/^3D line \d+$/);
+    // Also where a refused cluster lies within the ring.
+    for (const ring of await page.getByTestId("cluster-plane").locator(".cluster").all()) {
+      await ring.click({ force: true });
+      await expect(inspector.locator(".picked")).toHaveText(/^3D line \d+$/);
+    }
     await expect(page.locator(".chosen-cluster")).toHaveCount(1);
     await expect(async () => {
       expect(await lookOf(page, image)).not.toEqual(before);
     }).toPass({ timeout: 10_000 });
-    // A refused one says what it would have gained.
+    // A refused one, off the rings, says what it would have gained.
     const picked = inspector.locator(".picked");
-    const rings = page.getByTestId("cluster-plane").locator(".refused-cluster");
-    for (
-      let i = 0;
-      i < (await rings.count()) && !/^Refused/.test((await picked.textContent()) ?? "");
-      i += 1
-    ) {
-      await rings.nth(i).click({ force: true });
-    }
+    const plane = page.getByTestId("cluster-plane");
+    await plane
+      .locator(".refused-cluster")
+      .nth(await plane.evaluate(loneliest))
+      .click({ force: true });
     await expect(picked).toHaveText(/^Refused cluster \d+ of plane 0$/);
     await expect(inspector.locator("div", { hasText: /^Gain/ })).toContainText(/-?[\d.]+ bit/);
     await page.getByRole("button", { name: "Clear" }).click();
@@ -94,6 +96,22 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
     const row = page.getByTestId("comparison").getByRole("row", { name: /^Facets/ });
     await expect(row.getByRole("cell")).toHaveText([facets, others]);
     const viewer = page.getByTestId("viewer");
+    const halves = page.getByTestId("halves");
+    await expect(halves.getByRole("paragraph")).toHaveText(["Kept: Rectangles", "Now: Lines"]);
+    // Without the present facets the right half is empty, and the kept ones stay in the left.
+    const present = page.getByRole("group", { name: "Layers" }).getByRole("button", { name: "Facets" });
+    await steadyLook(page, viewer);
+    const [kept, now] = await looksOfHalves(page, viewer);
+    expect(kept.vivid).toBeGreaterThan(0.01);
+    await present.click();
+    await expect(async () => {
+      const [keptAlone, without] = await looksOfHalves(page, viewer);
+      expect(keptAlone.vivid).toBe(kept.vivid);
+      expect(without.vivid).toBeLessThan(0.1 * now.vivid);
+    }).toPass({ timeout: 20_000 });
+    await present.click();
+    await page.getByRole("button", { name: "Outlines over it" }).click();
+    await expect(halves).toHaveCount(0);
     const both = await lookOf(page, viewer);
     await page.getByRole("button", { name: "Drop kept" }).click();
     await expect(async () => {
@@ -102,3 +120,17 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
   });
   expect(problems).toEqual([]);
 });
+
+/** In the page: the refused cluster that is farthest from all selected ones. */
+function loneliest(chart: Element): number {
+  const placesOf = (what: string) =>
+    [...chart.querySelectorAll<SVGCircleElement>(what)].map(({ cx, cy }) => [
+      cx.baseVal.value,
+      cy.baseVal.value,
+    ]) as [number, number][];
+  const rings = placesOf(".cluster");
+  const distances = placesOf(".refused-cluster").map(([x, y]) =>
+    Math.min(...rings.map(([u, v]) => Math.hypot(x - u, y - v))),
+  );
+  return distances.indexOf(Math.max(...distances));
+}

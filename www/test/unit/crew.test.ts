@@ -2,8 +2,8 @@ import { beforeEach, describe, expect, it, vi } from "vitest";
 import type { Crew as CrewType } from "../../src/app/crew";
 import type { Engine } from "../../src/app/engine";
 
-/** Every call of every worker, in their order: worker, call, arguments. */
-let calls: [number, string, Record<string, unknown>][] = [];
+/** Every call of every worker, in their order: worker, call, arguments, what moves along. */
+let calls: [number, string, Record<string, unknown>, readonly Transferable[]][] = [];
 /** The worker whose shares fail. */
 let broken = -1;
 let why = "crash";
@@ -26,8 +26,12 @@ class FakeEngine {
     this.isOpen = false;
   }
 
-  async call(type: string, args: Record<string, unknown>): Promise<unknown> {
-    calls.push([this.number, type, args]);
+  async call(
+    type: string,
+    args: Record<string, unknown>,
+    transfer: readonly Transferable[] = [],
+  ): Promise<unknown> {
+    calls.push([this.number, type, args, transfer]);
     if (type === "sharedMaps") {
       return { maps: ["heights", "pairs"], withColours: false };
     }
@@ -111,6 +115,25 @@ describe("crew", () => {
     await crew.share(wanted);
     expect(of("takeView").length).toBe(8);
     expect(of("takeOver").length).toBe(6);
+  });
+
+  it("copies for all workers but the last, which gets the bytes themselves", async () => {
+    const crew = await crewOf();
+    crew.hasRun("segments");
+    await crew.share(wanted);
+    const moved = (type: string) => of(type).map(([worker, , , transfer]) => [worker, transfer.length]);
+    const eachView = [
+      [1, 0],
+      [2, 1],
+    ];
+    expect(moved("takeView")).toEqual([...eachView, ...eachView]);
+    expect(moved("takeOver")).toEqual(eachView);
+    expect(moved("learn")).toEqual([
+      [0, 0],
+      [1, 0],
+      [2, 3],
+      [0, 3],
+    ]);
   });
 
   it("ends with the run that is cancelled", async () => {
