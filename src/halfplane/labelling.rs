@@ -256,7 +256,10 @@ impl CellGraph {
 
     /// The plane may no longer cover the cell.
     fn block(&mut self, cell: usize, plane: u32) {
-        let cells = &mut self.cells_of_plane[plane as usize];
+        // "No plane" may cover any.
+        let Some(cells) = self.cells_of_plane.get_mut(plane as usize) else {
+            return;
+        };
         if let Ok(at) = cells.binary_search_by_key(&cell, |c| c.0) {
             cells[at].1 = BLOCKED;
         }
