@@ -425,6 +425,7 @@ mod tests {
         let (mut scene, truth) = hip_scene(320);
         for view in &mut scene.views {
             view.gray.data.fill(0.5);
+            view.warmth = None;
         }
         // A line far away, to which the facets owe their certainty.
         let far = known(Segment3::new(
