@@ -186,6 +186,7 @@ fn images_without_structure_give_an_empty_model_and_say_so() {
     let (mut scene, _) = l_scene(64);
     for view in &mut scene.views {
         view.gray.data.fill(0.5);
+        view.warmth = None;
     }
     let mut run = Run::new(scene, Params::default());
     run.run_all();

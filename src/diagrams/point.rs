@@ -12,7 +12,7 @@ use crate::camera::{Camera, Homography, fundamental, homography_of_plane, plane_
 use crate::geometry::{Plane, Segment2};
 use crate::linematch::SegmentRef;
 use crate::lines2d::ImageSegment;
-use crate::raster::Gray;
+use crate::raster::{Channel, Gray};
 use crate::scene::Scene;
 
 /// Side of the windows, pixels (B99 3.1: 15 x 15).
@@ -27,7 +27,9 @@ pub struct Correspondence {
     pub epipolar: Vector3<f64>,
     /// `x' = l' x (F x)`, pixels.
     pub other: Point2<f64>,
-    /// Grey values, 0 to 1, of the window about x, row by row.
+    /// The channel that shows the segment: what is compared.
+    pub channel: Channel,
+    /// Its values, 0 to 1, in the window about x, row by row.
     pub window: Vec<f32>,
     /// The same places in the other view; empty where it does not show them all.
     pub other_window: Vec<f32>,
@@ -49,19 +51,29 @@ pub fn correspondence(
     let other_line = segment_of(segments, candidate)?;
     let epipolar = epipolar_line(&first.camera, &second.camera, &x)?;
     let other = meet(other_line, &epipolar)?;
-    let window = window_at(&first.gray, &Homography(Matrix3::identity()), &x)?;
+    let channel = detected(segments, of)?.kind.channel();
+    let window = window_at(
+        first.channel(channel).0,
+        &Homography(Matrix3::identity()),
+        &x,
+    )?;
     let plane = level_plane(&first.camera, &x, &second.camera, other_line)?;
     let other_window = homography_of_plane(&first.camera, &second.camera, &plane)
-        .and_then(|h| window_at(&second.gray, &h, &x))
+        .and_then(|h| window_at(second.channel(channel).0, &h, &x))
         .unwrap_or_default();
     Some(Correspondence {
         x,
         epipolar,
         other,
+        channel,
         correlation: correlation(&window, &other_window),
         window,
         other_window,
     })
+}
+
+fn detected(segments: &[Vec<ImageSegment>], of: SegmentRef) -> Option<&ImageSegment> {
+    segments.get(of.view.index())?.get(of.segment.index())
 }
 
 fn epipolar_line(first: &Camera, second: &Camera, x: &Point2<f64>) -> Option<Vector3<f64>> {
@@ -162,6 +174,39 @@ mod tests {
                 assert!(found.correlation.is_none_or(|c| c.abs() <= 1.0 + 1e-9));
             }
         }
+    }
+
+    #[test]
+    fn a_segment_in_colour_is_compared_in_colour() {
+        let (scene, truth) = gable_scene(320);
+        let edge = truth.edges[0];
+        let shown = |kind| -> Vec<Vec<ImageSegment>> {
+            let in_view = |v: &crate::scene::View| {
+                let ends = [edge.p0, edge.p1].map(|p| v.camera.project(&p).unwrap());
+                vec![ImageSegment {
+                    kind,
+                    segment: Segment2::new(ends[0], ends[1]),
+                    covariance: Matrix2::identity(),
+                    contrast: 0.2,
+                    edgels: 20,
+                }]
+            };
+            scene.views.iter().map(in_view).collect()
+        };
+        let first = SegmentRef {
+            view: ViewId(0),
+            segment: SegmentId(0),
+        };
+        let second = SegmentRef {
+            view: ViewId(1),
+            ..first
+        };
+        let windows = [SegmentKind::Edge, SegmentKind::Color].map(|kind| {
+            let found = correspondence(&scene, &shown(kind), first, second, 0.4).unwrap();
+            assert_eq!(found.channel, kind.channel());
+            found.window
+        });
+        assert_ne!(windows[0], windows[1]);
     }
 
     #[test]

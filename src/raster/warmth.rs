@@ -6,11 +6,13 @@
 //! a shadow has an edge here too, as in grey values.
 
 use image::RgbImage;
+use serde::Serialize;
 
 use super::{Gray, noise_of};
 
 /// Which number of a pixel is looked at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Channel {
     /// Its grey value.
     Grey,

@@ -76,7 +76,7 @@ export function PointLab() {
           ) : (
             <div class="pair-of-windows">
               <p>
-                Correlation
+                Correlation of {correspondence.channel === "warmth" ? "red less blue" : "grey values"}
                 <strong class="numbers" data-testid="correlation">
                   {correspondence.correlation === null ? "–" : correspondence.correlation.toFixed(2)}
                 </strong>
@@ -91,7 +91,7 @@ export function PointLab() {
   );
 }
 
-/** A window of grey values, each pixel a square; stretched to its own range, as correlation takes it. */
+/** A window of grey values (or of warmth), each pixel a square; stretched to its own range, as correlation takes it. */
 function Grey({ values, title }: { values: readonly number[]; title: string }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {

@@ -70,6 +70,8 @@ export interface Correspondence {
   /** l with l . (x, y, 1) a distance in pixels. */
   epipolar: Vec3;
   other: Vec2;
+  /** What is compared: grey values or warmth, red less blue. */
+  channel: "grey" | "warmth";
   window: number[];
   other_window: number[];
   correlation: number | null;
