@@ -195,10 +195,8 @@ impl Context<'_> {
         let core = self.core(line, segments, view)?;
         let along = |t: f64| Some((image.at(t)? - expected.p0).dot(&expected.direction()));
         let core = [along(core.0)?, along(core.1)?];
-        let (seen, noise) = self
-            .scene
-            .view(view)
-            .channel(self.sights.channel(segments)?);
+        let channel = self.sights.channel(segments)?;
+        let (seen, noise) = self.scene.view(view).channel(channel);
         let against = self.against_contrast(&image, segments, view);
         measure_edge(view, seen, &expected, core, against, noise)
     }
