@@ -297,6 +297,7 @@ mod tests {
     use super::*;
     use crate::geometry::Segment2;
     use crate::linematch::planted;
+    use crate::lines2d::SegmentKind;
 
     #[test]
     fn a_rising_side_is_warped_as_it_rises() {
@@ -347,5 +348,29 @@ mod tests {
         };
         assert!(found(0, 1) && !found(1, 1), "within the strip");
         assert!(found(1, 3) && !found(0, 3), "across the strips");
+    }
+
+    #[test]
+    fn segments_in_colour_and_in_grey_values_are_no_pair() {
+        let scene = planted::scene();
+        let partners = [(ViewId(0), ViewId(3))];
+        let name = |v| SegmentRef {
+            view: ViewId(v),
+            segment: crate::ids::SegmentId(1),
+        };
+        let score = |in_color: &[usize]| {
+            let mut segments = planted::segments(&scene);
+            for &view in in_color {
+                segments[view][1].kind = SegmentKind::Color;
+            }
+            let sights = Sights::new(&scene, &segments);
+            let params = MatchParams::default();
+            let pairs = match_pairs(&scene, &sights, &partners, [-2.0, 8.0], &params);
+            pairs.score(name(0), name(3))
+        };
+        // The scene has no colour, so that grey values stand for it.
+        assert!(score(&[]) > 0.0 && score(&[0, 3]) > 0.0);
+        assert_eq!(score(&[0]), 0.0);
+        assert_eq!(score(&[3]), 0.0);
     }
 }
