@@ -249,7 +249,15 @@ export class Session implements CoreSession {
     const [[x0, y0], [x1, y1]] = [pixel(corner(a)), pixel(corner(b))];
     const x = [x0 + t * (x1 - x0), y0 + t * (y1 - y0)] as const;
     const window = Array.from({ length: 225 }, (_, i) => (i % 15) / 15);
-    return { x, epipolar: [0, 1, -x[1]], other: x, window, other_window: window, correlation: 1 - t / 2 };
+    return {
+      x,
+      epipolar: [0, 1, -x[1]],
+      other: x,
+      channel: "grey",
+      window,
+      other_window: window,
+      correlation: 1 - t / 2,
+    };
   }
 
   lineRecords(): LineRecord[] {
