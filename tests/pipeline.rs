@@ -11,6 +11,7 @@ use ridgeline::geometry::{Plane, Segment3};
 use ridgeline::params::{Method, Params};
 use ridgeline::pipeline::{PackedView, Run, Stage};
 use ridgeline::progress::silent;
+use ridgeline::raster::Warmth;
 use ridgeline::roof::{Facet, check_invariants};
 use ridgeline::scene_loader::{InputFile, LoadOptions, load_scene};
 use ridgeline::shares::{Known, Task};
@@ -178,6 +179,33 @@ fn new_parameters_drop_what_they_change() {
     assert!(
         run.files(&[]).is_empty(),
         "an unfinished run offers nothing"
+    );
+}
+
+/// Grey values say nothing here: detection, pairs, third views and the second look at the edges have to look at the colour.
+#[test]
+fn the_lines_of_a_house_that_shows_in_colour_alone_are_found() {
+    let (mut scene, truth) = l_scene(SIZE_PX);
+    for view in &mut scene.views {
+        view.warmth = Some(Warmth {
+            image: view.gray.clone(),
+            noise: view.noise,
+        });
+        view.gray.data.fill(0.5);
+    }
+    let mut params = Params::default();
+    // Heights are found in grey values.
+    params.matching.z_range_m = Some([truth.ground_z, truth.ground_z + 15.0]);
+    let mut run = Run::new(scene, params);
+    run.step(Stage::Lines, &silent());
+    let lines = &run.results().lines.as_ref().unwrap().value;
+    let lines: Vec<Segment3> = lines.iter().map(|l| l.segment).collect();
+    let covered = |e: &Segment3| e.length() * covered_share(e, &lines);
+    let covered: f64 = truth.edges.iter().map(covered).sum();
+    let total: f64 = truth.edges.iter().map(Segment3::length).sum();
+    assert!(
+        covered >= 0.6 * total,
+        "{covered:.1} m of {total:.1} m of the edges"
     );
 }
 

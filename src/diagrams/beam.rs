@@ -66,7 +66,7 @@ pub fn segment_story(
     trace: &MatchTrace,
     of: SegmentRef,
 ) -> Option<SegmentStory> {
-    let segment = segment_of(segments, of)?;
+    let segment = &segment_of(segments, of)?.segment;
     let outcome = trace.outcomes.get(of.view.index());
     let candidates = trace
         .pairs
@@ -82,9 +82,8 @@ pub fn segment_story(
 }
 
 /// The segment of this name; `None` where there is no such view or segment.
-pub(super) fn segment_of(segments: &[Vec<ImageSegment>], of: SegmentRef) -> Option<&Segment2> {
-    let view = segments.get(of.view.index())?;
-    view.get(of.segment.index()).map(|s| &s.segment)
+pub(super) fn segment_of(segments: &[Vec<ImageSegment>], of: SegmentRef) -> Option<&ImageSegment> {
+    segments.get(of.view.index())?.get(of.segment.index())
 }
 
 fn beams(scene: &Scene, segment: &Segment2, view: ViewId, z_range: [f64; 2]) -> Vec<Beam> {
@@ -112,7 +111,8 @@ fn candidate(
         _ if pair.b == of => pair.a,
         _ => return None,
     };
-    let (first, second) = (segment_of(segments, of)?, segment_of(segments, other)?);
+    let [first, second] = [of, other].map(|name| segment_of(segments, name).map(|s| &s.segment));
+    let (first, second) = (first?, second?);
     let ends = ends_in_space(scene, of.view, first, other.view, second)?;
     let third = |&view: &ViewId| view != of.view && view != other.view;
     let predictions = scene
@@ -156,7 +156,7 @@ fn prediction(
     let segment = Segment2::new(camera.project(&ends[0])?, camera.project(&ends[1])?);
     let line = segment.line();
     let distance = |of: SegmentRef| {
-        let s = segment_of(segments, of)?;
+        let s = &segment_of(segments, of)?.segment;
         let off = |p: &Point2<f64>| (line.x * p.x + line.y * p.y + line.z).abs();
         Some(off(&s.p0).max(off(&s.p1)))
     };

@@ -47,19 +47,17 @@ pub fn correspondence(
     t: f64,
 ) -> Option<Correspondence> {
     let (first, second) = (scene.view(of.view), scene.view(candidate.view));
-    let x = segment_of(segments, of)?.at(t);
-    let other_line = segment_of(segments, candidate)?;
+    let segment = segment_of(segments, of)?;
+    let x = segment.segment.at(t);
+    let other_line = &segment_of(segments, candidate)?.segment;
     let epipolar = epipolar_line(&first.camera, &second.camera, &x)?;
     let other = meet(other_line, &epipolar)?;
-    let channel = detected(segments, of)?.kind.channel();
-    let window = window_at(
-        first.channel(channel).0,
-        &Homography(Matrix3::identity()),
-        &x,
-    )?;
+    let channel = segment.kind.channel();
+    let [shown, other_shown] = [first, second].map(|view| view.channel(channel).0);
+    let window = window_at(shown, &Homography(Matrix3::identity()), &x)?;
     let plane = level_plane(&first.camera, &x, &second.camera, other_line)?;
     let other_window = homography_of_plane(&first.camera, &second.camera, &plane)
-        .and_then(|h| window_at(second.channel(channel).0, &h, &x))
+        .and_then(|h| window_at(other_shown, &h, &x))
         .unwrap_or_default();
     Some(Correspondence {
         x,
@@ -70,10 +68,6 @@ pub fn correspondence(
         window,
         other_window,
     })
-}
-
-fn detected(segments: &[Vec<ImageSegment>], of: SegmentRef) -> Option<&ImageSegment> {
-    segments.get(of.view.index())?.get(of.segment.index())
 }
 
 fn epipolar_line(first: &Camera, second: &Camera, x: &Point2<f64>) -> Option<Vector3<f64>> {

@@ -112,8 +112,8 @@ readable! {
 /// Edges between colours of about the same grey value. Thresholds are those of [`EdgelParams`], on the difference of red and blue.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ColorParams {
-    /// Look for them at all? B99 has grey photographs; where there is colour, a seventh of the roof edges of rendered scenes
-    /// shows in it alone.
+    /// Look for them at all? B99 has grey photographs; where there is colour, an eighth to a fifth of the roof edges of
+    /// rendered scenes shows in it alone.
     pub detect: bool,
     /// One is refused that has a segment in grey values so near along half of it, px. Assumption: compression leaves
     /// colour at half the resolution.
