@@ -5,7 +5,8 @@
 //! follows a gutter for half of its way along an eave. Once two views predict a line, the edge is
 //! sought again along the prediction: the profile across it is averaged over short pieces, so that a
 //! step far below the noise of a pixel shows, each piece gives one offset, and a robust line through the
-//! offsets is the measurement. A view in which the pieces do not line up has no such edge.
+//! offsets is the measurement. Whether there is an edge is asked of the grey values, where it is of their light
+//! ([`Channel::to_light`]). A view in which the pieces do not line up has no such edge.
 //!
 //! Deviation: the paper verifies a view without a segment by correlation alone. Correlation says that
 //! the surroundings are alike, not where the line is; a measured offset takes part in the fit.
@@ -14,7 +15,7 @@ use nalgebra::{Matrix2, Point2};
 
 use crate::geometry::Segment2;
 use crate::ids::ViewId;
-use crate::raster::Gray;
+use crate::raster::{Channel, Gray};
 use crate::sorting::sort_by;
 
 /// Shortest piece whose profile is averaged, px.
@@ -27,7 +28,9 @@ const STEP_PX: f64 = 0.5;
 /// Half the base of the derivative, in steps: one pixel.
 const BASE: usize = 2;
 /// Samples of the profile: the reach, a neighbour for the maximum test and the base on either side.
-const SAMPLES: usize = 2 * (3 + 1 + BASE) + 1;
+const SAMPLES: usize = STEPS + 2 * BASE;
+/// Steps of the profile.
+const STEPS: usize = 2 * (3 + 1) + 1;
 /// Least step of a piece against its own noise, standard deviations.
 const SIGNIFICANT: f64 = 4.0;
 /// Offset from the robust line beyond which a piece does not belong to the edge, px.
@@ -64,15 +67,15 @@ struct Piece {
 
 /// Seeks the edge along `expected` (directed by contrast: bright on the side of its normal). `core` is the
 /// stretch, px from the start, that decides whether there is one; beyond it pieces that lie on the same edge
-/// are kept. In a view that shows the line `against` its contrast the dark side is sought there. `noise` is the standard
-/// deviation of a grey value.
+/// are kept. In a view that shows the line `against` its contrast the dark side is sought there. The image is that of the
+/// `channel`, with the standard deviation of the noise of a pixel.
 pub fn measure_edge(
     view: ViewId,
-    gray: &Gray,
+    (image, noise): (&Gray, f64),
+    channel: Channel,
     expected: &Segment2,
     core: [f64; 2],
     against: bool,
-    noise: f64,
 ) -> Option<GuidedEdge> {
     let count = (expected.length() / PIECE_PX) as usize;
     (count >= MIN_PIECES).then_some(())?;
@@ -80,7 +83,8 @@ pub fn measure_edge(
     let pieces: Vec<Piece> = (0..count)
         .filter_map(|i| {
             measure_piece(
-                gray,
+                image,
+                channel,
                 expected,
                 (i as f64 + 0.5) * size,
                 size,
@@ -111,7 +115,8 @@ pub fn measure_edge(
 
 /// One piece; `None` outside the image.
 fn measure_piece(
-    gray: &Gray,
+    image: &Gray,
+    channel: Channel,
     expected: &Segment2,
     along: f64,
     size: f64,
@@ -131,7 +136,8 @@ fn measure_piece(
                 let across = (k as f64 - 0.5 * (SAMPLES - 1) as f64) * STEP_PX;
                 centre + normal * across
             });
-            let samples = gray.sample_eight(places.map(|p| p.x as f32), places.map(|p| p.y as f32));
+            let samples =
+                image.sample_eight(places.map(|p| p.x as f32), places.map(|p| p.y as f32));
             if samples.is_nan().any() {
                 return None;
             }
@@ -140,34 +146,41 @@ fn measure_piece(
             }
         }
     }
+    profile.iter_mut().for_each(|v| *v /= rows as f64);
+    let mut light = profile;
+    channel.to_light(&mut light);
     let sign = if against { -1.0 } else { 1.0 };
-    profile.iter_mut().for_each(|v| *v *= sign / rows as f64);
+    let [steps, light] = [profile, light].map(|p| steps(&p, sign));
     let least = SIGNIFICANT * noise * (2.0 / rows as f64).sqrt();
     Some(Piece {
         along,
-        offset: nearest_edge(&profile, least),
+        offset: nearest_edge(&steps, least).and_then(|k| offset(&light, k)),
     })
 }
 
-/// Offset of the edge nearest to the middle of a profile: a maximum of the step over two pixels that is at
-/// least half the largest one.
-fn nearest_edge(profile: &[f64; SAMPLES], least: f64) -> Option<f64> {
-    let steps: Vec<f64> = (BASE..SAMPLES - BASE)
-        .map(|k| profile[k + BASE] - profile[k - BASE])
-        .collect();
-    let middle = (steps.len() / 2) as f64;
-    let inner = 1..steps.len() - 1;
+/// Steps over two pixels along a profile.
+fn steps(profile: &[f64; SAMPLES], sign: f64) -> [f64; STEPS] {
+    std::array::from_fn(|k| sign * (profile[k + 2 * BASE] - profile[k]))
+}
+
+/// Index of the edge nearest to the middle of a profile: a maximum of its steps that is at least half the largest one.
+fn nearest_edge(steps: &[f64; STEPS], least: f64) -> Option<usize> {
+    let inner = 1..STEPS - 1;
     let largest = steps[inner.clone()].iter().copied().fold(0.0, f64::max);
     inner
         .filter(|&k| steps[k] >= steps[k - 1] && steps[k] > steps[k + 1])
         .filter(|&k| steps[k] >= least.max(0.5 * largest))
-        .map(|k| {
-            let bend = steps[k - 1] - 2.0 * steps[k] + steps[k + 1];
-            let shift = 0.5 * (steps[k - 1] - steps[k + 1]) / bend.min(-1e-12);
-            (k as f64 + shift - middle) * STEP_PX
-        })
-        .filter(|offset| offset.abs() <= REACH_PX)
-        .min_by(|a, b| a.abs().total_cmp(&b.abs()))
+        .min_by_key(|&k| k.abs_diff(STEPS / 2))
+}
+
+/// Offset of an edge, px, by the maximum of the light's steps at or beside its index.
+fn offset(light: &[f64; STEPS], edge: usize) -> Option<f64> {
+    let near = edge.max(2) - 1..=(edge + 1).min(STEPS - 2);
+    let k = near.max_by(|&i, &j| light[i].total_cmp(&light[j]))?;
+    let bend = light[k - 1] - 2.0 * light[k] + light[k + 1];
+    let shift = 0.5 * (light[k - 1] - light[k + 1]) / bend.min(-1e-12);
+    let offset = (k as f64 + shift.clamp(-1.0, 1.0) - (STEPS / 2) as f64) * STEP_PX;
+    (offset.abs() <= REACH_PX).then_some(offset)
 }
 
 /// Offset as a linear function of the place along the prediction.
@@ -283,6 +296,18 @@ mod tests {
         })
     }
 
+    fn measured(image: &Gray, expected: &Segment2, against: bool) -> Option<GuidedEdge> {
+        let core = [0.0, expected.length()];
+        measure_edge(
+            ViewId(0),
+            (image, 0.006),
+            Channel::Warmth,
+            expected,
+            core,
+            against,
+        )
+    }
+
     fn edge() -> Segment2 {
         Segment2::new(Point2::new(20.0, 30.0), Point2::new(95.0, 62.0))
     }
@@ -297,10 +322,9 @@ mod tests {
         // Six grey levels at a noise of two: a single pixel hardly shows it.
         let gray = step(&edge(), 6.0 / 255.0, 2.0 / 255.0, 1);
         let expected = shifted(0.7, 0.4);
-        let core = [0.0, expected.length()];
         let strong = step(&edge(), 20.0 / 255.0, 2.0 / 255.0, 1);
         for (image, tolerance) in [(&gray, 0.4), (&strong, 0.1)] {
-            let found = measure_edge(ViewId(0), image, &expected, core, false, 0.006).unwrap();
+            let found = measured(image, &expected, false).unwrap();
             let line = edge().line();
             for p in [found.segment.p0, found.segment.p1] {
                 let d = line.x * p.x + line.y * p.y + line.z;
@@ -313,31 +337,29 @@ mod tests {
     fn the_other_contrast_and_flat_ground_are_no_edge() {
         let gray = step(&edge(), 0.1, 0.004, 1);
         let against = Segment2::new(edge().p1, edge().p0);
-        let core = [0.0, edge().length()];
-        assert!(measure_edge(ViewId(0), &gray, &against, core, false, 0.006).is_none());
+        assert!(measured(&gray, &against, false).is_none());
         let flat = step(&edge(), 0.0, 0.004, 1);
-        assert!(measure_edge(ViewId(0), &flat, &edge(), core, false, 0.006).is_none());
+        assert!(measured(&flat, &edge(), false).is_none());
         // Where the view is known to show the other contrast it is one, in the same place.
-        let found = measure_edge(ViewId(0), &gray, &against, core, true, 0.006).unwrap();
+        let found = measured(&gray, &against, true).unwrap();
         for p in [found.segment.p0, found.segment.p1] {
             let line = edge().line();
             assert!((line.x * p.x + line.y * p.y + line.z).abs() < 0.1);
         }
-        assert!(measure_edge(ViewId(0), &gray, &edge(), core, true, 0.006).is_none());
+        assert!(measured(&gray, &edge(), true).is_none());
         // An edge out of reach is another edge.
         let beside = shifted(4.0, 0.0);
-        assert!(measure_edge(ViewId(0), &gray, &beside, core, false, 0.006).is_none());
+        assert!(measured(&gray, &beside, false).is_none());
     }
 
     #[test]
     fn the_covariance_is_that_of_the_scatter() {
         let expected = edge();
-        let core = [0.0, expected.length()];
         let line = edge().line();
         let (mut sum, mut count) = (0.0, 0.0);
         for seed in 0..40 {
             let gray = step(&edge(), 0.05, 3.0 / 255.0, 977 * seed + 1);
-            let Some(found) = measure_edge(ViewId(0), &gray, &expected, core, false, 0.006) else {
+            let Some(found) = measured(&gray, &expected, false) else {
                 continue;
             };
             let m = found.segment.at(0.5);

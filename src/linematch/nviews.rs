@@ -196,9 +196,9 @@ impl Context<'_> {
         let along = |t: f64| Some((image.at(t)? - expected.p0).dot(&expected.direction()));
         let core = [along(core.0)?, along(core.1)?];
         let channel = self.sights.channel(segments)?;
-        let (seen, noise) = self.scene.view(view).channel(channel);
+        let seen = self.scene.view(view).channel(channel);
         let against = self.against_contrast(&image, segments, view);
-        measure_edge(view, seen, &expected, core, against, noise)
+        measure_edge(view, seen, channel, &expected, core, against)
     }
 
     /// Is the bright side of this view's own segments the other one than the line's?

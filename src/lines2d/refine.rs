@@ -4,14 +4,15 @@
 //! eave with its fascia below and its gutter in front has such pairs everywhere. Once the line is known no smoothing
 //! is needed, because the pixels along it can be averaged instead (the slanted-edge method by which ISO 12233
 //! measures lenses). Stretch by stretch, rows of pixels across the line are shifted to the line and
-//! averaged; the stretch's edgels then move together to the crest of the mean profile's derivative.
+//! averaged; the stretch's edgels then move together to the crest of the derivative of the mean profile, of its light
+//! ([`Channel::to_light`]).
 
 use nalgebra::{Matrix2, Point2, Vector2};
 
 use super::canny::Edgel;
 use super::fit::LineFit;
 use super::grow::Grown;
-use crate::raster::Gray;
+use crate::raster::{Channel, Gray};
 
 /// Edgels in a stretch: as many as smoothing to 1/4 of the noise of a pixel takes.
 const STRETCH: usize = 16;
@@ -26,7 +27,13 @@ const PIXEL_NOISE: f64 = 4.5;
 /// Moves the edgels of a line found on a step and fits the line again. A stretch moves only by more than `sigmas`
 /// standard deviations of its crest: where blending is not the matter, smoothed edgels are less noisy. Returns
 /// the covariance of (offset in px, angle in rad) that the noise of the crests adds at the middle of the line.
-pub fn refine(line: &mut Grown, all: &[Edgel], gray: &Gray, sigmas: f64) -> Matrix2<f64> {
+pub fn refine(
+    line: &mut Grown,
+    all: &[Edgel],
+    image: &Gray,
+    channel: Channel,
+    sigmas: f64,
+) -> Matrix2<f64> {
     let axes = Axes::of(&line.line);
     let normal = line.line.normal();
     let scale = axes.across(&normal).abs();
@@ -36,7 +43,11 @@ pub fn refine(line: &mut Grown, all: &[Edgel], gray: &Gray, sigmas: f64) -> Matr
     for s in 0..stretches {
         let range = s * count / stretches..(s + 1) * count / stretches;
         let (points, edgels) = (&line.points[range.clone()], &line.edgels[range.clone()]);
-        let Some(crest) = axes.mean_profile(points, gray).and_then(|p| Crest::of(&p)) else {
+        let Some(mut profile) = axes.mean_profile(points, image) else {
+            continue;
+        };
+        channel.to_light(&mut profile);
+        let Some(crest) = Crest::of(&profile) else {
             continue;
         };
         let n = points.len() as f64;
@@ -184,7 +195,7 @@ impl Crest {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{distance_to_edge, edgel, step_edge};
+    use super::super::testing::{distance_to_edge, edgel, lit_edge, step_edge};
     use super::*;
 
     /// A line of edgels beside the planted edge, at this distance towards the brighter side, px.
@@ -211,10 +222,26 @@ mod tests {
             let gray = step_edge(80, 80, angle, 0.3);
             for off in [-0.6, 0.0, 0.4] {
                 let (all, mut line) = beside(&gray, angle, off);
-                refine(&mut line, &all, &gray, 3.0);
+                refine(&mut line, &all, &gray, Channel::Warmth, 3.0);
                 let miss = distance_to_edge(&gray, angle, &line.line.centroid);
                 assert!(miss.abs() < 0.03, "{miss} px from {off} at {angle}");
             }
+        }
+    }
+
+    #[test]
+    fn an_edge_is_where_its_light_is() {
+        for step in 0..12 {
+            let angle = f64::from(step) * 30f64.to_radians() + 0.03;
+            let gray = lit_edge(80, 80, angle, 0.5);
+            let miss = |channel| {
+                let (all, mut line) = beside(&gray, angle, 0.0);
+                refine(&mut line, &all, &gray, channel, 0.0);
+                distance_to_edge(&gray, angle, &line.line.centroid)
+            };
+            let (light, value) = (miss(Channel::Grey), miss(Channel::Warmth));
+            assert!(light.abs() < 0.05, "{light} px at {angle}");
+            assert!(value < -0.15, "{value} px at {angle}: on the dark side");
         }
     }
 
@@ -223,7 +250,7 @@ mod tests {
         let gray = Gray::from_fn(80, 80, |_, _| 0.5);
         let (all, mut line) = beside(&gray, 0.3, 0.4);
         let before = line.line;
-        refine(&mut line, &all, &gray, 3.0);
+        refine(&mut line, &all, &gray, Channel::Warmth, 3.0);
         assert_eq!(line.line, before);
     }
 }

@@ -69,7 +69,13 @@ fn edge_segments(
     significant_lines(&edgels, &local, params.edgels.high, params, trace)
         .into_iter()
         .map(|mut line| {
-            let noise = refine(&mut line, &edgels, image, params.refine_sigmas);
+            let noise = refine(
+                &mut line,
+                &edgels,
+                image,
+                kind.channel(),
+                params.refine_sigmas,
+            );
             let mut segment = finish(&line, kind, image, params);
             segment.covariance += noise;
             segment
@@ -150,7 +156,7 @@ fn contrast(gray: &Gray, segment: &Segment2, distance_px: f64) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{add_noise, distance_to_edge, step_edge};
+    use super::super::testing::{add_noise, distance_to_edge, lit_edge, step_edge};
     use super::*;
 
     /// The segments of a photograph without colour.
@@ -208,7 +214,7 @@ mod tests {
         let (mut offsets, mut turns, mut count) = (0.0, 0.0, 0.0);
         for step in 0..72 {
             let angle = f64::from(step) * 5f64.to_radians() + 0.02;
-            let mut gray = step_edge(64, 64, angle, 0.3);
+            let mut gray = lit_edge(64, 64, angle, 0.3);
             add_noise(&mut gray, 2.0 / 255.0, step as u64);
             let found = planted(&gray, angle, &SegmentParams::default());
             assert!(found.segment.length() > 50.0);
@@ -239,7 +245,7 @@ mod tests {
         let (mut offsets, mut turns, mut count) = (0.0, 0.0, 0.0);
         for seed in 0..200u32 {
             let angle = f64::from(seed) * 0.1;
-            let mut gray = step_edge(48, 48, angle, 0.15);
+            let mut gray = lit_edge(48, 48, angle, 0.15);
             add_noise(&mut gray, 6.0 / 255.0, u64::from(seed));
             let found = planted(&gray, angle, &params);
             let offset = distance_to_edge(&gray, angle, &found.segment.midpoint());

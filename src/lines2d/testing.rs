@@ -3,20 +3,39 @@
 use nalgebra::{Point2, Vector2};
 
 use super::Edgel;
+use crate::math;
 use crate::raster::Gray;
 
 /// Blur of the planted edges, px: that of a good lens.
 const BLUR_PX: f64 = 0.7;
+/// Grey value of the dark side.
+const DARK: f64 = 0.35;
 
-/// An edge of the given contrast through the centre of an image. `angle` is that of its normal, to the
+/// An edge of the given contrast through the centre of an image, blurred as grey values. `angle` is that of its normal, to the
 /// brighter side (0: right, pi/2: down).
 pub fn step_edge(width: usize, height: usize, angle: f64, contrast: f64) -> Gray {
+    blurred_edge(width, height, angle, |share| DARK + contrast * share)
+}
+
+/// The same edge as a camera takes it: its light is blurred, and stored as sRGB.
+pub fn lit_edge(width: usize, height: usize, angle: f64, contrast: f64) -> Gray {
+    // All values lie above the linear part of the coding.
+    let light = |v: f64| math::exp(2.4 * math::ln((v + 0.055) / 1.055));
+    let stored = |l: f64| 1.055 * math::exp(math::ln(l) / 2.4) - 0.055;
+    let [dark, bright] = [DARK, DARK + contrast].map(light);
+    blurred_edge(width, height, angle, |share| {
+        stored(dark + (bright - dark) * share)
+    })
+}
+
+/// Grey values by the share of the brighter side in the blurred edge.
+fn blurred_edge(width: usize, height: usize, angle: f64, value: impl Fn(f64) -> f64) -> Gray {
     let empty = Gray::new(width, height);
     Gray::from_fn(width, height, |x, y| {
         let p = Point2::new(x as f64 + 0.5, y as f64 + 0.5);
         let d = distance_to_edge(&empty, angle, &p);
         let share = 0.5 * (1.0 + libm::erf(d / (BLUR_PX * std::f64::consts::SQRT_2)));
-        (0.35 + contrast * share) as f32
+        value(share) as f32
     })
 }
 

@@ -441,6 +441,7 @@ mod tests {
         let cameras = cameras();
         let params = Lines3dParams {
             position_floor_px: 1e-3,
+            edge_floor_px: 1e-3,
             ..Lines3dParams::default()
         };
         let (mut seed, mut sum, mut count) = (5u64, 0.0, 0.0);

@@ -154,12 +154,17 @@ fn reconstruct(
     if sigma_m > params.max_sigma_px * camera.ground_pixel(&segment.p0) {
         return Err(LineOutcome::IllConditioned { sigma_m });
     }
+    let meant = Lines3dParams {
+        position_floor_px: params.edge_floor_px,
+        ..params.clone()
+    };
+    let stated = fit_line(&observations, &fit.line, &meant).ok_or(LineOutcome::NoFit)?;
     let squares: f64 = fit.residuals.iter().map(|r| r * r).sum();
     let line = Line3d {
         origin: LineOrigin::Matched,
         segment: along_supports(scene, segment, &matched.supports),
-        sigma_m,
-        covariance: [fit.covariance_at(f0), fit.covariance_at(f1)],
+        sigma_m: stated.sigma_at(f0).max(stated.sigma_at(f1)),
+        covariance: [f0, f1].map(|f| stated.covariance_at(f)),
         supports: matched.supports.clone(),
     };
     Ok((line, (squares / (2.0 * fit.residuals.len() as f64)).sqrt()))

@@ -2,6 +2,7 @@
 
 mod filter;
 mod jpeg;
+mod light;
 mod load;
 mod noise;
 mod part;

@@ -167,9 +167,15 @@ impl Context<'_> {
         let core = [0.0, expected.length()];
         let mut best: Option<GuidedEdge> = None;
         for channel in [Channel::Grey, Channel::Warmth] {
-            let (image, noise) = seen.channel(channel);
             for against in [false, true] {
-                let found = measure_edge(view, image, &expected, core, against, noise);
+                let found = measure_edge(
+                    view,
+                    seen.channel(channel),
+                    channel,
+                    &expected,
+                    core,
+                    against,
+                );
                 let pieces = |e: &Option<GuidedEdge>| e.as_ref().map_or(0, |e| e.pieces.len());
                 if pieces(&found) > pieces(&best) {
                     best = found;

@@ -15,6 +15,7 @@ use crate::ids::ViewId;
 use crate::linematch::measure_edge;
 use crate::math;
 use crate::params::RefineParams;
+use crate::raster::Channel;
 use crate::scene::Scene;
 
 /// Half the base of the difference across a side, in steps of half a pixel: one pixel.
@@ -399,11 +400,11 @@ impl Profiles {
             let core = [0.0, expected.length()];
             let edge = measure_edge(
                 view,
-                &scene.view(view).gray,
+                scene.view(view).channel(Channel::Grey),
+                Channel::Grey,
                 &expected,
                 core,
                 false,
-                scene.view(view).noise,
             )?;
             Some(Sighting {
                 side,
