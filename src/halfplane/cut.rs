@@ -1,11 +1,8 @@
 //! The best of all moves in which cells keep their plane or take a new one: a minimum cut.
 //!
-//! One expansion of [`super::labelling`]. Costs become integers, so that the cut is exact and the same on every machine; what can be
-//! decided without a cut is, and the rest is cut one connected part after the other.
+//! One expansion of [`super::labelling`]. Costs become integers, so that the cut is exact and the same on every machine.
 
-use std::collections::BTreeMap;
-
-use ac_library::{Dsu, MfGraph};
+use super::flow::Flow;
 
 /// Capacities are integers, so that the cut is exact: a millionth of a square metre.
 const UNIT: f64 = 1e6;
@@ -44,179 +41,19 @@ impl Cut {
         self.arcs.push((i, j, j_moves + i_moves - stay));
     }
 
-    /// For each node: does it move? Decides what needs no cut first. A tie moves, unless nothing else is gained: a
-    /// labelling must not go round in circles.
+    /// For each node: does it move? A tie moves, unless nothing else is gained: a labelling must not go round in circles.
     pub fn solve(self) -> Vec<bool> {
         let units = |c: f64| (c * UNIT).round() as i64;
-        let mut open = OpenNodes {
-            gain: (self.unaries.iter())
-                .map(|(keep, change)| units(*keep) - units(*change))
-                .collect(),
-            arcs: (self.arcs.iter())
-                .map(|&(i, j, c)| (i, j, units(c)))
-                .filter(|a| a.2 > 0)
-                .collect(),
-            moves: vec![None; self.unaries.len()],
-        };
-        let gain = open.gain.clone();
-        open.decide();
-        let (moves, arcs) = open.cut();
-        let saved: i64 = gain.iter().zip(&moves).filter(|g| *g.1).map(|g| g.0).sum();
-        let torn = arcs.iter().filter(|(i, j, _)| !moves[*i] && moves[*j]);
-        if saved > torn.map(|a| a.2).sum() {
-            moves
-        } else {
-            vec![false; moves.len()]
+        let costs = self.unaries.iter();
+        let surplus = costs.map(|(keep, change)| units(*change) - units(*keep));
+        let arcs = self.arcs.iter().map(|&(i, j, c)| (i, j, units(c)));
+        let arcs: Vec<_> = arcs.filter(|a| a.2 > 0).collect();
+        let mut flow = Flow::new(surplus.collect(), &arcs);
+        // What no surplus can meet is what the moves save.
+        if flow.run() == 0 {
+            return vec![false; self.unaries.len()];
         }
-    }
-}
-
-/// From, to, capacity in units: paid when `from` keeps and `to` moves.
-type Arc = (usize, usize, i64);
-
-/// Which arcs begin or end at each node, in one list.
-struct ArcsOfNodes {
-    /// The arcs of node i are `arcs[starts[i]..starts[i + 1]]`, ascending.
-    starts: Vec<usize>,
-    arcs: Vec<usize>,
-}
-
-impl ArcsOfNodes {
-    fn new(nodes: usize, arcs: &[Arc]) -> Self {
-        let mut starts = vec![0; nodes + 1];
-        for node in arcs.iter().flat_map(|a| [a.0, a.1]) {
-            starts[node + 1] += 1;
-        }
-        for node in 0..nodes {
-            starts[node + 1] += starts[node];
-        }
-        let (mut next, mut of_nodes) = (starts.clone(), vec![0; 2 * arcs.len()]);
-        for (k, arc) in arcs.iter().enumerate() {
-            for node in [arc.0, arc.1] {
-                of_nodes[next[node]] = k;
-                next[node] += 1;
-            }
-        }
-        Self {
-            starts,
-            arcs: of_nodes,
-        }
-    }
-
-    fn of(&self, node: usize) -> &[usize] {
-        &self.arcs[self.starts[node]..self.starts[node + 1]]
-    }
-}
-
-/// The nodes of a cut that nothing has decided yet.
-struct OpenNodes {
-    /// What moving saves in unaries, units.
-    gain: Vec<i64>,
-    arcs: Vec<Arc>,
-    moves: Vec<Option<bool>>,
-}
-
-impl OpenNodes {
-    /// Fixes every node whose own cost outweighs all its arcs, whatever its neighbours do, charges the
-    /// neighbours for it, and goes on with them. Most cells of a plane's region are nothing like the plane:
-    /// few are left for the cut, whose result is the same.
-    fn decide(&mut self) {
-        let n = self.gain.len();
-        let arcs_of = ArcsOfNodes::new(n, &self.arcs);
-        let (mut saved, mut paid) = (vec![0i64; n], vec![0i64; n]);
-        for &(i, j, capacity) in &self.arcs {
-            saved[i] += capacity;
-            paid[j] += capacity;
-        }
-        let mut queue: std::collections::VecDeque<usize> = (0..n).collect();
-        while let Some(i) = queue.pop_front() {
-            if self.moves[i].is_some() {
-                continue;
-            }
-            let moves = if self.gain[i] + saved[i] < 0 {
-                false
-            } else if self.gain[i] - paid[i] >= 0 {
-                true
-            } else {
-                continue;
-            };
-            self.moves[i] = Some(moves);
-            for &k in arcs_of.of(i) {
-                let (from, to, capacity) = self.arcs[k];
-                let other = if from == i { to } else { from };
-                if self.moves[other].is_some() {
-                    continue;
-                }
-                if from == i {
-                    paid[to] -= capacity;
-                    self.gain[to] -= if moves { 0 } else { capacity };
-                } else {
-                    saved[from] -= capacity;
-                    self.gain[from] += if moves { capacity } else { 0 };
-                }
-                queue.push_back(other);
-            }
-        }
-    }
-
-    /// The minimum cut of the undecided nodes, one connected part after the other.
-    fn cut(mut self) -> (Vec<bool>, Vec<Arc>) {
-        let open: Vec<bool> = self.moves.iter().map(Option::is_none).collect();
-        let arcs = || self.arcs.iter().filter(|(i, j, _)| open[*i] && open[*j]);
-        let mut connected = Dsu::new(self.gain.len());
-        for (i, j, _) in arcs() {
-            connected.merge(*i, *j);
-        }
-        let mut parts: BTreeMap<usize, Part> = BTreeMap::new();
-        for i in (0..self.gain.len()).filter(|&i| open[i]) {
-            parts.entry(connected.leader(i)).or_default().nodes.push(i);
-        }
-        for arc in arcs() {
-            let part = parts.entry(connected.leader(arc.0)).or_default();
-            part.arcs.push(*arc);
-        }
-        for part in parts.values() {
-            for (i, moves) in part.nodes.iter().zip(part.cut(&self.gain)) {
-                self.moves[*i] = Some(moves);
-            }
-        }
-        let moves = self.moves.iter().map(|m| *m == Some(true)).collect();
-        (moves, self.arcs)
-    }
-}
-
-/// A connected part of the undecided nodes.
-#[derive(Default)]
-struct Part {
-    /// Ascending.
-    nodes: Vec<usize>,
-    arcs: Vec<Arc>,
-}
-
-impl Part {
-    /// For each node: does it move?
-    fn cut(&self, gain: &[i64]) -> Vec<bool> {
-        let n = self.nodes.len();
-        let (source, sink) = (n, n + 1);
-        let mut graph = MfGraph::<i64>::new(n + 2);
-        // The source side keeps, the sink side moves.
-        for (place, &i) in self.nodes.iter().enumerate() {
-            if gain[i] < 0 {
-                graph.add_edge(source, place, -gain[i]);
-            } else if gain[i] > 0 {
-                graph.add_edge(place, sink, gain[i]);
-            }
-        }
-        let of = |i: usize| (self.nodes.binary_search(&i)).expect("both ends are in the part");
-        for &(i, j, capacity) in &self.arcs {
-            graph.add_edge(of(i), of(j), capacity);
-        }
-        graph.flow(source, sink);
-        // Nodes that residual capacity still reaches from the source keep their label.
-        graph.min_cut(source)[..n]
-            .iter()
-            .map(|keeps| !keeps)
-            .collect()
+        flow.reached().iter().map(|keeps| !keeps).collect()
     }
 }
 

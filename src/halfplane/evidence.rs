@@ -201,6 +201,14 @@ fn sum_over_cells(
     let (dc, dr) = window.offset_in(grid);
     let area = grid.step * grid.step;
     let mut cells = BTreeMap::<usize, CellEvidence>::new();
+    // Positions one after the other mostly lie in one cell.
+    const NO_CELL: usize = usize::MAX;
+    let store = |cells: &mut BTreeMap<_, _>, (cell, evidence)| {
+        if cell != NO_CELL {
+            cells.insert(cell, evidence);
+        }
+    };
+    let mut run = (NO_CELL, CellEvidence::default());
     for row in 0..window.height {
         for column in 0..window.width {
             let (c, r) = (column as isize + dc, row as isize + dr);
@@ -215,7 +223,12 @@ fn sum_over_cells(
             {
                 continue;
             }
-            let e = cells.entry(cell as usize).or_default();
+            let cell = cell as usize;
+            if run.0 != cell {
+                store(&mut cells, run);
+                run = (cell, cells.get(&cell).copied().unwrap_or_default());
+            }
+            let e = &mut run.1;
             let textured = f64::from(map.weight(k));
             let weight = textured * area;
             e.area += area;
@@ -224,6 +237,7 @@ fn sum_over_cells(
             e.least += weight * least_correlation(textured, params.min_correlation);
         }
     }
+    store(&mut cells, run);
     cells
 }
 

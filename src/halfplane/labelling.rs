@@ -21,7 +21,7 @@ pub const NO_PLANE: u32 = u32::MAX;
 
 /// What different labels on both sides of a border cost.
 pub trait Borders {
-    /// Cost of `left` and `right`, which differ, on the first and second cell of an edge.
+    /// Cost of `left` and `right`, which differ, on the two cells of an edge, whichever is on which.
     fn cost(&self, edge: usize, left: u32, right: u32) -> f64;
 
     /// The most that any two labels can cost there.
@@ -172,7 +172,10 @@ impl<B: Borders> Labelling<B> {
                     // Both may move: handle the edge once, from its first cell.
                     Some(other) if c == i => {
                         let j_moves = energy.border(e, li, alpha);
-                        let i_moves = energy.border(e, alpha, lj);
+                        let i_moves = match li == lj {
+                            true => j_moves,
+                            false => energy.border(e, alpha, lj),
+                        };
                         cut.pair(n, other, stay(), j_moves, i_moves);
                     }
                     Some(_) => {}
@@ -332,7 +335,7 @@ mod tests {
         fn cost(&self, edge: usize, left: u32, right: u32) -> f64 {
             let (unsupported, supported) = &self.0[edge];
             (supported.iter())
-                .find(|s| (s.0, s.1) == (left, right))
+                .find(|s| [(s.0, s.1), (s.1, s.0)].contains(&(left, right)))
                 .map_or(*unsupported, |s| s.2)
         }
 

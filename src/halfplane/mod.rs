@@ -29,6 +29,7 @@
 //!      border_cost    what a border between two planes costs
 //!      labelling      conflicts: which plane covers which cell
 //!      cut            one step of it: the best of all moves to one plane
+//!      flow           the maximum flow behind it
 //!      islands        patches too small to be a facet or a hole
 //!      delineation    closed outlines
 //!      facets         verification; orders 4.2 and 4.3
@@ -47,6 +48,7 @@ mod extent;
 mod facets;
 #[cfg(test)]
 mod fixture;
+mod flow;
 mod grouping;
 mod hypothesis;
 mod islands;

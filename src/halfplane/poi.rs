@@ -12,7 +12,7 @@
 use nalgebra::Point2;
 
 use crate::lines2d::{detect_edgels, link_chains};
-use crate::params::{EdgelParams, SweepParams};
+use crate::params::SweepParams;
 use crate::raster::Gray;
 use crate::scene::Scene;
 
@@ -28,16 +28,10 @@ pub struct PointsOfInterest {
 impl PointsOfInterest {
     /// Points of interest of one image.
     pub fn detect(gray: &Gray, params: &SweepParams) -> Self {
-        let all = EdgelParams {
-            smoothing_px: params.poi_blur_px,
-            low: 0.0,
-            high: 0.0,
-        };
-        let mut edgels = detect_edgels(gray, &all);
-        edgels.retain(|e| f64::from(e.strength) >= params.poi_min_gradient);
+        let edgels = detect_edgels(gray, params.poi_blur_px, params.poi_min_gradient as f32);
         let spacing = params.poi_spacing_px.max(1);
         let mut points = Vec::new();
-        for chain in link_chains(&edgels, all.high) {
+        for chain in link_chains(&edgels, 0.0) {
             for &edgel in chain.edgels.iter().step_by(spacing) {
                 let (x, y) = edgels[edgel as usize].pixel();
                 points.push(y * gray.width + x);

@@ -7,7 +7,7 @@
 //! which the paper leaves open.
 
 use nalgebra::{Matrix3, Point2, Vector2};
-use wide::f32x8;
+use wide::f32x4;
 
 use super::ThetaFrame;
 use crate::camera::Camera;
@@ -167,10 +167,10 @@ impl Patch {
 
 /// Grey values in whole units of 1/510.
 #[inline]
-fn in_levels(gray: f32x8) -> f32x8 {
-    let value = gray * f32x8::splat(LEVELS) - f32x8::splat(LEVELS / 2.0);
+fn in_levels(gray: f32x4) -> f32x4 {
+    let value = gray * f32x4::splat(LEVELS) - f32x4::splat(LEVELS / 2.0);
     // Adding 1.5 x 2^23 leaves no fractional bits: rounds to the nearest whole number.
-    let shift = f32x8::splat(12_582_912.0);
+    let shift = f32x4::splat(12_582_912.0);
     (value + shift) - shift
 }
 

@@ -44,6 +44,8 @@ pub(super) struct Windows {
     /// Ordered by row, then column.
     pub sites: Vec<Site>,
     columns: ColumnSums,
+    /// Room for what the covariances of the sites are divided by the roots of.
+    powers: Vec<f64>,
 }
 
 /// Sums over the rows of the window, one entry a column. `PADDING` zeros on either side stand for
@@ -69,6 +71,7 @@ impl Windows {
             columns: ColumnSums::new(reference.stride),
             half,
             sites: Vec::new(),
+            powers: Vec::new(),
             reference,
         };
         windows.sites = pixels
@@ -82,6 +85,7 @@ impl Windows {
     /// where `warped` has no texture.
     pub fn correlate(&mut self, warped: &Patch, correlations: &mut Vec<f64>) {
         correlations.clear();
+        self.powers.clear();
         self.columns.clear();
         let (rows, half) = (self.reference.rows, self.half);
         let mask = window_mask(half);
@@ -98,7 +102,13 @@ impl Windows {
                     .slide::<false>(self.reference.row(left), warped.row(left));
                 left += 1;
             }
-            correlations.push(site.correlation(self.columns.window(site.column, &mask)));
+            let [covariance, power] = site.moments(self.columns.window(site.column, &mask));
+            correlations.push(covariance);
+            self.powers.push(power);
+        }
+        // All roots and quotients together: several at once.
+        for (correlation, power) in correlations.iter_mut().zip(&self.powers) {
+            *correlation /= power.sqrt();
         }
     }
 
@@ -134,12 +144,13 @@ impl Site {
         self.scatter.sqrt() / self.count / UNITS
     }
 
-    fn correlation(&self, [b, bb, ab]: [f64; 3]) -> f64 {
+    /// `n Sab - Sa Sb` and `(n Saa - Sa^2) (n Sbb - Sb^2)`; 0 and 1 where the warped view has no texture.
+    fn moments(&self, [b, bb, ab]: [f64; 3]) -> [f64; 2] {
         let scatter = self.count * bb - b * b;
         if scatter <= MIN_VARIANCE * self.count * self.count {
-            return 0.0;
+            return [0.0, 1.0];
         }
-        (self.count * ab - self.sum * b) / (self.scatter * scatter).sqrt()
+        [self.count * ab - self.sum * b, self.scatter * scatter]
     }
 }
 

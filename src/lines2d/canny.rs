@@ -10,7 +10,6 @@ use nalgebra::{Point2, Vector2};
 use serde::Serialize;
 
 use super::noise::LocalStrengths;
-use crate::params::EdgelParams;
 use crate::raster::{Gray, gaussian_blur};
 
 /// A point of an edge.
@@ -43,11 +42,11 @@ impl Edgel {
     }
 }
 
-/// The edgels of an image, row by row. Nothing closer than two pixels to the border is found.
-pub fn detect_edgels(gray: &Gray, params: &EdgelParams) -> Vec<Edgel> {
-    let smooth = gaussian_blur(gray, params.smoothing_px);
-    let gradient = Gradient::new(&smooth);
-    suppress(&gradient, &gradient.statistics(), params.low)
+/// The edgels of an image smoothed by `smoothing_px` whose gradient is at least `least`, wherever they are, row by row. Nothing
+/// closer than two pixels to the border is found. The `noise` of the edgels is `least`.
+pub fn detect_edgels(gray: &Gray, smoothing_px: f64, least: f32) -> Vec<Edgel> {
+    let smooth = gaussian_blur(gray, smoothing_px);
+    suppress(&Gradient::new(&smooth), &|_, row| row.fill(least), 1.0)
 }
 
 /// Gradient of a smoothed image; zero on the border pixels. Only its length is stored: the components are cheap
@@ -99,14 +98,18 @@ fn strength_row(smooth: &[f32], w: usize, y: usize, out: &mut [f32]) {
     }
 }
 
-/// Non-maximum suppression: the edgels stronger than `low` times the local noise.
-pub fn suppress(gradient: &Gradient, local: &LocalStrengths, low: f64) -> Vec<Edgel> {
+/// Non-maximum suppression: the edgels stronger than `low` times the noise around them, which `noise_row` writes for a row.
+pub fn suppress(
+    gradient: &Gradient,
+    noise_row: &dyn Fn(usize, &mut [f32]),
+    low: f64,
+) -> Vec<Edgel> {
     let (w, h) = (gradient.smooth.width, gradient.smooth.height);
     let low = low as f32;
     let mut edgels = Vec::new();
     let mut noise = vec![0.0; w];
     for y in 2..h.saturating_sub(2) {
-        local.noise_row(y, &mut noise);
+        noise_row(y, &mut noise);
         let strength = &gradient.strength[y * w..(y + 1) * w];
         for x in 2..w.saturating_sub(2) {
             if strength[x] < low * noise[x] {
@@ -167,6 +170,15 @@ fn crest(s: &[f32], width: usize, i: usize, gradient: &Vector2<f32>) -> Option<V
 mod tests {
     use super::super::testing::{add_noise, distance_to_edge, step_edge};
     use super::*;
+    use crate::params::EdgelParams;
+
+    fn local_edgels(gray: &Gray) -> Vec<Edgel> {
+        let params = EdgelParams::default();
+        let smooth = gaussian_blur(gray, params.smoothing_px);
+        let gradient = Gradient::new(&smooth);
+        let local = gradient.statistics();
+        suppress(&gradient, &|y, row| local.noise_row(y, row), params.low)
+    }
 
     /// Edgels near the planted edge, away from the border.
     fn near_edge(gray: &Gray, angle: f64) -> Vec<(Edgel, f64)> {
@@ -174,7 +186,7 @@ mod tests {
             let (x, y) = e.pixel();
             (6..gray.width - 6).contains(&x) && (6..gray.height - 6).contains(&y)
         };
-        detect_edgels(gray, &EdgelParams::default())
+        local_edgels(gray)
             .into_iter()
             .filter(inside)
             .map(|e| (e, distance_to_edge(gray, angle, &e.position)))
@@ -215,7 +227,8 @@ mod tests {
     fn tiny_and_flat_images_have_no_edgels() {
         for (w, h) in [(0, 0), (1, 1), (2, 9), (9, 2), (5, 5), (40, 3)] {
             let gray = Gray::from_fn(w, h, |_, _| 0.5);
-            assert!(detect_edgels(&gray, &EdgelParams::default()).is_empty());
+            assert!(local_edgels(&gray).is_empty());
+            assert!(detect_edgels(&gray, 1.0, 0.004).is_empty());
         }
     }
 }

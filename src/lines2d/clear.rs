@@ -1,6 +1,6 @@
 //! Segments of the second sources (colour, bars) only count where no edge in grey values stands for them.
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 use super::ImageSegment;
 use super::trace::{RejectedSegment, SegmentRejection, SegmentTrace};
@@ -13,8 +13,9 @@ pub fn add_clear(
     clear_px: f64,
     trace: &mut SegmentTrace,
 ) {
+    let boxes: Vec<Bounds> = segments.iter().map(|s| bounds(&s.segment)).collect();
     let (clear, beside): (Vec<_>, Vec<_>) =
-        (candidates.into_iter()).partition(|c| is_clear(c, segments, clear_px));
+        (candidates.into_iter()).partition(|c| is_clear(c, segments, &boxes, clear_px));
     segments.extend(clear);
     for candidate in beside {
         trace.refuse(RejectedSegment {
@@ -24,10 +25,29 @@ pub fn add_clear(
     }
 }
 
-/// Do the edges run along less than half of the candidate?
-fn is_clear(candidate: &ImageSegment, edges: &[ImageSegment], clear_px: f64) -> bool {
+/// Do the edges, which lie in these boxes, run along less than half of the candidate?
+fn is_clear(
+    candidate: &ImageSegment,
+    edges: &[ImageSegment],
+    boxes: &[Bounds],
+    clear_px: f64,
+) -> bool {
+    let [low, high] = bounds(&candidate.segment);
+    // A pixel more than what counts, against rounding. Most edges are elsewhere in the image.
+    let reach = Vector2::repeat(clear_px + 1.0);
+    let (low, high) = (low - reach, high + reach);
+    let near =
+        |b: &Bounds| b[1].x >= low.x && b[0].x <= high.x && b[1].y >= low.y && b[0].y <= high.y;
+    let edges = edges.iter().zip(boxes).filter(|(_, b)| near(b));
     let shared = |edge: &ImageSegment| shared_length(&candidate.segment, &edge.segment, clear_px);
-    edges.iter().map(shared).sum::<f64>() <= 0.5 * candidate.segment.length()
+    edges.map(|(edge, _)| shared(edge)).sum::<f64>() <= 0.5 * candidate.segment.length()
+}
+
+/// Least and largest coordinates, px.
+type Bounds = [Point2<f64>; 2];
+
+fn bounds(segment: &Segment2) -> Bounds {
+    [segment.p0.inf(&segment.p1), segment.p0.sup(&segment.p1)]
 }
 
 /// Length of `a` along which `b` stays within a distance of it, taken at the ends of the overlap.

@@ -10,7 +10,7 @@ use super::chain::{Chain, Raster, link_on};
 use super::fit::straight_pieces;
 use super::grow::{Grown, grow_tight};
 use super::noise::LocalStrengths;
-use super::significance::ln_false_alarms;
+use super::significance::FalseAlarms;
 use super::trace::{RejectedSegment, SegmentRejection, SegmentTrace};
 use super::worm::tangent_breaks;
 use crate::geometry::Segment2;
@@ -38,7 +38,7 @@ pub fn significant_lines(
     trace.chains += chains.len();
     trace.seeds += seeds.len();
 
-    let tests = seeds.len();
+    let mut alarms = FalseAlarms::new(seeds.len());
     let mut taken = vec![false; edgels.len()];
     let mut lines = Vec::new();
     for seed in &seeds {
@@ -48,7 +48,7 @@ pub fn significant_lines(
         }
         let line = grow_tight(edgels, &raster, seed, &|i| !taken[i as usize], params);
         let segment = line.extent();
-        match judge(&line, &segment, edgels, local, tests, params) {
+        match judge(&line, &segment, edgels, local, &mut alarms, params) {
             None => {
                 line.edgels.iter().for_each(|&i| taken[i as usize] = true);
                 lines.push(line);
@@ -90,7 +90,7 @@ fn judge(
     segment: &Segment2,
     edgels: &[Edgel],
     local: &LocalStrengths,
-    tests: usize,
+    alarms: &mut FalseAlarms,
     params: &SegmentParams,
 ) -> Option<SegmentRejection> {
     if segment.length() < params.min_length_px {
@@ -114,6 +114,6 @@ fn judge(
     // One edgel a pixel along the main axis, were there no gaps.
     let step = segment.p1 - segment.p0;
     let pixels = (step.x.abs().max(step.y.abs()) + 1.0).max(grown.edgels.len() as f64);
-    let alarms = ln_false_alarms(tests, pixels / correlated, sum / correlated);
+    let alarms = alarms.ln(pixels / correlated, sum / correlated);
     (alarms > params.max_ln_false_alarms).then_some(SegmentRejection::NotSignificant)
 }

@@ -65,7 +65,8 @@ fn edge_segments(
 ) -> Vec<ImageSegment> {
     let gradient = Gradient::new(smooth);
     let local = gradient.statistics();
-    let edgels = suppress(&gradient, &local, params.edgels.low);
+    let noise_row = |y: usize, row: &mut [f32]| local.noise_row(y, row);
+    let edgels = suppress(&gradient, &noise_row, params.edgels.low);
     significant_lines(&edgels, &local, params.edgels.high, params, trace)
         .into_iter()
         .map(|mut line| {

@@ -15,10 +15,11 @@ pub use load::{ImageHeader, Photograph, image_format, image_header, load_image};
 pub use noise::noise_of;
 pub use part::{Part, decoding_bytes, load_part};
 pub use warmth::{Channel, Warmth};
-pub use warp::{Eight, Warp, bounds, corners};
+pub use warp::{Four, Warp, bounds, corners};
 
 use warp::bilinear;
-use wide::f32x8;
+use wide::bytemuck::cast;
+use wide::{f32x4, f32x8};
 
 /// A raster of grey values (or of anything else in f32), row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -111,17 +112,12 @@ impl Gray {
     /// Bilinear values at eight positions, counted from the centre of the top-left pixel, which must not lie outside the
     /// image by more than rounding.
     pub fn between(&self, x: f32x8, y: f32x8) -> f32x8 {
-        let (column, row) = (x.fast_trunc_int(), y.fast_trunc_int());
-        let fractions = [x - column.round_float(), y - row.round_float()];
-        let (column, row) = (column.to_array(), row.to_array());
-        // Rounding may lead to the pixel behind the last one; no sample inside is moved.
-        let end = self.data.len() - 2;
-        let (mut upper, mut lower) = ([0; 8], [0; 8]);
-        for lane in 0..8 {
-            let i = row[lane] as usize * self.width + column[lane] as usize;
-            (upper[lane], lower[lane]) = (i.min(end), (i + self.width).min(end));
-        }
-        bilinear(&self.data, upper, lower, fractions)
+        // Rounding may lead to the last pixel, which has no right neighbour.
+        let within = |x: f32x8, size: usize| -> [f32x4; 2] {
+            cast(x.fast_min(f32x8::splat(((size - 1) as f32).next_down())))
+        };
+        let ([x0, x1], [y0, y1]) = (within(x, self.width), within(y, self.height));
+        cast([bilinear(self, 0, x0, y0), bilinear(self, 0, x1, y1)])
     }
 
     /// [`Self::sample`] at eight positions at once; NaN in place of `None`.

@@ -1,8 +1,9 @@
-//! Rasters filled from an image by a homography, eight bilinear samples at a time.
+//! Rasters filled from an image by a homography, four bilinear samples at a time: more would not fit the registers
+//! of either target.
 
 use nalgebra::{Matrix3, Point2, Vector3};
 use wide::bytemuck::cast;
-use wide::{f32x4, f32x8};
+use wide::{f32x4, i32x4};
 
 use super::Gray;
 
@@ -16,10 +17,10 @@ pub struct Warp<'a> {
     limit: [f32; 2],
 }
 
-/// Where eight raster positions fall in the image.
-pub struct Eight {
-    x: f32x8,
-    y: f32x8,
+/// Where four raster positions fall in the image.
+pub struct Four {
+    x: f32x4,
+    y: f32x4,
 }
 
 impl<'a> Warp<'a> {
@@ -54,101 +55,98 @@ impl<'a> Warp<'a> {
         })
     }
 
-    /// Fills a row of the raster by what `value` makes of each eight positions.
+    /// Fills a row of the raster by what `value` makes of each four positions.
     #[inline]
-    pub fn fill(&self, row: usize, out: &mut [f32], value: impl Fn(Eight) -> f32x8) {
+    pub fn fill(&self, row: usize, out: &mut [f32], value: impl Fn(Four) -> f32x4) {
         let v = row as f32;
-        let at = |r: usize| f32x8::splat(self.m[r][1] * v + self.m[r][2]);
-        let slope = |r: usize| f32x8::splat(self.m[r][0]);
+        let at = |r: usize| f32x4::splat(self.m[r][1] * v + self.m[r][2]);
+        let slope = |r: usize| f32x4::splat(self.m[r][0]);
         let (x0, y0, w0) = (at(0), at(1), at(2));
         let (dx, dy, dw) = (slope(0), slope(1), slope(2));
-        let mut u = f32x8::from([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
-        for out in out.chunks_mut(8) {
-            let inverse = f32x8::ONE / (w0 + dw * u);
-            let at = Eight {
+        let mut u = f32x4::from([0.0, 1.0, 2.0, 3.0]);
+        for out in out.chunks_mut(4) {
+            let inverse = f32x4::ONE / (w0 + dw * u);
+            let at = Four {
                 x: (x0 + dx * u) * inverse,
                 y: (y0 + dy * u) * inverse,
             };
             let values = value(at).to_array();
-            match <&mut [f32; 8]>::try_from(&mut *out) {
+            match <&mut [f32; 4]>::try_from(&mut *out) {
                 Ok(out) => *out = values,
                 Err(_) => out.copy_from_slice(&values[..out.len()]),
             }
-            u += f32x8::splat(8.0);
+            u += f32x4::splat(4.0);
         }
     }
 
     /// Bilinear values; NaN outside the image.
     #[inline]
-    pub fn or_nan(&self, at: Eight) -> f32x8 {
-        let zero = f32x8::ZERO;
-        let [limit_x, limit_y] = self.limit.map(f32x8::splat);
+    pub fn or_nan(&self, at: Four) -> f32x4 {
+        let zero = f32x4::ZERO;
+        let [limit_x, limit_y] = self.limit.map(f32x4::splat);
         let inside =
             at.x.simd_ge(zero) & at.x.simd_le(limit_x) & at.y.simd_ge(zero) & at.y.simd_le(limit_y);
         // Where the horizon lies behind the raster, positions are no numbers.
         let [x, y] = [at.x, at.y].map(|x| inside.select(x, zero));
-        inside.select(self.inside(x, y), f32x8::splat(f32::NAN))
+        inside.select(
+            bilinear(self.image, self.first, x, y),
+            f32x4::splat(f32::NAN),
+        )
     }
 
     /// Bilinear values; outside the image those of its border.
     #[inline]
-    pub fn bordered(&self, at: Eight) -> f32x8 {
-        let clamp = |x: f32x8, limit: f32| x.fast_max(f32x8::ZERO).fast_min(f32x8::splat(limit));
-        self.inside(clamp(at.x, self.limit[0]), clamp(at.y, self.limit[1]))
-    }
-
-    /// Bilinear values at coordinates between 0 and the limits.
-    #[inline(always)]
-    fn inside(&self, x: f32x8, y: f32x8) -> f32x8 {
-        let (column, row) = (x.fast_trunc_int(), y.fast_trunc_int());
-        let (fx, fy) = (x - column.round_float(), y - row.round_float());
-        let (column, row) = (column.to_array(), row.to_array());
-        let width = self.image.width;
-        let (mut upper, mut lower) = ([0; 8], [0; 8]);
-        for lane in 0..8 {
-            upper[lane] = self.first + row[lane] as usize * width + column[lane] as usize;
-            lower[lane] = upper[lane] + width;
-        }
-        bilinear(&self.image.data, upper, lower, [fx, fy])
+    pub fn bordered(&self, at: Four) -> f32x4 {
+        let clamp = |x: f32x4, limit: f32| x.fast_max(f32x4::ZERO).fast_min(f32x4::splat(limit));
+        let (x, y) = (clamp(at.x, self.limit[0]), clamp(at.y, self.limit[1]));
+        bilinear(self.image, self.first, x, y)
     }
 }
 
-/// Between the pixels `upper` and their right neighbours, `lower` and theirs, at these fractions.
-// Everything below is inlined by force: called for every eight samples, the calls took longer than the samples.
+/// Bilinear values at columns and rows counted from pixel `first`, which must have a right and a lower neighbour.
+// Everything below is inlined by force: called for every four samples, the calls took longer than the samples.
 #[inline(always)]
-pub(super) fn bilinear(
-    data: &[f32],
-    upper: [usize; 8],
-    lower: [usize; 8],
-    [fx, fy]: [f32x8; 2],
-) -> f32x8 {
-    let [a, b] = with_right_neighbours(data, upper);
-    let [c, d] = with_right_neighbours(data, lower);
+pub(super) fn bilinear(image: &Gray, first: usize, x: f32x4, y: f32x4) -> f32x4 {
+    let (column, row) = (x.fast_trunc_int(), y.fast_trunc_int());
+    let (fx, fy) = (x - column.round_float(), y - row.round_float());
+    let (column, row) = (
+        (column + i32x4::splat(first as i32)).to_array(),
+        row.to_array(),
+    );
+    let width = image.width as u32;
+    let block = |lane: usize| {
+        // One by one: without SSE 4.1 there is no product of four integers.
+        let start = (row[lane] as u32).wrapping_mul(width);
+        block_at(
+            &image.data,
+            start.wrapping_add(column[lane] as u32) as usize,
+            width,
+        )
+    };
+    let [i, j, k, l] = [block(0), block(1), block(2), block(3)];
+    let [a, b] = columns([i[0], j[0], k[0], l[0]]);
+    let [c, d] = columns([i[1], j[1], k[1], l[1]]);
     let top = a + (b - a) * fx;
     let bottom = c + (d - c) * fx;
     top + (bottom - top) * fy
 }
 
-/// Eight pixels and the pixels to the right of them.
+/// A pixel and its right neighbour, and the two below.
 #[inline(always)]
-fn with_right_neighbours(data: &[f32], at: [usize; 8]) -> [f32x8; 2] {
-    let [i, j, k, l, m, n, o, p] = at;
-    let ([a, c], [b, d]) = (four(data, [i, j, k, l]), four(data, [m, n, o, p]));
-    [cast([a, b]), cast([c, d])]
+fn block_at(data: &[f32], i: usize, width: u32) -> [[f32; 2]; 2] {
+    // In 64 bits a width of 32 cannot overflow, so that one comparison does for all four.
+    let w = width as usize;
+    let pixels = &data[i..i + (w + 2)];
+    [[pixels[0], pixels[1]], [pixels[w], pixels[w + 1]]]
 }
 
-/// Four pixels and the pixels to the right of them, two neighbours read at once.
+/// The left and the right of four pairs.
 #[inline(always)]
-fn four(data: &[f32], [i, j, k, l]: [usize; 4]) -> [f32x4; 2] {
-    let first: f32x4 = cast([two(data, i), two(data, j)]);
-    let last: f32x4 = cast([two(data, k), two(data, l)]);
+fn columns([i, j, k, l]: [[f32; 2]; 4]) -> [f32x4; 2] {
+    let first: f32x4 = cast([i, j]);
+    let last: f32x4 = cast([k, l]);
     let (even, odd) = (first.unpack_lo(last), first.unpack_hi(last));
     [even.unpack_lo(odd), even.unpack_hi(odd)]
-}
-
-#[inline(always)]
-fn two(data: &[f32], i: usize) -> [f32; 2] {
-    data[i..i + 2].try_into().expect("two pixels")
 }
 
 /// Where the corners of a rectangle go under a homography; `None` when one is beyond the horizon.

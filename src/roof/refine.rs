@@ -204,6 +204,9 @@ impl Case<'_> {
     /// The facets, each with the simpler outline where the images show at least the same share of it.
     fn simplified(&self, wireframe: &Wireframe, state: &State) -> Vec<Facet> {
         let facets = outline::simplified(self.old, self.params.jog_m);
+        if facets.iter().eq(self.old.iter().copied()) {
+            return facets;
+        }
         let simple: Vec<&Facet> = facets.iter().collect();
         let far = vec![true; facets.len()];
         let shown = |w: &Wireframe, state: &State| {

@@ -9,7 +9,7 @@ use nalgebra::{Point2, Vector2};
 use serde::Serialize;
 
 use super::sight::Sight;
-use super::sightings::{Profiles, Worth, aligned_runs, pixel};
+use super::sightings::{Extent, Profiles, Worth, aligned_runs, pixel};
 use super::wireframe::{SideKind, State, Wireframe};
 use crate::geometry::Segment3;
 use crate::params::RefineParams;
@@ -99,9 +99,13 @@ fn cuts(
     let at_wall = |kind| matches!(kind, SideKind::Step | SideKind::Foot);
     let pixel_m = pixel(scene, wireframe, state);
     let worths = crate::parallel::map(&wireframe.sides, |_, side| {
-        let reach = (params.part_m, pixel_m);
+        let extent = Extent {
+            seen_m: params.part_m,
+            compared_m: params.part_m,
+            pixel_m,
+        };
         at_wall(side.kind).then_some(())?;
-        let profiles = Profiles::new(scene, sight, wireframe, state, side, reach, params)?;
+        let profiles = Profiles::new(scene, sight, wireframe, state, side, extent, params)?;
         Some(WallSide {
             worth: profiles.worth_of_ending(params)?,
             step_m: profiles.step_m(),

@@ -51,19 +51,21 @@ pub fn sight_sides(
     params: &RefineParams,
 ) -> Vec<Sighting> {
     let pixel_m = pixel(scene, wireframe, state);
+    let reach_of = |side: &Side| match search[side.face] && side.kind != SideKind::Crease {
+        true => params.search_m,
+        false => params.reach_px * pixel_m,
+    };
     let profiles = crate::parallel::map(&wireframe.sides, |_, side| {
         (side.kind != SideKind::Foot).then_some(())?;
-        let reach = (params.search_m, pixel_m);
-        Profiles::new(scene, sight, wireframe, state, side, reach, params)
+        let extent = Extent {
+            seen_m: params.search_m,
+            compared_m: reach_of(side),
+            pixel_m,
+        };
+        Profiles::new(scene, sight, wireframe, state, side, extent, params)
     });
     let gains = crate::parallel::map(&profiles, |i, profiles| {
-        let side = &wireframe.sides[i];
-        let far = search[side.face] && side.kind != SideKind::Crease;
-        let reach = if far {
-            params.search_m
-        } else {
-            params.reach_px * pixel_m
-        };
+        let reach = reach_of(&wireframe.sides[i]);
         profiles.as_ref()?.gains(reach, params)
     });
     let runs = aligned_runs(wireframe, state, |kind| kind == SideKind::Free);
@@ -134,23 +136,26 @@ pub(super) fn aligned_runs(
 
 /// What it is worth that a side lies at each step of its profile.
 struct Gains {
-    /// First step that is allowed.
-    first: usize,
+    /// First step that is allowed, from the side.
+    first: isize,
     /// For each step from there: the energy gained, square metres for the whole side.
     gain: Vec<f64>,
     /// For each step from there: how clearly the views share an edge, 1 for the clearest, times the side's length.
     edge: Vec<f64>,
 }
 
-/// The best step at which there is an edge, for one side or for several that are one edge.
-fn best_step(sides: &[&Gains]) -> Option<usize> {
+/// The best step from the side at which there is an edge, for one side or for several that are one edge.
+fn best_step(sides: &[&Gains]) -> Option<isize> {
     let first = sides.iter().map(|g| g.first).max()?;
-    let end = sides.iter().map(|g| g.first + g.gain.len()).min()?;
-    let sum = |of: fn(&Gains) -> &Vec<f64>, k: usize| -> f64 {
-        sides.iter().map(|g| of(g)[k - g.first]).sum()
+    let end = sides
+        .iter()
+        .map(|g| g.first + g.gain.len() as isize)
+        .min()?;
+    let sum = |of: fn(&Gains) -> &Vec<f64>, k: isize| -> f64 {
+        sides.iter().map(|g| of(g)[(k - g.first) as usize]).sum()
     };
-    let edge = |k: usize| sum(|g| &g.edge, k);
-    (first + 1..end.saturating_sub(1))
+    let edge = |k: isize| sum(|g| &g.edge, k);
+    (first + 1..end - 1)
         .filter(|&k| edge(k) > 0.0 && edge(k) >= edge(k - 1) && edge(k) > edge(k + 1))
         .max_by(|&i, &j| {
             let gain = |k| sum(|g| &g.gain, k);
@@ -192,17 +197,29 @@ pub(super) struct Profiles {
     samples: usize,
 }
 
+/// How far to both sides of a side it is looked at, metres.
+#[derive(Clone, Copy)]
+pub(super) struct Extent {
+    /// A view must see a place as far as this, or it does not see the place at all.
+    pub seen_m: f64,
+    /// Grey values are compared as far as this.
+    pub compared_m: f64,
+    /// Size of a pixel on the side: profiles have steps of half of it.
+    pub pixel_m: f64,
+}
+
 impl Profiles {
-    /// Profiles as far as `reach_m` on both sides, in steps of half of `pixel_m`; `None` for a side that is too short.
+    /// Profiles on both sides; `None` for a side that is too short.
     pub(super) fn new(
         scene: &Scene,
         sight: &Sight,
         wireframe: &Wireframe,
         state: &State,
         side: &Side,
-        (reach_m, pixel_m): (f64, f64),
+        extent: Extent,
         params: &RefineParams,
     ) -> Option<Self> {
+        let pixel_m = extent.pixel_m;
         let segment = wireframe.segment(state, side);
         let along = (segment.p1.xy() - segment.p0.xy()).try_normalize(1e-6)?;
         // The facet lies on the left.
@@ -219,10 +236,13 @@ impl Profiles {
             views: Vec::new(),
             samples: (length_px.ceil() as usize).min(MAX_SAMPLES),
         };
-        let steps = (reach_m / (0.5 * pixel_m)).ceil() as usize + BASE + 1;
+        let within = |reach_m: f64| (reach_m / (0.5 * pixel_m)).ceil() as usize + BASE + 1;
+        let seen = within(extent.seen_m);
+        // The strongest difference near a step looks one step farther.
+        let compared = (within(extent.compared_m) + 2).min(seen);
         profiles.views = scene
             .view_ids()
-            .filter_map(|v| profiles.profile(scene, sight, v, steps))
+            .filter_map(|v| profiles.profile(scene, sight, v, [seen, compared]))
             .collect();
         Some(profiles)
     }
@@ -232,10 +252,16 @@ impl Profiles {
         0.5 * self.pixel_m
     }
 
-    /// What one view shows; `None` where it sees too little of the side.
-    fn profile(&self, scene: &Scene, sight: &Sight, view: ViewId, steps: usize) -> Option<Profile> {
+    /// What one view shows within `compared` steps, where it sees `ends` steps; `None` where it sees too little of the side.
+    fn profile(
+        &self,
+        scene: &Scene,
+        sight: &Sight,
+        view: ViewId,
+        [ends, compared]: [usize; 2],
+    ) -> Option<Profile> {
         let (camera, gray) = (scene.camera(view), &scene.view(view).gray);
-        let count = 2 * steps + 1;
+        let count = 2 * compared + 1;
         let mut rows = vec![vec![f32::NAN; self.samples]; count];
         let mut seen = 0usize;
         let mut hidden = false;
@@ -245,20 +271,22 @@ impl Profiles {
             if i % 8 == 0 {
                 hidden = sight.hidden(&p, &camera.center);
             }
-            let across = |k: usize| {
-                let s = (k as f64 - steps as f64) * self.step_m();
+            let across = |step: f64| {
+                let s = step * self.step_m();
                 let x = camera.project(&(p + self.outward * s));
                 x.map_or([f32::NAN; 2], |x| [x.x as f32, x.y as f32])
             };
             let is_seen = |[x, y]: [f32; 2]| gray.sample(x, y).is_some();
             // Seen from end to end or not at all.
-            if hidden || !is_seen(across(0)) || !is_seen(across(count - 1)) {
+            if hidden || !is_seen(across(-(ends as f64))) || !is_seen(across(ends as f64)) {
                 continue;
             }
             seen += 1;
             for (first, rows) in rows.chunks_mut(8).enumerate() {
-                let places: [[f32; 2]; 8] =
-                    std::array::from_fn(|lane| across((8 * first + lane).min(count - 1)));
+                let places: [[f32; 2]; 8] = std::array::from_fn(|lane| {
+                    let k = (8 * first + lane).min(count - 1);
+                    across(k as f64 - compared as f64)
+                });
                 let samples = gray.sample_eight(places.map(|p| p[0]), places.map(|p| p[1]));
                 for (row, sample) in rows.iter_mut().zip(samples.to_array()) {
                     row[i] = sample;
@@ -308,7 +336,7 @@ impl Profiles {
             inside + params.edge_gain_m * (edge[k - first] - moved * moved * length)
         });
         Some(Gains {
-            first,
+            first: -(steps as isize),
             gain: gain.collect(),
             edge,
         })
@@ -373,19 +401,20 @@ impl Profiles {
         math::median(&mut strengths).unwrap_or(0.0)
     }
 
-    /// The edge in every view that shows it, sought around the side moved by `offset`.
+    /// The edge in every view that shows it, sought around the side moved by `step` steps.
     fn measure(
         &self,
         scene: &Scene,
         side: usize,
-        step: usize,
+        step: isize,
         params: &RefineParams,
     ) -> Vec<Sighting> {
-        let offset = (step as f64 - self.middle() as f64) * self.step_m();
+        let offset = step as f64 * self.step_m();
+        let place = (self.middle() as isize + step) as usize;
         let moved = |t: f64| self.segment.at(t) + self.outward * offset;
         let of_view = |profile: &Profile| {
             let view = profile.view;
-            let rising = strongest_near(&profile.differences, step) > 0.0;
+            let rising = strongest_near(&profile.differences, place) > 0.0;
             let camera = scene.camera(view);
             let image = |t: f64| camera.project(&moved(t));
             let expected = Segment2::new(image(END_SHARE)?, image(1.0 - END_SHARE)?);
