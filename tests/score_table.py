@@ -207,16 +207,15 @@ def rectangle_row(s):
 
 def combined_table(scorer, rows):
     """Methods beside each other, "lines / rectangles / combined"; rows of (place of the view left out, runs)."""
-    header = ['scene', 'views', 'facets > 10 m²', 'complete', 'correct', 'area within 0.2 m', 'roof edges covered', 'wrong lines', 'time [s]']
+    header = ['scene', 'views', 'facets > 10 m²', 'complete', 'correct', 'area within 0.2 m', 'roof edges covered', 'wrong lines']
     table = []
     for place, runs in rows:
         scene = runs[0]['scene']
         runs = runs if len(runs) == 3 else [runs[0], None, runs[1]]
         scores = [r and not r['failed'] and tool(scorer, 'score', r, r['out'] / 'model.city.json', '--lines', r['out'] / 'lines.json')
                   for r in runs]
-        seconds = ' / '.join(f'{r["seconds"]:.0f}' if r else '-' for r in runs)
         table.append([scene.name, 'all' if place == '' else f'without the {("first", "second", "third", "fourth")[place]}']
-                     + [' / '.join(cell(s) if s else '-' for s in scores) for cell in COMBINED_CELLS] + [seconds])
+                     + [' / '.join(cell(s) if s else '-' for s in scores) for cell in COMBINED_CELLS])
     return markdown(header, table)
 
 

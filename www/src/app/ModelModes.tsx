@@ -56,7 +56,9 @@ export function ModeSwitches() {
 /** The numbers of facets that each method made. */
 const made = computed(() => {
   const methods = (mainResults.value.facets ?? []).map((facet) => methodOfFacet(facet, method.value));
-  const names = Object.keys(METHOD_TITLES) as Method[];
+  const names = (Object.keys(METHOD_TITLES) as Method[]).filter(
+    (name) => name !== "combined" || method.value === name,
+  );
   return names.map((name) => [name, methods.filter((one) => one === name).length] as const);
 });
 

@@ -14,13 +14,14 @@ import {
 
 /** Follows the selection as long as the page is open. */
 export function followSelection(): void {
-  let keeper = shownKeeper.peek();
+  let last = { keeper: shownKeeper.peek(), picked: selection.peek() };
   effect(() => {
-    // The same number is another line there.
-    if (shownKeeper.value !== keeper) {
-      keeper = shownKeeper.value;
+    const now = { keeper: shownKeeper.value, picked: selection.value };
+    // The same number is another line there; a link names its own.
+    if (now.keeper !== last.keeper && now.picked === last.picked) {
       selection.value = null;
     }
+    last = { ...now, picked: selection.peek() };
   });
   effect(() => {
     void [results.value, runningStage.value];
