@@ -16,6 +16,7 @@
 //!    -> roof                    grouping, delineation, verification, walls  B99 4.2, 4.3
 //!    or, from the images to the roofs in one go
 //!    -> objectspace             regions, main directions, clusters, planes  W96 3.3 - 3.6
+//!    or both for one model: lines and planes of objectspace compete in lines3d and roof
 //!    -> texture                 best view per face, atlas
 //!    -> export                  CityJSON, GLB, JSON
 //! ```

@@ -50,6 +50,8 @@ pub enum Method {
     Lines,
     /// Regions, and planes between parallel lines in object space (W96).
     Rectangles,
+    /// Lines and planes of both compete for one model.
+    Combined,
 }
 
 impl Readable for Method {

@@ -201,7 +201,7 @@ fn a_camera_that_is_not_a_number_is_refused() {
 #[test]
 fn bad_arguments_are_explained() {
     let scene = Scene::new();
-    scene.is_refused(&["--method", "combined"], &["lines"]);
+    scene.is_refused(&["--method", "triangles"], &["lines", "combined"]);
     scene.is_refused(&["--roi", "5,0,1,1"], &["x0 must be less than x1"]);
     scene.is_refused(&["--ground-z", "NaN"], &["not a number"]);
     scene.is_refused(&["--views", "nothing.png"], &["nothing.png"]);

@@ -1,4 +1,4 @@
-// Runs a scene by both methods through the wasm Session in Node and through the native command line, and compares
+// Runs a scene by every method through the wasm Session in Node and through the native command line, and compares
 // every file byte for byte (report.json without its part `seconds`). What model.glb is wrong in, the validator of glTF's makers says.
 //
 //   node tests/identical.mjs BINARY [SCENE]     the scene is the demo's by default
@@ -20,7 +20,7 @@ if (!binary) {
 
 const validator = createRequire(join(root, "www/package.json"))("gltf-validator");
 const bad = [];
-for (const method of ["lines", "rectangles"]) bad.push(...(await compare(method)));
+for (const method of ["lines", "rectangles", "combined"]) bad.push(...(await compare(method)));
 process.exit(bad.length === 0 ? 0 : 1);
 
 // The names of the files that differ or are wrong.

@@ -8,6 +8,7 @@ mod common;
 use common::{GOLDEN, SIZE_PX, golden_of, synthetic_files};
 use nalgebra::{Point2, Point3};
 use ridgeline::geometry::{Plane, Segment3};
+use ridgeline::lines3d::{Line3d, LineOrigin};
 use ridgeline::params::{Method, Params};
 use ridgeline::pipeline::{PackedView, Run, Stage};
 use ridgeline::progress::silent;
@@ -149,7 +150,7 @@ fn shared(method: Method, of: usize) -> Run {
 
 #[test]
 fn instances_that_share_a_run_give_the_bytes_of_one() {
-    for method in [Method::Lines, Method::Rectangles] {
+    for method in [Method::Lines, Method::Rectangles, Method::Combined] {
         let (scene, _) = l_scene(SIZE_PX);
         let mut alone = Run::new(
             scene,
@@ -180,6 +181,76 @@ fn new_parameters_drop_what_they_change() {
         run.files(&[]).is_empty(),
         "an unfinished run offers nothing"
     );
+}
+
+/// In their order: what a stage takes in has been found before.
+#[test]
+fn both_methods_find_one_model() {
+    let stages = Stage::of(Method::Combined);
+    assert!(stages.is_sorted() && stages == Stage::ALL);
+    for method in [Method::Lines, Method::Rectangles] {
+        assert!(Stage::of(method).iter().all(|stage| stages.contains(stage)));
+        assert!(Stage::of(method).is_sorted());
+    }
+    let (scene, truth) = l_scene(SIZE_PX);
+    let params = Params {
+        method: Method::Combined,
+        ..Params::default()
+    };
+    let mut run = Run::new(scene, params);
+    run.run_all();
+    let results = run.results();
+    let model = results.model().unwrap();
+    assert_eq!(check_invariants(model), vec![]);
+    assert_eq!(model.buildings.len(), 1);
+    let found = truth.facets.iter();
+    let found = found.filter(|(plane, outer)| is_found(plane, outer, &model.facets));
+    assert!(found.count() * 5 >= truth.facets.len() * 4);
+
+    // Matched lines keep their ids; adopted ones follow, and no other method's parts are in the files.
+    let lines = &results.lines.as_ref().unwrap().value;
+    let adopted = |l: &Line3d| l.origin == LineOrigin::Clustered;
+    assert!(lines.is_sorted_by_key(adopted) && !adopted(&lines[0]));
+    let rectangles = &results.rectangles.as_ref().unwrap().trace.candidates;
+    let groups = &results.roof.as_ref().unwrap().trace.facets.groups;
+    let of_both = groups.iter().filter(|g| !g.rectangles.is_empty());
+    assert!(
+        of_both.clone().count() > 0,
+        "planes that both methods found"
+    );
+    let mut joined: Vec<u32> = of_both.flat_map(|g| g.rectangles.clone()).collect();
+    joined.sort_unstable();
+    joined.dedup();
+    assert_eq!(
+        joined.len(),
+        rectangles.len(),
+        "every candidate is somewhere, once"
+    );
+}
+
+#[test]
+fn new_parameters_of_one_method_keep_what_the_other_found_before() {
+    let (scene, _) = l_scene(64);
+    let params = Params {
+        method: Method::Combined,
+        ..Params::default()
+    };
+    let mut run = Run::new(scene, params);
+    run.step(Stage::HalfPlanes, &silent());
+    let mut params = run.params().clone();
+    params.sweep.min_similarity = 0.9;
+    run.set_params(params.clone());
+    assert!(run.has(Stage::Rectangles) && run.has(Stage::Lines) && !run.has(Stage::HalfPlanes));
+    params.objectspace.planes.min_area_m2 = 5.0;
+    run.set_params(params.clone());
+    assert!(run.has(Stage::Clusters) && !run.has(Stage::Rectangles) && !run.has(Stage::Lines));
+    params.method = Method::Lines;
+    run.set_params(params.clone());
+    assert!(run.summaries().is_empty(), "another method");
+    run.step(Stage::Segments, &silent());
+    params.objectspace.oris.vector_bits = 20.0;
+    run.set_params(params);
+    assert!(run.has(Stage::Segments), "nothing here reads this");
 }
 
 /// Grey values say nothing here: detection, pairs, third views and the second look at the edges have to look at the colour.

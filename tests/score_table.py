@@ -14,10 +14,14 @@ import statistics
 import subprocess
 import sys
 import time
+import zlib
 
 import half_planes
 
 from on_scenes import parser_of
+
+# Scenes that are reconstructed without one view, and the places of these views.
+LEFT_OUT = {'detached': (0, 3), 'suburb': (0, 3)}
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / 'docs' / 'results.md'
@@ -36,12 +40,18 @@ def main():
     runs = [run(args.binary.resolve(), args.scenes / name) for name in names]
     rectangle_runs = [run(args.binary.resolve(), args.scenes / name, 'rectangles') for name in names
                       if (args.scenes / name / 'truth').is_dir()]
+    combined = [run(args.binary.resolve(), args.scenes / name, 'combined') for name in names
+                if (args.scenes / name / 'truth').is_dir()]
+    left_out = [(place, [run(args.binary.resolve(), r['scene'], method, all_but(r, place)) for method in ('lines', 'combined')])
+                for r in runs for place in LEFT_OUT.get(r['scene'].name, ()) if not r['failed']]
     three_views = [run(args.binary.resolve(), r['scene'], views=first_views(r, 3)) for r in runs
                    if (r['scene'] / 'truth').is_dir() and not r['failed'] and len(report(r)['views']) >= 6]
     tables = {
         'lines': line_table([(r, lines(scorer, r)) for r in runs + three_views]),
         'rendered': rendered_table([(r, score(scorer, r)) for r in runs if (r['scene'] / 'truth').is_dir()]),
         'rectangles': rectangle_table([(r, faces(scorer, r)) for r in rectangle_runs]),
+        'combined': combined_table(scorer, [('', of_scene(r, rectangle_runs, combined)) for r in runs
+                                              if (r['scene'] / 'truth').is_dir()] + left_out),
         'halfplanes': half_plane_table([(r, half_planes.angles(scorer, r['scene'], r['out'])) for r in runs
                                         if (r['scene'] / 'truth').is_dir() and not r['failed']]),
         'real': real_table([(r, check(scorer, r)) for r in runs if (r['scene'] / 'check').is_dir()]),
@@ -50,12 +60,14 @@ def main():
         print(table, end='\n\n')
     if not args.only:
         rewrite(tables)
-    return 1 if any(r['failed'] for r in runs + rectangle_runs + three_views) else 0
+    more = [r for _, pair in left_out for r in pair]
+    return 1 if any(r['failed'] for r in runs + rectangle_runs + combined + three_views + more) else 0
 
 
 def run(binary, scene, method='lines', views=()):
-    """Runs one scene; the outputs stand in target/score/<scene>, or beside it with the method or the number of views."""
-    out = OUT / (scene.name + (f'-{method}' if method != 'lines' else '') + (f'-{len(views)}-views' if views else ''))
+    """Runs one scene; the outputs stand in target/score/<scene>, or beside it with the method or the views."""
+    chosen = f'-{len(views)}-views-{zlib.crc32(",".join(views).encode()):08x}' if views else ''
+    out = OUT / (scene.name + (f'-{method}' if method != 'lines' else '') + chosen)
     print(f'{out.name} ...', file=sys.stderr, flush=True)
     start = time.monotonic()
     done = subprocess.run([binary, 'reconstruct', scene, '--out', out, '--method', method]
@@ -92,6 +104,17 @@ def report(run):
 
 def first_views(run, count):
     return [view['view'] for view in report(run)['views']][:count]
+
+
+def all_but(run, place):
+    """The names of all views but the one at a place."""
+    names = [view['view'] for view in report(run)['views']]
+    return names[:place] + names[place + 1:]
+
+
+def of_scene(run, *others):
+    """A scene's run by method "lines", and those by the others; None where there is none."""
+    return [run] + [next((o for o in runs if o['scene'] == run['scene']), None) for runs in others]
 
 
 def lines(scorer, run):
@@ -180,6 +203,30 @@ def rectangle_row(s):
     large, geometry = s['faces']['gt_10m2'], s['faces']['geometry']
     return [f'{large["found"]} of {large["reference"]}', percent(large['completeness']), percent(large['correctness']),
             metres(geometry['rms_outline_m']), metres(geometry['rms_height_m'])]
+
+
+def combined_table(scorer, rows):
+    """Methods beside each other, "lines / rectangles / combined"; rows of (place of the view left out, runs)."""
+    header = ['scene', 'views', 'facets > 10 m²', 'complete', 'correct', 'area within 0.2 m', 'roof edges covered', 'wrong lines']
+    table = []
+    for place, runs in rows:
+        scene = runs[0]['scene']
+        runs = runs if len(runs) == 3 else [runs[0], None, runs[1]]
+        scores = [r and not r['failed'] and tool(scorer, 'score', r, r['out'] / 'model.city.json', '--lines', r['out'] / 'lines.json')
+                  for r in runs]
+        table.append([scene.name, 'all' if place == '' else f'without the {("first", "second", "third", "fourth")[place]}']
+                     + [' / '.join(cell(s) if s else '-' for s in scores) for cell in COMBINED_CELLS])
+    return markdown(header, table)
+
+
+COMBINED_CELLS = (
+    lambda s: str(s['faces']['gt_10m2']['found']),
+    lambda s: percent(s['faces']['gt_10m2']['completeness']),
+    lambda s: percent(s['faces']['gt_10m2']['correctness']),
+    lambda s: f'{100 * s["area"]["covered_within_0_2m_fraction"]:.1f} %',
+    lambda s: percent(s['lines']['edge_length_covered']),
+    lambda s: f'{100 * s["lines"]["wrong"]:.1f} %',
+)
 
 
 def real_table(rows):

@@ -132,6 +132,42 @@ fn the_figures_answer(session: &mut Session, half_plane: &JsValue) {
     assert!(new.count() > 0);
 }
 
+/// Both methods in one session, and another one that helps it with the last of their stages.
+#[wasm_bindgen_test]
+fn both_methods_share_their_planes() {
+    let mut sessions = [(); 2].map(|()| session_of(&synthetic_files()));
+    let silent = Function::new_no_args("");
+    for session in &mut sessions {
+        session.set_params(combined()).unwrap();
+        session.load(Object::new().into()).unwrap();
+    }
+    let [first, helper] = &mut sessions;
+    let stages = first.chosen_stages();
+    for stage in &stages {
+        if stage == "facets" {
+            let share = |helper: &mut Session| helper.share(stage, "ground", 0, 1, &silent);
+            assert!(share(helper).unwrap().is_empty(), "nothing is known yet");
+            for earlier in ["rectangles", "segments", "lines", "halfplanes"] {
+                let found = first.hand_over(earlier).unwrap();
+                helper.take_over(earlier, found).unwrap();
+            }
+            assert!(!share(helper).unwrap().is_empty());
+        }
+        first.run_stage(stage, &silent).unwrap();
+    }
+    assert_eq!(stages.first().map(String::as_str), Some("regions"));
+    let groups = Array::from(&member(&first.grouping().unwrap(), "groups"));
+    let joined = |g: &JsValue| Array::from(&member(g, "rectangles")).length() > 0;
+    assert!(groups.iter().any(|g| joined(&g)));
+    assert!(Array::from(&first.facets().unwrap()).length() > 0);
+}
+
+fn combined() -> JsValue {
+    let params = Object::new();
+    Reflect::set(&params, &"method".into(), &"combined".into()).unwrap();
+    params.into()
+}
+
 #[wasm_bindgen_test]
 fn an_archive_stands_for_its_files() {
     let mut session = session_of(&[("scene.zip".to_owned(), zipped(&synthetic_files()))]);

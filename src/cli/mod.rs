@@ -105,6 +105,8 @@ enum Method {
     Lines,
     /// Regions, and planes between parallel lines in object space (Wiman and Axelsson 1996).
     Rectangles,
+    /// Both: their lines and planes compete for one model. Regions take most of its time.
+    Combined,
 }
 
 impl From<Method> for ridgeline::params::Method {
@@ -112,6 +114,7 @@ impl From<Method> for ridgeline::params::Method {
         match method {
             Method::Lines => Self::Lines,
             Method::Rectangles => Self::Rectangles,
+            Method::Combined => Self::Combined,
         }
     }
 }

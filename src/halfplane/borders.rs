@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 use super::extent::extent_lines;
 use super::grouping::{GroupingInput, Member, PlaneGroup};
 use super::hypothesis::Hypothesis;
+use super::proposed::ProposedPlane;
 use super::{Side, ThetaFrame};
 use crate::geometry::Segment3;
 use crate::params::RoofParams;
@@ -35,6 +36,8 @@ pub enum BorderKind {
     Intersection,
     /// Hypothesised across the end of a line.
     Closing,
+    /// The side of a rectangle (W96 3.6).
+    Rectangle,
 }
 
 /// A border line in plan, metres.
@@ -86,6 +89,28 @@ struct PlanBox {
     ends: f64,
 }
 
+impl PlanBox {
+    /// The box of a rectangle along its first side.
+    fn around(rectangle: &ProposedPlane) -> Option<Self> {
+        let [start, end] = rectangle.sides().next()?;
+        let along = (end - start).try_normalize(1e-6)?;
+        let across = Vector2::new(-along.y, along.x);
+        let span = |axis: &Vector2<f64>| {
+            let at = rectangle.ring.iter().map(|p| (p.xy() - start).dot(axis));
+            at.fold((0.0f64, 0.0f64), |(low, high), t| (low.min(t), high.max(t)))
+        };
+        let ((t0, t1), (u0, u1)) = (span(&along), span(&across));
+        Some(Self {
+            start: start + along * t0,
+            along,
+            length: t1 - t0,
+            left: u1 + MARGIN,
+            right: MARGIN - u0,
+            ends: MARGIN,
+        })
+    }
+}
+
 impl Region {
     /// The region of a group: `depth` away from each supporting line on the side of its half-plane
     /// (both sides for a line without one), a little beyond on the other side and over the ends.
@@ -117,6 +142,7 @@ impl Region {
                     ends,
                 })
             })
+            .chain(group.rectangles(input).filter_map(PlanBox::around))
             .collect();
         Self { boxes }
     }
@@ -192,6 +218,9 @@ pub fn border_lines(
     for border in closing_lines(input, hypotheses, params) {
         add(&mut borders, border);
     }
+    for border in rectangle_sides(input, hypotheses) {
+        add(&mut borders, border);
+    }
     borders
 }
 
@@ -209,7 +238,7 @@ fn intersections(input: &GroupingInput, hypotheses: &[Hypothesis]) -> Vec<Border
             if low.x >= high.x || low.y >= high.y || p.plane.angle_to(&q.plane) < MIN_CREASE {
                 continue;
             }
-            let near = input.lines[p.members[0].line.index()].at(0.5);
+            let Some(near) = p.place(input) else { continue };
             let Some((point, direction)) = p.plane.intersection(&q.plane, &near) else {
                 continue;
             };
@@ -362,6 +391,19 @@ fn closing_lines(
         }
     }
     found
+}
+
+/// The sides of the rectangles: across the lines they are where crossing image lines end the plane.
+fn rectangle_sides(input: &GroupingInput, hypotheses: &[Hypothesis]) -> Vec<Border> {
+    let rectangles = hypotheses.iter().flat_map(|h| h.group.rectangles(input));
+    let sides = rectangles.flat_map(|r| {
+        r.sides().map(|[a, b]| Border {
+            kind: BorderKind::Rectangle,
+            a,
+            b,
+        })
+    });
+    sides.collect()
 }
 
 /// A facet has a few long sides; shorter lines in its plane are parts of them or of its texture.

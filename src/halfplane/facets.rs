@@ -8,7 +8,6 @@
 use nalgebra::{Point2, Point3};
 use serde::Serialize;
 
-use super::HalfPlane;
 use super::arrangement::Arrangement;
 use super::border_cost::{BorderCosts, LINE_HEIGHT};
 use super::borders::{Border, Region, border_lines};
@@ -23,12 +22,12 @@ use super::line_index::LineIndex;
 use super::neighbourhood::line_neighbours;
 use super::plan::PlanGrid;
 use super::plane_lines::PlaneLine;
+use super::proposed::add_rectangles;
 use crate::geometry::Plane;
 use crate::ids::BuildingId;
-use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
 use crate::params::RoofParams;
-use crate::roof::{Facet, Ground};
+use crate::roof::{Facet, Ground, RoofEvidence};
 use crate::scene::Scene;
 
 /// Why a facet was withdrawn.
@@ -60,6 +59,8 @@ pub enum FacetRejection {
 /// A withdrawn facet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RejectedFacet {
+    /// Index of the group whose plane it has.
+    pub group: u32,
     /// Its outline, metres, local frame.
     pub outline: Vec<Point3<f64>>,
     /// Why.
@@ -85,20 +86,26 @@ pub struct FacetTrace {
 /// touch become buildings when walls are added.
 pub fn reconstruct_facets(
     scene: &Scene,
-    segments: &[Vec<ImageSegment>],
-    lines: &[Line3d],
-    half_planes: &[HalfPlane],
+    evidence: &RoofEvidence,
     ground: &Ground,
     params: &RoofParams,
 ) -> (Vec<Facet>, FacetTrace) {
+    let RoofEvidence {
+        segments,
+        lines,
+        half_planes,
+        rectangles,
+    } = *evidence;
     let neighbours = line_neighbours(lines);
     let input = GroupingInput {
         lines,
         half_planes,
         neighbours: &neighbours,
+        rectangles,
     };
     let mut groups: Vec<PlaneGroup> = group_planes(&input, params);
     groups.retain(|g| !lies_on_ground(&input, g, ground, params));
+    add_rectangles(&input, &mut groups, params);
     let regions: Vec<Region> = groups
         .iter()
         .map(|g| Region::new(&input, g, params))
@@ -275,6 +282,7 @@ impl Solver {
                     Err(reason) => reason,
                 };
                 let refused = RejectedFacet {
+                    group: outline.plane,
                     outline: facet.outer,
                     reason,
                 };
@@ -327,6 +335,7 @@ impl Solver {
             real_ratio: self.real_ratio(outline, delineation),
             lines: group.lines(),
             half_planes: group.half_planes(),
+            rectangles: group.rectangles.clone(),
         }
     }
 

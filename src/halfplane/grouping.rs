@@ -8,10 +8,12 @@
 //! weighted by the uncertainty of theta; with a second line across the plane their weight is small
 //! against the lines'.
 
+use nalgebra::Point3;
 use serde::Serialize;
 
 use super::line_pairs::{add_line_pairs, with_lines_around};
 use super::neighbourhood::Neighbours;
+use super::proposed::ProposedPlane;
 use super::{HalfPlane, Side, ThetaFrame};
 use crate::geometry::Plane;
 use crate::ids::{HalfPlaneId, LineId};
@@ -37,6 +39,8 @@ pub struct PlaneGroup {
     pub plane: Plane,
     /// Members, the seed first.
     pub members: Vec<Member>,
+    /// Planes of the other method in this plane ([`super::ProposedPlane::index`]).
+    pub rectangles: Vec<u32>,
 }
 
 impl PlaneGroup {
@@ -51,6 +55,24 @@ impl PlaneGroup {
         sort_by(&mut lines, Ord::cmp);
         lines.dedup();
         lines
+    }
+
+    /// A point in or near the plane.
+    pub fn place(&self, input: &GroupingInput) -> Option<Point3<f64>> {
+        let first = self.members.first();
+        let on_line = first.map(|m| input.lines[m.line.index()].at(0.5));
+        on_line.or_else(|| self.rectangles(input).next()?.ring.first().copied())
+    }
+
+    /// The rectangles of the other method.
+    pub fn rectangles<'a>(
+        &self,
+        input: &GroupingInput<'a>,
+    ) -> impl Iterator<Item = &'a ProposedPlane> {
+        let proposed = input.rectangles;
+        proposed
+            .iter()
+            .filter(|r| self.rectangles.contains(&r.index))
     }
 
     /// The half-planes, ascending.
@@ -69,6 +91,8 @@ pub struct GroupingInput<'a> {
     pub half_planes: &'a [HalfPlane],
     /// Neighbours of each line.
     pub neighbours: &'a Neighbours,
+    /// Planes that the other method proposes.
+    pub rectangles: &'a [ProposedPlane],
 }
 
 /// Groups all half-planes; every half-plane ends in exactly one group.
@@ -155,6 +179,7 @@ fn grow(
     let mut group = PlaneGroup {
         plane: half_plane.plane,
         members: vec![member(input, half_plane.line, Some(seed))],
+        rectangles: Vec::new(),
     };
     extend(input, by_line, &mut group, free, params);
     group
@@ -214,6 +239,7 @@ pub fn lies_in_plane(
     params: &RoofParams,
 ) -> bool {
     let candidate = &input.lines[line.index()];
+    let over: Vec<&ProposedPlane> = group.rectangles(input).collect();
     [candidate.segment.p0, candidate.segment.p1]
         .iter()
         .all(|p| {
@@ -222,6 +248,7 @@ pub fn lies_in_plane(
                 .members
                 .iter()
                 .map(|m| distance_to_segment(p, &input.lines[m.line.index()]))
+                .chain(over.iter().map(|r| r.distance(&p.xy())))
                 .fold(f64::INFINITY, f64::min);
             let sigma_angle = if group.members.len() == 1 {
                 group.members[0]
@@ -343,7 +370,7 @@ fn are_neighbours(input: &GroupingInput, a: &PlaneGroup, b: &PlaneGroup) -> bool
     })
 }
 
-fn distance_to_segment(p: &nalgebra::Point3<f64>, line: &Line3d) -> f64 {
+fn distance_to_segment(p: &Point3<f64>, line: &Line3d) -> f64 {
     let (a, b) = (line.segment.p0, line.segment.p1);
     let d = b - a;
     let t = ((p - a).dot(&d) / d.norm_squared().max(1e-12)).clamp(0.0, 1.0);

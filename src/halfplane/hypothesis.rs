@@ -42,7 +42,8 @@ pub fn hypotheses(
         let region = Region::new(input, group, params);
         let (min, max) = region.bounds();
         let map = consistency_map(reduced, &group.plane, &PlanGrid::covering(min, max, step));
-        if group.half_planes().is_empty() && !supported(input, group, &map, params) {
+        let proposed_by_lines = group.half_planes().is_empty() && group.rectangles.is_empty();
+        if proposed_by_lines && !supported(input, group, &map, params) {
             return None;
         }
         let mut lines = lines_in_plane(scene, &rays, &group.plane, &region);

@@ -40,7 +40,11 @@ pub fn add_line_pairs(
             else {
                 continue;
             };
-            let mut group = PlaneGroup { plane, members };
+            let mut group = PlaneGroup {
+                plane,
+                members,
+                rectangles: Vec::new(),
+            };
             extend(input, by_line, &mut group, &mut none_free, params);
             groups.push(group);
         }
@@ -92,7 +96,11 @@ pub fn with_lines_around(
             members.push(member(input, line, None));
             let plane = fit_plane(input, &members);
             if let Some(plane) = plane.filter(|p| all_lie_in(input, p, &members, params)) {
-                larger = PlaneGroup { plane, members };
+                larger = PlaneGroup {
+                    plane,
+                    members,
+                    ..larger
+                };
             }
         }
         if larger.members.len() == group.members.len() {
@@ -155,6 +163,7 @@ mod tests {
             lines,
             half_planes: &[],
             neighbours: &neighbours,
+            rectangles: &[],
         };
         group_planes(&input, &RoofParams::default())
     }
@@ -179,6 +188,7 @@ mod tests {
             lines: &lines,
             half_planes: &[],
             neighbours: &neighbours,
+            rectangles: &[],
         };
         let params = RoofParams::default();
         let plane = plane_of_pair(&input, LineId(0), LineId(2)).expect("a plane");
@@ -186,7 +196,11 @@ mod tests {
             member(&input, LineId(0), None),
             member(&input, LineId(2), None),
         ];
-        let mut group = PlaneGroup { plane, members };
+        let mut group = PlaneGroup {
+            plane,
+            members,
+            rectangles: Vec::new(),
+        };
         infer_sides(&input, &mut group);
         let larger = with_lines_around(&input, &group, &params);
         assert!(larger.contains(LineId(5)), "the batten");

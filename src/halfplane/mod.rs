@@ -17,6 +17,7 @@
 //!      trace          what the page draws (B99 figures 12 and 14)
 //! 4.2  neighbourhood  Delaunay triangulation constrained to the projected lines
 //!      grouping       collinear and coplanar grouping (figures 16 to 18)
+//!      proposed       planes of the other method beside the groups
 //!      plane_lines    new lines in a plane from segments of several views
 //!      borders        border lines, new lines by plane intersection (figures 19 to 22)
 //!      extent         closing lines where the views cease to agree on a plane
@@ -61,6 +62,7 @@ mod plan;
 mod plane_lines;
 mod poi;
 mod posterior;
+mod proposed;
 mod similarity;
 mod strip;
 mod sweep;
@@ -75,6 +77,7 @@ pub use plan::{PlanGrid, image_from_plan, orthophoto};
 pub use plane_lines::PlaneLine;
 pub use poi::PointsOfInterest;
 pub use posterior::Posterior;
+pub use proposed::ProposedPlane;
 pub use sweep::{similarity_curve, sweep_half_planes, sweep_side};
 pub use trace::{SideTrace, SimilarityCurve, SweepRejection, SweepTrace, ViewCurve};
 

@@ -29,6 +29,8 @@ pub enum LineOrigin {
     /// From image segments that belong together (B99 3, W96 3.5).
     #[default]
     Matched,
+    /// Adopted of the other method (W96 3.5) beside lines of this one.
+    Clustered,
     /// Where two planes intersect (B99 4.2, new lines).
     Intersection,
     /// The border of a facet, found again in the images (B99 4.3).
@@ -40,6 +42,7 @@ impl LineOrigin {
     pub fn name(self) -> &'static str {
         match self {
             Self::Matched => "matched",
+            Self::Clustered => "clustered",
             Self::Intersection => "intersection",
             Self::Border => "border",
         }

@@ -18,9 +18,11 @@
 //!      solid       what hides a plane
 //!      planes      plane candidates and their measure
 //!      select      best non-overlapping set
+//!      adopt       cluster lines for the other method
 //!      stages      the stages that the pipeline runs
 //! ```
 
+mod adopt;
 mod cluster_plane;
 mod cluster_proposals;
 mod cluster_select;
@@ -41,10 +43,11 @@ mod stages;
 mod tests;
 mod windows;
 
+pub use adopt::adopted_lines;
 pub use ends::{Crossing, End};
 pub use planes::{PlaneCandidate, PlaneRejection, PlaneTrace};
 pub use stages::{
     FoundLine, RectangleTrace, find_clusters, find_directions, find_rectangles, find_regions,
-    image_segments, world_lines,
+    image_segments, proposed_planes, world_lines,
 };
 pub use windows::{Window, WindowTrace};

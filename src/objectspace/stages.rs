@@ -12,6 +12,7 @@ use super::sight::{Sight, sights};
 use super::solid::Solid;
 use super::windows::{Window, WindowTrace, find_windows};
 use crate::geometry::{Segment2, Segment3};
+use crate::halfplane::ProposedPlane;
 use crate::ids::{BuildingId, LineId};
 use crate::linematch::{LineSupport, SupportKind, scene_heights};
 use crate::lines2d::ImageSegment;
@@ -21,6 +22,7 @@ use crate::progress::reached;
 use crate::roof::{Facet, Ground, RoofModel, SolidTrace, close_buildings};
 use crate::scene::Scene;
 use crate::shares::map_shared;
+use crate::sorting::sort_by;
 
 /// Regions of every view and the lines on their boundaries (W96 3.3).
 pub fn find_regions(
@@ -182,7 +184,7 @@ pub fn find_rectangles(
     let facets: Vec<Facet> = trace
         .chosen
         .iter()
-        .map(|&k| facet(&trace.candidates[k]))
+        .map(|&k| facet(k, &trace.candidates[k]))
         .collect();
     let (model, solids) = close_buildings(&facets, |members| ground.below(members));
     trace.solids = solids;
@@ -240,8 +242,30 @@ fn search_behind(
     trace.candidates.len() > before
 }
 
-fn facet(candidate: &PlaneCandidate) -> Facet {
+/// All candidates, for the other method to weigh; those that this one chose come first. Which of them cover what is then decided
+/// together with all other planes, so that what excluded each other here may compete again.
+pub fn proposed_planes(trace: &RectangleTrace) -> Vec<ProposedPlane> {
+    let mut order: Vec<usize> = (0..trace.candidates.len()).collect();
+    let chosen = |k: &usize| trace.chosen.binary_search(k).is_ok();
+    sort_by(&mut order, |a, b| {
+        let measure = |k: &usize| trace.candidates[*k].measure;
+        let chosen_first = chosen(b).cmp(&chosen(a));
+        chosen_first.then(measure(b).total_cmp(&measure(a)))
+    });
+    let proposed = order.into_iter().map(|k| {
+        let c = &trace.candidates[k];
+        ProposedPlane {
+            index: k as u32,
+            plane: c.plane,
+            ring: c.ring.clone(),
+        }
+    });
+    proposed.collect()
+}
+
+fn facet(index: usize, candidate: &PlaneCandidate) -> Facet {
     Facet {
+        rectangles: vec![index as u32],
         building: BuildingId(0),
         plane: candidate.plane,
         outer: candidate.ring.clone(),

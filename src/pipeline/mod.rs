@@ -4,6 +4,7 @@
 //! ```text
 //! B99:  Scene -> segments -> matches -> lines -> halfplanes -> facets -> model -> files
 //! W96:  Scene -> regions -> directions -> clusters -> rectangles      -> model -> files
+//! both: Scene -> those of W96, then those of B99, which take in its lines and planes
 //! ```
 //!
 //! Invariant: no geometry here. Invariant: a result in a [`Run`] always belongs to the current
@@ -30,12 +31,12 @@ use crate::lines3d::{Line3d, LineTrace, reconstruct_lines};
 use crate::objectspace::clusters::ClusterTrace;
 use crate::objectspace::oris::{RegionLine, Segmentation};
 use crate::objectspace::{
-    FoundLine, RectangleTrace, Window, WindowTrace, find_clusters, find_directions,
-    find_rectangles, find_regions, image_segments, world_lines,
+    FoundLine, RectangleTrace, Window, WindowTrace, adopted_lines, find_clusters, find_directions,
+    find_rectangles, find_regions, image_segments, proposed_planes, world_lines,
 };
 use crate::params::{Method, Params};
 use crate::progress::{self, Listener};
-use crate::roof::{RoofModel, RoofTrace, new_lines, reconstruct_roofs};
+use crate::roof::{RoofEvidence, RoofModel, RoofTrace, new_lines, reconstruct_roofs};
 use crate::scene::Scene;
 use crate::shares::{Known, map_shared, with_known};
 use crate::texture::{TextureTrace, TexturedModel, texture_model};
@@ -81,13 +82,13 @@ pub struct Results {
 }
 
 impl Results {
-    /// The roof model of whichever method ran.
+    /// The roof model of whichever method ran; of both, that to which both came.
     pub fn model(&self) -> Option<&RoofModel> {
         let lines = self.roof.as_ref().map(|r| &r.value);
         lines.or(self.rectangles.as_ref().map(|r| &r.value))
     }
 
-    /// The matched 3D lines of B99, by their ids, and then the new lines of the model.
+    /// The 3D lines of B99, by their ids (matched ones, then those adopted of W96), and then the new lines of the model.
     pub fn all_lines(&self) -> Option<Vec<Line3d>> {
         let mut lines = self.lines.as_ref()?.value.clone();
         lines.extend_from_slice(&self.roof.as_ref()?.trace.new_lines);
@@ -142,9 +143,13 @@ impl Run {
 
     /// Changes the parameters and drops the results that they would change.
     pub fn set_params(&mut self, params: Params) {
-        let first = Stage::ALL
-            .into_iter()
-            .find(|&stage| depends(stage, &self.params, &params));
+        let changed = |stage: &&Stage| depends(**stage, &self.params, &params);
+        let first = match params.method == self.params.method {
+            true => self.stages().iter().find(changed),
+            // Another method leaves nothing of the results.
+            false => Stage::ALL.first(),
+        };
+        let first = first.copied();
         self.params = params;
         if let Some(stage) = first {
             self.drop_from(stage);
@@ -210,7 +215,7 @@ impl Run {
         let r = &self.results;
         let (model, textured) = (r.model()?, &r.textured.as_ref()?.value);
         Some(match self.params.method {
-            Method::Lines => Outputs {
+            Method::Lines | Method::Combined => Outputs {
                 segments: Cow::Borrowed(&r.segments.as_ref()?.value),
                 lines: Cow::Owned(r.all_lines()?),
                 half_planes: &r.half_planes.as_ref()?.value,
@@ -252,8 +257,13 @@ impl Run {
             }
             Stage::Lines => {
                 let matches = before(&r.matches);
-                let found = reconstruct_lines(scene, matches, &params.lines3d);
-                r.lines = Some(found.into());
+                let (mut lines, trace) = reconstruct_lines(scene, matches, &params.lines3d);
+                if let (Some(regions), Some(found)) = (&r.regions, &r.clusters) {
+                    let (regions, found) = (&regions.value, &found.value);
+                    let clusters = &params.objectspace.clusters;
+                    lines.extend(adopted_lines(scene, regions, found, &lines, clusters));
+                }
+                r.lines = Some((lines, trace).into());
             }
             Stage::HalfPlanes => {
                 let lines = before(&r.lines);
@@ -262,8 +272,16 @@ impl Run {
             Stage::Facets => {
                 let segments = before(&r.segments);
                 let (lines, half_planes) = (before(&r.lines), before(&r.half_planes));
-                let (model, mut trace) =
-                    reconstruct_roofs(scene, segments, lines, half_planes, &params.roof);
+                let rectangles = r.rectangles.as_ref();
+                let rectangles =
+                    rectangles.map_or_else(Vec::new, |found| proposed_planes(&found.trace));
+                let evidence = RoofEvidence {
+                    segments,
+                    lines,
+                    half_planes,
+                    rectangles: &rectangles,
+                };
+                let (model, mut trace) = reconstruct_roofs(scene, &evidence, &params.roof);
                 trace.new_lines =
                     new_lines(scene, lines, &model, &params.matching, &params.lines3d);
                 r.roof = Some((model, trace).into());
@@ -330,8 +348,7 @@ fn before<V, T>(outcome: &Option<Outcome<V, T>>) -> &V {
 /// Do the two sets of parameters differ in what this stage reads?
 fn depends(stage: Stage, a: &Params, b: &Params) -> bool {
     match stage {
-        // Another method leaves nothing of the results.
-        Stage::Segments => a.segments != b.segments || a.method != b.method,
+        Stage::Segments => a.segments != b.segments,
         // Matching fits 3D lines too, to tell which segments agree.
         Stage::Matches => a.matching != b.matching || a.lines3d != b.lines3d,
         Stage::Lines => a.lines3d != b.lines3d,

@@ -7,9 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use super::{Outcome, Run, Stage};
 use crate::camera::Camera;
+use crate::objectspace::{PlaneCandidate, RectangleTrace};
 use crate::params::Params;
 use crate::progress::{self, Listener};
 use crate::raster::Gray;
+use crate::roof::RoofModel;
 use crate::scene::{Scene, Survey, View};
 use crate::shares::{Known, Task, share};
 
@@ -110,7 +112,12 @@ impl Run {
             Stage::Regions => packed(&r.regions),
             Stage::Directions => packed(&r.directions),
             Stage::Clusters => packed(&r.clusters),
-            Stage::Matches | Stage::Facets | Stage::Rectangles | Stage::Model => Vec::new(),
+            // What facets are made of: the planes, not the buildings.
+            Stage::Rectangles if self.includes(Stage::Facets) => {
+                let found = r.rectangles.as_ref().map(|found| &found.trace);
+                found.map_or_else(Vec::new, |t| bytes_of(&(&t.candidates, &t.chosen)))
+            }
+            Stage::Rectangles | Stage::Matches | Stage::Facets | Stage::Model => Vec::new(),
         }
     }
 
@@ -124,7 +131,20 @@ impl Run {
             Stage::Regions => unpacked(&mut r.regions, bytes),
             Stage::Directions => unpacked(&mut r.directions, bytes),
             Stage::Clusters => unpacked(&mut r.clusters, bytes),
-            Stage::Matches | Stage::Facets | Stage::Rectangles | Stage::Model => false,
+            Stage::Rectangles => {
+                let found: Option<(Vec<PlaneCandidate>, Vec<usize>)> =
+                    postcard::from_bytes(bytes).ok();
+                r.rectangles = found.map(|(candidates, chosen)| {
+                    let trace = RectangleTrace {
+                        candidates,
+                        chosen,
+                        ..RectangleTrace::default()
+                    };
+                    (RoofModel::default(), trace).into()
+                });
+                r.rectangles.is_some()
+            }
+            Stage::Matches | Stage::Facets | Stage::Model => false,
         }
     }
 
@@ -148,15 +168,21 @@ impl Run {
         bytes
     }
 
+    /// Has the chosen method this stage?
+    fn includes(&self, stage: Stage) -> bool {
+        self.stages().contains(&stage)
+    }
+
     /// Are the results there that a shared stage starts from?
     fn is_ready(&self, stage: Stage) -> bool {
         let r = &self.results;
         let has_lines = || r.segments.is_some() && r.lines.is_some();
+        let has_rectangles = || r.rectangles.is_some() || !self.includes(Stage::Rectangles);
         match stage {
             Stage::Segments | Stage::Regions => true,
             Stage::Matches => r.segments.is_some(),
             Stage::HalfPlanes => r.lines.is_some(),
-            Stage::Facets => has_lines() && r.half_planes.is_some(),
+            Stage::Facets => has_lines() && r.half_planes.is_some() && has_rectangles(),
             Stage::Directions => r.regions.is_some(),
             Stage::Clusters => r.regions.is_some() && r.directions.is_some(),
             Stage::Rectangles => r.directions.is_some() && r.clusters.is_some(),
@@ -166,8 +192,11 @@ impl Run {
 }
 
 fn packed<V: Serialize, T>(outcome: &Option<Outcome<V, T>>) -> Vec<u8> {
-    let bytes = outcome.as_ref().map(|o| postcard::to_stdvec(&o.value));
-    bytes.map_or_else(Vec::new, |b| b.expect("results can be written to memory"))
+    (outcome.as_ref()).map_or_else(Vec::new, |o| bytes_of(&o.value))
+}
+
+fn bytes_of<V: Serialize>(value: &V) -> Vec<u8> {
+    postcard::to_stdvec(value).expect("results can be written to memory")
 }
 
 fn unpacked<V: DeserializeOwned, T: Default>(to: &mut Option<Outcome<V, T>>, bytes: &[u8]) -> bool {

@@ -1,4 +1,4 @@
-//! The stages of either method, and their names.
+//! The stages of all methods, and their names.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,6 +8,14 @@ use crate::params::Method;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stage {
+    /// Regions with straight boundaries in every view (W96 3.3).
+    Regions,
+    /// Windows and their main directions (W96 3.4).
+    Directions,
+    /// 3D lines by clustering (W96 3.5).
+    Clusters,
+    /// Planes between parallel lines and the closed buildings below them (W96 3.6).
+    Rectangles,
     /// Straight image segments in every view (B99 3.2).
     Segments,
     /// Segments matched over the views (B99 3.1 - 3.4).
@@ -18,14 +26,6 @@ pub enum Stage {
     HalfPlanes,
     /// Roof facets and the closed buildings below them (B99 4.2, 4.3).
     Facets,
-    /// Regions with straight boundaries in every view (W96 3.3).
-    Regions,
-    /// Windows and their main directions (W96 3.4).
-    Directions,
-    /// 3D lines by clustering (W96 3.5).
-    Clusters,
-    /// Planes between parallel lines and the closed buildings below them (W96 3.6).
-    Rectangles,
     /// The textured model.
     Model,
 }
@@ -33,15 +33,15 @@ pub enum Stage {
 impl Stage {
     /// All stages of all methods.
     pub const ALL: [Self; 10] = [
+        Self::Regions,
+        Self::Directions,
+        Self::Clusters,
+        Self::Rectangles,
         Self::Segments,
         Self::Matches,
         Self::Lines,
         Self::HalfPlanes,
         Self::Facets,
-        Self::Regions,
-        Self::Directions,
-        Self::Clusters,
-        Self::Rectangles,
         Self::Model,
     ];
 
@@ -63,6 +63,7 @@ impl Stage {
                 Self::Rectangles,
                 Self::Model,
             ],
+            Method::Combined => &Self::ALL,
         }
     }
 

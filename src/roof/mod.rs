@@ -10,7 +10,7 @@ mod solid;
 pub use ground::Ground;
 pub use invariants::{PLANAR_M, Violation, check_invariants};
 pub use new_lines::new_lines;
-pub use reconstruct::{RoofTrace, Unrefined, reconstruct_roofs};
+pub use reconstruct::{RoofEvidence, RoofTrace, Unrefined, reconstruct_roofs};
 pub use refine::{
     BuildingRefinement, Parting, RefineRefusal, RefineTrace, RelationKind, SideKind,
     TestedRelation, part_roofs, refine_roofs,
@@ -45,6 +45,8 @@ pub struct Facet {
     pub lines: Vec<LineId>,
     /// The half-planes that it was made from.
     pub half_planes: Vec<HalfPlaneId>,
+    /// Candidates of W96 with its plane, as indices into [`crate::objectspace::RectangleTrace`].
+    pub rectangles: Vec<u32>,
 }
 
 /// What a face of a solid is.

@@ -366,6 +366,7 @@ mod tests {
             real_ratio: 1.0,
             lines: lines.to_vec(),
             half_planes: Vec::new(),
+            rectangles: Vec::new(),
         };
         RoofModel {
             facets: truth.facets.iter().map(facet).collect(),
@@ -463,6 +464,7 @@ mod tests {
                 real_ratio: 1.0,
                 lines: Vec::new(),
                 half_planes: Vec::new(),
+                rectangles: Vec::new(),
             }
         };
         let edges = model_edges(&[flat(0.0, 4.0, 5.0), flat(4.0, 9.0, 8.0)]);

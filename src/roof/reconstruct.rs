@@ -6,11 +6,24 @@ use super::{
     Facet, Ground, Parting, RefineTrace, RoofModel, SolidTrace, close_buildings, part_roofs,
     refine_roofs,
 };
-use crate::halfplane::{FacetTrace, HalfPlane, reconstruct_facets};
+use crate::halfplane::{FacetTrace, HalfPlane, ProposedPlane, reconstruct_facets};
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
 use crate::params::RoofParams;
 use crate::scene::Scene;
+
+/// What roofs are made of.
+#[derive(Clone, Copy, Debug)]
+pub struct RoofEvidence<'a> {
+    /// Segments of each view, in the order of the views.
+    pub segments: &'a [Vec<ImageSegment>],
+    /// 3D lines.
+    pub lines: &'a [Line3d],
+    /// Half-planes at them.
+    pub half_planes: &'a [HalfPlane],
+    /// Planes that the other method proposes; none in method "lines".
+    pub rectangles: &'a [ProposedPlane],
+}
 
 /// What happened on the way from half-planes to buildings.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -42,14 +55,12 @@ pub struct Unrefined {
 /// the solids.
 pub fn reconstruct_roofs(
     scene: &Scene,
-    segments: &[Vec<ImageSegment>],
-    lines: &[Line3d],
-    half_planes: &[HalfPlane],
+    evidence: &RoofEvidence,
     params: &RoofParams,
 ) -> (RoofModel, RoofTrace) {
+    let lines = evidence.lines;
     let ground = Ground::estimate(scene, lines);
-    let (facets, facet_trace) =
-        reconstruct_facets(scene, segments, lines, half_planes, &ground, params);
+    let (facets, facet_trace) = reconstruct_facets(scene, evidence, &ground, params);
     let below = |members: &[&Facet]| ground.below(members);
     // Refinement needs facets that share vertices, and moves them; so the solids are made again.
     let (delineated, solids) = close_buildings(&facets, below);

@@ -252,6 +252,7 @@ mod tests {
             real_ratio: 0.0,
             lines: Vec::new(),
             half_planes: Vec::new(),
+            rectangles: Vec::new(),
         }
     }
 

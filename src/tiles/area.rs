@@ -160,7 +160,7 @@ fn part(
     let (textured, _) = texture_model(scene, &model, &params.texture);
     let found = "the stages have run";
     let (segments, lines, half_planes) = match params.method {
-        Method::Lines => (
+        Method::Lines | Method::Combined => (
             results.segments.as_ref().expect(found).value.clone(),
             results.lines.as_ref().expect(found).value.clone(),
             results.half_planes.as_ref().expect(found).value.clone(),

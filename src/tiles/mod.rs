@@ -195,6 +195,7 @@ pub(crate) mod tests {
             real_ratio: 0.8,
             lines: Vec::new(),
             half_planes: Vec::new(),
+            rectangles: Vec::new(),
         };
         close_buildings(&[facet], |_| 0.0).0
     }

@@ -279,7 +279,7 @@ fn line_record(line: &Line3d) -> LineRecord<'_> {
     }
 }
 
-/// The segments of either method.
+/// The segments of the method; where both run, those that were found last.
 pub(super) fn segments_of(run: &Run) -> Cow<'_, [Vec<ImageSegment>]> {
     let r = run.results();
     match (&r.segments, &r.regions) {
@@ -289,7 +289,7 @@ pub(super) fn segments_of(run: &Run) -> Cow<'_, [Vec<ImageSegment>]> {
     }
 }
 
-/// The 3D lines of either method, with the new lines of the model once there is one.
+/// The 3D lines of the method (where both run, those of regions until there are more), with the new lines of the model once there is one.
 pub(super) fn lines_of(run: &Run) -> Cow<'_, [Line3d]> {
     let r = run.results();
     match (&r.lines, &r.regions, &r.clusters) {

@@ -34,6 +34,7 @@ fn facet(rings: &[&[(f64, f64)]], z0: f64, gx: f64, gy: f64) -> Facet {
         real_ratio: 0.8,
         lines: Vec::new(),
         half_planes: Vec::new(),
+        rectangles: Vec::new(),
     }
 }
 

@@ -21,6 +21,7 @@ pub fn facet(ring: &[Point3<f64>]) -> Facet {
         real_ratio: 0.0,
         lines: Vec::new(),
         half_planes: Vec::new(),
+        rectangles: Vec::new(),
     }
 }
 

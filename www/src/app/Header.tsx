@@ -12,6 +12,11 @@ const METHODS: readonly (readonly [Method, string, string])[] = [
     "Rectangles",
     "Regions, and planes between parallel lines in object space (Wiman, Axelsson 1996)",
   ],
+  [
+    "combined",
+    "Combined",
+    "The lines and planes of both compete for one model; regions take most of its time",
+  ],
 ];
 
 export function Header() {

@@ -11,6 +11,7 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
   ],
   lines: [
     ["matched", "matched"],
+    ["grown", "from regions"],
     ["border-intersection", "intersection"],
     ["border-inplane", "border"],
   ],

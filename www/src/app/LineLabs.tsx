@@ -143,6 +143,7 @@ export function GroupLab() {
                 <span>Group {index}</span>
                 <span class="muted numbers">
                   {group.members.length} lines · {fans} half-planes ·{" "}
+                  {group.rectangles?.length ? `${group.rectangles.length} rectangles · ` : ""}
                   {((Math.atan2(Math.hypot(nx, ny), Math.abs(nz)) * 180) / Math.PI).toFixed(0)}°
                 </span>
               </button>
@@ -187,12 +188,13 @@ export function FacetLab() {
   );
 }
 
-const BORDER_KINDS = ["real", "inplane", "intersection", "closing"] as const;
+const BORDER_KINDS = ["real", "inplane", "intersection", "closing", "rectangle"] as const;
 const BORDER_WORDS = {
   real: "3D lines",
   inplane: "new lines",
   intersection: "intersections",
   closing: "closing",
+  rectangle: "sides of rectangles",
 };
 
 /** In SVG the attribute has no capital. */

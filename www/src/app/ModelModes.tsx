@@ -3,7 +3,7 @@ import { computed, signal } from "@preact/signals";
 import { METHOD_COLOURS } from "../shared/palette";
 import type { Facet } from "../shared/results";
 import type { ModelMode } from "../viewer/model";
-import { keptResult, type Method, method, results } from "./state";
+import { keptResult, type Method, mainResults, method } from "./state";
 
 export const mode = signal<ModelMode>("textured");
 
@@ -15,11 +15,18 @@ const MODES: readonly (readonly [ModelMode, string])[] = [
   ["method", "By method"],
 ];
 
-const METHOD_TITLES: Record<Method, string> = { lines: "Lines (B99)", rectangles: "Rectangles (W96)" };
+const METHOD_TITLES: Record<Method, string> = {
+  lines: "Lines (B99)",
+  rectangles: "Rectangles (W96)",
+  combined: "Both",
+};
 
-/** The method that made a facet: what has half-planes is of lines, anything else of the method that ran. */
-function methodOfFacet({ half_planes }: Facet, ran: Method): Method {
-  return (half_planes ?? []).length > 0 ? "lines" : ran;
+/** The method that proposed a facet's plane; where both ran, both may have. */
+function methodOfFacet({ half_planes, rectangles }: Facet, ran: Method): Method {
+  if (ran !== "combined" || (rectangles ?? []).length === 0) {
+    return ran === "combined" ? "lines" : ran;
+  }
+  return (half_planes ?? []).length > 0 ? "combined" : "rectangles";
 }
 
 export function facetColours(facets: readonly Facet[] | null, ran: Method): string[] {
@@ -48,8 +55,10 @@ export function ModeSwitches() {
 
 /** The numbers of facets that each method made. */
 const made = computed(() => {
-  const methods = (results.value.facets ?? []).map((facet) => methodOfFacet(facet, method.value));
-  const names = Object.keys(METHOD_TITLES) as Method[];
+  const methods = (mainResults.value.facets ?? []).map((facet) => methodOfFacet(facet, method.value));
+  const names = (Object.keys(METHOD_TITLES) as Method[]).filter(
+    (name) => name !== "combined" || method.value === name,
+  );
   return names.map((name) => [name, methods.filter((one) => one === name).length] as const);
 });
 

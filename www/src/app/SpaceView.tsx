@@ -29,7 +29,7 @@ const LAYER_TITLES: Record<LayerName, string> = {
   cameras: "Cameras",
 };
 
-/** Layers that only one method fills. */
+/** Layers that method "rectangles" does not fill. */
 const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "groups"];
 
 /** The viewer while it exists; the effects below wait for it. */
@@ -269,11 +269,13 @@ function LayerSwitches() {
   return (
     <fieldset class="choice">
       <legend class="visually-hidden">Layers</legend>
-      {LAYERS.filter((name) => method.value === "lines" || !LAYERS_OF_LINES.includes(name)).map((name) => (
-        <button key={name} type="button" aria-pressed={visible.includes(name)} onClick={toggle(name)}>
-          {LAYER_TITLES[name]}
-        </button>
-      ))}
+      {LAYERS.filter((name) => method.value !== "rectangles" || !LAYERS_OF_LINES.includes(name)).map(
+        (name) => (
+          <button key={name} type="button" aria-pressed={visible.includes(name)} onClick={toggle(name)}>
+            {LAYER_TITLES[name]}
+          </button>
+        ),
+      )}
     </fieldset>
   );
 }

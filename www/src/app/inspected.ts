@@ -1,6 +1,6 @@
 /** What the inspector says of the picked thing: its numbers, what made it and what it made. */
 
-import { LINE_STRIDE, SEGMENT_STRIDE, type Vec3 } from "../shared/results";
+import { type Facet, LINE_STRIDE, SEGMENT_STRIDE, type Vec3 } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import { slopedArea } from "./geometry";
 import { grouped } from "./numbers";
@@ -138,15 +138,26 @@ function groupRows(index: number): Row[] {
   }
   const lines = [...new Set(group.members.map(({ line }) => line))];
   const halfPlanes = group.members.flatMap(({ half_plane }) => (half_plane === null ? [] : [half_plane]));
-  const facets = indicesOf(results.value.facets, (facet) =>
-    (facet.half_planes ?? []).some((one) => halfPlanes.includes(one)),
+  const rectangles = group.rectangles ?? [];
+  const facets = indicesOf(
+    results.value.facets,
+    (facet) =>
+      (facet.half_planes ?? []).some((one) => halfPlanes.includes(one)) ||
+      (facet.rectangles ?? []).some((one) => rectangles.includes(one)),
   );
   return [
     ["Slope of the plane", slopeText(group.plane.normal)],
     ["3D lines", lines.map(linkToLine)],
     ["Half-planes", halfPlanes.map(linkToHalfPlane)],
+    ...rectangleRow(group.rectangles),
     ["Facets", facets.map(linkToFacet)],
   ];
+}
+
+/** How many candidates of the other method have this plane. */
+function rectangleRow(rectangles: readonly number[] | undefined): Row[] {
+  const count = rectangles?.length ?? 0;
+  return count === 0 ? [] : [["Rectangles", `${count} in its plane (W96 3.6)`]];
 }
 
 function regionRows(view: number, index: number): Row[] {
@@ -321,18 +332,22 @@ function facetRows(index: number): Row[] {
     ["Similarity", facet.similarity.toFixed(3)],
     ["τ real", facet.real_ratio === undefined ? "–" : facet.real_ratio.toFixed(2)],
     ["3D lines", (facet.lines ?? []).map(linkToLine)],
-    ...groupsOfFacet(facet.half_planes ?? []),
+    ...groupsOfFacet(facet),
     ...refinedRow(index),
+    ...(results.value.grouping === null ? [] : rectangleRow(facet.rectangles)),
     ...((facet.half_planes ?? []).length === 0
       ? []
       : [["Half-planes", (facet.half_planes ?? []).map(linkToHalfPlane)] as const]),
   ];
 }
 
-/** The groups of the half-planes that a facet was made from. */
-function groupsOfFacet(halfPlanes: readonly number[]): Row[] {
-  const groups = indicesOf(results.value.grouping?.groups, ({ members }) =>
-    members.some(({ half_plane }) => half_plane !== null && halfPlanes.includes(half_plane)),
+/** The groups of the half-planes, or of the other method's planes, that a facet was made from. */
+function groupsOfFacet({ half_planes = [], rectangles = [] }: Facet): Row[] {
+  const groups = indicesOf(
+    results.value.grouping?.groups,
+    (group) =>
+      group.members.some(({ half_plane }) => half_plane !== null && half_planes.includes(half_plane)) ||
+      (group.rectangles ?? []).some((one) => rectangles.includes(one)),
   );
   return groups.length === 0 ? [] : [["Groups", groups.map(linkToGroup)]];
 }

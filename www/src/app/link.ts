@@ -11,6 +11,7 @@ import {
   isDemo,
   lessonStep,
   method,
+  methodNamed,
   params,
   selection,
   shownView,
@@ -38,9 +39,10 @@ export function linkedParams(): Record<string, ParamValue> {
 
 export function parseLink(hash: string): Link {
   const fields = new URLSearchParams(hash.replace(/^#/, ""));
-  const tabs: readonly string[] = [...TABS.lines, ...TABS.rectangles];
+  const tabs: readonly string[] = TABS.combined;
   const asked = fields.get("tab") ?? "";
-  const chosen = fields.get("method") === "rectangles" ? { method: "rectangles" } : {};
+  const named = methodNamed(fields.get("method"));
+  const chosen = named === null ? {} : { method: named };
   return {
     scene: fields.get("scene") === "demo" ? "demo" : null,
     tab: tabs.includes(asked) ? (asked as Tab) : null,
@@ -60,7 +62,7 @@ export function formatLink(link: Link): string {
     }
   };
   set("scene", link.scene);
-  set("method", chosen === "rectangles" ? chosen : null);
+  set("method", chosen === undefined || chosen === "lines" ? null : String(chosen));
   set("tab", link.tab);
   set("view", link.view);
   set("select", link.selection === null ? null : formatSelection(link.selection));

@@ -8,7 +8,7 @@ import type { Viewer } from "../viewer/viewer";
 import { isBeside } from "./beside";
 import { notify } from "./core";
 import { facetColours, mode } from "./ModelModes";
-import { keptResult, method, results, selection, tab } from "./state";
+import { keptResult, mainResults, method, selection, tab } from "./state";
 import { theme } from "./theme";
 
 type Glb = Uint8Array<ArrayBuffer> | null;
@@ -16,7 +16,7 @@ type Glb = Uint8Array<ArrayBuffer> | null;
 export const model = signal<ModelLayer | null>(null);
 const keptModel = signal<ModelLayer | null>(null);
 
-const presentGlb = computed(() => results.value.glb);
+const presentGlb = computed(() => mainResults.value.glb);
 const keptGlb = computed(() => keptResult.value?.glb ?? null);
 /** The kept model is read once somebody looks at it. */
 const shownKeptGlb = computed(() => (isBeside.value && tab.value === "model" ? keptGlb.value : null));
@@ -26,7 +26,9 @@ export const showsKeptFacets = computed(() => isBeside.value && shownKeptGlb.val
 /** Keeps both models, and how they look, as the signals say. */
 export function useModels(viewer: ReadonlySignal<Viewer | null>): void {
   useSignalEffect(() => {
-    void show("model", presentGlb, model, viewer, () => facetColours(results.peek().facets, method.peek()));
+    void show("model", presentGlb, model, viewer, () =>
+      facetColours(mainResults.peek().facets, method.peek()),
+    );
   });
   useSignalEffect(() => {
     const kept = keptResult.peek();

@@ -50,7 +50,7 @@ const CHOICES: Record<string, readonly string[]> = {
   acceptance: ["printed", "posterior", "both"],
 };
 
-/** The groups that either method reads. */
+/** The groups that a method reads; "combined" reads all. */
 const GROUPS_OF_METHOD: Record<string, readonly string[]> = {
   lines: ["segments", "matching", "lines3d", "sweep", "roof", "texture"],
   rectangles: ["objectspace", "texture"],

@@ -2,14 +2,34 @@
 import { effect } from "@preact/signals";
 import type { SideName, SideTrace } from "../shared/traces";
 import { ask } from "./core";
-import { NOTHING_POINTED, type Pointing, pointing, results, runningStage, selection } from "./state";
+import {
+  NOTHING_POINTED,
+  type Pointing,
+  pointing,
+  results,
+  runningStage,
+  selection,
+  shownKeeper,
+} from "./state";
 
 /** Follows the selection as long as the page is open. */
 export function followSelection(): void {
+  let last = { keeper: shownKeeper.peek(), picked: selection.peek() };
+  effect(() => {
+    const now = { keeper: shownKeeper.value, picked: selection.value };
+    // The same number is another line there; a link names its own.
+    if (now.keeper !== last.keeper && now.picked === last.picked) {
+      selection.value = null;
+    }
+    last = { ...now, picked: selection.peek() };
+  });
   effect(() => {
     void [results.value, runningStage.value];
     const picked = selection.value;
-    if (picked?.kind === "segment") {
+    if (shownKeeper.value === "regions") {
+      // The figures of B99 are about its own segments and lines.
+      pointing.value = NOTHING_POINTED;
+    } else if (picked?.kind === "segment") {
       void pointAtSegment(picked.view, picked.index);
     } else {
       const side = sideOf(picked);

@@ -34,6 +34,7 @@ export function withdrawnRows(index: number): Row[] {
   const [x, y, z] = areaVector(facet.outline);
   return [
     ["Withdrawn", facetRejectionWords(facet.reason)],
+    ...(facet.group === undefined ? [] : [["Group", String(facet.group)] as const]),
     ["Area", `${Math.hypot(x, y, z).toFixed(1)} m²`],
     ["Slope", `${degreesOf(Math.atan2(Math.hypot(x, y), Math.abs(z))).toFixed(1)}°`],
     ["Corners", String(facet.outline.length)],

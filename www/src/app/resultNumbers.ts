@@ -3,12 +3,25 @@ import { computed } from "@preact/signals";
 import type { Facet, Params } from "../shared/results";
 import { slopedArea } from "./geometry";
 import { fieldText, paramName, paramSections } from "./paramForm";
-import { defaults, type KeptResult, type Method, method, methodOf, params, results, stages } from "./state";
+import {
+  defaults,
+  type KeptResult,
+  type Method,
+  mainResults,
+  method,
+  methodOf,
+  params,
+  stages,
+} from "./state";
 
-const METHOD_TITLES: Record<Method, string> = { lines: "Lines", rectangles: "Rectangles" };
+const METHOD_TITLES: Record<Method, string> = {
+  lines: "Lines",
+  rectangles: "Rectangles",
+  combined: "Combined",
+};
 
 /** What the present facets were found with, or the next ones will be. */
-const presentParams = computed(() => results.value.madeWith ?? params.value);
+const presentParams = computed(() => mainResults.value.madeWith ?? params.value);
 export const presentTitle = computed(() => titleOf(presentParams.value));
 
 /** The method, and which parameter is not the default; of several, how many. */
@@ -27,7 +40,7 @@ function titleOf(values: Params): string {
 
 /** The present result, to be kept; null while there are no facets. */
 export function presentResult(): KeptResult | null {
-  const { facets, glb, lines } = results.value;
+  const { facets, glb, lines } = mainResults.value;
   return (
     facets && {
       title: presentTitle.value,
@@ -45,7 +58,7 @@ export type ComparedRow = readonly [name: string, kept: string, now: string];
 
 /** The numbers of two results, and the parameters in which they differ. */
 export function comparedRows(kept: KeptResult): ComparedRow[] {
-  const { facets, lines } = results.value;
+  const { facets, lines } = mainResults.value;
   const either = (text: (found: readonly Facet[]) => string) => (facets === null ? "–" : text(facets));
   return [
     ["Facets", String(kept.facets.length), either(({ length }) => String(length))],

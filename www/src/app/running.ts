@@ -22,6 +22,7 @@ import { fetchResults } from "./stageResults";
 import { firstStageOf, stageWords } from "./stages";
 import {
   activity,
+  addResults,
   chosenWorkers,
   defaults,
   exportNames,
@@ -30,10 +31,10 @@ import {
   method,
   NO_RESULTS,
   params,
-  results,
   runOptions,
   scene,
   selection,
+  setResults,
   shownPlane,
   stages,
   tab,
@@ -130,7 +131,7 @@ async function runStage(name: string): Promise<void> {
     const seconds = (performance.now() - started) / 1000;
     const names = await engine.call("exportNames", {});
     batch(() => {
-      results.value = { ...results.value, ...found };
+      addResults(stageWords(name).tab, found);
       exportNames.value = names;
       selection.value = null;
       tab.value = stageWords(name).tab;
@@ -173,7 +174,7 @@ function outdateFrom(index: number): void {
 
 export function clearResults(): void {
   freshStages.value = 0;
-  results.value = NO_RESULTS;
+  setResults(NO_RESULTS);
   exportNames.value = [];
   selection.value = null;
   shownPlane.value = 0;

@@ -7,10 +7,14 @@ import type * as traces from "../shared/traces";
 
 import { automaticWorkers } from "./workers";
 
+const LINE_TABS = ["segments", "matches", "lines", "halfplanes", "groups", "facets", "refinement"] as const;
+const REGION_TABS = ["regions", "directions", "clusters", "rectangles"] as const;
+
 /** The stage views of each method. */
 export const TABS = {
-  lines: ["images", "segments", "matches", "lines", "halfplanes", "groups", "facets", "refinement", "model"],
-  rectangles: ["images", "regions", "directions", "clusters", "rectangles", "model"],
+  lines: ["images", ...LINE_TABS, "model"],
+  rectangles: ["images", ...REGION_TABS, "model"],
+  combined: ["images", ...REGION_TABS, ...LINE_TABS, "model"],
 } as const;
 export type Method = keyof typeof TABS;
 export type Tab = (typeof TABS)[Method][number];
@@ -160,7 +164,12 @@ export const params = signal<Params>({});
 export const method = computed<Method>(() => methodOf(params.value));
 
 export function methodOf(values: Params): Method {
-  return (values["method"] as unknown) === "rectangles" ? "rectangles" : "lines";
+  return methodNamed(values["method"]) ?? "lines";
+}
+
+/** The method of this name; null where there is none. */
+export function methodNamed(name: unknown): Method | null {
+  return (Object.keys(TABS) as Method[]).find((one) => one === name) ?? null;
 }
 
 /** How many workers the person wants; 0: as many as are of use. */
@@ -173,7 +182,33 @@ export const usefulWorkers = computed(() => {
 export const workers = computed(() => chosenWorkers.value || usefulWorkers.value);
 
 export const stages = signal<StageState[]>([]);
-export const results = signal<Results>(NO_RESULTS);
+
+/** Where a stage's results are kept: in method "combined" both methods have segments, lines and facets of their own. */
+type Keeper = "main" | "regions";
+const found = signal<Record<Keeper, Results>>({ main: NO_RESULTS, regions: NO_RESULTS });
+
+/** Of which stages the present tab tells. */
+export const shownKeeper = computed<Keeper>(() => keeperOf(tab.value));
+/** What the present tab tells of. */
+export const results = computed(() => found.value[shownKeeper.value]);
+/** What the model is made of. */
+export const mainResults = computed(() => found.value.main);
+
+export function setResults(all: Results): void {
+  found.value = { main: all, regions: NO_RESULTS };
+}
+
+/** Adds what a stage has found that `shownBy` shows. */
+export function addResults(shownBy: Tab, some: Partial<Results>): void {
+  const keeper = keeperOf(shownBy);
+  found.value = { ...found.value, [keeper]: { ...found.value[keeper], ...some } };
+}
+
+function keeperOf(name: Tab): Keeper {
+  const names: readonly Tab[] = REGION_TABS;
+  return method.value === "combined" && names.includes(name) ? "regions" : "main";
+}
+
 export const exportNames = signal<string[]>([]);
 
 export const notices = signal<Notice[]>([]);

@@ -5,7 +5,16 @@ import { engine, ensureInspected, held, say, updateStage } from "./core";
 import { EngineError } from "./engine";
 import { loadOptions } from "./runOptions";
 import { stageWords } from "./stages";
-import { exportNames, freshStages, inspection, NO_RESULTS, params, results, runOptions, tab } from "./state";
+import {
+  exportNames,
+  freshStages,
+  inspection,
+  NO_RESULTS,
+  params,
+  runOptions,
+  setResults,
+  tab,
+} from "./state";
 
 /** The progress of the whole area is shown at the last stage: only the model spans the tiles. */
 const STAGE = "model";
@@ -19,7 +28,7 @@ export async function runTiles(tileM: number): Promise<void> {
   held.scene = false;
   batch(() => {
     freshStages.value = 0;
-    results.value = NO_RESULTS;
+    setResults(NO_RESULTS);
     exportNames.value = [];
     updateStage(STAGE, { status: "running", fraction: 0, warnings: [], counts: {} });
   });
@@ -29,7 +38,7 @@ export async function runTiles(tileM: number): Promise<void> {
     const glb = await engine.call("exportFile", { name: "model.glb" });
     const names = await engine.call("exportNames", {});
     batch(() => {
-      results.value = { ...NO_RESULTS, glb };
+      setResults({ ...NO_RESULTS, glb });
       exportNames.value = names;
       tab.value = stageWords(STAGE).tab;
       updateStage(STAGE, {

@@ -46,6 +46,7 @@ export function outcomeWords(outcome: SegmentOutcome | null): string {
 /** How a 3D line was found. */
 export const ORIGIN_WORDS: Record<LineOrigin, string> = {
   matched: "matched over the views",
+  clustered: "from boundaries of regions, in object space",
   intersection: "new: two planes intersect here",
   border: "new: a border, seen again in the views",
 };

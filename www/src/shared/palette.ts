@@ -42,7 +42,11 @@ export const CATEGORIES = [
 ] as const;
 
 /** The methods, where both are shown: B99 and W96. */
-export const METHOD_COLOURS = { lines: CATEGORIES[0], rectangles: CATEGORIES[1] } as const;
+export const METHOD_COLOURS = {
+  lines: CATEGORIES[0],
+  rectangles: CATEGORIES[1],
+  combined: CATEGORIES[2],
+} as const;
 
 export function category(index: number): string {
   return CATEGORIES[index % CATEGORIES.length] as string;

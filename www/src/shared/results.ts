@@ -153,6 +153,8 @@ export interface Facet {
   real_ratio?: number;
   lines?: number[];
   half_planes?: number[];
+  /** Candidates of W96 with its plane. */
+  rectangles?: number[];
 }
 
 export interface ViewImage {

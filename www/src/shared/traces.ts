@@ -81,7 +81,7 @@ export interface Correspondence {
 export type Covariance = readonly [number, number, number, number, number, number];
 
 /** How a 3D line was found: from segments, or with the model (B99 4.2, 4.3). */
-export type LineOrigin = "matched" | "intersection" | "border";
+export type LineOrigin = "matched" | "clustered" | "intersection" | "border";
 
 export interface LineRecord {
   origin: LineOrigin;
@@ -132,14 +132,16 @@ export interface WarpedPicture {
 export interface PlaneGroup {
   plane: Plane;
   members: { line: number; side: SideName | null; half_plane: number | null }[];
+  /** Candidates of W96 in the plane. */
+  rectangles?: number[];
 }
 
 export interface Grouping {
   groups: PlaneGroup[];
   plane_lines: { segment: Segment3; views: number[] }[];
-  borders: { kind: "real" | "inplane" | "intersection" | "closing"; a: Vec2; b: Vec2 }[];
+  borders: { kind: "real" | "inplane" | "intersection" | "closing" | "rectangle"; a: Vec2; b: Vec2 }[];
   cells: number;
-  rejected: { outline: Vec3[]; reason: Record<string, Record<string, number>> }[];
+  rejected: { group?: number; outline: Vec3[]; reason: Record<string, Record<string, number>> }[];
 }
 
 /** A relation between sides of a building that was tested (B99 2). */

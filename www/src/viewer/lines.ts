@@ -18,6 +18,7 @@ const DASH_M = 0.4;
 /** As the border lines in plan. */
 export const ORIGIN_COLOURS: Record<LineOrigin, string> = {
   matched: PALETTE.line,
+  clustered: PALETTE.grown,
   intersection: PALETTE.merged,
   border: PALETTE.bar,
 };

@@ -15,6 +15,10 @@ describe("links", () => {
     expect(parseLink(`#${formatLink(LINK)}`)).toEqual(LINK);
   });
 
+  it.each(["rectangles", "combined"])("name the method: %s", (method) => {
+    expect(parseLink(formatLink({ ...LINK, params: { method } })).params).toEqual({ method });
+  });
+
   it.each([
     { kind: "segment", view: 0, index: 44 },
     { kind: "region", view: 3, index: 1 },
@@ -41,6 +45,7 @@ describe("links", () => {
     "params={",
     "params=[1]",
     "scene=http://elsewhere",
+    "method=constructor",
   ])("take nothing from %j", (hash) => {
     expect(parseLink(hash)).toEqual({
       scene: null,

@@ -70,6 +70,8 @@ describe("groups inside groups", () => {
     ]);
     const other = { ...nested, method: "rectangles" as unknown as Params[string] };
     expect(paramSections(nested, other).map(({ path }) => path)).toEqual(["objectspace.oris"]);
+    const both = { ...nested, method: "combined" as unknown as Params[string] };
+    expect(paramSections(nested, both)).toHaveLength(3);
   });
 
   it("are changed by path, and what was changed makes the same parameters again", () => {

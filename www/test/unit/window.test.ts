@@ -1,5 +1,5 @@
 import { afterEach, describe, expect, it } from "vitest";
-import { NO_RESULTS, results } from "../../src/app/state";
+import { NO_RESULTS, setResults } from "../../src/app/state";
 import { windowOf } from "../../src/app/window";
 
 /** An eave along y = 2 at 5 m and a ridge along y = 6 at 8 m: 5 m apart in their plane. */
@@ -7,11 +7,11 @@ const LINES = Float64Array.of(1, 2, 5, 11, 2, 5, 3, 6, 8, 9, 6, 8);
 
 describe("the window of a pair of lines", () => {
   afterEach(() => {
-    results.value = NO_RESULTS;
+    setResults(NO_RESULTS);
   });
 
   it("reaches from line to line, and crossings lie where their positions say", () => {
-    results.value = { ...NO_RESULTS, lines: LINES };
+    setResults({ ...NO_RESULTS, lines: LINES });
     const found = windowOf({
       lines: [0, 1],
       rejection: null,
@@ -36,7 +36,7 @@ describe("the window of a pair of lines", () => {
   });
 
   it("is none where a line is missing", () => {
-    results.value = { ...NO_RESULTS, lines: LINES };
+    setResults({ ...NO_RESULTS, lines: LINES });
     expect(windowOf({ lines: [0, 2], rejection: null, crossings: [], ends: [] })).toBeNull();
   });
 });
