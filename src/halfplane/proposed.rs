@@ -4,7 +4,7 @@
 //! its own, with the lines that lie in it. Which plane covers what is settled by one labelling.
 //!
 //! Tried without gain: that the contrast at a rectangle's sides, which W96 counts in its measure, counts where there is no texture to
-//! compare. Of a rendered suburb 90 instead of 94 % of the roofs were then covered: lawns and yards have sides with contrast, too.
+//! compare. Of a rendered suburb less of the roofs was then covered, not more: lawns and yards have sides with contrast, too.
 
 use nalgebra::{Point2, Point3, Vector3};
 use serde::{Deserialize, Serialize};

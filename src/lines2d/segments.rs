@@ -9,9 +9,10 @@
 //! channel: lines of both together lay up to 0.2 m off on photographs whose lens does not focus red and blue alike.
 //!
 //! What limits the position of a segment is the roof, not the image: measured along true edges of two rendered
-//! scenes, the crest of the mean profile itself scatters by 0.2 to 0.3 px on eaves and rakes, whose visible fascias and
-//! gutters are half a pixel to two pixels wide. Hips, which have none, scatter by 0.08 to 0.15 px. The covariance holds
-//! a term for it.
+//! scenes, the crest of the mean profile of grey values itself scatters by 0.2 to 0.3 px on eaves and rakes, whose visible
+//! fascias and gutters are half a pixel to two pixels wide. Hips, which have none, scatter by 0.08 to 0.15 px. The covariance
+//! holds a term for it. (About a quarter of it is no property of the roof: profiles are measured in light since, see
+//! [`crate::raster::Channel::to_light`].)
 //!
 //! Tried and left out: evidence from the directions of the edgels besides their strength (the same
 //! coverage of true roof edges at the same number of segments), and chains alone without growing (on two
