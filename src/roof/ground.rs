@@ -3,7 +3,7 @@
 //! Every view, reduced four times, is compared with the others on horizontal planes at steps of height
 //! (the same measure that verifies facets, `halfplane::consistency`). Each position takes the height at which the views
 //! agree best; the ground near a building is what the lowest clearly matched positions around it show, since
-//! roofs and trees only rise above it.
+//! roofs and trees only rise above it. What is matched at about the height of the plane through those positions then settles the height.
 
 use nalgebra::{Point2, Point3, Vector3};
 use serde::Serialize;
@@ -44,6 +44,8 @@ const MAX_LEVELS: usize = 64;
 /// A position counts as matched from this correlation and texture weight on.
 const MIN_CORRELATION: f32 = 0.7;
 const MIN_WEIGHT: f32 = 0.5;
+/// Fewer matched positions tell no height.
+const MIN_SAMPLES: usize = 30;
 /// Share of the matched positions around a building that may lie below its ground (wrong matches).
 const LOW_SHARE: f64 = 0.15;
 
@@ -108,9 +110,7 @@ impl Ground {
             let at = min
                 + nalgebra::Vector2::new((k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5)
                     * CELL;
-            let near = samples
-                .iter()
-                .filter(|s| (s.xy() - at).norm_squared() <= RADIUS * RADIUS);
+            let near = samples.iter().filter(|s| is_near(s, &at));
             low_height(near.map(|s| s.z)).unwrap_or(elsewhere)
         });
         Self {
@@ -121,6 +121,7 @@ impl Ground {
             elsewhere,
         }
         .without_large_roofs()
+        .settled(samples)
     }
 
     /// The plane that the ground lies in as a whole, fitted from below: blocks that stand out above it are roofs or
@@ -172,6 +173,26 @@ impl Ground {
         self
     }
 
+    /// Moves blocks to the middle of what is matched around them at about the height of the common plane: the low heights
+    /// that they start from depend on how much of the ground is seen between roofs, and on the slope.
+    fn settled(mut self, samples: &[Point3<f64>]) -> Self {
+        let plane = self.plane();
+        let rise = |p: &Point3<f64>| p.z - plane.z_at(p.x, p.y);
+        let level: Vec<&Point3<f64>> = (samples.iter())
+            .filter(|p| rise(p).abs() < STANDS_OUT)
+            .collect();
+        for k in 0..self.heights.len() {
+            let at = self.block(k);
+            let near = level.iter().filter(|p| is_near(p, &at.xy()));
+            let mut rises: Vec<f64> = near.map(|p| rise(p)).collect();
+            if rise(&at).abs() < STANDS_OUT && rises.len() >= MIN_SAMPLES {
+                let middle = crate::math::median(&mut rises).unwrap_or(0.0);
+                self.heights[k] = plane.z_at(at.x, at.y) + middle;
+            }
+        }
+        self
+    }
+
     /// Ground height at a plan position, metres.
     pub fn z_at(&self, p: &Point2<f64>) -> f64 {
         let (c, r) = ((p.x - self.min.x) / CELL, (p.y - self.min.y) / CELL);
@@ -194,10 +215,15 @@ impl Ground {
     }
 }
 
-/// The height below which only wrong matches lie; `None` with fewer than 30 samples.
+/// Does a matched position tell the height of the ground here?
+fn is_near(sample: &Point3<f64>, at: &Point2<f64>) -> bool {
+    (sample.xy() - at).norm_squared() <= RADIUS * RADIUS
+}
+
+/// The height below which only wrong matches lie; `None` with too few samples.
 fn low_height(heights: impl Iterator<Item = f64>) -> Option<f64> {
     let mut heights: Vec<f64> = heights.collect();
-    if heights.len() < 30 {
+    if heights.len() < MIN_SAMPLES {
         return None;
     }
     sort_by(&mut heights, f64::total_cmp);
@@ -256,9 +282,73 @@ fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3
                 });
             if let Some(i) = best {
                 let p = grid.center(column, row);
-                samples.push(Point3::new(p.x, p.y, heights[i]));
+                let correlation = |i: usize| maps.get(i).map(|m| f64::from(m.correlation(k)));
+                let beside = [i.checked_sub(1).and_then(correlation), correlation(i + 1)];
+                let between = top_between(beside, f64::from(maps[i].correlation(k)));
+                let z = heights[i] + between * (heights[1] - heights[0]);
+                samples.push(Point3::new(p.x, p.y, z));
             }
         }
     }
     samples
+}
+
+/// Where the parabola through a correlation and those a level below and above it has its top, in levels.
+fn top_between([below, above]: [Option<f64>; 2], at: f64) -> f64 {
+    let (Some(below), Some(above)) = (below, above) else {
+        return 0.0;
+    };
+    let bend = 2.0 * at - below - above;
+    if bend > 0.0 {
+        (0.5 * (above - below) / bend).clamp(-0.5, 0.5)
+    } else {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::uniform;
+
+    /// Matched positions half a metre apart on 60 m by 60 m: rough ground that slopes, a roof on two thirds of the
+    /// place around the middle, a few wrong matches below.
+    fn samples() -> Vec<Point3<f64>> {
+        let mut even = uniform(7);
+        let mut samples = Vec::new();
+        for (column, row) in (0..120).flat_map(|c| (0..120).map(move |r| (c, r))) {
+            let (x, y) = (0.5 * f64::from(column), 0.5 * f64::from(row));
+            let on_roof = (x - 30.0).abs() < 15.0 && (y - 30.0).abs() < 15.0;
+            let z = match (on_roof, even()) {
+                (_, chance) if chance < 0.02 => ground(x, y) - 3.0,
+                (true, _) => ground(30.0, 30.0) + 2.4,
+                (false, _) => ground(x, y) + 0.6 * (even() - 0.5),
+            };
+            samples.push(Point3::new(x, y, z));
+        }
+        samples
+    }
+
+    fn ground(x: f64, y: f64) -> f64 {
+        50.0 + 0.02 * x - 0.01 * y
+    }
+
+    #[test]
+    fn sloping_ground_is_found_beside_a_large_roof() {
+        let found = Ground::from_samples(&samples(), 49.0);
+        for (x, y) in [(30.0, 30.0), (8.0, 8.0), (52.0, 30.0), (30.0, 8.0)] {
+            // Heights are those of blocks of 5 m.
+            let miss = found.z_at(&Point2::new(x, y)) - ground(x, y);
+            assert!(miss.abs() < 0.12, "{miss} m at {x}, {y}");
+        }
+    }
+
+    #[test]
+    fn the_top_lies_between_the_levels() {
+        let parabola = |t: f64| 0.9 - 0.2 * (t - 0.3) * (t - 0.3);
+        let beside = [Some(parabola(-1.0)), Some(parabola(1.0))];
+        assert!((top_between(beside, parabola(0.0)) - 0.3).abs() < 1e-9);
+        assert_eq!(top_between([None, Some(0.5)], 0.6), 0.0);
+        assert_eq!(top_between([Some(0.5), Some(0.5)], 0.5), 0.0);
+    }
 }
