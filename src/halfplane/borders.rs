@@ -212,7 +212,7 @@ pub fn border_lines(
     for border in outermost_lines(input, hypotheses, params) {
         add(&mut borders, border);
     }
-    for border in extent_lines(input, hypotheses) {
+    for border in extent_lines(input, hypotheses, params) {
         add(&mut borders, border);
     }
     for border in closing_lines(input, hypotheses, params) {

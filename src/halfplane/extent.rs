@@ -2,37 +2,43 @@
 //!
 //! B99 closes a facet by the convex hull of its lines when no line was found at one of its sides. A side whose
 //! edge is in no image strongly enough still shows: the views agree on the plane up to it and not beyond.
-//! The positions of agreement are counted in strips along and across the plane's longest line; where the
-//! counts end, a line may bound the facet. It earns nothing by itself, it only lets the facet end there.
+//! Of all rectangles along the plane's longest line the one is sought over which they speak most for the plane,
+//! each position with what it will count for when planes compete ([`super::evidence`]); where it ends, a line may
+//! bound the facet. It earns nothing by itself, it only lets the facet end there.
 
 use nalgebra::{Point2, Vector2};
 
 use super::borders::{Border, BorderKind};
+use super::consistency::least_correlation;
 use super::grouping::GroupingInput;
-use super::hypothesis::{Hypothesis, ON_SURFACE, TEXTURED};
+use super::hypothesis::Hypothesis;
+use crate::params::RoofParams;
 
-/// Width of a strip, metres: about a correlation window of fine images.
-const STRIP_M: f64 = 0.25;
-/// A strip with less than this share of the fullest one's positions is beyond the end. A hip's strips become
-/// shorter to its corners.
-const END_SHARE: f64 = 0.15;
-/// Strips without agreement that do not end a plane yet: a dormer, a shadow.
-const GAP_STRIPS: usize = 4;
-/// Planes with less agreement, square metres, have no end to speak of.
-const LEAST_AGREEMENT_M2: f64 = 4.0;
+/// Width of a strip, metres: about a pixel of aerial photographs.
+const STRIP_M: f64 = 0.1;
+/// How often the two spans of the rectangle are sought by turns. Assumption: a third time changes few.
+const TURNS: usize = 2;
+/// Planes for which less speaks than such an area of perfect agreement would, square metres, have no end to speak of.
+const LEAST_AGREEMENT_M2: f64 = 0.5;
 /// How far an end goes beyond the sides across it, metres, to meet their lines.
 const OVER_M: f64 = 0.5;
 
 /// Lines where planes seem to end, four for each plane with a half-plane.
-pub fn extent_lines(input: &GroupingInput, hypotheses: &[Hypothesis]) -> Vec<Border> {
-    crate::parallel::map(hypotheses, |_, h| sides(input, h).unwrap_or_default())
-        .into_iter()
-        .flatten()
-        .collect()
+pub fn extent_lines(
+    input: &GroupingInput,
+    hypotheses: &[Hypothesis],
+    params: &RoofParams,
+) -> Vec<Border> {
+    crate::parallel::map(hypotheses, |_, h| {
+        sides(input, h, params).unwrap_or_default()
+    })
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 /// The four sides of the rectangle along the longest line in which the views agree on a plane.
-fn sides(input: &GroupingInput, h: &Hypothesis) -> Option<Vec<Border>> {
+fn sides(input: &GroupingInput, h: &Hypothesis, params: &RoofParams) -> Option<Vec<Border>> {
     if h.group.half_planes().is_empty() {
         return None;
     }
@@ -40,14 +46,12 @@ fn sides(input: &GroupingInput, h: &Hypothesis) -> Option<Vec<Border>> {
         .map(|m| &input.lines[m.line.index()].segment)
         .max_by(|a, b| a.length().total_cmp(&b.length()))?;
     let start = longest.p0.xy();
-    let along = (longest.p1.xy() - start).try_normalize(1e-6)?;
+    let reach = longest.p1.xy() - start;
+    let along = reach.try_normalize(1e-6)?;
     let across = Vector2::new(-along.y, along.x);
-    let agreeing = agreeing_positions(h);
-    if agreeing.len() as f64 * h.map.grid.step * h.map.grid.step < LEAST_AGREEMENT_M2 {
-        return None;
-    }
-    let extent = |axis: &Vector2<f64>| extent(agreeing.iter().map(|p| (p - start).dot(axis)));
-    let ((t0, t1), (u0, u1)) = (extent(&along), extent(&across));
+    let votes = votes(h, &start, [&along, &across], params);
+    let least = LEAST_AGREEMENT_M2 / (h.map.grid.step * h.map.grid.step);
+    let [(t0, t1), (u0, u1)] = best_rectangle(&votes, reach.norm(), least)?;
     let at = |t: f64, u: f64| start + along * t + across * u;
     let side = |a, b| Border {
         kind: BorderKind::Closing,
@@ -63,59 +67,117 @@ fn sides(input: &GroupingInput, h: &Hypothesis) -> Option<Vec<Border>> {
     ])
 }
 
-/// The centres of the plan cells in the plane's region where the views clearly agree on it.
-fn agreeing_positions(h: &Hypothesis) -> Vec<Point2<f64>> {
+/// What one position says.
+struct Vote {
+    /// Where, along two axes, metres.
+    at: [f64; 2],
+    /// How much for the plane, or against it: weight x (correlation - least correlation).
+    gain: f64,
+}
+
+/// The votes of all positions in a plane's region, along `axes` from `start`.
+fn votes(
+    h: &Hypothesis,
+    start: &Point2<f64>,
+    axes: [&Vector2<f64>; 2],
+    params: &RoofParams,
+) -> Vec<Vote> {
     let grid = &h.map.grid;
     (0..grid.width * grid.height)
-        .filter(|&k| h.map.correlation(k) >= ON_SURFACE && h.map.weight(k) >= TEXTURED)
-        .map(|k| grid.center(k % grid.width, k / grid.width))
-        .filter(|p| h.region.contains(p))
+        .filter(|&k| h.map.weight(k) > 0.0)
+        .map(|k| (k, grid.center(k % grid.width, k / grid.width)))
+        .filter(|(_, p)| h.region.contains(p))
+        .map(|(k, p)| {
+            let weight = f64::from(h.map.weight(k));
+            let least = least_correlation(weight, params.min_correlation);
+            Vote {
+                at: axes.map(|axis| (p - start).dot(axis)),
+                gain: weight * (f64::from(h.map.correlation(k)) - least),
+            }
+        })
         .collect()
 }
 
-/// From the fullest strip to the last ones, on both sides, that hold more than a share of its count.
-fn extent(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
-    let low = values.clone().fold(f64::INFINITY, f64::min);
-    let high = values.clone().fold(f64::NEG_INFINITY, f64::max);
-    let mut strips = vec![0usize; ((high - low) / STRIP_M) as usize + 1];
-    values.for_each(|v| strips[((v - low) / STRIP_M) as usize] += 1);
-    let fullest = (0..strips.len())
-        .max_by_key(|&i| (strips[i], usize::MAX - i))
-        .unwrap_or(0);
-    let least = (END_SHARE * strips[fullest] as f64) as usize;
-    let last = |outward: &mut dyn Iterator<Item = usize>| {
-        let mut last = fullest;
-        for i in outward {
-            let gap = i.abs_diff(last);
-            if strips[i] > least {
-                last = i;
-            } else if gap > GAP_STRIPS {
-                break;
-            }
+/// The rectangle with the largest sum of votes, as its spans along both axes: across first, beside a line from 0 to
+/// `length` along the other. `None` where the sum is below `least`.
+fn best_rectangle(votes: &[Vote], length: f64, least: f64) -> Option<[(f64, f64); 2]> {
+    let mut spans = [(0.0, length), (0.0, 0.0)];
+    let mut sum = 0.0;
+    for axis in [1, 0].repeat(TURNS) {
+        let (from, to) = spans[1 - axis];
+        let beside = |v: &&Vote| v.at[1 - axis] >= from && v.at[1 - axis] <= to;
+        let inside = votes.iter().filter(beside).map(|v| (v.at[axis], v.gain));
+        (spans[axis], sum) = best_span(inside)?;
+    }
+    (sum >= least).then_some(spans)
+}
+
+/// The interval of strips with the largest sum of gains, and that sum.
+fn best_span(gains: impl Iterator<Item = (f64, f64)> + Clone) -> Option<((f64, f64), f64)> {
+    let ends = gains
+        .clone()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (x, _)| {
+            (l.min(x), h.max(x))
+        });
+    let (low, high) = ends;
+    (high >= low).then_some(())?;
+    let mut strips = vec![0.0; ((high - low) / STRIP_M) as usize + 1];
+    gains.for_each(|(x, gain)| strips[((x - low) / STRIP_M) as usize] += gain);
+    let (mut best, mut span) = (0.0, None);
+    let (mut sum, mut first) = (0.0, 0);
+    for (i, gain) in strips.iter().enumerate() {
+        if sum <= 0.0 {
+            (sum, first) = (0.0, i);
         }
-        last
-    };
-    let first = last(&mut (0..fullest).rev());
-    let end = last(&mut (fullest + 1..strips.len()));
-    (
-        low + first as f64 * STRIP_M,
-        low + (end + 1) as f64 * STRIP_M,
-    )
+        sum += gain;
+        if sum > best {
+            (best, span) = (sum, Some((first, i + 1)));
+        }
+    }
+    let place = |strip: usize| low + strip as f64 * STRIP_M;
+    span.map(|(first, end)| ((place(first), place(end)), best))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// Agreement over a rectangle, with a hole in it, among disagreement; a chance match far away.
+    fn votes() -> Vec<Vote> {
+        let gain = |t: f64, u: f64| {
+            let inside = (2.0..9.0).contains(&t) && (-1.0..4.0).contains(&u);
+            let hole = (5.0..5.5).contains(&t) && (1.0..2.0).contains(&u);
+            let chance = (13.0..13.5).contains(&t) && (6.0..6.5).contains(&u);
+            if (inside && !hole) || chance {
+                0.3
+            } else {
+                -0.2
+            }
+        };
+        let steps = |n: usize| (0..n).map(|i| 0.05 * i as f64 + 0.025);
+        steps(320)
+            .flat_map(|t| steps(240).map(move |u| [t, u - 4.0]))
+            .map(|at| Vote {
+                at,
+                gain: gain(at[0], at[1]),
+            })
+            .collect()
+    }
+
     #[test]
     fn a_surface_ends_where_agreement_does() {
-        // Agreement from 2 m to 9 m with a hole of 0.5 m, and a chance match at 14 m.
-        let positions = (0..700)
-            .map(|i| 2.0 + f64::from(i) * 0.01)
-            .filter(|v| !(5.0..5.5).contains(v))
-            .chain([14.0, 14.001]);
-        let (first, last) = extent(positions);
-        assert!((first - 2.0).abs() <= STRIP_M, "{first}");
-        assert!((last - 9.0).abs() <= STRIP_M, "{last}");
+        // The line is longer than the surface at one end and shorter at the other.
+        let [(t0, t1), (u0, u1)] = best_rectangle(&votes(), 7.0, 1.0).unwrap();
+        for (found, planted) in [(t0, 2.0), (t1, 9.0), (u0, -1.0), (u1, 4.0)] {
+            assert!((found - planted).abs() <= STRIP_M, "{found} for {planted}");
+        }
+    }
+
+    #[test]
+    fn a_plane_without_agreement_has_no_end() {
+        let mut against = votes();
+        assert!(best_rectangle(&against, 7.0, 1e5).is_none(), "too little");
+        against.iter_mut().for_each(|v| v.gain = -v.gain.abs());
+        assert!(best_rectangle(&against, 7.0, 0.0).is_none());
     }
 }

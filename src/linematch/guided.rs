@@ -49,6 +49,8 @@ const MIN_SHARE: f64 = 0.5;
 pub struct GuidedEdge {
     /// The view.
     pub view: ViewId,
+    /// What of the view shows it.
+    pub channel: Channel,
     /// The edge, from its first to its last piece, px.
     pub segment: Segment2,
     /// Covariance of (offset along the normal at the middle in px, angle in rad).
@@ -110,7 +112,7 @@ pub fn measure_edge(
     if kept.len() < MIN_PIECES {
         return None;
     }
-    Some(line.edge(view, expected, &kept, size))
+    Some(line.edge((view, channel), expected, &kept, size))
 }
 
 /// One piece; `None` outside the image.
@@ -242,7 +244,13 @@ impl OffsetLine {
     }
 
     /// The edge in the image, with the covariance that its pieces' scatter gives.
-    fn edge(&self, view: ViewId, expected: &Segment2, kept: &[Piece], size: f64) -> GuidedEdge {
+    fn edge(
+        &self,
+        (view, channel): (ViewId, Channel),
+        expected: &Segment2,
+        kept: &[Piece],
+        size: f64,
+    ) -> GuidedEdge {
         let n = kept.len() as f64;
         let residual = |p: &Piece| p.offset.unwrap_or(0.0) - self.at(p.along);
         let squares: f64 = kept.iter().map(|p| residual(p) * residual(p)).sum();
@@ -266,6 +274,7 @@ impl OffsetLine {
         let lever = 0.5 * (first + last) - centre;
         GuidedEdge {
             view,
+            channel,
             segment: Segment2::new(place(first), place(last)),
             covariance: Matrix2::new(
                 variance / n + angle * lever * lever,

@@ -5,10 +5,17 @@
 //!    -> pairs         two views: epipolar beam (sight, index), correlation of both sides (strip)   3.1
 //!    -> triples       third views: trifocal transfer, segment at the predicted position          3.2
 //!    -> select        winner takes all; each winner is completed:                                3.2
-//!       -> nviews     segments near the reprojection adopted, fitted, views counted              3.4
+//!       -> nviews     fitted over all views, views counted                                       3.4
+//!       -> adopt      segments near the reprojection adopted, edges measured again               3.4
 //!       -> grow       merged and grown along its profile                                         3.3
 //! ```
+//!
+//! Pairs and triples are of segments of one channel (grey values or warmth) that are bright on one side: that keeps
+//! mismatches rare. Where there are few views, too few for `min_views` to be a choice, a second pass takes what
+//! is left without asking for either: of three views two may show an eave before a sunlit lawn, and the third before the
+//! shadow of the house.
 
+mod adopt;
 mod grow;
 mod guided;
 mod height;
@@ -30,13 +37,21 @@ pub use strip::EdgelScore;
 pub use trace::{MatchTrace, PairTrace, SegmentOutcome, StepCount};
 pub use triples::Verification;
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+
+use nviews::Context;
+use pairs::{PairScope, Pairs};
+use select::Selection;
+use sight::Alike;
+use triples::Bundle;
 
 use crate::geometry::Segment2;
 use crate::ids::{SegmentId, ViewId};
 use crate::lines2d::ImageSegment;
 use crate::params::{Lines3dParams, MatchParams};
 use crate::scene::Scene;
+use crate::shares::map_shared;
 
 /// Matches the segments of all views (one list a view, in the order of the scene's views) over
 /// three and more views. Fewer than three views, or views without common ground, give no match.
@@ -59,20 +74,104 @@ pub fn match_lines(
     trace.z_range_m = Some(z_range);
     trace.view_pairs = partners::partner_views(scene, z_range, params);
 
-    let pairs = pairs::match_pairs(scene, &sights, &trace.view_pairs, z_range, params);
-    let bundles = triples::verify_pairs(scene, &sights, &pairs, params);
-    let context = nviews::Context {
+    let alike = Alike {
+        contrast: params.same_contrast,
+        channel: true,
+    };
+    let scope = PairScope {
+        scene,
+        sights: &sights,
+        partners: &trace.view_pairs,
+        z_range,
+        params,
+        alike,
+    };
+    let context = Context {
         scene,
         segments,
         sights: &sights,
         z_range,
         params,
         fitting,
+        alike,
     };
-    let selection = select::winner_takes_all(&context, &pairs, &bundles);
+    let mut found = Found::nothing_yet(segments);
+    found.pass(&scope, &context, MapOfPass::First);
+    // Few views: each of them is needed, however it shows a line.
+    let few = scene.views.len() <= params.min_views;
+    if few && !found.selection.lines.is_empty() {
+        let alike = Alike {
+            contrast: false,
+            channel: false,
+        };
+        found.pass(
+            &PairScope { alike, ..scope },
+            &Context { alike, ..context },
+            MapOfPass::Second,
+        );
+    }
+    let Found {
+        pairs,
+        bundles,
+        selection,
+    } = found;
     trace.record(segments, &pairs, &bundles, &selection);
     let matches = selection.lines.into_iter().map(LineMatch::from).collect();
     (matches, trace)
+}
+
+/// All hypotheses, and what became of them.
+struct Found {
+    pairs: Pairs,
+    bundles: Vec<Bundle>,
+    selection: Selection,
+}
+
+impl Found {
+    fn nothing_yet(segments: &[Vec<ImageSegment>]) -> Self {
+        Self {
+            pairs: Pairs::default(),
+            bundles: Vec::new(),
+            selection: Selection::none(segments),
+        }
+    }
+
+    /// Matches the segments that no line owns yet.
+    fn pass(&mut self, scope: &PairScope, context: &Context, map: MapOfPass) {
+        let taken = |s| self.selection.owner(s).is_some();
+        let pairs = pairs::match_pairs(scope, taken, map);
+        let bundles = triples::verify_pairs(scope, &pairs, map);
+        select::winner_takes_all(context, &pairs, &bundles, map, &mut self.selection);
+        let before = self.pairs.pairs.len();
+        self.bundles
+            .extend(bundles.into_iter().map(|bundle| Bundle {
+                pair: before + bundle.pair,
+                ..bundle
+            }));
+        self.pairs.append(pairs);
+    }
+}
+
+/// Of several passes workers share the first one's maps only: what is left for later ones depends on it.
+#[derive(Clone, Copy)]
+enum MapOfPass {
+    First,
+    Second,
+}
+
+impl MapOfPass {
+    fn run<T: Sync, R: Send + Serialize + DeserializeOwned>(
+        self,
+        name: &str,
+        items: &[T],
+        part: std::ops::Range<f64>,
+        f: impl Fn(usize, &T) -> R + Sync,
+    ) -> Vec<R> {
+        match self {
+            Self::First => map_shared(name, items, part, f),
+            Self::Second => crate::parallel::map_part(items, part, f),
+        }
+    }
 }
 
 /// The range of heights, metres, in which the lines of a scene lie: estimated from the segments of all views, or as wide as
@@ -219,6 +318,35 @@ mod tests {
         assert_eq!(edge.supports.len(), 5);
         assert!(edge.supports[3].segments.is_empty());
         assert_eq!(edge.supports[3].kind, SupportKind::Grown);
+    }
+
+    #[test]
+    fn where_views_are_few_they_may_show_a_line_in_different_channels() {
+        // Edge 1 runs along the baseline of the first two views: only pairs with the other strip determine it.
+        let mut scene = planted::scene();
+        let mut segments = planted::segments(&scene);
+        segments[3][1].kind = crate::lines2d::SegmentKind::Color;
+        for views in [4, 2] {
+            scene.views.remove(views);
+            segments.remove(views);
+        }
+        let matched = |min_views: usize| {
+            let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
+            let params = MatchParams {
+                min_views,
+                ..params
+            };
+            let (matches, trace) = match_lines(&scene, &segments, &params, &fitting);
+            let own = |m: &&LineMatch| m.supports[0].segments.contains(&SegmentId(1));
+            let outcomes = trace.outcomes.iter().map(|view| view[1]);
+            let all = outcomes.filter(|o| matches!(o, SegmentOutcome::Matched { .. }));
+            (
+                matches.iter().find(own).map(|m| m.supports.len()),
+                all.count(),
+            )
+        };
+        assert_eq!(matched(4), (Some(3), 3));
+        assert_eq!(matched(2), (None, 0), "three views are not few then");
     }
 
     #[test]

@@ -5,15 +5,15 @@
 use serde::Serialize;
 
 use super::grow::supported_stretch;
-use super::guided::{GuidedEdge, measure_edge};
+use super::guided::GuidedEdge;
 use super::profile::{Profile, ViewProfile};
-use super::sight::{SegmentRef, Sight, Sights};
+use super::sight::{Alike, SegmentRef, Sights};
 use super::strip::EdgelScore;
 use super::{LineSupport, SupportKind};
 use crate::geometry::{Segment2, Segment3};
 use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;
-use crate::lines3d::{LineFit, Observation, ProjectedLine, conditioning, doubly_covered, fit_line};
+use crate::lines3d::{LineFit, Observation, conditioning, fit_line};
 use crate::params::{Lines3dParams, MatchParams};
 use crate::scene::Scene;
 use crate::sorting::sort_by_key;
@@ -81,6 +81,8 @@ pub struct Context<'a> {
     pub params: &'a MatchParams,
     /// Fitting parameters.
     pub fitting: &'a Lines3dParams,
+    /// What the segments of a line must have in common.
+    pub alike: Alike,
 }
 
 /// Completes a hypothesis from some of its segments; `taken` tells which segments belong to other
@@ -93,11 +95,11 @@ pub fn complete_line(
 ) -> Result<Line, Rejection> {
     let (mut fit, mut segments) = context.fit_consistent(start, seeds)?;
     for _ in 0..ROUNDS {
-        let adopted = context.adopt(&fit.line, &segments, 1.0, &taken);
+        let adopted = context.adopt(&fit.line, &segments, &[], 1.0, &taken);
         (fit, segments) = context.fit_consistent(&fit.line, &adopted)?;
     }
-    let (mut fit, mut edges) = context.measure_again(fit, &segments)?;
-    let mut segments = context.adopt(&fit.line, &segments, OWN, &taken);
+    let (mut fit, mut edges) = context.measure_again(fit, &segments, &taken)?;
+    let mut segments = context.adopt(&fit.line, &segments, &edges, OWN, &taken);
     loop {
         let evidence = edges.len() + views_of(&segments);
         if edges.len() < MIN_MEASURED {
@@ -169,66 +171,16 @@ impl Context<'_> {
         &self,
         mut fit: LineFit,
         segments: &[SegmentRef],
+        taken: &impl Fn(SegmentRef) -> bool,
     ) -> Result<(LineFit, Vec<GuidedEdge>), Rejection> {
         let mut edges = Vec::new();
         for _ in 0..ROUNDS {
             let found: Vec<GuidedEdge> = (self.scene.view_ids())
-                .filter_map(|view| self.measure(&fit.line, segments, view))
+                .filter_map(|view| self.measure(&fit.line, segments, view, taken))
                 .collect();
             (fit, edges) = self.fit_edges(&fit.line, &found)?;
         }
         Ok((fit, edges))
-    }
-
-    fn measure(
-        &self,
-        line: &Segment3,
-        segments: &[SegmentRef],
-        view: ViewId,
-    ) -> Option<GuidedEdge> {
-        let (image, whole) = self.extent(line, segments, view)?;
-        let margin = self.params.max_gap_px;
-        let expected = Segment2::new(
-            whole.p0 - image.direction * margin,
-            whole.p1 + image.direction * margin,
-        );
-        let core = self.core(line, segments, view)?;
-        let along = |t: f64| Some((image.at(t)? - expected.p0).dot(&expected.direction()));
-        let core = [along(core.0)?, along(core.1)?];
-        let channel = self.sights.channel(segments)?;
-        let seen = self.scene.view(view).channel(channel);
-        let against = self.against_contrast(&image, segments, view);
-        measure_edge(view, seen, channel, &expected, core, against)
-    }
-
-    /// Is the bright side of this view's own segments the other one than the line's?
-    fn against_contrast(
-        &self,
-        image: &ProjectedLine,
-        segments: &[SegmentRef],
-        view: ViewId,
-    ) -> bool {
-        let along = |s: &SegmentRef| {
-            let sight = self.sights.get(*s)?;
-            Some(sight.length_px * sight.segment.direction().dot(&image.direction))
-        };
-        let own = segments.iter().filter(|s| s.view == view);
-        own.filter_map(along).sum::<f64>() < 0.0
-    }
-
-    /// The stretch of a line, metres, along which a view must show an edge: that of its own segments, or what
-    /// two other views detected.
-    fn core(&self, line: &Segment3, segments: &[SegmentRef], view: ViewId) -> Option<(f64, f64)> {
-        let place = |s: &SegmentRef| {
-            let image = ProjectedLine::new(self.scene.camera(s.view), line)?;
-            let sight = self.sights.get(*s)?;
-            let [t0, t1] = [&sight.segment.p0, &sight.segment.p1].map(|p| image.t_of(p));
-            Some((t0.min(t1), t0.max(t1)))
-        };
-        let own = segments.iter().filter(|s| s.view == view).filter_map(place);
-        let hull = own.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
-        let all = segments.iter().filter_map(place);
-        hull.or_else(|| doubly_covered(all.flat_map(|(s, e)| [(s, 1), (e, -1)]).collect()))
     }
 
     /// [`Self::fit_consistent`] for measured edges.
@@ -333,77 +285,6 @@ impl Context<'_> {
             .iter()
             .filter(|s| s.edge.is_some())
             .all(|s| s.score >= by_correlation || sigma_without(s) <= limit_m)
-    }
-
-    /// The segments of all views that lie on the projection of the line, or not farther beyond its
-    /// ends than a gap may be; `reach` times the gate is near enough.
-    fn adopt(
-        &self,
-        line: &Segment3,
-        known: &[SegmentRef],
-        reach: f64,
-        taken: &impl Fn(SegmentRef) -> bool,
-    ) -> Vec<SegmentRef> {
-        let mut found = Vec::new();
-        let channel = self.sights.channel(known);
-        for view in self.scene.view_ids() {
-            let Some((image, extent)) = self.extent(line, known, view) else {
-                continue;
-            };
-            let (from, to) = (
-                extent.p0 - image.direction * self.params.max_gap_px,
-                extent.p1 + image.direction * self.params.max_gap_px,
-            );
-            let stretch = Segment2::new(from, to);
-            let index = &self.sights.views[view.index()].index;
-            for id in index.near_segment(&stretch, reach * self.params.gate_px) {
-                let name = SegmentRef {
-                    view,
-                    segment: crate::ids::SegmentId(id),
-                };
-                let on_line = |s: &Sight| {
-                    let ahead = |p: nalgebra::Point2<f64>| (p - from).dot(&image.direction);
-                    let (s0, s1) = (ahead(s.segment.p0), ahead(s.segment.p1));
-                    Some(s.channel) == channel
-                        && s0.max(s1) >= 0.0
-                        && s0.min(s1) <= stretch.length()
-                        && self.lies_on(&image, s, reach)
-                };
-                if !taken(name) && self.sights.get(name).is_some_and(on_line) {
-                    found.push(name);
-                }
-            }
-        }
-        found
-    }
-
-    /// The image of the line in a view, and the stretch of it that the known segments cover.
-    fn extent(
-        &self,
-        line: &Segment3,
-        known: &[SegmentRef],
-        view: ViewId,
-    ) -> Option<(ProjectedLine, Segment2)> {
-        let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
-        for s in known {
-            let image = ProjectedLine::new(self.scene.camera(s.view), line)?;
-            let sight = self.sights.get(*s)?;
-            for p in [sight.segment.p0, sight.segment.p1] {
-                let t = image.t_of(&p);
-                (from, to) = (from.min(t), to.max(t));
-            }
-        }
-        let image = ProjectedLine::new(self.scene.camera(view), line)?;
-        Some((image, Segment2::new(image.at(from)?, image.at(to)?)))
-    }
-
-    fn lies_on(&self, image: &ProjectedLine, sight: &Sight, reach: f64) -> bool {
-        let along = sight.segment.direction().dot(&image.direction);
-        let near = |p| image.distance(p).abs() <= reach * self.params.gate_px;
-        (!self.params.same_contrast || along > 0.0)
-            && along.abs() > 0.9
-            && near(&sight.segment.p0)
-            && near(&sight.segment.p1)
     }
 
     /// The views that support the stretch.

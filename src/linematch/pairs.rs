@@ -11,7 +11,8 @@
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::sight::{SegmentRef, Sight, Sights, epipolar_beam, ray_in_plane};
+use super::MapOfPass;
+use super::sight::{Alike, SegmentRef, Sight, Sights, epipolar_beam, ray_in_plane};
 use super::strip::{EdgelScore, Strip, StripFrame, StripSide, correlate};
 use crate::camera::{Camera, Homography, homography_of_plane};
 use crate::geometry::{Plane, Segment3};
@@ -20,7 +21,6 @@ use crate::ids::ViewId;
 use crate::params::MatchParams;
 use crate::raster::Channel;
 use crate::scene::Scene;
-use crate::shares::map_shared;
 
 /// Two segments that may be images of one line.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -47,93 +47,136 @@ pub struct PairSearch {
 }
 
 /// All pair hypotheses that can serve anywhere: those above `pair_score * with_segment`.
+#[derive(Default)]
 pub struct Pairs {
-    /// Sorted by (a, b).
+    /// Of one pass sorted by (a, b).
     pub pairs: Vec<Pair>,
     /// For each view and segment, what its search found, in both directions.
     pub searches: Vec<Vec<PairSearch>>,
 }
 
-/// Matches every segment with those of its partner views.
+/// What a search for pairs needs of the whole.
+pub struct PairScope<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Its segments.
+    pub sights: &'a Sights,
+    /// Pairs of views with common ground.
+    pub partners: &'a [(ViewId, ViewId)],
+    /// Heights between which lines are sought, metres.
+    pub z_range: [f64; 2],
+    /// Matching parameters.
+    pub params: &'a MatchParams,
+    /// What two segments must have in common.
+    pub alike: Alike,
+}
+
+/// Matches every segment that is not taken yet with those of its partner views.
 pub fn match_pairs(
-    scene: &Scene,
-    sights: &Sights,
-    partners: &[(ViewId, ViewId)],
-    z_range: [f64; 2],
-    params: &MatchParams,
+    scope: &PairScope,
+    taken: impl Fn(SegmentRef) -> bool + Sync,
+    map: MapOfPass,
 ) -> Pairs {
-    let tasks: Vec<(SegmentRef, &Sight)> = scene
-        .view_ids()
-        .flat_map(|view| sights.of_view(view))
+    let free: Vec<SegmentRef> = (scope.scene.view_ids())
+        .flat_map(|view| scope.sights.of_view(view))
+        .map(|(name, _)| name)
+        .filter(|name| !taken(*name))
         .collect();
-    let found = map_shared("pairs", &tasks, 0.2..0.5, |_, (name, sight)| {
-        search_one(scene, sights, partners, z_range, params, *name, sight)
+    let found = map.run("pairs", &free, 0.2..0.5, |_, name| {
+        scope.pairs_of(*name, &taken)
     });
-    let mut searches: Vec<Vec<PairSearch>> = sights
-        .views
-        .iter()
+    let mut searches: Vec<Vec<PairSearch>> = (scope.sights.views.iter())
         .map(|v| vec![PairSearch::default(); v.sights.len()])
         .collect();
     let mut pairs: Vec<Pair> = Vec::new();
+    let least = scope.params.pair_score * scope.params.with_segment;
     for pair in found.into_iter().flatten() {
         for s in [pair.a, pair.b] {
             let search = &mut searches[s.view.index()][s.segment.index()];
             search.candidates += 1;
             search.best = search.best.max(pair.score);
         }
-        if pair.score >= params.pair_score * params.with_segment {
+        if pair.score >= least {
             pairs.push(pair);
         }
     }
     Pairs { pairs, searches }
 }
 
-/// Scores a segment against its candidates in all partner views of higher index.
-fn search_one(
-    scene: &Scene,
-    sights: &Sights,
-    partners: &[(ViewId, ViewId)],
-    z_range: [f64; 2],
-    params: &MatchParams,
-    name: SegmentRef,
-    sight: &Sight,
-) -> Vec<Pair> {
-    let first = scene.view(name.view);
-    let frame = StripFrame::new(&sight.segment, params.window_px);
-    let channel = sight.channel;
-    let strip = Strip::reference(first.channel(channel).0, &frame);
-    let mut pairs = Vec::new();
-    for (_, other) in partners.iter().filter(|(view, _)| *view == name.view) {
-        let camera = scene.camera(*other);
-        let Some(beam) = epipolar_beam(&first.camera, &sight.segment, camera, z_range) else {
-            continue;
+impl Pairs {
+    /// Adds those of a further pass.
+    pub fn append(&mut self, more: Self) {
+        self.pairs.extend(more.pairs);
+        self.searches.resize(more.searches.len(), Vec::new());
+        for (view, searches) in self.searches.iter_mut().zip(more.searches) {
+            view.resize(searches.len(), PairSearch::default());
+            for (search, again) in view.iter_mut().zip(searches) {
+                search.candidates += again.candidates;
+                search.best = search.best.max(again.best);
+            }
+        }
+    }
+}
+
+impl PairScope<'_> {
+    /// Scores a segment against its candidates in all partner views of higher index.
+    fn pairs_of(&self, name: SegmentRef, taken: &impl Fn(SegmentRef) -> bool) -> Vec<Pair> {
+        let Some(sight) = self.sights.get(name) else {
+            return Vec::new();
         };
-        let view = &sights.views[other.index()];
-        for id in view.index.near_quad(&beam, params.gate_px) {
-            let candidate = view.sights[id as usize].as_ref();
-            let Some(candidate) = candidate.filter(|c| c.channel == channel) else {
-                continue;
-            };
-            let Some(geometry) =
-                PairGeometry::new(&first.camera, sight, camera, candidate, z_range, params)
+        let first = self.scene.view(name.view);
+        let frame = StripFrame::new(&sight.segment, self.params.window_px);
+        // What lies beside a line shows in grey values, whichever channel shows the line.
+        let channel = if self.alike.channel {
+            sight.channel
+        } else {
+            Channel::Grey
+        };
+        let strip = Strip::reference(first.channel(channel).0, &frame);
+        let mut pairs = Vec::new();
+        for (_, other) in self.partners.iter().filter(|(view, _)| *view == name.view) {
+            let camera = self.scene.camera(*other);
+            let Some(beam) = epipolar_beam(&first.camera, &sight.segment, camera, self.z_range)
             else {
                 continue;
             };
-            let views = [name.view, *other];
-            let score = pair_score(scene, views, channel, &frame, &strip, &geometry, params);
-            pairs.push(Pair {
-                a: name,
-                b: SegmentRef {
+            let near =
+                (self.sights.views[other.index()].index).near_quad(&beam, self.params.gate_px);
+            for id in near {
+                let b = SegmentRef {
                     view: *other,
                     segment: crate::ids::SegmentId(id),
-                },
-                overlap: geometry.overlap,
-                overlap_px: geometry.to_px - geometry.from_px,
-                score,
-            });
+                };
+                let candidate = self
+                    .sights
+                    .get(b)
+                    .filter(|c| !taken(b) && (!self.alike.channel || c.channel == channel));
+                let Some(geometry) = candidate
+                    .and_then(|c| PairGeometry::new([&first.camera, camera], [sight, c], self))
+                else {
+                    continue;
+                };
+                let views = [name.view, *other];
+                let score = pair_score(
+                    self.scene,
+                    views,
+                    channel,
+                    &frame,
+                    &strip,
+                    &geometry,
+                    self.params,
+                );
+                pairs.push(Pair {
+                    a: name,
+                    b,
+                    overlap: geometry.overlap,
+                    overlap_px: geometry.to_px - geometry.from_px,
+                    score,
+                });
+            }
         }
+        pairs
     }
-    pairs
 }
 
 /// The 3D line that two segments would have in common.
@@ -147,14 +190,8 @@ struct PairGeometry {
 impl PairGeometry {
     /// The common stretch, where it is long enough, well conditioned, in the height range, not too
     /// steep, and of one contrast direction.
-    fn new(
-        first: &Camera,
-        a: &Sight,
-        second: &Camera,
-        b: &Sight,
-        z_range: [f64; 2],
-        params: &MatchParams,
-    ) -> Option<Self> {
+    fn new([first, second]: [&Camera; 2], [a, b]: [&Sight; 2], scope: &PairScope) -> Option<Self> {
+        let params = scope.params;
         let sine = |plane: &Plane, rays: &[Vector3<f64>; 2]| {
             let [s, e] = rays.map(|r| plane.normal.dot(&r).abs());
             s.min(e)
@@ -175,7 +212,7 @@ impl PairGeometry {
         let length = (a1 - a0).norm();
         let direction = (a1 - a0) / length.max(1e-9);
         let (t0, t1) = ((b0 - a0).dot(&direction), (b1 - a0).dot(&direction));
-        if params.same_contrast && t1 <= t0 {
+        if scope.alike.contrast && t1 <= t0 {
             return None;
         }
         let (from, to) = (t0.min(t1).max(0.0), t0.max(t1).min(length));
@@ -185,7 +222,7 @@ impl PairGeometry {
             return None;
         }
         let overlap = Segment3::new(a0 + direction * from, a0 + direction * to);
-        let [low, high] = z_range;
+        let [low, high] = scope.z_range;
         let in_range = |z: f64| z >= low && z <= high;
         let steepest = crate::math::sin(params.max_slope_deg.to_radians());
         (in_range(overlap.p0.z) && in_range(overlap.p1.z) && direction.z.abs() <= steepest)
@@ -327,17 +364,38 @@ mod tests {
         }
     }
 
+    fn pairs_of(
+        scene: &Scene,
+        sights: &Sights,
+        partners: &[(ViewId, ViewId)],
+        alike: Alike,
+    ) -> Pairs {
+        let params = MatchParams::default();
+        let scope = PairScope {
+            scene,
+            sights,
+            partners,
+            z_range: [-2.0, 8.0],
+            params: &params,
+            alike,
+        };
+        match_pairs(&scope, |_| false, MapOfPass::Second)
+    }
+
+    const ALIKE: Alike = Alike {
+        contrast: true,
+        channel: true,
+    };
+
     #[test]
     fn a_line_along_the_baseline_is_no_pair() {
         let scene = planted::scene();
         let segments = planted::segments(&scene);
         let sights = Sights::new(&scene, &segments);
-        let z_range = [-2.0, 8.0];
-        let params = MatchParams::default();
         let partners: Vec<_> = [(0, 1), (0, 3)]
             .map(|(a, b)| (ViewId(a), ViewId(b)))
             .to_vec();
-        let pairs = match_pairs(&scene, &sights, &partners, z_range, &params);
+        let pairs = pairs_of(&scene, &sights, &partners, ALIKE);
         // Edge 1 runs along x, the direction of the baseline of views 0 and 1, edge 0 across it.
         let found = |edge: u32, other: u32| {
             let name = |v| SegmentRef {
@@ -358,19 +416,23 @@ mod tests {
             view: ViewId(v),
             segment: crate::ids::SegmentId(1),
         };
-        let score = |in_color: &[usize]| {
+        let score = |in_color: &[usize], alike: Alike| {
             let mut segments = planted::segments(&scene);
             for &view in in_color {
                 segments[view][1].kind = SegmentKind::Color;
             }
             let sights = Sights::new(&scene, &segments);
-            let params = MatchParams::default();
-            let pairs = match_pairs(&scene, &sights, &partners, [-2.0, 8.0], &params);
+            let pairs = pairs_of(&scene, &sights, &partners, alike);
             pairs.score(name(0), name(3))
         };
         // The scene has no colour, so that grey values stand for it.
-        assert!(score(&[]) > 0.0 && score(&[0, 3]) > 0.0);
-        assert_eq!(score(&[0]), 0.0);
-        assert_eq!(score(&[3]), 0.0);
+        assert!(score(&[], ALIKE) > 0.0 && score(&[0, 3], ALIKE) > 0.0);
+        assert_eq!(score(&[0], ALIKE), 0.0);
+        assert_eq!(score(&[3], ALIKE), 0.0);
+        let any = Alike {
+            channel: false,
+            ..ALIKE
+        };
+        assert!(score(&[3], any) > 0.0, "where they need not be alike");
     }
 }

@@ -9,13 +9,14 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+use super::MapOfPass;
 use super::nviews::{Context, Line, Rejection, complete_line};
 use super::pairs::{Pair, Pairs};
 use super::sight::SegmentRef;
 use super::triples::Bundle;
+use crate::lines2d::ImageSegment;
 use crate::parallel::SILENT;
 use crate::progress::reached;
-use crate::shares::map_shared;
 
 /// What became of a bundle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,18 +39,16 @@ pub struct Selection {
     pub owners: Vec<Vec<Option<usize>>>,
 }
 
-/// Takes bundles by falling evidence.
-pub fn winner_takes_all(context: &Context, pairs: &Pairs, bundles: &[Bundle]) -> Selection {
-    let mut selection = Selection {
-        lines: Vec::new(),
-        fates: vec![Fate::Rejected(Rejection::NoFit); bundles.len()],
-        owners: context
-            .segments
-            .iter()
-            .map(|v| vec![None; v.len()])
-            .collect(),
-    };
-    let weighed = map_shared("bundles", bundles, SILENT, |_, b| {
+/// Takes bundles by falling evidence; `selection` holds what an earlier pass has taken.
+pub fn winner_takes_all(
+    context: &Context,
+    pairs: &Pairs,
+    bundles: &[Bundle],
+    map: MapOfPass,
+    selection: &mut Selection,
+) {
+    let mut fates = vec![Fate::Rejected(Rejection::NoFit); bundles.len()];
+    let weighed = map.run("bundles", bundles, SILENT, |_, b| {
         evidence(context, &pairs.pairs[b.pair], b)
     });
     let mut queue: BinaryHeap<Entry> = (weighed.into_iter().enumerate())
@@ -59,7 +58,7 @@ pub fn winner_takes_all(context: &Context, pairs: &Pairs, bundles: &[Bundle]) ->
         let bundle = &bundles[entry.bundle];
         let pair = &pairs.pairs[bundle.pair];
         if let Some(owner) = selection.owner(pair.a).or(selection.owner(pair.b)) {
-            selection.fates[entry.bundle] = Fate::Lost(owner);
+            fates[entry.bundle] = Fate::Lost(owner);
             continue;
         }
         // What others took since does not count any more: back into the queue with the rest.
@@ -86,10 +85,10 @@ pub fn winner_takes_all(context: &Context, pairs: &Pairs, bundles: &[Bundle]) ->
             Ok(line) => selection.accept(line),
             Err(reason) => Fate::Rejected(reason),
         };
-        selection.fates[entry.bundle] = fate;
+        fates[entry.bundle] = fate;
         reached(0.6 + 0.4 * (1.0 - queue.len() as f64 / bundles.len() as f64));
     }
-    selection
+    selection.fates.extend(fates);
 }
 
 /// Evidence for the line of a bundle: seen length times the sum over the views of the best score,
@@ -111,7 +110,17 @@ fn evidence(context: &Context, pair: &Pair, bundle: &Bundle) -> f64 {
 }
 
 impl Selection {
-    fn owner(&self, s: SegmentRef) -> Option<usize> {
+    /// Of segments (one list a view) none is taken yet.
+    pub fn none(segments: &[Vec<ImageSegment>]) -> Self {
+        Self {
+            lines: Vec::new(),
+            fates: Vec::new(),
+            owners: segments.iter().map(|v| vec![None; v.len()]).collect(),
+        }
+    }
+
+    /// The line that owns a segment.
+    pub fn owner(&self, s: SegmentRef) -> Option<usize> {
         self.owners[s.view.index()][s.segment.index()]
     }
 

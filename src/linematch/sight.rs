@@ -20,11 +20,20 @@ pub struct SegmentRef {
     pub segment: SegmentId,
 }
 
+/// What must be the same of all segments that show a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Alike {
+    /// The bright side.
+    pub contrast: bool,
+    /// The channel.
+    pub channel: bool,
+}
+
 /// A segment with its rays and its interpretation plane.
 pub struct Sight {
     /// The segment, directed by contrast.
     pub segment: Segment2,
-    /// The channel that shows it; segments of different channels are no images of one line.
+    /// The channel that shows it.
     pub channel: Channel,
     /// Its length, pixels.
     pub length_px: f64,
@@ -99,9 +108,24 @@ impl Sights {
         self.views[name.view.index()].sights[name.segment.index()].as_ref()
     }
 
-    /// The channel that shows a line's segments, which is the same for all; `None` without segments.
-    pub fn channel(&self, segments: &[SegmentRef]) -> Option<Channel> {
-        segments.iter().find_map(|s| Some(self.get(*s)?.channel))
+    /// The channel that shows most of a line's segments, grey values where both show as many; `None` without
+    /// segments.
+    pub fn channel<'s>(
+        &self,
+        segments: impl IntoIterator<Item = &'s SegmentRef>,
+    ) -> Option<Channel> {
+        let (mut grey, mut warm) = (0, 0);
+        for s in segments {
+            match self.get(*s)?.channel {
+                Channel::Grey => grey += 1,
+                Channel::Warmth => warm += 1,
+            }
+        }
+        (grey + warm > 0).then_some(if warm > grey {
+            Channel::Warmth
+        } else {
+            Channel::Grey
+        })
     }
 
     /// The names of all segments of a view that can be matched.

@@ -13,14 +13,13 @@
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::pairs::{Pair, Pairs};
+use super::MapOfPass;
+use super::pairs::{Pair, PairScope, Pairs};
 use super::sight::{SegmentRef, Sight, Sights};
 use crate::geometry::Segment3;
 use crate::ids::ViewId;
 use crate::lines3d::ProjectedLine;
-use crate::params::MatchParams;
 use crate::scene::Scene;
-use crate::shares::map_shared;
 
 /// Predictions less certain than this many pixels (one standard deviation) verify nothing.
 const MAX_SIGMA_PX: f64 = 2.0;
@@ -52,24 +51,17 @@ impl Bundle {
 }
 
 /// Verifies every pair above the threshold in all other views.
-pub fn verify_pairs(
-    scene: &Scene,
-    sights: &Sights,
-    pairs: &Pairs,
-    params: &MatchParams,
-) -> Vec<Bundle> {
+pub fn verify_pairs(scope: &PairScope, pairs: &Pairs, map: MapOfPass) -> Vec<Bundle> {
     let strong: Vec<usize> = (0..pairs.pairs.len())
-        .filter(|&i| pairs.pairs[i].score >= params.pair_score)
+        .filter(|&i| pairs.pairs[i].score >= scope.params.pair_score)
         .collect();
-    map_shared("triples", &strong, 0.5..0.6, |_, &index| {
+    map.run("triples", &strong, 0.5..0.6, |_, &index| {
         let pair = &pairs.pairs[index];
-        let others = scene
-            .view_ids()
-            .filter(|v| *v != pair.a.view && *v != pair.b.view);
+        let others = (scope.scene.view_ids()).filter(|v| *v != pair.a.view && *v != pair.b.view);
         Bundle {
             pair: index,
             verified: others
-                .flat_map(|view| verify_in_view(scene, sights, pairs, pair, view, params))
+                .flat_map(|view| verify_in_view(scope, pairs, pair, view))
                 .collect(),
         }
     })
@@ -77,17 +69,16 @@ pub fn verify_pairs(
 
 /// Segments of one view at the predicted position that also pass the photometric test.
 fn verify_in_view(
-    scene: &Scene,
-    sights: &Sights,
+    scope: &PairScope,
     pairs: &Pairs,
     pair: &Pair,
     view: ViewId,
-    params: &MatchParams,
 ) -> Vec<Verification> {
+    let (scene, sights) = (scope.scene, scope.sights);
     let Some(prediction) = Prediction::new(scene, sights, pair, view) else {
         return Vec::new();
     };
-    let reach = params.gate_px.max(3.0 * prediction.sigma_px);
+    let reach = scope.params.gate_px.max(3.0 * prediction.sigma_px);
     let ends = [
         prediction.image.at(0.0),
         prediction.image.at(prediction.length),
@@ -106,7 +97,7 @@ fn verify_in_view(
                 segment: crate::ids::SegmentId(id),
             };
             let sight = sights.get(segment)?;
-            prediction.agrees(sight, reach, params).then_some(())?;
+            prediction.agrees(sight, reach, scope).then_some(())?;
             let score = pairs
                 .score(pair.a, segment)
                 .max(pairs.score(pair.b, segment));
@@ -148,17 +139,17 @@ impl Prediction {
     }
 
     /// Does a segment lie on the prediction, over their common stretch?
-    fn agrees(&self, sight: &Sight, reach: f64, params: &MatchParams) -> bool {
+    fn agrees(&self, sight: &Sight, reach: f64, scope: &PairScope) -> bool {
         let ends = [sight.segment.p0, sight.segment.p1];
         let [t0, t1] = ends.map(|p| self.image.t_of(&p));
-        if params.same_contrast && t1 <= t0 {
+        if scope.alike.contrast && t1 <= t0 {
             return false;
         }
         let (from, to) = (t0.min(t1).max(0.0), t0.max(t1).min(self.length));
         let span = (t1 - t0).abs();
         // Half a window in common, or half of a short one.
         let px = sight.length_px / span.max(1e-9);
-        if (to - from) * px < 0.5 * (params.window_px as f64).min(sight.length_px) {
+        if (to - from) * px < 0.5 * (scope.params.window_px as f64).min(sight.length_px) {
             return false;
         }
         let gate = (reach * reach + 9.0 * sight.sigma_px * sight.sigma_px).sqrt();

@@ -180,7 +180,7 @@ pub struct MatchParams {
     /// Least number of views of a line where six or more see it. B99 3.4: "here 4". Three where
     /// fewer do.
     pub min_views: usize,
-    /// Must the bright side be the same in all views? Assumption: one flight, one sun.
+    /// Must the bright side be the same in the views that a line is first seen in? Assumption: one flight, one sun.
     pub same_contrast: bool,
     /// Grey-value noise that windows are trusted against, 0 to 1. Assumption: an 8-bit camera and a
     /// good JPEG.

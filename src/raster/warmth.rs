@@ -20,6 +20,16 @@ pub enum Channel {
     Warmth,
 }
 
+impl Channel {
+    /// The one that is not this.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Grey => Self::Warmth,
+            Self::Warmth => Self::Grey,
+        }
+    }
+}
+
 /// The warmth of an image.
 #[derive(Clone, Debug)]
 pub struct Warmth {
