@@ -179,18 +179,22 @@ impl Strips {
             |view, side, theta| side_strip(scene, [first, view], channel, frame, line, side, theta);
         let best = |side: StripSide| {
             let mut chosen: Option<(f64, f64, Vec<Strip>)> = None;
-            for &theta in &params.plane_angles_deg {
-                let strips: Vec<Strip> = measured
-                    .iter()
-                    .map(|&i| warped(views[i].view, side, theta))
-                    .collect::<Option<_>>()?;
-                let total: f64 = (0..strips.len())
-                    .flat_map(|i| (0..i).map(move |j| (i, j)))
-                    .map(|(i, j)| side_score(&strips[i], &strips[j], side, params))
-                    .sum();
-                if chosen.as_ref().is_none_or(|c| total > c.0) {
-                    chosen = Some((total, theta, strips));
+            'angles: for &theta in &params.plane_angles_deg {
+                let mut strips: Vec<Strip> = Vec::with_capacity(measured.len());
+                let (mut total, mut left) = (0.0, pairs);
+                for &i in &measured {
+                    let strip = warped(views[i].view, side, theta)?;
+                    for other in &strips {
+                        total += side_score(&strip, other, side, params);
+                        left -= 1.0;
+                    }
+                    // No pair scores more than one: what cannot win any more is not looked at further.
+                    if chosen.as_ref().is_some_and(|c| total + left <= c.0) {
+                        continue 'angles;
+                    }
+                    strips.push(strip);
                 }
+                chosen = Some((total, theta, strips));
                 // Where a plane explains the side well enough, no other need be tried.
                 if total >= 0.8 * pairs {
                     break;

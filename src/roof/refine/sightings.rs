@@ -261,6 +261,9 @@ impl Profiles {
         [ends, compared]: [usize; 2],
     ) -> Option<Profile> {
         let (camera, gray) = (scene.camera(view), &scene.view(view).gray);
+        // Homogeneous image coordinates are linear across the side.
+        let to_image = camera.k * camera.r;
+        let step = to_image * self.outward * self.step_m();
         let count = 2 * compared + 1;
         let mut rows = vec![vec![f32::NAN; self.samples]; count];
         let mut seen = 0usize;
@@ -271,10 +274,14 @@ impl Profiles {
             if i % 8 == 0 {
                 hidden = sight.hidden(&p, &camera.center);
             }
-            let across = |step: f64| {
-                let s = step * self.step_m();
-                let x = camera.project(&(p + self.outward * s));
-                x.map_or([f32::NAN; 2], |x| [x.x as f32, x.y as f32])
+            let middle = to_image * (p - camera.center);
+            let across = |steps: f64| {
+                let x = middle + step * steps;
+                if x.z > 1e-9 {
+                    [(x.x / x.z) as f32, (x.y / x.z) as f32]
+                } else {
+                    [f32::NAN; 2]
+                }
             };
             let is_seen = |[x, y]: [f32; 2]| gray.sample(x, y).is_some();
             // Seen from end to end or not at all.
