@@ -96,15 +96,15 @@ $(WASM32):
 	rustup target add wasm32-unknown-unknown
 	touch $@
 
-# Built from source: the download pages of ready-made binaries are not reachable everywhere. The
+# Built from source, for any processor: the download pages of ready-made binaries are not reachable everywhere. The
 # locked versions may have been withdrawn since; then any that fit will do.
 $(WASM_BINDGEN):
-	cargo install --locked --root $(TOOLS)/wasm-bindgen-$(WASM_BINDGEN_VERSION) wasm-bindgen-cli --version $(WASM_BINDGEN_VERSION) \
-		|| cargo install --root $(TOOLS)/wasm-bindgen-$(WASM_BINDGEN_VERSION) wasm-bindgen-cli --version $(WASM_BINDGEN_VERSION)
+	RUSTFLAGS= cargo install --locked --root $(TOOLS)/wasm-bindgen-$(WASM_BINDGEN_VERSION) wasm-bindgen-cli --version $(WASM_BINDGEN_VERSION) \
+		|| RUSTFLAGS= cargo install --root $(TOOLS)/wasm-bindgen-$(WASM_BINDGEN_VERSION) wasm-bindgen-cli --version $(WASM_BINDGEN_VERSION)
 
 $(WASM_PACK):
-	cargo install --locked --root $(TOOLS)/wasm-pack-$(WASM_PACK_VERSION) wasm-pack --version $(WASM_PACK_VERSION) \
-		|| cargo install --root $(TOOLS)/wasm-pack-$(WASM_PACK_VERSION) wasm-pack --version $(WASM_PACK_VERSION)
+	RUSTFLAGS= cargo install --locked --root $(TOOLS)/wasm-pack-$(WASM_PACK_VERSION) wasm-pack --version $(WASM_PACK_VERSION) \
+		|| RUSTFLAGS= cargo install --root $(TOOLS)/wasm-pack-$(WASM_PACK_VERSION) wasm-pack --version $(WASM_PACK_VERSION)
 
 # The lock file's content decides, not its time: a fresh checkout of the same lock installs nothing.
 $(NPM):
