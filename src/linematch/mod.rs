@@ -37,7 +37,6 @@ pub use strip::EdgelScore;
 pub use trace::{MatchTrace, PairTrace, SegmentOutcome, StepCount};
 pub use triples::Verification;
 
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use nviews::Context;
@@ -51,7 +50,6 @@ use crate::ids::{SegmentId, ViewId};
 use crate::lines2d::ImageSegment;
 use crate::params::{Lines3dParams, MatchParams};
 use crate::scene::Scene;
-use crate::shares::map_shared;
 
 /// Matches the segments of all views (one list a view, in the order of the scene's views) over
 /// three and more views. Fewer than three views, or views without common ground, give no match.
@@ -96,7 +94,7 @@ pub fn match_lines(
         alike,
     };
     let mut found = Found::nothing_yet(segments);
-    found.pass(&scope, &context, MapOfPass::First);
+    found.search(&scope, &context, Pass::First);
     // Few views: each of them is needed, however it shows a line.
     let few = scene.views.len() <= params.min_views;
     if few && !found.selection.lines.is_empty() {
@@ -104,10 +102,10 @@ pub fn match_lines(
             contrast: false,
             channel: false,
         };
-        found.pass(
+        found.search(
             &PairScope { alike, ..scope },
             &Context { alike, ..context },
-            MapOfPass::Second,
+            Pass::Second,
         );
     }
     let Found {
@@ -137,11 +135,11 @@ impl Found {
     }
 
     /// Matches the segments that no line owns yet.
-    fn pass(&mut self, scope: &PairScope, context: &Context, map: MapOfPass) {
+    fn search(&mut self, scope: &PairScope, context: &Context, pass: Pass) {
         let taken = |s| self.selection.owner(s).is_some();
-        let pairs = pairs::match_pairs(scope, taken, map);
-        let bundles = triples::verify_pairs(scope, &pairs, map);
-        select::winner_takes_all(context, &pairs, &bundles, map, &mut self.selection);
+        let pairs = pairs::match_pairs(scope, taken, pass);
+        let bundles = triples::verify_pairs(scope, &pairs, pass);
+        select::winner_takes_all(context, &pairs, &bundles, pass, &mut self.selection);
         let before = self.pairs.pairs.len();
         self.bundles
             .extend(bundles.into_iter().map(|bundle| Bundle {
@@ -152,24 +150,20 @@ impl Found {
     }
 }
 
-/// Of several passes workers share the first one's maps only: what is left for later ones depends on it.
-#[derive(Clone, Copy)]
-enum MapOfPass {
+/// Which of the searches through the segments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pass {
     First,
     Second,
 }
 
-impl MapOfPass {
-    fn run<T: Sync, R: Send + Serialize + DeserializeOwned>(
-        self,
-        name: &str,
-        items: &[T],
-        part: std::ops::Range<f64>,
-        f: impl Fn(usize, &T) -> R + Sync,
-    ) -> Vec<R> {
+impl Pass {
+    /// The name under which instances share a map. They share those of the first pass only: what is left for the second
+    /// one depends on all of them.
+    fn map(self, name: &'static str) -> &'static str {
         match self {
-            Self::First => map_shared(name, items, part, f),
-            Self::Second => crate::parallel::map_part(items, part, f),
+            Self::First => name,
+            Self::Second => "of the second pass",
         }
     }
 }

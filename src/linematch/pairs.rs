@@ -11,7 +11,7 @@
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::MapOfPass;
+use super::Pass;
 use super::sight::{Alike, SegmentRef, Sight, Sights, epipolar_beam, ray_in_plane};
 use super::strip::{EdgelScore, Strip, StripFrame, StripSide, correlate};
 use crate::camera::{Camera, Homography, homography_of_plane};
@@ -21,6 +21,7 @@ use crate::ids::ViewId;
 use crate::params::MatchParams;
 use crate::raster::Channel;
 use crate::scene::Scene;
+use crate::shares::map_shared;
 
 /// Two segments that may be images of one line.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -75,14 +76,14 @@ pub struct PairScope<'a> {
 pub fn match_pairs(
     scope: &PairScope,
     taken: impl Fn(SegmentRef) -> bool + Sync,
-    map: MapOfPass,
+    pass: Pass,
 ) -> Pairs {
     let free: Vec<SegmentRef> = (scope.scene.view_ids())
         .flat_map(|view| scope.sights.of_view(view))
         .map(|(name, _)| name)
         .filter(|name| !taken(*name))
         .collect();
-    let found = map.run("pairs", &free, 0.2..0.5, |_, name| {
+    let found = map_shared(pass.map("pairs"), &free, 0.2..0.5, |_, name| {
         scope.pairs_of(*name, &taken)
     });
     let mut searches: Vec<Vec<PairSearch>> = (scope.sights.views.iter())
@@ -379,7 +380,7 @@ mod tests {
             params: &params,
             alike,
         };
-        match_pairs(&scope, |_| false, MapOfPass::Second)
+        match_pairs(&scope, |_| false, Pass::Second)
     }
 
     const ALIKE: Alike = Alike {

@@ -9,7 +9,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::MapOfPass;
+use super::Pass;
 use super::nviews::{Context, Line, Rejection, complete_line};
 use super::pairs::{Pair, Pairs};
 use super::sight::SegmentRef;
@@ -17,6 +17,7 @@ use super::triples::Bundle;
 use crate::lines2d::ImageSegment;
 use crate::parallel::SILENT;
 use crate::progress::reached;
+use crate::shares::map_shared;
 
 /// What became of a bundle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,11 +45,11 @@ pub fn winner_takes_all(
     context: &Context,
     pairs: &Pairs,
     bundles: &[Bundle],
-    map: MapOfPass,
+    pass: Pass,
     selection: &mut Selection,
 ) {
     let mut fates = vec![Fate::Rejected(Rejection::NoFit); bundles.len()];
-    let weighed = map.run("bundles", bundles, SILENT, |_, b| {
+    let weighed = map_shared(pass.map("bundles"), bundles, SILENT, |_, b| {
         evidence(context, &pairs.pairs[b.pair], b)
     });
     let mut queue: BinaryHeap<Entry> = (weighed.into_iter().enumerate())

@@ -13,13 +13,14 @@
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::MapOfPass;
+use super::Pass;
 use super::pairs::{Pair, PairScope, Pairs};
 use super::sight::{SegmentRef, Sight, Sights};
 use crate::geometry::Segment3;
 use crate::ids::ViewId;
 use crate::lines3d::ProjectedLine;
 use crate::scene::Scene;
+use crate::shares::map_shared;
 
 /// Predictions less certain than this many pixels (one standard deviation) verify nothing.
 const MAX_SIGMA_PX: f64 = 2.0;
@@ -51,11 +52,11 @@ impl Bundle {
 }
 
 /// Verifies every pair above the threshold in all other views.
-pub fn verify_pairs(scope: &PairScope, pairs: &Pairs, map: MapOfPass) -> Vec<Bundle> {
+pub fn verify_pairs(scope: &PairScope, pairs: &Pairs, pass: Pass) -> Vec<Bundle> {
     let strong: Vec<usize> = (0..pairs.pairs.len())
         .filter(|&i| pairs.pairs[i].score >= scope.params.pair_score)
         .collect();
-    map.run("triples", &strong, 0.5..0.6, |_, &index| {
+    map_shared(pass.map("triples"), &strong, 0.5..0.6, |_, &index| {
         let pair = &pairs.pairs[index];
         let others = (scope.scene.view_ids()).filter(|v| *v != pair.a.view && *v != pair.b.view);
         Bundle {
