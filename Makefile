@@ -78,7 +78,7 @@ clean:
 # What makes the linked whole smaller and no slower: few of its loops gain by being unrolled, straight code by vectors that
 # are not written as such, or large functions by being inlined because they are generic.
 SMALL := -C no-vectorize-slp $(addprefix -C llvm-args=-,unroll-runtime=false unroll-threshold-default=100 \
-	unroll-threshold-aggressive=100 inlinehint-threshold=110)
+	unroll-threshold-aggressive=100 inlinehint-threshold=50)
 
 $(PACKAGE): $(RUST_SOURCES) $(WASM32) $(WASM_BINDGEN) $(NPM)
 	cargo rustc --lib --profile wasm --target wasm32-unknown-unknown -- $(SMALL)
