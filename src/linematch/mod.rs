@@ -37,6 +37,8 @@ pub use strip::EdgelScore;
 pub use trace::{MatchTrace, PairTrace, SegmentOutcome, StepCount};
 pub use triples::Verification;
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use nviews::Context;
@@ -48,6 +50,7 @@ use triples::Bundle;
 use crate::geometry::Segment2;
 use crate::ids::{SegmentId, ViewId};
 use crate::lines2d::ImageSegment;
+use crate::parallel::SILENT;
 use crate::params::{Lines3dParams, MatchParams};
 use crate::scene::Scene;
 
@@ -164,6 +167,14 @@ impl Pass {
         match self {
             Self::First => name,
             Self::Second => "of the second pass",
+        }
+    }
+
+    /// The part of the stage's progress that a map is: the second pass is short and says nothing.
+    fn part(self, part: Range<f64>) -> Range<f64> {
+        match self {
+            Self::First => part,
+            Self::Second => SILENT,
         }
     }
 }

@@ -83,7 +83,7 @@ pub fn match_pairs(
         .map(|(name, _)| name)
         .filter(|name| !taken(*name))
         .collect();
-    let found = map_shared(pass.map("pairs"), &free, 0.2..0.5, |_, name| {
+    let found = map_shared(pass.map("pairs"), &free, pass.part(0.2..0.5), |_, name| {
         scope.pairs_of(*name, &taken)
     });
     let mut searches: Vec<Vec<PairSearch>> = (scope.sights.views.iter())

@@ -87,7 +87,9 @@ pub fn winner_takes_all(
             Err(reason) => Fate::Rejected(reason),
         };
         fates[entry.bundle] = fate;
-        reached(0.6 + 0.4 * (1.0 - queue.len() as f64 / bundles.len() as f64));
+        if pass == Pass::First {
+            reached(0.6 + 0.4 * (1.0 - queue.len() as f64 / bundles.len() as f64));
+        }
     }
     selection.fates.extend(fates);
 }

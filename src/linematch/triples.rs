@@ -56,16 +56,22 @@ pub fn verify_pairs(scope: &PairScope, pairs: &Pairs, pass: Pass) -> Vec<Bundle>
     let strong: Vec<usize> = (0..pairs.pairs.len())
         .filter(|&i| pairs.pairs[i].score >= scope.params.pair_score)
         .collect();
-    map_shared(pass.map("triples"), &strong, 0.5..0.6, |_, &index| {
-        let pair = &pairs.pairs[index];
-        let others = (scope.scene.view_ids()).filter(|v| *v != pair.a.view && *v != pair.b.view);
-        Bundle {
-            pair: index,
-            verified: others
-                .flat_map(|view| verify_in_view(scope, pairs, pair, view))
-                .collect(),
-        }
-    })
+    map_shared(
+        pass.map("triples"),
+        &strong,
+        pass.part(0.5..0.6),
+        |_, &index| {
+            let pair = &pairs.pairs[index];
+            let others =
+                (scope.scene.view_ids()).filter(|v| *v != pair.a.view && *v != pair.b.view);
+            Bundle {
+                pair: index,
+                verified: others
+                    .flat_map(|view| verify_in_view(scope, pairs, pair, view))
+                    .collect(),
+            }
+        },
+    )
 }
 
 /// Segments of one view at the predicted position that also pass the photometric test.
