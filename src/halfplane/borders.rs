@@ -13,13 +13,13 @@
 //! their planes meet.
 
 use nalgebra::{Point2, Vector2};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
+use super::ThetaFrame;
 use super::extent::extent_lines;
-use super::grouping::{GroupingInput, Member, PlaneGroup};
+use super::grouping::{GroupingInput, Member};
 use super::hypothesis::Hypothesis;
-use super::proposed::ProposedPlane;
-use super::{Side, ThetaFrame};
+use super::region::MARGIN;
 use crate::geometry::Segment3;
 use crate::params::RoofParams;
 use crate::sorting::sort_by;
@@ -72,110 +72,6 @@ impl Border {
     }
 }
 
-/// The part of the plan that a group may cover: boxes beside its supporting lines.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Region {
-    boxes: Vec<PlanBox>,
-}
-
-/// A rectangle beside a line: origin at the line's start, `along` its direction, `across` to the left.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct PlanBox {
-    start: Point2<f64>,
-    along: Vector2<f64>,
-    length: f64,
-    left: f64,
-    right: f64,
-    ends: f64,
-}
-
-impl PlanBox {
-    /// The box of a rectangle along its first side.
-    fn around(rectangle: &ProposedPlane) -> Option<Self> {
-        let [start, end] = rectangle.sides().next()?;
-        let along = (end - start).try_normalize(1e-6)?;
-        let across = Vector2::new(-along.y, along.x);
-        let span = |axis: &Vector2<f64>| {
-            let at = rectangle.ring.iter().map(|p| (p.xy() - start).dot(axis));
-            at.fold((0.0f64, 0.0f64), |(low, high), t| (low.min(t), high.max(t)))
-        };
-        let ((t0, t1), (u0, u1)) = (span(&along), span(&across));
-        Some(Self {
-            start: start + along * t0,
-            along,
-            length: t1 - t0,
-            left: u1 + MARGIN,
-            right: MARGIN - u0,
-            ends: MARGIN,
-        })
-    }
-}
-
-impl Region {
-    /// The region of a group: `depth` away from each supporting line on the side of its half-plane
-    /// (both sides for a line without one), a little beyond on the other side and over the ends.
-    pub fn new(input: &GroupingInput, group: &PlaneGroup, params: &RoofParams) -> Self {
-        let boxes = group
-            .members
-            .iter()
-            .filter_map(|m| {
-                let line = &input.lines[m.line.index()].segment;
-                let (a, b) = (line.p0.xy(), line.p1.xy());
-                let length = (b - a).norm();
-                if length < 1e-6 {
-                    return None;
-                }
-                let depth = length.clamp(params.min_facet_depth_m, params.max_facet_depth_m);
-                let (left, right) = match m.side {
-                    Some(Side::Left) => (depth, MARGIN),
-                    Some(Side::Right) => (MARGIN, depth),
-                    // It lies in the plane, but which side of it the plane covers is unknown.
-                    None => (MARGIN, MARGIN),
-                };
-                let ends = (0.5 * length).clamp(params.extension_m, params.min_facet_depth_m);
-                Some(PlanBox {
-                    start: a,
-                    along: (b - a) / length,
-                    length,
-                    left,
-                    right,
-                    ends,
-                })
-            })
-            .chain(group.rectangles(input).filter_map(PlanBox::around))
-            .collect();
-        Self { boxes }
-    }
-
-    /// Does the region hold a plan position?
-    pub fn contains(&self, p: &Point2<f64>) -> bool {
-        self.boxes.iter().any(|b| {
-            let d = p - b.start;
-            let (t, u) = (d.dot(&b.along), b.along.x * d.y - b.along.y * d.x);
-            t >= -b.ends && t <= b.length + b.ends && u <= b.left && u >= -b.right
-        })
-    }
-
-    /// Least and largest x and y, metres.
-    pub fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
-        let mut min = Point2::new(f64::INFINITY, f64::INFINITY);
-        let mut max = -min;
-        for b in &self.boxes {
-            let across = Vector2::new(-b.along.y, b.along.x);
-            for t in [-b.ends, b.length + b.ends] {
-                for u in [b.left, -b.right] {
-                    let p = b.start + b.along * t + across * u;
-                    min = Point2::new(min.x.min(p.x), min.y.min(p.y));
-                    max = Point2::new(max.x.max(p.x), max.y.max(p.y));
-                }
-            }
-        }
-        (min, max)
-    }
-}
-
-/// How far a region reaches behind its line, metres: more than the line's own uncertainty.
-const MARGIN: f64 = 0.5;
 /// A line within this distance of an intersection, metres, and this angle is the same line.
 const SAME_LINE: f64 = 0.3;
 const SAME_LINE_SINE: f64 = 0.09;

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::arrangement::Arrangement;
 use super::border_cost::{BorderCosts, LINE_HEIGHT};
-use super::borders::{Border, Region, border_lines};
+use super::borders::{Border, border_lines};
 use super::consistency::{ConsistencyMap, consistency_map};
 use super::delineation::{Delineation, Outline, delineate, signed_area};
 use super::evidence::Evidence;
@@ -23,6 +23,7 @@ use super::neighbourhood::line_neighbours;
 use super::plan::PlanGrid;
 use super::plane_lines::PlaneLine;
 use super::proposed::add_rectangles;
+use super::region::Region;
 use crate::geometry::Plane;
 use crate::ids::BuildingId;
 use crate::lines3d::Line3d;

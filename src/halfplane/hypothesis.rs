@@ -3,11 +3,11 @@
 use nalgebra::{Point2, Vector2};
 
 use super::Side;
-use super::borders::Region;
 use super::consistency::{ConsistencyMap, consistency_map, least_correlation};
 use super::grouping::{GroupingInput, PlaneGroup};
 use super::plan::PlanGrid;
 use super::plane_lines::{PlaneLine, lines_in_plane, rays_through_ends};
+use super::region::Region;
 use crate::geometry::{Plane, Segment3};
 use crate::lines2d::ImageSegment;
 use crate::params::RoofParams;

@@ -5,10 +5,10 @@
 //! neighbours around a corner only are asked where the sweep found no half-plane between them.
 
 use super::Side;
-use super::borders::Region;
 use super::grouping::{
     GroupingInput, PlaneGroup, all_lie_in, extend, fit_plane, infer_sides, lies_in_plane, member,
 };
+use super::region::Region;
 use crate::geometry::Plane;
 use crate::ids::{HalfPlaneId, LineId};
 use crate::lines3d::Line3d;

@@ -18,6 +18,7 @@
 //! 4.2  neighbourhood  Delaunay triangulation constrained to the projected lines
 //!      grouping       collinear and coplanar grouping (figures 16 to 18)
 //!      proposed       planes of the other method beside the groups
+//!      region         the part of the plan that a group may cover
 //!      plane_lines    new lines in a plane from segments of several views
 //!      borders        border lines, new lines by plane intersection (figures 19 to 22)
 //!      extent         closing lines where the views cease to agree on a plane
@@ -63,6 +64,7 @@ mod plane_lines;
 mod poi;
 mod posterior;
 mod proposed;
+mod region;
 mod similarity;
 mod strip;
 mod sweep;

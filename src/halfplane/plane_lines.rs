@@ -9,7 +9,7 @@
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::borders::Region;
+use super::region::Region;
 use crate::geometry::{Plane, Segment3};
 use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;

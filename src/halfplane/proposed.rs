@@ -10,8 +10,8 @@ use nalgebra::{Point2, Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::Side;
-use super::borders::Region;
 use super::grouping::{GroupingInput, Member, PlaneGroup, fit_plane, lies_in_plane, member};
+use super::region::Region;
 use crate::geometry::Plane;
 use crate::ids::LineId;
 use crate::lines3d::Line3d;
