@@ -114,10 +114,36 @@ pub fn border_lines(
     for border in closing_lines(input, hypotheses, params) {
         add(&mut borders, border);
     }
+    for border in hull_sides(hypotheses, params) {
+        add(&mut borders, border);
+    }
     for border in rectangle_sides(input, hypotheses) {
         add(&mut borders, border);
     }
     borders
+}
+
+/// The sides of the planes' convex hulls (B99 4.3) that are level, as ridges and eaves are, and long enough to be an edge
+/// of a facet; the longest first.
+fn hull_sides(hypotheses: &[Hypothesis], params: &RoofParams) -> Vec<Border> {
+    let mut sides = Vec::new();
+    for h in hypotheses {
+        let down = h.group.plane.normal.xy();
+        let Some(level) = Vector2::new(-down.y, down.x).try_normalize(MIN_CREASE) else {
+            continue;
+        };
+        sides.extend(h.region.hull_sides().filter_map(|[a, b]| {
+            let side = Border {
+                kind: BorderKind::Closing,
+                a,
+                b,
+            };
+            let is_level = side.direction().perp(&level).abs() < SAME_LINE_SINE;
+            (is_level && side.length() >= params.min_facet_depth_m).then_some(side)
+        }));
+    }
+    sort_by(&mut sides, |a, b| b.length().total_cmp(&a.length()));
+    sides
 }
 
 /// New lines by plane intersection (B99 4.2): where both planes' regions hold it.

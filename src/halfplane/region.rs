@@ -102,6 +102,12 @@ impl Region {
         }) || is_inside(&self.hull, p)
     }
 
+    /// The sides of the convex hull of the group's lines, metres.
+    pub fn hull_sides(&self) -> impl Iterator<Item = [Point2<f64>; 2]> + '_ {
+        let next = self.hull.iter().cycle().skip(1);
+        self.hull.iter().zip(next).map(|(a, b)| [*a, *b])
+    }
+
     /// Least and largest x and y, metres.
     pub fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
         let mut min = Point2::new(f64::INFINITY, f64::INFINITY);
