@@ -24,6 +24,7 @@ use super::plan::PlanGrid;
 use super::plane_lines::PlaneLine;
 use super::proposed::add_rectangles;
 use super::region::Region;
+use super::width::holds_a_window;
 use crate::geometry::Plane;
 use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
@@ -40,6 +41,8 @@ pub enum FacetRejection {
         /// Sloped area, square metres.
         area_m2: f64,
     },
+    /// No window fits into it, so that nothing but its edges speaks for it.
+    TooNarrow,
     /// On the ground, or too little above it.
     NearGround {
         /// Height of its middle above the ground, metres.
@@ -155,6 +158,7 @@ pub fn reconstruct_facets(
         arrangement,
         planes,
         index,
+        step: grid.step,
     };
     let (facets, rejected) = solver.solve(&groups, ground, params);
     let cells = solver.arrangement.cells;
@@ -251,6 +255,8 @@ struct Solver {
     arrangement: Arrangement,
     planes: Vec<Plane>,
     index: LineIndex,
+    /// Distance of the positions at which views are compared, metres.
+    step: f64,
 }
 
 impl Solver {
@@ -380,6 +386,11 @@ impl Solver {
         let area_m2 = signed_area(&ring, &plan) / facet.plane.normal.z;
         if area_m2 < params.min_area_m2 {
             return Err(FacetRejection::TooSmall { area_m2 });
+        }
+        let rings = std::iter::once(&facet.outer).chain(&facet.holes);
+        let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
+        if !holds_a_window(&rings.map(in_plan).collect::<Vec<_>>(), self.step) {
+            return Err(FacetRejection::TooNarrow);
         }
         let middle = facet
             .outer

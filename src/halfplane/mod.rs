@@ -34,6 +34,7 @@
 //!      flow           the maximum flow behind it
 //!      islands        patches too small to be a facet or a hole
 //!      delineation    closed outlines
+//!      width          what no window of the comparison fits into
 //!      facets         verification; orders 4.2 and 4.3
 //! ```
 
@@ -69,6 +70,7 @@ mod similarity;
 mod strip;
 mod sweep;
 mod trace;
+mod width;
 mod windows;
 
 pub use borders::{Border, BorderKind};

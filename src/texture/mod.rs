@@ -17,7 +17,7 @@
 mod atlas;
 mod paint;
 mod patch;
-mod raster;
+pub(crate) mod raster;
 mod shadow;
 
 pub use paint::ViewOfFace;
