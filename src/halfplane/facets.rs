@@ -11,11 +11,14 @@ use serde::Serialize;
 use super::arrangement::Arrangement;
 use super::border_cost::{BorderCosts, LINE_HEIGHT};
 use super::borders::{Border, border_lines};
+use super::box_sum::HALF_WINDOW;
 use super::consistency::{ConsistencyMap, consistency_map};
 use super::delineation::{Delineation, Outline, delineate, signed_area};
 use super::evidence::Evidence;
 use super::grouping::{GroupingInput, PlaneGroup, group_planes};
 use super::hypothesis::{ON_SURFACE, TEXTURED, bounding_lines, hypotheses};
+use super::interior::Interior;
+use super::is_wall;
 use super::islands::without_islands;
 use super::labelling::Labelling;
 use super::line_index::LineIndex;
@@ -24,7 +27,6 @@ use super::plan::PlanGrid;
 use super::plane_lines::PlaneLine;
 use super::proposed::add_rectangles;
 use super::region::Region;
-use super::width::holds_a_window;
 use crate::geometry::Plane;
 use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
@@ -42,7 +44,10 @@ pub enum FacetRejection {
         area_m2: f64,
     },
     /// No window fits into it, so that nothing but its edges speaks for it.
-    TooNarrow,
+    TooNarrow {
+        /// Side of the window, metres.
+        window_m: f64,
+    },
     /// On the ground, or too little above it.
     NearGround {
         /// Height of its middle above the ground, metres.
@@ -108,7 +113,7 @@ pub fn reconstruct_facets(
         rectangles,
     };
     let mut groups: Vec<PlaneGroup> = group_planes(&input, params);
-    groups.retain(|g| !lies_on_ground(&input, g, ground, params));
+    groups.retain(|g| !is_wall(&g.plane) && !lies_on_ground(&input, g, ground, params));
     add_rectangles(&input, &mut groups, params);
     let regions: Vec<Region> = groups
         .iter()
@@ -144,7 +149,9 @@ pub fn reconstruct_facets(
         params,
     );
     let groups: Vec<PlaneGroup> = hypotheses.iter().map(|h| h.group.clone()).collect();
-    let plane_lines: Vec<PlaneLine> = hypotheses.into_iter().flat_map(|h| h.lines).collect();
+    let (maps, plane_lines): (Vec<ConsistencyMap>, Vec<Vec<PlaneLine>>) =
+        hypotheses.into_iter().map(|h| (h.map, h.lines)).unzip();
+    let plane_lines = plane_lines.concat();
     let planes: Vec<Plane> = groups.iter().map(|g| g.plane).collect();
     let real = lines
         .iter()
@@ -158,7 +165,7 @@ pub fn reconstruct_facets(
         arrangement,
         planes,
         index,
-        step: grid.step,
+        maps,
     };
     let (facets, rejected) = solver.solve(&groups, ground, params);
     let cells = solver.arrangement.cells;
@@ -255,8 +262,8 @@ struct Solver {
     arrangement: Arrangement,
     planes: Vec<Plane>,
     index: LineIndex,
-    /// Distance of the positions at which views are compared, metres.
-    step: f64,
+    /// How the views agree on each plane.
+    maps: Vec<ConsistencyMap>,
 }
 
 impl Solver {
@@ -387,11 +394,6 @@ impl Solver {
         if area_m2 < params.min_area_m2 {
             return Err(FacetRejection::TooSmall { area_m2 });
         }
-        let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-        let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
-        if !holds_a_window(&rings.map(in_plan).collect::<Vec<_>>(), self.step) {
-            return Err(FacetRejection::TooNarrow);
-        }
         let middle = facet
             .outer
             .iter()
@@ -400,6 +402,18 @@ impl Solver {
         let height_m = middle.z - ground.z_at(&Point2::new(middle.x, middle.y));
         if height_m < params.min_height_m {
             return Err(FacetRejection::NearGround { height_m });
+        }
+        let interior = self.interior(facet, outline.plane, params);
+        if interior.windows == 0 {
+            let step = self.maps[outline.plane as usize].grid.step;
+            return Err(FacetRejection::TooNarrow {
+                window_m: (2 * HALF_WINDOW + 1) as f64 * step,
+            });
+        }
+        if interior.speaks_against() {
+            return Err(FacetRejection::Dissimilar {
+                similarity: interior.correlation / interior.weight,
+            });
         }
         // What little texture there is must not speak against the plane.
         let (weight, least) = self.texture(outline);
@@ -417,6 +431,14 @@ impl Solver {
             });
         }
         Ok(())
+    }
+
+    /// What the views say inside a facet, away from its edges.
+    fn interior(&self, facet: &Facet, plane: u32, params: &RoofParams) -> Interior {
+        let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
+        let rings = std::iter::once(&facet.outer).chain(&facet.holes);
+        let rings: Vec<Vec<Point2<f64>>> = rings.map(in_plan).collect();
+        Interior::of(&rings, &self.maps[plane as usize], params.min_correlation)
     }
 
     /// Texture weight over an outline, square metres, and its product with the least correlation.

@@ -8,6 +8,7 @@ use super::Side;
 use super::grouping::{
     GroupingInput, PlaneGroup, all_lie_in, extend, fit_plane, infer_sides, lies_in_plane, member,
 };
+use super::is_wall;
 use super::region::Region;
 use crate::geometry::Plane;
 use crate::ids::{HalfPlaneId, LineId};
@@ -117,8 +118,6 @@ fn plane_of_pair(input: &GroupingInput, first: LineId, second: LineId) -> Option
     const PARALLEL_SINE: f64 = 0.17;
     /// ... then they must be this far apart, metres.
     const APART: f64 = 1.0;
-    /// Roof planes are less steep than this (normal's z of 75 degrees, B99 figure 15).
-    const STEEP: f64 = 0.26;
     let (a, b) = (
         &input.lines[first.index()].segment,
         &input.lines[second.index()].segment,
@@ -132,7 +131,7 @@ fn plane_of_pair(input: &GroupingInput, first: LineId, second: LineId) -> Option
         input,
         &[member(input, first, None), member(input, second, None)],
     )
-    .filter(|p| p.normal.z > STEEP)
+    .filter(|p| !is_wall(p))
 }
 
 #[cfg(test)]

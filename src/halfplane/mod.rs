@@ -34,7 +34,7 @@
 //!      flow           the maximum flow behind it
 //!      islands        patches too small to be a facet or a hole
 //!      delineation    closed outlines
-//!      width          what no window of the comparison fits into
+//!      interior       what the inside of a facet shows, away from its edges
 //!      facets         verification; orders 4.2 and 4.3
 //! ```
 
@@ -54,6 +54,7 @@ mod fixture;
 mod flow;
 mod grouping;
 mod hypothesis;
+mod interior;
 mod islands;
 mod labelling;
 mod line_index;
@@ -70,7 +71,6 @@ mod similarity;
 mod strip;
 mod sweep;
 mod trace;
-mod width;
 mod windows;
 
 pub use borders::{Border, BorderKind};
@@ -157,6 +157,13 @@ impl ThetaFrame {
         }
         crate::math::atan2(away.dot(&self.up), away.dot(&self.outward))
     }
+}
+
+/// Is the plane too steep for a roof (75 degrees, the interval of B99 figure 15)?
+fn is_wall(plane: &Plane) -> bool {
+    /// The normal's z.
+    const STEEPEST: f64 = 0.26;
+    plane.normal.z < STEEPEST
 }
 
 /// A half-plane attached to one side of a 3D line, with what Sim(theta) looked like.
