@@ -218,6 +218,19 @@ mod tests {
     }
 
     #[test]
+    fn walls_are_steeper_than_75_degrees() {
+        let inclined = |degrees: f64| {
+            let (s, c) = degrees.to_radians().sin_cos();
+            Plane {
+                normal: Vector3::new(s, 0.0, c),
+                d: 0.0,
+            }
+        };
+        assert!(!is_wall(&inclined(74.0)));
+        assert!(is_wall(&inclined(76.0)));
+    }
+
+    #[test]
     fn vertical_lines_have_no_frame() {
         let line = Segment3::new(Point3::new(1.0, 2.0, 3.0), Point3::new(1.0, 2.0, 9.0));
         assert!(ThetaFrame::new(&line, Side::Left).is_none());

@@ -90,6 +90,8 @@ export function facetRejectionWords(reason: Record<string, Record<string, number
   switch (name) {
     case "too_small":
       return `too small (${value.toFixed(1)} m²)`;
+    case "too_narrow":
+      return `too narrow for a window of ${value.toFixed(1)} m to show it`;
     case "near_ground":
       return `near the ground (${value.toFixed(1)} m above it)`;
     case "dissimilar":
