@@ -2,11 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::ThetaFrame;
 use super::arrangement::Arrangement;
 use super::border_cost::BorderCosts;
 use super::consistency::{ConsistencyMap, least_correlation};
-use super::grouping::{GroupingInput, PlaneGroup};
 use super::hypothesis::Hypothesis;
 use super::labelling::Energy;
 use super::line_index::LineIndex;
@@ -25,8 +23,6 @@ pub struct CellEvidence {
     pub correlation: f64,
     /// The same for the correlation at which the plane is as good as none.
     pub least: f64,
-    /// Metres of line on the cell's border whose half-plane lies over the cell.
-    pub half_plane_m: f64,
 }
 
 /// The evidence for every plane in every cell that it may cover.
@@ -41,7 +37,6 @@ impl Evidence {
     /// Sums each hypothesis' consistency map over the cells; `ground` are the maps of the ground plane at
     /// a few heights, over `grid`.
     pub fn collect(
-        input: &GroupingInput,
         hypotheses: &[Hypothesis],
         arrangement: &Arrangement,
         grid: &PlanGrid,
@@ -51,9 +46,7 @@ impl Evidence {
         let raster = arrangement.raster(grid);
         let ground = ground_evidence(ground, &raster, arrangement.cells, grid, params);
         let per_group = crate::parallel::map_part(hypotheses, 0.7..0.75, |_, h| {
-            let mut cells = sum_over_cells(h, &raster, grid, params);
-            add_half_planes(&mut cells, input, &h.group, &raster, grid);
-            cells
+            sum_over_cells(h, &raster, grid, params)
         });
         let samples = samples_of_cells(&raster, arrangement.cells);
         let sample_m2 = grid.step * grid.step;
@@ -100,10 +93,7 @@ impl Evidence {
                         // sum of weight x (least correlation - correlation): negative for a match.
                         let mismatch = e.least - e.correlation;
                         // "No plane" keeps the cost 0, so what speaks for the ground counts against roofs.
-                        (
-                            *plane,
-                            mismatch + ground - params.half_plane_gain_m * e.half_plane_m,
-                        )
+                        (*plane, mismatch + ground)
                     })
                     .collect()
             })
@@ -239,36 +229,6 @@ fn sum_over_cells(
     }
     store(&mut cells, run);
     cells
-}
-
-/// Credits the cells beside each member line, on the side of its half-plane.
-fn add_half_planes(
-    cells: &mut BTreeMap<usize, CellEvidence>,
-    input: &GroupingInput,
-    group: &PlaneGroup,
-    raster: &[u32],
-    grid: &PlanGrid,
-) {
-    const STEP: f64 = 0.1;
-    /// How far beside the line the cell is looked up, metres: beyond the snapping of vertices.
-    const BESIDE: f64 = 0.3;
-    for member in &group.members {
-        let Some(h) = member.half_plane else { continue };
-        let line = &input.lines[member.line.index()].segment;
-        let Some(frame) = ThetaFrame::new(line, input.half_planes[h.index()].side) else {
-            continue;
-        };
-        let count = (line.length() / STEP).ceil().max(1.0);
-        for i in 0..count as usize {
-            let p = line.at((i as f64 + 0.5) / count).xy() + frame.outward.xy() * BESIDE;
-            let Some((c, r)) = grid.cell(&p) else {
-                continue;
-            };
-            if let Some(e) = cells.get_mut(&(raster[r * grid.width + c] as usize)) {
-                e.half_plane_m += line.length() / count;
-            }
-        }
-    }
 }
 
 #[cfg(test)]

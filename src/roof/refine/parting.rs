@@ -113,7 +113,7 @@ fn cuts(
         })
     });
     let mut cuts = Vec::new();
-    for run in aligned_runs(wireframe, state, at_wall) {
+    for run in aligned_runs(wireframe, state, params.jog_m, at_wall) {
         let known: Vec<_> = (run.iter())
             .filter_map(|&i| Some((i, worths[i].as_ref()?)))
             .collect();

@@ -68,7 +68,7 @@ pub fn sight_sides(
         let reach = reach_of(&wireframe.sides[i]);
         profiles.as_ref()?.gains(reach, params)
     });
-    let runs = aligned_runs(wireframe, state, |kind| kind == SideKind::Free);
+    let runs = aligned_runs(wireframe, state, 0.0, |kind| kind == SideKind::Free);
     let of_side = |i: usize, profiles: &Option<Profiles>| {
         let run = runs.iter().find(|run| run.contains(&i));
         let together: Vec<&Gains> = match run {
@@ -94,9 +94,11 @@ pub(super) fn pixel(scene: &Scene, wireframe: &Wireframe, state: &State) -> f64 
 }
 
 /// Sides of some kinds, of different facets, that go on into each other, such as both halves of a gable's end: they are one edge.
+/// From one to the next it may be `gap_m` metres.
 pub(super) fn aligned_runs(
     wireframe: &Wireframe,
     state: &State,
+    gap_m: f64,
     of_kind: impl Fn(SideKind) -> bool,
 ) -> Vec<Vec<usize>> {
     /// Sine of the angle below which sides are aligned (4 degrees).
@@ -117,8 +119,11 @@ pub(super) fn aligned_runs(
         while next < run.len() {
             let side = &wireframe.sides[run[next]];
             for (j, other) in wireframe.sides.iter().enumerate() {
-                let touch = other.ends[0] == side.ends[1] || other.ends[1] == side.ends[0];
-                if taken[j] || !touch || !of_kind(other.kind) {
+                let touch = [[other.ends[0], side.ends[1]], [other.ends[1], side.ends[0]]]
+                    .map(|ends| ends.map(|v| wireframe.position(state, v)))
+                    .iter()
+                    .any(|[p, q]| (p - q).norm() <= gap_m);
+                if taken[j] || !of_kind(other.kind) || !touch {
                     continue;
                 }
                 let (d, e) = (direction(side), direction(other));
@@ -494,4 +499,34 @@ fn whitening(covariance: &Matrix2<f64>, length: f64, floor: f64) -> Matrix2<f64>
     c.cholesky()
         .and_then(|l| l.l().try_inverse())
         .unwrap_or_else(|| Matrix2::new(1.0 / floor, 0.0, 0.0, 0.5 * length / floor))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Point3;
+
+    use super::super::fixture::{facet, facets_of};
+    use super::*;
+
+    #[test]
+    fn a_wall_goes_on_behind_a_jog() {
+        // The eaves of two facets that meet at x = 4 m, one 0.2 m behind the other.
+        let raised = |(x, y): &(f64, f64)| Point3::new(*x, *y, 3.0 + 0.5 * y);
+        let ring = |corners: &[(f64, f64)]| facet(&corners.iter().map(raised).collect::<Vec<_>>());
+        let facets = [
+            ring(&[(0.0, 0.0), (4.0, 0.0), (4.0, 0.2), (4.0, 3.0), (0.0, 3.0)]),
+            ring(&[(4.0, 0.2), (8.0, 0.2), (8.0, 3.0), (4.0, 3.0)]),
+        ];
+        let (wireframe, state) = Wireframe::new(&facets_of(&facets));
+        let longest = |gap_m: f64| {
+            let runs = aligned_runs(&wireframe, &state, gap_m, |_| true);
+            let eaves = runs.iter().filter(|run| {
+                let side = wireframe.segment(&state, &wireframe.sides[run[0]]);
+                side.direction().x.abs() > 0.9 && side.p0.y < 1.0
+            });
+            eaves.map(|run| run.len()).max()
+        };
+        assert_eq!(longest(0.0), Some(1));
+        assert_eq!(longest(0.5), Some(2));
+    }
 }
