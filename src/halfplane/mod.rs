@@ -220,7 +220,7 @@ mod tests {
     #[test]
     fn walls_are_steeper_than_75_degrees() {
         let inclined = |degrees: f64| {
-            let (s, c) = degrees.to_radians().sin_cos();
+            let (s, c) = crate::math::sin_cos(degrees.to_radians());
             Plane {
                 normal: Vector3::new(s, 0.0, c),
                 d: 0.0,

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point2, Vector2};
 use serde::{Deserialize, Serialize};
-use spade::{DelaunayTriangulation, Triangulation};
+use spade::{ConstrainedDelaunayTriangulation, Triangulation};
 
 use super::Side;
 use super::grouping::{GroupingInput, PlaneGroup};
@@ -128,7 +128,7 @@ impl Region {
 
 /// The corners of the convex hull, in order; none of points that cannot be triangulated.
 fn convex_hull(points: impl Iterator<Item = Point2<f64>>) -> Vec<Point2<f64>> {
-    let mut triangles = DelaunayTriangulation::<spade::Point2<f64>>::new();
+    let mut triangles = ConstrainedDelaunayTriangulation::<spade::Point2<f64>>::new();
     let inserted = points.map(|p| triangles.insert(spade::Point2::new(p.x, p.y)));
     if inserted.filter(Result::is_err).count() > 0 {
         return Vec::new();
