@@ -6,8 +6,7 @@
 //! * lines found in a plane from segments of several views ([`super::plane_lines`]);
 //! * new lines in which two neighbouring planes meet (figure 19);
 //! * closing lines across the ends of a supporting line, and where the views cease to agree on a plane
-//!   ([`super::extent`]). They stand for the sides of the paper's convex hull,
-//!   where nothing was detected.
+//!   ([`super::extent`]), and the level sides of the paper's convex hull, where nothing was detected.
 //!
 //! A real line that runs along an intersection is moved onto it, so that ridge, hip and valley are where
 //! their planes meet.
@@ -123,27 +122,19 @@ pub fn border_lines(
     borders
 }
 
-/// The sides of the planes' convex hulls (B99 4.3) that are level, as ridges and eaves are, and long enough to be an edge
-/// of a facet; the longest first.
+/// The level sides of the planes' convex hulls (B99 4.3) that are long enough to be an edge of a facet, the longest first.
 fn hull_sides(hypotheses: &[Hypothesis], params: &RoofParams) -> Vec<Border> {
-    let mut sides = Vec::new();
-    for h in hypotheses {
-        let down = h.group.plane.normal.xy();
-        let Some(level) = Vector2::new(-down.y, down.x).try_normalize(MIN_CREASE) else {
-            continue;
-        };
-        sides.extend(h.region.hull_sides().filter_map(|[a, b]| {
-            let side = Border {
-                kind: BorderKind::Closing,
-                a,
-                b,
-            };
-            let is_level = side.direction().perp(&level).abs() < SAME_LINE_SINE;
-            (is_level && side.length() >= params.min_facet_depth_m).then_some(side)
-        }));
-    }
-    sort_by(&mut sides, |a, b| b.length().total_cmp(&a.length()));
-    sides
+    let sides = (hypotheses.iter()).flat_map(|h| h.region.level_sides(&h.group.plane));
+    let borders = sides.map(|[a, b]| Border {
+        kind: BorderKind::Closing,
+        a,
+        b,
+    });
+    let mut long: Vec<Border> = borders
+        .filter(|b| b.length() >= params.min_facet_depth_m)
+        .collect();
+    sort_by(&mut long, |a, b| b.length().total_cmp(&a.length()));
+    long
 }
 
 /// New lines by plane intersection (B99 4.2): where both planes' regions hold it.

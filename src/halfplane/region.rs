@@ -7,10 +7,15 @@ use spade::{ConstrainedDelaunayTriangulation, Triangulation};
 use super::Side;
 use super::grouping::{GroupingInput, PlaneGroup};
 use super::proposed::ProposedPlane;
+use crate::geometry::Plane;
 use crate::params::RoofParams;
 
 /// How far a region reaches behind its line, metres: more than the line's own uncertainty.
 pub(super) const MARGIN: f64 = 0.5;
+/// Sine of the angle to the horizontal direction of a plane, in plan, below which a side is level (5 degrees).
+const LEVEL: f64 = 0.09;
+/// Sine of the slope below which a plane has no such direction (5 degrees).
+const NEARLY_LEVEL: f64 = 0.087;
 
 /// The part of the plan that a group may cover: boxes beside its supporting lines, and their convex hull, which is B99's
 /// delineation (4.3): two short rakes of a long roof have all of it between them.
@@ -102,10 +107,19 @@ impl Region {
         }) || is_inside(&self.hull, p)
     }
 
-    /// The sides of the convex hull of the group's lines, metres.
-    pub fn hull_sides(&self) -> impl Iterator<Item = [Point2<f64>; 2]> + '_ {
+    /// The sides of the convex hull of the group's lines that are level in its `plane`, as eaves and ridges are. A plane that
+    /// is itself nearly level has none: there every side would be.
+    pub fn level_sides(&self, plane: &Plane) -> Vec<[Point2<f64>; 2]> {
+        let down = plane.normal.xy();
+        if down.norm() < NEARLY_LEVEL {
+            return Vec::new();
+        }
         let next = self.hull.iter().cycle().skip(1);
-        self.hull.iter().zip(next).map(|(a, b)| [*a, *b])
+        let sides = self.hull.iter().zip(next).map(|(a, b)| [*a, *b]);
+        let is_level = |[a, b]: &[Point2<f64>; 2]| {
+            (b - a).dot(&down).abs() < LEVEL * down.norm() * (b - a).norm()
+        };
+        sides.filter(is_level).collect()
     }
 
     /// Least and largest x and y, metres.
@@ -152,13 +166,18 @@ mod tests {
     use nalgebra::Point3;
 
     use super::*;
-    use crate::geometry::Plane;
     use crate::halfplane::fixture::line;
     use crate::halfplane::grouping::Member;
     use crate::halfplane::neighbourhood::line_neighbours;
     use crate::ids::LineId;
 
-    /// The region of the rakes, 4 m long, of a shed roof 20 m long, each with the roof on its inner side.
+    /// A shed roof that rises to the north.
+    fn shed() -> Plane {
+        let normal = nalgebra::Vector3::new(0.0, -0.25, 1.0);
+        Plane::from_point_normal(&Point3::new(0.0, 0.0, 5.0), &normal).expect("a normal")
+    }
+
+    /// The region of its rakes, 4 m long and 20 m apart, each with the roof on its inner side.
     fn between_rakes() -> Region {
         let rake = |x: f64| line(Point3::new(x, 0.0, 5.0), Point3::new(x, 4.0, 6.0));
         let lines = [rake(0.0), rake(20.0)];
@@ -174,11 +193,7 @@ mod tests {
             side: Some(side),
         };
         let group = PlaneGroup {
-            plane: Plane::from_point_normal(
-                &Point3::new(0.0, 0.0, 5.0),
-                &nalgebra::Vector3::new(0.0, -0.25, 1.0),
-            )
-            .expect("a normal"),
+            plane: shed(),
             members: vec![member(0, Side::Right), member(1, Side::Left)],
             rectangles: Vec::new(),
         };
@@ -191,6 +206,21 @@ mod tests {
         for x in [0.5, 5.0, 10.0, 15.0, 19.5] {
             assert!(region.contains(&Point2::new(x, 2.0)), "at {x} m");
         }
+    }
+
+    #[test]
+    fn the_hull_has_level_sides_between_the_rakes() {
+        let region = between_rakes();
+        let mut heights: Vec<[f64; 2]> = (region.level_sides(&shed()).iter())
+            .map(|side| side.map(|p| p.y))
+            .collect();
+        crate::sorting::sort_by(&mut heights, |a, b| a[0].total_cmp(&b[0]));
+        assert_eq!(heights, [[0.0, 0.0], [4.0, 4.0]]);
+        let flat = Plane {
+            normal: nalgebra::Vector3::z(),
+            d: -5.0,
+        };
+        assert!(region.level_sides(&flat).is_empty());
     }
 
     #[test]
