@@ -2,9 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::ThetaFrame;
 use super::arrangement::Arrangement;
 use super::border_cost::BorderCosts;
 use super::consistency::{ConsistencyMap, least_correlation};
+use super::grouping::{GroupingInput, PlaneGroup};
 use super::hypothesis::Hypothesis;
 use super::labelling::Energy;
 use super::line_index::LineIndex;
@@ -37,6 +39,7 @@ impl Evidence {
     /// Sums each hypothesis' consistency map over the cells; `ground` are the maps of the ground plane at
     /// a few heights, over `grid`.
     pub fn collect(
+        input: &GroupingInput,
         hypotheses: &[Hypothesis],
         arrangement: &Arrangement,
         grid: &PlanGrid,
@@ -44,7 +47,10 @@ impl Evidence {
         params: &RoofParams,
     ) -> Self {
         let raster = arrangement.raster(grid);
-        let ground = ground_evidence(ground, &raster, arrangement.cells, grid, params);
+        let mut ground = ground_evidence(ground, &raster, arrangement.cells, grid, params);
+        for (cell, metres) in half_planes_over_cells(input, hypotheses, &raster, grid) {
+            ground[cell] -= params.half_plane_gain_m * metres;
+        }
         let per_group = crate::parallel::map_part(hypotheses, 0.7..0.75, |_, h| {
             sum_over_cells(h, &raster, grid, params)
         });
@@ -231,11 +237,62 @@ fn sum_over_cells(
     cells
 }
 
+/// Metres of line beside each cell with a half-plane over it, of the group that has most: there is a roof, whichever.
+fn half_planes_over_cells(
+    input: &GroupingInput,
+    hypotheses: &[Hypothesis],
+    raster: &[u32],
+    grid: &PlanGrid,
+) -> BTreeMap<usize, f64> {
+    let mut most = BTreeMap::<usize, f64>::new();
+    for h in hypotheses {
+        for (cell, metres) in half_planes_of(input, &h.group, raster, grid) {
+            let m = most.entry(cell).or_default();
+            *m = m.max(metres);
+        }
+    }
+    most
+}
+
+/// Metres of the group's lines beside each cell, on the side of their half-planes.
+fn half_planes_of(
+    input: &GroupingInput,
+    group: &PlaneGroup,
+    raster: &[u32],
+    grid: &PlanGrid,
+) -> BTreeMap<usize, f64> {
+    const STEP: f64 = 0.1;
+    /// How far beside the line the cell is looked up, metres: beyond the snapping of vertices.
+    const BESIDE: f64 = 0.3;
+    let mut metres = BTreeMap::<usize, f64>::new();
+    for member in &group.members {
+        let Some(h) = member.half_plane else { continue };
+        let line = &input.lines[member.line.index()].segment;
+        let Some(frame) = ThetaFrame::new(line, input.half_planes[h.index()].side) else {
+            continue;
+        };
+        let count = (line.length() / STEP).ceil().max(1.0);
+        for i in 0..count as usize {
+            let p = line.at((i as f64 + 0.5) / count).xy() + frame.outward.xy() * BESIDE;
+            let at = grid.cell(&p).map(|(c, r)| raster[r * grid.width + c]);
+            if let Some(cell) = at.filter(|cell| *cell != u32::MAX) {
+                *metres.entry(cell as usize).or_default() += line.length() / count;
+            }
+        }
+    }
+    metres
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::halfplane::borders::{Border, BorderKind};
-    use nalgebra::Point2;
+    use crate::halfplane::fixture::line;
+    use crate::halfplane::grouping::Member;
+    use crate::halfplane::neighbourhood::line_neighbours;
+    use crate::halfplane::{HalfPlane, Side};
+    use crate::ids::{HalfPlaneId, LineId};
+    use nalgebra::{Point2, Point3, Vector3};
 
     /// A square of 10 m, cut by two lines so close to each other that no sample lies between them.
     fn with_splinter() -> (Arrangement, PlanGrid) {
@@ -253,6 +310,49 @@ mod tests {
             (frame(-5.0, 15.0).chain(frame(0.0, 10.0)).chain(cuts)).collect();
         let grid = PlanGrid::covering(Point2::new(0.0, 0.0), Point2::new(10.0, 10.0), 0.5);
         (Arrangement::new(&borders), grid)
+    }
+
+    #[test]
+    fn a_half_plane_counts_beside_its_line() {
+        let lines = [line(Point3::new(2.0, 5.0, 6.0), Point3::new(8.0, 5.0, 6.0))];
+        let plane = Plane {
+            normal: Vector3::z(),
+            d: -6.0,
+        };
+        let half_plane = HalfPlane {
+            line: LineId(0),
+            side: Side::Left,
+            theta: 0.0,
+            sigma_theta: 0.01,
+            similarity: 0.9,
+            curvature: 9.0,
+            amplitude: 0.5,
+            probability: 1.0,
+            views: Vec::new(),
+            plane,
+        };
+        let input = GroupingInput {
+            lines: &lines,
+            half_planes: &[half_plane],
+            neighbours: &line_neighbours(&lines),
+            rectangles: &[],
+        };
+        let group = PlaneGroup {
+            plane,
+            members: vec![Member {
+                line: LineId(0),
+                side: Some(Side::Left),
+                half_plane: Some(HalfPlaneId(0)),
+            }],
+            rectangles: Vec::new(),
+        };
+        let grid = PlanGrid::covering(Point2::new(0.0, 0.0), Point2::new(10.0, 10.0), 0.5);
+        // Cell 0 lies south of the line, cell 1 north of it: to the left.
+        let cells = grid.width * grid.height;
+        let raster: Vec<u32> = (0..cells).map(|k| u32::from(2 * k >= cells)).collect();
+        let metres = half_planes_of(&input, &group, &raster, &grid);
+        assert_eq!(metres.keys().collect::<Vec<_>>(), [&1]);
+        assert!((metres[&1] - 6.0).abs() < 1e-9);
     }
 
     #[test]

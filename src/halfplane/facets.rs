@@ -140,7 +140,14 @@ pub fn reconstruct_facets(
     let borders = border_lines(&input, &hypotheses, &bounding, params);
     let arrangement = Arrangement::new(&with_frame(&borders, &grid));
 
-    let evidence = Evidence::collect(&hypotheses, &arrangement, &grid, &ground_maps, params);
+    let evidence = Evidence::collect(
+        &input,
+        &hypotheses,
+        &arrangement,
+        &grid,
+        &ground_maps,
+        params,
+    );
     let groups: Vec<PlaneGroup> = hypotheses.iter().map(|h| h.group.clone()).collect();
     let (maps, plane_lines): (Vec<ConsistencyMap>, Vec<Vec<PlaneLine>>) =
         hypotheses.into_iter().map(|h| (h.map, h.lines)).unzip();

@@ -9,8 +9,9 @@
 //! ```
 //!
 //! D is the mismatch of the images under the plane against that of "no plane" (0), weighted by what the
-//! texture can tell. V is small where a reconstructed line or the intersection of the two planes supports the
-//! border, so outlines follow real lines (tau_real) and area counts as in S(P). The minimum is found by alpha-expansion
+//! texture can tell, less what half-planes beside the cell earn for all planes alike. V is small where a reconstructed
+//! line or the intersection of the two planes supports the border, so outlines follow real lines (tau_real) and area
+//! counts as in S(P). The minimum is found by alpha-expansion
 //! (Boykov, Veksler, Zabih 2001), each expansion a minimum cut.
 
 use super::cut::Cut;

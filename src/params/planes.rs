@@ -141,6 +141,8 @@ pub struct RoofParams {
     pub min_correlation: f64,
     /// What a metre of facet border costs that no line supports, in square metres of mismatch. Assumption.
     pub border_cost_m: f64,
+    /// What a metre of half-plane earns any plane beside it over no plane, in square metres of match. Assumption.
+    pub half_plane_gain_m: f64,
     /// Facets smaller than this are not reported, square metres. Assumption.
     pub min_area_m2: f64,
     /// Least share of a facet's outline that lies on reconstructed lines (tau_real, B99 4.3). Assumption.
@@ -163,6 +165,7 @@ impl Default for RoofParams {
             extension_m: 1.5,
             min_correlation: 0.45,
             border_cost_m: 0.25,
+            half_plane_gain_m: 0.05,
             min_area_m2: 1.5,
             min_real_ratio: 0.25,
             min_height_m: 2.0,
