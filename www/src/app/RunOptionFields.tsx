@@ -1,4 +1,5 @@
 /** Which orientation, which part of the ground, how high it lies. */
+import { signal } from "@preact/signals";
 import { useState } from "preact/hooks";
 import { setRunOptions } from "./projectActions";
 import { type Parsed, parseHeight, parseRegion, parseTile } from "./runOptions";
@@ -29,11 +30,20 @@ export function OrientationChoice() {
   );
 }
 
+/** Whether a person has opened or closed the fields; views that are read again draw them anew. */
+const placeOpen = signal<boolean | null>(null);
+
 /** Region of interest and height of the ground, both in the frame of the orientation. */
 export function PlaceFields() {
   const { roi, groundZ, tileM, adjust } = runOptions.value;
   return (
-    <details class="params" open={roi !== null || groundZ !== null || adjust}>
+    <details
+      class="params"
+      open={placeOpen.value ?? (roi !== null || groundZ !== null || adjust)}
+      onToggle={(event) => {
+        placeOpen.value = event.currentTarget.open;
+      }}
+    >
       <summary>Region and ground</summary>
       <OptionField
         id="roi"

@@ -77,6 +77,7 @@ test("a project opens again to the same state, here and on the command line", as
   await give(page, houseFiles());
   await expect(page.locator(".status.good")).toHaveCount(6);
   await page.locator(".view input[type=checkbox]").nth(2).uncheck();
+  await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
   await page.getByText("Region and ground").click();
   await askFor(page, /Height of the ground/, "100");
   await page.getByText("Texture", { exact: true }).click();
