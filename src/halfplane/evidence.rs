@@ -290,8 +290,10 @@ mod tests {
     use crate::halfplane::fixture::line;
     use crate::halfplane::grouping::Member;
     use crate::halfplane::neighbourhood::line_neighbours;
+    use crate::halfplane::region::Region;
     use crate::halfplane::{HalfPlane, Side};
     use crate::ids::{HalfPlaneId, LineId};
+    use crate::lines3d::Line3d;
     use nalgebra::{Point2, Point3, Vector3};
 
     /// A square of 10 m, cut by two lines so close to each other that no sample lies between them.
@@ -312,13 +314,13 @@ mod tests {
         (Arrangement::new(&borders), grid)
     }
 
-    #[test]
-    fn a_half_plane_counts_beside_its_line() {
-        let lines = [line(Point3::new(2.0, 5.0, 6.0), Point3::new(8.0, 5.0, 6.0))];
-        let plane = Plane {
-            normal: Vector3::z(),
-            d: -6.0,
-        };
+    const HORIZONTAL: Plane = Plane {
+        normal: Vector3::new(0.0, 0.0, 1.0),
+        d: -6.0,
+    };
+
+    /// A line of 8 m along y = 2 with a half-plane to its left, north of it.
+    fn line_with_half_plane() -> ([Line3d; 1], [HalfPlane; 1], PlaneGroup) {
         let half_plane = HalfPlane {
             line: LineId(0),
             side: Side::Left,
@@ -329,16 +331,10 @@ mod tests {
             amplitude: 0.5,
             probability: 1.0,
             views: Vec::new(),
-            plane,
-        };
-        let input = GroupingInput {
-            lines: &lines,
-            half_planes: &[half_plane],
-            neighbours: &line_neighbours(&lines),
-            rectangles: &[],
+            plane: HORIZONTAL,
         };
         let group = PlaneGroup {
-            plane,
+            plane: HORIZONTAL,
             members: vec![Member {
                 line: LineId(0),
                 side: Some(Side::Left),
@@ -346,13 +342,81 @@ mod tests {
             }],
             rectangles: Vec::new(),
         };
+        let eave = line(Point3::new(1.0, 2.0, 6.0), Point3::new(9.0, 2.0, 6.0));
+        ([eave], [half_plane], group)
+    }
+
+    #[test]
+    fn a_half_plane_counts_beside_its_line() {
+        let (lines, half_planes, group) = line_with_half_plane();
+        let input = GroupingInput {
+            lines: &lines,
+            half_planes: &half_planes,
+            neighbours: &line_neighbours(&lines),
+            rectangles: &[],
+        };
         let grid = PlanGrid::covering(Point2::new(0.0, 0.0), Point2::new(10.0, 10.0), 0.5);
         // Cell 0 lies south of the line, cell 1 north of it: to the left.
         let cells = grid.width * grid.height;
-        let raster: Vec<u32> = (0..cells).map(|k| u32::from(2 * k >= cells)).collect();
+        let raster: Vec<u32> = (0..cells).map(|k| u32::from(5 * k >= cells)).collect();
         let metres = half_planes_of(&input, &group, &raster, &grid);
         assert_eq!(metres.keys().collect::<Vec<_>>(), [&1]);
-        assert!((metres[&1] - 6.0).abs() < 1e-9);
+        assert!((metres[&1] - 8.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_half_plane_makes_every_roof_beside_its_line_cheaper() {
+        let (lines, half_planes, group) = line_with_half_plane();
+        let input = GroupingInput {
+            lines: &lines,
+            half_planes: &half_planes,
+            neighbours: &line_neighbours(&lines),
+            rectangles: &[],
+        };
+        let (arrangement, grid) = with_splinter();
+        let other = PlaneGroup {
+            members: vec![Member {
+                half_plane: None,
+                ..group.members[0]
+            }],
+            ..group.clone()
+        };
+        let unary = |gain: f64| {
+            let params = RoofParams {
+                half_plane_gain_m: gain,
+                ..RoofParams::default()
+            };
+            let cells = grid.width * grid.height;
+            let hypotheses = [&group, &other].map(|g| Hypothesis {
+                group: g.clone(),
+                region: Region::new(&input, g, &params),
+                map: ConsistencyMap {
+                    grid,
+                    correlation: vec![80; cells],
+                    weight: vec![200; cells],
+                    common_weight: vec![200; cells],
+                },
+                lines: Vec::new(),
+            });
+            let evidence =
+                Evidence::collect(&input, &hypotheses, &arrangement, &grid, &[], &params);
+            let index = LineIndex::new(Vec::new());
+            evidence
+                .energy(&arrangement, &[HORIZONTAL; 2], &index, &params)
+                .unary
+        };
+        let costs = |gain: f64| -> [f64; 2] {
+            let cells = unary(gain);
+            [0, 1].map(|plane| {
+                let of_plane = cells.iter().flatten().filter(|(p, _)| *p == plane);
+                of_plane.map(|(_, cost)| cost).sum()
+            })
+        };
+        let (without, with) = (costs(0.0), costs(0.5));
+        // Both planes, the one whose half-plane it is and the other one, by the same.
+        let earned = [0, 1].map(|plane| without[plane] - with[plane]);
+        assert!(earned[0] > 0.0, "{earned:?}");
+        assert!((earned[0] - earned[1]).abs() < 1e-9, "{earned:?}");
     }
 
     #[test]

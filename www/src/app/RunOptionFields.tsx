@@ -30,8 +30,8 @@ export function OrientationChoice() {
   );
 }
 
-/** Whether a person has opened or closed the fields; views that are read again draw them anew. */
-const placeOpen = signal<boolean | null>(null);
+/** Whether the fields were open last; views that are read again draw them anew. */
+const placeOpen = signal(false);
 
 /** Region of interest and height of the ground, both in the frame of the orientation. */
 export function PlaceFields() {
@@ -39,7 +39,7 @@ export function PlaceFields() {
   return (
     <details
       class="params"
-      open={placeOpen.value ?? (roi !== null || groundZ !== null || adjust)}
+      open={placeOpen.value || roi !== null || groundZ !== null || adjust}
       onToggle={(event) => {
         placeOpen.value = event.currentTarget.open;
       }}
