@@ -11,13 +11,12 @@ use serde::Serialize;
 use super::arrangement::Arrangement;
 use super::border_cost::{BorderCosts, LINE_HEIGHT};
 use super::borders::{Border, border_lines};
-use super::box_sum::HALF_WINDOW;
 use super::consistency::{ConsistencyMap, consistency_map};
 use super::delineation::{Delineation, Outline, delineate, signed_area};
 use super::evidence::Evidence;
 use super::grouping::{GroupingInput, PlaneGroup, group_planes};
 use super::hypothesis::{ON_SURFACE, TEXTURED, bounding_lines, hypotheses};
-use super::interior::Interior;
+use super::interior::{Inside, SIDE};
 use super::is_wall;
 use super::islands::without_islands;
 use super::labelling::Labelling;
@@ -57,6 +56,13 @@ pub enum FacetRejection {
     Dissimilar {
         /// Mean correlation inside the outline.
         similarity: f64,
+    },
+    /// Inside the outline the views agree better on the plane of another group.
+    Outdone {
+        /// Index of that group.
+        by: u32,
+        /// How much better, in standard deviations.
+        sigmas: f64,
     },
     /// Too little of its outline lies on reconstructed lines, and the images do not clearly show it.
     Unsupported {
@@ -256,6 +262,19 @@ fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {
     borders.iter().copied().chain(frame).collect()
 }
 
+/// Share of a facet that another plane must be able to cover to take its place. Assumption.
+const ALMOST_ALL: f64 = 0.9;
+/// Standard deviations by which the views must agree better on it. Assumption: as usual.
+const CLEARLY: f64 = 3.0;
+
+/// The windows inside a facet, with the map of its plane.
+fn inside<'m>(facet: &Facet, map: &'m ConsistencyMap) -> Inside<'m> {
+    let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
+    let rings = std::iter::once(&facet.outer).chain(&facet.holes);
+    let rings: Vec<Vec<Point2<f64>>> = rings.map(in_plan).collect();
+    Inside::new(&rings, map)
+}
+
 struct Solver {
     labelling: Labelling<BorderCosts>,
     evidence: Evidence,
@@ -288,7 +307,12 @@ impl Solver {
             let mut on_ground = Vec::new();
             for outline in &delineation.outlines {
                 let facet = self.facet(outline, &delineation, groups);
-                let reason = match self.verify(&facet, outline, ground, params) {
+                let result = match self.verify(&facet, outline, ground, params) {
+                    // In the last round nothing would take its place.
+                    Err(FacetRejection::Outdone { .. }) if round == ROUNDS => Ok(()),
+                    result => result,
+                };
+                let reason = match result {
                     Ok(()) => {
                         facets.push(facet);
                         continue;
@@ -403,17 +427,21 @@ impl Solver {
         if height_m < params.min_height_m {
             return Err(FacetRejection::NearGround { height_m });
         }
-        let interior = self.interior(facet, outline.plane, params);
+        let map = &self.maps[outline.plane as usize];
+        let inside = inside(facet, map);
+        let interior = inside.sums(params.min_correlation);
         if interior.windows == 0 {
-            let step = self.maps[outline.plane as usize].grid.step;
             return Err(FacetRejection::TooNarrow {
-                window_m: (2 * HALF_WINDOW + 1) as f64 * step,
+                window_m: SIDE as f64 * map.grid.step,
             });
         }
         if interior.speaks_against() {
             return Err(FacetRejection::Dissimilar {
                 similarity: interior.correlation / interior.weight,
             });
+        }
+        if let Some((by, sigmas)) = self.outdone(outline, &inside) {
+            return Err(FacetRejection::Outdone { by, sigmas });
         }
         // What little texture there is must not speak against the plane.
         let (weight, least) = self.texture(outline);
@@ -433,12 +461,20 @@ impl Solver {
         Ok(())
     }
 
-    /// What the views say inside a facet, away from its edges.
-    fn interior(&self, facet: &Facet, plane: u32, params: &RoofParams) -> Interior {
-        let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
-        let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-        let rings: Vec<Vec<Point2<f64>>> = rings.map(in_plan).collect();
-        Interior::of(&rings, &self.maps[plane as usize], params.min_correlation)
+    /// The plane that could lie over a facet and that the views agree on clearly better inside it. A level plane through
+    /// the ridges of two roofs has more edges than the roof between them, and little else.
+    fn outdone(&self, outline: &Outline, inside: &Inside) -> Option<(u32, f64)> {
+        let area = |plane: u32| -> f64 {
+            let evidence = (outline.cells.iter()).filter_map(|&c| self.evidence.get(c, plane));
+            evidence.map(|e| e.area).sum()
+        };
+        let most = ALMOST_ALL * area(outline.plane);
+        let others = (0..self.planes.len() as u32).filter(|p| *p != outline.plane);
+        let rivals = others.filter(|p| area(*p) >= most);
+        let best = rivals
+            .map(|p| (p, inside.advantage_of(&self.maps[p as usize])))
+            .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))?;
+        (best.1 > CLEARLY).then_some(best)
     }
 
     /// Texture weight over an outline, square metres, and its product with the least correlation.

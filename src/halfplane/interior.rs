@@ -9,6 +9,14 @@ use super::box_sum::HALF_WINDOW;
 use super::consistency::{ConsistencyMap, least_correlation};
 use crate::texture::raster::mark_inside;
 
+/// The windows that lie wholly inside a facet.
+pub struct Inside<'m> {
+    /// How the views agree on its plane.
+    map: &'m ConsistencyMap,
+    /// The middles of the windows, as cells of the map's grid.
+    windows: Vec<usize>,
+}
+
 /// What the windows inside a facet say about its plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Interior {
@@ -22,28 +30,65 @@ pub struct Interior {
     pub least: f64,
 }
 
-impl Interior {
-    /// Sums the map of a plane over the windows wholly inside `rings` (in plan, metres, holes too); `min_correlation` is
-    /// what strong texture must reach.
-    pub fn of(rings: &[Vec<Point2<f64>>], map: &ConsistencyMap, min_correlation: f64) -> Self {
-        let grid = &map.grid;
-        let mut interior = Self::default();
-        for_each_window(
-            rings,
-            grid.origin,
-            grid.step,
-            [grid.width, grid.height],
-            |k| {
-                let weight = f64::from(map.weight(k));
-                interior.windows += 1;
-                interior.weight += weight;
-                interior.correlation += weight * f64::from(map.correlation(k));
-                interior.least += weight * least_correlation(weight, min_correlation);
-            },
-        );
+impl<'m> Inside<'m> {
+    /// The windows inside `rings` (in plan, metres, holes too), with the map of the facet's plane.
+    pub fn new(rings: &[Vec<Point2<f64>>], map: &'m ConsistencyMap) -> Self {
+        let (grid, mut windows) = (&map.grid, Vec::new());
+        let size = [grid.width, grid.height];
+        for_each_window(rings, grid.origin, grid.step, size, |k| windows.push(k));
+        Self { map, windows }
+    }
+
+    /// Their sums; `min_correlation` is what strong texture must reach.
+    pub fn sums(&self, min_correlation: f64) -> Interior {
+        let mut interior = Interior {
+            windows: self.windows.len(),
+            ..Interior::default()
+        };
+        for &k in &self.windows {
+            let weight = f64::from(self.map.weight(k));
+            interior.weight += weight;
+            interior.correlation += weight * f64::from(self.map.correlation(k));
+            interior.least += weight * least_correlation(weight, min_correlation);
+        }
         interior
     }
 
+    /// How much better the views agree on another plane in the same windows: the mean difference of the correlations, in
+    /// standard deviations of that mean. As many windows count as fit in side by side, since others share cells. Zero where
+    /// no window sees both planes.
+    pub fn advantage_of(&self, other: &ConsistencyMap) -> f64 {
+        let (own, grid) = (self.map, &other.grid);
+        let (dc, dr) = own.grid.offset_in(grid);
+        let (mut weights, mut squares, mut sum, mut sum_squares) = (0.0, 0.0, 0.0, 0.0);
+        for &k in &self.windows {
+            let column = (k % own.grid.width) as isize + dc;
+            let row = (k / own.grid.width) as isize + dr;
+            let (Ok(column), Ok(row)) = (usize::try_from(column), usize::try_from(row)) else {
+                continue;
+            };
+            if column >= grid.width || row >= grid.height {
+                continue;
+            }
+            let j = row * grid.width + column;
+            let weight = f64::from(own.weight(k).min(other.weight(j)));
+            let difference = f64::from(other.correlation(j) - own.correlation(k));
+            weights += weight;
+            squares += weight * weight;
+            sum += weight * difference;
+            sum_squares += weight * difference * difference;
+        }
+        if weights <= 0.0 {
+            return 0.0;
+        }
+        let mean = sum / weights;
+        let variance = (sum_squares / weights - mean * mean).max(LEAST_VARIANCE);
+        let independent = weights * weights / (squares * (SIDE * SIDE) as f64);
+        mean / (variance / independent).sqrt()
+    }
+}
+
+impl Interior {
     /// Is there texture, and does it contradict the plane?
     pub fn speaks_against(&self) -> bool {
         self.correlation < self.least - TOLERANCE * self.weight
@@ -51,6 +96,10 @@ impl Interior {
     }
 }
 
+/// Side of a window, cells.
+pub const SIDE: usize = 2 * HALF_WINDOW + 1;
+/// Least variance of a difference of correlations: that of their rounding.
+const LEAST_VARIANCE: f64 = 1e-5;
 /// How exactly the least correlation is known. Assumption.
 const TOLERANCE: f64 = 0.02;
 /// Mean texture weight from which on the inside of a facet has a say. Assumption: below it is mostly noise.
@@ -64,7 +113,6 @@ fn for_each_window(
     [width, height]: [usize; 2],
     mut see: impl FnMut(usize),
 ) {
-    const SIDE: usize = 2 * HALF_WINDOW + 1;
     let pixels = |ring: &Vec<Point2<f64>>| {
         let pixel = |p: &Point2<f64>| Point2::from((p - origin) / step);
         ring.iter().map(pixel).collect()
@@ -105,29 +153,71 @@ mod tests {
         corners.map(|(x, y)| Point2::new(x + 3.0, y - 5.0)).to_vec()
     }
 
-    /// What a facet of 5 m by 3 m shows whose edges correlate, and whose inside correlates by `inside`.
-    fn with_edges(inside: f32) -> Interior {
+    /// How a plane agrees at the places of a grid of 70 by 50 cells, 0.1 m, moved by whole cells.
+    fn map(moved: [f64; 2], correlation: impl Fn(Point2<f64>) -> f32) -> ConsistencyMap {
         let grid = PlanGrid {
-            origin: Point2::new(-1.0, -1.0),
+            origin: Point2::new(-1.0 + 0.1 * moved[0], -1.0 + 0.1 * moved[1]),
             step: 0.1,
             width: 70,
             height: 50,
         };
-        let facet = [(0.0, 0.0), (5.0, 0.0), (5.0, 3.0), (0.0, 3.0)];
-        let facet = facet.map(|(x, y)| Point2::new(x, y)).to_vec();
-        let correlation = |k: usize| {
-            let p = grid.center(k % grid.width, k / grid.width);
-            let from_edge = p.x.min(5.0 - p.x).min(p.y.min(3.0 - p.y));
-            if from_edge > 0.5 { inside } else { 0.9 }
-        };
         let cells = grid.width * grid.height;
-        let map = ConsistencyMap {
+        let at = |k: usize| correlation(grid.center(k % grid.width, k / grid.width));
+        ConsistencyMap {
             grid,
-            correlation: (0..cells).map(|k| (correlation(k) * 127.0) as i8).collect(),
+            correlation: (0..cells).map(|k| (at(k) * 127.0) as i8).collect(),
             weight: vec![200; cells],
             common_weight: vec![200; cells],
-        };
-        Interior::of(&[facet], &map, 0.45)
+        }
+    }
+
+    /// A facet of 5 m by 3 m.
+    fn facet() -> Vec<Point2<f64>> {
+        let corners = [(0.0, 0.0), (5.0, 0.0), (5.0, 3.0), (0.0, 3.0)];
+        corners.map(|(x, y)| Point2::new(x, y)).to_vec()
+    }
+
+    /// What the facet shows if its edges correlate, and its inside correlates by `inside`.
+    fn with_edges(inside: f32) -> Interior {
+        let map = map([0.0; 2], |p| {
+            let from_edge = p.x.min(5.0 - p.x).min(p.y.min(3.0 - p.y));
+            if from_edge > 0.5 { inside } else { 0.9 }
+        });
+        Inside::new(&[facet()], &map).sums(0.45)
+    }
+
+    /// Values between -1 and 1 that change from cell to cell.
+    fn scatter(p: Point2<f64>) -> f32 {
+        (37.0 * p.x + 91.0 * p.y).rem_euclid(2.0) as f32 - 1.0
+    }
+
+    #[test]
+    fn a_plane_that_the_views_agree_better_on_has_the_advantage() {
+        let own = map([0.0; 2], |p| 0.5 + 0.1 * scatter(p));
+        let inside = Inside::new(&[facet()], &own);
+        // 800 windows of 11 by 11 cells are 6.6 side by side; the mean is 0.1, the standard deviation 0.14.
+        let better = map([3.0, -2.0], |p| 0.6 - 0.1 * scatter(p));
+        let sigmas = inside.advantage_of(&better);
+        assert!((1.5..3.5).contains(&sigmas), "{sigmas}");
+        let worse = map([3.0, -2.0], |p| 0.4 - 0.1 * scatter(p));
+        assert!(inside.advantage_of(&worse) < -1.5);
+        assert!(inside.advantage_of(&own).abs() < 1e-9);
+    }
+
+    #[test]
+    fn scatter_that_both_planes_share_does_not_count() {
+        let common = |p: Point2<f64>| 0.3 * scatter(p);
+        let own = map([0.0; 2], |p| 0.4 + common(p));
+        let inside = Inside::new(&[facet()], &own);
+        assert!(inside.advantage_of(&map([0.0; 2], |p| 0.5 + common(p))) > 10.0);
+    }
+
+    #[test]
+    fn planes_without_a_window_in_common_cannot_be_compared() {
+        let own = map([0.0; 2], |_| 0.2);
+        let inside = Inside::new(&[facet()], &own);
+        assert_eq!(inside.advantage_of(&map([90.0, 0.0], |_| 0.9)), 0.0);
+        assert_eq!(inside.advantage_of(&map([-90.0, -60.0], |_| 0.9)), 0.0);
     }
 
     #[test]

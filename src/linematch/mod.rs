@@ -239,7 +239,7 @@ impl From<nviews::Line> for LineMatch {
 }
 
 #[cfg(test)]
-mod planted;
+pub(crate) mod planted;
 
 #[cfg(test)]
 mod tests {

@@ -129,7 +129,8 @@ pub fn complete_line(
 /// Views that have segments on the line but see another edge nearby: those that do not support it
 /// photometrically and, where the views are not alike in the mean, the one least like the others. A
 /// wrong view displaces the line and with it the windows of the right ones, so one is left out at a
-/// time.
+/// time. Three edges that meet in a line may do so by chance and have to be alike; from the fourth on it is enough that they
+/// are half as much, as with any segment at a predicted position (B99 3.2).
 fn disagreeing_views(
     profile: &Profile,
     supports: &[LineSupport],
@@ -137,12 +138,36 @@ fn disagreeing_views(
 ) -> Vec<ViewId> {
     let measured = profile.views.iter().filter(|v| v.measured());
     let mean = supports.iter().map(|s| s.score).sum::<f64>() / supports.len().max(1) as f64;
-    if mean < params.pair_score {
+    if mean < least_mean(profile.measured(), params) {
         let worst = measured.min_by(|a, b| a.agreement.total_cmp(&b.agreement));
         return worst.map(|v| v.view).into_iter().collect();
     }
     let supported = |v: &&ViewProfile| supports.iter().any(|s| s.view == v.view);
     measured.filter(|v| !supported(v)).map(|v| v.view).collect()
+}
+
+/// What the supports of a line must score in the mean, given the number of views with an edge.
+fn least_mean(measured: usize, params: &MatchParams) -> f64 {
+    let factor = match measured > MIN_MEASURED {
+        true => params.with_segment,
+        false => 1.0,
+    };
+    params.pair_score * factor
+}
+
+/// What a view with an edge must score, given how uncertain the others leave the line, as a share of what is allowed. Where
+/// they determine it, the edge is a measurement at the predicted position; where they do not, any parallel edge would fit, and
+/// its grey values have to agree as much as without one. Where views are `few` there is a way between, which six views do not
+/// need: the less certain the others are, the more it has to agree.
+fn least_score(uncertainty: f64, few: bool, params: &MatchParams) -> f64 {
+    let without_edge = params.pair_score * params.without_segment;
+    if uncertainty <= 1.0 {
+        return f64::NEG_INFINITY;
+    }
+    if !few || uncertainty >= 2.0 {
+        return without_edge;
+    }
+    params.pair_score + (without_edge - params.pair_score) * (uncertainty - 1.0)
 }
 
 /// The first of the largest residuals.
@@ -263,9 +288,7 @@ impl Context<'_> {
             .collect()
     }
 
-    /// Does something verify every view? Each is left out in turn. Where the others still determine
-    /// the line, its segment is a measurement at the predicted position; where they do not, any
-    /// parallel segment in it would fit, and its grey values have to agree as much as without a segment.
+    /// Does something verify every view? Each is left out in turn; `limit_m` is how uncertain the others may leave the line.
     fn every_view_verified(
         &self,
         fit: &LineFit,
@@ -280,11 +303,12 @@ impl Context<'_> {
             conditioning(&self.observed(edges), &line, self.fitting)
                 .map_or(f64::INFINITY, |c| c.sigma_at(0.0).max(c.sigma_at(1.0)))
         };
-        let by_correlation = self.params.pair_score * self.params.without_segment;
-        supports
-            .iter()
-            .filter(|s| s.edge.is_some())
-            .all(|s| s.score >= by_correlation || sigma_without(s) <= limit_m)
+        let few = self.scene.views.len() <= self.params.min_views;
+        let least = |uncertainty| least_score(uncertainty, few, self.params);
+        let mut measured = supports.iter().filter(|s| s.edge.is_some());
+        measured.all(|s| {
+            s.score >= least(f64::INFINITY) || s.score >= least(sigma_without(s) / limit_m)
+        })
     }
 
     /// The views that support the stretch.
@@ -398,14 +422,14 @@ impl Context<'_> {
         let length = fit.line.length();
         let segment = super::triples::stretch_of(&fit.line, t0, t1);
         let camera = self.scene.camera(supports[0].view);
-        let sigma_px = fit.sigma_at(t0 / length).max(fit.sigma_at(t1 / length))
-            / camera.ground_pixel(&segment.p0);
-        if sigma_px > self.fitting.max_sigma_px {
+        let pixel_m = camera.ground_pixel(&segment.p0);
+        let length_px = segment.length() / pixel_m;
+        let largest_m = self.fitting.largest_sigma_px(length_px) * pixel_m;
+        if fit.sigma_at(t0 / length).max(fit.sigma_at(t1 / length)) > largest_m {
             return Err(Rejection::IllConditioned);
         }
         let score = supports.iter().map(|s| s.score).sum::<f64>() / supports.len() as f64;
-        let limit_m = 2.0 * self.fitting.max_sigma_px * camera.ground_pixel(&segment.p0);
-        if !self.every_view_verified(fit, [t0, t1], &supports, limit_m) {
+        if !self.every_view_verified(fit, [t0, t1], &supports, 2.0 * largest_m) {
             return Err(Rejection::Unverified);
         }
         let measured = supports.iter().filter(|s| s.edge.is_some()).count();
@@ -414,7 +438,6 @@ impl Context<'_> {
             return Err(Rejection::TooFewViews);
         }
         // The one view that verifies two others is hit by chance the more easily the shorter the line.
-        let length_px = segment.length() / camera.ground_pixel(&segment.p0);
         if measured == MIN_MEASURED && length_px < 2.0 * self.params.min_edgels as f64 {
             return Err(Rejection::TooShort);
         }
@@ -426,5 +449,76 @@ impl Context<'_> {
             return Err(Rejection::OutsideHeights);
         }
         Ok(Line { segment, supports })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linematch::planted;
+    use crate::lines3d::ProjectedLine;
+    use crate::raster::Channel;
+
+    /// The views that are left out of a line whose first `count` views have edges and score `score`.
+    fn left_out(count: usize, score: f64) -> Vec<ViewId> {
+        let (scene, line) = (planted::scene(), planted::edges()[0]);
+        let edge = |view: usize| GuidedEdge {
+            view: ViewId(view as u32),
+            channel: Channel::Grey,
+            segment: planted::part_of(&scene, view, 0, 0.1, 0.9),
+            covariance: nalgebra::Matrix2::identity(),
+            pieces: Vec::new(),
+        };
+        let views = (0..count).map(|view| ViewProfile {
+            view: ViewId(view as u32),
+            image: ProjectedLine::new(&scene.views[view].camera, &line).unwrap(),
+            segments: Vec::new(),
+            edge: Some(edge(view)),
+            detected: Vec::new(),
+            correlation: Vec::new(),
+            agreement: [0.4, 0.2, 0.3, 0.5, 0.6][view],
+        });
+        let profile = Profile {
+            t: Vec::new(),
+            reference: 0,
+            views: views.collect(),
+        };
+        let supports = (0..count).map(|view| LineSupport {
+            view: ViewId(view as u32),
+            segments: Vec::new(),
+            stretch: planted::part_of(&scene, view, 0, 0.1, 0.9),
+            score,
+            kind: SupportKind::Matched,
+            edge: Some(edge(view)),
+        });
+        disagreeing_views(
+            &profile,
+            &supports.collect::<Vec<_>>(),
+            &MatchParams::default(),
+        )
+    }
+
+    #[test]
+    fn three_edges_have_to_be_as_alike_as_a_pair_and_more_half_as_much() {
+        let least_alike = vec![ViewId(1)];
+        assert_eq!(left_out(3, 0.55), []);
+        assert_eq!(left_out(3, 0.45), least_alike);
+        assert_eq!(left_out(4, 0.45), []);
+        assert_eq!(left_out(5, 0.3), []);
+        assert_eq!(left_out(5, 0.2), least_alike);
+    }
+
+    #[test]
+    fn the_less_certain_the_others_the_more_a_view_has_to_agree() {
+        let params = MatchParams::default();
+        let (pair, alone) = (0.5, 0.75);
+        for few in [false, true] {
+            assert!(least_score(0.9, few, &params) < 0.0);
+            assert_eq!(least_score(2.5, few, &params), alone);
+            assert_eq!(least_score(f64::INFINITY, few, &params), alone);
+        }
+        assert_eq!(least_score(1.5, false, &params), alone);
+        assert!((least_score(1.0 + 1e-9, true, &params) - pair).abs() < 1e-6);
+        assert!((least_score(1.4, true, &params) - 0.6).abs() < 1e-12);
     }
 }

@@ -154,7 +154,8 @@ fn reconstruct(
     let (f0, f1) = (t0 / length, t1 / length);
     let sigma_m = fit.sigma_at(f0).max(fit.sigma_at(f1));
     let camera = scene.camera(matched.supports[0].view);
-    if sigma_m > params.max_sigma_px * camera.ground_pixel(&segment.p0) {
+    let pixel_m = camera.ground_pixel(&segment.p0);
+    if sigma_m > params.largest_sigma_px(segment.length() / pixel_m) * pixel_m {
         return Err(LineOutcome::IllConditioned { sigma_m });
     }
     let meant = Lines3dParams {
@@ -182,5 +183,63 @@ fn along_supports(scene: &Scene, segment: Segment3, supports: &[LineSupport]) ->
     match along {
         Some(d) if d < 0.0 => Segment3::new(segment.p1, segment.p0),
         _ => segment,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ids::ViewId;
+    use crate::linematch::GuidedEdge;
+    use crate::linematch::{SupportKind, planted};
+    use crate::raster::Channel;
+    use nalgebra::Matrix2;
+
+    /// What becomes of the part of an eave whose edges are measured this exactly in three views, px.
+    fn outcome(from: f64, to: f64, sigma_px: f64) -> LineOutcome {
+        let scene = planted::scene();
+        let support = |view: usize| {
+            let stretch = planted::part_of(&scene, view, 1, from, to);
+            let (variance, length) = (sigma_px * sigma_px, stretch.length());
+            let edge = GuidedEdge {
+                view: ViewId(view as u32),
+                channel: Channel::Grey,
+                segment: stretch,
+                covariance: Matrix2::new(variance, 0.0, 0.0, 4.0 * variance / (length * length)),
+                pieces: vec![stretch],
+            };
+            LineSupport {
+                view: edge.view,
+                segments: Vec::new(),
+                stretch,
+                score: 1.0,
+                kind: SupportKind::Matched,
+                edge: Some(edge),
+            }
+        };
+        let matched = LineMatch {
+            supports: [0, 1, 2].map(support).to_vec(),
+            score: 1.0,
+        };
+        let (_, trace) = reconstruct_lines(&scene, &[matched], &Lines3dParams::default());
+        trace.outcomes.into_iter().next().unwrap()
+    }
+
+    #[test]
+    fn a_long_line_may_be_less_certain_than_a_short_one() {
+        let is_line = |outcome| matches!(outcome, LineOutcome::Reconstructed { .. });
+        let uncertain = |outcome| matches!(outcome, LineOutcome::IllConditioned { .. });
+        assert!(is_line(outcome(0.4, 0.6, 0.1)));
+        assert!(
+            uncertain(outcome(0.4, 0.6, 0.4)),
+            "{:?}",
+            outcome(0.4, 0.6, 0.4)
+        );
+        assert!(
+            is_line(outcome(0.0, 1.0, 0.4)),
+            "{:?}",
+            outcome(0.0, 1.0, 0.4)
+        );
+        assert!(uncertain(outcome(0.0, 1.0, 1.0)));
     }
 }

@@ -106,7 +106,8 @@ async function openEngine(): Promise<void> {
   const core = await engine.open();
   defaults.value = core.defaults;
   if (stages.value.length === 0) {
-    params.value = paramsOf(core.defaults, linkedParams());
+    // With what has been chosen while the core was compiled.
+    params.value = paramsOf(core.defaults, { ...linkedParams(), ...params.value });
     await listStages();
   }
 }

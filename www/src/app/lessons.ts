@@ -68,7 +68,7 @@ export const LESSONS: readonly LessonStep[] = [
     text: "A point x of the segment corresponds to x′, where its epipolar line meets the candidate. The windows about both are compared.",
     question: "Drag the point along the segment until the correlation exceeds 0.9.",
     answer:
-      "Where the windows show the same roof, they correlate; near occlusions they do not. The score is the mean of all that exceed 0.6.",
+      "Where the windows show the same roof, they correlate; near occlusions they do not. The score is the mean of all that exceed 0.65.",
     method: "lines",
     tab: "matches",
     prepare: () => {

@@ -96,6 +96,8 @@ export function facetRejectionWords(reason: Record<string, Record<string, number
       return `near the ground (${value.toFixed(1)} m above it)`;
     case "dissimilar":
       return `the views do not agree inside (${value.toFixed(2)})`;
+    case "outdone":
+      return `the views agree better on plane ${numbers["by"]} inside (by ${(numbers["sigmas"] ?? 0).toFixed(1)} σ)`;
     case "unsupported":
       return `too little of its outline is real (τ = ${value.toFixed(2)})`;
     default:

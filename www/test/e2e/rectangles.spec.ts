@@ -2,6 +2,25 @@
 import { expect, test } from "@playwright/test";
 import { lookOf, looksOfHalves, openTab, stage, steadyLook, waitForStage, watch } from "./helpers";
 
+test("a method that is chosen while the core is still compiled stays chosen", async ({ page }) => {
+  const { problems } = watch(page);
+  let go = () => {};
+  const clicked = new Promise<void>((resolve) => {
+    go = resolve;
+  });
+  await page.route(/\.wasm$/, async (route) => {
+    await clicked;
+    await route.continue();
+  });
+  await page.goto("/");
+  await page.getByRole("button", { name: "Rectangles", exact: true }).click();
+  go();
+  await expect(stage(page, "regions")).toBeVisible();
+  await expect(stage(page, "segments")).toHaveCount(0);
+  await expect(page.getByRole("tab", { name: "Clusters" })).toBeVisible();
+  expect(problems).toEqual([]);
+});
+
 test("regions, directions, clusters and planes of the demo scene", async ({ page }) => {
   // Both methods run, where graphics are computed in software, too.
   test.slow();
