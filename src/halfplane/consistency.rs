@@ -12,6 +12,8 @@
 //!   within the window and n that of the noise. It is also about what the views of a true plane correlate
 //!   by more than chance, so that as little is asked of them ([`least_correlation`]).
 
+use std::ops::Range;
+
 use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
 
@@ -40,6 +42,26 @@ impl ConsistencyMap {
     /// the weight is 0.
     pub fn correlation(&self, k: usize) -> f32 {
         f32::from(self.correlation[k]) / 127.0
+    }
+
+    /// At every cell the one of some maps of the same grid that the views agree best on, of those that `among` names for its
+    /// column and row. `None` without maps.
+    pub(super) fn best_of(
+        maps: &[Self],
+        among: impl Fn(usize, usize) -> Range<usize>,
+    ) -> Option<Self> {
+        let mut best = maps.first()?.clone();
+        let (width, cells) = (best.grid.width, best.correlation.len());
+        for k in 0..cells {
+            let named = &maps[among(k % width, k / width)];
+            let Some(map) = named.iter().max_by_key(|m| m.correlation[k]) else {
+                continue;
+            };
+            best.correlation[k] = map.correlation[k];
+            best.weight[k] = map.weight[k];
+            best.common_weight[k] = map.common_weight[k];
+        }
+        Some(best)
     }
 
     /// How much the texture at cell `k` can tell, 0 to 1; 0 where fewer than two views see the window.

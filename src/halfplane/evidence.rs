@@ -43,11 +43,14 @@ impl Evidence {
         hypotheses: &[Hypothesis],
         arrangement: &Arrangement,
         grid: &PlanGrid,
-        ground: &[ConsistencyMap],
+        ground: Option<&ConsistencyMap>,
         params: &RoofParams,
     ) -> Self {
         let raster = arrangement.raster(grid);
-        let mut ground = ground_evidence(ground, &raster, arrangement.cells, grid, params);
+        let mut ground = match ground {
+            Some(map) => ground_evidence(map, &raster, arrangement.cells, params),
+            None => vec![0.0; arrangement.cells],
+        };
         for (cell, metres) in half_planes_over_cells(input, hypotheses, &raster, grid) {
             ground[cell] -= params.half_plane_gain_m * metres;
         }
@@ -155,24 +158,17 @@ const NOT_GROUND_SHARE: f64 = 0.25;
 
 /// What the ground explains at least as well as a roof could, per cell.
 fn ground_evidence(
-    maps: &[ConsistencyMap],
+    map: &ConsistencyMap,
     raster: &[u32],
     cells: usize,
-    grid: &PlanGrid,
     params: &RoofParams,
 ) -> Vec<f64> {
-    let area = grid.step * grid.step;
+    let area = map.grid.step * map.grid.step;
     let mut evidence = vec![0.0f64; cells];
     for (k, &cell) in raster.iter().enumerate().filter(|(_, c)| **c != u32::MAX) {
-        let best = maps
-            .iter()
-            .map(|m| (m.correlation(k), m.weight(k)))
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((correlation, weight)) = best {
-            let (correlation, weight) = (f64::from(correlation), f64::from(weight));
-            let least = least_correlation(weight, params.min_correlation);
-            evidence[cell as usize] += weight * (correlation - least) * area;
-        }
+        let (correlation, weight) = (f64::from(map.correlation(k)), f64::from(map.weight(k)));
+        let least = least_correlation(weight, params.min_correlation);
+        evidence[cell as usize] += weight * (correlation - least) * area;
     }
     evidence.into_iter().map(against_roofs).collect()
 }
@@ -399,7 +395,7 @@ mod tests {
                 lines: Vec::new(),
             });
             let evidence =
-                Evidence::collect(&input, &hypotheses, &arrangement, &grid, &[], &params);
+                Evidence::collect(&input, &hypotheses, &arrangement, &grid, None, &params);
             let index = LineIndex::new(Vec::new());
             evidence
                 .energy(&arrangement, &[HORIZONTAL; 2], &index, &params)

@@ -140,7 +140,7 @@ pub fn reconstruct_facets(
         .map(|v| v.camera.ground_pixel(&lines[0].at(0.5)))
         .fold(f64::INFINITY, f64::min);
     let reduced = scene.reduced(((grid.step / fine) as usize).max(1));
-    let ground_maps = ground_maps(&reduced, ground, &grid);
+    let ground_map = ground_map(&reduced, ground, &grid);
     let hypotheses = hypotheses(scene, &reduced, segments, &input, groups, grid.step, params);
     let bounding = bounding_lines(&input, &hypotheses);
     let borders = border_lines(&input, &hypotheses, &bounding, params);
@@ -151,7 +151,7 @@ pub fn reconstruct_facets(
         &hypotheses,
         &arrangement,
         &grid,
-        &ground_maps,
+        ground_map.as_ref(),
         params,
     );
     let groups: Vec<PlaneGroup> = hypotheses.iter().map(|h| h.group.clone()).collect();
@@ -222,20 +222,25 @@ fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[Region]) -> Option<Pl
     (size.x > 0.0 && size.y > 0.0 && step.is_finite()).then(|| PlanGrid::covering(min, max, step))
 }
 
-/// Similarity of the views on the ground plane; its height is only known to a few decimetres, so it is tried at
-/// three.
-fn ground_maps(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Vec<ConsistencyMap> {
-    const OFFSETS: [f64; 3] = [-0.3, 0.0, 0.3];
+/// Similarity of the views on the ground. Its height is only known to a few decimetres: at every position the views may agree
+/// at the height that it has there or a step beside it.
+fn ground_map(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Option<ConsistencyMap> {
+    const STEP: f64 = 0.3;
     let plane = ground.plane();
-    crate::shares::map_shared("planes", &OFFSETS, 0.1..0.2, |_, dz| {
-        consistency_map(
-            scene,
-            &Plane {
-                d: plane.d - dz * plane.normal.z,
-                ..plane
-            },
-            grid,
-        )
+    let [lowest, highest] = ground.rises().map(|rise| (rise / STEP).round() as i32);
+    let levels: Vec<i32> = (lowest - 1..=highest + 1).collect();
+    let maps = crate::shares::map_shared("planes", &levels, 0.1..0.2, |_, level| {
+        let raised = Plane {
+            d: plane.d - STEP * f64::from(*level) * plane.normal.z,
+            ..plane
+        };
+        consistency_map(scene, &raised, grid)
+    });
+    ConsistencyMap::best_of(&maps, |column, row| {
+        let at = grid.center(column, row);
+        let rise = ground.z_at(&at) - plane.z_at(at.x, at.y);
+        let below = ((rise / STEP).round() as i32 - lowest).clamp(0, highest - lowest) as usize;
+        below..below + 3
     })
 }
 

@@ -2,10 +2,10 @@
 //!
 //! Every view, reduced four times, is compared with the others on horizontal planes at steps of height
 //! (the same measure that verifies facets, `halfplane::consistency`). Each position takes the height at which the views
-//! agree best; the ground near a building is what the lowest clearly matched positions around it show, since
-//! roofs and trees only rise above it. What is matched at about the height of the plane through those positions then settles the height.
+//! agree best; the ground near a building is the lowest height that many positions around it share, since roofs and trees only rise above
+//! it and wrong matches share none. What is matched at about the height of the plane through those then settles the height.
 
-use nalgebra::{Point2, Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
 use serde::Serialize;
 
 use super::Facet;
@@ -23,8 +23,8 @@ pub struct Ground {
     rows: usize,
     /// Row by row; empty for one height everywhere.
     heights: Vec<f64>,
-    /// Height outside the grid.
-    elsewhere: f64,
+    /// The plane that the ground lies in as a whole.
+    plane: Plane,
 }
 
 /// Blocks higher than this above the common plane show no ground, metres: lower than any eave. Assumption: the
@@ -46,8 +46,11 @@ const MIN_CORRELATION: f32 = 0.7;
 const MIN_WEIGHT: f32 = 0.5;
 /// Fewer matched positions tell no height.
 const MIN_SAMPLES: usize = 30;
-/// Share of the matched positions around a building that may lie below its ground (wrong matches).
-const LOW_SHARE: f64 = 0.15;
+/// Positions within this height share it, metres: as rough as ground is.
+const ONE_HEIGHT: f64 = 1.0;
+/// The ground has at least this share of the positions of the height that most share, which may be a roof's. Assumption: wrong
+/// matches on real photographs have up to a sixth.
+const LEAST_OF_MOST: f64 = 0.25;
 
 impl Ground {
     /// The same height everywhere.
@@ -57,7 +60,7 @@ impl Ground {
             columns: 0,
             rows: 0,
             heights: Vec::new(),
-            elsewhere: z,
+            plane: level_plane(z),
         }
     }
 
@@ -105,105 +108,79 @@ impl Ground {
             ((max.x - min.x) / CELL) as usize + 1,
             ((max.y - min.y) / CELL) as usize + 1,
         );
-        let cells: Vec<usize> = (0..columns * rows).collect();
-        let heights = crate::parallel::map(&cells, |_, &k| {
-            let at = min
-                + nalgebra::Vector2::new((k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5)
-                    * CELL;
-            let near = samples.iter().filter(|s| is_near(s, &at));
-            low_height(near.map(|s| s.z)).unwrap_or(elsewhere)
-        });
-        Self {
+        let mut ground = Self {
             min,
             columns,
             rows,
-            heights,
-            elsewhere,
-        }
-        .without_large_roofs()
-        .settled(samples)
-    }
-
-    /// The plane that the ground lies in as a whole, fitted from below: blocks that stand out above it are roofs or
-    /// woods so large that no ground is seen around them.
-    pub fn plane(&self) -> Plane {
-        let all: Vec<(Point3<f64>, f64)> = (0..self.heights.len())
-            .map(|k| (self.block(k), 1.0))
-            .collect();
-        let mut sorted = self.heights.clone();
-        sort_by(&mut sorted, f64::total_cmp);
-        let low = sorted
-            .get(sorted.len() / 10)
-            .copied()
-            .unwrap_or(self.elsewhere);
-        let mut plane = Plane {
-            normal: Vector3::z(),
-            d: -low,
+            heights: vec![elsewhere; columns * rows],
+            plane: level_plane(elsewhere),
         };
-        const ROUNDS: usize = 10;
-        for _ in 0..ROUNDS {
-            let near: Vec<_> = all
-                .iter()
-                .filter(|(p, _)| plane.signed_distance(p).abs() < STANDS_OUT)
-                .copied()
-                .collect();
-            match Plane::fit(&near).filter(|p| p.normal.z > LEAST_LEVEL) {
-                Some(next) if 4 * near.len() > all.len() => plane = next,
-                _ => break,
-            }
+        let cells: Vec<usize> = (0..columns * rows).collect();
+        let lowest = crate::parallel::map(&cells, |_, &k| {
+            let at = ground.block(k).xy();
+            low_height(samples.iter().filter(|s| is_near(s, &at)).map(|s| s.z))
+        });
+        let lowest: Vec<Point3<f64>> = (lowest.iter().enumerate())
+            .filter_map(|(k, z)| {
+                let at = ground.block(k);
+                z.map(|z| Point3::new(at.x, at.y, z))
+            })
+            .collect();
+        if let Some(plane) = common_plane(&lowest) {
+            ground.plane = plane;
         }
-        plane
+        ground.settle(samples);
+        ground
     }
 
+    /// The plane that the ground lies in as a whole.
+    pub fn plane(&self) -> Plane {
+        self.plane
+    }
+
+    /// How far the ground lies above that plane, least and most, metres.
+    pub fn rises(&self) -> [f64; 2] {
+        let blocks = (0..self.heights.len()).map(|k| self.block(k));
+        let rise = |p: Point3<f64>| p.z - self.plane.z_at(p.x, p.y);
+        blocks.map(rise).fold([0.0, 0.0], |[low, high], rise| {
+            [rise.min(low), rise.max(high)]
+        })
+    }
+
+    /// Middle of a block, on the ground.
     fn block(&self, k: usize) -> Point3<f64> {
         let (c, r) = ((k % self.columns) as f64, (k / self.columns) as f64);
-        let p = self.min + nalgebra::Vector2::new(c + 0.5, r + 0.5) * CELL;
+        let p = self.min + Vector2::new(c + 0.5, r + 0.5) * CELL;
         Point3::new(p.x, p.y, self.heights[k])
     }
 
-    /// Lowers blocks that stand out above the common plane onto it.
-    fn without_large_roofs(mut self) -> Self {
-        let plane = self.plane();
-        for k in 0..self.heights.len() {
-            let at = self.block(k);
-            if plane.signed_distance(&at) > STANDS_OUT {
-                self.heights[k] = plane.z_at(at.x, at.y);
-            }
-        }
-        self
-    }
-
-    /// Moves blocks to the middle of what is matched around them at about the height of the common plane: the low heights
-    /// that they start from depend on how much of the ground is seen between roofs, and on the slope.
-    fn settled(mut self, samples: &[Point3<f64>]) -> Self {
-        let plane = self.plane();
+    /// Lays every block in the common plane, and then to the middle of what is matched around it at about that height.
+    fn settle(&mut self, samples: &[Point3<f64>]) {
+        let plane = self.plane;
         let rise = |p: &Point3<f64>| p.z - plane.z_at(p.x, p.y);
         let level: Vec<&Point3<f64>> = (samples.iter())
             .filter(|p| rise(p).abs() < STANDS_OUT)
             .collect();
-        for k in 0..self.heights.len() {
+        let cells: Vec<usize> = (0..self.heights.len()).collect();
+        self.heights = crate::parallel::map(&cells, |_, &k| {
             let at = self.block(k);
             let near = level.iter().filter(|p| is_near(p, &at.xy()));
             let mut rises: Vec<f64> = near.map(|p| rise(p)).collect();
-            if rise(&at).abs() < STANDS_OUT && rises.len() >= MIN_SAMPLES {
-                let middle = crate::math::median(&mut rises).unwrap_or(0.0);
-                self.heights[k] = plane.z_at(at.x, at.y) + middle;
-            }
-        }
-        self
+            let enough = rises.len() >= MIN_SAMPLES;
+            let middle = crate::math::median(&mut rises).filter(|_| enough);
+            plane.z_at(at.x, at.y) + middle.unwrap_or(0.0)
+        });
     }
 
     /// Ground height at a plan position, metres.
     pub fn z_at(&self, p: &Point2<f64>) -> f64 {
         let (c, r) = ((p.x - self.min.x) / CELL, (p.y - self.min.y) / CELL);
         if c < 0.0 || r < 0.0 || c >= self.columns as f64 || r >= self.rows as f64 {
-            return self.elsewhere;
+            return self.plane.z_at(p.x, p.y);
         }
         self.heights[r as usize * self.columns + c as usize]
     }
-}
 
-impl Ground {
     /// Ground height below a building, metres: the middle one of those at its corners.
     pub fn below(&self, members: &[&Facet]) -> f64 {
         let mut heights: Vec<f64> = members
@@ -215,19 +192,75 @@ impl Ground {
     }
 }
 
+fn level_plane(z: f64) -> Plane {
+    Plane {
+        normal: Vector3::z(),
+        d: -z,
+    }
+}
+
+/// The plane that most of the blocks lie in, or the lowest of those that at least half as many do: a town may have more flat
+/// roofs of one height than ground. `None` without blocks.
+fn common_plane(blocks: &[Point3<f64>]) -> Option<Plane> {
+    const STARTS: usize = 10;
+    const ROUNDS: usize = 10;
+    let near = |plane: &Plane| -> Vec<(Point3<f64>, f64)> {
+        let near = |p: &&Point3<f64>| plane.signed_distance(p).abs() < STANDS_OUT;
+        blocks.iter().filter(near).map(|p| (*p, 1.0)).collect()
+    };
+    let mut heights: Vec<f64> = blocks.iter().map(|p| p.z).collect();
+    sort_by(&mut heights, f64::total_cmp);
+    let at_share = |i: usize| heights.get(i * heights.len() / STARTS);
+    let starts = (0..STARTS).filter_map(at_share).map(|z| level_plane(*z));
+    let found: Vec<(Plane, usize)> = starts
+        .map(|mut plane| {
+            for _ in 0..ROUNDS {
+                let Some(next) = Plane::fit(&near(&plane)).filter(|p| p.normal.z > LEAST_LEVEL)
+                else {
+                    break;
+                };
+                plane = next;
+            }
+            (plane, near(&plane).len())
+        })
+        .collect();
+    let most = found.iter().map(|(_, n)| *n).max()?;
+    let middle = blocks.iter().map(|p| p.coords.xy()).sum::<Vector2<f64>>() / blocks.len() as f64;
+    let common = found.iter().filter(|(_, n)| 2 * n >= most);
+    common.map(|(plane, _)| *plane).min_by(|a, b| {
+        a.z_at(middle.x, middle.y)
+            .total_cmp(&b.z_at(middle.x, middle.y))
+    })
+}
+
 /// Does a matched position tell the height of the ground here?
 fn is_near(sample: &Point3<f64>, at: &Point2<f64>) -> bool {
     (sample.xy() - at).norm_squared() <= RADIUS * RADIUS
 }
 
-/// The height below which only wrong matches lie; `None` with too few samples.
+/// The lowest height that many share; `None` with too few samples.
 fn low_height(heights: impl Iterator<Item = f64>) -> Option<f64> {
     let mut heights: Vec<f64> = heights.collect();
     if heights.len() < MIN_SAMPLES {
         return None;
     }
     sort_by(&mut heights, f64::total_cmp);
-    Some(heights[(LOW_SHARE * heights.len() as f64) as usize])
+    // From each height on, how many share it.
+    let mut end = 0;
+    let sharing: Vec<usize> = (heights.iter().enumerate())
+        .map(|(start, low)| {
+            while end < heights.len() && heights[end] <= low + ONE_HEIGHT {
+                end += 1;
+            }
+            end - start
+        })
+        .collect();
+    let most = *sharing.iter().max()? as f64;
+    let first = (sharing.iter()).position(|n| *n as f64 >= LEAST_OF_MOST * most)?;
+    // That is where the height begins to be shared: most do so a little above.
+    let near = first..first + sharing[first];
+    let start = near.max_by_key(|&i| (sharing[i], std::cmp::Reverse(i)))?;
+    Some(heights[start + sharing[start] / 2])
 }
 
 fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3<f64>> {
@@ -242,7 +275,7 @@ fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3
         let y = ends.iter().map(|p| p.y).fold(start, f);
         Point2::new(x, y)
     };
-    let margin = nalgebra::Vector2::new(5.0, 5.0);
+    let margin = Vector2::new(5.0, 5.0);
     let (min, max) = (
         bound(f64::min, f64::INFINITY) - margin,
         bound(f64::max, f64::NEG_INFINITY) + margin,
