@@ -192,4 +192,28 @@ mod tests {
         assert_eq!(least_correlation(0.0, 0.45), CHANCE);
         assert!(least_correlation(0.3, 0.45) < least_correlation(0.6, 0.45));
     }
+
+    #[test]
+    fn the_best_of_the_named_maps_is_taken_with_its_weight() {
+        let map = |correlation: [i8; 2], weight: u8| ConsistencyMap {
+            grid: PlanGrid {
+                origin: nalgebra::Point2::origin(),
+                step: 1.0,
+                width: 1,
+                height: 2,
+            },
+            correlation: correlation.to_vec(),
+            weight: vec![weight; 2],
+            common_weight: vec![weight + 1; 2],
+        };
+        let maps = [map([10, 90], 1), map([60, 20], 3), map([99, 99], 5)];
+        let best = ConsistencyMap::best_of(&maps, |_, row| row..2).unwrap();
+        assert_eq!(best.correlation, [60, 20]);
+        assert_eq!(best.weight, [3, 3]);
+        assert_eq!(best.common_weight, [4, 4]);
+        let all = ConsistencyMap::best_of(&maps[..2], |_, _| 0..2).unwrap();
+        assert_eq!(all.correlation, [60, 90]);
+        assert_eq!(all.weight, [3, 1]);
+        assert!(ConsistencyMap::best_of(&[], |_, _| 0..0).is_none());
+    }
 }

@@ -42,7 +42,7 @@ pub enum FacetRejection {
         /// Sloped area, square metres.
         area_m2: f64,
     },
-    /// No window fits into it, so that nothing but its edges speaks for it.
+    /// Windows fit into little of it, so that nothing but its edges speaks for it.
     TooNarrow {
         /// Side of the window, metres.
         window_m: f64,
@@ -51,6 +51,11 @@ pub enum FacetRejection {
     NearGround {
         /// Height of its middle above the ground, metres.
         height_m: f64,
+    },
+    /// Its low side lies on the ground: a bank, or the shadow of an eave, but no roof.
+    ReachesGround {
+        /// Height of its lowest corner above the ground, metres.
+        lowest_m: f64,
     },
     /// The views do not agree inside the outline.
     Dissimilar {
@@ -267,6 +272,8 @@ fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {
     borders.iter().copied().chain(frame).collect()
 }
 
+/// Height above the ground that no eave is below, metres. Assumption: with a few decimetres for the ground's own error.
+const LOWEST_EAVE: f64 = 1.0;
 /// Share of a facet that another plane must be able to cover to take its place. Assumption.
 const ALMOST_ALL: f64 = 0.9;
 /// Standard deviations by which the views must agree better on it. Assumption: as usual.
@@ -432,14 +439,19 @@ impl Solver {
         if height_m < params.min_height_m {
             return Err(FacetRejection::NearGround { height_m });
         }
+        let heights = facet.outer.iter().map(|p| p.z - ground.z_at(&p.xy()));
+        let lowest_m = heights.fold(f64::INFINITY, f64::min);
+        if lowest_m < LOWEST_EAVE {
+            return Err(FacetRejection::ReachesGround { lowest_m });
+        }
         let map = &self.maps[outline.plane as usize];
         let inside = inside(facet, map);
-        let interior = inside.sums(params.min_correlation);
-        if interior.windows == 0 {
+        if inside.is_narrow() {
             return Err(FacetRejection::TooNarrow {
                 window_m: SIDE as f64 * map.grid.step,
             });
         }
+        let interior = inside.sums(params.min_correlation);
         if interior.speaks_against() {
             return Err(FacetRejection::Dissimilar {
                 similarity: interior.correlation / interior.weight,

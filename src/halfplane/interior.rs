@@ -7,6 +7,7 @@ use nalgebra::Point2;
 
 use super::box_sum::HALF_WINDOW;
 use super::consistency::{ConsistencyMap, least_correlation};
+use super::plan::PlanGrid;
 use crate::texture::raster::mark_inside;
 
 /// The windows that lie wholly inside a facet.
@@ -15,6 +16,8 @@ pub struct Inside<'m> {
     map: &'m ConsistencyMap,
     /// The middles of the windows, as cells of the map's grid.
     windows: Vec<usize>,
+    /// Share of the facet's cells that lie in one of them.
+    share: f64,
 }
 
 /// What the windows inside a facet say about its plane.
@@ -33,10 +36,19 @@ pub struct Interior {
 impl<'m> Inside<'m> {
     /// The windows inside `rings` (in plan, metres, holes too), with the map of the facet's plane.
     pub fn new(rings: &[Vec<Point2<f64>>], map: &'m ConsistencyMap) -> Self {
-        let (grid, mut windows) = (&map.grid, Vec::new());
-        let size = [grid.width, grid.height];
-        for_each_window(rings, grid.origin, grid.step, size, |k| windows.push(k));
-        Self { map, windows }
+        let mask = cells_inside(rings, &map.grid);
+        let windows = windows_in(&mask, map.grid.width);
+        let share = share_in_windows(&mask, map.grid.width, &windows);
+        Self {
+            map,
+            windows,
+            share,
+        }
+    }
+
+    /// Is a facet so narrow that most of it is next to its edges?
+    pub fn is_narrow(&self) -> bool {
+        self.share < LEAST_SHARE
     }
 
     /// Their sums; `min_correlation` is what strong texture must reach.
@@ -105,21 +117,24 @@ const TOLERANCE: f64 = 0.02;
 /// Mean texture weight from which on the inside of a facet has a say. Assumption: below it is mostly noise.
 const TEXTURED: f64 = 0.1;
 
-/// Calls `see` with the middle (row by row) of every window of a grid that lies inside the rings.
-fn for_each_window(
-    rings: &[Vec<Point2<f64>>],
-    origin: Point2<f64>,
-    step: f64,
-    [width, height]: [usize; 2],
-    mut see: impl FnMut(usize),
-) {
+/// Share of a facet that windows inside it must reach. Assumption: triangles and trapezes have half or more.
+const LEAST_SHARE: f64 = 0.25;
+
+/// Which cells of a grid, row by row, lie inside the rings.
+fn cells_inside(rings: &[Vec<Point2<f64>>], grid: &PlanGrid) -> Vec<bool> {
     let pixels = |ring: &Vec<Point2<f64>>| {
-        let pixel = |p: &Point2<f64>| Point2::from((p - origin) / step);
+        let pixel = |p: &Point2<f64>| Point2::from((p - grid.origin) / grid.step);
         ring.iter().map(pixel).collect()
     };
     let rings: Vec<Vec<Point2<f64>>> = rings.iter().map(pixels).collect();
-    let mut mask = vec![false; width * height];
-    mark_inside(&rings, width, height, &mut mask);
+    let mut mask = vec![false; grid.width * grid.height];
+    mark_inside(&rings, grid.width, grid.height, &mut mask);
+    mask
+}
+
+/// The middles of the windows all of whose cells are marked.
+fn windows_in(mask: &[bool], width: usize) -> Vec<usize> {
+    let mut windows = Vec::new();
     // How many rows up to this one hold a whole side of a window that ends in the column.
     let mut rows = vec![0; width];
     for (y, row) in mask.chunks_exact(width.max(1)).enumerate() {
@@ -128,24 +143,45 @@ fn for_each_window(
             run = if *inside { run + 1 } else { 0 };
             *rows = if run >= SIDE { *rows + 1 } else { 0 };
             if *rows >= SIDE {
-                see((y - HALF_WINDOW) * width + x - HALF_WINDOW);
+                windows.push((y - HALF_WINDOW) * width + x - HALF_WINDOW);
             }
         }
     }
+    windows
+}
+
+/// Share of the marked cells that lie in one of the windows; 0 without any.
+fn share_in_windows(mask: &[bool], width: usize, windows: &[usize]) -> f64 {
+    let mut reached = vec![false; mask.len()];
+    for &k in windows {
+        for row in 0..SIDE {
+            let first = k + row * width - HALF_WINDOW * (width + 1);
+            reached[first..first + SIDE].fill(true);
+        }
+    }
+    let count = |cells: &[bool]| cells.iter().filter(|c| **c).count();
+    count(&reached) as f64 / count(mask).max(1) as f64
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::halfplane::plan::PlanGrid;
 
-    /// Number of windows on a grid of 0.1 m.
+    /// Number of windows on a grid of 0.1 m, and the share of the cells in them.
+    fn windows_and_share(rings: &[Vec<Point2<f64>>]) -> (usize, f64) {
+        let grid = PlanGrid {
+            origin: Point2::new(2.0, -6.0),
+            step: 0.1,
+            width: 110,
+            height: 40,
+        };
+        let mask = cells_inside(rings, &grid);
+        let windows = windows_in(&mask, grid.width);
+        (windows.len(), share_in_windows(&mask, grid.width, &windows))
+    }
+
     fn windows(rings: &[Vec<Point2<f64>>]) -> usize {
-        let mut count = 0;
-        for_each_window(rings, Point2::new(2.0, -6.0), 0.1, [110, 40], |_| {
-            count += 1
-        });
-        count
+        windows_and_share(rings).0
     }
 
     fn strip(width: f64) -> Vec<Point2<f64>> {
@@ -233,6 +269,18 @@ mod tests {
         assert!(windows(&[strip(1.15)]) > 0);
         assert!(windows(&[strip(1.05)]) == 0);
         assert!(windows(&[]) == 0);
+    }
+
+    #[test]
+    fn a_strip_with_a_wide_place_is_narrow_all_the_same() {
+        let (_, share) = windows_and_share(&[strip(1.2)]);
+        assert!(share > 0.9, "{share}");
+        let mut widened = strip(1.0);
+        let place = [(7.0, 1.0), (7.0, 1.3), (5.5, 1.3), (5.5, 1.0)];
+        widened.splice(3..3, place.map(|(x, y)| Point2::new(x + 3.0, y - 5.0)));
+        let (windows, share) = windows_and_share(&[widened]);
+        assert!(windows > 0 && (0.1..0.25).contains(&share), "{share}");
+        assert_eq!(windows_and_share(&[]), (0, 0.0));
     }
 
     #[test]

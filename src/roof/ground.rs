@@ -377,6 +377,55 @@ mod tests {
     }
 
     #[test]
+    fn wrong_matches_below_and_a_larger_roof_above_are_not_the_ground() {
+        let mut even = uniform(3);
+        let mut around = |z: f64, count: usize| -> Vec<f64> {
+            (0..count).map(|_| z + 0.6 * (even() - 0.5)).collect()
+        };
+        let heights = [around(48.2, 160), around(50.0, 1000), around(56.0, 2500)].concat();
+        let low = low_height(heights.into_iter()).unwrap();
+        assert!((low - 50.0).abs() < 0.05, "{low}");
+        let scattered = (0..1000).map(|i| 40.0 + 0.02 * f64::from(i));
+        let low = low_height(scattered.chain(around(50.0, 1000))).unwrap();
+        assert!((low - 50.0).abs() < 0.1, "{low}");
+        assert_eq!(low_height(around(50.0, MIN_SAMPLES - 1).into_iter()), None);
+    }
+
+    #[test]
+    fn of_two_planes_the_lower_is_the_ground_unless_hardly_anything_lies_in_it() {
+        let plane = |z: f64, count: i32| {
+            (0..count).map(move |i| {
+                let (x, y) = (5.0 * f64::from(i % 10), 5.0 * f64::from(i / 10));
+                Point3::new(x, y, z + 0.03 * x)
+            })
+        };
+        let at_origin = |blocks: Vec<Point3<f64>>| common_plane(&blocks).unwrap().z_at(0.0, 0.0);
+        let found = at_origin(plane(50.0, 60).chain(plane(56.0, 100)).collect());
+        assert!((found - 50.0).abs() < 0.01, "{found}");
+        let found = at_origin(plane(48.0, 12).chain(plane(50.0, 60)).collect());
+        assert!((found - 50.0).abs() < 0.01, "{found}");
+        assert!(common_plane(&[]).is_none());
+    }
+
+    #[test]
+    fn ground_may_rise_above_its_plane() {
+        let mound = |x: f64| if x > 40.0 { 0.7 } else { 0.0 };
+        let positions = (0..120).flat_map(|c| (0..120).map(move |r| (c, r)));
+        let samples: Vec<Point3<f64>> = positions
+            .map(|(c, r)| (0.5 * f64::from(c), 0.5 * f64::from(r)))
+            .map(|(x, y)| Point3::new(x, y, ground(x, y) + mound(x)))
+            .collect();
+        let found = Ground::from_samples(&samples, 49.0);
+        for (x, y) in [(10.0, 30.0), (57.0, 30.0)] {
+            let miss = found.z_at(&Point2::new(x, y)) - ground(x, y) - mound(x);
+            assert!(miss.abs() < 0.15, "{miss} m at {x}, {y}");
+        }
+        let [low, high] = found.rises();
+        assert!(high - low > 0.2 && high - low < 0.8, "{low} to {high}");
+        assert_eq!(Ground::level(3.0).rises(), [0.0, 0.0]);
+    }
+
+    #[test]
     fn the_top_lies_between_the_levels() {
         let parabola = |t: f64| 0.9 - 0.2 * (t - 0.3) * (t - 0.3);
         let beside = [Some(parabola(-1.0)), Some(parabola(1.0))];

@@ -91,9 +91,11 @@ export function facetRejectionWords(reason: Record<string, Record<string, number
     case "too_small":
       return `too small (${value.toFixed(1)} m²)`;
     case "too_narrow":
-      return `too narrow for a window of ${value.toFixed(1)} m to show it`;
+      return `too narrow for windows of ${value.toFixed(1)} m to show it`;
     case "near_ground":
       return `near the ground (${value.toFixed(1)} m above it)`;
+    case "reaches_ground":
+      return `its low side lies on the ground (${value.toFixed(1)} m above it)`;
     case "dissimilar":
       return `the views do not agree inside (${value.toFixed(2)})`;
     case "outdone":
