@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{DMatrix, DVector, Point2, Vector2};
+use nalgebra::{Matrix2, Point2, Vector2};
 
 use super::arrangement::{Arrangement, DisjointSets};
 use super::labelling::NO_PLANE;
@@ -377,6 +377,22 @@ fn move_to_intersections(
     moved
 }
 
+/// The shortest solution of the normal equations `normal x = right` in the directions that they determine: planes that are nearly
+/// parallel do not tell where they meet. `None` if they determine none.
+fn least_squares_step(normal: &Matrix2<f64>, right: &Vector2<f64>) -> Option<Vector2<f64>> {
+    /// Square of the least difference in slope: 5 %.
+    const LEAST: f64 = 0.05 * 0.05;
+    let half = 0.5 * normal.trace();
+    let apart = Vector2::new(0.5 * (normal.m11 - normal.m22), normal.m12).norm();
+    let [low, high] = [half - apart, half + apart];
+    if low > LEAST {
+        return Some(normal.try_inverse()? * right);
+    }
+    // What is left without the weaker axis is a multiple of the projection onto the stronger one.
+    let onto_stronger = (normal - Matrix2::identity() * low) / (high - low);
+    (high > LEAST).then(|| onto_stronger * right / high)
+}
+
 /// The plan position nearest to `p` at which the planes that meet near it have one height.
 fn common_point(p: &Point2<f64>, list: &[u32], planes: &[Plane]) -> Option<Point2<f64>> {
     let mut at: Vec<(f64, &Plane)> = list
@@ -394,15 +410,8 @@ fn common_point(p: &Point2<f64>, list: &[u32], planes: &[Plane]) -> Option<Point
             (slope(w[1].1) - slope(w[0].1), w[0].0 - w[1].0)
         })
         .collect();
-    if rows.is_empty() {
-        return None;
-    }
-    let a = DMatrix::from_fn(rows.len(), 2, |r, c| rows[r].0[c]);
-    let b = DVector::from_fn(rows.len(), |r, _| rows[r].1);
-    // Planes that are nearly parallel do not tell where they meet: singular values below 0.05 (a
-    // difference of 5 % in slope) are left out.
-    let step = a.svd(true, true).solve(&b, 0.05).ok()?;
-    let step = Vector2::new(step[0], step[1]);
+    let normal = rows.iter().map(|(a, _)| a * a.transpose()).sum();
+    let step = least_squares_step(&normal, &rows.iter().map(|(a, b)| a * *b).sum())?;
     (step.norm() <= MAX_MOVE).then(|| p + step)
 }
 
@@ -410,6 +419,30 @@ fn common_point(p: &Point2<f64>, list: &[u32], planes: &[Plane]) -> Option<Point
 mod tests {
     use super::*;
     use nalgebra::{Point3, Vector3};
+
+    #[test]
+    fn a_step_is_taken_only_where_the_slopes_tell() {
+        let step = |rows: &[([f64; 2], f64)]| {
+            let rows: Vec<_> = rows.iter().map(|(a, b)| (Vector2::from(*a), *b)).collect();
+            let normal = rows.iter().map(|(a, _)| a * a.transpose()).sum();
+            least_squares_step(&normal, &rows.iter().map(|(a, b)| a * *b).sum())
+        };
+        let near = |step: Option<Vector2<f64>>, x: f64, y: f64| {
+            (step.unwrap() - Vector2::new(x, y)).norm() < 1e-9
+        };
+        // 0.6 x + 0.8 y = 1 alone, then with x = 2.
+        let one = ([0.6, 0.8], 1.0);
+        assert!(near(step(&[one]), 0.6, 0.8));
+        assert!(near(step(&[one, ([1.0, 0.0], 2.0)]), 2.0, -0.25));
+        // A second pair of slopes that hardly differ says nothing.
+        assert!(near(
+            step(&[([1.0, 0.0], 2.0), ([0.0, 0.04], 1.0)]),
+            2.0,
+            0.0
+        ));
+        assert!(step(&[([0.03, 0.03], 1.0)]).is_none());
+        assert!(step(&[]).is_none());
+    }
 
     #[test]
     fn a_touching_ring_is_split_into_simple_ones() {
