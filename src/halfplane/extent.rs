@@ -12,6 +12,8 @@ use super::borders::{Border, BorderKind};
 use super::consistency::least_correlation;
 use super::grouping::GroupingInput;
 use super::hypothesis::Hypothesis;
+use super::interior::SIDE;
+use crate::geometry::Segment3;
 use crate::params::RoofParams;
 
 /// Width of a strip, metres: about a pixel of aerial photographs.
@@ -23,7 +25,7 @@ const LEAST_AGREEMENT_M2: f64 = 0.5;
 /// How far an end goes beyond the sides across it, metres, to meet their lines.
 const OVER_M: f64 = 0.5;
 
-/// Lines where planes seem to end, four for each plane with a half-plane.
+/// Lines where planes with a half-plane seem to end, up to four for each: not where a real line says it.
 pub fn extent_lines(
     input: &GroupingInput,
     hypotheses: &[Hypothesis],
@@ -37,7 +39,7 @@ pub fn extent_lines(
     .collect()
 }
 
-/// The four sides of the rectangle along the longest line in which the views agree on a plane.
+/// The sides, where no real line shows them, of the rectangle along the longest line in which the views agree on a plane.
 fn sides(input: &GroupingInput, h: &Hypothesis, params: &RoofParams) -> Option<Vec<Border>> {
     if h.group.half_planes().is_empty() {
         return None;
@@ -53,18 +55,43 @@ fn sides(input: &GroupingInput, h: &Hypothesis, params: &RoofParams) -> Option<V
     let least = LEAST_AGREEMENT_M2 / (h.map.grid.step * h.map.grid.step);
     let [(t0, t1), (u0, u1)] = best_rectangle(&votes, reach.norm(), least)?;
     let at = |t: f64, u: f64| start + along * t + across * u;
-    let side = |a, b| Border {
-        kind: BorderKind::Closing,
-        a,
-        b,
+    let half_window = 0.5 * SIDE as f64 * h.map.grid.step + STRIP_M;
+    let members = (h.group.members.iter()).map(|m| input.lines[m.line.index()].segment);
+    let lines: Vec<Segment3> = members.chain(h.lines.iter().map(|l| l.segment)).collect();
+    let sides = [
+        [at(t0, u0), at(t1, u0)],
+        [at(t0, u1), at(t1, u1)],
+        [at(t0, u0), at(t0, u1)],
+        [at(t1, u0), at(t1, u1)],
+    ];
+    let open = sides
+        .into_iter()
+        .filter(|side| !(lines.iter()).any(|l| shows(l, side, half_window)));
+    Some(
+        open.map(|[a, b]| {
+            let over = (b - a).try_normalize(1e-6).unwrap_or_default() * OVER_M;
+            Border {
+                kind: BorderKind::Closing,
+                a: a - over,
+                b: b + over,
+            }
+        })
+        .collect(),
+    )
+}
+
+/// Is a real line the edge that a side was found by? It runs along most of the side, within half a window: as far beyond an edge
+/// every plane through it is as good as the next.
+fn shows(line: &Segment3, [a, b]: &[Point2<f64>; 2], half_window: f64) -> bool {
+    let Some(along) = (b - a).try_normalize(1e-6) else {
+        return false;
     };
-    let (o0, o1) = (-OVER_M, OVER_M);
-    Some(vec![
-        side(at(t0 + o0, u0), at(t1 + o1, u0)),
-        side(at(t0 + o0, u1), at(t1 + o1, u1)),
-        side(at(t0, u0 + o0), at(t0, u1 + o1)),
-        side(at(t1, u0 + o0), at(t1, u1 + o1)),
-    ])
+    let [p, q] = [line.p0.xy() - a, line.p1.xy() - a];
+    let beside = [p, q].iter().all(|r| along.perp(r).abs() <= half_window);
+    let [s, t] = [p, q].map(|r| r.dot(&along));
+    let length = (b - a).norm();
+    let common = s.max(t).min(length) - s.min(t).max(0.0);
+    beside && common >= 0.5 * length
 }
 
 /// What one position says.
@@ -171,6 +198,23 @@ mod tests {
         for (found, planted) in [(t0, 2.0), (t1, 9.0), (u0, -1.0), (u1, 4.0)] {
             assert!((found - planted).abs() <= STRIP_M, "{found} for {planted}");
         }
+    }
+
+    #[test]
+    fn a_real_line_within_half_a_window_is_the_edge_that_a_side_was_found_by() {
+        let side = [Point2::new(0.0, 0.0), Point2::new(8.0, 0.0)];
+        let shows = |from: [f64; 2], to: [f64; 2]| {
+            let [p0, p1] = [from, to].map(|[x, y]| nalgebra::Point3::new(x, y, 5.0));
+            shows(&Segment3::new(p0, p1), &side, 0.5)
+        };
+        assert!(shows([-1.0, 0.4], [9.0, 0.4]));
+        assert!(shows([6.0, -0.4], [1.0, -0.3]));
+        assert!(!shows([-1.0, 0.6], [9.0, 0.6]), "too far beside it");
+        assert!(
+            !shows([-4.0, 0.4], [3.0, 0.4]),
+            "along less than half of it"
+        );
+        assert!(!shows([2.0, -3.0], [2.0, 3.0]), "across it");
     }
 
     #[test]
