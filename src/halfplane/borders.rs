@@ -19,6 +19,7 @@ use super::extent::extent_lines;
 use super::grouping::{GroupingInput, Member};
 use super::hypothesis::Hypothesis;
 use super::region::MARGIN;
+use super::shiftable::ShiftableWindows;
 use crate::geometry::Segment3;
 use crate::params::RoofParams;
 use crate::sorting::sort_by;
@@ -80,6 +81,7 @@ pub fn border_lines(
     input: &GroupingInput,
     hypotheses: &[Hypothesis],
     bounding: &[Segment3],
+    windows: &ShiftableWindows,
     params: &RoofParams,
 ) -> Vec<Border> {
     let mut borders: Vec<Border> = Vec::new();
@@ -107,7 +109,7 @@ pub fn border_lines(
     for border in outermost_lines(input, hypotheses, params) {
         add(&mut borders, border);
     }
-    for border in extent_lines(input, hypotheses, params) {
+    for border in extent_lines(input, hypotheses, windows, params) {
         add(&mut borders, border);
     }
     for border in closing_lines(input, hypotheses, params) {

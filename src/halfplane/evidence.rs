@@ -5,12 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::ThetaFrame;
 use super::arrangement::Arrangement;
 use super::border_cost::BorderCosts;
-use super::consistency::{ConsistencyMap, least_correlation};
+use super::consistency::ConsistencyMap;
 use super::grouping::{GroupingInput, PlaneGroup};
 use super::hypothesis::Hypothesis;
 use super::labelling::Energy;
 use super::line_index::LineIndex;
 use super::plan::PlanGrid;
+use super::shiftable::ShiftableWindows;
 use crate::geometry::Plane;
 use crate::params::RoofParams;
 
@@ -44,18 +45,19 @@ impl Evidence {
         arrangement: &Arrangement,
         grid: &PlanGrid,
         ground: Option<&ConsistencyMap>,
+        windows: &ShiftableWindows,
         params: &RoofParams,
     ) -> Self {
         let raster = arrangement.raster(grid);
         let mut ground = match ground {
-            Some(map) => ground_evidence(map, &raster, arrangement.cells, params),
+            Some(map) => ground_evidence(map, windows, &raster, arrangement.cells, params),
             None => vec![0.0; arrangement.cells],
         };
         for (cell, metres) in half_planes_over_cells(input, hypotheses, &raster, grid) {
             ground[cell] -= params.half_plane_gain_m * metres;
         }
         let per_group = crate::parallel::map_part(hypotheses, 0.7..0.75, |_, h| {
-            sum_over_cells(h, &raster, grid, params)
+            sum_over_cells(h, windows, &raster, grid, params)
         });
         let samples = samples_of_cells(&raster, arrangement.cells);
         let sample_m2 = grid.step * grid.step;
@@ -159,6 +161,7 @@ const NOT_GROUND_SHARE: f64 = 0.25;
 /// What the ground explains at least as well as a roof could, per cell.
 fn ground_evidence(
     map: &ConsistencyMap,
+    windows: &ShiftableWindows,
     raster: &[u32],
     cells: usize,
     params: &RoofParams,
@@ -166,9 +169,9 @@ fn ground_evidence(
     let area = map.grid.step * map.grid.step;
     let mut evidence = vec![0.0f64; cells];
     for (k, &cell) in raster.iter().enumerate().filter(|(_, c)| **c != u32::MAX) {
-        let (correlation, weight) = (f64::from(map.correlation(k)), f64::from(map.weight(k)));
-        let least = least_correlation(weight, params.min_correlation);
-        evidence[cell as usize] += weight * (correlation - least) * area;
+        let at = [k % map.grid.width, k / map.grid.width];
+        let judgement = windows.judge(map, at, params.min_correlation);
+        evidence[cell as usize] += judgement.gain() * area;
     }
     evidence.into_iter().map(against_roofs).collect()
 }
@@ -184,6 +187,7 @@ fn against_roofs(agreement: f64) -> f64 {
 
 fn sum_over_cells(
     hypothesis: &Hypothesis,
+    windows: &ShiftableWindows,
     raster: &[u32],
     grid: &PlanGrid,
     params: &RoofParams,
@@ -221,12 +225,12 @@ fn sum_over_cells(
                 run = (cell, cells.get(&cell).copied().unwrap_or_default());
             }
             let e = &mut run.1;
-            let textured = f64::from(map.weight(k));
-            let weight = textured * area;
+            let judgement = windows.judge(map, [column, row], params.min_correlation);
+            let weight = judgement.weight * area;
             e.area += area;
             e.weight += weight;
-            e.correlation += weight * f64::from(map.correlation(k));
-            e.least += weight * least_correlation(textured, params.min_correlation);
+            e.correlation += weight * judgement.correlation;
+            e.least += weight * judgement.least;
         }
     }
     store(&mut cells, run);
@@ -394,8 +398,16 @@ mod tests {
                 },
                 lines: Vec::new(),
             });
-            let evidence =
-                Evidence::collect(&input, &hypotheses, &arrangement, &grid, None, &params);
+            let windows = ShiftableWindows::new([], &grid);
+            let evidence = Evidence::collect(
+                &input,
+                &hypotheses,
+                &arrangement,
+                &grid,
+                None,
+                &windows,
+                &params,
+            );
             let index = LineIndex::new(Vec::new());
             evidence
                 .energy(&arrangement, &[HORIZONTAL; 2], &index, &params)

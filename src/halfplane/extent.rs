@@ -9,10 +9,10 @@
 use nalgebra::{Point2, Vector2};
 
 use super::borders::{Border, BorderKind};
-use super::consistency::least_correlation;
 use super::grouping::GroupingInput;
 use super::hypothesis::Hypothesis;
 use super::interior::SIDE;
+use super::shiftable::ShiftableWindows;
 use crate::geometry::Segment3;
 use crate::params::RoofParams;
 
@@ -29,10 +29,11 @@ const OVER_M: f64 = 0.5;
 pub fn extent_lines(
     input: &GroupingInput,
     hypotheses: &[Hypothesis],
+    windows: &ShiftableWindows,
     params: &RoofParams,
 ) -> Vec<Border> {
     crate::parallel::map(hypotheses, |_, h| {
-        sides(input, h, params).unwrap_or_default()
+        sides(input, h, windows, params).unwrap_or_default()
     })
     .into_iter()
     .flatten()
@@ -40,7 +41,12 @@ pub fn extent_lines(
 }
 
 /// The sides, where no real line shows them, of the rectangle along the longest line in which the views agree on a plane.
-fn sides(input: &GroupingInput, h: &Hypothesis, params: &RoofParams) -> Option<Vec<Border>> {
+fn sides(
+    input: &GroupingInput,
+    h: &Hypothesis,
+    windows: &ShiftableWindows,
+    params: &RoofParams,
+) -> Option<Vec<Border>> {
     if h.group.half_planes().is_empty() {
         return None;
     }
@@ -51,7 +57,7 @@ fn sides(input: &GroupingInput, h: &Hypothesis, params: &RoofParams) -> Option<V
     let reach = longest.p1.xy() - start;
     let along = reach.try_normalize(1e-6)?;
     let across = Vector2::new(-along.y, along.x);
-    let votes = votes(h, &start, [&along, &across], params);
+    let votes = votes(h, windows, &start, [&along, &across], params);
     let least = LEAST_AGREEMENT_M2 / (h.map.grid.step * h.map.grid.step);
     let [(t0, t1), (u0, u1)] = best_rectangle(&votes, reach.norm(), least)?;
     let at = |t: f64, u: f64| start + along * t + across * u;
@@ -105,6 +111,7 @@ struct Vote {
 /// The votes of all positions in a plane's region, along `axes` from `start`.
 fn votes(
     h: &Hypothesis,
+    windows: &ShiftableWindows,
     start: &Point2<f64>,
     axes: [&Vector2<f64>; 2],
     params: &RoofParams,
@@ -115,11 +122,11 @@ fn votes(
         .map(|k| (k, grid.center(k % grid.width, k / grid.width)))
         .filter(|(_, p)| h.region.contains(p))
         .map(|(k, p)| {
-            let weight = f64::from(h.map.weight(k));
-            let least = least_correlation(weight, params.min_correlation);
+            let at = [k % grid.width, k / grid.width];
+            let judgement = windows.judge(&h.map, at, params.min_correlation);
             Vote {
                 at: axes.map(|axis| (p - start).dot(axis)),
-                gain: weight * (f64::from(h.map.correlation(k)) - least),
+                gain: judgement.gain(),
             }
         })
         .collect()

@@ -26,6 +26,7 @@ use super::plan::PlanGrid;
 use super::plane_lines::PlaneLine;
 use super::proposed::add_rectangles;
 use super::region::Region;
+use super::shiftable::ShiftableWindows;
 use crate::geometry::Plane;
 use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
@@ -147,8 +148,9 @@ pub fn reconstruct_facets(
     let reduced = scene.reduced(((grid.step / fine) as usize).max(1));
     let ground_map = ground_map(&reduced, ground, &grid);
     let hypotheses = hypotheses(scene, &reduced, segments, &input, groups, grid.step, params);
+    let windows = ShiftableWindows::new(lines.iter().map(|l| l.segment), &grid);
     let bounding = bounding_lines(&input, &hypotheses);
-    let borders = border_lines(&input, &hypotheses, &bounding, params);
+    let borders = border_lines(&input, &hypotheses, &bounding, &windows, params);
     let arrangement = Arrangement::new(&with_frame(&borders, &grid));
 
     let evidence = Evidence::collect(
@@ -157,6 +159,7 @@ pub fn reconstruct_facets(
         &arrangement,
         &grid,
         ground_map.as_ref(),
+        &windows,
         params,
     );
     let groups: Vec<PlaneGroup> = hypotheses.iter().map(|h| h.group.clone()).collect();

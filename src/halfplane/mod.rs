@@ -27,6 +27,7 @@
 //!      agreement      correlations of several views of a plane by running sums
 //!      consistency    similarity of a plane over the complete image set
 //!      hypothesis     planes with their regions, similarity and lines, ready to compete
+//!      shiftable      windows that stay on one side of a line
 //!      evidence       what images and lines say for each plane over each cell
 //!      border_cost    what a border between two planes costs
 //!      labelling      conflicts: which plane covers which cell
@@ -67,6 +68,7 @@ mod poi;
 mod posterior;
 mod proposed;
 mod region;
+mod shiftable;
 mod similarity;
 mod strip;
 mod sweep;
