@@ -3,18 +3,20 @@
 //!
 //! Every face gets a rectified patch in its own plane, at about the resolution of the image that shows it best
 //! (resolution, viewing angle and visibility count in one number: the image pixels that show it). What
-//! other faces hide in that view comes from the next views; what no view shows is filled smoothly. B99
-//! does not say how textures are chosen; a patch per face keeps each independent of the cameras.
+//! other faces hide in that view comes from the next views, whose colours are levelled where they meet; what no view shows is filled
+//! smoothly. B99 does not say how textures are chosen; a patch per face keeps each independent of the cameras.
 //!
 //! ```text
 //! patch     the raster in the plane of a face
 //! shadow    which texels other faces hide from a view
+//! exposure  how much brighter the views are than each other
 //! paint     the colours of a patch from all views
 //! raster    polygons into masks, smooth filling of gaps
 //! atlas     packing
 //! ```
 
 mod atlas;
+mod exposure;
 mod paint;
 mod patch;
 pub(crate) mod raster;
@@ -25,6 +27,7 @@ pub use paint::ViewOfFace;
 use serde::Serialize;
 
 use self::atlas::{Packing, pack};
+use self::exposure::exposures;
 use self::paint::{Painted, paint, pixels_per_m2};
 use self::patch::{FacePlane, Patch};
 use self::raster::fill_gaps;
@@ -112,8 +115,9 @@ pub fn texture_model(
         texel_m(scene, i, face, &footprints, params)
     });
     let (patches, packing, coarsened) = lay_out(&faces, &texels, params);
-    let mut painted = crate::parallel::map_part(&patches, 0.2..0.9, |i, patch| {
-        paint(scene, &faces, i, patch, &footprints)
+    let exposures = exposures(scene, &faces, &footprints);
+    let mut painted = crate::parallel::map_part(&patches, 0.3..0.9, |i, patch| {
+        paint(scene, &faces, i, patch, &footprints, &exposures)
     });
     let kinds: Vec<Surface> = keys
         .iter()

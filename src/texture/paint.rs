@@ -16,7 +16,10 @@ const MAX_SUPERSAMPLING: usize = 4;
 
 /// Colours are balanced between views within this factor. Assumption: larger ratios come from different
 /// things in sight (a crane, a cloud's shadow), not from exposure.
-const MAX_GAIN: f32 = 2.0;
+pub const MAX_GAIN: f32 = 2.0;
+
+/// Most grey values by which colours are shifted at a seam. Assumption: larger differences are those of different things.
+const MAX_SHIFT: f32 = 32.0;
 
 /// How well a view shows a face.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -53,43 +56,18 @@ pub fn pixels_per_m2(plane: &FacePlane, camera: &Camera) -> f64 {
     jacobian.map_or(0.0, |j| j.determinant().abs())
 }
 
-/// Paints the patch of face number `face` from all views.
+/// Paints the patch of face number `face` from all views, each brightened by its factors `exposures`.
 pub fn paint(
     scene: &Scene,
     faces: &[FacePlane],
     face: usize,
     patch: &Patch,
     footprints: &[Footprints],
+    exposures: &[[f32; 3]],
 ) -> Painted {
-    let plane = &faces[face];
-    let inside = patch.inside(&plane.flat);
-    let total = inside.iter().filter(|&&i| i).count().max(1) as f64;
-    let mut seen: Vec<(ViewOfFace, Vec<bool>)> = Vec::new();
-    for view in scene.view_ids() {
-        let (camera, footprints) = (scene.camera(view), &footprints[view.index()]);
-        if !footprints.shows(face, camera) {
-            continue;
-        }
-        let hidden = shadow_on(face, patch, faces, footprints, &camera.center);
-        let mask = visible_texels(&inside, &hidden, plane, patch, camera);
-        let visible = mask.iter().filter(|&&v| v).count() as f64 / total;
-        if visible > 0.0 {
-            let pixels_per_m2 = pixels_per_m2(plane, camera);
-            seen.push((
-                ViewOfFace {
-                    view,
-                    visible,
-                    pixels_per_m2,
-                },
-                mask,
-            ));
-        }
-    }
-    // A stable sort: equal views stay in order.
-    sort_by(&mut seen, |(a, _), (b, _)| {
-        (b.visible * b.pixels_per_m2).total_cmp(&(a.visible * a.pixels_per_m2))
-    });
-    let (colours, known) = compose(scene, plane, patch, &seen);
+    let seen = views_of(scene, faces, face, patch, footprints);
+    let total = texels_inside(&patch.inside(&faces[face].flat));
+    let (colours, known) = compose(scene, &faces[face], patch, &seen, exposures);
     let share = |mask: &[bool]| mask.iter().filter(|&&k| k).count() as f64 / total;
     let first = seen.first().map_or(0.0, |(v, _)| v.visible);
     let (filled, unseen) = (share(&known) - first, 1.0 - share(&known));
@@ -101,6 +79,51 @@ pub fn paint(
         filled,
         unseen,
     }
+}
+
+/// A view of a face, and which texels of its patch it shows.
+pub type Seen = (ViewOfFace, Vec<bool>);
+
+/// The views that show some of a face, the one that shows most pixels of it first.
+pub fn views_of(
+    scene: &Scene,
+    faces: &[FacePlane],
+    face: usize,
+    patch: &Patch,
+    footprints: &[Footprints],
+) -> Vec<Seen> {
+    let plane = &faces[face];
+    let inside = patch.inside(&plane.flat);
+    let total = texels_inside(&inside);
+    let mut seen: Vec<Seen> = Vec::new();
+    for view in scene.view_ids() {
+        let (camera, footprints) = (scene.camera(view), &footprints[view.index()]);
+        if !footprints.shows(face, camera) {
+            continue;
+        }
+        let hidden = shadow_on(face, patch, faces, footprints, &camera.center);
+        let mask = visible_texels(&inside, &hidden, plane, patch, camera);
+        let visible = mask.iter().filter(|&&v| v).count() as f64 / total;
+        if visible > 0.0 {
+            let pixels_per_m2 = pixels_per_m2(plane, camera);
+            let of_face = ViewOfFace {
+                view,
+                visible,
+                pixels_per_m2,
+            };
+            seen.push((of_face, mask));
+        }
+    }
+    // A stable sort: equal views stay in order.
+    sort_by(&mut seen, |(a, _), (b, _)| {
+        (b.visible * b.pixels_per_m2).total_cmp(&(a.visible * a.pixels_per_m2))
+    });
+    seen
+}
+
+/// How many texels of a patch lie in its face, at least one.
+fn texels_inside(inside: &[bool]) -> f64 {
+    inside.iter().filter(|&&i| i).count().max(1) as f64
 }
 
 impl Painted {
@@ -133,38 +156,88 @@ fn visible_texels(
     visible
 }
 
-/// Takes every texel from the first view that shows it, balanced to the first view of all.
+/// The colours of a face in a view, where it shows them.
+pub fn colours_in(
+    scene: &Scene,
+    plane: &FacePlane,
+    patch: &Patch,
+    (of_face, mask): &Seen,
+) -> Vec<Option<[f32; 3]>> {
+    let view = scene.view(of_face.view);
+    let texel_px = patch.texel_m * of_face.pixels_per_m2.sqrt();
+    let samples = (texel_px.round() as usize).clamp(1, MAX_SUPERSAMPLING);
+    let colour = |i| texel(&view.rgb, &view.camera, plane, patch, i, samples);
+    (mask.iter().enumerate())
+        .map(|(i, shown)| shown.then(|| colour(i)))
+        .collect()
+}
+
+/// Takes every texel from the first view that shows it, levelled to what is painted already.
 fn compose(
     scene: &Scene,
     plane: &FacePlane,
     patch: &Patch,
-    seen: &[(ViewOfFace, Vec<bool>)],
+    seen: &[Seen],
+    exposures: &[[f32; 3]],
 ) -> (Vec<[f32; 3]>, Vec<bool>) {
     let count = patch.width * patch.height;
     let (mut colours, mut known) = (vec![[0.0f32; 3]; count], vec![false; count]);
-    for (rank, (of_face, mask)) in seen.iter().enumerate() {
-        if !(0..count).any(|i| mask[i] && !known[i]) {
+    for view in seen {
+        if (0..count).all(|i| known[i] || !view.1[i]) {
             continue;
         }
-        let view = scene.view(of_face.view);
-        let texel_px = patch.texel_m * of_face.pixels_per_m2.sqrt();
-        let samples = (texel_px.round() as usize).clamp(1, MAX_SUPERSAMPLING);
-        let shown: Vec<Option<[f32; 3]>> = (0..count)
-            .map(|i| mask[i].then(|| texel(&view.rgb, &view.camera, plane, patch, i, samples)))
-            .collect();
-        let gain = if rank == 0 {
-            [1.0; 3]
-        } else {
-            gain_to(&colours, &known, &shown)
-        };
+        let mut shown = colours_in(scene, plane, patch, view);
+        expose(&mut shown, exposures[view.0.view.index()]);
+        if known.contains(&true) {
+            let gain = gain_to(&colours, &known, &shown);
+            brighten(&mut shown, gain);
+            level(&mut shown, &colours, &known, patch.width);
+        }
         for i in 0..count {
             if let (Some(colour), false) = (shown[i], known[i]) {
-                colours[i] = [0, 1, 2].map(|c| (colour[c] * gain[c]).min(255.0));
+                colours[i] = colour.map(|c| c.clamp(0.0, 255.0));
                 known[i] = true;
             }
         }
     }
     (colours, known)
+}
+
+/// Brightens dark colours by a factor per channel, and light ones less, so that what is white in the photograph stays white.
+fn expose(shown: &mut [Option<[f32; 3]>], factor: [f32; 3]) {
+    for colour in shown.iter_mut().flatten() {
+        for (c, factor) in factor.iter().enumerate() {
+            colour[c] *= factor / (1.0 + (factor - 1.0) * colour[c] / 255.0);
+        }
+    }
+}
+
+/// Multiplies colours by a factor per channel.
+fn brighten(shown: &mut [Option<[f32; 3]>], factor: [f32; 3]) {
+    for colour in shown.iter_mut().flatten() {
+        (0..3).for_each(|c| colour[c] *= factor[c]);
+    }
+}
+
+/// Shifts a view's colours so that no seam shows where they meet those already painted: by the difference of both where both
+/// are known, continued smoothly to where only the new ones are.
+fn level(shown: &mut [Option<[f32; 3]>], colours: &[[f32; 3]], known: &[bool], width: usize) {
+    let common: Vec<bool> = (shown.iter().zip(known))
+        .map(|(new, known)| new.is_some() && *known)
+        .collect();
+    let mut shifts: Vec<[f32; 3]> = (shown.iter().zip(colours))
+        .map(|(new, old)| {
+            let shift = |c: usize| old[c] - new.map_or(0.0, |new| new[c]);
+            [0, 1, 2].map(|c| shift(c).clamp(-MAX_SHIFT, MAX_SHIFT))
+        })
+        .collect();
+    fill_gaps(&mut shifts, &common, width, known.len() / width);
+    if common.contains(&true) {
+        for (colour, shift) in shown.iter_mut().zip(&shifts) {
+            let Some(colour) = colour else { continue };
+            (0..3).for_each(|c| colour[c] += shift[c]);
+        }
+    }
 }
 
 /// The factor per channel that brings a view's colours to those already painted.
@@ -233,4 +306,71 @@ fn bilinear(rgb: &image::RgbImage, p: &Point2<f64>) -> Option<[f32; 3]> {
         let bottom = at(column, below, c) * (1.0 - fx) + at(right, below, c) * fx;
         top * (1.0 - fy) + bottom * fy
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A roof of 40 by 10 texels, brighter to the right, `offset` darker in a second view. The first shows the columns up to 20,
+    /// the second those from 12 on. Their painted colours, red, of the first row.
+    fn levelled(offset: f32) -> Vec<f32> {
+        let shade = |i: usize| 100.0 + (i % 40) as f32;
+        let known: Vec<bool> = (0..400).map(|i| i % 40 < 20).collect();
+        let colours: Vec<[f32; 3]> = (0..400).map(|i| [shade(i), 90.0, 80.0]).collect();
+        let mut shown: Vec<Option<[f32; 3]>> = (0..400)
+            .map(|i| (i % 40 >= 12).then(|| [shade(i) - offset, 90.0 - offset, 80.0]))
+            .collect();
+        level(&mut shown, &colours, &known, 40);
+        (0..40)
+            .map(|i| {
+                if known[i] {
+                    colours[i][0]
+                } else {
+                    shown[i].unwrap()[0]
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn no_seam_is_left_where_two_views_meet() {
+        for offset in [0.0, 14.0, -9.0] {
+            for (column, red) in levelled(offset).iter().enumerate() {
+                let expected = 100.0 + column as f32;
+                assert!((red - expected).abs() < 0.5, "{offset} at {column}: {red}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_looks_quite_different_is_hardly_changed() {
+        let red = levelled(80.0);
+        assert!(
+            (red[30] - (130.0 - 80.0 + MAX_SHIFT)).abs() < 0.5,
+            "{}",
+            red[30]
+        );
+    }
+
+    #[test]
+    fn exposure_leaves_black_and_white() {
+        for factor in [0.7, 1.0, 1.4] {
+            let mut shown = [0.0, 1.0, 255.0].map(|grey| Some([grey; 3]));
+            expose(&mut shown, [factor, 1.0, 1.0]);
+            let [black, dark, white] = shown.map(|colour| colour.unwrap()[0]);
+            assert_eq!(black, 0.0);
+            assert!((dark - factor).abs() < 0.01, "{dark} by {factor}");
+            assert!((white - 255.0).abs() < 1e-3);
+            assert_eq!(shown[1].unwrap()[1..], [1.0, 1.0]);
+        }
+    }
+
+    #[test]
+    fn views_without_a_texel_in_common_stay_as_they_are() {
+        let known = [true, true, false, false];
+        let mut shown = [None, None, Some([50.0; 3]), Some([60.0; 3])];
+        level(&mut shown, &[[90.0; 3]; 4], &known, 4);
+        assert_eq!(shown, [None, None, Some([50.0; 3]), Some([60.0; 3])]);
+    }
 }
