@@ -102,9 +102,6 @@ pub fn complete_line(
     let mut segments = context.adopt(&fit.line, &segments, &edges, OWN, &taken);
     loop {
         let evidence = edges.len() + views_of(&segments);
-        if edges.len() < MIN_MEASURED {
-            return Err(Rejection::NotAlike);
-        }
         if evidence < context.least_evidence() {
             return Err(Rejection::TooFewSegments);
         }
@@ -122,6 +119,9 @@ pub fn complete_line(
         }
         segments.retain(|s| !disagreeing.contains(&s.view));
         edges.retain(|e| !disagreeing.contains(&e.view));
+        if edges.len() < MIN_MEASURED {
+            return Err(Rejection::NotAlike);
+        }
         (fit, edges) = context.fit_edges(&fit.line, &edges)?;
     }
 }
@@ -129,8 +129,9 @@ pub fn complete_line(
 /// Views that have segments on the line but see another edge nearby: those that do not support it
 /// photometrically and, where the views are not alike in the mean, the one least like the others. A
 /// wrong view displaces the line and with it the windows of the right ones, so one is left out at a
-/// time. Three edges that meet in a line may do so by chance and have to be alike; from the fourth on it is enough that they
-/// are half as much, as with any segment at a predicted position (B99 3.2).
+/// time. Three edges that meet in a line may do so by chance and have to be alike, or two of them so much that they need no
+/// third ([`pair_suffices`]); from the fourth on it is enough that they are half as much, as with any segment at a
+/// predicted position (B99 3.2).
 fn disagreeing_views(
     profile: &Profile,
     supports: &[LineSupport],
@@ -138,12 +139,23 @@ fn disagreeing_views(
 ) -> Vec<ViewId> {
     let measured = profile.views.iter().filter(|v| v.measured());
     let mean = supports.iter().map(|s| s.score).sum::<f64>() / supports.len().max(1) as f64;
-    if mean < least_mean(profile.measured(), params) {
+    if mean < least_mean(profile.measured(), params) && !pair_suffices(profile, supports, params) {
         let worst = measured.min_by(|a, b| a.agreement.total_cmp(&b.agreement));
         return worst.map(|v| v.view).into_iter().collect();
     }
     let supported = |v: &&ViewProfile| supports.iter().any(|s| s.view == v.view);
     measured.filter(|v| !supported(v)).map(|v| v.view).collect()
+}
+
+/// Are two of three edges as alike as is asked where no segment verifies them (B99 3.2)? Then the place of the third view's
+/// segment does: the other strip may see an eave before another ground and its roof in another light.
+fn pair_suffices(profile: &Profile, supports: &[LineSupport], params: &MatchParams) -> bool {
+    let reference = profile.views[profile.reference].view;
+    let mut others = supports
+        .iter()
+        .filter(|s| s.edge.is_some() && s.view != reference);
+    let least = params.pair_score * params.without_segment;
+    profile.measured() == MIN_MEASURED && others.any(|s| s.score >= least)
 }
 
 /// What the supports of a line must score in the mean, given the number of views with an edge.
@@ -326,7 +338,7 @@ impl Context<'_> {
     }
 
     /// The support of one view: with a segment at half the threshold, without at one and a half
-    /// (B99 3.2).
+    /// (B99 3.2). Of three edges one with a segment is judged together with the others, by [`disagreeing_views`].
     fn support(
         &self,
         profile: &Profile,
@@ -344,10 +356,11 @@ impl Context<'_> {
         let seen = EdgelScore::of(correlation, self.params.edgel_correlation);
         let score = score.unwrap_or(seen.score);
         let measured = view.edge.is_some() || !segments.is_empty();
-        let factor = if measured {
-            self.params.with_segment
-        } else {
-            self.params.without_segment
+        let one_of_three = profile.measured() == MIN_MEASURED && view.measured();
+        let factor = match (measured, one_of_three && !segments.is_empty()) {
+            (_, true) => 0.0,
+            (true, false) => self.params.with_segment,
+            (false, false) => self.params.without_segment,
         };
         let enough = measured || seen.included >= self.params.min_edgels;
         (enough && score >= self.params.pair_score * factor).then_some(())?;
@@ -455,9 +468,66 @@ impl Context<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ids::SegmentId;
     use crate::linematch::planted;
     use crate::lines3d::ProjectedLine;
     use crate::raster::Channel;
+
+    /// Three views with edges: two that correlate by `pair`, and one that does not, with a segment of its own or without: which
+    /// views support the line, and which are left out.
+    fn beside_a_pair(own_segment: bool, pair: f32) -> (Vec<u32>, Vec<ViewId>) {
+        const EDGELS: usize = 100;
+        let (scene, line) = (planted::scene(), planted::edges()[0]);
+        let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
+        let segments = planted::segments(&scene);
+        let context = Context {
+            scene: &scene,
+            segments: &segments,
+            sights: &Sights::new(&scene, &segments),
+            z_range: [-2.0, 8.0],
+            params: &params,
+            fitting: &fitting,
+            alike: Alike {
+                contrast: true,
+                channel: true,
+            },
+        };
+        let view = |(index, correlation): (usize, f32)| ViewProfile {
+            view: ViewId(index as u32),
+            image: ProjectedLine::new(&scene.views[index].camera, &line).unwrap(),
+            segments: match own_segment || correlation > 0.0 {
+                true => vec![(SegmentId(0), [0.0, line.length()])],
+                false => Vec::new(),
+            },
+            edge: Some(GuidedEdge {
+                view: ViewId(index as u32),
+                channel: Channel::Grey,
+                segment: planted::part_of(&scene, index, 0, 0.0, 1.0),
+                covariance: nalgebra::Matrix2::identity(),
+                pieces: Vec::new(),
+            }),
+            detected: vec![true; EDGELS],
+            correlation: vec![correlation; EDGELS],
+            agreement: f64::from(correlation),
+        };
+        let step = line.length() / EDGELS as f64;
+        let profile = Profile {
+            t: (0..EDGELS).map(|e| e as f64 * step).collect(),
+            reference: 0,
+            views: [(0, 1.0), (1, pair), (3, 0.0)].map(view).into(),
+        };
+        let supports = context.supports(&profile, (0, EDGELS - 1));
+        let left_out = disagreeing_views(&profile, &supports, &params);
+        (supports.iter().map(|s| s.view.0).collect(), left_out)
+    }
+
+    #[test]
+    fn a_segment_in_its_place_verifies_two_views_that_are_very_alike() {
+        assert_eq!(beside_a_pair(true, 0.8), (vec![0, 1, 3], vec![]));
+        let third = vec![ViewId(3)];
+        assert_eq!(beside_a_pair(true, 0.7).1, third, "not alike enough");
+        assert_eq!(beside_a_pair(false, 0.8).1, third, "no segment");
+    }
 
     /// The views that are left out of a line whose first `count` views have edges and score `score`.
     fn left_out(count: usize, score: f64) -> Vec<ViewId> {
