@@ -15,6 +15,10 @@ use crate::ids::{SegmentId, ViewId};
 use crate::lines3d::{ProjectedLine, doubly_covered};
 use crate::raster::Channel;
 
+/// How near the segment of another line an edge measured again is that same edge, px. Assumption: three times what edges of
+/// one line are off (`position_floor_px`).
+const SAME_EDGE_PX: f64 = 0.3;
+
 impl Context<'_> {
     /// The edge that a view shows along the line: in the channel of the line's segments or, where that shows none,
     /// in the other one, if a segment of that lies there.
@@ -26,13 +30,37 @@ impl Context<'_> {
         taken: &impl Fn(SegmentRef) -> bool,
     ) -> Option<GuidedEdge> {
         let channel = self.sights.channel(segments)?;
-        self.measure_in(channel, line, segments, view).or_else(|| {
+        let edge = self.measure_in(channel, line, segments, view).or_else(|| {
             let other = self.adopt_in(view, channel.other(), line, segments, 1.0, taken);
             (!other.is_empty()).then_some(())?;
             let elsewhere = segments.iter().copied().filter(|s| s.view != view);
             let known: Vec<SegmentRef> = elsewhere.chain(other).collect();
             self.measure_in(channel.other(), line, &known, view)
-        })
+        });
+        let own_segment = segments.iter().any(|s| s.view == view);
+        edge.filter(|edge| own_segment || !self.is_of_another(edge, taken))
+    }
+
+    /// Does most of an edge lie on segments that belong to other lines? Winner takes all (B99 3.2): an eave in front of a line on
+    /// the ground is not seen twice.
+    fn is_of_another(&self, edge: &GuidedEdge, taken: &impl Fn(SegmentRef) -> bool) -> bool {
+        let view = edge.view;
+        let near =
+            (self.sights.views[view.index()].index).near_segment(&edge.segment, SAME_EDGE_PX);
+        let others: Vec<&Sight> = (near.into_iter())
+            .map(|id| SegmentRef {
+                view,
+                segment: SegmentId(id),
+            })
+            .filter(|name| taken(*name))
+            .filter_map(|name| self.sights.get(name))
+            .filter(|sight| sight.channel == edge.channel)
+            .collect();
+        let on_another = |piece: &&Segment2| {
+            let middle = piece.at(0.5);
+            others.iter().any(|s| passes(&s.segment, &middle))
+        };
+        2 * edge.pieces.iter().filter(on_another).count() > edge.pieces.len()
     }
 
     fn measure_in(
@@ -175,6 +203,14 @@ impl Context<'_> {
     }
 }
 
+/// Does a segment pass a point within [`SAME_EDGE_PX`], between its ends?
+fn passes(segment: &Segment2, point: &Point2<f64>) -> bool {
+    let to_point = point - segment.p0;
+    let along = to_point.dot(&segment.direction());
+    (0.0..=segment.length()).contains(&along)
+        && to_point.dot(&segment.normal()).abs() <= SAME_EDGE_PX
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -182,6 +218,46 @@ mod tests {
     use crate::linematch::sight::{Alike, Sights};
     use crate::lines2d::SegmentKind;
     use crate::params::{Lines3dParams, MatchParams};
+
+    #[test]
+    fn an_edge_of_another_line_is_not_measured_again() {
+        let scene = planted::scene();
+        let own = |view| SegmentRef {
+            view,
+            segment: SegmentId(0),
+        };
+        let [first, last] = [ViewId(0), ViewId(3)];
+        let mut segments = planted::segments(&scene);
+        let again = SegmentRef {
+            view: last,
+            segment: SegmentId::from_index(segments[last.index()].len()),
+        };
+        let whole = segments[last.index()][0].clone();
+        segments[last.index()].push(whole);
+        let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
+        let context = Context {
+            scene: &scene,
+            segments: &segments,
+            sights: &Sights::new(&scene, &segments),
+            z_range: [-2.0, 8.0],
+            params: &params,
+            fitting: &fitting,
+            alike: Alike {
+                contrast: true,
+                channel: true,
+            },
+        };
+        let shows = |known: &[SegmentRef], taken: &[SegmentRef]| {
+            let line = planted::edges()[0];
+            let taken = |s| taken.contains(&s);
+            context.measure(&line, known, last, &taken).is_some()
+        };
+        let seen_by_two = [own(first), own(ViewId(1))];
+        assert!(shows(&seen_by_two, &[]));
+        assert!(!shows(&seen_by_two, &[again]));
+        let beside = [own(first), own(last)];
+        assert!(shows(&beside, &[again]), "a segment of its own");
+    }
 
     #[test]
     fn a_view_that_shows_no_segment_like_the_others_gives_one_against_them() {
