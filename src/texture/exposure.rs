@@ -9,7 +9,7 @@ use super::paint::{MAX_GAIN, Seen, colours_in, views_of};
 use super::patch::{FacePlane, Patch};
 use super::shadow::Footprints;
 use crate::ids::ViewId;
-use crate::math::median;
+use crate::math::{exp, ln, median};
 use crate::scene::Scene;
 
 /// Texels of a face that are compared, about. Assumption: the mean of a hundred is good to a percent.
@@ -48,7 +48,7 @@ pub fn exposures(scene: &Scene, faces: &[FacePlane], footprints: &[Footprints]) 
         brought_together(&of_pair.iter().map(ratio).collect::<Vec<_>>(), views)
     });
     (0..views)
-        .map(|v| [0, 1, 2].map(|c| (factors[c][v].exp() as f32).clamp(1.0 / MAX_GAIN, MAX_GAIN)))
+        .map(|v| [0, 1, 2].map(|c| (exp(factors[c][v]) as f32).clamp(1.0 / MAX_GAIN, MAX_GAIN)))
         .collect()
 }
 
@@ -79,7 +79,7 @@ fn log_ratio(a: &Colours, b: &Colours) -> Option<[f64; 3]> {
         count += 1;
     }
     let black = sums.iter().flatten().any(|sum| *sum < count as f64);
-    (count >= LEAST_COMMON && !black).then(|| sums.map(|[x, y]| (x / y).ln()))
+    (count >= LEAST_COMMON && !black).then(|| sums.map(|[x, y]| ln(x / y)))
 }
 
 /// The logarithms of the factors that bring views together, given by how much (a logarithm) the row's view is brighter than
@@ -125,7 +125,7 @@ mod tests {
         assert_eq!(ratios.len(), 3);
         for ([a, b], ratio) in ratios {
             let exposures = [1.0f64, 1.3, 0.8];
-            let expected = (exposures[a] / exposures[b]).ln();
+            let expected = ln(exposures[a] / exposures[b]);
             assert!(ratio.iter().all(|r| (r - expected).abs() < 1e-5), "{a} {b}");
         }
         assert!(log_ratios(&face(&[1.0, 1.0], [0.5; 3])).is_empty(), "black");
@@ -140,10 +140,10 @@ mod tests {
         // 0 and 2 have nothing in common but 1; nothing is known of 3.
         let exposures = [1.0f64, 1.2, 0.9, 1.5];
         let mut brighter = vec![None; 16];
-        brighter[4] = Some((exposures[1] / exposures[0]).ln());
-        brighter[4 * 2 + 1] = Some((exposures[2] / exposures[1]).ln());
+        brighter[4] = Some(ln(exposures[1] / exposures[0]));
+        brighter[4 * 2 + 1] = Some(ln(exposures[2] / exposures[1]));
         let factors = brought_together(&brighter, 4);
-        let seen = [0, 1, 2].map(|v| factors[v].exp() * exposures[v]);
+        let seen = [0, 1, 2].map(|v| exp(factors[v]) * exposures[v]);
         for shown in seen {
             assert!((shown / seen[0] - 1.0).abs() < 0.01, "{seen:?}");
         }
