@@ -20,6 +20,7 @@ pub fn compare(
     let mut map = ConsistencyMap {
         grid: *grid,
         correlation: vec![0; cells],
+        overall: vec![0; cells],
         weight: vec![0; cells],
         common_weight: vec![0; cells],
     };
@@ -39,10 +40,11 @@ pub fn compare(
         let correlations: Vec<&[f32]> = pairs.iter().map(|p| p.row.as_slice()).collect();
         let variances: Vec<&[f32]> = views.iter().map(|v| v.variance.as_slice()).collect();
         for start in (0..grid.width).step_by(LANES) {
-            let (mean, seen) = best.better_half(&correlations, start);
+            let [better, all, seen] = best.agreement(&correlations, start);
             let (variance, median) = middle.texture(&variances, start);
-            let [mean, seen, variance, median] = [
-                (mean * f32x8::splat(127.0)).round(),
+            let [better, all, seen, variance, median] = [
+                (better * f32x8::splat(127.0)).round(),
+                (all * f32x8::splat(127.0)).round(),
                 seen,
                 weight_of(variance, unlike),
                 weight_of(median, unlike),
@@ -51,7 +53,8 @@ pub fn compare(
             for (lane, x) in (start..grid.width.min(start + LANES)).enumerate() {
                 if seen[lane] > 0.0 {
                     let k = y * grid.width + x;
-                    map.correlation[k] = mean[lane] as i8;
+                    map.correlation[k] = better[lane] as i8;
+                    map.overall[k] = all[lane] as i8;
                     map.weight[k] = variance[lane] as u8;
                     map.common_weight[k] = median[lane] as u8;
                 }
@@ -301,10 +304,10 @@ impl Ranking {
         }
     }
 
-    /// Mean of the better half of the pairs' correlations, and the number of pairs that see the cell.
-    fn better_half(&self, pairs: &[&[f32]], start: usize) -> (f32x8, f32x8) {
+    /// Means of the better half of the pairs' correlations and of all of them, and the number of pairs that see the cell.
+    fn agreement(&self, pairs: &[&[f32]], start: usize) -> [f32x8; 3] {
         let mut columns = columns(pairs, start);
-        let (_, seen) = sum_of_seen(&columns[..self.columns]);
+        let (total, seen) = sum_of_seen(&columns[..self.columns]);
         self.rank(&mut columns);
         let better = half(seen + f32x8::ONE);
         let ranked = columns[..self.ranked].iter().enumerate();
@@ -312,7 +315,9 @@ impl Ranking {
             let counts = f32x8::splat(place as f32).simd_lt(better);
             sum + counts.select(*c, f32x8::ZERO)
         });
-        (sum / better.fast_max(f32x8::ONE), seen)
+        let [better, all] =
+            [(sum, better), (total, seen)].map(|(sum, count)| sum / count.fast_max(f32x8::ONE));
+        [better, all, seen]
     }
 
     /// Mean and lower median of the variances of the windows that see a cell.
@@ -364,10 +369,10 @@ mod tests {
         };
         let rows = [0.5, 0.9, UNSEEN, 0.1].map(row);
         let rows = rows.each_ref().map(|r| r.as_slice());
-        let (mean, seen) = Ranking::new(4).better_half(&rows, 0);
+        let [better, all, seen] = Ranking::new(4).agreement(&rows, 0);
         assert_eq!(
-            (mean.to_array()[0], seen.to_array()[0]),
-            ((0.9 + 0.5) / 2.0, 3.0)
+            [better, all, seen].map(|x| x.to_array()[0]),
+            [(0.9 + 0.5) / 2.0, (0.5 + 0.9 + 0.1) / 3.0, 3.0]
         );
         assert_eq!(seen.to_array()[1..], [0.0; 7]);
         let (mean, median) = Ranking::new(4).texture(&rows, 0);

@@ -5,8 +5,9 @@
 //! the plane under test, once; centred normalised cross-correlations of small windows over all pairs
 //! of views follow from running sums. Two deviations, both against failure on real roofs:
 //!
-//! * Occlusion: at each plan position only the better half of the pairs counts, so one or two views in which
-//!   something stands in front do not condemn a plane.
+//! * Occlusion: while planes compete nobody knows what hides them, so that at each plan position only the better half of the
+//!   pairs counts: one or two views in which something stands in front do not condemn a plane. Once there are facets, all
+//!   pairs are asked that see one past the others ([`consistency_map_behind`]).
 //! * Weak texture: where the grey values vary no more than the noise, correlation says nothing for or
 //!   against; each position carries the weight `s^2 / (s^2 + n^2)` with s the standard deviation
 //!   within the window and n that of the noise. It is also about what the views of a true plane correlate
@@ -31,6 +32,8 @@ pub struct ConsistencyMap {
     pub grid: PlanGrid,
     /// Correlation in steps of 1 / 127. A scene has hundreds of maps: a byte a value keeps them small.
     pub(super) correlation: Vec<i8>,
+    /// The same of all pairs.
+    pub(super) overall: Vec<i8>,
     /// Weight in steps of 1 / 255.
     pub(super) weight: Vec<u8>,
     /// The same from the median of the views instead of their mean.
@@ -58,10 +61,16 @@ impl ConsistencyMap {
                 continue;
             };
             best.correlation[k] = map.correlation[k];
+            best.overall[k] = map.overall[k];
             best.weight[k] = map.weight[k];
             best.common_weight[k] = map.common_weight[k];
         }
         Some(best)
+    }
+
+    /// Mean of all pairwise correlations, whatever stands in front of the cell in some of the views.
+    pub fn overall(&self, k: usize) -> f32 {
+        f32::from(self.overall[k]) / 127.0
     }
 
     /// How much the texture at cell `k` can tell, 0 to 1; 0 where fewer than two views see the window.
@@ -79,10 +88,18 @@ impl ConsistencyMap {
 /// planes a metre beside the true ones.
 const CHANCE: f64 = 0.3;
 
+/// The same of all pairs. Measured: 0.1 to 0.3.
+const CHANCE_OVERALL: f64 = 0.2;
+
 /// Correlation at which a plane is as good as no plane, for a texture `weight`: `textured` where the texture
 /// is strong, chance where there is none.
 pub fn least_correlation(weight: f64, textured: f64) -> f64 {
     CHANCE + (textured - CHANCE) * weight
+}
+
+/// The same for [`ConsistencyMap::overall`].
+pub fn least_overall(weight: f64, textured: f64) -> f64 {
+    CHANCE_OVERALL + (textured - CHANCE_OVERALL) * weight
 }
 
 /// What keeps two views of one surface from being alike, against the noise of a pixel: besides the noise, the sampling and
@@ -103,7 +120,7 @@ pub fn consistency_map_behind(
     scene: &Scene,
     plane: &Plane,
     grid: &PlanGrid,
-    hidden: impl Fn(ViewId, &Point3<f64>) -> bool,
+    hidden: &dyn Fn(ViewId, &Point3<f64>) -> bool,
 ) -> ConsistencyMap {
     let views = views_of_plane(scene, plane, grid);
     let photo = |&v: &ViewId| {
@@ -203,6 +220,7 @@ mod tests {
                 height: 2,
             },
             correlation: correlation.to_vec(),
+            overall: correlation.to_vec(),
             weight: vec![weight; 2],
             common_weight: vec![weight + 1; 2],
         };

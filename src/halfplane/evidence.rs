@@ -393,6 +393,7 @@ mod tests {
                 map: ConsistencyMap {
                     grid,
                     correlation: vec![80; cells],
+                    overall: vec![80; cells],
                     weight: vec![200; cells],
                     common_weight: vec![200; cells],
                 },

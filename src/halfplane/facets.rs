@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::arrangement::Arrangement;
 use super::border_cost::{BorderCosts, LINE_HEIGHT};
 use super::borders::{Border, border_lines};
-use super::consistency::{ConsistencyMap, consistency_map};
+use super::consistency::{ConsistencyMap, consistency_map, consistency_map_behind};
 use super::delineation::{Delineation, Outline, delineate, signed_area};
 use super::evidence::Evidence;
 use super::grouping::{GroupingInput, PlaneGroup, group_planes};
@@ -28,10 +28,10 @@ use super::proposed::add_rectangles;
 use super::region::Region;
 use super::shiftable::ShiftableWindows;
 use crate::geometry::Plane;
-use crate::ids::BuildingId;
+use crate::ids::{BuildingId, ViewId};
 use crate::lines3d::Line3d;
 use crate::params::RoofParams;
-use crate::roof::{Facet, Ground, RoofEvidence};
+use crate::roof::{Facet, Ground, Occluders, RoofEvidence};
 use crate::scene::Scene;
 
 /// Why a facet was withdrawn.
@@ -61,6 +61,11 @@ pub enum FacetRejection {
     /// The views do not agree inside the outline.
     Dissimilar {
         /// Mean correlation inside the outline.
+        similarity: f64,
+    },
+    /// The views that nothing hides it from do not agree inside the outline.
+    Contradicted {
+        /// Mean correlation of all their pairs inside the outline.
         similarity: f64,
     },
     /// Inside the outline the views agree better on the plane of another group.
@@ -180,6 +185,7 @@ pub fn reconstruct_facets(
         planes,
         index,
         maps,
+        scene: reduced,
     };
     let (facets, rejected) = solver.solve(&groups, ground, params);
     let cells = solver.arrangement.cells;
@@ -282,6 +288,20 @@ const ALMOST_ALL: f64 = 0.9;
 /// Standard deviations by which the views must agree better on it. Assumption: as usual.
 const CLEARLY: f64 = 3.0;
 
+/// How the views that see a facet agree on its plane, over its own part of the plan; `hidden` says which do not.
+fn map_inside(
+    scene: &Scene,
+    facet: &Facet,
+    step: f64,
+    hidden: &dyn Fn(ViewId, &Point3<f64>) -> bool,
+) -> ConsistencyMap {
+    let start = [f64::MAX, f64::MIN].map(|bound| Point2::new(bound, bound));
+    let corners = facet.outer.iter().map(Point3::xy);
+    let [min, max] = corners.fold(start, |[low, high], p| [low.inf(&p), high.sup(&p)]);
+    let grid = PlanGrid::covering(min, max, step);
+    consistency_map_behind(scene, &facet.plane, &grid, hidden)
+}
+
 /// The windows inside a facet, with the map of its plane.
 fn inside<'m>(facet: &Facet, map: &'m ConsistencyMap) -> Inside<'m> {
     let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
@@ -298,6 +318,8 @@ struct Solver {
     index: LineIndex,
     /// How the views agree on each plane.
     maps: Vec<ConsistencyMap>,
+    /// With pixels about as wide as the cells of the maps.
+    scene: Scene,
 }
 
 impl Solver {
@@ -320,9 +342,15 @@ impl Solver {
             let mut withdrawn = Vec::new();
             // No roof, but no other plane may have their place: they stay in the labelling.
             let mut on_ground = Vec::new();
-            for outline in &delineation.outlines {
-                let facet = self.facet(outline, &delineation, groups);
-                let result = match self.verify(&facet, outline, ground, params) {
+            let found: Vec<Facet> = (delineation.outlines.iter())
+                .map(|outline| self.facet(outline, &delineation, groups))
+                .collect();
+            let occluders = Occluders::new(&found);
+            let results: Vec<_> = (delineation.outlines.iter().zip(&found))
+                .map(|(outline, facet)| self.verify(facet, outline, &occluders, ground, params))
+                .collect();
+            for ((outline, facet), result) in delineation.outlines.iter().zip(found).zip(results) {
+                let result = match result {
                     // In the last round nothing would take its place.
                     Err(FacetRejection::Outdone { .. }) if round == ROUNDS => Ok(()),
                     result => result,
@@ -424,6 +452,7 @@ impl Solver {
         &self,
         facet: &Facet,
         outline: &Outline,
+        occluders: &Occluders,
         ground: &Ground,
         params: &RoofParams,
     ) -> Result<(), FacetRejection> {
@@ -460,6 +489,13 @@ impl Solver {
                 similarity: interior.correlation / interior.weight,
             });
         }
+        // The better half of the pairs excuses the views in which something stands in front of the facet, and with them
+        // as many in which nothing does.
+        if interior.speaks_against_overall()
+            && let Some(similarity) = self.contradicted(facet, map.grid.step, occluders, params)
+        {
+            return Err(FacetRejection::Contradicted { similarity });
+        }
         if let Some((by, sigmas)) = self.outdone(outline, &inside) {
             return Err(FacetRejection::Outdone { by, sigmas });
         }
@@ -479,6 +515,22 @@ impl Solver {
             });
         }
         Ok(())
+    }
+
+    /// How all pairs of views correlate inside a facet, where no other hides it from them; `None` unless that contradicts
+    /// its plane.
+    fn contradicted(
+        &self,
+        facet: &Facet,
+        step: f64,
+        occluders: &Occluders,
+        params: &RoofParams,
+    ) -> Option<f64> {
+        let hidden = |view, point: &_| occluders.hide(point, &self.scene.camera(view).center);
+        let map = map_inside(&self.scene, facet, step, &hidden);
+        let seen = inside(facet, &map).sums(params.min_correlation);
+        seen.speaks_against_overall()
+            .then(|| seen.overall / seen.weight)
     }
 
     /// The plane that could lie over a facet and that the views agree on clearly better inside it. A level plane through
@@ -501,5 +553,70 @@ impl Solver {
     fn texture(&self, outline: &Outline) -> (f64, f64) {
         let evidence = (outline.cells.iter()).filter_map(|&c| self.evidence.get(c, outline.plane));
         evidence.fold((0.0, 0.0), |(w, l), e| (w + e.weight, l + e.least))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::gable_scene;
+    use nalgebra::Vector3;
+
+    const MIN_CORRELATION: f64 = 0.45;
+
+    /// A rendered roof and one of its facets.
+    fn scene_and_facet() -> (Scene, Facet) {
+        let (scene, truth) = gable_scene(320);
+        let (plane, outer) = truth.facets[0].clone();
+        let facet = Facet {
+            building: BuildingId(0),
+            plane,
+            outer,
+            holes: Vec::new(),
+            similarity: 0.0,
+            real_ratio: 0.0,
+            lines: Vec::new(),
+            half_planes: Vec::new(),
+            rectangles: Vec::new(),
+        };
+        (scene, facet)
+    }
+
+    /// Do the better half of the pairs of views, and all of them, speak against a facet, where `hidden` views are not asked?
+    fn against(scene: &Scene, facet: &Facet, hidden: &[usize]) -> [bool; 2] {
+        let map = map_inside(scene, facet, 0.1, &|view, _| hidden.contains(&view.index()));
+        let sums = inside(facet, &map).sums(MIN_CORRELATION);
+        assert!(sums.weight > 100.0, "the texture is strong");
+        [sums.speaks_against(), sums.speaks_against_overall()]
+    }
+
+    #[test]
+    fn the_views_that_see_a_facet_verify_it_whatever_the_others_show() {
+        let (mut scene, facet) = scene_and_facet();
+        assert_eq!(against(&scene, &facet, &[]), [false, false]);
+        for view in &mut scene.views[..2] {
+            view.gray.data.reverse();
+        }
+        assert_eq!(against(&scene, &facet, &[]), [false, true]);
+        assert_eq!(against(&scene, &facet, &[0, 1]), [false, false]);
+    }
+
+    #[test]
+    fn a_plane_that_the_better_half_excuses_is_refused_by_all_views() {
+        let (scene, facet) = scene_and_facet();
+        let raised = |by: f64| {
+            let by = Vector3::z() * by;
+            let outer = facet.outer.iter().map(|p| p + by).collect();
+            let d = facet.plane.d - facet.plane.normal.dot(&by);
+            let plane = Plane { d, ..facet.plane };
+            Facet {
+                plane,
+                outer,
+                ..facet.clone()
+            }
+        };
+        assert_eq!(against(&scene, &raised(0.3), &[]), [false, false]);
+        assert_eq!(against(&scene, &raised(0.65), &[]), [false, true]);
+        assert_eq!(against(&scene, &raised(1.0), &[]), [true, true]);
     }
 }

@@ -6,7 +6,7 @@
 use nalgebra::Point2;
 
 use super::box_sum::HALF_WINDOW;
-use super::consistency::{ConsistencyMap, least_correlation};
+use super::consistency::{ConsistencyMap, least_correlation, least_overall};
 use super::plan::PlanGrid;
 use crate::texture::raster::mark_inside;
 
@@ -31,6 +31,10 @@ pub struct Interior {
     pub correlation: f64,
     /// The same for the correlation at which the plane is as good as none.
     pub least: f64,
+    /// Sum of weight x correlation of all pairs of views.
+    pub overall: f64,
+    /// The same for that at which the plane is as good as none.
+    pub least_overall: f64,
 }
 
 impl<'m> Inside<'m> {
@@ -62,6 +66,8 @@ impl<'m> Inside<'m> {
             interior.weight += weight;
             interior.correlation += weight * f64::from(self.map.correlation(k));
             interior.least += weight * least_correlation(weight, min_correlation);
+            interior.overall += weight * f64::from(self.map.overall(k));
+            interior.least_overall += weight * least_overall(weight, min_correlation);
         }
         interior
     }
@@ -103,7 +109,16 @@ impl<'m> Inside<'m> {
 impl Interior {
     /// Is there texture, and does it contradict the plane?
     pub fn speaks_against(&self) -> bool {
-        self.correlation < self.least - TOLERANCE * self.weight
+        self.contradicts(self.correlation, self.least)
+    }
+
+    /// The same where no pair of views is excused.
+    pub fn speaks_against_overall(&self) -> bool {
+        self.contradicts(self.overall, self.least_overall)
+    }
+
+    fn contradicts(&self, correlation: f64, least: f64) -> bool {
+        correlation < least - TOLERANCE * self.weight
             && self.weight > TEXTURED * self.windows as f64
     }
 }
@@ -202,6 +217,7 @@ mod tests {
         ConsistencyMap {
             grid,
             correlation: (0..cells).map(|k| (at(k) * 127.0) as i8).collect(),
+            overall: (0..cells).map(|k| (at(k) * 127.0) as i8).collect(),
             weight: vec![200; cells],
             common_weight: vec![200; cells],
         }

@@ -224,6 +224,7 @@ mod tests {
         ConsistencyMap {
             grid: part,
             correlation: (0..cells).map(at).collect(),
+            overall: (0..cells).map(at).collect(),
             weight: vec![200; cells],
             common_weight: vec![200; cells],
         }

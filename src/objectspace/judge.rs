@@ -171,7 +171,7 @@ fn compare(scene: &Scene, plane: &Plane, grid: &PlanGrid, solids: &[Solid]) -> C
     if solids.is_empty() {
         return consistency_map(scene, plane, grid);
     }
-    consistency_map_behind(scene, plane, grid, |view, point| {
+    consistency_map_behind(scene, plane, grid, &|view, point| {
         let center = &scene.camera(view).center;
         solids.iter().any(|s| s.hides(point, center))
     })

@@ -3,6 +3,7 @@
 mod ground;
 mod invariants;
 mod new_lines;
+mod occluders;
 mod reconstruct;
 mod refine;
 mod solid;
@@ -10,6 +11,7 @@ mod solid;
 pub use ground::Ground;
 pub use invariants::{PLANAR_M, Violation, check_invariants};
 pub use new_lines::new_lines;
+pub use occluders::Occluders;
 pub use reconstruct::{RoofEvidence, RoofTrace, Unrefined, reconstruct_roofs};
 pub use refine::{
     BuildingRefinement, Parting, RefineRefusal, RefineTrace, RelationKind, SideKind,

@@ -17,11 +17,10 @@ mod accept;
 mod adjust;
 mod envelope;
 #[cfg(test)]
-mod fixture;
+pub(super) mod fixture;
 mod outline;
 mod parting;
 mod relations;
-mod sight;
 mod sightings;
 mod wireframe;
 
@@ -34,10 +33,9 @@ pub use wireframe::SideKind;
 
 use self::accept::Judge;
 use self::adjust::{Problem, Solution, Term};
-use self::sight::Sight;
 use self::sightings::sight_sides;
 use self::wireframe::{State, Wireframe};
-use super::{Building, Facet, RoofModel};
+use super::{Building, Facet, Occluders, RoofModel};
 use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
 use crate::params::RefineParams;
@@ -108,7 +106,7 @@ pub fn refine_roofs(
     model: &RoofModel,
     params: &RefineParams,
 ) -> (Vec<Facet>, RefineTrace) {
-    let sight = Sight::new(&model.facets);
+    let occluders = Occluders::new(&model.facets);
     let mut facets = model.facets.clone();
     let mut trace = RefineTrace::default();
     if !params.refine {
@@ -121,7 +119,7 @@ pub fn refine_roofs(
         let case = Case {
             scene,
             lines,
-            sight: &sight,
+            occluders: &occluders,
             building,
             old: &old,
             params,
@@ -164,7 +162,7 @@ impl BuildingRefinement {
 struct Case<'a> {
     scene: &'a Scene,
     lines: &'a [Line3d],
-    sight: &'a Sight<'a>,
+    occluders: &'a Occluders<'a>,
     building: &'a Building,
     old: &'a [&'a Facet],
     params: &'a RefineParams,
@@ -210,7 +208,7 @@ impl Case<'_> {
         let simple: Vec<&Facet> = facets.iter().collect();
         let far = vec![true; facets.len()];
         let shown = |w: &Wireframe, state: &State| {
-            let sightings = sight_sides(self.scene, self.sight, w, state, &far, self.params);
+            let sightings = sight_sides(self.scene, self.occluders, w, state, &far, self.params);
             w.shown(state, sightings.iter().map(|s| s.side))
         };
         let (simple_wireframe, simple_state) = Wireframe::new(&simple);
@@ -243,7 +241,7 @@ impl Case<'_> {
         report.sides = wireframe.sides.len();
         let heights = height_terms(&wireframe, &start, &from, self.lines, params);
         let problem = |state: &State, far: &[bool]| {
-            let sightings = sight_sides(self.scene, self.sight, &wireframe, state, far, params);
+            let sightings = sight_sides(self.scene, self.occluders, &wireframe, state, far, params);
             let mut problem = Problem::new(self.scene, &wireframe, &start, sightings, params);
             problem.terms.extend(heights.iter().cloned());
             problem

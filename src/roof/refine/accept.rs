@@ -3,10 +3,10 @@
 use nalgebra::Point2;
 
 use super::RefineRefusal;
-use super::sight::inside;
 use crate::halfplane::{PlanGrid, consistency_map};
 use crate::ids::FacetId;
 use crate::params::RefineParams;
+use crate::roof::occluders::inside;
 use crate::roof::{Facet, Violation, check_invariants, close_buildings};
 use crate::scene::Scene;
 

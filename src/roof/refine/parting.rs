@@ -8,13 +8,12 @@
 use nalgebra::{Point2, Vector2};
 use serde::Serialize;
 
-use super::sight::Sight;
 use super::sightings::{Extent, Profiles, Worth, aligned_runs, pixel};
 use super::wireframe::{SideKind, State, Wireframe};
 use crate::geometry::Segment3;
 use crate::params::RefineParams;
 use crate::roof::invariants::is_simple;
-use crate::roof::{Facet, RoofModel};
+use crate::roof::{Facet, Occluders, RoofModel};
 use crate::scene::Scene;
 use crate::sorting::sort_by;
 
@@ -40,7 +39,7 @@ pub fn part_roofs(
     if !params.refine {
         return (facets, partings);
     }
-    let sight = Sight::new(&model.facets);
+    let occluders = Occluders::new(&model.facets);
     for building in &model.buildings {
         let members: Vec<&Facet> = building
             .facets
@@ -48,7 +47,7 @@ pub fn part_roofs(
             .map(|f| &model.facets[f.index()])
             .collect();
         let (wireframe, state) = Wireframe::new(&members);
-        let cuts = cuts(scene, &sight, &wireframe, &state, params);
+        let cuts = cuts(scene, &occluders, &wireframe, &state, params);
         for (face, id) in building.facets.iter().enumerate() {
             let of_face = |cut: &&Cut| wireframe.sides[cut.side].face == face;
             let of_facet = cuts.iter().filter(of_face).collect();
@@ -91,7 +90,7 @@ struct Cut {
 /// The sides at other facets that are better farther back, those of one line together.
 fn cuts(
     scene: &Scene,
-    sight: &Sight,
+    occluders: &Occluders,
     wireframe: &Wireframe,
     state: &State,
     params: &RefineParams,
@@ -105,7 +104,7 @@ fn cuts(
             pixel_m,
         };
         at_wall(side.kind).then_some(())?;
-        let profiles = Profiles::new(scene, sight, wireframe, state, side, extent, params)?;
+        let profiles = Profiles::new(scene, occluders, wireframe, state, side, extent, params)?;
         Some(WallSide {
             worth: profiles.worth_of_ending(params)?,
             step_m: profiles.step_m(),

@@ -8,7 +8,6 @@
 
 use nalgebra::{Matrix2, Point2, Vector2};
 
-use super::sight::Sight;
 use super::wireframe::{Side, SideKind, State, Wireframe};
 use crate::geometry::{Segment2, Segment3};
 use crate::ids::ViewId;
@@ -16,6 +15,7 @@ use crate::linematch::measure_edge;
 use crate::math;
 use crate::params::RefineParams;
 use crate::raster::Channel;
+use crate::roof::Occluders;
 use crate::scene::Scene;
 
 /// Half the base of the difference across a side, in steps of half a pixel: one pixel.
@@ -44,7 +44,7 @@ pub struct Sighting {
 /// facet.
 pub fn sight_sides(
     scene: &Scene,
-    sight: &Sight,
+    occluders: &Occluders,
     wireframe: &Wireframe,
     state: &State,
     search: &[bool],
@@ -62,7 +62,7 @@ pub fn sight_sides(
             compared_m: reach_of(side),
             pixel_m,
         };
-        Profiles::new(scene, sight, wireframe, state, side, extent, params)
+        Profiles::new(scene, occluders, wireframe, state, side, extent, params)
     });
     let gains = crate::parallel::map(&profiles, |i, profiles| {
         let reach = reach_of(&wireframe.sides[i]);
@@ -217,7 +217,7 @@ impl Profiles {
     /// Profiles on both sides; `None` for a side that is too short.
     pub(super) fn new(
         scene: &Scene,
-        sight: &Sight,
+        occluders: &Occluders,
         wireframe: &Wireframe,
         state: &State,
         side: &Side,
@@ -247,7 +247,7 @@ impl Profiles {
         let compared = (within(extent.compared_m) + 2).min(seen);
         profiles.views = scene
             .view_ids()
-            .filter_map(|v| profiles.profile(scene, sight, v, [seen, compared]))
+            .filter_map(|v| profiles.profile(scene, occluders, v, [seen, compared]))
             .collect();
         Some(profiles)
     }
@@ -261,7 +261,7 @@ impl Profiles {
     fn profile(
         &self,
         scene: &Scene,
-        sight: &Sight,
+        occluders: &Occluders,
         view: ViewId,
         [ends, compared]: [usize; 2],
     ) -> Option<Profile> {
@@ -277,7 +277,7 @@ impl Profiles {
             let t = (i as f64 + 0.5) / self.samples as f64;
             let p = self.segment.at(END_SHARE + (1.0 - 2.0 * END_SHARE) * t);
             if i % 8 == 0 {
-                hidden = sight.hidden(&p, &camera.center);
+                hidden = occluders.hide(&p, &camera.center);
             }
             let middle = to_image * (p - camera.center);
             let across = |steps: f64| {

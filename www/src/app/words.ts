@@ -98,6 +98,8 @@ export function facetRejectionWords(reason: Record<string, Record<string, number
       return `its low side lies on the ground (${value.toFixed(1)} m above it)`;
     case "dissimilar":
       return `the views do not agree inside (${value.toFixed(2)})`;
+    case "contradicted":
+      return `the views that see it do not agree inside (${value.toFixed(2)})`;
     case "outdone":
       return `the views agree better on plane ${numbers["by"]} inside (by ${(numbers["sigmas"] ?? 0).toFixed(1)} σ)`;
     case "unsupported":

@@ -4,19 +4,19 @@ use nalgebra::{Point2, Point3};
 
 use crate::roof::Facet;
 
-/// A roof hides what lies deeper below it, metres: a side must not be hidden by its own facet, nor by a neighbour
+/// A roof hides what lies deeper below it, metres: a side must not be hide by its own facet, nor by a neighbour
 /// that is known to a few decimetres only.
 const LEAST_DEPTH_M: f64 = 0.3;
 /// Step along the ray in plan, metres: finer than any roof.
 const STEP_M: f64 = 0.4;
 
 /// The roofs of a model as seen by rays that go up.
-pub struct Sight<'a> {
+pub struct Occluders<'a> {
     roofs: Vec<(&'a Facet, [Point2<f64>; 2])>,
     highest: f64,
 }
 
-impl<'a> Sight<'a> {
+impl<'a> Occluders<'a> {
     /// For these facets.
     pub fn new(facets: &'a [Facet]) -> Self {
         let bounds = |f: &'a Facet| {
@@ -37,7 +37,7 @@ impl<'a> Sight<'a> {
     }
 
     /// Does a roof stand between the point and the camera?
-    pub fn hidden(&self, point: &Point3<f64>, center: &Point3<f64>) -> bool {
+    pub fn hide(&self, point: &Point3<f64>, center: &Point3<f64>) -> bool {
         let ray = center - point;
         if ray.z <= 0.0 || self.highest <= point.z + LEAST_DEPTH_M {
             return false;
@@ -74,18 +74,18 @@ pub fn inside(ring: &[Point3<f64>], p: &Point2<f64>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::fixture::gable;
     use super::*;
+    use crate::roof::refine::fixture::gable;
 
     #[test]
     fn a_roof_hides_what_lies_behind_and_below() {
         let roof = gable();
-        let sight = Sight::new(&roof);
+        let occluders = Occluders::new(&roof);
         let south = Point3::new(0.0, -1000.0, 1000.0);
         // The gable reaches from y = -4 to 4, eaves at 6 m, ridge at 9 m; rays rise by a metre for a metre.
-        assert!(sight.hidden(&Point3::new(0.0, 5.0, 3.0), &south));
-        assert!(!sight.hidden(&Point3::new(0.0, 9.0, 3.0), &south));
-        assert!(!sight.hidden(&Point3::new(0.0, -6.0, 3.0), &south));
-        assert!(!sight.hidden(&Point3::new(0.0, 0.0, 9.0), &south));
+        assert!(occluders.hide(&Point3::new(0.0, 5.0, 3.0), &south));
+        assert!(!occluders.hide(&Point3::new(0.0, 9.0, 3.0), &south));
+        assert!(!occluders.hide(&Point3::new(0.0, -6.0, 3.0), &south));
+        assert!(!occluders.hide(&Point3::new(0.0, 0.0, 9.0), &south));
     }
 }
