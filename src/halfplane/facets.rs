@@ -113,13 +113,13 @@ pub struct FacetTrace {
 pub fn reconstruct_facets(
     scene: &Scene,
     evidence: &RoofEvidence,
-    ground: &Ground,
     params: &RoofParams,
 ) -> (Vec<Facet>, FacetTrace) {
     let RoofEvidence {
         segments,
         lines,
         half_planes,
+        ground,
         rectangles,
     } = *evidence;
     let neighbours = line_neighbours(lines);
@@ -208,12 +208,9 @@ fn lies_on_ground(
     ground: &Ground,
     params: &RoofParams,
 ) -> bool {
-    group.members.iter().all(|m| {
-        let line = &input.lines[m.line.index()].segment;
-        [line.p0, line.p1]
-            .iter()
-            .all(|p| p.z - ground.z_at(&p.xy()) < 0.7 * params.min_height_m)
-    })
+    let eave_m = 0.7 * params.min_height_m;
+    let mut members = group.members.iter();
+    members.all(|m| ground.is_near(&input.lines[m.line.index()].segment, eave_m))
 }
 
 /// The plan grid of the whole scene: the ground pixel as cell, the regions of all groups as window.

@@ -158,15 +158,10 @@ mod tests {
             segments: &[],
             lines: &[eave],
             half_planes: &[],
+            ground: &Ground::level(0.0),
             rectangles,
         };
-        reconstruct_facets(
-            &scene,
-            &evidence,
-            &Ground::level(0.0),
-            &RoofParams::default(),
-        )
-        .0
+        reconstruct_facets(&scene, &evidence, &RoofParams::default()).0
     }
 
     #[test]

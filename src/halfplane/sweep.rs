@@ -4,6 +4,8 @@
 //! degree." A first pass samples the whole interval; the highest maxima are then halved down to the last
 //! step, and a parabola through the finest samples gives theta.
 //!
+//! Lines on the ground are not swept: they bound no roof, and in a suburb more than half of all lines lie there.
+//!
 //! Valid views: whether a view is valid depends on theta, since an occluded view agrees with no plane or
 //! with a wrong one. The sum over the views valid at each theta selects the maximum; the
 //! views valid there are then kept for the whole curve, so that Sim is continuous, and averaged.
@@ -18,14 +20,16 @@ use crate::geometry::Segment3;
 use crate::ids::LineId;
 use crate::lines3d::Line3d;
 use crate::params::SweepParams;
+use crate::roof::Ground;
 use crate::scene::Scene;
 use crate::shares::map_shared;
 use crate::sorting::sort_by;
 
-/// Half-planes of both sides of every line, in the order of the lines, left before right.
+/// Half-planes of both sides of every line above the ground, in the order of the lines, left before right.
 pub fn sweep_half_planes(
     scene: &Scene,
     lines: &[Line3d],
+    ground: &Ground,
     params: &SweepParams,
 ) -> (Vec<HalfPlane>, SweepTrace) {
     let points = PointsOfInterest::detect_all(scene, params);
@@ -34,15 +38,12 @@ pub fn sweep_half_planes(
         .collect();
     let swept = map_shared("sides", &sides, 0.05..1.0, |_, &(i, side)| {
         let mut counts = SweepTrace::default();
-        let half_plane = sweep_side(
-            scene,
-            &points,
-            LineId::from_index(i),
-            &lines[i],
-            side,
-            params,
-            &mut counts,
-        );
+        let line = LineId::from_index(i);
+        if ground.is_near(&lines[i].segment, params.min_height_m) {
+            counts.refuse(line, side, SweepRejection::OnGround);
+            return (None, counts);
+        }
+        let half_plane = sweep_side(scene, &points, line, &lines[i], side, params, &mut counts);
         (half_plane, counts)
     });
     let mut trace = SweepTrace::default();
@@ -426,8 +427,12 @@ mod tests {
     #[test]
     fn both_sides_of_a_ridge_are_recovered() {
         let reversed = line(ridge().segment.p1, ridge().segment.p0);
-        let (found, trace) =
-            sweep_half_planes(&gable(), &[ridge(), reversed], &SweepParams::default());
+        let (found, trace) = sweep_half_planes(
+            &gable(),
+            &[ridge(), reversed],
+            &Ground::level(0.0),
+            &SweepParams::default(),
+        );
         assert_eq!(found.len(), 4);
         for (line, side, planted) in [
             (0, Side::Left, -30.0),
@@ -448,6 +453,25 @@ mod tests {
     }
 
     #[test]
+    fn lines_on_the_ground_are_not_swept() {
+        let sweep = |ground: f64, min_height_m: f64| {
+            let params = SweepParams {
+                min_height_m,
+                ..SweepParams::default()
+            };
+            sweep_half_planes(&gable(), &[ridge()], &Ground::level(ground), &params)
+        };
+        // The ridge is 8 m high.
+        let (found, trace) = sweep(7.0, 1.4);
+        assert!(found.is_empty() && trace.correlations == 0);
+        let reasons = trace.sides.iter().map(|s| (s.side, s.rejection));
+        let on_ground = Some(SweepRejection::OnGround);
+        assert!(reasons.eq([Side::Left, Side::Right].map(|side| (side, on_ground))));
+        assert_eq!(sweep(6.0, 1.4).0.len(), 2);
+        assert_eq!(sweep(7.0, 0.9).0.len(), 2);
+    }
+
+    #[test]
     fn a_sloping_line_rises_with_its_plane() {
         // A hip: one side falls, the other one rises away from it.
         let hip = line(Point3::new(-5.0, -3.0, 6.0), Point3::new(5.0, 3.0, 9.0));
@@ -455,7 +479,8 @@ mod tests {
             slope(&hip, Side::Left, 25.0, |x, y| y > 0.6 * x),
             slope(&hip, Side::Right, -40.0, |x, y| y <= 0.6 * x),
         ]);
-        let (found, _) = sweep_half_planes(&scene, &[hip], &SweepParams::default());
+        let (found, _) =
+            sweep_half_planes(&scene, &[hip], &Ground::level(0.0), &SweepParams::default());
         assert!((theta_deg(&found, 0, Side::Left) - 25.0).abs() < 2.0);
         assert!((theta_deg(&found, 0, Side::Right) + 40.0).abs() < 2.0);
     }
@@ -464,7 +489,12 @@ mod tests {
     fn beyond_an_eave_there_is_no_half_plane() {
         // B99 figure 12: the roof ends at the line, the ground lies 8 m lower.
         let scene = scene(&[slope(&ridge(), Side::Left, 15.0, north), horizontal(0.0)]);
-        let (found, trace) = sweep_half_planes(&scene, &[ridge()], &SweepParams::default());
+        let (found, trace) = sweep_half_planes(
+            &scene,
+            &[ridge()],
+            &Ground::level(0.0),
+            &SweepParams::default(),
+        );
         assert_eq!(found.len(), 1);
         assert!((theta_deg(&found, 0, Side::Left) - 15.0).abs() < 2.0);
         assert!(trace.sides[1].rejection.is_some());
@@ -476,7 +506,12 @@ mod tests {
         let mut scene = gable();
         let covered = gable_covered().views.swap_remove(1);
         scene.views[1].gray = covered.gray;
-        let (found, trace) = sweep_half_planes(&scene, &[ridge()], &SweepParams::default());
+        let (found, trace) = sweep_half_planes(
+            &scene,
+            &[ridge()],
+            &Ground::level(0.0),
+            &SweepParams::default(),
+        );
         for (h, side) in found.iter().zip(&trace.sides) {
             assert_ne!(side.curve.reference, Some(ViewId(1)));
             assert!(!h.views.contains(&ViewId(1)));
@@ -561,6 +596,7 @@ mod tests {
         let (found, trace) = sweep_half_planes(
             &scene,
             &[up, short, outside, ridge()],
+            &Ground::level(0.0),
             &SweepParams::default(),
         );
         assert!(found.is_empty());

@@ -12,6 +12,8 @@ use crate::ids::{LineId, ViewId};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SweepRejection {
+    /// The line lies on the ground.
+    OnGround,
     /// The line is vertical.
     NoFrame,
     /// No view shows the whole line at a sufficient length.
@@ -83,4 +85,16 @@ pub struct SweepTrace {
     pub correlations: u64,
     /// Strip pixels warped in all.
     pub warped_pixels: u64,
+}
+
+impl SweepTrace {
+    /// Notes a side that is not looked at.
+    pub(super) fn refuse(&mut self, line: LineId, side: Side, reason: SweepRejection) {
+        self.sides.push(SideTrace {
+            line,
+            side,
+            rejection: Some(reason),
+            curve: SimilarityCurve::default(),
+        });
+    }
 }

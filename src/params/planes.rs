@@ -12,6 +12,8 @@ readable! {
 /// B99 4.1: half-planes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SweepParams {
+    /// Lines lower than this above the ground are not swept, metres. Assumption: lower than any eave.
+    pub min_height_m: f64,
     /// Largest |theta|, degrees. B99 figure 15: "over the interval [-75; +75]".
     pub max_theta_deg: f64,
     /// First step of the subdivision, degrees. Assumption: a point at the far end of the neighbourhood
@@ -94,6 +96,7 @@ impl Readable for Acceptance {
 impl Default for SweepParams {
     fn default() -> Self {
         Self {
+            min_height_m: 1.4,
             max_theta_deg: 75.0,
             first_step_deg: 5.0,
             last_step_deg: 1.0,

@@ -36,7 +36,7 @@ use crate::objectspace::{
 };
 use crate::params::{Method, Params};
 use crate::progress::{self, Listener};
-use crate::roof::{RoofEvidence, RoofModel, RoofTrace, new_lines, reconstruct_roofs};
+use crate::roof::{Ground, RoofEvidence, RoofModel, RoofTrace, new_lines, reconstruct_roofs};
 use crate::scene::Scene;
 use crate::shares::{Known, map_shared, with_known};
 use crate::texture::{TextureTrace, TexturedModel, texture_model};
@@ -65,6 +65,8 @@ pub struct Results {
     pub matches: Option<Outcome<Vec<LineMatch>, MatchTrace>>,
     /// 3D lines.
     pub lines: Option<Outcome<Vec<Line3d>, LineTrace>>,
+    /// The ground, which comes before half-planes.
+    pub ground: Option<Ground>,
     /// Half-planes.
     pub half_planes: Option<Outcome<Vec<HalfPlane>, SweepTrace>>,
     /// Facets and buildings.
@@ -267,7 +269,10 @@ impl Run {
             }
             Stage::HalfPlanes => {
                 let lines = before(&r.lines);
-                r.half_planes = Some(sweep_half_planes(scene, lines, &params.sweep).into());
+                let ground = Ground::estimate(scene, lines);
+                let found = sweep_half_planes(scene, lines, &ground, &params.sweep);
+                r.ground = Some(ground);
+                r.half_planes = Some(found.into());
             }
             Stage::Facets => {
                 let segments = before(&r.segments);
@@ -279,6 +284,7 @@ impl Run {
                     segments,
                     lines,
                     half_planes,
+                    ground: r.ground.as_ref().expect("found with half-planes"),
                     rectangles: &rectangles,
                 };
                 let (model, mut trace) = reconstruct_roofs(scene, &evidence, &params.roof);
@@ -319,7 +325,7 @@ impl Run {
                 Stage::Segments => r.segments = None,
                 Stage::Matches => r.matches = None,
                 Stage::Lines => r.lines = None,
-                Stage::HalfPlanes => r.half_planes = None,
+                Stage::HalfPlanes => (r.ground, r.half_planes) = (None, None),
                 Stage::Facets => r.roof = None,
                 Stage::Regions => r.regions = None,
                 Stage::Directions => r.directions = None,

@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use super::{Outcome, Run, Stage};
 use crate::camera::Camera;
+use crate::halfplane::{HalfPlane, SweepTrace};
 use crate::objectspace::{PlaneCandidate, RectangleTrace};
 use crate::params::Params;
 use crate::progress::{self, Listener};
 use crate::raster::Gray;
-use crate::roof::RoofModel;
+use crate::roof::{Ground, RoofModel};
 use crate::scene::{Scene, Survey, View};
 use crate::shares::{Known, Task, share};
 
@@ -21,8 +22,8 @@ impl Stage {
         match self {
             Self::Segments | Self::Regions => &["views"],
             Self::Matches => &["heights", "pairs", "triples", "bundles"],
-            Self::HalfPlanes => &["sides"],
-            Self::Facets => &["ground", "planes"],
+            Self::HalfPlanes => &["ground", "sides"],
+            Self::Facets => &["planes"],
             Self::Directions => &["tiles"],
             Self::Clusters => &["clusters"],
             Self::Rectangles => &["planes", "behind"],
@@ -108,7 +109,13 @@ impl Run {
         match stage {
             Stage::Segments => packed(&r.segments),
             Stage::Lines => packed(&r.lines),
-            Stage::HalfPlanes => packed(&r.half_planes),
+            Stage::HalfPlanes => {
+                let found = r
+                    .half_planes
+                    .as_ref()
+                    .map(|found| (&found.value, &r.ground));
+                found.map_or_else(Vec::new, |found| bytes_of(&found))
+            }
             Stage::Regions => packed(&r.regions),
             Stage::Directions => packed(&r.directions),
             Stage::Clusters => packed(&r.clusters),
@@ -127,7 +134,22 @@ impl Run {
         match stage {
             Stage::Segments => unpacked(&mut r.segments, bytes),
             Stage::Lines => unpacked(&mut r.lines, bytes),
-            Stage::HalfPlanes => unpacked(&mut r.half_planes, bytes),
+            Stage::HalfPlanes => {
+                let found: Option<(Vec<HalfPlane>, Option<Ground>)> =
+                    postcard::from_bytes(bytes).ok();
+                let found = found.map(|(value, ground)| {
+                    (
+                        ground,
+                        Outcome {
+                            value,
+                            trace: SweepTrace::default(),
+                        },
+                    )
+                });
+                (r.ground, r.half_planes) =
+                    found.map_or((None, None), |(ground, found)| (ground, Some(found)));
+                r.half_planes.is_some()
+            }
             Stage::Regions => unpacked(&mut r.regions, bytes),
             Stage::Directions => unpacked(&mut r.directions, bytes),
             Stage::Clusters => unpacked(&mut r.clusters, bytes),

@@ -6,7 +6,7 @@
 //! it and wrong matches share none. What is matched at about the height of the plane through those then settles the height.
 
 use nalgebra::{Point2, Point3, Vector2, Vector3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Facet;
 use crate::geometry::{Plane, Segment3};
@@ -16,7 +16,7 @@ use crate::scene::Scene;
 use crate::sorting::sort_by;
 
 /// Ground heights, metres, local frame, on a coarse grid over the scene.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ground {
     min: Point2<f64>,
     columns: usize,
@@ -62,6 +62,12 @@ impl Ground {
             heights: Vec::new(),
             plane: level_plane(z),
         }
+    }
+
+    /// Do both ends of a line lie lower than this above the ground, metres?
+    pub fn is_near(&self, line: &Segment3, height_m: f64) -> bool {
+        let low = |p: &Point3<f64>| p.z - self.z_at(&p.xy()) < height_m;
+        low(&line.p0) && low(&line.p1)
     }
 
     /// Sweeps the scene between the heights that its 3D lines span; the given height when there is one.

@@ -21,6 +21,8 @@ pub struct RoofEvidence<'a> {
     pub lines: &'a [Line3d],
     /// Half-planes at them.
     pub half_planes: &'a [HalfPlane],
+    /// Where the ground is.
+    pub ground: &'a Ground,
     /// Planes that the other method proposes; none in method "lines".
     pub rectangles: &'a [ProposedPlane],
 }
@@ -51,16 +53,14 @@ pub struct Unrefined {
     pub sources: Vec<usize>,
 }
 
-/// Groups, delineates and verifies facets, estimates the ground below each building, refines the buildings and closes
-/// the solids.
+/// Groups, delineates and verifies facets, refines the buildings and closes the solids.
 pub fn reconstruct_roofs(
     scene: &Scene,
     evidence: &RoofEvidence,
     params: &RoofParams,
 ) -> (RoofModel, RoofTrace) {
-    let lines = evidence.lines;
-    let ground = Ground::estimate(scene, lines);
-    let (facets, facet_trace) = reconstruct_facets(scene, evidence, &ground, params);
+    let RoofEvidence { lines, ground, .. } = *evidence;
+    let (facets, facet_trace) = reconstruct_facets(scene, evidence, params);
     let below = |members: &[&Facet]| ground.below(members);
     // Refinement needs facets that share vertices, and moves them; so the solids are made again.
     let (delineated, solids) = close_buildings(&facets, below);
