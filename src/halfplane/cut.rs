@@ -7,6 +7,10 @@ use super::flow::Flow;
 /// Capacities are integers, so that the cut is exact: a millionth of a square metre.
 const UNIT: f64 = 1e6;
 
+/// What moves must save to be made, in units. Between labels that cost the same, cells would go to and fro for what
+/// rounding makes of it.
+const LEAST_SAVED: i64 = 1000;
+
 /// A minimum cut over binary moves: 0 keeps the label, 1 takes the new one.
 pub struct Cut {
     /// (cost of keeping, cost of moving) per node.
@@ -41,7 +45,7 @@ impl Cut {
         self.arcs.push((i, j, j_moves + i_moves - stay));
     }
 
-    /// For each node: does it move? A tie moves, unless nothing else is gained: a labelling must not go round in circles.
+    /// For each node: does it move? A tie moves, unless hardly anything is gained: a labelling must not go round in circles.
     pub fn solve(self) -> Vec<bool> {
         let units = |c: f64| (c * UNIT).round() as i64;
         let costs = self.unaries.iter();
@@ -50,7 +54,7 @@ impl Cut {
         let arcs: Vec<_> = arcs.filter(|a| a.2 > 0).collect();
         let mut flow = Flow::new(surplus.collect(), &arcs);
         // What no surplus can meet is what the moves save.
-        if flow.run() == 0 {
+        if flow.run() < LEAST_SAVED {
             return vec![false; self.unaries.len()];
         }
         flow.reached().iter().map(|keeps| !keeps).collect()
@@ -112,7 +116,8 @@ mod tests {
             let least = all
                 .map(|m| cost(&unaries, &pairs, &m))
                 .fold(f64::INFINITY, f64::min);
-            assert!(found < least + 1e-4, "{found} against {least}");
+            let least_saved = LEAST_SAVED as f64 / UNIT;
+            assert!(found < least + 1.1 * least_saved, "{found} against {least}");
         }
     }
 
@@ -122,5 +127,7 @@ mod tests {
         let solved = |unaries: &[(f64, f64)]| cut(unaries, &[pair]).solve();
         assert_eq!(solved(&[(2.0, 2.0), (1.0, 1.0)]), [false, false]);
         assert_eq!(solved(&[(2.0, 1.9), (1.0, 1.0)]), [true, true]);
+        // No more than costs differ by when they are rounded.
+        assert_eq!(solved(&[(2.0, 2.0 - 3.0 / UNIT), (1.0, 1.0)]), [false; 2]);
     }
 }
