@@ -109,16 +109,16 @@ impl<'m> Inside<'m> {
 impl Interior {
     /// Is there texture, and does it contradict the plane?
     pub fn speaks_against(&self) -> bool {
-        self.contradicts(self.correlation, self.least)
+        self.falls_short(self.correlation, self.least, TOLERANCE)
     }
 
     /// The same where no pair of views is excused.
     pub fn speaks_against_overall(&self) -> bool {
-        self.contradicts(self.overall, self.least_overall)
+        self.falls_short(self.overall, self.least_overall, TOLERANCE_OVERALL)
     }
 
-    fn contradicts(&self, correlation: f64, least: f64) -> bool {
-        correlation < least - TOLERANCE * self.weight
+    fn falls_short(&self, correlation: f64, least: f64, tolerance: f64) -> bool {
+        correlation < least - tolerance * self.weight
             && self.weight > TEXTURED * self.windows as f64
     }
 }
@@ -129,6 +129,9 @@ pub const SIDE: usize = 2 * HALF_WINDOW + 1;
 const LEAST_VARIANCE: f64 = 1e-5;
 /// How exactly the least correlation is known. Assumption.
 const TOLERANCE: f64 = 0.02;
+/// By how much the views of a true roof may fall short where none is excused: metal shines in some of them and not in others. Measured: up
+/// to 0.11 on a roof of real-barns.
+const TOLERANCE_OVERALL: f64 = 0.13;
 /// Mean texture weight from which on the inside of a facet has a say. Assumption: below it is mostly noise.
 const TEXTURED: f64 = 0.1;
 
