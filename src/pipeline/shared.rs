@@ -110,10 +110,8 @@ impl Run {
             Stage::Segments => packed(&r.segments),
             Stage::Lines => packed(&r.lines),
             Stage::HalfPlanes => {
-                let found = r
-                    .half_planes
-                    .as_ref()
-                    .map(|found| (&found.value, &r.ground));
+                let half_planes = r.half_planes.as_ref().map(|found| &found.value);
+                let found = half_planes.zip(r.ground.as_ref());
                 found.map_or_else(Vec::new, |found| bytes_of(&found))
             }
             Stage::Regions => packed(&r.regions),
@@ -135,19 +133,10 @@ impl Run {
             Stage::Segments => unpacked(&mut r.segments, bytes),
             Stage::Lines => unpacked(&mut r.lines, bytes),
             Stage::HalfPlanes => {
-                let found: Option<(Vec<HalfPlane>, Option<Ground>)> =
-                    postcard::from_bytes(bytes).ok();
-                let found = found.map(|(value, ground)| {
-                    (
-                        ground,
-                        Outcome {
-                            value,
-                            trace: SweepTrace::default(),
-                        },
-                    )
-                });
-                (r.ground, r.half_planes) =
-                    found.map_or((None, None), |(ground, found)| (ground, Some(found)));
+                let found: Option<(Vec<HalfPlane>, Ground)> = postcard::from_bytes(bytes).ok();
+                let (half_planes, ground) = found.unzip();
+                r.half_planes = half_planes.map(|value| (value, SweepTrace::default()).into());
+                r.ground = ground;
                 r.half_planes.is_some()
             }
             Stage::Regions => unpacked(&mut r.regions, bytes),
