@@ -1,5 +1,6 @@
 /** The guided tour: eight steps through B99 and one through W96, in the views themselves, on the demo scene. */
 import { effect } from "@preact/signals";
+import { isRefused } from "../shared/traces";
 import { through } from "./Photograph";
 import { bestTheta, turnTo } from "./pointing";
 import { openDemo } from "./projectActions";
@@ -119,7 +120,7 @@ export const LESSONS: readonly LessonStep[] = [
     prepare: () => {
       selection.value = null;
     },
-    isFound: () => pointing.value.side?.rejection != null,
+    isFound: () => pointing.value.side !== null && isRefused(pointing.value.side),
   },
   {
     title: "Planes",

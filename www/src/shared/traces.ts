@@ -98,6 +98,11 @@ export interface SideRecord {
   rejection: string | null;
 }
 
+/** Was the side swept, and given up? Lines on the ground are not swept. */
+export function isRefused({ rejection }: SideRecord): boolean {
+  return rejection !== null && rejection !== "on_ground";
+}
+
 export interface SimilarityCurve {
   reference: number | null;
   points: Vec2[];

@@ -11,7 +11,7 @@ import {
 import { PALETTE } from "../shared/palette";
 import { type HalfPlane, LINE_STRIDE, type Vec3 } from "../shared/results";
 import type { Selection } from "../shared/selection";
-import type { SideName, SideRecord } from "../shared/traces";
+import { isRefused, type SideName, type SideRecord } from "../shared/traces";
 import { zUpGroup } from "./frame";
 import { BOTH_SIDES, disposeObject, type Layer, rgb } from "./layer";
 
@@ -33,7 +33,7 @@ export function buildFans(
   const object = zUpGroup();
   const corners = halfPlanes.map((halfPlane) => fanCorners(halfPlane, lines));
   const all = fanMesh(corners, PALETTE.halfPlane);
-  const refusedSides = sides.filter(({ rejection }) => rejection !== null);
+  const refusedSides = sides.filter(isRefused);
   const refused = refusedLines(refusedSides, lines);
   object.add(all, refused);
   let chosen: Mesh<BufferGeometry, MeshBasicMaterial> | null = null;

@@ -1,8 +1,8 @@
-import { Vector3, Vector4 } from "three";
+import { type Intersection, type LineSegments, Vector3, Vector4 } from "three";
 import { describe, expect, it } from "vitest";
 import { project } from "../../src/app/marks";
 import type { Vec3, ViewInfo } from "../../src/shared/results";
-import { buildTurning, fanCorners } from "../../src/viewer/fans";
+import { buildFans, buildTurning, fanCorners } from "../../src/viewer/fans";
 import { yUp } from "../../src/viewer/frame";
 import { measure } from "../../src/viewer/measure";
 import { clipFromViewer, fitShares } from "../../src/viewer/photo";
@@ -61,6 +61,21 @@ describe("measure", () => {
 
   it("says nothing of a single point", () => {
     expect(measure([new Vector3()])).toMatchObject({ points: 1, distanceM: null, slope: null });
+  });
+});
+
+describe("buildFans", () => {
+  it("draws the sides that were swept and refused, not those on the ground", () => {
+    const lines = Float64Array.from([0, 0, 0, 9, 0, 0, 0, 0, 5, 9, 0, 5]);
+    const layer = buildFans([], lines, [
+      { line: 0, side: "left", rejection: "on_ground" },
+      { line: 1, side: "left", rejection: null },
+      { line: 1, side: "right", rejection: "flat_curve" },
+    ]);
+    const drawn = layer.object.children.at(-1) as LineSegments;
+    expect(drawn.geometry.getAttribute("position").count).toBe(2);
+    const hit = { object: drawn, index: 0 } as unknown as Intersection;
+    expect(layer.pick(hit)).toEqual({ kind: "side", line: 1, side: "right" });
   });
 });
 
