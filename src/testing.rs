@@ -1,4 +1,10 @@
-//! Numbers by chance that are the same in every run, for tests.
+//! For tests: numbers by chance that are the same in every run, and facets.
+
+use nalgebra::{Point3, Vector3};
+
+use crate::geometry::Plane;
+use crate::ids::BuildingId;
+use crate::roof::Facet;
 
 /// Evenly distributed from 0 to 1: a linear congruential generator (Numerical Recipes 7.1), its upper 24 bits.
 pub fn uniform(seed: u32) -> impl FnMut() -> f64 {
@@ -6,5 +12,24 @@ pub fn uniform(seed: u32) -> impl FnMut() -> f64 {
     move || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         f64::from(state >> 8) / f64::from(1u32 << 24)
+    }
+}
+
+/// A facet over a ring of corners that lie in one plane.
+pub fn facet(ring: &[Point3<f64>]) -> Facet {
+    let normal = (0..ring.len()).fold(Vector3::zeros(), |sum, i| {
+        let (p, q) = (ring[i] - ring[0], ring[(i + 1) % ring.len()] - ring[0]);
+        sum + p.cross(&q)
+    });
+    Facet {
+        building: BuildingId(0),
+        plane: Plane::from_point_normal(&ring[0], &normal).expect("an area"),
+        outer: ring.to_vec(),
+        holes: Vec::new(),
+        similarity: 0.0,
+        real_ratio: 0.0,
+        lines: Vec::new(),
+        half_planes: Vec::new(),
+        rectangles: Vec::new(),
     }
 }

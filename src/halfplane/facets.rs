@@ -11,12 +11,11 @@ use serde::Serialize;
 use super::arrangement::Arrangement;
 use super::border_cost::{BorderCosts, LINE_HEIGHT};
 use super::borders::{Border, border_lines};
-use super::consistency::{ConsistencyMap, consistency_map, consistency_map_behind};
-use super::delineation::{Delineation, Outline, delineate, signed_area};
+use super::consistency::{ConsistencyMap, consistency_map};
+use super::delineation::{Delineation, Outline, delineate};
 use super::evidence::Evidence;
 use super::grouping::{GroupingInput, PlaneGroup, group_planes};
-use super::hypothesis::{ON_SURFACE, TEXTURED, bounding_lines, hypotheses};
-use super::interior::{Inside, SIDE};
+use super::hypothesis::{bounding_lines, hypotheses};
 use super::is_wall;
 use super::islands::without_islands;
 use super::labelling::Labelling;
@@ -27,71 +26,13 @@ use super::plane_lines::PlaneLine;
 use super::proposed::add_rectangles;
 use super::region::Region;
 use super::shiftable::ShiftableWindows;
+use super::verification::{FacetRejection, RejectedFacet};
 use crate::geometry::Plane;
-use crate::ids::{BuildingId, ViewId};
+use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
 use crate::params::RoofParams;
 use crate::roof::{Facet, Ground, Occluders, RoofEvidence};
 use crate::scene::Scene;
-
-/// Why a facet was withdrawn.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FacetRejection {
-    /// Smaller than the least area.
-    TooSmall {
-        /// Sloped area, square metres.
-        area_m2: f64,
-    },
-    /// Windows fit into little of it, so that nothing but its edges speaks for it.
-    TooNarrow {
-        /// Side of the window, metres.
-        window_m: f64,
-    },
-    /// On the ground, or too little above it.
-    NearGround {
-        /// Height of its middle above the ground, metres.
-        height_m: f64,
-    },
-    /// Its low side lies on the ground: a bank, or the shadow of an eave, but no roof.
-    ReachesGround {
-        /// Height of its lowest corner above the ground, metres.
-        lowest_m: f64,
-    },
-    /// The views do not agree inside the outline.
-    Dissimilar {
-        /// Mean correlation inside the outline.
-        similarity: f64,
-    },
-    /// The views that nothing hides it from do not agree inside the outline.
-    Contradicted {
-        /// Mean correlation of all their pairs inside the outline.
-        similarity: f64,
-    },
-    /// Inside the outline the views agree better on the plane of another group.
-    Outdone {
-        /// Index of that group.
-        by: u32,
-        /// How much better, in standard deviations.
-        sigmas: f64,
-    },
-    /// Too little of its outline lies on reconstructed lines, and the images do not clearly show it.
-    Unsupported {
-        /// tau_real, 0 to 1.
-        real_ratio: f64,
-    },
-}
-
-/// A withdrawn facet.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RejectedFacet {
-    /// Index of the group whose plane it has.
-    pub group: u32,
-    /// Its outline, metres, local frame.
-    pub outline: Vec<Point3<f64>>,
-    /// Why.
-    pub reason: FacetRejection,
-}
 
 /// What grouping, delineation and verification did.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -278,45 +219,17 @@ fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {
     borders.iter().copied().chain(frame).collect()
 }
 
-/// Height above the ground that no eave is below, metres. Assumption: with a few decimetres for the ground's own error.
-const LOWEST_EAVE: f64 = 1.0;
-/// Share of a facet that another plane must be able to cover to take its place. Assumption.
-const ALMOST_ALL: f64 = 0.9;
-/// Standard deviations by which the views must agree better on it. Assumption: as usual.
-const CLEARLY: f64 = 3.0;
-
-/// How the views that see a facet agree on its plane, over its own part of the plan; `hidden` says which do not.
-fn map_inside(
-    scene: &Scene,
-    facet: &Facet,
-    step: f64,
-    hidden: &dyn Fn(ViewId, &Point3<f64>) -> bool,
-) -> ConsistencyMap {
-    let start = [f64::MAX, f64::MIN].map(|bound| Point2::new(bound, bound));
-    let corners = facet.outer.iter().map(Point3::xy);
-    let [min, max] = corners.fold(start, |[low, high], p| [low.inf(&p), high.sup(&p)]);
-    let grid = PlanGrid::covering(min, max, step);
-    consistency_map_behind(scene, &facet.plane, &grid, hidden)
-}
-
-/// The windows inside a facet, with the map of its plane.
-fn inside<'m>(facet: &Facet, map: &'m ConsistencyMap) -> Inside<'m> {
-    let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
-    let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-    let rings: Vec<Vec<Point2<f64>>> = rings.map(in_plan).collect();
-    Inside::new(&rings, map)
-}
-
-struct Solver {
+/// The labelling on its way to facets, and what they are verified by.
+pub(super) struct Solver {
     labelling: Labelling<BorderCosts>,
-    evidence: Evidence,
+    pub(super) evidence: Evidence,
     arrangement: Arrangement,
-    planes: Vec<Plane>,
+    pub(super) planes: Vec<Plane>,
     index: LineIndex,
     /// How the views agree on each plane.
-    maps: Vec<ConsistencyMap>,
+    pub(super) maps: Vec<ConsistencyMap>,
     /// With pixels about as wide as the cells of the maps.
-    scene: Scene,
+    pub(super) scene: Scene,
 }
 
 impl Solver {
@@ -443,179 +356,5 @@ impl Solver {
             }
         }
         if total > 0.0 { real / total } else { 0.0 }
-    }
-
-    fn verify(
-        &self,
-        facet: &Facet,
-        outline: &Outline,
-        occluders: &Occluders,
-        ground: &Ground,
-        params: &RoofParams,
-    ) -> Result<(), FacetRejection> {
-        let plan: Vec<Point2<f64>> = facet.outer.iter().map(Point3::xy).collect();
-        let ring: Vec<usize> = (0..plan.len()).collect();
-        let area_m2 = signed_area(&ring, &plan) / facet.plane.normal.z;
-        if area_m2 < params.min_area_m2 {
-            return Err(FacetRejection::TooSmall { area_m2 });
-        }
-        let middle = facet
-            .outer
-            .iter()
-            .fold(nalgebra::Vector3::zeros(), |s, p| s + p.coords)
-            / facet.outer.len() as f64;
-        let height_m = middle.z - ground.z_at(&Point2::new(middle.x, middle.y));
-        if height_m < params.min_height_m {
-            return Err(FacetRejection::NearGround { height_m });
-        }
-        let heights = facet.outer.iter().map(|p| p.z - ground.z_at(&p.xy()));
-        let lowest_m = heights.fold(f64::INFINITY, f64::min);
-        if lowest_m < LOWEST_EAVE {
-            return Err(FacetRejection::ReachesGround { lowest_m });
-        }
-        let map = &self.maps[outline.plane as usize];
-        let inside = inside(facet, map);
-        if inside.is_narrow() {
-            return Err(FacetRejection::TooNarrow {
-                window_m: SIDE as f64 * map.grid.step,
-            });
-        }
-        let interior = inside.sums(params.min_correlation);
-        if interior.speaks_against() {
-            return Err(FacetRejection::Dissimilar {
-                similarity: interior.correlation / interior.weight,
-            });
-        }
-        // The better half of the pairs excuses the views in which something stands in front of the facet, and with them
-        // as many in which nothing does.
-        if interior.speaks_against_overall()
-            && let Some(similarity) = self.contradicted(facet, map.grid.step, occluders, params)
-        {
-            return Err(FacetRejection::Contradicted { similarity });
-        }
-        if let Some((by, sigmas)) = self.outdone(outline, &inside) {
-            return Err(FacetRejection::Outdone { by, sigmas });
-        }
-        // What little texture there is must not speak against the plane.
-        let (weight, least) = self.texture(outline);
-        if facet.similarity * weight < least && weight > 0.1 * area_m2 {
-            return Err(FacetRejection::Dissimilar {
-                similarity: facet.similarity,
-            });
-        }
-        // Where the images show the surface itself, its outline need not lie on lines.
-        let shown = facet.similarity >= f64::from(ON_SURFACE)
-            && weight >= f64::from(TEXTURED) * area_m2 * facet.plane.normal.z;
-        if facet.real_ratio < params.min_real_ratio && !shown {
-            return Err(FacetRejection::Unsupported {
-                real_ratio: facet.real_ratio,
-            });
-        }
-        Ok(())
-    }
-
-    /// How all pairs of views correlate inside a facet, where no other hides it from them; `None` unless that contradicts
-    /// its plane.
-    fn contradicted(
-        &self,
-        facet: &Facet,
-        step: f64,
-        occluders: &Occluders,
-        params: &RoofParams,
-    ) -> Option<f64> {
-        let hidden = |view, point: &_| occluders.hide(point, &self.scene.camera(view).center);
-        let map = map_inside(&self.scene, facet, step, &hidden);
-        let seen = inside(facet, &map).sums(params.min_correlation);
-        seen.speaks_against_overall()
-            .then(|| seen.overall / seen.weight)
-    }
-
-    /// The plane that could lie over a facet and that the views agree on clearly better inside it. A level plane through
-    /// the ridges of two roofs has more edges than the roof between them, and little else.
-    fn outdone(&self, outline: &Outline, inside: &Inside) -> Option<(u32, f64)> {
-        let area = |plane: u32| -> f64 {
-            let evidence = (outline.cells.iter()).filter_map(|&c| self.evidence.get(c, plane));
-            evidence.map(|e| e.area).sum()
-        };
-        let most = ALMOST_ALL * area(outline.plane);
-        let others = (0..self.planes.len() as u32).filter(|p| *p != outline.plane);
-        let rivals = others.filter(|p| area(*p) >= most);
-        let best = rivals
-            .map(|p| (p, inside.advantage_of(&self.maps[p as usize])))
-            .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))?;
-        (best.1 > CLEARLY).then_some(best)
-    }
-
-    /// Texture weight over an outline, square metres, and its product with the least correlation.
-    fn texture(&self, outline: &Outline) -> (f64, f64) {
-        let evidence = (outline.cells.iter()).filter_map(|&c| self.evidence.get(c, outline.plane));
-        evidence.fold((0.0, 0.0), |(w, l), e| (w + e.weight, l + e.least))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::synthetic::gable_scene;
-    use nalgebra::Vector3;
-
-    const MIN_CORRELATION: f64 = 0.45;
-
-    /// A rendered roof and one of its facets.
-    fn scene_and_facet() -> (Scene, Facet) {
-        let (scene, truth) = gable_scene(320);
-        let (plane, outer) = truth.facets[0].clone();
-        let facet = Facet {
-            building: BuildingId(0),
-            plane,
-            outer,
-            holes: Vec::new(),
-            similarity: 0.0,
-            real_ratio: 0.0,
-            lines: Vec::new(),
-            half_planes: Vec::new(),
-            rectangles: Vec::new(),
-        };
-        (scene, facet)
-    }
-
-    /// Do the better half of the pairs of views, and all of them, speak against a facet, where `hidden` views are not asked?
-    fn against(scene: &Scene, facet: &Facet, hidden: &[usize]) -> [bool; 2] {
-        let map = map_inside(scene, facet, 0.1, &|view, _| hidden.contains(&view.index()));
-        let sums = inside(facet, &map).sums(MIN_CORRELATION);
-        assert!(sums.weight > 100.0, "the texture is strong");
-        [sums.speaks_against(), sums.speaks_against_overall()]
-    }
-
-    #[test]
-    fn the_views_that_see_a_facet_verify_it_whatever_the_others_show() {
-        let (mut scene, facet) = scene_and_facet();
-        assert_eq!(against(&scene, &facet, &[]), [false, false]);
-        for view in &mut scene.views[..3] {
-            view.gray.data.reverse();
-        }
-        assert_eq!(against(&scene, &facet, &[]), [false, true]);
-        assert_eq!(against(&scene, &facet, &[0, 1, 2]), [false, false]);
-    }
-
-    #[test]
-    fn a_plane_that_the_better_half_excuses_is_refused_by_all_views() {
-        let (scene, facet) = scene_and_facet();
-        let raised = |by: f64| {
-            let by = Vector3::z() * by;
-            let outer = facet.outer.iter().map(|p| p + by).collect();
-            let d = facet.plane.d - facet.plane.normal.dot(&by);
-            let plane = Plane { d, ..facet.plane };
-            Facet {
-                plane,
-                outer,
-                ..facet.clone()
-            }
-        };
-        let found: Vec<[bool; 2]> = (0..20)
-            .map(|step| against(&scene, &raised(0.05 * f64::from(step)), &[]))
-            .collect();
-        assert_eq!((found[0], found[19]), ([false; 2], [true; 2]));
-        assert!(found.contains(&[false, true]) && !found.contains(&[true, false]));
     }
 }

@@ -36,7 +36,8 @@
 //!      islands        patches too small to be a facet or a hole
 //!      delineation    closed outlines
 //!      interior       what the inside of a facet shows, away from its edges
-//!      facets         verification; orders 4.2 and 4.3
+//!      verification   what a facet must show to stay
+//!      facets         the labelling on its way to facets; orders 4.2 and 4.3
 //! ```
 
 mod agreement;
@@ -73,11 +74,12 @@ mod similarity;
 mod strip;
 mod sweep;
 mod trace;
+mod verification;
 mod windows;
 
 pub use borders::{Border, BorderKind};
 pub use consistency::{ConsistencyMap, consistency_map, consistency_map_behind};
-pub use facets::{FacetRejection, FacetTrace, RejectedFacet, reconstruct_facets};
+pub use facets::{FacetTrace, reconstruct_facets};
 pub use grouping::{Member, PlaneGroup};
 pub use plan::{PlanGrid, image_from_plan, orthophoto};
 pub use plane_lines::PlaneLine;
@@ -86,6 +88,7 @@ pub use posterior::Posterior;
 pub use proposed::ProposedPlane;
 pub use sweep::{similarity_curve, sweep_half_planes, sweep_side};
 pub use trace::{SideTrace, SimilarityCurve, SweepRejection, SweepTrace, ViewCurve};
+pub use verification::{FacetRejection, RejectedFacet};
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
