@@ -7,6 +7,18 @@
 pub use libm::{acos, asin, atan, atan2, cos, exp, hypot, log as ln, log2, pow, sin, tan};
 pub use libm::{cosf, expf, hypotf, sinf};
 
+/// The larger of two numbers, neither NaN. (`f64::max` also says what becomes of NaN: a call in wasm.)
+#[inline]
+pub fn larger<T: PartialOrd>(a: T, b: T) -> T {
+    if a > b { a } else { b }
+}
+
+/// The smaller of two numbers, neither NaN.
+#[inline]
+pub fn smaller<T: PartialOrd>(a: T, b: T) -> T {
+    if a < b { a } else { b }
+}
+
 /// Sine and cosine of an angle in radians.
 pub fn sin_cos(angle: f64) -> (f64, f64) {
     (sin(angle), cos(angle))

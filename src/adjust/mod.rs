@@ -14,12 +14,13 @@
 
 mod system;
 
-use nalgebra::{Point2, Rotation3, Vector2, Vector3};
+use nalgebra::{Point2, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::camera::Camera;
 use crate::lines3d::Line3d;
 use crate::math;
+use crate::orientation::rotation_from_axis_angle;
 use crate::params::Lines3dParams;
 use crate::scene::Scene;
 use system::{Bundle, State};
@@ -46,24 +47,11 @@ impl PoseChange {
     /// The camera turned and moved.
     pub fn apply(&self, camera: &Camera) -> Camera {
         Camera {
-            r: camera.r * turned(&self.turn).transpose(),
+            r: camera.r * rotation_from_axis_angle(&self.turn).inverse().matrix(),
             center: camera.center + self.shift_m,
             ..camera.clone()
         }
     }
-}
-
-/// The rotation about this axis by its length (Rodrigues), with the elementary functions of [`crate::math`].
-fn turned(turn: &Vector3<f64>) -> nalgebra::Matrix3<f64> {
-    let angle = turn.norm();
-    if angle < 1e-15 {
-        return nalgebra::Matrix3::identity();
-    }
-    let axis = turn / angle;
-    let (s, c) = (math::sin(angle), math::cos(angle));
-    let cross = axis.cross_matrix();
-    let r = nalgebra::Matrix3::identity() + cross * s + cross * cross * (1.0 - c);
-    Rotation3::from_matrix_unchecked(r).into_inner()
 }
 
 /// What the adjustment found of a view.

@@ -8,6 +8,7 @@ use wide::f32x8;
 use super::box_sum::{BoxSum, HALF_WINDOW, RowSum};
 use super::consistency::{ConsistencyMap, MAX_VIEWS};
 use super::plan::PlanGrid;
+use crate::math::larger;
 
 /// Compares orthophotos on `grid` (row by row, NaN where a view does not reach), at most [`MAX_VIEWS`]; `unlike` is the
 /// variance by which the grey values of the views differ at random.
@@ -149,7 +150,7 @@ impl ViewWindows {
             }
         });
         for ((v, sum), m) in self.variance.iter_mut().zip(squares).zip(&self.mean) {
-            *v = (sum / FULL - m * m).max(0.0);
+            *v = larger(sum / FULL - m * m, 0.0);
         }
         if let Some(reach) = &mut self.reach {
             let inside = &reach.inside;
@@ -166,11 +167,8 @@ impl ViewWindows {
             self.variance[w - HALF_WINDOW..w].fill(UNSEEN);
         }
         for (inverse, v) in self.inverse_deviation.iter_mut().zip(&self.variance) {
-            *inverse = if *v > UNSEEN {
-                1.0 / v.max(LEAST_VARIANCE).sqrt()
-            } else {
-                f32::NAN
-            };
+            let known = 1.0 / larger(*v, LEAST_VARIANCE).sqrt();
+            *inverse = if *v > UNSEEN { known } else { f32::NAN };
         }
     }
 }

@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use crate::camera::Camera;
 use crate::geometry::{Plane, Segment3};
 use crate::lines3d::Line3d;
+use crate::orientation::rotation_from_axis_angle;
 use crate::raster::Gray;
 use crate::scene::{Scene, View};
 
@@ -56,10 +57,10 @@ pub(super) fn line(p0: Point3<f64>, p1: Point3<f64>) -> Line3d {
 
 /// A camera 100 m up whose image is a crop around the origin.
 fn camera(x: f64, y: f64, kappa: f64) -> Camera {
-    let down = Rotation3::from_matrix_unchecked(Matrix3::new(
-        1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0,
-    ));
-    let r = Rotation3::from_euler_angles(0.01, -0.02, kappa) * down;
+    let down =
+        Rotation3::from_matrix_unchecked(Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)));
+    let [turn, tilt] = [[0.0, 0.0, kappa], [0.01, -0.02, 0.0]].map(Vector3::from);
+    let r = rotation_from_axis_angle(&turn) * rotation_from_axis_angle(&tilt) * down;
     let centre = Point3::new(x, y, 100.0);
     let k = Matrix3::new(1000.0, 0.0, 0.0, 0.0, 1000.0, 0.0, 0.0, 0.0, 1.0);
     let middle = Camera::new(k, r, centre, 250, 250)

@@ -18,6 +18,7 @@ use super::{HalfPlane, Side, ThetaFrame};
 use crate::geometry::Plane;
 use crate::ids::{HalfPlaneId, LineId};
 use crate::lines3d::Line3d;
+use crate::math::smaller;
 use crate::params::RoofParams;
 use crate::sorting::sort_by;
 
@@ -249,7 +250,7 @@ pub fn lies_in_plane(
                 .iter()
                 .map(|m| distance_to_segment(p, &input.lines[m.line.index()]))
                 .chain(over.iter().map(|r| r.distance(&p.xy())))
-                .fold(f64::INFINITY, f64::min);
+                .fold(f64::INFINITY, smaller);
             let sigma_angle = if group.members.len() == 1 {
                 group.members[0]
                     .half_plane

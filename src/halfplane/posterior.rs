@@ -21,7 +21,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::math;
+use crate::math::{self, larger, smaller};
 
 /// What is known of theta.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -80,10 +80,10 @@ impl WindowModel {
     /// Logarithm of how much likelier the correlation is on the plane than by chance. More than expected is as good as
     /// expected.
     pub fn evidence(&self, correlation: f64) -> f64 {
-        let short = (self.rho - correlation).max(0.0);
-        let chance = correlation.min(self.rho) / CHANCE_SCATTER;
+        let short = larger(self.rho - correlation, 0.0);
+        let chance = smaller(correlation, self.rho) / CHANCE_SCATTER;
         let ratio = self.log_ratio - short * short * self.precision + 0.5 * chance * chance;
-        ratio.max(LEAST_EVIDENCE)
+        larger(ratio, LEAST_EVIDENCE)
     }
 }
 

@@ -18,6 +18,7 @@ use super::{Side, SweepRejection, ThetaFrame};
 use crate::camera::homography_of_plane;
 use crate::geometry::Segment3;
 use crate::ids::ViewId;
+use crate::math::larger;
 use crate::params::{Acceptance, SweepParams};
 use crate::raster::corners;
 use crate::scene::Scene;
@@ -51,6 +52,8 @@ pub(super) struct LineSide<'a> {
     weights: Vec<f64>,
     /// What every site correlates by on a plane.
     models: Vec<WindowModel>,
+    /// From which correlation on every site's is high.
+    high_from: Vec<f64>,
     warped: Patch,
     correlations: Vec<f64>,
     /// Correlations computed so far.
@@ -93,13 +96,15 @@ impl<'a> LineSide<'a> {
         weights.iter_mut().for_each(|w| *w /= sum);
         let noise = scene.view(reference).noise;
         let sites = windows.sites.iter();
-        let models = sites
+        let models: Vec<WindowModel> = sites
             .map(|s| WindowModel::new(s.contrast(), noise))
             .collect();
+        let high_from = models.iter().map(|m| high_correlation(m, params)).collect();
         Ok(Self {
             scene,
             params,
             models,
+            high_from,
             line: *line,
             frame,
             reference,
@@ -173,15 +178,16 @@ impl<'a> LineSide<'a> {
     fn reduce(&self, is_inside: impl Fn(usize) -> bool) -> ViewScore {
         let (mut weight, mut similarity) = (0.0, 0.0);
         let (mut points, mut high, mut evidence) = (0.0, 0.0, 0.0);
-        for (i, (&w, &cor)) in self.weights.iter().zip(&self.correlations).enumerate() {
+        let expected = self.models.iter().zip(&self.high_from);
+        let found = self.weights.iter().zip(&self.correlations);
+        for (i, ((&w, &cor), (model, &high_from))) in found.zip(expected).enumerate() {
             if is_inside(i) {
-                let model = &self.models[i];
                 evidence += w * model.evidence(cor);
-                let cor = cor.max(0.0);
+                let cor = larger(cor, 0.0);
                 weight += w;
                 similarity += w * cor * cor;
                 points += 1.0;
-                high += f64::from(u8::from(cor >= self.high_correlation(model)));
+                high += f64::from(u8::from(cor >= high_from));
             }
         }
         // A view that shows less than half of the neighbourhood does not see it.
@@ -192,17 +198,6 @@ impl<'a> LineSide<'a> {
             similarity: similarity / weight,
             high: high / points,
             evidence: evidence_of_view(evidence / weight, self.windows_side_by_side()),
-        }
-    }
-
-    /// The correlation from which on a site counts as high: less than usual where noise keeps it down, unless the printed
-    /// thresholds alone decide.
-    fn high_correlation(&self, model: &WindowModel) -> f64 {
-        // Half-way between chance and a surface, about.
-        const OF_EXPECTED: f64 = 0.75;
-        match self.params.acceptance {
-            Acceptance::Printed => self.params.high_correlation,
-            _ => (OF_EXPECTED * model.rho()).min(self.params.high_correlation),
         }
     }
 
@@ -233,6 +228,17 @@ impl<'a> LineSide<'a> {
         let to_camera = self.scene.camera(view).center - self.line.at(0.5);
         let normal = self.frame.plane(&self.line, theta).normal;
         normal.dot(&to_camera) > MIN_SINE * to_camera.norm()
+    }
+}
+
+/// The correlation from which on a site counts as high: less than usual where noise keeps it down, unless the printed
+/// thresholds alone decide.
+fn high_correlation(model: &WindowModel, params: &SweepParams) -> f64 {
+    // Half-way between chance and a surface, about.
+    const OF_EXPECTED: f64 = 0.75;
+    match params.acceptance {
+        Acceptance::Printed => params.high_correlation,
+        _ => (OF_EXPECTED * model.rho()).min(params.high_correlation),
     }
 }
 

@@ -4,6 +4,7 @@
 use nalgebra::Point2;
 
 use crate::geometry::Segment2;
+use crate::math::smaller;
 use crate::sorting::sort_by;
 
 /// Side of a cell, pixels. Assumption: about half the length of a typical segment, so that a
@@ -108,9 +109,9 @@ fn distance_to_quad(quad: &[Point2<f64>; 4], p: &Point2<f64>) -> f64 {
         }
         let d = b - a;
         let t = ((p - a).dot(&d) / d.norm_squared().max(1e-12)).clamp(0.0, 1.0);
-        nearest = nearest.min((p - (a + d * t)).norm());
+        nearest = smaller(nearest, (p - (a + d * t)).norm_squared());
     }
-    if inside { 0.0 } else { nearest }
+    if inside { 0.0 } else { nearest.sqrt() }
 }
 
 #[cfg(test)]

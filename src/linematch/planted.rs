@@ -1,11 +1,12 @@
 //! A planted scene for the tests: a flat roof 6 m above textured ground, seen from two strips flown
 //! in opposite directions, with the segments that a detector would give.
 
-use nalgebra::{Matrix2, Matrix3, Point2, Point3, Rotation3, Vector3};
+use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector3};
 
 use crate::camera::Camera;
 use crate::geometry::{Segment2, Segment3};
 use crate::lines2d::{ImageSegment, SegmentKind};
+use crate::orientation::rotation_from_axis_angle;
 use crate::raster::Gray;
 use crate::scene::{Scene, View};
 
@@ -17,8 +18,8 @@ const SIZE: u32 = 300;
 
 /// A camera 300 m up with pixels of 0.1 m, cropped about the world's origin.
 fn camera(x: f64, y: f64, kappa: f64) -> Camera {
-    let down = Matrix3::new(1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0);
-    let r = Rotation3::from_axis_angle(&Vector3::z_axis(), kappa).into_inner() * down;
+    let down = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
+    let r = rotation_from_axis_angle(&Vector3::new(0.0, 0.0, kappa)).matrix() * down;
     let center = Point3::new(x, y, 300.0);
     let f = 3000.0;
     let towards = r * (Point3::origin() - center);

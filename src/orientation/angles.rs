@@ -1,6 +1,6 @@
 //! The photogrammetric rotation angles omega, phi, kappa.
 
-use nalgebra::{Matrix3, Rotation3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::math;
 
@@ -73,22 +73,49 @@ pub fn omega_phi_kappa_from_rotation(cam_from_world: &Matrix3<f64>) -> [f64; 3] 
     ]
 }
 
+/// The rotation about this axis by its length, radians (Rodrigues).
+pub fn rotation_from_axis_angle(turn: &Vector3<f64>) -> Rotation3<f64> {
+    let angle = turn.norm();
+    if angle < 1e-15 {
+        return Rotation3::identity();
+    }
+    let (sin, cos) = math::sin_cos(angle);
+    let cross = (turn / angle).cross_matrix();
+    let r = Matrix3::identity() + cross * sin + cross * cross * (1.0 - cos);
+    Rotation3::from_matrix_unchecked(r)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Vector3;
 
     #[test]
     fn it_is_the_product_of_three_axis_rotations() {
         let (omega, phi, kappa) = (0.3, -0.2, 2.1);
-        let product = Rotation3::from_axis_angle(&Vector3::x_axis(), omega)
-            * Rotation3::from_axis_angle(&Vector3::y_axis(), phi)
-            * Rotation3::from_axis_angle(&Vector3::z_axis(), kappa);
+        let product = rotation_from_axis_angle(&Vector3::new(omega, 0.0, 0.0))
+            * rotation_from_axis_angle(&Vector3::new(0.0, phi, 0.0))
+            * rotation_from_axis_angle(&Vector3::new(0.0, 0.0, kappa));
         let found = rotation_from_omega_phi_kappa(omega, phi, kappa);
         let flip = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
         assert!((found.matrix() - flip * product.matrix().transpose()).norm() < 1e-12);
         let back = omega_phi_kappa_from_rotation(found.matrix());
         assert!((Vector3::from(back) - Vector3::new(omega, phi, kappa)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn an_axis_stays_and_what_is_across_turns_by_the_length() {
+        let (axis, across) = (
+            Vector3::new(2.0, -1.0, 2.0) / 3.0,
+            Vector3::new(1.0, 2.0, 0.0),
+        );
+        let r = rotation_from_axis_angle(&(axis * 0.7));
+        assert!((r * axis - axis).norm() < 1e-15);
+        let expected = across * math::cos(0.7) + axis.cross(&across) * math::sin(0.7);
+        assert!((r * across - expected).norm() < 1e-15);
+        assert_eq!(
+            rotation_from_axis_angle(&Vector3::zeros()),
+            Rotation3::identity()
+        );
     }
 
     #[test]

@@ -192,7 +192,7 @@ fn geographic_of(c: &Point3<f64>) -> [f64; 3] {
 mod tests {
     use super::*;
     use crate::camera::Camera;
-    use crate::orientation::pinhole;
+    use crate::orientation::{pinhole, rotation_from_axis_angle};
     use crate::synthetic::gable_scene;
 
     #[test]
@@ -299,7 +299,7 @@ mod tests {
             assert_eq!(to_metric_frame(&mut orientations), None);
             assert_eq!(orientations, before);
             // Nor when they look south, down by 40 degrees.
-            let tilt = nalgebra::Rotation3::from_euler_angles(-50f64.to_radians(), 0.0, 0.0);
+            let tilt = rotation_from_axis_angle(&Vector3::new(-50f64.to_radians(), 0.0, 0.0));
             orientations
                 .iter_mut()
                 .for_each(|o| o.r *= tilt.inverse().matrix());

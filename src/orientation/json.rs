@@ -9,11 +9,11 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{Matrix3, Matrix4, Point3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Matrix4, Point3, Vector3};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-use super::{Anchor, Orientation, pinhole};
+use super::{Anchor, Orientation, pinhole, rotation_from_axis_angle};
 use crate::camera::Distortion;
 use crate::{Error, Result};
 
@@ -34,8 +34,7 @@ pub(super) fn read_opensfm(path: &str, text: &str) -> Result<Vec<Orientation>> {
                 ),
             )
         })?;
-        let axis_angle = Vector3::from(shot.rotation);
-        let r = Rotation3::new(axis_angle).into_inner();
+        let r = rotation_from_axis_angle(&Vector3::from(shot.rotation)).into_inner();
         Ok(Orientation {
             distortion: camera.distortion(),
             size: Some((camera.width, camera.height)),
@@ -97,7 +96,7 @@ pub(super) fn read_shots(
             .cloned()
             .unwrap_or_else(|| OpenSfmCamera::simple(&shot));
         // Here the translation is the projection centre itself.
-        let r = Rotation3::new(Vector3::from(shot.rotation)).into_inner();
+        let r = rotation_from_axis_angle(&Vector3::from(shot.rotation)).into_inner();
         Ok(Orientation {
             distortion: camera.distortion(),
             size: Some((shot.width, shot.height)),

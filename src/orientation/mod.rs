@@ -38,7 +38,10 @@ mod sets;
 mod text;
 mod xml;
 
-pub use angles::{AngleUnit, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa};
+pub use angles::{
+    AngleUnit, omega_phi_kappa_from_rotation, rotation_from_axis_angle,
+    rotation_from_omega_phi_kappa,
+};
 pub use detect::{FileKind, detect};
 pub use geodesy::{Anchor, to_metric_frame};
 pub use reference::epsg_of;

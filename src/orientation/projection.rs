@@ -98,11 +98,12 @@ fn unit(row: &RowVector3<f64>) -> Option<(f64, RowVector3<f64>)> {
 mod tests {
     use super::*;
     use crate::camera::Camera;
-    use nalgebra::Rotation3;
+    use crate::orientation::rotation_from_axis_angle;
+    use nalgebra::Vector3;
 
     fn planted() -> Camera {
         let k = Matrix3::new(15294.0, 0.4, -2869.75, 0.0, 15290.0, 2482.25, 0.0, 0.0, 1.0);
-        let r = Rotation3::from_euler_angles(3.1, 0.03, 2.2);
+        let r = rotation_from_axis_angle(&Vector3::new(3.1, 0.03, 2.2));
         Camera::new(k, r, Point3::new(431_820.7, 5_412_100.1, 1375.7), 600, 600)
     }
 

@@ -117,7 +117,8 @@ pub fn planted_models() -> Vec<(&'static str, RoofModel, f64)> {
 pub fn map_view(name: &str, x: f64, y: f64) -> View {
     let (size, focal) = (400u32, 1000.0);
     let k = Matrix3::new(focal, 0.0, 200.0, 0.0, focal, 200.0, 0.0, 0.0, 1.0);
-    let down = Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
+    let down =
+        Rotation3::from_matrix_unchecked(Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)));
     let camera = Camera::new(k, down, Point3::new(x, y, 100.0), size, size);
     let rgb = image::RgbImage::from_fn(size, size, |column, row| {
         let pixel = nalgebra::Point2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
