@@ -169,6 +169,7 @@ impl Strip {
     }
 
     /// Rows of a column from `first` on.
+    #[inline(always)]
     fn eight(&self, column: usize, first: usize) -> f32x8 {
         let values = &self.values[column * self.stride + first..][..8];
         f32x8::from(<[f32; 8]>::try_from(values).expect("eight rows"))

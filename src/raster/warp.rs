@@ -113,17 +113,12 @@ pub(super) fn bilinear(image: &Gray, first: usize, x: f32x4, y: f32x4) -> f32x4 
         (column + i32x4::splat(first as i32)).to_array(),
         row.to_array(),
     );
-    let width = image.width as u32;
-    let block = |lane: usize| {
-        // One by one: without SSE 4.1 there is no product of four integers.
-        let start = (row[lane] as u32).wrapping_mul(width);
-        block_at(
-            &image.data,
-            start.wrapping_add(column[lane] as u32) as usize,
-            width,
-        )
-    };
-    let [i, j, k, l] = [block(0), block(1), block(2), block(3)];
+    let [i, j, k, l] = [
+        block_at(image, column[0], row[0]),
+        block_at(image, column[1], row[1]),
+        block_at(image, column[2], row[2]),
+        block_at(image, column[3], row[3]),
+    ];
     let [a, b] = columns([i[0], j[0], k[0], l[0]]);
     let [c, d] = columns([i[1], j[1], k[1], l[1]]);
     let top = a + (b - a) * fx;
@@ -133,10 +128,14 @@ pub(super) fn bilinear(image: &Gray, first: usize, x: f32x4, y: f32x4) -> f32x4 
 
 /// A pixel and its right neighbour, and the two below.
 #[inline(always)]
-fn block_at(data: &[f32], i: usize, width: u32) -> [[f32; 2]; 2] {
+fn block_at(image: &Gray, column: i32, row: i32) -> [[f32; 2]; 2] {
+    let width = image.width as u32;
+    // One by one: without SSE 4.1 there is no product of four integers.
+    let start = (row as u32).wrapping_mul(width);
+    let i = start.wrapping_add(column as u32) as usize;
     // In 64 bits a width of 32 cannot overflow, so that one comparison does for all four.
     let w = width as usize;
-    let pixels = &data[i..i + (w + 2)];
+    let pixels = &image.data[i..i + (w + 2)];
     [[pixels[0], pixels[1]], [pixels[w], pixels[w + 1]]]
 }
 
