@@ -8,6 +8,7 @@
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use crate::geometry::Plane;
+use crate::math::{larger, smaller};
 use crate::scene::Scene;
 
 /// A solid below a convex roof plane.
@@ -82,9 +83,9 @@ impl Solid {
             }
             let t = dp / (dp - dq);
             if dp < 0.0 {
-                enter = enter.max(t);
+                enter = larger(enter, t);
             } else if dq < 0.0 {
-                leave = leave.min(t);
+                leave = smaller(leave, t);
             }
         }
         (enter < leave).then_some([enter, leave])

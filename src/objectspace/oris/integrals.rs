@@ -6,6 +6,7 @@
 
 use std::ops::{Add, Neg, Sub};
 
+use crate::math::larger;
 use crate::raster::Gray;
 
 /// A lattice point: a corner of pixels, (0, 0) at the outer corner of the top-left pixel.
@@ -38,7 +39,10 @@ impl Moments {
     /// Variance of a channel, levels of 255 squared.
     pub fn variance(&self, channel: usize) -> f64 {
         let mean = self.mean(channel);
-        (self.squares[channel] as f64 / self.count.max(1) as f64 - mean * mean).max(0.0)
+        larger(
+            self.squares[channel] as f64 / self.count.max(1) as f64 - mean * mean,
+            0.0,
+        )
     }
 }
 
@@ -110,22 +114,30 @@ impl RowSums {
         };
         let (dx, dy) = (i64::from(bottom.x - top.x), i64::from(bottom.y - top.y));
         let mut m = Moments::default();
-        for row in 0..dy {
-            // The first pixel centre (k + 1/2) not left of the side at the centre of the row.
-            let k = i64::from(top.x) + ceil_div(dx * (2 * row + 1) - dy, 2 * dy);
-            let at = (i64::from(top.y) + row) as usize * self.stride + k.max(0) as usize;
+        if dy == 0 {
+            return m;
+        }
+        // The first pixel centre (k + 1/2) not left of the side at the centre of a row, and by how many parts of 2 dy it lies to
+        // the right: one division for all rows (Bresenham).
+        let mut k = i64::from(top.x) - (dy - dx).div_euclid(2 * dy);
+        let mut right = (dy - dx).rem_euclid(2 * dy);
+        let (step, rest) = (dx.div_euclid(dy), 2 * dx.rem_euclid(dy));
+        for row in i64::from(top.y)..i64::from(bottom.y) {
+            let at = row as usize * self.stride + k.max(0) as usize;
             m.count += k;
             for (c, [sum, squares]) in self.before[at].into_iter().enumerate() {
                 m.sum[c] += i64::from(sum);
                 m.squares[c] += i64::from(squares);
             }
+            k += step;
+            right -= rest;
+            if right < 0 {
+                k += 1;
+                right += 2 * dy;
+            }
         }
         if down { m } else { -m }
     }
-}
-
-fn ceil_div(a: i64, b: i64) -> i64 {
-    -(-a).div_euclid(b)
 }
 
 #[cfg(test)]
@@ -159,6 +171,28 @@ mod tests {
         }
         assert_eq!(m.count, count);
         assert!((m.mean(0) - sum / f64::from(count as i32)).abs() < 0.5);
+    }
+
+    #[test]
+    fn a_side_counts_the_centres_to_its_left_in_every_row() {
+        let sums = RowSums::new(&[image(), image(), image()]);
+        for (x, to_x, y, to_y) in
+            (0..4 * 20 * 20).map(|i| (i % 20, i / 20 % 20, 1, 2 + i / 400 * 4))
+        {
+            let side = sums.side(Lattice { x, y }, Lattice { x: to_x, y: to_y });
+            let centres = (y..to_y).map(|row| {
+                let t = (f64::from(row - y) + 0.5) / f64::from(to_y - y);
+                let crossing = f64::from(x) + t * f64::from(to_x - x);
+                (0..20)
+                    .filter(|&k| f64::from(k) + 0.5 < crossing - 1e-9)
+                    .count() as i64
+            });
+            assert_eq!(
+                side.count,
+                centres.sum::<i64>(),
+                "{x} to {to_x}, {y} to {to_y}"
+            );
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::collections::BinaryHeap;
 use super::integrals::{CHANNELS, Moments};
 use super::partition::{OUTSIDE, Partition};
 use super::settle::settle;
-use crate::math::log2;
+use crate::math::{larger, log2};
 use crate::params::OrisParams;
 
 /// The code length, bits; see [`super`].
@@ -32,9 +32,9 @@ impl CodeLength {
     pub fn region(&self, m: &Moments) -> f64 {
         let samples = m.count as f64 / self.pixels_per_sample;
         let spread: f64 = (0..CHANNELS)
-            .map(|c| self.weights[c] * log2(m.variance(c).max(self.least_variance)))
+            .map(|c| self.weights[c] * log2(larger(m.variance(c), self.least_variance)))
             .sum();
-        0.5 * samples * spread + log2(samples.max(1.0))
+        0.5 * samples * spread + log2(larger(samples, 1.0))
     }
 }
 
