@@ -10,8 +10,9 @@
 //! matching kept, the second lie off by half a window. Here every side is measured again, in every view that sees it, and
 //! all of a building's sides, planes and corners move together.
 //!
-//! A building keeps its old shape unless the new one has the smaller reprojection error, is a closed
-//! solid without a broken invariant, and the views agree inside its facets as well as before.
+//! A building is adjusted if the new shape has the smaller reprojection error, is a closed
+//! solid without a broken invariant, and the views agree inside its facets as well as before. Otherwise it keeps its planes; simpler
+//! outlines ([`outline`]) on them pass the last two tests by themselves.
 
 mod accept;
 mod adjust;
@@ -41,7 +42,7 @@ use crate::lines3d::Line3d;
 use crate::params::RefineParams;
 use crate::scene::Scene;
 
-/// Why a building keeps the shape that it had.
+/// Why a building is not adjusted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "reason")]
 pub enum RefineRefusal {
@@ -87,7 +88,7 @@ pub struct BuildingRefinement {
     pub largest_move_m: f64,
     /// Relations that were tested.
     pub relations: Vec<TestedRelation>,
-    /// Why nothing of it was taken over; `None` when it was.
+    /// Why nothing of it was taken over but simpler outlines; `None` when it was.
     pub refused: Option<RefineRefusal>,
 }
 
@@ -188,7 +189,8 @@ impl Case<'_> {
             };
             let hopeless = spoilers.iter().all(|&f| !open[f]);
             if attempt == ATTEMPTS || hopeless {
-                return Err(refusal);
+                report.refused = Some(refusal);
+                return self.unadjusted(simple).ok_or(refusal);
             }
             // The last time all stay near.
             if attempt + 1 == ATTEMPTS {
@@ -199,11 +201,12 @@ impl Case<'_> {
         unreachable!("the last attempt returns")
     }
 
-    /// The facets, each with the simpler outline where the images show at least the same share of it.
+    /// The facets, each with the simpler outline where the images show at least the same share of it, and all straightened.
     fn simplified(&self, wireframe: &Wireframe, state: &State) -> Vec<Facet> {
-        let facets = outline::simplified(self.old, self.params.jog_m);
+        let jog_m = self.params.jog_m;
+        let facets = outline::simplified(self.old, jog_m);
         if facets.iter().eq(self.old.iter().copied()) {
-            return facets;
+            return outline::straightened(&facets, 0.5 * jog_m);
         }
         let simple: Vec<&Facet> = facets.iter().collect();
         let far = vec![true; facets.len()];
@@ -214,7 +217,7 @@ impl Case<'_> {
         let (simple_wireframe, simple_state) = Wireframe::new(&simple);
         let before = shown(wireframe, state);
         let after = shown(&simple_wireframe, &simple_state);
-        (0..facets.len())
+        let chosen: Vec<Facet> = (0..facets.len())
             .map(|i| {
                 if after[i] >= before[i] {
                     facets[i].clone()
@@ -222,7 +225,35 @@ impl Case<'_> {
                     self.old[i].clone()
                 }
             })
-            .collect()
+            .collect();
+        outline::straightened(&chosen, 0.5 * jog_m)
+    }
+
+    /// The simpler outlines on the old planes, of as many facets as the images and the building allow; `None` where none is left.
+    fn unadjusted(&self, mut new: Vec<Facet>) -> Option<Vec<Facet>> {
+        let is_new = |new: &[Facet], i: usize| new[i] != *self.old[i];
+        while (0..new.len()).any(|i| is_new(&new, i)) {
+            let Err((_, mut spoilers)) = self.judge().accept(new.clone()) else {
+                return Some(new);
+            };
+            spoilers.retain(|&i| is_new(&new, i));
+            if spoilers.is_empty() {
+                return None;
+            }
+            for i in spoilers {
+                new[i] = self.old[i].clone();
+            }
+        }
+        None
+    }
+
+    fn judge(&self) -> Judge<'_> {
+        Judge {
+            scene: self.scene,
+            old: self.old,
+            ground_z: self.building.ground_z,
+            params: self.params,
+        }
     }
 
     /// The refined facets of a building, or why there are none and which facets are the cause. Those not `open` keep their outlines.
@@ -269,13 +300,7 @@ impl Case<'_> {
         report.largest_move_m = moves.fold(0.0, f64::max);
         // NaN fails the comparison.
         if report.error_after_px < report.error_before_px {
-            let judge = Judge {
-                scene: self.scene,
-                old: self.old,
-                ground_z: self.building.ground_z,
-                params,
-            };
-            judge.accept(wireframe.facets(&regular, &from))
+            self.judge().accept(wireframe.facets(&regular, &from))
         } else {
             Err(give_up(RefineRefusal::NoGain))
         }
@@ -455,5 +480,39 @@ mod tests {
         assert_eq!(facets, model.facets);
         let refused = trace.buildings[0].refused;
         assert_eq!(refused, Some(RefineRefusal::FewSightings { sightings: 0 }));
+    }
+
+    #[test]
+    fn a_zigzag_goes_even_where_nothing_is_adjusted() {
+        let (mut scene, truth) = gable_scene(320);
+        let mut model = changed(&truth, |p| *p);
+        for view in &mut scene.views {
+            view.gray.data.fill(0.5);
+        }
+        let straight = model.facets.clone();
+        let facet = &mut model.facets[0];
+        let n = facet.outer.len();
+        let lowest = facet
+            .outer
+            .iter()
+            .map(|p| p.z)
+            .fold(f64::INFINITY, f64::min);
+        let is_eave = |&i: &usize| {
+            [i, (i + 1) % n]
+                .iter()
+                .all(|&k| facet.outer[k].z < lowest + 1e-6)
+        };
+        let eave = (0..n).find(is_eave).expect("an eave");
+        let (p, q) = (facet.outer[eave].xy(), facet.outer[(eave + 1) % n].xy());
+        let aside = Vector3::z().cross(&(q - p).push(0.0)).normalize().xy();
+        let corner = |t: f64, by: f64| {
+            let at = p + (q - p) * t + aside * by;
+            facet.plane.lift(at.x, at.y)
+        };
+        let zigzag = [corner(0.3, 0.2), corner(0.6, -0.2)];
+        facet.outer.splice(eave + 1..eave + 1, zigzag);
+        let (facets, trace) = refine_roofs(&scene, &[], &model, &RefineParams::default());
+        assert!(trace.buildings[0].refused.is_some());
+        assert_eq!(facets, straight);
     }
 }

@@ -87,7 +87,7 @@ impl Judge<'_> {
         if named.is_empty() { all() } else { named }
     }
 
-    /// Per facet (weight, weight x mean correlation) of the views inside, before and after, and whether that fell. Facets that
+    /// Per facet (weight, weight x mean correlation) of the views inside, before and after, and whether that fell by more than its error. Facets that
     /// moved by less than a fraction of a pixel are not compared.
     fn similarities(&self, new: &[Facet]) -> [Vec<[f64; 2]>; 3] {
         let compared = crate::parallel::map(new, |i, n| {
@@ -100,7 +100,9 @@ impl Judge<'_> {
             let Some([before, after]) = pair else {
                 continue;
             };
-            let lost = before[1] * after[0] > after[1] * before[0];
+            let [mean, new_mean] =
+                [before, after].map(|[weight, sum]| sum / weight.max(f64::MIN_POSITIVE));
+            let lost = mean - new_mean > self.params.similarity_loss;
             (sums[0][i], sums[1][i]) = (before, after);
             sums[2][i][0] = f64::from(u8::from(lost));
         }

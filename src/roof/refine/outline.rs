@@ -3,7 +3,8 @@
 //! Delineation follows cells, and cells follow every line that was found: a gutter here, the eave there, a skylight or
 //! the shadow of a chimney at the border. Places nearer to each other than half a correlation window cannot be told apart by
 //! the agreement of the views, so a jog that short is no evidence of a corner. The outline without it is tried as well,
-//! and the images decide by the share of its sides that they show.
+//! and the images decide by the share of its sides that they show. Where corners lie to both sides of a straight way by less than half of
+//! that, the way is taken: eaves are straight, and what was found of one is a piece of gutter here and of fascia there.
 //!
 //! Only vertices of a single facet, with nothing beyond both of their sides, are touched.
 
@@ -109,6 +110,60 @@ fn without_jogs(mut ring: Vec<Corner>, jog_m: f64) -> Vec<Corner> {
         };
         ring = shorter;
     }
+}
+
+/// The facets without the free corners beside straight ways between two others, where they are no farther from them than
+/// `tolerance_m`.
+pub fn straightened(facets: &[Facet], tolerance_m: f64) -> Vec<Facet> {
+    let free = free_vertices(&facets.iter().collect::<Vec<_>>());
+    let straight = |facet: &Facet| {
+        let ring: Vec<Corner> = facet.outer.iter().map(|p| Corner::new(p, &free)).collect();
+        let mut kept = vec![true; ring.len()];
+        for (first, sides) in straight_ways(&ring, tolerance_m) {
+            (1..sides).for_each(|k| kept[(first + k) % ring.len()] = false);
+        }
+        let mut facet = facet.clone();
+        let mut kept = kept.into_iter();
+        facet.outer.retain(|_| kept.next() == Some(true));
+        facet
+    };
+    facets.iter().map(straight).collect()
+}
+
+/// First corner and number of sides of the straight ways of a ring, the longest first; none have a side in common.
+fn straight_ways(ring: &[Corner], tolerance_m: f64) -> Vec<(usize, usize)> {
+    let n = ring.len();
+    // Three corners stay.
+    let ways = (0..n).flat_map(|i| (2..n.saturating_sub(1)).map(move |sides| (i, sides)));
+    let mut ways: Vec<(usize, usize)> = ways
+        .filter(|&(i, sides)| is_straight(ring, i, sides, tolerance_m))
+        .collect();
+    let length = |&(i, sides): &(usize, usize)| (ring[(i + sides) % n].at - ring[i].at).norm();
+    sort_by(&mut ways, |a, b| {
+        length(b).total_cmp(&length(a)).then(a.cmp(b))
+    });
+    let (mut taken, mut left) = (vec![false; n], n);
+    ways.retain(|&(i, sides)| {
+        let way = || (i..i + sides).map(|side| side % n);
+        let may_go = way().all(|side| !taken[side]) && left >= 3 + sides - 1;
+        if may_go {
+            way().for_each(|side| taken[side] = true);
+            left -= sides - 1;
+        }
+        may_go
+    });
+    ways
+}
+
+/// Do the corners between corner `i` and the one after some sides lie beside the way from one to the other, in order, and free?
+fn is_straight(ring: &[Corner], i: usize, sides: usize, tolerance_m: f64) -> bool {
+    let at = |k: usize| &ring[(i + k) % ring.len()];
+    let Some(along) = direction(at(0), at(sides)) else {
+        return false;
+    };
+    let offset = |k: usize| at(k).at - at(0).at;
+    (1..sides).all(|k| at(k).free && offset(k).perp(&along).abs() <= tolerance_m)
+        && (0..sides).all(|k| offset(k).dot(&along) < offset(k + 1).dot(&along))
 }
 
 /// The ring without a corner between two neighbours that nearly touch: a wedge cut into the facet or standing out.
@@ -246,6 +301,41 @@ mod tests {
         assert!(!outline(&wedge).contains(&[4.2, 2.0]));
         let cut = [[0.0, 0.0], [7.7, 0.0], [8.0, 0.3], [8.0, 6.0], [0.0, 6.0]];
         assert_eq!(outline(&cut), SQUARE);
+    }
+
+    #[test]
+    fn a_zigzag_along_an_eave_is_straightened() {
+        let straight = |offset: f64, neighbour: &[Facet]| {
+            let eave = [[7.0, -0.3], [5.5, 0.6], [4.0, -0.6], [2.0, 0.8], [0.5, 0.0]];
+            let mut ring = vec![[0.0, 0.0], [0.0, 6.0], [8.0, 6.0], [8.0, 0.0]];
+            ring.extend(eave.map(|[x, y]| [x, y * offset]));
+            let ring: Vec<Point3<f64>> = (ring.iter())
+                .map(|&[x, y]| Point3::new(x, y, 5.0))
+                .collect();
+            let facets = [&[facet(&ring)], neighbour].concat();
+            straightened(&facets, 0.25)[0].outer.len()
+        };
+        assert_eq!(straight(0.3, &[]), 4);
+        // One corner is farther away than the tolerance.
+        assert!(straight(0.4, &[]) > 4);
+        // A neighbour has the corner.
+        let beside = [[4.0, -0.6 * 0.2], [4.0, -3.0], [5.0, -3.0]];
+        let beside = facet(&beside.map(|[x, y]| Point3::new(x, y, 5.0)));
+        assert_eq!(straight(0.2, &[beside]), 5);
+    }
+
+    #[test]
+    fn corners_beside_all_sides_leave_a_triangle() {
+        for n in 3..9 {
+            let ring: Vec<Point3<f64>> = (0..n)
+                .map(|i| {
+                    let (y, x) =
+                        crate::math::sin_cos(std::f64::consts::TAU * f64::from(i) / f64::from(n));
+                    Point3::new(0.1 * x, 0.1 * y, 5.0)
+                })
+                .collect();
+            assert!(straightened(&[facet(&ring)], 0.25)[0].outer.len() >= 3);
+        }
     }
 
     #[test]
