@@ -88,10 +88,15 @@ fn lines(results: &Results) -> Found {
 
 fn half_planes(results: &Results) -> Found {
     let found = results.half_planes.as_ref().map_or(&[][..], |h| &h.value);
+    let correlations = results
+        .half_planes
+        .as_ref()
+        .map_or(0, |h| h.trace.correlations);
+    let correlations = usize::try_from(correlations).unwrap_or(usize::MAX);
     let none = "no half-plane was accepted; the surfaces may have too little texture: try a lower \
                 sweep.min_similarity";
     (
-        vec![("half-planes", found.len())],
+        vec![("half-planes", found.len()), ("correlations", correlations)],
         warn_if(found.is_empty() && some(&results.lines), none),
     )
 }

@@ -135,10 +135,14 @@ function statusLine(stage: StageState): string {
   return stage.status === "outdated" || stage.status === "failed" ? STATUS_WORDS[stage.status] : time;
 }
 
-function countsText({ counts }: StageState): string {
-  return Object.entries(counts)
-    .map(([name, count]) => `${grouped(count)} ${name.replaceAll("_", " ")}`)
-    .join(", ");
+function countsText({ counts, seconds }: StageState): string {
+  const texts = Object.entries(counts).map(
+    ([name, count]) => `${grouped(count)} ${name.replaceAll("_", " ")}`,
+  );
+  if (counts["correlations"] !== undefined && seconds) {
+    texts.push(`${(counts["correlations"] / seconds / 1e6).toFixed(1)} million correlations per second`);
+  }
+  return texts.join(", ");
 }
 
 /** What the stage is for, counted; the rest stands in the tooltip. */
@@ -150,6 +154,7 @@ function mainCount({ name, counts }: StageState): string {
 
 const MAIN_COUNTS: Record<string, string> = {
   segments: "segments",
+  halfplanes: "half-planes",
   regions: "regions",
   directions: "pairs of directions",
   model: "textured faces",
