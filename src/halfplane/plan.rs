@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::camera::Camera;
 use crate::geometry::Plane;
-use crate::raster::{Gray, Warp};
+use crate::raster::{Gray, Outside, Warp};
 
 /// A window of plan positions; the centre of cell (column, row) is `origin + (column + 0.5, row + 0.5) step`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -96,7 +96,7 @@ pub fn orthophoto(gray: &Gray, camera: &Camera, plane: &Plane, grid: &PlanGrid) 
     let mut out = vec![f32::NAN; grid.width * grid.height];
     if let Some(warp) = Warp::new(gray, &m, [grid.width, grid.height]) {
         for (row, line) in out.chunks_exact_mut(grid.width).enumerate() {
-            warp.fill(row, line, |at| warp.or_nan(at));
+            warp.fill(row, line, Outside::Nan, |values| values);
         }
     }
     out

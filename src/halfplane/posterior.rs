@@ -20,8 +20,9 @@
 //! the likelihood that a plane is there.
 
 use serde::{Deserialize, Serialize};
+use wide::f64x4;
 
-use crate::math::{self, larger, smaller};
+use crate::math;
 
 /// What is known of theta.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -33,7 +34,7 @@ pub struct Posterior {
 }
 
 /// The correlation that a window on the plane has, and how far it scatters.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct WindowModel {
     rho: f64,
     /// `1 / (2 tau^2)`.
@@ -76,14 +77,35 @@ impl WindowModel {
     pub fn rho(&self) -> f64 {
         self.rho
     }
+}
 
-    /// Logarithm of how much likelier the correlation is on the plane than by chance. More than expected is as good as
+/// The models of four windows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct FourModels {
+    rho: f64x4,
+    precision: f64x4,
+    log_ratio: f64x4,
+}
+
+impl FourModels {
+    /// Side by side.
+    pub fn new(models: [WindowModel; 4]) -> Self {
+        Self {
+            rho: f64x4::new(models.map(|m| m.rho)),
+            precision: f64x4::new(models.map(|m| m.precision)),
+            log_ratio: f64x4::new(models.map(|m| m.log_ratio)),
+        }
+    }
+
+    /// Logarithm of how much likelier each correlation is on the plane than by chance. More than expected is as good as
     /// expected.
-    pub fn evidence(&self, correlation: f64) -> f64 {
-        let short = larger(self.rho - correlation, 0.0);
-        let chance = smaller(correlation, self.rho) / CHANCE_SCATTER;
-        let ratio = self.log_ratio - short * short * self.precision + 0.5 * chance * chance;
-        larger(ratio, LEAST_EVIDENCE)
+    #[inline]
+    pub fn evidence(&self, correlation: f64x4) -> f64x4 {
+        let short = (self.rho - correlation).fast_max(f64x4::ZERO);
+        let chance = correlation.fast_min(self.rho) * f64x4::splat(1.0 / CHANCE_SCATTER);
+        let ratio =
+            self.log_ratio - short * short * self.precision + f64x4::splat(0.5) * chance * chance;
+        ratio.fast_max(f64x4::splat(LEAST_EVIDENCE))
     }
 }
 
@@ -220,11 +242,14 @@ mod tests {
         assert!(clear.rho() > 0.89 && (noisy.rho() - 0.51).abs() < 0.01);
         assert_eq!(drowned.rho(), 0.0);
         // A correlation of one half speaks for a noisy plane and against a clear one.
-        assert!(noisy.evidence(0.5) > 0.5);
-        assert!(clear.evidence(0.5) < noisy.evidence(0.5));
-        assert!(clear.evidence(0.9) > noisy.evidence(0.5));
+        let models = FourModels::new([clear, noisy, drowned, clear]);
+        let evidence = |c: f64| models.evidence(f64x4::splat(c)).to_array();
+        let [of_clear, of_noisy, ..] = evidence(0.5);
+        assert!(of_noisy > 0.5 && of_clear < of_noisy);
+        assert!(evidence(0.9)[0] > of_noisy);
         for c in [-0.5, 0.0, 0.5, 1.0] {
-            assert!(drowned.evidence(c).abs() < 1e-9, "{c}");
+            assert!(evidence(c)[2].abs() < 1e-9, "{c}");
+            assert_eq!(evidence(c)[0], evidence(c)[3]);
         }
     }
 

@@ -9,16 +9,16 @@
 //! support. The margin beside the line keeps 1/distance finite.
 
 use nalgebra::Point2;
+use wide::f64x4;
 
 use super::poi::PointsOfInterest;
-use super::posterior::{WindowModel, evidence_of_view};
+use super::posterior::{FourModels, WindowModel, evidence_of_view};
 use super::strip::{Patch, Strip};
 use super::windows::Windows;
 use super::{Side, SweepRejection, ThetaFrame};
 use crate::camera::homography_of_plane;
 use crate::geometry::Segment3;
 use crate::ids::ViewId;
-use crate::math::larger;
 use crate::params::{Acceptance, SweepParams};
 use crate::raster::corners;
 use crate::scene::Scene;
@@ -50,16 +50,28 @@ pub(super) struct LineSide<'a> {
     windows: Windows,
     /// Normalised weight of every site.
     weights: Vec<f64>,
-    /// What every site correlates by on a plane.
-    models: Vec<WindowModel>,
-    /// From which correlation on every site's is high.
-    high_from: Vec<f64>,
+    /// What is expected of the sites, four at a time.
+    expected: Vec<Expected>,
     warped: Patch,
+    /// One a site, then zeros to a multiple of four.
     correlations: Vec<f64>,
     /// Correlations computed so far.
     pub count: u64,
     /// Strip pixels warped so far.
     pub pixels: u64,
+}
+
+/// What is expected of four sites. Beyond the last site all of it is nothing.
+#[derive(Clone, Copy, Debug)]
+struct Expected {
+    /// One for each site.
+    present: f64x4,
+    /// Normalised weights.
+    weight: f64x4,
+    /// What they correlate by on a plane.
+    models: FourModels,
+    /// From which correlation on theirs is high.
+    high_from: f64x4,
 }
 
 impl<'a> LineSide<'a> {
@@ -99,12 +111,14 @@ impl<'a> LineSide<'a> {
         let models: Vec<WindowModel> = sites
             .map(|s| WindowModel::new(s.contrast(), noise))
             .collect();
-        let high_from = models.iter().map(|m| high_correlation(m, params)).collect();
+        let fours = models.chunks(4).zip(weights.chunks(4));
+        let expected = fours
+            .map(|(models, weights)| Expected::new(models, weights, params))
+            .collect();
         Ok(Self {
             scene,
             params,
-            models,
-            high_from,
+            expected,
             line: *line,
             frame,
             reference,
@@ -168,28 +182,34 @@ impl<'a> LineSide<'a> {
         };
         self.warped.warp(&to.gray, &self.strip, &view_from_strip);
         self.windows.correlate(&self.warped, &mut self.correlations);
-        self.count += self.correlations.len() as u64;
+        self.correlations.resize(4 * self.expected.len(), 0.0);
+        self.count += self.windows.sites.len() as u64;
         self.pixels += (self.strip.columns * self.strip.rows) as u64;
-        let all_inside = whole.iter().all(|c| to.camera.contains(c, 0.5));
-        self.reduce(|site| all_inside || self.window_is_inside(site, &to.camera, &view_from_strip))
+        if whole.iter().all(|c| to.camera.contains(c, 0.5)) {
+            return self.reduce(|_| f64x4::ONE);
+        }
+        let shows = |site| self.window_is_inside(site, &to.camera, &view_from_strip);
+        self.reduce(|four| lanes(|lane| f64::from(u8::from(shows(4 * four + lane)))))
     }
 
-    /// Weighted mean over the sites that the view shows.
-    fn reduce(&self, is_inside: impl Fn(usize) -> bool) -> ViewScore {
-        let (mut weight, mut similarity) = (0.0, 0.0);
-        let (mut points, mut high, mut evidence) = (0.0, 0.0, 0.0);
-        let expected = self.models.iter().zip(&self.high_from);
-        let found = self.weights.iter().zip(&self.correlations);
-        for (i, ((&w, &cor), (model, &high_from))) in found.zip(expected).enumerate() {
-            if is_inside(i) {
-                evidence += w * model.evidence(cor);
-                let cor = larger(cor, 0.0);
-                weight += w;
-                similarity += w * cor * cor;
-                points += 1.0;
-                high += f64::from(u8::from(cor >= high_from));
-            }
+    /// Weighted mean over the sites that the view shows: `shown` is one for those among the i-th four.
+    fn reduce(&self, shown: impl Fn(usize) -> f64x4) -> ViewScore {
+        let zero = f64x4::ZERO;
+        let (mut weight, mut similarity, mut points) = (zero, zero, zero);
+        let (mut high, mut evidence) = (zero, zero);
+        let fours = self.expected.iter().zip(self.correlations.chunks_exact(4));
+        for (i, (expected, cor)) in fours.enumerate() {
+            let (shown, cor) = (shown(i), lanes(|lane| cor[lane]));
+            let w = expected.weight * shown;
+            evidence += w * expected.models.evidence(cor);
+            let positive = cor.fast_max(zero);
+            weight += w;
+            similarity += w * positive * positive;
+            points += expected.present * shown;
+            high += cor.simd_ge(expected.high_from).select(shown, zero);
         }
+        let [weight, similarity, points, high, evidence] =
+            [weight, similarity, points, high, evidence].map(f64x4::reduce_add);
         // A view that shows less than half of the neighbourhood does not see it.
         if weight < 0.5 {
             return ViewScore::default();
@@ -214,7 +234,9 @@ impl<'a> LineSide<'a> {
         camera: &crate::camera::Camera,
         view_from_strip: &nalgebra::Matrix3<f64>,
     ) -> bool {
-        let site = &self.windows.sites[site];
+        let Some(site) = self.windows.sites.get(site) else {
+            return false;
+        };
         let half = self.params.window_px as f64 * 0.5;
         let (x, y) = (site.column as f64 + 0.5, site.row as f64 + 0.5);
         corners(view_from_strip, [x - half, y - half], [x + half, y + half])
@@ -229,6 +251,28 @@ impl<'a> LineSide<'a> {
         let normal = self.frame.plane(&self.line, theta).normal;
         normal.dot(&to_camera) > MIN_SINE * to_camera.norm()
     }
+}
+
+impl Expected {
+    /// Of up to four sites.
+    fn new(models: &[WindowModel], weights: &[f64], params: &SweepParams) -> Self {
+        let lane = |i: usize| models.get(i).zip(weights.get(i));
+        let of = |value: &dyn Fn(&WindowModel, f64) -> f64, absent: f64| {
+            lanes(|i| lane(i).map_or(absent, |(model, &weight)| value(model, weight)))
+        };
+        Self {
+            present: of(&|_, _| 1.0, 0.0),
+            weight: of(&|_, weight| weight, 0.0),
+            models: FourModels::new(std::array::from_fn(|i| {
+                models.get(i).copied().unwrap_or_default()
+            })),
+            high_from: of(&|model, _| high_correlation(model, params), f64::INFINITY),
+        }
+    }
+}
+
+fn lanes(value: impl Fn(usize) -> f64) -> f64x4 {
+    f64x4::new(std::array::from_fn(value))
 }
 
 /// The correlation from which on a site counts as high: less than usual where noise keeps it down, unless the printed
@@ -303,15 +347,18 @@ mod tests {
         assert!((1..side.weights.len()).all(|i| (product(i) - product(0)).abs() < 1e-12));
 
         // The mean of squares by hand; an inverted window counts as none.
-        side.correlations = vec![-1.0; side.weights.len()];
+        side.correlations = vec![-1.0; 4 * side.expected.len()];
+        // The last one, too, which may not stand among four.
+        let (last, sites) = (side.weights.len() - 1, side.weights.len() as f64);
+        side.correlations[last] = 0.3;
         side.correlations[0] = 0.5;
         side.correlations[1] = 0.7;
-        let score = side.reduce(|_| true);
-        let expected = side.weights[0] * 0.25 + side.weights[1] * 0.49;
+        let score = side.reduce(|_| f64x4::ONE);
+        let expected = side.weights[0] * 0.25 + side.weights[1] * 0.49 + side.weights[last] * 0.09;
         assert!((score.similarity - expected).abs() < 1e-12);
-        assert!((score.high - 1.0 / side.weights.len() as f64).abs() < 1e-12);
+        assert!((score.high - 1.0 / sites).abs() < 1e-12);
         assert_eq!(
-            side.reduce(|i| i == 0),
+            side.reduce(|i| f64x4::splat(f64::from(u8::from(i == 0)))),
             ViewScore::default(),
             "too little in view"
         );

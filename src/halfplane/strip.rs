@@ -13,7 +13,7 @@ use super::ThetaFrame;
 use crate::camera::Camera;
 use crate::geometry::{Segment2, Segment3};
 use crate::params::SweepParams;
-use crate::raster::{Gray, Warp, bounds, corners};
+use crate::raster::{Gray, Outside, Warp, bounds, corners};
 
 /// Grey values are held in units of 1/510, centred and rounded: whole numbers from -255 to 255. A
 /// sum of 225 products of two is then a whole number below 2^24, which f32 holds exactly: running
@@ -154,8 +154,9 @@ impl Patch {
             return;
         };
         for (row, out) in self.data.chunks_exact_mut(self.stride).enumerate() {
-            warp.fill(row, out, |at| in_levels(warp.bordered(at)));
-            out[strip.columns..].fill(0.0);
+            let (values, padding) = out.split_at_mut(strip.columns);
+            warp.fill(row, values, Outside::Border, in_levels);
+            padding.fill(0.0);
         }
     }
 

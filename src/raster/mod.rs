@@ -15,7 +15,7 @@ pub use load::{ImageHeader, Photograph, image_format, image_header, load_image};
 pub use noise::noise_of;
 pub use part::{Part, decoding_bytes, load_part};
 pub use warmth::{Channel, Warmth};
-pub use warp::{Four, Warp, bounds, corners};
+pub use warp::{Outside, Warp, bounds, corners};
 
 use warp::bilinear;
 use wide::bytemuck::cast;
@@ -112,9 +112,11 @@ impl Gray {
     /// Bilinear values at eight positions, counted from the centre of the top-left pixel, which must not lie outside the
     /// image by more than rounding.
     pub fn between(&self, x: f32x8, y: f32x8) -> f32x8 {
-        // Rounding may lead to the last pixel, which has no right neighbour.
+        // Rounding may lead before the first pixel or to the last, which has no right neighbour. Samples count from half a
+        // pixel later.
         let within = |x: f32x8, size: usize| -> [f32x4; 2] {
-            cast(x.fast_min(f32x8::splat(((size - 1) as f32).next_down())))
+            let last = f32x8::splat(((size - 1) as f32).next_down());
+            cast(x.fast_max(f32x8::ZERO).fast_min(last) - f32x8::splat(0.5))
         };
         let ([x0, x1], [y0, y1]) = (within(x, self.width), within(y, self.height));
         cast([bilinear(self, 0, x0, y0), bilinear(self, 0, x1, y1)])

@@ -15,13 +15,23 @@ pub struct Warp<'a> {
     first: usize,
     /// Largest f32 coordinates with a right and a lower neighbour.
     limit: [f32; 2],
+    /// Columns over which the positions of a row are a parabola, see [`span_of`].
+    span: usize,
+    /// Everything falls into the image.
+    inside: bool,
 }
 
-/// Where four raster positions fall in the image.
-pub struct Four {
-    x: f32x4,
-    y: f32x4,
+/// What takes the place of values outside the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outside {
+    /// Those of the border.
+    Border,
+    /// NaN.
+    Nan,
 }
+
+/// How far, in pixels, the parabola of a row may lead from the true positions.
+const TOLERANCE_PX: f64 = 1.0 / 256.0;
 
 impl<'a> Warp<'a> {
     /// For a raster of `columns` by `rows`; `image_from_raster` maps its cells, whose centres are at + 0.5, to pixels. `None`
@@ -36,10 +46,11 @@ impl<'a> Warp<'a> {
         if image.width < 2 || image.height < 2 {
             return None;
         }
-        let start = |value: f64, size: usize| value.floor().clamp(0.0, (size - 2) as f64);
+        // The pixel whose centre lies before the first position.
+        let start = |x: f64, size: usize| (x - 0.5).floor().clamp(0.0, (size - 2) as f64);
         let (x, y) = (start(min.x, image.width), start(min.y, image.height));
-        // Pixel centres are at + 0.5 on both sides.
-        let to_index = Matrix3::new(1.0, 0.0, -0.5 - x, 0.0, 1.0, -0.5 - y, 0.0, 0.0, 1.0);
+        // Coordinates count from half a pixel beyond the first pixel's centre: rounded, they are its column and row.
+        let to_index = Matrix3::new(1.0, 0.0, -1.0 - x, 0.0, 1.0, -1.0 - y, 0.0, 0.0, 1.0);
         let to_centre = Matrix3::new(1.0, 0.0, 0.5, 0.0, 1.0, 0.5, 0.0, 0.0, 1.0);
         let m = to_index * image_from_raster * to_centre;
         let scale = m[(2, 0)] * w * 0.5 + m[(2, 1)] * h * 0.5 + m[(2, 2)];
@@ -49,75 +60,186 @@ impl<'a> Warp<'a> {
             m: std::array::from_fn(|r| std::array::from_fn(|c| m[(r, c)] as f32)),
             first: y as usize * image.width + x as usize,
             limit: [
-                ((image.width - 1) as f32 - x as f32).next_down(),
-                ((image.height - 1) as f32 - y as f32).next_down(),
+                last_before((image.width - 1) as f32 - x as f32),
+                last_before((image.height - 1) as f32 - y as f32),
             ],
+            span: span_of(&m, [w, h]),
+            inside: falls_inside(image, image_from_raster, [columns, rows]),
         })
     }
 
-    /// Fills a row of the raster by what `value` makes of each four positions.
+    /// Fills a row of the raster by what `value` makes of each four grey values.
     #[inline]
-    pub fn fill(&self, row: usize, out: &mut [f32], value: impl Fn(Four) -> f32x4) {
-        let v = row as f32;
-        let at = |r: usize| f32x4::splat(self.m[r][1] * v + self.m[r][2]);
-        let slope = |r: usize| f32x4::splat(self.m[r][0]);
-        let (x0, y0, w0) = (at(0), at(1), at(2));
-        let (dx, dy, dw) = (slope(0), slope(1), slope(2));
-        let mut u = f32x4::from([0.0, 1.0, 2.0, 3.0]);
-        for out in out.chunks_mut(4) {
-            let inverse = f32x4::ONE / (w0 + dw * u);
-            let at = Four {
-                x: (x0 + dx * u) * inverse,
-                y: (y0 + dy * u) * inverse,
-            };
-            let values = value(at).to_array();
-            match <&mut [f32; 4]>::try_from(&mut *out) {
-                Ok(out) => *out = values,
-                Err(_) => out.copy_from_slice(&values[..out.len()]),
-            }
-            u += f32x4::splat(4.0);
+    pub fn fill(
+        &self,
+        row: usize,
+        out: &mut [f32],
+        outside: Outside,
+        value: impl Fn(f32x4) -> f32x4,
+    ) {
+        let (image, first) = (self.image, self.first);
+        let (low, [right, lower]) = (f32x4::splat(-0.5), self.limit.map(f32x4::splat));
+        // Written so that what is no number becomes a border, too.
+        let clamp = |x: f32x4, high: f32x4| {
+            let x = x.simd_ge(low).select(x, low);
+            x.simd_le(high).select(x, high)
+        };
+        if self.inside {
+            self.positions(
+                row,
+                out,
+                #[inline(always)]
+                |x, y| value(bilinear(image, first, x, y)),
+            );
+            return;
         }
+        self.positions(row, out, |x, y| {
+            let values = value(bilinear(image, first, clamp(x, right), clamp(y, lower)));
+            let inside = x.simd_ge(low) & x.simd_le(right) & y.simd_ge(low) & y.simd_le(lower);
+            match outside {
+                Outside::Border => values,
+                Outside::Nan => inside.select(values, f32x4::splat(f32::NAN)),
+            }
+        });
     }
 
-    /// Bilinear values; NaN outside the image.
-    #[inline]
-    pub fn or_nan(&self, at: Four) -> f32x4 {
-        let zero = f32x4::ZERO;
-        let [limit_x, limit_y] = self.limit.map(f32x4::splat);
-        let inside =
-            at.x.simd_ge(zero) & at.x.simd_le(limit_x) & at.y.simd_ge(zero) & at.y.simd_le(limit_y);
-        // Where the horizon lies behind the raster, positions are no numbers.
-        let [x, y] = [at.x, at.y].map(|x| inside.select(x, zero));
-        inside.select(
-            bilinear(self.image, self.first, x, y),
-            f32x4::splat(f32::NAN),
-        )
-    }
-
-    /// Bilinear values; outside the image those of its border.
-    #[inline]
-    pub fn bordered(&self, at: Four) -> f32x4 {
-        let clamp = |x: f32x4, limit: f32| x.fast_max(f32x4::ZERO).fast_min(f32x4::splat(limit));
-        let (x, y) = (clamp(at.x, self.limit[0]), clamp(at.y, self.limit[1]));
-        bilinear(self.image, self.first, x, y)
+    /// Fills a row of the raster by what `value` makes of the coordinates of each four positions: true ones at both
+    /// ends and in the middle of every span, a parabola by forward differences between.
+    #[inline(always)]
+    fn positions(&self, row: usize, out: &mut [f32], value: impl Fn(f32x4, f32x4) -> f32x4) {
+        let v = row as f32;
+        let [x0, y0, w0] = self.m.map(|m| m[1] * v + m[2]);
+        let [dx, dy, dw] = self.m.map(|m| m[0]);
+        let position = |u: f32| {
+            let inverse = 1.0 / (w0 + dw * u);
+            [(x0 + dx * u) * inverse, (y0 + dy * u) * inverse]
+        };
+        let mut column = 0.0;
+        let mut start = position(column);
+        for out in out.chunks_mut(self.span) {
+            let length = out.len() as f32;
+            let middle = position(column + 0.5 * length);
+            column += length;
+            let end = position(column);
+            let [mut x, mut y] =
+                [0, 1].map(|i| Parabola::new([start[i], middle[i], end[i]], length));
+            start = end;
+            let mut fours = out.chunks_exact_mut(4);
+            for out in &mut fours {
+                out.copy_from_slice(value(x.next(), y.next()).as_array());
+            }
+            let rest = fours.into_remainder();
+            if !rest.is_empty() {
+                let values = value(x.next(), y.next()).to_array();
+                rest.copy_from_slice(&values[..rest.len()]);
+            }
+        }
     }
 }
 
-/// Bilinear values at columns and rows counted from pixel `first`, which must have a right and a lower neighbour.
+/// The largest coordinate before `end`, counted from half a pixel later.
+fn last_before(end: f32) -> f32 {
+    end.next_down() - 0.5
+}
+
+/// Do all samples have four pixels around them? Rows are filled in fours, a little beyond their ends.
+fn falls_inside(
+    image: &Gray,
+    image_from_raster: &Matrix3<f64>,
+    [columns, rows]: [usize; 2],
+) -> bool {
+    // For what f32 and the parabola are off by.
+    const MARGIN_PX: f64 = 8.0 * TOLERANCE_PX;
+    let end = [columns.next_multiple_of(4) as f64, rows as f64];
+    let Some(corners) = corners(image_from_raster, [0.0, 0.0], end) else {
+        return false;
+    };
+    let (min, max) = bounds(&corners);
+    let within = |min: f64, max: f64, size: usize| {
+        min >= 0.5 + MARGIN_PX && max <= size as f64 - 0.5 - MARGIN_PX
+    };
+    within(min.x, max.x, image.width) && within(min.y, max.y, image.height)
+}
+
+/// Over how many columns, a power of two from 4 to 256, positions `m` (u, v, 1) are a parabola in u: through both ends and
+/// the middle of L columns it is off by less than `0.05 L^3 |f| / 6`, with the third derivative `f = 6 x' (m20 / w)^2`,
+/// which is largest at a corner.
+fn span_of(m: &Matrix3<f64>, [columns, rows]: [f64; 2]) -> usize {
+    let mut off_by = 0.0_f64;
+    for (u, v) in [(0.0, 0.0), (columns, 0.0), (0.0, rows), (columns, rows)] {
+        let p = m * Vector3::new(u, v, 1.0);
+        let slope = |r: usize| ((m[(r, 0)] - p[r] / p.z * m[(2, 0)]) / p.z).abs();
+        let bend = m[(2, 0)] / p.z;
+        off_by = off_by.max(0.05 * slope(0).max(slope(1)) * bend * bend);
+    }
+    let mut span = 256;
+    while span > 4 && off_by * (span * span * span) as f64 > TOLERANCE_PX {
+        span /= 2;
+    }
+    span
+}
+
+/// The values of a parabola at 0, 1, 2 and so on, four at a time.
+struct Parabola {
+    /// The next four.
+    values: f32x4,
+    /// From these to the four after them.
+    step: f32x4,
+    /// From one step to the next.
+    growth: f32x4,
+}
+
+impl Parabola {
+    /// From the values at 0, n / 2 and n.
+    #[inline(always)]
+    fn new([start, middle, end]: [f32; 3], n: f32) -> Self {
+        let square = 2.0 * ((start - middle) + (end - middle)) / (n * n);
+        let slope = (end - start) / n - square * n;
+        let u = f32x4::from([0.0, 1.0, 2.0, 3.0]);
+        let four = f32x4::splat(4.0);
+        let [start, slope, square] = [start, slope, square].map(f32x4::splat);
+        Self {
+            values: start + (slope + square * u) * u,
+            step: (slope + square * (u + u + four)) * four,
+            growth: square * f32x4::splat(32.0),
+        }
+    }
+
+    #[inline(always)]
+    fn next(&mut self) -> f32x4 {
+        let values = self.values;
+        self.values += self.step;
+        self.step += self.growth;
+        values
+    }
+}
+
+/// Bilinear values at coordinates counted from half a pixel right of and below the centre of pixel `first`, which must
+/// have a right and a lower neighbour.
 // Everything below is inlined by force: called for every four samples, the calls took longer than the samples.
 #[inline(always)]
 pub(super) fn bilinear(image: &Gray, first: usize, x: f32x4, y: f32x4) -> f32x4 {
-    let (column, row) = (x.fast_trunc_int(), y.fast_trunc_int());
-    let (fx, fy) = (x - column.round_float(), y - row.round_float());
-    let (column, row) = (
-        (column + i32x4::splat(first as i32)).to_array(),
-        row.to_array(),
-    );
+    // Adding 1.5 x 2^23 rounds to a whole number, which the last bits then hold; a conversion costs wasm six instructions.
+    const SHIFT: f32 = 12_582_912.0;
+    const SHIFT_BITS: i32 = SHIFT.to_bits() as i32;
+    // Of fewer bits, the sum of an index and a width cannot overflow, and nothing needs to look whether it does.
+    const INDEX: i32 = i32::MAX;
+    const WIDTH: i32 = i32::MAX / 2;
+    let (shift, half) = (f32x4::splat(SHIFT), f32x4::splat(0.5));
+    let (column, row) = (x + shift, y + shift);
+    let (fx, fy) = (x - (column - shift) + half, y - (row - shift) + half);
+    let width = image.width as i32 & WIDTH;
+    let first = (first as i32)
+        .wrapping_sub(SHIFT_BITS)
+        .wrapping_sub(SHIFT_BITS.wrapping_mul(width));
+    let (column, row): (i32x4, i32x4) = (cast(column), cast(row));
+    let index = (row * i32x4::splat(width) + column + i32x4::splat(first)) & i32x4::splat(INDEX);
+    let [i, j, k, l] = index.to_array();
     let [i, j, k, l] = [
-        block_at(image, column[0], row[0]),
-        block_at(image, column[1], row[1]),
-        block_at(image, column[2], row[2]),
-        block_at(image, column[3], row[3]),
+        block_at(image, i, width),
+        block_at(image, j, width),
+        block_at(image, k, width),
+        block_at(image, l, width),
     ];
     let [a, b] = columns([i[0], j[0], k[0], l[0]]);
     let [c, d] = columns([i[1], j[1], k[1], l[1]]);
@@ -128,13 +250,9 @@ pub(super) fn bilinear(image: &Gray, first: usize, x: f32x4, y: f32x4) -> f32x4 
 
 /// A pixel and its right neighbour, and the two below.
 #[inline(always)]
-fn block_at(image: &Gray, column: i32, row: i32) -> [[f32; 2]; 2] {
-    let width = image.width as u32;
-    // One by one: without SSE 4.1 there is no product of four integers.
-    let start = (row as u32).wrapping_mul(width);
-    let i = start.wrapping_add(column as u32) as usize;
-    // In 64 bits a width of 32 cannot overflow, so that one comparison does for all four.
-    let w = width as usize;
+fn block_at(image: &Gray, index: i32, width: i32) -> [[f32; 2]; 2] {
+    let (i, w) = (index as u32 as usize, width as u32 as usize);
+    // One comparison for all four.
     let pixels = &image.data[i..i + (w + 2)];
     [[pixels[0], pixels[1]], [pixels[w], pixels[w + 1]]]
 }
@@ -180,6 +298,7 @@ pub fn bounds(points: &[Point2<f64>; 4]) -> (Point2<f64>, Point2<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn samples_are_those_of_the_image_and_nan_outside() {
@@ -189,7 +308,7 @@ mod tests {
         let mut out = [0.0f32; 56];
         let (mut seen, mut outside) = (0, 0);
         for row in 0..36 {
-            warp.fill(row, &mut out, |at| warp.or_nan(at));
+            warp.fill(row, &mut out, Outside::Nan, |values| values);
             for (column, &value) in out.iter().enumerate() {
                 let p = m * Vector3::new(column as f64 + 0.5, row as f64 + 0.5, 1.0);
                 let p = [p.x / p.z, p.y / p.z];
@@ -213,6 +332,62 @@ mod tests {
             seen > 500 && outside > 200,
             "{seen} inside, {outside} outside"
         );
+    }
+
+    #[test]
+    fn long_rows_keep_to_the_homography() {
+        // Grey values that tell the position.
+        let size = [700, 500];
+        let column = Gray::from_fn(size[0], size[1], |x, _| x as f32 + 0.5);
+        let row = Gray::from_fn(size[0], size[1], |_, y| y as f32 + 0.5);
+        // The third coordinate falls to a third along a row, or not at all.
+        for (bend, length) in [(-2.5e-3, 258), (0.0, 601), (4e-5, 399)] {
+            let m = Matrix3::new(0.9, 0.1, 30.0, 0.02, 0.7, 40.0, bend, -1e-4, 1.0);
+            let mut out = vec![0.0f32; length];
+            for (axis, image) in [&column, &row].into_iter().enumerate() {
+                let warp = Warp::new(image, &m, [length, 90]).unwrap();
+                for v in [0, 89] {
+                    warp.fill(v, &mut out, Outside::Nan, |values| values);
+                    for (u, &value) in out.iter().enumerate() {
+                        let p = m * Vector3::new(u as f64 + 0.5, v as f64 + 0.5, 1.0);
+                        let p = [p.x / p.z, p.y / p.z];
+                        let inside = (0..2).all(|a| p[a] > 0.51 && p[a] < size[a] as f64 - 0.51);
+                        if inside {
+                            let off = (f64::from(value) - p[axis]).abs();
+                            assert!(off < 2.0 * TOLERANCE_PX, "{off} at {u} of {length}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn any_raster_is_sampled_or_nan_or_border(
+            size in [2usize..40, 2usize..40],
+            raster in [1usize..80, 1usize..20],
+            turn in [-2.0..2.0f64, -2.0..2.0f64, -2.0..2.0f64, -2.0..2.0f64],
+            start in [-30.0..50.0f64, -30.0..50.0f64],
+            bend in [-0.02..0.02f64, -0.02..0.02f64],
+        ) {
+            let image = Gray::from_fn(size[0], size[1], |x, y| ((x * 7 + y * 13) % 31) as f32);
+            let m = Matrix3::new(
+                turn[0], turn[1], start[0], turn[2], turn[3], start[1], bend[0], bend[1], 1.0,
+            );
+            let Some(warp) = Warp::new(&image, &m, raster) else {
+                return Ok(());
+            };
+            let [mut nan, mut border] = [0, 1].map(|_| vec![0.0f32; raster[0]]);
+            for row in 0..raster[1] {
+                warp.fill(row, &mut nan, Outside::Nan, |values| values);
+                warp.fill(row, &mut border, Outside::Border, |values| values);
+                for (&nan, &border) in nan.iter().zip(&border) {
+                    prop_assert!((0.0..31.0).contains(&border));
+                    prop_assert!(nan.is_nan() || nan == border);
+                }
+            }
+        }
     }
 
     #[test]
