@@ -209,7 +209,7 @@ impl<'a> LineSide<'a> {
             high += cor.simd_ge(expected.high_from).select(shown, zero);
         }
         let [weight, similarity, points, high, evidence] =
-            [weight, similarity, points, high, evidence].map(f64x4::reduce_add);
+            [weight, similarity, points, high, evidence].map(sum);
         // A view that shows less than half of the neighbourhood does not see it.
         if weight < 0.5 {
             return ViewScore::default();
@@ -269,6 +269,12 @@ impl Expected {
             high_from: of(&|model, _| high_correlation(model, params), f64::INFINITY),
         }
     }
+}
+
+/// In one order everywhere: processors add lanes as suits them.
+fn sum(four: f64x4) -> f64 {
+    let [a, b, c, d] = four.to_array();
+    (a + b) + (c + d)
 }
 
 fn lanes(value: impl Fn(usize) -> f64) -> f64x4 {
