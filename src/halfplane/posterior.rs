@@ -80,7 +80,7 @@ impl WindowModel {
 }
 
 /// The models of four windows.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FourModels {
     rho: f64x4,
     precision: f64x4,
