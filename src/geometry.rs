@@ -1,8 +1,9 @@
 //! Finite segments, infinite lines and planes. Points and vectors are nalgebra's.
 
-use crate::sorting::sort_by;
 use nalgebra::{Matrix3, Point2, Point3, Unit, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
+
+use crate::sorting::sort_by;
 
 /// A finite, directed segment in an image, in pixels (x right, y down, centre of the top-left
 /// pixel at (0.5, 0.5)).
@@ -207,6 +208,21 @@ impl Plane {
     }
 }
 
+/// Length of `within` that the stretches cover together.
+pub fn covered(stretches: impl Iterator<Item = [f64; 2]>, within: [f64; 2]) -> f64 {
+    let mut inside: Vec<[f64; 2]> = stretches
+        .map(|s| [s[0].max(within[0]), s[1].min(within[1])])
+        .filter(|s| s[1] > s[0])
+        .collect();
+    sort_by(&mut inside, |a, b| a[0].total_cmp(&b[0]));
+    let (mut sum, mut end) = (0.0, f64::NEG_INFINITY);
+    for [a, b] in inside {
+        sum += (b - a.max(end)).max(0.0);
+        end = end.max(b);
+    }
+    sum
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -261,5 +277,11 @@ mod tests {
         let s = Segment2::new(Point2::new(1.0, 1.0), Point2::new(5.0, 1.0));
         // Travelling to the right, the normal points down the screen, where y grows.
         assert_eq!(s.line().dot(&Vector3::new(3.0, 4.0, 1.0)), 3.0);
+    }
+
+    #[test]
+    fn covered_counts_overlaps_once() {
+        let parts = [[0.0, 2.0], [1.0, 3.0], [5.0, 9.0], [-4.0, -1.0]];
+        assert_eq!(covered(parts.into_iter(), [0.0, 6.0]), 4.0);
     }
 }

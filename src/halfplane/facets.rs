@@ -11,11 +11,12 @@ use serde::Serialize;
 use super::arrangement::Arrangement;
 use super::border_cost::{BorderCosts, LINE_HEIGHT};
 use super::borders::{Border, border_lines};
+use super::bounding::bounding_lines;
 use super::consistency::{ConsistencyMap, consistency_map};
 use super::delineation::{Delineation, Outline, delineate};
 use super::evidence::Evidence;
-use super::grouping::{GroupingInput, PlaneGroup, group_planes};
-use super::hypothesis::{bounding_lines, hypotheses};
+use super::grouping::{GroupingInput, Member, PlaneGroup, group_planes};
+use super::hypothesis::hypotheses;
 use super::is_wall;
 use super::islands::without_islands;
 use super::labelling::Labelling;
@@ -26,7 +27,7 @@ use super::plane_lines::PlaneLine;
 use super::proposed::add_rectangles;
 use super::region::Region;
 use super::shiftable::ShiftableWindows;
-use super::verification::{FacetRejection, RejectedFacet};
+use super::verification::{FacetRejection, RejectedFacet, tail_on_ground};
 use crate::geometry::Plane;
 use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
@@ -95,7 +96,7 @@ pub fn reconstruct_facets(
     let ground_map = ground_map(&reduced, ground, &grid);
     let hypotheses = hypotheses(scene, &reduced, segments, &input, groups, grid.step, params);
     let windows = ShiftableWindows::new(lines.iter().map(|l| l.segment), &grid);
-    let bounding = bounding_lines(&input, &hypotheses);
+    let bounding = bounding_lines(&input, &hypotheses, ground, params);
     let borders = border_lines(&input, &hypotheses, &bounding, &windows, params);
     let arrangement = Arrangement::new(&with_frame(&borders, &grid));
 
@@ -149,9 +150,9 @@ fn lies_on_ground(
     ground: &Ground,
     params: &RoofParams,
 ) -> bool {
-    let eave_m = 0.7 * params.min_height_m;
     let mut members = group.members.iter();
-    members.all(|m| ground.is_near(&input.lines[m.line.index()].segment, eave_m))
+    let line = |m: &Member| &input.lines[m.line.index()].segment;
+    members.all(|m| ground.is_near(line(m), params.lowest_eave_m()))
 }
 
 /// The plan grid of the whole scene: the ground pixel as cell, the regions of all groups as window.
@@ -249,7 +250,7 @@ impl Solver {
             let delineation = delineate(&self.arrangement, &labels, &self.planes);
             self.labelling.relabel(labels);
             let mut facets = Vec::new();
-            let mut withdrawn = Vec::new();
+            let mut withdrawn: Vec<(u32, Vec<usize>)> = Vec::new();
             // No roof, but no other plane may have their place: they stay in the labelling.
             let mut on_ground = Vec::new();
             let found: Vec<Facet> = (delineation.outlines.iter())
@@ -272,6 +273,15 @@ impl Solver {
                     }
                     Err(reason) => reason,
                 };
+                if round < ROUNDS
+                    && matches!(reason, FacetRejection::ReachesGround { .. })
+                    && let plane = &self.planes[outline.plane as usize]
+                    && let Some(tail) =
+                        tail_on_ground(plane, &outline.cells, &self.arrangement, ground)
+                {
+                    withdrawn.push((outline.plane, tail));
+                    continue;
+                }
                 let refused = RejectedFacet {
                     group: outline.plane,
                     outline: facet.outer,
@@ -281,15 +291,15 @@ impl Solver {
                     on_ground.push(refused);
                 } else {
                     rejected.push(refused);
-                    withdrawn.push(outline);
+                    withdrawn.push((outline.plane, outline.cells.clone()));
                 }
             }
             if withdrawn.is_empty() || round == ROUNDS {
                 rejected.extend(on_ground);
                 return (facets, rejected);
             }
-            for outline in withdrawn {
-                self.labelling.withdraw(outline.plane, &outline.cells);
+            for (plane, cells) in withdrawn {
+                self.labelling.withdraw(plane, &cells);
             }
         }
         unreachable!("the last round returns")

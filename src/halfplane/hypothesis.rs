@@ -8,7 +8,7 @@ use super::grouping::{GroupingInput, PlaneGroup};
 use super::plan::PlanGrid;
 use super::plane_lines::{PlaneLine, lines_in_plane, rays_through_ends};
 use super::region::Region;
-use crate::geometry::{Plane, Segment3};
+use crate::geometry::Segment3;
 use crate::lines2d::ImageSegment;
 use crate::params::RoofParams;
 use crate::scene::Scene;
@@ -64,40 +64,13 @@ pub fn hypotheses(
         .collect()
 }
 
-/// The real lines that may bound a facet: over some plane's region, and not inside a surface.
-pub fn bounding_lines(input: &GroupingInput, hypotheses: &[Hypothesis]) -> Vec<Segment3> {
-    let keep = crate::parallel::map(input.lines, |_, line| {
-        let middle = line.at(0.5).xy();
-        let over: Vec<&Hypothesis> = hypotheses
-            .iter()
-            .filter(|h| h.region.contains(&middle))
-            .collect();
-        !over.is_empty()
-            && !over.iter().any(|h| {
-                lies_in(&h.group.plane, &line.segment) && crosses_surface(&h.map, &line.segment)
-            })
-    });
-    input
-        .lines
-        .iter()
-        .zip(keep)
-        .filter(|(_, keep)| *keep)
-        .map(|(l, _)| l.segment)
-        .collect()
-}
-
-fn lies_in(plane: &Plane, line: &Segment3) -> bool {
-    const NEAR: f64 = 0.2;
-    plane.signed_distance(&line.p0).abs() < NEAR && plane.signed_distance(&line.p1).abs() < NEAR
-}
-
 /// Correlation and texture weight from which on a position clearly shows the plane's surface.
 pub const ON_SURFACE: f32 = 0.65;
 /// See [`ON_SURFACE`].
 pub const TEXTURED: f32 = 0.3;
 
 /// Does the plane's surface clearly go on at both sides of the line? Rows of tiles do that, borders do not.
-fn crosses_surface(map: &ConsistencyMap, line: &Segment3) -> bool {
+pub fn crosses_surface(map: &ConsistencyMap, line: &Segment3) -> bool {
     [Side::Left, Side::Right].into_iter().all(|side| {
         let seen = beside(map, line, side);
         let on = seen

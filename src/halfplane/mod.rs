@@ -44,6 +44,7 @@ mod agreement;
 mod arrangement;
 mod border_cost;
 mod borders;
+mod bounding;
 mod box_sum;
 mod consistency;
 mod cut;

@@ -4,7 +4,7 @@
 //! eave, for the edge is all that such windows see. The shiftable windows of stereo matching (Bobick and Intille 1999)
 //! tell the sides apart: a position is judged by a window that holds it and stays on its side of the line. Here it is
 //! only when that window contradicts the plane that it counts in place of the position's own: where the sides are bare,
-//! the edge is still the best evidence there is.
+//! the edge is still the best evidence there is, but it counts for less: it says the same of what is not the roof.
 //!
 //! All planes are judged by the same windows, wherever their own lines are. Were each shifted from its own lines alone,
 //! the plane with fewer lines would be asked less.
@@ -16,6 +16,9 @@ use crate::geometry::Segment3;
 
 /// Cells along the side of a window.
 const SIDE: usize = 2 * HALF_WINDOW + 1;
+/// How much of the texture counts that only the edge has, beside a side that is bare. Assumption: most of it, for there are as many bare roofs as
+/// bare streets. Measured: 0.6 and 0.7 give the same models, from 0.8 on roofs reach out over shaded gaps.
+const EDGE_SHARE: f64 = 0.6;
 /// In place of a shift: the position's own window, for there is no line in it, or no room beside the line.
 const STAYS: u8 = (HALF_WINDOW * SIDE + HALF_WINDOW) as u8;
 
@@ -76,9 +79,13 @@ impl ShiftableWindows {
         let of = |k| Judgement::of(map, k, min_correlation);
         let own = of(row * map.grid.width + column);
         let beside = self.window_of(&map.grid, [column, row]).map(of);
-        match beside.filter(|beside| beside.weight > 0.0 && beside.gain() < 0.0) {
-            Some(contradicts) => contradicts,
-            None => own,
+        match beside.filter(|beside| beside.weight > 0.0) {
+            Some(contradicts) if contradicts.gain() < 0.0 => contradicts,
+            Some(bare) if bare.weight < own.weight => Judgement {
+                weight: bare.weight + EDGE_SHARE * (own.weight - bare.weight),
+                ..own
+            },
+            _ => own,
         }
     }
 
@@ -282,14 +289,17 @@ mod tests {
     fn a_bare_side_is_judged_by_the_edge() {
         let mut roof = map(
             grid(),
-            |_, row| if row.abs_diff(20) <= 5 { 0.9 } else { 0.0 },
+            |_, row| if row.abs_diff(20) <= 5 { 0.9 } else { 0.33 },
         );
         let eave = ShiftableWindows::new([line([0, 20], [59, 20])], &grid());
-        assert!(judged(&eave, &roof, [30, 17]) < 0.1, "texture contradicts");
+        assert!(judged(&eave, &roof, [30, 17]) < 0.4, "texture contradicts");
         for row in (0..50).filter(|row: &usize| row.abs_diff(20) > 5) {
-            roof.weight[row * 60..(row + 1) * 60].fill(0);
+            roof.weight[row * 60..(row + 1) * 60].fill(10);
         }
-        assert!(judged(&eave, &roof, [30, 17]) > 0.8, "nothing does");
+        let by_edge = eave.judge(&roof, [30, 17], MIN_CORRELATION);
+        assert!(by_edge.correlation > 0.8, "nothing does");
+        // 10 of 255 are its side's own, 190 the edge's.
+        assert!((by_edge.weight - (10.0 + 0.6 * 190.0) / 255.0).abs() < 1e-6);
     }
 
     #[test]

@@ -3,15 +3,19 @@
 //! "Intensity similarity over the complete image set" first counts as the better half of all pairs of views, since nobody
 //! knows yet what hides a plane; of what these let pass, the views that see a facet past the others are asked all.
 
+use std::collections::BTreeSet;
+
 use nalgebra::{Point2, Point3};
 use serde::Serialize;
 
+use super::arrangement::Arrangement;
 use super::consistency::{ConsistencyMap, consistency_map_behind};
 use super::delineation::{Outline, signed_area};
 use super::facets::Solver;
 use super::hypothesis::{ON_SURFACE, TEXTURED};
 use super::interior::{Inside, SIDE};
 use super::plan::PlanGrid;
+use crate::geometry::Plane;
 use crate::ids::ViewId;
 use crate::params::RoofParams;
 use crate::roof::{Facet, Ground, Occluders};
@@ -78,6 +82,9 @@ pub struct RejectedFacet {
 
 /// Height above the ground that no eave is below, metres. Assumption: with a few decimetres for the ground's own error.
 const LOWEST_EAVE: f64 = 1.0;
+/// Share of a facet that may lie on the ground for the rest to be a roof still: a corner drawn too far. Assumption: of a bank that rises to the
+/// height of an eave more lies lower than [`LOWEST_EAVE`].
+const MOST_ON_GROUND: f64 = 0.15;
 /// Share of a facet that another plane must be able to cover to take its place. Assumption.
 const ALMOST_ALL: f64 = 0.9;
 /// Standard deviations by which the views must agree better on it. Assumption: as usual.
@@ -103,6 +110,28 @@ fn inside<'m>(facet: &Facet, map: &'m ConsistencyMap) -> Inside<'m> {
     let rings = std::iter::once(&facet.outer).chain(&facet.holes);
     let rings: Vec<Vec<Point2<f64>>> = rings.map(in_plan).collect();
     Inside::new(&rings, map)
+}
+
+/// The cells of a facet that come down to the ground, where these are few: without them it may be a roof.
+pub(super) fn tail_on_ground(
+    plane: &Plane,
+    cells: &[usize],
+    arrangement: &Arrangement,
+    ground: &Ground,
+) -> Option<Vec<usize>> {
+    let of_facet: BTreeSet<usize> = cells.iter().copied().collect();
+    let on_ground = |corners: &[usize; 3]| {
+        let mut corners = corners.iter().map(|&v| arrangement.vertices[v]);
+        corners.any(|p| plane.z_at(p.x, p.y) - ground.z_at(&p) < LOWEST_EAVE)
+    };
+    let low: BTreeSet<usize> = (arrangement.triangles.iter())
+        .filter(|(corners, cell)| of_facet.contains(cell) && on_ground(corners))
+        .map(|(_, cell)| *cell)
+        .collect();
+    let area =
+        |cells: &BTreeSet<usize>| -> f64 { cells.iter().map(|&c| arrangement.areas[c]).sum() };
+    let few = area(&low) < MOST_ON_GROUND * area(&of_facet);
+    (few && !low.is_empty()).then(|| low.into_iter().collect())
 }
 
 impl Solver {
@@ -218,6 +247,7 @@ impl Solver {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::halfplane::borders::{Border, BorderKind};
     use crate::synthetic::gable_scene;
     use crate::testing;
     use nalgebra::Vector3;
@@ -262,5 +292,45 @@ mod tests {
             .collect();
         assert_eq!((found[0], found[19]), ([false; 2], [true; 2]));
         assert!(found.contains(&[false, true]) && !found.contains(&[true, false]));
+    }
+
+    /// A plan of 30 m by 30 m, cut by lines across at these x.
+    fn cut_at(places: &[f64]) -> Arrangement {
+        let border = |a: [f64; 2], b: [f64; 2]| Border {
+            kind: BorderKind::Real,
+            a: a.into(),
+            b: b.into(),
+        };
+        let corners = [[-10.0, -10.0], [20.0, -10.0], [20.0, 20.0], [-10.0, 20.0]];
+        let frame = (0..4).map(|i| border(corners[i], corners[(i + 1) % 4]));
+        let cuts = places.iter().map(|&x| border([x, -10.0], [x, 20.0]));
+        Arrangement::new(&frame.chain(cuts).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn a_roof_loses_the_tail_that_comes_down_to_the_ground_and_a_bank_all() {
+        // It falls from 9 m at x = 0 to 1 m at x = 8; above the ground at 2 m, its lowest eave is at x = 6.
+        let slope =
+            Plane::from_point_normal(&Point3::new(0.0, 0.0, 9.0), &Vector3::new(1.0, 0.0, 1.0));
+        let slope = slope.expect("a normal");
+        let arrangement = cut_at(&[0.0, 5.0, 5.8, 6.2, 8.0]);
+        let ground = Ground::level(2.0);
+        let mut cells: Vec<usize> = (0..arrangement.cells).collect();
+        let middle = |cell: usize| {
+            let of = arrangement.triangles.iter().filter(|t| t.1 == cell);
+            let xs: Vec<f64> = of
+                .flat_map(|t| t.0.map(|v| arrangement.vertices[v].x))
+                .collect();
+            xs.iter().sum::<f64>() / xs.len() as f64
+        };
+        cells.sort_by(|a, b| middle(*a).total_cmp(&middle(*b)));
+        let tail = |cells: &[usize]| tail_on_ground(&slope, cells, &arrangement, &ground);
+        assert_eq!(tail(&cells[1..3]), None, "all of it is high");
+        assert_eq!(
+            tail(&cells[1..4]),
+            Some(vec![cells[3]]),
+            "0.4 of 6.2 m reach below"
+        );
+        assert_eq!(tail(&cells[1..5]), None, "2.2 of 8 m are too much");
     }
 }

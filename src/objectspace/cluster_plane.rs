@@ -4,7 +4,6 @@ use nalgebra::{Matrix2, Point3, Vector2, Vector3};
 
 use super::sight::Sight;
 use crate::params::ClusterParams;
-use crate::sorting::sort_by;
 
 /// Axes of a cluster plane: along the main direction, across it and up.
 #[derive(Clone, Copy, Debug)]
@@ -93,30 +92,4 @@ impl PlaneRay {
 /// Length that two stretches share; negative when they are apart.
 pub(super) fn overlap(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[1].min(b[1]) - a[0].max(b[0])
-}
-
-/// Length of `within` that the stretches cover together.
-pub(super) fn covered(stretches: impl Iterator<Item = [f64; 2]>, within: [f64; 2]) -> f64 {
-    let mut inside: Vec<[f64; 2]> = stretches
-        .map(|s| [s[0].max(within[0]), s[1].min(within[1])])
-        .filter(|s| s[1] > s[0])
-        .collect();
-    sort_by(&mut inside, |a, b| a[0].total_cmp(&b[0]));
-    let (mut sum, mut end) = (0.0, f64::NEG_INFINITY);
-    for [a, b] in inside {
-        sum += (b - a.max(end)).max(0.0);
-        end = end.max(b);
-    }
-    sum
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn covered_counts_overlaps_once() {
-        let parts = [[0.0, 2.0], [1.0, 3.0], [5.0, 9.0], [-4.0, -1.0]];
-        assert_eq!(covered(parts.into_iter(), [0.0, 6.0]), 4.0);
-    }
 }

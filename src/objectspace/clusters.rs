@@ -24,10 +24,10 @@
 use nalgebra::{Matrix2, Point2, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::cluster_plane::{Axes, PlaneRay, covered, overlap};
+use super::cluster_plane::{Axes, PlaneRay, overlap};
 use super::cluster_proposals::Proposal;
 use super::sight::Sight;
-use crate::geometry::Segment3;
+use crate::geometry::{Segment3, covered};
 use crate::ids::ViewId;
 use crate::params::ClusterParams;
 use crate::scene::Scene;

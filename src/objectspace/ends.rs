@@ -8,9 +8,9 @@
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::cluster_plane::{Axes, covered, overlap};
+use super::cluster_plane::{Axes, overlap};
 use super::sight::Sight;
-use crate::geometry::Plane;
+use crate::geometry::{Plane, covered};
 use crate::ids::ViewId;
 use crate::params::PlaneParams;
 use crate::sorting::sort_by;

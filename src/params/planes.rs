@@ -158,6 +158,13 @@ pub struct RoofParams {
 }
 }
 
+impl RoofParams {
+    /// A line lower than this above the ground is no eave, metres: an eave may be lower than the middle of its roof.
+    pub fn lowest_eave_m(&self) -> f64 {
+        0.7 * self.min_height_m
+    }
+}
+
 impl Default for RoofParams {
     fn default() -> Self {
         Self {

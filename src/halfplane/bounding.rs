@@ -1,0 +1,110 @@
+//! The real lines that may bound a facet (B99 4.3, figure 21): those over some plane, outside of any surface, and above the
+//! ground where they can be.
+//!
+//! A line need not lie in a plane to bound it: a wall's foot, seen below an eave, may be all that was found of it (figure 21 b).
+//! Where the eave was found too, the foot is a second border beside it, and the strip between them, in the shade of the roof,
+//! often says nothing for or against a plane that reaches that far. There the eave is the border.
+
+use super::grouping::GroupingInput;
+use super::hypothesis::{Hypothesis, crosses_surface};
+use crate::geometry::{Plane, Segment3, covered};
+use crate::lines3d::Line3d;
+use crate::params::RoofParams;
+use crate::roof::Ground;
+
+/// How far beside its eave, in plan, the foot of a wall may be, metres. Assumption: no overhang is wider.
+const OVERHANG: f64 = 1.0;
+/// Sine of the angle at which two lines run side by side.
+const PARALLEL_SINE: f64 = 0.15;
+/// Share of a line that others must run along to take its place. Assumption: half.
+const MOST: f64 = 0.5;
+
+/// The lines that may bound a facet.
+pub fn bounding_lines(
+    input: &GroupingInput,
+    hypotheses: &[Hypothesis],
+    ground: &Ground,
+    params: &RoofParams,
+) -> Vec<Segment3> {
+    let keep = crate::parallel::map(input.lines, |_, line| {
+        let middle = line.at(0.5).xy();
+        let over: Vec<&Hypothesis> = hypotheses
+            .iter()
+            .filter(|h| h.region.contains(&middle))
+            .collect();
+        !over.is_empty()
+            && !over.iter().any(|h| {
+                lies_in(&h.group.plane, &line.segment) && crosses_surface(&h.map, &line.segment)
+            })
+    });
+    let segments = |lines: Vec<&Line3d>| lines.into_iter().map(|l| l.segment).collect();
+    let on_ground = |l: &&Line3d| ground.is_near(&l.segment, params.lowest_eave_m());
+    let (_, above): (Vec<&Line3d>, Vec<&Line3d>) = input.lines.iter().partition(on_ground);
+    let above: Vec<Segment3> = segments(above);
+    let kept = input.lines.iter().zip(keep).filter(|(_, keep)| *keep);
+    let kept = kept.map(|(line, _)| line);
+    segments(
+        kept.filter(|l| !on_ground(l) || !beside_others(&l.segment, &above))
+            .collect(),
+    )
+}
+
+fn lies_in(plane: &Plane, line: &Segment3) -> bool {
+    const NEAR: f64 = 0.2;
+    plane.signed_distance(&line.p0).abs() < NEAR && plane.signed_distance(&line.p1).abs() < NEAR
+}
+
+/// Do others run along most of a line, in plan, within an overhang's width?
+fn beside_others(line: &Segment3, others: &[Segment3]) -> bool {
+    let start = line.p0.xy();
+    let along = line.p1.xy() - start;
+    let length = along.norm();
+    if length <= 0.0 {
+        return false;
+    }
+    let d = along / length;
+    let stretches = others.iter().filter_map(|other| {
+        let [a, b] = [other.p0, other.p1].map(|p| p.xy() - start);
+        let apart = [a, b].map(|p| d.perp(&p).abs());
+        let turned = d.perp(&(b - a)).abs() > PARALLEL_SINE * (b - a).norm();
+        let (s, t) = (a.dot(&d), b.dot(&d));
+        (!turned && apart[0].max(apart[1]) <= OVERHANG).then_some([s.min(t), s.max(t)])
+    });
+    covered(stretches, [0.0, length]) >= MOST * length
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point3;
+
+    fn line(from: [f64; 3], to: [f64; 3]) -> Segment3 {
+        Segment3::new(Point3::from(from), Point3::from(to))
+    }
+
+    #[test]
+    fn a_line_with_an_eave_along_most_of_it_is_the_foot_of_its_wall() {
+        let foot = line([0.0, 0.0, 0.0], [10.0, 0.0, 0.0]);
+        let eave = |from: f64, to: f64, beside: f64| line([from, beside, 3.0], [to, beside, 3.2]);
+        assert!(beside_others(&foot, &[eave(0.0, 10.0, 0.9)]));
+        assert!(
+            beside_others(&foot, &[eave(10.0, 0.0, -0.9)]),
+            "either way round"
+        );
+        assert!(beside_others(
+            &foot,
+            &[eave(-2.0, 3.0, 0.4), eave(7.0, 12.0, -0.4)]
+        ));
+        assert!(!beside_others(
+            &foot,
+            &[eave(-2.0, 4.0, 0.4), eave(1.0, 4.0, -0.4)]
+        ));
+        assert!(
+            !beside_others(&foot, &[eave(0.0, 10.0, 1.2)]),
+            "farther than any eave"
+        );
+        let across = line([2.0, -0.9, 3.0], [8.0, 0.9, 3.0]);
+        assert!(!beside_others(&foot, &[across]));
+        assert!(!beside_others(&foot, &[]));
+    }
+}
