@@ -1,9 +1,10 @@
-//! For tests: numbers by chance that are the same in every run, and facets.
+//! For tests: numbers by chance that are the same in every run, facets and lines.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 
-use crate::geometry::Plane;
+use crate::geometry::{Plane, Segment3};
 use crate::ids::BuildingId;
+use crate::lines3d::Line3d;
 use crate::roof::Facet;
 
 /// Evenly distributed from 0 to 1: a linear congruential generator (Numerical Recipes 7.1), its upper 24 bits.
@@ -31,5 +32,16 @@ pub fn facet(ring: &[Point3<f64>]) -> Facet {
         lines: Vec::new(),
         half_planes: Vec::new(),
         rectangles: Vec::new(),
+    }
+}
+
+/// A line in space of which nothing else is known.
+pub fn line(p0: Point3<f64>, p1: Point3<f64>) -> Line3d {
+    Line3d {
+        origin: Default::default(),
+        segment: Segment3::new(p0, p1),
+        sigma_m: 0.01,
+        covariance: [Matrix3::zeros(); 2],
+        supports: Vec::new(),
     }
 }

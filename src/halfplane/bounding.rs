@@ -56,21 +56,10 @@ fn lies_in(plane: &Plane, line: &Segment3) -> bool {
 
 /// Do others run along most of a line, in plan, within an overhang's width?
 fn beside_others(line: &Segment3, others: &[Segment3]) -> bool {
-    let start = line.p0.xy();
-    let along = line.p1.xy() - start;
-    let length = along.norm();
-    if length <= 0.0 {
-        return false;
-    }
-    let d = along / length;
-    let stretches = others.iter().filter_map(|other| {
-        let [a, b] = [other.p0, other.p1].map(|p| p.xy() - start);
-        let apart = [a, b].map(|p| d.perp(&p).abs());
-        let turned = d.perp(&(b - a)).abs() > PARALLEL_SINE * (b - a).norm();
-        let (s, t) = (a.dot(&d), b.dot(&d));
-        (!turned && apart[0].max(apart[1]) <= OVERHANG).then_some([s.min(t), s.max(t)])
-    });
-    covered(stretches, [0.0, length]) >= MOST * length
+    let beside = (others.iter()).filter_map(|other| line.alongside(other, PARALLEL_SINE));
+    let stretches = beside.filter(|a| a.apart <= OVERHANG).map(|a| a.stretch);
+    let length = (line.p1.xy() - line.p0.xy()).norm();
+    length > 0.0 && covered(stretches, [0.0, length]) >= MOST * length
 }
 
 #[cfg(test)]

@@ -2,9 +2,10 @@
 
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
+pub(super) use crate::testing::line;
+
 use crate::camera::Camera;
-use crate::geometry::{Plane, Segment3};
-use crate::lines3d::Line3d;
+use crate::geometry::Plane;
 use crate::orientation::rotation_from_axis_angle;
 use crate::raster::Gray;
 use crate::scene::{Scene, View};
@@ -41,17 +42,6 @@ pub(super) fn scene(surfaces: &[Surface]) -> Scene {
         ground_z: None,
         warnings: Vec::new(),
         survey: crate::scene::Survey::default(),
-    }
-}
-
-/// A line that only the sweep will read.
-pub(super) fn line(p0: Point3<f64>, p1: Point3<f64>) -> Line3d {
-    Line3d {
-        origin: Default::default(),
-        segment: Segment3::new(p0, p1),
-        sigma_m: 0.01,
-        covariance: [Matrix3::zeros(); 2],
-        supports: Vec::new(),
     }
 }
 

@@ -14,6 +14,8 @@ pub struct RefineParams {
     /// A side without a neighbour is sought again within this distance in its facet's plane, metres. Assumption: half a
     /// correlation window of the coarsest images, where delineation ends a facet without a line.
     pub search_m: f64,
+    /// How well the place of a side is known that lies on a matched line, metres: the twin of an edge at a gutter may be as far. Assumption.
+    pub matched_m: f64,
     /// Ridges, hips and valleys are sought within this distance, px. Assumption: planes fix them.
     pub reach_px: f64,
     /// Shortest side that is measured, px. B99 3.2: the least length of segments is 15.
@@ -80,6 +82,7 @@ impl Default for RefineParams {
         Self {
             refine: true,
             search_m: 0.7,
+            matched_m: 0.3,
             reach_px: 2.0,
             min_side_px: 15.0,
             min_views: 3,

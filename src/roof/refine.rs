@@ -34,7 +34,7 @@ pub use wireframe::SideKind;
 
 use self::accept::Judge;
 use self::adjust::{Problem, Solution, Term};
-use self::sightings::sight_sides;
+use self::sightings::{Sighting, sight_sides};
 use self::wireframe::{State, Wireframe};
 use super::{Building, Facet, Occluders, RoofModel};
 use crate::ids::BuildingId;
@@ -211,7 +211,7 @@ impl Case<'_> {
         let simple: Vec<&Facet> = facets.iter().collect();
         let far = vec![true; facets.len()];
         let shown = |w: &Wireframe, state: &State| {
-            let sightings = sight_sides(self.scene, self.occluders, w, state, &far, self.params);
+            let sightings = self.sightings(w, state, &far);
             w.shown(state, sightings.iter().map(|s| s.side))
         };
         let (simple_wireframe, simple_state) = Wireframe::new(&simple);
@@ -227,6 +227,13 @@ impl Case<'_> {
             })
             .collect();
         outline::straightened(&chosen, 0.5 * jog_m)
+    }
+
+    fn sightings(&self, wireframe: &Wireframe, state: &State, search: &[bool]) -> Vec<Sighting> {
+        let (scene, occluders, params) = (self.scene, self.occluders, self.params);
+        sight_sides(
+            scene, occluders, wireframe, state, search, self.lines, params,
+        )
     }
 
     /// The simpler outlines on the old planes, of as many facets as the images and the building allow; `None` where none is left.
@@ -272,7 +279,7 @@ impl Case<'_> {
         report.sides = wireframe.sides.len();
         let heights = height_terms(&wireframe, &start, &from, self.lines, params);
         let problem = |state: &State, far: &[bool]| {
-            let sightings = sight_sides(self.scene, self.occluders, &wireframe, state, far, params);
+            let sightings = self.sightings(&wireframe, state, far);
             let mut problem = Problem::new(self.scene, &wireframe, &start, sightings, params);
             problem.terms.extend(heights.iter().cloned());
             problem

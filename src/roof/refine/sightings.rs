@@ -9,9 +9,10 @@
 use nalgebra::{Matrix2, Point2, Vector2};
 
 use super::wireframe::{Side, SideKind, State, Wireframe};
-use crate::geometry::{Segment2, Segment3};
+use crate::geometry::{Segment2, Segment3, covered};
 use crate::ids::ViewId;
 use crate::linematch::measure_edge;
+use crate::lines3d::Line3d;
 use crate::math;
 use crate::params::RefineParams;
 use crate::raster::Channel;
@@ -41,13 +42,14 @@ pub struct Sighting {
 }
 
 /// Measures all sides in all views. Sides without a neighbour may move to another edge first where `search` allows it for their
-/// facet.
+/// facet; those on one of the matched `lines` go less far for a stronger one, such as the edge of a shadow.
 pub fn sight_sides(
     scene: &Scene,
     occluders: &Occluders,
     wireframe: &Wireframe,
     state: &State,
     search: &[bool],
+    lines: &[Line3d],
     params: &RefineParams,
 ) -> Vec<Sighting> {
     let pixel_m = pixel(scene, wireframe, state);
@@ -65,8 +67,12 @@ pub fn sight_sides(
         Profiles::new(scene, occluders, wireframe, state, side, extent, params)
     });
     let gains = crate::parallel::map(&profiles, |i, profiles| {
-        let reach = reach_of(&wireframe.sides[i]);
-        profiles.as_ref()?.gains(reach, params)
+        let (profiles, side) = (profiles.as_ref()?, &wireframe.sides[i]);
+        let known_to_m = match is_on_line(&wireframe.segment(state, side), lines) {
+            true => params.matched_m,
+            false => params.search_m,
+        };
+        profiles.gains(reach_of(side), known_to_m, params)
     });
     let runs = aligned_runs(wireframe, state, 0.0, |kind| kind == SideKind::Free);
     let of_side = |i: usize, profiles: &Option<Profiles>| {
@@ -84,6 +90,20 @@ pub fn sight_sides(
         .flatten()
         .flatten()
         .collect()
+}
+
+/// Do matched lines run along most of a side?
+fn is_on_line(side: &Segment3, lines: &[Line3d]) -> bool {
+    /// Sine of the angle below which they are parallel (4 degrees).
+    const PARALLEL: f64 = 0.07;
+    /// Distance within which they are the same, metres in plan and in height. Assumption: delineation joins lines within 0.3 m.
+    const SAME: [f64; 2] = [0.15, 0.35];
+    let beside = lines
+        .iter()
+        .filter_map(|l| side.alongside(&l.segment, PARALLEL));
+    let same = beside.filter(|a| a.apart < SAME[0] && a.rise.abs() < SAME[1]);
+    let length = (side.p1.xy() - side.p0.xy()).norm();
+    covered(same.map(|a| a.stretch), [0.0, length]) >= 0.5 * length
 }
 
 /// Size of a pixel on the building, metres.
@@ -322,8 +342,8 @@ impl Profiles {
     /// What each step within `reach_m` is worth; `None` where too few views see the side, or none of them an edge.
     ///
     /// The energy of the labelling in one dimension: what the views agree on inside counts for the facet, a border
-    /// on an edge is cheap. Besides, the border that delineation chose is taken for known to `search_m`.
-    fn gains(&self, reach_m: f64, params: &RefineParams) -> Option<Gains> {
+    /// on an edge is cheap. Besides, the border that delineation chose is taken for known to `known_to_m`.
+    fn gains(&self, reach_m: f64, known_to_m: f64, params: &RefineParams) -> Option<Gains> {
         (self.views.len() >= params.min_views).then_some(())?;
         let middle = self.middle();
         let steps = ((reach_m / self.step_m()) as usize + 1).min(middle - 1);
@@ -344,7 +364,7 @@ impl Profiles {
         let mut inside = 0.0;
         let gain = (first..=last).map(|k| {
             inside += self.agreement(k, params) * self.step_m() * length;
-            let moved = (k as f64 - middle as f64) * self.step_m() / params.search_m;
+            let moved = (k as f64 - middle as f64) * self.step_m() / known_to_m;
             inside + params.edge_gain_m * (edge[k - first] - moved * moved * length)
         });
         Some(Gains {
@@ -507,6 +527,10 @@ mod tests {
 
     use super::super::fixture::{facet, facets_of};
     use super::*;
+    use crate::geometry::Plane;
+    use crate::roof::Facet;
+    use crate::synthetic::gable_scene;
+    use crate::testing;
 
     #[test]
     fn a_wall_goes_on_behind_a_jog() {
@@ -528,5 +552,99 @@ mod tests {
         };
         assert_eq!(longest(0.0), Some(1));
         assert_eq!(longest(0.5), Some(2));
+    }
+
+    /// Darkens, until texture is hardly seen, what is seen of a plane within `depth_m` inside a line in it, and beyond.
+    fn cast_shadow(
+        scene: &mut Scene,
+        plane: &Plane,
+        line: &Segment3,
+        inward: Vector2<f64>,
+        depth_m: f64,
+    ) {
+        for view in &mut scene.views {
+            let (camera, gray) = (&view.camera, &mut view.gray);
+            for k in 0..gray.data.len() {
+                let at = [k % gray.width, k / gray.width].map(|i| i as f64 + 0.5);
+                let ray = camera.ray(&Point2::from(at));
+                let depth = -plane.signed_distance(&camera.center) / plane.normal.dot(&ray);
+                let p = camera.center + ray * depth;
+                if (p.xy() - line.p0.xy()).dot(&inward) < depth_m {
+                    gray.data[k] = 0.1 + 0.1 * gray.data[k];
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_eave_on_a_matched_line_is_not_given_up_for_the_edge_of_a_shadow() {
+        let (mut scene, truth) = gable_scene(320);
+        let facets: Vec<Facet> = truth.facets.iter().map(|(_, ring)| facet(ring)).collect();
+        let (wireframe, state) = Wireframe::new(&facets_of(&facets));
+        let eave = |side: &&Side| {
+            let s = wireframe.segment(&state, side);
+            side.kind == SideKind::Free && (s.p0.z - s.p1.z).abs() < 0.01
+        };
+        let (index, side) = (wireframe.sides.iter().enumerate())
+            .find(|(_, side)| eave(side))
+            .expect("an eave");
+        let line = wireframe.segment(&state, side);
+        let along = (line.p1.xy() - line.p0.xy()).normalize();
+        // The facet lies on its left.
+        let inward = Vector2::new(-along.y, along.x);
+        let plane = facets[side.face].plane;
+        cast_shadow(&mut scene, &plane, &line, inward, 0.5);
+        let occluders = Occluders::new(&[]);
+        // Distance of the measured edges from the eave, in plan, metres.
+        let off_by = |lines: &[Line3d]| {
+            let params = RefineParams::default();
+            let search = [true, true];
+            let found = sight_sides(
+                &scene, &occluders, &wireframe, &state, &search, lines, &params,
+            );
+            let offsets = found.iter().filter(|s| s.side == index).map(|s| {
+                let camera = scene.camera(s.view);
+                let ray = camera.ray(&s.segment.midpoint());
+                let depth = -plane.signed_distance(&camera.center) / plane.normal.dot(&ray);
+                ((camera.center + ray * depth).xy() - line.p0.xy()).dot(&inward)
+            });
+            let mut offsets: Vec<f64> = offsets.collect();
+            assert!(offsets.len() >= 4, "measured in {} views", offsets.len());
+            math::median(&mut offsets).unwrap_or(f64::NAN)
+        };
+        let matched = testing::line(line.p0, line.p1);
+        let by_shadow = off_by(&[]);
+        assert!(
+            (by_shadow - 0.5).abs() < 0.1,
+            "the stronger edge at {by_shadow}"
+        );
+        let by_line = off_by(&[matched]);
+        assert!(by_line.abs() < 0.1, "the eave at {by_line}");
+    }
+
+    #[test]
+    fn a_side_is_on_a_line_that_runs_along_most_of_it_at_its_height() {
+        let side = Segment3::new(Point3::new(0.0, 0.0, 5.0), Point3::new(8.0, 0.0, 6.0));
+        let line = |x: [f64; 2], y: f64, lift: f64| {
+            let at = |x: f64| Point3::new(x, y, 5.0 + x / 8.0 + lift);
+            testing::line(at(x[0]), at(x[1]))
+        };
+        assert!(is_on_line(&side, &[line([-3.0, 5.0], 0.1, 0.3)]));
+        assert!(is_on_line(
+            &side,
+            &[line([0.0, 2.0], 0.1, 0.0), line([7.9, 5.5], -0.1, 0.0)]
+        ));
+        assert!(
+            !is_on_line(&side, &[line([-3.0, 3.0], 0.1, 0.0)]),
+            "along 3 of 8 m"
+        );
+        assert!(
+            !is_on_line(&side, &[line([0.0, 8.0], 0.2, 0.0)]),
+            "beside it"
+        );
+        assert!(
+            !is_on_line(&side, &[line([0.0, 8.0], 0.0, -0.5)]),
+            "under it"
+        );
     }
 }
