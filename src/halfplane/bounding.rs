@@ -26,27 +26,25 @@ pub fn bounding_lines(
     ground: &Ground,
     params: &RoofParams,
 ) -> Vec<Segment3> {
-    let keep = crate::parallel::map(input.lines, |_, line| {
-        let middle = line.at(0.5).xy();
-        let over: Vec<&Hypothesis> = hypotheses
-            .iter()
+    let on_ground = |l: &Line3d| ground.is_near(&l.segment, params.lowest_eave_m());
+    let above: Vec<Segment3> = (input.lines.iter())
+        .filter(|l| !on_ground(l))
+        .map(|l| l.segment)
+        .collect();
+    let bounds = crate::parallel::map(input.lines, |_, line| {
+        let (middle, segment) = (line.at(0.5).xy(), &line.segment);
+        let over: Vec<&Hypothesis> = (hypotheses.iter())
             .filter(|h| h.region.contains(&middle))
             .collect();
-        !over.is_empty()
-            && !over.iter().any(|h| {
-                lies_in(&h.group.plane, &line.segment) && crosses_surface(&h.map, &line.segment)
-            })
+        let inside =
+            |h: &&Hypothesis| lies_in(&h.group.plane, segment) && crosses_surface(&h.map, segment);
+        let is_foot = || on_ground(line) && beside_others(segment, &above);
+        !over.is_empty() && !over.iter().any(inside) && !is_foot()
     });
-    let segments = |lines: Vec<&Line3d>| lines.into_iter().map(|l| l.segment).collect();
-    let on_ground = |l: &&Line3d| ground.is_near(&l.segment, params.lowest_eave_m());
-    let (_, above): (Vec<&Line3d>, Vec<&Line3d>) = input.lines.iter().partition(on_ground);
-    let above: Vec<Segment3> = segments(above);
-    let kept = input.lines.iter().zip(keep).filter(|(_, keep)| *keep);
-    let kept = kept.map(|(line, _)| line);
-    segments(
-        kept.filter(|l| !on_ground(l) || !beside_others(&l.segment, &above))
-            .collect(),
-    )
+    (input.lines.iter().zip(bounds))
+        .filter(|(_, bounds)| *bounds)
+        .map(|(line, _)| line.segment)
+        .collect()
 }
 
 fn lies_in(plane: &Plane, line: &Segment3) -> bool {

@@ -275,9 +275,8 @@ impl Solver {
                 };
                 if round < ROUNDS
                     && matches!(reason, FacetRejection::ReachesGround { .. })
-                    && let plane = &self.planes[outline.plane as usize]
                     && let Some(tail) =
-                        tail_on_ground(plane, &outline.cells, &self.arrangement, ground)
+                        tail_on_ground(&facet.plane, &outline.cells, &self.arrangement, ground)
                 {
                     withdrawn.push((outline.plane, tail));
                     continue;
