@@ -14,12 +14,11 @@ use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
 use crate::scene::Scene;
 
-/// `lines.json`: 3D lines in the order of their ids, with the segment of each view that supports them.
+/// `lines.json`: 3D lines in the order of their ids, with the segment of each view that supports them. Ids of lines that the
+/// model refutes are left out.
 pub fn lines_json(scene: &Scene, lines: &[Line3d]) -> Vec<u8> {
     let point = |p: &Point3<f64>| (p + scene.origin).coords.map(|c| rounded(c, 4));
-    let lines: Vec<Value> = lines
-        .iter()
-        .enumerate()
+    let lines: Vec<Value> = Line3d::standing(lines)
         .map(|(id, line)| {
             let views: Vec<Value> = line
                 .supports
@@ -34,7 +33,7 @@ pub fn lines_json(scene: &Scene, lines: &[Line3d]) -> Vec<u8> {
                 })
                 .collect();
             json!({
-                "id": id,
+                "id": id.index(),
                 "p0": point(&line.segment.p0).as_slice(),
                 "p1": point(&line.segment.p1).as_slice(),
                 "sigma_m": rounded(line.sigma_m, 4),
@@ -60,11 +59,17 @@ pub fn segments_json(scene: &Scene, segments: &[Vec<ImageSegment>]) -> Vec<u8> {
 }
 
 /// `halfplanes.json`: the half-planes with the peak of Sim(theta) that they were accepted for (B99 figure 12) and
-/// their plane `a x + b y + c z + d = 0` in the world frame of the input.
-pub fn half_planes_json(scene: &Scene, half_planes: &[HalfPlane]) -> Vec<u8> {
+/// their plane `a x + b y + c z + d = 0` in the world frame of the input. Those at lines that the model refutes are left out.
+pub fn half_planes_json(scene: &Scene, lines: &[Line3d], half_planes: &[HalfPlane]) -> Vec<u8> {
+    let stands = |h: &HalfPlane| {
+        lines
+            .get(h.line.index())
+            .is_none_or(|l| l.refuted.is_none())
+    };
     let half_planes: Vec<Value> = half_planes
         .iter()
         .enumerate()
+        .filter(|(_, h)| stands(h))
         .map(|(id, h)| {
             let views: Vec<_> = h.views.iter().map(|&view| name(scene, view)).collect();
             let n = h.plane.normal;

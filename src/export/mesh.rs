@@ -8,6 +8,7 @@ use std::fmt::Write;
 use nalgebra::Point3;
 
 use super::{ATLAS_FILE, rounded, triangulate};
+use crate::ids::LineId;
 use crate::lines3d::Line3d;
 use crate::roof::{RoofModel, Surface};
 use crate::scene::Scene;
@@ -76,7 +77,9 @@ pub fn ply(scene: &Scene, model: &RoofModel, lines: &[Line3d]) -> Vec<u8> {
         vertices.extend(&solid.vertices);
     }
     let first_end = vertices.len();
-    vertices.extend(lines.iter().flat_map(|l| [l.segment.p0, l.segment.p1]));
+    let ends = |(_, l): (LineId, &Line3d)| [l.segment.p0, l.segment.p1];
+    vertices.extend(Line3d::standing(lines).flat_map(ends));
+    let edges = (vertices.len() - first_end) / 2;
 
     let mut text = "ply\nformat ascii 1.0\n".to_owned();
     text.push_str(&comment("comment ", scene));
@@ -84,7 +87,7 @@ pub fn ply(scene: &Scene, model: &RoofModel, lines: &[Line3d]) -> Vec<u8> {
     text.push_str("property double x\nproperty double y\nproperty double z\n");
     line(&mut text, format_args!("element face {}", triangles.len()));
     text.push_str("property list uchar int vertex_indices\n");
-    line(&mut text, format_args!("element edge {}", lines.len()));
+    line(&mut text, format_args!("element edge {edges}"));
     text.push_str("property int vertex1\nproperty int vertex2\nend_header\n");
     for p in &vertices {
         let [x, y, z] = world(scene, p);
@@ -93,7 +96,7 @@ pub fn ply(scene: &Scene, model: &RoofModel, lines: &[Line3d]) -> Vec<u8> {
     for [a, b, c] in triangles {
         line(&mut text, format_args!("3 {a} {b} {c}"));
     }
-    for i in 0..lines.len() {
+    for i in 0..edges {
         let a = first_end + 2 * i;
         line(&mut text, format_args!("{a} {}", a + 1));
     }

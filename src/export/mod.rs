@@ -48,7 +48,7 @@ pub struct Results<'a> {
     pub scene: &'a Scene,
     /// Image segments, per view.
     pub segments: &'a [Vec<ImageSegment>],
-    /// 3D lines.
+    /// 3D lines, of which those that are refuted are left out.
     pub lines: &'a [Line3d],
     /// Half-planes.
     pub half_planes: &'a [HalfPlane],
@@ -81,7 +81,10 @@ pub fn export_all(results: &Results, params: &TextureParams) -> Vec<(String, Vec
         ("lines.csv", lines_csv(scene, lines)),
         ("lines.json", lines_json(scene, lines)),
         ("segments.json", segments_json(scene, segments)),
-        ("halfplanes.json", half_planes_json(scene, half_planes)),
+        (
+            "halfplanes.json",
+            half_planes_json(scene, lines, half_planes),
+        ),
     ]
     .map(|(name, bytes)| (name.to_owned(), bytes))
     .into()

@@ -48,7 +48,8 @@ pub fn dxf(scene: &Scene, model: &RoofModel, lines: &[Line3d]) -> Vec<u8> {
             }
         }
     }
-    for segment in lines.iter().map(|l| &l.segment) {
+    for (_, l) in Line3d::standing(lines) {
+        let segment = &l.segment;
         entity(
             &mut text,
             scene,
@@ -140,7 +141,8 @@ fn closed_ring(scene: &Scene, solid: &Solid, ring: &[u32]) -> Vec<[f64; 2]> {
 /// The 3D lines as CSV, one a line of text; columns are named in the first one.
 pub fn lines_csv(scene: &Scene, lines: &[Line3d]) -> Vec<u8> {
     let mut text = String::from("id,x0_m,y0_m,z0_m,x1_m,y1_m,z1_m,length_m,sigma_m,views,origin\n");
-    for (id, l) in lines.iter().enumerate() {
+    for (id, l) in Line3d::standing(lines) {
+        let id = id.index();
         let ([x0, y0, z0], [x1, y1, z1]) =
             (world(scene, &l.segment.p0), world(scene, &l.segment.p1));
         let (length, sigma) = (rounded(l.segment.length(), 4), rounded(l.sigma_m, 4));

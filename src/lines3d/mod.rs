@@ -18,6 +18,7 @@ use nalgebra::{Matrix3, Point3};
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Segment3;
+use crate::ids::LineId;
 use crate::linematch::{LineMatch, LineSupport};
 use crate::params::Lines3dParams;
 use crate::scene::Scene;
@@ -49,6 +50,16 @@ impl LineOrigin {
     }
 }
 
+/// Why the finished model leaves a line out ([`crate::roof::refuted_lines`]).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Refutation {
+    /// Roofs hide it from all but two of its views.
+    Hidden,
+    /// One end lies in the ground, the other does not.
+    Underground,
+}
+
 /// A reconstructed 3D line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line3d {
@@ -63,9 +74,19 @@ pub struct Line3d {
     pub covariance: [Matrix3<f64>; 2],
     /// The views that support it.
     pub supports: Vec<LineSupport>,
+    /// Why it cannot be after all; no file shows it then.
+    pub refuted: Option<Refutation>,
 }
 
 impl Line3d {
+    /// The lines that stand, with their ids.
+    pub fn standing(lines: &[Self]) -> impl Iterator<Item = (LineId, &Self)> + Clone {
+        let numbered = lines.iter().enumerate();
+        numbered
+            .filter(|(_, line)| line.refuted.is_none())
+            .map(|(i, line)| (LineId::from_index(i), line))
+    }
+
     /// A point of the line, `t` from 0 to 1.
     pub fn at(&self, t: f64) -> Point3<f64> {
         self.segment.at(t)
@@ -170,6 +191,7 @@ fn reconstruct(
         sigma_m: stated.sigma_at(f0).max(stated.sigma_at(f1)),
         covariance: [f0, f1].map(|f| stated.covariance_at(f)),
         supports: matched.supports.clone(),
+        refuted: None,
     };
     Ok((line, (squares / (2.0 * fit.residuals.len() as f64)).sqrt()))
 }

@@ -314,5 +314,6 @@ fn world_line(sights: &[Sight], line: &ClusterLine) -> Line3d {
         sigma_m: line.sigma_m,
         covariance: [Matrix3::identity() * variance; 2],
         supports: supports.collect(),
+        refuted: None,
     }
 }

@@ -36,7 +36,9 @@ use crate::objectspace::{
 };
 use crate::params::{Method, Params};
 use crate::progress::{self, Listener};
-use crate::roof::{Ground, RoofEvidence, RoofModel, RoofTrace, new_lines, reconstruct_roofs};
+use crate::roof::{
+    Ground, RoofEvidence, RoofModel, RoofTrace, new_lines, reconstruct_roofs, refuted_lines,
+};
 use crate::scene::Scene;
 use crate::shares::{Known, map_shared, with_known};
 use crate::texture::{TextureTrace, TexturedModel, texture_model};
@@ -90,10 +92,15 @@ impl Results {
         lines.or(self.rectangles.as_ref().map(|r| &r.value))
     }
 
-    /// The 3D lines of B99, by their ids (matched ones, then those adopted of W96), and then the new lines of the model.
+    /// The 3D lines of B99, by their ids (matched ones, then those adopted of W96), and then the new lines of the model, which
+    /// says of each whether it stands.
     pub fn all_lines(&self) -> Option<Vec<Line3d>> {
         let mut lines = self.lines.as_ref()?.value.clone();
-        lines.extend_from_slice(&self.roof.as_ref()?.trace.new_lines);
+        let trace = &self.roof.as_ref()?.trace;
+        lines.extend_from_slice(&trace.new_lines);
+        for (line, why) in &trace.refuted_lines {
+            lines[line.index()].refuted = Some(*why);
+        }
         Some(lines)
     }
 }
@@ -290,6 +297,8 @@ impl Run {
                 let (model, mut trace) = reconstruct_roofs(scene, &evidence, &params.roof);
                 trace.new_lines =
                     new_lines(scene, lines, &model, &params.matching, &params.lines3d);
+                let all = [&lines[..], &trace.new_lines].concat();
+                trace.refuted_lines = refuted_lines(scene, &all, &model.facets, evidence.ground);
                 r.roof = Some((model, trace).into());
             }
             Stage::Regions => r.regions = Some(find_regions(scene, &params.objectspace).into()),

@@ -109,6 +109,7 @@ fn facets(results: &Results) -> Found {
     let counts = vec![
         ("facets", model.facets.len()),
         ("buildings", model.buildings.len()),
+        ("refuted lines", roof.trace.refuted_lines.len()),
     ];
     let none = "no roof facet was found: the model is empty";
     let warnings = warn_if(model.facets.is_empty() && some(&results.half_planes), none);

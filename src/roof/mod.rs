@@ -6,6 +6,7 @@ mod new_lines;
 mod occluders;
 mod reconstruct;
 mod refine;
+mod refuted;
 mod solid;
 
 pub use ground::Ground;
@@ -17,6 +18,7 @@ pub use refine::{
     BuildingRefinement, Parting, RefineRefusal, RefineTrace, RelationKind, SideKind,
     TestedRelation, part_roofs, refine_roofs,
 };
+pub use refuted::refuted_lines;
 pub use solid::{SolidRejection, SolidTrace, WELD_M, close_buildings};
 
 use nalgebra::Point3;

@@ -36,29 +36,60 @@ impl<'a> Occluders<'a> {
         }
     }
 
-    /// Does a roof stand between the point and the camera?
+    /// Does a roof, or a wall below it, stand between the point and the camera?
     pub fn hide(&self, point: &Point3<f64>, center: &Point3<f64>) -> bool {
-        let ray = center - point;
-        if ray.z <= 0.0 || self.highest <= point.z + LEAST_DEPTH_M {
-            return false;
-        }
-        // Up to the height of the highest roof.
-        let end = ((self.highest - point.z) / ray.z).min(1.0);
+        self.places(point, center).any(|p| self.covers(&p))
+    }
+
+    /// The same where walls stand back below their eaves: a ray may pass under a roof for `overhang_m` in plan, but through none.
+    pub fn hide_past_eaves(
+        &self,
+        point: &Point3<f64>,
+        center: &Point3<f64>,
+        overhang_m: f64,
+    ) -> bool {
+        let mut below = 0;
+        self.places(point, center).any(|p| {
+            if self.covers(&p) {
+                below += 1;
+                return below as f64 * STEP_M > overhang_m;
+            }
+            let through = below > 0 && self.roofs_at(&p.xy()).next().is_some();
+            below = 0;
+            through
+        })
+    }
+
+    /// Places along the ray from a point to a camera, up to the height of the highest roof.
+    fn places(
+        &self,
+        point: &Point3<f64>,
+        center: &Point3<f64>,
+    ) -> impl Iterator<Item = Point3<f64>> + use<> {
+        let (point, ray) = (*point, center - point);
+        let above = ray.z <= 0.0 || self.highest <= point.z + LEAST_DEPTH_M;
+        let end = match above {
+            true => 0.0,
+            false => ((self.highest - point.z) / ray.z).min(1.0),
+        };
         let steps = (ray.xy().norm() * end / STEP_M).ceil() as usize;
-        (1..=steps).any(|i| self.covers(&(point + ray * (end * i as f64 / steps as f64))))
+        (1..=steps).map(move |i| point + ray * (end * i as f64 / steps as f64))
     }
 
     /// Is the point inside or below a roof?
     fn covers(&self, p: &Point3<f64>) -> bool {
         let q = p.xy();
-        self.roofs.iter().any(|(f, [low, high])| {
-            q.x >= low.x
-                && q.y >= low.y
-                && q.x <= high.x
-                && q.y <= high.y
-                && f.plane.z_at(q.x, q.y) - p.z > LEAST_DEPTH_M
-                && inside(&f.outer, &q)
-        })
+        let mut roofs = self.roofs_at(&q);
+        roofs.any(|f| f.plane.z_at(q.x, q.y) - p.z > LEAST_DEPTH_M)
+    }
+
+    /// The facets over a plan position.
+    fn roofs_at<'s>(&'s self, p: &'s Point2<f64>) -> impl Iterator<Item = &'a Facet> + 's {
+        let near = |[low, high]: &[Point2<f64>; 2]| {
+            p.x >= low.x && p.y >= low.y && p.x <= high.x && p.y <= high.y
+        };
+        let roofs = self.roofs.iter().filter(move |(_, bounds)| near(bounds));
+        roofs.map(|(f, _)| *f).filter(|f| inside(&f.outer, p))
     }
 }
 
@@ -87,5 +118,21 @@ mod tests {
         assert!(!occluders.hide(&Point3::new(0.0, 9.0, 3.0), &south));
         assert!(!occluders.hide(&Point3::new(0.0, -6.0, 3.0), &south));
         assert!(!occluders.hide(&Point3::new(0.0, 0.0, 9.0), &south));
+    }
+
+    #[test]
+    fn a_wall_below_an_eave_is_seen_past_it_but_not_the_inside() {
+        let roof = gable();
+        let occluders = Occluders::new(&roof);
+        let south = Point3::new(0.0, -1000.0, 1000.0);
+        let hide =
+            |y, z, overhang| occluders.hide_past_eaves(&Point3::new(0.0, y, z), &south, overhang);
+        // The wall stands back by 0.7 m below the eave at y = -4: one step of the ray is below the roof.
+        assert!(occluders.hide(&Point3::new(0.0, -3.3, 1.0), &south));
+        assert!(!hide(-3.3, 1.0, 0.8) && hide(-3.3, 1.0, 0.2));
+        assert!(hide(-1.0, 3.0, 0.8), "3 m to the wall");
+        assert!(hide(0.5, 7.9, 0.8), "through the other side of the roof");
+        assert!(hide(5.0, 3.0, 0.8), "behind the house");
+        assert!(!hide(-6.0, 3.0, 0.8) && !hide(0.0, 9.0, 0.8));
     }
 }

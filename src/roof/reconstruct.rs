@@ -7,8 +7,9 @@ use super::{
     refine_roofs,
 };
 use crate::halfplane::{FacetTrace, HalfPlane, ProposedPlane, reconstruct_facets};
+use crate::ids::LineId;
 use crate::lines2d::ImageSegment;
-use crate::lines3d::Line3d;
+use crate::lines3d::{Line3d, Refutation};
 use crate::params::RoofParams;
 use crate::scene::Scene;
 
@@ -42,6 +43,8 @@ pub struct RoofTrace {
     pub solids: SolidTrace,
     /// Lines that the model adds to the matched ones (B99 4.2, 4.3).
     pub new_lines: Vec<Line3d>,
+    /// Of the lines before and the new ones, counted on: those that the model refutes.
+    pub refuted_lines: Vec<(LineId, Refutation)>,
 }
 
 /// The facets before refinement, whose buildings are those of [`RefineTrace`].
@@ -82,6 +85,7 @@ pub fn reconstruct_roofs(
             refinement,
             solids,
             new_lines: Vec::new(),
+            refuted_lines: Vec::new(),
         },
     )
 }

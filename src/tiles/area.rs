@@ -162,7 +162,7 @@ fn part(
     let (segments, lines, half_planes) = match params.method {
         Method::Lines | Method::Combined => (
             results.segments.as_ref().expect(found).value.clone(),
-            results.lines.as_ref().expect(found).value.clone(),
+            results.all_lines().expect(found),
             results.half_planes.as_ref().expect(found).value.clone(),
         ),
         Method::Rectangles => {

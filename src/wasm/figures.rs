@@ -13,7 +13,7 @@ use crate::halfplane::{PointsOfInterest, Side, SweepRejection};
 use crate::ids::{SegmentId, ViewId};
 use crate::linematch::{MatchTrace, SegmentRef, StepCount, SupportKind};
 use crate::lines2d::{ImageSegment, SegmentRejection};
-use crate::lines3d::{Line3d, LineOrigin};
+use crate::lines3d::{Line3d, LineOrigin, Refutation};
 use crate::objectspace::{image_segments, world_lines};
 use crate::pipeline::Run;
 use crate::roof::{Parting, RefineTrace, Unrefined};
@@ -22,6 +22,8 @@ use crate::roof::{Parting, RefineTrace, Unrefined};
 #[derive(Serialize)]
 struct LineRecord<'a> {
     origin: LineOrigin,
+    /// Why the model leaves it out.
+    refuted: Option<Refutation>,
     sigma_m: f64,
     /// Of the start and of the end point, m^2: xx, xy, xz, yy, yz, zz.
     covariance: [[f64; 6]; 2],
@@ -271,6 +273,7 @@ fn line_record(line: &Line3d) -> LineRecord<'_> {
     });
     LineRecord {
         origin: line.origin,
+        refuted: line.refuted,
         sigma_m: line.sigma_m,
         covariance: line
             .covariance

@@ -141,9 +141,16 @@ pub fn scene() -> Scene {
 }
 
 pub fn files_of(scene: &Scene, model: &RoofModel) -> BTreeMap<String, Vec<u8>> {
+    files_with(scene, model, planted_evidence())
+}
+
+pub fn files_with(
+    scene: &Scene,
+    model: &RoofModel,
+    (segments, lines, half_planes): Evidence,
+) -> BTreeMap<String, Vec<u8>> {
     let params = TextureParams::default();
     let (textured, _) = texture_model(scene, model, &params);
-    let (segments, lines, half_planes) = planted_evidence();
     let results = Results {
         scene,
         segments: &segments,
@@ -155,7 +162,10 @@ pub fn files_of(scene: &Scene, model: &RoofModel) -> BTreeMap<String, Vec<u8>> {
     export_all(&results, &params).into_iter().collect()
 }
 
-pub fn planted_evidence() -> (Vec<Vec<ImageSegment>>, Vec<Line3d>, Vec<HalfPlane>) {
+/// Image segments, 3D lines and half-planes.
+pub type Evidence = (Vec<Vec<ImageSegment>>, Vec<Line3d>, Vec<HalfPlane>);
+
+pub fn planted_evidence() -> Evidence {
     let segment = Segment2::new([1.0, 2.0].into(), [30.25, 4.0].into());
     let image_segment = ImageSegment {
         kind: Default::default(),
@@ -178,6 +188,7 @@ pub fn planted_evidence() -> (Vec<Vec<ImageSegment>>, Vec<Line3d>, Vec<HalfPlane
         sigma_m: 0.02,
         covariance: [Matrix3::zeros(); 2],
         supports: vec![support],
+        refuted: None,
     };
     let half_plane = HalfPlane {
         line: LineId(0),

@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
+use ridgeline::ids::LineId;
+use ridgeline::lines3d::Refutation;
 use ridgeline::roof::Surface;
 use serde_json::Value;
 
-use crate::planted::{ORIGIN, files_of, planted_evidence, planted_models, scene};
+use crate::planted::{ORIGIN, files_of, files_with, planted_evidence, planted_models, scene};
 
 #[test]
 fn evidence_is_written_in_the_world_frame_of_the_input() {
@@ -108,4 +110,37 @@ fn the_table_of_lines_reads_back() {
         assert!((row("length_m") - line.segment.length()).abs() < 1e-4);
         assert_eq!(row("views") as usize, line.supports.len());
     }
+}
+
+#[test]
+fn no_file_shows_what_the_model_refutes_and_ids_stay() {
+    let (segments, mut lines, mut half_planes) = planted_evidence();
+    let standing = lines[0].clone();
+    lines.push(standing.clone());
+    lines[0].refuted = Some(Refutation::Hidden);
+    lines[0].segment.p0.z += 1.0;
+    half_planes.push(half_planes[0].clone());
+    half_planes[1].line = LineId(1);
+    let (_, model, _) = planted_models().remove(0);
+    let all = files_of(&scene(), &model);
+    let files = files_with(&scene(), &model, (segments, lines, half_planes));
+
+    let parse = |name: &str| serde_json::from_slice::<Value>(&files[name]).unwrap();
+    let ids = |file: &str, list: &str| -> Vec<i64> {
+        let list = parse(file)[list].as_array().unwrap().clone();
+        list.iter()
+            .map(|item| item["id"].as_i64().unwrap())
+            .collect()
+    };
+    assert_eq!(ids("lines.json", "lines"), [1]);
+    assert_eq!(ids("halfplanes.json", "half_planes"), [1]);
+    assert_eq!(parse("halfplanes.json")["half_planes"][0]["line"], 1);
+    let text = |name: &str| String::from_utf8(files[name].clone()).unwrap();
+    assert_eq!(
+        text("lines.csv").lines().nth(1).unwrap().split(',').next(),
+        Some("1")
+    );
+    // The meshes are those of the standing line alone.
+    assert_eq!(files["model.ply"], all["model.ply"]);
+    assert_eq!(files["model.dxf"], all["model.dxf"]);
 }

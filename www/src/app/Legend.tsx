@@ -14,6 +14,7 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
     ["grown", "from regions"],
     ["border-intersection", "intersection"],
     ["border-inplane", "border"],
+    ["rejected", "refuted"],
   ],
   halfplanes: [
     ["matched", "3D line"],

@@ -9,7 +9,7 @@ import { clusterRows, refusedSegmentRows, withdrawnRows } from "./refused";
 import { linkToFacet, linkToGroup, linkToHalfPlane, linkToLine, type Related, type Row } from "./related";
 import { lineOfSegment } from "./shapes";
 import { params, pointing, results, scene } from "./state";
-import { ORIGIN_WORDS, outcomeWords, PAIR_WORDS, REJECTION_WORDS } from "./words";
+import { ORIGIN_WORDS, outcomeWords, PAIR_WORDS, REFUTATION_WORDS, REJECTION_WORDS } from "./words";
 
 /** The indices of the items that pass. */
 function indicesOf<T>(
@@ -236,6 +236,7 @@ function historyOfLine(index: number): Row[] {
   const refused = sides.filter(({ line, rejection }) => line === index && rejection !== null);
   return [
     ...(record === undefined ? [] : [["Found", ORIGIN_WORDS[record.origin]] as const]),
+    ...(record?.refuted == null ? [] : [["Refuted", REFUTATION_WORDS[record.refuted]] as const]),
     ...(record === undefined ? [] : [["σ across", `${(100 * record.sigma_m).toFixed(1)} cm`] as const]),
     ...(record?.supports ?? []).map(
       ({ view, segments, kind, score }) =>

@@ -1,5 +1,11 @@
 /** The core's reasons in words. */
-import type { BuildingRefinement, LineOrigin, SegmentOutcome, TestedRelation } from "../shared/traces";
+import type {
+  BuildingRefinement,
+  LineOrigin,
+  Refutation,
+  SegmentOutcome,
+  TestedRelation,
+} from "../shared/traces";
 
 /** Why a side of a line has no half-plane (B99 4.1). */
 export const REJECTION_WORDS: Record<string, string> = {
@@ -50,6 +56,12 @@ export const ORIGIN_WORDS: Record<LineOrigin, string> = {
   clustered: "from boundaries of regions, in object space",
   intersection: "new: two planes intersect here",
   border: "new: a border, seen again in the views",
+};
+
+/** Why the model leaves a 3D line out of the files. */
+export const REFUTATION_WORDS: Record<Refutation, string> = {
+  hidden: "roofs hide it from all but two of its views",
+  underground: "it goes into the ground",
 };
 
 export const RELATION_WORDS: Record<TestedRelation["kind"], string> = {

@@ -83,8 +83,12 @@ export type Covariance = readonly [number, number, number, number, number, numbe
 /** How a 3D line was found: from segments, or with the model (B99 4.2, 4.3). */
 export type LineOrigin = "matched" | "clustered" | "intersection" | "border";
 
+/** Why the finished model leaves a line out. */
+export type Refutation = "hidden" | "underground";
+
 export interface LineRecord {
   origin: LineOrigin;
+  refuted: Refutation | null;
   /** The larger semi-axis of both ends' ellipses across the line, one standard deviation. */
   sigma_m: number;
   /** Of the start and of the end point. */

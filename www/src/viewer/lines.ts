@@ -28,6 +28,11 @@ export function isUnseen({ origin, supports }: Pick<LineRecord, "origin" | "supp
   return origin !== "matched" && supports.length === 0;
 }
 
+/** By how a line was found, and as what is refused where the model refutes it. */
+export function colourOf(record: Pick<LineRecord, "origin" | "refuted"> | undefined): string {
+  return record?.refuted == null ? ORIGIN_COLOURS[record?.origin ?? "matched"] : PALETTE.rejected;
+}
+
 /**
  * @param lines p0 and p1 of each line, local frame, metres
  * @param linesOf the lines that belong to a selection
@@ -41,7 +46,7 @@ export function buildLines(
   const count = Math.floor(lines.length / LINE_STRIDE);
   const indices = Array.from({ length: count }, (_, i) => i);
   const unseen = (index: number) => records[index] !== undefined && isUnseen(records[index]);
-  const colour = (index: number) => ORIGIN_COLOURS[records[index]?.origin ?? "matched"];
+  const colour = (index: number) => colourOf(records[index]);
   const parts = [indices.filter((i) => !unseen(i)), indices.filter(unseen)].map((own, k) => {
     const drawn = strokes(
       own.flatMap((i) => endsOf(lines, i)),

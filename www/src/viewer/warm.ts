@@ -21,6 +21,7 @@ const PLANE = { normal: [0, 0, 1], d: 0 } as const;
 const NO_COVARIANCE = [0, 0, 0, 0, 0, 0] as const;
 const SEEN: LineRecord = {
   origin: "matched",
+  refuted: null,
   sigma_m: 0,
   covariance: [NO_COVARIANCE, NO_COVARIANCE],
   supports: [],

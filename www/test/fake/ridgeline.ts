@@ -263,6 +263,7 @@ export class Session implements CoreSession {
   lineRecords(): LineRecord[] {
     return EDGES.map((_, i) => ({
       origin: "matched" as const,
+      refuted: null,
       sigma_m: 0.01 * (i + 1),
       covariance: [
         [1e-4, 0, 0, 1e-4, 0, 4e-4],

@@ -1,12 +1,14 @@
 import type { Intersection } from "three";
 import type { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { expect, it } from "vitest";
+import { PALETTE } from "../../src/shared/palette";
 import type { LineOrigin, LineRecord } from "../../src/shared/traces";
-import { buildLines } from "../../src/viewer/lines";
+import { buildLines, colourOf, ORIGIN_COLOURS } from "../../src/viewer/lines";
 import { sidesOf } from "../../src/viewer/strokes";
 
 const record = (origin: LineOrigin, views: number): LineRecord => ({
   origin,
+  refuted: null,
   sigma_m: 0.1,
   covariance: [
     [1, 0, 0, 1, 0, 1],
@@ -31,6 +33,12 @@ it("draws lines that no view shows apart, dashed, and knows them when they are p
   expect([0, 1, 2].map((i) => pick(seen, i))).toEqual([0, 2, 3].map((index) => ({ kind: "line", index })));
   expect(pick(unseen, 0)).toEqual({ kind: "line", index: 1 });
   expect(pick(unseen, 1)).toBeNull();
+});
+
+it("shows a line that the model refutes like what is refused", () => {
+  expect(colourOf(record("border", 3))).toBe(ORIGIN_COLOURS.border);
+  expect(colourOf({ origin: "border", refuted: "hidden" })).toBe(PALETTE.rejected);
+  expect(colourOf(undefined)).toBe(ORIGIN_COLOURS.matched);
 });
 
 it("closes rings", () => {

@@ -30,7 +30,13 @@ describe("ellipse", () => {
 
 const record = (sigma: number): LineRecord => {
   const covariance: Covariance = [sigma ** 2, 0, 0, sigma ** 2, 0, sigma ** 2];
-  return { origin: "matched", sigma_m: sigma, covariance: [covariance, covariance], supports: [] };
+  return {
+    origin: "matched",
+    refuted: null,
+    sigma_m: sigma,
+    covariance: [covariance, covariance],
+    supports: [],
+  };
 };
 
 it("enlarges by a round factor", () => {

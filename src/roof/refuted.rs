@@ -1,0 +1,165 @@
+//! Lines that the finished model refutes (B99 3.4: no mismatches).
+//!
+//! Matching knows no surfaces. An eave in one view and the foot of the wall in two others, or parallel edges of two
+//! buildings, may meet in a line inside a house or under the street, and nothing in the views tells. Once there are roofs and a
+//! ground, two things cannot be:
+//!
+//! * a line that fewer than three of its views can see past the roofs, for it was never verified (B99 3.2);
+//! * a line that starts at the ground or above it and goes into it: it was matched with a wrong slope. What lies below the
+//!   ground as a whole stays, for there the ground is more likely to be wrong.
+
+use nalgebra::Point3;
+
+use super::{Facet, Ground, Occluders};
+use crate::ids::LineId;
+use crate::linematch::LineSupport;
+use crate::lines3d::{Line3d, ProjectedLine, Refutation};
+use crate::scene::Scene;
+
+/// Views that must be able to see a line.
+const MIN_VIEWS: usize = 3;
+/// A view does not see a stretch of which this share is hidden.
+const HIDDEN_SHARE: f64 = 0.5;
+/// Distance of the places at which a stretch is looked at, metres, and their least and greatest number.
+const STEP_M: f64 = 0.3;
+const PLACES: [usize; 2] = [5, 64];
+/// Walls stand back below their eaves by up to this, metres. Assumption.
+const OVERHANG_M: f64 = 0.8;
+/// In places the ground lies this much lower or higher than its map says, metres. Assumption.
+const ROUGHNESS_M: f64 = 0.25;
+/// Standard deviations of the line by which it must go deeper than that.
+const SIGNIFICANT: f64 = 2.0;
+/// Least slope of a line against the ground (sine of 6 degrees): less is what the map of the ground may miss.
+const LEAST_SLOPE: f64 = 0.1;
+
+/// The lines that cannot be, given the roofs and the ground, and why.
+pub fn refuted_lines(
+    scene: &Scene,
+    lines: &[Line3d],
+    facets: &[Facet],
+    ground: &Ground,
+) -> Vec<(LineId, Refutation)> {
+    let occluders = Occluders::new(facets);
+    let verdicts = crate::parallel::map(lines, |_, line| {
+        if goes_underground(line, ground) {
+            Some(Refutation::Underground)
+        } else if is_hidden(scene, line, &occluders) {
+            Some(Refutation::Hidden)
+        } else {
+            None
+        }
+    });
+    let refuted = |(i, why): (usize, Option<Refutation>)| Some((LineId::from_index(i), why?));
+    verdicts
+        .into_iter()
+        .enumerate()
+        .filter_map(refuted)
+        .collect()
+}
+
+fn goes_underground(line: &Line3d, ground: &Ground) -> bool {
+    let height = |p: &Point3<f64>| p.z - ground.z_at(&p.xy());
+    let (start, end) = (height(&line.segment.p0), height(&line.segment.p1));
+    let tolerance = ROUGHNESS_M + SIGNIFICANT * line.sigma_m;
+    let slopes = (start - end).abs() >= LEAST_SLOPE * line.segment.length();
+    slopes && start.min(end) < -tolerance && start.max(end) > -ROUGHNESS_M
+}
+
+/// Is the line hidden from all but two of its views, or from one of two? An intersection of planes needs none.
+fn is_hidden(scene: &Scene, line: &Line3d, occluders: &Occluders) -> bool {
+    let sees = |support: &&LineSupport| sees(scene, line, support, occluders);
+    line.supports.iter().filter(sees).count() < MIN_VIEWS.min(line.supports.len())
+}
+
+/// Can a view see most of the stretch that it supports?
+fn sees(scene: &Scene, line: &Line3d, support: &LineSupport, occluders: &Occluders) -> bool {
+    let camera = scene.camera(support.view);
+    let Some(image) = ProjectedLine::new(camera, &line.segment) else {
+        return false;
+    };
+    let length = line.segment.length();
+    let [from, to] = [support.stretch.p0, support.stretch.p1].map(|p| image.t_of(&p) / length);
+    let step = |count: usize, i: usize| (i as f64 + 0.5) / count as f64;
+    let metres = (to - from).abs() * length;
+    let count = ((metres / STEP_M) as usize).clamp(PLACES[0], PLACES[1]);
+    let places = (0..count).map(|i| line.at(from + (to - from) * step(count, i)));
+    let hidden = places
+        .filter(|p| occluders.hide_past_eaves(p, &camera.center, OVERHANG_M))
+        .count();
+    (hidden as f64) < HIDDEN_SHARE * count as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Segment2;
+    use crate::ids::ViewId;
+    use crate::linematch::SupportKind;
+    use crate::synthetic::gable_scene;
+    use crate::testing;
+
+    /// A line that these views of a scene show along all its length.
+    fn line(scene: &Scene, ends: [Point3<f64>; 2], views: impl Iterator<Item = u32>) -> Line3d {
+        let support = |view: u32| {
+            let camera = scene.camera(ViewId(view));
+            let [p0, p1] = ends.map(|p| camera.project(&p).expect("in front"));
+            LineSupport {
+                view: ViewId(view),
+                segments: Vec::new(),
+                stretch: Segment2::new(p0, p1),
+                score: 0.9,
+                kind: SupportKind::Matched,
+                edge: None,
+            }
+        };
+        Line3d {
+            supports: views.map(support).collect(),
+            ..testing::line(ends[0], ends[1])
+        }
+    }
+
+    #[test]
+    fn what_roofs_hide_from_all_but_two_views_is_refuted() {
+        let (scene, truth) = gable_scene(64);
+        let roof: Vec<Facet> = (truth.facets.iter())
+            .map(|(_, ring)| testing::facet(ring))
+            .collect();
+        let corners = roof.iter().flat_map(|f| &f.outer);
+        let top = corners.clone().fold(f64::MIN, |top, p| top.max(p.z));
+        let ridge: Vec<Point3<f64>> = (roof[0].outer.iter())
+            .filter(|p| top - p.z < 1e-9)
+            .copied()
+            .collect();
+        let below = |depth: f64| [0, 1].map(|i| ridge[i] - nalgebra::Vector3::z() * depth);
+        let lines = [
+            line(&scene, below(0.0), 0..6),
+            line(&scene, below(2.0), 0..6),
+            // High above the roof nothing hides it; an intersection of planes has no views to hide it from.
+            line(&scene, below(-2.0), 0..3),
+            line(&scene, below(2.0), 0..0),
+        ];
+        let ground = Ground::level(top - 100.0);
+        let refuted = refuted_lines(&scene, &lines, &roof, &ground);
+        assert_eq!(refuted, [(LineId(1), Refutation::Hidden)]);
+        assert_eq!(refuted_lines(&scene, &lines, &[], &ground), []);
+    }
+
+    #[test]
+    fn what_dips_into_the_ground_is_refuted_and_what_lies_deeper_is_not() {
+        let dips = |z0: f64, z1: f64, sigma_m: f64| {
+            let ends = [Point3::new(1.0, 2.0, z0), Point3::new(4.0, 6.0, z1)];
+            let line = Line3d {
+                sigma_m,
+                ..testing::line(ends[0], ends[1])
+            };
+            goes_underground(&line, &Ground::level(50.0))
+        };
+        // 5 m in plan.
+        assert!(dips(50.4, 49.2, 0.05) && dips(49.2, 50.4, 0.05));
+        assert!(!dips(50.4, 49.2, 0.5), "not certain enough");
+        assert!(!dips(50.4, 49.8, 0.05), "the ground is rough");
+        assert!(!dips(49.9, 49.5, 0.05), "as level as ground is");
+        assert!(!dips(49.6, 48.4, 0.05), "a hollow");
+        assert!(!dips(53.0, 50.1, 0.05));
+    }
+}
