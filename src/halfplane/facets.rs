@@ -129,7 +129,7 @@ pub fn reconstruct_facets(
         maps,
         scene: reduced,
     };
-    let (facets, rejected) = solver.solve(&groups, ground, params);
+    let (facets, rejected) = solver.solve(&groups, ground, scene, params);
     let cells = solver.arrangement.cells;
     (
         facets,
@@ -239,6 +239,7 @@ impl Solver {
         &mut self,
         groups: &[PlaneGroup],
         ground: &Ground,
+        colours: &Scene,
         params: &RoofParams,
     ) -> (Vec<Facet>, Vec<RejectedFacet>) {
         const ROUNDS: usize = 4;
@@ -258,7 +259,9 @@ impl Solver {
                 .collect();
             let occluders = Occluders::new(&found);
             let results: Vec<_> = (delineation.outlines.iter().zip(&found))
-                .map(|(outline, facet)| self.verify(facet, outline, &occluders, ground, params))
+                .map(|(outline, facet)| {
+                    self.verify(facet, outline, &occluders, ground, colours, params)
+                })
                 .collect();
             for ((outline, facet), result) in delineation.outlines.iter().zip(found).zip(results) {
                 let result = match result {

@@ -75,6 +75,7 @@ mod similarity;
 mod strip;
 mod sweep;
 mod trace;
+mod vegetation;
 mod verification;
 mod windows;
 

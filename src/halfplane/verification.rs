@@ -13,8 +13,9 @@ use super::consistency::{ConsistencyMap, consistency_map_behind};
 use super::delineation::{Outline, signed_area};
 use super::facets::Solver;
 use super::hypothesis::{ON_SURFACE, TEXTURED};
-use super::interior::{Inside, SIDE};
+use super::interior::{Inside, Interior, SIDE};
 use super::plan::PlanGrid;
+use super::vegetation::{GREEN, excess_green};
 use crate::geometry::Plane;
 use crate::ids::ViewId;
 use crate::params::RoofParams;
@@ -55,6 +56,11 @@ pub enum FacetRejection {
         /// Mean correlation of all their pairs inside the outline.
         similarity: f64,
     },
+    /// As green as plants, and a roof neither by its outline nor by its inside.
+    Vegetation {
+        /// (2 G - R - B) / (R + G + B).
+        excess_green: f64,
+    },
     /// Inside the outline the views agree better on the plane of another group.
     Outdone {
         /// Index of that group.
@@ -85,6 +91,8 @@ const LOWEST_EAVE: f64 = 1.0;
 /// Share of a facet that may lie on the ground for the rest to be a roof still: a corner drawn too far. Assumption: of a bank that rises to the
 /// height of an eave more lies lower than [`LOWEST_EAVE`].
 const MOST_ON_GROUND: f64 = 0.15;
+/// Share of its outline on lines from which on a green facet is bounded as roofs are. Assumption.
+const MOST_REAL: f64 = 0.5;
 /// Share of a facet that another plane must be able to cover to take its place. Assumption.
 const ALMOST_ALL: f64 = 0.9;
 /// Standard deviations by which the views must agree better on it. Assumption: as usual.
@@ -112,6 +120,16 @@ fn inside<'m>(facet: &Facet, map: &'m ConsistencyMap) -> Inside<'m> {
     Inside::new(&rings, map)
 }
 
+/// The excess green of a facet that is as green as plants and is no clear roof, by its outline or by its inside.
+fn vegetation(facet: &Facet, inside: &Inside, interior: &Interior, colours: &Scene) -> Option<f64> {
+    if facet.real_ratio >= MOST_REAL && interior.is_clear() {
+        return None;
+    }
+    let places = inside.places().map(|p| facet.plane.lift(p.x, p.y));
+    let green = excess_green(colours, &places.collect::<Vec<_>>());
+    (green > GREEN).then_some(green)
+}
+
 /// The cells of a facet that come down to the ground, where these are few: without them it may be a roof.
 pub(super) fn tail_on_ground(
     plane: &Plane,
@@ -135,13 +153,14 @@ pub(super) fn tail_on_ground(
 }
 
 impl Solver {
-    /// Does the facet stay, between the other facets and over the ground?
+    /// Does the facet stay, between the other facets and over the ground? `colours` are the photographs as they were taken.
     pub(super) fn verify(
         &self,
         facet: &Facet,
         outline: &Outline,
         occluders: &Occluders,
         ground: &Ground,
+        colours: &Scene,
         params: &RoofParams,
     ) -> Result<(), FacetRejection> {
         let plan: Vec<Point2<f64>> = facet.outer.iter().map(Point3::xy).collect();
@@ -183,6 +202,9 @@ impl Solver {
             && let Some(similarity) = self.contradicted(facet, map.grid.step, occluders, params)
         {
             return Err(FacetRejection::Contradicted { similarity });
+        }
+        if let Some(excess_green) = vegetation(facet, &inside, &interior, colours) {
+            return Err(FacetRejection::Vegetation { excess_green });
         }
         if let Some((by, sigmas)) = self.outdone(outline, &inside) {
             return Err(FacetRejection::Outdone { by, sigmas });
@@ -292,6 +314,28 @@ mod tests {
             .collect();
         assert_eq!((found[0], found[19]), ([false; 2], [true; 2]));
         assert!(found.contains(&[false, true]) && !found.contains(&[true, false]));
+    }
+
+    #[test]
+    fn a_green_facet_must_be_a_roof_by_its_lines_and_by_its_inside() {
+        let (mut scene, facet) = scene_and_facet();
+        let of = |scene: &Scene, raised: f64, real_ratio: f64| {
+            let ring = facet.outer.iter().map(|p| p + Vector3::z() * raised);
+            let facet = Facet {
+                real_ratio,
+                ..testing::facet(&ring.collect::<Vec<_>>())
+            };
+            let map = map_inside(scene, &facet, 0.1, &|_, _| false);
+            let inside = inside(&facet, &map);
+            vegetation(&facet, &inside, &inside.sums(MIN_CORRELATION), scene).is_some()
+        };
+        assert!(!of(&scene, 0.0, 0.2) && !of(&scene, 2.0, 0.9), "red tiles");
+        for view in &mut scene.views {
+            let hedge = |p: &mut image::Rgb<u8>| p.0 = [p[0] / 2, p[0] / 2 + 20, p[0] / 2];
+            view.rgb.pixels_mut().for_each(hedge);
+        }
+        assert!(of(&scene, 0.0, 0.2) && of(&scene, 2.0, 0.9));
+        assert!(!of(&scene, 0.0, 0.9), "a copper roof");
     }
 
     /// A plan of 30 m by 30 m, cut by lines across at these x.

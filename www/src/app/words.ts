@@ -113,6 +113,8 @@ export function facetRejectionWords(reason: Record<string, Record<string, number
       return `the views do not agree inside (${value.toFixed(2)})`;
     case "contradicted":
       return `the views that see it do not agree inside (${value.toFixed(2)})`;
+    case "vegetation":
+      return `green as plants are, and no roof by its lines or its inside (${value.toFixed(2)})`;
     case "outdone":
       return `the views agree better on plane ${numbers["by"]} inside (by ${(numbers["sigmas"] ?? 0).toFixed(1)} σ)`;
     case "unsupported":
