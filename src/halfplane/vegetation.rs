@@ -29,7 +29,11 @@ fn of_view(view: &View, points: &[Point3<f64>]) -> Option<f64> {
         if !view.camera.contains(&x, 1.0) {
             continue;
         }
-        let [r, g, b] = view.rgb.get_pixel(x.x as u32, x.y as u32).0.map(f64::from);
+        // An instance that only shares the work has no colours.
+        let Some(pixel) = view.rgb.get_pixel_checked(x.x as u32, x.y as u32) else {
+            continue;
+        };
+        let [r, g, b] = pixel.0.map(f64::from);
         green += 2.0 * g - r - b;
         all += r + g + b;
     }

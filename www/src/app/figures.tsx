@@ -124,7 +124,7 @@ const FIGURES: Record<Tab, Figure> = {
         <Close />
       </mrow>
     ),
-    hint: "Switch to Before growing to see what the segments alone give.",
+    hint: "Switch to Before growing to see what the segments alone give. Red lines cannot be: the finished model hides them from their views, or they go into the ground. No file has them.",
   },
   halfplanes: {
     title: "Half-planes",
