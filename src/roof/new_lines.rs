@@ -472,6 +472,21 @@ mod tests {
     }
 
     #[test]
+    fn two_thirds_of_the_views_that_see_a_border_must_show_it() {
+        let (scene, truth) = hip_scene(320);
+        let borders = |blank: usize| {
+            let mut scene = scene.clone();
+            for view in &mut scene.views[..blank] {
+                view.gray.data.fill(0.5);
+                view.warmth = None;
+            }
+            found(&scene, &[], &model(&truth, &[])).len()
+        };
+        assert_eq!([0, 2].map(borders), [truth.edges.len(); 2]);
+        assert_eq!(borders(3), 0, "three of six");
+    }
+
+    #[test]
     fn of_two_roofs_side_by_side_the_higher_one_has_the_edge() {
         let flat = |x0: f64, x1: f64, z: f64| {
             let corners = [(x0, 0.0), (x1, 0.0), (x1, 6.0), (x0, 6.0)];

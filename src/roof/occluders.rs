@@ -67,8 +67,8 @@ impl<'a> Occluders<'a> {
         center: &Point3<f64>,
     ) -> impl Iterator<Item = Point3<f64>> + use<> {
         let (point, ray) = (*point, center - point);
-        let above = ray.z <= 0.0 || self.highest <= point.z + LEAST_DEPTH_M;
-        let end = match above {
+        let is_above_all = ray.z <= 0.0 || self.highest <= point.z + LEAST_DEPTH_M;
+        let end = match is_above_all {
             true => 0.0,
             false => ((self.highest - point.z) / ray.z).min(1.0),
         };

@@ -128,7 +128,8 @@ export async function ensureInspected(): Promise<void> {
   if (!held.files) {
     await engine.call("setFiles", { files: files.value });
     held.files = true;
-    inspection.value = null;
+    // What is shown of the same files stays, and with it what a person is typing there.
+    held.inspection = false;
   }
   if (inspection.value === null || !held.inspection) {
     // Of all images, also of those that are left out.
