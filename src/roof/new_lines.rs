@@ -21,8 +21,8 @@ use crate::params::{Lines3dParams, MatchParams};
 use crate::raster::Channel;
 use crate::scene::Scene;
 
-/// Least number of views that must show a border, and their least share of those that can see it. Measured: with five or six
-/// views a third of what three showed were no edges, of what more showed a fiftieth.
+/// Least number of views that must show a border, and their least share of those that can see it. Measured on suburb,
+/// detached and campus-drone: with five or six views 4 of 18 that three showed were no edges, of those that more showed 2 of 212.
 const MIN_VIEWS: usize = 3;
 const LEAST_SHARE: [usize; 2] = [2, 3];
 /// A matched line explains an edge from which it is no farther, ground pixels.
