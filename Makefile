@@ -9,13 +9,14 @@
 #   make golden     rewrite the hashes that the tests of whole runs expect (tests/golden)
 #   make score      all scenes against their truth; rewrites the tables of docs/results.md
 #   make fuzz       all readers on damaged files, FUZZ_SECONDS (600) for each format
+#   make jury       the rendered scenes many times over, changed a little each time; rewrites its table there
 #   make bench      time of every stage on the synthetic scene
 #   make clean      remove what was built (not the tool cache)
 
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: demo test build lint identical golden score bench fuzz native setup clean
+.PHONY: demo test build lint identical golden score jury bench fuzz native setup clean
 
 # The command-line tool must be of exactly the crate's version: stated once, in Cargo.toml.
 WASM_BINDGEN_VERSION := $(shell sed -n 's/^wasm-bindgen = "=\(.*\)"/\1/p' Cargo.toml)
@@ -57,6 +58,9 @@ golden:
 
 score: native
 	python3 tests/score_table.py --binary target/release/ridgeline --scenes "$${SCENES:-../shared/scenes}"
+
+jury: native
+	python3 tests/jury.py --binary target/release/ridgeline --scenes "$${SCENES:-../shared/scenes}"
 
 bench:
 	cargo bench --bench stages

@@ -13,6 +13,7 @@ use super::line_index::LineIndex;
 use super::plan::PlanGrid;
 use super::shiftable::ShiftableWindows;
 use crate::geometry::Plane;
+use crate::math::larger;
 use crate::params::RoofParams;
 
 /// What the images say about one plane in one cell.
@@ -26,6 +27,23 @@ pub struct CellEvidence {
     pub correlation: f64,
     /// The same for the correlation at which the plane is as good as none.
     pub least: f64,
+}
+
+/// Least texture weight with which planes are compared with each other. What weak texture correlates by chance is the same for every plane
+/// at one place, so that it tells planes apart better than it tells a plane from none. Measured: from 1 on it is noise that decides between them.
+const AMONG_PLANES: f64 = 0.5;
+
+impl CellEvidence {
+    /// Mean correlation of the texture; `None` without any.
+    fn mean_correlation(&self) -> Option<f64> {
+        (self.weight > 0.0).then(|| self.correlation / self.weight)
+    }
+
+    /// What it costs a plane of weak texture that another one correlates by `best`, beyond what its weight says.
+    fn behind(&self, best: f64) -> f64 {
+        let lacking = (AMONG_PLANES * self.area - self.weight).max(0.0);
+        (self.mean_correlation()).map_or(0.0, |correlation| lacking * (best - correlation))
+    }
 }
 
 /// The evidence for every plane in every cell that it may cover.
@@ -98,11 +116,12 @@ impl Evidence {
             .iter()
             .zip(&self.ground)
             .map(|(candidates, ground)| {
-                candidates
-                    .iter()
+                let best = (candidates.iter()).filter_map(|(_, e)| e.mean_correlation());
+                let best = best.fold(-1.0, larger);
+                (candidates.iter())
                     .map(|(plane, e)| {
                         // sum of weight x (least correlation - correlation): negative for a match.
-                        let mismatch = e.least - e.correlation;
+                        let mismatch = e.least - e.correlation + e.behind(best);
                         // "No plane" keeps the cost 0, so what speaks for the ground counts against roofs.
                         (*plane, mismatch + ground)
                     })
@@ -426,6 +445,21 @@ mod tests {
         let earned = [0, 1].map(|plane| without[plane] - with[plane]);
         assert!(earned[0] > 0.0, "{earned:?}");
         assert!((earned[0] - earned[1]).abs() < 1e-9, "{earned:?}");
+    }
+
+    #[test]
+    fn planes_of_weak_texture_are_told_apart_though_little_tells_them_from_none() {
+        let cell = |weight: f64, correlation: f64| CellEvidence {
+            area: 10.0,
+            weight: 10.0 * weight,
+            correlation: 10.0 * weight * correlation,
+            least: 0.0,
+        };
+        let (weak, strong) = (cell(0.1, 0.3), cell(0.9, 0.3));
+        assert!((weak.behind(0.4) - 0.1 * (5.0 - 1.0)).abs() < 1e-12);
+        assert_eq!(strong.behind(0.4), 0.0, "its own weight is enough");
+        assert!(weak.behind(0.3).abs() < 1e-12, "the best of all");
+        assert_eq!(CellEvidence::default().behind(0.4), 0.0);
     }
 
     #[test]

@@ -56,6 +56,12 @@ pub enum FacetRejection {
         /// Mean correlation of all their pairs inside the outline.
         similarity: f64,
     },
+    /// Steep, without a half-plane, and the views that nothing hides it from agree inside it by chance at most: it spans from one edge to
+    /// a lower one across a gap.
+    Bridge {
+        /// Mean correlation of all their pairs inside the outline.
+        similarity: f64,
+    },
     /// As green as plants, and a roof neither by its outline nor by its inside.
     Vegetation {
         /// (2 G - R - B) / (R + G + B).
@@ -93,6 +99,12 @@ const LOWEST_EAVE: f64 = 1.0;
 const MOST_ON_GROUND: f64 = 0.15;
 /// Share of its outline on lines from which on a green facet is bounded as roofs are. Assumption.
 const MOST_REAL: f64 = 0.5;
+/// Cosine of the slope (26 degrees) below which a facet without a half-plane may be a roof that shines: the views of a metal roof of real-barns, at 22 degrees,
+/// agree by no more than chance.
+const FLAT_COSINE: f64 = 0.9;
+/// Share of its outline on lines from which on a facet is bounded by them all around. Measured: of the rendered facets that views agree on by chance at
+/// most, true ones have 0.86 and more, false ones 0.35 to 0.8.
+const ALL_REAL: f64 = 0.85;
 /// Share of a facet that another plane must be able to cover to take its place. Assumption.
 const ALMOST_ALL: f64 = 0.9;
 /// Standard deviations by which the views must agree better on it. Assumption: as usual.
@@ -128,6 +140,13 @@ fn vegetation(facet: &Facet, inside: &Inside, interior: &Interior, colours: &Sce
     let places = inside.places().map(|p| facet.plane.lift(p.x, p.y));
     let green = excess_green(colours, &places.collect::<Vec<_>>());
     (green > GREEN).then_some(green)
+}
+
+/// Might a facet span a gap between an edge and a lower one? No half-plane says that it goes on beside its lines, it is steep, as flat roofs
+/// that shine are not, and part of its outline is no line.
+fn may_bridge(facet: &Facet) -> bool {
+    let is_flat = facet.plane.normal.z >= FLAT_COSINE;
+    facet.half_planes.is_empty() && !is_flat && facet.real_ratio < ALL_REAL
 }
 
 /// The cells of a facet that come down to the ground, where these are few: without them it may be a roof.
@@ -198,10 +217,19 @@ impl Solver {
         }
         // The better half of the pairs excuses the views in which something stands in front of the facet, and with them
         // as many in which nothing does.
-        if interior.speaks_against_overall()
-            && let Some(similarity) = self.contradicted(facet, map.grid.step, occluders, params)
-        {
-            return Err(FacetRejection::Contradicted { similarity });
+        if interior.speaks_against_overall() {
+            let seen = self.seen_inside(facet, map.grid.step, occluders, params);
+            if seen.speaks_against_overall() {
+                let similarity = seen.overall / seen.weight;
+                return Err(FacetRejection::Contradicted { similarity });
+            }
+        }
+        if may_bridge(facet) && interior.is_doubtful() {
+            let seen = self.seen_inside(facet, map.grid.step, occluders, params);
+            if seen.is_by_chance() {
+                let similarity = seen.overall / seen.weight;
+                return Err(FacetRejection::Bridge { similarity });
+            }
         }
         if let Some(excess_green) = vegetation(facet, &inside, &interior, colours) {
             return Err(FacetRejection::Vegetation { excess_green });
@@ -227,20 +255,17 @@ impl Solver {
         Ok(())
     }
 
-    /// How all pairs of views correlate inside a facet, where no other hides it from them; `None` unless that contradicts
-    /// its plane.
-    fn contradicted(
+    /// What the inside of a facet shows to the views that no other facet hides it from.
+    fn seen_inside(
         &self,
         facet: &Facet,
         step: f64,
         occluders: &Occluders,
         params: &RoofParams,
-    ) -> Option<f64> {
+    ) -> Interior {
         let hidden = |view, point: &_| occluders.hide(point, &self.scene.camera(view).center);
         let map = map_inside(&self.scene, facet, step, &hidden);
-        let seen = inside(facet, &map).sums(params.min_correlation);
-        seen.speaks_against_overall()
-            .then(|| seen.overall / seen.weight)
+        inside(facet, &map).sums(params.min_correlation)
     }
 
     /// The plane that could lie over a facet and that the views agree on clearly better inside it. A level plane through
@@ -270,6 +295,7 @@ impl Solver {
 mod tests {
     use super::*;
     use crate::halfplane::borders::{Border, BorderKind};
+    use crate::ids::HalfPlaneId;
     use crate::synthetic::gable_scene;
     use crate::testing;
     use nalgebra::Vector3;
@@ -314,6 +340,25 @@ mod tests {
             .collect();
         assert_eq!((found[0], found[19]), ([false; 2], [true; 2]));
         assert!(found.contains(&[false, true]) && !found.contains(&[true, false]));
+    }
+
+    #[test]
+    fn a_steep_facet_without_a_half_plane_may_bridge_a_gap() {
+        let facet = |rise: f64, real_ratio: f64, half_planes: usize| {
+            let corner = |x: f64, y: f64| Point3::new(x, y, 5.0 + rise * y);
+            Facet {
+                real_ratio,
+                half_planes: (0..half_planes).map(HalfPlaneId::from_index).collect(),
+                ..testing::facet(&[corner(0.0, 0.0), corner(9.0, 0.0), corner(9.0, 4.0)])
+            }
+        };
+        assert!(may_bridge(&facet(1.2, 0.6, 0)));
+        assert!(
+            !may_bridge(&facet(1.2, 0.6, 1)),
+            "it goes on beside a line"
+        );
+        assert!(!may_bridge(&facet(0.4, 0.6, 0)), "metal");
+        assert!(!may_bridge(&facet(1.2, 0.9, 0)), "lines all around");
     }
 
     #[test]

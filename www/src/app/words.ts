@@ -113,6 +113,8 @@ export function facetRejectionWords(reason: Record<string, Record<string, number
       return `the views do not agree inside (${value.toFixed(2)})`;
     case "contradicted":
       return `the views that see it do not agree inside (${value.toFixed(2)})`;
+    case "bridge":
+      return `steep, without a half-plane, and the views that see it agree by chance at most (${value.toFixed(2)}): it spans a gap`;
     case "vegetation":
       return `green as plants are, and no roof by its lines or its inside (${value.toFixed(2)})`;
     case "outdone":
