@@ -285,9 +285,10 @@ fn half_planes_of(
     const BESIDE: f64 = 0.3;
     let mut metres = BTreeMap::<usize, f64>::new();
     for member in &group.members {
-        let Some(h) = member.half_plane else { continue };
+        let half_plane = member.half_plane.map(|h| &input.half_planes[h.index()]);
         let line = &input.lines[member.line.index()].segment;
-        let Some(frame) = ThetaFrame::new(line, input.half_planes[h.index()].side) else {
+        let swept = half_plane.filter(|h| h.is_swept());
+        let Some(frame) = swept.and_then(|h| ThetaFrame::new(line, h.side)) else {
             continue;
         };
         let count = (line.length() / STEP).ceil().max(1.0);
@@ -311,7 +312,7 @@ mod tests {
     use crate::halfplane::neighbourhood::line_neighbours;
     use crate::halfplane::region::Region;
     use crate::halfplane::{HalfPlane, Side};
-    use crate::ids::{HalfPlaneId, LineId};
+    use crate::ids::{HalfPlaneId, LineId, ViewId};
     use crate::lines3d::Line3d;
     use nalgebra::{Point2, Point3, Vector3};
 
@@ -349,7 +350,7 @@ mod tests {
             curvature: 9.0,
             amplitude: 0.5,
             probability: 1.0,
-            views: Vec::new(),
+            views: vec![ViewId(0)],
             plane: HORIZONTAL,
         };
         let group = PlaneGroup {
@@ -381,6 +382,13 @@ mod tests {
         let metres = half_planes_of(&input, &group, &raster, &grid);
         assert_eq!(metres.keys().collect::<Vec<_>>(), [&1]);
         assert!((metres[&1] - 8.0).abs() < 1e-9);
+        let mut repeated = half_planes.clone();
+        repeated[0].views.clear();
+        let input = GroupingInput {
+            half_planes: &repeated,
+            ..input
+        };
+        assert!(half_planes_of(&input, &group, &raster, &grid).is_empty());
     }
 
     #[test]

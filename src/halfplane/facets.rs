@@ -26,6 +26,7 @@ use super::plan::PlanGrid;
 use super::plane_lines::PlaneLine;
 use super::proposed::add_rectangles;
 use super::region::Region;
+use super::repeated::{group_repeated, with_repeated};
 use super::shiftable::ShiftableWindows;
 use super::verification::{FacetRejection, RejectedFacet, tail_on_ground};
 use crate::geometry::Plane;
@@ -73,6 +74,12 @@ pub fn reconstruct_facets(
     };
     let mut groups: Vec<PlaneGroup> = group_planes(&input, params);
     groups.retain(|g| !is_wall(&g.plane) && !lies_on_ground(&input, g, ground, params));
+    let half_planes = with_repeated(&input, &groups, ground, params);
+    let input = GroupingInput {
+        half_planes: &half_planes,
+        ..input
+    };
+    groups.extend(group_repeated(&input, params));
     add_rectangles(&input, &mut groups, params);
     let regions: Vec<Region> = groups
         .iter()
@@ -109,7 +116,9 @@ pub fn reconstruct_facets(
         &windows,
         params,
     );
-    let groups: Vec<PlaneGroup> = hypotheses.iter().map(|h| h.group.clone()).collect();
+    let groups: Vec<PlaneGroup> = (hypotheses.iter())
+        .map(|h| h.group.as_swept(&input))
+        .collect();
     let (maps, plane_lines): (Vec<ConsistencyMap>, Vec<Vec<PlaneLine>>) =
         hypotheses.into_iter().map(|h| (h.map, h.lines)).unzip();
     let plane_lines = plane_lines.concat();

@@ -76,6 +76,23 @@ impl PlaneGroup {
             .filter(|r| self.rectangles.contains(&r.index))
     }
 
+    /// Does it consist of half-planes that only repeat another plane?
+    pub fn is_repeated(&self, input: &GroupingInput) -> bool {
+        let half_planes = self.half_planes();
+        let swept = |h: &HalfPlaneId| input.half_planes[h.index()].is_swept();
+        !half_planes.is_empty() && !half_planes.iter().any(swept)
+    }
+
+    /// The same without the half-planes that no view has shown.
+    pub fn as_swept(&self, input: &GroupingInput) -> Self {
+        let mut group = self.clone();
+        for member in &mut group.members {
+            let swept = |h: &HalfPlaneId| input.half_planes[h.index()].is_swept();
+            member.half_plane = member.half_plane.filter(swept);
+        }
+        group
+    }
+
     /// The half-planes, ascending.
     pub fn half_planes(&self) -> Vec<HalfPlaneId> {
         let mut ids: Vec<HalfPlaneId> = self.members.iter().filter_map(|m| m.half_plane).collect();
@@ -85,10 +102,11 @@ impl PlaneGroup {
 }
 
 /// Everything that grouping reads.
+#[derive(Clone, Copy)]
 pub struct GroupingInput<'a> {
     /// 3D lines.
     pub lines: &'a [Line3d],
-    /// Accepted half-planes.
+    /// Accepted half-planes, and behind them those that repeat another plane ([`HalfPlane::is_swept`]).
     pub half_planes: &'a [HalfPlane],
     /// Neighbours of each line.
     pub neighbours: &'a Neighbours,
@@ -154,7 +172,7 @@ fn half_planes_by_line(input: &GroupingInput) -> Vec<Vec<HalfPlaneId>> {
 }
 
 /// Half-planes, the most reliable first: similarity times the length of the line.
-fn by_strength(input: &GroupingInput) -> Vec<HalfPlaneId> {
+pub fn by_strength(input: &GroupingInput) -> Vec<HalfPlaneId> {
     let strength = |id: &HalfPlaneId| {
         let h = &input.half_planes[id.index()];
         h.similarity * input.lines[h.line.index()].segment.length()
@@ -168,7 +186,7 @@ fn by_strength(input: &GroupingInput) -> Vec<HalfPlaneId> {
     ids
 }
 
-fn grow(
+pub fn grow(
     input: &GroupingInput,
     by_line: &[Vec<HalfPlaneId>],
     seed: HalfPlaneId,
@@ -319,7 +337,7 @@ pub fn fit_plane(input: &GroupingInput, members: &[Member]) -> Option<Plane> {
 }
 
 /// Neighbouring groups of one plane become one.
-fn merge_groups(
+pub fn merge_groups(
     input: &GroupingInput,
     groups: Vec<PlaneGroup>,
     params: &RoofParams,

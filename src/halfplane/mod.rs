@@ -17,6 +17,7 @@
 //!      trace          what the page draws (B99 figures 12 and 14)
 //! 4.2  neighbourhood  Delaunay triangulation constrained to the projected lines
 //!      grouping       collinear and coplanar grouping (figures 16 to 18)
+//!      repeated       half-planes that repeat a plane next to them, where texture is weak
 //!      proposed       planes of the other method beside the groups
 //!      region         the part of the plan that a group may cover
 //!      plane_lines    new lines in a plane from segments of several views
@@ -70,6 +71,7 @@ mod poi;
 mod posterior;
 mod proposed;
 mod region;
+mod repeated;
 mod shiftable;
 mod similarity;
 mod strip;
@@ -196,6 +198,13 @@ pub struct HalfPlane {
     pub views: Vec<ViewId>,
     /// The plane at theta, oriented upwards.
     pub plane: Plane,
+}
+
+impl HalfPlane {
+    /// Have views shown it? Otherwise it repeats the plane of a neighbour.
+    fn is_swept(&self) -> bool {
+        !self.views.is_empty()
+    }
 }
 
 #[cfg(test)]

@@ -353,10 +353,7 @@ mod tests {
             }
         };
         assert!(may_bridge(&facet(1.2, 0.6, 0)));
-        assert!(
-            !may_bridge(&facet(1.2, 0.6, 1)),
-            "it goes on beside a line"
-        );
+        assert!(!may_bridge(&facet(1.2, 0.6, 1)), "it goes on beside a line");
         assert!(!may_bridge(&facet(0.4, 0.6, 0)), "metal");
         assert!(!may_bridge(&facet(1.2, 0.9, 0)), "lines all around");
     }
