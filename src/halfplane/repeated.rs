@@ -91,7 +91,7 @@ fn runs_along(direction: &nalgebra::Vector3<f64>, plane: &Plane) -> bool {
 }
 
 /// One that no view has shown.
-fn half_plane(line: LineId, side: Side, theta: f64, plane: Plane) -> HalfPlane {
+pub fn half_plane(line: LineId, side: Side, theta: f64, plane: Plane) -> HalfPlane {
     HalfPlane {
         line,
         side,
