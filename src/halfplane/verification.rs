@@ -217,17 +217,14 @@ impl Solver {
         }
         // The better half of the pairs excuses the views in which something stands in front of the facet, and with them
         // as many in which nothing does.
-        if interior.speaks_against_overall() {
+        let doubtful = may_bridge(facet) && interior.is_doubtful();
+        if doubtful || interior.speaks_against_overall() {
             let seen = self.seen_inside(facet, map.grid.step, occluders, params);
+            let similarity = seen.overall / seen.weight;
             if seen.speaks_against_overall() {
-                let similarity = seen.overall / seen.weight;
                 return Err(FacetRejection::Contradicted { similarity });
             }
-        }
-        if may_bridge(facet) && interior.is_doubtful() {
-            let seen = self.seen_inside(facet, map.grid.step, occluders, params);
-            if seen.is_by_chance() {
-                let similarity = seen.overall / seen.weight;
+            if doubtful && seen.is_by_chance() {
                 return Err(FacetRejection::Bridge { similarity });
             }
         }
