@@ -3,11 +3,16 @@
 //! Along an edge every plane through it is as good as the next within half a window. A plane that bridges two roofs
 //! over shadow or a gap touches edges of both and is confirmed by them; only its inside can tell.
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Point3};
 
 use super::box_sum::HALF_WINDOW;
-use super::consistency::{ConsistencyMap, least_correlation, least_overall};
+use super::consistency::{
+    ConsistencyMap, consistency_map_behind, least_correlation, least_overall,
+};
 use super::plan::PlanGrid;
+use crate::ids::ViewId;
+use crate::roof::Facet;
+use crate::scene::Scene;
 use crate::texture::raster::mark_inside;
 
 /// The windows that lie wholly inside a facet.
@@ -37,9 +42,37 @@ pub struct Interior {
     pub least_overall: f64,
 }
 
+/// How the views that see a facet agree on its plane, over its own part of the plan; `hidden` says which do not.
+pub fn map_inside(
+    scene: &Scene,
+    facet: &Facet,
+    step: f64,
+    hidden: &dyn Fn(ViewId, &Point3<f64>) -> bool,
+) -> ConsistencyMap {
+    let (min, max) = bounds(facet);
+    let grid = PlanGrid::covering(min, max, step);
+    consistency_map_behind(scene, &facet.plane, &grid, hidden)
+}
+
+/// The part of the plan that a facet lies in.
+pub fn bounds(facet: &Facet) -> (Point2<f64>, Point2<f64>) {
+    let start = [f64::MAX, f64::MIN].map(|bound| Point2::new(bound, bound));
+    let corners = facet.outer.iter().map(Point3::xy);
+    let [min, max] = corners.fold(start, |[low, high], p| [low.inf(&p), high.sup(&p)]);
+    (min, max)
+}
+
 impl<'m> Inside<'m> {
-    /// The windows inside `rings` (in plan, metres, holes too), with the map of the facet's plane.
-    pub fn new(rings: &[Vec<Point2<f64>>], map: &'m ConsistencyMap) -> Self {
+    /// The windows inside a facet, with the map of its plane.
+    pub fn of(facet: &Facet, map: &'m ConsistencyMap) -> Self {
+        let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
+        let rings = std::iter::once(&facet.outer).chain(&facet.holes);
+        let rings: Vec<Vec<Point2<f64>>> = rings.map(in_plan).collect();
+        Self::new(&rings, map)
+    }
+
+    /// The windows inside `rings` (in plan, metres, holes too).
+    fn new(rings: &[Vec<Point2<f64>>], map: &'m ConsistencyMap) -> Self {
         let mask = cells_inside(rings, &map.grid);
         let windows = windows_in(&mask, map.grid.width);
         let share = share_in_windows(&mask, map.grid.width, &windows);

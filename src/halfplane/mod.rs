@@ -69,6 +69,7 @@ mod plan;
 mod plane_lines;
 mod poi;
 mod posterior;
+mod prominence;
 mod proposed;
 mod region;
 mod repeated;

@@ -5,19 +5,17 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::{Point2, Point3};
+use nalgebra::{Point2, Point3, Vector3};
 use serde::Serialize;
 
 use super::arrangement::Arrangement;
-use super::consistency::{ConsistencyMap, consistency_map_behind};
 use super::delineation::{Outline, signed_area};
 use super::facets::Solver;
 use super::hypothesis::{ON_SURFACE, TEXTURED};
-use super::interior::{Inside, Interior, SIDE};
-use super::plan::PlanGrid;
+use super::interior::{Inside, Interior, SIDE, map_inside};
+use super::prominence::prominence;
 use super::vegetation::{GREEN, excess_green};
 use crate::geometry::Plane;
-use crate::ids::ViewId;
 use crate::params::RoofParams;
 use crate::roof::{Facet, Ground, Occluders};
 use crate::scene::Scene;
@@ -62,6 +60,11 @@ pub enum FacetRejection {
         /// Mean correlation of all their pairs inside the outline.
         similarity: f64,
     },
+    /// The views agree better inside the outline on the plane moved up or down, and the outline is not on lines all around.
+    Displaced {
+        /// How much better, in standard deviations.
+        sigmas: f64,
+    },
     /// As green as plants, and a roof neither by its outline nor by its inside.
     Vegetation {
         /// (2 G - R - B) / (R + G + B).
@@ -105,32 +108,15 @@ const FLAT_COSINE: f64 = 0.9;
 /// Share of its outline on lines from which on a facet is bounded by them all around. Measured: of the steep rendered facets without a half-plane that
 /// views agree on by chance at most, 25 of 26 false ones and 1 of 5 true ones have less.
 const ALL_REAL: f64 = 0.85;
+/// Standard deviations by which a facet stands out from its plane moved up and down that show it, though it falls short of a limit. Measured on
+/// rendered scenes: true facets that do have 1.1 and more, false ones less than 0.5.
+const PROMINENT: f64 = 1.0;
+/// How far the plane of a true roof may lie beside it, metres. Measured: 0.2 on a corrugated roof of real-barns.
+const WRONG_BY: f64 = 0.25;
 /// Share of a facet that another plane must be able to cover to take its place. Assumption.
 const ALMOST_ALL: f64 = 0.9;
 /// Standard deviations by which the views must agree better on it. Assumption: as usual.
 const CLEARLY: f64 = 3.0;
-
-/// How the views that see a facet agree on its plane, over its own part of the plan; `hidden` says which do not.
-fn map_inside(
-    scene: &Scene,
-    facet: &Facet,
-    step: f64,
-    hidden: &dyn Fn(ViewId, &Point3<f64>) -> bool,
-) -> ConsistencyMap {
-    let start = [f64::MAX, f64::MIN].map(|bound| Point2::new(bound, bound));
-    let corners = facet.outer.iter().map(Point3::xy);
-    let [min, max] = corners.fold(start, |[low, high], p| [low.inf(&p), high.sup(&p)]);
-    let grid = PlanGrid::covering(min, max, step);
-    consistency_map_behind(scene, &facet.plane, &grid, hidden)
-}
-
-/// The windows inside a facet, with the map of its plane.
-fn inside<'m>(facet: &Facet, map: &'m ConsistencyMap) -> Inside<'m> {
-    let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
-    let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-    let rings: Vec<Vec<Point2<f64>>> = rings.map(in_plan).collect();
-    Inside::new(&rings, map)
-}
 
 /// The excess green of a facet that is as green as plants and is no clear roof, by its outline or by its inside.
 fn vegetation(facet: &Facet, inside: &Inside, interior: &Interior, colours: &Scene) -> Option<f64> {
@@ -140,6 +126,53 @@ fn vegetation(facet: &Facet, inside: &Inside, interior: &Interior, colours: &Sce
     let places = inside.places().map(|p| facet.plane.lift(p.x, p.y));
     let green = excess_green(colours, &places.collect::<Vec<_>>());
     (green > GREEN).then_some(green)
+}
+
+/// Area inside a facet's outer ring, on its plane, square metres.
+fn sloped_area(facet: &Facet) -> f64 {
+    let plan: Vec<Point2<f64>> = facet.outer.iter().map(Point3::xy).collect();
+    let ring: Vec<usize> = (0..plan.len()).collect();
+    signed_area(&ring, &plan) / facet.plane.normal.z
+}
+
+/// Is a facet large enough, and as high above the ground as roofs are?
+fn is_placed_like_a_roof(
+    facet: &Facet,
+    ground: &Ground,
+    params: &RoofParams,
+) -> Result<(), FacetRejection> {
+    let area_m2 = sloped_area(facet);
+    if area_m2 < params.min_area_m2 {
+        return Err(FacetRejection::TooSmall { area_m2 });
+    }
+    let sum = (facet.outer.iter()).fold(Vector3::zeros(), |s, p| s + p.coords);
+    let middle = Point3::from(sum / facet.outer.len() as f64);
+    let height_m = middle.z - ground.z_at(&middle.xy());
+    if height_m < params.min_height_m {
+        return Err(FacetRejection::NearGround { height_m });
+    }
+    let heights = facet.outer.iter().map(|p| p.z - ground.z_at(&p.xy()));
+    let lowest_m = heights.fold(f64::INFINITY, f64::min);
+    if lowest_m < LOWEST_EAVE {
+        return Err(FacetRejection::ReachesGround { lowest_m });
+    }
+    Ok(())
+}
+
+/// Might the views agree better on the plane moved up or down? Not where lines bound the facet all around, nor where a half-plane and a clear inside
+/// say that they do not.
+fn may_be_displaced(facet: &Facet, interior: &Interior) -> bool {
+    let confirmed = !facet.half_planes.is_empty() && interior.is_clear();
+    facet.real_ratio < ALL_REAL && !confirmed
+}
+
+/// The least that a facet not bounded by lines all around must stand out by. With a half-plane, which is evidence from inside it, others must be
+/// clearly better.
+fn least_prominence(facet: &Facet) -> f64 {
+    match facet.half_planes.is_empty() {
+        true => 0.0,
+        false => -PROMINENT,
+    }
 }
 
 /// Might a facet span a gap between an edge and a lower one? No half-plane says that it goes on beside its lines, it is steep, as flat roofs
@@ -182,34 +215,49 @@ impl Solver {
         colours: &Scene,
         params: &RoofParams,
     ) -> Result<(), FacetRejection> {
-        let plan: Vec<Point2<f64>> = facet.outer.iter().map(Point3::xy).collect();
-        let ring: Vec<usize> = (0..plan.len()).collect();
-        let area_m2 = signed_area(&ring, &plan) / facet.plane.normal.z;
-        if area_m2 < params.min_area_m2 {
-            return Err(FacetRejection::TooSmall { area_m2 });
-        }
-        let middle = facet
-            .outer
-            .iter()
-            .fold(nalgebra::Vector3::zeros(), |s, p| s + p.coords)
-            / facet.outer.len() as f64;
-        let height_m = middle.z - ground.z_at(&Point2::new(middle.x, middle.y));
-        if height_m < params.min_height_m {
-            return Err(FacetRejection::NearGround { height_m });
-        }
-        let heights = facet.outer.iter().map(|p| p.z - ground.z_at(&p.xy()));
-        let lowest_m = heights.fold(f64::INFINITY, f64::min);
-        if lowest_m < LOWEST_EAVE {
-            return Err(FacetRejection::ReachesGround { lowest_m });
-        }
+        is_placed_like_a_roof(facet, ground, params)?;
         let map = &self.maps[outline.plane as usize];
-        let inside = inside(facet, map);
+        let inside = Inside::of(facet, map);
         if inside.is_narrow() {
             return Err(FacetRejection::TooNarrow {
                 window_m: SIDE as f64 * map.grid.step,
             });
         }
         let interior = inside.sums(params.min_correlation);
+        let agreed = self.is_agreed_on(facet, outline, &interior, occluders, params);
+        let prominence = |least_m: f64| {
+            let hidden = |view, point: &_| occluders.hide(point, &self.scene.camera(view).center);
+            prominence(&self.scene, facet, map.grid.step, least_m, &hidden)
+        };
+        // A bridge stands out where it touches the two roofs.
+        let is_bridge = matches!(agreed, Err(FacetRejection::Bridge { .. }));
+        if agreed.is_err() && (is_bridge || prominence(0.0) < PROMINENT) {
+            return agreed;
+        }
+        if may_be_displaced(facet, &interior) {
+            let sigmas = prominence(2.0 * WRONG_BY);
+            if sigmas < least_prominence(facet) {
+                return Err(FacetRejection::Displaced { sigmas: -sigmas });
+            }
+        }
+        if let Some(excess_green) = vegetation(facet, &inside, &interior, colours) {
+            return Err(FacetRejection::Vegetation { excess_green });
+        }
+        if let Some((by, sigmas)) = self.outdone(outline, &inside) {
+            return Err(FacetRejection::Outdone { by, sigmas });
+        }
+        Ok(())
+    }
+
+    /// Do the images agree inside a facet as much as they must, with what its outline shows?
+    fn is_agreed_on(
+        &self,
+        facet: &Facet,
+        outline: &Outline,
+        interior: &Interior,
+        occluders: &Occluders,
+        params: &RoofParams,
+    ) -> Result<(), FacetRejection> {
         if interior.speaks_against() {
             return Err(FacetRejection::Dissimilar {
                 similarity: interior.correlation / interior.weight,
@@ -219,7 +267,8 @@ impl Solver {
         // as many in which nothing does.
         let doubtful = may_bridge(facet) && interior.is_doubtful();
         if doubtful || interior.speaks_against_overall() {
-            let seen = self.seen_inside(facet, map.grid.step, occluders, params);
+            let step = self.maps[outline.plane as usize].grid.step;
+            let seen = self.seen_inside(facet, step, occluders, params);
             let similarity = seen.overall / seen.weight;
             if seen.speaks_against_overall() {
                 return Err(FacetRejection::Contradicted { similarity });
@@ -228,22 +277,17 @@ impl Solver {
                 return Err(FacetRejection::Bridge { similarity });
             }
         }
-        if let Some(excess_green) = vegetation(facet, &inside, &interior, colours) {
-            return Err(FacetRejection::Vegetation { excess_green });
-        }
-        if let Some((by, sigmas)) = self.outdone(outline, &inside) {
-            return Err(FacetRejection::Outdone { by, sigmas });
-        }
         // What little texture there is must not speak against the plane.
         let (weight, least) = self.texture(outline);
-        if facet.similarity * weight < least && weight > 0.1 * area_m2 {
+        let sloped_m2 = sloped_area(facet);
+        if facet.similarity * weight < least && weight > 0.1 * sloped_m2 {
             return Err(FacetRejection::Dissimilar {
                 similarity: facet.similarity,
             });
         }
         // Where the images show the surface itself, its outline need not lie on lines.
         let shown = facet.similarity >= f64::from(ON_SURFACE)
-            && weight >= f64::from(TEXTURED) * area_m2 * facet.plane.normal.z;
+            && weight >= f64::from(TEXTURED) * sloped_m2 * facet.plane.normal.z;
         if facet.real_ratio < params.min_real_ratio && !shown {
             return Err(FacetRejection::Unsupported {
                 real_ratio: facet.real_ratio,
@@ -262,7 +306,7 @@ impl Solver {
     ) -> Interior {
         let hidden = |view, point: &_| occluders.hide(point, &self.scene.camera(view).center);
         let map = map_inside(&self.scene, facet, step, &hidden);
-        inside(facet, &map).sums(params.min_correlation)
+        Inside::of(facet, &map).sums(params.min_correlation)
     }
 
     /// The plane that could lie over a facet and that the views agree on clearly better inside it. A level plane through
@@ -295,7 +339,6 @@ mod tests {
     use crate::ids::HalfPlaneId;
     use crate::synthetic::gable_scene;
     use crate::testing;
-    use nalgebra::Vector3;
 
     const MIN_CORRELATION: f64 = 0.45;
 
@@ -309,7 +352,7 @@ mod tests {
     /// Do the better half of the pairs of views, and all of them, speak against a facet, where `hidden` views are not asked?
     fn against(scene: &Scene, facet: &Facet, hidden: &[usize]) -> [bool; 2] {
         let map = map_inside(scene, facet, 0.1, &|view, _| hidden.contains(&view.index()));
-        let sums = inside(facet, &map).sums(MIN_CORRELATION);
+        let sums = Inside::of(facet, &map).sums(MIN_CORRELATION);
         assert!(sums.weight > 100.0, "the texture is strong");
         [sums.speaks_against(), sums.speaks_against_overall()]
     }
@@ -356,6 +399,32 @@ mod tests {
     }
 
     #[test]
+    fn a_facet_that_lines_or_its_inside_confirm_is_not_moved() {
+        let facet = |real_ratio: f64, half_planes: usize| Facet {
+            real_ratio,
+            half_planes: (0..half_planes).map(HalfPlaneId::from_index).collect(),
+            ..scene_and_facet().1
+        };
+        let inside = |beyond: f64| Interior {
+            windows: 100,
+            weight: 100.0,
+            correlation: 100.0 * (0.45 + beyond),
+            least: 45.0,
+            overall: 45.0,
+            least_overall: 45.0,
+        };
+        let (clear, faint) = (inside(0.6), inside(0.2));
+        assert!(may_be_displaced(&facet(0.6, 1), &faint));
+        assert!(may_be_displaced(&facet(0.6, 0), &clear), "a gap may be");
+        assert!(!may_be_displaced(&facet(0.6, 1), &clear));
+        assert!(
+            !may_be_displaced(&facet(0.9, 0), &faint),
+            "lines all around"
+        );
+        assert!(least_prominence(&facet(0.6, 1)) < least_prominence(&facet(0.6, 0)));
+    }
+
+    #[test]
     fn a_green_facet_must_be_a_roof_by_its_lines_and_by_its_inside() {
         let (mut scene, facet) = scene_and_facet();
         let of = |scene: &Scene, raised: f64, real_ratio: f64| {
@@ -365,7 +434,7 @@ mod tests {
                 ..testing::facet(&ring.collect::<Vec<_>>())
             };
             let map = map_inside(scene, &facet, 0.1, &|_, _| false);
-            let inside = inside(&facet, &map);
+            let inside = Inside::of(&facet, &map);
             vegetation(&facet, &inside, &inside.sums(MIN_CORRELATION), scene).is_some()
         };
         assert!(!of(&scene, 0.0, 0.2) && !of(&scene, 2.0, 0.9), "red tiles");
