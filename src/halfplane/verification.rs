@@ -60,7 +60,7 @@ pub enum FacetRejection {
         /// Mean correlation of all their pairs inside the outline.
         similarity: f64,
     },
-    /// The views agree better inside the outline on the plane moved up or down, and the outline is not on lines all around.
+    /// The views agree better inside the outline on the plane moved up or down, and the outline is not on lines on most sides.
     Displaced {
         /// How much better, in standard deviations.
         sigmas: f64,
@@ -111,6 +111,9 @@ const ALL_REAL: f64 = 0.85;
 /// Standard deviations by which a facet stands out from its plane moved up and down that show it, though it falls short of a limit. Measured on
 /// rendered scenes: true facets that do have 1.1 and more, false ones less than 0.5.
 const PROMINENT: f64 = 1.0;
+/// Share of its outline on lines from which on a facet is bounded by them on three sides of four: a level roof beside a higher wall, which shades it and hides it
+/// from half of the views, stands out little.
+const THREE_SIDES: f64 = 0.75;
 /// How far the plane of a true roof may lie beside it, metres. Measured: 0.2 on a corrugated roof of real-barns.
 const WRONG_BY: f64 = 0.25;
 /// Share of a facet that another plane must be able to cover to take its place. Assumption.
@@ -159,14 +162,14 @@ fn is_placed_like_a_roof(
     Ok(())
 }
 
-/// Might the views agree better on the plane moved up or down? Not where lines bound the facet all around, nor where a half-plane and a clear inside
+/// Might the views agree better on the plane moved up or down? Not where lines bound the facet on most sides, nor where a half-plane and a clear inside
 /// say that they do not.
 fn may_be_displaced(facet: &Facet, interior: &Interior) -> bool {
     let confirmed = !facet.half_planes.is_empty() && interior.is_clear();
-    facet.real_ratio < ALL_REAL && !confirmed
+    facet.real_ratio < THREE_SIDES && !confirmed
 }
 
-/// The least that a facet not bounded by lines all around must stand out by. With a half-plane, which is evidence from inside it, others must be
+/// The least that a facet not bounded by lines on most sides must stand out by. With a half-plane, which is evidence from inside it, others must be
 /// clearly better.
 fn least_prominence(facet: &Facet) -> f64 {
     match facet.half_planes.is_empty() {
