@@ -1,9 +1,24 @@
 //! Finite segments, infinite lines and planes. Points and vectors are nalgebra's.
 
-use nalgebra::{Matrix3, Point2, Point3, Unit, Vector2, Vector3};
+use nalgebra::{Matrix3, Point, Point2, Point3, SVector, Unit, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::sorting::sort_by;
+
+/// Least and largest coordinates of points. Without any, the least are larger than the largest.
+pub fn bounds<const D: usize>(
+    points: impl IntoIterator<Item = Point<f64, D>>,
+) -> [Point<f64, D>; 2] {
+    let none = [f64::MAX, f64::MIN].map(|bound| Point::from([bound; D]));
+    let widen = |[low, high]: [Point<f64, D>; 2], p: Point<f64, D>| [low.inf(&p), high.sup(&p)];
+    points.into_iter().fold(none, widen)
+}
+
+/// Mean of points, one at least.
+pub fn mean_point<const D: usize>(points: &[Point<f64, D>]) -> Point<f64, D> {
+    let sum = points.iter().fold(SVector::zeros(), |s, p| s + p.coords);
+    Point::from(sum / points.len() as f64)
+}
 
 /// A finite, directed segment in an image, in pixels (x right, y down, centre of the top-left
 /// pixel at (0.5, 0.5)).
@@ -258,6 +273,17 @@ pub fn covered(stretches: impl Iterator<Item = [f64; 2]>, within: [f64; 2]) -> f
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn points_lie_around_their_mean_and_within_their_bounds() {
+        let points = [[1.0, 5.0, -2.0], [4.0, -1.0, 0.0], [-2.0, 2.0, 5.0]].map(Point3::from);
+        assert_eq!(mean_point(&points), Point3::new(1.0, 2.0, 1.0));
+        let [low, high] = bounds(points);
+        assert_eq!(low, Point3::new(-2.0, -1.0, -2.0));
+        assert_eq!(high, Point3::new(4.0, 5.0, 5.0));
+        let [low, high] = bounds::<2>([]);
+        assert!(low.x > high.x && low.y > high.y);
+    }
 
     #[test]
     fn plane_fit_recovers_a_planted_plane() {

@@ -143,10 +143,10 @@ fn hull_sides(hypotheses: &[Hypothesis], params: &RoofParams) -> Vec<Border> {
 fn intersections(input: &GroupingInput, hypotheses: &[Hypothesis]) -> Vec<Border> {
     let mut found = Vec::new();
     for (i, first) in hypotheses.iter().enumerate() {
-        let (min, max) = first.region.bounds();
+        let [min, max] = first.region.bounds();
         let p = &first.group;
         for second in &hypotheses[i + 1..] {
-            let (qmin, qmax) = second.region.bounds();
+            let [qmin, qmax] = second.region.bounds();
             let q = &second.group;
             let low = Point2::new(min.x.max(qmin.x), min.y.max(qmin.y));
             let high = Point2::new(max.x.min(qmax.x), max.y.min(qmax.y));

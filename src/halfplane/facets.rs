@@ -29,7 +29,7 @@ use super::region::Region;
 use super::repeated::{group_repeated, with_repeated};
 use super::shiftable::ShiftableWindows;
 use super::verification::{FacetRejection, RejectedFacet, tail_on_ground};
-use crate::geometry::Plane;
+use crate::geometry::{Plane, bounds};
 use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
 use crate::params::RoofParams;
@@ -173,11 +173,7 @@ fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[Region]) -> Option<Pl
         .map(|v| v.camera.ground_pixel(&middle))
         .collect();
     let step = crate::math::median(&mut steps)?;
-    let (mut min, mut max) = regions.first()?.bounds();
-    for (low, high) in regions.iter().map(Region::bounds) {
-        min = Point2::new(min.x.min(low.x), min.y.min(low.y));
-        max = Point2::new(max.x.max(high.x), max.y.max(high.y));
-    }
+    let [min, max] = bounds(regions.iter().flat_map(Region::bounds));
     let size = max - min;
     // Coarser cells for a very large window: at most 36 million.
     let step = step.max(FINEST_CELL).max((size.x * size.y / 36e6).sqrt());

@@ -9,7 +9,7 @@ use super::interior::SIDE;
 use super::plan::PlanGrid;
 use super::plane_lines::{PlaneLine, lines_in_plane, rays_through_ends};
 use super::region::Region;
-use crate::geometry::Segment3;
+use crate::geometry::{Segment3, bounds};
 use crate::lines2d::ImageSegment;
 use crate::params::RoofParams;
 use crate::scene::Scene;
@@ -44,7 +44,7 @@ pub fn hypotheses(
             return None;
         }
         let region = Region::new(input, group, params);
-        let (min, max) = region.bounds();
+        let [min, max] = region.bounds();
         let map = consistency_map(reduced, &group.plane, &PlanGrid::covering(min, max, step));
         let proposed_by_lines = group.half_planes().is_empty() && group.rectangles.is_empty();
         if proposed_by_lines && !supported(input, group, &map, params) {
@@ -143,8 +143,7 @@ fn grid_beside(line: &Segment3, side: Side, step: f64) -> PlanGrid {
     let ends = [line.p0.xy(), line.p1.xy()];
     let far = across(line, side) * (3.0 * NEXT_TO * step);
     let corners = ends.into_iter().chain(ends.map(|p| p + far));
-    let start = [f64::MAX, f64::MIN].map(|bound| Point2::new(bound, bound));
-    let [low, high] = corners.fold(start, |[low, high], p| [low.inf(&p), high.sup(&p)]);
+    let [low, high] = bounds(corners);
     let half_window = Vector2::repeat(SIDE as f64 * 0.5 * step);
     PlanGrid::covering(low - half_window, high + half_window, step)
 }

@@ -49,17 +49,9 @@ pub fn map_inside(
     step: f64,
     hidden: &dyn Fn(ViewId, &Point3<f64>) -> bool,
 ) -> ConsistencyMap {
-    let (min, max) = bounds(facet);
+    let [min, max] = facet.plan_bounds();
     let grid = PlanGrid::covering(min, max, step);
     consistency_map_behind(scene, &facet.plane, &grid, hidden)
-}
-
-/// The part of the plan that a facet lies in.
-pub fn bounds(facet: &Facet) -> (Point2<f64>, Point2<f64>) {
-    let start = [f64::MAX, f64::MIN].map(|bound| Point2::new(bound, bound));
-    let corners = facet.outer.iter().map(Point3::xy);
-    let [min, max] = corners.fold(start, |[low, high], p| [low.inf(&p), high.sup(&p)]);
-    (min, max)
 }
 
 impl<'m> Inside<'m> {

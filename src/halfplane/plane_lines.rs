@@ -66,7 +66,7 @@ pub fn lines_in_plane(
     plane: &Plane,
     region: &Region,
 ) -> Vec<PlaneLine> {
-    let (low, high) = region.bounds();
+    let [low, high] = region.bounds();
     let middle = Point2::from((low.coords + high.coords) * 0.5);
     let pixel = scene
         .views

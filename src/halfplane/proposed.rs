@@ -6,13 +6,13 @@
 //! Tried without gain: that the contrast at a rectangle's sides, which W96 counts in its measure, counts where there is no texture to
 //! compare. Of a rendered suburb less of the roofs was then covered, not more: lawns and yards have sides with contrast, too.
 
-use nalgebra::{Point2, Point3, Vector3};
+use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
 
 use super::Side;
 use super::grouping::{GroupingInput, Member, PlaneGroup, fit_plane, lies_in_plane, member};
 use super::region::Region;
-use crate::geometry::Plane;
+use crate::geometry::{Plane, mean_point};
 use crate::ids::LineId;
 use crate::lines3d::Line3d;
 use crate::params::RoofParams;
@@ -51,8 +51,7 @@ impl ProposedPlane {
 
     /// The middle of the corners.
     fn middle(&self) -> Point3<f64> {
-        let sum = self.ring.iter().fold(Vector3::zeros(), |s, p| s + p.coords);
-        Point3::from(sum / self.ring.len() as f64)
+        mean_point(&self.ring)
     }
 
     /// Do its corners lie in a plane, as well as the lines of one plane do?
@@ -118,6 +117,7 @@ mod tests {
     use crate::halfplane::facets::reconstruct_facets;
     use crate::halfplane::fixture::{Surface, line, scene};
     use crate::roof::{Facet, Ground, RoofEvidence};
+    use nalgebra::Vector3;
 
     const ROOF_Z: f64 = 5.0;
 

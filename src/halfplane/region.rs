@@ -7,7 +7,7 @@ use spade::{ConstrainedDelaunayTriangulation, Triangulation};
 use super::Side;
 use super::grouping::{GroupingInput, PlaneGroup};
 use super::proposed::ProposedPlane;
-use crate::geometry::Plane;
+use crate::geometry::{Plane, bounds};
 use crate::params::RoofParams;
 
 /// How far a region reaches behind its line, metres: more than the line's own uncertainty.
@@ -123,20 +123,19 @@ impl Region {
     }
 
     /// Least and largest x and y, metres.
-    pub fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
-        let mut min = Point2::new(f64::INFINITY, f64::INFINITY);
-        let mut max = -min;
-        for b in &self.boxes {
+    pub fn bounds(&self) -> [Point2<f64>; 2] {
+        bounds(self.boxes.iter().flat_map(|b| {
             let across = Vector2::new(-b.along.y, b.along.x);
-            for t in [-b.ends, b.length + b.ends] {
-                for u in [b.left, -b.right] {
-                    let p = b.start + b.along * t + across * u;
-                    min = Point2::new(min.x.min(p.x), min.y.min(p.y));
-                    max = Point2::new(max.x.max(p.x), max.y.max(p.y));
-                }
-            }
-        }
-        (min, max)
+            let corner = move |t: f64, u: f64| b.start + b.along * t + across * u;
+            let far = b.length + b.ends;
+            [
+                (-b.ends, b.left),
+                (-b.ends, -b.right),
+                (far, b.left),
+                (far, -b.right),
+            ]
+            .map(|(t, u)| corner(t, u))
+        }))
     }
 }
 

@@ -309,7 +309,7 @@ fn most_textured(
         let Some(strip) = Strip::new(scene.camera(id), line, frame, params) else {
             continue;
         };
-        let (min, max) = strip.bounds();
+        let [min, max] = strip.bounds();
         let columns = strip.columns;
         let mut places: Vec<usize> = points[id.index()]
             .within(min, max)

@@ -11,9 +11,9 @@ use wide::f32x4;
 
 use super::ThetaFrame;
 use crate::camera::Camera;
-use crate::geometry::{Segment2, Segment3};
+use crate::geometry::{Segment2, Segment3, bounds};
 use crate::params::SweepParams;
-use crate::raster::{Gray, Outside, Warp, bounds, corners};
+use crate::raster::{Gray, Outside, Warp, corners};
 
 /// Grey values are held in units of 1/510, centred and rounded: whole numbers from -255 to 255. A
 /// sum of 225 products of two is then a whole number below 2^24, which f32 holds exactly: running
@@ -110,14 +110,14 @@ impl Strip {
     }
 
     /// Bounding box in the image: least and greatest coordinates.
-    pub fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
+    pub fn bounds(&self) -> [Point2<f64>; 2] {
         let corners = corners(
             &self.image_from_strip(),
             [0.0, 0.0],
             [self.columns as f64, self.rows as f64],
         )
         .expect("an affine map has no horizon");
-        bounds(&corners)
+        bounds(corners)
     }
 
     /// The same strip without the rows from `rows` on.

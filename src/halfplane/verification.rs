@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::{Point2, Point3, Vector3};
+use nalgebra::{Point2, Point3};
 use serde::Serialize;
 
 use super::arrangement::Arrangement;
@@ -13,9 +13,9 @@ use super::delineation::{Outline, signed_area};
 use super::facets::Solver;
 use super::hypothesis::{ON_SURFACE, TEXTURED};
 use super::interior::{Inside, Interior, SIDE, map_inside};
-use super::prominence::prominence;
+use super::prominence::{prominence, stands_out};
 use super::vegetation::{GREEN, excess_green};
-use crate::geometry::Plane;
+use crate::geometry::{Plane, mean_point};
 use crate::params::RoofParams;
 use crate::roof::{Facet, Ground, Occluders};
 use crate::scene::Scene;
@@ -108,14 +108,6 @@ const FLAT_COSINE: f64 = 0.9;
 /// Share of its outline on lines from which on a facet is bounded by them all around. Measured: of the steep rendered facets without a half-plane that
 /// views agree on by chance at most, 25 of 26 false ones and 1 of 5 true ones have less.
 const ALL_REAL: f64 = 0.85;
-/// Standard deviations by which a facet stands out from its plane moved up and down that show it, though it falls short of a limit. Measured on
-/// rendered scenes: true facets that do have 1.1 and more, false ones less than 0.5.
-const PROMINENT: f64 = 1.0;
-/// Share of its outline on lines from which on a facet is bounded by them on three sides of four: a level roof beside a higher wall, which shades it and hides it
-/// from half of the views, stands out little.
-const THREE_SIDES: f64 = 0.75;
-/// How far the plane of a true roof may lie beside it, metres. Measured: 0.2 on a corrugated roof of real-barns.
-const WRONG_BY: f64 = 0.25;
 /// Share of a facet that another plane must be able to cover to take its place. Assumption.
 const ALMOST_ALL: f64 = 0.9;
 /// Standard deviations by which the views must agree better on it. Assumption: as usual.
@@ -148,8 +140,7 @@ fn is_placed_like_a_roof(
     if area_m2 < params.min_area_m2 {
         return Err(FacetRejection::TooSmall { area_m2 });
     }
-    let sum = (facet.outer.iter()).fold(Vector3::zeros(), |s, p| s + p.coords);
-    let middle = Point3::from(sum / facet.outer.len() as f64);
+    let middle = mean_point(&facet.outer);
     let height_m = middle.z - ground.z_at(&middle.xy());
     if height_m < params.min_height_m {
         return Err(FacetRejection::NearGround { height_m });
@@ -160,22 +151,6 @@ fn is_placed_like_a_roof(
         return Err(FacetRejection::ReachesGround { lowest_m });
     }
     Ok(())
-}
-
-/// Might the views agree better on the plane moved up or down? Not where lines bound the facet on most sides, nor where a half-plane and a clear inside
-/// say that they do not.
-fn may_be_displaced(facet: &Facet, interior: &Interior) -> bool {
-    let confirmed = !facet.half_planes.is_empty() && interior.is_clear();
-    facet.real_ratio < THREE_SIDES && !confirmed
-}
-
-/// The least that a facet not bounded by lines on most sides must stand out by. With a half-plane, which is evidence from inside it, others must be
-/// clearly better.
-fn least_prominence(facet: &Facet) -> f64 {
-    match facet.half_planes.is_empty() {
-        true => 0.0,
-        false => -PROMINENT,
-    }
 }
 
 /// Might a facet span a gap between an edge and a lower one? No half-plane says that it goes on beside its lines, it is steep, as flat roofs
@@ -232,17 +207,7 @@ impl Solver {
             let hidden = |view, point: &_| occluders.hide(point, &self.scene.camera(view).center);
             prominence(&self.scene, facet, map.grid.step, least_m, &hidden)
         };
-        // A bridge stands out where it touches the two roofs.
-        let is_bridge = matches!(agreed, Err(FacetRejection::Bridge { .. }));
-        if agreed.is_err() && (is_bridge || prominence(0.0) < PROMINENT) {
-            return agreed;
-        }
-        if may_be_displaced(facet, &interior) {
-            let sigmas = prominence(2.0 * WRONG_BY);
-            if sigmas < least_prominence(facet) {
-                return Err(FacetRejection::Displaced { sigmas: -sigmas });
-            }
-        }
+        stands_out(agreed, facet, &interior, prominence)?;
         if let Some(excess_green) = vegetation(facet, &inside, &interior, colours) {
             return Err(FacetRejection::Vegetation { excess_green });
         }
@@ -342,6 +307,7 @@ mod tests {
     use crate::ids::HalfPlaneId;
     use crate::synthetic::gable_scene;
     use crate::testing;
+    use nalgebra::Vector3;
 
     const MIN_CORRELATION: f64 = 0.45;
 
@@ -399,32 +365,6 @@ mod tests {
         assert!(!may_bridge(&facet(1.2, 0.6, 1)), "it goes on beside a line");
         assert!(!may_bridge(&facet(0.4, 0.6, 0)), "metal");
         assert!(!may_bridge(&facet(1.2, 0.9, 0)), "lines all around");
-    }
-
-    #[test]
-    fn a_facet_that_lines_or_its_inside_confirm_is_not_moved() {
-        let facet = |real_ratio: f64, half_planes: usize| Facet {
-            real_ratio,
-            half_planes: (0..half_planes).map(HalfPlaneId::from_index).collect(),
-            ..scene_and_facet().1
-        };
-        let inside = |beyond: f64| Interior {
-            windows: 100,
-            weight: 100.0,
-            correlation: 100.0 * (0.45 + beyond),
-            least: 45.0,
-            overall: 45.0,
-            least_overall: 45.0,
-        };
-        let (clear, faint) = (inside(0.6), inside(0.2));
-        assert!(may_be_displaced(&facet(0.6, 1), &faint));
-        assert!(may_be_displaced(&facet(0.6, 0), &clear), "a gap may be");
-        assert!(!may_be_displaced(&facet(0.6, 1), &clear));
-        assert!(
-            !may_be_displaced(&facet(0.9, 0), &faint),
-            "lines all around"
-        );
-        assert!(least_prominence(&facet(0.6, 1)) < least_prominence(&facet(0.6, 0)));
     }
 
     #[test]

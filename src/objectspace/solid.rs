@@ -5,9 +5,9 @@
 //! the first selection are therefore taken for solids down to the ground, and the planes beside them are judged again
 //! where these leave them visible.
 
-use nalgebra::{Point2, Point3, Vector2, Vector3};
+use nalgebra::{Point2, Point3};
 
-use crate::geometry::Plane;
+use crate::geometry::{Plane, mean_point};
 use crate::math::{larger, smaller};
 use crate::scene::Scene;
 
@@ -27,8 +27,7 @@ const LEAST_HEIGHT_M: f64 = 1.0;
 
 /// Do solids stand in front of some of a polygon in some views, and leave all of it visible in two at least?
 pub(super) fn partly_hidden(scene: &Scene, solids: &[Solid], ring: &[Point3<f64>]) -> bool {
-    let sum = ring.iter().fold(Vector3::zeros(), |s, p| s + p.coords);
-    let middle = Point3::from(sum / ring.len() as f64);
+    let middle = mean_point(ring);
     // Not the corners themselves, which may touch a neighbour.
     let inside = ring.iter().map(|p| p + (middle - p) * 0.2).chain([middle]);
     let hidden = |p: Point3<f64>| {
@@ -52,8 +51,7 @@ impl Solid {
 
     /// Does its roof stand well above a plane? Others hide none of it.
     pub fn stands_above(&self, plane: &Plane) -> bool {
-        let sum = self.ring.iter().fold(Vector2::zeros(), |s, p| s + p.coords);
-        let m = sum / self.ring.len() as f64;
+        let m = mean_point(&self.ring);
         self.plane.lift(m.x, m.y).z - plane.lift(m.x, m.y).z > LEAST_HEIGHT_M
     }
 
@@ -100,6 +98,7 @@ fn side(a: &Point2<f64>, b: &Point2<f64>, p: &Point2<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Vector3;
 
     /// A flat roof of 4 m by 4 m, 10 m high.
     fn tower() -> Solid {

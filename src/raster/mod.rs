@@ -15,7 +15,7 @@ pub use load::{ImageHeader, Photograph, image_format, image_header, load_image};
 pub use noise::noise_of;
 pub use part::{Part, decoding_bytes, load_part};
 pub use warmth::{Channel, Warmth};
-pub use warp::{Outside, Warp, bounds, corners};
+pub use warp::{Outside, Warp, corners};
 
 use warp::bilinear;
 use wide::bytemuck::cast;

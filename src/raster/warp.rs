@@ -6,6 +6,7 @@ use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
 
 use super::Gray;
+use crate::geometry::bounds;
 
 /// A homography in f32, relative to a whole pixel near the raster so that no digits are lost.
 pub struct Warp<'a> {
@@ -42,7 +43,7 @@ impl<'a> Warp<'a> {
         [columns, rows]: [usize; 2],
     ) -> Option<Self> {
         let (w, h) = (columns as f64, rows as f64);
-        let (min, _) = bounds(&corners(image_from_raster, [0.0, 0.0], [w, h])?);
+        let [min, _] = bounds(corners(image_from_raster, [0.0, 0.0], [w, h])?);
         if image.width < 2 || image.height < 2 {
             return None;
         }
@@ -154,7 +155,7 @@ fn falls_inside(
     let Some(corners) = corners(image_from_raster, [0.0, 0.0], end) else {
         return false;
     };
-    let (min, max) = bounds(&corners);
+    let [min, max] = bounds(corners);
     let within = |min: f64, max: f64, size: usize| {
         min >= 0.5 + MARGIN_PX && max <= size as f64 - 0.5 - MARGIN_PX
     };
@@ -283,16 +284,6 @@ pub fn corners(h: &Matrix3<f64>, min: [f64; 2], max: [f64; 2]) -> Option<[Point2
         *o = Point2::new(p.x / p.z, p.y / p.z);
     }
     Some(out)
-}
-
-/// Least and largest coordinates.
-pub fn bounds(points: &[Point2<f64>; 4]) -> (Point2<f64>, Point2<f64>) {
-    let mut b = (points[0], points[0]);
-    for p in points {
-        b.0 = b.0.inf(p);
-        b.1 = b.1.sup(p);
-    }
-    b
 }
 
 #[cfg(test)]

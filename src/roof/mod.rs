@@ -21,10 +21,10 @@ pub use refine::{
 pub use refuted::refuted_lines;
 pub use solid::{SolidRejection, SolidTrace, WELD_M, close_buildings};
 
-use nalgebra::Point3;
+use nalgebra::{Point2, Point3};
 use serde::Serialize;
 
-use crate::geometry::Plane;
+use crate::geometry::{Plane, bounds};
 use crate::ids::{BuildingId, FacetId, HalfPlaneId, LineId};
 
 /// A planar roof facet.
@@ -51,6 +51,13 @@ pub struct Facet {
     pub half_planes: Vec<HalfPlaneId>,
     /// Candidates of W96 with its plane, as indices into [`crate::objectspace::RectangleTrace`].
     pub rectangles: Vec<u32>,
+}
+
+impl Facet {
+    /// The part of the plan that it lies in: least and largest x and y, metres.
+    pub fn plan_bounds(&self) -> [Point2<f64>; 2] {
+        bounds(self.outer.iter().map(Point3::xy))
+    }
 }
 
 /// What a face of a solid is.

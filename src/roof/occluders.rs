@@ -19,19 +19,10 @@ pub struct Occluders<'a> {
 impl<'a> Occluders<'a> {
     /// For these facets.
     pub fn new(facets: &'a [Facet]) -> Self {
-        let bounds = |f: &'a Facet| {
-            let start = [
-                Point2::new(f64::MAX, f64::MAX),
-                Point2::new(f64::MIN, f64::MIN),
-            ];
-            let bounds = f.outer.iter().fold(start, |[low, high], p| {
-                [low.inf(&p.xy()), high.sup(&p.xy())]
-            });
-            (f, bounds)
-        };
+        let with_bounds = |f: &'a Facet| (f, f.plan_bounds());
         let corners = facets.iter().flat_map(|f| &f.outer);
         Self {
-            roofs: facets.iter().map(bounds).collect(),
+            roofs: facets.iter().map(with_bounds).collect(),
             highest: corners.fold(f64::MIN, |h, p| h.max(p.z)),
         }
     }

@@ -11,6 +11,7 @@ use super::names::listed;
 use super::plan::PlannedView;
 use crate::Error;
 use crate::camera::Camera;
+use crate::geometry::mean_point;
 use crate::raster::decoding_bytes;
 use crate::sorting::sort_by;
 
@@ -37,8 +38,7 @@ pub(super) fn scene_origin<'a>(cameras: impl Iterator<Item = &'a Camera>) -> Vec
     if !centers.iter().any(is_large) {
         return Vector3::zeros();
     }
-    let sum = centers.iter().fold(Vector3::zeros(), |s, c| s + c.coords);
-    let mean = sum / centers.len() as f64;
+    let mean = mean_point(&centers);
     let round = |v: f64| (v / ORIGIN_GRID_M).round() * ORIGIN_GRID_M;
     Vector3::new(round(mean.x), round(mean.y), 0.0)
 }

@@ -29,7 +29,7 @@ const SWEEPS: usize = 1000;
 pub fn exposures(scene: &Scene, faces: &[FacePlane], footprints: &[Footprints]) -> Vec<[f32; 3]> {
     let views = scene.views.len();
     let compared = crate::parallel::map_part(faces, 0.2..0.3, |i, face| {
-        let (low, high) = face.bounds();
+        let [low, high] = face.bounds();
         let area = ((high.x - low.x) * (high.y - low.y)).max(1e-6);
         let patch = Patch::new(face, (area / SAMPLES).sqrt());
         let seen = views_of(scene, faces, i, &patch, footprints);

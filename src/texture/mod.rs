@@ -178,7 +178,7 @@ fn texel_m(
         .filter(|texel| texel.is_finite() && *texel > 0.0)
         .min_by(f64::total_cmp)
         .unwrap_or_else(|| {
-            let (low, high) = face.bounds();
+            let [low, high] = face.bounds();
             (high - low).max().max(1e-3)
         })
 }

@@ -3,6 +3,7 @@
 use nalgebra::{Point2, Point3, Vector3};
 
 use super::raster::mark_inside;
+use crate::geometry::bounds;
 use crate::roof::{Solid, SolidFace};
 
 /// Most texels along a side; no atlas holds so many.
@@ -74,17 +75,13 @@ impl FacePlane {
     }
 
     /// Lower left and upper right corner of the box around the face, in the frame.
-    pub fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
-        let first = self.flat[0][0];
-        self.flat
-            .iter()
-            .flatten()
-            .fold((first, first), |(l, h), p| (l.inf(p), h.sup(p)))
+    pub fn bounds(&self) -> [Point2<f64>; 2] {
+        bounds(self.flat.iter().flatten().copied())
     }
 
     /// The middle of the box, in the world.
     pub fn middle(&self) -> Point3<f64> {
-        let (low, high) = self.bounds();
+        let [low, high] = self.bounds();
         self.lift(&nalgebra::center(&low, &high))
     }
 }
@@ -122,7 +119,7 @@ pub struct Patch {
 impl Patch {
     /// The smallest raster of this texel size around a face.
     pub fn new(plane: &FacePlane, texel_m: f64) -> Self {
-        let (low, high) = plane.bounds();
+        let [low, high] = plane.bounds();
         // The tolerance keeps 3.0000001 texels from becoming four.
         let count = |extent: f64| ((extent / texel_m - 1e-6).ceil() as usize).clamp(1, MAX_TEXELS);
         Self {

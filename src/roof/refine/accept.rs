@@ -118,13 +118,7 @@ impl Judge<'_> {
 
     /// Sums of weight and of weight times correlation inside a facet.
     fn agreement(&self, facet: &Facet, step: f64) -> [f64; 2] {
-        let start = [
-            Point2::new(f64::MAX, f64::MAX),
-            Point2::new(f64::MIN, f64::MIN),
-        ];
-        let [low, high] = (facet.outer.iter()).fold(start, |[low, high], p| {
-            [low.inf(&p.xy()), high.sup(&p.xy())]
-        });
+        let [low, high] = facet.plan_bounds();
         let grid = PlanGrid::covering(low, high, step);
         let map = consistency_map(self.scene, &facet.plane, &grid);
         let mut sums = [0.0; 2];

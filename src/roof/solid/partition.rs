@@ -16,7 +16,7 @@ use nalgebra::{Point2, Point3, Vector2};
 
 use super::rings::{Region, doubled_area, regions_from_edges, ring_edges};
 use super::{SolidRejection, WELD_M};
-use crate::geometry::Plane;
+use crate::geometry::{Plane, bounds};
 use crate::plan_index::PlanIndex;
 use crate::roof::Facet;
 use crate::sorting::sort_by;
@@ -436,16 +436,7 @@ fn lower_over(a: &Part, b: &Part, overlap: &[Vec<Vec<Point2<f64>>>]) -> bool {
 
 /// Do the bounding boxes of two parts overlap?
 fn boxes_meet(a: &Part, b: &Part) -> bool {
-    let bounds = |part: &Part| {
-        part.rings.iter().flatten().fold(
-            (
-                Point2::new(f64::MAX, f64::MAX),
-                Point2::new(f64::MIN, f64::MIN),
-            ),
-            |(low, high), p| (low.inf(p), high.sup(p)),
-        )
-    };
-    let ((la, ha), (lb, hb)) = (bounds(a), bounds(b));
+    let [[la, ha], [lb, hb]] = [a, b].map(|part| bounds(part.rings.iter().flatten().copied()));
     la.x < hb.x && lb.x < ha.x && la.y < hb.y && lb.y < ha.y
 }
 
