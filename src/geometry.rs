@@ -20,6 +20,23 @@ pub fn mean_point<const D: usize>(points: &[Point<f64, D>]) -> Point<f64, D> {
     Point::from(sum / points.len() as f64)
 }
 
+/// The part of a ring on the positive side of a linear function (Sutherland and Hodgman). Edges that it adds lie
+/// on the border and cancel under the even-odd rule.
+pub fn clip(ring: &[Point3<f64>], side: impl Fn(&Point3<f64>) -> f64) -> Vec<Point3<f64>> {
+    let mut out = Vec::with_capacity(ring.len() + 2);
+    for (i, p) in ring.iter().enumerate() {
+        let q = &ring[(i + 1) % ring.len()];
+        let (sp, sq) = (side(p), side(q));
+        if sp >= 0.0 {
+            out.push(*p);
+        }
+        if (sp >= 0.0) != (sq >= 0.0) {
+            out.push(p + (q - p) * (sp / (sp - sq)));
+        }
+    }
+    out
+}
+
 /// A finite, directed segment in an image, in pixels (x right, y down, centre of the top-left
 /// pixel at (0.5, 0.5)).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -47,7 +47,8 @@ pub fn bounding_lines(
         .collect()
 }
 
-fn lies_in(plane: &Plane, line: &Segment3) -> bool {
+/// Does a line lie in a plane?
+pub fn lies_in(plane: &Plane, line: &Segment3) -> bool {
     const NEAR: f64 = 0.2;
     plane.signed_distance(&line.p0).abs() < NEAR && plane.signed_distance(&line.p1).abs() < NEAR
 }

@@ -29,7 +29,7 @@ use super::region::Region;
 use super::repeated::{group_repeated, with_repeated};
 use super::shiftable::ShiftableWindows;
 use super::verification::{FacetRejection, RejectedFacet, tail_on_ground};
-use crate::geometry::{Plane, bounds};
+use crate::geometry::{Plane, Segment3, bounds};
 use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
 use crate::params::RoofParams;
@@ -136,6 +136,7 @@ pub fn reconstruct_facets(
         planes,
         index,
         maps,
+        bounding,
         scene: reduced,
     };
     let (facets, rejected) = solver.solve(&groups, ground, scene, params);
@@ -229,11 +230,13 @@ fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {
 pub(super) struct Solver {
     labelling: Labelling<BorderCosts>,
     pub(super) evidence: Evidence,
-    arrangement: Arrangement,
+    pub(super) arrangement: Arrangement,
     pub(super) planes: Vec<Plane>,
     index: LineIndex,
     /// How the views agree on each plane.
     pub(super) maps: Vec<ConsistencyMap>,
+    /// The lines that may bound a facet.
+    pub(super) bounding: Vec<Segment3>,
     /// With pixels about as wide as the cells of the maps.
     pub(super) scene: Scene,
 }
@@ -265,17 +268,23 @@ impl Solver {
             let occluders = Occluders::new(&found);
             let results: Vec<_> = (delineation.outlines.iter().zip(&found))
                 .map(|(outline, facet)| {
-                    self.verify(facet, outline, &occluders, ground, colours, params)
+                    self.verify(facet, outline, &occluders, ground, colours, params)?;
+                    Ok(self.overreach(facet, outline, &occluders, params))
                 })
                 .collect();
             for ((outline, facet), result) in delineation.outlines.iter().zip(found).zip(results) {
                 let result = match result {
                     // In the last round nothing would take its place.
-                    Err(FacetRejection::Outdone { .. }) if round == ROUNDS => Ok(()),
+                    Err(FacetRejection::Outdone { .. }) if round == ROUNDS => Ok(None),
                     result => result,
                 };
                 let reason = match result {
-                    Ok(()) => {
+                    Ok(Some((cells, refused))) if round < ROUNDS => {
+                        rejected.push(refused);
+                        withdrawn.push((outline.plane, cells));
+                        continue;
+                    }
+                    Ok(_) => {
                         facets.push(facet);
                         continue;
                     }

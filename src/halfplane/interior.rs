@@ -163,8 +163,13 @@ impl Interior {
 
     /// Do the views agree on the plane as clearly as on most roofs?
     pub fn is_clear(&self) -> bool {
-        let beyond = self.correlation - self.least + self.overall - self.least_overall;
-        beyond >= CLEAR * self.weight
+        self.beyond_chance() >= CLEAR * self.weight
+    }
+
+    /// By how much the correlations, that of the better half of the pairs and that of all, exceed together what they must, summed
+    /// over the windows.
+    pub fn beyond_chance(&self) -> f64 {
+        self.correlation - self.least + self.overall - self.least_overall
     }
 
     fn falls_short(&self, correlation: f64, least: f64, tolerance: f64) -> bool {

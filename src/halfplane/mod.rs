@@ -17,10 +17,12 @@
 //!      trace          what the page draws (B99 figures 12 and 14)
 //! 4.2  neighbourhood  Delaunay triangulation constrained to the projected lines
 //!      grouping       collinear and coplanar grouping (figures 16 to 18)
+//!      line_pairs     planes of two lines without a half-plane
 //!      repeated       half-planes that repeat a plane next to them, where texture is weak
 //!      proposed       planes of the other method beside the groups
 //!      region         the part of the plan that a group may cover
 //!      plane_lines    new lines in a plane from segments of several views
+//!      bounding       which real lines may bound a facet
 //!      borders        border lines, new lines by plane intersection (figures 19 to 22)
 //!      extent         closing lines where the views cease to agree on a plane
 //! 4.3  arrangement    the plan cut into cells by the border lines
@@ -30,6 +32,7 @@
 //!      hypothesis     planes with their regions, similarity and lines, ready to compete
 //!      shiftable      windows that stay on one side of a line
 //!      evidence       what images and lines say for each plane over each cell
+//!      line_index     which real lines run along a border
 //!      border_cost    what a border between two planes costs
 //!      labelling      conflicts: which plane covers which cell
 //!      cut            one step of it: the best of all moves to one plane
@@ -37,7 +40,10 @@
 //!      islands        patches too small to be a facet or a hole
 //!      delineation    closed outlines
 //!      interior       what the inside of a facet shows, away from its edges
+//!      prominence     the facet against its own plane moved up and down
+//!      vegetation     how green a facet is
 //!      verification   what a facet must show to stay
+//!      overreach      what it covers beyond a line that bounds it
 //!      facets         the labelling on its way to facets; orders 4.2 and 4.3
 //! ```
 
@@ -64,6 +70,7 @@ mod labelling;
 mod line_index;
 mod line_pairs;
 mod neighbourhood;
+mod overreach;
 mod peak;
 mod plan;
 mod plane_lines;

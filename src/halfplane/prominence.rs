@@ -18,7 +18,7 @@ use crate::scene::Scene;
 
 /// Standard deviations by which a facet stands out from its plane moved up and down that show it, though it falls short of a limit. Measured on
 /// rendered scenes: true facets that do have 1.1 and more, false ones less than 0.5.
-const PROMINENT: f64 = 1.0;
+pub const PROMINENT: f64 = 1.0;
 /// Share of its outline on lines from which on a facet is bounded by them on three sides of four: a level roof beside a higher wall, which shades it and hides it
 /// from half of the views, stands out little.
 const THREE_SIDES: f64 = 0.75;
@@ -49,7 +49,7 @@ pub fn stands_out(
     }
     if may_be_displaced(facet, interior) {
         let sigmas = prominence(2.0 * WRONG_BY);
-        if sigmas < least_prominence(facet) {
+        if sigmas < least_prominence(facet, interior) {
             return Err(FacetRejection::Displaced { sigmas: -sigmas });
         }
     }
@@ -64,9 +64,9 @@ fn may_be_displaced(facet: &Facet, interior: &Interior) -> bool {
 }
 
 /// The least that a facet not bounded by lines on most sides must stand out by. With a half-plane, which is evidence from inside it, others must be
-/// clearly better.
-fn least_prominence(facet: &Facet) -> f64 {
-    match facet.half_planes.is_empty() {
+/// clearly better, if the views agree by more than chance.
+fn least_prominence(facet: &Facet, interior: &Interior) -> f64 {
+    match facet.half_planes.is_empty() || interior.beyond_chance() < 0.0 {
         true => 0.0,
         false => -PROMINENT,
     }
@@ -232,16 +232,22 @@ mod tests {
     #[test]
     fn a_facet_goes_where_its_plane_moved_farther_than_true_ones_lie_beside_their_roofs_is_better()
     {
-        let judged = |half_planes: usize, near: f64, far: f64| {
+        let judged_inside = |beyond: f64, half_planes: usize, near: f64, far: f64| {
             let by_distance = |least_m: f64| if least_m < 0.3 { near } else { far };
             let facet = facet(0.6, half_planes);
-            stands_out(Ok(()), &facet, &inside(0.2), by_distance)
+            stands_out(Ok(()), &facet, &inside(beyond), by_distance)
         };
+        let judged = |half_planes, near, far| judged_inside(0.2, half_planes, near, far);
         let displaced = |sigmas| Err(FacetRejection::Displaced { sigmas });
         assert_eq!(judged(0, -2.0, 0.1), Ok(()), "as on corrugated roofs");
         assert_eq!(judged(0, 2.0, -0.1), displaced(0.1));
         assert_eq!(judged(1, 2.0, -0.9), Ok(()), "a half-plane speaks for it");
         assert_eq!(judged(1, 2.0, -1.1), displaced(1.1));
+        assert_eq!(
+            judged_inside(-0.2, 1, 2.0, -0.9),
+            displaced(0.9),
+            "by chance"
+        );
     }
 
     #[test]

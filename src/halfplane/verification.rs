@@ -5,11 +5,11 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::{Point2, Point3};
+use nalgebra::Point3;
 use serde::Serialize;
 
 use super::arrangement::Arrangement;
-use super::delineation::{Outline, signed_area};
+use super::delineation::Outline;
 use super::facets::Solver;
 use super::hypothesis::{ON_SURFACE, TEXTURED};
 use super::interior::{Inside, Interior, SIDE, map_inside};
@@ -64,6 +64,11 @@ pub enum FacetRejection {
     Displaced {
         /// How much better, in standard deviations.
         sigmas: f64,
+    },
+    /// The part of a facet beyond a line that bounds it, on whose plane the views agree by chance at most there.
+    BeyondLine {
+        /// Mean correlation of all their pairs inside that part.
+        similarity: f64,
     },
     /// As green as plants, and a roof neither by its outline nor by its inside.
     Vegetation {
@@ -125,9 +130,7 @@ fn vegetation(facet: &Facet, inside: &Inside, interior: &Interior, colours: &Sce
 
 /// Area inside a facet's outer ring, on its plane, square metres.
 fn sloped_area(facet: &Facet) -> f64 {
-    let plan: Vec<Point2<f64>> = facet.outer.iter().map(Point3::xy).collect();
-    let ring: Vec<usize> = (0..plan.len()).collect();
-    signed_area(&ring, &plan) / facet.plane.normal.z
+    facet.plan_area() / facet.plane.normal.z
 }
 
 /// Is a facet large enough, and as high above the ground as roofs are?

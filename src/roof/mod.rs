@@ -58,6 +58,15 @@ impl Facet {
     pub fn plan_bounds(&self) -> [Point2<f64>; 2] {
         bounds(self.outer.iter().map(Point3::xy))
     }
+
+    /// Area inside the outer ring in plan, square metres.
+    pub fn plan_area(&self) -> f64 {
+        let origin = self.outer.first().map_or(Point2::origin(), Point3::xy);
+        let next = self.outer.iter().cycle().skip(1);
+        let twice =
+            |(a, b): (&Point3<f64>, &Point3<f64>)| (a.xy() - origin).perp(&(b.xy() - origin));
+        0.5 * self.outer.iter().zip(next).map(twice).sum::<f64>()
+    }
 }
 
 /// What a face of a solid is.

@@ -8,6 +8,7 @@ use nalgebra::{Point2, Point3};
 use super::patch::{FacePlane, Patch};
 use super::raster::mark_inside;
 use crate::camera::Camera;
+use crate::geometry::clip;
 
 /// Parts of a face closer to the plane than this cast no shadow, metres: neighbours start at a common edge
 /// and are planar within a few millimetres.
@@ -82,23 +83,6 @@ pub fn shadow_on(
         mark_inside(&shadow, patch.width, patch.height, &mut mask);
     }
     mask
-}
-
-/// The part of a ring on the positive side of a linear function (Sutherland and Hodgman). Edges that it adds lie
-/// on the border and cancel under the even-odd rule.
-fn clip(ring: &[Point3<f64>], side: impl Fn(&Point3<f64>) -> f64) -> Vec<Point3<f64>> {
-    let mut out = Vec::with_capacity(ring.len() + 2);
-    for (i, p) in ring.iter().enumerate() {
-        let q = &ring[(i + 1) % ring.len()];
-        let (sp, sq) = (side(p), side(q));
-        if sp >= 0.0 {
-            out.push(*p);
-        }
-        if (sp >= 0.0) != (sq >= 0.0) {
-            out.push(p + (q - p) * (sp / (sp - sq)));
-        }
-    }
-    out
 }
 
 /// Do two boxes overlap?

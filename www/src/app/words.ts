@@ -117,6 +117,8 @@ export function facetRejectionWords(reason: Record<string, Record<string, number
       return `steep, without a half-plane, and the views that see it agree by chance at most (${value.toFixed(2)}): it spans a gap`;
     case "displaced":
       return `the views agree better on it moved up or down (by ${value.toFixed(1)} σ)`;
+    case "beyond_line":
+      return `beyond a line that bounds it, where the views agree by chance at most (${value.toFixed(2)})`;
     case "vegetation":
       return `green as plants are, and no roof by its lines or its inside (${value.toFixed(2)})`;
     case "outdone":
