@@ -88,6 +88,11 @@ impl Segment2 {
         self.at(0.5)
     }
 
+    /// The same segment in an image `factor` times as large.
+    pub fn enlarged(&self, factor: f64) -> Self {
+        Self::new(self.p0 * factor, self.p1 * factor)
+    }
+
     /// The same segment, the other way round.
     pub fn reversed(&self) -> Self {
         Self {

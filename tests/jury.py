@@ -29,12 +29,18 @@ import score_table
 from on_scenes import names_of, parser_of
 
 # What is done to the images: standard deviation of the noise (of 255), largest change of exposure and gamma,
-# are they turned by quarters, quality of the JPEG.
+# are they turned by quarters, quality of the JPEG, is its colour halved in size (4:2:0).
 CHANGES = {
     'noise': {'noise': 1.5},
     'exposure': {'noise': 1.0, 'exposure': 0.12},
     'turned': {'turned': True},
     'strong-noise': {'noise': 3.0, 'quality': 90},
+}
+# The same with one colour kept for four pixels, as most photographs are stored; a group of their own, for they hold less.
+STORED = {
+    'stored': {'quality': 90, 'halved': True},
+    'stored-noise': {'noise': 1.5, 'quality': 85, 'halved': True},
+    'stored-exposure': {'noise': 1.0, 'exposure': 0.12, 'quality': 90, 'halved': True},
 }
 # With this many views or fewer a run says more about the scene than about the method.
 FEWEST = 5
@@ -78,6 +84,9 @@ def jobs_of(scene):
     for change, how in CHANGES.items():
         changed = changed_scene(scene, change, **how)
         yield named(name=changed.name, group=(scene.name, len(views)), scene=changed, views=())
+    for change, how in STORED.items():
+        changed = changed_scene(scene, change, **how)
+        yield named(name=changed.name, group=(f'{scene.name} in 4:2:0', len(views)), scene=changed, views=())
     if len(views) < FEWEST or len(pieces(scene)) < 2:
         return
     every = 1 if len(views) <= 6 else 2
@@ -95,7 +104,7 @@ def pieces(scene):
     return json.loads((scene / 'truth' / 'roofs.json').read_text())['buildings']
 
 
-def changed_scene(scene, change, noise=0.0, exposure=0.0, turned=False, quality=95):
+def changed_scene(scene, change, noise=0.0, exposure=0.0, turned=False, quality=95, halved=False):
     """A copy of the scene with other images; the same each time."""
     copy = score_table.ROOT / 'target' / 'jury' / f'{scene.name}-{change}'
     shutil.rmtree(copy, ignore_errors=True)
@@ -110,7 +119,7 @@ def changed_scene(scene, change, noise=0.0, exposure=0.0, turned=False, quality=
         for _ in range((k + 1) % 4 if turned else 0):
             image = turn(image, view)
         image = Image.fromarray(np.clip(image + 0.5, 0, 255).astype(np.uint8))
-        image.save(copy / 'images' / view['file'], quality=quality, subsampling=0)
+        image.save(copy / 'images' / view['file'], quality=quality, subsampling=2 if halved else 0)
     (copy / 'cameras.json').write_text(json.dumps(cameras))
     return copy
 

@@ -258,10 +258,7 @@ fn new_parameters_of_one_method_keep_what_the_other_found_before() {
 fn the_lines_of_a_house_that_shows_in_colour_alone_are_found() {
     let (mut scene, truth) = l_scene(SIZE_PX);
     for view in &mut scene.views {
-        view.warmth = Some(Warmth {
-            image: view.gray.clone(),
-            noise: view.noise,
-        });
+        view.warmth = Some(Warmth::new(view.gray.clone()));
         view.gray.data.fill(0.5);
     }
     let mut params = Params::default();

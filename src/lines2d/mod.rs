@@ -85,3 +85,17 @@ pub struct ImageSegment {
     /// Covariance of (offset along the normal at the midpoint in px, angle in rad), 2 x 2.
     pub covariance: Matrix2<f64>,
 }
+
+impl ImageSegment {
+    /// The same segment in an image `factor` times as large.
+    pub fn enlarged(&self, factor: usize) -> Self {
+        let scale = factor as f64;
+        let enlarge = Matrix2::new(scale * scale, scale, scale, 1.0);
+        Self {
+            segment: self.segment.enlarged(scale),
+            edgels: self.edgels * factor as u32,
+            covariance: self.covariance.component_mul(&enlarge),
+            ..self.clone()
+        }
+    }
+}

@@ -56,6 +56,27 @@ pub struct SegmentTrace {
 }
 
 impl SegmentTrace {
+    /// Adds what the detector did in an image reduced by `factor`.
+    pub(super) fn add(&mut self, other: Self, factor: usize) {
+        self.edgels += other.edgels;
+        self.chains += other.chains;
+        self.short_chains += other.short_chains;
+        self.seeds += other.seeds;
+        self.taken += other.taken;
+        self.too_short += other.too_short;
+        self.curved += other.curved;
+        self.not_significant += other.not_significant;
+        self.beside_edge += other.beside_edge;
+        let factor = factor as f64;
+        let breaks = other.worm_breaks.into_iter();
+        self.worm_breaks.extend(breaks.map(|p| p * factor));
+        let rejected = other.rejected.into_iter().map(|r| RejectedSegment {
+            segment: r.segment.enlarged(factor),
+            ..r
+        });
+        self.rejected.extend(rejected);
+    }
+
     /// Counts a refused line, and keeps it unless it is too short.
     pub(super) fn refuse(&mut self, refused: RejectedSegment) {
         match refused.reason {

@@ -4,6 +4,11 @@
 //! roof edges of three rendered scenes that edges in grey values miss (about a third of them), this difference exceeds 12 of 255 at
 //! 32 to 55 %; red less green does at 14 to 45 %, and two differences add little to one. Skylight tints shadows blue, so that
 //! a shadow has an edge here too, as in grey values.
+//!
+//! Most photographs hold colour in less detail than grey: a sensor has red and blue in every fourth of its pixels, and JPEG keeps one colour for four
+//! pixels unless told otherwise (4:2:0). What was interpolated between has no edges of its own, and noise that is alike in
+//! neighbours. Such a warmth is searched for segments at half its size, and its noise is judged there: of the matched lines of rendered suburbs in
+//! 4:2:0 then 1.7 % are wrong instead of 3.8.
 
 use image::RgbImage;
 use serde::Serialize;
@@ -35,8 +40,10 @@ impl Channel {
 pub struct Warmth {
     /// Half the difference of red and blue, around 1/2, 0 to 1; of the image's size.
     pub image: Gray,
-    /// Standard deviation of the noise of one pixel.
+    /// Standard deviation of the noise of one pixel, or of white noise that leaves as much in blocks of `grain_px`.
     pub noise: f64,
+    /// Side of the blocks of pixels that hold one colour, pixels: 1 or 2.
+    pub grain_px: usize,
 }
 
 impl Warmth {
@@ -49,9 +56,42 @@ impl Warmth {
         for (value, pixel) in image.data.iter_mut().zip(rgb.pixels()) {
             *value = 0.5 + (f32::from(pixel[0]) - f32::from(pixel[2])) / 510.0;
         }
-        let noise = noise_of(&image);
-        Some(Self { image, noise })
+        Some(Self::new(image))
     }
+
+    /// A warmth whose noise and grain are measured.
+    pub fn new(image: Gray) -> Self {
+        let grain_px = if is_interpolated(&image) { 2 } else { 1 };
+        let noise = grain_px as f64 * noise_of(&image.reduced(grain_px));
+        Self {
+            image,
+            noise,
+            grain_px,
+        }
+    }
+}
+
+/// Was an image interpolated between values of every second pixel? Then it bends little where it is steepest: over the steps of three
+/// pixels that exceed 24 of 510, the third differences sum up to so much of the steps. Measured: 0.14 to 0.19 where one colour was kept for four pixels,
+/// 0.30 to 0.42 where each pixel has its own.
+fn is_interpolated(image: &Gray) -> bool {
+    const STEP: f32 = 24.0 / 510.0;
+    const BENDS: f32 = 0.25;
+    let (mut bends, mut steps) = (0.0, 0.0);
+    let mut look = |a: f32, b: f32, c: f32, d: f32| {
+        if (d - a).abs() > STEP {
+            steps += (d - a).abs();
+            bends += (d - 3.0 * c + 3.0 * b - a).abs();
+        }
+    };
+    for row in image.data.chunks_exact(image.width.max(1)) {
+        row.windows(4).for_each(|w| look(w[0], w[1], w[2], w[3]));
+    }
+    for y in 3..image.height {
+        let at = |x: usize, up: usize| image.data[(y - up) * image.width + x];
+        (0..image.width).for_each(|x| look(at(x, 3), at(x, 2), at(x, 1), at(x, 0)));
+    }
+    bends < BENDS * steps
 }
 
 #[cfg(test)]
@@ -72,5 +112,18 @@ mod tests {
         let mut rgb = RgbImage::from_pixel(4, 4, Rgb([90, 90, 90]));
         rgb.put_pixel(1, 1, Rgb([200, 201, 202]));
         assert!(Warmth::of(&rgb).is_none());
+    }
+
+    #[test]
+    fn steps_that_were_interpolated_bend_little() {
+        let step = |blur: f32| {
+            Warmth::new(Gray::from_fn(40, 40, |x, _| {
+                0.5 + 0.2 * ((x as f32 - 19.5) / blur).clamp(-1.0, 1.0)
+            }))
+        };
+        assert_eq!(step(0.5).grain_px, 1);
+        assert_eq!(step(4.0).grain_px, 2);
+        let plain = Warmth::new(Gray::from_fn(40, 40, |_, _| 0.5));
+        assert_eq!(plain.grain_px, 1, "nothing is known");
     }
 }
