@@ -99,3 +99,32 @@ impl ImageSegment {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point2;
+
+    #[test]
+    fn in_a_larger_image_points_of_the_line_are_as_much_less_certain() {
+        let small = ImageSegment {
+            kind: SegmentKind::Color,
+            segment: Segment2::new(Point2::new(10.0, 20.0), Point2::new(40.0, 60.0)),
+            contrast: 0.2,
+            edgels: 50,
+            covariance: Matrix2::new(0.02, 3e-4, 3e-4, 1e-5),
+        };
+        let large = small.enlarged(2);
+        assert_eq!(large.segment.p1, Point2::new(80.0, 120.0));
+        assert_eq!((large.edgels, large.contrast), (100, 0.2));
+        // Variance across the line, at a distance along it from the middle.
+        let variance = |s: &ImageSegment, along: f64| {
+            let c = &s.covariance;
+            c[(0, 0)] + 2.0 * along * c[(0, 1)] + along * along * c[(1, 1)]
+        };
+        for along in [-25.0, 0.0, 10.0] {
+            let ratio = variance(&large, 2.0 * along) / variance(&small, along);
+            assert!((ratio - 4.0).abs() < 1e-12, "{ratio} at {along}");
+        }
+    }
+}

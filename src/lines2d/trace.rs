@@ -90,3 +90,28 @@ impl SegmentTrace {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_seen_in_a_reduced_image_is_drawn_where_it_is() {
+        let segment = Segment2::new(Point2::new(1.0, 2.0), Point2::new(9.0, 4.0));
+        let reason = SegmentRejection::Curved;
+        let mut reduced = SegmentTrace {
+            edgels: 7,
+            worm_breaks: vec![Point2::new(5.0, 3.0)],
+            ..SegmentTrace::default()
+        };
+        reduced.refuse(RejectedSegment { segment, reason });
+        let mut trace = SegmentTrace {
+            edgels: 3,
+            ..SegmentTrace::default()
+        };
+        trace.add(reduced, 2);
+        assert_eq!((trace.edgels, trace.curved), (10, 1));
+        assert_eq!(trace.worm_breaks, [Point2::new(10.0, 6.0)]);
+        assert_eq!(trace.rejected[0].segment.p1, Point2::new(18.0, 8.0));
+    }
+}
