@@ -115,8 +115,7 @@ fn cells_beyond(
 ) -> Vec<usize> {
     let along = (line.p1 - line.p0).xy();
     let offset = |p: &Point2<f64>| along.perp(&(p - line.p0.xy()));
-    let side = mean_point(&part.outer);
-    let side = offset(&side.xy()).signum();
+    let side = offset(&mean_point(&part.outer).xy()).signum();
     let mut beyond: BTreeMap<usize, f64> = cells.iter().map(|&c| (c, 0.0)).collect();
     for (corners, cell) in &arrangement.triangles {
         let Some(area) = beyond.get_mut(cell) else {
