@@ -258,6 +258,18 @@ mod tests {
         }
     }
 
+    #[test]
+    fn tiny_photographs_whose_colour_was_interpolated_have_no_segments() {
+        for (width, height) in [(9, 1), (1, 9), (9, 2), (9, 3), (4, 4)] {
+            let ramp = |x: usize, y: usize| 0.1 * (x + y) as f32;
+            let warm = Warmth::new(Gray::from_fn(width, height, ramp));
+            assert_eq!(warm.grain_px, 2, "{width} x {height}");
+            let gray = Gray::from_fn(width, height, |_, _| 0.5);
+            let (segments, _) = detect_segments(&gray, Some(&warm), &SegmentParams::default());
+            assert!(segments.is_empty());
+        }
+    }
+
     /// What is noise in single pixels looks like lines once it was interpolated.
     #[test]
     fn noise_between_pixels_that_share_their_colour_is_no_edge() {
