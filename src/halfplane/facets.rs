@@ -269,22 +269,24 @@ impl Solver {
             let results: Vec<_> = (delineation.outlines.iter().zip(&found))
                 .map(|(outline, facet)| {
                     self.verify(facet, outline, &occluders, ground, colours, params)?;
-                    Ok(self.overreach(facet, outline, &occluders, params))
+                    // In the last round nothing would take its place.
+                    let beyond = || self.overreach(facet, outline, &occluders, params);
+                    Ok((round < ROUNDS).then(beyond).flatten())
                 })
                 .collect();
             for ((outline, facet), result) in delineation.outlines.iter().zip(found).zip(results) {
                 let result = match result {
-                    // In the last round nothing would take its place.
+                    // The same holds for the whole of it.
                     Err(FacetRejection::Outdone { .. }) if round == ROUNDS => Ok(None),
                     result => result,
                 };
                 let reason = match result {
-                    Ok(Some((cells, refused))) if round < ROUNDS => {
+                    Ok(Some((cells, refused))) => {
                         rejected.push(refused);
                         withdrawn.push((outline.plane, cells));
                         continue;
                     }
-                    Ok(_) => {
+                    Ok(None) => {
                         facets.push(facet);
                         continue;
                     }

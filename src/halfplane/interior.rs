@@ -54,6 +54,19 @@ pub fn map_inside(
     consistency_map_behind(scene, &facet.plane, &grid, hidden)
 }
 
+/// What the inside of a facet shows to the views that nothing hides it from; `hidden` says which do not see a point, and `min_correlation` is what strong texture
+/// must reach.
+pub fn seen_inside(
+    scene: &Scene,
+    facet: &Facet,
+    step: f64,
+    hidden: &dyn Fn(ViewId, &Point3<f64>) -> bool,
+    min_correlation: f64,
+) -> Interior {
+    let map = map_inside(scene, facet, step, hidden);
+    Inside::of(facet, &map).sums(min_correlation)
+}
+
 impl<'m> Inside<'m> {
     /// The windows inside a facet, with the map of its plane.
     pub fn of(facet: &Facet, map: &'m ConsistencyMap) -> Self {

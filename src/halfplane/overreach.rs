@@ -13,7 +13,7 @@ use super::bounding::lies_in;
 use super::consistency::ConsistencyMap;
 use super::delineation::Outline;
 use super::facets::Solver;
-use super::interior::{Inside, map_inside};
+use super::interior::{Inside, seen_inside};
 use super::prominence::{PROMINENT, prominence};
 use super::verification::{FacetRejection, RejectedFacet};
 use crate::geometry::{Segment3, clip, covered, mean_point};
@@ -39,7 +39,7 @@ impl Solver {
         params: &RoofParams,
     ) -> Option<(Vec<usize>, RejectedFacet)> {
         let map = &self.maps[outline.plane as usize];
-        let hidden = |view, point: &_| occluders.hide(point, &self.scene.camera(view).center);
+        let hidden = self.hidden_by(occluders);
         let in_plane = self.bounding.iter().filter(|l| lies_in(&facet.plane, l));
         let parts = in_plane.filter_map(|line| Some((line, part_beyond(facet, line)?)));
         let refused = parts.filter_map(|(line, part)| {
@@ -71,8 +71,7 @@ fn chance_inside(
         return None;
     }
     let step = map.grid.step;
-    let seen = map_inside(scene, part, step, hidden);
-    let seen = Inside::of(part, &seen).sums(min_correlation);
+    let seen = seen_inside(scene, part, step, hidden, min_correlation);
     let short = -seen.beyond_chance();
     if short <= 0.0 || prominence(scene, part, step, 0.0, hidden) >= PROMINENT {
         return None;
@@ -134,6 +133,7 @@ fn cells_beyond(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::halfplane::interior::map_inside;
     use crate::synthetic::gable_scene;
     use crate::testing;
 
@@ -167,7 +167,7 @@ mod tests {
     #[test]
     fn cells_that_are_mostly_beyond_the_line_go() {
         let corners = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [4.0, 4.0]].map(Point2::from);
-        // Two triangles, the upper right one more beyond x + y = 5 than the lower left one, which is not.
+        // Only the middle of the upper right one is beyond x + y = 5.
         let arrangement = Arrangement {
             vertices: corners.to_vec(),
             triangles: vec![([0, 1, 2], 0), ([1, 3, 2], 1)],
@@ -194,7 +194,7 @@ mod tests {
         });
         let eave = lowest.expect("corners");
         let (a, b) = (roof.outer[eave], roof.outer[(eave + 1) % roof.outer.len()]);
-        // Down the slope, as far as half of the next roof's distance, and up.
+        // From the eave up the slope, or down.
         let strip = |by: f64| {
             let along = (b - a).normalize();
             let up = roof.plane.normal.cross(&along) * by;

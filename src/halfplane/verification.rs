@@ -12,10 +12,11 @@ use super::arrangement::Arrangement;
 use super::delineation::Outline;
 use super::facets::Solver;
 use super::hypothesis::{ON_SURFACE, TEXTURED};
-use super::interior::{Inside, Interior, SIDE, map_inside};
+use super::interior::{Inside, Interior, SIDE, seen_inside};
 use super::prominence::{prominence, stands_out};
 use super::vegetation::{GREEN, excess_green};
 use crate::geometry::{Plane, mean_point};
+use crate::ids::ViewId;
 use crate::params::RoofParams;
 use crate::roof::{Facet, Ground, Occluders};
 use crate::scene::Scene;
@@ -206,10 +207,9 @@ impl Solver {
         }
         let interior = inside.sums(params.min_correlation);
         let agreed = self.is_agreed_on(facet, outline, &interior, occluders, params);
-        let prominence = |least_m: f64| {
-            let hidden = |view, point: &_| occluders.hide(point, &self.scene.camera(view).center);
-            prominence(&self.scene, facet, map.grid.step, least_m, &hidden)
-        };
+        let hidden = self.hidden_by(occluders);
+        let prominence =
+            |least_m: f64| prominence(&self.scene, facet, map.grid.step, least_m, &hidden);
         stands_out(agreed, facet, &interior, prominence)?;
         if let Some(excess_green) = vegetation(facet, &inside, &interior, colours) {
             return Err(FacetRejection::Vegetation { excess_green });
@@ -239,7 +239,8 @@ impl Solver {
         let doubtful = may_bridge(facet) && interior.is_doubtful();
         if doubtful || interior.speaks_against_overall() {
             let step = self.maps[outline.plane as usize].grid.step;
-            let seen = self.seen_inside(facet, step, occluders, params);
+            let hidden = self.hidden_by(occluders);
+            let seen = seen_inside(&self.scene, facet, step, &hidden, params.min_correlation);
             let similarity = seen.overall / seen.weight;
             if seen.speaks_against_overall() {
                 return Err(FacetRejection::Contradicted { similarity });
@@ -267,17 +268,12 @@ impl Solver {
         Ok(())
     }
 
-    /// What the inside of a facet shows to the views that no other facet hides it from.
-    fn seen_inside(
-        &self,
-        facet: &Facet,
-        step: f64,
-        occluders: &Occluders,
-        params: &RoofParams,
-    ) -> Interior {
-        let hidden = |view, point: &_| occluders.hide(point, &self.scene.camera(view).center);
-        let map = map_inside(&self.scene, facet, step, &hidden);
-        Inside::of(facet, &map).sums(params.min_correlation)
+    /// Which views other facets hide a point from.
+    pub(super) fn hidden_by<'s>(
+        &'s self,
+        occluders: &'s Occluders,
+    ) -> impl Fn(ViewId, &Point3<f64>) -> bool + 's {
+        |view, point| occluders.hide(point, &self.scene.camera(view).center)
     }
 
     /// The plane that could lie over a facet and that the views agree on clearly better inside it. A level plane through
@@ -307,6 +303,7 @@ impl Solver {
 mod tests {
     use super::*;
     use crate::halfplane::borders::{Border, BorderKind};
+    use crate::halfplane::interior::map_inside;
     use crate::ids::HalfPlaneId;
     use crate::synthetic::gable_scene;
     use crate::testing;
@@ -323,8 +320,8 @@ mod tests {
 
     /// Do the better half of the pairs of views, and all of them, speak against a facet, where `hidden` views are not asked?
     fn against(scene: &Scene, facet: &Facet, hidden: &[usize]) -> [bool; 2] {
-        let map = map_inside(scene, facet, 0.1, &|view, _| hidden.contains(&view.index()));
-        let sums = Inside::of(facet, &map).sums(MIN_CORRELATION);
+        let hidden = |view: ViewId, _: &_| hidden.contains(&view.index());
+        let sums = seen_inside(scene, facet, 0.1, &hidden, MIN_CORRELATION);
         assert!(sums.weight > 100.0, "the texture is strong");
         [sums.speaks_against(), sums.speaks_against_overall()]
     }
