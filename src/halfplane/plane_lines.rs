@@ -10,6 +10,7 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::region::Region;
+use crate::camera::Camera;
 use crate::geometry::{Plane, Segment3};
 use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;
@@ -25,8 +26,13 @@ pub struct PlaneLine {
     pub views: Vec<ViewId>,
 }
 
-/// Views that must show a line.
+/// Views that must show a line, ...
 const MIN_VIEWS: usize = 3;
+/// ... and where so few have the place in their image, ...
+const FEW: usize = 3;
+/// ... those that must show it there. Measured on rendered scenes: of pairs of segments that meet by chance one in four lies on a roof's edge where six
+/// views could show it, one in two where three could.
+const MIN_OF_FEW: usize = 2;
 /// Segments cast onto the plane belong to one line within this many ground pixels, ...
 const SAME_LINE_PX: f64 = 1.5;
 /// ... and this sine of the angle.
@@ -59,7 +65,8 @@ pub fn rays_through_ends(scene: &Scene, segments: &[Vec<ImageSegment>]) -> EndRa
     scene.view_ids().zip(segments).map(of_view).collect()
 }
 
-/// The lines in `plane` over `region` that at least three views show; `rays` are those through the ends of all segments.
+/// The lines in `plane` over `region` that at least three views show, or two where no more than three have the place in their image; `rays` are those
+/// through the ends of all segments.
 pub fn lines_in_plane(
     scene: &Scene,
     rays: &EndRays,
@@ -103,12 +110,20 @@ pub fn lines_in_plane(
         let mut views: Vec<ViewId> = members.iter().map(|&j| casts[j].view).collect();
         sort_by(&mut views, Ord::cmp);
         views.dedup();
-        if views.len() < MIN_VIEWS {
+        if views.len() < MIN_OF_FEW {
+            continue;
+        }
+        let shown: Vec<Cast> = members.iter().map(|&j| casts[j]).collect();
+        let line = common_line(&shown, |p| views_with(scene, &plane.lift(p.x, p.y)));
+        let few = |(a, b): &(Point2<f64>, Point2<f64>)| {
+            let middle = nalgebra::center(a, b);
+            views_with(scene, &plane.lift(middle.x, middle.y)) <= FEW
+        };
+        if views.len() < MIN_VIEWS && !line.as_ref().is_some_and(few) {
             continue;
         }
         members.iter().for_each(|&j| used[j] = true);
-        let members: Vec<Cast> = members.into_iter().map(|j| casts[j]).collect();
-        if let Some((a, b)) = common_line(&members) {
+        if let Some((a, b)) = line {
             found.push(PlaneLine {
                 segment: Segment3::new(plane.lift(a.x, a.y), plane.lift(b.x, b.y)),
                 views,
@@ -116,6 +131,12 @@ pub fn lines_in_plane(
         }
     }
     found
+}
+
+/// How many views have a point in their image.
+fn views_with(scene: &Scene, point: &Point3<f64>) -> usize {
+    let has = |camera: &Camera| (camera.project(point)).is_some_and(|p| camera.contains(&p, 0.0));
+    scene.views.iter().filter(|v| has(&v.camera)).count()
 }
 
 /// Where a ray from a centre meets the plane, in plan; `above` is minus the centre's signed distance from it.
@@ -142,8 +163,12 @@ fn coincide(reference: &Cast, other: &Cast, tolerance: f64) -> bool {
     offset(&other.a) <= tolerance && offset(&other.b) <= tolerance && overlap > 0.3 * other.length()
 }
 
-/// Length-weighted mean line of the casts; it reaches as far as at least two views do.
-fn common_line(members: &[Cast]) -> Option<(Point2<f64>, Point2<f64>)> {
+/// Length-weighted mean line of the casts. It reaches as far as at least two views do, and as far as one where fewer than two have the place in their image;
+/// `views_at` counts those.
+fn common_line(
+    members: &[Cast],
+    views_at: impl Fn(&Point2<f64>) -> usize,
+) -> Option<(Point2<f64>, Point2<f64>)> {
     let weight: f64 = members.iter().map(Cast::length).sum();
     let direction = members
         .iter()
@@ -158,6 +183,7 @@ fn common_line(members: &[Cast]) -> Option<(Point2<f64>, Point2<f64>)> {
         ends.push(((c.b.coords - mean).dot(&direction), c.view, -1));
     }
     sort_by(&mut ends, |p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
+    let outermost = [ends.first()?.0, ends.last()?.0];
     // Open stretches per view, to count views rather than segments.
     let mut open: std::collections::BTreeMap<ViewId, i32> = std::collections::BTreeMap::new();
     let (mut start, mut end) = (None, None);
@@ -173,5 +199,130 @@ fn common_line(members: &[Cast]) -> Option<(Point2<f64>, Point2<f64>)> {
         }
     }
     let at = |t: f64| Point2::from(mean + direction * t);
-    Some((at(start?), at(end?)))
+    let reach = |common: f64, outermost: f64| match views_at(&at(0.5 * (common + outermost))) {
+        0 | 1 => at(outermost),
+        _ => at(common),
+    };
+    Some((reach(start?, outermost[0]), reach(end?, outermost[1])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::halfplane::fixture;
+    use crate::halfplane::grouping::{GroupingInput, Member, PlaneGroup};
+    use crate::halfplane::neighbourhood::line_neighbours;
+    use crate::ids::LineId;
+    use crate::params::RoofParams;
+    use crate::testing::line;
+    use nalgebra::Point3;
+
+    /// A level plane at 6 m with the box of 10 m around the origin that it may cover.
+    fn plane_and_region() -> (Plane, Region) {
+        let plane =
+            Plane::from_point_normal(&Point3::new(0.0, 0.0, 6.0), &Vector3::z()).expect("upright");
+        let ridge = [line(
+            Point3::new(-9.0, 0.0, 6.0),
+            Point3::new(9.0, 0.0, 6.0),
+        )];
+        let member = |side| Member {
+            line: LineId(0),
+            side: Some(side),
+            half_plane: None,
+        };
+        let group = PlaneGroup {
+            plane,
+            members: [super::super::Side::Left, super::super::Side::Right]
+                .map(member)
+                .to_vec(),
+            rectangles: Vec::new(),
+        };
+        let input = GroupingInput {
+            lines: &ridge,
+            half_planes: &[],
+            neighbours: &line_neighbours(&ridge),
+            rectangles: &[],
+        };
+        (plane, Region::new(&input, &group, &RoofParams::default()))
+    }
+
+    /// The rays that views have through the ends of the parts of 3D lines that they show.
+    fn rays(scene: &Scene, shown: &[&[[[f64; 3]; 2]]]) -> EndRays {
+        let views = scene.views.iter().zip(shown);
+        let of_view = |(view, lines): (&crate::scene::View, &&[[[f64; 3]; 2]])| {
+            let ray = |p: [f64; 3]| {
+                view.camera
+                    .ray(&view.camera.project(&Point3::from(p)).unwrap())
+            };
+            lines.iter().map(|ends| ends.map(ray)).collect()
+        };
+        views.map(of_view).collect()
+    }
+
+    /// A line in the plane, and another a metre above it that no two views cast onto the same place.
+    const IN_PLANE: [[f64; 3]; 2] = [[-4.0, 2.0, 6.0], [3.0, 2.5, 6.0]];
+    const ABOVE: [[f64; 3]; 2] = [[-3.0, -4.0, 7.0], [2.0, 3.0, 7.0]];
+
+    fn found(scene: &Scene, shown: &[&[[[f64; 3]; 2]]]) -> Vec<PlaneLine> {
+        let (plane, region) = plane_and_region();
+        lines_in_plane(scene, &rays(scene, shown), &plane, &region)
+    }
+
+    fn is_from_to(line: &PlaneLine, from: [f64; 3], to: [f64; 3]) -> bool {
+        let near = |p: &Point3<f64>, q: [f64; 3]| (p - Point3::from(q)).norm() < 0.01;
+        near(&line.segment.p0, from) && near(&line.segment.p1, to)
+    }
+
+    #[test]
+    fn segments_that_coincide_in_the_plane_make_a_line_and_those_above_it_do_not() {
+        let scene = fixture::scene(&[]);
+        let both: &[_] = &[IN_PLANE, ABOVE];
+        let lines = found(&scene, &[both; 4]);
+        assert_eq!(lines.len(), 1);
+        assert!(is_from_to(&lines[0], IN_PLANE[0], IN_PLANE[1]));
+        assert_eq!(lines[0].views, scene.view_ids().collect::<Vec<_>>());
+        let [from, to] = IN_PLANE;
+        let turned = [to, from];
+        let opposite: &[_] = &[turned];
+        let lines = found(&scene, &[both, both, opposite, &[]]);
+        assert!(
+            lines.is_empty(),
+            "dark and bright sides of two views only agree"
+        );
+    }
+
+    #[test]
+    fn two_views_are_enough_where_three_could_show_the_line() {
+        let mut scene = fixture::scene(&[]);
+        let one: &[_] = &[IN_PLANE];
+        assert!(
+            found(&scene, &[one, &[], one, &[]]).is_empty(),
+            "two of four"
+        );
+        scene.views.pop();
+        assert_eq!(found(&scene, &[one, &[], one]).len(), 1, "two of three");
+        assert!(found(&scene, &[one, &[], &[]]).is_empty(), "one of three");
+        let above: &[_] = &[ABOVE];
+        assert!(
+            found(&scene, &[above, &[], above]).is_empty(),
+            "not in the plane"
+        );
+    }
+
+    #[test]
+    fn a_line_reaches_as_far_as_two_views_show_it_or_the_only_one_that_could() {
+        let mut scene = fixture::scene(&[]);
+        scene.views.truncate(2);
+        let [from, to] = IN_PLANE;
+        let middle: [f64; 3] = std::array::from_fn(|i| 0.5 * (from[i] + to[i]));
+        let (whole, half): (&[_], &[_]) = (&[[from, to]], &[[from, middle]]);
+        let lines = found(&scene, &[whole, half]);
+        assert!(is_from_to(&lines[0], from, middle));
+        // Beyond the middle nothing of the second image is left.
+        let camera = &mut scene.views[1].camera;
+        let end = camera.project(&Point3::from(middle)).expect("in front");
+        camera.width = end.x.ceil() as u32;
+        let lines = found(&scene, &[whole, half]);
+        assert!(is_from_to(&lines[0], from, to), "{:?}", lines[0]);
+    }
 }
