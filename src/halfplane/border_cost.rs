@@ -57,7 +57,7 @@ impl BorderCosts {
             (true, true) => CREASE_ON_LINE,
             (true, false) => CREASE,
             (false, true) => ON_LINE,
-            (false, false) => 1.0,
+            (false, false) => STEP,
         }
     }
 }
@@ -116,6 +116,8 @@ const CREASE_ON_LINE: f64 = 0.1;
 const CREASE: f64 = 0.3;
 /// ... and where a reconstructed line of one of the planes bounds it.
 const ON_LINE: f64 = 0.15;
+/// ... and where two roofs stand at different heights and no line says so: such a step shows.
+const STEP: f64 = 1.5;
 /// Planes meet when their heights differ by less, metres.
 const MEETING: f64 = 0.25;
 /// A line lies in a plane's border when their heights differ by less, metres.

@@ -20,14 +20,32 @@ pub fn supported_stretch(profile: &Profile, params: &MatchParams) -> Option<(usi
     let needed = needed_views(profile.measured());
     let detections: Vec<usize> = (0..n).map(|e| profile.detections(e)).collect();
     let agreeing: Vec<bool> = (0..n).map(|e| profile.agreeing(e, params) >= 3).collect();
-    let supported: Vec<bool> = (0..n)
-        .map(|e| detections[e] >= needed || (detections[e] + 1 >= needed.max(3) && agreeing[e]))
+    let support: Vec<Support> = (0..n)
+        .map(|e| match detections[e] {
+            d if d >= needed => Support::Detected,
+            d if d + 1 >= needed.max(3) && agreeing[e] => Support::Grown,
+            _ => Support::None,
+        })
         .collect();
     let (start, end) = longest_run(&detections, needed)?;
-    let forward = extend(&supported[end..], &agreeing[end..], params);
-    let reversed = |v: &[bool]| v[..=start].iter().rev().copied().collect::<Vec<_>>();
-    let backward = extend(&reversed(&supported), &reversed(&agreeing), params);
+    let forward = extend(&support[end..], &agreeing[end..], params);
+    let backward = extend(&reversed(&support[..=start]), &reversed(&agreeing[..=start]), params);
     Some((start - backward, end + forward))
+}
+
+/// How a place of the line is supported.
+#[derive(Clone, Copy, PartialEq)]
+enum Support {
+    /// Enough views detected the edge there.
+    Detected,
+    /// One too few did, but the neighbourhoods correlate.
+    Grown,
+    /// Neither.
+    None,
+}
+
+fn reversed<T: Copy>(values: &[T]) -> Vec<T> {
+    values.iter().rev().copied().collect()
 }
 
 /// Number of views that must see the edge at a place, of those that see it somewhere: more than half, because
@@ -51,14 +69,15 @@ fn longest_run(detections: &[usize], needed: usize) -> Option<(usize, usize)> {
 }
 
 /// How far support reaches from the first edgel on, which is supported.
-fn extend(supported: &[bool], agreeing: &[bool], params: &MatchParams) -> usize {
+fn extend(support: &[Support], agreeing: &[bool], params: &MatchParams) -> usize {
     let mut reached = 0;
-    while reached + 1 < supported.len() {
-        if supported[reached + 1] {
+    while reached + 1 < support.len() {
+        let beyond = &support[reached + 1..];
+        if beyond[0] != Support::None {
             reached += 1;
             continue;
         }
-        let Some(gap) = supported[reached + 1..].iter().position(|s| *s) else {
+        let Some(gap) = beyond.iter().position(|s| *s == Support::Detected) else {
             break;
         };
         let bridged = &agreeing[reached + 1..reached + 1 + gap];
