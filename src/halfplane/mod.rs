@@ -90,6 +90,7 @@ mod verification;
 mod windows;
 
 pub use borders::{Border, BorderKind};
+pub(crate) use consistency::least_overall;
 pub use consistency::{ConsistencyMap, consistency_map, consistency_map_behind};
 pub use facets::{FacetTrace, reconstruct_facets};
 pub use grouping::{Member, PlaneGroup};

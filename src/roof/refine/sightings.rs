@@ -10,6 +10,7 @@ use nalgebra::{Matrix2, Point2, Vector2};
 
 use super::wireframe::{Side, SideKind, State, Wireframe};
 use crate::geometry::{Segment2, Segment3, covered};
+use crate::halfplane::least_overall;
 use crate::ids::ViewId;
 use crate::linematch::measure_edge;
 use crate::lines3d::Line3d;
@@ -410,7 +411,8 @@ impl Profiles {
                 let [saa, sbb, sab] = covariances(&a.rows[k], &b.rows[k]);
                 let (texture, variance) = ((saa * sbb).sqrt(), a.noise * b.noise);
                 let correlation = if texture > 0.0 { sab / texture } else { 0.0 };
-                sum += (correlation - params.min_correlation) * texture / (texture + variance);
+                let weight = texture / (texture + variance);
+                sum += weight * (correlation - least_overall(weight, params.min_correlation));
                 pairs += 1.0;
             }
         }
