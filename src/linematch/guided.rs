@@ -19,7 +19,7 @@ use crate::raster::{Channel, Gray};
 use crate::sorting::sort_by;
 
 /// Shortest piece whose profile is averaged, px.
-const PIECE_PX: f64 = 5.0;
+pub const PIECE_PX: f64 = 5.0;
 /// Distance from the prediction up to which an edge is sought, px. Assumption: half the least distance of two
 /// edges that a detector with a smoothing of one pixel keeps apart.
 const REACH_PX: f64 = 1.5;

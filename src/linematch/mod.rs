@@ -8,6 +8,7 @@
 //!       -> nviews     fitted over all views, views counted                                       3.4
 //!       -> adopt      segments near the reprojection adopted, edges measured again               3.4
 //!       -> grow       merged and grown along its profile                                         3.3
+//!       -> ends       where its ends are, to a pixel                                             3.3
 //! ```
 //!
 //! Pairs and triples are of segments of one channel (grey values or warmth) that are bright on one side: that keeps
@@ -16,6 +17,7 @@
 //! shadow of the house.
 
 mod adopt;
+mod ends;
 mod grow;
 mod guided;
 mod height;

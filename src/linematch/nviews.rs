@@ -4,6 +4,7 @@
 
 use serde::Serialize;
 
+use super::ends::sharpened;
 use super::grow::supported_stretch;
 use super::guided::GuidedEdge;
 use super::profile::{Profile, ViewProfile};
@@ -107,6 +108,7 @@ pub fn complete_line(
         }
         let profile = context.profile(&fit.line, &segments, &edges)?;
         let stretch = supported_stretch(&profile, context.params).ok_or(Rejection::TooFewViews)?;
+        let stretch = sharpened(context.scene, &profile, stretch);
         if stretch.1 - stretch.0 + 1 < context.params.min_edgels {
             return Err(Rejection::TooShort);
         }
