@@ -155,7 +155,11 @@ mod tests {
         assert_eq!(cost(gable, 0.0, true), 2.0 * CREASE_ON_LINE);
         assert_eq!(cost(gable, 0.0, false), 2.0 * CREASE);
         assert_eq!(cost(flat, 3.0, true), 2.0 * ON_LINE);
-        assert_eq!(cost(flat, 3.0, false), 2.0);
+        assert_eq!(
+            cost(flat, 3.0, false),
+            2.0 * STEP,
+            "a step that no line shows"
+        );
         // One plane found twice: dearer than no support at all.
         assert_eq!(cost(flat, 0.1, true), 2.0 * DUPLICATE);
     }

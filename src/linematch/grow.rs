@@ -4,7 +4,8 @@
 //! * Growing: where one view only has a segment, the others are taken along if the neighbourhoods
 //!   correlate over three views ("the end points may be extended provided the grown edgels satisfy
 //!   the photometric correlation tests over the three views").
-//! * Merging: a gap between fragments that no view closes is bridged by the same test.
+//! * Merging: a gap between fragments that no view closes is bridged by the same test. What has only grown beyond it is no fragment: on
+//!   textured ground single pieces line up by chance.
 
 use super::profile::Profile;
 use crate::params::MatchParams;
@@ -29,7 +30,11 @@ pub fn supported_stretch(profile: &Profile, params: &MatchParams) -> Option<(usi
         .collect();
     let (start, end) = longest_run(&detections, needed)?;
     let forward = extend(&support[end..], &agreeing[end..], params);
-    let backward = extend(&reversed(&support[..=start]), &reversed(&agreeing[..=start]), params);
+    let backward = extend(
+        &reversed(&support[..=start]),
+        &reversed(&agreeing[..=start]),
+        params,
+    );
     Some((start - backward, end + forward))
 }
 
@@ -99,8 +104,15 @@ mod tests {
         s.bytes().map(|b| b == b'x').collect()
     }
 
-    fn reach(supported: &str, agreeing: &str) -> usize {
-        extend(&bools(supported), &bools(agreeing), &MatchParams::default())
+    /// How far `support` reaches: x where enough views detected the edge, g where it has grown.
+    fn reach(support: &str, agreeing: &str) -> usize {
+        let at = |b| match b {
+            b'x' => Support::Detected,
+            b'g' => Support::Grown,
+            _ => Support::None,
+        };
+        let support: Vec<Support> = support.bytes().map(at).collect();
+        extend(&support, &bools(agreeing), &MatchParams::default())
     }
 
     #[test]
@@ -117,6 +129,18 @@ mod tests {
             3,
             "nothing beyond a gap"
         );
+    }
+
+    #[test]
+    fn gaps_are_bridged_to_fragments_only() {
+        let agreeing = "xxxxxxxxxxxxxx";
+        assert_eq!(reach("xxgg......gggg", agreeing), 3, "grown beyond a gap");
+        assert_eq!(
+            reach("xxgg......ggxx", agreeing),
+            13,
+            "a fragment behind it"
+        );
+        assert_eq!(reach("xxgg..ggg.....", agreeing), 3, "beyond a small hole");
     }
 
     #[test]
