@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Score every rendered scene many times over, with noise, exposure, turned images and views left out.
+"""Score every scene many times over, with noise, exposure, turned images and views left out.
 
     python3 tests/jury.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
                           [--out FILE.json] [--against FILE.json]
@@ -7,7 +7,7 @@
 One run of a scene is one throw of the dice: a change of a few centimetres at the end of a line may flip a facet.
 The mean over runs that differ in what no method should depend on tells an improvement from luck. FOLDER is laid out as
 for score_table.py. `--against` compares with an earlier `--out`, run by run: the mean difference and its
-standard error. The table of docs/results.md is rewritten when all scenes were run without `--against`. Needs numpy,
+standard error. The tables of docs/results.md are rewritten when all scenes were run without `--against`. Needs numpy,
 Pillow and shapely.
 """
 import concurrent.futures
@@ -52,6 +52,13 @@ MEASURES = {
     'wrong lines': lambda s: s['lines']['wrong'],
     'outline [m]': lambda s: s['faces']['geometry']['rms_outline_m'],
 }
+# Of real scenes, which have no truth but planes and tie points to check by.
+REAL_MEASURES = {
+    'planes found': lambda s: s['planes_found'] / len(s['planes']),
+    'tie points on roofs': lambda s: s['points_on_roofs'],
+    'within 0.25 m': lambda s: s['points_within_0_25m'],
+    'median height error [m]': lambda s: s['median_abs_dz_m'],
+}
 
 
 def main():
@@ -63,27 +70,26 @@ def main():
     if not args.scenes.is_dir() or not scorer.is_dir():
         print(f'jury: skipped, there is no {args.scenes} with a {scorer} beside it')
         return 0
-    scenes = [args.scenes / name for name in names_of(args) if (args.scenes / name / 'truth').is_dir()]
-    jobs = [job for scene in scenes for job in jobs_of(scene)]
+    scenes = [args.scenes / name for name in names_of(args)]
+    jobs = [job for scene in scenes if (scene / 'truth').is_dir() for job in jobs_of(scene)]
+    jobs += [job for scene in scenes if (scene / 'check').is_dir() for job in real_jobs_of(scene)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         scores = list(pool.map(functools.partial(judge, args.binary.resolve(), scorer), jobs))
     runs = {job['name']: {'group': job['group'], **score} for job, score in zip(jobs, scores) if score}
     args.out.write_text(json.dumps(runs, indent=1))
     before = json.loads(args.against.read_text()) if args.against else None
-    print(table(runs, before))
+    tables = {'jury': table(runs, before, MEASURES), 'jury-real': table(runs, before, REAL_MEASURES)}
+    print(*tables.values(), sep='\n\n')
     if not args.only and not before:
-        score_table.rewrite({'jury': table(runs, None)})
+        score_table.rewrite(tables)
     return 0 if len(runs) == len(jobs) else 1
 
 
 def jobs_of(scene):
     """All runs of a scene: as it is, changed, and without some of its views."""
-    views = [view['file'] for view in json.loads((scene / 'cameras.json').read_text())['views']]
-    named = functools.partial(dict, truth=scene)
-    yield named(name=scene.name, group=(scene.name, len(views)), scene=scene, views=())
-    for change, how in CHANGES.items():
-        changed = changed_scene(scene, change, **how)
-        yield named(name=changed.name, group=(scene.name, len(views)), scene=changed, views=())
+    views = views_of(scene)
+    named = functools.partial(dict, truth=scene, measures=MEASURES)
+    yield from changed_jobs_of(scene, named)
     for change, how in STORED.items():
         changed = changed_scene(scene, change, **how)
         yield named(name=changed.name, group=(f'{scene.name} in 4:2:0', len(views)), scene=changed, views=())
@@ -97,6 +103,24 @@ def jobs_of(scene):
         for three in ((0, 2, 4), (1, 3, 5), (0, 2, 5), (2, 3, 5)):
             names = [views[i] for i in three]
             yield named(name=f'{scene.name} {"+".join(names)}', group=(scene.name, 3), scene=scene, views=names)
+
+
+def real_jobs_of(scene):
+    """Runs of a scene with all of its views, as it is and changed."""
+    return changed_jobs_of(scene, functools.partial(dict, truth=scene, measures=REAL_MEASURES))
+
+
+def changed_jobs_of(scene, named):
+    """A scene as it is, and with other images."""
+    group = (scene.name, len(views_of(scene)))
+    yield named(name=scene.name, group=group, scene=scene, views=())
+    for change, how in CHANGES.items():
+        changed = changed_scene(scene, change, **how)
+        yield named(name=changed.name, group=group, scene=changed, views=())
+
+
+def views_of(scene):
+    return [view['file'] for view in json.loads((scene / 'cameras.json').read_text())['views']]
 
 
 def pieces(scene):
@@ -142,17 +166,19 @@ def judge(binary, scorer, job):
         print(f'{job["name"]}: exit code {done.returncode}: {done.stderr.strip()}', file=sys.stderr)
         return None
     run = {'scene': job['truth'], 'out': out}
-    score = score_table.tool(scorer, 'score', run, out / 'model.city.json', '--lines', out / 'lines.json')
-    return score and {name: measure(score) or 0.0 for name, measure in MEASURES.items()}
+    program = ['score', '--lines', out / 'lines.json'] if job['measures'] is MEASURES else ['check_real']
+    score = score_table.tool(scorer, program[0], run, out / 'model.city.json', *program[1:])
+    return score and {name: measure(score) or 0.0 for name, measure in job['measures'].items()}
 
 
-def table(runs, before):
+def table(runs, before, measures):
     """Means over the runs of each scene and number of views; with `before`, differences and their standard errors."""
-    rows = [['scene', 'views', 'runs', *MEASURES]]
+    rows = [['scene', 'views', 'runs', *measures]]
+    runs = {name: run for name, run in runs.items() if measures.keys() <= run.keys()}
     by_group = itertools.groupby(sorted(runs.items(), key=lambda r: (r[1]['group'][0], -r[1]['group'][1])), lambda r: r[1]['group'])
     for (scene, views), group in by_group:
         group = [(now, before[name] if before else None) for name, now in group if not before or name in before]
-        cells = [cell([now[m] for now, _ in group], [then[m] for _, then in group] if before else None, m) for m in MEASURES]
+        cells = [cell([now[m] for now, _ in group], [then[m] for _, then in group] if before else None, m) for m in measures]
         rows.append([scene, str(views), str(len(group)), *cells])
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     lines = ['| ' + ' | '.join(text.ljust(width) for text, width in zip(row, widths)) + ' |' for row in rows]
@@ -160,8 +186,7 @@ def table(runs, before):
 
 
 def cell(now, then, measure):
-    metres = measure.endswith('[m]')
-    scale, unit, digits = (1, '', 3) if metres else (100, ' %', 1)
+    scale, unit, digits = (1, '', 3) if measure.endswith('[m]') else (1, '', 0) if measure.endswith('on roofs') else (100, ' %', 1)
     text = f'{scale * statistics.mean(now):.{digits}f}{unit}'
     if then is None:
         return text
