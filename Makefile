@@ -9,7 +9,7 @@
 #   make golden     rewrite the hashes that the tests of whole runs expect (tests/golden)
 #   make score      all scenes against their truth; rewrites the tables of docs/results.md
 #   make fuzz       all readers on damaged files, FUZZ_SECONDS (600) for each format
-#   make jury       the rendered scenes many times over, changed a little each time; rewrites its table there
+#   make jury       all scenes many times over, changed a little each time; rewrites its tables there
 #   make bench      time of every stage on the synthetic scene
 #   make clean      remove what was built (not the tool cache)
 
