@@ -27,11 +27,16 @@ pub struct CellEvidence {
     pub correlation: f64,
     /// The same for the correlation at which the plane is as good as none.
     pub least: f64,
+    /// Sum over the area of what one view says where it is alone, square metres.
+    pub alone: f64,
 }
 
 /// Least texture weight with which planes are compared with each other. What weak texture correlates by chance is the same for every plane
 /// at one place, so that it tells planes apart better than it tells a plane from none. Measured: from 1 on it is noise that decides between them.
 const AMONG_PLANES: f64 = 0.5;
+
+/// What the looks of a surface in one view count, against perfect agreement of several. Assumption: half of what agreement mostly reaches beyond what is asked.
+const ALONE: f64 = 0.2;
 
 impl CellEvidence {
     /// Mean correlation of the texture; `None` without any.
@@ -121,7 +126,7 @@ impl Evidence {
                 (candidates.iter())
                     .map(|(plane, e)| {
                         // sum of weight x (least correlation - correlation): negative for a match.
-                        let mismatch = e.least - e.correlation + e.behind(best);
+                        let mismatch = e.least - e.correlation + e.behind(best) - ALONE * e.alone;
                         // "No plane" keeps the cost 0, so what speaks for the ground counts against roofs.
                         (*plane, mismatch + ground)
                     })
@@ -232,8 +237,9 @@ fn sum_over_cells(
             }
             let cell = raster[r as usize * grid.width + c as usize];
             let k = row * window.width + column;
+            let alone = hypothesis.alone.says(k);
             if cell == u32::MAX
-                || map.weight(k) == 0.0
+                || (map.weight(k) == 0.0 && alone == 0.0)
                 || !region.contains(&window.center(column, row))
             {
                 continue;
@@ -244,6 +250,7 @@ fn sum_over_cells(
                 run = (cell, cells.get(&cell).copied().unwrap_or_default());
             }
             let e = &mut run.1;
+            e.alone += alone * area;
             let judgement = windows.judge(map, [column, row], params.min_correlation);
             let weight = judgement.weight * area;
             e.area += area;
@@ -306,6 +313,7 @@ fn half_planes_of(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::halfplane::alone::Alone;
     use crate::halfplane::borders::{Border, BorderKind};
     use crate::halfplane::fixture::line;
     use crate::halfplane::grouping::Member;
@@ -424,6 +432,7 @@ mod tests {
                     weight: vec![200; cells],
                     common_weight: vec![200; cells],
                 },
+                alone: Alone::default(),
                 lines: Vec::new(),
             });
             let windows = ShiftableWindows::new([], &grid);
@@ -456,12 +465,70 @@ mod tests {
     }
 
     #[test]
+    fn what_one_view_says_counts_where_it_is_alone() {
+        let (lines, half_planes, group) = line_with_half_plane();
+        let input = GroupingInput {
+            lines: &lines,
+            half_planes: &half_planes,
+            neighbours: &line_neighbours(&lines),
+            rectangles: &[],
+        };
+        let (arrangement, grid) = with_splinter();
+        let cells = grid.width * grid.height;
+        let params = RoofParams {
+            half_plane_gain_m: 0.0,
+            ..RoofParams::default()
+        };
+        let cost = |alone: Alone| -> f64 {
+            let unseen = || vec![0; cells];
+            let hypothesis = Hypothesis {
+                group: group.clone(),
+                region: Region::new(&input, &group, &params),
+                map: ConsistencyMap {
+                    grid,
+                    correlation: vec![0; cells],
+                    overall: vec![0; cells],
+                    weight: unseen(),
+                    common_weight: unseen(),
+                },
+                alone,
+                lines: Vec::new(),
+            };
+            let windows = ShiftableWindows::new([], &grid);
+            let index = LineIndex::new(Vec::new());
+            let evidence = Evidence::collect(
+                &input,
+                &[hypothesis],
+                &arrangement,
+                &grid,
+                None,
+                &windows,
+                &params,
+            );
+            let unary = evidence
+                .energy(&arrangement, &[HORIZONTAL], &index, &params)
+                .unary;
+            unary.iter().flatten().map(|(_, cost)| cost).sum()
+        };
+        assert_eq!(cost(Alone::default()), 0.0, "nobody sees it");
+        let (alike, unlike) = (
+            cost(Alone::everywhere(cells, 127)),
+            cost(Alone::everywhere(cells, -127)),
+        );
+        assert!(
+            alike < -1.0 && (alike + unlike).abs() < 1e-9,
+            "{alike} {unlike}"
+        );
+    }
+
+    #[test]
     fn planes_of_weak_texture_are_told_apart_though_little_tells_them_from_none() {
         let cell = |weight: f64, correlation: f64| CellEvidence {
             area: 10.0,
             weight: 10.0 * weight,
             correlation: 10.0 * weight * correlation,
             least: 0.0,
+            alone: 0.0,
         };
         let (weak, strong) = (cell(0.1, 0.3), cell(0.9, 0.3));
         assert!((weak.behind(0.4) - 0.1 * (5.0 - 1.0)).abs() < 1e-12);

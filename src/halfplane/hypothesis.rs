@@ -3,6 +3,7 @@
 use nalgebra::{Point2, Vector2};
 
 use super::Side;
+use super::alone::{Alone, seen_alone};
 use super::consistency::{ConsistencyMap, consistency_map, least_correlation};
 use super::grouping::{GroupingInput, PlaneGroup};
 use super::interior::SIDE;
@@ -23,6 +24,8 @@ pub struct Hypothesis {
     pub region: Region,
     /// Similarity of the views on the plane, over the region.
     pub map: ConsistencyMap,
+    /// What one view says over the region where it is alone.
+    pub alone: Alone,
     /// Lines found in the plane that may bound it.
     pub lines: Vec<PlaneLine>,
 }
@@ -50,18 +53,21 @@ pub fn hypotheses(
         if proposed_by_lines && !supported(input, group, &map, params) {
             return None;
         }
-        let mut lines = lines_in_plane(scene, &rays, &group.plane, &region);
+        let alone = seen_alone(scene, &group.plane, &region, &map);
+        let ends_at = |edge: &Segment3| alone.ends_at(&map.grid, edge);
+        let mut lines = lines_in_plane(scene, &rays, &group.plane, &region, ends_at);
         lines.retain(|l| !crosses_surface(&map, &l.segment));
-        Some((region, map, lines))
+        Some((region, map, alone, lines))
     });
     groups
         .into_iter()
         .zip(built)
         .filter_map(|(group, built)| {
-            built.map(|(region, map, lines)| Hypothesis {
+            built.map(|(region, map, alone, lines)| Hypothesis {
                 group,
                 region,
                 map,
+                alone,
                 lines,
             })
         })
@@ -167,21 +173,30 @@ const SCATTER: f64 = 0.05;
 
 /// Correlation and weight at positions beside a line, some cells away from it.
 fn beside(map: &ConsistencyMap, line: &Segment3, side: Side, cells: f64) -> Vec<(f32, f32)> {
+    places_beside(&map.grid, line, side, cells)
+        .map(|k| (map.correlation(k), map.weight(k)))
+        .collect()
+}
+
+/// Positions of a grid (row by row) beside a line, some cells away from it.
+pub fn places_beside(
+    grid: &PlanGrid,
+    line: &Segment3,
+    side: Side,
+    cells: f64,
+) -> impl Iterator<Item = usize> + Clone {
     let (a, b) = (line.p0.xy(), line.p1.xy());
     let length = (b - a).norm();
-    if length < 1e-6 {
-        return Vec::new();
-    }
-    let across = across(line, side) * (cells * map.grid.step);
-    let count = (length / (3.0 * map.grid.step)).ceil();
-    (0..count as usize)
-        .filter_map(|i| {
-            let p: Point2<f64> = a + (b - a) * ((i as f64 + 0.5) / count) + across;
-            let (c, r) = map.grid.cell(&p)?;
-            let k = r * map.grid.width + c;
-            Some((map.correlation(k), map.weight(k)))
-        })
-        .collect()
+    let count = match length < 1e-6 {
+        true => 0.0,
+        false => (length / (3.0 * grid.step)).ceil(),
+    };
+    let across = across(line, side) * (cells * grid.step);
+    (0..count as usize).filter_map(move |i| {
+        let p: Point2<f64> = a + (b - a) * ((i as f64 + 0.5) / count) + across;
+        let (c, r) = grid.cell(&p)?;
+        Some(r * grid.width + c)
+    })
 }
 
 #[cfg(test)]

@@ -48,6 +48,7 @@
 //! ```
 
 mod agreement;
+mod alone;
 mod arrangement;
 mod border_cost;
 mod borders;

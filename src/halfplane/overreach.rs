@@ -13,7 +13,7 @@ use super::bounding::lies_in;
 use super::consistency::ConsistencyMap;
 use super::delineation::Outline;
 use super::facets::Solver;
-use super::interior::{Inside, seen_inside};
+use super::interior::{Inside, SIDE, seen_inside};
 use super::prominence::{PROMINENT, prominence};
 use super::verification::{FacetRejection, RejectedFacet};
 use crate::geometry::{Segment3, clip, covered, mean_point};
@@ -27,6 +27,10 @@ use crate::scene::Scene;
 const ALONG: f64 = 0.75;
 /// Smallest part that is looked at, square metres. Assumption: less is seen by few windows.
 const LEAST_PART_M2: f64 = 0.5;
+
+/// Texture weight, summed over the windows inside a part, below which they say nothing of it: that of a row of windows from one beside the other to
+/// the next. Measured: parts that are beyond the roof have 13 and more, the corners of hips 3 and less.
+const LEAST_WEIGHT: f64 = SIDE as f64;
 
 impl Solver {
     /// The cells of a facet, itself verified, that lie beyond a line that bounds it and that the views do not bear out: of several such parts that
@@ -73,7 +77,10 @@ fn chance_inside(
     let step = map.grid.step;
     let seen = seen_inside(scene, part, step, hidden, min_correlation);
     let short = -seen.beyond_chance();
-    if short <= 0.0 || prominence(scene, part, step, 0.0, hidden) >= PROMINENT {
+    if short <= 0.0
+        || seen.weight < LEAST_WEIGHT
+        || prominence(scene, part, step, 0.0, hidden) >= PROMINENT
+    {
         return None;
     }
     let similarity = seen.overall / seen.weight;
@@ -209,6 +216,13 @@ mod tests {
             chance_inside(&scene, part, &map, &|_, _| false, 0.45)
         };
         assert!(short(&strip(2.0)).is_none());
+        // The corner between the eave and the fall line holds few windows, or many.
+        let corner = |legs: f64| {
+            let along = (b - a).normalize();
+            let down = -roof.plane.normal.cross(&along);
+            short(&testing::facet(&[a, a + down * legs, a + along * legs]))
+        };
+        assert!(corner(3.0).is_none() && corner(4.0).is_some());
         let (short, reason) = short(&strip(-2.0)).expect("there is nothing");
         assert!(short > 0.0 && matches!(reason, FacetRejection::BeyondLine { .. }));
     }

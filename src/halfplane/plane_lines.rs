@@ -33,6 +33,8 @@ const FEW: usize = 3;
 /// ... those that must show it there. Measured on rendered scenes: of pairs of segments that meet by chance one in four lies on a roof's edge where six
 /// views could show it, one in two where three could.
 const MIN_OF_FEW: usize = 2;
+/// Shortest line that one view shows where it is alone, metres. Assumption: shorter ones bound no facet.
+const LEAST_ALONE_M: f64 = 1.0;
 /// Segments cast onto the plane belong to one line within this many ground pixels, ...
 const SAME_LINE_PX: f64 = 1.5;
 /// ... and this sine of the angle.
@@ -65,13 +67,14 @@ pub fn rays_through_ends(scene: &Scene, segments: &[Vec<ImageSegment>]) -> EndRa
     scene.view_ids().zip(segments).map(of_view).collect()
 }
 
-/// The lines in `plane` over `region` that at least three views show, or two where no more than three have the place in their image; `rays` are those
-/// through the ends of all segments.
+/// The lines in `plane` over `region` that at least three views show, or two where no more than three have the place in their image, or the only one that
+/// has it where the surface `ends_at` such a line; `rays` are those through the ends of all segments.
 pub fn lines_in_plane(
     scene: &Scene,
     rays: &EndRays,
     plane: &Plane,
     region: &Region,
+    ends_at: impl Fn(&Segment3) -> bool,
 ) -> Vec<PlaneLine> {
     let [low, high] = region.bounds();
     let middle = Point2::from((low.coords + high.coords) * 0.5);
@@ -111,6 +114,16 @@ pub fn lines_in_plane(
         sort_by(&mut views, Ord::cmp);
         views.dedup();
         if views.len() < MIN_OF_FEW {
+            let Cast { a, b, .. } = casts[i];
+            let line = Segment3::new(plane.lift(a.x, a.y), plane.lift(b.x, b.y));
+            let alone = || views_with(scene, &line.at(0.5)) == 1 && ends_at(&line);
+            if line.length() >= LEAST_ALONE_M && alone() {
+                used[i] = true;
+                found.push(PlaneLine {
+                    segment: line,
+                    views,
+                });
+            }
             continue;
         }
         let shown: Vec<Cast> = members.iter().map(|&j| casts[j]).collect();
@@ -133,9 +146,14 @@ pub fn lines_in_plane(
     found
 }
 
-/// How many views have a point in their image.
+/// What an image must hold around a point so that an edge may show there, px.
+const AROUND_EDGE_PX: f64 = 4.0;
+
+/// How many views have a point in their image, with what is around it.
 fn views_with(scene: &Scene, point: &Point3<f64>) -> usize {
-    let has = |camera: &Camera| (camera.project(point)).is_some_and(|p| camera.contains(&p, 0.0));
+    let has = |camera: &Camera| {
+        (camera.project(point)).is_some_and(|p| camera.contains(&p, AROUND_EDGE_PX))
+    };
     scene.views.iter().filter(|v| has(&v.camera)).count()
 }
 
@@ -265,7 +283,7 @@ mod tests {
 
     fn found(scene: &Scene, shown: &[&[[[f64; 3]; 2]]]) -> Vec<PlaneLine> {
         let (plane, region) = plane_and_region();
-        lines_in_plane(scene, &rays(scene, shown), &plane, &region)
+        lines_in_plane(scene, &rays(scene, shown), &plane, &region, |_| false)
     }
 
     fn is_from_to(line: &PlaneLine, from: [f64; 3], to: [f64; 3]) -> bool {
@@ -307,6 +325,24 @@ mod tests {
             found(&scene, &[above, &[], above]).is_empty(),
             "not in the plane"
         );
+    }
+
+    #[test]
+    fn the_only_view_shows_a_line_where_the_surface_ends() {
+        let mut scene = fixture::scene(&[]);
+        let (plane, region) = plane_and_region();
+        let one: &[_] = &[IN_PLANE];
+        let found = |scene: &Scene, ends: bool| {
+            let shown = rays(scene, &[one, &[]]);
+            lines_in_plane(scene, &shown, &plane, &region, |_| ends)
+        };
+        scene.views.truncate(2);
+        assert!(found(&scene, true).is_empty(), "the other view has none");
+        scene.views.truncate(1);
+        assert!(found(&scene, false).is_empty(), "a row of tiles");
+        let lines = found(&scene, true);
+        assert_eq!(lines.len(), 1);
+        assert!(is_from_to(&lines[0], IN_PLANE[0], IN_PLANE[1]));
     }
 
     #[test]

@@ -129,6 +129,7 @@ mod tests {
                     segments: Vec::new(),
                     edge: Some(edge.expect("the edge of the roof")),
                     detected: Vec::new(),
+                    inside: Vec::new(),
                     correlation: Vec::new(),
                     agreement: 1.0,
                 }

@@ -1,6 +1,7 @@
 //! Merging and growing (B99 3.3): which stretch of a 3D line the views support.
 //!
-//! * Where most of its views have the edge, the line is there.
+//! * Where most of its views have the edge, the line is there: most of those whose image reaches so far, for the line
+//!   itself is known beyond the place that all of them show.
 //! * Growing: where one view only has a segment, the others are taken along if the neighbourhoods
 //!   correlate over three views ("the end points may be extended provided the grown edgels satisfy
 //!   the photometric correlation tests over the three views").
@@ -23,7 +24,7 @@ pub fn supported_stretch(profile: &Profile, params: &MatchParams) -> Option<(usi
     let agreeing: Vec<bool> = (0..n).map(|e| profile.agreeing(e, params) >= 3).collect();
     let support: Vec<Support> = (0..n)
         .map(|e| match detections[e] {
-            d if d >= needed => Support::Detected,
+            d if d >= needed.min(needed_of(profile.reaching(e))) => Support::Detected,
             d if d + 1 >= needed.max(3) && agreeing[e] => Support::Grown,
             _ => Support::None,
         })
@@ -57,6 +58,11 @@ fn reversed<T: Copy>(values: &[T]) -> Vec<T> {
 /// in a textured neighbourhood single pieces line up by chance.
 fn needed_views(measured: usize) -> usize {
     (measured / 2 + 1).max(2)
+}
+
+/// The same where so many of them reach the place: one must see it where it is alone.
+fn needed_of(reaching: usize) -> usize {
+    needed_views(reaching).min(reaching.max(1))
 }
 
 /// The longest run of edgels that enough views detected.
@@ -98,7 +104,15 @@ fn extend(support: &[Support], agreeing: &[bool], params: &MatchParams) -> usize
 
 #[cfg(test)]
 mod tests {
+    use super::super::guided::GuidedEdge;
+    use super::super::planted;
+    use super::super::profile::ViewProfile;
     use super::*;
+    use crate::geometry::Segment2;
+    use crate::ids::ViewId;
+    use crate::lines3d::ProjectedLine;
+    use crate::raster::Channel;
+    use nalgebra::{Matrix2, Point2};
 
     fn bools(s: &str) -> Vec<bool> {
         s.bytes().map(|b| b == b'x').collect()
@@ -141,6 +155,56 @@ mod tests {
             "a fragment behind it"
         );
         assert_eq!(reach("xxgg..ggg.....", agreeing), 3, "beyond a small hole");
+    }
+
+    /// The last edgel of a line that five views show up to edgel 25 and one of them up to 39; the images of the
+    /// others reach no farther than `reach`.
+    fn end_where_one_goes_on(reach: usize) -> usize {
+        let (scene, line) = (planted::scene(), planted::edges()[0]);
+        let camera = |view: usize| &scene.views[view % scene.views.len()].camera;
+        let view = |index: usize| {
+            let end = if index == 0 { 40 } else { 25 };
+            let image_end = if index == 0 { 40 } else { reach };
+            ViewProfile {
+                view: ViewId(index as u32),
+                image: ProjectedLine::new(camera(index), &line).expect("in front"),
+                segments: Vec::new(),
+                edge: Some(GuidedEdge {
+                    view: ViewId(index as u32),
+                    channel: Channel::Grey,
+                    segment: Segment2::new(Point2::origin(), Point2::new(40.0, 0.0)),
+                    covariance: Matrix2::identity(),
+                    pieces: Vec::new(),
+                }),
+                detected: (0..40).map(|e| e < end).collect(),
+                inside: (0..40).map(|e| e < image_end).collect(),
+                correlation: vec![0.0; 40],
+                agreement: 1.0,
+            }
+        };
+        let profile = Profile {
+            t: (0..40).map(|e| e as f64 * 0.1).collect(),
+            reference: 0,
+            views: (0..5).map(view).collect(),
+        };
+        let (start, end) = supported_stretch(&profile, &MatchParams::default()).expect("a line");
+        assert_eq!(start, 0);
+        end
+    }
+
+    #[test]
+    fn a_line_goes_on_where_one_view_is_left_but_not_where_the_others_show_none() {
+        assert_eq!(end_where_one_goes_on(25), 39);
+        assert_eq!(end_where_one_goes_on(40), 24);
+        // Of two views that reach a place one alone is not enough.
+        assert_eq!(end_where_one_goes_on(32), 24);
+    }
+
+    #[test]
+    fn most_of_the_views_that_reach_a_place_must_see_the_edge_there() {
+        // Of five views three must, and of fewer most; the last one alone is enough.
+        assert_eq!([5, 4, 3, 2, 1].map(needed_of), [3, 3, 2, 2, 1]);
+        assert_eq!(needed_of(0), 1, "where none reaches, none sees it");
     }
 
     #[test]

@@ -509,6 +509,7 @@ mod tests {
                 pieces: Vec::new(),
             }),
             detected: vec![true; EDGELS],
+            inside: vec![true; EDGELS],
             correlation: vec![correlation; EDGELS],
             agreement: f64::from(correlation),
         };
@@ -547,6 +548,7 @@ mod tests {
             segments: Vec::new(),
             edge: Some(edge(view)),
             detected: Vec::new(),
+            inside: Vec::new(),
             correlation: Vec::new(),
             agreement: [0.4, 0.2, 0.3, 0.5, 0.6][view],
         });

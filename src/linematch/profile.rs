@@ -1,6 +1,8 @@
 //! The evidence along a 3D line, edgel by edgel: which views detected a segment there, and which
 //! views' neighbourhoods correlate. Merging and growing (B99 3.3) read it.
 
+use nalgebra::Point2;
+
 use super::guided::GuidedEdge;
 use super::pairs::side_strip;
 use super::sight::{SegmentRef, Sights};
@@ -12,6 +14,9 @@ use crate::lines3d::ProjectedLine;
 use crate::params::MatchParams;
 use crate::raster::Channel;
 use crate::scene::Scene;
+
+/// What an image must hold around an edgel so that its edge may show, px.
+const AROUND_EDGE_PX: f64 = 4.0;
 
 /// What one view says along the line.
 pub struct ViewProfile {
@@ -25,6 +30,8 @@ pub struct ViewProfile {
     pub edge: Option<GuidedEdge>,
     /// At each edgel: does a segment or a piece of the measured edge lie there?
     pub detected: Vec<bool>,
+    /// At each edgel: does the image reach there, with what is needed around it to see an edge?
+    pub inside: Vec<bool>,
     /// At each edgel: correlation with the reference view on the better side; NaN where the view
     /// does not see it. All ones in the reference view itself.
     pub correlation: Vec<f32>,
@@ -98,6 +105,11 @@ impl Profile {
             let covered = view.covered();
             let on_edge = |t: &f64| covered.iter().any(|[s, e]| t >= s && t <= e);
             view.detected = t.iter().map(on_edge).collect();
+            let camera = scene.camera(view.view);
+            let in_image = |x: Point2<f64>| camera.contains(&x, AROUND_EDGE_PX);
+            view.inside = (t.iter())
+                .map(|t| view.image.at(*t).is_some_and(in_image))
+                .collect();
         }
         let stretch = stretch_of(line, from, to);
         let channel = sights.channel(segments)?;
@@ -118,6 +130,12 @@ impl Profile {
     /// Number of views with the edge at an edgel.
     pub fn detections(&self, edgel: usize) -> usize {
         self.views.iter().filter(|v| v.detected[edgel]).count()
+    }
+
+    /// Number of views with an edge whose image reaches an edgel.
+    pub fn reaching(&self, edgel: usize) -> usize {
+        let reaches = |v: &&ViewProfile| v.measured() && v.inside[edgel];
+        self.views.iter().filter(reaches).count()
     }
 
     /// Number of views whose neighbourhoods agree at an edgel, the reference included.
@@ -151,6 +169,7 @@ fn view_segments(
         segments: on_line,
         edge: None,
         detected: Vec::new(),
+        inside: Vec::new(),
         correlation: Vec::new(),
         agreement: 0.0,
     })

@@ -1,0 +1,366 @@
+//! What one view says of a plane where no other sees it.
+//!
+//! At the margin of a block, and of the crops that photographs are delivered in, a roof goes on where one view is left. There is nothing to
+//! compare, but the plane is known, and so is what its surface looks like in this very view: as it does where the others bear the
+//! plane out. Where it looks the same it goes on, where it does not it has ended, and an edge of the view between the two is the
+//! plane's own (monoplotting: one image and a known surface). Where the surface looks like what lies around it, that it looks alike says nothing.
+
+use nalgebra::{Matrix2, Vector2};
+use serde::{Deserialize, Serialize};
+
+use super::Side;
+use super::box_sum::{BoxSum, HALF_WINDOW, RowSum};
+use super::consistency::ConsistencyMap;
+use super::hypothesis::{ON_SURFACE, TEXTURED, places_beside};
+use super::plan::{PlanGrid, orthophoto};
+use super::region::Region;
+use crate::geometry::{Plane, Segment3};
+use crate::math::median;
+use crate::raster::Channel;
+use crate::scene::{Scene, View};
+
+/// Positions along each side of the window at which it is asked whether one view is alone there.
+const SAMPLES: usize = 24;
+/// Area that must show the surface to more views, square metres, before its looks are known. Assumption: some windows.
+const LEAST_KNOWN_M2: f64 = 2.0;
+/// Correlation below which a textured position is not on the plane. Assumption: what windows agree by chance.
+const OFF_SURFACE: f32 = 0.3;
+/// Squared Mahalanobis distance at which looks say as little for the surface as against it: three standard deviations.
+const UNLIKE: f64 = 9.0;
+/// Least standard deviation of the looks of a surface, grey values of 1: the light differs along it.
+const FLOOR: f64 = 0.015;
+/// How often looks that are not the surface's, those of skylights and chimneys, are left out.
+const TRIMS: usize = 3;
+/// How clearly the looks must change across an edge, of one.
+const CLEARLY: f64 = 0.4;
+
+/// For every position of a plane's window: does the surface go on there, as far as one view alone can tell?
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Alone {
+    /// In steps of 1 / 127, row by row, 0 where it is not for one view to say; empty where that is everywhere.
+    says: Vec<i8>,
+}
+
+impl Alone {
+    /// The same everywhere.
+    #[cfg(test)]
+    pub fn everywhere(cells: usize, says: i8) -> Self {
+        Self {
+            says: vec![says; cells],
+        }
+    }
+
+    /// What the only view says at a position of the window (row by row), from -1, it is another surface, to 1; 0 where it
+    /// has nothing to say, as where others see the position too.
+    pub fn says(&self, k: usize) -> f64 {
+        self.says.get(k).map_or(0.0, |s| f64::from(*s) / 127.0)
+    }
+
+    /// Does the surface end at an edge, for all that one view shows along it? It lies on one side of the edge, and not on the other.
+    pub fn ends_at(&self, grid: &PlanGrid, edge: &Segment3) -> bool {
+        let [left, right] = [Side::Left, Side::Right].map(|side| {
+            let places = places_beside(grid, edge, side, HALF_WINDOW as f64 + 2.0);
+            let count = places.clone().count().max(1) as f64;
+            places.map(|k| self.says(k)).sum::<f64>() / count
+        });
+        left.max(right) >= CLEARLY && left.min(right) <= -CLEARLY
+    }
+}
+
+/// Asks every view where it is the only one, by the looks of the surface where the others bear the plane out as well: `map` says where.
+pub fn seen_alone(scene: &Scene, plane: &Plane, region: &Region, map: &ConsistencyMap) -> Alone {
+    let grid = &map.grid;
+    if !is_somewhere(scene, plane, region, grid) {
+        return Alone::default();
+    }
+    let looks: Vec<Looks> = (scene.views.iter())
+        .map(|view| Looks::new(view, plane, grid))
+        .collect();
+    let only = |k: usize| {
+        let mut seeing = (0..looks.len()).filter(|&v| looks[v].at(k).is_some());
+        let first = seeing.next()?;
+        seeing.next().is_none().then_some(first)
+    };
+    let by: Vec<Option<usize>> = (0..grid.width * grid.height).map(only).collect();
+    let mut says = vec![0; by.len()];
+    for (v, looks) in looks.iter().enumerate() {
+        let mut alone = (0..by.len()).filter(|&k| by[k] == Some(v)).peekable();
+        if alone.peek().is_none() {
+            continue;
+        }
+        let Some(surface) = Surface::known(looks, region, map) else {
+            continue;
+        };
+        for k in alone {
+            let gain = looks.at(k).map_or(0.0, |look| surface.gain(&look));
+            says[k] = (gain * 127.0).round() as i8;
+        }
+    }
+    Alone { says }
+}
+
+/// Is there a position of the region that exactly one view has in its image? Asked at some, for mostly there is none.
+fn is_somewhere(scene: &Scene, plane: &Plane, region: &Region, grid: &PlanGrid) -> bool {
+    let part = |i: usize, size: usize| (i * 2 + 1) * size / (2 * SAMPLES);
+    let positions = (0..SAMPLES * SAMPLES).map(|k| {
+        grid.center(
+            part(k % SAMPLES, grid.width),
+            part(k / SAMPLES, grid.height),
+        )
+    });
+    let mut inside = positions.filter(|p| region.contains(p));
+    inside.any(|p| {
+        let point = plane.lift(p.x, p.y);
+        let has = |view: &&View| {
+            let x = view.camera.project(&point);
+            x.is_some_and(|x| view.camera.contains(&x, 0.0))
+        };
+        scene.views.iter().filter(has).count() == 1
+    })
+}
+
+/// What a view shows of a plane: grey value and warmth in the mean of the window around every position.
+struct Looks {
+    channels: [Vec<f32>; 2],
+}
+
+impl Looks {
+    fn new(view: &View, plane: &Plane, grid: &PlanGrid) -> Self {
+        let channels = [Channel::Grey, Channel::Warmth].map(|channel| {
+            let photo = orthophoto(view.channel(channel).0, &view.camera, plane, grid);
+            window_means(&photo, grid)
+        });
+        Self { channels }
+    }
+
+    /// `None` where the view does not have all of the window.
+    fn at(&self, k: usize) -> Option<Vector2<f64>> {
+        let [grey, warmth] = self.channels.each_ref().map(|c| f64::from(c[k]));
+        (grey.is_finite() && warmth.is_finite()).then(|| Vector2::new(grey, warmth))
+    }
+}
+
+/// Means over the windows around all cells; NaN where a window is not complete.
+fn window_means(photo: &[f32], grid: &PlanGrid) -> Vec<f32> {
+    const FULL: f32 = ((2 * HALF_WINDOW + 1) * (2 * HALF_WINDOW + 1)) as f32;
+    let (mut values, mut seen) = (BoxSum::new(grid), BoxSum::new(grid));
+    let mut line = RowSum::new(grid.width);
+    let row_of = |y: usize| photo[y * grid.width..].iter().take(grid.width);
+    let mut means = Vec::with_capacity(photo.len());
+    for _ in 0..grid.height {
+        let counts = seen.next_row(&mut line, |y, out| {
+            let counts = row_of(y).map(|v| f32::from(u8::from(v.is_finite())));
+            out.iter_mut().zip(counts).for_each(|(o, c)| *o = c);
+        });
+        let counts = counts.to_vec();
+        let sums = values.next_row(&mut line, |y, out| {
+            let known = row_of(y).map(|v| if v.is_finite() { *v } else { 0.0 });
+            out.iter_mut().zip(known).for_each(|(o, v)| *o = v);
+        });
+        let mean = |(sum, count): (&f32, &f32)| match *count > FULL - 0.5 {
+            true => sum / count,
+            false => f32::NAN,
+        };
+        means.extend(sums.iter().zip(&counts).map(mean));
+    }
+    means
+}
+
+/// What a surface looks like in a view.
+struct Surface {
+    mean: Vector2<f64>,
+    information: Matrix2<f64>,
+    /// How much looking alike says, 0 to 1: nothing where what is not the surface looks like it.
+    telling: f64,
+}
+
+impl Surface {
+    /// From where the views agree on the plane; `None` where that is too little to tell.
+    fn known(looks: &Looks, region: &Region, map: &ConsistencyMap) -> Option<Self> {
+        let grid = &map.grid;
+        let textured = |&k: &usize| map.weight(k) >= TEXTURED;
+        let on = |k: &usize| {
+            let at = grid.center(k % grid.width, k / grid.width);
+            map.correlation(*k) >= ON_SURFACE && region.contains(&at)
+        };
+        let positions = 0..grid.width * grid.height;
+        let known: Vec<Vector2<f64>> = (positions.clone().filter(textured).filter(on))
+            .filter_map(|k| looks.at(k))
+            .collect();
+        let least = LEAST_KNOWN_M2 / (grid.step * grid.step);
+        (known.len() as f64 >= least).then_some(())?;
+        let mut surface = Self::of_most(&known)?;
+        for _ in 0..TRIMS {
+            let alike = known.iter().filter(|look| surface.gain(look) > 0.0);
+            surface = Self::of(alike)?;
+        }
+        let off = (positions.filter(textured))
+            .filter(|k| map.correlation(*k) < OFF_SURFACE)
+            .filter_map(|k| looks.at(k));
+        let (alike, all) = off.fold((0.0, 0.0), |(alike, all), look| {
+            (alike + surface.gain(&look).max(0.0), all + 1.0)
+        });
+        surface.telling = 1.0 - alike / f64::max(all, 1.0);
+        Some(surface)
+    }
+
+    /// By the medians of the looks and of what they differ from these: half of them may be of something else.
+    fn of_most(looks: &[Vector2<f64>]) -> Option<Self> {
+        /// Standard deviation of a normal distribution, in medians of the absolute deviation.
+        const OF_MEDIAN: f64 = 1.4826;
+        let middle =
+            |values: &mut dyn Iterator<Item = f64>| median(&mut values.collect::<Vec<_>>());
+        let mut mean = Vector2::zeros();
+        let mut information = Matrix2::zeros();
+        for i in 0..2 {
+            mean[i] = middle(&mut looks.iter().map(|look| look[i]))?;
+            let off = middle(&mut looks.iter().map(|look| (look[i] - mean[i]).abs()))?;
+            let deviation = OF_MEDIAN * off;
+            information[(i, i)] = 1.0 / (deviation * deviation + FLOOR * FLOOR);
+        }
+        Some(Self {
+            mean,
+            information,
+            telling: 1.0,
+        })
+    }
+
+    /// By mean and covariance of some looks.
+    fn of<'a>(looks: impl Iterator<Item = &'a Vector2<f64>> + Clone) -> Option<Self> {
+        let count = looks.clone().count().max(1) as f64;
+        let mean = looks.clone().sum::<Vector2<f64>>() / count;
+        let scatter = looks.fold(Matrix2::zeros(), |s, look| {
+            s + (look - mean) * (look - mean).transpose()
+        });
+        let covariance = scatter / count + Matrix2::identity() * (FLOOR * FLOOR);
+        Some(Self {
+            mean,
+            information: covariance.try_inverse()?,
+            telling: 1.0,
+        })
+    }
+
+    fn gain(&self, look: &Vector2<f64>) -> f64 {
+        let d = look - self.mean;
+        let gain = 1.0 - (d.transpose() * self.information * d).x / UNLIKE;
+        match gain > 0.0 {
+            true => gain * self.telling,
+            false => gain.max(-1.0),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::halfplane::consistency::consistency_map;
+    use crate::halfplane::fixture::{self, line};
+    use crate::halfplane::grouping::{GroupingInput, Member, PlaneGroup};
+    use crate::halfplane::neighbourhood::line_neighbours;
+    use crate::ids::LineId;
+    use crate::params::RoofParams;
+    use crate::raster::Gray;
+    use nalgebra::{Point2, Point3};
+
+    /// Where the roof ends, metres along x.
+    const END: f64 = 6.0;
+
+    fn roof() -> Plane {
+        Plane::from_point_normal(&Point3::new(0.0, 0.0, 6.0), &Vector2::zeros().push(1.0))
+            .expect("upright")
+    }
+
+    /// Two views of a level roof from -9 m to [`END`]; `around` is what they show beside it, and the second does not reach
+    /// beyond `reach` metres along x.
+    fn scene(around: f32, reach: f64) -> Scene {
+        let surface = fixture::Surface {
+            plane: roof(),
+            exists: |x, _| x > -9.0 && x < END,
+            texture: 0.2,
+        };
+        let mut scene = fixture::scene(&[surface]);
+        scene.views.truncate(2);
+        for (i, view) in scene.views.iter_mut().enumerate() {
+            let (camera, shown) = (view.camera.clone(), view.gray.clone());
+            let end = camera
+                .project(&Point3::new(reach, 0.0, 6.0))
+                .expect("in front");
+            let width = if i == 1 { end.x as usize } else { shown.width };
+            view.camera.width = width as u32;
+            view.gray = Gray::from_fn(width, shown.height, |column, row| {
+                let ray = camera.ray(&Point2::new(column as f64 + 0.5, row as f64 + 0.5));
+                let t = -roof().signed_distance(&camera.center) / roof().normal.dot(&ray);
+                let x = (camera.center + ray * t).x;
+                if x > -9.0 && x < END {
+                    shown.get(column, row)
+                } else {
+                    around
+                }
+            });
+        }
+        scene
+    }
+
+    /// What is seen alone of the roof, beside a ridge through its middle, and on which grid.
+    fn seen(scene: &Scene) -> (PlanGrid, Alone) {
+        let ridge = [line(
+            Point3::new(-8.0, 0.0, 6.0),
+            Point3::new(5.0, 0.0, 6.0),
+        )];
+        let member = |side| Member {
+            line: LineId(0),
+            side: Some(side),
+            half_plane: None,
+        };
+        let group = PlaneGroup {
+            plane: roof(),
+            members: [Side::Left, Side::Right].map(member).to_vec(),
+            rectangles: Vec::new(),
+        };
+        let input = GroupingInput {
+            lines: &ridge,
+            half_planes: &[],
+            neighbours: &line_neighbours(&ridge),
+            rectangles: &[],
+        };
+        let region = Region::new(&input, &group, &RoofParams::default());
+        let grid = PlanGrid::covering(Point2::new(-9.0, -5.0), Point2::new(9.0, 5.0), 0.1);
+        let map = consistency_map(scene, &roof(), &grid);
+        (grid, seen_alone(scene, &roof(), &region, &map))
+    }
+
+    fn at((grid, alone): &(PlanGrid, Alone), x: f64) -> f64 {
+        let (column, row) = grid.cell(&Point2::new(x, 1.0)).expect("inside");
+        alone.says(row * grid.width + column)
+    }
+
+    fn across(x: f64) -> Segment3 {
+        Segment3::new(Point3::new(x, -3.0, 6.0), Point3::new(x, 3.0, 6.0))
+    }
+
+    #[test]
+    fn a_roof_goes_on_in_the_only_view_as_far_as_it_looks_the_same() {
+        let seen = seen(&scene(0.15, 2.0));
+        assert_eq!(at(&seen, -3.0), 0.0, "two views see it");
+        assert!(at(&seen, 4.0) > 0.5 && at(&seen, 7.5) < -0.9);
+        let (grid, alone) = &seen;
+        assert!(alone.ends_at(grid, &across(END)));
+        assert!(!alone.ends_at(grid, &across(4.0)), "a row of tiles");
+        assert!(!alone.ends_at(grid, &across(7.5)), "beyond the roof");
+    }
+
+    #[test]
+    fn where_two_views_reach_none_is_alone() {
+        let seen = seen(&scene(0.15, 11.0));
+        assert!(seen.1.says.is_empty());
+        assert_eq!(at(&seen, 4.0), 0.0);
+    }
+
+    #[test]
+    fn looks_that_are_not_known_say_nothing() {
+        // Two views share no more than a metre of the roof.
+        let seen = seen(&scene(0.15, -8.0));
+        assert_eq!(at(&seen, 4.0), 0.0);
+        assert_eq!(at(&seen, 7.5), 0.0);
+    }
+}
