@@ -21,6 +21,7 @@ mod envelope;
 pub(super) mod fixture;
 mod outline;
 mod parting;
+mod profiles;
 mod relations;
 mod sightings;
 mod wireframe;

@@ -8,7 +8,8 @@
 use nalgebra::{Point2, Vector2};
 use serde::Serialize;
 
-use super::sightings::{Extent, Profiles, Worth, aligned_runs, pixel};
+use super::profiles::{Extent, Profiles, Worth};
+use super::sightings::{aligned_runs, pixel};
 use super::wireframe::{SideKind, State, Wireframe};
 use crate::geometry::Segment3;
 use crate::params::RefineParams;
