@@ -255,10 +255,6 @@ mod tests {
     use super::*;
     use crate::halfplane::consistency::consistency_map;
     use crate::halfplane::fixture::{self, line};
-    use crate::halfplane::grouping::{GroupingInput, Member, PlaneGroup};
-    use crate::halfplane::neighbourhood::line_neighbours;
-    use crate::ids::LineId;
-    use crate::params::RoofParams;
     use crate::raster::Gray;
     use nalgebra::{Point2, Point3};
 
@@ -303,27 +299,8 @@ mod tests {
 
     /// What is seen alone of the roof, beside a ridge through its middle, and on which grid.
     fn seen(scene: &Scene) -> (PlanGrid, Alone) {
-        let ridge = [line(
-            Point3::new(-8.0, 0.0, 6.0),
-            Point3::new(5.0, 0.0, 6.0),
-        )];
-        let member = |side| Member {
-            line: LineId(0),
-            side: Some(side),
-            half_plane: None,
-        };
-        let group = PlaneGroup {
-            plane: roof(),
-            members: [Side::Left, Side::Right].map(member).to_vec(),
-            rectangles: Vec::new(),
-        };
-        let input = GroupingInput {
-            lines: &ridge,
-            half_planes: &[],
-            neighbours: &line_neighbours(&ridge),
-            rectangles: &[],
-        };
-        let region = Region::new(&input, &group, &RoofParams::default());
+        let ridge = line(Point3::new(-8.0, 0.0, 6.0), Point3::new(5.0, 0.0, 6.0));
+        let region = fixture::region_beside(ridge, roof());
         let grid = PlanGrid::covering(Point2::new(-9.0, -5.0), Point2::new(9.0, 5.0), 0.1);
         let map = consistency_map(scene, &roof(), &grid);
         (grid, seen_alone(scene, &roof(), &region, &map))

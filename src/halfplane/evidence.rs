@@ -399,8 +399,9 @@ mod tests {
         assert!(half_planes_of(&input, &group, &raster, &grid).is_empty());
     }
 
-    #[test]
-    fn a_half_plane_makes_every_roof_beside_its_line_cheaper() {
+    /// What the planes of a group with a half-plane and of one without cost over all cells, with a `gain` for the half-plane,
+    /// correlation and weight of the maps, and what one view says everywhere.
+    fn costs(gain: f64, correlation: i8, weight: u8, alone: i8) -> [f64; 2] {
         let (lines, half_planes, group) = line_with_half_plane();
         let input = GroupingInput {
             lines: &lines,
@@ -416,48 +417,45 @@ mod tests {
             }],
             ..group.clone()
         };
-        let unary = |gain: f64| {
-            let params = RoofParams {
-                half_plane_gain_m: gain,
-                ..RoofParams::default()
-            };
-            let cells = grid.width * grid.height;
-            let hypotheses = [&group, &other].map(|g| Hypothesis {
-                group: g.clone(),
-                region: Region::new(&input, g, &params),
-                map: ConsistencyMap {
-                    grid,
-                    correlation: vec![80; cells],
-                    overall: vec![80; cells],
-                    weight: vec![200; cells],
-                    common_weight: vec![200; cells],
-                },
-                alone: Alone::default(),
-                lines: Vec::new(),
-            });
-            let windows = ShiftableWindows::new([], &grid);
-            let evidence = Evidence::collect(
-                &input,
-                &hypotheses,
-                &arrangement,
-                &grid,
-                None,
-                &windows,
-                &params,
-            );
-            let index = LineIndex::new(Vec::new());
-            evidence
-                .energy(&arrangement, &[HORIZONTAL; 2], &index, &params)
-                .unary
+        let params = RoofParams {
+            half_plane_gain_m: gain,
+            ..RoofParams::default()
         };
-        let costs = |gain: f64| -> [f64; 2] {
-            let cells = unary(gain);
-            [0, 1].map(|plane| {
-                let of_plane = cells.iter().flatten().filter(|(p, _)| *p == plane);
-                of_plane.map(|(_, cost)| cost).sum()
-            })
-        };
-        let (without, with) = (costs(0.0), costs(0.5));
+        let cells = grid.width * grid.height;
+        let hypotheses = [&group, &other].map(|g| Hypothesis {
+            group: g.clone(),
+            region: Region::new(&input, g, &params),
+            map: ConsistencyMap {
+                grid,
+                correlation: vec![correlation; cells],
+                overall: vec![correlation; cells],
+                weight: vec![weight; cells],
+                common_weight: vec![weight; cells],
+            },
+            alone: Alone::everywhere(cells, alone),
+            lines: Vec::new(),
+        });
+        let windows = ShiftableWindows::new([], &grid);
+        let evidence = Evidence::collect(
+            &input,
+            &hypotheses,
+            &arrangement,
+            &grid,
+            None,
+            &windows,
+            &params,
+        );
+        let index = LineIndex::new(Vec::new());
+        let energy = evidence.energy(&arrangement, &[HORIZONTAL; 2], &index, &params);
+        [0, 1].map(|plane| {
+            let of_plane = energy.unary.iter().flatten().filter(|(p, _)| *p == plane);
+            of_plane.map(|(_, cost)| cost).sum()
+        })
+    }
+
+    #[test]
+    fn a_half_plane_makes_every_roof_beside_its_line_cheaper() {
+        let [without, with] = [0.0, 0.5].map(|gain| costs(gain, 80, 200, 0));
         // Both planes, the one whose half-plane it is and the other one, by the same.
         let earned = [0, 1].map(|plane| without[plane] - with[plane]);
         assert!(earned[0] > 0.0, "{earned:?}");
@@ -466,59 +464,9 @@ mod tests {
 
     #[test]
     fn what_one_view_says_counts_where_it_is_alone() {
-        let (lines, half_planes, group) = line_with_half_plane();
-        let input = GroupingInput {
-            lines: &lines,
-            half_planes: &half_planes,
-            neighbours: &line_neighbours(&lines),
-            rectangles: &[],
-        };
-        let (arrangement, grid) = with_splinter();
-        let cells = grid.width * grid.height;
-        let params = RoofParams {
-            half_plane_gain_m: 0.0,
-            ..RoofParams::default()
-        };
-        let cost = |alone: Alone| -> f64 {
-            let unseen = || vec![0; cells];
-            let hypothesis = Hypothesis {
-                group: group.clone(),
-                region: Region::new(&input, &group, &params),
-                map: ConsistencyMap {
-                    grid,
-                    correlation: vec![0; cells],
-                    overall: vec![0; cells],
-                    weight: unseen(),
-                    common_weight: unseen(),
-                },
-                alone,
-                lines: Vec::new(),
-            };
-            let windows = ShiftableWindows::new([], &grid);
-            let index = LineIndex::new(Vec::new());
-            let evidence = Evidence::collect(
-                &input,
-                &[hypothesis],
-                &arrangement,
-                &grid,
-                None,
-                &windows,
-                &params,
-            );
-            let unary = evidence
-                .energy(&arrangement, &[HORIZONTAL], &index, &params)
-                .unary;
-            unary.iter().flatten().map(|(_, cost)| cost).sum()
-        };
-        assert_eq!(cost(Alone::default()), 0.0, "nobody sees it");
-        let (alike, unlike) = (
-            cost(Alone::everywhere(cells, 127)),
-            cost(Alone::everywhere(cells, -127)),
-        );
-        assert!(
-            alike < -1.0 && (alike + unlike).abs() < 1e-9,
-            "{alike} {unlike}"
-        );
+        let [nothing, alike, unlike] = [0, 127, -127].map(|says| costs(0.0, 0, 0, says)[0]);
+        assert_eq!(nothing, 0.0, "nobody sees it");
+        assert!(alike < -1.0 && (alike + unlike).abs() < 1e-9);
     }
 
     #[test]

@@ -228,10 +228,6 @@ fn common_line(
 mod tests {
     use super::*;
     use crate::halfplane::fixture;
-    use crate::halfplane::grouping::{GroupingInput, Member, PlaneGroup};
-    use crate::halfplane::neighbourhood::line_neighbours;
-    use crate::ids::LineId;
-    use crate::params::RoofParams;
     use crate::testing::line;
     use nalgebra::Point3;
 
@@ -239,29 +235,8 @@ mod tests {
     fn plane_and_region() -> (Plane, Region) {
         let plane =
             Plane::from_point_normal(&Point3::new(0.0, 0.0, 6.0), &Vector3::z()).expect("upright");
-        let ridge = [line(
-            Point3::new(-9.0, 0.0, 6.0),
-            Point3::new(9.0, 0.0, 6.0),
-        )];
-        let member = |side| Member {
-            line: LineId(0),
-            side: Some(side),
-            half_plane: None,
-        };
-        let group = PlaneGroup {
-            plane,
-            members: [super::super::Side::Left, super::super::Side::Right]
-                .map(member)
-                .to_vec(),
-            rectangles: Vec::new(),
-        };
-        let input = GroupingInput {
-            lines: &ridge,
-            half_planes: &[],
-            neighbours: &line_neighbours(&ridge),
-            rectangles: &[],
-        };
-        (plane, Region::new(&input, &group, &RoofParams::default()))
+        let ridge = line(Point3::new(-9.0, 0.0, 6.0), Point3::new(9.0, 0.0, 6.0));
+        (plane, fixture::region_beside(ridge, plane))
     }
 
     /// The rays that views have through the ends of the parts of 3D lines that they show.
