@@ -56,14 +56,25 @@ impl Alone {
         self.says.get(k).map_or(0.0, |s| f64::from(*s) / 127.0)
     }
 
-    /// Does the surface end at an edge, for all that one view shows along it? It lies on one side of the edge, and not on the other.
-    pub fn ends_at(&self, grid: &PlanGrid, edge: &Segment3) -> bool {
+    /// Does the surface end at an edge, for all that one view shows along it? It lies on one side of the edge, where more views may see
+    /// it, and not on the other.
+    pub fn ends_at(&self, map: &ConsistencyMap, edge: &Segment3) -> bool {
         let [left, right] = [Side::Left, Side::Right].map(|side| {
-            let places = places_beside(grid, edge, side, HALF_WINDOW as f64 + 2.0);
+            let places = places_beside(&map.grid, edge, side, HALF_WINDOW as f64 + 2.0);
             let count = places.clone().count().max(1) as f64;
-            places.map(|k| self.says(k)).sum::<f64>() / count
+            places.map(|k| self.goes_on(map, k)).sum::<f64>() / count
         });
         left.max(right) >= CLEARLY && left.min(right) <= -CLEARLY
+    }
+
+    /// What is known of the surface at a position, from -1, it is another one, to 1: by the only view, or by how several agree.
+    fn goes_on(&self, map: &ConsistencyMap, k: usize) -> f64 {
+        let textured = map.weight(k) >= TEXTURED;
+        match map.correlation(k) {
+            on if textured && on >= ON_SURFACE => 1.0,
+            off if textured && off < OFF_SURFACE => -1.0,
+            _ => self.says(k),
+        }
     }
 }
 
@@ -297,18 +308,19 @@ mod tests {
         scene
     }
 
-    /// What is seen alone of the roof, beside a ridge through its middle, and on which grid.
-    fn seen(scene: &Scene) -> (PlanGrid, Alone) {
+    /// How the views agree on the roof, beside a ridge through its middle, and what is seen alone of it.
+    fn seen(scene: &Scene) -> (ConsistencyMap, Alone) {
         let ridge = line(Point3::new(-8.0, 0.0, 6.0), Point3::new(5.0, 0.0, 6.0));
         let region = fixture::region_beside(ridge, roof());
         let grid = PlanGrid::covering(Point2::new(-9.0, -5.0), Point2::new(9.0, 5.0), 0.1);
         let map = consistency_map(scene, &roof(), &grid);
-        (grid, seen_alone(scene, &roof(), &region, &map))
+        let alone = seen_alone(scene, &roof(), &region, &map);
+        (map, alone)
     }
 
-    fn at((grid, alone): &(PlanGrid, Alone), x: f64) -> f64 {
-        let (column, row) = grid.cell(&Point2::new(x, 1.0)).expect("inside");
-        alone.says(row * grid.width + column)
+    fn at((map, alone): &(ConsistencyMap, Alone), x: f64) -> f64 {
+        let (column, row) = map.grid.cell(&Point2::new(x, 1.0)).expect("inside");
+        alone.says(row * map.grid.width + column)
     }
 
     fn across(x: f64) -> Segment3 {
@@ -320,10 +332,27 @@ mod tests {
         let seen = seen(&scene(0.15, 2.0));
         assert_eq!(at(&seen, -3.0), 0.0, "two views see it");
         assert!(at(&seen, 4.0) > 0.5 && at(&seen, 7.5) < -0.9);
-        let (grid, alone) = &seen;
-        assert!(alone.ends_at(grid, &across(END)));
-        assert!(!alone.ends_at(grid, &across(4.0)), "a row of tiles");
-        assert!(!alone.ends_at(grid, &across(7.5)), "beyond the roof");
+        let (map, alone) = &seen;
+        assert!(alone.ends_at(map, &across(END)));
+        assert!(!alone.ends_at(map, &across(4.0)), "a row of tiles");
+        assert!(!alone.ends_at(map, &across(7.5)), "beyond the roof");
+    }
+
+    #[test]
+    fn several_views_may_see_one_side_of_an_edge() {
+        // The second view ends a window's width before the roof does.
+        let (map, alone) = seen(&scene(0.15, END));
+        let inside = (END - 0.7, 1.0);
+        let (column, row) = map
+            .grid
+            .cell(&Point2::new(inside.0, inside.1))
+            .expect("inside");
+        assert!(
+            map.weight(row * map.grid.width + column) > 0.0,
+            "both see it"
+        );
+        assert!(alone.ends_at(&map, &across(END)));
+        assert!(!alone.ends_at(&map, &across(3.0)), "a row of tiles");
     }
 
     #[test]

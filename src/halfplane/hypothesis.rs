@@ -54,7 +54,7 @@ pub fn hypotheses(
             return None;
         }
         let alone = seen_alone(scene, &group.plane, &region, &map);
-        let ends_at = |edge: &Segment3| alone.ends_at(&map.grid, edge);
+        let ends_at = |edge: &Segment3| alone.ends_at(&map, edge);
         let mut lines = lines_in_plane(scene, &rays, &group.plane, &region, ends_at);
         lines.retain(|l| !crosses_surface(&map, &l.segment));
         Some((region, map, alone, lines))
