@@ -81,25 +81,33 @@ impl Alone {
 /// Asks every view where it is the only one, by the looks of the surface where the others bear the plane out as well: `map` says where.
 pub fn seen_alone(scene: &Scene, plane: &Plane, region: &Region, map: &ConsistencyMap) -> Alone {
     let grid = &map.grid;
-    if !is_somewhere(scene, plane, region, grid) {
+    let known = known_surface(region, map);
+    let least = LEAST_KNOWN_M2 / (grid.step * grid.step);
+    if (known.len() as f64) < least || !is_somewhere(scene, plane, region, grid) {
         return Alone::default();
     }
-    let looks: Vec<Looks> = (scene.views.iter())
-        .map(|view| Looks::new(view, plane, grid))
+    let look = |view: &View, channel| {
+        let photo = orthophoto(view.channel(channel).0, &view.camera, plane, grid);
+        window_means(&photo, grid)
+    };
+    let grey: Vec<Vec<f32>> = (scene.views.iter())
+        .map(|view| look(view, Channel::Grey))
         .collect();
     let only = |k: usize| {
-        let mut seeing = (0..looks.len()).filter(|&v| looks[v].at(k).is_some());
+        let mut seeing = (0..grey.len()).filter(|&v| grey[v][k].is_finite());
         let first = seeing.next()?;
         seeing.next().is_none().then_some(first)
     };
     let by: Vec<Option<usize>> = (0..grid.width * grid.height).map(only).collect();
     let mut says = vec![0; by.len()];
-    for (v, looks) in looks.iter().enumerate() {
+    for (v, (grey, view)) in grey.into_iter().zip(&scene.views).enumerate() {
         let mut alone = (0..by.len()).filter(|&k| by[k] == Some(v)).peekable();
         if alone.peek().is_none() {
             continue;
         }
-        let Some(surface) = Surface::known(looks, region, map) else {
+        let warmth = look(view, Channel::Warmth);
+        let looks = Looks { grey, warmth };
+        let Some(surface) = Surface::known(&looks, &known, least, map) else {
             continue;
         };
         for k in alone {
@@ -108,6 +116,17 @@ pub fn seen_alone(scene: &Scene, plane: &Plane, region: &Region, map: &Consisten
         }
     }
     Alone { says }
+}
+
+/// Where several views bear the plane out, positions of the window.
+fn known_surface(region: &Region, map: &ConsistencyMap) -> Vec<usize> {
+    let grid = &map.grid;
+    let on = |k: &usize| {
+        map.weight(*k) >= TEXTURED
+            && map.correlation(*k) >= ON_SURFACE
+            && region.contains(&grid.center(k % grid.width, k / grid.width))
+    };
+    (0..grid.width * grid.height).filter(on).collect()
 }
 
 /// Is there a position of the region that exactly one view has in its image? Asked at some, for mostly there is none.
@@ -132,21 +151,14 @@ fn is_somewhere(scene: &Scene, plane: &Plane, region: &Region, grid: &PlanGrid) 
 
 /// What a view shows of a plane: grey value and warmth in the mean of the window around every position.
 struct Looks {
-    channels: [Vec<f32>; 2],
+    grey: Vec<f32>,
+    warmth: Vec<f32>,
 }
 
 impl Looks {
-    fn new(view: &View, plane: &Plane, grid: &PlanGrid) -> Self {
-        let channels = [Channel::Grey, Channel::Warmth].map(|channel| {
-            let photo = orthophoto(view.channel(channel).0, &view.camera, plane, grid);
-            window_means(&photo, grid)
-        });
-        Self { channels }
-    }
-
     /// `None` where the view does not have all of the window.
     fn at(&self, k: usize) -> Option<Vector2<f64>> {
-        let [grey, warmth] = self.channels.each_ref().map(|c| f64::from(c[k]));
+        let [grey, warmth] = [&self.grey, &self.warmth].map(|channel| f64::from(channel[k]));
         (grey.is_finite() && warmth.is_finite()).then(|| Vector2::new(grey, warmth))
     }
 }
@@ -186,27 +198,17 @@ struct Surface {
 }
 
 impl Surface {
-    /// From where the views agree on the plane; `None` where that is too little to tell.
-    fn known(looks: &Looks, region: &Region, map: &ConsistencyMap) -> Option<Self> {
-        let grid = &map.grid;
-        let textured = |&k: &usize| map.weight(k) >= TEXTURED;
-        let on = |k: &usize| {
-            let at = grid.center(k % grid.width, k / grid.width);
-            map.correlation(*k) >= ON_SURFACE && region.contains(&at)
-        };
-        let positions = 0..grid.width * grid.height;
-        let known: Vec<Vector2<f64>> = (positions.clone().filter(textured).filter(on))
-            .filter_map(|k| looks.at(k))
-            .collect();
-        let least = LEAST_KNOWN_M2 / (grid.step * grid.step);
+    /// From the `known` positions of it, of which the view must show `least`; `None` where that is too little to tell.
+    fn known(looks: &Looks, known: &[usize], least: f64, map: &ConsistencyMap) -> Option<Self> {
+        let known: Vec<Vector2<f64>> = known.iter().filter_map(|&k| looks.at(k)).collect();
         (known.len() as f64 >= least).then_some(())?;
         let mut surface = Self::of_most(&known)?;
         for _ in 0..TRIMS {
             let alike = known.iter().filter(|look| surface.gain(look) > 0.0);
             surface = Self::of(alike)?;
         }
-        let off = (positions.filter(textured))
-            .filter(|k| map.correlation(*k) < OFF_SURFACE)
+        let off = (0..map.grid.width * map.grid.height)
+            .filter(|&k| map.weight(k) >= TEXTURED && map.correlation(k) < OFF_SURFACE)
             .filter_map(|k| looks.at(k));
         let (alike, all) = off.fold((0.0, 0.0), |(alike, all), look| {
             (alike + surface.gain(&look).max(0.0), all + 1.0)
