@@ -66,7 +66,7 @@ pub fn compare(
 }
 
 /// Cells of a window.
-const FULL: f32 = ((2 * HALF_WINDOW + 1) * (2 * HALF_WINDOW + 1)) as f32;
+pub const FULL: f32 = ((2 * HALF_WINDOW + 1) * (2 * HALF_WINDOW + 1)) as f32;
 /// Least variance that is not the rounding of a constant.
 const LEAST_VARIANCE: f32 = 1e-7;
 /// Cells that are looked at at once.

@@ -9,6 +9,7 @@ use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 
 use super::Side;
+use super::agreement::FULL;
 use super::box_sum::{BoxSum, HALF_WINDOW, RowSum};
 use super::consistency::ConsistencyMap;
 use super::hypothesis::{ON_SURFACE, TEXTURED, places_beside};
@@ -165,7 +166,6 @@ impl Looks {
 
 /// Means over the windows around all cells; NaN where a window is not complete.
 fn window_means(photo: &[f32], grid: &PlanGrid) -> Vec<f32> {
-    const FULL: f32 = ((2 * HALF_WINDOW + 1) * (2 * HALF_WINDOW + 1)) as f32;
     let (mut values, mut seen) = (BoxSum::new(grid), BoxSum::new(grid));
     let mut line = RowSum::new(grid.width);
     let row_of = |y: usize| photo[y * grid.width..].iter().take(grid.width);

@@ -13,6 +13,7 @@ use super::region::Region;
 use crate::camera::Camera;
 use crate::geometry::{Plane, Segment3};
 use crate::ids::ViewId;
+use crate::linematch::AROUND_EDGE_PX;
 use crate::lines2d::ImageSegment;
 use crate::scene::Scene;
 use crate::sorting::sort_by;
@@ -145,9 +146,6 @@ pub fn lines_in_plane(
     }
     found
 }
-
-/// What an image must hold around a point so that an edge may show there, px.
-const AROUND_EDGE_PX: f64 = 4.0;
 
 /// How many views have a point in their image, with what is around it.
 fn views_with(scene: &Scene, point: &Point3<f64>) -> usize {

@@ -34,6 +34,7 @@ mod triples;
 
 pub use guided::{GuidedEdge, measure_edge};
 pub use nviews::Rejection;
+pub(crate) use profile::AROUND_EDGE_PX;
 pub use sight::{SegmentRef, epipolar_beam};
 pub use strip::EdgelScore;
 pub use trace::{MatchTrace, PairTrace, SegmentOutcome, StepCount};

@@ -16,7 +16,7 @@ use crate::raster::Channel;
 use crate::scene::Scene;
 
 /// What an image must hold around an edgel so that its edge may show, px.
-const AROUND_EDGE_PX: f64 = 4.0;
+pub const AROUND_EDGE_PX: f64 = 4.0;
 
 /// What one view says along the line.
 pub struct ViewProfile {
