@@ -14,7 +14,7 @@
 use nalgebra::{Matrix2, Matrix3, Matrix4, Matrix4x2, Point3, Vector2, Vector3, Vector4};
 
 use crate::camera::Camera;
-use crate::geometry::{Segment2, Segment3};
+use crate::geometry::{Plane, Segment2, Segment3};
 use crate::params::Lines3dParams;
 use crate::sorting::sort_by;
 
@@ -30,6 +30,31 @@ pub struct Observation<'a> {
     pub segment: Segment2,
     /// Covariance of (offset along the normal at the middle in px, angle in rad).
     pub covariance: Matrix2<f64>,
+}
+
+/// A plane that the line is known to lie in.
+#[derive(Clone, Copy, Debug)]
+pub struct Carrier {
+    /// The plane.
+    pub plane: Plane,
+    /// Its standard deviation along its normal, metres.
+    pub sigma_m: f64,
+}
+
+impl Carrier {
+    /// Whitened distances of both ends of a line from the plane and their 4 x 2 transposed Jacobian.
+    fn residual(
+        &self,
+        line: &Segment3,
+        across: &[Vector3<f64>; 2],
+    ) -> (Vector2<f64>, Matrix4x2<f64>) {
+        let distance = |p| self.plane.signed_distance(p) / self.sigma_m;
+        let [u, v] = across.map(|a| self.plane.normal.dot(&a) / self.sigma_m);
+        (
+            Vector2::new(distance(&line.p0), distance(&line.p1)),
+            Matrix4x2::new(u, 0.0, v, 0.0, 0.0, u, 0.0, v),
+        )
+    }
 }
 
 /// A fitted 3D line.
@@ -102,7 +127,7 @@ pub fn line_of_planes(observations: &[Observation]) -> Option<Segment3> {
 
 /// The point on all planes, in the plane through the longest segment's ray across the direction.
 fn least_squares_point(
-    planes: &[(crate::geometry::Plane, f64)],
+    planes: &[(Plane, f64)],
     scatter: &Matrix3<f64>,
     direction: &Vector3<f64>,
     longest: &Observation,
@@ -138,6 +163,17 @@ pub fn fit_line(
     initial: &Segment3,
     params: &Lines3dParams,
 ) -> Option<LineFit> {
+    fit_line_on(observations, &[], initial, params)
+}
+
+/// The same for a line that lies in planes, which determine it where the observations alone do not: the border of a roof
+/// along the baseline of two views.
+pub fn fit_line_on(
+    observations: &[Observation],
+    carriers: &[Carrier],
+    initial: &Segment3,
+    params: &Lines3dParams,
+) -> Option<LineFit> {
     if observations.len() < 2 || initial.length() < 1e-6 {
         return None;
     }
@@ -145,8 +181,9 @@ pub fn fit_line(
         .iter()
         .map(|o| Weighted::new(o, params))
         .collect();
+    let normal_equations = |line: &Segment3| normal_equations(&weighted, carriers, line, params);
     let mut line = *initial;
-    let mut state = normal_equations(&weighted, &line, params)?;
+    let mut state = normal_equations(&line)?;
     let mut damping = 1e-4;
     for _ in 0..params.max_iterations {
         let mut system = state.hessian;
@@ -155,7 +192,7 @@ pub fn fit_line(
         }
         let step = system.cholesky()?.solve(&-state.gradient);
         let moved = displace(&line, &state.across, &step);
-        match normal_equations(&weighted, &moved, params) {
+        match normal_equations(&moved) {
             Some(next) if next.cost <= state.cost => {
                 let gain = state.cost - next.cost;
                 (line, state) = (moved, next);
@@ -171,7 +208,7 @@ pub fn fit_line(
             break;
         }
     }
-    finish(line, state)
+    finish(line, state, carriers.len())
 }
 
 /// How well observations would determine a line if they agreed with it: [`LineFit`] without
@@ -194,17 +231,18 @@ pub fn conditioning(
     Some(LineFit {
         line: *line,
         across,
-        covariance: information.try_inverse()?,
+        covariance: information.cholesky()?.inverse(),
         residuals: Vec::new(),
     })
 }
 
-fn finish(line: Segment3, state: Normal) -> Option<LineFit> {
-    let covariance = state.hessian.try_inverse()?;
+fn finish(line: Segment3, state: Normal, carriers: usize) -> Option<LineFit> {
+    // Where nothing determines the line, rounding may leave the information indefinite: Cholesky refuses that.
+    let covariance = state.hessian.cholesky()?.inverse();
     // Observations that scatter more than their covariances say make the line less certain. Three
     // views have a redundancy of two, which hardly tells; the prior counts like as many expected
     // residuals.
-    let redundancy = (2.0 * state.residuals.len() as f64 - 4.0).max(0.0);
+    let redundancy = (2.0 * (state.residuals.len() + carriers) as f64 - 4.0).max(0.0);
     let factor = (2.0 * state.cost + SCATTER_PRIOR) / (redundancy + SCATTER_PRIOR);
     let factor = factor.max(1.0);
     Some(LineFit {
@@ -292,6 +330,7 @@ struct Normal {
 
 fn normal_equations(
     observations: &[Weighted],
+    carriers: &[Carrier],
     line: &Segment3,
     params: &Lines3dParams,
 ) -> Option<Normal> {
@@ -306,15 +345,26 @@ fn normal_equations(
     };
     for o in observations {
         let (r, j) = o.residual(line, &across)?;
-        let e2 = r.norm_squared();
-        // Cauchy: rho = c^2/2 ln(1 + e^2/c^2), weight 1 / (1 + e^2/c^2).
-        normal.cost += 0.5 * c2 * crate::math::ln(1.0 + e2 / c2);
-        let weight = 1.0 / (1.0 + e2 / c2);
-        normal.gradient += j * r * weight;
-        normal.hessian += j * j.transpose() * weight;
-        normal.residuals.push(e2.sqrt());
+        let length = normal.add(r, j, c2);
+        normal.residuals.push(length);
+    }
+    for carrier in carriers {
+        let (r, j) = carrier.residual(line, &across);
+        normal.add(r, j, c2);
     }
     Some(normal)
+}
+
+impl Normal {
+    /// Adds two residuals with Cauchy's loss: rho = c^2/2 ln(1 + e^2/c^2), weight 1 / (1 + e^2/c^2). Returns e.
+    fn add(&mut self, r: Vector2<f64>, j: Matrix4x2<f64>, c2: f64) -> f64 {
+        let e2 = r.norm_squared();
+        self.cost += 0.5 * c2 * crate::math::ln(1.0 + e2 / c2);
+        let weight = 1.0 / (1.0 + e2 / c2);
+        self.gradient += j * r * weight;
+        self.hessian += j * j.transpose() * weight;
+        e2.sqrt()
+    }
 }
 
 fn displace(line: &Segment3, across: &[Vector3<f64>; 2], step: &Vector4<f64>) -> Segment3 {
@@ -390,6 +440,45 @@ mod tests {
                 }
             })
             .collect()
+    }
+
+    #[test]
+    fn a_plane_determines_a_line_along_the_baseline() {
+        let all = cameras();
+        let cameras = [all[0].clone(), all[2].clone()];
+        let baseline = cameras[1].center - cameras[0].center;
+        let start = Point3::new(-3.0, 2.0, 8.0);
+        let line = Segment3::new(start, start + baseline.normalize() * 9.0);
+        let covariance = Matrix2::new(0.01, 0.0, 0.0, 1e-6);
+        let observe = |camera| -> Observation {
+            let project = |p| Camera::project(camera, p).unwrap();
+            let segment = Segment2::new(project(&line.p0), project(&line.p1));
+            Observation {
+                camera,
+                segment,
+                covariance,
+            }
+        };
+        let observations = [observe(&cameras[0]), observe(&cameras[1])];
+        let raised = |by: f64| Vector3::z() * by;
+        let initial = Segment3::new(line.p0 + raised(0.4), line.p1 + raised(-0.3));
+        let params = Lines3dParams::default();
+        let free = fit_line(&observations, &initial, &params);
+        let free_sigma = free.map_or(f64::INFINITY, |fit| fit.sigma_at(0.5));
+        assert!(free_sigma > 10.0, "{free_sigma}");
+        let roof =
+            Plane::from_point_normal(&line.p0, &baseline.cross(&Vector3::new(1.0, 3.0, 0.5)));
+        let carrier = Carrier {
+            plane: roof.unwrap().upwards(),
+            sigma_m: 0.02,
+        };
+        let fit = fit_line_on(&observations, &[carrier], &initial, &params).unwrap();
+        for p in [fit.line.p0, fit.line.p1] {
+            assert!(line.line_distance(&p) < 1e-3, "{}", line.line_distance(&p));
+        }
+        // No more certain than the plane, and not much less: the views fix it across the slope.
+        let sigma = fit.sigma_at(0.5);
+        assert!(sigma > 0.01 && sigma < 0.1, "{sigma}");
     }
 
     #[test]

@@ -10,7 +10,7 @@ mod fit;
 mod projection;
 
 pub(crate) use extent::doubly_covered;
-pub use fit::{LineFit, Observation, conditioning, fit_line, line_of_planes};
+pub use fit::{Carrier, LineFit, Observation, conditioning, fit_line, fit_line_on, line_of_planes};
 pub(crate) use fit::{Weighted, line_frame};
 pub use projection::ProjectedLine;
 
@@ -58,6 +58,8 @@ pub enum Refutation {
     Hidden,
     /// One end lies in the ground, the other does not.
     Underground,
+    /// It lies on no surface, and the views are not certain enough of it to be believed alone.
+    Afloat,
 }
 
 /// A reconstructed 3D line.

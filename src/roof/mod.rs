@@ -8,6 +8,7 @@ mod reconstruct;
 mod refine;
 mod refuted;
 mod solid;
+mod surfaces;
 
 pub use ground::Ground;
 pub use invariants::{PLANAR_M, Violation, check_invariants};

@@ -3,7 +3,8 @@
 //! "New lines are created when two neighbouring planes intersect in a consistent way": a ridge between two sides that the
 //! sun lights alike is seen in no image, yet the planes know where it is. Borders of facets are new lines too where
 //! most images that can see them, looked at again, show an edge there: matching lost those whose background changes from
-//! view to view, or that two strips see from either side.
+//! view to view, or that two strips see from either side. An eave along the flight line, which the views of one strip show but do
+//! not determine, is determined by the plane of its roof.
 //!
 //! Deviation: the paper makes new lines before delineation and takes what they bound; here labelling proposes borders
 //! itself, so new lines are what came of it.
@@ -16,7 +17,9 @@ use super::{Facet, Occluders, RoofModel};
 use crate::geometry::{Segment2, Segment3};
 use crate::ids::{FacetId, ViewId};
 use crate::linematch::{GuidedEdge, LineSupport, SupportKind, measure_edge};
-use crate::lines3d::{Line3d, LineFit, LineOrigin, Observation, ProjectedLine, fit_line};
+use crate::lines3d::{
+    Carrier, Line3d, LineFit, LineOrigin, Observation, ProjectedLine, fit_line_on,
+};
 use crate::params::{Lines3dParams, MatchParams};
 use crate::raster::Channel;
 use crate::scene::Scene;
@@ -87,8 +90,8 @@ impl Context<'_> {
             return Vec::new();
         };
         let line_of = |part: Segment3| {
-            let measured = self.measured(&part, pixel_m);
-            let line = measured.or_else(|| self.intersection(edge, &part))?;
+            let line =
+                (self.measured(edge, &part, pixel_m)).or_else(|| self.intersection(edge, &part))?;
             let origin = edge.origin();
             Some(Line3d { origin, ..line })
         };
@@ -146,14 +149,40 @@ impl Context<'_> {
         (share * seeing).div_ceil(of).max(MIN_VIEWS)
     }
 
-    /// The line through what the views show along the edge; `None` where too few agree on one.
-    fn measured(&self, part: &Segment3, pixel_m: f64) -> Option<Line3d> {
+    /// The line through what the views show along the edge, by themselves or, where they do not determine it, in the planes of
+    /// the facets that it bounds; `None` where too few agree on one.
+    fn measured(&self, edge: &ModelEdge, part: &Segment3, pixel_m: f64) -> Option<Line3d> {
         let views = self.scene.view_ids();
+        let edges: Vec<GuidedEdge> = views.filter_map(|v| self.measure(part, v)).collect();
         let least = self.least_views(part);
-        let mut edges: Vec<GuidedEdge> = views.filter_map(|v| self.measure(part, v)).collect();
+        let fit = |carriers: &[Carrier]| self.fit(edges.clone(), least, carriers, part, pixel_m);
+        fit(&[]).or_else(|| fit(&self.carriers(edge)?))
+    }
+
+    /// The planes that a model edge lies in.
+    fn carriers(&self, edge: &ModelEdge) -> Option<Vec<Carrier>> {
+        let carrier = |f: &FacetId| {
+            let facet = &self.model.facets[f.index()];
+            Some(Carrier {
+                plane: facet.plane,
+                sigma_m: self.typical_sigma(facet)?,
+            })
+        };
+        edge.facets.iter().map(carrier).collect()
+    }
+
+    /// The line through at least so many of the edges, without those that do not agree with it.
+    fn fit(
+        &self,
+        mut edges: Vec<GuidedEdge>,
+        least: usize,
+        carriers: &[Carrier],
+        part: &Segment3,
+        pixel_m: f64,
+    ) -> Option<Line3d> {
         let fit = loop {
             (edges.len() >= least).then_some(())?;
-            let fit = fit_line(&self.observations(&edges), part, self.fitting)?;
+            let fit = fit_line_on(&self.observations(&edges), carriers, part, self.fitting)?;
             let worst = (0..edges.len()).max_by(|&i, &j| {
                 let by_residual = fit.residuals[i].total_cmp(&fit.residuals[j]);
                 by_residual.then(j.cmp(&i))
@@ -469,6 +498,46 @@ mod tests {
             assert!(line.sigma_m > 0.03 && line.supports.is_empty());
         }
         assert!(found(&scene, &[], &model(&truth, &[])).is_empty());
+    }
+
+    #[test]
+    fn the_planes_of_roofs_determine_what_one_strip_does_not() {
+        let (mut scene, truth) = hip_scene(320);
+        scene.views.truncate(3);
+        let far = known(Segment3::new(
+            Point3::new(90.0, 90.0, 0.0),
+            Point3::new(95.0, 90.0, 0.0),
+        ));
+        // Half a decimetre. The ridge, two eaves and two hips run within 35 degrees of the strip, which leaves a decimetre.
+        let fitting = Lines3dParams {
+            max_sigma_px: 0.6,
+            ..Lines3dParams::default()
+        };
+        let found = |lines: &[LineId]| {
+            let (matching, model) = (MatchParams::default(), model(&truth, lines));
+            new_lines(
+                &scene,
+                std::slice::from_ref(&far),
+                &model,
+                &matching,
+                &fitting,
+            )
+        };
+        let along = (scene.views[2].camera.center - scene.views[0].camera.center).normalize();
+        let is_along = |l: &Line3d| l.segment.direction().dot(&along).abs() > 0.8;
+        assert!(
+            !found(&[]).iter().any(is_along),
+            "nothing is known of the planes"
+        );
+        let lines = found(&[LineId(0)]);
+        assert_eq!(lines.iter().filter(|l| is_along(l)).count(), 5);
+        assert_eq!(lines.len(), truth.edges.len());
+        for line in &lines {
+            let ends = [line.segment.p0, line.segment.p1];
+            let is_near = |e: &Segment3| ends.iter().all(|p| distance(e, p) < 0.1);
+            assert!(truth.edges.iter().any(is_near), "{:?}", line.segment);
+            assert!(line.supports.len() >= MIN_VIEWS && line.sigma_m < 0.05);
+        }
     }
 
     #[test]

@@ -74,6 +74,12 @@ impl<'a> Occluders<'a> {
         roofs.any(|f| f.plane.z_at(q.x, q.y) - p.z > LEAST_DEPTH_M)
     }
 
+    /// Height of the highest roof over a plan position, metres.
+    pub fn top_at(&self, p: &Point2<f64>) -> Option<f64> {
+        let heights = self.roofs_at(p).map(|f| f.plane.z_at(p.x, p.y));
+        heights.reduce(f64::max)
+    }
+
     /// The facets over a plan position.
     fn roofs_at<'s>(&'s self, p: &'s Point2<f64>) -> impl Iterator<Item = &'a Facet> + 's {
         let near = |[low, high]: &[Point2<f64>; 2]| {

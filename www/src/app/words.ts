@@ -62,6 +62,7 @@ export const ORIGIN_WORDS: Record<LineOrigin, string> = {
 export const REFUTATION_WORDS: Record<Refutation, string> = {
   hidden: "roofs hide it from all but two of its views",
   underground: "it goes into the ground",
+  afloat: "it lies on no surface, and too few views are certain of it",
 };
 
 export const RELATION_WORDS: Record<TestedRelation["kind"], string> = {

@@ -84,7 +84,7 @@ export type Covariance = readonly [number, number, number, number, number, numbe
 export type LineOrigin = "matched" | "clustered" | "intersection" | "border";
 
 /** Why the finished model leaves a line out. */
-export type Refutation = "hidden" | "underground";
+export type Refutation = "hidden" | "underground" | "afloat";
 
 export interface LineRecord {
   origin: LineOrigin;
