@@ -8,6 +8,7 @@ and check_real.py (scenes with check/), which need numpy and shapely. The tables
 docs/results.md are rewritten when all scenes were run. Without FOLDER there is nothing to score, and
 the program says so and ends well.
 """
+import csv
 import json
 import pathlib
 import statistics
@@ -16,12 +17,17 @@ import sys
 import time
 import zlib
 
+import numpy as np
+
 import half_planes
 
 from on_scenes import parser_of
 
 # Scenes that are reconstructed without one view, and the places of these views.
 LEFT_OUT = {'detached': (0, 3), 'suburb': (0, 3)}
+
+# A tie point is beside a line from which it is no farther in plan, and at its height if no farther from that, metres.
+BESIDE_M, AT_HEIGHT_M = 0.5, 0.3
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / 'docs' / 'results.md'
@@ -142,7 +148,26 @@ def faces(scorer, run):
 
 
 def check(scorer, run):
-    return None if run['failed'] else tool(scorer, 'check_real', run, run['out'] / 'model.city.json')
+    checked = None if run['failed'] else tool(scorer, 'check_real', run, run['out'] / 'model.city.json')
+    return checked and {**checked, 'lines_at_points': lines_at_points(run)}
+
+
+def lines_at_points(run):
+    """Of the lines with independent tie points beside them in plan, the share that have one at their height."""
+    with open(run['scene'] / 'check' / 'points.csv') as file:
+        rows = csv.DictReader(row for row in file if not row.startswith('#'))
+        points = np.array([[float(row[k]) for k in 'xyz'] for row in rows])
+    lines = json.loads((run['out'] / 'lines.json').read_text())['lines']
+    at_height = []
+    for line in lines:
+        start, end = np.array(line['p0']), np.array(line['p1'])
+        along = end - start
+        t = ((points - start)[:, :2] @ along[:2]) / max(along[:2] @ along[:2], 1e-9)
+        apart = points - (start + np.clip(t, 0, 1)[:, None] * along)
+        beside = np.hypot(apart[:, 0], apart[:, 1]) < BESIDE_M
+        if beside.any():
+            at_height.append(np.abs(apart[beside, 2]).min() < AT_HEIGHT_M)
+    return float(np.mean(at_height)) if at_height else None
 
 
 def rendered_table(rows):
@@ -230,14 +255,16 @@ COMBINED_CELLS = (
 
 
 def real_table(rows):
-    header = ['scene', 'time [s]', 'facets', 'planes found', 'tie points on roofs', 'within 0.25 m', 'median height error [m]']
-    return markdown(header, [[r['scene'].name, f'{r["seconds"]:.1f}'] + (real_row(c) if c else ['failed'] + ['-'] * 4)
+    header = ['scene', 'time [s]', 'facets', 'planes found', 'tie points on roofs', 'within 0.25 m', 'median height error [m]',
+              'lines at tie points']
+    return markdown(header, [[r['scene'].name, f'{r["seconds"]:.1f}'] + (real_row(c) if c else ['failed'] + ['-'] * 5)
                              for r, c in rows])
 
 
 def real_row(c):
     return [str(c['facets']), f'{c["planes_found"]} of {len(c["planes"])}', str(c['points_on_roofs']),
-            percent(c['points_within_0_25m']), metres(c['median_abs_dz_m'])]
+            percent(c['points_within_0_25m']), metres(c['median_abs_dz_m']),
+            percent(c['lines_at_points'])]
 
 
 def percent(x):
