@@ -261,11 +261,7 @@ const GROSS: f64 = 10.0;
 
 impl Track {
     fn observations<'a>(&self, cameras: &'a [Camera]) -> Vec<Observation<'a>> {
-        let seen = |edge: &GuidedEdge| Observation {
-            camera: &cameras[edge.view.index()],
-            segment: edge.segment,
-            covariance: edge.covariance,
-        };
+        let seen = |edge: &GuidedEdge| Observation::of(edge, &cameras[edge.view.index()]);
         self.edges.iter().map(seen).collect()
     }
 }

@@ -246,11 +246,7 @@ impl Context<'_> {
 
     fn observed<'e>(&self, edges: impl Iterator<Item = &'e GuidedEdge>) -> Vec<Observation<'_>> {
         edges
-            .map(|e| Observation {
-                camera: self.scene.camera(e.view),
-                segment: e.segment,
-                covariance: e.covariance,
-            })
+            .map(|e| Observation::of(e, self.scene.camera(e.view)))
             .collect()
     }
 

@@ -15,6 +15,7 @@ use nalgebra::{Matrix2, Matrix3, Matrix4, Matrix4x2, Point3, Vector2, Vector3, V
 
 use crate::camera::Camera;
 use crate::geometry::{Plane, Segment2, Segment3};
+use crate::linematch::GuidedEdge;
 use crate::params::Lines3dParams;
 use crate::sorting::sort_by;
 
@@ -30,6 +31,25 @@ pub struct Observation<'a> {
     pub segment: Segment2,
     /// Covariance of (offset along the normal at the middle in px, angle in rad).
     pub covariance: Matrix2<f64>,
+}
+
+impl<'a> Observation<'a> {
+    /// An edge that a camera shows.
+    pub fn of(edge: &GuidedEdge, camera: &'a Camera) -> Self {
+        Self {
+            camera,
+            segment: edge.segment,
+            covariance: edge.covariance,
+        }
+    }
+
+    /// How far [`fit_line`] believes this to be the image of a line, from 0 to 1.
+    pub fn weight(&self, line: &Segment3, params: &Lines3dParams) -> f64 {
+        let residual = Weighted::new(self, params).residual(line, &line_frame(&line.direction()));
+        residual.map_or(0.0, |(r, _)| {
+            cauchy_weight(r.norm_squared(), params.loss_scale.powi(2))
+        })
+    }
 }
 
 /// A plane that the line is known to lie in.
@@ -360,11 +380,16 @@ impl Normal {
     fn add(&mut self, r: Vector2<f64>, j: Matrix4x2<f64>, c2: f64) -> f64 {
         let e2 = r.norm_squared();
         self.cost += 0.5 * c2 * crate::math::ln(1.0 + e2 / c2);
-        let weight = 1.0 / (1.0 + e2 / c2);
+        let weight = cauchy_weight(e2, c2);
         self.gradient += j * r * weight;
         self.hessian += j * j.transpose() * weight;
         e2.sqrt()
     }
+}
+
+/// What Cauchy's loss of scale c leaves of an observation with residual e.
+fn cauchy_weight(e2: f64, c2: f64) -> f64 {
+    1.0 / (1.0 + e2 / c2)
 }
 
 fn displace(line: &Segment3, across: &[Vector3<f64>; 2], step: &Vector4<f64>) -> Segment3 {
@@ -571,6 +596,33 @@ mod tests {
         let fit = fit_line(&observations, &planted(), &Lines3dParams::default()).unwrap();
         assert!(planted().line_distance(&fit.line.at(0.5)) < 0.1);
         assert!(fit.residuals[1] > 10.0);
+    }
+
+    #[test]
+    fn an_observation_is_believed_the_less_the_farther_it_lies_from_the_line() {
+        let camera = &cameras()[0];
+        let image = [planted().p0, planted().p1].map(|p| camera.project(&p).expect("in front"));
+        let params = Lines3dParams {
+            position_floor_px: 0.0,
+            ..Lines3dParams::default()
+        };
+        let weight = |beside_px: f64| {
+            let segment = Segment2::new(image[0], image[1]);
+            let across = segment.normal() * beside_px;
+            let observation = Observation {
+                camera,
+                segment: Segment2::new(segment.p0 + across, segment.p1 + across),
+                covariance: Matrix2::from_diagonal_element(0.25),
+            };
+            observation.weight(&planted(), &params)
+        };
+        assert!((weight(0.0) - 1.0).abs() < 1e-9);
+        // Two standard deviations, and the loss's scale.
+        for e in [2.0, params.loss_scale] {
+            let expected = 1.0 / (1.0 + (e / params.loss_scale).powi(2));
+            assert!((weight(0.5 * e) - expected).abs() < 1e-6);
+            assert!((weight(-0.5 * e) - expected).abs() < 1e-6);
+        }
     }
 
     #[test]

@@ -162,11 +162,7 @@ fn reconstruct(
         .supports
         .iter()
         .filter_map(|s| s.edge.as_ref())
-        .map(|edge| Observation {
-            camera: scene.camera(edge.view),
-            segment: edge.segment,
-            covariance: edge.covariance,
-        })
+        .map(|edge| Observation::of(edge, scene.camera(edge.view)))
         .collect();
     let start = line_of_planes(&observations).ok_or(LineOutcome::NoFit)?;
     let fit = fit_line(&observations, &start, params).ok_or(LineOutcome::NoFit)?;

@@ -294,13 +294,8 @@ impl Run {
                 trace.new_lines =
                     new_lines(scene, lines, &model, &params.matching, &params.lines3d);
                 let all = [&lines[..], &trace.new_lines].concat();
-                trace.refuted_lines = refuted_lines(
-                    scene,
-                    &all,
-                    &model.facets,
-                    evidence.ground,
-                    &params.matching,
-                );
+                trace.refuted_lines =
+                    refuted_lines(scene, &all, &model.facets, evidence.ground, params);
                 r.roof = Some((model, trace).into());
             }
             Stage::Regions => r.regions = Some(find_regions(scene, &params.objectspace).into()),

@@ -200,11 +200,7 @@ impl Context<'_> {
     }
 
     fn observations(&self, edges: &[GuidedEdge]) -> Vec<Observation<'_>> {
-        let observe = |e: &GuidedEdge| Observation {
-            camera: self.scene.camera(e.view),
-            segment: e.segment,
-            covariance: e.covariance,
-        };
+        let observe = |e: &GuidedEdge| Observation::of(e, self.scene.camera(e.view));
         edges.iter().map(observe).collect()
     }
 
