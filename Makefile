@@ -10,7 +10,7 @@
 #   make score      all scenes against their truth; rewrites the tables of docs/results.md
 #   make fuzz       all readers on damaged files, FUZZ_SECONDS (600) for each format
 #   make jury       all scenes many times over, changed a little each time; rewrites its tables there
-#   make bench      time of every stage on the synthetic scene
+#   make bench      time of every stage on the synthetic scene, and of the lines of the scene in SCENE
 #   make clean      remove what was built (not the tool cache)
 
 SHELL := bash

@@ -1,22 +1,48 @@
-//! Time of every stage on the synthetic L-shaped house, six views of 320 x 320 pixels: `make bench`.
+//! Time of every stage on the synthetic L-shaped house, six views of 320 x 320 pixels: `make bench`. With the folder of a scene in
+//! `SCENE`, also its way from images to 3D lines (B99 3), in grey values and with colours. `RAYON_NUM_THREADS=1` makes the
+//! times those of one core.
 #![allow(missing_docs)] // criterion_group! makes a public function.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use ridgeline::params::Params;
-use ridgeline::pipeline::Run;
+use ridgeline::pipeline::{Run, Stage};
 use ridgeline::progress::silent;
+use ridgeline::scene::Scene;
+use ridgeline::scene_loader::{InputFile, LoadOptions, load_scene};
 use ridgeline::synthetic::l_scene;
 
 fn stages(c: &mut Criterion) {
     let (scene, _) = l_scene(320);
-    let mut run = Run::new(scene, Params::default());
-    let mut group = c.benchmark_group("stages");
+    let run = Run::new(scene, Params::default());
+    let all = run.stages().to_vec();
+    time_of(c, "stages", run, &all);
+}
+
+/// B99 3 on the scene in `SCENE`.
+fn lines(c: &mut Criterion) {
+    let Some(folder) = std::env::var_os("SCENE") else {
+        println!("lines of a scene: skipped, SCENE is not set");
+        return;
+    };
+    for (kind, colors) in [("in grey values", false), ("with colours", true)] {
+        let mut params = Params::default();
+        params.segments.colors.detect = colors;
+        let run = Run::new(read_scene(folder.as_ref()), params);
+        let stages = [Stage::Segments, Stage::Matches, Stage::Lines];
+        time_of(c, &format!("lines {kind}"), run, &stages);
+    }
+}
+
+/// Each stage after those before it.
+fn time_of(c: &mut Criterion, name: &str, mut run: Run, stages: &[Stage]) {
+    let mut group = c.benchmark_group(name);
     group
         .sample_size(10)
         .measurement_time(Duration::from_secs(5));
-    for &stage in run.stages().to_vec().iter() {
+    for &stage in stages {
         group.bench_function(stage.name(), |b| {
             b.iter_custom(|times| {
                 let start = Instant::now();
@@ -30,5 +56,19 @@ fn stages(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, stages);
+/// The photographs and the files beside their folder, as the command line takes them.
+fn read_scene(folder: &Path) -> Scene {
+    let mut files = Vec::new();
+    for part in ["", "images"] {
+        let entries = std::fs::read_dir(folder.join(part)).expect("a folder with images/");
+        let paths = entries.map(|entry| entry.expect("readable").path());
+        for path in paths.filter(|path| path.is_file()) {
+            let bytes = std::fs::read(&path).expect("readable");
+            files.push(InputFile::new(&path.to_string_lossy(), bytes));
+        }
+    }
+    load_scene(&files, &LoadOptions::default()).expect("a scene")
+}
+
+criterion_group!(benches, stages, lines);
 criterion_main!(benches);

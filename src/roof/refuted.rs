@@ -69,11 +69,11 @@ pub fn refuted_lines(
         .collect()
 }
 
-/// Does a matched line lie on nothing, and are the views not certain enough of it to be believed alone?
+/// Does a line that was matched or clustered lie on nothing, and are the views not certain enough of it to be believed alone?
 fn is_afloat(scene: &Scene, line: &Line3d, surfaces: &Surfaces, params: &Params) -> bool {
     let views = MIN_VIEWS + usize::from(slopes(line));
     let alone = views as f64 * params.matching.pair_score * params.matching.without_segment;
-    line.origin == LineOrigin::Matched
+    matches!(line.origin, LineOrigin::Matched | LineOrigin::Clustered)
         && surfaces.share_of(line) < LEAST_SHARE
         && certainty(scene, line, &surfaces.roofs, &params.lines3d) < alone
 }
@@ -257,12 +257,15 @@ mod tests {
         assert_eq!(fate_of(raised([2.0, 3.5]), 4, 0.9, 0.0), None);
         // As level as a gutter.
         assert_eq!(fate_of(raised([2.0, 2.2]), 4, 0.7, 0.0), None);
-        let intersection = Line3d {
-            origin: LineOrigin::Intersection,
+        // No view bears out what another method found, and planes need none.
+        let unseen = |origin| Line3d {
+            origin,
             supports: Vec::new(),
             ..line(&scene, raised([2.0, 2.0]), 0..3)
         };
-        assert_eq!(refuted(&scene, &[intersection], &roof, &ground), []);
+        let others = [LineOrigin::Clustered, LineOrigin::Intersection].map(unseen);
+        let clustered = (LineId(0), Refutation::Afloat);
+        assert_eq!(refuted(&scene, &others, &roof, &ground), [clustered]);
     }
 
     #[test]
