@@ -46,9 +46,8 @@ impl<'a> Observation<'a> {
     /// How far [`fit_line`] believes this to be the image of a line, from 0 to 1.
     pub fn weight(&self, line: &Segment3, params: &Lines3dParams) -> f64 {
         let residual = Weighted::new(self, params).residual(line, &line_frame(&line.direction()));
-        residual.map_or(0.0, |(r, _)| {
-            cauchy_weight(r.norm_squared(), params.loss_scale.powi(2))
-        })
+        let c2 = params.loss_scale * params.loss_scale;
+        residual.map_or(0.0, |(r, _)| cauchy_weight(r.norm_squared(), c2))
     }
 }
 
@@ -619,7 +618,8 @@ mod tests {
         assert!((weight(0.0) - 1.0).abs() < 1e-9);
         // Two standard deviations, and the loss's scale.
         for e in [2.0, params.loss_scale] {
-            let expected = 1.0 / (1.0 + (e / params.loss_scale).powi(2));
+            let relative = e / params.loss_scale;
+            let expected = 1.0 / (1.0 + relative * relative);
             assert!((weight(0.5 * e) - expected).abs() < 1e-6);
             assert!((weight(-0.5 * e) - expected).abs() < 1e-6);
         }
