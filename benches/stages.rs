@@ -21,10 +21,9 @@ fn stages(c: &mut Criterion) {
     time_of(c, "stages", run, &all);
 }
 
-/// B99 3 on the scene in `SCENE`.
+/// B99 3 on the scene in `SCENE`; nothing without one.
 fn lines(c: &mut Criterion) {
     let Some(folder) = std::env::var_os("SCENE") else {
-        println!("lines of a scene: skipped, SCENE is not set");
         return;
     };
     for (kind, colors) in [("in grey values", false), ("with colours", true)] {
