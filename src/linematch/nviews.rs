@@ -420,9 +420,8 @@ impl Context<'_> {
 
     /// The last tests of a completed line, with the stretch t0 to t1 (metres) of the fit.
     ///
-    /// Deviation from the paper's four of six views: three do where the line is twice as certain as
-    /// it must be. Two strips often see the two sides of an eave differently, and then three views
-    /// are all there are.
+    /// Deviation from the paper's four of six views: three do where their mean score is what a pair must have by itself. Two
+    /// strips often see the two sides of an eave differently, and then three views are all there are.
     fn check_line(
         &self,
         fit: &LineFit,

@@ -37,6 +37,11 @@ pub enum SegmentOutcome {
         /// Why its best pair failed.
         reason: Rejection,
     },
+    /// The match that its best pair became fits better without it.
+    LeftOut {
+        /// Index of that match.
+        line: u32,
+    },
     /// The partner segments of its best pair went to another match.
     LostTo {
         /// Index of that match.
@@ -185,7 +190,7 @@ fn outcomes(
     });
     for i in order {
         let outcome = match selection.fates[i] {
-            Fate::Won(_) => continue,
+            Fate::Won(line) => SegmentOutcome::LeftOut { line: line as u32 },
             Fate::Lost(line) => SegmentOutcome::LostTo { line: line as u32 },
             Fate::Rejected(reason) => SegmentOutcome::NotVerified { reason },
         };
@@ -235,4 +240,83 @@ fn best_pairs(
             })
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Segment3;
+    use crate::ids::SegmentId;
+    use crate::linematch::pairs::{Pair, PairSearch};
+    use crate::linematch::planted;
+    use nalgebra::Point3;
+
+    #[test]
+    fn every_segment_is_told_why_it_is_matched_or_not() {
+        let one = planted::segments(&planted::scene())[0][0].clone();
+        let segments = vec![vec![one; 6]; 2];
+        let name = |view, segment| SegmentRef {
+            view: ViewId(view),
+            segment: SegmentId(segment),
+        };
+        // The pairs of segments 1 to 4 of both views, and a weaker one of segment 4 with its neighbour.
+        let pair = |a, b, score| Pair {
+            a: name(0, a),
+            b: name(1, b),
+            overlap: Segment3::new(Point3::origin(), Point3::new(1.0, 0.0, 0.0)),
+            overlap_px: 20.0,
+            score,
+        };
+        let found = |candidates, best| PairSearch { candidates, best };
+        let searches = vec![
+            found(0, 0.0),
+            found(1, 0.9),
+            found(1, 0.8),
+            found(1, 0.7),
+            found(2, 0.6),
+            found(1, 0.1),
+        ];
+        let pairs = Pairs {
+            pairs: vec![
+                pair(4, 3, 0.5),
+                pair(1, 1, 0.9),
+                pair(2, 2, 0.8),
+                pair(3, 3, 0.7),
+                pair(4, 4, 0.6),
+            ],
+            searches: vec![searches; 2],
+        };
+        let bundles: Vec<Bundle> = (0..5)
+            .map(|pair| Bundle {
+                pair,
+                verified: Vec::new(),
+            })
+            .collect();
+        let mut selection = Selection::none(&segments);
+        selection.fates = vec![
+            Fate::Lost(0),
+            Fate::Won(0),
+            Fate::Lost(0),
+            Fate::Rejected(Rejection::TooShort),
+            Fate::Won(1),
+        ];
+        // Line 1 was fitted without the segment of the second view.
+        selection.owners[0][1] = Some(0);
+        selection.owners[1][1] = Some(0);
+        selection.owners[0][4] = Some(1);
+        let told = outcomes(&segments, &pairs, &bundles, &selection);
+        let first = [
+            SegmentOutcome::NoCandidate,
+            SegmentOutcome::Matched { line: 0 },
+            SegmentOutcome::LostTo { line: 0 },
+            SegmentOutcome::NotVerified {
+                reason: Rejection::TooShort,
+            },
+            SegmentOutcome::Matched { line: 1 },
+            SegmentOutcome::BelowThreshold { best: 0.1 },
+        ];
+        assert_eq!(told[0], first);
+        assert_eq!(told[1][..4], first[..4]);
+        assert_eq!(told[1][4], SegmentOutcome::LeftOut { line: 1 });
+    }
 }

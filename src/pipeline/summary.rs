@@ -69,6 +69,10 @@ fn matches(results: &Results) -> Found {
     let counts = vec![
         ("matches", matches.len()),
         ("supports", supports().count()),
+        (
+            "matched segments",
+            supports().map(|s| s.segments.len()).sum(),
+        ),
         ("merged supports", of_kind(SupportKind::Merged)),
         ("grown supports", of_kind(SupportKind::Grown)),
     ];

@@ -45,6 +45,8 @@ export function outcomeWords(outcome: SegmentOutcome | null): string {
       return `refused: best score ${outcome.best.toFixed(2)} is below the threshold`;
     case "not_verified":
       return `refused: ${NOT_VERIFIED[outcome.reason] ?? outcome.reason}`;
+    case "left_out":
+      return `refused: match ${outcome.line}, which its pair became, fits better without it`;
     case "lost_to":
       return `lost its partners to match ${outcome.line}`;
   }

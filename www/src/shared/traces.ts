@@ -42,6 +42,7 @@ export type SegmentOutcome =
   | { fate: "no_candidate" }
   | { fate: "below_threshold"; best: number }
   | { fate: "not_verified"; reason: string }
+  | { fate: "left_out"; line: number }
   | { fate: "lost_to"; line: number };
 
 export interface Prediction {
