@@ -34,7 +34,8 @@ const OVERHANG_M: f64 = 0.8;
 const ROUGHNESS_M: f64 = 0.25;
 /// Standard deviations by which a line must go deeper than that, and by which a line that slopes is not level.
 const SIGNIFICANT: f64 = 2.0;
-/// Least slope of a line (sine of 6 degrees): less is what the map of the ground may miss, and hardly any roof has.
+/// Least slope of a line (sine of 6 degrees): less is what the map of the ground may miss, and what gutters
+/// and flat roofs have.
 const LEAST_SLOPE: f64 = 0.1;
 /// Of a line that lies on surfaces this share does at least.
 const LEAST_SHARE: f64 = 0.8;
@@ -144,7 +145,7 @@ mod tests {
     use crate::geometry::Segment2;
     use crate::linematch::SupportKind;
     use crate::raster::Channel;
-    use crate::synthetic::gable_scene;
+    use crate::synthetic::{SyntheticTruth, gable_scene};
     use crate::testing;
 
     /// A line that these views of a scene show along all its length.
@@ -176,9 +177,7 @@ mod tests {
     #[test]
     fn what_roofs_hide_from_all_but_two_views_is_refuted() {
         let (scene, truth) = gable_scene(64);
-        let roof: Vec<Facet> = (truth.facets.iter())
-            .map(|(_, ring)| testing::facet(ring))
-            .collect();
+        let roof = roof_of(&truth);
         let corners = roof.iter().flat_map(|f| &f.outer);
         let top = corners.clone().fold(f64::MIN, |top, p| top.max(p.z));
         let ridge: Vec<Point3<f64>> = (roof[0].outer.iter())
@@ -202,6 +201,11 @@ mod tests {
         assert_eq!(refuted(&[]), []);
     }
 
+    fn roof_of(truth: &SyntheticTruth) -> Vec<Facet> {
+        let rings = truth.facets.iter().map(|(_, ring)| ring);
+        rings.map(|ring| testing::facet(ring)).collect()
+    }
+
     fn refuted(
         scene: &Scene,
         lines: &[Line3d],
@@ -214,9 +218,7 @@ mod tests {
     #[test]
     fn what_lies_on_nothing_needs_views_that_are_certain_of_it() {
         let (scene, truth) = gable_scene(320);
-        let roof: Vec<Facet> = (truth.facets.iter())
-            .map(|(_, ring)| testing::facet(ring))
-            .collect();
+        let roof = roof_of(&truth);
         let ground = Ground::level(truth.ground_z);
         let ridge = truth.edges[0];
         let raised =
