@@ -1,7 +1,7 @@
 //! What each view shows of a line: the segments that lie on its image, and the edge measured again along it (B99 3.2,
 //! 3.4).
 //!
-//! The hypothesis comes from segments of one channel that are bright on the same side. A further view may show the line
+//! The hypothesis comes from segments of one kind that are bright on the same side. A further view may show the line
 //! in another way, and is asked for that where it does not show it in the same: two strips may see an eave bright on
 //! different sides, and before the shadow of the house in colour alone.
 
@@ -12,16 +12,16 @@ use super::nviews::Context;
 use super::sight::{SegmentRef, Sight};
 use crate::geometry::{Segment2, Segment3};
 use crate::ids::{SegmentId, ViewId};
+use crate::lines2d::SegmentKind;
 use crate::lines3d::{ProjectedLine, doubly_covered};
-use crate::raster::Channel;
 
 /// How near the segment of another line an edge measured again is that same edge, px. Assumption: three times what edges of
 /// one line are off (`position_floor_px`).
 const SAME_EDGE_PX: f64 = 0.3;
 
 impl Context<'_> {
-    /// The edge that a view shows along the line: in the channel of the line's segments or, where that shows none,
-    /// in the other one, if a segment of that lies there.
+    /// The edge that a view shows along the line: of the kind of the line's segments or, where there is none,
+    /// of the other one, if a segment of that lies there.
     pub fn measure(
         &self,
         line: &Segment3,
@@ -29,13 +29,13 @@ impl Context<'_> {
         view: ViewId,
         taken: &impl Fn(SegmentRef) -> bool,
     ) -> Option<GuidedEdge> {
-        let channel = self.sights.channel(segments)?;
-        let edge = self.measure_in(channel, line, segments, view).or_else(|| {
-            let other = self.adopt_in(view, channel.other(), line, segments, 1.0, taken);
+        let kind = self.sights.kind(segments)?;
+        let edge = self.measure_in(kind, line, segments, view).or_else(|| {
+            let other = self.adopt_in(view, kind.other(), line, segments, 1.0, taken);
             (!other.is_empty()).then_some(())?;
             let elsewhere = segments.iter().copied().filter(|s| s.view != view);
             let known: Vec<SegmentRef> = elsewhere.chain(other).collect();
-            self.measure_in(channel.other(), line, &known, view)
+            self.measure_in(kind.other(), line, &known, view)
         });
         let own_segment = segments.iter().any(|s| s.view == view);
         edge.filter(|edge| own_segment || !self.is_of_another(edge, taken))
@@ -54,7 +54,7 @@ impl Context<'_> {
             })
             .filter(|name| taken(*name))
             .filter_map(|name| self.sights.get(name))
-            .filter(|sight| sight.channel == edge.channel)
+            .filter(|sight| sight.kind == edge.kind)
             .collect();
         let on_another = |piece: &&Segment2| {
             let middle = piece.at(0.5);
@@ -65,7 +65,7 @@ impl Context<'_> {
 
     fn measure_in(
         &self,
-        channel: Channel,
+        kind: SegmentKind,
         line: &Segment3,
         segments: &[SegmentRef],
         view: ViewId,
@@ -79,9 +79,9 @@ impl Context<'_> {
         let core = self.core(line, segments, view)?;
         let along = |t: f64| Some((image.at(t)? - expected.p0).dot(&expected.direction()));
         let core = [along(core.0)?, along(core.1)?];
-        let seen = self.scene.view(view).channel(channel);
+        let seen = self.scene.view(view).channel(kind.channel());
         let against = self.against_contrast(&image, segments, view);
-        measure_edge(view, seen, channel, &expected, core, against)
+        measure_edge(view, seen, kind, &expected, core, against)
     }
 
     /// Is the bright side of this view's own segments the other one than the line's?
@@ -115,7 +115,7 @@ impl Context<'_> {
     }
 
     /// The segments of all views that lie on the projection of the line, or not farther beyond its
-    /// ends than a gap may be; `reach` times the gate is near enough. Those of a view are of the channel that
+    /// ends than a gap may be; `reach` times the gate is near enough. Those of a view are of the kind that
     /// its measured edge is of, or else of the line's.
     pub fn adopt(
         &self,
@@ -125,21 +125,21 @@ impl Context<'_> {
         reach: f64,
         taken: &impl Fn(SegmentRef) -> bool,
     ) -> Vec<SegmentRef> {
-        let Some(channel) = self.sights.channel(known) else {
+        let Some(kind) = self.sights.kind(known) else {
             return Vec::new();
         };
-        let shown = |view| (edges.iter().find(|e| e.view == view)).map_or(channel, |e| e.channel);
+        let shown = |view| (edges.iter().find(|e| e.view == view)).map_or(kind, |e| e.kind);
         (self.scene.view_ids())
             .flat_map(|view| self.adopt_in(view, shown(view), line, known, reach, taken))
             .collect()
     }
 
-    /// Those of one view and channel. Two strips may see an eave bright on different sides: where none is directed
+    /// Those of one view and kind. Two strips may see an eave bright on different sides: where none is directed
     /// like the line, those against it are taken.
     fn adopt_in(
         &self,
         view: ViewId,
-        channel: Channel,
+        kind: SegmentKind,
         line: &Segment3,
         known: &[SegmentRef],
         reach: f64,
@@ -163,7 +163,7 @@ impl Context<'_> {
             };
             let sight = self.sights.get(name)?;
             let (s0, s1) = (ahead(sight.segment.p0), ahead(sight.segment.p1));
-            ((sight.channel == channel || !self.alike.channel)
+            (self.alike.holds(sight.kind, kind)
                 && s0.max(s1) >= 0.0
                 && s0.min(s1) <= stretch.length()
                 && self.lies_on(&image, sight, reach)
@@ -171,7 +171,7 @@ impl Context<'_> {
             .then_some((name, sight.segment.direction().dot(&image.direction) > 0.0))
         });
         let (along, against): (Vec<_>, Vec<_>) =
-            on_line.partition(|(_, along)| *along || !self.alike.contrast);
+            on_line.partition(|(_, along)| *along || !self.alike.directs(kind));
         let own = if along.is_empty() { against } else { along };
         own.into_iter().map(|(name, _)| name).collect()
     }
@@ -216,7 +216,6 @@ mod tests {
     use super::*;
     use crate::linematch::planted;
     use crate::linematch::sight::{Alike, Sights};
-    use crate::lines2d::SegmentKind;
     use crate::params::{Lines3dParams, MatchParams};
 
     #[test]
@@ -244,7 +243,7 @@ mod tests {
             fitting: &fitting,
             alike: Alike {
                 contrast: true,
-                channel: true,
+                kind: true,
             },
         };
         let shows = |known: &[SegmentRef], taken: &[SegmentRef]| {
@@ -280,7 +279,7 @@ mod tests {
                 fitting: &fitting,
                 alike: Alike {
                     contrast: true,
-                    channel: true,
+                    kind: true,
                 },
             };
             let line = planted::edges()[0];

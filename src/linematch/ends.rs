@@ -6,6 +6,7 @@
 
 use super::guided::PIECE_PX;
 use super::profile::{Profile, ViewProfile};
+use crate::lines2d::SegmentKind;
 use crate::scene::Scene;
 
 /// How far from a stretch's end the edge may end, edgels: the piece before it, and half of one behind it.
@@ -65,7 +66,7 @@ fn steps_in(
     edgels: &[usize],
 ) -> Option<Vec<f64>> {
     let edge = view.edge.as_ref()?;
-    let (image, _) = scene.view(view.view).channel(edge.channel);
+    let (image, _) = scene.view(view.view).channel(edge.kind.channel());
     let (line, normal) = (edge.segment.line(), edge.segment.normal());
     let step = |&edgel: &usize| {
         let p = view.image.at(profile.t[edgel])?;
@@ -74,7 +75,12 @@ fn steps_in(
             let q = on_edge + normal * by;
             image.sample(q.x as f32, q.y as f32).map(f64::from)
         };
-        Some(beside(BASE_PX)? - beside(-BASE_PX)?)
+        let (left, right) = (beside(-BASE_PX)?, beside(BASE_PX)?);
+        Some(match edge.kind {
+            SegmentKind::Edge | SegmentKind::Color => right - left,
+            // Of either sign: the mean inside has the same.
+            SegmentKind::BrightBar | SegmentKind::DarkBar => 2.0 * beside(0.0)? - left - right,
+        })
     };
     edgels.iter().map(step).collect()
 }
@@ -97,7 +103,6 @@ mod tests {
     use super::super::planted;
     use super::*;
     use crate::lines3d::ProjectedLine;
-    use crate::raster::Channel;
 
     #[test]
     fn an_edge_ends_where_its_step_falls_to_half() {
@@ -121,8 +126,9 @@ mod tests {
                 let image = ProjectedLine::new(scene.camera(view), &reached).expect("in front");
                 let expected = planted::part_of(&scene, view.index(), 1, 0.0, 1.0);
                 let core = [0.0, expected.length()];
-                let seen = scene.view(view).channel(Channel::Grey);
-                let edge = measure_edge(view, seen, Channel::Grey, &expected, core, false);
+                let kind = SegmentKind::Edge;
+                let seen = scene.view(view).channel(kind.channel());
+                let edge = measure_edge(view, seen, kind, &expected, core, false);
                 ViewProfile {
                     view,
                     image,

@@ -110,8 +110,8 @@ mod tests {
     use super::*;
     use crate::geometry::Segment2;
     use crate::ids::ViewId;
+    use crate::lines2d::SegmentKind;
     use crate::lines3d::ProjectedLine;
-    use crate::raster::Channel;
     use nalgebra::{Matrix2, Point2};
 
     fn bools(s: &str) -> Vec<bool> {
@@ -171,7 +171,7 @@ mod tests {
                 segments: Vec::new(),
                 edge: Some(GuidedEdge {
                     view: ViewId(index as u32),
-                    channel: Channel::Grey,
+                    kind: SegmentKind::Edge,
                     segment: Segment2::new(Point2::origin(), Point2::new(40.0, 0.0)),
                     covariance: Matrix2::identity(),
                     pieces: Vec::new(),

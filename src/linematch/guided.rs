@@ -6,7 +6,7 @@
 //! sought again along the prediction: the profile across it is averaged over short pieces, so that a
 //! step far below the noise of a pixel shows, each piece gives one offset, and a robust line through the
 //! offsets is the measurement. Whether there is an edge is asked of the grey values, where it is of their light
-//! ([`Channel::to_light`]). A view in which the pieces do not line up has no such edge.
+//! ([`crate::raster::Channel::to_light`]). A view in which the pieces do not line up has no such edge.
 //!
 //! Deviation: the paper verifies a view without a segment by correlation alone. Correlation says that
 //! the surroundings are alike, not where the line is; a measured offset takes part in the fit.
@@ -15,7 +15,8 @@ use nalgebra::{Matrix2, Point2};
 
 use crate::geometry::Segment2;
 use crate::ids::ViewId;
-use crate::raster::{Channel, Gray};
+use crate::lines2d::SegmentKind;
+use crate::raster::Gray;
 use crate::sorting::sort_by;
 
 /// Shortest piece whose profile is averaged, px.
@@ -49,8 +50,8 @@ const MIN_SHARE: f64 = 0.5;
 pub struct GuidedEdge {
     /// The view.
     pub view: ViewId,
-    /// What of the view shows it.
-    pub channel: Channel,
+    /// What it is in the image: a step, or a bar.
+    pub kind: SegmentKind,
     /// The edge, from its first to its last piece, px.
     pub segment: Segment2,
     /// Covariance of (offset along the normal at the middle in px, angle in rad).
@@ -69,12 +70,12 @@ struct Piece {
 
 /// Seeks the edge along `expected` (directed by contrast: bright on the side of its normal). `core` is the
 /// stretch, px from the start, that decides whether there is one; beyond it pieces that lie on the same edge
-/// are kept. In a view that shows the line `against` its contrast the dark side is sought there. The image is that of the
-/// `channel`, with the standard deviation of the noise of a pixel.
+/// are kept. In a view that shows the line `against` its contrast the dark side is sought there; a bar has no sides, and is sought by
+/// its middle. The image is that of the channel of the `kind`, with the standard deviation of the noise of a pixel.
 pub fn measure_edge(
     view: ViewId,
     (image, noise): (&Gray, f64),
-    channel: Channel,
+    kind: SegmentKind,
     expected: &Segment2,
     core: [f64; 2],
     against: bool,
@@ -86,7 +87,7 @@ pub fn measure_edge(
         .filter_map(|i| {
             measure_piece(
                 image,
-                channel,
+                kind,
                 expected,
                 (i as f64 + 0.5) * size,
                 size,
@@ -112,13 +113,13 @@ pub fn measure_edge(
     if kept.len() < MIN_PIECES {
         return None;
     }
-    Some(line.edge((view, channel), expected, &kept, size))
+    Some(line.edge((view, kind), expected, &kept, size))
 }
 
 /// One piece; `None` outside the image.
 fn measure_piece(
     image: &Gray,
-    channel: Channel,
+    kind: SegmentKind,
     expected: &Segment2,
     along: f64,
     size: f64,
@@ -150,32 +151,55 @@ fn measure_piece(
     }
     profile.iter_mut().for_each(|v| *v /= rows as f64);
     let mut light = profile;
-    channel.to_light(&mut light);
-    let sign = if against { -1.0 } else { 1.0 };
-    let [steps, light] = [profile, light].map(|p| steps(&p, sign));
-    let least = SIGNIFICANT * noise * (2.0 / rows as f64).sqrt();
+    kind.channel().to_light(&mut light);
+    let filter = Filter::of(kind, against);
+    let [response, light] = [profile, light].map(|p| filter.response(&p));
+    let least = SIGNIFICANT * noise * filter.gain() / (rows as f64).sqrt();
     Some(Piece {
         along,
-        offset: nearest_edge(&steps, least).and_then(|k| offset(&light, k)),
+        offset: nearest_edge(&response, least).and_then(|k| offset(&light, k)),
     })
 }
 
-/// Steps over two pixels along a profile.
-fn steps(profile: &[f64; SAMPLES], sign: f64) -> [f64; STEPS] {
-    std::array::from_fn(|k| sign * (profile[k + 2 * BASE] - profile[k]))
+/// Weights of the grey values a pixel before, at and a pixel behind a place: their sum is largest where the edge is.
+#[derive(Clone, Copy)]
+struct Filter([f64; 3]);
+
+impl Filter {
+    fn of(kind: SegmentKind, against: bool) -> Self {
+        Self(match kind {
+            SegmentKind::Edge | SegmentKind::Color if against => [1.0, 0.0, -1.0],
+            SegmentKind::Edge | SegmentKind::Color => [-1.0, 0.0, 1.0],
+            SegmentKind::BrightBar => [-0.5, 1.0, -0.5],
+            SegmentKind::DarkBar => [0.5, -1.0, 0.5],
+        })
+    }
+
+    /// Along a profile.
+    fn response(self, profile: &[f64; SAMPLES]) -> [f64; STEPS] {
+        let [before, at, behind] = self.0;
+        std::array::from_fn(|k| {
+            before * profile[k] + at * profile[k + BASE] + behind * profile[k + 2 * BASE]
+        })
+    }
+
+    /// Standard deviation of the response to noise of one.
+    fn gain(self) -> f64 {
+        self.0.iter().map(|w| w * w).sum::<f64>().sqrt()
+    }
 }
 
-/// Index of the edge nearest to the middle of a profile: a maximum of its steps that is at least half the largest one.
-fn nearest_edge(steps: &[f64; STEPS], least: f64) -> Option<usize> {
+/// Index of the edge nearest to the middle of a profile: a maximum of the response that is at least half the largest one.
+fn nearest_edge(response: &[f64; STEPS], least: f64) -> Option<usize> {
     let inner = 1..STEPS - 1;
-    let largest = steps[inner.clone()].iter().copied().fold(0.0, f64::max);
+    let largest = response[inner.clone()].iter().copied().fold(0.0, f64::max);
     inner
-        .filter(|&k| steps[k] >= steps[k - 1] && steps[k] > steps[k + 1])
-        .filter(|&k| steps[k] >= least.max(0.5 * largest))
+        .filter(|&k| response[k] >= response[k - 1] && response[k] > response[k + 1])
+        .filter(|&k| response[k] >= least.max(0.5 * largest))
         .min_by_key(|&k| k.abs_diff(STEPS / 2))
 }
 
-/// Offset of an edge, px, by the maximum of the light's steps at or beside its index.
+/// Offset of an edge, px, by the maximum of the light's response at or beside its index.
 fn offset(light: &[f64; STEPS], edge: usize) -> Option<f64> {
     let near = edge.max(2) - 1..=(edge + 1).min(STEPS - 2);
     let k = near.max_by(|&i, &j| light[i].total_cmp(&light[j]))?;
@@ -246,7 +270,7 @@ impl OffsetLine {
     /// The edge in the image, with the covariance that its pieces' scatter gives.
     fn edge(
         &self,
-        (view, channel): (ViewId, Channel),
+        (view, kind): (ViewId, SegmentKind),
         expected: &Segment2,
         kept: &[Piece],
         size: f64,
@@ -274,7 +298,7 @@ impl OffsetLine {
         let lever = 0.5 * (first + last) - centre;
         GuidedEdge {
             view,
-            channel,
+            kind,
             segment: Segment2::new(place(first), place(last)),
             covariance: Matrix2::new(
                 variance / n + angle * lever * lever,
@@ -310,7 +334,7 @@ mod tests {
         measure_edge(
             ViewId(0),
             (image, 0.006),
-            Channel::Warmth,
+            SegmentKind::Color,
             expected,
             core,
             against,
@@ -359,6 +383,52 @@ mod tests {
         // An edge out of reach is another edge.
         let beside = shifted(4.0, 0.0);
         assert!(measured(&gray, &beside, false).is_none());
+    }
+
+    /// A bar of this height along `edge` before a step of grey values, wide as a gutter.
+    fn bar(edge: &Segment2, height: f32, step: f32) -> Gray {
+        let line = edge.line();
+        let mut next = uniform(3);
+        Gray::from_fn(120, 120, |x, y| {
+            let d = line.x * (x as f64 + 0.5) + line.y * (y as f64 + 0.5) + line.z;
+            let white = (next() + next() - 1.0) * 4.0 / 255.0;
+            let beside = step * (1.0 / (1.0 + math::exp(-2.5 * d))) as f32;
+            0.4 + beside + height * math::exp(-0.5 * d * d / 0.81) as f32 + white as f32
+        })
+    }
+
+    #[test]
+    fn a_bar_is_measured_along_its_middle_whichever_way_it_runs() {
+        let core = [0.0, edge().length()];
+        let kinds = [(0.1, SegmentKind::BrightBar), (-0.1, SegmentKind::DarkBar)];
+        for (height, kind) in kinds {
+            let gray = bar(&edge(), height, 0.0);
+            for expected in [shifted(0.6, 0.3), shifted(-0.5, 0.2).reversed()] {
+                let found =
+                    |kind| measure_edge(ViewId(0), (&gray, 0.008), kind, &expected, core, false);
+                let on_bar = found(kind).expect("the bar");
+                assert_eq!(on_bar.kind, kind);
+                for p in [on_bar.segment.p0, on_bar.segment.p1] {
+                    let d = edge().line().dot(&p.to_homogeneous());
+                    assert!(d.abs() < 0.1, "{d} px beside its middle");
+                }
+                assert!(found(kind.other()).is_none(), "a bar of the other kind");
+            }
+        }
+        // Different grounds on its two sides move it less than its own width.
+        let before_a_step = bar(&edge(), 0.2, 0.1);
+        let kind = SegmentKind::BrightBar;
+        let found = measure_edge(
+            ViewId(0),
+            (&before_a_step, 0.008),
+            kind,
+            &edge(),
+            core,
+            false,
+        );
+        let middle = found.expect("the bar").segment.midpoint();
+        let d = edge().line().dot(&middle.to_homogeneous());
+        assert!(d.abs() < 0.3, "{d} px");
     }
 
     #[test]

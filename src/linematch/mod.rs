@@ -11,8 +11,8 @@
 //!       -> ends       where its ends are, to a pixel                                             3.3
 //! ```
 //!
-//! Pairs and triples are of segments of one channel (grey values or warmth) that are bright on one side: that keeps
-//! mismatches rare. Where there are few views, too few for `min_views` to be a choice, a second pass takes what
+//! Pairs and triples are of segments of one kind (steps in grey values or in warmth, bright or dark bars) and, if they are steps,
+//! bright on one side: that keeps mismatches rare. Where there are few views, too few for `min_views` to be a choice, a second pass takes what
 //! is left without asking for either: of three views two may show an eave before a sunlit lawn, and the third before the
 //! shadow of the house.
 
@@ -80,7 +80,7 @@ pub fn match_lines(
 
     let alike = Alike {
         contrast: params.same_contrast,
-        channel: true,
+        kind: true,
     };
     let scope = PairScope {
         scene,
@@ -106,7 +106,7 @@ pub fn match_lines(
     if few && !found.selection.lines.is_empty() {
         let alike = Alike {
             contrast: false,
-            channel: false,
+            kind: false,
         };
         found.search(
             &PairScope { alike, ..scope },
@@ -247,7 +247,8 @@ pub(crate) mod planted;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lines3d::reconstruct_lines;
+    use crate::lines2d::SegmentKind;
+    use crate::lines3d::{Line3d, reconstruct_lines};
 
     fn matched() -> (Scene, Vec<LineMatch>, MatchTrace) {
         let scene = planted::scene();
@@ -333,7 +334,7 @@ mod tests {
         // Edge 1 runs along the baseline of the first two views: only pairs with the other strip determine it.
         let mut scene = planted::scene();
         let mut segments = planted::segments(&scene);
-        segments[3][1].kind = crate::lines2d::SegmentKind::Color;
+        segments[3][1].kind = SegmentKind::Color;
         for views in [4, 2] {
             scene.views.remove(views);
             segments.remove(views);
@@ -355,6 +356,52 @@ mod tests {
         };
         assert_eq!(matched(4), (Some(3), 3));
         assert_eq!(matched(2), (None, 0), "three views are not few then");
+    }
+
+    /// The lines along a planted bar that each view shows as one segment of a kind, every other one running backwards.
+    fn lines_of_a_bar(kinds: [SegmentKind; 5]) -> Vec<Line3d> {
+        let scene = planted::scene_with_bar();
+        let image = |(view, kind): (usize, SegmentKind)| {
+            let camera = &scene.views[view].camera;
+            let [start, end] = [0.05, 0.95].map(|t| camera.project(&planted::bar().at(t)).unwrap());
+            let along = Segment2::new(start, end);
+            let segment = if view.is_multiple_of(2) {
+                along
+            } else {
+                along.reversed()
+            };
+            vec![ImageSegment {
+                kind,
+                ..planted::detected(segment, view)
+            }]
+        };
+        let segments: Vec<_> = kinds.into_iter().enumerate().map(image).collect();
+        let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
+        let (matches, _) = match_lines(&scene, &segments, &params, &fitting);
+        reconstruct_lines(&scene, &matches, &fitting).0
+    }
+
+    #[test]
+    fn bars_are_matched_with_bars_whichever_way_they_run() {
+        let lines = lines_of_a_bar([SegmentKind::BrightBar; 5]);
+        assert_eq!(lines.len(), 1);
+        for end in [lines[0].segment.p0, lines[0].segment.p1] {
+            let miss = planted::bar().line_distance(&end);
+            assert!(miss < 0.05, "{miss} m: half a pixel beside its middle");
+        }
+        assert!(lines[0].segment.length() > 7.0, "of eight metres");
+        // Taken for steps, those that run the same way are: at a side of the bar. Of dark bars the photographs show nothing.
+        let steps = lines_of_a_bar([SegmentKind::Edge; 5]);
+        let beside = |l: &Line3d| planted::bar().line_distance(&l.at(0.5)) > 0.08;
+        assert!(steps.iter().all(beside));
+        assert!(lines_of_a_bar([SegmentKind::DarkBar; 5]).is_empty());
+        // Where three views give its sides, the other two determine it, and its middle is measured in all.
+        let mut kinds = [SegmentKind::BrightBar; 5];
+        (kinds[0], kinds[1], kinds[4]) = (SegmentKind::Edge, SegmentKind::Edge, SegmentKind::Edge);
+        let lines = lines_of_a_bar(kinds);
+        let in_the_middle: Vec<_> = lines.iter().filter(|l| !beside(l)).collect();
+        assert_eq!(in_the_middle.len(), 1);
+        assert_eq!(in_the_middle[0].supports.len(), 5);
     }
 
     #[test]

@@ -467,8 +467,8 @@ mod tests {
     use super::*;
     use crate::ids::SegmentId;
     use crate::linematch::planted;
+    use crate::lines2d::SegmentKind;
     use crate::lines3d::ProjectedLine;
-    use crate::raster::Channel;
 
     /// Three views with edges: two that correlate by `pair`, and one that does not, with a segment of its own or without: which
     /// views support the line, and which are left out.
@@ -486,7 +486,7 @@ mod tests {
             fitting: &fitting,
             alike: Alike {
                 contrast: true,
-                channel: true,
+                kind: true,
             },
         };
         let view = |(index, correlation): (usize, f32)| ViewProfile {
@@ -498,7 +498,7 @@ mod tests {
             },
             edge: Some(GuidedEdge {
                 view: ViewId(index as u32),
-                channel: Channel::Grey,
+                kind: SegmentKind::Edge,
                 segment: planted::part_of(&scene, index, 0, 0.0, 1.0),
                 covariance: nalgebra::Matrix2::identity(),
                 pieces: Vec::new(),
@@ -532,7 +532,7 @@ mod tests {
         let (scene, line) = (planted::scene(), planted::edges()[0]);
         let edge = |view: usize| GuidedEdge {
             view: ViewId(view as u32),
-            channel: Channel::Grey,
+            kind: SegmentKind::Edge,
             segment: planted::part_of(&scene, view, 0, 0.1, 0.9),
             covariance: nalgebra::Matrix2::identity(),
             pieces: Vec::new(),

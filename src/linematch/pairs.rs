@@ -128,8 +128,8 @@ impl PairScope<'_> {
         let first = self.scene.view(name.view);
         let frame = StripFrame::new(&sight.segment, self.params.window_px);
         // What lies beside a line shows in grey values, whichever channel shows the line.
-        let channel = if self.alike.channel {
-            sight.channel
+        let channel = if self.alike.kind {
+            sight.kind.channel()
         } else {
             Channel::Grey
         };
@@ -151,7 +151,7 @@ impl PairScope<'_> {
                 let candidate = self
                     .sights
                     .get(b)
-                    .filter(|c| !taken(b) && (!self.alike.channel || c.channel == channel));
+                    .filter(|c| !taken(b) && self.alike.holds(sight.kind, c.kind));
                 let Some(geometry) = candidate
                     .and_then(|c| PairGeometry::new([&first.camera, camera], [sight, c], self))
                 else {
@@ -213,7 +213,7 @@ impl PairGeometry {
         let length = (a1 - a0).norm();
         let direction = (a1 - a0) / length.max(1e-9);
         let (t0, t1) = ((b0 - a0).dot(&direction), (b1 - a0).dot(&direction));
-        if scope.alike.contrast && t1 <= t0 {
+        if scope.alike.directs(a.kind) && t1 <= t0 {
             return None;
         }
         let (from, to) = (t0.min(t1).max(0.0), t0.max(t1).min(length));
@@ -385,7 +385,7 @@ mod tests {
 
     const ALIKE: Alike = Alike {
         contrast: true,
-        channel: true,
+        kind: true,
     };
 
     #[test]
@@ -431,7 +431,7 @@ mod tests {
         assert_eq!(score(&[0], ALIKE), 0.0);
         assert_eq!(score(&[3], ALIKE), 0.0);
         let any = Alike {
-            channel: false,
+            kind: false,
             ..ALIKE
         };
         assert!(score(&[3], any) > 0.0, "where they need not be alike");

@@ -14,6 +14,9 @@ use crate::scene::{Scene, View};
 pub const ROOF_Z: f64 = 6.0;
 /// Half the roof in x and y, metres.
 const HALF: [f64; 2] = [7.0, 5.0];
+/// Half the width of the bar and half its length, metres.
+const HALF_BAR: f64 = 0.1;
+const BAR_END: f64 = 4.0;
 const SIZE: u32 = 300;
 
 /// A camera 300 m up with pixels of 0.1 m, cropped about the world's origin.
@@ -62,11 +65,15 @@ fn texture(x: f64, y: f64) -> f64 {
 }
 
 /// Four by four samples a pixel: an edge is where it is, not where the nearest pixel begins.
-fn render(camera: &Camera) -> Gray {
+fn render(camera: &Camera, bar: bool) -> Gray {
     let seen = |x: &Point2<f64>| {
         let roof = camera.at_height(x, ROOF_Z).unwrap();
-        if roof.x.abs() <= HALF[0] && roof.y.abs() <= HALF[1] {
-            0.6 + 0.3 * texture(roof.x, roof.y)
+        let on_bar = bar && roof.x.abs() <= HALF_BAR && roof.y.abs() <= BAR_END;
+        if on_bar {
+            1.0
+        } else if roof.x.abs() <= HALF[0] && roof.y.abs() <= HALF[1] {
+            let level = if bar { 0.3 } else { 0.6 };
+            level + 0.3 * texture(roof.x, roof.y)
         } else {
             let ground = camera.at_height(x, 0.0).unwrap();
             0.2 + 0.3 * texture(ground.x + 50.0, ground.y)
@@ -83,6 +90,21 @@ fn render(camera: &Camera) -> Gray {
 
 /// The scene: views 0, 1 and 4 of one strip, 2 and 3 of another, turned by 180 degrees.
 pub fn scene() -> Scene {
+    scene_of(false)
+}
+
+/// The same with a darker roof and on it a bright bar, [`bar`].
+pub fn scene_with_bar() -> Scene {
+    scene_of(true)
+}
+
+/// The bar's middle.
+pub fn bar() -> Segment3 {
+    let [start, end] = [-BAR_END, BAR_END].map(|y| Point3::new(0.0, y, ROOF_Z));
+    Segment3::new(start, end)
+}
+
+fn scene_of(bar: bool) -> Scene {
     let places = [
         (-40.0, -45.0, 0.0),
         (40.0, -40.0, 0.02),
@@ -95,7 +117,7 @@ pub fn scene() -> Scene {
         .enumerate()
         .map(|(i, (x, y, kappa))| {
             let camera = camera(*x, *y, *kappa);
-            let (gray, rgb) = (render(&camera), image::RgbImage::new(SIZE, SIZE));
+            let (gray, rgb) = (render(&camera, bar), image::RgbImage::new(SIZE, SIZE));
             View::new(format!("{i}.png"), camera, gray, rgb)
         })
         .collect();

@@ -112,7 +112,7 @@ impl Profile {
                 .collect();
         }
         let stretch = stretch_of(line, from, to);
-        let channel = sights.channel(segments)?;
+        let channel = sights.kind(segments)?.channel();
         let strips = Strips::new(scene, channel, &stretch, &frame, longest, &views, params)?;
         let reference = strips.compare(&mut views, params)?;
         Some(Self {

@@ -7,8 +7,7 @@ use super::index::SegmentIndex;
 use crate::camera::{Camera, plane_of_image_line};
 use crate::geometry::{Plane, Segment2};
 use crate::ids::{SegmentId, ViewId};
-use crate::lines2d::ImageSegment;
-use crate::raster::Channel;
+use crate::lines2d::{ImageSegment, SegmentKind};
 use crate::scene::Scene;
 
 /// Names a segment of a view.
@@ -23,18 +22,30 @@ pub struct SegmentRef {
 /// What must be the same of all segments that show a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Alike {
-    /// The bright side.
+    /// The bright side, if they are steps.
     pub contrast: bool,
-    /// The channel.
-    pub channel: bool,
+    /// The kind. Where it need not be, steps are still no bars: those run beside the line's edges.
+    pub kind: bool,
+}
+
+impl Alike {
+    /// May segments of these kinds show one line?
+    pub fn holds(self, a: SegmentKind, b: SegmentKind) -> bool {
+        a == b || (!self.kind && a.is_step() == b.is_step())
+    }
+
+    /// Must a segment of this kind run the same way as the others?
+    pub fn directs(self, kind: SegmentKind) -> bool {
+        self.contrast && kind.is_step()
+    }
 }
 
 /// A segment with its rays and its interpretation plane.
 pub struct Sight {
     /// The segment, directed by contrast.
     pub segment: Segment2,
-    /// The channel that shows it.
-    pub channel: Channel,
+    /// What it was found on.
+    pub kind: SegmentKind,
     /// Its length, pixels.
     pub length_px: f64,
     /// The plane through the projection centre and the segment.
@@ -54,7 +65,7 @@ impl Sight {
         (length_px > 1.0 && variance.is_finite()).then_some(())?;
         Some(Self {
             segment,
-            channel: detected.kind.channel(),
+            kind: detected.kind,
             length_px,
             plane: plane_of_image_line(camera, &segment.line())?,
             rays: [camera.ray(&segment.p0), camera.ray(&segment.p1)],
@@ -108,24 +119,14 @@ impl Sights {
         self.views[name.view.index()].sights[name.segment.index()].as_ref()
     }
 
-    /// The channel that shows most of a line's segments, grey values where both show as many; `None` without
-    /// segments.
-    pub fn channel<'s>(
-        &self,
-        segments: impl IntoIterator<Item = &'s SegmentRef>,
-    ) -> Option<Channel> {
-        let (mut grey, mut warm) = (0, 0);
-        for s in segments {
-            match self.get(*s)?.channel {
-                Channel::Grey => grey += 1,
-                Channel::Warmth => warm += 1,
-            }
-        }
-        (grey + warm > 0).then_some(if warm > grey {
-            Channel::Warmth
-        } else {
-            Channel::Grey
-        })
+    /// The kind of most of a line's segments, of as many the one that comes first in [`SegmentKind::ALL`]; `None` without segments.
+    pub fn kind(&self, segments: &[SegmentRef]) -> Option<SegmentKind> {
+        let shown = |kind: &SegmentKind| {
+            let own = segments.iter().filter_map(|s| self.get(*s));
+            own.filter(|sight| sight.kind == *kind).count()
+        };
+        let most = SegmentKind::ALL.into_iter().rev().max_by_key(shown)?;
+        (shown(&most) > 0).then_some(most)
     }
 
     /// The names of all segments of a view that can be matched.
@@ -167,4 +168,33 @@ pub fn ray_in_plane(
     let slope = plane.normal.dot(ray);
     let depth = -plane.signed_distance(center) / slope;
     (slope.abs() > 1e-9 && depth > 0.0).then(|| center + ray * depth)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use SegmentKind::{BrightBar, Color, DarkBar, Edge};
+
+    #[test]
+    fn bars_and_steps_are_never_alike() {
+        let first = Alike {
+            contrast: true,
+            kind: true,
+        };
+        let second = Alike {
+            contrast: false,
+            kind: false,
+        };
+        for a in SegmentKind::ALL {
+            assert!(first.holds(a, a) && second.holds(a, a));
+            assert!(!first.holds(a, a.other()) && second.holds(a, a.other()));
+            assert_eq!(a.other().other(), a);
+            assert!(!second.directs(a));
+        }
+        assert!(!second.holds(Edge, BrightBar) && !second.holds(DarkBar, Color));
+        assert_eq!(
+            [Edge, Color, BrightBar, DarkBar].map(|k| first.directs(k)),
+            [true, true, false, false]
+        );
+    }
 }

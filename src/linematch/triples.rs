@@ -149,7 +149,7 @@ impl Prediction {
     fn agrees(&self, sight: &Sight, reach: f64, scope: &PairScope) -> bool {
         let ends = [sight.segment.p0, sight.segment.p1];
         let [t0, t1] = ends.map(|p| self.image.t_of(&p));
-        if scope.alike.contrast && t1 <= t0 {
+        if scope.alike.directs(sight.kind) && t1 <= t0 {
             return false;
         }
         let (from, to) = (t0.min(t1).max(0.0), t0.max(t1).min(self.length));

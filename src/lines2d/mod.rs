@@ -58,11 +58,30 @@ pub enum SegmentKind {
 }
 
 impl SegmentKind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Edge, Self::Color, Self::BrightBar, Self::DarkBar];
+
     /// The channel that shows such a segment.
     pub fn channel(self) -> Channel {
         match self {
             Self::Color => Channel::Warmth,
             Self::Edge | Self::BrightBar | Self::DarkBar => Channel::Grey,
+        }
+    }
+
+    /// Is it a step, which has a brighter side? A bar has none.
+    pub fn is_step(self) -> bool {
+        matches!(self, Self::Edge | Self::Color)
+    }
+
+    /// How a further view may show in the same place what one view shows so: an eave may stand out in colour alone, and a
+    /// gutter be dark in one strip and glint in the other. A step and a bar are never in the same place.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Edge => Self::Color,
+            Self::Color => Self::Edge,
+            Self::BrightBar => Self::DarkBar,
+            Self::DarkBar => Self::BrightBar,
         }
     }
 }
@@ -72,8 +91,8 @@ impl SegmentKind {
 /// seen on the screen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ImageSegment {
-    /// Edge in grey values or in colour, or bar. A bar runs along its middle and is directed by the difference between its two sides, which may
-    /// be small: its direction is no more than a hint.
+    /// Edge in grey values or in colour, or bar. A bar runs along its middle and is directed by the difference between its two
+    /// sides, which may be small: matching does not ask for its direction.
     pub kind: SegmentKind,
     /// End points, pixels.
     pub segment: Segment2,

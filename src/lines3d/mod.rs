@@ -212,7 +212,7 @@ mod tests {
     use crate::ids::ViewId;
     use crate::linematch::GuidedEdge;
     use crate::linematch::{SupportKind, planted};
-    use crate::raster::Channel;
+    use crate::lines2d::SegmentKind;
     use nalgebra::Matrix2;
 
     /// What becomes of the part of an eave whose edges are measured this exactly in three views, px.
@@ -223,7 +223,7 @@ mod tests {
             let (variance, length) = (sigma_px * sigma_px, stretch.length());
             let edge = GuidedEdge {
                 view: ViewId(view as u32),
-                channel: Channel::Grey,
+                kind: SegmentKind::Edge,
                 segment: stretch,
                 covariance: Matrix2::new(variance, 0.0, 0.0, 4.0 * variance / (length * length)),
                 pieces: vec![stretch],

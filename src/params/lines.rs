@@ -134,15 +134,15 @@ readable! {
 /// B99 5: bars. Thresholds are multiples of the local scale of the second derivative.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BarParams {
-    /// Look for bars at all? Assumption: no. On rendered scenes they add 2 % to the true roof edges covered for half as many
-    /// segments again; more and weaker edges add as much for less.
+    /// Look for bars at all? Assumption: no. Nearly all of them run beside edges that are matched already (docs/results.md,
+    /// "Bars"); they are for photographs on which a ridge or a gutter is thinner than what edges need on either side.
     pub detect: bool,
     /// Least second derivative of a point of a bar. Assumption: above what tiles do.
     pub low: f64,
     /// Least second derivative of the strongest point in a chain. Assumption.
     pub high: f64,
     /// A bar is refused that has a segment on an edge so near along half of it, px. Assumption: the edges
-    /// of a gutter's two sides.
+    /// of its two sides, which smoothing pushes apart. At 2 px every tenth line is a second one beside an edge.
     pub clear_px: f64,
 }
 }
@@ -153,7 +153,7 @@ impl Default for BarParams {
             detect: false,
             low: 2.5,
             high: 3.5,
-            clear_px: 2.0,
+            clear_px: 4.0,
         }
     }
 }

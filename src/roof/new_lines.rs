@@ -17,11 +17,11 @@ use super::{Facet, Occluders, RoofModel};
 use crate::geometry::{Segment2, Segment3};
 use crate::ids::{FacetId, ViewId};
 use crate::linematch::{GuidedEdge, LineSupport, SupportKind, measure_edge};
+use crate::lines2d::SegmentKind;
 use crate::lines3d::{
     Carrier, Line3d, LineFit, LineOrigin, Observation, ProjectedLine, fit_line_on,
 };
 use crate::params::{Lines3dParams, MatchParams};
-use crate::raster::Channel;
 use crate::scene::Scene;
 
 /// Least number of views that must show a border, and their least share of those that can see it. Measured on suburb,
@@ -204,19 +204,19 @@ impl Context<'_> {
         edges.iter().map(observe).collect()
     }
 
-    /// The edge along the image of `part`, of whichever channel and contrast has more of it.
+    /// The edge along the image of `part`, of whichever kind of step and contrast has more of it.
     fn measure(&self, part: &Segment3, view: ViewId) -> Option<GuidedEdge> {
         let seen = self.scene.view(view);
         let image = ProjectedLine::new(&seen.camera, part)?;
         let expected = Segment2::new(image.at(0.0)?, image.at(part.length())?);
         let core = [0.0, expected.length()];
         let mut best: Option<GuidedEdge> = None;
-        for channel in [Channel::Grey, Channel::Warmth] {
+        for kind in [SegmentKind::Edge, SegmentKind::Color] {
             for against in [false, true] {
                 let found = measure_edge(
                     view,
-                    seen.channel(channel),
-                    channel,
+                    seen.channel(kind.channel()),
+                    kind,
                     &expected,
                     core,
                     against,

@@ -144,7 +144,7 @@ mod tests {
     use super::*;
     use crate::geometry::Segment2;
     use crate::linematch::SupportKind;
-    use crate::raster::Channel;
+    use crate::lines2d::SegmentKind;
     use crate::synthetic::{SyntheticTruth, gable_scene};
     use crate::testing;
 
@@ -161,7 +161,7 @@ mod tests {
                 kind: SupportKind::Matched,
                 edge: Some(GuidedEdge {
                     view: ViewId(view),
-                    channel: Channel::Grey,
+                    kind: SegmentKind::Edge,
                     segment: Segment2::new(p0, p1),
                     covariance: nalgebra::Matrix2::identity(),
                     pieces: Vec::new(),

@@ -13,6 +13,7 @@ use super::wireframe::{Side, SideKind, State, Wireframe};
 use crate::geometry::{Segment2, Segment3, covered};
 use crate::ids::ViewId;
 use crate::linematch::measure_edge;
+use crate::lines2d::SegmentKind;
 use crate::lines3d::Line3d;
 use crate::params::RefineParams;
 use crate::raster::Channel;
@@ -199,7 +200,7 @@ impl Profiles {
             let edge = measure_edge(
                 view,
                 scene.view(view).channel(Channel::Grey),
-                Channel::Grey,
+                SegmentKind::Edge,
                 &expected,
                 core,
                 false,
