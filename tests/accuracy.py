@@ -3,10 +3,15 @@
 
     python3 tests/accuracy.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
 
-Each scene with truth/ and six views or more is reconstructed with its first 3, 4, 5, ... views. A line that was matched (not
-made from planes) and lies at a true roof edge (within 3 degrees, at most 5 ground pixels beside it and 10 above or below) has a
-distance in plan and one in height from its middle to the edge; the plots show the medians in ground pixels. The script needs Python
-alone.
+Each scene with more than four views is reconstructed with its first 3, 4, 5, ... views. Only lines that were matched count, not
+those made from planes.
+
+Where there is truth: a line that lies at a true roof edge (within 3 degrees, at most 5 ground pixels beside it and 10 above or
+below) has a distance in plan and one in height from its middle to the edge; the plots show the medians in ground pixels.
+
+Everywhere, B99's own measure: the mean height difference between the ends of level lines (level_lines.py), of all of them and of
+those edges that have a line with every number of views (the longest one); more views show more edges, and those that few views show
+are the less exact. The script needs Python alone.
 """
 import json
 import math
@@ -15,45 +20,111 @@ import statistics
 import subprocess
 import tempfile
 
+import level_lines
+
 from growth import HEIGHT, LEFT, TOP, WIDTH, document
-from on_scenes import is_wanted, parser_of
+from level_lines import sub
+from on_scenes import names_of, parser_of
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00']
+COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#000000', '#56b4e9']
+# From one row of plots to the next.
+ROW = HEIGHT + 78
+# What is plotted: what it is, its unit, its key, and the steps of the vertical axis.
+PLOTS = [
+    ('median distance to true edges in plan', 'ground pixels', 'plan', 0.05),
+    ('median distance to true edges in height', 'ground pixels', 'height', 0.2),
+    ('mean height difference of the ends of level lines', 'ground pixels', 'ends', 1),
+    ('mean height difference of the ends of level lines', 'metres', 'ends_m', 0.1),
+    ('the same, at edges found with each number of views', 'ground pixels', 'same', 1),
+    ('the same, at edges found with each number of views', 'metres', 'same_m', 0.1),
+]
 
 
 def main():
     args = parser_of(__doc__).parse_args()
     curves = {}
-    for scene in sorted(p.parent for p in args.scenes.glob('*/truth')):
-        names = sorted(p.name for p in (scene / 'images').iterdir())
-        if len(names) >= 6 and is_wanted(args, scene.name):
-            curves[scene.name] = [errors(args.binary.resolve(), scene, names[:n]) for n in range(3, len(names) + 1)]
-    plots = [plot(0, 'in plan', curves, 'plan'), plot(1, 'in height', curves, 'height')]
-    (ROOT / 'docs' / 'accuracy.svg').write_text(svg(plots, list(curves)))
+    for name in names_of(args):
+        scene = args.scenes / name
+        images = sorted(p.name for p in (scene / 'images').iterdir())
+        if len(images) > 4:
+            runs = {n: matched_lines(args.binary.resolve(), scene, images[:n]) for n in range(3, len(images) + 1)}
+            curves[name] = with_truth(scene, runs) if (scene / 'truth').is_dir() else with_planes(scene, runs)
+            for m in curves[name]:
+                print(f'{name}, ' + told(m), flush=True)
+    (ROOT / 'docs' / 'accuracy.svg').write_text(svg(curves))
 
 
-def errors(binary, scene, names):
-    """Medians of the distances of matched lines to their true edges, in ground pixels."""
+def matched_lines(binary, scene, names):
     with tempfile.TemporaryDirectory() as out:
         subprocess.run([binary, 'reconstruct', scene, '--out', out, '--views', ','.join(names)], check=True,
                        capture_output=True)
         lines = json.loads((pathlib.Path(out) / 'lines.json').read_text())['lines']
+    return [line for line in lines if line['origin'] == 'matched']
+
+
+def with_truth(scene, runs):
+    """Of each number of views what is plotted, on a rendered scene."""
     edges = json.loads((scene / 'truth' / 'edges.json').read_text())['edges']
     cameras = json.loads((scene / 'cameras.json').read_text())
     edges = [[edge[end] for end in ('p0', 'p1')] for edge in edges]
-    # Lines stand in the frame of the orientation that was taken: the truth's, or with the map origin added.
+    pixel = ground_pixel(cameras, edges[0][0])
+    runs = {n: in_frame_of(edges, cameras, lines) for n, lines in runs.items()}
+    level = {n: level_lines.differences(level_lines.of_truth(lines, edges, pixel)) for n, lines in runs.items()}
+    result = of_level_lines(level, pixel)
+    for m in result:
+        distances = [d for line in runs[m['views']] for d in [nearest(line['p0'], line['p1'], edges, pixel)] if d]
+        plan, height = (statistics.median(d[k] for d in distances) / pixel for k in (0, 1))
+        m.update(lines=len(distances), plan=plan, height=height)
+    return result
+
+
+def with_planes(scene, runs):
+    """The same on photographs, with planes fitted to tie points."""
+    check = json.loads((scene / 'check' / 'planes.json').read_text())
+    cameras = json.loads((scene / 'cameras.json').read_text())
+    pixel = ground_pixel(cameras, check['planes'][0]['point'])
+    found = {n: level_lines.of_planes(lines, check, cameras['ground_z'], pixel, runs[max(runs)]) for n, lines in runs.items()}
+    slope = level_lines.inclination([vector for _, vector in found[max(runs)]])
+    print(f'{scene.name}: the frame is inclined by {math.degrees(math.hypot(*slope)):.2f} degrees')
+    return of_level_lines({n: level_lines.differences(level, slope) for n, level in found.items()}, pixel)
+
+
+def of_level_lines(level, pixel):
+    same = level_lines.on_the_same(list(level.values()))
+    result = []
+    for (n, ends), of_same in zip(level.items(), same):
+        ends = [d for _, d, _ in ends]
+        result.append({'views': n, 'level': len(ends), 'ends_m': statistics.mean(ends), 'ends': statistics.mean(ends) / pixel,
+                       'median': statistics.median(ends) / pixel, 'edges': len(of_same)})
+        # Of one or two edges the mean says nothing.
+        if len(of_same) > 2:
+            result[-1].update(same_m=statistics.mean(of_same), same=statistics.mean(of_same) / pixel)
+    return result
+
+
+def told(m):
+    """One number of views in words."""
+    text = f'{m["views"]} views: '
+    if 'plan' in m:
+        text += f'{m["lines"]} lines, {m["plan"]:.2f} pixels in plan, {m["height"]:.2f} in height; '
+    text += f'ends of {m["level"]} level lines: mean {m["ends"]:.2f} pixels, {m["ends_m"]:.3f} m, median {m["median"]:.2f} pixels'
+    if 'same' in m:
+        text += f'; at the same {m["edges"]} edges: mean {m["same"]:.2f} pixels, {m["same_m"]:.3f} m'
+    return text
+
+
+def ground_pixel(cameras, point):
+    view = cameras['views'][0]
+    return math.dist(view['C'], point) / view['K'][0][0]
+
+
+def in_frame_of(edges, cameras, lines):
+    """Lines stand in the frame of the orientation that was taken: the truth's, or with the map origin added."""
     origin = cameras.get('origin', [0, 0, 0])
     if math.dist(lines[0]['p0'], edges[0][0]) > math.dist(sub(lines[0]['p0'], origin), edges[0][0]):
         lines = [{**line, **{end: sub(line[end], origin) for end in ('p0', 'p1')}} for line in lines]
-    view = cameras['views'][0]
-    pixel = math.dist(view['C'], edges[0][0]) / view['K'][0][0]
-    matched = [line for line in lines if line['origin'] == 'matched']
-    distances = [d for line in matched for d in [nearest(line['p0'], line['p1'], edges, pixel)] if d]
-    plan, height = (statistics.median(d[k] for d in distances) / pixel for k in (0, 1))
-    print(f'{scene.name}, {len(names)} views: {len(distances)} lines, {plan:.2f} pixels in plan, {height:.2f} in height',
-          flush=True)
-    return {'views': len(names), 'plan': plan, 'height': height}
+    return lines
 
 
 def nearest(p, q, edges, pixel):
@@ -75,46 +146,45 @@ def nearest(p, q, edges, pixel):
     return best
 
 
-def sub(a, b):
-    return [x - y for x, y in zip(a, b)]
-
-
 def cosine(a, b):
     return sum(x * y for x, y in zip(a, b)) / max(math.hypot(*a) * math.hypot(*b), 1e-12)
 
 
-def plot(column, caption, curves, key):
+def plot(place, caption, unit, key, step, curves):
     """One polyline a scene over the number of views."""
-    x0 = LEFT + column * (WIDTH + 80)
+    x0, y0 = LEFT + place % 2 * (WIDTH + 80), TOP + place // 2 * ROW
     views = sorted({m['views'] for curve in curves.values() for m in curve})
-    # In whole halves of a pixel.
-    top = math.ceil(2 * max(m[key] for curve in curves.values() for m in curve)) / 2
+    top = step * math.ceil(max((m[key] for curve in curves.values() for m in curve if key in m), default=step) / step)
 
     def x(n):
         return x0 + 20 + (WIDTH - 40) * (n - views[0]) / max(views[-1] - views[0], 1)
 
     def y(v):
-        return TOP + HEIGHT * (1 - v / top)
+        return y0 + HEIGHT * (1 - v / top)
 
     parts = []
     for curve, colour in zip(curves.values(), COLOURS):
-        points = ' '.join(f'{x(m["views"]):.1f},{y(m[key]):.1f}' for m in curve)
+        dots = [(x(m['views']), y(m[key])) for m in curve if key in m]
+        points = ' '.join(f'{px:.1f},{py:.1f}' for px, py in dots)
         parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"/>')
-        parts += [f'<circle cx="{x(m["views"]):.1f}" cy="{y(m[key]):.1f}" r="3" fill="{colour}"/>' for m in curve]
-    parts += [f'<text x="{x(n):.1f}" y="{TOP + HEIGHT + 16}" text-anchor="middle">{n}</text>' for n in views]
-    for k in range(int(2 * top) + 1):
-        parts.append(f'<text x="{x0 - 6}" y="{y(k / 2):.1f}" text-anchor="end" dominant-baseline="middle">{k / 2:g}</text>')
-    parts.append(f'<path d="M{x0} {TOP}V{TOP + HEIGHT}H{x0 + WIDTH}" fill="none" stroke="#777"/>')
-    parts.append(f'<text x="{x0 + WIDTH / 2}" y="{TOP + HEIGHT + 36}" text-anchor="middle">'
-                 f'median distance {caption}, ground pixels, over views</text>')
+        parts += [f'<circle cx="{px:.1f}" cy="{py:.1f}" r="3" fill="{colour}"/>' for px, py in dots]
+    parts += [f'<text x="{x(n):.1f}" y="{y0 + HEIGHT + 16}" text-anchor="middle">{n}</text>' for n in views]
+    for k in range(round(top / step) + 1):
+        parts.append(f'<text x="{x0 - 6}" y="{y(k * step):.1f}" text-anchor="end" dominant-baseline="middle">{k * step:g}</text>')
+    parts.append(f'<path d="M{x0} {y0}V{y0 + HEIGHT}H{x0 + WIDTH}" fill="none" stroke="#777"/>')
+    for line, text in enumerate([caption, f'[{unit}], over the number of views']):
+        parts.append(f'<text x="{x0 + WIDTH / 2}" y="{y0 + HEIGHT + 35 + 15 * line}" text-anchor="middle">{text}</text>')
     return '\n'.join(parts)
 
 
-def svg(plots, names):
-    legend = ''.join(
-        f'<circle cx="{LEFT + WIDTH - 95}" cy="{TOP + 9 + 16 * k}" r="4" fill="{colour}"/>'
-        f'<text x="{LEFT + WIDTH - 85}" y="{TOP + 13 + 16 * k}">{name}</text>' for k, (name, colour) in enumerate(zip(names, COLOURS)))
-    return document(plots, legend)
+def svg(curves):
+    plots = [plot(k, *what, curves) for k, what in enumerate(PLOTS)]
+    y = TOP + (len(PLOTS) + 1) // 2 * ROW
+    legend, x = '', LEFT + 6
+    for name, colour in zip(curves, COLOURS):
+        legend += f'<circle cx="{x}" cy="{y}" r="4" fill="{colour}"/><text x="{x + 9}" y="{y + 4}">{name}</text>'
+        x += 30 + 7 * len(name)
+    return document(plots, legend, below=y + 14 - (TOP + HEIGHT + 48))
 
 
 if __name__ == '__main__':
