@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Accuracy of matched lines against the number of views (B99 figure 9); writes docs/accuracy.svg.
+"""Accuracy of matched lines against the number of views (B99 figure 9); writes docs/accuracy.svg and a table of docs/results.md.
 
     python3 tests/accuracy.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
 
@@ -53,6 +53,8 @@ def main():
             for m in curves[name]:
                 print(f'{name}, ' + told(m), flush=True)
     (ROOT / 'docs' / 'accuracy.svg').write_text(svg(curves))
+    if not args.only:
+        rewrite(table(curves))
 
 
 def matched_lines(binary, scene, names):
@@ -112,6 +114,29 @@ def told(m):
     if 'same' in m:
         text += f'; at the same {m["edges"]} edges: mean {m["same"]:.2f} pixels, {m["same_m"]:.3f} m'
     return text
+
+
+def table(curves):
+    """Markdown: B99's measure with the fewest and with all views."""
+    rows = ['| scene | views | level lines | mean [px] | median [px] | mean [m] | same edges | mean [px] | mean [m] |',
+            '|---|---|---|---|---|---|---|---|---|']
+    for name, curve in curves.items():
+        pair = (curve[0], curve[-1])
+
+        def cell(key, digits):
+            return ' → '.join(f'{m[key]:.{digits}f}' if key in m else '-' for m in pair)
+
+        rows.append(f'| {name} | {cell("views", 0)} | {cell("level", 0)} | {cell("ends", 2)} | {cell("median", 2)} | '
+                    f'{cell("ends_m", 3)} | {pair[0]["edges"]} | {cell("same", 2)} | {cell("same_m", 3)} |')
+    return '\n'.join(rows)
+
+
+def rewrite(rows):
+    """Puts the table between its markers in docs/results.md."""
+    results = ROOT / 'docs' / 'results.md'
+    before, rest = results.read_text().split('<!-- level lines: begin -->')
+    after = rest.split('<!-- level lines: end -->')[1]
+    results.write_text(f'{before}<!-- level lines: begin -->\n{rows}\n<!-- level lines: end -->{after}')
 
 
 def ground_pixel(cameras, point):
