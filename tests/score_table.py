@@ -20,6 +20,7 @@ import zlib
 import numpy as np
 
 import half_planes
+import line_sigmas
 
 from on_scenes import parser_of
 
@@ -152,7 +153,8 @@ def lines(scorer, run):
 
     length = sum(sum((a - b) ** 2 for a, b in zip(line['p0'], line['p1'])) ** 0.5 for line in matched)
     return {**counts, 'length': length, 'merged': with_support('merged'), 'grown': with_support('grown'),
-            'new': len(found) - len(matched), 'scores': scored('matched.json'), 'all': scored('lines.json')}
+            'new': len(found) - len(matched), 'scores': scored('matched.json'), 'all': scored('lines.json'),
+            'sigmas': truth and line_sigmas.errors_in_sigmas(scorer, run['scene'], matched)}
 
 
 def faces(scorer, run):
@@ -201,8 +203,8 @@ def rendered_row(s):
 
 def line_table(rows):
     header = ['scene', 'views', 'segments', 'of these matched', 'lines', 'wrong', 'supports a line', 'merged', 'grown', 'length [m]',
-              'roof edges covered', 'new lines', 'covered with them']
-    ours = [[r['scene'].name] + (line_row(c) if c else ['failed'] + ['-'] * 11) for r, c in rows]
+              'roof edges covered', 'within sigma', 'new lines', 'covered with them']
+    ours = [[r['scene'].name] + (line_row(c) if c else ['failed'] + ['-'] * 12) for r, c in rows]
     return markdown(header, [row + ['-'] * (len(header) - len(row)) for row in OF_THE_PAPER + ours])
 
 
@@ -210,7 +212,8 @@ def line_row(c):
     scores, supports = c['scores'], c['supports']
     return [str(c['views']), str(c['segments']), percent(c['matched segments'] / c['segments']), str(c['lines']), f'{100 * scores["wrong"]:.1f} %' if scores else '-',
             f'{supports / c["lines"]:.1f}', percent(c['merged']), percent(c['grown']),
-            f'{c["length"]:.0f}', percent(scores['edge_length_covered']) if scores else '-', str(c['new']),
+            f'{c["length"]:.0f}', percent(scores['edge_length_covered']) if scores else '-',
+            percent(sum(e <= 1 for e in c['sigmas']) / len(c['sigmas'])) if c['sigmas'] else '-', str(c['new']),
             percent(c['all']['edge_length_covered']) if c['all'] else '-']
 
 
