@@ -5,13 +5,16 @@
 
 rectangles (W96): the stages over the number of images, house-gable with its first 3 to 6 views, and over the megapixels of
 three scenes of six views. lines (B99 3): segments, matching and 3D lines over the number of images, detached with its first
-3 to 6 views, and over the number of segments of those three scenes. Times are processor seconds of one thread, so that a busy
-machine changes little: the share of each stage of the run times the processor time of the process. The script needs Python
-alone.
+3 to 6 views and campus-drone with its first 3 to 8, and over the number of segments of those three scenes. Times are processor
+seconds of one thread, so that a busy machine changes little: the share of each stage of the run times the user time of the process,
+the median of three runs. Printed are also the powers with which they grow: slopes of straight lines through the logarithms. The
+script needs Python alone.
 """
 import json
+import math
 import os
 import pathlib
+import statistics
 import subprocess
 import tempfile
 
@@ -20,15 +23,17 @@ from on_scenes import parser_of
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 # Six images each: 256 x 256, 600 x 600 and 1200 x 1200.
 SIZES = ['house-gable', 'detached', 'suburb']
+# Runs of each, and the seconds below which the growth of a stage cannot be told.
+RUNS, MEASURABLE_S = 3, 0.01
 # Stages with colours that remain apart for the colour-blind (Okabe and Ito), what the second plot counts, and the file.
 METHODS = {
     'rectangles': {
         'stages': {'regions': '#0072b2', 'directions': '#e69f00', 'clusters': '#009e73', 'rectangles': '#d55e00'},
-        'views_of': 'house-gable', 'size': 'megapixels', 'file': 'growth.svg',
+        'views_of': ['house-gable'], 'size': 'megapixels', 'file': 'growth.svg',
     },
     'lines': {
         'stages': {'segments': '#0072b2', 'matches': '#e69f00', 'lines': '#009e73'},
-        'views_of': 'detached', 'size': 'segments', 'file': 'growth-lines.svg',
+        'views_of': ['detached', 'campus-drone'], 'size': 'segments', 'file': 'growth-lines.svg',
     },
 }
 
@@ -43,19 +48,43 @@ def main():
     def run(scene, *options):
         return measure(args.binary.resolve(), args.scenes / scene, args.method, stages, *options)
 
-    names = sorted(p.name for p in (args.scenes / method['views_of'] / 'images').iterdir())
-    by_views = [run(method['views_of'], '--views', ','.join(names[:n])) for n in range(3, len(names) + 1)]
-    by_size = [run(scene) for scene in SIZES]
-    figure = [
-        plot(0, f'number of images ({method["views_of"]})', stages, [(m['views'], m['seconds']) for m in by_views]),
-        plot(1, f'{method["size"]} of all images ({", ".join(SIZES)})', stages,
-             [(m[method['size']], m['seconds']) for m in by_size]),
-    ]
+    curves = [over_views(run, args.scenes, scene) for scene in method['views_of']]
+    curves.append((f'{method["size"]} of all images ({", ".join(SIZES)})',
+                   [(m[method['size']], m['seconds']) for m in map(run, SIZES)]))
+    for caption, points in curves:
+        totals = [(x, sum(t.values())) for x, t in points]
+        of_stages = {s: [(x, t[s]) for x, t in points] for s in stages}
+        told = [f'{s} {power(of_stage):.2f}' for s, of_stage in of_stages.items() if min(y for _, y in of_stage) > MEASURABLE_S]
+        print(f'power of {caption}: {", ".join(told)}; together {power(totals):.2f}')
+    figure = [plot(place, caption, stages, points) for place, (caption, points) in enumerate(curves)]
     (ROOT / 'docs' / method['file']).write_text(svg(figure, stages))
 
 
+def over_views(run, scenes, scene):
+    """Caption and points of a scene with its first views."""
+    names = sorted(p.name for p in (scenes / scene / 'images').iterdir())
+    runs = [run(scene, '--views', ','.join(names[:n])) for n in range(3, len(names) + 1)]
+    return f'number of images ({scene})', [(m['views'], m['seconds']) for m in runs]
+
+
+def power(points):
+    """Slope of the line through the logarithms by least squares."""
+    logs = [(math.log(x), math.log(y)) for x, y in points]
+    mean_x, mean_y = (statistics.mean(log[i] for log in logs) for i in (0, 1))
+    return sum((x - mean_x) * (y - mean_y) for x, y in logs) / sum((x - mean_x) ** 2 for x, _ in logs)
+
+
 def measure(binary, scene, method, stages, *options):
-    """One run on one thread: processor seconds of every stage."""
+    """Processor seconds of every stage, the medians of some runs."""
+    runs = [measure_once(binary, scene, method, stages, *options) for _ in range(RUNS)]
+    seconds = {s: statistics.median(m['seconds'][s] for m in runs) for s in stages}
+    print(f'{scene.name}, {runs[0]["views"]} images, {runs[0]["megapixels"]:.2f} megapixels, {runs[0]["segments"]} segments:',
+          ', '.join(f'{s} {t:.3f} s' for s, t in seconds.items()), flush=True)
+    return {**runs[0], 'seconds': seconds}
+
+
+def measure_once(binary, scene, method, stages, *options):
+    """One run on one thread."""
     with tempfile.TemporaryDirectory() as out:
         process = subprocess.Popen([binary, 'reconstruct', scene, '--method', method, '--threads', '1', '--out', out,
                                     *options], stdout=subprocess.PIPE, text=True)
@@ -67,24 +96,24 @@ def measure(binary, scene, method, stages, *options):
         report = json.loads((pathlib.Path(out) / 'report.json').read_text())
     lines = [line.split() for line in text.splitlines()]
     total = next(float(words[1]) for words in lines if words[:1] == ['total'])
-    share = (usage.ru_utime + usage.ru_stime) / total
+    share = usage.ru_utime / total
     seconds = {s: report['seconds'][s] * share for s in stages}
     megapixels = sum(v['width'] * v['height'] for v in report['views']) / 1e6
     segments = report['stages'][0]['counts'].get('segments', 0)
-    print(f'{len(report["views"])} images, {megapixels:.2f} megapixels, {segments} segments:',
-          ', '.join(f'{s} {t:.2f} s' for s, t in seconds.items()), flush=True)
     return {'views': len(report['views']), 'megapixels': megapixels, 'segments': segments, 'seconds': seconds}
 
 
 WIDTH, HEIGHT, LEFT, TOP = 300, 190, 46, 16
+# From one row of plots to the next.
+ROW = HEIGHT + 60
 
 
-def plot(column, caption, stages, points):
-    """Stacked areas of the stages over x."""
-    x0 = LEFT + column * (WIDTH + 80)
+def plot(place, caption, stages, points):
+    """Stacked areas of the stages over x; two plots in a row."""
+    x0, y0 = LEFT + place % 2 * (WIDTH + 80), TOP + place // 2 * ROW
     largest_x = max(x for x, _ in points)
     largest_y = nice(max(sum(s.values()) for _, s in points))
-    at = lambda x, y: f'{x0 + WIDTH * x / largest_x:.1f},{TOP + HEIGHT * (1 - y / largest_y):.1f}'
+    at = lambda x, y: f'{x0 + WIDTH * x / largest_x:.1f},{y0 + HEIGHT * (1 - y / largest_y):.1f}'
     parts = []
     base = [0.0] * len(points)
     for stage, colour in stages.items():
@@ -94,16 +123,21 @@ def plot(column, caption, stages, points):
         base = top
     for (x, _), y in zip(points, base):
         px, py = at(x, y).split(',')
-        parts.append(f'<circle cx="{px}" cy="{py}" r="3"/><text x="{px}" y="{TOP + HEIGHT + 16}" text-anchor="middle">{x:.3g}</text>')
+        parts.append(f'<circle cx="{px}" cy="{py}" r="3"/><text x="{px}" y="{y0 + HEIGHT + 16}" text-anchor="middle">{label(x)}</text>')
     # What growth in proportion to the last point would be.
     parts.append(f'<polyline points="{at(0, 0)} {at(points[-1][0], base[-1])}" fill="none" stroke="#777" stroke-dasharray="4 3"/>')
     for k in range(3):
         y = largest_y * k / 2
         py = at(0, y).split(',')[1]
         parts.append(f'<text x="{x0 - 6}" y="{py}" text-anchor="end" dominant-baseline="middle">{y:.3g} s</text>')
-    parts.append(f'<path d="M{x0} {TOP}V{TOP + HEIGHT}H{x0 + WIDTH}" fill="none" stroke="#777"/>')
-    parts.append(f'<text x="{x0 + WIDTH / 2}" y="{TOP + HEIGHT + 36}" text-anchor="middle">{caption}</text>')
+    parts.append(f'<path d="M{x0} {y0}V{y0 + HEIGHT}H{x0 + WIDTH}" fill="none" stroke="#777"/>')
+    parts.append(f'<text x="{x0 + WIDTH / 2}" y="{y0 + HEIGHT + 36}" text-anchor="middle">{caption}</text>')
     return '\n'.join(parts)
+
+
+def label(x):
+    """Three digits, or all of a whole number."""
+    return f'{x:d}' if isinstance(x, int) else f'{x:.3g}'
 
 
 def nice(x):
@@ -120,7 +154,7 @@ def svg(plots, stages):
     legend = ''.join(
         f'<rect x="{LEFT + 10}" y="{TOP + 4 + 16 * k}" width="10" height="10" fill="{colour}" fill-opacity="0.75"/>'
         f'<text x="{LEFT + 26}" y="{TOP + 13 + 16 * k}">{s}</text>' for k, (s, colour) in enumerate(stages.items()))
-    return document(plots, legend)
+    return document(plots, legend, below=(len(plots) - 1) // 2 * ROW)
 
 
 def document(plots, legend, below=0):
