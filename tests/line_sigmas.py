@@ -10,7 +10,7 @@ import json
 import math
 import sys
 
-# A line farther from a true edge than this is not an inexact one but another line: a row of tiles, the joint of a parapet. score.py
+# A line farther from a true edge than this is hardly an inexact one, but another line, such as a row of tiles. score.py
 # takes 0.25 m, eight pixels of the finest images.
 NEAR_PX = 3
 
