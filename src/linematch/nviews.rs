@@ -577,6 +577,100 @@ mod tests {
         assert_eq!(left_out(5, 0.2), least_alike);
     }
 
+    /// What becomes of a line that `count` views with edges support, of as many as should, at a score.
+    fn checked(count: usize, expected: usize, score: f64) -> Option<Rejection> {
+        let (scene, line) = (planted::scene(), planted::edges()[0]);
+        let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
+        let segments = planted::segments(&scene);
+        let context = Context {
+            scene: &scene,
+            segments: &segments,
+            sights: &Sights::new(&scene, &segments),
+            z_range: [-2.0, 8.0],
+            params: &params,
+            fitting: &fitting,
+            alike: Alike {
+                contrast: true,
+                kind: true,
+            },
+        };
+        // Any two of the first three determine it.
+        let edges: Vec<GuidedEdge> = [0, 1, 4, 2, 3][..count]
+            .iter()
+            .map(|&view| GuidedEdge {
+                view: ViewId(view as u32),
+                kind: SegmentKind::Edge,
+                segment: planted::part_of(&scene, view, 0, 0.0, 1.0),
+                covariance: nalgebra::Matrix2::new(1e-3, 0.0, 0.0, 1e-6),
+                pieces: Vec::new(),
+            })
+            .collect();
+        let fit = fit_line(&context.observed(edges.iter()), &line, &fitting).expect("a line");
+        let support = |edge: &GuidedEdge| LineSupport {
+            view: edge.view,
+            segments: Vec::new(),
+            stretch: edge.segment,
+            score,
+            kind: SupportKind::Matched,
+            edge: Some(edge.clone()),
+        };
+        let supports = edges.iter().map(support).collect();
+        let ends = [0.0, line.length()];
+        context.check_line(&fit, ends, expected, supports).err()
+    }
+
+    #[test]
+    fn too_few_views_have_to_be_as_alike_as_a_pair() {
+        let too_few = Some(Rejection::TooFewViews);
+        assert_eq!(checked(4, 4, 0.4), None, "four of four");
+        assert_eq!(checked(3, 4, 0.4), too_few, "three of four");
+        assert_eq!(checked(3, 3, 0.4), None, "three of three");
+        assert_eq!(checked(3, 4, 0.5), None, "three that a pair would do with");
+    }
+
+    #[test]
+    fn four_views_are_expected_where_six_see_a_line() {
+        let places = [0.0, 8.0, 16.0, 24.0, 32.0, 40.0].map(|x| (x, 0.0, 0.0));
+        let expected = |count: usize, looks_away: usize| {
+            let mut scene = planted::views_from(&places[..count]);
+            for view in &mut scene.views[..looks_away] {
+                view.camera.k[(0, 2)] += 1000.0;
+            }
+            let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
+            let context = Context {
+                scene: &scene,
+                segments: &[],
+                sights: &Sights { views: Vec::new() },
+                z_range: [-2.0, 8.0],
+                params: &params,
+                fitting: &fitting,
+                alike: Alike {
+                    contrast: true,
+                    kind: true,
+                },
+            };
+            let line = planted::edges()[0];
+            let view = |index: usize| ViewProfile {
+                view: ViewId(index as u32),
+                image: ProjectedLine::new(&scene.views[index].camera, &line).unwrap(),
+                segments: Vec::new(),
+                edge: None,
+                detected: Vec::new(),
+                inside: Vec::new(),
+                correlation: Vec::new(),
+                agreement: 0.0,
+            };
+            let profile = Profile {
+                t: vec![0.0, line.length()],
+                reference: 0,
+                views: (0..count).map(view).collect(),
+            };
+            context.expected_views(&profile, (0, 1))
+        };
+        assert_eq!([expected(6, 0), expected(5, 0)], [4, 3]);
+        assert_eq!(expected(6, 1), 3, "the sixth looks elsewhere");
+    }
+
     #[test]
     fn the_less_certain_the_others_the_more_a_view_has_to_agree() {
         let params = MatchParams::default();

@@ -410,6 +410,48 @@ mod tests {
     }
 
     #[test]
+    fn slopes_are_matched_by_the_search_over_angles_alone() {
+        let scene = planted::gable();
+        let segments: Vec<Vec<_>> = (scene.views.iter())
+            .map(|view| {
+                let end = |t| view.camera.project(&planted::ridge().at(t)).unwrap();
+                vec![planted::detected(Segment2::new(end(0.05), end(0.95)), 0)]
+            })
+            .collect();
+        let sights = Sights::new(&scene, &segments);
+        let name = |v| SegmentRef {
+            view: ViewId(v),
+            segment: crate::ids::SegmentId(0),
+        };
+        let score = |other: u32, plane_angles_deg: Vec<f64>| {
+            let params = MatchParams {
+                plane_angles_deg,
+                ..MatchParams::default()
+            };
+            let scope = PairScope {
+                scene: &scene,
+                sights: &sights,
+                partners: &[(ViewId(0), ViewId(other))],
+                z_range: [-2.0, 8.0],
+                params: &params,
+                alike: ALIKE,
+            };
+            match_pairs(&scope, |_| false, Pass::Second).score(name(0), name(other))
+        };
+        let params = MatchParams::default();
+        // Within a strip, and in strips flown in opposite directions.
+        for other in [1, 2] {
+            let level = score(other, vec![0.0]);
+            let searched = score(other, params.plane_angles_deg.clone());
+            assert!(level < params.pair_score, "{level} by level windows");
+            assert!(
+                searched > 1.5 * params.pair_score,
+                "{searched} by the search"
+            );
+        }
+    }
+
+    #[test]
     fn segments_in_colour_and_in_grey_values_are_no_pair() {
         let scene = planted::scene();
         let partners = [(ViewId(0), ViewId(3))];

@@ -17,6 +17,8 @@ const HALF: [f64; 2] = [7.0, 5.0];
 /// Half the width of the bar and half its length, metres.
 const HALF_BAR: f64 = 0.1;
 const BAR_END: f64 = 4.0;
+/// Descent of the gable's slopes: 40 degrees.
+const SLOPE: f64 = 0.839;
 const SIZE: u32 = 300;
 
 /// A camera 300 m up with pixels of 0.1 m, cropped about the world's origin.
@@ -64,20 +66,50 @@ fn texture(x: f64, y: f64) -> f64 {
     top * (1.0 - b) + low * b
 }
 
+/// What lies above the ground.
+#[derive(Clone, Copy)]
+enum Roof {
+    /// A flat roof, [`edges`].
+    Flat,
+    /// The same, darker, with a bright bar on it, [`bar`].
+    Bar,
+    /// Two slopes down from [`ridge`].
+    Gable,
+}
+
+impl Roof {
+    /// The grey value of the roof that a ray meets; `None` where it passes.
+    fn seen(self, camera: &Camera, x: &Point2<f64>) -> Option<f64> {
+        let inside = |p: &Point3<f64>| p.x.abs() <= HALF[0] && p.y.abs() <= HALF[1];
+        if matches!(self, Self::Gable) {
+            let ray = camera.ray(x);
+            let slope = |sign: f64| {
+                // z + sign SLOPE x = ROOF_Z
+                let c = &camera.center;
+                let t = (ROOF_Z - c.z - sign * SLOPE * c.x) / (ray.z + sign * SLOPE * ray.x);
+                Some(c + ray * t).filter(|p| p.x * sign >= 0.0 && inside(p))
+            };
+            let (p, level) = slope(1.0)
+                .map(|p| (p, 0.45))
+                .or(slope(-1.0).map(|p| (p, 0.4)))?;
+            return Some(level + 0.3 * texture(p.x, p.y));
+        }
+        let p = camera.at_height(x, ROOF_Z).filter(inside)?;
+        match self {
+            Self::Bar if p.x.abs() <= HALF_BAR && p.y.abs() <= BAR_END => Some(1.0),
+            Self::Bar => Some(0.3 + 0.3 * texture(p.x, p.y)),
+            _ => Some(0.6 + 0.3 * texture(p.x, p.y)),
+        }
+    }
+}
+
 /// Four by four samples a pixel: an edge is where it is, not where the nearest pixel begins.
-fn render(camera: &Camera, bar: bool) -> Gray {
+fn render(camera: &Camera, roof: Roof) -> Gray {
     let seen = |x: &Point2<f64>| {
-        let roof = camera.at_height(x, ROOF_Z).unwrap();
-        let on_bar = bar && roof.x.abs() <= HALF_BAR && roof.y.abs() <= BAR_END;
-        if on_bar {
-            1.0
-        } else if roof.x.abs() <= HALF[0] && roof.y.abs() <= HALF[1] {
-            let level = if bar { 0.3 } else { 0.6 };
-            level + 0.3 * texture(roof.x, roof.y)
-        } else {
+        roof.seen(camera, x).unwrap_or_else(|| {
             let ground = camera.at_height(x, 0.0).unwrap();
             0.2 + 0.3 * texture(ground.x + 50.0, ground.y)
-        }
+        })
     };
     Gray::from_fn(SIZE as usize, SIZE as usize, |c, r| {
         let samples = (0..16).map(|i| {
@@ -88,14 +120,39 @@ fn render(camera: &Camera, bar: bool) -> Gray {
     })
 }
 
-/// The scene: views 0, 1 and 4 of one strip, 2 and 3 of another, turned by 180 degrees.
+/// Where the photographs were taken and how they are turned: views 0, 1 and 4 of one strip, 2 and 3 of another, turned by 180
+/// degrees.
+const PLACES: [(f64, f64, f64); 5] = [
+    (-40.0, -45.0, 0.0),
+    (40.0, -40.0, 0.02),
+    (42.0, 45.0, 3.12),
+    (-38.0, 40.0, 3.15),
+    (0.0, -42.0, 0.01),
+];
+
+/// The flat roof.
 pub fn scene() -> Scene {
-    scene_of(false)
+    scene_of(&PLACES, |camera| render(camera, Roof::Flat))
 }
 
 /// The same with a darker roof and on it a bright bar, [`bar`].
 pub fn scene_with_bar() -> Scene {
-    scene_of(true)
+    scene_of(&PLACES, |camera| render(camera, Roof::Bar))
+}
+
+/// A gable roof from three times as far apart: views 0 and 1 of one strip, 2 of another, turned by 180 degrees.
+pub fn gable() -> Scene {
+    let places = [
+        (-120.0, -20.0, 0.0),
+        (120.0, 20.0, 0.01),
+        (110.0, 50.0, 3.13),
+    ];
+    scene_of(&places, |camera| render(camera, Roof::Gable))
+}
+
+/// Views of nothing from some places.
+pub fn views_from(places: &[(f64, f64, f64)]) -> Scene {
+    scene_of(places, |_| Gray::new(SIZE as usize, SIZE as usize))
 }
 
 /// The bar's middle.
@@ -104,20 +161,19 @@ pub fn bar() -> Segment3 {
     Segment3::new(start, end)
 }
 
-fn scene_of(bar: bool) -> Scene {
-    let places = [
-        (-40.0, -45.0, 0.0),
-        (40.0, -40.0, 0.02),
-        (42.0, 45.0, 3.12),
-        (-38.0, 40.0, 3.15),
-        (0.0, -42.0, 0.01),
-    ];
+/// The ridge of the gable, the brighter slope to its right as seen from above.
+pub fn ridge() -> Segment3 {
+    let [start, end] = [-HALF[1], HALF[1]].map(|y| Point3::new(0.0, y, ROOF_Z));
+    Segment3::new(start, end)
+}
+
+fn scene_of(places: &[(f64, f64, f64)], photograph: impl Fn(&Camera) -> Gray) -> Scene {
     let views = places
         .iter()
         .enumerate()
         .map(|(i, (x, y, kappa))| {
             let camera = camera(*x, *y, *kappa);
-            let (gray, rgb) = (render(&camera, bar), image::RgbImage::new(SIZE, SIZE));
+            let (gray, rgb) = (photograph(&camera), image::RgbImage::new(SIZE, SIZE));
             View::new(format!("{i}.png"), camera, gray, rgb)
         })
         .collect();

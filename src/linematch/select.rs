@@ -167,3 +167,120 @@ impl PartialEq for Entry {
 }
 
 impl Eq for Entry {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ids::ViewId;
+    use crate::linematch::pairs::{PairScope, match_pairs};
+    use crate::linematch::planted;
+    use crate::linematch::sight::{Alike, Sights};
+    use crate::linematch::triples::verify_pairs;
+    use crate::params::{Lines3dParams, MatchParams};
+
+    /// The selection from the planted scene, whose last view has its first segment twice, from all bundles as `order` puts them.
+    fn selected(order: impl Fn(&mut Vec<Bundle>)) -> (Pairs, Vec<Bundle>, Selection) {
+        let scene = planted::scene();
+        let mut segments = planted::segments(&scene);
+        let again = segments[4][0].clone();
+        segments[4].push(again);
+        let partners: Vec<_> = (0..5)
+            .flat_map(|a| (a + 1..5).map(move |b| (ViewId(a), ViewId(b))))
+            .collect();
+        let sights = Sights::new(&scene, &segments);
+        let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
+        let alike = Alike {
+            contrast: true,
+            kind: true,
+        };
+        let scope = PairScope {
+            scene: &scene,
+            sights: &sights,
+            partners: &partners,
+            z_range: [-2.0, 8.0],
+            params: &params,
+            alike,
+        };
+        let context = Context {
+            scene: &scene,
+            segments: &segments,
+            sights: &sights,
+            z_range: [-2.0, 8.0],
+            params: &params,
+            fitting: &fitting,
+            alike,
+        };
+        let pairs = match_pairs(&scope, |_| false, Pass::Second);
+        let mut bundles = verify_pairs(&scope, &pairs, Pass::Second);
+        order(&mut bundles);
+        let mut selection = Selection::none(&segments);
+        winner_takes_all(&context, &pairs, &bundles, Pass::Second, &mut selection);
+        (pairs, bundles, selection)
+    }
+
+    #[test]
+    fn every_segment_has_one_owner_and_losers_know_whom_they_lost_to() {
+        let (pairs, bundles, selection) = selected(|_| ());
+        assert_eq!(selection.lines.len(), 4);
+        let mut owned = 0;
+        for (index, line) in selection.lines.iter().enumerate() {
+            for support in &line.supports {
+                for segment in &support.segments {
+                    let name = SegmentRef {
+                        view: support.view,
+                        segment: *segment,
+                    };
+                    assert_eq!(
+                        selection.owner(name),
+                        Some(index),
+                        "{name:?} is in one line"
+                    );
+                    owned += 1;
+                }
+            }
+        }
+        // Four in each view, one of them broken in two, one there twice: both lie on the winner.
+        assert_eq!(owned, 5 * 4 + 2);
+        let (mut won, mut lost) = (0, 0);
+        for (bundle, fate) in bundles.iter().zip(&selection.fates) {
+            let pair = &pairs.pairs[bundle.pair];
+            match *fate {
+                Fate::Won(line) => {
+                    won += 1;
+                    assert_eq!(selection.owner(pair.a), Some(line));
+                    assert_eq!(selection.owner(pair.b), Some(line));
+                }
+                Fate::Lost(line) => {
+                    lost += 1;
+                    assert!(
+                        [pair.a, pair.b]
+                            .iter()
+                            .any(|s| selection.owner(*s) == Some(line))
+                    );
+                }
+                Fate::Rejected(_) => {}
+            }
+        }
+        assert!(won == 4 && lost > 4, "{won} won, {lost} lost");
+    }
+
+    #[test]
+    fn the_best_wins_whatever_comes_first() {
+        let owners = |order: fn(&mut Vec<Bundle>)| selected(order).2.owners;
+        let first = owners(|_| ());
+        assert_eq!(first, owners(|bundles| bundles.reverse()));
+        assert_eq!(first, owners(|bundles| bundles.rotate_left(7)));
+    }
+
+    #[test]
+    fn the_most_evidence_comes_first() {
+        let entry = |evidence, bundle| Entry { evidence, bundle };
+        let mut queue: BinaryHeap<Entry> = [entry(2.0, 5), entry(3.0, 1), entry(3.0, 0)].into();
+        let order: Vec<usize> = std::iter::from_fn(|| queue.pop().map(|e| e.bundle)).collect();
+        assert_eq!(
+            order,
+            [0, 1, 5],
+            "the most first, of equals the lower index"
+        );
+    }
+}

@@ -198,3 +198,138 @@ pub fn stretch_of(line: &Segment3, from: f64, to: f64) -> Segment3 {
     let d = line.direction();
     Segment3::new(line.p0 + d * from, line.p0 + d * to)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Segment2;
+    use crate::ids::SegmentId;
+    use crate::linematch::pairs::match_pairs;
+    use crate::linematch::planted;
+    use crate::linematch::sight::{Alike, ray_in_plane};
+    use crate::lines2d::ImageSegment;
+    use crate::params::MatchParams;
+    use nalgebra::Matrix2;
+
+    fn name(view: u32, segment: u32) -> SegmentRef {
+        SegmentRef {
+            view: ViewId(view),
+            segment: SegmentId(segment),
+        }
+    }
+
+    /// The segments of view 3 that verify the first edge's pair of views 0 and 1, after a change of that view's own segment.
+    fn verified(contrast: bool, change: impl Fn(&mut ImageSegment)) -> Vec<SegmentRef> {
+        let scene = planted::scene();
+        let mut segments = planted::segments(&scene);
+        change(&mut segments[3][0]);
+        let partners: Vec<_> = (0..5)
+            .flat_map(|a| (a + 1..5).map(move |b| (ViewId(a), ViewId(b))))
+            .collect();
+        let scope = PairScope {
+            scene: &scene,
+            sights: &Sights::new(&scene, &segments),
+            partners: &partners,
+            z_range: [-2.0, 8.0],
+            params: &MatchParams::default(),
+            alike: Alike {
+                contrast,
+                kind: true,
+            },
+        };
+        let pairs = match_pairs(&scope, |_| false, Pass::Second);
+        let of_edge = |p: &&Pair| p.a == name(0, 0) && p.b == name(1, 0);
+        let pair = pairs.pairs.iter().find(of_edge).expect("the pair");
+        let found = verify_in_view(&scope, &pairs, pair, ViewId(3));
+        found.into_iter().map(|v| v.segment).collect()
+    }
+
+    #[test]
+    fn a_segment_at_the_predicted_position_verifies_a_pair() {
+        let own = [name(3, 0)];
+        assert_eq!(verified(true, |_| ()), own);
+        let moved = |by: f64| {
+            move |s: &mut ImageSegment| {
+                let off = s.segment.normal() * by;
+                s.segment = Segment2::new(s.segment.p0 + off, s.segment.p1 + off);
+            }
+        };
+        assert_eq!(verified(true, moved(0.6)), own, "within the gate");
+        assert_eq!(verified(true, moved(3.0)), [], "beside it");
+        let reverse = |s: &mut ImageSegment| s.segment = s.segment.reversed();
+        assert_eq!(verified(true, reverse), [], "bright on the other side");
+        assert_eq!(verified(false, reverse), own, "where that may be");
+        let elsewhere = |s: &mut ImageSegment| {
+            let along = s.segment.p1 - s.segment.p0;
+            s.segment = Segment2::new(s.segment.p0 + along * 1.2, s.segment.p1 + along * 1.2);
+        };
+        assert_eq!(verified(true, elsewhere), [], "behind its end");
+    }
+
+    /// How uncertain the pair of views 0 and `second` leaves an edge in view `third`, px, if only the second one's segment is
+    /// `sigma` px uncertain: as stated, and by moving that segment.
+    fn transferred(edge: u32, second: u32, third: u32, sigma: f64) -> [f64; 2] {
+        let scene = planted::scene();
+        let whole = |view: u32, sigma: f64| ImageSegment {
+            covariance: Matrix2::new(sigma * sigma, 0.0, 0.0, 0.0),
+            ..planted::detected(
+                planted::part_of(&scene, view as usize, edge as usize, 0.0, 1.0),
+                0,
+            )
+        };
+        let mut segments = vec![Vec::new(); 5];
+        segments[0].push(whole(0, 0.0));
+        segments[second as usize].push(whole(second, sigma));
+        let mut moved = segments.clone();
+        let s = &mut moved[second as usize][0].segment;
+        let off = s.normal() * sigma;
+        *s = Segment2::new(s.p0 + off, s.p1 + off);
+        let overlap = |segments: &[Vec<ImageSegment>]| {
+            let sights = Sights::new(&scene, segments);
+            let (a, b) = (
+                sights.get(name(0, 0)).unwrap(),
+                sights.get(name(second, 0)).unwrap(),
+            );
+            let center = scene.camera(ViewId(0)).center;
+            let [start, end] = a.rays.map(|r| ray_in_plane(&center, &r, &b.plane).unwrap());
+            Segment3::new(start, end)
+        };
+        let pair = Pair {
+            a: name(0, 0),
+            b: name(second, 0),
+            overlap: overlap(&segments),
+            overlap_px: 100.0,
+            score: 1.0,
+        };
+        let third = ViewId(third);
+        let image = ProjectedLine::new(scene.camera(third), &pair.overlap).unwrap();
+        let sights = Sights::new(&scene, &segments);
+        let stated = transfer_sigma(&scene, &sights, &pair, third, &image).unwrap();
+        let shift = |p| {
+            image
+                .distance(&scene.camera(third).project(&p).unwrap())
+                .abs()
+        };
+        let there = overlap(&moved);
+        [stated, shift(there.p0).max(shift(there.p1))]
+    }
+
+    #[test]
+    fn a_prediction_is_as_uncertain_as_it_moves() {
+        // Within the strip and across, far from and near the direction of the baseline.
+        for (edge, second, third) in [(0, 1, 4), (0, 2, 3), (1, 3, 2), (1, 2, 4)] {
+            let [stated, moved] = transferred(edge, second, third, 0.2);
+            assert!(
+                stated > 1e-3 && (stated / moved - 1.0).abs() < 0.05,
+                "{stated} {moved}"
+            );
+        }
+        // Edge 1 runs along the strip of views 0 and 1: what it is in another strip they hardly know.
+        let [along, _] = transferred(1, 1, 3, 0.2);
+        let [across, _] = transferred(1, 3, 2, 0.2);
+        assert!(
+            along > MAX_SIGMA_PX && across < 0.5,
+            "{along} and {across} px"
+        );
+    }
+}
