@@ -255,7 +255,7 @@ mod tests {
             }
         };
         assert_eq!(verified(true, moved(0.6)), own, "within the gate");
-        assert_eq!(verified(true, moved(3.0)), [], "beside it");
+        assert_eq!(verified(true, moved(1.6)), [], "beside it");
         let reverse = |s: &mut ImageSegment| s.segment = s.segment.reversed();
         assert_eq!(verified(true, reverse), [], "bright on the other side");
         assert_eq!(verified(false, reverse), own, "where that may be");
