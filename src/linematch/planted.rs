@@ -150,6 +150,11 @@ pub fn gable() -> Scene {
     scene_of(&places, |camera| render(camera, Roof::Gable))
 }
 
+/// The views of [`scene`], black.
+pub fn scene_without_photographs() -> Scene {
+    views_from(&PLACES)
+}
+
 /// Views of nothing from some places.
 pub fn views_from(places: &[(f64, f64, f64)]) -> Scene {
     scene_of(places, |_| Gray::new(SIZE as usize, SIZE as usize))

@@ -171,116 +171,205 @@ impl Eq for Entry {}
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ids::ViewId;
+    use crate::geometry::Segment3;
+    use crate::ids::{SegmentId, ViewId};
     use crate::linematch::pairs::{PairScope, match_pairs};
     use crate::linematch::planted;
     use crate::linematch::sight::{Alike, Sights};
-    use crate::linematch::triples::verify_pairs;
+    use crate::linematch::triples::{Verification, verify_pairs};
     use crate::params::{Lines3dParams, MatchParams};
+    use crate::scene::Scene;
 
-    /// The selection from the planted scene, whose last view has its first segment twice, from all bundles as `order` puts them.
-    fn selected(order: impl Fn(&mut Vec<Bundle>)) -> (Pairs, Vec<Bundle>, Selection) {
-        let scene = planted::scene();
-        let mut segments = planted::segments(&scene);
-        let again = segments[4][0].clone();
-        segments[4].push(again);
-        let partners: Vec<_> = (0..5)
-            .flat_map(|a| (a + 1..5).map(move |b| (ViewId(a), ViewId(b))))
+    const Z_RANGE: [f64; 2] = [-2.0, 8.0];
+    const ALIKE: Alike = Alike {
+        contrast: true,
+        kind: true,
+    };
+
+    /// The flat roof, whose segments have the number of their edge.
+    struct Roof {
+        scene: Scene,
+        segments: Vec<Vec<ImageSegment>>,
+        sights: Sights,
+        params: MatchParams,
+        fitting: Lines3dParams,
+    }
+
+    impl Roof {
+        fn new() -> Self {
+            let scene = planted::scene();
+            let segments = planted::segments(&scene);
+            Self {
+                sights: Sights::new(&scene, &segments),
+                scene,
+                segments,
+                params: MatchParams::default(),
+                fitting: Lines3dParams::default(),
+            }
+        }
+
+        fn context(&self) -> Context<'_> {
+            Context {
+                scene: &self.scene,
+                segments: &self.segments,
+                sights: &self.sights,
+                z_range: Z_RANGE,
+                params: &self.params,
+                fitting: &self.fitting,
+                alike: ALIKE,
+            }
+        }
+
+        fn select(&self, pairs: &Pairs, bundles: &[Bundle], mut selection: Selection) -> Selection {
+            winner_takes_all(
+                &self.context(),
+                pairs,
+                bundles,
+                Pass::Second,
+                &mut selection,
+            );
+            selection
+        }
+
+        fn nothing_taken(&self) -> Selection {
+            Selection::none(&self.segments)
+        }
+    }
+
+    fn name(view: u32, edge: u32) -> SegmentRef {
+        SegmentRef {
+            view: ViewId(view),
+            segment: SegmentId(edge),
+        }
+    }
+
+    /// The pair of an edge's segments in two views.
+    fn pair(edge: u32, [a, b]: [u32; 2], score: f64) -> Pair {
+        Pair {
+            a: name(a, edge),
+            b: name(b, edge),
+            overlap: planted::edges()[edge as usize],
+            overlap_px: 60.0,
+            score,
+        }
+    }
+
+    /// The bundle of a pair with segments that verify it, all of one score.
+    fn bundle(pair: usize, verified: &[SegmentRef], score: f64) -> Bundle {
+        let verified = verified
+            .iter()
+            .map(|&segment| Verification { segment, score });
+        Bundle {
+            pair,
+            verified: verified.collect(),
+        }
+    }
+
+    fn all(pairs: impl Into<Vec<Pair>>) -> Pairs {
+        Pairs {
+            pairs: pairs.into(),
+            searches: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn of_two_bundles_that_share_a_segment_the_one_with_more_evidence_wins() {
+        let roof = Roof::new();
+        // Both are of edge 1 and its segment in view 0.
+        let pairs = all([pair(1, [0, 2], 0.9), pair(1, [0, 3], 0.9)]);
+        for (scores, fates) in [
+            ([0.5, 0.8], [Fate::Lost(0), Fate::Won(0)]),
+            ([0.8, 0.5], [Fate::Won(0), Fate::Lost(0)]),
+        ] {
+            let bundles = [
+                bundle(0, &[name(3, 1), name(4, 1)], scores[0]),
+                bundle(1, &[name(2, 1), name(4, 1)], scores[1]),
+            ];
+            let selection = roof.select(&pairs, &bundles, roof.nothing_taken());
+            assert_eq!(selection.fates, fates);
+            assert_eq!(selection.lines.len(), 1);
+            for view in 0..5 {
+                assert_eq!(selection.owner(name(view, 1)), Some(0), "view {view}");
+            }
+            // Either wins where it is alone.
+            for bundle in bundles {
+                let selection = roof.select(&pairs, &[bundle], roof.nothing_taken());
+                assert_eq!(selection.fates, [Fate::Won(0)]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_bundle_whose_segments_were_taken_waits_for_those_that_have_more_evidence_than_its_rest() {
+        let roof = Roof::new();
+        let pairs = all([pair(1, [0, 3], 0.8), pair(3, [0, 3], 0.7)]);
+        let bundles = [
+            bundle(0, &[name(1, 1), name(2, 1), name(4, 1)], 0.8),
+            bundle(1, &[name(1, 3), name(2, 3), name(4, 3)], 0.7),
+        ];
+        let fates_where_taken = |taken: &[SegmentRef]| {
+            // A line of an earlier pass, whose supports do not matter here.
+            let mut selection = roof.nothing_taken();
+            let segment = Segment3::new(planted::edges()[0].p0, planted::edges()[0].p1);
+            selection.accept(Line {
+                segment,
+                supports: Vec::new(),
+            });
+            for s in taken {
+                selection.owners[s.view.index()][s.segment.index()] = Some(0);
+            }
+            roof.select(&pairs, &bundles, selection).fates
+        };
+        assert_eq!(fates_where_taken(&[]), [Fate::Won(1), Fate::Won(2)]);
+        // Four views that score 0.8 are less than five that score 0.7.
+        assert_eq!(
+            fates_where_taken(&[name(2, 1)]),
+            [Fate::Won(2), Fate::Won(1)]
+        );
+        // A segment of the pair itself is no rest to go on with.
+        assert_eq!(
+            fates_where_taken(&[name(3, 1)]),
+            [Fate::Lost(0), Fate::Won(1)]
+        );
+    }
+
+    #[test]
+    fn the_order_of_the_bundles_does_not_matter() {
+        let roof = Roof::new();
+        let views = 0..roof.scene.views.len() as u32;
+        let partners: Vec<_> = views
+            .clone()
+            .flat_map(|a| (a + 1..views.end).map(move |b| (ViewId(a), ViewId(b))))
             .collect();
-        let sights = Sights::new(&scene, &segments);
-        let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
-        let alike = Alike {
-            contrast: true,
-            kind: true,
-        };
         let scope = PairScope {
-            scene: &scene,
-            sights: &sights,
+            scene: &roof.scene,
+            sights: &roof.sights,
             partners: &partners,
-            z_range: [-2.0, 8.0],
-            params: &params,
-            alike,
-        };
-        let context = Context {
-            scene: &scene,
-            segments: &segments,
-            sights: &sights,
-            z_range: [-2.0, 8.0],
-            params: &params,
-            fitting: &fitting,
-            alike,
+            z_range: Z_RANGE,
+            params: &roof.params,
+            alike: ALIKE,
         };
         let pairs = match_pairs(&scope, |_| false, Pass::Second);
-        let mut bundles = verify_pairs(&scope, &pairs, Pass::Second);
-        order(&mut bundles);
-        let mut selection = Selection::none(&segments);
-        winner_takes_all(&context, &pairs, &bundles, Pass::Second, &mut selection);
-        (pairs, bundles, selection)
-    }
-
-    #[test]
-    fn every_segment_has_one_owner_and_losers_know_whom_they_lost_to() {
-        let (pairs, bundles, selection) = selected(|_| ());
-        assert_eq!(selection.lines.len(), 4);
-        let mut owned = 0;
-        for (index, line) in selection.lines.iter().enumerate() {
-            for support in &line.supports {
-                for segment in &support.segments {
-                    let name = SegmentRef {
-                        view: support.view,
-                        segment: *segment,
-                    };
-                    assert_eq!(
-                        selection.owner(name),
-                        Some(index),
-                        "{name:?} is in one line"
-                    );
-                    owned += 1;
-                }
+        let bundles = verify_pairs(&scope, &pairs, Pass::Second);
+        assert!(bundles.len() > 20);
+        let expected = roof.select(&pairs, &bundles, roof.nothing_taken());
+        assert_eq!(expected.lines.len(), 4);
+        let count = bundles.len();
+        // Backwards, and every second one before the others.
+        for order in [
+            (0..count).rev().collect::<Vec<_>>(),
+            (0..count).step_by(2).chain((1..count).step_by(2)).collect(),
+        ] {
+            let shuffled: Vec<_> = order.iter().map(|&i| bundles[i].clone()).collect();
+            let selection = roof.select(&pairs, &shuffled, roof.nothing_taken());
+            assert_eq!(selection.owners, expected.owners);
+            for (&i, fate) in order.iter().zip(&selection.fates) {
+                assert_eq!(*fate, expected.fates[i], "bundle {i}");
+            }
+            for (line, other) in selection.lines.iter().zip(&expected.lines) {
+                assert_eq!(line.segment, other.segment);
+                assert_eq!(line.supports, other.supports);
             }
         }
-        // Four in each view, one of them broken in two, one there twice: both lie on the winner.
-        assert_eq!(owned, 5 * 4 + 2);
-        let (mut won, mut lost) = (0, 0);
-        for (bundle, fate) in bundles.iter().zip(&selection.fates) {
-            let pair = &pairs.pairs[bundle.pair];
-            match *fate {
-                Fate::Won(line) => {
-                    won += 1;
-                    assert_eq!(selection.owner(pair.a), Some(line));
-                    assert_eq!(selection.owner(pair.b), Some(line));
-                }
-                Fate::Lost(line) => {
-                    lost += 1;
-                    assert!(
-                        [pair.a, pair.b]
-                            .iter()
-                            .any(|s| selection.owner(*s) == Some(line))
-                    );
-                }
-                Fate::Rejected(_) => {}
-            }
-        }
-        assert!(won == 4 && lost > 4, "{won} won, {lost} lost");
-    }
-
-    #[test]
-    fn the_best_wins_whatever_comes_first() {
-        let owners = |order: fn(&mut Vec<Bundle>)| selected(order).2.owners;
-        let first = owners(|_| ());
-        assert_eq!(first, owners(|bundles| bundles.reverse()));
-        assert_eq!(first, owners(|bundles| bundles.rotate_left(7)));
-    }
-
-    #[test]
-    fn the_most_evidence_comes_first() {
-        let entry = |evidence, bundle| Entry { evidence, bundle };
-        let mut queue: BinaryHeap<Entry> = [entry(2.0, 5), entry(3.0, 1), entry(3.0, 0)].into();
-        let order: Vec<usize> = std::iter::from_fn(|| queue.pop().map(|e| e.bundle)).collect();
-        assert_eq!(
-            order,
-            [0, 1, 5],
-            "the most first, of equals the lower index"
-        );
     }
 }

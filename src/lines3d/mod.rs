@@ -209,6 +209,7 @@ fn along_supports(scene: &Scene, segment: Segment3, supports: &[LineSupport]) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Segment2;
     use crate::ids::ViewId;
     use crate::linematch::GuidedEdge;
     use crate::linematch::{SupportKind, planted};
@@ -243,6 +244,81 @@ mod tests {
         };
         let (_, trace) = reconstruct_lines(&scene, &[matched], &Lines3dParams::default());
         trace.outcomes.into_iter().next().unwrap()
+    }
+
+    /// Edge 0 of the planted roof, measured in all views at ends that are `sigma_px` off, and stated to be `known_px` off.
+    fn reconstructed(sigma_px: f64, known_px: f64, next: &mut impl FnMut() -> f64) -> Line3d {
+        let scene = planted::scene_without_photographs();
+        let mut off = || {
+            let twelve: f64 = (0..12).map(|_| next()).sum();
+            sigma_px * (twelve - 6.0)
+        };
+        let support = |view: usize| {
+            let exact = planted::part_of(&scene, view, 0, 0.0, 1.0);
+            let normal = exact.normal();
+            let stretch = Segment2::new(exact.p0 + normal * off(), exact.p1 + normal * off());
+            let (variance, length) = (known_px * known_px, stretch.length());
+            let edge = GuidedEdge {
+                view: ViewId(view as u32),
+                kind: SegmentKind::Edge,
+                segment: stretch,
+                covariance: Matrix2::new(
+                    0.5 * variance,
+                    0.0,
+                    0.0,
+                    2.0 * variance / (length * length),
+                ),
+                pieces: vec![stretch],
+            };
+            LineSupport {
+                view: edge.view,
+                segments: Vec::new(),
+                stretch,
+                score: 1.0,
+                kind: SupportKind::Matched,
+                edge: Some(edge),
+            }
+        };
+        let matched = LineMatch {
+            supports: (0..5).map(support).collect(),
+            score: 1.0,
+        };
+        let (lines, _) = reconstruct_lines(&scene, &[matched], &Lines3dParams::default());
+        lines.into_iter().next().expect("a line")
+    }
+
+    #[test]
+    fn two_thirds_of_the_ends_lie_within_the_sigma_that_a_line_states() {
+        // What the images show lies beside what is meant by more than the measurement knows.
+        let floor = Lines3dParams::default().edge_floor_px;
+        let known = 0.05;
+        // The floor is one of the offset at the middle, and of the ends against each other.
+        let sigma = (known * known + 2.0 * floor * floor).sqrt();
+        let mut next = crate::testing::uniform(3);
+        let (mut within, mut count) = (0, 0);
+        for _ in 0..300 {
+            let line = reconstructed(sigma, known, &mut next);
+            let edge = planted::edges()[0];
+            let mut largest = 0.0f64;
+            let ends = [line.segment.p0, line.segment.p1];
+            for (end, covariance) in ends.iter().zip(&line.covariance) {
+                let eigen = covariance.symmetric_eigen();
+                let worst = eigen.eigenvalues.imax();
+                let across = eigen.eigenvectors.column(worst).into_owned();
+                let stated = eigen.eigenvalues[worst].sqrt();
+                let d = edge.direction();
+                let foot = edge.p0 + d * (end - edge.p0).dot(&d);
+                within += usize::from((end - foot).dot(&across).abs() <= stated);
+                count += 1;
+                largest = largest.max(stated);
+            }
+            assert!(
+                (line.sigma_m - largest).abs() < 1e-9,
+                "that of the worse end"
+            );
+        }
+        let share = within as f64 / f64::from(count);
+        assert!((0.62..0.76).contains(&share), "{share} of the ends");
     }
 
     #[test]
