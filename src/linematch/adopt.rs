@@ -215,7 +215,7 @@ fn passes(segment: &Segment2, point: &Point2<f64>) -> bool {
 mod tests {
     use super::*;
     use crate::linematch::planted;
-    use crate::linematch::sight::{Alike, Sights};
+    use crate::linematch::sight::Sights;
     use crate::params::{Lines3dParams, MatchParams};
 
     #[test]
@@ -234,18 +234,8 @@ mod tests {
         let whole = segments[last.index()][0].clone();
         segments[last.index()].push(whole);
         let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
-        let context = Context {
-            scene: &scene,
-            segments: &segments,
-            sights: &Sights::new(&scene, &segments),
-            z_range: [-2.0, 8.0],
-            params: &params,
-            fitting: &fitting,
-            alike: Alike {
-                contrast: true,
-                kind: true,
-            },
-        };
+        let sights = Sights::new(&scene, &segments);
+        let context = Context::of_planted(&scene, &segments, &sights, (&params, &fitting));
         let shows = |known: &[SegmentRef], taken: &[SegmentRef]| {
             let line = planted::edges()[0];
             let taken = |s| taken.contains(&s);
@@ -270,18 +260,8 @@ mod tests {
             let mut segments = planted::segments(&scene);
             change(&mut segments[last.index()]);
             let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
-            let context = Context {
-                scene: &scene,
-                segments: &segments,
-                sights: &Sights::new(&scene, &segments),
-                z_range: [-2.0, 8.0],
-                params: &params,
-                fitting: &fitting,
-                alike: Alike {
-                    contrast: true,
-                    kind: true,
-                },
-            };
+            let sights = Sights::new(&scene, &segments);
+            let context = Context::of_planted(&scene, &segments, &sights, (&params, &fitting));
             let line = planted::edges()[0];
             let mut found = context.adopt(&line, &[own(first)], &[], 1.0, &|_| false);
             found.retain(|s| s.view == last);

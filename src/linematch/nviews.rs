@@ -463,6 +463,30 @@ impl Context<'_> {
 }
 
 #[cfg(test)]
+impl<'a> Context<'a> {
+    /// That of a first pass over a planted scene.
+    pub fn of_planted(
+        scene: &'a Scene,
+        segments: &'a [Vec<ImageSegment>],
+        sights: &'a Sights,
+        (params, fitting): (&'a MatchParams, &'a Lines3dParams),
+    ) -> Self {
+        Self {
+            scene,
+            segments,
+            sights,
+            z_range: [-2.0, 8.0],
+            params,
+            fitting,
+            alike: Alike {
+                contrast: true,
+                kind: true,
+            },
+        }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::ids::SegmentId;
@@ -477,18 +501,8 @@ mod tests {
         let (scene, line) = (planted::scene(), planted::edges()[0]);
         let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
         let segments = planted::segments(&scene);
-        let context = Context {
-            scene: &scene,
-            segments: &segments,
-            sights: &Sights::new(&scene, &segments),
-            z_range: [-2.0, 8.0],
-            params: &params,
-            fitting: &fitting,
-            alike: Alike {
-                contrast: true,
-                kind: true,
-            },
-        };
+        let sights = Sights::new(&scene, &segments);
+        let context = Context::of_planted(&scene, &segments, &sights, (&params, &fitting));
         let view = |(index, correlation): (usize, f32)| ViewProfile {
             view: ViewId(index as u32),
             image: ProjectedLine::new(&scene.views[index].camera, &line).unwrap(),
@@ -582,18 +596,8 @@ mod tests {
         let (scene, line) = (planted::scene(), planted::edges()[0]);
         let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
         let segments = planted::segments(&scene);
-        let context = Context {
-            scene: &scene,
-            segments: &segments,
-            sights: &Sights::new(&scene, &segments),
-            z_range: [-2.0, 8.0],
-            params: &params,
-            fitting: &fitting,
-            alike: Alike {
-                contrast: true,
-                kind: true,
-            },
-        };
+        let sights = Sights::new(&scene, &segments);
+        let context = Context::of_planted(&scene, &segments, &sights, (&params, &fitting));
         // Any two of the first three determine it.
         let edges: Vec<GuidedEdge> = [0, 1, 4, 2, 3][..count]
             .iter()
@@ -637,18 +641,8 @@ mod tests {
                 view.camera.k[(0, 2)] += 1000.0;
             }
             let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
-            let context = Context {
-                scene: &scene,
-                segments: &[],
-                sights: &Sights { views: Vec::new() },
-                z_range: [-2.0, 8.0],
-                params: &params,
-                fitting: &fitting,
-                alike: Alike {
-                    contrast: true,
-                    kind: true,
-                },
-            };
+            let sights = Sights { views: Vec::new() };
+            let context = Context::of_planted(&scene, &[], &sights, (&params, &fitting));
             let line = planted::edges()[0];
             let view = |index: usize| ViewProfile {
                 view: ViewId(index as u32),

@@ -209,15 +209,12 @@ mod tests {
         }
 
         fn context(&self) -> Context<'_> {
-            Context {
-                scene: &self.scene,
-                segments: &self.segments,
-                sights: &self.sights,
-                z_range: Z_RANGE,
-                params: &self.params,
-                fitting: &self.fitting,
-                alike: ALIKE,
-            }
+            Context::of_planted(
+                &self.scene,
+                &self.segments,
+                &self.sights,
+                (&self.params, &self.fitting),
+            )
         }
 
         fn select(&self, pairs: &Pairs, bundles: &[Bundle], mut selection: Selection) -> Selection {
