@@ -8,7 +8,7 @@
 use nalgebra::Point2;
 
 use super::guided::{GuidedEdge, measure_edge};
-use super::nviews::Context;
+use super::nviews::{Context, Taken};
 use super::sight::{SegmentRef, Sight};
 use crate::geometry::{Segment2, Segment3};
 use crate::ids::{SegmentId, ViewId};
@@ -27,7 +27,7 @@ impl Context<'_> {
         line: &Segment3,
         segments: &[SegmentRef],
         view: ViewId,
-        taken: &impl Fn(SegmentRef) -> bool,
+        taken: Taken,
     ) -> Option<GuidedEdge> {
         let kind = self.sights.kind(segments)?;
         let edge = self.measure_in(kind, line, segments, view).or_else(|| {
@@ -43,7 +43,7 @@ impl Context<'_> {
 
     /// Does most of an edge lie on segments that belong to other lines? Winner takes all (B99 3.2): an eave in front of a line on
     /// the ground is not seen twice.
-    fn is_of_another(&self, edge: &GuidedEdge, taken: &impl Fn(SegmentRef) -> bool) -> bool {
+    fn is_of_another(&self, edge: &GuidedEdge, taken: Taken) -> bool {
         let view = edge.view;
         let near =
             (self.sights.views[view.index()].index).near_segment(&edge.segment, SAME_EDGE_PX);
@@ -123,12 +123,16 @@ impl Context<'_> {
         known: &[SegmentRef],
         edges: &[GuidedEdge],
         reach: f64,
-        taken: &impl Fn(SegmentRef) -> bool,
+        taken: Taken,
     ) -> Vec<SegmentRef> {
         let Some(kind) = self.sights.kind(known) else {
             return Vec::new();
         };
-        let shown = |view| (edges.iter().find(|e| e.view == view)).map_or(kind, |e| e.kind);
+        let shown = |view| {
+            let own: Vec<SegmentRef> = known.iter().copied().filter(|s| s.view == view).collect();
+            let edge = edges.iter().find(|e| e.view == view).map(|e| e.kind);
+            edge.or_else(|| self.sights.kind(&own)).unwrap_or(kind)
+        };
         (self.scene.view_ids())
             .flat_map(|view| self.adopt_in(view, shown(view), line, known, reach, taken))
             .collect()
@@ -143,7 +147,7 @@ impl Context<'_> {
         line: &Segment3,
         known: &[SegmentRef],
         reach: f64,
-        taken: &impl Fn(SegmentRef) -> bool,
+        taken: Taken,
     ) -> Vec<SegmentRef> {
         let Some((image, extent)) = self.extent(line, known, view) else {
             return Vec::new();

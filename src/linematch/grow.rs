@@ -11,8 +11,8 @@
 use super::profile::Profile;
 use crate::params::MatchParams;
 
-/// Holes of this many edgels are closed without a test: an end point is not better known.
-const HOLE_PX: usize = 4;
+/// Holes of this many edgels are closed without a test, as chains of edgels are ("jumping up to a one pixel gap", 3.2).
+const HOLE_PX: usize = 1;
 /// Share of a gap's edgels that must correlate over three views.
 const GAP_SHARE: f64 = 0.8;
 
@@ -131,7 +131,8 @@ mod tests {
 
     #[test]
     fn holes_are_closed_and_gaps_need_correlation() {
-        assert_eq!(reach("xxx...xxx", "........."), 8, "a small hole");
+        assert_eq!(reach("xxxx.xxxx", "........."), 8, "one edgel");
+        assert_eq!(reach("xxx..xxx", "........"), 2, "two");
         assert_eq!(
             reach("xx........xx", "............"),
             1,
@@ -154,7 +155,7 @@ mod tests {
             13,
             "a fragment behind it"
         );
-        assert_eq!(reach("xxgg..ggg.....", agreeing), 3, "beyond a small hole");
+        assert_eq!(reach("xxgg..ggg.....", agreeing), 3, "beyond a small one");
     }
 
     /// The last edgel of a line that five views show up to edgel 25 and one of them up to 39; the images of the

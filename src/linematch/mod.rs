@@ -9,6 +9,7 @@
 //!       -> adopt      segments near the reprojection adopted, edges measured again               3.4
 //!       -> grow       merged and grown along its profile                                         3.3
 //!       -> ends       where its ends are, to a pixel                                             3.3
+//!    -> join         lines that reproject onto each other are one                                3.4
 //! ```
 //!
 //! Pairs and triples are of segments of one kind (steps in grey values or in warmth, bright or dark bars) and, if they are steps,
@@ -22,6 +23,7 @@ mod grow;
 mod guided;
 mod height;
 mod index;
+mod join;
 mod nviews;
 mod pairs;
 mod partners;
@@ -33,7 +35,7 @@ mod trace;
 mod triples;
 
 pub use guided::{GuidedEdge, measure_edge};
-pub use nviews::Rejection;
+pub use nviews::{MANY_VIEWS, Rejection};
 pub(crate) use profile::AROUND_EDGE_PX;
 pub use sight::{SegmentRef, epipolar_beam};
 pub use strip::EdgelScore;
@@ -117,8 +119,9 @@ pub fn match_lines(
     let Found {
         pairs,
         bundles,
-        selection,
+        mut selection,
     } = found;
+    join::join_lines(&context, &mut selection);
     trace.record(segments, &pairs, &bundles, &selection);
     let matches = selection.lines.into_iter().map(LineMatch::from).collect();
     (matches, trace)

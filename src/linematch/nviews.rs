@@ -30,6 +30,8 @@ const MIN_MEASURED: usize = 3;
 /// wrong, and no fourth view to make up for a segment that was missed.
 const MIN_EVIDENCE: usize = 6;
 const MIN_EVIDENCE_OF_THREE: usize = 5;
+/// Where so many views see a line, [`MatchParams::min_views`] must support it (B99 3.4).
+pub const MANY_VIEWS: usize = 6;
 /// How far beside a line, in gates, a segment belongs to it and starts no other line.
 const OWN: f64 = 1.5;
 /// A stretch reaches past the detected segments by this much to count as grown, px: more than a piece of
@@ -61,9 +63,12 @@ pub enum Rejection {
 }
 
 /// A line over N views, not yet compared with others.
+#[derive(Clone)]
 pub struct Line {
     /// The fitted line, directed by contrast where that is the same in all views.
     pub segment: Segment3,
+    /// The fit: the same line between other ends.
+    pub fit: LineFit,
     /// Its supports, by view.
     pub supports: Vec<LineSupport>,
 }
@@ -86,21 +91,24 @@ pub struct Context<'a> {
     pub alike: Alike,
 }
 
+/// Tells which segments belong to other lines.
+pub type Taken<'a> = &'a dyn Fn(SegmentRef) -> bool;
+
 /// Completes a hypothesis from some of its segments; `taken` tells which segments belong to other
 /// lines.
 pub fn complete_line(
     context: &Context,
     start: &Segment3,
     seeds: &[SegmentRef],
-    taken: impl Fn(SegmentRef) -> bool,
+    taken: Taken,
 ) -> Result<Line, Rejection> {
     let (mut fit, mut segments) = context.fit_consistent(start, seeds)?;
     for _ in 0..ROUNDS {
-        let adopted = context.adopt(&fit.line, &segments, &[], 1.0, &taken);
+        let adopted = context.adopt(&fit.line, &segments, &[], 1.0, taken);
         (fit, segments) = context.fit_consistent(&fit.line, &adopted)?;
     }
-    let (mut fit, mut edges) = context.measure_again(fit, &segments, &taken)?;
-    let mut segments = context.adopt(&fit.line, &segments, &edges, OWN, &taken);
+    let (mut fit, mut edges) = context.measure_again(fit, &segments, taken)?;
+    let mut segments = context.adopt(&fit.line, &segments, &edges, OWN, taken);
     loop {
         let evidence = edges.len() + views_of(&segments);
         if evidence < context.least_evidence() {
@@ -117,7 +125,7 @@ pub fn complete_line(
         if disagreeing.is_empty() {
             let ends = [profile.t[stretch.0], profile.t[stretch.1]];
             let expected = context.expected_views(&profile, stretch);
-            return context.check_line(&fit, ends, expected, supports);
+            return context.check_line(fit, ends, expected, supports);
         }
         segments.retain(|s| !disagreeing.contains(&s.view));
         edges.retain(|e| !disagreeing.contains(&e.view));
@@ -210,7 +218,7 @@ impl Context<'_> {
         &self,
         mut fit: LineFit,
         segments: &[SegmentRef],
-        taken: &impl Fn(SegmentRef) -> bool,
+        taken: Taken,
     ) -> Result<(LineFit, Vec<GuidedEdge>), Rejection> {
         let mut edges = Vec::new();
         for _ in 0..ROUNDS {
@@ -403,7 +411,7 @@ impl Context<'_> {
         }
     }
 
-    /// Number of views that ought to support the line: `min_views` where six or more see it.
+    /// Number of views that ought to support the line: `min_views` where many see it.
     fn expected_views(&self, profile: &Profile, (start, end): (usize, usize)) -> usize {
         let middle = 0.5 * (profile.t[start] + profile.t[end]);
         let sees = |v: &&ViewProfile| {
@@ -411,7 +419,7 @@ impl Context<'_> {
             x.is_some_and(|x| self.scene.camera(v.view).contains(&x, 1.0))
         };
         let seeing = profile.views.iter().filter(sees).count();
-        if seeing >= 6 {
+        if seeing >= MANY_VIEWS {
             self.params.min_views
         } else {
             MIN_MEASURED
@@ -420,11 +428,11 @@ impl Context<'_> {
 
     /// The last tests of a completed line, with the stretch t0 to t1 (metres) of the fit.
     ///
-    /// Deviation from the paper's four of six views: three do where their mean score is what a pair must have by itself. Two
-    /// strips often see the two sides of an eave differently, and then three views are all there are.
+    /// Of four of six views (B99 3.4) three do for now, where their mean score is what a pair must have by itself: how many can
+    /// see the line, the finished model will know, and it then asks for the fourth ([`crate::roof::refuted_lines`]).
     fn check_line(
         &self,
-        fit: &LineFit,
+        fit: LineFit,
         [t0, t1]: [f64; 2],
         expected_views: usize,
         supports: Vec<LineSupport>,
@@ -439,7 +447,7 @@ impl Context<'_> {
             return Err(Rejection::IllConditioned);
         }
         let score = supports.iter().map(|s| s.score).sum::<f64>() / supports.len() as f64;
-        if !self.every_view_verified(fit, [t0, t1], &supports, 2.0 * largest_m) {
+        if !self.every_view_verified(&fit, [t0, t1], &supports, 2.0 * largest_m) {
             return Err(Rejection::Unverified);
         }
         let measured = supports.iter().filter(|s| s.edge.is_some()).count();
@@ -458,7 +466,11 @@ impl Context<'_> {
         {
             return Err(Rejection::OutsideHeights);
         }
-        Ok(Line { segment, supports })
+        Ok(Line {
+            segment,
+            fit,
+            supports,
+        })
     }
 }
 
@@ -620,7 +632,7 @@ mod tests {
         };
         let supports = edges.iter().map(support).collect();
         let ends = [0.0, line.length()];
-        context.check_line(&fit, ends, expected, supports).err()
+        context.check_line(fit, ends, expected, supports).err()
     }
 
     #[test]

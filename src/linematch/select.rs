@@ -82,7 +82,7 @@ pub fn winner_takes_all(
         let mut seeds = vec![pair.a, pair.b];
         seeds.extend(rest.verified.iter().map(|v| v.segment));
         let taken = |s: SegmentRef| selection.owner(s).is_some();
-        let fate = match complete_line(context, &pair.overlap, &seeds, taken) {
+        let fate = match complete_line(context, &pair.overlap, &seeds, &taken) {
             Ok(line) => selection.accept(line),
             Err(reason) => Fate::Rejected(reason),
         };
@@ -129,13 +129,18 @@ impl Selection {
 
     fn accept(&mut self, line: Line) -> Fate {
         let index = self.lines.len();
+        self.own(&line, index);
+        self.lines.push(line);
+        Fate::Won(index)
+    }
+
+    /// Gives the segments of a line to its number.
+    pub fn own(&mut self, line: &Line, index: usize) {
         for support in &line.supports {
             for segment in &support.segments {
                 self.owners[support.view.index()][segment.index()] = Some(index);
             }
         }
-        self.lines.push(line);
-        Fate::Won(index)
     }
 }
 
@@ -308,8 +313,15 @@ mod tests {
             // A line of an earlier pass, whose supports do not matter here.
             let mut selection = roof.nothing_taken();
             let segment = Segment3::new(planted::edges()[0].p0, planted::edges()[0].p1);
+            let fit = crate::lines3d::LineFit {
+                line: segment,
+                across: [nalgebra::Vector3::y(), nalgebra::Vector3::z()],
+                covariance: nalgebra::Matrix4::identity(),
+                residuals: Vec::new(),
+            };
             selection.accept(Line {
                 segment,
+                fit,
                 supports: Vec::new(),
             });
             for s in taken {

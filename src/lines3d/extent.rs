@@ -1,4 +1,4 @@
-//! The end points of a 3D line from the stretches that its views support.
+//! The end points of a 3D line from the stretches that its views support (B99 3.3): their union.
 
 use super::ProjectedLine;
 use crate::geometry::Segment3;
@@ -6,24 +6,19 @@ use crate::linematch::LineSupport;
 use crate::scene::Scene;
 use crate::sorting::sort_by;
 
-/// The outermost places along the line (metres from its start) that at least two views support, so
-/// that one over-long segment does not lengthen the line. `None` without such a place.
-pub fn common_extent(
-    scene: &Scene,
-    line: &Segment3,
-    supports: &[LineSupport],
-) -> Option<(f64, f64)> {
-    let mut ends: Vec<(f64, i32)> = Vec::with_capacity(2 * supports.len());
+/// The outermost places along the line (metres from its start) that a view supports. One view may be all there is where the
+/// images of the others end; how much a place must show for a support to reach it is growing's to say. `None` without supports, or
+/// where one does not see the line.
+pub fn extent_of(scene: &Scene, line: &Segment3, supports: &[LineSupport]) -> Option<(f64, f64)> {
+    let mut union = (f64::INFINITY, f64::NEG_INFINITY);
     for support in supports {
         let image = ProjectedLine::new(scene.camera(support.view), line)?;
-        let (t0, t1) = (
-            image.t_of(&support.stretch.p0),
-            image.t_of(&support.stretch.p1),
-        );
-        ends.push((t0.min(t1), 1));
-        ends.push((t0.max(t1), -1));
+        for end in [&support.stretch.p0, &support.stretch.p1] {
+            let t = image.t_of(end);
+            union = (union.0.min(t), union.1.max(t));
+        }
     }
-    doubly_covered(ends)
+    (union.1 > union.0).then_some(union)
 }
 
 /// First and last place where two intervals overlap, from their starts (+1) and ends (-1).
@@ -46,12 +41,40 @@ pub fn doubly_covered(mut ends: Vec<(f64, i32)>) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ids::ViewId;
+    use crate::linematch::{SupportKind, planted};
 
     fn ends(intervals: &[(f64, f64)]) -> Vec<(f64, i32)> {
         intervals
             .iter()
             .flat_map(|(s, e)| [(*s, 1), (*e, -1)])
             .collect()
+    }
+
+    /// The part of the planted roof's first edge that supports by these parts of it, one a view, make.
+    fn extent(parts: &[(f64, f64)]) -> Option<(f64, f64)> {
+        let scene = planted::scene_without_photographs();
+        let edge = planted::edges()[0];
+        let support = |(view, &(from, to)): (usize, &(f64, f64))| LineSupport {
+            view: ViewId(view as u32),
+            segments: Vec::new(),
+            stretch: planted::part_of(&scene, view, 0, from, to),
+            score: 1.0,
+            kind: SupportKind::Matched,
+            edge: None,
+        };
+        let supports: Vec<LineSupport> = parts.iter().enumerate().map(support).collect();
+        let (from, to) = extent_of(&scene, &edge, &supports)?;
+        Some((from / edge.length(), to / edge.length()))
+    }
+
+    #[test]
+    fn a_line_reaches_as_far_as_any_of_its_views_supports_it() {
+        let (from, to) = extent(&[(0.2, 0.6), (0.1, 0.5), (0.3, 0.9)]).expect("a stretch");
+        assert!((from - 0.1).abs() < 1e-9 && (to - 0.9).abs() < 1e-9);
+        // Whichever way a view's stretch runs.
+        assert_eq!(extent(&[(0.6, 0.2)]).map(|(f, t)| f < t), Some(true));
+        assert_eq!(extent(&[]), None);
     }
 
     #[test]

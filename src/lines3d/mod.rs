@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! fit           four parameters, Levenberg-Marquardt on the distances of the measured segments
-//!    -> extent  end points where at least two views support the line
+//!    -> extent  end points: the union of what the views support
 //! ```
 
 mod extent;
@@ -60,6 +60,8 @@ pub enum Refutation {
     Underground,
     /// It lies on no surface, and the views are not certain enough of it to be believed alone.
     Afloat,
+    /// Three views show it where six can see it.
+    TooFewViews,
 }
 
 /// A reconstructed 3D line.
@@ -113,7 +115,7 @@ pub enum LineOutcome {
         /// Standard deviation, metres.
         sigma_m: f64,
     },
-    /// No stretch that two views support.
+    /// No stretch that a view supports.
     NoExtent,
 }
 
@@ -167,7 +169,7 @@ fn reconstruct(
     let start = line_of_planes(&observations).ok_or(LineOutcome::NoFit)?;
     let fit = fit_line(&observations, &start, params).ok_or(LineOutcome::NoFit)?;
     let (t0, t1) =
-        extent::common_extent(scene, &fit.line, &matched.supports).ok_or(LineOutcome::NoExtent)?;
+        extent::extent_of(scene, &fit.line, &matched.supports).ok_or(LineOutcome::NoExtent)?;
     let (d, length) = (fit.line.direction(), fit.line.length());
     let segment = Segment3::new(fit.line.p0 + d * t0, fit.line.p0 + d * t1);
     let (f0, f1) = (t0 / length, t1 / length);

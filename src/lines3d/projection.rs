@@ -1,6 +1,6 @@
 //! A 3D line as one view sees it: the map between places along the line and image points.
 
-use nalgebra::{Point2, Vector2, Vector3};
+use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 
 use crate::camera::Camera;
 use crate::geometry::{Segment2, Segment3};
@@ -11,6 +11,7 @@ use crate::geometry::{Segment2, Segment3};
 /// `a + t b`, where `a = K R (p0 - C)` and `b = K R d`.
 #[derive(Clone, Copy, Debug)]
 pub struct ProjectedLine {
+    m: Matrix3<f64>,
     a: Vector3<f64>,
     b: Vector3<f64>,
     /// Unit direction in the image, that of growing t.
@@ -30,6 +31,7 @@ impl ProjectedLine {
         }
         let m = camera.k * camera.r;
         Some(Self {
+            m,
             a: m * (segment.p0 - camera.center),
             b: m * segment.direction(),
             direction: image.direction(),
@@ -53,6 +55,13 @@ impl ProjectedLine {
     pub fn distance(&self, x: &Point2<f64>) -> f64 {
         self.line.x * x.x + self.line.y * x.y + self.line.z
     }
+
+    /// Standard deviation across the image line, pixels, of the image of the point at `t` metres, whose covariance is given in m^2.
+    /// Moving the point by dX moves its image by l . M dX / z off the line l, where M = K R.
+    pub fn sigma_px(&self, t: f64, covariance: &Matrix3<f64>) -> f64 {
+        let gradient = self.m.tr_mul(&self.line) / (self.a.z + t * self.b.z);
+        gradient.dot(&(covariance * gradient)).max(0.0).sqrt()
+    }
 }
 
 #[cfg(test)]
@@ -73,6 +82,22 @@ mod tests {
             let aside = x + Vector2::new(-image.direction.y, image.direction.x) * 2.5;
             assert!((image.t_of(&aside) - t).abs() < 1e-7);
             assert!((image.distance(&aside) - 2.5).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn an_uncertain_point_is_as_uncertain_in_the_image_as_it_moves_there() {
+        let camera = crop_camera(120.0, 40.0, 0.4);
+        let line = Segment3::new(Point3::new(-3.0, 2.0, 8.0), Point3::new(9.0, 6.0, 11.0));
+        let image = ProjectedLine::new(&camera, &line).unwrap();
+        for t in [0.0, 5.0, 20.0] {
+            let point = line.p0 + line.direction() * t;
+            for by in [Vector3::x(), Vector3::y(), Vector3::new(0.3, -0.4, 1.2)] {
+                let step = by * 1e-4;
+                let moved = image.distance(&camera.project(&(point + step)).unwrap());
+                let sigma = image.sigma_px(t, &(step * step.transpose()));
+                assert!((sigma - moved.abs()).abs() < 1e-3 * moved.abs(), "{by}");
+            }
         }
     }
 }

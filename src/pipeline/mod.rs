@@ -36,9 +36,7 @@ use crate::objectspace::{
 };
 use crate::params::{Method, Params};
 use crate::progress::{self, Listener};
-use crate::roof::{
-    Ground, RoofEvidence, RoofModel, RoofTrace, new_lines, reconstruct_roofs, refuted_lines,
-};
+use crate::roof::{Ground, RoofEvidence, RoofModel, RoofTrace, judge_lines, reconstruct_roofs};
 use crate::scene::Scene;
 use crate::shares::{Known, map_shared, with_known};
 use crate::texture::{TextureTrace, TexturedModel, texture_model};
@@ -291,11 +289,9 @@ impl Run {
                     rectangles: &rectangles,
                 };
                 let (model, mut trace) = reconstruct_roofs(scene, &evidence, &params.roof);
-                trace.new_lines =
-                    new_lines(scene, lines, &model, &params.matching, &params.lines3d);
-                let all = [&lines[..], &trace.new_lines].concat();
-                trace.refuted_lines =
-                    refuted_lines(scene, &all, &model.facets, evidence.ground, params);
+                let (new_lines, refuted) =
+                    judge_lines(scene, lines, &model, evidence.ground, params);
+                (trace.new_lines, trace.refuted_lines) = (new_lines, refuted);
                 r.roof = Some((model, trace).into());
             }
             Stage::Regions => r.regions = Some(find_regions(scene, &params.objectspace).into()),

@@ -12,14 +12,13 @@ mod surfaces;
 
 pub use ground::Ground;
 pub use invariants::{PLANAR_M, Violation, check_invariants};
-pub use new_lines::new_lines;
 pub use occluders::Occluders;
 pub use reconstruct::{RoofEvidence, RoofTrace, Unrefined, reconstruct_roofs};
 pub use refine::{
     BuildingRefinement, Parting, RefineRefusal, RefineTrace, RelationKind, SideKind,
     TestedRelation, part_roofs, refine_roofs,
 };
-pub use refuted::refuted_lines;
+pub use refuted::judge_lines;
 pub use solid::{SolidRejection, SolidTrace, WELD_M, close_buildings};
 
 use nalgebra::{Point2, Point3};

@@ -1,9 +1,9 @@
 //! New lines (B99 4.2, 4.3): the edges of the roof model that no matched line explains.
 //!
 //! "New lines are created when two neighbouring planes intersect in a consistent way": a ridge between two sides that the
-//! sun lights alike is seen in no image, yet the planes know where it is. Borders of facets are new lines too where
-//! most images that can see them, looked at again, show an edge there: matching lost those whose background changes from
-//! view to view, or that two strips see from either side. An eave along the flight line, which the views of one strip show but do
+//! sun lights alike is seen in no image, yet the planes know where it is. Borders of facets are new lines too where most images
+//! that can see them, looked at again, show an edge there, three of them in the same way: matching lost those whose background changes
+//! from view to view, or that two strips see from either side. An eave along the flight line, which the views of one strip show but do
 //! not determine, is determined by the plane of its roof.
 //!
 //! Deviation: the paper makes new lines before delineation and takes what they bound; here labelling proposes borders
@@ -75,6 +75,29 @@ impl ModelEdge {
     }
 }
 
+/// How a view may show an edge: the kind of step, and whether it is bright on the other side.
+const WAYS: [(SegmentKind, bool); 4] = [
+    (SegmentKind::Edge, false),
+    (SegmentKind::Edge, true),
+    (SegmentKind::Color, false),
+    (SegmentKind::Color, true),
+];
+
+/// An edge that a view shows.
+struct Shown {
+    /// In which of [`WAYS`].
+    ways: [bool; WAYS.len()],
+    /// In that which has most of it.
+    edge: GuidedEdge,
+}
+
+/// Do enough views show an edge in the same way? Two strips may see two sides of an eave, but each of them sees one; where rows of
+/// texture line up by chance, any view shows any side.
+fn is_alike(shown: &[Shown]) -> bool {
+    let alike = |way: usize| shown.iter().filter(|s| s.ways[way]).count();
+    (0..WAYS.len()).any(|way| alike(way) >= MIN_VIEWS)
+}
+
 struct Context<'a> {
     scene: &'a Scene,
     lines: &'a [Line3d],
@@ -106,10 +129,11 @@ impl Context<'_> {
         seeing.map(|c| c.ground_pixel(p)).min_by(f64::total_cmp)
     }
 
-    /// The parts of an edge, not shorter than a match must be, along which no line runs.
+    /// The parts of an edge, not shorter than a match must be, along which no line runs that stands.
     fn unexplained(&self, edge: &Segment3, pixel_m: f64) -> Vec<Segment3> {
         let least = self.matching.min_edgels as f64 * pixel_m;
-        let beside: Vec<&Segment3> = (self.lines.iter().map(|l| &l.segment))
+        let beside: Vec<&Segment3> = Line3d::standing(self.lines)
+            .map(|(_, line)| &line.segment)
             .filter(|l| l.direction().dot(&edge.direction()).abs() >= PARALLEL)
             .collect();
         let samples = (edge.length() / pixel_m).ceil().clamp(1.0, 4096.0) as usize;
@@ -153,10 +177,17 @@ impl Context<'_> {
     /// the facets that it bounds; `None` where too few agree on one.
     fn measured(&self, edge: &ModelEdge, part: &Segment3, pixel_m: f64) -> Option<Line3d> {
         let views = self.scene.view_ids();
-        let edges: Vec<GuidedEdge> = views.filter_map(|v| self.measure(part, v)).collect();
+        let shown: Vec<Shown> = views.filter_map(|v| self.measure(part, v)).collect();
+        (self.few_views() || is_alike(&shown)).then_some(())?;
+        let edges: Vec<GuidedEdge> = shown.into_iter().map(|s| s.edge).collect();
         let least = self.least_views(part);
         let fit = |carriers: &[Carrier]| self.fit(edges.clone(), least, carriers, part, pixel_m);
         fit(&[]).or_else(|| fit(&self.carriers(edge)?))
+    }
+
+    /// Is every view needed, however it shows an edge?
+    fn few_views(&self) -> bool {
+        self.scene.views.len() <= self.matching.min_views
     }
 
     /// The planes that a model edge lies in.
@@ -204,30 +235,24 @@ impl Context<'_> {
         edges.iter().map(observe).collect()
     }
 
-    /// The edge along the image of `part`, of whichever kind of step and contrast has more of it.
-    fn measure(&self, part: &Segment3, view: ViewId) -> Option<GuidedEdge> {
+    /// What a view shows along the image of `part`.
+    fn measure(&self, part: &Segment3, view: ViewId) -> Option<Shown> {
         let seen = self.scene.view(view);
         let image = ProjectedLine::new(&seen.camera, part)?;
         let expected = Segment2::new(image.at(0.0)?, image.at(part.length())?);
         let core = [0.0, expected.length()];
-        let mut best: Option<GuidedEdge> = None;
-        for kind in [SegmentKind::Edge, SegmentKind::Color] {
-            for against in [false, true] {
-                let found = measure_edge(
-                    view,
-                    seen.channel(kind.channel()),
-                    kind,
-                    &expected,
-                    core,
-                    against,
-                );
-                let pieces = |e: &Option<GuidedEdge>| e.as_ref().map_or(0, |e| e.pieces.len());
-                if pieces(&found) > pieces(&best) {
-                    best = found;
-                }
+        let mut ways = [false; WAYS.len()];
+        let mut most: Option<GuidedEdge> = None;
+        for (way, (kind, against)) in ways.iter_mut().zip(WAYS) {
+            let channel = seen.channel(kind.channel());
+            let found = measure_edge(view, channel, kind, &expected, core, against);
+            *way = found.is_some();
+            let pieces = |edge: &Option<GuidedEdge>| edge.as_ref().map_or(0, |e| e.pieces.len());
+            if pieces(&found) > pieces(&most) {
+                most = found;
             }
         }
-        best
+        Some(Shown { ways, edge: most? })
     }
 
     fn line(&self, fit: &LineFit, part: &Segment3, sigma_m: f64, edges: &[GuidedEdge]) -> Line3d {
@@ -401,7 +426,9 @@ fn key(a: &Point3<f64>, b: &Point3<f64>) -> Side {
 mod tests {
     use super::*;
     use crate::ids::{BuildingId, LineId};
+    use crate::lines3d::Refutation;
     use crate::synthetic::{SyntheticTruth, hip_scene};
+    use nalgebra::{Matrix2, Point2};
 
     fn model(truth: &SyntheticTruth, lines: &[LineId]) -> RoofModel {
         let facet = |(plane, outer): &(crate::geometry::Plane, Vec<Point3<f64>>)| Facet {
@@ -473,6 +500,33 @@ mod tests {
             length < 0.55 * edge.length() && length > 0.35 * edge.length(),
             "{length}"
         );
+        // A line that cannot be explains nothing.
+        let mut refuted = known_lines;
+        refuted[0].refuted = Some(Refutation::Afloat);
+        assert_eq!(found(&scene, &refuted, &model(&truth, &[])).len(), 1);
+    }
+
+    #[test]
+    fn three_views_must_show_a_border_in_the_same_way() {
+        let shown = |ways: &[&[usize]]| {
+            let view = |(view, ways): (usize, &&[usize])| Shown {
+                ways: [0, 1, 2, 3].map(|way| ways.contains(&way)),
+                edge: GuidedEdge {
+                    view: ViewId(view as u32),
+                    kind: SegmentKind::Edge,
+                    segment: Segment2::new(Point2::origin(), Point2::new(9.0, 0.0)),
+                    covariance: Matrix2::identity(),
+                    pieces: Vec::new(),
+                },
+            };
+            is_alike(&ways.iter().enumerate().map(view).collect::<Vec<_>>())
+        };
+        assert!(shown(&[&[0], &[0], &[0], &[1]]));
+        assert!(
+            !shown(&[&[0], &[0], &[1], &[1], &[2], &[3]]),
+            "any side in any view"
+        );
+        assert!(shown(&[&[0, 2], &[1, 2], &[2]]), "in colour");
     }
 
     #[test]

@@ -65,6 +65,7 @@ export const REFUTATION_WORDS: Record<Refutation, string> = {
   hidden: "roofs hide it from all but two of its views",
   underground: "it goes into the ground",
   afloat: "it lies on no surface, and too few views are certain of it",
+  too_few_views: "three views show it where six can see it",
 };
 
 export const RELATION_WORDS: Record<TestedRelation["kind"], string> = {
