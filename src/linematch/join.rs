@@ -2,17 +2,14 @@
 //!
 //! "A correspondence is established between the two triples if the projection of L123 onto the images 4-6 matches at least two of the
 //! lines I4, I5, I6, and reciprocally." Adopting the segments beside a line's projection joins most triples as they are found; what two
-//! hypotheses still made two lines of is joined here: a step of grey values and one of colour along the same eave, and fragments whose
-//! own ends do not reach each other. The image of either lies on the edges of the other, as near as a segment must and within three
-//! standard deviations of the prediction, in two views of three; they overlap, or the gap between them is bridged (3.3).
-
-use std::cmp::Ordering;
+//! hypotheses still made two lines of is joined here, such as the views of two strips, and fragments whose own ends do not reach each
+//! other. The image of either lies on the edges of the other, as near as a segment must and within three standard deviations of the
+//! prediction, in two views of three; they overlap, or the views correlate in the gap between them (3.3).
 
 use super::guided::GuidedEdge;
 use super::nviews::{Context, Line, Taken, complete_line};
 use super::select::{Fate, Selection};
 use super::sight::SegmentRef;
-use super::triples::stretch_of;
 use crate::geometry::Segment3;
 use crate::lines3d::ProjectedLine;
 
@@ -51,28 +48,25 @@ pub fn join_lines(context: &Context, selection: &mut Selection) {
     selection.renumber(lines, &joined);
 }
 
-/// The line that two are, if they are one: that of them which says all that the other does, or what the segments of both make.
+/// The line that the segments of two make, if they are one. What only repeats another line stays beside it: grey values and colour
+/// are two witnesses of an edge.
 fn join(context: &Context, a: &Line, b: &Line, taken: Taken) -> Option<Line> {
     (near(context, a, b) && reprojects(context, a, b) && reprojects(context, b, a)).then_some(())?;
-    let absorbed = absorbing(a, b);
-    let extended = || absorbed.map(|[line, other]| extended(context, line, other));
-    if absorbed.is_some_and(|[line, other]| shows_in_all_views_of(line, other)) {
-        return extended();
+    if repeats(a, b) || repeats(b, a) {
+        return None;
     }
     let mut seeds: Vec<SegmentRef> = segments(a).chain(segments(b)).collect();
     seeds.sort_unstable();
     seeds.dedup();
     seeds.retain(|s| !taken(*s));
-    let joined = complete_line(context, &a.fit.line, &seeds, taken).ok();
-    joined
-        .filter(|line| is_both(context, line, [a, b]))
-        .or_else(extended)
+    let joined = complete_line(context, &a.fit.line, &seeds, taken).ok()?;
+    is_both(context, &joined, [a, b]).then_some(joined)
 }
 
-/// Do all views that support another line support this one?
-fn shows_in_all_views_of(line: &Line, other: &Line) -> bool {
-    let supports = |view| line.supports.iter().any(|s| s.view == view);
-    other.supports.iter().all(|s| supports(s.view))
+/// Does a line show nothing that another one does not, neither a view nor a stretch?
+fn repeats(line: &Line, other: &Line) -> bool {
+    let supports = |view| other.supports.iter().any(|s| s.view == view);
+    line.supports.iter().all(|s| supports(s.view)) && covers(&other.segment, &line.segment)
 }
 
 /// Is a line that was completed from the segments of two those two?
@@ -82,46 +76,6 @@ fn is_both(context: &Context, line: &Line, parts: [&Line; 2]) -> bool {
             && reprojects(context, line, part)
             && covers(&line.segment, &part.segment)
     })
-}
-
-/// The one of two lines that runs along the other, first, and the other; of two that do the one with more views, then the more
-/// certain one.
-fn absorbing<'a>(a: &'a Line, b: &'a Line) -> Option<[&'a Line; 2]> {
-    let absorbs = |x: &Line, y: &Line| covers(&x.segment, &y.segment);
-    let a_is_better = match a.supports.len().cmp(&b.supports.len()) {
-        Ordering::Equal => a.fit.sigma_at(0.5) <= b.fit.sigma_at(0.5),
-        views => views == Ordering::Greater,
-    };
-    match (absorbs(a, b), absorbs(b, a)) {
-        (true, true) if a_is_better => Some([a, b]),
-        (true, false) => Some([a, b]),
-        (_, true) => Some([b, a]),
-        (false, false) => None,
-    }
-}
-
-/// A line that reaches as far as another one that lies on it, in the views that show both.
-fn extended(context: &Context, line: &Line, other: &Line) -> Line {
-    let mut line = line.clone();
-    for support in &mut line.supports {
-        let camera = context.scene.camera(support.view);
-        let Some(image) = ProjectedLine::new(camera, &line.segment) else {
-            continue;
-        };
-        let seen = other.supports.iter().filter(|s| s.view == support.view);
-        for end in seen.flat_map(|s| [s.stretch.p0, s.stretch.p1]) {
-            let t = image.t_of(&end);
-            let on_line = image.at(t).unwrap_or(end);
-            if t < image.t_of(&support.stretch.p0) {
-                support.stretch.p0 = on_line;
-            } else if t > image.t_of(&support.stretch.p1) {
-                support.stretch.p1 = on_line;
-            }
-        }
-    }
-    let [t0, t1] = along(&line.segment, &other.segment);
-    line.segment = stretch_of(&line.segment, t0.min(0.0), t1.max(line.segment.length()));
-    line
 }
 
 /// First and last place of a part along a line, metres from its start.
@@ -140,15 +94,14 @@ fn segments(line: &Line) -> impl Iterator<Item = SegmentRef> + '_ {
 
 /// Are two lines nearly parallel and no farther apart along them than a gap may be?
 fn near(context: &Context, a: &Line, b: &Line) -> bool {
-    let (a_line, b_line) = (&a.segment, &b.segment);
-    let middle = a_line.at(0.5);
-    let gap_m = (middle - b_line.at(0.5)).norm() - 0.5 * (a_line.length() + b_line.length());
     let pixel_m = context
         .scene
         .camera(a.supports[0].view)
-        .ground_pixel(&middle);
+        .ground_pixel(&a.segment.p0);
+    let [from, to] = along(&a.segment, &b.segment);
+    let gap_m = (from - a.segment.length()).max(-to);
     gap_m <= context.params.max_gap_px * pixel_m
-        && a_line.direction().dot(&b_line.direction()).abs() >= PARALLEL
+        && a.segment.direction().dot(&b.segment.direction()).abs() >= PARALLEL
 }
 
 /// Does the image of a line lie on the edges of another, in two of three views that show one?
@@ -337,32 +290,20 @@ mod tests {
     }
 
     #[test]
-    fn what_a_line_absorbs_lengthens_it() {
+    fn a_line_that_repeats_another_stays() {
         let roof = Roof::new();
-        let long = roof.line(2, [0.0, 0.95], &ALL, NOWHERE);
-        let short = roof.line(2, [0.1, 1.0], &[0, 1, 2], NOWHERE);
-        // Either runs along most of the other; more views show the first one.
-        for [a, b] in [[&long, &short], [&short, &long]] {
-            let [line, other] = absorbing(a, b).expect("one absorbs the other");
-            assert_eq!([line.supports.len(), other.supports.len()], [5, 3]);
+        let line = roof.line(2, [0.0, 1.0], &ALL, NOWHERE);
+        let part = roof.line(2, [0.1, 0.8], &[0, 1, 2], NOWHERE);
+        assert!(repeats(&part, &line) && !repeats(&line, &part));
+        assert!(roof.joined(&part, &line).is_none());
+        // Not where it has a view or a stretch of its own.
+        let fewer = roof.line(2, [0.0, 1.0], &[0, 1, 4], NOWHERE);
+        let shorter = roof.line(2, [0.0, 0.6], &ALL, NOWHERE);
+        for other in [fewer, shorter] {
+            assert!(!repeats(&part, &other));
+            let joined = roof.joined(&part, &other).expect("one line");
+            assert!(covers(&joined.segment, &part.segment));
         }
-        let line = extended(&roof.context(), &long, &short);
-        let edge = planted::edges()[2];
-        assert!((line.segment.p0 - edge.p0).norm() < 1e-6);
-        assert!((line.segment.p1 - edge.p1).norm() < 1e-6);
-        for support in &line.supports {
-            let view = support.view.index();
-            let end = if view < 3 { 1.0 } else { 0.95 };
-            let expected = planted::part_of(&roof.scene, view, 2, 0.0, end);
-            assert!((support.stretch.p0 - expected.p0).norm() < 0.05);
-            assert!((support.stretch.p1 - expected.p1).norm() < 0.05);
-        }
-        // Of as many views the more certain one stays, and one that hardly overlaps is not absorbed.
-        let vague = roof.line(2, [0.0, 0.95], &ALL, (0, 0.3));
-        let [line, _] = absorbing(&vague, &long).expect("the same places");
-        assert!(line.fit.sigma_at(0.5) < vague.fit.sigma_at(0.5));
-        let half = roof.line(2, [0.5, 1.0], &ALL, NOWHERE);
-        assert!(absorbing(&roof.line(2, [0.0, 0.6], &ALL, NOWHERE), &half).is_none());
     }
 
     #[test]

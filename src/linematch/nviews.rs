@@ -429,7 +429,7 @@ impl Context<'_> {
     /// The last tests of a completed line, with the stretch t0 to t1 (metres) of the fit.
     ///
     /// Of four of six views (B99 3.4) three do for now, where their mean score is what a pair must have by itself: how many can
-    /// see the line, the finished model will know, and it then asks for the fourth ([`crate::roof::refuted_lines`]).
+    /// see the line, the finished model will know, and it then asks for the fourth ([`crate::roof::judge_lines`]).
     fn check_line(
         &self,
         fit: LineFit,

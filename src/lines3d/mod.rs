@@ -50,7 +50,7 @@ impl LineOrigin {
     }
 }
 
-/// Why the finished model leaves a line out ([`crate::roof::refuted_lines`]).
+/// Why the finished model leaves a line out ([`crate::roof::judge_lines`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Refutation {
@@ -62,6 +62,8 @@ pub enum Refutation {
     Afloat,
     /// Three views show it where six can see it.
     TooFewViews,
+    /// Another line runs along it and is seen by more views, or is more certain.
+    Repeated,
 }
 
 /// A reconstructed 3D line.

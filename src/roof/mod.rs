@@ -7,6 +7,7 @@ mod occluders;
 mod reconstruct;
 mod refine;
 mod refuted;
+mod repeated;
 mod solid;
 mod surfaces;
 

@@ -19,6 +19,7 @@
 use nalgebra::Point3;
 
 use super::new_lines::new_lines;
+use super::repeated::repeated_lines;
 use super::surfaces::{Surfaces, share};
 use super::{Facet, Ground, Occluders, RoofModel};
 use crate::ids::{LineId, ViewId};
@@ -59,6 +60,10 @@ pub fn judge_lines(
     let mut judged = lines.to_vec();
     for (id, why) in &refuted {
         judged[id.index()].refuted = Some(*why);
+    }
+    for id in repeated_lines(scene, &judged, params.matching.gate_px) {
+        refuted.push((id, Refutation::Repeated));
+        judged[id.index()].refuted = Some(Refutation::Repeated);
     }
     let new = new_lines(scene, &judged, model, &params.matching, &params.lines3d);
     let number = |id: LineId| LineId::from_index(lines.len() + id.index());

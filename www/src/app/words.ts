@@ -66,6 +66,7 @@ export const REFUTATION_WORDS: Record<Refutation, string> = {
   underground: "it goes into the ground",
   afloat: "it lies on no surface, and too few views are certain of it",
   too_few_views: "three views show it where six can see it",
+  repeated: "a better line runs along it",
 };
 
 export const RELATION_WORDS: Record<TestedRelation["kind"], string> = {

@@ -85,7 +85,7 @@ export type Covariance = readonly [number, number, number, number, number, numbe
 export type LineOrigin = "matched" | "clustered" | "intersection" | "border";
 
 /** Why the finished model leaves a line out. */
-export type Refutation = "hidden" | "underground" | "afloat" | "too_few_views";
+export type Refutation = "hidden" | "underground" | "afloat" | "too_few_views" | "repeated";
 
 export interface LineRecord {
   origin: LineOrigin;
