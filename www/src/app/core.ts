@@ -4,7 +4,7 @@ import type { SceneInfo } from "../shared/results";
 import { Crew } from "./crew";
 import { Engine, EngineError } from "./engine";
 import { linkedParams } from "./link";
-import { failureNotice } from "./notices";
+import { failureNotice, withNotice } from "./notices";
 import { paramsOf } from "./paramForm";
 import { loadOptions } from "./runOptions";
 import {
@@ -65,7 +65,7 @@ let lastNotice = 0;
 
 export function notify(notice: Omit<Notice, "id">): void {
   lastNotice += 1;
-  notices.value = [...notices.value, { ...notice, id: lastNotice }];
+  notices.value = withNotice(notices.value, { ...notice, id: lastNotice });
 }
 
 export function dismiss(id: number): void {

@@ -42,3 +42,10 @@ export function splitAdvice(message: string): { text: string; advice?: string } 
   const advice = message.slice(at + 2);
   return { text: message.slice(0, at), advice: advice.charAt(0).toUpperCase() + advice.slice(1) };
 }
+
+/** The notices with another one, which stands for one that says the same. */
+export function withNotice(shown: Notice[], added: Notice): Notice[] {
+  const same = ({ severity, title, text }: Notice) =>
+    severity === added.severity && title === added.title && text === added.text;
+  return [...shown.filter((notice) => !same(notice)), added];
+}

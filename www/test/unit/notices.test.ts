@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { failureNotice, splitAdvice } from "../../src/app/notices";
+import { failureNotice, splitAdvice, withNotice } from "../../src/app/notices";
 import type { DoctorReport } from "../../src/shared/results";
 
 describe("splitAdvice", () => {
@@ -42,5 +42,13 @@ describe("the doctor's finding", () => {
     const notice = failureNotice("upside down; export again", "input", { ...report, mistake: null });
     expect(notice.advice).toBe("Export again");
     expect(failureNotice("fewer than three views; add some", "input")).not.toHaveProperty("doctor");
+  });
+});
+
+describe("withNotice", () => {
+  it("shows once what is said again, and last", () => {
+    const notice = (id: number, text: string) => ({ id, severity: "error" as const, title: "Refused", text });
+    const shown = withNotice([notice(1, "too low"), notice(2, "too dark")], notice(3, "too low"));
+    expect(shown.map(({ id }) => id)).toEqual([2, 3]);
   });
 });
