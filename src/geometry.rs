@@ -134,6 +134,18 @@ impl Segment3 {
         self.p0 + (self.p1 - self.p0) * t
     }
 
+    /// First and last place of another segment along this one, metres from its start.
+    pub fn span_of(&self, other: &Self) -> [f64; 2] {
+        let [t0, t1] = [other.p0, other.p1].map(|p| (p - self.p0).dot(&self.direction()));
+        [t0.min(t1), t0.max(t1)]
+    }
+
+    /// Does this one run along at least a share of another's length?
+    pub fn covers(&self, other: &Self, share: f64) -> bool {
+        let [from, to] = self.span_of(other);
+        to.min(self.length()) - from.max(0.0) >= share * other.length()
+    }
+
     /// Distance in metres from `point` to the infinite line through the segment.
     pub fn line_distance(&self, point: &Point3<f64>) -> f64 {
         (point - self.p0).cross(&self.direction()).norm()

@@ -10,8 +10,7 @@ use super::guided::GuidedEdge;
 use super::nviews::{Context, Line, Taken, complete_line};
 use super::select::{Fate, Selection};
 use super::sight::SegmentRef;
-use crate::geometry::Segment3;
-use crate::lines3d::ProjectedLine;
+use crate::lines3d::{Gate, ProjectedLine};
 
 /// A line less certain than this many pixels at another's edge (one standard deviation) tells nothing of it.
 const MAX_SIGMA_PX: f64 = 2.0;
@@ -66,7 +65,7 @@ fn join(context: &Context, a: &Line, b: &Line, taken: Taken) -> Option<Line> {
 /// Does a line show nothing that another one does not, neither a view nor a stretch?
 fn repeats(line: &Line, other: &Line) -> bool {
     let supports = |view| other.supports.iter().any(|s| s.view == view);
-    line.supports.iter().all(|s| supports(s.view)) && covers(&other.segment, &line.segment)
+    line.supports.iter().all(|s| supports(s.view)) && other.segment.covers(&line.segment, COVERED)
 }
 
 /// Is a line that was completed from the segments of two those two?
@@ -74,14 +73,8 @@ fn is_both(context: &Context, line: &Line, parts: [&Line; 2]) -> bool {
     parts.iter().all(|part| {
         line.supports.len() >= part.supports.len()
             && reprojects(context, line, part)
-            && covers(&line.segment, &part.segment)
+            && line.segment.covers(&part.segment, COVERED)
     })
-}
-
-/// First and last place of a part along a line, metres from its start.
-fn along(line: &Segment3, part: &Segment3) -> [f64; 2] {
-    let [t0, t1] = [part.p0, part.p1].map(|p| (p - line.p0).dot(&line.direction()));
-    [t0.min(t1), t0.max(t1)]
 }
 
 fn segments(line: &Line) -> impl Iterator<Item = SegmentRef> + '_ {
@@ -98,7 +91,7 @@ fn near(context: &Context, a: &Line, b: &Line) -> bool {
         .scene
         .camera(a.supports[0].view)
         .ground_pixel(&a.segment.p0);
-    let [from, to] = along(&a.segment, &b.segment);
+    let [from, to] = a.segment.span_of(&b.segment);
     let gap_m = (from - a.segment.length()).max(-to);
     gap_m <= context.params.max_gap_px * pixel_m
         && a.segment.direction().dot(&b.segment.direction()).abs() >= PARALLEL
@@ -107,27 +100,19 @@ fn near(context: &Context, a: &Line, b: &Line) -> bool {
 /// Does the image of a line lie on the edges of another, in two of three views that show one?
 fn reprojects(context: &Context, line: &Line, onto: &Line) -> bool {
     let length = line.fit.line.length();
+    let covariance_at = |t: f64| line.fit.covariance_at(t / length);
+    let gate = Gate {
+        width_px: context.params.gate_px,
+        max_sigma_px: MAX_SIGMA_PX,
+    };
     let lies_on = |edge: &GuidedEdge| {
-        let camera = context.scene.camera(edge.view);
-        ProjectedLine::new(camera, &line.fit.line).is_some_and(|image| {
-            [edge.segment.p0, edge.segment.p1].iter().all(|x| {
-                let t = image.t_of(x);
-                let sigma = image.sigma_px(t, &line.fit.covariance_at(t / length));
-                let (gate, off) = (context.params.gate_px, image.distance(x));
-                sigma <= MAX_SIGMA_PX && off * off <= gate * gate + 9.0 * sigma * sigma
-            })
-        })
+        let image = ProjectedLine::new(context.scene.camera(edge.view), &line.fit.line);
+        image.is_some_and(|image| image.holds(&edge.segment, gate, covariance_at))
     };
     let edges: Vec<bool> = (onto.supports.iter().filter_map(|s| s.edge.as_ref()))
         .map(lies_on)
         .collect();
     3 * edges.iter().filter(|on| **on).count() >= 2 * edges.len()
-}
-
-/// Does a line run along most of another?
-fn covers(line: &Segment3, part: &Segment3) -> bool {
-    let [from, to] = along(line, part);
-    to.min(line.length()) - from.max(0.0) >= COVERED * part.length()
 }
 
 impl Selection {
@@ -152,43 +137,15 @@ impl Selection {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Segment2;
+    use crate::geometry::{Segment2, Segment3};
     use crate::ids::{SegmentId, ViewId};
-    use crate::linematch::sight::Sights;
-    use crate::linematch::{LineSupport, SupportKind, planted};
-    use crate::lines2d::{ImageSegment, SegmentKind};
+    use crate::linematch::planted::{self, Roof};
+    use crate::linematch::{LineSupport, SupportKind};
+    use crate::lines2d::SegmentKind;
     use crate::lines3d::{Observation, fit_line};
-    use crate::params::{Lines3dParams, MatchParams};
-    use crate::scene::Scene;
     use nalgebra::Matrix2;
 
-    /// The flat roof, whose segments have the number of their edge.
-    struct Roof {
-        scene: Scene,
-        segments: Vec<Vec<ImageSegment>>,
-        sights: Sights,
-        params: MatchParams,
-        fitting: Lines3dParams,
-    }
-
     impl Roof {
-        fn new() -> Self {
-            let scene = planted::scene();
-            let segments = planted::segments(&scene);
-            Self {
-                sights: Sights::new(&scene, &segments),
-                scene,
-                segments,
-                params: MatchParams::default(),
-                fitting: Lines3dParams::default(),
-            }
-        }
-
-        fn context(&self) -> Context<'_> {
-            let params = (&self.params, &self.fitting);
-            Context::of_planted(&self.scene, &self.segments, &self.sights, params)
-        }
-
         /// The line through a part of an edge as some views show it, whose edges are `beside_px` off in the view that is named.
         fn line(
             &self,
@@ -256,7 +213,7 @@ mod tests {
         for (a, b) in [(&outward, &back), (&first, &second), (&second, &first)] {
             let line = roof.joined(a, b).expect("one line");
             assert_eq!(line.supports.len(), 5);
-            assert!(covers(&line.segment, &whole), "{:?}", line.segment);
+            assert!(line.segment.covers(&whole, COVERED), "{:?}", line.segment);
             assert!(whole.line_distance(&line.segment.at(0.5)) < 0.05);
         }
         let far = roof.line(2, [0.8, 1.0], &ALL, NOWHERE);
@@ -302,7 +259,7 @@ mod tests {
         for other in [fewer, shorter] {
             assert!(!repeats(&part, &other));
             let joined = roof.joined(&part, &other).expect("one line");
-            assert!(covers(&joined.segment, &part.segment));
+            assert!(joined.segment.covers(&part.segment, COVERED));
         }
     }
 
@@ -330,7 +287,7 @@ mod tests {
         assert_eq!(selection.fates[4], Fate::Lost(0));
         let edges = planted::edges();
         for (line, edge) in selection.lines.iter().zip([2, 0, 1]) {
-            assert!(covers(&line.segment, &edges[edge]), "edge {edge}");
+            assert!(line.segment.covers(&edges[edge], COVERED), "edge {edge}");
         }
     }
 }

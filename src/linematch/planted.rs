@@ -3,10 +3,13 @@
 
 use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector3};
 
+use super::nviews::Context;
+use super::sight::Sights;
 use crate::camera::Camera;
 use crate::geometry::{Segment2, Segment3};
 use crate::lines2d::{ImageSegment, SegmentKind};
 use crate::orientation::rotation_from_axis_angle;
+use crate::params::{Lines3dParams, MatchParams};
 use crate::raster::Gray;
 use crate::scene::{Scene, View};
 
@@ -68,7 +71,7 @@ fn texture(x: f64, y: f64) -> f64 {
 
 /// What lies above the ground.
 #[derive(Clone, Copy)]
-enum Roof {
+enum Cover {
     /// A flat roof, [`edges`].
     Flat,
     /// The same, darker, with a bright bar on it, [`bar`].
@@ -77,7 +80,7 @@ enum Roof {
     Gable,
 }
 
-impl Roof {
+impl Cover {
     /// The grey value of the roof that a ray meets; `None` where it passes.
     fn seen(self, camera: &Camera, x: &Point2<f64>) -> Option<f64> {
         let inside = |p: &Point3<f64>| p.x.abs() <= HALF[0] && p.y.abs() <= HALF[1];
@@ -104,7 +107,7 @@ impl Roof {
 }
 
 /// Four by four samples a pixel: an edge is where it is, not where the nearest pixel begins.
-fn render(camera: &Camera, roof: Roof) -> Gray {
+fn render(camera: &Camera, roof: Cover) -> Gray {
     let seen = |x: &Point2<f64>| {
         roof.seen(camera, x).unwrap_or_else(|| {
             let ground = camera.at_height(x, 0.0).unwrap();
@@ -132,12 +135,12 @@ const PLACES: [(f64, f64, f64); 5] = [
 
 /// The flat roof.
 pub fn scene() -> Scene {
-    scene_of(&PLACES, |camera| render(camera, Roof::Flat))
+    scene_of(&PLACES, |camera| render(camera, Cover::Flat))
 }
 
 /// The same with a darker roof and on it a bright bar, [`bar`].
 pub fn scene_with_bar() -> Scene {
-    scene_of(&PLACES, |camera| render(camera, Roof::Bar))
+    scene_of(&PLACES, |camera| render(camera, Cover::Bar))
 }
 
 /// A gable roof from three times as far apart: views 0 and 1 of one strip, 2 of another, turned by 180 degrees.
@@ -147,7 +150,7 @@ pub fn gable() -> Scene {
         (120.0, 20.0, 0.01),
         (110.0, 50.0, 3.13),
     ];
-    scene_of(&places, |camera| render(camera, Roof::Gable))
+    scene_of(&places, |camera| render(camera, Cover::Gable))
 }
 
 /// The views of [`scene`], black.
@@ -245,4 +248,39 @@ pub fn segments(scene: &Scene) -> Vec<Vec<ImageSegment>> {
             found
         })
         .collect()
+}
+
+/// The flat roof with what its matching needs; the first segments of each view have the number of their edge.
+pub struct Roof {
+    /// Its views.
+    pub scene: Scene,
+    /// [`segments`].
+    pub segments: Vec<Vec<ImageSegment>>,
+    /// The same, prepared.
+    pub sights: Sights,
+    /// Defaults.
+    pub params: MatchParams,
+    /// Defaults.
+    pub fitting: Lines3dParams,
+}
+
+impl Roof {
+    /// [`scene`].
+    pub fn new() -> Self {
+        let scene = scene();
+        let segments = segments(&scene);
+        Self {
+            sights: Sights::new(&scene, &segments),
+            scene,
+            segments,
+            params: MatchParams::default(),
+            fitting: Lines3dParams::default(),
+        }
+    }
+
+    /// That of a first pass.
+    pub fn context(&self) -> Context<'_> {
+        let params = (&self.params, &self.fitting);
+        Context::of_planted(&self.scene, &self.segments, &self.sights, params)
+    }
 }

@@ -179,11 +179,9 @@ mod tests {
     use crate::geometry::Segment3;
     use crate::ids::{SegmentId, ViewId};
     use crate::linematch::pairs::{PairScope, match_pairs};
-    use crate::linematch::planted;
-    use crate::linematch::sight::{Alike, Sights};
+    use crate::linematch::planted::{self, Roof};
+    use crate::linematch::sight::Alike;
     use crate::linematch::triples::{Verification, verify_pairs};
-    use crate::params::{Lines3dParams, MatchParams};
-    use crate::scene::Scene;
 
     const Z_RANGE: [f64; 2] = [-2.0, 8.0];
     const ALIKE: Alike = Alike {
@@ -191,37 +189,7 @@ mod tests {
         kind: true,
     };
 
-    /// The flat roof, whose segments have the number of their edge.
-    struct Roof {
-        scene: Scene,
-        segments: Vec<Vec<ImageSegment>>,
-        sights: Sights,
-        params: MatchParams,
-        fitting: Lines3dParams,
-    }
-
     impl Roof {
-        fn new() -> Self {
-            let scene = planted::scene();
-            let segments = planted::segments(&scene);
-            Self {
-                sights: Sights::new(&scene, &segments),
-                scene,
-                segments,
-                params: MatchParams::default(),
-                fitting: Lines3dParams::default(),
-            }
-        }
-
-        fn context(&self) -> Context<'_> {
-            Context::of_planted(
-                &self.scene,
-                &self.segments,
-                &self.sights,
-                (&self.params, &self.fitting),
-            )
-        }
-
         fn select(&self, pairs: &Pairs, bundles: &[Bundle], mut selection: Selection) -> Selection {
             winner_takes_all(
                 &self.context(),

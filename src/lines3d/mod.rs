@@ -12,7 +12,7 @@ mod projection;
 pub(crate) use extent::doubly_covered;
 pub use fit::{Carrier, LineFit, Observation, conditioning, fit_line, fit_line_on, line_of_planes};
 pub(crate) use fit::{Weighted, line_frame};
-pub use projection::ProjectedLine;
+pub use projection::{Gate, ProjectedLine};
 
 use nalgebra::{Matrix3, Point3};
 use serde::{Deserialize, Serialize};

@@ -20,6 +20,15 @@ pub struct ProjectedLine {
     pub line: Vector3<f64>,
 }
 
+/// How near a segment must be to a line's image, for [`ProjectedLine::holds`].
+#[derive(Clone, Copy, Debug)]
+pub struct Gate {
+    /// Beside three standard deviations of the line, px.
+    pub width_px: f64,
+    /// A line less certain than this tells nothing, px (one standard deviation).
+    pub max_sigma_px: f64,
+}
+
 impl ProjectedLine {
     /// The image of the line; `None` where an end of the segment is not in front of the camera or
     /// the camera looks along it.
@@ -61,6 +70,22 @@ impl ProjectedLine {
     pub fn sigma_px(&self, t: f64, covariance: &Matrix3<f64>) -> f64 {
         let gradient = self.m.tr_mul(&self.line) / (self.a.z + t * self.b.z);
         gradient.dot(&(covariance * gradient)).max(0.0).sqrt()
+    }
+
+    /// Do both ends of a segment lie on the image line, as near as a gate and three standard deviations of the line there?
+    /// `covariance_at` is that of the line's point at `t` metres, m^2.
+    pub fn holds(
+        &self,
+        segment: &Segment2,
+        gate: Gate,
+        covariance_at: impl Fn(f64) -> Matrix3<f64>,
+    ) -> bool {
+        [segment.p0, segment.p1].iter().all(|x| {
+            let t = self.t_of(x);
+            let (sigma, off) = (self.sigma_px(t, &covariance_at(t)), self.distance(x));
+            sigma <= gate.max_sigma_px
+                && off * off <= gate.width_px * gate.width_px + 9.0 * sigma * sigma
+        })
     }
 }
 

@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use crate::ids::LineId;
 use crate::linematch::GuidedEdge;
-use crate::lines3d::{Line3d, ProjectedLine};
+use crate::lines3d::{Gate, Line3d, ProjectedLine};
 use crate::scene::Scene;
 
 /// Least share of a line along which a better one runs.
@@ -50,25 +50,19 @@ fn by_worth(a: &Line3d, b: &Line3d) -> Ordering {
 /// Does a line run along most of another, parallel to it?
 fn runs_along(line: &Line3d, part: &Line3d) -> bool {
     let (line, part) = (&line.segment, &part.segment);
-    let direction = line.direction();
-    let [t0, t1] = [part.p0, part.p1].map(|p| (p - line.p0).dot(&direction));
-    let common = t0.max(t1).min(line.length()) - t0.min(t1).max(0.0);
-    common >= COVERED * part.length() && direction.dot(&part.direction()).abs() >= PARALLEL
+    line.covers(part, COVERED) && line.direction().dot(&part.direction()).abs() >= PARALLEL
 }
 
 /// Does the image of a line lie on the edges of another, in two of three views that show one?
 fn lies_on(scene: &Scene, line: &Line3d, onto: &Line3d, gate_px: f64) -> bool {
+    let gate = Gate {
+        width_px: gate_px,
+        max_sigma_px: f64::INFINITY,
+    };
+    let nearer_end = |t: f64| line.covariance[usize::from(t > 0.5 * line.segment.length())];
     let on_edge = |edge: &GuidedEdge| {
         let image = ProjectedLine::new(scene.camera(edge.view), &line.segment);
-        image.is_some_and(|image| {
-            [edge.segment.p0, edge.segment.p1].iter().all(|x| {
-                let t = image.t_of(x);
-                let end = usize::from(t > 0.5 * line.segment.length());
-                let sigma = image.sigma_px(t, &line.covariance[end]);
-                let off = image.distance(x);
-                off * off <= gate_px * gate_px + 9.0 * sigma * sigma
-            })
-        })
+        image.is_some_and(|image| image.holds(&edge.segment, gate, nearer_end))
     };
     let edges = onto.supports.iter().filter_map(|s| s.edge.as_ref());
     let (on, all) = edges.fold((0, 0), |(on, all), edge| {
