@@ -1,6 +1,6 @@
 //! Why an input was refused: which file, which line, what was expected, what to do.
 
-use crate::doctor;
+use crate::agreement::AgreementReport;
 
 /// A refusal. Every message names the file and says what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -43,7 +43,7 @@ pub enum Error {
         /// What to do.
         advice: String,
         /// What the images were asked, and what they answered.
-        report: Box<doctor::Report>,
+        report: Box<AgreementReport>,
     },
 }
 

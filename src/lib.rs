@@ -25,6 +25,7 @@
 //! would draw. [`pipeline`] alone orders the stages.
 
 pub mod adjust;
+pub mod agreement;
 pub mod camera;
 pub mod diagrams;
 pub mod doctor;

@@ -15,14 +15,13 @@
 mod system;
 
 use nalgebra::{Point2, Vector2, Vector3};
-use serde::{Deserialize, Serialize};
 
 use crate::camera::Camera;
 use crate::lines3d::Line3d;
 use crate::math;
 use crate::orientation::rotation_from_axis_angle;
 use crate::params::Lines3dParams;
-use crate::scene::Scene;
+use crate::scene::{Scene, ViewAdjustment};
 use system::{Bundle, State};
 
 /// Share of the cost that freeing a view must take away. Assumption: sound scenes show at most 0.025, rendered and real.
@@ -52,25 +51,6 @@ impl PoseChange {
             ..camera.clone()
         }
     }
-}
-
-/// What the adjustment found of a view.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ViewAdjustment {
-    /// Mean motion of the images of its lines, pixels, x right, y down; 0 for views that stay where they are.
-    pub motion_px: [f64; 2],
-    /// Its root mean square, pixels.
-    pub rms_motion_px: f64,
-    /// Angle of the turn, degrees.
-    pub turn_deg: f64,
-    /// Length of the move, metres.
-    pub move_m: f64,
-    /// Median distance of its edges from the images of their lines as stated, pixels.
-    pub before_px: f64,
-    /// The same after the adjustment.
-    pub after_px: f64,
-    /// Number of edges.
-    pub edges: usize,
 }
 
 /// Adjusts the cameras of a scene to its matched lines; the cameras, and one record for each view. Where no view stands

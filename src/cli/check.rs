@@ -4,7 +4,7 @@ use std::path::Path;
 
 use nalgebra::Matrix3;
 use ridgeline::Error;
-use ridgeline::doctor::{Finding, Report};
+use ridgeline::agreement::{AgreementReport, Finding};
 use ridgeline::pipeline::load_adjusted;
 use ridgeline::scene::Scene;
 use serde_json::{Value, json};
@@ -81,7 +81,7 @@ fn words(scene: &Scene) -> String {
     text
 }
 
-fn found(report: &Report) -> String {
+fn found(report: &AgreementReport) -> String {
     let finding = match report.finding {
         Finding::Sound => "images and orientation agree",
         Finding::Unknown => "the images show too little to tell",

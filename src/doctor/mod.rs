@@ -19,17 +19,16 @@ mod report;
 mod shifts;
 mod suspects;
 
-pub use report::{Finding, Report, Trial};
-pub use shifts::ViewShift;
+pub use crate::agreement::{Agreement, AgreementReport, Finding, Trial};
 pub use suspects::{AngleOrder, Sequence, Suspect};
 
 use nalgebra::{Matrix3, Point2, Vector2, Vector3};
-use serde::Serialize;
 
 use crate::camera::Camera;
 use crate::orientation::Crop;
 use crate::parallel;
 use crate::raster::Gray;
+use crate::scene::ViewShift;
 use crate::sorting::sort_by;
 use epipolar::{MARGIN, Reduced, SHIFTS, best_place};
 use points::interest_points;
@@ -49,16 +48,6 @@ pub struct Patient<'a> {
     pub angles: Option<[f64; 3]>,
     /// The part of the frame that the image is, where the file states it.
     pub crop: Option<Crop>,
-}
-
-/// How well images and orientation agree.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Agreement {
-    /// Points that were found again, on any line.
-    pub points: usize,
-    /// Of these, the share found on the epipolar line, less what chance puts there: about 0 for a wrong orientation, 1
-    /// for a perfect one; the lower end of its confidence interval.
-    pub score: f64,
 }
 
 /// What the doctor found.

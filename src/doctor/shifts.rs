@@ -16,13 +16,13 @@
 //! by one, the one first that helps most, as long as it helps much; most views stay where they are.
 
 use nalgebra::{Point2, Vector2};
-use serde::{Deserialize, Serialize};
 
 use super::fine::{Place as Pair, Places};
 use super::network::{Network, Scale};
 use super::{Clinic, epipolar, mean_axis};
 use crate::camera::Camera;
 use crate::parallel;
+use crate::scene::ViewShift;
 
 /// Places in the images as they are. Assumption: 0.2 px is what correlation of 9 x 9 windows reaches on roofs and ground.
 const FINE: Scale = Scale {
@@ -49,21 +49,6 @@ const LEAST_COARSE_PX: f64 = 1.5;
 
 /// Larger shifts are no small errors, pixels.
 const MOST_PX: f64 = 20.0;
-
-/// Shift of a view against the others.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ViewShift {
-    /// To be added to the principal point, pixels, x right, y down.
-    pub shift_px: [f64; 2],
-    /// Its standard deviation, pixels; 0 for views that were not shifted.
-    pub sigma_px: f64,
-    /// Median distance of the view's places from where the world points project, as stated, pixels.
-    pub before_px: f64,
-    /// The same with the shifts.
-    pub after_px: f64,
-    /// Number of places.
-    pub places: usize,
-}
 
 impl ViewShift {
     /// Is there a shift that is worth a word: seen beyond doubt, and no more than small?

@@ -32,6 +32,7 @@ mod select;
 mod sight;
 mod strip;
 mod trace;
+mod track;
 mod triples;
 
 pub use guided::{GuidedEdge, measure_edge};
@@ -40,11 +41,10 @@ pub(crate) use profile::AROUND_EDGE_PX;
 pub use sight::{SegmentRef, epipolar_beam};
 pub use strip::EdgelScore;
 pub use trace::{MatchTrace, PairTrace, SegmentOutcome, StepCount};
+pub use track::{LineMatch, LineSupport, SupportKind};
 pub use triples::Verification;
 
 use std::ops::Range;
-
-use serde::{Deserialize, Serialize};
 
 use nviews::Context;
 use pairs::{PairScope, Pairs};
@@ -52,8 +52,6 @@ use select::Selection;
 use sight::Alike;
 use triples::Bundle;
 
-use crate::geometry::Segment2;
-use crate::ids::{SegmentId, ViewId};
 use crate::lines2d::ImageSegment;
 use crate::parallel::SILENT;
 use crate::params::{Lines3dParams, MatchParams};
@@ -192,48 +190,6 @@ pub fn scene_heights(scene: &Scene, segments: &[Vec<ImageSegment>]) -> [f64; 2] 
     height::height_range(scene, &sights).map_or_else(|| height::any_height(scene), |range| range.z)
 }
 
-/// How a stretch of a line came to be part of a match (the page colours it so).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum SupportKind {
-    /// A detected segment, matched.
-    Matched,
-    /// A detected segment joined to another one across a gap (B99 3.3, merging).
-    Merged,
-    /// Extended past the detected end, or found by correlation alone (B99 3.3, growing).
-    Grown,
-}
-
-/// The evidence for a line in one view.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LineSupport {
-    /// The view.
-    pub view: ViewId,
-    /// The detected segments that belong to the line in this view; none where the line was
-    /// verified by correlation alone.
-    pub segments: Vec<SegmentId>,
-    /// The stretch of the line that is supported in this view, pixels, same direction as the 3D
-    /// line.
-    pub stretch: Segment2,
-    /// Photometric score, 0 to 1.
-    pub score: f64,
-    /// How it was found.
-    pub kind: SupportKind,
-    /// The edge measured along the line, which the 3D line is fitted to; `None` where correlation alone
-    /// supports it.
-    #[serde(skip)]
-    pub edge: Option<GuidedEdge>,
-}
-
-/// A line matched over at least three views.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LineMatch {
-    /// Supports, at most one a view, ordered by view.
-    pub supports: Vec<LineSupport>,
-    /// Mean photometric score, 0 to 1.
-    pub score: f64,
-}
-
 impl From<nviews::Line> for LineMatch {
     fn from(line: nviews::Line) -> Self {
         let sum: f64 = line.supports.iter().map(|s| s.score).sum();
@@ -250,6 +206,8 @@ pub(crate) mod planted;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Segment2;
+    use crate::ids::SegmentId;
     use crate::lines2d::SegmentKind;
     use crate::lines3d::{Line3d, reconstruct_lines};
 

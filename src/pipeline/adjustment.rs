@@ -3,10 +3,10 @@
 
 use super::{Run, Stage, before};
 use crate::Result;
-use crate::adjust::{ViewAdjustment, adjust_views};
+use crate::adjust::adjust_views;
 use crate::params::{Method, Params};
 use crate::progress::silent;
-use crate::scene::Scene;
+use crate::scene::{Scene, ViewAdjustment};
 use crate::scene_loader::{InputFile, LoadOptions, load_scene};
 
 /// Rounds of matching and adjusting.

@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::{Run, Stage, StageSummary};
-use crate::adjust::ViewAdjustment;
-use crate::doctor::ViewShift;
 use crate::params::Params;
+use crate::scene::{ViewAdjustment, ViewShift};
 
 /// The content of `report.json`.
 #[derive(Serialize)]

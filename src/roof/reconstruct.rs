@@ -3,30 +3,14 @@
 use serde::Serialize;
 
 use super::{
-    Facet, Ground, Parting, RefineTrace, RoofModel, SolidTrace, close_buildings, part_roofs,
+    Facet, Parting, RefineTrace, RoofEvidence, RoofModel, SolidTrace, close_buildings, part_roofs,
     refine_roofs,
 };
-use crate::halfplane::{FacetTrace, HalfPlane, ProposedPlane, reconstruct_facets};
+use crate::halfplane::{FacetTrace, reconstruct_facets};
 use crate::ids::LineId;
-use crate::lines2d::ImageSegment;
 use crate::lines3d::{Line3d, Refutation};
 use crate::params::RoofParams;
 use crate::scene::Scene;
-
-/// What roofs are made of.
-#[derive(Clone, Copy, Debug)]
-pub struct RoofEvidence<'a> {
-    /// Segments of each view, in the order of the views.
-    pub segments: &'a [Vec<ImageSegment>],
-    /// 3D lines.
-    pub lines: &'a [Line3d],
-    /// Half-planes at them.
-    pub half_planes: &'a [HalfPlane],
-    /// Where the ground is.
-    pub ground: &'a Ground,
-    /// Planes that the other method proposes; none in method "lines".
-    pub rectangles: &'a [ProposedPlane],
-}
 
 /// What happened on the way from half-planes to buildings.
 #[derive(Clone, Debug, Default, Serialize)]

@@ -6,7 +6,7 @@
 
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
-use super::input::InputFile;
+use super::input_file::InputFile;
 use super::names::listed;
 use super::plan::PlannedView;
 use crate::Error;

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::input::{InputFile, LoadOptions};
+use super::input::LoadOptions;
+use super::input_file::InputFile;
 use super::plan::Plan;
 use crate::orientation::FileKind;
 

@@ -16,6 +16,7 @@
 mod archive;
 mod checks;
 mod input;
+mod input_file;
 mod inspect;
 mod names;
 mod plan;
@@ -25,7 +26,8 @@ mod treatment;
 mod verdict;
 
 pub use archive::unpack;
-pub use input::{InputFile, LoadOptions};
+pub use input::LoadOptions;
+pub use input_file::InputFile;
 pub use inspect::{FileReport, ImageReport, Inspection, OrientationReport, inspect_files};
 pub use project::{Project, open_project};
 

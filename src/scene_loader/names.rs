@@ -1,6 +1,6 @@
 //! How images and orientations find each other by name, and how messages list names.
 
-use super::input::{base_name, stem};
+use super::input_file::{base_name, stem};
 use crate::orientation::Orientation;
 
 /// How well a name in an orientation file fits an image's; less is better, `None` is not at all.

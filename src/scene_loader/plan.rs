@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 
 use super::checks;
-use super::input::{InputFile, LoadOptions, stem};
+use super::input::LoadOptions;
+use super::input_file::{InputFile, stem};
 use super::inspect::OrientationReport;
 use super::names::{best_match, listed, match_rank};
 use super::region;

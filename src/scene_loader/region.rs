@@ -6,7 +6,7 @@
 use nalgebra::{Point2, Point3, Vector3};
 
 use super::checks;
-use super::input::InputFile;
+use super::input_file::InputFile;
 use super::names::listed;
 use super::plan::PlannedView;
 use crate::camera::{Camera, Distortion};

@@ -6,8 +6,10 @@ use super::checks;
 use super::input::LoadOptions;
 use super::names::listed;
 use super::verdict::verdict;
+use crate::agreement::AgreementReport;
 use crate::camera::Camera;
-use crate::doctor::{Diagnosis, Examination, Patient, Report, ViewShift, examine};
+use crate::doctor::{Diagnosis, Examination, Patient, examine};
+use crate::scene::ViewShift;
 use crate::{Error, Result};
 
 /// Cameras as they are to be used, and what was found and done.
@@ -16,7 +18,7 @@ pub(super) struct Treated {
     /// To be added to the origin of the scene: other cameras may stand elsewhere.
     pub origin_change: Vector3<f64>,
     pub shifts: Vec<ViewShift>,
-    pub report: Report,
+    pub report: AgreementReport,
     pub warnings: Vec<String>,
 }
 
@@ -59,7 +61,7 @@ pub(super) fn treat(
     Ok(Treated {
         cameras,
         origin_change,
-        report: Report::new(&found),
+        report: found.report(),
         shifts: found.shifts,
         warnings,
     })

@@ -1,7 +1,7 @@
 //! The doctor's diagnosis in the words of a refusal or a warning.
 
 use super::names::listed;
-use crate::doctor::{Diagnosis, Examination, Patient, Report};
+use crate::doctor::{Diagnosis, Examination, Patient};
 use crate::{Error, Result};
 
 /// A warning, or the refusal of the scene. `refusal` is what the places of the cameras alone gave reason to say.
@@ -14,7 +14,7 @@ pub(super) fn verdict(
     let contradiction = |problem, advice: &str| Error::Contradiction {
         problem,
         advice: advice.to_owned(),
-        report: Box::new(Report::new(examination)),
+        report: Box::new(examination.report()),
     };
     if let Diagnosis::Explained {
         before,

@@ -80,7 +80,7 @@ struct SceneInfo {
     views: Vec<ViewInfo>,
     origin: [f64; 3],
     warnings: Vec<String>,
-    doctor: Option<doctor::Report>,
+    doctor: Option<crate::agreement::AgreementReport>,
 }
 
 /// A view of the scene; its centre in metres, local frame, and its 3 x 4 matrix from there to pixels, row by row.

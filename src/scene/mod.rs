@@ -1,12 +1,13 @@
 //! What a reconstruction starts from: oriented views in one local frame.
 
+mod survey;
+
+pub use survey::{Survey, ViewAdjustment, ViewShift};
+
 use nalgebra::{Matrix3, Vector3};
 
-use crate::adjust::ViewAdjustment;
 use crate::camera::Camera;
-use crate::doctor::{self, ViewShift};
 use crate::ids::ViewId;
-use crate::orientation::Anchor;
 use crate::raster::{Channel, Gray, Warmth, noise_of};
 
 /// One photograph with its orientation.
@@ -50,21 +51,6 @@ impl View {
     }
 }
 
-/// What the files and the images say about the world and about the orientation, beyond the cameras.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Survey {
-    /// EPSG's number of the world's reference system, where it is known.
-    pub epsg: Option<u32>,
-    /// Where on the Earth the world's zero lies, for a world of x east, y north, z up.
-    pub anchor: Option<Anchor>,
-    /// How far each view is shifted against the others, where the images show enough to tell.
-    pub shifts: Vec<ViewShift>,
-    /// How each view was adjusted to its matched lines; empty where nobody asked for it.
-    pub adjustments: Vec<ViewAdjustment>,
-    /// How well the images agree with the orientation that is used; `None` where nobody asked them.
-    pub doctor: Option<doctor::Report>,
-}
-
 /// Oriented views and what is known about the ground.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -78,24 +64,6 @@ pub struct Scene {
     pub warnings: Vec<String>,
     /// Reference system and quality of the orientation.
     pub survey: Survey,
-}
-
-impl Survey {
-    /// What the coordinates of the results are, in words; `None` where the files do not say.
-    pub fn describe(&self) -> Option<String> {
-        let of_anchor = |a: &Anchor| {
-            let Anchor {
-                lon_deg,
-                lat_deg,
-                height_m,
-            } = a;
-            format!(
-                "east, north, up from longitude {lon_deg}, latitude {lat_deg}, ellipsoidal height {height_m} m (WGS84)"
-            )
-        };
-        let of_epsg = self.epsg.map(|epsg| format!("EPSG:{epsg}"));
-        of_epsg.or_else(|| self.anchor.as_ref().map(of_anchor))
-    }
 }
 
 impl Scene {

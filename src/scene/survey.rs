@@ -1,0 +1,73 @@
+//! What is known of a scene beyond its cameras: the reference system, and how good the orientation is.
+
+use serde::{Deserialize, Serialize};
+
+use crate::agreement::AgreementReport;
+use crate::orientation::Anchor;
+
+/// What the files and the images say about the world and about the orientation, beyond the cameras.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Survey {
+    /// EPSG's number of the world's reference system, where it is known.
+    pub epsg: Option<u32>,
+    /// Where on the Earth the world's zero lies, for a world of x east, y north, z up.
+    pub anchor: Option<Anchor>,
+    /// How far each view is shifted against the others, where the images show enough to tell.
+    pub shifts: Vec<ViewShift>,
+    /// How each view was adjusted to its matched lines; empty where nobody asked for it.
+    pub adjustments: Vec<ViewAdjustment>,
+    /// How well the images agree with the orientation that is used; `None` where nobody asked them.
+    pub doctor: Option<AgreementReport>,
+}
+
+impl Survey {
+    /// What the coordinates of the results are, in words; `None` where the files do not say.
+    pub fn describe(&self) -> Option<String> {
+        let of_anchor = |a: &Anchor| {
+            let Anchor {
+                lon_deg,
+                lat_deg,
+                height_m,
+            } = a;
+            format!(
+                "east, north, up from longitude {lon_deg}, latitude {lat_deg}, ellipsoidal height {height_m} m (WGS84)"
+            )
+        };
+        let of_epsg = self.epsg.map(|epsg| format!("EPSG:{epsg}"));
+        of_epsg.or_else(|| self.anchor.as_ref().map(of_anchor))
+    }
+}
+
+/// Shift of a view against the others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ViewShift {
+    /// To be added to the principal point, pixels, x right, y down.
+    pub shift_px: [f64; 2],
+    /// Its standard deviation, pixels; 0 for views that were not shifted.
+    pub sigma_px: f64,
+    /// Median distance of the view's places from where the world points project, as stated, pixels.
+    pub before_px: f64,
+    /// The same with the shifts.
+    pub after_px: f64,
+    /// Number of places.
+    pub places: usize,
+}
+
+/// What the adjustment found of a view.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ViewAdjustment {
+    /// Mean motion of the images of its lines, pixels, x right, y down; 0 for views that stay where they are.
+    pub motion_px: [f64; 2],
+    /// Its root mean square, pixels.
+    pub rms_motion_px: f64,
+    /// Angle of the turn, degrees.
+    pub turn_deg: f64,
+    /// Length of the move, metres.
+    pub move_m: f64,
+    /// Median distance of its edges from the images of their lines as stated, pixels.
+    pub before_px: f64,
+    /// The same after the adjustment.
+    pub after_px: f64,
+    /// Number of edges.
+    pub edges: usize,
+}
