@@ -7,11 +7,12 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use ridgeline::execution::progress::silent;
+use ridgeline::orientation::InputFile;
 use ridgeline::params::Params;
 use ridgeline::pipeline::{Run, Stage};
-use ridgeline::progress::silent;
 use ridgeline::scene::Scene;
-use ridgeline::scene_loader::{InputFile, LoadOptions, load_scene};
+use ridgeline::scene_loader::{LoadOptions, load_scene};
 use ridgeline::synthetic::l_scene;
 
 fn stages(c: &mut Criterion) {

@@ -1,6 +1,6 @@
 //! Finite segments, infinite lines and planes. Points and vectors are nalgebra's.
 
-use nalgebra::{Matrix3, Point, Point2, Point3, SVector, Unit, Vector2, Vector3};
+use nalgebra::{Matrix3, Point, Point2, Point3, Rotation3, SVector, Unit, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::sorting::sort_by;
@@ -302,6 +302,18 @@ pub fn covered(stretches: impl Iterator<Item = [f64; 2]>, within: [f64; 2]) -> f
         end = end.max(b);
     }
     sum
+}
+
+/// The rotation about this axis by its length, radians (Rodrigues).
+pub fn rotation_from_axis_angle(turn: &Vector3<f64>) -> Rotation3<f64> {
+    let angle = turn.norm();
+    if angle < 1e-15 {
+        return Rotation3::identity();
+    }
+    let (sin, cos) = crate::math::sin_cos(angle);
+    let cross = (turn / angle).cross_matrix();
+    let r = Matrix3::identity() + cross * sin + cross * cross * (1.0 - cos);
+    Rotation3::from_matrix_unchecked(r)
 }
 
 #[cfg(test)]

@@ -32,8 +32,8 @@ id! {
     LineId,
     /// An accepted half-plane: index into the list of half-planes.
     HalfPlaneId,
-    /// A roof facet: index into [`crate::roof::RoofModel::facets`].
+    /// A roof facet: index into [`crate::model::RoofModel::facets`].
     FacetId,
-    /// A building: index into [`crate::roof::RoofModel::buildings`].
+    /// A building: index into [`crate::model::RoofModel::buildings`].
     BuildingId,
 }

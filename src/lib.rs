@@ -24,35 +24,38 @@
 //! Each stage is one function from typed input to `(value, Trace)`; the Trace holds what a teacher
 //! would draw. [`pipeline`] alone orders the stages.
 
-pub mod adjust;
+pub mod adjustment;
 pub mod agreement;
+pub mod buildings;
 pub mod camera;
-pub mod diagrams;
-pub mod doctor;
 pub mod error;
+pub mod execution;
 pub mod export;
+pub mod facets;
+pub mod figures;
 pub mod geometry;
-pub mod halfplane;
 pub mod ids;
 pub mod linematch;
 pub mod lines2d;
 pub mod lines3d;
 pub mod math;
+pub mod model;
 pub mod objectspace;
 pub mod orientation;
-pub mod parallel;
+pub mod orientation_check;
 pub mod params;
+pub mod photoconsistency;
 pub mod pipeline;
 pub mod plain_json;
 pub mod plan_index;
-pub mod progress;
+pub mod planes;
 pub mod raster;
-pub mod roof;
 pub mod scene;
 pub mod scene_loader;
-pub mod shares;
+pub mod solids;
 pub mod sorting;
 pub mod synthetic;
+pub mod terrain;
 #[cfg(test)]
 mod testing;
 pub mod texture;
@@ -60,4 +63,4 @@ pub mod tiles;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;
 
-pub use error::{Error, Result};
+pub use crate::error::{Error, Result};

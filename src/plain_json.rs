@@ -179,7 +179,8 @@ impl std::error::Error for Problem {}
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::params::{Acceptance, Params};
+    use crate::params::Acceptance;
+    use crate::params::Params;
     use crate::scene_loader::LoadOptions;
 
     fn problem(text: &str) -> String {

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use crate::geometry::{Plane, Segment3};
 use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
-use crate::roof::Facet;
+use crate::model::Facet;
 
 /// Evenly distributed from 0 to 1: a linear congruential generator (Numerical Recipes 7.1), its upper 24 bits.
 pub fn uniform(seed: u32) -> impl FnMut() -> f64 {

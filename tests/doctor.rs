@@ -5,11 +5,12 @@
 use std::fmt::Write;
 
 use nalgebra::{Matrix3, Vector3};
-use ridgeline::doctor::Finding;
+use ridgeline::agreement::Finding;
+use ridgeline::orientation::InputFile;
 use ridgeline::params::Params;
 use ridgeline::pipeline::{Run, load_adjusted};
 use ridgeline::scene::Scene;
-use ridgeline::scene_loader::{InputFile, LoadOptions, load_scene};
+use ridgeline::scene_loader::{LoadOptions, load_scene};
 use ridgeline::synthetic::{
     gable_scene, l_scene, to_colmap, to_files, to_photogrammetric, to_projection,
 };

@@ -14,10 +14,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use image::{DynamicImage, ImageFormat};
+use ridgeline::orientation::InputFile;
 use ridgeline::orientation::{detect, orientation_sets};
 use ridgeline::raster::{image_header, load_image, load_part};
 use ridgeline::scene_loader::{
-    InputFile, LoadOptions, Project, inspect_files, load_scene, open_project, unpack,
+    LoadOptions, Project, inspect_files, load_scene, open_project, unpack,
 };
 
 /// Longest time that one input may take: machines may be busy, but nothing hangs.

@@ -7,15 +7,16 @@ mod common;
 
 use common::{GOLDEN, SIZE_PX, golden_of, synthetic_files};
 use nalgebra::{Point2, Point3};
+use ridgeline::execution::progress::silent;
+use ridgeline::execution::shard::{Known, Task};
 use ridgeline::geometry::{Plane, Segment3};
 use ridgeline::lines3d::{Line3d, LineOrigin};
+use ridgeline::model::{Facet, check_invariants};
+use ridgeline::orientation::InputFile;
 use ridgeline::params::{Method, Params};
 use ridgeline::pipeline::{PackedView, Run, Stage};
-use ridgeline::progress::silent;
 use ridgeline::raster::Warmth;
-use ridgeline::roof::{Facet, check_invariants};
-use ridgeline::scene_loader::{InputFile, LoadOptions, load_scene};
-use ridgeline::shares::{Known, Task};
+use ridgeline::scene_loader::{LoadOptions, load_scene};
 use ridgeline::synthetic::{SyntheticTruth, l_scene};
 
 /// Accuracy that six views at 8.5 cm ground pixel allow, metres.

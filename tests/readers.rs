@@ -9,8 +9,9 @@
 use nalgebra::{Vector2, Vector3};
 use proptest::prelude::*;
 use ridgeline::Error;
+use ridgeline::orientation::InputFile;
 use ridgeline::orientation::{FileKind, orientation_sets};
-use ridgeline::scene_loader::{InputFile, LoadOptions, inspect_files, load_scene};
+use ridgeline::scene_loader::{LoadOptions, inspect_files, load_scene};
 use ridgeline::synthetic::gable_scene;
 
 macro_rules! fixtures {

@@ -89,7 +89,7 @@ fn polynomial(c: &[f64], t: f64) -> f64 {
 pub fn undistort(photograph: &Photograph, k: &Matrix3<f64>, lens: &Distortion) -> Photograph {
     let (width, height) = photograph.rgb.dimensions();
     let rows: Vec<u32> = (0..height).collect();
-    let lines = crate::parallel::map(&rows, |_, &row| {
+    let lines = crate::execution::map(&rows, |_, &row| {
         let mut colours = Vec::with_capacity(width as usize * 3);
         let mut grays = Vec::with_capacity(width as usize);
         for column in 0..width {

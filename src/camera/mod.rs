@@ -130,7 +130,7 @@ impl Camera {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::orientation::rotation_from_axis_angle;
+    use crate::geometry::rotation_from_axis_angle;
 
     /// A slightly tilted camera with its principal point far outside the image.
     pub(crate) fn crop_camera(x: f64, y: f64, kappa: f64) -> Camera {

@@ -4,7 +4,8 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use ridgeline::scene_loader::{InputFile, unpack};
+use ridgeline::orientation::InputFile;
+use ridgeline::scene_loader::unpack;
 
 use super::Failure;
 

@@ -6,10 +6,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use ridgeline::execution::progress::Listener;
+use ridgeline::orientation::InputFile;
 use ridgeline::params::Params;
 use ridgeline::pipeline::{Run, Stage, load_adjusted};
-use ridgeline::progress::Listener;
-use ridgeline::scene_loader::{InputFile, LoadOptions, Project, inspect_files, open_project};
+use ridgeline::scene_loader::{LoadOptions, Project, inspect_files, open_project};
 
 use super::{Failure, InputArgs, ReconstructArgs, files, table, tiles};
 

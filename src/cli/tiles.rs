@@ -3,9 +3,10 @@
 use std::path::Path;
 use std::time::Instant;
 
+use ridgeline::execution::progress::silent;
+use ridgeline::orientation::InputFile;
 use ridgeline::params::Params;
-use ridgeline::progress::silent;
-use ridgeline::scene_loader::{InputFile, LoadOptions};
+use ridgeline::scene_loader::LoadOptions;
 use ridgeline::tiles::Area;
 
 use super::{Failure, files};

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use super::json::to_bytes;
 use super::{ATLAS_FILE, rounded};
-use crate::roof::{Building, RoofModel, Surface};
+use crate::model::{Building, RoofModel, Surface};
 use crate::scene::Scene;
 use crate::texture::{FaceTexture, TexturedModel};
 

@@ -21,7 +21,7 @@ use gltf_json::{self as gltf, Index};
 use serde_json::{Value, json};
 
 use super::triangulate;
-use crate::roof::{Building, RoofModel, SolidFace, Surface};
+use crate::model::{Building, RoofModel, SolidFace, Surface};
 use crate::scene::Scene;
 use crate::texture::{FaceTexture, TexturedModel};
 

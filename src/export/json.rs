@@ -8,10 +8,10 @@ use serde_json::{Value, json};
 
 use super::rounded;
 use crate::geometry::Segment2;
-use crate::halfplane::HalfPlane;
 use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
+use crate::planes::HalfPlane;
 use crate::scene::Scene;
 
 /// `lines.json`: 3D lines in the order of their ids, with the segment of each view that supports them. Ids of lines that the
@@ -100,6 +100,6 @@ fn segment(s: &Segment2) -> [f64; 4] {
 }
 
 /// Compact JSON. Numbers that are not finite become `null`; keys are in a fixed order.
-pub(super) fn to_bytes(value: &Value) -> Vec<u8> {
+pub(crate) fn to_bytes(value: &Value) -> Vec<u8> {
     serde_json::to_vec(value).expect("a JSON value has string keys only")
 }

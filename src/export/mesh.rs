@@ -10,7 +10,7 @@ use nalgebra::Point3;
 use super::{ATLAS_FILE, rounded, triangulate};
 use crate::ids::LineId;
 use crate::lines3d::Line3d;
-use crate::roof::{RoofModel, Surface};
+use crate::model::{RoofModel, Surface};
 use crate::scene::Scene;
 use crate::texture::TexturedModel;
 
@@ -121,7 +121,7 @@ fn group(surface: Surface) -> String {
 }
 
 /// A point in the world frame of the input, rounded.
-pub(super) fn world(scene: &Scene, p: &Point3<f64>) -> [f64; 3] {
+pub(crate) fn world(scene: &Scene, p: &Point3<f64>) -> [f64; 3] {
     (p + scene.origin)
         .coords
         .map(|v| rounded(v, DECIMALS))
@@ -129,6 +129,6 @@ pub(super) fn world(scene: &Scene, p: &Point3<f64>) -> [f64; 3] {
 }
 
 /// Adds a line.
-pub(super) fn line(text: &mut String, content: std::fmt::Arguments) {
+pub(crate) fn line(text: &mut String, content: std::fmt::Arguments) {
     writeln!(text, "{content}").expect("a String takes all that is written");
 }

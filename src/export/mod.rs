@@ -30,11 +30,11 @@ pub use triangulate::triangulate;
 
 use image::codecs::jpeg::JpegEncoder;
 
-use crate::halfplane::HalfPlane;
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
+use crate::model::RoofModel;
 use crate::params::TextureParams;
-use crate::roof::RoofModel;
+use crate::planes::HalfPlane;
 use crate::scene::Scene;
 use crate::texture::TexturedModel;
 

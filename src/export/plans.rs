@@ -12,7 +12,7 @@ use super::json::to_bytes;
 use super::mesh::{line, world};
 use super::{rounded, triangulate};
 use crate::lines3d::Line3d;
-use crate::roof::{Building, RoofModel, Solid, Surface};
+use crate::model::{Building, RoofModel, Solid, Surface};
 use crate::scene::Scene;
 
 /// DXF of AutoCAD R12, which every program reads: 3DFACE on the layers ROOF, WALL and GROUND, LINE on
@@ -98,7 +98,7 @@ fn building_footprints(
     let heights: Vec<f64> = roof.flat_map(|f| &f.outer).map(|p| p.z).collect();
     let height = |z: f64| rounded(z + scene.origin.z, 3);
     let grounds = solid.faces.iter().filter(|f| f.surface == Surface::Ground);
-    let feature = |face: &crate::roof::SolidFace| {
+    let feature = |face: &crate::model::SolidFace| {
         let rings: Vec<_> = face
             .rings
             .iter()

@@ -6,7 +6,7 @@
 use nalgebra::{Point2, Vector3};
 use spade::{ConstrainedDelaunayTriangulation, Point2 as SpadePoint, Triangulation};
 
-use crate::roof::{Solid, SolidFace};
+use crate::model::{Solid, SolidFace};
 
 /// Triangles of a face, counter-clockwise seen from outside. Indices count the corners of all rings in order, so that
 /// texture coordinates per corner can be looked up.
@@ -86,7 +86,7 @@ fn contains(rings: &[Vec<Point2<f64>>], p: &Point2<f64>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roof::Surface;
+    use crate::model::Surface;
     use nalgebra::Point3;
 
     fn face_of(rings: &[&[(f64, f64)]]) -> (Solid, SolidFace) {

@@ -10,12 +10,12 @@ use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3};
 
 use super::sight::Sights;
 use crate::camera::{Camera, fundamental, homography_of_plane};
+use crate::execution::map_shared;
+use crate::execution::parallel;
 use crate::geometry::Plane;
 use crate::ids::ViewId;
-use crate::parallel;
 use crate::raster::{Gray, gaussian_blur};
 use crate::scene::Scene;
-use crate::shares::map_shared;
 use crate::sorting::sort_by;
 
 /// Number of segments whose ends are swept, over all views.

@@ -17,44 +17,38 @@
 //! is left without asking for either: of three views two may show an eave before a sunlit lawn, and the third before the
 //! shadow of the house.
 
-mod adopt;
-mod ends;
-mod grow;
-mod guided;
 mod height;
 mod index;
-mod join;
-mod nviews;
+mod nview;
 mod pairs;
-mod partners;
-mod profile;
+#[cfg(test)]
+pub(crate) mod planted;
 mod select;
 mod sight;
 mod strip;
 mod trace;
-mod track;
 mod triples;
+mod view_selection;
 
-pub use guided::{GuidedEdge, measure_edge};
-pub use nviews::{MANY_VIEWS, Rejection};
-pub(crate) use profile::AROUND_EDGE_PX;
+pub(crate) use nview::{AROUND_EDGE_PX, Context};
+pub use nview::{MANY_VIEWS, Rejection};
 pub use sight::{SegmentRef, epipolar_beam};
 pub use strip::EdgelScore;
 pub use trace::{MatchTrace, PairTrace, SegmentOutcome, StepCount};
-pub use track::{LineMatch, LineSupport, SupportKind};
 pub use triples::Verification;
 
 use std::ops::Range;
 
-use nviews::Context;
-use pairs::{PairScope, Pairs};
-use select::Selection;
-use sight::Alike;
-use triples::Bundle;
+use self::pairs::{PairScope, Pairs};
+use self::select::Selection;
+use self::sight::Alike;
+use self::triples::Bundle;
 
+use crate::execution::SILENT;
 use crate::lines2d::ImageSegment;
-use crate::parallel::SILENT;
-use crate::params::{Lines3dParams, MatchParams};
+use crate::lines3d::LineMatch;
+use crate::params::Lines3dParams;
+use crate::params::MatchParams;
 use crate::scene::Scene;
 
 /// Matches the segments of all views (one list a view, in the order of the scene's views) over
@@ -76,7 +70,7 @@ pub fn match_lines(
     };
     let z_range = estimated.unwrap_or_else(|| height::any_height(scene));
     trace.z_range_m = Some(z_range);
-    trace.view_pairs = partners::partner_views(scene, z_range, params);
+    trace.view_pairs = view_selection::partner_views(scene, z_range, params);
 
     let alike = Alike {
         contrast: params.same_contrast,
@@ -119,7 +113,7 @@ pub fn match_lines(
         bundles,
         mut selection,
     } = found;
-    join::join_lines(&context, &mut selection);
+    nview::join_lines(&context, &mut selection);
     trace.record(segments, &pairs, &bundles, &selection);
     let matches = selection.lines.into_iter().map(LineMatch::from).collect();
     (matches, trace)
@@ -190,8 +184,8 @@ pub fn scene_heights(scene: &Scene, segments: &[Vec<ImageSegment>]) -> [f64; 2] 
     height::height_range(scene, &sights).map_or_else(|| height::any_height(scene), |range| range.z)
 }
 
-impl From<nviews::Line> for LineMatch {
-    fn from(line: nviews::Line) -> Self {
+impl From<nview::Line> for LineMatch {
+    fn from(line: nview::Line) -> Self {
         let sum: f64 = line.supports.iter().map(|s| s.score).sum();
         Self {
             score: sum / line.supports.len().max(1) as f64,
@@ -201,14 +195,12 @@ impl From<nviews::Line> for LineMatch {
 }
 
 #[cfg(test)]
-pub(crate) mod planted;
-
-#[cfg(test)]
 mod tests {
     use super::*;
     use crate::geometry::Segment2;
     use crate::ids::SegmentId;
     use crate::lines2d::SegmentKind;
+    use crate::lines3d::SupportKind;
     use crate::lines3d::{Line3d, reconstruct_lines};
 
     fn matched() -> (Scene, Vec<LineMatch>, MatchTrace) {

@@ -15,13 +15,13 @@ use super::Pass;
 use super::sight::{Alike, SegmentRef, Sight, Sights, epipolar_beam, ray_in_plane};
 use super::strip::{EdgelScore, Strip, StripFrame, StripSide, correlate};
 use crate::camera::{Camera, Homography, homography_of_plane};
+use crate::execution::map_shared;
 use crate::geometry::{Plane, Segment3};
-use crate::halfplane::{Side, ThetaFrame};
 use crate::ids::ViewId;
+use crate::lines3d::{Side, ThetaFrame};
 use crate::params::MatchParams;
 use crate::raster::Channel;
 use crate::scene::Scene;
-use crate::shares::map_shared;
 
 /// Two segments that may be images of one line.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -332,9 +332,9 @@ fn side_homography(
 
 #[cfg(test)]
 mod tests {
+    use super::super::planted;
     use super::*;
     use crate::geometry::Segment2;
-    use crate::linematch::planted;
     use crate::lines2d::SegmentKind;
 
     #[test]

@@ -3,13 +3,14 @@
 
 use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector3};
 
-use super::nviews::Context;
+use super::nview::Context;
 use super::sight::Sights;
 use crate::camera::Camera;
+use crate::geometry::rotation_from_axis_angle;
 use crate::geometry::{Segment2, Segment3};
 use crate::lines2d::{ImageSegment, SegmentKind};
-use crate::orientation::rotation_from_axis_angle;
-use crate::params::{Lines3dParams, MatchParams};
+use crate::params::Lines3dParams;
+use crate::params::MatchParams;
 use crate::raster::Gray;
 use crate::scene::{Scene, View};
 

@@ -10,14 +10,14 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::Pass;
-use super::nviews::{Context, Line, Rejection, complete_line};
+use super::nview::{Context, Line, Rejection, complete_line};
 use super::pairs::{Pair, Pairs};
 use super::sight::SegmentRef;
 use super::triples::Bundle;
+use crate::execution::SILENT;
+use crate::execution::map_shared;
+use crate::execution::reached;
 use crate::lines2d::ImageSegment;
-use crate::parallel::SILENT;
-use crate::progress::reached;
-use crate::shares::map_shared;
 
 /// What became of a bundle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -175,13 +175,15 @@ impl Eq for Entry {}
 
 #[cfg(test)]
 mod tests {
+    use super::super::pairs::{PairScope, match_pairs};
+    use super::super::planted;
+    use super::super::planted::Roof;
+    use super::super::sight::Alike;
+    use super::super::triples::{Verification, verify_pairs};
     use super::*;
     use crate::geometry::Segment3;
-    use crate::ids::{SegmentId, ViewId};
-    use crate::linematch::pairs::{PairScope, match_pairs};
-    use crate::linematch::planted::{self, Roof};
-    use crate::linematch::sight::Alike;
-    use crate::linematch::triples::{Verification, verify_pairs};
+    use crate::ids::SegmentId;
+    use crate::ids::ViewId;
 
     const Z_RANGE: [f64; 2] = [-2.0, 8.0];
     const ALIKE: Alike = Alike {

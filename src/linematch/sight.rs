@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::index::SegmentIndex;
 use crate::camera::{Camera, plane_of_image_line};
 use crate::geometry::{Plane, Segment2};
-use crate::ids::{SegmentId, ViewId};
+use crate::ids::SegmentId;
+use crate::ids::ViewId;
 use crate::lines2d::{ImageSegment, SegmentKind};
 use crate::scene::Scene;
 

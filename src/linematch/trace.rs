@@ -3,14 +3,14 @@
 
 use serde::Serialize;
 
-use super::SupportKind;
-use super::nviews::Rejection;
+use super::nview::Rejection;
 use super::pairs::Pairs;
 use super::select::{Fate, Selection};
 use super::sight::SegmentRef;
 use super::triples::{Bundle, Verification};
 use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;
+use crate::lines3d::SupportKind;
 use crate::sorting::sort_by;
 
 /// Most pairs kept in the trace, the best of each segment first.
@@ -83,7 +83,7 @@ impl StepCount {
 /// The trace of [`super::match_lines`].
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct MatchTrace {
-    /// Heights between which lines were sought, metres; [`super::epipolar_beam`] draws beams with
+    /// Heights between which lines were sought, metres; [`super::sight::epipolar_beam`] draws beams with
     /// it.
     pub z_range_m: Option<[f64; 2]>,
     /// Heights found by the sweep that the range rests on, metres, sorted.
@@ -114,7 +114,7 @@ pub struct MatchTrace {
 
 impl MatchTrace {
     /// Fills in everything that follows from the search.
-    pub(super) fn record(
+    pub(crate) fn record(
         &mut self,
         segments: &[Vec<ImageSegment>],
         pairs: &Pairs,
@@ -244,11 +244,11 @@ fn best_pairs(
 
 #[cfg(test)]
 mod tests {
+    use super::super::pairs::{Pair, PairSearch};
+    use super::super::planted;
     use super::*;
     use crate::geometry::Segment3;
     use crate::ids::SegmentId;
-    use crate::linematch::pairs::{Pair, PairSearch};
-    use crate::linematch::planted;
     use nalgebra::Point3;
 
     #[test]

@@ -16,11 +16,11 @@ use serde::{Deserialize, Serialize};
 use super::Pass;
 use super::pairs::{Pair, PairScope, Pairs};
 use super::sight::{SegmentRef, Sight, Sights};
+use crate::execution::map_shared;
 use crate::geometry::Segment3;
 use crate::ids::ViewId;
 use crate::lines3d::ProjectedLine;
 use crate::scene::Scene;
-use crate::shares::map_shared;
 
 /// Predictions less certain than this many pixels (one standard deviation) verify nothing.
 const MAX_SIGMA_PX: f64 = 2.0;
@@ -201,12 +201,12 @@ pub fn stretch_of(line: &Segment3, from: f64, to: f64) -> Segment3 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::pairs::match_pairs;
+    use super::super::planted;
+    use super::super::sight::{Alike, ray_in_plane};
     use super::*;
     use crate::geometry::Segment2;
     use crate::ids::SegmentId;
-    use crate::linematch::pairs::match_pairs;
-    use crate::linematch::planted;
-    use crate::linematch::sight::{Alike, ray_in_plane};
     use crate::lines2d::ImageSegment;
     use crate::params::MatchParams;
     use nalgebra::Matrix2;

@@ -8,8 +8,8 @@
 
 use nalgebra::Point2;
 
-use super::canny::Edgel;
-use super::chain::{NONE, Raster};
+use super::edgels::Edgel;
+use super::edgels::{NONE, Raster};
 use super::fit::{LineFit, Moments};
 use crate::geometry::Segment2;
 use crate::params::SegmentParams;

@@ -5,14 +5,14 @@
 
 use nalgebra::Point2;
 
-use super::canny::Edgel;
-use super::chain::{Chain, Raster, link_on};
+use super::edgels::Edgel;
+use super::edgels::LocalStrengths;
+use super::edgels::tangent_breaks;
+use super::edgels::{Chain, Raster, link_on};
 use super::fit::straight_pieces;
 use super::grow::{Grown, grow_tight};
-use super::noise::LocalStrengths;
 use super::significance::FalseAlarms;
 use super::trace::{RejectedSegment, SegmentRejection, SegmentTrace};
-use super::worm::tangent_breaks;
 use crate::geometry::Segment2;
 use crate::params::SegmentParams;
 use crate::sorting::sort_by_key;

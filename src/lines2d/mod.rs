@@ -15,24 +15,22 @@
 //! clear          what edges in grey values stand for already is refused
 //! ```
 
-mod bar;
-mod canny;
-mod chain;
 mod clear;
+mod edgels;
 mod fit;
 mod grow;
+mod guided;
 mod lines;
-mod noise;
 mod refine;
 mod segments;
 mod significance;
 #[cfg(test)]
 mod testing;
 mod trace;
-mod worm;
 
-pub use canny::{Edgel, detect_edgels};
-pub use chain::{Chain, link_chains};
+pub use edgels::{Chain, Edgel, detect_edgels, link_chains};
+pub(crate) use guided::PIECE_PX;
+pub use guided::{GuidedEdge, measure_edge};
 pub use segments::detect_segments;
 pub use trace::{RejectedSegment, SegmentRejection, SegmentTrace};
 

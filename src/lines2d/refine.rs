@@ -9,7 +9,7 @@
 
 use nalgebra::{Matrix2, Point2, Vector2};
 
-use super::canny::Edgel;
+use super::edgels::Edgel;
 use super::fit::LineFit;
 use super::grow::Grown;
 use crate::raster::{Channel, Gray};

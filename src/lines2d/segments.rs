@@ -20,9 +20,9 @@
 
 use nalgebra::{Matrix2, Point2};
 
-use super::bar::{Fan, Hessian, bar_points, fan_edgels};
-use super::canny::{Gradient, suppress};
 use super::clear::add_clear;
+use super::edgels::{Fan, Hessian, bar_points, fan_edgels};
+use super::edgels::{Gradient, suppress};
 use super::grow::Grown;
 use super::lines::significant_lines;
 use super::refine::refine;

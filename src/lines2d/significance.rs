@@ -1,7 +1,7 @@
 //! Whether a fitted line stands out from its surroundings (Helmholtz principle).
 //!
 //! Were the edgels of a line ordinary pixels of their surroundings, their `-ln H(g)`
-//! ([`super::noise`]) would be independent exponential variables; the sum over `n` of them is then Gamma(n, 1)
+//! ([`super::edgels::noise`]) would be independent exponential variables; the sum over `n` of them is then Gamma(n, 1)
 //! distributed (Fisher's method). The line is significant when the expected number of lines with such
 //! a sum by chance among all tested ones is below one. So a long weak ridge is kept and a short
 //! strong streak of foliage is not.

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point2, Vector2};
 
-use super::Edgel;
+use super::edgels::Edgel;
 use crate::math;
 use crate::raster::Gray;
 

@@ -57,7 +57,7 @@ pub struct SegmentTrace {
 
 impl SegmentTrace {
     /// Adds what the detector did in an image reduced by `factor`.
-    pub(super) fn add(&mut self, other: Self, factor: usize) {
+    pub(crate) fn add(&mut self, other: Self, factor: usize) {
         self.edgels += other.edgels;
         self.chains += other.chains;
         self.short_chains += other.short_chains;
@@ -78,7 +78,7 @@ impl SegmentTrace {
     }
 
     /// Counts a refused line, and keeps it unless it is too short.
-    pub(super) fn refuse(&mut self, refused: RejectedSegment) {
+    pub(crate) fn refuse(&mut self, refused: RejectedSegment) {
         match refused.reason {
             SegmentRejection::TooShort => self.too_short += 1,
             SegmentRejection::Curved => self.curved += 1,

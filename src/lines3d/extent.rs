@@ -1,8 +1,8 @@
 //! The end points of a 3D line from the stretches that its views support (B99 3.3): their union.
 
-use super::ProjectedLine;
+use super::projection::ProjectedLine;
+use super::track::LineSupport;
 use crate::geometry::Segment3;
-use crate::linematch::LineSupport;
 use crate::scene::Scene;
 use crate::sorting::sort_by;
 
@@ -40,9 +40,10 @@ pub fn doubly_covered(mut ends: Vec<(f64, i32)>) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::track::SupportKind;
     use super::*;
     use crate::ids::ViewId;
-    use crate::linematch::{SupportKind, planted};
+    use crate::linematch::planted;
 
     fn ends(intervals: &[(f64, f64)]) -> Vec<(f64, i32)> {
         intervals

@@ -15,7 +15,7 @@ use nalgebra::{Matrix2, Matrix3, Matrix4, Matrix4x2, Point3, Vector2, Vector3, V
 
 use crate::camera::Camera;
 use crate::geometry::{Plane, Segment2, Segment3};
-use crate::linematch::GuidedEdge;
+use crate::lines2d::GuidedEdge;
 use crate::params::Lines3dParams;
 use crate::sorting::sort_by;
 

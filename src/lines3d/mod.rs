@@ -8,18 +8,21 @@
 mod extent;
 mod fit;
 mod projection;
+mod theta_frame;
+mod track;
 
 pub(crate) use extent::doubly_covered;
 pub use fit::{Carrier, LineFit, Observation, conditioning, fit_line, fit_line_on, line_of_planes};
 pub(crate) use fit::{Weighted, line_frame};
 pub use projection::{Gate, ProjectedLine};
+pub use theta_frame::{Side, ThetaFrame};
+pub use track::{LineMatch, LineSupport, SupportKind};
 
 use nalgebra::{Matrix3, Point3};
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Segment3;
 use crate::ids::LineId;
-use crate::linematch::{LineMatch, LineSupport};
 use crate::params::Lines3dParams;
 use crate::scene::Scene;
 
@@ -50,7 +53,7 @@ impl LineOrigin {
     }
 }
 
-/// Why the finished model leaves a line out ([`crate::roof::judge_lines`]).
+/// Why the finished model leaves a line out ([`crate::buildings::judge_lines`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Refutation {
@@ -137,7 +140,7 @@ pub fn reconstruct_lines(
     params: &Lines3dParams,
 ) -> (Vec<Line3d>, LineTrace) {
     let results =
-        crate::parallel::map_part(matches, 0.0..1.0, |_, m| reconstruct(scene, m, params));
+        crate::execution::map_part(matches, 0.0..1.0, |_, m| reconstruct(scene, m, params));
     let mut lines: Vec<Line3d> = Vec::new();
     let mut trace = LineTrace::default();
     for result in results {
@@ -212,11 +215,12 @@ fn along_supports(scene: &Scene, segment: Segment3, supports: &[LineSupport]) ->
 
 #[cfg(test)]
 mod tests {
+    use super::track::SupportKind;
     use super::*;
     use crate::geometry::Segment2;
     use crate::ids::ViewId;
-    use crate::linematch::GuidedEdge;
-    use crate::linematch::{SupportKind, planted};
+    use crate::linematch::planted;
+    use crate::lines2d::GuidedEdge;
     use crate::lines2d::SegmentKind;
     use nalgebra::Matrix2;
 

@@ -51,7 +51,7 @@ fn unexplained(
     params: &ClusterParams,
 ) -> Vec<Vec<f64>> {
     let views: Vec<ViewId> = scene.view_ids().collect();
-    crate::parallel::map(&views, |_, &view| {
+    crate::execution::map(&views, |_, &view| {
         let image = |l: &Line3d| projected(scene, view, &l.segment);
         let images: Vec<Segment2> = matched.iter().filter_map(image).collect();
         let lines = regions[view.index()].iter();

@@ -11,7 +11,9 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::sight::Sight;
-use crate::math::{atan2, exp, sin_cos};
+use crate::math::atan2;
+use crate::math::exp;
+use crate::math::sin_cos;
 use crate::params::DirectionParams;
 
 /// A pair of perpendicular horizontal directions.

@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use crate::synthetic::gable_scene;
 
 /// The cameras of a synthetic scene, at most six.
-pub(super) fn rig(views: usize) -> Scene {
+pub(crate) fn rig(views: usize) -> Scene {
     let (mut scene, _) = gable_scene(320);
     scene.views.truncate(views);
     scene
@@ -17,7 +17,7 @@ pub(super) fn rig(views: usize) -> Scene {
 
 /// The images of 3D lines in all views but the hidden ones, off by up to 0.3 px, and among them unrelated lines of the same
 /// direction as the first one, at random places: `outliers` is their share of all lines.
-pub(super) fn planted_lines(
+pub(crate) fn planted_lines(
     scene: &Scene,
     truth: &[Segment3],
     outliers: f64,

@@ -23,29 +23,23 @@
 //! ```
 
 mod adopt;
-mod cluster_plane;
-mod cluster_proposals;
-mod cluster_select;
 pub mod clusters;
 pub mod directions;
-mod ends;
 #[cfg(test)]
 mod fixture;
-mod judge;
 pub mod oris;
-mod planes;
-mod select;
-mod shapes;
+mod rectangles;
 pub mod sight;
-mod solid;
 mod stages;
 #[cfg(test)]
 mod tests;
 mod windows;
 
 pub use adopt::adopted_lines;
-pub use ends::{Crossing, End};
-pub use planes::{PlaneCandidate, PlaneRejection, PlaneTrace};
+pub(crate) use clusters::ClusterTrace;
+pub(crate) use oris::Segmentation;
+pub use oris::{ColorImage, Lattice, Moves, RegionLine, region_lines};
+pub use rectangles::{Crossing, End, PlaneCandidate, PlaneRejection, PlaneTrace};
 pub use stages::{
     FoundLine, RectangleTrace, find_clusters, find_directions, find_rectangles, find_regions,
     image_segments, proposed_planes, world_lines,

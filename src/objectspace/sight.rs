@@ -5,7 +5,8 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 use super::oris::RegionLine;
 use crate::camera::{Camera, plane_of_image_line};
 use crate::geometry::Segment2;
-use crate::ids::{SegmentId, ViewId};
+use crate::ids::SegmentId;
+use crate::ids::ViewId;
 use crate::scene::Scene;
 
 /// An image line with its rays and its interpretation plane.

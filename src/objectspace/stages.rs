@@ -3,26 +3,30 @@
 use nalgebra::{Matrix3, Point3};
 use serde::{Deserialize, Serialize};
 
-use super::cluster_plane::Axes;
+use super::clusters::Axes;
 use super::clusters::{ClusterLine, ClusterTrace, cluster_lines};
 use super::oris::{ColorImage, RegionLine, Segmentation, region_lines, segment_regions};
-use super::planes::{PlaneCandidate, PlaneRejection, PlaneSearch, PlaneTrace};
-use super::select::best_set;
+use super::rectangles::Solid;
+use super::rectangles::best_set;
+use super::rectangles::{PlaneCandidate, PlaneRejection, PlaneSearch, PlaneTrace};
 use super::sight::{Sight, sights};
-use super::solid::Solid;
 use super::windows::{Window, WindowTrace, find_windows};
+use crate::execution::map_shared;
+use crate::execution::reached;
 use crate::geometry::{Segment2, Segment3};
-use crate::halfplane::ProposedPlane;
-use crate::ids::{BuildingId, LineId};
-use crate::linematch::{LineSupport, SupportKind, scene_heights};
+use crate::ids::BuildingId;
+use crate::ids::LineId;
+use crate::linematch::scene_heights;
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
+use crate::lines3d::{LineSupport, SupportKind};
+use crate::model::{Facet, RoofModel};
 use crate::params::ObjectSpaceParams;
-use crate::progress::reached;
-use crate::roof::{Facet, Ground, RoofModel, SolidTrace, close_buildings};
+use crate::planes::ProposedPlane;
 use crate::scene::Scene;
-use crate::shares::map_shared;
+use crate::solids::{SolidTrace, close_buildings};
 use crate::sorting::sort_by;
+use crate::terrain::Ground;
 
 /// Regions of every view and the lines on their boundaries (W96 3.3).
 pub fn find_regions(

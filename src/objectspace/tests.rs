@@ -4,8 +4,8 @@ use nalgebra::Point3;
 
 use super::fixture::planted_lines;
 use super::*;
+use crate::model::{Facet, RoofModel, check_invariants};
 use crate::params::ObjectSpaceParams;
-use crate::roof::{Facet, RoofModel, check_invariants};
 use crate::scene::Scene;
 use crate::synthetic::{
     SyntheticTruth, askew_scene, gable_scene, hip_scene, l_scene, row_scene, sheared_scene,

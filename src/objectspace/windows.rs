@@ -11,13 +11,13 @@ use serde::{Deserialize, Serialize};
 use super::clusters::{ClusterLine, cluster_lines};
 use super::directions::{DirectionTrace, MainDirections, main_directions};
 use super::sight::Sight;
+use crate::execution::map_shared;
 use crate::geometry::Segment3;
 use crate::math::atan2;
 use crate::params::ObjectSpaceParams;
-use crate::roof::Ground;
 use crate::scene::Scene;
-use crate::shares::map_shared;
 use crate::sorting::sort_by;
+use crate::terrain::Ground;
 
 /// A part of the ground plan that is analysed on its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -64,7 +64,7 @@ pub struct WindowTrace {
 const LEAST_LINES_M: f64 = 6.0;
 
 /// Windows at the given places (x0, y0, x1, y1, local frame), or around the buildings that the lines show.
-pub(super) fn find_windows(
+pub(crate) fn find_windows(
     scene: &Scene,
     sights: &[Sight],
     z_range_m: [f64; 2],

@@ -1,6 +1,6 @@
 //! The photogrammetric rotation angles omega, phi, kappa.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3};
 
 use crate::math;
 
@@ -73,21 +73,11 @@ pub fn omega_phi_kappa_from_rotation(cam_from_world: &Matrix3<f64>) -> [f64; 3] 
     ]
 }
 
-/// The rotation about this axis by its length, radians (Rodrigues).
-pub fn rotation_from_axis_angle(turn: &Vector3<f64>) -> Rotation3<f64> {
-    let angle = turn.norm();
-    if angle < 1e-15 {
-        return Rotation3::identity();
-    }
-    let (sin, cos) = math::sin_cos(angle);
-    let cross = (turn / angle).cross_matrix();
-    let r = Matrix3::identity() + cross * sin + cross * cross * (1.0 - cos);
-    Rotation3::from_matrix_unchecked(r)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::rotation_from_axis_angle;
+    use nalgebra::Vector3;
 
     #[test]
     fn it_is_the_product_of_three_axis_rotations() {

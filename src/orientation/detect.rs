@@ -5,9 +5,9 @@
 
 use serde::Serialize;
 
-use super::patb;
-use super::text::{Line, data_lines};
-use crate::scene_loader::InputFile;
+use super::formats::patb;
+use super::formats::{Line, data_lines};
+use super::input_file::InputFile;
 
 /// What an input file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

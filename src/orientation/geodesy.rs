@@ -190,9 +190,10 @@ fn geographic_of(c: &Point3<f64>) -> [f64; 3] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::pinhole;
     use super::*;
     use crate::camera::Camera;
-    use crate::orientation::{pinhole, rotation_from_axis_angle};
+    use crate::geometry::rotation_from_axis_angle;
     use crate::synthetic::gable_scene;
 
     #[test]

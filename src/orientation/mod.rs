@@ -20,30 +20,18 @@
 //! memory than a small multiple of its input.
 
 mod angles;
-mod bundles;
-mod colmap;
-mod colmap_binary;
-mod detect;
+pub(crate) mod detect;
+mod formats;
 mod geodesy;
-mod inpho;
-mod json;
-mod lens;
-mod matrices;
-mod micmac;
-mod patb;
-mod photogrammetric;
-mod projection;
+mod input_file;
 mod reference;
 mod sets;
-mod text;
-mod xml;
 
-pub use angles::{
-    AngleUnit, omega_phi_kappa_from_rotation, rotation_from_axis_angle,
-    rotation_from_omega_phi_kappa,
-};
+pub use angles::{AngleUnit, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa};
 pub use detect::{FileKind, detect};
 pub use geodesy::{Anchor, to_metric_frame};
+pub use input_file::InputFile;
+pub(crate) use input_file::{base_name, stem};
 pub use reference::epsg_of;
 pub use sets::{OrientationSet, orientation_sets};
 

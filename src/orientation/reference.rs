@@ -3,7 +3,7 @@
 use super::Format;
 
 /// EPSG's number in what the file of a format says about its world; `None` where it says nothing.
-pub(super) fn stated(format: Format, text: &str) -> Option<u32> {
+pub(crate) fn stated(format: Format, text: &str) -> Option<u32> {
     let part = match format {
         Format::Inpho => {
             let after = text.split("$COORDINATE_SYSTEM").nth(1)?;

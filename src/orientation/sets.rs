@@ -1,10 +1,15 @@
 //! Which files together orient images, and the reader of each format.
 
-use super::{Anchor, FileKind, Format, Orientation};
-use super::{bundles, colmap, colmap_binary, inpho, json, matrices, micmac, patb, photogrammetric};
-use super::{projection, reference, xml};
-use crate::Result;
-use crate::scene_loader::InputFile;
+use super::detect::FileKind;
+use super::formats::{
+    bundles, colmap, colmap_binary, inpho, json, matrices, micmac, patb, photogrammetric,
+};
+use super::formats::{projection, xml};
+use super::geodesy::Anchor;
+use super::input_file::InputFile;
+use super::reference;
+use super::{Format, Orientation};
+use crate::error::Result;
 use crate::sorting::sort_by;
 
 /// Files that together orient images: one candidate for the orientation of a scene.

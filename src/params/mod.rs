@@ -7,10 +7,10 @@ mod lines;
 mod objectspace;
 mod planes;
 
-pub use buildings::*;
-pub use lines::*;
-pub use objectspace::*;
-pub use planes::*;
+pub use self::buildings::*;
+pub use self::lines::*;
+pub use self::objectspace::*;
+pub use self::planes::*;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;

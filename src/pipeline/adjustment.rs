@@ -1,13 +1,15 @@
 //! The orientation of a scene adjusted to the lines that its own images show: the stages up to the lines, then
-//! [`crate::adjust`], and all of it once more, because better cameras find more lines.
+//! [`crate::adjustment`], and all of it once more, because better cameras find more lines.
 
-use super::{Run, Stage, before};
-use crate::Result;
-use crate::adjust::adjust_views;
+use super::stage::Stage;
+use super::{Run, before};
+use crate::adjustment::adjust_views;
+use crate::error::Result;
+use crate::execution::silent;
+use crate::orientation::InputFile;
 use crate::params::{Method, Params};
-use crate::progress::silent;
 use crate::scene::{Scene, ViewAdjustment};
-use crate::scene_loader::{InputFile, LoadOptions, load_scene};
+use crate::scene_loader::{LoadOptions, load_scene};
 
 /// Rounds of matching and adjusting.
 const ROUNDS: usize = 3;

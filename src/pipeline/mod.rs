@@ -23,22 +23,27 @@ pub use summary::StageSummary;
 
 use std::borrow::Cow;
 
-use crate::export::{self, export_all};
-use crate::halfplane::{HalfPlane, SweepTrace, sweep_half_planes};
-use crate::linematch::{LineMatch, MatchTrace, match_lines};
+use crate::buildings::{RoofTrace, judge_lines, reconstruct_roofs};
+use crate::execution::{Known, map_shared, with_known};
+use crate::execution::{Listener, progress};
+use crate::export;
+use crate::export::export_all;
+use crate::facets::RoofEvidence;
+use crate::linematch::{MatchTrace, match_lines};
 use crate::lines2d::{ImageSegment, SegmentTrace, detect_segments};
+use crate::lines3d::LineMatch;
 use crate::lines3d::{Line3d, LineTrace, reconstruct_lines};
-use crate::objectspace::clusters::ClusterTrace;
-use crate::objectspace::oris::{RegionLine, Segmentation};
+use crate::model::RoofModel;
+use crate::objectspace::ClusterTrace;
 use crate::objectspace::{
     FoundLine, RectangleTrace, Window, WindowTrace, adopted_lines, find_clusters, find_directions,
     find_rectangles, find_regions, image_segments, proposed_planes, world_lines,
 };
+use crate::objectspace::{RegionLine, Segmentation};
 use crate::params::{Method, Params};
-use crate::progress::{self, Listener};
-use crate::roof::{Ground, RoofEvidence, RoofModel, RoofTrace, judge_lines, reconstruct_roofs};
+use crate::planes::{HalfPlane, SweepTrace, sweep_half_planes};
 use crate::scene::Scene;
-use crate::shares::{Known, map_shared, with_known};
+use crate::terrain::Ground;
 use crate::texture::{TextureTrace, TexturedModel, texture_model};
 
 /// What a stage found, and its diary.

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{Run, Stage, StageSummary};
+use super::Run;
+use super::stage::Stage;
+use super::summary::StageSummary;
 use crate::params::Params;
 use crate::scene::{ViewAdjustment, ViewShift};
 
@@ -39,7 +41,7 @@ struct ReportView<'a> {
 }
 
 /// The bytes of `report.json`; `seconds` may be empty.
-pub(super) fn report(run: &Run, seconds: &[(Stage, f64)]) -> Vec<u8> {
+pub(crate) fn report(run: &Run, seconds: &[(Stage, f64)]) -> Vec<u8> {
     let views = run
         .scene
         .views

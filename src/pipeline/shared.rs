@@ -1,20 +1,22 @@
 //! What passes between the instances that share a run: views of the scene, results of earlier stages, and the
-//! shares of a stage's maps. See [`crate::shares`] for the order of things.
+//! shares of a stage's maps. See [`crate::execution::shard`] for the order of things.
 
 use nalgebra::Vector3;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::{Outcome, Run, Stage};
+use super::stage::Stage;
+use super::{Outcome, Run};
 use crate::camera::Camera;
-use crate::halfplane::{HalfPlane, SweepTrace};
+use crate::execution::{Known, Task, share};
+use crate::execution::{Listener, progress};
+use crate::model::RoofModel;
 use crate::objectspace::{PlaneCandidate, RectangleTrace};
 use crate::params::Params;
-use crate::progress::{self, Listener};
+use crate::planes::{HalfPlane, SweepTrace};
 use crate::raster::Gray;
-use crate::roof::{Ground, RoofModel};
 use crate::scene::{Scene, Survey, View};
-use crate::shares::{Known, Task, share};
+use crate::terrain::Ground;
 
 impl Stage {
     /// The maps of this stage that instances may share, in the order in which they are called.

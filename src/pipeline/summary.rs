@@ -2,8 +2,9 @@
 
 use serde::{Serialize, Serializer};
 
-use super::{Outcome, Results, Stage};
-use crate::linematch::SupportKind;
+use super::stage::Stage;
+use super::{Outcome, Results};
+use crate::lines3d::SupportKind;
 use crate::scene::Scene;
 
 /// The outcome of one stage in numbers.
@@ -19,7 +20,7 @@ pub struct StageSummary {
 }
 
 /// The summary of a stage that has just run.
-pub(super) fn summarise(stage: Stage, scene: &Scene, results: &Results) -> StageSummary {
+pub(crate) fn summarise(stage: Stage, scene: &Scene, results: &Results) -> StageSummary {
     let (counts, warnings) = match stage {
         Stage::Segments => segments(scene, results),
         Stage::Matches => matches(results),

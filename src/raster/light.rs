@@ -6,7 +6,7 @@
 //! from the sun: on rendered views by 0.05 to 0.12 px. Measured in light, segments there scatter by 0.13 to 0.19 px about the true
 //! edges instead of 0.16 to 0.23, and matched lines lie 8 and 10 mm beside them in plan instead of 13 and 12.
 
-use super::Channel;
+use super::warmth::Channel;
 
 impl Channel {
     /// Turns a mean profile of the channel (0 to 1) across an edge into light, scaled so that small steps about the mean of

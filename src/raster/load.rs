@@ -15,7 +15,7 @@ use image::{ImageDecoder, ImageError, ImageFormat, ImageResult, Limits};
 use super::Gray;
 use super::jpeg::Jpeg;
 use super::samples::Samples;
-use crate::{Error, Result};
+use crate::error::{Error, Result};
 
 /// A decoded photograph.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +80,7 @@ pub fn load_image(file: &str, bytes: &[u8]) -> Result<Photograph> {
 }
 
 /// The samples as they are stored.
-pub(super) fn decode(file: &str, bytes: &[u8]) -> Result<Samples> {
+pub(crate) fn decode(file: &str, bytes: &[u8]) -> Result<Samples> {
     if image_format(bytes) == Some(ImageFormat::Jpeg) && !jpeg_is_complete(bytes) {
         // The decoder would fill what is missing with grey, where no line is ever found.
         return Err(unreadable(file, "the JPEG is cut off before its end"));

@@ -1,5 +1,6 @@
 //! Pixel rasters in f32 and the filters on them. Grey values run from 0 to 1.
 
+pub(crate) mod fill;
 mod filter;
 mod jpeg;
 mod light;
@@ -10,6 +11,7 @@ mod samples;
 mod warmth;
 mod warp;
 
+pub(crate) use fill::{fill_gaps, mark_inside};
 pub use filter::gaussian_blur;
 pub use load::{ImageHeader, Photograph, image_format, image_header, load_image};
 pub use noise::noise_of;
@@ -17,7 +19,7 @@ pub use part::{Part, decoding_bytes, load_part};
 pub use warmth::{Channel, Warmth};
 pub use warp::{Outside, Warp, corners};
 
-use warp::bilinear;
+use self::warp::bilinear;
 use wide::bytemuck::cast;
 use wide::{f32x4, f32x8};
 

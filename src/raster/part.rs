@@ -12,9 +12,9 @@ use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::Tag;
 
 use super::load::decode;
+use super::load::{Photograph, image_format};
 use super::samples::{Samples, Values, brightest};
-use super::{Photograph, image_format};
-use crate::Result;
+use crate::error::Result;
 
 /// Column, row, width, height, pixels.
 pub type Part = [u32; 4];
@@ -174,8 +174,8 @@ impl Tiff<'_> {
 mod tests {
     use image::DynamicImage;
 
+    use super::super::load::load_image;
     use super::*;
-    use crate::raster::load_image;
 
     /// An RGB image whose pixels name their place.
     fn places(width: u32, height: u32) -> image::RgbImage {

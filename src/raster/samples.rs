@@ -5,10 +5,11 @@
 
 use image::ColorType;
 
-use super::{Gray, Photograph};
+use super::Gray;
+use super::load::Photograph;
 
 /// The samples of all pixels, row by row.
-pub(super) struct Samples {
+pub(crate) struct Samples {
     pub width: u32,
     pub height: u32,
     /// Samples of a pixel: grey, grey and alpha, RGB, or RGB and alpha.
@@ -17,7 +18,7 @@ pub(super) struct Samples {
 }
 
 /// Samples of 8 or 16 bits.
-pub(super) enum Values {
+pub(crate) enum Values {
     Eight(Vec<u8>),
     Sixteen(Vec<u16>),
 }
@@ -86,7 +87,7 @@ impl Samples {
 }
 
 /// The brightest of the colours; alpha does not count.
-pub(super) fn brightest(values: &[u16], channels: usize) -> u16 {
+pub(crate) fn brightest(values: &[u16], channels: usize) -> u16 {
     let colours = values
         .chunks(channels)
         .flat_map(|pixel| &pixel[..colours_of(channels).min(pixel.len())]);

@@ -15,7 +15,8 @@ use std::borrow::Cow;
 use image::RgbImage;
 use serde::Serialize;
 
-use super::{Gray, noise_of};
+use super::Gray;
+use super::noise::noise_of;
 
 /// Which number of a pixel is looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

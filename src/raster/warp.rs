@@ -219,7 +219,7 @@ impl Parabola {
 /// have a right and a lower neighbour.
 // Everything below is inlined by force: called for every four samples, the calls took longer than the samples.
 #[inline(always)]
-pub(super) fn bilinear(image: &Gray, first: usize, x: f32x4, y: f32x4) -> f32x4 {
+pub(crate) fn bilinear(image: &Gray, first: usize, x: f32x4, y: f32x4) -> f32x4 {
     // Adding 1.5 x 2^23 rounds to a whole number, which the last bits then hold; a conversion costs wasm six instructions.
     const SHIFT: f32 = 12_582_912.0;
     const SHIFT_BITS: i32 = SHIFT.to_bits() as i32;

@@ -4,9 +4,9 @@ use std::io::{Cursor, Read};
 
 use zip::ZipArchive;
 
-use super::InputFile;
+use crate::error::{Error, Result};
+use crate::orientation::InputFile;
 use crate::sorting::sort_by;
-use crate::{Error, Result};
 
 /// Unpacked bytes of one archive at most: a few bytes can be packed that unpack to any size.
 const MOST_BYTES: u64 = if cfg!(target_arch = "wasm32") {

@@ -6,18 +6,18 @@
 
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
-use super::input_file::InputFile;
 use super::names::listed;
 use super::plan::PlannedView;
-use crate::Error;
 use crate::camera::Camera;
+use crate::error::Error;
 use crate::geometry::mean_point;
+use crate::orientation::InputFile;
 use crate::raster::decoding_bytes;
 use crate::sorting::sort_by;
 
 /// What the cameras together gave reason to say.
 #[derive(Default)]
-pub(super) struct Findings {
+pub(crate) struct Findings {
     pub errors: Vec<Error>,
     pub warnings: Vec<String>,
     /// Least and greatest height of the ground at which three views see the same place, local frame.
@@ -32,7 +32,7 @@ const ORIGIN_GRID_M: f64 = 100.0;
 
 /// The scene origin: the mean projection centre in plan, rounded to whole hundreds of metres, when
 /// coordinates are large; else zero. Heights are small everywhere and stay what they are.
-pub(super) fn scene_origin<'a>(cameras: impl Iterator<Item = &'a Camera>) -> Vector3<f64> {
+pub(crate) fn scene_origin<'a>(cameras: impl Iterator<Item = &'a Camera>) -> Vector3<f64> {
     let centers: Vec<Point3<f64>> = cameras.map(|c| c.center).collect();
     let is_large = |c: &Point3<f64>| c.x.abs() > LARGE_M || c.y.abs() > LARGE_M;
     if !centers.iter().any(is_large) {
@@ -44,7 +44,7 @@ pub(super) fn scene_origin<'a>(cameras: impl Iterator<Item = &'a Camera>) -> Vec
 }
 
 /// Why these numbers are no camera.
-pub(super) fn numeric_problem(camera: &Camera) -> Option<&'static str> {
+pub(crate) fn numeric_problem(camera: &Camera) -> Option<&'static str> {
     let Camera { k, r, center, .. } = camera;
     let all = || k.iter().chain(r.iter()).chain(center.iter());
     if all().any(|v| !v.is_finite() || v.abs() > 1e12) {
@@ -59,7 +59,7 @@ pub(super) fn numeric_problem(camera: &Camera) -> Option<&'static str> {
 }
 
 /// Checks of each camera in its world and of all together. `ground_z` in the local frame.
-pub(super) fn check_cameras(cameras: &[(&str, &Camera)], ground_z: Option<f64>) -> Findings {
+pub(crate) fn check_cameras(cameras: &[(&str, &Camera)], ground_z: Option<f64>) -> Findings {
     let mut found = Findings::default();
     for (name, camera) in cameras {
         found.errors.extend(placement_error(name, camera, ground_z));
@@ -239,7 +239,7 @@ const MEMORY_BYTES: u64 = if cfg!(target_arch = "wasm32") {
 };
 
 /// Peak memory of a run with these views, bytes, the files included.
-pub(super) fn peak_bytes(files: &[InputFile], views: &[PlannedView]) -> u64 {
+pub(crate) fn peak_bytes(files: &[InputFile], views: &[PlannedView]) -> u64 {
     let read: u64 = files.iter().map(|f| f.bytes.len() as u64).sum();
     let kept: u64 = views.iter().map(|v| v.pixels() * BYTES_PER_PIXEL).sum();
     let decoding = views.iter().map(|v| {
@@ -254,7 +254,7 @@ pub(super) fn peak_bytes(files: &[InputFile], views: &[PlannedView]) -> u64 {
 }
 
 /// Refuses more pixels than memory.
-pub(super) fn check_memory(
+pub(crate) fn check_memory(
     peak_bytes: u64,
     views: &[PlannedView],
     limit_mb: Option<u32>,

@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use super::input::LoadOptions;
-use super::input_file::InputFile;
 use super::plan::Plan;
 use crate::orientation::FileKind;
+use crate::orientation::InputFile;
 
 /// Everything that is known about a set of files without decoding an image.
 #[derive(Clone, Debug, PartialEq, Serialize)]

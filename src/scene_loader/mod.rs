@@ -16,31 +16,32 @@
 mod archive;
 mod checks;
 mod input;
-mod input_file;
 mod inspect;
 mod names;
 mod plan;
 mod project;
 mod region;
+#[cfg(test)]
+mod tests;
 mod treatment;
 mod verdict;
 
 pub use archive::unpack;
 pub use input::LoadOptions;
-pub use input_file::InputFile;
 pub use inspect::{FileReport, ImageReport, Inspection, OrientationReport, inspect_files};
 pub use project::{Project, open_project};
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::camera::undistort;
-use crate::doctor::Patient;
+use crate::error::{Error, Result};
+use crate::orientation::InputFile;
+use crate::orientation_check::Patient;
 use crate::raster::{Gray, load_image, load_part};
 use crate::scene::{Scene, Survey, View};
-use crate::{Error, Result};
 
-use plan::{Plan, PlannedView};
-use treatment::treat;
+use self::plan::{Plan, PlannedView};
+use self::treatment::treat;
 
 /// Reads a scene. The first refusal is returned; [`inspect_files`] lists them all.
 pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
@@ -107,7 +108,7 @@ fn decode_all(files: &[InputFile], planned: &[PlannedView]) -> Result<Vec<View>>
     const MOST_PIXELS: u64 = 100_000_000;
     let whole = |v: &PlannedView| u64::from(v.whole.width) * u64::from(v.whole.height);
     if planned.iter().map(whole).sum::<u64>() <= MOST_PIXELS {
-        let views = crate::parallel::map(planned, |_, view| decode(&files[view.file], view));
+        let views = crate::execution::map(planned, |_, view| decode(&files[view.file], view));
         views.into_iter().collect()
     } else {
         planned
@@ -173,6 +174,3 @@ fn moved(k: &Matrix3<f64>, [column, row]: [u32; 2]) -> Matrix3<f64> {
     k[(1, 2)] -= f64::from(row);
     k
 }
-
-#[cfg(test)]
-mod tests;

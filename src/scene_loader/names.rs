@@ -1,10 +1,10 @@
 //! How images and orientations find each other by name, and how messages list names.
 
-use super::input_file::{base_name, stem};
 use crate::orientation::Orientation;
+use crate::orientation::{base_name, stem};
 
 /// How well a name in an orientation file fits an image's; less is better, `None` is not at all.
-pub(super) fn match_rank(oriented: &str, image: &str) -> Option<u8> {
+pub(crate) fn match_rank(oriented: &str, image: &str) -> Option<u8> {
     let name = base_name(oriented);
     let fits = |a: &str, b: &str| {
         if a == b {
@@ -24,7 +24,7 @@ pub(super) fn match_rank(oriented: &str, image: &str) -> Option<u8> {
 }
 
 /// The orientations that fit an image best.
-pub(super) fn best_match(orientations: &[Orientation], image: &str) -> Vec<usize> {
+pub(crate) fn best_match(orientations: &[Orientation], image: &str) -> Vec<usize> {
     let ranks: Vec<Option<u8>> = orientations
         .iter()
         .map(|o| match_rank(&o.image, image))
@@ -36,7 +36,7 @@ pub(super) fn best_match(orientations: &[Orientation], image: &str) -> Vec<usize
 }
 
 /// Names in a row; long lists are cut short.
-pub(super) fn listed(names: impl Iterator<Item = impl AsRef<str>>) -> String {
+pub(crate) fn listed(names: impl Iterator<Item = impl AsRef<str>>) -> String {
     const MOST: usize = 8;
     let names: Vec<String> = names.map(|n| n.as_ref().to_owned()).collect();
     let mut text = names[..names.len().min(MOST)].join(", ");

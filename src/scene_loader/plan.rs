@@ -4,21 +4,21 @@ use nalgebra::Vector3;
 
 use super::checks;
 use super::input::LoadOptions;
-use super::input_file::{InputFile, stem};
 use super::inspect::OrientationReport;
 use super::names::{best_match, listed, match_rank};
 use super::region;
 use crate::camera::{Camera, Distortion};
+use crate::error::{Error, Result};
 use crate::orientation::{
     Crop, FileKind, Orientation, OrientationSet, detect, epsg_of, orientation_sets, to_metric_frame,
 };
+use crate::orientation::{InputFile, stem};
 use crate::raster::{ImageHeader, image_header};
 use crate::scene::Survey;
 use crate::sorting::{sort_by, sort_by_key};
-use crate::{Error, Result};
 
 /// Everything about a scene but its pixels.
-pub(super) struct Plan {
+pub(crate) struct Plan {
     /// What each file is.
     pub kinds: Vec<FileKind>,
     /// The images in use, sorted by name.
@@ -43,14 +43,14 @@ pub(super) struct Plan {
 }
 
 /// An image and the orientation found for it.
-pub(super) struct PlannedImage {
+pub(crate) struct PlannedImage {
     pub file: usize,
     pub header: Option<ImageHeader>,
     pub orientation: Option<Orientation>,
 }
 
 /// A view before its pixels are decoded.
-pub(super) struct PlannedView {
+pub(crate) struct PlannedView {
     pub file: usize,
     /// Camera of the whole image, local frame.
     pub whole: Camera,
@@ -64,7 +64,7 @@ pub(super) struct PlannedView {
 
 impl PlannedView {
     /// Number of pixels of the part that is used.
-    pub(super) fn pixels(&self) -> u64 {
+    pub(crate) fn pixels(&self) -> u64 {
         let [_, _, width, height] =
             self.part
                 .unwrap_or([0, 0, self.whole.width, self.whole.height]);
@@ -72,7 +72,7 @@ impl PlannedView {
     }
 
     /// The camera of the part that is used.
-    pub(super) fn camera(&self) -> Camera {
+    pub(crate) fn camera(&self) -> Camera {
         let mut camera = self.whole.clone();
         if let Some([column, row, width, height]) = self.part {
             camera.k = super::moved(&camera.k, [column, row]);
@@ -84,7 +84,7 @@ impl PlannedView {
 
 impl Plan {
     /// Plans a scene; what stands against it is collected in `errors`.
-    pub(super) fn new(files: &[InputFile], options: &LoadOptions) -> Self {
+    pub(crate) fn new(files: &[InputFile], options: &LoadOptions) -> Self {
         let mut plan = Self {
             kinds: files.iter().map(detect).collect(),
             images: Vec::new(),
@@ -122,7 +122,7 @@ impl Plan {
                 advice: "add three or more JPEG, PNG or TIFF images".to_owned(),
             });
         }
-        let headers = crate::parallel::map(&images, |_, &i| {
+        let headers = crate::execution::map(&images, |_, &i| {
             image_header(&files[i].path, &files[i].bytes)
         });
         for (file, header) in images.into_iter().zip(headers) {

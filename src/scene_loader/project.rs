@@ -15,12 +15,13 @@ use serde::Serialize;
 use zip::CompressionMethod;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
-use super::{InputFile, LoadOptions};
+use super::input::LoadOptions;
+use crate::error::{Error, Result};
+use crate::orientation::InputFile;
 use crate::orientation::{FileKind, detect};
 use crate::params::Params;
 use crate::plain_json;
 use crate::readable;
-use crate::{Error, Result};
 
 /// Name of the file that makes an archive a project.
 const PROJECT_FILE: &str = "project.json";
@@ -132,8 +133,9 @@ fn refuse(problem: &str) -> Error {
 
 #[cfg(test)]
 mod tests {
+    use super::super::archive::unpack;
+    use super::super::load_scene;
     use super::*;
-    use crate::scene_loader::{load_scene, unpack};
     use crate::synthetic::{gable_scene, to_files};
 
     fn project() -> (Project, Vec<InputFile>) {

@@ -6,13 +6,13 @@
 use nalgebra::{Point2, Point3, Vector3};
 
 use super::checks;
-use super::input_file::InputFile;
 use super::names::listed;
 use super::plan::PlannedView;
 use crate::camera::{Camera, Distortion};
+use crate::error::{Error, Result};
+use crate::orientation::InputFile;
 use crate::raster::{Gray, Photograph};
 use crate::scene::Scene;
-use crate::{Error, Result};
 
 /// Buildings rise above the ground by no more than this, metres. Assumption: roofs of houses and halls.
 const TALLEST_M: f64 = 60.0;
@@ -25,14 +25,14 @@ const SMALLEST_PX: u32 = 64;
 
 /// A box in the local frame.
 #[derive(Debug)]
-pub(super) struct Region {
+pub(crate) struct Region {
     low: Point3<f64>,
     high: Point3<f64>,
 }
 
 impl Region {
     /// From x0, y0, x1, y1 in the world of the input and the range of the ground's height.
-    pub(super) fn new(roi: [f64; 4], origin: &Vector3<f64>, heights: [f64; 2]) -> Result<Self> {
+    pub(crate) fn new(roi: [f64; 4], origin: &Vector3<f64>, heights: [f64; 2]) -> Result<Self> {
         let [x0, y0, x1, y1] = roi;
         if !(roi.iter().all(|v| v.is_finite()) && x0 < x1 && y0 < y1) {
             return Err(Error::Scene {
@@ -47,7 +47,7 @@ impl Region {
     }
 
     /// Cuts the region out of each view; views that do not show it are left out with a warning.
-    pub(super) fn cut(
+    pub(crate) fn cut(
         &self,
         files: &[InputFile],
         views: &mut Vec<PlannedView>,
@@ -198,7 +198,7 @@ impl Region {
 }
 
 /// Cuts the region out of a scene whose views are decoded.
-pub(super) fn cut_scene(scene: &mut Scene, roi: [f64; 4]) -> Result<()> {
+pub(crate) fn cut_scene(scene: &mut Scene, roi: [f64; 4]) -> Result<()> {
     let cameras: Vec<Camera> = scene.views.iter().map(|v| v.camera.clone()).collect();
     let named: Vec<(&str, &Camera)> = scene.views.iter().map(|v| (&*v.name, &v.camera)).collect();
     let Some(heights) = checks::check_cameras(&named, scene.ground_z).heights else {
@@ -226,7 +226,7 @@ pub(super) fn cut_scene(scene: &mut Scene, roi: [f64; 4]) -> Result<()> {
 }
 
 /// The part of the photograph that a part of the pinhole is made of, and the part itself: column, row, width, height.
-pub(super) fn source_of(part: [u32; 4], whole: &Camera, lens: &Distortion) -> [u32; 4] {
+pub(crate) fn source_of(part: [u32; 4], whole: &Camera, lens: &Distortion) -> [u32; 4] {
     const STEPS: u32 = 16;
     let [column, row, width, height] = part.map(f64::from);
     let k = &whole.k;

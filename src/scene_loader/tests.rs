@@ -426,7 +426,7 @@ fn a_part_of_a_large_frame_has_the_pixels_of_the_whole() {
 fn a_region_behind_tilted_views_is_not_shown_by_them() {
     let (mut scene, truth) = gable_scene(48);
     // The cameras fly south of the house and look north, down by 40 degrees.
-    let tilt = crate::orientation::rotation_from_axis_angle(&nalgebra::Vector3::new(
+    let tilt = crate::geometry::rotation_from_axis_angle(&nalgebra::Vector3::new(
         50f64.to_radians(),
         0.0,
         0.0,

@@ -8,12 +8,12 @@ use super::names::listed;
 use super::verdict::verdict;
 use crate::agreement::AgreementReport;
 use crate::camera::Camera;
-use crate::doctor::{Diagnosis, Examination, Patient, examine};
+use crate::error::{Error, Result};
+use crate::orientation_check::{Diagnosis, Examination, Patient, examine};
 use crate::scene::ViewShift;
-use crate::{Error, Result};
 
 /// Cameras as they are to be used, and what was found and done.
-pub(super) struct Treated {
+pub(crate) struct Treated {
     pub cameras: Vec<Camera>,
     /// To be added to the origin of the scene: other cameras may stand elsewhere.
     pub origin_change: Vector3<f64>,
@@ -24,7 +24,7 @@ pub(super) struct Treated {
 
 /// Examines views and corrects what may be corrected. `refusal` is what the places of the cameras alone gave reason
 /// to say.
-pub(super) fn treat(
+pub(crate) fn treat(
     mut patients: Vec<Patient>,
     refusal: Option<Error>,
     options: &LoadOptions,

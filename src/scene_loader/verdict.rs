@@ -1,11 +1,11 @@
 //! The doctor's diagnosis in the words of a refusal or a warning.
 
 use super::names::listed;
-use crate::doctor::{Diagnosis, Examination, Patient};
-use crate::{Error, Result};
+use crate::error::{Error, Result};
+use crate::orientation_check::{Diagnosis, Examination, Patient};
 
 /// A warning, or the refusal of the scene. `refusal` is what the places of the cameras alone gave reason to say.
-pub(super) fn verdict(
+pub(crate) fn verdict(
     examination: &Examination,
     patients: &[Patient],
     refusal: Option<Error>,

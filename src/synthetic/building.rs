@@ -10,7 +10,7 @@ use crate::math;
 use crate::sorting::sort_by;
 
 /// A house on its ground, ready to render, and what should be found of it.
-pub(super) struct Building {
+pub(crate) struct Building {
     pub faces: Vec<Face>,
     pub truth: SyntheticTruth,
 }
@@ -40,12 +40,12 @@ const OVERHANG: f64 = 0.6;
 const SLOPE: f64 = 0.75;
 
 /// Gable roof of 14 m by 9 m in plan.
-pub(super) fn gable() -> Building {
+pub(crate) fn gable() -> Building {
     gable_at(HOME, [7.0, 4.5], 0.0, 1)
 }
 
 /// Two gable roofs in line, 3 m apart: planes with a gap.
-pub(super) fn row() -> Building {
+pub(crate) fn row() -> Building {
     let beside = |u: f64| Place {
         center: turned(HOME.azimuth_deg, [u, 0.0]),
         ..HOME
@@ -58,7 +58,7 @@ pub(super) fn row() -> Building {
 }
 
 /// Two gable roofs whose azimuths differ by 37 degrees.
-pub(super) fn askew() -> Building {
+pub(crate) fn askew() -> Building {
     let place = |center, azimuth_deg| Place {
         center,
         azimuth_deg,
@@ -71,17 +71,17 @@ pub(super) fn askew() -> Building {
 }
 
 /// A gable roof whose ends are not square: parallelograms.
-pub(super) fn sheared() -> Building {
+pub(crate) fn sheared() -> Building {
     gable_at(HOME, [6.0, 4.5], 0.4, 1)
 }
 
 /// A gable roof whose ends are 3 degrees off square.
-pub(super) fn skewed() -> Building {
+pub(crate) fn skewed() -> Building {
     gable_at(HOME, [6.0, 4.5], 0.0524, 1)
 }
 
 /// A low gable roof close to a tower, which hides some of it from one strip.
-pub(super) fn tower_and_annex() -> Building {
+pub(crate) fn tower_and_annex() -> Building {
     let beside = |v: f64, eave_z| Place {
         center: turned(0.0, [0.0, v]),
         azimuth_deg: 0.0,
@@ -94,7 +94,7 @@ pub(super) fn tower_and_annex() -> Building {
 }
 
 /// Hip roof of 14 m by 9 m in plan.
-pub(super) fn hip() -> Building {
+pub(crate) fn hip() -> Building {
     let (a, b) = (7.0, 4.5);
     let ridge = EAVE_Z + SLOPE * b;
     let corners = [
@@ -154,7 +154,7 @@ fn join(mut a: Building, b: Building) -> Building {
 
 /// Main wing of 15 m by 8 m with a hipped west and a gabled east end; side wing of 6 m width to the
 /// north with a gable. Equal slopes and eaves, so that its ridge is lower and meets the main slope.
-pub(super) fn l_shape() -> Building {
+pub(crate) fn l_shape() -> Building {
     let (a, b, c, w, n) = (7.5, 4.0, 2.5, 3.0, 9.0);
     let (ridge, side_ridge) = (EAVE_Z + SLOPE * b, EAVE_Z + SLOPE * w);
     // The main wing lies south of the origin, so that the whole house is centred.

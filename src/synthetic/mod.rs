@@ -83,7 +83,7 @@ pub fn hip_scene(size: u32) -> (Scene, SyntheticTruth) {
 
 fn scene_of(building: &building::Building, size: u32) -> (Scene, SyntheticTruth) {
     let cameras = strip_cameras(size);
-    let views = crate::parallel::map(&cameras, |_, (name, camera)| {
+    let views = crate::execution::map(&cameras, |_, (name, camera)| {
         let rgb = render::render(&building.faces, camera);
         let gray = crate::raster::Gray::from_rgb(&rgb);
         View::new(name.clone(), camera.clone(), gray, rgb)

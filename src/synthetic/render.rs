@@ -14,7 +14,7 @@ const SAMPLES: u32 = 3;
 
 /// A textured planar polygon.
 #[derive(Clone, Debug)]
-pub(super) struct Face {
+pub(crate) struct Face {
     /// Its plane; the normal points to the side that light falls on.
     pub plane: Plane,
     /// Corners in the frame (u, v) of the face, metres; any simple polygon.
@@ -29,7 +29,7 @@ pub(super) struct Face {
 
 impl Face {
     /// The polygon through these corners, counter-clockwise seen from where light falls on it.
-    pub(super) fn new(corners: &[Point3<f64>], paint: Paint) -> Self {
+    pub(crate) fn new(corners: &[Point3<f64>], paint: Paint) -> Self {
         let u = (corners[1] - corners[0]).normalize();
         // Newell's sum is right for polygons that are not convex as well.
         let normal = (0..corners.len()).fold(Vector3::zeros(), |sum, i| {
@@ -75,7 +75,7 @@ fn in_frame(axes: &[Vector3<f64>; 2], d: &Vector3<f64>) -> Point2<f64> {
 }
 
 /// The picture that a camera takes of the faces; black where a ray meets none.
-pub(super) fn render(faces: &[Face], camera: &Camera) -> image::RgbImage {
+pub(crate) fn render(faces: &[Face], camera: &Camera) -> image::RgbImage {
     let visible: Vec<Visible> = faces.iter().map(|f| Visible::new(f, camera)).collect();
     let world_from_image = camera.r.transpose() * camera.k_inverse();
     image::RgbImage::from_fn(camera.width, camera.height, |x, y| {

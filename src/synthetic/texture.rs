@@ -2,7 +2,7 @@
 
 /// How a face is painted.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Paint {
+pub(crate) struct Paint {
     /// Colour without texture and light, 0 to 1.
     pub rgb: [f64; 3],
     /// Amplitude of the texture, relative to the colour: 0.04 is weak, 0.25 strong.
@@ -13,7 +13,7 @@ pub(super) struct Paint {
 
 impl Paint {
     /// Colour at a position on the face, metres, under light from 0 to 1.
-    pub(super) fn colour(&self, u: f64, v: f64, light: f64) -> [f64; 3] {
+    pub(crate) fn colour(&self, u: f64, v: f64, light: f64) -> [f64; 3] {
         let factor = light * (1.0 + self.contrast * noise(u, v, self.seed));
         self.rgb.map(|c| c * factor)
     }

@@ -9,7 +9,9 @@ use super::paint::{MAX_GAIN, Seen, colours_in, views_of};
 use super::patch::{FacePlane, Patch};
 use super::shadow::Footprints;
 use crate::ids::ViewId;
-use crate::math::{exp, ln, median};
+use crate::math::exp;
+use crate::math::ln;
+use crate::math::median;
 use crate::scene::Scene;
 
 /// Texels of a face that are compared, about. Assumption: the mean of a hundred is good to a percent.
@@ -28,7 +30,7 @@ const SWEEPS: usize = 1000;
 /// The factors for red, green and blue of every view that bring dark colours together, 1 in the geometric mean.
 pub fn exposures(scene: &Scene, faces: &[FacePlane], footprints: &[Footprints]) -> Vec<[f32; 3]> {
     let views = scene.views.len();
-    let compared = crate::parallel::map_part(faces, 0.2..0.3, |i, face| {
+    let compared = crate::execution::map_part(faces, 0.2..0.3, |i, face| {
         let [low, high] = face.bounds();
         let area = ((high.x - low.x) * (high.y - low.y)).max(1e-6);
         let patch = Patch::new(face, (area / SAMPLES).sqrt());

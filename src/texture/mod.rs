@@ -19,7 +19,6 @@ mod atlas;
 mod exposure;
 mod paint;
 mod patch;
-pub(crate) mod raster;
 mod shadow;
 
 pub use paint::ViewOfFace;
@@ -30,11 +29,12 @@ use self::atlas::{Packing, pack};
 use self::exposure::exposures;
 use self::paint::{Painted, paint, pixels_per_m2};
 use self::patch::{FacePlane, Patch};
-use self::raster::fill_gaps;
 use self::shadow::Footprints;
-use crate::ids::{BuildingId, ViewId};
+use crate::ids::BuildingId;
+use crate::ids::ViewId;
+use crate::model::{RoofModel, Surface};
 use crate::params::TextureParams;
-use crate::roof::{RoofModel, Surface};
+use crate::raster::fill_gaps;
 use crate::scene::Scene;
 
 /// A face seen at a grazing angle gets texels of at most this many ground pixels.
@@ -111,12 +111,12 @@ pub fn texture_model(
         .iter()
         .map(|v| Footprints::new(&faces, &v.camera))
         .collect();
-    let texels = crate::parallel::map_part(&faces, 0.0..0.2, |i, face| {
+    let texels = crate::execution::map_part(&faces, 0.0..0.2, |i, face| {
         texel_m(scene, i, face, &footprints, params)
     });
     let (patches, packing, coarsened) = lay_out(&faces, &texels, params);
     let exposures = exposures(scene, &faces, &footprints);
-    let mut painted = crate::parallel::map_part(&patches, 0.3..0.9, |i, patch| {
+    let mut painted = crate::execution::map_part(&patches, 0.3..0.9, |i, patch| {
         paint(scene, &faces, i, patch, &footprints, &exposures)
     });
     let kinds: Vec<Surface> = keys

@@ -4,10 +4,10 @@ use nalgebra::{Matrix2, Matrix3x2, Point2};
 use serde::Serialize;
 
 use super::patch::{FacePlane, Patch};
-use super::raster::fill_gaps;
 use super::shadow::{Footprints, shadow_on};
 use crate::camera::Camera;
 use crate::ids::ViewId;
+use crate::raster::fill_gaps;
 use crate::scene::Scene;
 use crate::sorting::sort_by;
 

@@ -2,9 +2,9 @@
 
 use nalgebra::{Point2, Point3, Vector3};
 
-use super::raster::mark_inside;
 use crate::geometry::bounds;
-use crate::roof::{Solid, SolidFace};
+use crate::model::{Solid, SolidFace};
+use crate::raster::mark_inside;
 
 /// Most texels along a side; no atlas holds so many.
 const MAX_TEXELS: usize = 1 << 16;

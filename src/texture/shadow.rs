@@ -6,9 +6,9 @@
 use nalgebra::{Point2, Point3};
 
 use super::patch::{FacePlane, Patch};
-use super::raster::mark_inside;
 use crate::camera::Camera;
 use crate::geometry::clip;
+use crate::raster::mark_inside;
 
 /// Parts of a face closer to the plane than this cast no shadow, metres: neighbours start at a common edge
 /// and are planar within a few millimetres.

@@ -7,16 +7,18 @@ use std::sync::Arc;
 use serde::Serialize;
 use serde_json::json;
 
-use super::{Tile, TilePart, join, plan_tiles};
+use super::join::TilePart;
+use super::{Tile, join, plan_tiles};
+use crate::error::{Error, Result};
+use crate::execution::Listener;
 use crate::ids::ViewId;
 use crate::objectspace::{image_segments, world_lines};
+use crate::orientation::InputFile;
 use crate::params::{Method, Params};
 use crate::pipeline::{Run, Stage, load_adjusted};
-use crate::progress::Listener;
 use crate::scene::{Scene, View};
-use crate::scene_loader::{InputFile, LoadOptions, whole_views};
+use crate::scene_loader::{LoadOptions, whole_views};
 use crate::texture::texture_model;
-use crate::{Error, Result};
 
 /// An area, its tiles, and what those that are done have found.
 #[derive(Clone, Debug)]

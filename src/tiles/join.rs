@@ -8,12 +8,14 @@ use nalgebra::{Point3, Vector2, Vector3};
 use super::{Tile, append, middle, moved, moved_plane};
 use crate::export::{Results, export_all};
 use crate::geometry::Segment2;
-use crate::halfplane::HalfPlane;
-use crate::ids::{HalfPlaneId, LineId, ViewId};
+use crate::ids::HalfPlaneId;
+use crate::ids::LineId;
+use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
+use crate::model::{Building, RoofModel, Surface};
 use crate::params::TextureParams;
-use crate::roof::{Building, RoofModel, Surface};
+use crate::planes::HalfPlane;
 use crate::scene::Scene;
 use crate::sorting::sort_by;
 use crate::texture::TexturedModel;
@@ -311,7 +313,7 @@ fn join_buildings(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roof::check_invariants;
+    use crate::model::check_invariants;
     use crate::scene::Survey;
     use crate::texture::FaceTexture;
     use crate::tiles::tests::house;

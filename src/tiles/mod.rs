@@ -20,10 +20,11 @@ pub use join::{Joined, TilePart, join};
 use nalgebra::{Point2, Vector3};
 use serde::Serialize;
 
+use crate::error::{Error, Result};
 use crate::geometry::Plane;
-use crate::ids::{BuildingId, FacetId};
-use crate::roof::{Building, RoofModel, Surface};
-use crate::{Error, Result};
+use crate::ids::BuildingId;
+use crate::ids::FacetId;
+use crate::model::{Building, RoofModel, Surface};
 
 /// Width of the margin around a core, metres. Assumption: a house and its neighbours' eaves, which take part in what
 /// its lines mean.
@@ -177,11 +178,12 @@ fn moved_plane(plane: &Plane, by: &Vector3<f64>) -> Plane {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::roof::{Facet, close_buildings};
+    use crate::model::Facet;
+    use crate::solids::close_buildings;
     use nalgebra::Point3;
 
     /// A house of 8 x 8 m with a mono-pitch roof, its middle at a place.
-    pub(super) fn house([x, y]: [f64; 2]) -> RoofModel {
+    pub(crate) fn house([x, y]: [f64; 2]) -> RoofModel {
         let plane =
             Plane::from_point_normal(&Point3::new(x, y, 6.0), &Vector3::new(-0.3, 0.0, 1.0))
                 .expect("a plane");
@@ -215,7 +217,7 @@ pub(crate) mod tests {
             .map(|b| middle(b).x - 1000.0)
             .collect();
         assert_eq!(middles, [20.0, 52.0]);
-        assert_eq!(crate::roof::check_invariants(&kept), []);
+        assert_eq!(crate::model::check_invariants(&kept), []);
     }
 
     #[test]

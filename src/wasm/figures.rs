@@ -1,4 +1,4 @@
-//! What the page's live figures ask of a project: traces, and [`crate::diagrams`] where the reader points.
+//! What the page's live figures ask of a project: traces, and [`crate::figures`] where the reader points.
 
 use std::borrow::Cow;
 
@@ -8,15 +8,18 @@ use wasm_bindgen::prelude::*;
 
 use super::convert::{end_points_px, named_error, to_js};
 use super::session::Session;
-use crate::diagrams::{correspondence, detected_stretches, segment_story, warped_views};
-use crate::halfplane::{PointsOfInterest, Side, SweepRejection};
-use crate::ids::{SegmentId, ViewId};
-use crate::linematch::{MatchTrace, SegmentRef, StepCount, SupportKind};
+use crate::buildings::{Parting, RefineTrace, Unrefined};
+use crate::figures::{correspondence, detected_stretches, segment_story, warped_views};
+use crate::ids::SegmentId;
+use crate::ids::ViewId;
+use crate::linematch::{MatchTrace, SegmentRef, StepCount};
 use crate::lines2d::{ImageSegment, SegmentRejection};
+use crate::lines3d::Side;
+use crate::lines3d::SupportKind;
 use crate::lines3d::{Line3d, LineOrigin, Refutation};
 use crate::objectspace::{image_segments, world_lines};
 use crate::pipeline::Run;
-use crate::roof::{Parting, RefineTrace, Unrefined};
+use crate::planes::{PointsOfInterest, SweepRejection};
 
 /// A 3D line without its geometry, which `lines` gives.
 #[derive(Serialize)]
@@ -283,7 +286,7 @@ fn line_record(line: &Line3d) -> LineRecord<'_> {
 }
 
 /// The segments of the method; where both run, those that were found last.
-pub(super) fn segments_of(run: &Run) -> Cow<'_, [Vec<ImageSegment>]> {
+pub(crate) fn segments_of(run: &Run) -> Cow<'_, [Vec<ImageSegment>]> {
     let r = run.results();
     match (&r.segments, &r.regions) {
         (Some(segments), _) => Cow::Borrowed(&segments.value),
@@ -293,7 +296,7 @@ pub(super) fn segments_of(run: &Run) -> Cow<'_, [Vec<ImageSegment>]> {
 }
 
 /// The 3D lines of the method (where both run, those of regions until there are more), with the new lines of the model once there is one.
-pub(super) fn lines_of(run: &Run) -> Cow<'_, [Line3d]> {
+pub(crate) fn lines_of(run: &Run) -> Cow<'_, [Line3d]> {
     let r = run.results();
     match (&r.lines, &r.regions, &r.clusters) {
         (Some(lines), ..) => r

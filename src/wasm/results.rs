@@ -7,7 +7,7 @@ use wasm_bindgen::prelude::*;
 use super::convert::{end_points_px, line_array, named_error, segment_array, to_js};
 use super::figures::{lines_of, segments_of};
 use super::session::{Session, not_loaded};
-use crate::linematch::SupportKind;
+use crate::lines3d::SupportKind;
 use crate::objectspace::{Window, WindowTrace};
 
 /// What `directions` returns.

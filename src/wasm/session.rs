@@ -7,14 +7,15 @@ use serde::Serialize;
 use wasm_bindgen::prelude::*;
 
 use super::convert::{from_js, input_error, named_error, row_major, to_js};
-use crate::doctor;
-use crate::halfplane::PointsOfInterest;
+use crate::execution::Known;
+use crate::execution::Listener;
+use crate::orientation::InputFile;
+use crate::orientation_check;
 use crate::params::{Method, Params};
 use crate::pipeline::{PackedView, Run, Stage, load_adjusted};
 use crate::plain_json::{Problem, Readable, read_fields};
-use crate::progress::Listener;
-use crate::scene_loader::{InputFile, LoadOptions, Project, inspect_files, open_project, unpack};
-use crate::shares::Known;
+use crate::planes::PointsOfInterest;
+use crate::scene_loader::{LoadOptions, Project, inspect_files, open_project, unpack};
 use crate::sorting::sort_by;
 use crate::tiles::Area;
 
@@ -22,21 +23,21 @@ use crate::tiles::Area;
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Session {
-    pub(super) files: Vec<InputFile>,
+    pub(crate) files: Vec<InputFile>,
     /// The project that was added last.
     project: Option<Project>,
-    pub(super) params: Params,
-    pub(super) run: Option<Run>,
+    pub(crate) params: Params,
+    pub(crate) run: Option<Run>,
     /// Views from another session, until they are all there.
-    pub(super) packed: Vec<PackedView>,
+    pub(crate) packed: Vec<PackedView>,
     /// A large area that is worked off in tiles.
-    pub(super) area: Option<Area>,
+    pub(crate) area: Option<Area>,
     /// What the sessions that share this run found of the next stage.
-    pub(super) known: Known,
+    pub(crate) known: Known,
     /// Written on first request after the last stage.
-    pub(super) outputs: Option<Vec<(String, Vec<u8>)>>,
+    pub(crate) outputs: Option<Vec<(String, Vec<u8>)>>,
     /// Points of interest, found on first request for a figure.
-    pub(super) points: Option<Vec<PointsOfInterest>>,
+    pub(crate) points: Option<Vec<PointsOfInterest>>,
 }
 
 /// What `load` may be told; see [`LoadOptions`].
@@ -232,23 +233,23 @@ impl Session {
         to_js(&run.step_with(stage, known, &listener_of(on_progress)))
     }
 
-    pub(super) fn loaded(&self) -> Result<&Run, JsValue> {
+    pub(crate) fn loaded(&self) -> Result<&Run, JsValue> {
         self.run.as_ref().ok_or_else(not_loaded)
     }
 
-    pub(super) fn loaded_mut(&mut self) -> Result<&mut Run, JsValue> {
+    pub(crate) fn loaded_mut(&mut self) -> Result<&mut Run, JsValue> {
         self.run.as_mut().ok_or_else(not_loaded)
     }
 }
 
 /// The stage of this name.
-pub(super) fn stage_of(name: &str) -> Result<Stage, JsValue> {
+pub(crate) fn stage_of(name: &str) -> Result<Stage, JsValue> {
     Stage::from_name(name)
         .ok_or_else(|| named_error("RangeError", &format!("no stage is called '{name}'")))
 }
 
 /// Tells the page how far a stage is.
-pub(super) fn listener_of(on_progress: &Function) -> Listener {
+pub(crate) fn listener_of(on_progress: &Function) -> Listener {
     let on_progress = on_progress.clone();
     Arc::new(move |fraction| {
         // A listener that throws is the page's own fault, and no reason to lose the stage.
@@ -256,7 +257,7 @@ pub(super) fn listener_of(on_progress: &Function) -> Listener {
     })
 }
 
-pub(super) fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
+pub(crate) fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
     let options: Option<JsLoadOptions> = from_js(options, "options of load")?;
     let options = options.unwrap_or_default();
     Ok(LoadOptions {
@@ -285,7 +286,7 @@ impl From<&LoadOptions> for JsLoadOptions {
     }
 }
 
-pub(super) fn not_loaded() -> JsValue {
+pub(crate) fn not_loaded() -> JsValue {
     named_error(
         "InputError",
         "no scene is loaded; add files and load them first",

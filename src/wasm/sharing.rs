@@ -1,13 +1,13 @@
 //! One run over several workers: each has a session with the same scene, and does its share of a stage's maps
-//! ([`crate::shares`]). The page carries the bytes between them.
+//! ([`crate::execution::shard`]). The page carries the bytes between them.
 
 use js_sys::{Function, Uint8Array};
 use wasm_bindgen::prelude::*;
 
 use super::convert::named_error;
 use super::session::{Session, listener_of, stage_of};
+use crate::execution::{Known, Task};
 use crate::pipeline::{PackedView, Run};
-use crate::shares::{Known, Task};
 
 #[wasm_bindgen]
 impl Session {

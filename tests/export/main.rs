@@ -10,7 +10,7 @@ mod planted;
 mod tables;
 mod texture;
 
-use ridgeline::roof::RoofModel;
+use ridgeline::model::RoofModel;
 
 use planted::{files_of, planted_models, scene};
 

@@ -6,15 +6,17 @@ use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use ridgeline::camera::Camera;
 use ridgeline::export::{Results, export_all};
 use ridgeline::geometry::{Plane, Segment2, Segment3};
-use ridgeline::halfplane::{HalfPlane, Side};
 use ridgeline::ids::{BuildingId, LineId, SegmentId, ViewId};
-use ridgeline::linematch::{LineSupport, SupportKind};
 use ridgeline::lines2d::ImageSegment;
 use ridgeline::lines3d::Line3d;
+use ridgeline::lines3d::Side;
+use ridgeline::lines3d::{LineSupport, SupportKind};
+use ridgeline::model::{Facet, RoofModel, check_invariants};
 use ridgeline::params::TextureParams;
+use ridgeline::planes::HalfPlane;
 use ridgeline::raster::Gray;
-use ridgeline::roof::{Facet, RoofModel, check_invariants, close_buildings};
 use ridgeline::scene::{Scene, View};
+use ridgeline::solids::close_buildings;
 use ridgeline::texture::texture_model;
 
 /// A scene origin as of a national grid.

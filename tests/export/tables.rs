@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 use ridgeline::ids::LineId;
 use ridgeline::lines3d::Refutation;
-use ridgeline::roof::Surface;
+use ridgeline::model::Surface;
 use serde_json::Value;
 
 use crate::planted::{ORIGIN, files_of, files_with, planted_evidence, planted_models, scene};

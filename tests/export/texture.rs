@@ -2,9 +2,10 @@
 
 use nalgebra::Vector3;
 use ridgeline::ids::ViewId;
+use ridgeline::model::Surface;
 use ridgeline::params::TextureParams;
-use ridgeline::roof::{Surface, close_buildings};
 use ridgeline::scene::{Scene, View};
+use ridgeline::solids::close_buildings;
 use ridgeline::texture::texture_model;
 
 use crate::planted::{map_view, quad, scene};

@@ -5,7 +5,7 @@ use super::partition::{Edge, Node, OUTSIDE, Partition};
 
 impl Partition {
     /// Adds nodes and vectors along all cracks.
-    pub(super) fn trace_cracks(&mut self, cracks: &Cracks) {
+    pub(crate) fn trace_cracks(&mut self, cracks: &Cracks) {
         let (w, h) = (cracks.width, cracks.height);
         let mut ids = vec![u32::MAX; (w + 1) * (h + 1)];
         for y in 0..=h {
@@ -64,7 +64,7 @@ impl Partition {
 }
 
 /// The cracks between the pixels of a label image.
-pub(super) struct Cracks<'a> {
+pub(crate) struct Cracks<'a> {
     pub labels: &'a [u32],
     pub width: usize,
     pub height: usize,

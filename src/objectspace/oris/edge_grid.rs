@@ -8,7 +8,7 @@ const CELL_PX: i32 = 16;
 
 /// The vectors of every cell that their bounding boxes touch. Vectors that moved on are listed still: what counts is
 /// where they are now.
-pub(super) struct EdgeGrid {
+pub(crate) struct EdgeGrid {
     columns: i32,
     cells: Vec<Vec<u32>>,
 }

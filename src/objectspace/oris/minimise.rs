@@ -6,12 +6,13 @@ use std::collections::BinaryHeap;
 use super::integrals::{CHANNELS, Moments};
 use super::partition::{OUTSIDE, Partition};
 use super::settle::settle;
-use crate::math::{larger, log2};
+use crate::math::larger;
+use crate::math::log2;
 use crate::params::OrisParams;
 
 /// The code length, bits; see [`super`].
 #[derive(Clone, Copy)]
-pub(super) struct CodeLength {
+pub(crate) struct CodeLength {
     vector_bits: f64,
     pixels_per_sample: f64,
     least_variance: f64,
@@ -50,7 +51,7 @@ pub struct Moves {
 }
 
 /// Makes moves in the order of their gain until none gains.
-pub(super) fn minimise(p: &mut Partition, params: &OrisParams) -> Moves {
+pub(crate) fn minimise(p: &mut Partition, params: &OrisParams) -> Moves {
     let mut descent = Descent {
         code: CodeLength::new(params),
         queue: BinaryHeap::new(),
@@ -111,7 +112,7 @@ impl Ord for Offer {
 /// each step alone would cost more than its vector.) More rounds corners off.
 const MIXED_PX: f64 = 0.5;
 /// Gains below this are rounding, bits.
-pub(super) const LEAST_GAIN: f64 = 1e-6;
+pub(crate) const LEAST_GAIN: f64 = 1e-6;
 
 struct Descent {
     code: CodeLength,

@@ -3,7 +3,7 @@
 use super::integrals::Lattice;
 
 /// Which lattice points are nodes, a bit each.
-pub(super) struct Occupied {
+pub(crate) struct Occupied {
     width: usize,
     words_per_row: usize,
     words: Vec<u64>,

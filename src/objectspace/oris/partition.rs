@@ -11,11 +11,11 @@ use super::integrals::{Lattice, Moments, RowSums};
 use super::occupied::Occupied;
 
 /// Beyond the border of the image.
-pub(super) const OUTSIDE: u32 = 0;
+pub(crate) const OUTSIDE: u32 = 0;
 
 /// A vector of a boundary.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
+pub(crate) struct Edge {
     /// Nodes at its start and end.
     pub nodes: [u32; 2],
     /// Regions to the left and to the right of its direction as seen on the screen.
@@ -25,7 +25,7 @@ pub(super) struct Edge {
 
 /// A break point or junction with the vectors that end there.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
+pub(crate) struct Node {
     pub at: Lattice,
     edges: [u32; 4],
     degree: u8,
@@ -46,7 +46,7 @@ impl Node {
         &self.edges[..usize::from(self.degree)]
     }
 
-    pub(super) fn add(&mut self, edge: u32) {
+    pub(crate) fn add(&mut self, edge: u32) {
         self.edges[usize::from(self.degree)] = edge;
         self.degree += 1;
     }
@@ -66,7 +66,7 @@ impl Node {
 
 /// A region while the partition changes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Region {
+pub(crate) struct Region {
     pub moments: Moments,
     pub alive: bool,
     /// Number of vectors shared with each neighbour.
@@ -77,7 +77,7 @@ pub(super) struct Region {
 
 /// What dropping a break point would do.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Straightening {
+pub(crate) struct Straightening {
     /// The regions to the left and to the right of the path a - node - c.
     pub sides: [u32; 2],
     /// The pixels that would go from the right region to the left one.
@@ -89,12 +89,12 @@ pub(super) struct Straightening {
 }
 
 /// The partition.
-pub(super) struct Partition {
+pub(crate) struct Partition {
     pub nodes: Vec<Node>,
     pub edges: Vec<Edge>,
     pub regions: Vec<Region>,
     sums: RowSums,
-    pub(super) occupied: Occupied,
+    pub(crate) occupied: Occupied,
 }
 
 impl Partition {

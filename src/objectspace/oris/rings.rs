@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::Vector;
 
 /// The rings of every region: vectors chained head to tail with the region to their right.
-pub(super) fn rings(vectors: &[Vector], regions: usize) -> Vec<Vec<Vec<[i32; 2]>>> {
+pub(crate) fn rings(vectors: &[Vector], regions: usize) -> Vec<Vec<Vec<[i32; 2]>>> {
     let mut of_region: Vec<Vec<[[i32; 2]; 2]>> = vec![Vec::new(); regions];
     for v in vectors {
         let [a, b] = v.ends;

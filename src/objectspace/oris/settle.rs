@@ -21,7 +21,7 @@ const NEAR_PX: i32 = 2;
 const FAR_PX: i32 = 4;
 
 /// Moves nodes while any of these steps shortens the description; returns how many moves it took.
-pub(super) fn settle(p: &mut Partition, code: &CodeLength) -> usize {
+pub(crate) fn settle(p: &mut Partition, code: &CodeLength) -> usize {
     let mut grid = EdgeGrid::new(p);
     let movable = |n: &u32| p.nodes[*n as usize].edges().len() > 1;
     let mut queue: VecDeque<u32> = (0..p.nodes.len() as u32).filter(movable).collect();

@@ -1,0 +1,170 @@
+//! Whether a refined building may replace the old one.
+
+use nalgebra::Point2;
+
+use super::RefineRefusal;
+use crate::ids::FacetId;
+use crate::model::inside;
+use crate::model::{Facet, Violation, check_invariants};
+use crate::params::RefineParams;
+use crate::photoconsistency::{PlanGrid, consistency_map};
+use crate::scene::Scene;
+use crate::solids::close_buildings;
+
+/// What a refined building is measured against.
+pub struct Judge<'a> {
+    /// The views.
+    pub scene: &'a Scene,
+    /// The facets before.
+    pub old: &'a [&'a Facet],
+    /// Height of the ground.
+    pub ground_z: f64,
+    /// Parameters.
+    pub params: &'a RefineParams,
+}
+
+impl Judge<'_> {
+    /// The new facets if they are sound and the views agree on them as well as before; otherwise why not, and which of
+    /// them are the cause.
+    pub fn accept(&self, new: Vec<Facet>) -> Result<Vec<Facet>, (RefineRefusal, Vec<usize>)> {
+        let broken = self.broken(&new);
+        if !broken.is_empty() {
+            return Err((RefineRefusal::Broken, broken));
+        }
+        let [before, after, worse] = self.similarities(&new);
+        let mean = |sums: &[[f64; 2]]| {
+            let weight: f64 = sums.iter().map(|s| s[0]).sum();
+            let sum: f64 = sums.iter().map(|s| s[1]).sum();
+            if weight > 0.0 { sum / weight } else { 0.0 }
+        };
+        let (b, a) = (mean(&before), mean(&after));
+        if a < b - self.params.similarity_loss {
+            let lost = |i: &usize| worse[*i][0] > 0.0;
+            let spoilers = (0..new.len()).filter(lost).collect();
+            let (before, after) = (b, a);
+            return Err((RefineRefusal::Dissimilar { before, after }, spoilers));
+        }
+        Ok(new)
+    }
+
+    /// The facets that keep the new ones from closing to one solid with nothing cut, dropped or folded; none when they do.
+    fn broken(&self, new: &[Facet]) -> Vec<usize> {
+        let finite = |f: &Facet| {
+            f.outer
+                .iter()
+                .all(|p| p.coords.iter().all(|c| c.is_finite()))
+        };
+        let all = || (0..new.len()).collect();
+        if !new.iter().all(finite) {
+            return all();
+        }
+        let (model, trace) = close_buildings(new, |_| self.ground_z);
+        let mut closed = vec![0.0; new.len()];
+        for (facet, &source) in model.facets.iter().zip(&trace.sources) {
+            closed[source] += plan_area(facet);
+        }
+        // A facet that overlaps its neighbour or itself is cut; one that doubles is another one.
+        let spoils = |&i: &usize| {
+            let (area, old) = (plan_area(&new[i]), plan_area(self.old[i]));
+            (closed[i] - area).abs() > 0.01 || area < 0.5 * old || area > 2.0 * old
+        };
+        let cut: Vec<usize> = (0..new.len()).filter(spoils).collect();
+        if !cut.is_empty() {
+            return cut;
+        }
+        let violations = check_invariants(&model);
+        if trace.rejected.is_empty() && violations.is_empty() {
+            return cut;
+        }
+        // Some name facets; where none does, it may be any.
+        let mut named: Vec<usize> = violations
+            .iter()
+            .flat_map(facets_of)
+            .map(|f| trace.sources[f.index()])
+            .chain(trace.rejected.iter().map(|r| r.0))
+            .collect();
+        named.sort_unstable();
+        named.dedup();
+        if named.is_empty() { all() } else { named }
+    }
+
+    /// Per facet (weight, weight x mean correlation) of the views inside, before and after, and whether that fell by more than its error. Facets that
+    /// moved by less than a fraction of a pixel are not compared.
+    fn similarities(&self, new: &[Facet]) -> [Vec<[f64; 2]>; 3] {
+        let compared = crate::execution::map(new, |i, n| {
+            let o = self.old[i];
+            let step = self.step(o).filter(|step| moved(o, n, 0.25 * step))?;
+            Some([self.agreement(o, step), self.agreement(n, step)])
+        });
+        let mut sums = [(); 3].map(|()| vec![[0.0; 2]; new.len()]);
+        for (i, pair) in compared.into_iter().enumerate() {
+            let Some([before, after]) = pair else {
+                continue;
+            };
+            let [mean, new_mean] =
+                [before, after].map(|[weight, sum]| sum / weight.max(f64::MIN_POSITIVE));
+            let lost = mean - new_mean > self.params.similarity_loss;
+            (sums[0][i], sums[1][i]) = (before, after);
+            sums[2][i][0] = f64::from(u8::from(lost));
+        }
+        sums
+    }
+
+    /// Size of a pixel on the facet.
+    fn step(&self, facet: &Facet) -> Option<f64> {
+        let at = facet.outer.first()?;
+        let pixels = self.scene.views.iter().map(|v| v.camera.ground_pixel(at));
+        Some(pixels.fold(f64::INFINITY, f64::min))
+    }
+
+    /// Sums of weight and of weight times correlation inside a facet.
+    fn agreement(&self, facet: &Facet, step: f64) -> [f64; 2] {
+        let [low, high] = facet.plan_bounds();
+        let grid = PlanGrid::covering(low, high, step);
+        let map = consistency_map(self.scene, &facet.plane, &grid);
+        let mut sums = [0.0; 2];
+        for k in 0..grid.width * grid.height {
+            let weight = f64::from(map.weight(k));
+            if weight == 0.0 {
+                continue;
+            }
+            let p = grid.center(k % grid.width, k / grid.width);
+            if inside(&facet.outer, &p) && !facet.holes.iter().any(|h| inside(h, &p)) {
+                sums[0] += weight;
+                sums[1] += weight * f64::from(map.correlation(k));
+            }
+        }
+        sums
+    }
+}
+
+/// The facets that a violation is about.
+fn facets_of(violation: &Violation) -> Vec<FacetId> {
+    match violation {
+        Violation::FacetPlane { facet }
+        | Violation::FacetNotPlanar { facet, .. }
+        | Violation::FacetRingNotSimple { facet, .. }
+        | Violation::FacetRingOrientation { facet, .. } => vec![*facet],
+        Violation::FacetsOverlap { first, second, .. } => vec![*first, *second],
+        _ => Vec::new(),
+    }
+}
+
+/// Plan area of a facet, m^2.
+fn plan_area(facet: &Facet) -> f64 {
+    let doubled = |ring: &[nalgebra::Point3<f64>]| {
+        let next = ring.iter().cycle().skip(1);
+        let origin = ring.first().map_or(Point2::origin(), |p| p.xy());
+        ring.iter()
+            .zip(next)
+            .map(|(a, b)| (a.xy() - origin).perp(&(b.xy() - origin)))
+            .sum::<f64>()
+    };
+    0.5 * (doubled(&facet.outer) + facet.holes.iter().map(|h| doubled(h)).sum::<f64>())
+}
+
+/// Did any corner move by more than this, metres?
+fn moved(old: &Facet, new: &Facet, least_m: f64) -> bool {
+    old.outer.len() != new.outer.len()
+        || (old.outer.iter().zip(&new.outer)).any(|(p, q)| (p - q).norm() > least_m)
+}

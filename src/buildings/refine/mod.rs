@@ -1,0 +1,529 @@
+//! Regularisation and refinement of buildings: the wireframe is adjusted to the image edges of all views (B99 section 2:
+//! the partner in Leuven regularises the roofs and refines their corners by the reprojection error of the wireframe).
+//!
+//! ```text
+//! building -> wireframe -> edges of its sides in every view -> adjustment (free)
+//!          -> relations that the covariance allows -> adjustment (with them) -> tests -> building
+//! ```
+//!
+//! Delineation puts borders where lines were found or where correlation ends; the first are averages of what
+//! matching kept, the second lie off by half a window. Here every side is measured again, in every view that sees it, and
+//! all of a building's sides, planes and corners move together.
+//!
+//! A building is adjusted if the new shape has the smaller reprojection error, is a closed
+//! solid without a broken invariant, and the views agree inside its facets as well as before. Otherwise it keeps its planes; simpler
+//! outlines ([`outline`]) on them pass the last two tests by themselves.
+
+mod accept;
+mod adjust;
+mod envelope;
+#[cfg(test)]
+pub(super) mod fixture;
+mod outline;
+mod parting;
+mod profiles;
+mod relations;
+mod sightings;
+mod wireframe;
+
+#[cfg(test)]
+pub(crate) use fixture::gable;
+pub use parting::{Parting, part_roofs};
+pub use relations::{RelationKind, TestedRelation};
+pub use wireframe::SideKind;
+
+use nalgebra::Vector3;
+use serde::Serialize;
+
+use self::accept::Judge;
+use self::adjust::{Problem, Solution, Term};
+use self::sightings::{Sighting, sight_sides};
+use self::wireframe::{State, Wireframe};
+use crate::ids::BuildingId;
+use crate::lines3d::Line3d;
+use crate::model::{Building, Facet, Occluders, RoofModel};
+use crate::params::RefineParams;
+use crate::scene::Scene;
+
+/// Why a building is not adjusted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "reason")]
+pub enum RefineRefusal {
+    /// More unknowns than are adjusted at once.
+    TooLarge {
+        /// Number of unknowns.
+        unknowns: usize,
+    },
+    /// Too few of its sides show in the images.
+    FewSightings {
+        /// Measured edges.
+        sightings: usize,
+    },
+    /// The adjustment has no solution.
+    Singular,
+    /// The reprojection error does not fall.
+    NoGain,
+    /// The new outlines fold, cross, or do not close.
+    Broken,
+    /// The views agree less inside the new facets.
+    Dissimilar {
+        /// Mean correlation inside the facets before.
+        before: f64,
+        /// ... and after.
+        after: f64,
+    },
+}
+
+/// What happened to one building.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BuildingRefinement {
+    /// The building.
+    pub building: BuildingId,
+    /// Straight sides of its wireframe.
+    pub sides: usize,
+    /// Edges measured for them over all views.
+    pub sightings: usize,
+    /// Root mean square distance of these edges from the images of the sides before, px.
+    pub error_before_px: f64,
+    /// ... and after the adjustment.
+    pub error_after_px: f64,
+    /// Largest move of a corner in plan, metres.
+    pub largest_move_m: f64,
+    /// Relations that were tested.
+    pub relations: Vec<TestedRelation>,
+    /// Why nothing of it was taken over but simpler outlines; `None` when it was.
+    pub refused: Option<RefineRefusal>,
+}
+
+/// What happened to every building.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct RefineTrace {
+    /// In the order of the model's buildings.
+    pub buildings: Vec<BuildingRefinement>,
+}
+
+/// Refines the facets of a closed model, building by building. The result has as many facets in the same order, to be
+/// closed again.
+pub fn refine_roofs(
+    scene: &Scene,
+    lines: &[Line3d],
+    model: &RoofModel,
+    params: &RefineParams,
+) -> (Vec<Facet>, RefineTrace) {
+    let occluders = Occluders::new(&model.facets);
+    let mut facets = model.facets.clone();
+    let mut trace = RefineTrace::default();
+    if !params.refine {
+        return (facets, trace);
+    }
+    let refined = crate::execution::map(&model.buildings, |i, building| {
+        let old: Vec<&Facet> = (building.facets.iter())
+            .map(|f| &model.facets[f.index()])
+            .collect();
+        let case = Case {
+            scene,
+            lines,
+            occluders: &occluders,
+            building,
+            old: &old,
+            params,
+        };
+        let mut report = BuildingRefinement::of(BuildingId::from_index(i));
+        let new = case.best(&mut report);
+        (new, report)
+    });
+    for (building, (new, mut report)) in model.buildings.iter().zip(refined) {
+        match new {
+            Ok(new) => {
+                for (id, facet) in building.facets.iter().zip(new) {
+                    facets[id.index()] = facet;
+                }
+            }
+            Err(refusal) => report.refused = Some(refusal),
+        }
+        trace.buildings.push(report);
+    }
+    (facets, trace)
+}
+
+impl BuildingRefinement {
+    /// Nothing done yet.
+    fn of(building: BuildingId) -> Self {
+        Self {
+            building,
+            sides: 0,
+            sightings: 0,
+            error_before_px: 0.0,
+            error_after_px: 0.0,
+            largest_move_m: 0.0,
+            relations: Vec::new(),
+            refused: None,
+        }
+    }
+}
+
+/// A building to refine.
+struct Case<'a> {
+    scene: &'a Scene,
+    lines: &'a [Line3d],
+    occluders: &'a Occluders<'a>,
+    building: &'a Building,
+    old: &'a [&'a Facet],
+    params: &'a RefineParams,
+}
+
+impl Case<'_> {
+    /// The refined facets, or why there are none. Facets that spoil the result keep their outlines and are measured
+    /// near them only, and the others are tried again.
+    fn best(&self, report: &mut BuildingRefinement) -> Result<Vec<Facet>, RefineRefusal> {
+        const ATTEMPTS: usize = 4;
+        let (wireframe, state) = Wireframe::new(self.old);
+        report.sides = wireframe.sides.len();
+        if wireframe.size() > self.params.max_unknowns {
+            let unknowns = wireframe.size();
+            return Err(RefineRefusal::TooLarge { unknowns });
+        }
+        let simple = self.simplified(&wireframe, &state);
+        let mut open = vec![true; self.old.len()];
+        for attempt in 1.. {
+            let (refusal, spoilers) = match self.refined(&simple, &open, report) {
+                Ok(new) => return Ok(new),
+                Err(why) => why,
+            };
+            let hopeless = spoilers.iter().all(|&f| !open[f]);
+            if attempt == ATTEMPTS || hopeless {
+                report.refused = Some(refusal);
+                return self.unadjusted(simple).ok_or(refusal);
+            }
+            // The last time all stay near.
+            if attempt + 1 == ATTEMPTS {
+                open.fill(false);
+            }
+            spoilers.into_iter().for_each(|f| open[f] = false);
+        }
+        unreachable!("the last attempt returns")
+    }
+
+    /// The facets, each with the simpler outline where the images show at least the same share of it, and all straightened.
+    fn simplified(&self, wireframe: &Wireframe, state: &State) -> Vec<Facet> {
+        let jog_m = self.params.jog_m;
+        let facets = outline::simplified(self.old, jog_m);
+        if facets.iter().eq(self.old.iter().copied()) {
+            return outline::straightened(&facets, 0.5 * jog_m);
+        }
+        let simple: Vec<&Facet> = facets.iter().collect();
+        let far = vec![true; facets.len()];
+        let shown = |w: &Wireframe, state: &State| {
+            let sightings = self.sightings(w, state, &far);
+            w.shown(state, sightings.iter().map(|s| s.side))
+        };
+        let (simple_wireframe, simple_state) = Wireframe::new(&simple);
+        let before = shown(wireframe, state);
+        let after = shown(&simple_wireframe, &simple_state);
+        let chosen: Vec<Facet> = (0..facets.len())
+            .map(|i| {
+                if after[i] >= before[i] {
+                    facets[i].clone()
+                } else {
+                    self.old[i].clone()
+                }
+            })
+            .collect();
+        outline::straightened(&chosen, 0.5 * jog_m)
+    }
+
+    fn sightings(&self, wireframe: &Wireframe, state: &State, search: &[bool]) -> Vec<Sighting> {
+        let (scene, occluders, params) = (self.scene, self.occluders, self.params);
+        sight_sides(
+            scene, occluders, wireframe, state, search, self.lines, params,
+        )
+    }
+
+    /// The simpler outlines on the old planes, of as many facets as the images and the building allow; `None` where none is left.
+    fn unadjusted(&self, mut new: Vec<Facet>) -> Option<Vec<Facet>> {
+        let is_new = |new: &[Facet], i: usize| new[i] != *self.old[i];
+        while (0..new.len()).any(|i| is_new(&new, i)) {
+            let Err((_, mut spoilers)) = self.judge().accept(new.clone()) else {
+                return Some(new);
+            };
+            spoilers.retain(|&i| is_new(&new, i));
+            if spoilers.is_empty() {
+                return None;
+            }
+            for i in spoilers {
+                new[i] = self.old[i].clone();
+            }
+        }
+        None
+    }
+
+    fn judge(&self) -> Judge<'_> {
+        Judge {
+            scene: self.scene,
+            old: self.old,
+            ground_z: self.building.ground_z,
+            params: self.params,
+        }
+    }
+
+    /// The refined facets of a building, or why there are none and which facets are the cause. Those not `open` keep their outlines.
+    fn refined(
+        &self,
+        simple: &[Facet],
+        open: &[bool],
+        report: &mut BuildingRefinement,
+    ) -> Result<Vec<Facet>, (RefineRefusal, Vec<usize>)> {
+        let params = self.params;
+        let give_up = |why| (why, Vec::new());
+        let from: Vec<&Facet> = (0..open.len())
+            .map(|i| if open[i] { &simple[i] } else { self.old[i] })
+            .collect();
+        let (wireframe, start) = Wireframe::new(&from);
+        report.sides = wireframe.sides.len();
+        let heights = height_terms(&wireframe, &start, &from, self.lines, params);
+        let problem = |state: &State, far: &[bool]| {
+            let sightings = self.sightings(&wireframe, state, far);
+            let mut problem = Problem::new(self.scene, &wireframe, &start, sightings, params);
+            problem.terms.extend(heights.iter().cloned());
+            problem
+        };
+        // First to the edges that the views share near the sides, then measured again from there.
+        let singular = || give_up(RefineRefusal::Singular);
+        let far = problem(&start, open);
+        let pattern = far.pattern();
+        let near = far.solve(&start, &pattern).ok_or_else(singular)?;
+        let mut problem = problem(&near.state, &vec![false; open.len()]);
+        report.sightings = problem.sightings();
+        if report.sightings < params.min_sightings {
+            let sightings = report.sightings;
+            return Err(give_up(RefineRefusal::FewSightings { sightings }));
+        }
+        let pattern = problem.pattern();
+        let free = problem.solve(&near.state, &pattern).ok_or_else(singular)?;
+        let regular =
+            regularised(&mut problem, &free, params, &mut report.relations).ok_or_else(singular)?;
+
+        report.error_before_px = problem.error_px(&start, params.cap_px);
+        report.error_after_px = problem.error_px(&regular, params.cap_px);
+        let moves = (0..wireframe.vertices)
+            .map(|v| (wireframe.position(&regular, v) - wireframe.position(&start, v)).norm());
+        report.largest_move_m = moves.fold(0.0, f64::max);
+        // NaN fails the comparison.
+        if report.error_after_px < report.error_before_px {
+            self.judge().accept(wireframe.facets(&regular, &from))
+        } else {
+            Err(give_up(RefineRefusal::NoGain))
+        }
+    }
+}
+
+/// Solves once more with the relations that the free solution allows.
+fn regularised(
+    problem: &mut Problem,
+    free: &Solution,
+    params: &RefineParams,
+    tested: &mut Vec<TestedRelation>,
+) -> Option<State> {
+    let proposed = relations::propose(problem.wireframe, &free.state, params);
+    let (adopted, tests) = relations::adopt(problem.wireframe, free, &proposed, params);
+    *tested = tests;
+    let terms = adopted.into_iter().map(|r| Term::Relation(r, HELD_M));
+    problem.terms.extend(terms);
+    // Relations join unknowns that no image edge does.
+    let solution = problem.solve(&free.state, &problem.pattern())?.state;
+    Some(solution)
+}
+
+/// Standard deviation of an adopted relation, metres: it holds.
+const HELD_M: f64 = 1e-3;
+
+/// What the facets' lines say about their planes: heights at the ends of the lines, with the lines' covariance; and heights
+/// around each facet, loosely, so that no plane is free.
+fn height_terms(
+    wireframe: &Wireframe,
+    state: &State,
+    facets: &[&Facet],
+    lines: &[Line3d],
+    params: &RefineParams,
+) -> Vec<Term> {
+    let mut terms = Vec::new();
+    for (face, facet) in facets.iter().enumerate() {
+        let mut add = |p: &nalgebra::Point3<f64>, variance: f64| {
+            let at = p.xy();
+            terms.push(Term::Height {
+                face,
+                at,
+                z: wireframe.height(state, face, &at),
+                sigma_m: (variance + params.height_floor_m * params.height_floor_m).sqrt(),
+            });
+        };
+        let normal: Vector3<f64> = facet.plane.normal / facet.plane.normal.z;
+        for line in facet.lines.iter().map(|l| &lines[l.index()]) {
+            let ends = [&line.segment.p0, &line.segment.p1];
+            for (p, covariance) in ends.into_iter().zip(&line.covariance) {
+                add(p, normal.dot(&(covariance * normal)));
+            }
+        }
+        let loose = params.height_sigma_m * params.height_sigma_m;
+        facet.outer.iter().for_each(|p| add(p, loose));
+    }
+    terms
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::check_invariants;
+    use crate::solids::close_buildings;
+    use crate::synthetic::{SyntheticTruth, gable_scene, l_scene, skewed_scene};
+    use nalgebra::{Matrix3, Point3};
+
+    /// The true roof, each corner moved by `change`; affine changes keep facets planar and joined.
+    fn changed(truth: &SyntheticTruth, change: impl Fn(&Point3<f64>) -> Point3<f64>) -> RoofModel {
+        let facets: Vec<Facet> = (truth.facets.iter())
+            .map(|(_, ring)| crate::testing::facet(&ring.iter().map(&change).collect::<Vec<_>>()))
+            .collect();
+        let (model, trace) = close_buildings(&facets, |_| truth.ground_z);
+        assert_eq!((trace.rejected.len(), model.buildings.len()), (0, 1));
+        model
+    }
+
+    /// Shifted by 0.15 m, turned by half a degree, stretched by a hundredth.
+    fn displaced(p: &Point3<f64>) -> Point3<f64> {
+        let m = Matrix3::new(1.01, -0.009, 0.0, 0.008, 1.0, 0.0, 0.0, 0.0, 1.0);
+        Point3::from(m * p.coords + Vector3::new(0.12, -0.09, 0.1))
+    }
+
+    /// Refines and closes; gives the model and what happened to its only building.
+    fn refine(scene: &Scene, model: &RoofModel) -> (RoofModel, BuildingRefinement) {
+        let (facets, trace) = refine_roofs(scene, &[], model, &RefineParams::default());
+        let ground = model.buildings[0].ground_z;
+        let (closed, solids) = close_buildings(&facets, |_| ground);
+        assert_eq!(solids.rejected, []);
+        assert_eq!(check_invariants(&closed), []);
+        (closed, trace.buildings[0].clone())
+    }
+
+    /// Largest distance of a true corner from the nearest corner of the model, metres.
+    fn error_m(model: &RoofModel, truth: &SyntheticTruth) -> f64 {
+        let corners = truth.facets.iter().flat_map(|(_, ring)| ring);
+        let nearest = |p: &Point3<f64>| {
+            let found = model.facets.iter().flat_map(|f| &f.outer);
+            found.map(|q| (p - q).norm()).fold(f64::INFINITY, f64::min)
+        };
+        corners.map(nearest).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn a_displaced_roof_is_put_back() {
+        for (scene, truth) in [gable_scene(320), l_scene(320)] {
+            let model = changed(&truth, displaced);
+            let before = error_m(&model, &truth);
+            let (refined, report) = refine(&scene, &model);
+            let after = error_m(&refined, &truth);
+            // A pixel is 8.5 cm.
+            assert!(before > 0.2 && after < 0.06, "{before} {after} {report:#?}");
+            assert_eq!(report.refused, None);
+            assert!(report.error_after_px < 0.35 && report.error_before_px > 1.0);
+        }
+    }
+
+    #[test]
+    fn an_eave_out_of_reach_of_a_guided_measurement_is_found() {
+        let (scene, truth) = gable_scene(320);
+        // Both eaves half a metre out, in their planes, as where correlation windows straddle the edge.
+        let lowest = (truth.facets.iter().flat_map(|f| &f.1)).fold(f64::MAX, |l, p| l.min(p.z));
+        let ridge: Vec<Point3<f64>> = (truth.facets.iter().flat_map(|f| &f.1))
+            .filter(|p| p.z > lowest + 1.0)
+            .copied()
+            .collect();
+        let out = |p: &Point3<f64>| {
+            if p.z > lowest + 1.0 {
+                return *p;
+            }
+            let up = ridge
+                .iter()
+                .min_by(|a, b| (*a - p).norm().total_cmp(&(*b - p).norm()))
+                .unwrap();
+            p + (p - up).normalize() * 0.5
+        };
+        let model = changed(&truth, out);
+        let (refined, report) = refine(&scene, &model);
+        let after = error_m(&refined, &truth);
+        assert!(after < 0.06, "{after} {report:#?}");
+    }
+
+    fn tested(report: &BuildingRefinement, kind: RelationKind, adopted: bool) -> usize {
+        let same = |r: &&TestedRelation| r.kind == kind && r.adopted == adopted;
+        report.relations.iter().filter(same).count()
+    }
+
+    #[test]
+    fn relations_are_adopted_where_true_and_refused_where_the_images_contradict() {
+        use RelationKind::{Horizontal, Parallel, Perpendicular, Symmetric};
+        let (scene, truth) = gable_scene(320);
+        let (refined, report) = refine(&scene, &changed(&truth, displaced));
+        assert!(tested(&report, Perpendicular, true) > 0, "{report:#?}");
+        assert!(report.relations.iter().all(|r| r.adopted), "{report:#?}");
+        // What was adopted holds: the ridge is level and both facets have one slope.
+        let [f, g] = [0, 1].map(|i| refined.facets[i].plane.normal);
+        assert!((f.z - g.z).abs() < 1e-3 && f.cross(&g).normalize().z.abs() < 1e-3);
+
+        let (scene, truth) = skewed_scene(320);
+        let (refined, report) = refine(&scene, &changed(&truth, displaced));
+        assert_eq!(tested(&report, Perpendicular, true), 0, "{report:#?}");
+        assert!(tested(&report, Perpendicular, false) > 0, "{report:#?}");
+        for kind in [Horizontal, Parallel, Symmetric] {
+            assert_eq!(tested(&report, kind, false), 0, "{kind:?} {report:#?}");
+        }
+        let error = error_m(&refined, &truth);
+        assert!(error < 0.06, "{error}");
+    }
+
+    #[test]
+    fn images_that_show_nothing_change_nothing() {
+        let (mut scene, truth) = gable_scene(320);
+        for view in &mut scene.views {
+            view.gray.data.fill(0.5);
+        }
+        let model = changed(&truth, displaced);
+        let (facets, trace) = refine_roofs(&scene, &[], &model, &RefineParams::default());
+        assert_eq!(facets, model.facets);
+        let refused = trace.buildings[0].refused;
+        assert_eq!(refused, Some(RefineRefusal::FewSightings { sightings: 0 }));
+    }
+
+    #[test]
+    fn a_zigzag_goes_even_where_nothing_is_adjusted() {
+        let (mut scene, truth) = gable_scene(320);
+        let mut model = changed(&truth, |p| *p);
+        for view in &mut scene.views {
+            view.gray.data.fill(0.5);
+        }
+        let straight = model.facets.clone();
+        let facet = &mut model.facets[0];
+        let n = facet.outer.len();
+        let lowest = facet
+            .outer
+            .iter()
+            .map(|p| p.z)
+            .fold(f64::INFINITY, f64::min);
+        let is_eave = |&i: &usize| {
+            [i, (i + 1) % n]
+                .iter()
+                .all(|&k| facet.outer[k].z < lowest + 1e-6)
+        };
+        let eave = (0..n).find(is_eave).expect("an eave");
+        let (p, q) = (facet.outer[eave].xy(), facet.outer[(eave + 1) % n].xy());
+        let aside = Vector3::z().cross(&(q - p).push(0.0)).normalize().xy();
+        let corner = |t: f64, by: f64| {
+            let at = p + (q - p) * t + aside * by;
+            facet.plane.lift(at.x, at.y)
+        };
+        let zigzag = [corner(0.3, 0.2), corner(0.6, -0.2)];
+        facet.outer.splice(eave + 1..eave + 1, zigzag);
+        let (facets, trace) = refine_roofs(&scene, &[], &model, &RefineParams::default());
+        assert!(trace.buildings[0].refused.is_some());
+        assert_eq!(facets, straight);
+    }
+}

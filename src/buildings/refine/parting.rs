@@ -1,0 +1,336 @@
+//! Gaps between facets that delineation has closed.
+//!
+//! An alley between two houses is hardly wider than a correlation window, dark, and without a border line at its far side: the
+//! lower roof goes on to the wall of the higher one. Rows of grey values along the wall, one for each distance from
+//! it, show where the views cease to agree on the roof's plane. The roof ends there when the energy of the labelling is less
+//! for it, with rows in the place of windows.
+
+use nalgebra::{Point2, Vector2};
+use serde::Serialize;
+
+use super::profiles::{Extent, Profiles, Worth};
+use super::sightings::{aligned_runs, pixel};
+use super::wireframe::{SideKind, State, Wireframe};
+use crate::geometry::Segment3;
+use crate::model::is_simple;
+use crate::model::{Facet, Occluders, RoofModel};
+use crate::params::RefineParams;
+use crate::scene::Scene;
+use crate::sorting::sort_by;
+
+/// A facet that ends before the neighbour at which it was thought to end.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Parting {
+    /// Where it was thought to end, metres.
+    pub side: Segment3,
+    /// Width of the gap in plan, metres.
+    pub width_m: f64,
+    /// What it gains in the energy of the labelling, square metres.
+    pub gain_m2: f64,
+}
+
+/// The facets of a closed model, those that end before a higher or lower neighbour cut back; to be closed again.
+pub fn part_roofs(
+    scene: &Scene,
+    model: &RoofModel,
+    params: &RefineParams,
+) -> (Vec<Facet>, Vec<Parting>) {
+    let mut facets = model.facets.clone();
+    let mut partings = Vec::new();
+    if !params.refine {
+        return (facets, partings);
+    }
+    let occluders = Occluders::new(&model.facets);
+    for building in &model.buildings {
+        let members: Vec<&Facet> = building
+            .facets
+            .iter()
+            .map(|f| &model.facets[f.index()])
+            .collect();
+        let (wireframe, state) = Wireframe::new(&members);
+        let cuts = cuts(scene, &occluders, &wireframe, &state, params);
+        for (face, id) in building.facets.iter().enumerate() {
+            let of_face = |cut: &&Cut| wireframe.sides[cut.side].face == face;
+            let of_facet = cuts.iter().filter(of_face).collect();
+            let Some((ring, own)) = best_cuts(&wireframe, &state, face, of_facet) else {
+                continue;
+            };
+            let facet = &mut facets[id.index()];
+            let plane = facet.plane;
+            facet.outer = ring
+                .into_iter()
+                .map(|(p, old)| {
+                    old.map_or_else(|| plane.lift(p.x, p.y), |i| members[face].outer[i])
+                })
+                .collect();
+            partings.extend(own.into_iter().map(|cut| Parting {
+                side: wireframe.segment(&state, &wireframe.sides[cut.side]),
+                width_m: cut.width_m,
+                gain_m2: cut.gain_m2,
+            }));
+        }
+    }
+    (facets, partings)
+}
+
+/// A side at another facet.
+struct WallSide {
+    /// By steps back from the side.
+    worth: Vec<Worth>,
+    step_m: f64,
+    length_m: f64,
+}
+
+/// A side that moves back.
+struct Cut {
+    side: usize,
+    width_m: f64,
+    gain_m2: f64,
+}
+
+/// The sides at other facets that are better farther back, those of one line together.
+fn cuts(
+    scene: &Scene,
+    occluders: &Occluders,
+    wireframe: &Wireframe,
+    state: &State,
+    params: &RefineParams,
+) -> Vec<Cut> {
+    let at_wall = |kind| matches!(kind, SideKind::Step | SideKind::Foot);
+    let pixel_m = pixel(scene, wireframe, state);
+    let worths = crate::execution::map(&wireframe.sides, |_, side| {
+        let extent = Extent {
+            seen_m: params.part_m,
+            compared_m: params.part_m,
+            pixel_m,
+        };
+        at_wall(side.kind).then_some(())?;
+        let profiles = Profiles::new(scene, occluders, wireframe, state, side, extent, params)?;
+        Some(WallSide {
+            worth: profiles.worth_of_ending(params)?,
+            step_m: profiles.step_m(),
+            length_m: wireframe.segment(state, side).length(),
+        })
+    });
+    let mut cuts = Vec::new();
+    for run in aligned_runs(wireframe, state, params.jog_m, at_wall) {
+        let known: Vec<_> = (run.iter())
+            .filter_map(|&i| Some((i, worths[i].as_ref()?)))
+            .collect();
+        let Some(steps) = known.iter().map(|(_, w)| w.worth.len()).min() else {
+            continue;
+        };
+        // Steps back from the side.
+        let sum = |of: fn(&Worth) -> f64, back: usize| -> f64 {
+            known.iter().map(|(_, w)| of(&w.worth[back])).sum()
+        };
+        let worth = |back: usize| sum(|w| w.ending, back);
+        let step_m = known[0].1.step_m;
+        let length_m: f64 = known.iter().map(|(_, w)| w.length_m).sum();
+        let first = (params.least_part_m / step_m).ceil() as usize;
+        let best = (first..steps).max_by(|&i, &j| worth(i).total_cmp(&worth(j)).then(j.cmp(&i)));
+        // The views must agree on what is left: otherwise they tell nothing about this plane.
+        let least = params.part_gain_m * length_m;
+        let clear = |&b: &usize| {
+            let given_up_m2 = (b + 1) as f64 * step_m * length_m;
+            worth(b) > least.max(params.part_gain_share * given_up_m2)
+                && sum(|w| w.inside, b) > least
+        };
+        let Some(back) = best.filter(clear) else {
+            continue;
+        };
+        cuts.extend(known.iter().map(|&(side, _)| Cut {
+            side,
+            width_m: (back + 1) as f64 * step_m,
+            gain_m2: worth(back),
+        }));
+    }
+    cuts
+}
+
+/// A corner of a ring that was cut back, and which one it was where it has stayed.
+type CutCorner = (Point2<f64>, Option<usize>);
+
+/// The outer ring of a facet with those of its sides moved back that can be, the most worthwhile first; and these.
+fn best_cuts<'c>(
+    wireframe: &Wireframe,
+    state: &State,
+    face: usize,
+    mut cuts: Vec<&'c Cut>,
+) -> Option<(Vec<CutCorner>, Vec<&'c Cut>)> {
+    sort_by(&mut cuts, |a, b| {
+        b.gain_m2.total_cmp(&a.gain_m2).then(a.side.cmp(&b.side))
+    });
+    let (mut ring, mut taken) = (None, Vec::new());
+    for cut in cuts {
+        taken.push(cut);
+        match cut_back(wireframe, state, face, &taken) {
+            Some(smaller) => ring = Some(smaller),
+            None => drop(taken.pop()),
+        }
+    }
+    ring.map(|ring| (ring, taken))
+}
+
+/// The outer ring of a facet with some sides moved back. `None` when nothing moves, too little is left, or what is left is
+/// no facet.
+fn cut_back(
+    wireframe: &Wireframe,
+    state: &State,
+    face: usize,
+    cuts: &[&Cut],
+) -> Option<Vec<CutCorner>> {
+    let ring = &wireframe.faces[face][0];
+    let n = ring.len();
+    let mut offsets = vec![0.0; n];
+    for cut in cuts {
+        let [first, last] = wireframe.sides[cut.side].ends;
+        let mut i = ring.iter().position(|&v| v == first)?;
+        while ring[i] != last {
+            offsets[i] = cut.width_m;
+            i = (i + 1) % n;
+        }
+    }
+    if offsets.iter().all(|&s| s == 0.0) {
+        return None;
+    }
+    let at = |i: usize| wireframe.position(state, ring[i % n]);
+    let mut lines: Vec<RingLine> = Vec::with_capacity(n + 2);
+    for i in 0..n {
+        let (before, p, after) = (at(i + n - 1), at(i), at(i + 1));
+        let [u, v] = [p - before, after - p].map(|d| Vector2::new(d.y, -d.x).normalize());
+        let (s, t) = (offsets[(i + n - 1) % n], offsets[i]);
+        // Where only a part of a straight side moves, a short side across joins both.
+        if u.perp(&v).abs() <= CORNER_SINE && s != t {
+            lines.push(RingLine {
+                through: p,
+                along: if s > t { u } else { -u },
+                corner: None,
+            });
+        }
+        lines.push(RingLine {
+            through: p - v * t,
+            along: (after - p).normalize(),
+            corner: (t == 0.0).then_some(i),
+        });
+    }
+    let moved = corners(lines, &at, n)?;
+    let new: Vec<Point2<f64>> = moved.iter().map(|m| m.0).collect();
+    let old: Vec<Point2<f64>> = (0..n).map(at).collect();
+    (is_simple(&new) && area(&new) > LEAST_LEFT * area(&old)).then_some(moved)
+}
+
+/// Sides at less than this sine (15 degrees) go on into each other.
+const CORNER_SINE: f64 = 0.25;
+/// Least share of a facet's area that is left of it.
+const LEAST_LEFT: f64 = 0.3;
+
+/// A side of a ring on its way to be cut back.
+#[derive(Clone, Copy)]
+struct RingLine {
+    through: Point2<f64>,
+    along: Vector2<f64>,
+    /// Its first corner in the old ring, if it has not moved.
+    corner: Option<usize>,
+}
+
+/// The corners between consecutive lines. Sides that would run backwards are left out: what they bounded is gone.
+fn corners(
+    mut lines: Vec<RingLine>,
+    at: &impl Fn(usize) -> Point2<f64>,
+    n: usize,
+) -> Option<Vec<CutCorner>> {
+    loop {
+        let m = lines.len();
+        if m < 3 {
+            return None;
+        }
+        // The last corner of a line and the first of the next: one, but for lines that go on side by side.
+        let joint = |i: usize| -> [CutCorner; 2] {
+            let (a, b) = (&lines[(i + m - 1) % m], &lines[i % m]);
+            let one = |corner: CutCorner| [corner, corner];
+            if let (Some(i), Some(j)) = (a.corner, b.corner)
+                && (i + 1) % n == j
+            {
+                return one((at(j), Some(j)));
+            }
+            let sine = a.along.perp(&b.along);
+            if sine.abs() > CORNER_SINE {
+                let t = (b.through - a.through).perp(&b.along) / sine;
+                return one((a.through + a.along * t, None));
+            }
+            let foot = a.through + a.along * (b.through - a.through).dot(&a.along);
+            [(foot, None), (b.through, None)]
+        };
+        let joints: Vec<[CutCorner; 2]> = (0..m).map(joint).collect();
+        let backwards =
+            |&i: &usize| (joints[(i + 1) % m][0].0 - joints[i][1].0).dot(&lines[i].along) < 0.0;
+        if let Some(i) = (0..m).find(backwards) {
+            lines.remove(i);
+            continue;
+        }
+        let mut ring: Vec<CutCorner> = Vec::with_capacity(m + 2);
+        for corner in joints.into_iter().flatten() {
+            if ring
+                .last()
+                .is_none_or(|last| (last.0 - corner.0).norm() > 1e-6)
+            {
+                ring.push(corner);
+            }
+        }
+        return Some(ring);
+    }
+}
+
+/// Area of a ring, m^2, positive when it runs counter-clockwise.
+fn area(ring: &[Point2<f64>]) -> f64 {
+    let next = ring.iter().cycle().skip(1);
+    let doubled = ring.iter().zip(next);
+    0.5 * doubled
+        .map(|(a, b)| (a - ring[0]).perp(&(b - ring[0])))
+        .sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solids::close_buildings;
+    use crate::synthetic::row_scene;
+    use crate::testing::facet;
+    use nalgebra::Point3;
+
+    #[test]
+    fn roofs_that_were_drawn_over_a_gap_are_cut_back() {
+        // Two gables in line, 3 m apart, both drawn up to a wall 1.2 m from the first; the second stands half a metre too high.
+        let (scene, truth) = row_scene(320);
+        let rings: Vec<&Vec<Point3<f64>>> = truth.facets.iter().map(|f| &f.1).collect();
+        let drawn = |ring: usize, other: usize, share: f64, lift: f64| {
+            let corner = |p: &Point3<f64>| {
+                let across = rings[other].iter().find(|q| (*q - p).norm() < 3.5);
+                let at = across.map_or(*p, |q| p + (q - p) * share);
+                Point3::new(at.x, at.y, at.z + lift)
+            };
+            facet(&rings[ring].iter().map(corner).collect::<Vec<_>>())
+        };
+        let facets = [
+            drawn(0, 2, 0.4, 0.0),
+            drawn(1, 3, 0.4, 0.0),
+            drawn(2, 0, 0.6, 0.5),
+            drawn(3, 1, 0.6, 0.5),
+        ];
+        let (model, _) = close_buildings(&facets, |_| truth.ground_z);
+        assert_eq!(model.buildings.len(), 1);
+        let (parted, partings) = part_roofs(&scene, &model, &RefineParams::default());
+        let first: Vec<f64> = (partings.iter().map(|p| p.width_m))
+            .filter(|w| (w - 1.2).abs() < 0.2)
+            .collect();
+        assert_eq!(first.len(), 2, "{partings:?}");
+        // The first house is back where it was: the cut goes into the roof, not beyond the wall.
+        let corners: Vec<&Point3<f64>> = parted.iter().flat_map(|f| &f.outer).collect();
+        for p in rings[0].iter().chain(rings[1]) {
+            assert!(corners.iter().any(|q| (p - *q).norm() < 0.25), "{p}");
+        }
+        let (closed, _) = close_buildings(&parted, |_| truth.ground_z);
+        assert_eq!(closed.buildings.len(), 2);
+    }
+}

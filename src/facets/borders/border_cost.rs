@@ -1,0 +1,174 @@
+//! What a border between two cells costs, by the planes on its two sides.
+//!
+//! The cost of an unsupported border is its length; reconstructed lines and intersections of planes make it
+//! cheap, so that outlines follow them (tau_real of B99 4.3 and the new lines of 4.2). Costs are worked out
+//! when they are asked for, from the heights of both planes at the border: a list of all pairs would grow with
+//! the square of the planes.
+
+use nalgebra::Point2;
+
+use super::arrangement::{Arrangement, CellEdge};
+use super::line_index::LineIndex;
+use crate::facets::labelling::Borders;
+use crate::geometry::Plane;
+use crate::params::RoofParams;
+
+/// The costs of all borders of an arrangement.
+pub struct BorderCosts {
+    /// In the order of [`Arrangement::edges`].
+    borders: Vec<Border>,
+    /// By label.
+    planes: Vec<Plane>,
+}
+
+impl BorderCosts {
+    /// Prepares the borders; `index` holds the reconstructed lines.
+    pub fn new(
+        arrangement: &Arrangement,
+        planes: &[Plane],
+        index: &LineIndex,
+        params: &RoofParams,
+    ) -> Self {
+        let border = |e: &CellEdge| {
+            let ends = [e.a, e.b].map(|v| arrangement.vertices[v]);
+            Border {
+                full: (ends[1] - ends[0]).norm() * params.border_cost_m,
+                heights: index.heights_along(&ends[0], &ends[1]),
+                ends,
+            }
+        };
+        Self {
+            borders: arrangement.edges.iter().map(border).collect(),
+            planes: planes.to_vec(),
+        }
+    }
+
+    /// Share of the full cost between two planes.
+    fn between(&self, border: &Border, a: &Plane, b: &Plane) -> f64 {
+        let near = |a: f64, b: f64| (a - b).abs() < MEETING;
+        let heights = [a, b].map(|plane| border.ends.map(|p| plane.z_at(p.x, p.y)));
+        let middles = heights.map(middle);
+        // Two hypotheses of one roof plane: a border between them says nothing.
+        if near(middles[0], middles[1]) && a.normal.dot(&b.normal) > SAME_PLANE_COSINE {
+            return DUPLICATE;
+        }
+        let meets = near(heights[0][0], heights[1][0]) && near(heights[0][1], heights[1][1]);
+        match (meets, middles.iter().any(|z| border.has_line_at(*z))) {
+            (true, true) => CREASE_ON_LINE,
+            (true, false) => CREASE,
+            (false, true) => ON_LINE,
+            (false, false) => STEP,
+        }
+    }
+}
+
+impl Borders for BorderCosts {
+    fn cost(&self, edge: usize, left: u32, right: u32) -> f64 {
+        let border = &self.borders[edge];
+        let plane = |label: u32| self.planes.get(label as usize);
+        let share = match (plane(left), plane(right)) {
+            (Some(a), Some(b)) => self.between(border, a, b),
+            (Some(one), None) | (None, Some(one)) if border.bounds(one) => ON_LINE,
+            _ => 1.0,
+        };
+        share * border.full
+    }
+
+    fn most(&self, edge: usize) -> f64 {
+        DUPLICATE * self.borders[edge].full
+    }
+}
+
+/// A border between two cells.
+struct Border {
+    /// Cost when nothing supports the border.
+    full: f64,
+    /// Plan positions, metres.
+    ends: [Point2<f64>; 2],
+    /// Heights of the reconstructed lines along it, metres.
+    heights: Vec<f64>,
+}
+
+impl Border {
+    /// Does a reconstructed line run along the border at a height?
+    fn has_line_at(&self, z: f64) -> bool {
+        self.heights.iter().any(|h| (h - z).abs() < LINE_HEIGHT)
+    }
+
+    /// Does a reconstructed line in the plane run along the border?
+    fn bounds(&self, plane: &Plane) -> bool {
+        !self.heights.is_empty()
+            && self.has_line_at(middle(self.ends.map(|p| plane.z_at(p.x, p.y))))
+    }
+}
+
+fn middle(heights: [f64; 2]) -> f64 {
+    0.5 * (heights[0] + heights[1])
+}
+
+/// Planes at less than 6 degrees that meet are one plane found twice: the cosine of that angle.
+const SAME_PLANE_COSINE: f64 = 0.994_521_895_368_273_3;
+/// Share of the full border cost between two hypotheses of one plane.
+const DUPLICATE: f64 = 1.5;
+/// Share of the full border cost where two planes meet along a reconstructed line, ...
+const CREASE_ON_LINE: f64 = 0.1;
+/// ... where two planes meet, ...
+const CREASE: f64 = 0.3;
+/// ... and where a reconstructed line of one of the planes bounds it.
+const ON_LINE: f64 = 0.15;
+/// ... and where two roofs stand at different heights and no line says so: such a step shows.
+const STEP: f64 = 1.5;
+/// Planes meet when their heights differ by less, metres.
+const MEETING: f64 = 0.25;
+/// A line lies in a plane's border when their heights differ by less, metres.
+pub const LINE_HEIGHT: f64 = 0.35;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::facets::labelling::NO_PLANE;
+    use nalgebra::{Point3, Vector3};
+
+    /// A border of 2 m along y at x = 0, the planes with the given normals through a point of it, and at `lift` above it.
+    fn costs(normals: [[f64; 3]; 2], lift: f64, line: bool) -> BorderCosts {
+        let ends = [Point2::new(0.0, 0.0), Point2::new(0.0, 2.0)];
+        let planes = [0.0, lift].into_iter().zip(normals).map(|(z, n)| {
+            Plane::from_point_normal(&Point3::new(0.0, 0.0, 5.0 + z), &Vector3::from(n)).unwrap()
+        });
+        let heights = if line { vec![5.0] } else { Vec::new() };
+        let border = Border {
+            full: 2.0,
+            ends,
+            heights,
+        };
+        BorderCosts {
+            borders: vec![border],
+            planes: planes.collect(),
+        }
+    }
+
+    #[test]
+    fn borders_where_planes_meet_and_on_lines_are_cheap() {
+        let gable = [[-1.0, 0.0, 1.0], [1.0, 0.0, 1.0]];
+        let flat = [[0.0, 0.0, 1.0]; 2];
+        let cost = |normals, lift, line| costs(normals, lift, line).cost(0, 0, 1);
+        assert_eq!(cost(gable, 0.0, true), 2.0 * CREASE_ON_LINE);
+        assert_eq!(cost(gable, 0.0, false), 2.0 * CREASE);
+        assert_eq!(cost(flat, 3.0, true), 2.0 * ON_LINE);
+        assert_eq!(
+            cost(flat, 3.0, false),
+            2.0 * STEP,
+            "a step that no line shows"
+        );
+        // One plane found twice: dearer than no support at all.
+        assert_eq!(cost(flat, 0.1, true), 2.0 * DUPLICATE);
+    }
+
+    #[test]
+    fn where_a_roof_ends_a_line_in_its_plane_makes_the_border_cheap() {
+        let costs = costs([[0.0, 0.0, 1.0]; 2], 3.0, true);
+        assert_eq!(costs.cost(0, 0, NO_PLANE), 2.0 * ON_LINE);
+        assert_eq!(costs.cost(0, NO_PLANE, 0), 2.0 * ON_LINE);
+        assert_eq!(costs.cost(0, 1, NO_PLANE), 2.0);
+    }
+}

@@ -1,0 +1,234 @@
+//! How far the images bear a plane out: closing lines where it seems to end (B99 4.3).
+//!
+//! B99 closes a facet by the convex hull of its lines when no line was found at one of its sides. A side whose
+//! edge is in no image strongly enough still shows: the views agree on the plane up to it and not beyond.
+//! Of all rectangles along the plane's longest line the one is sought over which they speak most for the plane,
+//! each position with what it will count for when planes compete ([`crate::facets::labelling::evidence`]); where it ends, a line may
+//! bound the facet. It earns nothing by itself, it only lets the facet end there.
+
+use nalgebra::{Point2, Vector2};
+
+use super::border_lines::{Border, BorderKind};
+use crate::facets::labelling::ShiftableWindows;
+use crate::geometry::Segment3;
+use crate::params::RoofParams;
+use crate::photoconsistency::WINDOW;
+use crate::planes::GroupingInput;
+use crate::planes::Hypothesis;
+
+/// Width of a strip, metres: about a pixel of aerial photographs.
+const STRIP_M: f64 = 0.1;
+/// How often the two spans of the rectangle are sought by turns. Assumption: a third time changes few.
+const TURNS: usize = 2;
+/// Planes for which less speaks than such an area of perfect agreement would, square metres, have no end to speak of.
+const LEAST_AGREEMENT_M2: f64 = 0.5;
+/// How far an end goes beyond the sides across it, metres, to meet their lines.
+const OVER_M: f64 = 0.5;
+
+/// Lines where planes with a half-plane seem to end, up to four for each: not where a real line says it.
+pub fn extent_lines(
+    input: &GroupingInput,
+    hypotheses: &[Hypothesis],
+    windows: &ShiftableWindows,
+    params: &RoofParams,
+) -> Vec<Border> {
+    crate::execution::map(hypotheses, |_, h| {
+        sides(input, h, windows, params).unwrap_or_default()
+    })
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// The sides, where no real line shows them, of the rectangle along the longest line in which the views agree on a plane.
+fn sides(
+    input: &GroupingInput,
+    h: &Hypothesis,
+    windows: &ShiftableWindows,
+    params: &RoofParams,
+) -> Option<Vec<Border>> {
+    if h.group.half_planes().is_empty() {
+        return None;
+    }
+    let longest = (h.group.members.iter())
+        .map(|m| &input.lines[m.line.index()].segment)
+        .max_by(|a, b| a.length().total_cmp(&b.length()))?;
+    let start = longest.p0.xy();
+    let reach = longest.p1.xy() - start;
+    let along = reach.try_normalize(1e-6)?;
+    let across = Vector2::new(-along.y, along.x);
+    let votes = votes(h, windows, &start, [&along, &across], params);
+    let least = LEAST_AGREEMENT_M2 / (h.map.grid.step * h.map.grid.step);
+    let [(t0, t1), (u0, u1)] = best_rectangle(&votes, reach.norm(), least)?;
+    let at = |t: f64, u: f64| start + along * t + across * u;
+    let half_window = 0.5 * WINDOW as f64 * h.map.grid.step + STRIP_M;
+    let members = (h.group.members.iter()).map(|m| input.lines[m.line.index()].segment);
+    let lines: Vec<Segment3> = members.chain(h.lines.iter().map(|l| l.segment)).collect();
+    let sides = [
+        [at(t0, u0), at(t1, u0)],
+        [at(t0, u1), at(t1, u1)],
+        [at(t0, u0), at(t0, u1)],
+        [at(t1, u0), at(t1, u1)],
+    ];
+    let open = sides
+        .into_iter()
+        .filter(|side| !(lines.iter()).any(|l| shows(l, side, half_window)));
+    Some(
+        open.map(|[a, b]| {
+            let over = (b - a).try_normalize(1e-6).unwrap_or_default() * OVER_M;
+            Border {
+                kind: BorderKind::Closing,
+                a: a - over,
+                b: b + over,
+            }
+        })
+        .collect(),
+    )
+}
+
+/// Is a real line the edge that a side was found by? It runs along most of the side, within half a window: as far beyond an edge
+/// every plane through it is as good as the next.
+fn shows(line: &Segment3, [a, b]: &[Point2<f64>; 2], half_window: f64) -> bool {
+    let Some(along) = (b - a).try_normalize(1e-6) else {
+        return false;
+    };
+    let [p, q] = [line.p0.xy() - a, line.p1.xy() - a];
+    let beside = [p, q].iter().all(|r| along.perp(r).abs() <= half_window);
+    let [s, t] = [p, q].map(|r| r.dot(&along));
+    let length = (b - a).norm();
+    let common = s.max(t).min(length) - s.min(t).max(0.0);
+    beside && common >= 0.5 * length
+}
+
+/// What one position says.
+struct Vote {
+    /// Where, along two axes, metres.
+    at: [f64; 2],
+    /// How much for the plane, or against it: weight x (correlation - least correlation).
+    gain: f64,
+}
+
+/// The votes of all positions in a plane's region, along `axes` from `start`.
+fn votes(
+    h: &Hypothesis,
+    windows: &ShiftableWindows,
+    start: &Point2<f64>,
+    axes: [&Vector2<f64>; 2],
+    params: &RoofParams,
+) -> Vec<Vote> {
+    let grid = &h.map.grid;
+    (0..grid.width * grid.height)
+        .filter(|&k| h.map.weight(k) > 0.0)
+        .map(|k| (k, grid.center(k % grid.width, k / grid.width)))
+        .filter(|(_, p)| h.region.contains(p))
+        .map(|(k, p)| {
+            let at = [k % grid.width, k / grid.width];
+            let judgement = windows.judge(&h.map, at, params.min_correlation);
+            Vote {
+                at: axes.map(|axis| (p - start).dot(axis)),
+                gain: judgement.gain(),
+            }
+        })
+        .collect()
+}
+
+/// The rectangle with the largest sum of votes, as its spans along both axes: across first, beside a line from 0 to
+/// `length` along the other. `None` where the sum is below `least`.
+fn best_rectangle(votes: &[Vote], length: f64, least: f64) -> Option<[(f64, f64); 2]> {
+    let mut spans = [(0.0, length), (0.0, 0.0)];
+    let mut sum = 0.0;
+    for axis in [1, 0].repeat(TURNS) {
+        let (from, to) = spans[1 - axis];
+        let beside = |v: &&Vote| v.at[1 - axis] >= from && v.at[1 - axis] <= to;
+        let inside = votes.iter().filter(beside).map(|v| (v.at[axis], v.gain));
+        (spans[axis], sum) = best_span(inside)?;
+    }
+    (sum >= least).then_some(spans)
+}
+
+/// The interval of strips with the largest sum of gains, and that sum.
+fn best_span(gains: impl Iterator<Item = (f64, f64)> + Clone) -> Option<((f64, f64), f64)> {
+    let ends = gains
+        .clone()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (x, _)| {
+            (l.min(x), h.max(x))
+        });
+    let (low, high) = ends;
+    (high >= low).then_some(())?;
+    let mut strips = vec![0.0; ((high - low) / STRIP_M) as usize + 1];
+    gains.for_each(|(x, gain)| strips[((x - low) / STRIP_M) as usize] += gain);
+    let (mut best, mut span) = (0.0, None);
+    let (mut sum, mut first) = (0.0, 0);
+    for (i, gain) in strips.iter().enumerate() {
+        if sum <= 0.0 {
+            (sum, first) = (0.0, i);
+        }
+        sum += gain;
+        if sum > best {
+            (best, span) = (sum, Some((first, i + 1)));
+        }
+    }
+    let place = |strip: usize| low + strip as f64 * STRIP_M;
+    span.map(|(first, end)| ((place(first), place(end)), best))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Agreement over a rectangle, with a hole in it, among disagreement; a chance match far away.
+    fn votes() -> Vec<Vote> {
+        let gain = |t: f64, u: f64| {
+            let inside = (2.0..9.0).contains(&t) && (-1.0..4.0).contains(&u);
+            let hole = (5.0..5.5).contains(&t) && (1.0..2.0).contains(&u);
+            let chance = (13.0..13.5).contains(&t) && (6.0..6.5).contains(&u);
+            if (inside && !hole) || chance {
+                0.3
+            } else {
+                -0.2
+            }
+        };
+        let steps = |n: usize| (0..n).map(|i| 0.05 * i as f64 + 0.025);
+        steps(320)
+            .flat_map(|t| steps(240).map(move |u| [t, u - 4.0]))
+            .map(|at| Vote {
+                at,
+                gain: gain(at[0], at[1]),
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_surface_ends_where_agreement_does() {
+        // The line is longer than the surface at one end and shorter at the other.
+        let [(t0, t1), (u0, u1)] = best_rectangle(&votes(), 7.0, 1.0).unwrap();
+        for (found, planted) in [(t0, 2.0), (t1, 9.0), (u0, -1.0), (u1, 4.0)] {
+            assert!((found - planted).abs() <= STRIP_M, "{found} for {planted}");
+        }
+    }
+
+    #[test]
+    fn a_real_line_within_half_a_window_is_the_edge_that_a_side_was_found_by() {
+        let side = [Point2::new(0.0, 0.0), Point2::new(8.0, 0.0)];
+        let shows = |from: [f64; 2], to: [f64; 2]| {
+            let [p0, p1] = [from, to].map(|[x, y]| nalgebra::Point3::new(x, y, 5.0));
+            shows(&Segment3::new(p0, p1), &side, 0.5)
+        };
+        assert!(shows([-1.0, 0.4], [9.0, 0.4]));
+        assert!(shows([6.0, -0.4], [1.0, -0.3]));
+        assert!(!shows([-1.0, 0.6], [9.0, 0.6]), "too far beside it");
+        assert!(
+            !shows([-4.0, 0.4], [3.0, 0.4]),
+            "along less than half of it"
+        );
+        assert!(!shows([2.0, -3.0], [2.0, 3.0]), "across it");
+    }
+
+    #[test]
+    fn a_plane_without_agreement_has_no_end() {
+        let mut against = votes();
+        assert!(best_rectangle(&against, 7.0, 1e5).is_none(), "too little");
+        against.iter_mut().for_each(|v| v.gain = -v.gain.abs());
+        assert!(best_rectangle(&against, 7.0, 0.0).is_none());
+    }
+}

@@ -1,0 +1,21 @@
+//! What facets are made of: the results of the stages before them.
+
+use crate::lines2d::ImageSegment;
+use crate::lines3d::Line3d;
+use crate::planes::{HalfPlane, ProposedPlane};
+use crate::terrain::Ground;
+
+/// What roofs are made of.
+#[derive(Clone, Copy, Debug)]
+pub struct RoofEvidence<'a> {
+    /// Segments of each view, in the order of the views.
+    pub segments: &'a [Vec<ImageSegment>],
+    /// 3D lines.
+    pub lines: &'a [Line3d],
+    /// Half-planes at them.
+    pub half_planes: &'a [HalfPlane],
+    /// Where the ground is.
+    pub ground: &'a Ground,
+    /// Planes that the other method proposes; none in method "lines".
+    pub rectangles: &'a [ProposedPlane],
+}

@@ -1,0 +1,390 @@
+//! From half-planes to facets: the stage that orders B99 4.2 and 4.3.
+//!
+//! lines and half-planes -> groups -> regions, border lines -> plan cells -> consistency of every plane
+//! over its region -> labelling -> outlines -> verification. A facet that fails verification is
+//! withdrawn and its neighbours are decided again without it, as the paper updates the
+//! neighbours of a plane that is removed.
+
+use nalgebra::{Point2, Point3};
+use serde::Serialize;
+
+use super::borders::Arrangement;
+use super::borders::LineIndex;
+use super::borders::bounding_lines;
+use super::borders::{Border, border_lines};
+use super::borders::{BorderCosts, LINE_HEIGHT};
+use super::delineation::{Delineation, Outline, delineate};
+use super::input::RoofEvidence;
+use super::labelling::Evidence;
+use super::labelling::Labelling;
+use super::labelling::ShiftableWindows;
+use super::labelling::without_islands;
+use super::verification::{FacetRejection, RejectedFacet, tail_on_ground};
+use crate::geometry::{Plane, Segment3, bounds};
+use crate::ids::BuildingId;
+use crate::lines3d::Line3d;
+use crate::model::{Facet, Occluders};
+use crate::params::RoofParams;
+use crate::photoconsistency::PlanGrid;
+use crate::photoconsistency::{ConsistencyMap, consistency_map};
+use crate::planes::PlaneLine;
+use crate::planes::Region;
+use crate::planes::add_rectangles;
+use crate::planes::hypotheses;
+use crate::planes::is_wall;
+use crate::planes::line_neighbours;
+use crate::planes::{GroupingInput, Member, PlaneGroup, group_planes};
+use crate::planes::{group_repeated, with_repeated};
+use crate::scene::Scene;
+use crate::terrain::Ground;
+
+/// What grouping, delineation and verification did.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct FacetTrace {
+    /// Groups of coplanar lines and half-planes.
+    pub groups: Vec<PlaneGroup>,
+    /// Lines found in the groups' planes.
+    pub plane_lines: Vec<PlaneLine>,
+    /// Border lines in plan.
+    pub borders: Vec<Border>,
+    /// Number of cells that the border lines cut the plan into.
+    pub cells: usize,
+    /// Withdrawn facets.
+    pub rejected: Vec<RejectedFacet>,
+}
+
+/// Facets from 3D lines and half-planes (B99 4.2, 4.3). Their `building` is still unset (0): facets that
+/// touch become buildings when walls are added.
+pub fn reconstruct_facets(
+    scene: &Scene,
+    evidence: &RoofEvidence,
+    params: &RoofParams,
+) -> (Vec<Facet>, FacetTrace) {
+    let RoofEvidence {
+        segments,
+        lines,
+        half_planes,
+        ground,
+        rectangles,
+    } = *evidence;
+    let neighbours = line_neighbours(lines);
+    let input = GroupingInput {
+        lines,
+        half_planes,
+        neighbours: &neighbours,
+        rectangles,
+    };
+    let mut groups: Vec<PlaneGroup> = group_planes(&input, params);
+    groups.retain(|g| !is_wall(&g.plane) && !lies_on_ground(&input, g, ground, params));
+    let half_planes = with_repeated(&input, &groups, ground, params);
+    let input = GroupingInput {
+        half_planes: &half_planes,
+        ..input
+    };
+    groups.extend(group_repeated(&input, params));
+    add_rectangles(&input, &mut groups, params);
+    let regions: Vec<Region> = groups
+        .iter()
+        .map(|g| Region::new(&input, g, params))
+        .collect();
+    let Some(grid) = plan_window(scene, lines, &regions) else {
+        return (
+            Vec::new(),
+            FacetTrace {
+                groups,
+                ..FacetTrace::default()
+            },
+        );
+    };
+    let fine = scene
+        .views
+        .iter()
+        .map(|v| v.camera.ground_pixel(&lines[0].at(0.5)))
+        .fold(f64::INFINITY, f64::min);
+    let reduced = scene.reduced(((grid.step / fine) as usize).max(1));
+    let ground_map = ground_map(&reduced, ground, &grid);
+    let hypotheses = hypotheses(scene, &reduced, segments, &input, groups, grid.step, params);
+    let windows = ShiftableWindows::new(lines.iter().map(|l| l.segment), &grid);
+    let bounding = bounding_lines(&input, &hypotheses, ground, params);
+    let borders = border_lines(&input, &hypotheses, &bounding, &windows, params);
+    let arrangement = Arrangement::new(&with_frame(&borders, &grid));
+
+    let evidence = Evidence::collect(
+        &input,
+        &hypotheses,
+        &arrangement,
+        &grid,
+        ground_map.as_ref(),
+        &windows,
+        params,
+    );
+    let groups: Vec<PlaneGroup> = (hypotheses.iter())
+        .map(|h| h.group.as_swept(&input))
+        .collect();
+    let (maps, plane_lines): (Vec<ConsistencyMap>, Vec<Vec<PlaneLine>>) =
+        hypotheses.into_iter().map(|h| (h.map, h.lines)).unzip();
+    let plane_lines = plane_lines.concat();
+    let planes: Vec<Plane> = groups.iter().map(|g| g.plane).collect();
+    let real = lines
+        .iter()
+        .map(|l| l.segment)
+        .chain(plane_lines.iter().map(|l| l.segment));
+    let index = LineIndex::new(real.collect());
+    let energy = evidence.energy(&arrangement, &planes, &index, params);
+    let mut solver = Solver {
+        labelling: Labelling::new(energy, planes.len() as u32),
+        evidence,
+        arrangement,
+        planes,
+        index,
+        maps,
+        bounding,
+        scene: reduced,
+    };
+    let (facets, rejected) = solver.solve(&groups, ground, scene, params);
+    let cells = solver.arrangement.cells;
+    (
+        facets,
+        FacetTrace {
+            groups,
+            plane_lines,
+            borders,
+            cells,
+            rejected,
+        },
+    )
+}
+
+/// Are all lines of the group lower than any eave?
+fn lies_on_ground(
+    input: &GroupingInput,
+    group: &PlaneGroup,
+    ground: &Ground,
+    params: &RoofParams,
+) -> bool {
+    let mut members = group.members.iter();
+    let line = |m: &Member| &input.lines[m.line.index()].segment;
+    members.all(|m| ground.is_near(line(m), params.lowest_eave_m()))
+}
+
+/// The plan grid of the whole scene: the ground pixel as cell, the regions of all groups as window.
+fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[Region]) -> Option<PlanGrid> {
+    let middle = lines.get(lines.len() / 2)?.at(0.5);
+    let mut steps: Vec<f64> = scene
+        .views
+        .iter()
+        .map(|v| v.camera.ground_pixel(&middle))
+        .collect();
+    let step = crate::math::median(&mut steps)?;
+    let [min, max] = bounds(regions.iter().flat_map(Region::bounds));
+    let size = max - min;
+    // Coarser cells for a very large window: at most 36 million.
+    let step = step.max(FINEST_CELL).max((size.x * size.y / 36e6).sqrt());
+    (size.x > 0.0 && size.y > 0.0 && step.is_finite()).then(|| PlanGrid::covering(min, max, step))
+}
+
+/// Similarity of the views on the ground. Its height is only known to a few decimetres: at every position the views may agree
+/// at the height that it has there or a step beside it.
+fn ground_map(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Option<ConsistencyMap> {
+    const STEP: f64 = 0.3;
+    let plane = ground.plane();
+    let [lowest, highest] = ground.rises().map(|rise| (rise / STEP).round() as i32);
+    let levels: Vec<i32> = (lowest - 1..=highest + 1).collect();
+    let maps = crate::execution::map_shared("planes", &levels, 0.1..0.2, |_, level| {
+        let raised = Plane {
+            d: plane.d - STEP * f64::from(*level) * plane.normal.z,
+            ..plane
+        };
+        consistency_map(scene, &raised, grid)
+    });
+    ConsistencyMap::best_of(&maps, |column, row| {
+        let at = grid.center(column, row);
+        let rise = ground.z_at(&at) - plane.z_at(at.x, at.y);
+        let below = ((rise / STEP).round() as i32 - lowest).clamp(0, highest - lowest) as usize;
+        below..below + 3
+    })
+}
+
+/// Finest cell, metres. Assumption: what a roof's border lines can be told apart by; sharper images are reduced.
+const FINEST_CELL: f64 = 0.06;
+
+/// The borders and a frame around the window, so that every cell that matters is closed.
+fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {
+    const MARGIN: f64 = 25.0;
+    let (x0, y0) = (grid.origin.x - MARGIN, grid.origin.y - MARGIN);
+    let x1 = grid.origin.x + grid.width as f64 * grid.step + MARGIN;
+    let y1 = grid.origin.y + grid.height as f64 * grid.step + MARGIN;
+    let corner = [
+        Point2::new(x0, y0),
+        Point2::new(x1, y0),
+        Point2::new(x1, y1),
+        Point2::new(x0, y1),
+    ];
+    let frame = (0..4).map(|i| Border {
+        kind: super::borders::BorderKind::Closing,
+        a: corner[i],
+        b: corner[(i + 1) % 4],
+    });
+    borders.iter().copied().chain(frame).collect()
+}
+
+/// The labelling on its way to facets, and what they are verified by.
+pub(crate) struct Solver {
+    labelling: Labelling<BorderCosts>,
+    pub(crate) evidence: Evidence,
+    pub(crate) arrangement: Arrangement,
+    pub(crate) planes: Vec<Plane>,
+    index: LineIndex,
+    /// How the views agree on each plane.
+    pub(crate) maps: Vec<ConsistencyMap>,
+    /// The lines that may bound a facet.
+    pub(crate) bounding: Vec<Segment3>,
+    /// With pixels about as wide as the cells of the maps.
+    pub(crate) scene: Scene,
+}
+
+impl Solver {
+    /// Labels, delineates and verifies until no facet is withdrawn.
+    fn solve(
+        &mut self,
+        groups: &[PlaneGroup],
+        ground: &Ground,
+        colours: &Scene,
+        params: &RoofParams,
+    ) -> (Vec<Facet>, Vec<RejectedFacet>) {
+        const ROUNDS: usize = 4;
+        let mut rejected = Vec::new();
+        for round in 1..=ROUNDS {
+            self.labelling.minimise();
+            let labels = self.labelling.labels().to_vec();
+            let labels = without_islands(&self.arrangement, labels, params.min_area_m2);
+            let delineation = delineate(&self.arrangement, &labels, &self.planes);
+            self.labelling.relabel(labels);
+            let mut facets = Vec::new();
+            let mut withdrawn: Vec<(u32, Vec<usize>)> = Vec::new();
+            // No roof, but no other plane may have their place: they stay in the labelling.
+            let mut on_ground = Vec::new();
+            let found: Vec<Facet> = (delineation.outlines.iter())
+                .map(|outline| self.facet(outline, &delineation, groups))
+                .collect();
+            let occluders = Occluders::new(&found);
+            let results: Vec<_> = (delineation.outlines.iter().zip(&found))
+                .map(|(outline, facet)| {
+                    self.verify(facet, outline, &occluders, ground, colours, params)?;
+                    // In the last round nothing would take its place.
+                    let beyond = || self.overreach(facet, outline, &occluders, params);
+                    Ok((round < ROUNDS).then(beyond).flatten())
+                })
+                .collect();
+            for ((outline, facet), result) in delineation.outlines.iter().zip(found).zip(results) {
+                let result = match result {
+                    // The same holds for the whole of it.
+                    Err(FacetRejection::Outdone { .. }) if round == ROUNDS => Ok(None),
+                    result => result,
+                };
+                let reason = match result {
+                    Ok(Some((cells, refused))) => {
+                        rejected.push(refused);
+                        withdrawn.push((outline.plane, cells));
+                        continue;
+                    }
+                    Ok(None) => {
+                        facets.push(facet);
+                        continue;
+                    }
+                    Err(reason) => reason,
+                };
+                if round < ROUNDS
+                    && matches!(reason, FacetRejection::ReachesGround { .. })
+                    && let Some(tail) =
+                        tail_on_ground(&facet.plane, &outline.cells, &self.arrangement, ground)
+                {
+                    withdrawn.push((outline.plane, tail));
+                    continue;
+                }
+                let refused = RejectedFacet {
+                    group: outline.plane,
+                    outline: facet.outer,
+                    reason,
+                };
+                if matches!(reason, FacetRejection::NearGround { .. }) {
+                    on_ground.push(refused);
+                } else {
+                    rejected.push(refused);
+                    withdrawn.push((outline.plane, outline.cells.clone()));
+                }
+            }
+            if withdrawn.is_empty() || round == ROUNDS {
+                rejected.extend(on_ground);
+                return (facets, rejected);
+            }
+            for (plane, cells) in withdrawn {
+                self.labelling.withdraw(plane, &cells);
+            }
+        }
+        unreachable!("the last round returns")
+    }
+
+    fn facet(&self, outline: &Outline, delineation: &Delineation, groups: &[PlaneGroup]) -> Facet {
+        let plane = self.planes[outline.plane as usize];
+        let group = &groups[outline.plane as usize];
+        let lift = |ring: &Vec<usize>| -> Vec<Point3<f64>> {
+            ring.iter()
+                .map(|&v| delineation.vertices[v])
+                .map(|p| plane.lift(p.x, p.y))
+                .collect()
+        };
+        let (mut weight, mut correlation) = (0.0, 0.0);
+        for e in outline
+            .cells
+            .iter()
+            .filter_map(|&c| self.evidence.get(c, outline.plane))
+        {
+            weight += e.weight;
+            correlation += e.correlation;
+        }
+        Facet {
+            building: BuildingId(0),
+            plane,
+            outer: lift(&outline.outer),
+            holes: outline.holes.iter().map(lift).collect(),
+            similarity: if weight > 0.0 {
+                correlation / weight
+            } else {
+                0.0
+            },
+            real_ratio: self.real_ratio(outline, delineation),
+            lines: group.lines(),
+            half_planes: group.half_planes(),
+            rectangles: group.rectangles.clone(),
+        }
+    }
+
+    /// tau_real: the share of the outline on reconstructed lines, B99 4.3.
+    fn real_ratio(&self, outline: &Outline, delineation: &Delineation) -> f64 {
+        let plane = &self.planes[outline.plane as usize];
+        let (mut real, mut total) = (0.0, 0.0);
+        for (i, &v) in outline.outer.iter().enumerate() {
+            let a = delineation.vertices[v];
+            let b = delineation.vertices[outline.outer[(i + 1) % outline.outer.len()]];
+            let pieces = ((b - a).norm() / 0.25).ceil().max(1.0);
+            for k in 0..pieces as usize {
+                let (p, q) = (
+                    a + (b - a) * (k as f64 / pieces),
+                    a + (b - a) * ((k + 1) as f64 / pieces),
+                );
+                let z = plane.z_at(0.5 * (p.x + q.x), 0.5 * (p.y + q.y));
+                total += (q - p).norm();
+                if self
+                    .index
+                    .heights_along(&p, &q)
+                    .iter()
+                    .any(|h| (h - z).abs() < LINE_HEIGHT)
+                {
+                    real += (q - p).norm();
+                }
+            }
+        }
+        if total > 0.0 { real / total } else { 0.0 }
+    }
+}

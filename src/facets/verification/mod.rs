@@ -1,0 +1,438 @@
+//! Verification (B99 4.3): what a facet must show to stay, and why others are withdrawn.
+//!
+//! "Intensity similarity over the complete image set" first counts as the better half of all pairs of views, since nobody
+//! knows yet what hides a plane; of what these let pass, the views that see a facet past the others are asked all.
+
+mod boundary_leakage;
+mod displaced_plane;
+mod interior;
+mod vegetation;
+
+use std::collections::BTreeSet;
+
+use nalgebra::Point3;
+use serde::Serialize;
+
+use self::displaced_plane::{prominence, stands_out};
+use self::interior::{Inside, Interior, seen_inside};
+use self::vegetation::{GREEN, excess_green};
+use super::borders::Arrangement;
+use super::delineation::Outline;
+use super::reconstruct::Solver;
+use crate::geometry::{Plane, mean_point};
+use crate::ids::ViewId;
+use crate::model::{Facet, Occluders};
+use crate::params::RoofParams;
+use crate::photoconsistency::WINDOW;
+use crate::planes::{ON_SURFACE, TEXTURED};
+use crate::scene::Scene;
+use crate::terrain::Ground;
+
+/// Why a facet was withdrawn.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FacetRejection {
+    /// Smaller than the least area.
+    TooSmall {
+        /// Sloped area, square metres.
+        area_m2: f64,
+    },
+    /// Windows fit into little of it, so that nothing but its edges speaks for it.
+    TooNarrow {
+        /// Side of the window, metres.
+        window_m: f64,
+    },
+    /// On the ground, or too little above it.
+    NearGround {
+        /// Height of its middle above the ground, metres.
+        height_m: f64,
+    },
+    /// Its low side lies on the ground: a bank, or the shadow of an eave, but no roof.
+    ReachesGround {
+        /// Height of its lowest corner above the ground, metres.
+        lowest_m: f64,
+    },
+    /// The views do not agree inside the outline.
+    Dissimilar {
+        /// Mean correlation inside the outline.
+        similarity: f64,
+    },
+    /// The views that nothing hides it from do not agree inside the outline.
+    Contradicted {
+        /// Mean correlation of all their pairs inside the outline.
+        similarity: f64,
+    },
+    /// Steep, without a half-plane, and the views that nothing hides it from agree inside it by chance at most: it spans from one edge to
+    /// a lower one across a gap.
+    Bridge {
+        /// Mean correlation of all their pairs inside the outline.
+        similarity: f64,
+    },
+    /// The views agree better inside the outline on the plane moved up or down, and the outline is not on lines on most sides.
+    Displaced {
+        /// How much better, in standard deviations.
+        sigmas: f64,
+    },
+    /// The part of a facet beyond a line that bounds it, on whose plane the views agree by chance at most there.
+    BeyondLine {
+        /// Mean correlation of all their pairs inside that part.
+        similarity: f64,
+    },
+    /// As green as plants, and a roof neither by its outline nor by its inside.
+    Vegetation {
+        /// (2 G - R - B) / (R + G + B).
+        excess_green: f64,
+    },
+    /// Inside the outline the views agree better on the plane of another group.
+    Outdone {
+        /// Index of that group.
+        by: u32,
+        /// How much better, in standard deviations.
+        sigmas: f64,
+    },
+    /// Too little of its outline lies on reconstructed lines, and the images do not clearly show it.
+    Unsupported {
+        /// tau_real, 0 to 1.
+        real_ratio: f64,
+    },
+}
+
+/// A withdrawn facet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RejectedFacet {
+    /// Index of the group whose plane it has.
+    pub group: u32,
+    /// Its outline, metres, local frame.
+    pub outline: Vec<Point3<f64>>,
+    /// Why.
+    pub reason: FacetRejection,
+}
+
+/// Height above the ground that no eave is below, metres. Assumption: with a few decimetres for the ground's own error.
+const LOWEST_EAVE: f64 = 1.0;
+/// Share of a facet that may lie on the ground for the rest to be a roof still: a corner drawn too far. Assumption: of a bank that rises to the
+/// height of an eave more lies lower than [`LOWEST_EAVE`].
+const MOST_ON_GROUND: f64 = 0.15;
+/// Share of its outline on lines from which on a green facet is bounded as roofs are. Assumption.
+const MOST_REAL: f64 = 0.5;
+/// Cosine of the slope (26 degrees) below which a facet without a half-plane may be a roof that shines: the views of a metal roof of real-barns, at 22 degrees,
+/// agree by no more than chance.
+const FLAT_COSINE: f64 = 0.9;
+/// Share of its outline on lines from which on a facet is bounded by them all around. Measured: of the steep rendered facets without a half-plane that
+/// views agree on by chance at most, 25 of 26 false ones and 1 of 5 true ones have less.
+const ALL_REAL: f64 = 0.85;
+/// Share of a facet that another plane must be able to cover to take its place. Assumption.
+const ALMOST_ALL: f64 = 0.9;
+/// Standard deviations by which the views must agree better on it. Assumption: as usual.
+const CLEARLY: f64 = 3.0;
+
+/// The excess green of a facet that is as green as plants and is no clear roof, by its outline or by its inside.
+fn vegetation(facet: &Facet, inside: &Inside, interior: &Interior, colours: &Scene) -> Option<f64> {
+    if facet.real_ratio >= MOST_REAL && interior.is_clear() {
+        return None;
+    }
+    let places = inside.places().map(|p| facet.plane.lift(p.x, p.y));
+    let green = excess_green(colours, &places.collect::<Vec<_>>());
+    (green > GREEN).then_some(green)
+}
+
+/// Area inside a facet's outer ring, on its plane, square metres.
+fn sloped_area(facet: &Facet) -> f64 {
+    facet.plan_area() / facet.plane.normal.z
+}
+
+/// Is a facet large enough, and as high above the ground as roofs are?
+fn is_placed_like_a_roof(
+    facet: &Facet,
+    ground: &Ground,
+    params: &RoofParams,
+) -> Result<(), FacetRejection> {
+    let area_m2 = sloped_area(facet);
+    if area_m2 < params.min_area_m2 {
+        return Err(FacetRejection::TooSmall { area_m2 });
+    }
+    let middle = mean_point(&facet.outer);
+    let height_m = middle.z - ground.z_at(&middle.xy());
+    if height_m < params.min_height_m {
+        return Err(FacetRejection::NearGround { height_m });
+    }
+    let heights = facet.outer.iter().map(|p| p.z - ground.z_at(&p.xy()));
+    let lowest_m = heights.fold(f64::INFINITY, f64::min);
+    if lowest_m < LOWEST_EAVE {
+        return Err(FacetRejection::ReachesGround { lowest_m });
+    }
+    Ok(())
+}
+
+/// Might a facet span a gap between an edge and a lower one? No half-plane says that it goes on beside its lines, it is steep, as flat roofs
+/// that shine are not, and part of its outline is no line.
+fn may_bridge(facet: &Facet) -> bool {
+    let is_flat = facet.plane.normal.z >= FLAT_COSINE;
+    facet.half_planes.is_empty() && !is_flat && facet.real_ratio < ALL_REAL
+}
+
+/// The cells of a facet that come down to the ground, where these are few: without them it may be a roof.
+pub(crate) fn tail_on_ground(
+    plane: &Plane,
+    cells: &[usize],
+    arrangement: &Arrangement,
+    ground: &Ground,
+) -> Option<Vec<usize>> {
+    let of_facet: BTreeSet<usize> = cells.iter().copied().collect();
+    let on_ground = |corners: &[usize; 3]| {
+        let mut corners = corners.iter().map(|&v| arrangement.vertices[v]);
+        corners.any(|p| plane.z_at(p.x, p.y) - ground.z_at(&p) < LOWEST_EAVE)
+    };
+    let low: BTreeSet<usize> = (arrangement.triangles.iter())
+        .filter(|(corners, cell)| of_facet.contains(cell) && on_ground(corners))
+        .map(|(_, cell)| *cell)
+        .collect();
+    let area =
+        |cells: &BTreeSet<usize>| -> f64 { cells.iter().map(|&c| arrangement.areas[c]).sum() };
+    let few = area(&low) < MOST_ON_GROUND * area(&of_facet);
+    (few && !low.is_empty()).then(|| low.into_iter().collect())
+}
+
+impl Solver {
+    /// Does the facet stay, between the other facets and over the ground? `colours` are the photographs as they were taken.
+    pub(crate) fn verify(
+        &self,
+        facet: &Facet,
+        outline: &Outline,
+        occluders: &Occluders,
+        ground: &Ground,
+        colours: &Scene,
+        params: &RoofParams,
+    ) -> Result<(), FacetRejection> {
+        is_placed_like_a_roof(facet, ground, params)?;
+        let map = &self.maps[outline.plane as usize];
+        let inside = Inside::of(facet, map);
+        if inside.is_narrow() {
+            return Err(FacetRejection::TooNarrow {
+                window_m: WINDOW as f64 * map.grid.step,
+            });
+        }
+        let interior = inside.sums(params.min_correlation);
+        let agreed = self.is_agreed_on(facet, outline, &interior, occluders, params);
+        let hidden = self.hidden_by(occluders);
+        let prominence =
+            |least_m: f64| prominence(&self.scene, facet, map.grid.step, least_m, &hidden);
+        stands_out(agreed, facet, &interior, prominence)?;
+        if let Some(excess_green) = vegetation(facet, &inside, &interior, colours) {
+            return Err(FacetRejection::Vegetation { excess_green });
+        }
+        if let Some((by, sigmas)) = self.outdone(outline, &inside) {
+            return Err(FacetRejection::Outdone { by, sigmas });
+        }
+        Ok(())
+    }
+
+    /// Do the images agree inside a facet as much as they must, with what its outline shows?
+    fn is_agreed_on(
+        &self,
+        facet: &Facet,
+        outline: &Outline,
+        interior: &Interior,
+        occluders: &Occluders,
+        params: &RoofParams,
+    ) -> Result<(), FacetRejection> {
+        if interior.speaks_against() {
+            return Err(FacetRejection::Dissimilar {
+                similarity: interior.correlation / interior.weight,
+            });
+        }
+        // The better half of the pairs excuses the views in which something stands in front of the facet, and with them
+        // as many in which nothing does.
+        let doubtful = may_bridge(facet) && interior.is_doubtful();
+        if doubtful || interior.speaks_against_overall() {
+            let step = self.maps[outline.plane as usize].grid.step;
+            let hidden = self.hidden_by(occluders);
+            let seen = seen_inside(&self.scene, facet, step, &hidden, params.min_correlation);
+            let similarity = seen.overall / seen.weight;
+            if seen.speaks_against_overall() {
+                return Err(FacetRejection::Contradicted { similarity });
+            }
+            if doubtful && seen.is_by_chance() {
+                return Err(FacetRejection::Bridge { similarity });
+            }
+        }
+        // What little texture there is must not speak against the plane.
+        let (weight, least) = self.texture(outline);
+        let sloped_m2 = sloped_area(facet);
+        if facet.similarity * weight < least && weight > 0.1 * sloped_m2 {
+            return Err(FacetRejection::Dissimilar {
+                similarity: facet.similarity,
+            });
+        }
+        // Where the images show the surface itself, its outline need not lie on lines.
+        let shown = facet.similarity >= f64::from(ON_SURFACE)
+            && weight >= f64::from(TEXTURED) * sloped_m2 * facet.plane.normal.z;
+        if facet.real_ratio < params.min_real_ratio && !shown {
+            return Err(FacetRejection::Unsupported {
+                real_ratio: facet.real_ratio,
+            });
+        }
+        Ok(())
+    }
+
+    /// Which views other facets hide a point from.
+    pub(crate) fn hidden_by<'s>(
+        &'s self,
+        occluders: &'s Occluders,
+    ) -> impl Fn(ViewId, &Point3<f64>) -> bool + 's {
+        |view, point| occluders.hide(point, &self.scene.camera(view).center)
+    }
+
+    /// The plane that could lie over a facet and that the views agree on clearly better inside it. A level plane through
+    /// the ridges of two roofs has more edges than the roof between them, and little else.
+    fn outdone(&self, outline: &Outline, inside: &Inside) -> Option<(u32, f64)> {
+        let area = |plane: u32| -> f64 {
+            let evidence = (outline.cells.iter()).filter_map(|&c| self.evidence.get(c, plane));
+            evidence.map(|e| e.area).sum()
+        };
+        let most = ALMOST_ALL * area(outline.plane);
+        let others = (0..self.planes.len() as u32).filter(|p| *p != outline.plane);
+        let rivals = others.filter(|p| area(*p) >= most);
+        let best = rivals
+            .map(|p| (p, inside.advantage_of(&self.maps[p as usize])))
+            .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))?;
+        (best.1 > CLEARLY).then_some(best)
+    }
+
+    /// Texture weight over an outline, square metres, and its product with the least correlation.
+    fn texture(&self, outline: &Outline) -> (f64, f64) {
+        let evidence = (outline.cells.iter()).filter_map(|&c| self.evidence.get(c, outline.plane));
+        evidence.fold((0.0, 0.0), |(w, l), e| (w + e.weight, l + e.least))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::borders::{Border, BorderKind};
+    use super::interior::map_inside;
+    use super::*;
+    use crate::ids::HalfPlaneId;
+    use crate::synthetic::gable_scene;
+    use crate::testing;
+    use nalgebra::Vector3;
+
+    const MIN_CORRELATION: f64 = 0.45;
+
+    /// A rendered roof and one of its facets.
+    fn scene_and_facet() -> (Scene, Facet) {
+        let (scene, truth) = gable_scene(320);
+        let facet = testing::facet(&truth.facets[0].1);
+        (scene, facet)
+    }
+
+    /// Do the better half of the pairs of views, and all of them, speak against a facet, where `hidden` views are not asked?
+    fn against(scene: &Scene, facet: &Facet, hidden: &[usize]) -> [bool; 2] {
+        let hidden = |view: ViewId, _: &_| hidden.contains(&view.index());
+        let sums = seen_inside(scene, facet, 0.1, &hidden, MIN_CORRELATION);
+        assert!(sums.weight > 100.0, "the texture is strong");
+        [sums.speaks_against(), sums.speaks_against_overall()]
+    }
+
+    #[test]
+    fn the_views_that_see_a_facet_verify_it_whatever_the_others_show() {
+        let (mut scene, facet) = scene_and_facet();
+        assert_eq!(against(&scene, &facet, &[]), [false, false]);
+        for view in &mut scene.views[..3] {
+            view.gray.data.reverse();
+        }
+        assert_eq!(against(&scene, &facet, &[]), [false, true]);
+        assert_eq!(against(&scene, &facet, &[0, 1, 2]), [false, false]);
+    }
+
+    #[test]
+    fn a_plane_that_the_better_half_excuses_is_refused_by_all_views() {
+        let (scene, facet) = scene_and_facet();
+        let raised = |by: f64| {
+            let ring = facet.outer.iter().map(|p| p + Vector3::z() * by);
+            testing::facet(&ring.collect::<Vec<_>>())
+        };
+        let found: Vec<[bool; 2]> = (0..20)
+            .map(|step| against(&scene, &raised(0.05 * f64::from(step)), &[]))
+            .collect();
+        assert_eq!((found[0], found[19]), ([false; 2], [true; 2]));
+        assert!(found.contains(&[false, true]) && !found.contains(&[true, false]));
+    }
+
+    #[test]
+    fn a_steep_facet_without_a_half_plane_may_bridge_a_gap() {
+        let facet = |rise: f64, real_ratio: f64, half_planes: usize| {
+            let corner = |x: f64, y: f64| Point3::new(x, y, 5.0 + rise * y);
+            Facet {
+                real_ratio,
+                half_planes: (0..half_planes).map(HalfPlaneId::from_index).collect(),
+                ..testing::facet(&[corner(0.0, 0.0), corner(9.0, 0.0), corner(9.0, 4.0)])
+            }
+        };
+        assert!(may_bridge(&facet(1.2, 0.6, 0)));
+        assert!(!may_bridge(&facet(1.2, 0.6, 1)), "it goes on beside a line");
+        assert!(!may_bridge(&facet(0.4, 0.6, 0)), "metal");
+        assert!(!may_bridge(&facet(1.2, 0.9, 0)), "lines all around");
+    }
+
+    #[test]
+    fn a_green_facet_must_be_a_roof_by_its_lines_and_by_its_inside() {
+        let (mut scene, facet) = scene_and_facet();
+        let of = |scene: &Scene, raised: f64, real_ratio: f64| {
+            let ring = facet.outer.iter().map(|p| p + Vector3::z() * raised);
+            let facet = Facet {
+                real_ratio,
+                ..testing::facet(&ring.collect::<Vec<_>>())
+            };
+            let map = map_inside(scene, &facet, 0.1, &|_, _| false);
+            let inside = Inside::of(&facet, &map);
+            vegetation(&facet, &inside, &inside.sums(MIN_CORRELATION), scene).is_some()
+        };
+        assert!(!of(&scene, 0.0, 0.2) && !of(&scene, 2.0, 0.9), "red tiles");
+        for view in &mut scene.views {
+            let hedge = |p: &mut image::Rgb<u8>| p.0 = [p[0] / 2, p[0] / 2 + 20, p[0] / 2];
+            view.rgb.pixels_mut().for_each(hedge);
+        }
+        assert!(of(&scene, 0.0, 0.2) && of(&scene, 2.0, 0.9));
+        assert!(!of(&scene, 0.0, 0.9), "a copper roof");
+    }
+
+    /// A plan of 30 m by 30 m, cut by lines across at these x.
+    fn cut_at(places: &[f64]) -> Arrangement {
+        let border = |a: [f64; 2], b: [f64; 2]| Border {
+            kind: BorderKind::Real,
+            a: a.into(),
+            b: b.into(),
+        };
+        let corners = [[-10.0, -10.0], [20.0, -10.0], [20.0, 20.0], [-10.0, 20.0]];
+        let frame = (0..4).map(|i| border(corners[i], corners[(i + 1) % 4]));
+        let cuts = places.iter().map(|&x| border([x, -10.0], [x, 20.0]));
+        Arrangement::new(&frame.chain(cuts).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn a_roof_loses_the_tail_that_comes_down_to_the_ground_and_a_bank_all() {
+        // It falls from 9 m at x = 0 to 1 m at x = 8; above the ground at 2 m, its lowest eave is at x = 6.
+        let slope =
+            Plane::from_point_normal(&Point3::new(0.0, 0.0, 9.0), &Vector3::new(1.0, 0.0, 1.0));
+        let slope = slope.expect("a normal");
+        let arrangement = cut_at(&[0.0, 5.0, 5.8, 6.2, 8.0]);
+        let ground = Ground::level(2.0);
+        let mut cells: Vec<usize> = (0..arrangement.cells).collect();
+        let middle = |cell: usize| {
+            let of = arrangement.triangles.iter().filter(|t| t.1 == cell);
+            let xs: Vec<f64> = of
+                .flat_map(|t| t.0.map(|v| arrangement.vertices[v].x))
+                .collect();
+            xs.iter().sum::<f64>() / xs.len() as f64
+        };
+        cells.sort_by(|a, b| middle(*a).total_cmp(&middle(*b)));
+        let tail = |cells: &[usize]| tail_on_ground(&slope, cells, &arrangement, &ground);
+        assert_eq!(tail(&cells[1..3]), None, "all of it is high");
+        assert_eq!(
+            tail(&cells[1..4]),
+            Some(vec![cells[3]]),
+            "0.4 of 6.2 m reach below"
+        );
+        assert_eq!(tail(&cells[1..5]), None, "2.2 of 8 m are too much");
+    }
+}

@@ -1,0 +1,50 @@
+//! Line tracks: the segments and measured edges of several views that are images of one 3D line (B99 3.4).
+
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::Segment2;
+use crate::ids::SegmentId;
+use crate::ids::ViewId;
+use crate::lines2d::GuidedEdge;
+
+/// How a stretch of a line came to be part of a match (the page colours it so).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SupportKind {
+    /// A detected segment, matched.
+    Matched,
+    /// A detected segment joined to another one across a gap (B99 3.3, merging).
+    Merged,
+    /// Extended past the detected end, or found by correlation alone (B99 3.3, growing).
+    Grown,
+}
+
+/// The evidence for a line in one view.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LineSupport {
+    /// The view.
+    pub view: ViewId,
+    /// The detected segments that belong to the line in this view; none where the line was
+    /// verified by correlation alone.
+    pub segments: Vec<SegmentId>,
+    /// The stretch of the line that is supported in this view, pixels, same direction as the 3D
+    /// line.
+    pub stretch: Segment2,
+    /// Photometric score, 0 to 1.
+    pub score: f64,
+    /// How it was found.
+    pub kind: SupportKind,
+    /// The edge measured along the line, which the 3D line is fitted to; `None` where correlation alone
+    /// supports it.
+    #[serde(skip)]
+    pub edge: Option<GuidedEdge>,
+}
+
+/// A line matched over at least three views.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LineMatch {
+    /// Supports, at most one a view, ordered by view.
+    pub supports: Vec<LineSupport>,
+    /// Mean photometric score, 0 to 1.
+    pub score: f64,
+}

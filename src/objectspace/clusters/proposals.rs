@@ -1,0 +1,76 @@
+//! Where clusters may be: intersections of image lines of different views.
+
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+
+use nalgebra::Vector2;
+
+use super::Search;
+use super::cluster_plane::PlaneRay;
+
+/// A place in the cluster plane and the stretch that two image lines propose.
+pub(crate) struct Proposal {
+    pub at: Vector2<f64>,
+    pub stretch: [f64; 2],
+    pub forward: bool,
+}
+
+impl Search<'_> {
+    /// Intersections of image lines of different views that may show the same stretch, one for each small cell; and
+    /// how many there were.
+    pub(crate) fn proposals(&self) -> (Vec<Proposal>, usize) {
+        let mut cells: BTreeMap<[i64; 4], (f64, Proposal)> = BTreeMap::new();
+        let mut count = 0;
+        for (i, a) in self.rays.iter().enumerate() {
+            for b in &self.rays[i + 1..] {
+                let Some((weight, proposal)) = self.propose(a, b) else {
+                    continue;
+                };
+                count += 1;
+                let middle = 0.5 * (proposal.stretch[0] + proposal.stretch[1]);
+                let cell = |x: f64, size: f64| (x / size).floor() as i64;
+                let key = [
+                    cell(proposal.at.x, self.params.cell_m),
+                    cell(proposal.at.y, self.params.cell_m),
+                    cell(middle, 4.0),
+                    i64::from(proposal.forward),
+                ];
+                match cells.entry(key) {
+                    Entry::Vacant(e) => {
+                        e.insert((weight, proposal));
+                    }
+                    Entry::Occupied(mut e) => {
+                        if weight > e.get().0 {
+                            e.insert((weight, proposal));
+                        }
+                    }
+                }
+            }
+        }
+        (cells.into_values().map(|(_, p)| p).collect(), count)
+    }
+
+    fn propose(&self, a: &PlaneRay, b: &PlaneRay) -> Option<(f64, Proposal)> {
+        let (s, t) = (&self.sights[a.sight], &self.sights[b.sight]);
+        if s.view == t.view || a.forward != b.forward {
+            return None;
+        }
+        let at = a.meet(b)?;
+        (at.y >= self.z_range[0] && at.y <= self.z_range[1]).then_some(())?;
+        // The same surface on one side at least.
+        let alike =
+            (0..2).any(|k| (s.sides[k] - t.sides[k]).abs() <= self.params.max_grey_difference);
+        alike.then_some(())?;
+        let (p, q) = (self.stretch(a.sight, at.y), self.stretch(b.sight, at.y));
+        let stretch = [p[0].max(q[0]), p[1].min(q[1])];
+        let shared = stretch[1] - stretch[0];
+        let shorter = (p[1] - p[0]).min(q[1] - q[0]);
+        let forward = a.forward;
+        let proposal = Proposal {
+            at,
+            stretch,
+            forward,
+        };
+        (shared > 0.4 * shorter).then_some((shared, proposal))
+    }
+}

@@ -1,0 +1,288 @@
+//! What the images say about a plane: are they alike when warped to it, and more alike than on planes above and below?
+
+use nalgebra::{Point2, Point3, Vector2};
+
+use super::occluding_solids::Solid;
+use crate::geometry::Plane;
+use crate::photoconsistency::{ConsistencyMap, PlanGrid, consistency_map, consistency_map_behind};
+use crate::scene::Scene;
+
+/// Signed area in plan, square metres.
+pub(crate) fn area_2d(ring: &[Point3<f64>]) -> f64 {
+    (0..ring.len())
+        .map(|i| {
+            let (p, q) = (&ring[i], &ring[(i + 1) % ring.len()]);
+            0.5 * (p.x * q.y - p.y * q.x)
+        })
+        .sum()
+}
+
+/// Compares the views on one plane and on planes beside it.
+pub(crate) struct Judge<'a> {
+    scene: &'a Scene,
+    solids: &'a [Solid],
+    plane: Plane,
+    grid: PlanGrid,
+    /// How far a metre of height moves the images against each other, pixels.
+    parallax_px: f64,
+    map: ConsistencyMap,
+}
+
+/// What the views say about a polygon in the plane.
+pub(crate) struct OnPlane {
+    /// How much its texture can tell, 0 to 1.
+    pub weight: f64,
+    /// Correlation of the views, weighted by texture.
+    pub correlation: f64,
+    /// Its weighted median.
+    pub median: f64,
+}
+
+/// The views on planes above and below.
+pub(crate) struct Beside([ConsistencyMap; 2]);
+
+/// Correlation of unrelated textures: only the better half of all pairs of views counts. No plane beside another one is taken to
+/// be worse, so that hopeless planes need not be compared with any.
+pub(crate) const CHANCE: f64 = 0.45;
+
+/// Largest number of cells of a plane's grid.
+const MOST_CELLS: f64 = 60_000.0;
+
+impl<'a> Judge<'a> {
+    /// Compares the views on a plane where the rings are and no solid hides it; `None` without rings.
+    pub fn new(
+        scene: &'a Scene,
+        plane: &Plane,
+        rings: &[Vec<Point3<f64>>],
+        solids: &'a [Solid],
+    ) -> Option<Self> {
+        let first = rings.iter().flatten().next()?;
+        let grid = grid_over(scene, rings, first)?;
+        let parallax_px = parallax_px(scene, first);
+        (parallax_px > 0.0).then(|| Self {
+            scene,
+            solids,
+            plane: *plane,
+            grid,
+            parallax_px,
+            map: compare(scene, plane, &grid, solids),
+        })
+    }
+
+    /// Looks inside a convex ring that runs counter-clockwise.
+    pub fn on_plane(&self, ring: &[Point3<f64>]) -> OnPlane {
+        let (mut cells, mut weights, mut sum) = (0u32, 0.0, 0.0);
+        let mut spread = Spread::default();
+        for k in self.cells(ring) {
+            let (weight, c) = (self.map.common_weight(k), self.map.correlation(k));
+            cells += 1;
+            weights += f64::from(weight);
+            sum += f64::from(weight) * f64::from(c);
+            spread.add(c, weight);
+        }
+        OnPlane {
+            weight: weights / f64::from(cells.max(1)),
+            correlation: if weights > 0.0 { sum / weights } else { 0.0 },
+            median: spread.median(),
+        }
+    }
+
+    /// By how much the views agree better on the plane than above and below it inside a ring: the lower one of the medians.
+    pub fn rise(&self, beside: &Beside, ring: &[Point3<f64>]) -> f64 {
+        let cells = self.cells(ring);
+        let medians = beside.0.each_ref().map(|map| {
+            let mut spread = Spread::default();
+            for &k in &cells {
+                let other = map.correlation(k).max(CHANCE as f32);
+                spread.add(self.map.correlation(k) - other, self.map.common_weight(k));
+            }
+            spread.median()
+        });
+        medians[0].min(medians[1])
+    }
+
+    /// The cells inside a ring without its border: windows that reach over it show its edge, which is in the right place for
+    /// many a false plane.
+    fn cells(&self, ring: &[Point3<f64>]) -> Vec<usize> {
+        let grid = &self.grid;
+        let core = shrunk(ring, REACH_CELLS * grid.step);
+        let ring = core.as_deref().unwrap_or(ring);
+        let column = |x: f64| ((x - grid.origin.x) / grid.step - 0.5).ceil().max(0.0) as usize;
+        let mut cells = Vec::new();
+        for row in 0..grid.height {
+            if let Some([x0, x1]) = span(ring, grid.center(0, row).y) {
+                let columns = column(x0)..column(x1).min(grid.width);
+                cells.extend(columns.map(|c| row * grid.width + c));
+            }
+        }
+        cells
+    }
+
+    /// Compares the views above and below the plane, where they move by so many pixels against each other.
+    pub fn beside(&self, shift_px: f64) -> Beside {
+        let rise = shift_px / self.parallax_px;
+        let maps = [rise, -rise].map(|dz| {
+            let lifted = Plane {
+                d: self.plane.d - self.plane.normal.z * dz,
+                ..self.plane
+            };
+            compare(self.scene, &lifted, &self.grid, self.solids)
+        });
+        Beside(maps)
+    }
+}
+
+/// A weighted histogram of values from -2 to 2.
+struct Spread {
+    weights: [f64; Self::BINS],
+}
+
+impl Default for Spread {
+    fn default() -> Self {
+        Self {
+            weights: [0.0; Self::BINS],
+        }
+    }
+}
+
+impl Spread {
+    const BINS: usize = 512;
+    /// Bins per unit.
+    const FINENESS: f32 = 128.0;
+
+    fn add(&mut self, value: f32, weight: f32) {
+        let bin = ((value + 2.0) * Self::FINENESS).round().max(0.0) as usize;
+        self.weights[bin.min(Self::BINS - 1)] += f64::from(weight);
+    }
+
+    /// The weighted median; -2 of nothing.
+    fn median(&self) -> f64 {
+        let half = 0.5 * self.weights.iter().sum::<f64>();
+        let mut sum = 0.0;
+        let bin = self.weights.iter().position(|w| {
+            sum += w;
+            sum >= half
+        });
+        bin.unwrap_or(0) as f64 / f64::from(Self::FINENESS) - 2.0
+    }
+}
+
+fn compare(scene: &Scene, plane: &Plane, grid: &PlanGrid, solids: &[Solid]) -> ConsistencyMap {
+    if solids.is_empty() {
+        return consistency_map(scene, plane, grid);
+    }
+    consistency_map_behind(scene, plane, grid, &|view, point| {
+        let center = &scene.camera(view).center;
+        solids.iter().any(|s| s.hides(point, center))
+    })
+}
+
+/// A plan grid over all rings with cells as fine as the finest image.
+fn grid_over(scene: &Scene, rings: &[Vec<Point3<f64>>], at: &Point3<f64>) -> Option<PlanGrid> {
+    let corners = || rings.iter().flatten();
+    let bound = |start: f64, f: fn(f64, f64) -> f64| {
+        Point2::new(
+            corners().map(|p| p.x).fold(start, f),
+            corners().map(|p| p.y).fold(start, f),
+        )
+    };
+    let (min, max) = (
+        bound(f64::INFINITY, f64::min),
+        bound(f64::NEG_INFINITY, f64::max),
+    );
+    let size = max - min;
+    let step = finest_m(scene, at).max((size.x * size.y / MOST_CELLS).sqrt());
+    (size.x > 0.0 && size.y > 0.0 && step.is_finite()).then_some(())?;
+    let margin = Vector2::new(6.0, 6.0) * step;
+    Some(PlanGrid::covering(min - margin, max + margin, step))
+}
+
+/// Ground pixel of the finest image, metres.
+fn finest_m(scene: &Scene, at: &Point3<f64>) -> f64 {
+    let pixels = scene.views.iter().map(|v| v.camera.ground_pixel(at));
+    pixels.fold(f64::INFINITY, f64::min)
+}
+
+/// How far a metre of height moves the images of a point against each other at most, pixels.
+fn parallax_px(scene: &Scene, at: &Point3<f64>) -> f64 {
+    let slopes: Vec<Vector2<f64>> = scene
+        .views
+        .iter()
+        .map(|v| {
+            let d = v.camera.center - at;
+            d.xy() / d.z
+        })
+        .collect();
+    let pairs = slopes
+        .iter()
+        .flat_map(|a| slopes.iter().map(move |b| (a - b).norm()));
+    pairs.fold(0.0, f64::max) / finest_m(scene, at)
+}
+
+/// Half the window of the correlation and the pixel that an edge takes, cells.
+const REACH_CELLS: f64 = 6.0;
+
+/// A convex ring with its sides moved inwards; `None` where little is left.
+fn shrunk(ring: &[Point3<f64>], by: f64) -> Option<Vec<Point3<f64>>> {
+    let n = ring.len();
+    // Lines a x + b y = c through the moved sides; the inside is to the left.
+    let side = |i: usize| {
+        let (p, q) = (&ring[i], &ring[(i + 1) % n]);
+        let d = (q - p).xy().normalize();
+        (-d.y, d.x, -d.y * p.x + d.x * p.y + by)
+    };
+    let moved: Vec<Point3<f64>> = (0..n)
+        .map(|i| {
+            let ((a, b, c), (d, e, f)) = (side((i + n - 1) % n), side(i));
+            let det = a * e - b * d;
+            Point3::new((c * e - b * f) / det, (a * f - c * d) / det, 0.0)
+        })
+        .collect();
+    let inwards = (0..n).all(|i| {
+        let j = (i + 1) % n;
+        (moved[j] - moved[i]).xy().dot(&(ring[j] - ring[i]).xy()) > 0.0
+    });
+    (inwards && area_2d(&moved) > 0.15 * area_2d(ring)).then_some(moved)
+}
+
+/// The range of x inside a convex ring at a y.
+fn span(ring: &[Point3<f64>], y: f64) -> Option<[f64; 2]> {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for i in 0..ring.len() {
+        let (p, q) = (&ring[i], &ring[(i + 1) % ring.len()]);
+        if (p.y <= y) != (q.y <= y) {
+            let x = p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y);
+            low = low.min(x);
+            high = high.max(x);
+        }
+    }
+    (low < high).then_some([low, high])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_is_not_moved_by_a_minority() {
+        let mut spread = Spread::default();
+        (0..60).for_each(|_| spread.add(0.25, 0.5));
+        (0..28).for_each(|_| spread.add(-0.9, 1.0));
+        assert!((spread.median() - 0.25).abs() < 0.01);
+        (0..4).for_each(|_| spread.add(-0.9, 1.0));
+        assert!((spread.median() + 0.9).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_rectangle_shrinks_on_all_sides_and_a_sliver_does_not() {
+        let ring = |w: f64| {
+            [[0.0, 0.0], [9.0, 0.0], [9.0, w], [0.0, w]]
+                .map(|[x, y]| Point3::new(x, y, 1.0))
+                .to_vec()
+        };
+        let core = shrunk(&ring(6.0), 1.0).unwrap();
+        assert!((area_2d(&core) - 28.0).abs() < 1e-9);
+        assert_eq!(span(&core, 3.0), Some([1.0, 8.0]));
+        assert!(shrunk(&ring(1.5), 1.0).is_none());
+    }
+}

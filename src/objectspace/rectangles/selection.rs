@@ -1,0 +1,235 @@
+//! The best non-overlapping set of planes (W96 3.6: "secondly to select the best nonoverlapping planes").
+//!
+//! Candidates that overlap in plan exclude each other. The set with the largest sum of measures is found exactly where few
+//! candidates stand in each other's way, by branch and bound; larger tangles start from the greedy set and exchange one candidate for those
+//! that it excludes while the sum grows.
+
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::float::single::SingleFloatOverlay;
+
+use super::PlaneCandidate;
+use super::plane_evidence::area_2d;
+use crate::sorting::sort_by;
+
+/// Candidates that overlap by more than this share of the smaller one exclude each other. Assumption: what errors of their
+/// ends do at shared sides.
+const MOST_OVERLAP: f64 = 0.08;
+/// Most candidates in a tangle that is solved exactly.
+const EXACT: usize = 24;
+
+/// Indices of the chosen candidates, ascending.
+pub(crate) fn best_set(candidates: &[PlaneCandidate]) -> Vec<usize> {
+    let n = candidates.len();
+    let mut conflicts: Vec<Vec<usize>> = vec![Vec::new(); n];
+    for i in 0..n {
+        for j in i + 1..n {
+            if exclude(&candidates[i], &candidates[j]) {
+                conflicts[i].push(j);
+                conflicts[j].push(i);
+            }
+        }
+    }
+    let weights: Vec<f64> = candidates.iter().map(|c| c.measure).collect();
+    let mut chosen = Vec::new();
+    for tangle in tangles(&conflicts) {
+        if tangle.len() <= EXACT {
+            chosen.extend(exact(&tangle, &conflicts, &weights));
+        } else {
+            chosen.extend(exchanged(&tangle, &conflicts, &weights));
+        }
+    }
+    chosen.sort_unstable();
+    chosen
+}
+
+/// Do two candidates cover the same ground?
+fn exclude(a: &PlaneCandidate, b: &PlaneCandidate) -> bool {
+    // As every other call in the project has it: another type would be compiled anew, 0.2 MB of wasm.
+    let rings = |c: &PlaneCandidate| -> Vec<Vec<[f64; 2]>> {
+        vec![c.ring.iter().map(|p| [p.x, p.y]).collect()]
+    };
+    let shared = rings(a).overlay_as::<i64>(&rings(b), OverlayRule::Intersect, FillRule::NonZero);
+    let area: f64 = shared.iter().flatten().map(|r| ring_area(r)).sum();
+    area.abs() > MOST_OVERLAP * area_2d(&a.ring).min(area_2d(&b.ring))
+}
+
+fn ring_area(ring: &[[f64; 2]]) -> f64 {
+    (0..ring.len())
+        .map(|i| {
+            let (p, q) = (ring[i], ring[(i + 1) % ring.len()]);
+            0.5 * (p[0] * q[1] - p[1] * q[0])
+        })
+        .sum()
+}
+
+/// Connected groups of conflicts.
+fn tangles(conflicts: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let mut seen = vec![false; conflicts.len()];
+    let mut groups = Vec::new();
+    for first in 0..conflicts.len() {
+        if std::mem::replace(&mut seen[first], true) {
+            continue;
+        }
+        let mut group = vec![first];
+        let mut next = 0;
+        while next < group.len() {
+            for &n in &conflicts[group[next]] {
+                if !std::mem::replace(&mut seen[n], true) {
+                    group.push(n);
+                }
+            }
+            next += 1;
+        }
+        groups.push(group);
+    }
+    groups
+}
+
+/// Branch and bound over a tangle, the heaviest first.
+fn exact(tangle: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
+    let mut order = tangle.to_vec();
+    sort_by(&mut order, |&a, &b| {
+        weights[b].total_cmp(&weights[a]).then(a.cmp(&b))
+    });
+    let mut best = (0.0, Vec::new());
+    branch(&order, conflicts, weights, 0.0, &mut Vec::new(), &mut best);
+    best.1
+}
+
+fn branch(
+    rest: &[usize],
+    conflicts: &[Vec<usize>],
+    weights: &[f64],
+    sum: f64,
+    chosen: &mut Vec<usize>,
+    best: &mut (f64, Vec<usize>),
+) {
+    if sum > best.0 {
+        *best = (sum, chosen.clone());
+    }
+    let bound: f64 = rest.iter().map(|&k| weights[k]).sum();
+    let Some((&first, others)) = rest.split_first() else {
+        return;
+    };
+    if sum + bound <= best.0 {
+        return;
+    }
+    let compatible: Vec<usize> = others
+        .iter()
+        .copied()
+        .filter(|k| !conflicts[first].contains(k))
+        .collect();
+    chosen.push(first);
+    branch(
+        &compatible,
+        conflicts,
+        weights,
+        sum + weights[first],
+        chosen,
+        best,
+    );
+    chosen.pop();
+    branch(others, conflicts, weights, sum, chosen, best);
+}
+
+/// Greedy, then exchanges: one candidate for those that it excludes, or several for the one that excludes them.
+fn exchanged(tangle: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
+    let mut order = tangle.to_vec();
+    sort_by(&mut order, |&a, &b| {
+        weights[b].total_cmp(&weights[a]).then(a.cmp(&b))
+    });
+    let mut inside = vec![false; conflicts.len()];
+    // Each exchange raises the sum, so this ends.
+    loop {
+        let gain = |k: usize, inside: &[bool]| {
+            let lost = conflicts[k].iter().filter(|&&c| inside[c]);
+            weights[k] - lost.map(|&c| weights[c]).sum::<f64>()
+        };
+        if let Some(&k) = order
+            .iter()
+            .find(|&&k| !inside[k] && gain(k, &inside) > 1e-9)
+        {
+            conflicts[k].iter().for_each(|&c| inside[c] = false);
+            inside[k] = true;
+            continue;
+        }
+        let better = order.iter().filter(|&&k| inside[k]).find_map(|&k| {
+            let freed = freed_by(k, &order, conflicts, &inside);
+            let sum: f64 = freed.iter().map(|&f| weights[f]).sum();
+            (sum > weights[k] + 1e-9).then_some((k, freed))
+        });
+        let Some((k, freed)) = better else {
+            break;
+        };
+        inside[k] = false;
+        freed.into_iter().for_each(|f| inside[f] = true);
+    }
+    order.into_iter().filter(|&k| inside[k]).collect()
+}
+
+/// What could stand in the place of one candidate, greedily.
+fn freed_by(gone: usize, order: &[usize], conflicts: &[Vec<usize>], inside: &[bool]) -> Vec<usize> {
+    let mut freed: Vec<usize> = Vec::new();
+    for &k in order {
+        let blocked = |c: &usize| (inside[*c] && *c != gone) || freed.contains(c);
+        if conflicts[k].contains(&gone) && !conflicts[k].iter().any(blocked) {
+            freed.push(k);
+        }
+    }
+    freed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_facets_beat_the_false_plane_over_both() {
+        // 0 lies over 1 and 2; 3 stands alone.
+        let conflicts = vec![vec![1, 2], vec![0], vec![0], vec![]];
+        let weights = [5.0, 3.0, 4.0, 1.0];
+        for solve in [exact, exchanged] {
+            let mut chosen: Vec<usize> = tangles(&conflicts)
+                .iter()
+                .flat_map(|t| solve(t, &conflicts, &weights))
+                .collect();
+            chosen.sort_unstable();
+            assert_eq!(chosen, [1, 2, 3]);
+        }
+    }
+
+    #[test]
+    fn exact_is_never_worse_than_exchanging() {
+        let mut state = 7u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 40) as f64 / (1u64 << 24) as f64
+        };
+        for _ in 0..50 {
+            let weights: Vec<f64> = (0..12).map(|_| random()).collect();
+            let mut conflicts = vec![Vec::new(); 12];
+            for i in 0..12 {
+                for j in i + 1..12 {
+                    if random() < 0.3 {
+                        conflicts[i].push(j);
+                        conflicts[j].push(i);
+                    }
+                }
+            }
+            let all: Vec<usize> = (0..12).collect();
+            let sum = |s: Vec<usize>| {
+                for &i in &s {
+                    assert!(s.iter().all(|j| !conflicts[i].contains(j)));
+                }
+                s.iter().map(|&k| weights[k]).sum::<f64>()
+            };
+            assert!(
+                sum(exact(&all, &conflicts, &weights))
+                    >= sum(exchanged(&all, &conflicts, &weights)) - 1e-12
+            );
+        }
+    }
+}

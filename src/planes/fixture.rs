@@ -1,0 +1,124 @@
+//! Rendered views of a few textured planes, for the tests of the sweep.
+
+use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
+
+use super::grouping::Region;
+use super::grouping::line_neighbours;
+use super::grouping::{GroupingInput, Member, PlaneGroup};
+use crate::camera::Camera;
+use crate::geometry::Plane;
+use crate::geometry::rotation_from_axis_angle;
+use crate::ids::LineId;
+use crate::lines3d::Line3d;
+use crate::lines3d::Side;
+use crate::params::RoofParams;
+use crate::raster::Gray;
+use crate::scene::{Scene, View};
+
+/// A plane and the part of it (in plan) that exists.
+pub(crate) struct Surface {
+    pub plane: Plane,
+    pub exists: fn(f64, f64) -> bool,
+    /// Amplitude of the texture, 0 to 0.5.
+    pub texture: f64,
+}
+
+/// What a plane may cover to both sides of a line in it.
+pub(crate) fn region_beside(line: Line3d, plane: Plane) -> Region {
+    let member = |side| Member {
+        line: LineId(0),
+        side: Some(side),
+        half_plane: None,
+    };
+    let group = PlaneGroup {
+        plane,
+        members: [Side::Left, Side::Right].map(member).to_vec(),
+        rectangles: Vec::new(),
+    };
+    let lines = [line];
+    let input = GroupingInput {
+        lines: &lines,
+        half_planes: &[],
+        neighbours: &line_neighbours(&lines),
+        rectangles: &[],
+    };
+    Region::new(&input, &group, &RoofParams::default())
+}
+
+/// Four views, 250 x 250 px of 0.1 m, in two strips flown in opposite directions.
+pub(crate) fn scene(surfaces: &[Surface]) -> Scene {
+    let stations = [
+        (-30.0, -12.0, 0.05),
+        (28.0, -15.0, -0.1),
+        (25.0, 20.0, 3.1),
+        (-27.0, 22.0, 3.2),
+    ];
+    let views = stations
+        .iter()
+        .enumerate()
+        .map(|(i, &(x, y, kappa))| {
+            let camera = camera(x, y, kappa);
+            let gray = render(&camera, surfaces);
+            let rgb = image::RgbImage::new(250, 250);
+            View::new(format!("{i}.jpg"), camera, gray, rgb)
+        })
+        .collect();
+    Scene {
+        views,
+        origin: Vector3::zeros(),
+        ground_z: None,
+        warnings: Vec::new(),
+        survey: crate::scene::Survey::default(),
+    }
+}
+
+/// A camera 100 m up whose image is a crop around the origin.
+fn camera(x: f64, y: f64, kappa: f64) -> Camera {
+    let down =
+        Rotation3::from_matrix_unchecked(Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)));
+    let [turn, tilt] = [[0.0, 0.0, kappa], [0.01, -0.02, 0.0]].map(Vector3::from);
+    let r = rotation_from_axis_angle(&turn) * rotation_from_axis_angle(&tilt) * down;
+    let centre = Point3::new(x, y, 100.0);
+    let k = Matrix3::new(1000.0, 0.0, 0.0, 0.0, 1000.0, 0.0, 0.0, 0.0, 1.0);
+    let middle = Camera::new(k, r, centre, 250, 250)
+        .project(&Point3::origin())
+        .expect("the origin is in front");
+    let mut crop = k;
+    crop[(0, 2)] = 125.0 - middle.x;
+    crop[(1, 2)] = 125.0 - middle.y;
+    Camera::new(crop, r, centre, 250, 250)
+}
+
+fn render(camera: &Camera, surfaces: &[Surface]) -> Gray {
+    Gray::from_fn(250, 250, |column, row| {
+        let image = nalgebra::Point2::new(column as f64 + 0.5, row as f64 + 0.5);
+        let ray = camera.ray(&image);
+        let hits = surfaces.iter().enumerate().filter_map(|(i, surface)| {
+            let t = -surface.plane.signed_distance(&camera.center) / surface.plane.normal.dot(&ray);
+            let at = camera.center + ray * t;
+            ((surface.exists)(at.x, at.y)).then_some((t, i, at))
+        });
+        hits.min_by(|a, b| a.0.total_cmp(&b.0))
+            .map_or(0.5, |(_, i, at)| {
+                (0.5 + surfaces[i].texture * noise(at.x, at.y, i)) as f32
+            })
+    })
+}
+
+/// Smooth value noise of 0.4 m wavelength, -1 to 1.
+fn noise(x: f64, y: f64, seed: usize) -> f64 {
+    let (x, y) = (x / 0.4 + 1000.0, y / 0.4 + 1000.0);
+    let (i, j) = (x.floor(), y.floor());
+    let smooth = |t: f64| t * t * (3.0 - 2.0 * t);
+    let (fx, fy) = (smooth(x - i), smooth(y - j));
+    let at = |di: usize, dj: usize| {
+        let mut h = ((i as u64 + di as u64) * 73_856_093)
+            ^ ((j as u64 + dj as u64) * 19_349_663)
+            ^ ((seed as u64 + 1) * 83_492_791);
+        h = (h ^ (h >> 13)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        ((h >> 33) % 2001) as f64 / 1000.0 - 1.0
+    };
+    let top = at(0, 0) + (at(1, 0) - at(0, 0)) * fx;
+    let bottom = at(0, 1) + (at(1, 1) - at(0, 1)) * fx;
+    top + (bottom - top) * fy
+}

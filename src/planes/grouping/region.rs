@@ -1,0 +1,245 @@
+//! Where a plane may be: the part of the plan beside its lines, and between them (B99 4.3).
+
+use nalgebra::{Point2, Vector2};
+use serde::{Deserialize, Serialize};
+use spade::{ConstrainedDelaunayTriangulation, Triangulation};
+
+use super::proposed::ProposedPlane;
+use super::{GroupingInput, PlaneGroup};
+use crate::geometry::{Plane, bounds};
+use crate::lines3d::Side;
+use crate::params::RoofParams;
+
+/// How far a region reaches behind its line, metres: more than the line's own uncertainty.
+pub(crate) const MARGIN: f64 = 0.5;
+/// Sine of the angle to the horizontal direction of a plane, in plan, below which a side is level (5 degrees).
+const LEVEL: f64 = 0.09;
+/// Sine of the slope below which a plane has no such direction (5 degrees).
+const NEARLY_LEVEL: f64 = 0.087;
+
+/// The part of the plan that a group may cover: boxes beside its supporting lines, and their convex hull, which is B99's
+/// delineation (4.3): two short rakes of a long roof have all of it between them.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Region {
+    boxes: Vec<PlanBox>,
+    hull: Vec<Point2<f64>>,
+}
+
+/// A rectangle beside a line: origin at the line's start, `along` its direction, `across` to the left.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct PlanBox {
+    start: Point2<f64>,
+    along: Vector2<f64>,
+    length: f64,
+    left: f64,
+    right: f64,
+    ends: f64,
+}
+
+impl PlanBox {
+    /// The box of a rectangle along its first side.
+    fn around(rectangle: &ProposedPlane) -> Option<Self> {
+        let [start, end] = rectangle.sides().next()?;
+        let along = (end - start).try_normalize(1e-6)?;
+        let across = Vector2::new(-along.y, along.x);
+        let span = |axis: &Vector2<f64>| {
+            let at = rectangle.ring.iter().map(|p| (p.xy() - start).dot(axis));
+            at.fold((0.0f64, 0.0f64), |(low, high), t| (low.min(t), high.max(t)))
+        };
+        let ((t0, t1), (u0, u1)) = (span(&along), span(&across));
+        Some(Self {
+            start: start + along * t0,
+            along,
+            length: t1 - t0,
+            left: u1 + MARGIN,
+            right: MARGIN - u0,
+            ends: MARGIN,
+        })
+    }
+}
+
+impl Region {
+    /// The region of a group: `depth` away from each supporting line on the side of its half-plane
+    /// (both sides for a line without one), a little beyond on the other side and over the ends.
+    pub fn new(input: &GroupingInput, group: &PlaneGroup, params: &RoofParams) -> Self {
+        let boxes = group
+            .members
+            .iter()
+            .filter_map(|m| {
+                let line = &input.lines[m.line.index()].segment;
+                let (a, b) = (line.p0.xy(), line.p1.xy());
+                let length = (b - a).norm();
+                if length < 1e-6 {
+                    return None;
+                }
+                let depth = length.clamp(params.min_facet_depth_m, params.max_facet_depth_m);
+                let (left, right) = match m.side {
+                    Some(Side::Left) => (depth, MARGIN),
+                    Some(Side::Right) => (MARGIN, depth),
+                    // It lies in the plane, but which side of it the plane covers is unknown.
+                    None => (MARGIN, MARGIN),
+                };
+                let ends = (0.5 * length).clamp(params.extension_m, params.min_facet_depth_m);
+                Some(PlanBox {
+                    start: a,
+                    along: (b - a) / length,
+                    length,
+                    left,
+                    right,
+                    ends,
+                })
+            })
+            .chain(group.rectangles(input).filter_map(PlanBox::around))
+            .collect();
+        let lines = (group.members.iter()).map(|m| &input.lines[m.line.index()].segment);
+        Self {
+            boxes,
+            hull: convex_hull(lines.flat_map(|l| [l.p0.xy(), l.p1.xy()])),
+        }
+    }
+
+    /// Does the region hold a plan position?
+    pub fn contains(&self, p: &Point2<f64>) -> bool {
+        self.boxes.iter().any(|b| {
+            let d = p - b.start;
+            let (t, u) = (d.dot(&b.along), b.along.x * d.y - b.along.y * d.x);
+            t >= -b.ends && t <= b.length + b.ends && u <= b.left && u >= -b.right
+        }) || is_inside(&self.hull, p)
+    }
+
+    /// The sides of the convex hull of the group's lines that are level in its `plane`, as eaves and ridges are. A plane that
+    /// is itself nearly level has none: there every side would be.
+    pub fn level_sides(&self, plane: &Plane) -> Vec<[Point2<f64>; 2]> {
+        let down = plane.normal.xy();
+        if down.norm() < NEARLY_LEVEL {
+            return Vec::new();
+        }
+        let next = self.hull.iter().cycle().skip(1);
+        let sides = self.hull.iter().zip(next).map(|(a, b)| [*a, *b]);
+        let is_level = |[a, b]: &[Point2<f64>; 2]| {
+            (b - a).dot(&down).abs() < LEVEL * down.norm() * (b - a).norm()
+        };
+        sides.filter(is_level).collect()
+    }
+
+    /// Least and largest x and y, metres.
+    pub fn bounds(&self) -> [Point2<f64>; 2] {
+        bounds(self.boxes.iter().flat_map(|b| {
+            let across = Vector2::new(-b.along.y, b.along.x);
+            let corner = move |t: f64, u: f64| b.start + b.along * t + across * u;
+            let far = b.length + b.ends;
+            [
+                (-b.ends, b.left),
+                (-b.ends, -b.right),
+                (far, b.left),
+                (far, -b.right),
+            ]
+            .map(|(t, u)| corner(t, u))
+        }))
+    }
+}
+
+/// The corners of the convex hull, in order; none of points that cannot be triangulated.
+fn convex_hull(points: impl Iterator<Item = Point2<f64>>) -> Vec<Point2<f64>> {
+    let mut triangles = ConstrainedDelaunayTriangulation::<spade::Point2<f64>>::new();
+    let inserted = points.map(|p| triangles.insert(spade::Point2::new(p.x, p.y)));
+    if inserted.filter(Result::is_err).count() > 0 {
+        return Vec::new();
+    }
+    let corners = triangles.convex_hull().map(|edge| edge.from().position());
+    corners.map(|p| Point2::new(p.x, p.y)).collect()
+}
+
+/// Does a convex ring, in either order, hold a point?
+fn is_inside(ring: &[Point2<f64>], p: &Point2<f64>) -> bool {
+    let side = |i: usize| {
+        let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
+        (b - a).perp(&(p - a))
+    };
+    !ring.is_empty()
+        && ((0..ring.len()).all(|i| side(i) > 0.0) || (0..ring.len()).all(|i| side(i) < 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Point3;
+
+    use super::super::Member;
+    use super::super::neighbourhood::line_neighbours;
+    use super::*;
+    use crate::ids::LineId;
+    use crate::testing::line;
+
+    /// A shed roof that rises to the north.
+    fn shed() -> Plane {
+        let normal = nalgebra::Vector3::new(0.0, -0.25, 1.0);
+        Plane::from_point_normal(&Point3::new(0.0, 0.0, 5.0), &normal).expect("a normal")
+    }
+
+    /// The region of its rakes, 4 m long and 20 m apart, each with the roof on its inner side.
+    fn between_rakes() -> Region {
+        let rake = |x: f64| line(Point3::new(x, 0.0, 5.0), Point3::new(x, 4.0, 6.0));
+        let lines = [rake(0.0), rake(20.0)];
+        let input = GroupingInput {
+            lines: &lines,
+            half_planes: &[],
+            neighbours: &line_neighbours(&lines),
+            rectangles: &[],
+        };
+        let member = |index: u32, side| Member {
+            line: LineId(index),
+            half_plane: None,
+            side: Some(side),
+        };
+        let group = PlaneGroup {
+            plane: shed(),
+            members: vec![member(0, Side::Right), member(1, Side::Left)],
+            rectangles: Vec::new(),
+        };
+        Region::new(&input, &group, &RoofParams::default())
+    }
+
+    #[test]
+    fn a_plane_may_cover_all_that_lies_between_its_lines() {
+        let region = between_rakes();
+        for x in [0.5, 5.0, 10.0, 15.0, 19.5] {
+            assert!(region.contains(&Point2::new(x, 2.0)), "at {x} m");
+        }
+    }
+
+    #[test]
+    fn the_hull_has_level_sides_between_the_rakes() {
+        let region = between_rakes();
+        let mut heights: Vec<[f64; 2]> = (region.level_sides(&shed()).iter())
+            .map(|side| side.map(|p| p.y))
+            .collect();
+        crate::sorting::sort_by(&mut heights, |a, b| a[0].total_cmp(&b[0]));
+        assert_eq!(heights, [[0.0, 0.0], [4.0, 4.0]]);
+        let flat = Plane {
+            normal: nalgebra::Vector3::z(),
+            d: -5.0,
+        };
+        assert!(region.level_sides(&flat).is_empty());
+    }
+
+    #[test]
+    fn behind_its_lines_a_region_ends() {
+        let region = between_rakes();
+        for (x, y) in [(-1.0, 2.0), (21.0, 2.0), (10.0, -0.1), (10.0, 4.1)] {
+            assert!(!region.contains(&Point2::new(x, y)), "at {x}, {y}");
+        }
+    }
+
+    #[test]
+    fn lines_one_behind_the_other_have_nothing_between_them() {
+        let on_a_line = [0.0, 1.0, 5.0, 9.0].map(|t| Point2::new(t, 2.0 * t));
+        let hull = convex_hull(on_a_line.into_iter());
+        for p in [
+            Point2::new(3.0, 6.0),
+            Point2::new(3.0, 6.5),
+            Point2::new(3.0, 5.5),
+        ] {
+            assert!(!is_inside(&hull, &p));
+        }
+    }
+}

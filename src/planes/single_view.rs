@@ -1,0 +1,375 @@
+//! What one view says of a plane where no other sees it.
+//!
+//! At the margin of a block, and of the crops that photographs are delivered in, a roof goes on where one view is left. There is nothing to
+//! compare, but the plane is known, and so is what its surface looks like in this very view: as it does where the others bear the
+//! plane out. Where it looks the same it goes on, where it does not it has ended, and an edge of the view between the two is the
+//! plane's own (monoplotting: one image and a known surface). Where the surface looks like what lies around it, that it looks alike says nothing.
+
+use nalgebra::{Matrix2, Vector2};
+use serde::{Deserialize, Serialize};
+
+use super::grouping::Region;
+use super::hypothesis::{ON_SURFACE, TEXTURED, places_beside};
+use crate::geometry::{Plane, Segment3};
+use crate::lines3d::Side;
+use crate::math::median;
+use crate::photoconsistency::ConsistencyMap;
+use crate::photoconsistency::FULL;
+use crate::photoconsistency::{BoxSum, HALF_WINDOW, RowSum};
+use crate::photoconsistency::{PlanGrid, orthophoto};
+use crate::raster::Channel;
+use crate::scene::{Scene, View};
+
+/// Positions along each side of the window at which it is asked whether one view is alone there.
+const SAMPLES: usize = 24;
+/// Area that must show the surface to more views, square metres, before its looks are known. Assumption: some windows.
+const LEAST_KNOWN_M2: f64 = 2.0;
+/// Correlation below which a textured position is not on the plane. Assumption: what windows agree by chance.
+const OFF_SURFACE: f32 = 0.3;
+/// Squared Mahalanobis distance at which looks say as little for the surface as against it: three standard deviations.
+const UNLIKE: f64 = 9.0;
+/// Least standard deviation of the looks of a surface, grey values of 1: the light differs along it.
+const FLOOR: f64 = 0.015;
+/// How often looks that are not the surface's, those of skylights and chimneys, are left out.
+const TRIMS: usize = 3;
+/// How clearly the looks must change across an edge, of one.
+const CLEARLY: f64 = 0.4;
+
+/// For every position of a plane's window: does the surface go on there, as far as one view alone can tell?
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Alone {
+    /// In steps of 1 / 127, row by row, 0 where it is not for one view to say; empty where that is everywhere.
+    says: Vec<i8>,
+}
+
+impl Alone {
+    /// The same everywhere.
+    #[cfg(test)]
+    pub fn everywhere(cells: usize, says: i8) -> Self {
+        Self {
+            says: vec![says; cells],
+        }
+    }
+
+    /// What the only view says at a position of the window (row by row), from -1, it is another surface, to 1; 0 where it
+    /// has nothing to say, as where others see the position too.
+    pub fn says(&self, k: usize) -> f64 {
+        self.says.get(k).map_or(0.0, |s| f64::from(*s) / 127.0)
+    }
+
+    /// Does the surface end at an edge, for all that one view shows along it? It lies on one side of the edge, where more views may see
+    /// it, and not on the other.
+    pub fn ends_at(&self, map: &ConsistencyMap, edge: &Segment3) -> bool {
+        let [left, right] = [Side::Left, Side::Right].map(|side| {
+            let places = places_beside(&map.grid, edge, side, HALF_WINDOW as f64 + 2.0);
+            let count = places.clone().count().max(1) as f64;
+            places.map(|k| self.goes_on(map, k)).sum::<f64>() / count
+        });
+        left.max(right) >= CLEARLY && left.min(right) <= -CLEARLY
+    }
+
+    /// What is known of the surface at a position, from -1, it is another one, to 1: by the only view, or by how several agree.
+    fn goes_on(&self, map: &ConsistencyMap, k: usize) -> f64 {
+        let textured = map.weight(k) >= TEXTURED;
+        match map.correlation(k) {
+            on if textured && on >= ON_SURFACE => 1.0,
+            off if textured && off < OFF_SURFACE => -1.0,
+            _ => self.says(k),
+        }
+    }
+}
+
+/// Asks every view where it is the only one, by the looks of the surface where the others bear the plane out as well: `map` says where.
+pub fn seen_alone(scene: &Scene, plane: &Plane, region: &Region, map: &ConsistencyMap) -> Alone {
+    let grid = &map.grid;
+    let known = known_surface(region, map);
+    let least = LEAST_KNOWN_M2 / (grid.step * grid.step);
+    if (known.len() as f64) < least || !is_somewhere(scene, plane, region, grid) {
+        return Alone::default();
+    }
+    let look = |view: &View, channel| {
+        let photo = orthophoto(view.channel(channel).0, &view.camera, plane, grid);
+        window_means(&photo, grid)
+    };
+    let grey: Vec<Vec<f32>> = (scene.views.iter())
+        .map(|view| look(view, Channel::Grey))
+        .collect();
+    let only = |k: usize| {
+        let mut seeing = (0..grey.len()).filter(|&v| grey[v][k].is_finite());
+        let first = seeing.next()?;
+        seeing.next().is_none().then_some(first)
+    };
+    let by: Vec<Option<usize>> = (0..grid.width * grid.height).map(only).collect();
+    let mut says = vec![0; by.len()];
+    for (v, (grey, view)) in grey.into_iter().zip(&scene.views).enumerate() {
+        let mut alone = (0..by.len()).filter(|&k| by[k] == Some(v)).peekable();
+        if alone.peek().is_none() {
+            continue;
+        }
+        let warmth = look(view, Channel::Warmth);
+        let looks = Looks { grey, warmth };
+        let Some(surface) = Surface::known(&looks, &known, least, map) else {
+            continue;
+        };
+        for k in alone {
+            let gain = looks.at(k).map_or(0.0, |look| surface.gain(&look));
+            says[k] = (gain * 127.0).round() as i8;
+        }
+    }
+    Alone { says }
+}
+
+/// Where several views bear the plane out, positions of the window.
+fn known_surface(region: &Region, map: &ConsistencyMap) -> Vec<usize> {
+    let grid = &map.grid;
+    let on = |k: &usize| {
+        map.weight(*k) >= TEXTURED
+            && map.correlation(*k) >= ON_SURFACE
+            && region.contains(&grid.center(k % grid.width, k / grid.width))
+    };
+    (0..grid.width * grid.height).filter(on).collect()
+}
+
+/// Is there a position of the region that exactly one view has in its image? Asked at some, for mostly there is none.
+fn is_somewhere(scene: &Scene, plane: &Plane, region: &Region, grid: &PlanGrid) -> bool {
+    let part = |i: usize, size: usize| (i * 2 + 1) * size / (2 * SAMPLES);
+    let positions = (0..SAMPLES * SAMPLES).map(|k| {
+        grid.center(
+            part(k % SAMPLES, grid.width),
+            part(k / SAMPLES, grid.height),
+        )
+    });
+    let mut inside = positions.filter(|p| region.contains(p));
+    inside.any(|p| {
+        let point = plane.lift(p.x, p.y);
+        let has = |view: &&View| {
+            let x = view.camera.project(&point);
+            x.is_some_and(|x| view.camera.contains(&x, 0.0))
+        };
+        scene.views.iter().filter(has).count() == 1
+    })
+}
+
+/// What a view shows of a plane: grey value and warmth in the mean of the window around every position.
+struct Looks {
+    grey: Vec<f32>,
+    warmth: Vec<f32>,
+}
+
+impl Looks {
+    /// `None` where the view does not have all of the window.
+    fn at(&self, k: usize) -> Option<Vector2<f64>> {
+        let [grey, warmth] = [&self.grey, &self.warmth].map(|channel| f64::from(channel[k]));
+        (grey.is_finite() && warmth.is_finite()).then(|| Vector2::new(grey, warmth))
+    }
+}
+
+/// Means over the windows around all cells; NaN where a window is not complete.
+fn window_means(photo: &[f32], grid: &PlanGrid) -> Vec<f32> {
+    let (mut values, mut seen) = (BoxSum::new(grid), BoxSum::new(grid));
+    let mut line = RowSum::new(grid.width);
+    let row_of = |y: usize| photo[y * grid.width..].iter().take(grid.width);
+    let mut means = Vec::with_capacity(photo.len());
+    for _ in 0..grid.height {
+        let counts = seen.next_row(&mut line, |y, out| {
+            let counts = row_of(y).map(|v| f32::from(u8::from(v.is_finite())));
+            out.iter_mut().zip(counts).for_each(|(o, c)| *o = c);
+        });
+        let counts = counts.to_vec();
+        let sums = values.next_row(&mut line, |y, out| {
+            let known = row_of(y).map(|v| if v.is_finite() { *v } else { 0.0 });
+            out.iter_mut().zip(known).for_each(|(o, v)| *o = v);
+        });
+        let mean = |(sum, count): (&f32, &f32)| match *count > FULL - 0.5 {
+            true => sum / count,
+            false => f32::NAN,
+        };
+        means.extend(sums.iter().zip(&counts).map(mean));
+    }
+    means
+}
+
+/// What a surface looks like in a view.
+struct Surface {
+    mean: Vector2<f64>,
+    information: Matrix2<f64>,
+    /// How much looking alike says, 0 to 1: nothing where what is not the surface looks like it.
+    telling: f64,
+}
+
+impl Surface {
+    /// From the `known` positions of it, of which the view must show `least`; `None` where that is too little to tell.
+    fn known(looks: &Looks, known: &[usize], least: f64, map: &ConsistencyMap) -> Option<Self> {
+        let known: Vec<Vector2<f64>> = known.iter().filter_map(|&k| looks.at(k)).collect();
+        (known.len() as f64 >= least).then_some(())?;
+        let mut surface = Self::of_most(&known)?;
+        for _ in 0..TRIMS {
+            let alike = known.iter().filter(|look| surface.gain(look) > 0.0);
+            surface = Self::of(alike)?;
+        }
+        let off = (0..map.grid.width * map.grid.height)
+            .filter(|&k| map.weight(k) >= TEXTURED && map.correlation(k) < OFF_SURFACE)
+            .filter_map(|k| looks.at(k));
+        let (alike, all) = off.fold((0.0, 0.0), |(alike, all), look| {
+            (alike + surface.gain(&look).max(0.0), all + 1.0)
+        });
+        surface.telling = 1.0 - alike / f64::max(all, 1.0);
+        Some(surface)
+    }
+
+    /// By the medians of the looks and of what they differ from these: half of them may be of something else.
+    fn of_most(looks: &[Vector2<f64>]) -> Option<Self> {
+        /// Standard deviation of a normal distribution, in medians of the absolute deviation.
+        const OF_MEDIAN: f64 = 1.4826;
+        let middle =
+            |values: &mut dyn Iterator<Item = f64>| median(&mut values.collect::<Vec<_>>());
+        let mut mean = Vector2::zeros();
+        let mut information = Matrix2::zeros();
+        for i in 0..2 {
+            mean[i] = middle(&mut looks.iter().map(|look| look[i]))?;
+            let off = middle(&mut looks.iter().map(|look| (look[i] - mean[i]).abs()))?;
+            let deviation = OF_MEDIAN * off;
+            information[(i, i)] = 1.0 / (deviation * deviation + FLOOR * FLOOR);
+        }
+        Some(Self {
+            mean,
+            information,
+            telling: 1.0,
+        })
+    }
+
+    /// By mean and covariance of some looks.
+    fn of<'a>(looks: impl Iterator<Item = &'a Vector2<f64>> + Clone) -> Option<Self> {
+        let count = looks.clone().count().max(1) as f64;
+        let mean = looks.clone().sum::<Vector2<f64>>() / count;
+        let scatter = looks.fold(Matrix2::zeros(), |s, look| {
+            s + (look - mean) * (look - mean).transpose()
+        });
+        let covariance = scatter / count + Matrix2::identity() * (FLOOR * FLOOR);
+        Some(Self {
+            mean,
+            information: covariance.try_inverse()?,
+            telling: 1.0,
+        })
+    }
+
+    fn gain(&self, look: &Vector2<f64>) -> f64 {
+        let d = look - self.mean;
+        let gain = 1.0 - (d.transpose() * self.information * d).x / UNLIKE;
+        match gain > 0.0 {
+            true => gain * self.telling,
+            false => gain.max(-1.0),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixture;
+    use super::*;
+    use crate::photoconsistency::consistency_map;
+    use crate::raster::Gray;
+    use crate::testing::line;
+    use nalgebra::{Point2, Point3};
+
+    /// Where the roof ends, metres along x.
+    const END: f64 = 6.0;
+
+    fn roof() -> Plane {
+        Plane::from_point_normal(&Point3::new(0.0, 0.0, 6.0), &Vector2::zeros().push(1.0))
+            .expect("upright")
+    }
+
+    /// Two views of a level roof from -9 m to [`END`]; `around` is what they show beside it, and the second does not reach
+    /// beyond `reach` metres along x.
+    fn scene(around: f32, reach: f64) -> Scene {
+        let surface = fixture::Surface {
+            plane: roof(),
+            exists: |x, _| x > -9.0 && x < END,
+            texture: 0.2,
+        };
+        let mut scene = fixture::scene(&[surface]);
+        scene.views.truncate(2);
+        for (i, view) in scene.views.iter_mut().enumerate() {
+            let (camera, shown) = (view.camera.clone(), view.gray.clone());
+            let end = camera
+                .project(&Point3::new(reach, 0.0, 6.0))
+                .expect("in front");
+            let width = if i == 1 { end.x as usize } else { shown.width };
+            view.camera.width = width as u32;
+            view.gray = Gray::from_fn(width, shown.height, |column, row| {
+                let ray = camera.ray(&Point2::new(column as f64 + 0.5, row as f64 + 0.5));
+                let t = -roof().signed_distance(&camera.center) / roof().normal.dot(&ray);
+                let x = (camera.center + ray * t).x;
+                if x > -9.0 && x < END {
+                    shown.get(column, row)
+                } else {
+                    around
+                }
+            });
+        }
+        scene
+    }
+
+    /// How the views agree on the roof, beside a ridge through its middle, and what is seen alone of it.
+    fn seen(scene: &Scene) -> (ConsistencyMap, Alone) {
+        let ridge = line(Point3::new(-8.0, 0.0, 6.0), Point3::new(5.0, 0.0, 6.0));
+        let region = fixture::region_beside(ridge, roof());
+        let grid = PlanGrid::covering(Point2::new(-9.0, -5.0), Point2::new(9.0, 5.0), 0.1);
+        let map = consistency_map(scene, &roof(), &grid);
+        let alone = seen_alone(scene, &roof(), &region, &map);
+        (map, alone)
+    }
+
+    fn at((map, alone): &(ConsistencyMap, Alone), x: f64) -> f64 {
+        let (column, row) = map.grid.cell(&Point2::new(x, 1.0)).expect("inside");
+        alone.says(row * map.grid.width + column)
+    }
+
+    fn across(x: f64) -> Segment3 {
+        Segment3::new(Point3::new(x, -3.0, 6.0), Point3::new(x, 3.0, 6.0))
+    }
+
+    #[test]
+    fn a_roof_goes_on_in_the_only_view_as_far_as_it_looks_the_same() {
+        let seen = seen(&scene(0.15, 2.0));
+        assert_eq!(at(&seen, -3.0), 0.0, "two views see it");
+        assert!(at(&seen, 4.0) > 0.5 && at(&seen, 7.5) < -0.9);
+        let (map, alone) = &seen;
+        assert!(alone.ends_at(map, &across(END)));
+        assert!(!alone.ends_at(map, &across(4.0)), "a row of tiles");
+        assert!(!alone.ends_at(map, &across(7.5)), "beyond the roof");
+    }
+
+    #[test]
+    fn several_views_may_see_one_side_of_an_edge() {
+        // The second view ends a window's width before the roof does.
+        let (map, alone) = seen(&scene(0.15, END));
+        let inside = (END - 0.7, 1.0);
+        let (column, row) = map
+            .grid
+            .cell(&Point2::new(inside.0, inside.1))
+            .expect("inside");
+        assert!(
+            map.weight(row * map.grid.width + column) > 0.0,
+            "both see it"
+        );
+        assert!(alone.ends_at(&map, &across(END)));
+        assert!(!alone.ends_at(&map, &across(3.0)), "a row of tiles");
+    }
+
+    #[test]
+    fn where_two_views_reach_none_is_alone() {
+        let seen = seen(&scene(0.15, 11.0));
+        assert!(seen.1.says.is_empty());
+        assert_eq!(at(&seen, 4.0), 0.0);
+    }
+
+    #[test]
+    fn looks_that_are_not_known_say_nothing() {
+        // Two views share no more than a metre of the roof.
+        let seen = seen(&scene(0.15, -8.0));
+        assert_eq!(at(&seen, 4.0), 0.0);
+        assert_eq!(at(&seen, 7.5), 0.0);
+    }
+}
