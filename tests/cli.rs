@@ -409,6 +409,44 @@ fn a_failure_of_writing_leaves_nothing_half() {
 }
 
 #[test]
+fn a_refusal_says_what_was_seen() {
+    let scene = Scene::new();
+    for (path, _) in synthetic_files() {
+        if path.starts_with("images/") {
+            scene.remove(&path);
+        }
+    }
+    scene.write("images/plan.pdf", b"%PDF");
+    scene.is_refused(&[], &["no image", "scene holds 2 text; not read: 1 PDF"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn linked_folders_belong_to_the_scene() {
+    use std::os::unix::fs::symlink;
+    let scene = Scene::new();
+    let folder = scene.0.path().join("scene");
+    fs::rename(folder.join("images"), scene.0.path().join("flight")).unwrap();
+    symlink("../flight", folder.join("images")).unwrap();
+    symlink(".", folder.join("around")).unwrap();
+    symlink("nowhere", folder.join("old")).unwrap();
+    let checked = Command::new(env!("CARGO_BIN_EXE_ridgeline"))
+        .arg("check")
+        .arg(&folder)
+        .output()
+        .unwrap();
+    let notices = String::from_utf8_lossy(&checked.stderr);
+    assert!(checked.status.success(), "{notices}");
+    for words in [
+        "holds 6 PNG, 2 text",
+        "lead nowhere, left out: old -> nowhere",
+        "not followed: around -> .",
+    ] {
+        assert!(notices.contains(words), "'{words}' is not in: {notices}");
+    }
+}
+
+#[test]
 fn earlier_results_within_the_scene_are_not_part_of_it() {
     let scene = Scene::new();
     scene.write("results/model_atlas.png", &scene.read("images/s1_01.png"));

@@ -25,9 +25,9 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
     } else if let Ok(scene) = &outcome {
         print!("{}", words(scene));
     }
-    outcome
-        .map(|_| ())
-        .map_err(|error| Failure::Input(error.to_string()))
+    outcome.map_err(|error| reconstruct::refusal(&error, &opened.seen))?;
+    eprintln!("{}", opened.seen);
+    Ok(())
 }
 
 /// The findings, and the cameras as they are used: an orientation file of its own (docs/formats.md, K, R, C).

@@ -5,38 +5,25 @@ use std::io;
 use std::path::Path;
 
 use ridgeline::orientation::InputFile;
-use ridgeline::scene_loader::unpack;
 
 use super::Failure;
+use super::walk::{self, Seen};
 
-/// What may be an image.
-const IMAGE_EXTENSIONS: [&str; 5] = ["jpg", "jpeg", "png", "tif", "tiff"];
-
-/// What may hold an orientation; the readers look at the content.
-const ORIENTATION_EXTENSIONS: [&str; 13] = [
-    "txt", "p", "json", "geojson", "xml", "out", "nvm", "camera", "bin", "xyz", "prj", "ori", "zip",
-];
-
-/// Largest orientation file that is read, bytes: COLMAP writes some hundred bytes for every tie point.
-const MAX_ORIENTATION_BYTES: u64 = 1 << 30;
-
-/// All files below `folder` that may belong to a scene, sorted by path; paths are relative to the folder and
-/// have forward slashes. The folder of the results is not a part of the scene, wherever it lies.
-pub(super) fn read_scene(folder: &Path, results: &Path) -> Result<Vec<InputFile>, Failure> {
-    let mut files = Vec::new();
-    if folder.is_file() && is_archive(folder) {
-        add(folder, "scene.zip", &mut files)?;
+/// The files of a scene, sorted by path, and what was seen among them. The folder of the results is not a part of the
+/// scene, wherever it lies.
+pub(super) fn read_scene(folder: &Path, results: &Path) -> Result<(Vec<InputFile>, Seen), Failure> {
+    let (mut files, seen) = if folder.is_file() && is_archive(folder) {
+        walk::open_archive(folder)?
     } else if folder.is_dir() {
-        let results = fs::canonicalize(results).ok();
-        walk(folder, "", results.as_deref(), &mut files)?;
+        walk::walk(folder, results)?
     } else {
         return Err(Failure::Input(format!(
             "{}: not a folder; give the folder (or .zip archive) that holds the images and their orientation",
             folder.display()
         )));
-    }
+    };
     files.sort_by(|a, b| a.path.cmp(&b.path));
-    Ok(files)
+    Ok((files, seen))
 }
 
 /// Writes the files under temporary names first, so that a full disk or an interruption leaves no half
@@ -87,59 +74,7 @@ pub(super) fn write_one(path: &Path, bytes: Vec<u8>) -> Result<(), Failure> {
     write_all(folder, &[(name, bytes)])
 }
 
-/// Adds a file, or those of an archive.
-fn add(path: &Path, name: &str, files: &mut Vec<InputFile>) -> Result<(), Failure> {
-    let bytes = fs::read(path).map_err(|e| unreadable(path, e))?;
-    let unpacked = unpack(InputFile::new(name, bytes));
-    files.extend(unpacked.map_err(|e| Failure::Input(e.to_string()))?);
-    Ok(())
-}
-
-fn unreadable(path: &Path, e: io::Error) -> Failure {
-    Failure::Input(format!("{}: cannot read: {e}", path.display()))
-}
-
 fn is_archive(path: &Path) -> bool {
     path.extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("zip"))
-}
-
-fn walk(
-    folder: &Path,
-    prefix: &str,
-    results: Option<&Path>,
-    files: &mut Vec<InputFile>,
-) -> Result<(), Failure> {
-    for entry in fs::read_dir(folder).map_err(|e| unreadable(folder, e))? {
-        let entry = entry.map_err(|e| unreadable(folder, e))?;
-        let (path, name) = (entry.path(), entry.file_name());
-        let name = name.to_string_lossy();
-        if name.starts_with('.') {
-            continue;
-        }
-        let relative = format!("{prefix}{name}");
-        let kind = entry.file_type().map_err(|e| unreadable(&path, e))?;
-        if kind.is_dir() {
-            let is_results =
-                results.is_some() && fs::canonicalize(&path).ok().as_deref() == results;
-            if !is_results {
-                walk(&path, &format!("{relative}/"), results, files)?;
-            }
-        } else if is_wanted(&path) {
-            add(&path, &relative, files)?;
-        }
-    }
-    Ok(())
-}
-
-/// By extension and size: a folder may hold point clouds and other large things.
-fn is_wanted(path: &Path) -> bool {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    let Some(extension) = extension.as_deref() else {
-        return false;
-    };
-    let small =
-        || fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() <= MAX_ORIENTATION_BYTES);
-    IMAGE_EXTENSIONS.contains(&extension)
-        || (ORIENTATION_EXTENSIONS.contains(&extension) && small())
 }

@@ -8,6 +8,7 @@ mod files;
 mod reconstruct;
 mod table;
 mod tiles;
+mod walk;
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -29,12 +29,13 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
         files: input,
         options,
         mut params,
+        seen,
     } = open(&args.input, params, &args.out)?;
     if let Some(method) = args.method {
         params.method = method.into();
     }
     if let Some(tile_m) = args.tile {
-        return tiles::reconstruct_tiles(&input, &options, &params, tile_m, &args.out);
+        return tiles::reconstruct_tiles(&input, &options, &params, tile_m, &args.out, &seen);
     }
     let inspection = inspect_files(&input, &options);
     if inspection.errors.is_empty() {
@@ -44,7 +45,8 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
         );
     }
     let scene = load_adjusted(&input, &options, &params);
-    let scene = scene.map_err(|e| Failure::Input(e.to_string()))?;
+    let scene = scene.map_err(|e| refusal(&e, &seen))?;
+    eprintln!("{seen}");
     // Only a project needs the files once more.
     let input = args.project.as_ref().map(|_| input);
     let load_seconds = start.elapsed().as_secs_f64();
@@ -70,6 +72,13 @@ pub(super) struct Opened {
     pub files: Vec<InputFile>,
     pub options: LoadOptions,
     pub params: Params,
+    /// What the files are, in a sentence.
+    pub seen: String,
+}
+
+/// A refusal of a scene, with what was seen of it.
+pub(super) fn refusal(error: &ridgeline::Error, seen: &str) -> Failure {
+    Failure::Input(format!("{error}\n{seen}"))
 }
 
 /// Reads the files. What the arguments leave out is as in the project, where one is opened.
@@ -79,8 +88,12 @@ pub(super) fn open(
     results: &Path,
 ) -> Result<Opened, Failure> {
     set_threads(args);
-    let files = files::read_scene(&args.scene, results)?;
-    let (files, project) = open_project(files).map_err(|e| Failure::Input(e.to_string()))?;
+    let (files, seen) = files::read_scene(&args.scene, results)?;
+    for notice in seen.notices() {
+        eprintln!("warning: {notice}");
+    }
+    let seen = format!("{} holds {seen}", args.scene.display());
+    let (files, project) = open_project(files).map_err(|e| refusal(&e, &seen))?;
     let project = project.unwrap_or_default();
     let stated = project.options;
     let options = LoadOptions {
@@ -101,6 +114,7 @@ pub(super) fn open(
         files,
         options,
         params: params.unwrap_or(project.params),
+        seen,
     })
 }
 

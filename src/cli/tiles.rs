@@ -9,6 +9,7 @@ use ridgeline::params::Params;
 use ridgeline::scene_loader::LoadOptions;
 use ridgeline::tiles::Area;
 
+use super::reconstruct::refusal;
 use super::{Failure, files};
 
 /// Reconstructs the region of interest in tiles of about `tile_m` metres and writes the results.
@@ -18,9 +19,11 @@ pub(super) fn reconstruct_tiles(
     params: &Params,
     tile_m: f64,
     out: &Path,
+    seen: &str,
 ) -> Result<(), Failure> {
-    let refuse = |e: ridgeline::Error| Failure::Input(e.to_string());
+    let refuse = |e: ridgeline::Error| refusal(&e, seen);
     let mut area = Area::plan(input, options, params, tile_m).map_err(refuse)?;
+    eprintln!("{seen}");
     let count = area.tiles().len();
     let mut seconds = Vec::new();
     loop {

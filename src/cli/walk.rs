@@ -1,0 +1,401 @@
+//! The files below a scene's folder, through links too, and what was seen on the way.
+
+use std::collections::{BTreeMap, HashSet, VecDeque};
+use std::fmt;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use ridgeline::scene_loader::{InputFile, unpack};
+
+use super::Failure;
+
+/// What may be an image.
+const IMAGE_EXTENSIONS: [&str; 5] = ["jpg", "jpeg", "png", "tif", "tiff"];
+
+/// What may hold an orientation; the readers look at the content.
+const ORIENTATION_EXTENSIONS: [&str; 13] = [
+    "txt", "p", "json", "geojson", "xml", "out", "nvm", "camera", "bin", "xyz", "prj", "ori", "zip",
+];
+
+/// Largest orientation file that is read, bytes: COLMAP writes some hundred bytes for every tie point.
+const MAX_ORIENTATION_BYTES: u64 = 1 << 30;
+
+/// Links that one notice names; the others are counted.
+const MOST_NAMED: usize = 5;
+
+/// What a folder or an archive held.
+#[derive(Default)]
+pub(super) struct Seen {
+    /// Files by kind: those that were read.
+    read: BTreeMap<String, usize>,
+    /// And those that no reader takes.
+    unread: BTreeMap<String, usize>,
+    broken: Vec<String>,
+    circles: Vec<String>,
+    repeated: Vec<String>,
+}
+
+impl Seen {
+    /// One sentence for each sort of link that was not followed.
+    pub(super) fn notices(&self) -> Vec<String> {
+        let sorts = [
+            (&self.broken, "links that lead nowhere, left out"),
+            (&self.circles, "links to folders around them, not followed"),
+            (&self.repeated, "links to what is read already, left out"),
+        ];
+        let sentence = |(links, what): (&Vec<String>, &str)| {
+            let named = links[..links.len().min(MOST_NAMED)].join(", ");
+            let more = match links.len().saturating_sub(MOST_NAMED) {
+                0 => String::new(),
+                more => format!(" and {more} more"),
+            };
+            format!("{what}: {named}{more}")
+        };
+        let given = sorts.into_iter().filter(|(links, _)| !links.is_empty());
+        given.map(sentence).collect()
+    }
+}
+
+/// As "12 JPEG, 2 text; not read: 1 PDF".
+impl fmt::Display for Seen {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let listed = |counts: &BTreeMap<String, usize>| {
+            let mut counts: Vec<_> = counts.iter().collect();
+            counts.sort_by_key(|&(kind, &count)| (std::cmp::Reverse(count), kind.clone()));
+            let parts: Vec<_> = counts.iter().map(|(k, n)| format!("{n} {k}")).collect();
+            parts.join(", ")
+        };
+        match (self.read.is_empty(), self.unread.is_empty()) {
+            (true, true) => write!(f, "no files"),
+            (false, true) => write!(f, "{}", listed(&self.read)),
+            (true, false) => write!(f, "none that is read; not read: {}", listed(&self.unread)),
+            (false, false) => write!(
+                f,
+                "{}; not read: {}",
+                listed(&self.read),
+                listed(&self.unread)
+            ),
+        }
+    }
+}
+
+/// All files below `folder` that may belong to a scene, in no order; paths are relative to the folder and have forward
+/// slashes. Each folder is read once, under its own path rather than a link's. `results` is no part of the scene.
+pub(super) fn walk(folder: &Path, results: &Path) -> Result<(Vec<InputFile>, Seen), Failure> {
+    let mut walk = Walk {
+        // An empty path (no results are written) is none.
+        results: fs::canonicalize(results).ok(),
+        ..Walk::default()
+    };
+    walk.folder(folder, "", &real_path(folder)?)?;
+    while let Some(link) = walk.links.pop_front() {
+        walk.follow(&link)?;
+    }
+    Ok((walk.files, walk.seen))
+}
+
+/// The files of an archive that is the whole scene.
+pub(super) fn open_archive(path: &Path) -> Result<(Vec<InputFile>, Seen), Failure> {
+    let mut walk = Walk::default();
+    walk.add(path, "scene.zip")?;
+    Ok((walk.files, walk.seen))
+}
+
+/// A link that waits until all that stands in the scene itself has been read.
+struct Link {
+    path: PathBuf,
+    relative: String,
+    /// The folder that it stands in, free of links.
+    parent: PathBuf,
+}
+
+#[derive(Default)]
+struct Walk {
+    results: Option<PathBuf>,
+    /// Folders and files that were reached, free of links.
+    reached: HashSet<PathBuf>,
+    links: VecDeque<Link>,
+    files: Vec<InputFile>,
+    seen: Seen,
+}
+
+impl Walk {
+    /// `real` is the folder's path free of links.
+    fn folder(&mut self, folder: &Path, prefix: &str, real: &Path) -> Result<(), Failure> {
+        self.reached.insert(real.to_owned());
+        let entries = fs::read_dir(folder).map_err(|e| unreadable(folder, e))?;
+        let entries: io::Result<Vec<_>> = entries.collect();
+        let mut entries = entries.map_err(|e| unreadable(folder, e))?;
+        entries.sort_by_key(fs::DirEntry::file_name);
+        for entry in entries {
+            let (path, name) = (entry.path(), entry.file_name());
+            let shown = name.to_string_lossy();
+            if shown.starts_with('.') {
+                continue;
+            }
+            let relative = format!("{prefix}{shown}");
+            let kind = entry.file_type().map_err(|e| unreadable(&path, e))?;
+            if kind.is_symlink() {
+                self.links.push_back(Link {
+                    path,
+                    relative,
+                    parent: real.to_owned(),
+                });
+            } else if kind.is_dir() {
+                self.enter(&path, &relative, &real.join(&name))?;
+            } else if kind.is_file() {
+                self.file(&path, &relative, real.join(&name))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn enter(&mut self, path: &Path, relative: &str, real: &Path) -> Result<(), Failure> {
+        if self.results.as_deref() == Some(real) {
+            return Ok(());
+        }
+        if self.reached.contains(real) {
+            self.seen.repeated.push(relative.to_owned());
+            return Ok(());
+        }
+        self.folder(path, &format!("{relative}/"), real)
+    }
+
+    fn follow(&mut self, link: &Link) -> Result<(), Failure> {
+        let named = || {
+            let target = fs::read_link(&link.path).unwrap_or_default();
+            format!("{} -> {}", link.relative, target.display())
+        };
+        let target = match fs::canonicalize(&link.path) {
+            Ok(target) => target,
+            Err(e) if e.kind() == io::ErrorKind::PermissionDenied => {
+                return Err(unreadable(&link.path, e));
+            }
+            // Nothing is there, or links that lead to each other.
+            Err(_) => {
+                self.seen.broken.push(named());
+                return Ok(());
+            }
+        };
+        let kind = fs::metadata(&target).map_err(|e| unreadable(&link.path, e))?;
+        if kind.is_dir() {
+            if link.parent.starts_with(&target) {
+                self.seen.circles.push(named());
+                return Ok(());
+            }
+            if self.reached.contains(&target) {
+                self.seen.repeated.push(named());
+                return Ok(());
+            }
+            return self.enter(&link.path, &link.relative, &target);
+        }
+        // A link of another name gives the file that name; one of the same name would only make it ambiguous.
+        let same_name = link.path.file_name() == target.file_name();
+        if same_name && self.reached.contains(&target) {
+            self.seen.repeated.push(named());
+        } else if kind.is_file() {
+            self.file(&link.path, &link.relative, target)?;
+        }
+        Ok(())
+    }
+
+    fn file(&mut self, path: &Path, relative: &str, real: PathBuf) -> Result<(), Failure> {
+        self.reached.insert(real);
+        if is_wanted(path) {
+            return self.add(path, relative);
+        }
+        *self.seen.unread.entry(kind_of(relative)).or_default() += 1;
+        Ok(())
+    }
+
+    /// Adds a file, or those of an archive.
+    fn add(&mut self, path: &Path, relative: &str) -> Result<(), Failure> {
+        let bytes = fs::read(path).map_err(|e| unreadable(path, e))?;
+        let unpacked = unpack(InputFile::new(relative, bytes));
+        for file in unpacked.map_err(|e| Failure::Input(e.to_string()))? {
+            *self.seen.read.entry(kind_of(&file.path)).or_default() += 1;
+            self.files.push(file);
+        }
+        Ok(())
+    }
+}
+
+fn real_path(path: &Path) -> Result<PathBuf, Failure> {
+    fs::canonicalize(path).map_err(|e| unreadable(path, e))
+}
+
+fn unreadable(path: &Path, e: io::Error) -> Failure {
+    Failure::Input(format!("{}: cannot read: {e}", path.display()))
+}
+
+fn extension(path: &Path) -> Option<String> {
+    path.extension().map(|e| e.to_string_lossy().to_lowercase())
+}
+
+/// By extension and size: a folder may hold point clouds and other large things.
+fn is_wanted(path: &Path) -> bool {
+    let Some(extension) = extension(path) else {
+        return false;
+    };
+    let small = || fs::metadata(path).is_ok_and(|m| m.len() <= MAX_ORIENTATION_BYTES);
+    IMAGE_EXTENSIONS.contains(&&*extension)
+        || (ORIENTATION_EXTENSIONS.contains(&&*extension) && small())
+}
+
+/// What a person calls a file of this name.
+fn kind_of(path: &str) -> String {
+    match extension(Path::new(path)).as_deref() {
+        Some("jpg" | "jpeg") => "JPEG".into(),
+        Some("tif" | "tiff") => "TIFF".into(),
+        Some("txt") => "text".into(),
+        Some(other) => other.to_uppercase(),
+        None => "without extension".into(),
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::os::unix::fs::symlink;
+
+    use super::*;
+
+    /// A folder `scene` beside a folder `data`, of files that hold their own path.
+    fn planted(paths: &[&str], links: &[(&str, &str)]) -> tempfile::TempDir {
+        let top = tempfile::tempdir().unwrap();
+        for folder in ["scene", "data"] {
+            fs::create_dir(top.path().join(folder)).unwrap();
+        }
+        for path in paths {
+            let full = top.path().join(path);
+            fs::create_dir_all(full.parent().unwrap()).unwrap();
+            fs::write(full, path).unwrap();
+        }
+        for (link, target) in links {
+            symlink(target, top.path().join(link)).unwrap();
+        }
+        top
+    }
+
+    /// Each file that is read with its content, as "path = content", sorted; and what was seen.
+    fn walked(top: &tempfile::TempDir) -> (Vec<String>, Seen) {
+        let results = top.path().join("scene/results");
+        let (files, seen) = walk(&top.path().join("scene"), &results)
+            .unwrap_or_else(|_| panic!("the folder can be read"));
+        let shown = |f: InputFile| format!("{} = {}", f.path, String::from_utf8_lossy(&f.bytes));
+        let mut files: Vec<_> = files.into_iter().map(shown).collect();
+        files.sort();
+        (files, seen)
+    }
+
+    #[test]
+    fn linked_folders_and_files_are_read_under_the_names_of_the_links() {
+        let top = planted(
+            &["data/flight/b.jpg", "data/flight/deep/c.PNG", "data/o.txt"],
+            &[
+                ("scene/images", "../data/flight"),
+                ("scene/exterior.txt", "../data/o.txt"),
+                ("scene/a.jpg", "../data/flight/b.jpg"),
+            ],
+        );
+        let (files, seen) = walked(&top);
+        let expected = [
+            "a.jpg = data/flight/b.jpg",
+            "exterior.txt = data/o.txt",
+            "images/b.jpg = data/flight/b.jpg",
+            "images/deep/c.PNG = data/flight/deep/c.PNG",
+        ];
+        assert_eq!(files, expected);
+        assert_eq!(seen.to_string(), "2 JPEG, 1 PNG, 1 text");
+        assert!(seen.notices().is_empty());
+    }
+
+    #[test]
+    fn circles_end() {
+        let top = planted(
+            &["scene/a.jpg", "data/x/b.jpg"],
+            &[
+                ("scene/again", "."),
+                ("scene/up", ".."),
+                ("scene/x", "../data/x"),
+                // Out of the scene and back into it.
+                ("data/x/back", "../../scene"),
+                ("data/x/above", "../../data"),
+            ],
+        );
+        let (files, seen) = walked(&top);
+        assert_eq!(files, ["a.jpg = scene/a.jpg", "x/b.jpg = data/x/b.jpg"]);
+        let circles = ["again -> .", "up -> ..", "x/above -> ../../data"];
+        assert_eq!(seen.circles, circles);
+        assert_eq!(seen.repeated, ["x/back -> ../../scene"]);
+    }
+
+    #[test]
+    fn a_folder_that_two_links_reach_is_read_once_and_under_its_own_path_if_it_has_one() {
+        let top = planted(
+            &["data/x/b.jpg", "scene/z/c.jpg", "scene/z/d.jpg"],
+            &[
+                ("scene/first", "../data/x"),
+                ("scene/second", "../data/x"),
+                ("scene/a", "z"),
+                ("scene/c.jpg", "z/c.jpg"),
+                // Another name for the same file.
+                ("scene/e.jpg", "z/d.jpg"),
+            ],
+        );
+        let (files, seen) = walked(&top);
+        let expected = [
+            "e.jpg = scene/z/d.jpg",
+            "first/b.jpg = data/x/b.jpg",
+            "z/c.jpg = scene/z/c.jpg",
+            "z/d.jpg = scene/z/d.jpg",
+        ];
+        assert_eq!(files, expected);
+        let repeated = ["a -> z", "c.jpg -> z/c.jpg", "second -> ../data/x"];
+        assert_eq!(seen.repeated, repeated);
+    }
+
+    #[test]
+    fn broken_links_are_named_and_the_results_are_passed_by() {
+        let top = planted(
+            &["scene/a.jpg", "scene/results/model_atlas.jpg"],
+            &[
+                ("scene/gone.jpg", "../data/gone.jpg"),
+                ("scene/this", "that"),
+                ("scene/that", "this"),
+                ("scene/earlier", "results"),
+            ],
+        );
+        let (files, seen) = walked(&top);
+        assert_eq!(files, ["a.jpg = scene/a.jpg"]);
+        let broken = "links that lead nowhere, left out: \
+                      gone.jpg -> ../data/gone.jpg, that -> this, this -> that";
+        assert_eq!(seen.notices(), [broken]);
+    }
+
+    #[test]
+    fn what_was_seen_is_counted_by_kind_and_long_lists_are_cut() {
+        let counted = planted(
+            &[
+                "scene/a.jpeg",
+                "scene/b.JPG",
+                "scene/c.p",
+                "scene/d.pdf",
+                "scene/LICENSE",
+                "scene/.hidden.jpg",
+            ],
+            &[],
+        );
+        assert_eq!(
+            walked(&counted).1.to_string(),
+            "2 JPEG, 1 P; not read: 1 PDF, 1 without extension"
+        );
+        assert_eq!(walked(&planted(&[], &[])).1.to_string(), "no files");
+        let seen = Seen {
+            repeated: (0..7).map(|i| i.to_string()).collect(),
+            ..Seen::default()
+        };
+        let notice = "links to what is read already, left out: 0, 1, 2, 3, 4 and 2 more";
+        assert_eq!(seen.notices(), [notice]);
+    }
+}
