@@ -5,8 +5,8 @@
 #   make test       set up, lint and run every test (native, wasm in Node, TypeScript, Chromium)
 #   make build      the static site in www/dist, for any static host
 #   make lint       format, clippy (native and wasm32), Biome, TypeScript
-#   make identical  the demo scene natively and in wasm, compared byte for byte
-#   make golden     rewrite the hashes that the tests of whole runs expect (tests/golden)
+#   make identical  the demo and the synthetic scenes natively and in wasm, compared byte for byte
+#   make golden     rewrite what the tests expect to be found in the synthetic scenes (tests/golden)
 #   make score      all scenes against their truth; rewrites the tables of docs/results.md
 #   make fuzz       all readers on damaged files, FUZZ_SECONDS (600) for each format
 #   make jury       all scenes many times over, changed a little each time; rewrites its tables there
@@ -51,6 +51,7 @@ lint: $(WASM32) $(NPM) $(PACKAGE)
 	tests/all.sh lint
 
 identical: native $(PACKAGE)
+	cargo build --release --example synthetic
 	node tests/identical.mjs target/release/ridgeline
 
 golden:

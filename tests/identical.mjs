@@ -1,7 +1,8 @@
-// Runs a scene by every method through the wasm Session in Node and through the native command line, and compares
+// Runs scenes by every method through the wasm Session in Node and through the native command line, and compares
 // every file byte for byte (report.json without its part `seconds`). What model.glb is wrong in, the validator of glTF's makers says.
 //
-//   node tests/identical.mjs BINARY [SCENE]     the scene is the demo's by default
+//   node tests/identical.mjs BINARY [SCENE]     by default the demo's, and the synthetic scenes of the tests, which the
+//                                               example `synthetic` beside the binary writes
 //
 // Ends with exit code 1 and the names of the files that differ or are wrong.
 
@@ -9,10 +10,10 @@ import { spawnSync } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { basename, dirname, join } from "node:path";
 import { addFiles, openSession, root } from "./session.mjs";
 
-const [binary, scene = join(root, "www/public/demo")] = process.argv.slice(2);
+const [binary, given] = process.argv.slice(2);
 if (!binary) {
     console.error("usage: node tests/identical.mjs BINARY [SCENE]");
     process.exit(2);
@@ -20,19 +21,39 @@ if (!binary) {
 
 const validator = createRequire(join(root, "www/package.json"))("gltf-validator");
 const bad = [];
-for (const method of ["lines", "rectangles", "combined"]) bad.push(...(await compare(method)));
+const synthetic = mkdtempSync(join(tmpdir(), "ridgeline-"));
+try {
+    for (const scene of given ? [given] : [join(root, "www/public/demo"), ...writeSynthetic()]) {
+        for (const method of ["lines", "rectangles", "combined"]) bad.push(...(await compare(scene, method)));
+    }
+} finally {
+    rmSync(synthetic, { recursive: true });
+}
 process.exit(bad.length === 0 ? 0 : 1);
 
+// The folders of the synthetic scenes.
+function writeSynthetic() {
+    run(join(dirname(binary), "examples/synthetic"), [synthetic]);
+    const scenes = readdirSync(synthetic).sort();
+    if (scenes.length === 0) throw new Error("no synthetic scene was written");
+    return scenes.map((name) => join(synthetic, name));
+}
+
+function run(program, args) {
+    const { status, error } = spawnSync(program, args, { stdio: ["ignore", "ignore", "inherit"] });
+    if (status !== 0) throw error ?? new Error(`${program} ended with exit code ${status}`);
+}
+
 // The names of the files that differ or are wrong.
-async function compare(method) {
-    const native = runNative(method);
-    const wasm = await runWasm(method);
+async function compare(scene, method) {
+    const native = runNative(scene, method);
+    const wasm = await runWasm(scene, method);
     const names = [...new Set([...native.keys(), ...wasm.keys()])].sort();
     if (!names.includes("model.glb")) throw new Error("no model was written");
     const differing = names.filter((name) => !same(name, native.get(name), wasm.get(name)));
     for (const name of names) {
         const verdict = differing.includes(name) ? "DIFFERS" : "identical";
-        console.log(`${method}: ${verdict.padEnd(10)} ${name} (${native.get(name)?.length ?? "missing"} bytes)`);
+        console.log(`${basename(scene)}, ${method}: ${verdict.padEnd(10)} ${name} (${native.get(name)?.length ?? "missing"} bytes)`);
     }
     return [...differing, ...(await wrongIn(native.get("model.glb")))];
 }
@@ -46,19 +67,17 @@ async function wrongIn(glb) {
     return worst.map(({ code }) => code);
 }
 
-function runNative(method) {
+function runNative(scene, method) {
     const out = mkdtempSync(join(tmpdir(), "ridgeline-"));
     try {
-        const args = ["reconstruct", scene, "--out", out, "--method", method];
-        const { status, error } = spawnSync(binary, args, { stdio: ["ignore", "ignore", "inherit"] });
-        if (status !== 0) throw error ?? new Error(`${binary} ended with exit code ${status}`);
+        run(binary, ["reconstruct", scene, "--out", out, "--method", method]);
         return new Map(readdirSync(out).map((name) => [name, readFileSync(join(out, name))]));
     } finally {
         rmSync(out, { recursive: true });
     }
 }
 
-async function runWasm(method) {
+async function runWasm(scene, method) {
     const { session } = await openSession();
     addFiles(session, scene);
     session.setParams({ method });

@@ -1,11 +1,12 @@
 //! The whole pipeline on the synthetic L-shaped house: what it finds is the planted truth, what it
-//! writes is the same whatever the number of threads, and it keeps no result that is out of date.
+//! finds in other scenes is as the goldens say and the same whatever the number of threads, and it keeps no result that is out of date.
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used)]
 
 mod common;
 
-use common::{GOLDEN, SIZE_PX, golden_of, synthetic_files};
+use common::golden;
+use common::scenes::{SIZE_PX, scenes};
 use nalgebra::{Point2, Point3};
 use ridgeline::execution::progress::silent;
 use ridgeline::execution::shard::{Known, Task};
@@ -17,10 +18,16 @@ use ridgeline::params::{Method, Params};
 use ridgeline::pipeline::{PackedView, Run, Stage};
 use ridgeline::raster::Warmth;
 use ridgeline::scene_loader::{LoadOptions, load_scene};
-use ridgeline::synthetic::{SyntheticTruth, l_scene};
+use ridgeline::synthetic::{SyntheticTruth, l_scene, to_files};
 
 /// Accuracy that six views at 8.5 cm ground pixel allow, metres.
 const NEAR_M: f64 = 0.25;
+
+const METHODS: [(Method, &str); 3] = [
+    (Method::Lines, "lines"),
+    (Method::Rectangles, "rectangles"),
+    (Method::Combined, "combined"),
+];
 
 fn finished() -> (Run, SyntheticTruth) {
     let (scene, truth) = l_scene(SIZE_PX);
@@ -80,21 +87,109 @@ fn the_planted_house_is_found() {
 }
 
 #[test]
-fn the_files_have_the_golden_bytes() {
-    let input: Vec<_> = synthetic_files()
-        .into_iter()
-        .map(|(path, bytes)| InputFile::new(&path, bytes))
-        .collect();
-    let scene = load_scene(&input, &LoadOptions::default()).unwrap();
-    let mut run = Run::new(scene, Params::default());
-    run.run_all();
-    let found = golden_of(&run.files(&[]));
-    if std::env::var_os("RIDGELINE_REWRITE").is_some() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/synthetic.txt");
-        std::fs::write(path, found).unwrap();
-    } else {
-        assert_eq!(found, GOLDEN, "if the change is intended: make golden");
+fn every_scene_is_found_as_its_golden_says() {
+    let mut differences = Vec::new();
+    for (name, scene) in scenes() {
+        let input: Vec<_> = (to_files(&scene).into_iter())
+            .map(|(path, bytes)| InputFile::new(&path, bytes))
+            .collect();
+        let path = format!("{}/tests/golden/{name}.txt", env!("CARGO_MANIFEST_DIR"));
+        let expected = std::fs::read_to_string(&path).unwrap_or_default();
+        let mut found = golden::heading(name);
+        for (method, title) in METHODS {
+            let scene = load_scene(&input, &LoadOptions::default()).unwrap();
+            let params = Params {
+                method,
+                ..Params::default()
+            };
+            let mut run = Run::new(scene, params);
+            run.run_all();
+            found += &golden::section(title, &run.files(&[]));
+        }
+        if std::env::var_os("RIDGELINE_REWRITE").is_some() {
+            std::fs::write(path, found).unwrap();
+        } else {
+            let told = golden::differences(&expected, &found);
+            differences.extend(told.iter().map(|d| format!("tests/golden/{name}.txt, {d}")));
+        }
     }
+    assert!(
+        differences.is_empty(),
+        "{}\nif the change is intended: make golden",
+        differences.join("\n")
+    );
+}
+
+/// Two sides of a roof, eaves at 3 m and ridge at 6 m.
+const ROOF: [[[f64; 3]; 4]; 2] = [
+    [
+        [0.0, 0.0, 3.0],
+        [10.0, 0.0, 3.0],
+        [10.0, 4.0, 6.0],
+        [0.0, 4.0, 6.0],
+    ],
+    [
+        [0.0, 8.0, 3.0],
+        [0.0, 4.0, 6.0],
+        [10.0, 4.0, 6.0],
+        [10.0, 8.0, 3.0],
+    ],
+];
+
+/// The golden section of a run that found these facets, and so many segments.
+fn section_of_roof(roof: &[[[f64; 3]; 4]], segments: usize) -> String {
+    let corners: Vec<[f64; 3]> = roof.iter().flatten().copied().collect();
+    let ring = |i: usize| (0..4).map(|j| 4 * i + j).collect::<Vec<_>>();
+    let kinds = vec![serde_json::json!({ "type": "RoofSurface" }); roof.len()];
+    let rings: Vec<_> = (0..roof.len()).map(|i| [ring(i)]).collect();
+    let city = serde_json::json!({
+        "transform": { "scale": [1.0, 1.0, 1.0], "translate": [0.0, 0.0, 0.0] },
+        "vertices": corners,
+        "CityObjects": { "building-0": {
+            "attributes": { "groundHeight": 0.0, "volume": 360.0 },
+            "geometry": [{ "boundaries": [rings], "semantics": { "surfaces": kinds } }],
+        } },
+    });
+    let stage = serde_json::json!({ "stage": "segments", "counts": { "segments": segments } });
+    let report = serde_json::json!({ "stages": [stage] });
+    let files = [("report.json", report), ("model.city.json", city)];
+    let files = files.map(|(name, json)| (name.to_owned(), json.to_string().into_bytes()));
+    golden::section("lines", &files)
+}
+
+#[test]
+fn a_golden_tells_planted_changes_and_bears_small_ones() {
+    let golden = section_of_roof(&ROOF, 100);
+    let facet = "  facet: slope 36.9, azimuth 180.0, height 4.50, area 50.00, corners 4\n";
+    assert!(golden.contains(facet), "{golden}");
+    let told = |roof: &[[[f64; 3]; 4]], segments| {
+        golden::differences(&golden, &section_of_roof(roof, segments)).join("\n")
+    };
+    let raised = |by_m: f64| {
+        let mut roof = ROOF;
+        roof[1].iter_mut().for_each(|corner| corner[2] += by_m);
+        roof
+    };
+    let mut moved = ROOF;
+    moved[0][0][0] += 0.05;
+    let mut turned = ROOF;
+    turned.swap(0, 1);
+    turned[0].rotate_left(3);
+
+    assert_eq!(told(&ROOF, 100), "");
+    assert_eq!(told(&turned, 100), "", "the order says nothing");
+    assert_eq!(told(&raised(0.01), 104), "");
+    assert!(told(&raised(0.05), 100).contains("height differs by 0.050, more than 0.030"));
+    assert!(told(&moved, 100).contains("corner differs by 0.050"));
+    assert!(told(&ROOF[..1], 100).contains("is missing"));
+    assert!(told(&[ROOF[0], ROOF[1], raised(2.0)[1]], 100).contains("is new"));
+    assert!(told(&ROOF, 106).contains("line 2: segments differs by 6.000, more than 5.000"));
+    let azimuth = |deg| format!("facet: azimuth {deg}");
+    assert!(golden::differences(&azimuth("359.9"), &azimuth("0.1")).is_empty());
+    assert!(!golden::differences(&azimuth("359.9"), &azimuth("0.3")).is_empty());
+    assert!(!golden::differences(&azimuth("359.9"), &azimuth("none")).is_empty());
+    let faces = |n| format!("stage model: faces {n}");
+    assert!(!golden::differences(&faces(100), &faces(101)).is_empty());
 }
 
 #[test]
@@ -151,7 +246,7 @@ fn shared(method: Method, of: usize) -> Run {
 
 #[test]
 fn instances_that_share_a_run_give_the_bytes_of_one() {
-    for method in [Method::Lines, Method::Rectangles, Method::Combined] {
+    for (method, _) in METHODS {
         let (scene, _) = l_scene(SIZE_PX);
         let mut alone = Run::new(
             scene,

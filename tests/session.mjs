@@ -17,7 +17,7 @@ export async function openSession(folder = join(root, "www/src/pkg")) {
     return { session: new Session(), memory };
 }
 
-// Adds the files that the command line would read: it leaves out other kinds (src/cli/files.rs).
+// Adds the files that the command line would read: it leaves out other kinds (src/cli/walk.rs).
 export function addFiles(session, scene) {
     const wanted = /\.(jpe?g|png|tiff?|txt|p|json|xml|out|nvm|csv|ori|prj|geojson|camera|bin|xyz|zip)$/i;
     for (const entry of readdirSync(scene, { recursive: true, withFileTypes: true })) {

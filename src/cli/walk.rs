@@ -6,7 +6,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use ridgeline::scene_loader::{InputFile, unpack};
+use ridgeline::orientation::InputFile;
+use ridgeline::scene_loader::unpack;
 
 use super::Failure;
 
@@ -254,7 +255,8 @@ fn kind_of(path: &str) -> String {
     }
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
+#[cfg(unix)]
 mod tests {
     use std::os::unix::fs::symlink;
 
