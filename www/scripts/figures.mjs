@@ -110,7 +110,7 @@ const B99 = [
   {
     name: "facets",
     figures: "21 to 23",
-    shows: "border lines by their kind, closed outlines, facets and what was withdrawn",
+    shows: "border lines by their kind, closed outlines, facets and what was rejected",
     steps: [tab("Facets"), async (page) => page.locator(".plan-facet").nth(3).press("Enter")],
   },
   {
