@@ -18,14 +18,14 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { ThemeColours } from "../shared/palette";
 import type { ViewInfo } from "../shared/results";
 import type { Selection } from "../shared/selection";
-import { clipPlace, drawHalves } from "./beside";
-import { finished } from "./finished";
-import { buildGrid } from "./grid";
-import type { Layer } from "./layer";
-import { buildMeasure, type Measured, measure } from "./measure";
-import { clipFromViewer } from "./photo";
-import { CUT, MEASURED, OF_BOTH_HALVES, PICK_ORDER } from "./roles";
-import { clippingPlane, type Section, sectionOf } from "./section";
+import { buildGrid } from "./layers/grid";
+import { finished } from "./scene/gpuFence";
+import type { Layer } from "./scene/layer";
+import { CUT, MEASURED, OF_BOTH_HALVES, PICK_ORDER } from "./scene/layerRoles";
+import { clipFromViewer } from "./scene/photoProjection";
+import { clipPlace, drawHalves } from "./scene/splitView";
+import { buildMeasure, type Measured, measure } from "./tools/measure";
+import { clippingPlane, type Section, sectionOf } from "./tools/section";
 
 const FIELD_OF_VIEW_DEG = 35;
 /** A press that moves less, in CSS pixels, is a click. */

@@ -1,5 +1,13 @@
 import { afterEach, describe, expect, it } from "vitest";
-import { addResults, mainResults, NO_RESULTS, params, results, setResults, tab } from "../../src/app/state";
+import {
+  addResults,
+  mainResults,
+  NO_RESULTS,
+  params,
+  results,
+  setResults,
+  tab,
+} from "../../src/app/state/state";
 
 const choose = (method: string) => {
   params.value = { method } as unknown as typeof params.value;

@@ -1,0 +1,190 @@
+/** W96 3.5: the plane across a main direction, its image lines and its clusters (figures 7 and 8). */
+
+import { category } from "../../shared/palette";
+import { LINE_STRIDE } from "../../shared/results";
+import type { Selection } from "../../shared/selection";
+import type { ClusterTrace, Vec2 } from "../../shared/traces";
+import { axesOf, Chart, Fit, type Frame, pathOf, type Scale } from "../parts/charts";
+import { degreesOf } from "../parts/facetArea";
+import { grouped } from "../parts/numberText";
+import { results, selection, shownPlane } from "../state/state";
+import { PlaneChoice } from "./PlaneChoice";
+
+/** Figures 7 and 8: image lines of one direction in the plane across it, and the clusters that description length chose. */
+export function ClusterLab() {
+  const { clusters } = results.value;
+  if (clusters === null || clusters.length === 0) {
+    return <p class="lab-hint muted">Run the stage: the cluster planes appear here.</p>;
+  }
+  const shown = Math.min(shownPlane.value, clusters.length - 1);
+  const trace = clusters[shown] as ClusterTrace;
+  return (
+    <div class="chart-lab" data-testid="cluster-lab">
+      <PlaneChoice
+        names={clusters.map(({ azimuth }, i) => `${i}: ${degreesOf(azimuth).toFixed(0)}°`)}
+        shown={shown}
+        onShow={(i) => {
+          shownPlane.value = i;
+        }}
+      />
+      <Fit>{(frame) => <ClusterPlane frame={frame} plane={shown} trace={trace} />}</Fit>
+      <p class="muted numbers note-line">
+        {trace.lines.length} image lines, {grouped(trace.proposals[0])} intersections,{" "}
+        {grouped(trace.proposals[1])} looked at, {trace.selected.length} selected
+      </p>
+    </div>
+  );
+}
+
+function ClusterPlane({ frame, plane, trace }: { frame: Frame; plane: number; trace: ClusterTrace }) {
+  const [x, y] = rangesOf([...trace.selected, ...trace.refused].map(([at]) => at));
+  const [toX, toY] = axesOf(frame, x, y);
+  const dot = ([across, height]: Vec2) => ({ cx: toX(across), cy: toY(height) });
+  const chosen = placeOfSelection(plane, trace);
+  return (
+    <Chart
+      frame={frame}
+      x={x}
+      y={y}
+      xTitle="across the main direction (m)"
+      yTitle="height (m)"
+      label={`Cluster plane: ${trace.lines.length} image lines and ${trace.selected.length} selected clusters`}
+      testid="cluster-plane"
+      onClick={(across, height) => {
+        const distance = ([u, v]: Vec2) =>
+          Math.hypot((u - across) / (x.max - x.min), (v - height) / (y.max - y.min));
+        selection.value = nearest(
+          [...linesOf(trace), ...refusedOf(plane, trace)],
+          ([one, at]) => distance(at) - (one.kind === "line" ? RING : 0),
+        );
+      }}
+    >
+      <clipPath id="cluster-clip">
+        <rect
+          x={frame.left}
+          y={frame.top}
+          width={frame.width - frame.left - frame.right}
+          height={frame.height - frame.top - frame.bottom}
+        />
+      </clipPath>
+      <g clip-path="url(#cluster-clip)">
+        {trace.lines.map(([view, [a, b]], i) => (
+          <path
+            key={i}
+            class="sight"
+            d={pathOf(stretched(a, b).map(([across, height]) => [toX(across), toY(height)] as const))}
+            stroke={category(view)}
+          />
+        ))}
+        {trace.refused.map(([at], i) => (
+          <circle key={i} class="refused-cluster" {...dot(at)} r={2.5} />
+        ))}
+        {trace.selected.map(([at, gain], i) => (
+          <circle key={i} class="cluster" {...dot(at)} r={5}>
+            <title>{`${at[0].toFixed(2)} m across, ${at[1].toFixed(2)} m high, gain ${gain.toFixed(0)} bit`}</title>
+          </circle>
+        ))}
+        {chosen !== null && <circle class="chosen-cluster" {...dot(chosen)} r={8} />}
+      </g>
+    </Chart>
+  );
+}
+
+/** A line of the plane, drawn far enough to leave the chart. */
+function stretched([ax, ay]: Vec2, [bx, by]: Vec2): [Vec2, Vec2] {
+  const far = 50;
+  const [dx, dy] = [bx - ax, by - ay];
+  return [
+    [ax - far * dx, ay - far * dy],
+    [bx + far * dx, by + far * dy],
+  ];
+}
+
+function rangesOf(places: readonly Vec2[]): [Scale, Scale] {
+  const range = (values: number[], margin: number): Scale => ({
+    min: Math.min(...values, Number.POSITIVE_INFINITY) - margin,
+    max: Math.max(...values, Number.NEGATIVE_INFINITY) + margin,
+  });
+  return places.length === 0
+    ? [
+        { min: -10, max: 10 },
+        { min: 0, max: 10 },
+      ]
+    : [
+        range(
+          places.map(([across]) => across),
+          2,
+        ),
+        range(
+          places.map(([, height]) => height),
+          1.5,
+        ),
+      ];
+}
+
+/** (across, height) of the middle of a 3D line in the plane of a trace. */
+function placeOf(line: number, { azimuth }: ClusterTrace): Vec2 {
+  const n =
+    results.value.lines?.subarray(line * LINE_STRIDE, (line + 1) * LINE_STRIDE) ??
+    new Float64Array(LINE_STRIDE);
+  const [x, y, z] = [0, 1, 2].map((k) => ((n[k] as number) + (n[k + 3] as number)) / 2) as [
+    number,
+    number,
+    number,
+  ];
+  return [-Math.sin(azimuth) * x + Math.cos(azimuth) * y, z];
+}
+
+function isAlong(line: number, { azimuth }: ClusterTrace): boolean {
+  const n = results.value.lines?.subarray(line * LINE_STRIDE, (line + 1) * LINE_STRIDE);
+  if (n === undefined) {
+    return false;
+  }
+  const turn = Math.atan2((n[4] as number) - (n[1] as number), (n[3] as number) - (n[0] as number)) - azimuth;
+  return Math.abs(Math.sin(turn)) < 0.02;
+}
+
+/** Share of the chart's sides within which a click finds something. */
+const REACH = 0.03;
+/** So much of it a selected cluster's ring takes up: inside, the ring is meant, and not what was refused for its sake. */
+const RING = 0.012;
+
+/** The 3D lines of this direction and where they lie in the plane. */
+function linesOf(trace: ClusterTrace): Place[] {
+  const lines = Array.from({ length: (results.value.lines?.length ?? 0) / LINE_STRIDE }, (_, line) => line);
+  return lines
+    .filter((line) => isAlong(line, trace))
+    .map((index): Place => [{ kind: "line", index }, placeOf(index, trace)]);
+}
+
+function refusedOf(plane: number, trace: ClusterTrace): Place[] {
+  return trace.refused.map(([at], index): Place => [{ kind: "cluster", plane, index }, at]);
+}
+
+type Place = readonly [Selection, Vec2];
+
+function nearest(places: readonly Place[], distance: (place: Place) => number): Selection | null {
+  let best: Selection | null = null;
+  let least = REACH;
+  for (const place of places) {
+    const away = distance(place);
+    if (away < least) {
+      best = place[0];
+      least = away;
+    }
+  }
+  return best;
+}
+
+/** Where the selected thing lies in this plane; null where it does not. */
+function placeOfSelection(plane: number, trace: ClusterTrace): Vec2 | null {
+  const picked = selection.value;
+  switch (picked?.kind) {
+    case "line":
+      return isAlong(picked.index, trace) ? placeOf(picked.index, trace) : null;
+    case "cluster":
+      return picked.plane === plane ? (trace.refused[picked.index]?.[0] ?? null) : null;
+    default:
+      return null;
+  }
+}

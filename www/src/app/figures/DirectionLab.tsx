@@ -1,0 +1,117 @@
+/** W96 3.4: the histogram of azimuths (figures 4 and 5), and which direction an image line follows. */
+import { category } from "../../shared/palette";
+import type { MainDirections } from "../../shared/traces";
+import { axesOf, Chart, Fit, type Frame, pathOf } from "../parts/charts";
+import { degreesOf } from "../parts/facetArea";
+import { results, scene, shownPlane } from "../state/state";
+import { PlaneChoice } from "./PlaneChoice";
+
+const HALF = Math.PI / 2;
+
+/** Figures 4 and 5. The histogram's two perpendicular peaks, found together. */
+export function DirectionLab() {
+  const found = results.value.directions;
+  if (found === null || found.trace.histograms.length === 0) {
+    return <p class="lab-hint muted">Run the stage: the histogram of azimuths appears here.</p>;
+  }
+  const shown = Math.min(shownPlane.value, found.windows.length - 1);
+  const histogram = found.trace.histograms[shown];
+  const pairs = found.windows[shown]?.directions ?? [];
+  return (
+    <div class="chart-lab" data-testid="direction-lab">
+      <PlaneChoice
+        names={found.windows.map((_, i) => `Building ${i}`)}
+        shown={shown}
+        onShow={(i) => {
+          shownPlane.value = i;
+        }}
+      />
+      {histogram !== undefined && (
+        <Fit>
+          {(frame) => (
+            <Histogram frame={frame} values={histogram.histogram} binDeg={histogram.bin_deg} pairs={pairs} />
+          )}
+        </Fit>
+      )}
+    </div>
+  );
+}
+
+function Histogram({
+  frame,
+  values,
+  binDeg,
+  pairs,
+}: {
+  frame: Frame;
+  values: readonly number[];
+  binDeg: number;
+  pairs: readonly MainDirections[];
+}) {
+  const top = Math.max(...values, 1e-9);
+  const x = { min: 0, max: 180 };
+  const y = { min: 0, max: top };
+  const [toX, toY] = axesOf(frame, x, y);
+  const outline = values.map((value, i) => [toX((i + 0.5) * binDeg), toY(value)] as const);
+  const floor = toY(0);
+  return (
+    <Chart
+      frame={frame}
+      x={x}
+      y={y}
+      xTitle="azimuth (degrees from X towards Y)"
+      yTitle="weight"
+      xTicks={[0, 30, 60, 90, 120, 150, 180]}
+      label={`Azimuths of all image lines; main directions at ${pairs
+        .map(({ azimuth }) => degreesOf(azimuth).toFixed(1))
+        .join(", ")} degrees`}
+      testid="histogram"
+    >
+      <path class="area" d={`${pathOf([[toX(0), floor], ...outline, [toX(180), floor]])}Z`} />
+      {pairs.slice(0, 1).flatMap(({ azimuth, share }) =>
+        [azimuth, azimuth + HALF].map((angle, axis) => {
+          const at = toX(degreesOf(angle) % 180);
+          return (
+            <g key={angle}>
+              <line x1={at} x2={at} y1={frame.top} y2={floor} stroke={category(axis)} class="peak" />
+              <text x={at + 4} y={frame.top + 10} class="peak-name">
+                {(degreesOf(angle) % 180).toFixed(1)}°{axis === 0 && ` · ${Math.round(100 * share)} %`}
+              </text>
+            </g>
+          );
+        }),
+      )}
+    </Chart>
+  );
+}
+
+/** The main direction that an image line may follow: its interpretation plane cut with the XY plane (W96 3.4). */
+export function directionColours(view: number): (string | null)[] | null {
+  const info = scene.value?.views[view];
+  const segments = results.value.segments[view];
+  const pair = results.value.directions?.windows[shownPlane.value]?.directions[0];
+  if (info === undefined || segments === undefined || pair === undefined) {
+    return null;
+  }
+  const p = info.projection;
+  const tolerance = (3 * Math.PI) / 180;
+  return Array.from({ length: segments.length / 4 }, (_, i) => {
+    const [x0, y0, x1, y1] = [0, 1, 2, 3].map((k) => segments[4 * i + k] as number) as [
+      number,
+      number,
+      number,
+      number,
+    ];
+    const line = [y0 - y1, x1 - x0, x0 * y1 - x1 * y0] as const;
+    const normal = (column: number) =>
+      line.reduce((sum, l, row) => sum + l * (p[4 * row + column] as number), 0);
+    const azimuth = Math.atan2(-normal(0), normal(1));
+    const off = (angle: number) =>
+      Math.abs(((((azimuth - angle) % Math.PI) + 1.5 * Math.PI) % Math.PI) - HALF);
+    return off(pair.azimuth) < tolerance
+      ? category(0)
+      : off(pair.azimuth + HALF) < tolerance
+        ? category(1)
+        : null;
+  });
+}

@@ -1,0 +1,170 @@
+/** B99 2: what refinement made of a building, and the relations that were tested there, each by its chi-square. */
+import type { BuildingRefinement, TestedRelation } from "../../shared/traces";
+import { Filmstrip } from "../images/Filmstrip";
+import { buildingOfFacet, relationLimit } from "../inspector/refinementRows";
+import { axesOf, Chart, Fit, type Frame } from "../parts/charts";
+import { RELATION_WORDS, refinementWords } from "../parts/reasonText";
+import { results, selection } from "../state/state";
+
+const KINDS = ["horizontal", "parallel", "perpendicular", "equal_height", "symmetric"] as const;
+/** The axis is the logarithm of chi-square, between these. */
+const LEAST = -3;
+const MOST = 3;
+/** Room for the names of the kinds. */
+const NAMES_PX = 96;
+
+export function RefinementLab() {
+  const buildings = results.value.refinement?.trace.buildings ?? [];
+  const shown = buildings[shownBuilding()];
+  if (shown === undefined) {
+    return <p class="lab-hint muted">Run the facets stage: what refinement tested appears here.</p>;
+  }
+  return (
+    <div class="split-lab even">
+      <div class="chart-lab" data-testid="refinement-lab">
+        <label class="pair-choice">
+          Building
+          <select
+            value={shownBuilding()}
+            onChange={(event) => {
+              selection.value = { kind: "refinement", index: Number(event.currentTarget.value) };
+            }}
+          >
+            {buildings.map((one, i) => (
+              <option key={one.building} value={i}>
+                {i} · {refinementWords(one)}
+              </option>
+            ))}
+          </select>
+        </label>
+        <Fit>{(frame) => <Relations outer={frame} building={shownBuilding()} of={shown} />}</Fit>
+      </div>
+      <Filmstrip />
+    </div>
+  );
+}
+
+/** The building of the selection, or the one with the most relations. */
+export function shownBuilding(): number {
+  const { refinement } = results.value;
+  const picked = selection.value;
+  const { buildings = [] } = refinement?.trace ?? {};
+  switch (picked?.kind) {
+    case "refinement":
+      return Math.min(picked.index, buildings.length - 1);
+    case "relation":
+      return Math.min(picked.building, buildings.length - 1);
+    case "facet":
+      return buildingOfFacet(picked.index) ?? 0;
+    default:
+      return buildings.reduce(
+        (best, { relations }, i) => (relations.length > (buildings[best]?.relations.length ?? 0) ? i : best),
+        0,
+      );
+  }
+}
+
+/** A row for each kind of relation; left of the dashed line is adopted. */
+function Relations({ outer, building, of }: { outer: Frame; building: number; of: BuildingRefinement }) {
+  const frame = { ...outer, left: NAMES_PX };
+  const x = { min: LEAST, max: MOST };
+  const y = { min: 0.5, max: KINDS.length + 0.5 };
+  const [toX, toY] = axesOf(frame, x, y);
+  const row = (kind: TestedRelation["kind"]) => KINDS.length - KINDS.indexOf(kind);
+  const limit = relationLimit();
+  if (of.relations.length === 0) {
+    return <p class="lab-hint muted">No relation was near enough to be tested here.</p>;
+  }
+  return (
+    <Chart
+      frame={frame}
+      x={x}
+      y={y}
+      xTitle="log₁₀ χ²"
+      yTitle=""
+      yTicks={[]}
+      label={`${of.relations.length} tested relations by their chi-square, ${of.relations.filter(({ adopted }) => adopted).length} adopted`}
+      interactive
+      testid="relations"
+    >
+      {KINDS.map((kind) => (
+        <g key={kind}>
+          <line
+            class="grid"
+            x1={frame.left}
+            x2={frame.width - frame.right}
+            y1={toY(row(kind))}
+            y2={toY(row(kind))}
+          />
+          <text x={frame.left - 8} y={toY(row(kind)) + 3.5} text-anchor="end">
+            {RELATION_WORDS[kind]}
+          </text>
+        </g>
+      ))}
+      {limit !== null && (
+        <line
+          class="threshold"
+          x1={toX(Math.log10(limit))}
+          x2={toX(Math.log10(limit))}
+          y1={frame.top}
+          y2={frame.height - frame.bottom}
+        />
+      )}
+      {of.relations.map((one, i) => (
+        <Dot
+          key={i}
+          relation={one}
+          cx={toX(Math.min(MOST, Math.max(LEAST, Math.log10(Math.max(one.chi2, 1e-9)))))}
+          cy={toY(row(one.kind)) + spread(i)}
+          isPicked={isPicked(building, i)}
+          onPick={() => {
+            selection.value = { kind: "relation", building, index: i };
+          }}
+        />
+      ))}
+    </Chart>
+  );
+}
+
+/** In SVG the attribute has no capital. */
+const FOCUSABLE = { tabindex: 0 };
+
+function Dot(of: {
+  relation: TestedRelation;
+  cx: number;
+  cy: number;
+  isPicked: boolean;
+  onPick: () => void;
+}) {
+  const { kind, chi2, adopted } = of.relation;
+  return (
+    // biome-ignore lint/a11y/useSemanticElements: SVG has no button
+    <circle
+      role="button"
+      {...FOCUSABLE}
+      aria-label={`${RELATION_WORDS[kind]}, χ² ${chi2.toFixed(1)}, ${adopted ? "adopted" : "refused"}`}
+      aria-pressed={of.isPicked}
+      class={`relation ${adopted ? "adopted" : "refused"} ${of.isPicked ? "picked-dot" : ""}`}
+      cx={of.cx}
+      cy={of.cy}
+      r={of.isPicked ? 6 : 4}
+      onClick={of.onPick}
+      onKeyDown={(event) => {
+        if (event.key === "Enter" || event.key === " ") {
+          event.preventDefault();
+          of.onPick();
+        }
+      }}
+    />
+  );
+}
+
+function isPicked(building: number, index: number): boolean {
+  const picked = selection.value;
+  return picked?.kind === "relation" && picked.building === building && picked.index === index;
+}
+
+/** Moves the dots of a row apart, the same way every time. */
+function spread(i: number): number {
+  return (((i * 0.618034) % 1) - 0.5) * 12;
+}

@@ -1,0 +1,203 @@
+/** B99 figures 10 to 14: the half-plane turned by hand, the views warped onto it, and Sim(theta). */
+import { useEffect, useRef } from "preact/hooks";
+import { category } from "../../shared/palette";
+import type { SideTrace, WarpedPicture } from "../../shared/traces";
+import { axesOf, Chart, Fit, type Frame, pathOf } from "../parts/charts";
+import { REJECTION_WORDS } from "../parts/reasonText";
+import { bestTheta, sideOf, turnTo } from "../selection/selectionDetail";
+import { params, pointing, scene, selection } from "../state/state";
+
+const DEGREE = Math.PI / 180;
+
+export function SimLab() {
+  const { side, theta, warped } = pointing.value;
+  if (side === null) {
+    return (
+      <p class="lab-hint muted">
+        Pick a 3D line or a half-plane: here the views are warped onto it by H(θ), and θ can be dragged.
+      </p>
+    );
+  }
+  return (
+    <div class="sim-lab" data-testid="sim-lab">
+      <div class="sim-chart">
+        <SideHead side={side} />
+        <Fit>{(frame) => <SimChart frame={frame} side={side} theta={theta} />}</Fit>
+        <label class="theta">
+          <span>θ</span>
+          <input
+            type="range"
+            min={-75}
+            max={75}
+            step={0.5}
+            value={theta / DEGREE}
+            aria-label="Angle of the half-plane, degrees"
+            aria-valuetext={`${(theta / DEGREE).toFixed(1)} degrees`}
+            onInput={(event) => void turnTo(Number(event.currentTarget.value) * DEGREE)}
+          />
+          <output class="numbers" data-testid="theta">
+            {(theta / DEGREE).toFixed(1)}°
+          </output>
+          <button type="button" class="quiet" onClick={() => void turnTo(bestTheta(side))}>
+            Best
+          </button>
+        </label>
+      </div>
+      {warped === null ? (
+        <p class="lab-hint muted">No view can be compared with another one on this side.</p>
+      ) : (
+        <Windows picture={warped} side={side} />
+      )}
+    </div>
+  );
+}
+
+/** Which side of which line, the other one at hand, and why it was refused. */
+function SideHead({ side }: { side: SideTrace }) {
+  const other = side.side === "left" ? "right" : "left";
+  const isPicked = sideOf(selection.value)?.line === side.line;
+  return (
+    <div class="row spread">
+      <h3>
+        Line {side.line}, {side.side} side
+        <span class="muted" data-testid="plane-probability">
+          {" "}
+          · P(plane) {side.curve.posterior.plane.toFixed(2)}
+        </span>
+        {side.rejection !== null && (
+          <span class="refused"> · {REJECTION_WORDS[side.rejection] ?? side.rejection}</span>
+        )}
+      </h3>
+      {isPicked && (
+        <button
+          type="button"
+          class="quiet"
+          onClick={() => {
+            selection.value = { kind: "side", line: side.line, side: other };
+          }}
+        >
+          {other} side
+        </button>
+      )}
+    </div>
+  );
+}
+
+function SimChart({ frame, side, theta }: { frame: Frame; side: SideTrace; theta: number }) {
+  const { thetas, similarity, views, posterior } = side.curve;
+  const limit = 75;
+  const x = { min: -limit, max: limit };
+  const y = { min: 0, max: 1 };
+  const [toX, toY] = axesOf(frame, x, y);
+  const curve = (values: readonly number[]) =>
+    pathOf(values.map((value, i) => [toX((thetas[i] ?? 0) / DEGREE), toY(value)]));
+  const first = toX((thetas[0] ?? 0) / DEGREE);
+  const last = toX((thetas[thetas.length - 1] ?? 0) / DEGREE);
+  const least = params.value["sweep"]?.["min_similarity"];
+  return (
+    <Chart
+      frame={frame}
+      x={x}
+      y={y}
+      xTitle="θ (degrees)"
+      yTitle="Sim(θ)"
+      xTicks={[-60, -30, 0, 30, 60]}
+      label={`Sim of theta for ${views.length} views; its maximum is ${Math.max(0, ...similarity).toFixed(2)}`}
+      testid="sim-chart"
+      onDrag={(value) => void turnTo(Math.round(2 * value) * 0.5 * DEGREE)}
+    >
+      <path
+        class="posterior"
+        data-testid="posterior"
+        d={`${curve(scaled(posterior))} L${last} ${toY(0)} L${first} ${toY(0)} Z`}
+      >
+        <title>Posterior over θ (B99 5), as high as the probability that a plane is there</title>
+      </path>
+      {typeof least === "number" && (
+        <line
+          class="threshold"
+          x1={frame.left}
+          x2={frame.width - frame.right}
+          y1={toY(least)}
+          y2={toY(least)}
+        />
+      )}
+      {views.map((view, i) => (
+        <path
+          key={view.view}
+          class="view-curve"
+          d={curve(view.similarity)}
+          stroke={category(i)}
+          opacity={view.valid ? 0.9 : 0.3}
+          stroke-dasharray={view.valid ? undefined : "3 3"}
+        />
+      ))}
+      <path class="curve" d={curve(similarity)} />
+      <line
+        class="cursor"
+        x1={toX(theta / DEGREE)}
+        x2={toX(theta / DEGREE)}
+        y1={frame.top}
+        y2={frame.height - frame.bottom}
+      />
+      <circle class="cursor-knob" cx={toX(theta / DEGREE)} cy={frame.height - frame.bottom} r={6} />
+    </Chart>
+  );
+}
+
+/** The density scaled so that its top is the probability that a plane is there. */
+function scaled({ density, plane }: SideTrace["curve"]["posterior"]): number[] {
+  const top = Math.max(...density, Number.MIN_VALUE);
+  return density.map((value) => (value / top) * plane);
+}
+
+/** The reference first, then every other view under H(theta), with its own Sim at this angle. */
+function Windows({ picture: { about, rgba }, side }: { picture: WarpedPicture; side: SideTrace }) {
+  return (
+    <ul class="windows" data-testid="windows">
+      {about.views.map(({ view, similarity, valid }, i) => {
+        const place = side.curve.views.findIndex((one) => one.view === view);
+        return (
+          <li key={view} class={valid || similarity === null ? "" : "invalid"}>
+            <Window picture={{ about, rgba }} index={i} />
+            <span class="window-name" title={viewName(view)}>
+              {place >= 0 && <span class="dot" style={{ background: category(place) }} aria-hidden="true" />}
+              {viewName(view)}
+            </span>
+            <span class="numbers muted">
+              {similarity === null ? "reference, POI" : `Sim ${similarity.toFixed(2)}`}
+            </span>
+          </li>
+        );
+      })}
+    </ul>
+  );
+}
+
+function Window({ picture: { about, rgba }, index }: { picture: WarpedPicture; index: number }) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const { columns, rows, points, line_row } = about;
+  useEffect(() => {
+    const context = canvas.current?.getContext("2d");
+    if (context == null) {
+      return;
+    }
+    const size = 4 * columns * rows;
+    context.clearRect(0, 0, columns, rows);
+    context.putImageData(new ImageData(rgba.slice(index * size, (index + 1) * size), columns, rows), 0, 0);
+    context.fillStyle = "#ffe11a";
+    if (index === 0) {
+      for (const [x, y] of points) {
+        context.fillRect(Math.floor(x), Math.floor(y), 1, 1);
+      }
+    }
+    context.globalAlpha = 0.8;
+    context.fillRect(0, line_row - 0.5, columns, 1);
+    context.globalAlpha = 1;
+  }, [rgba, index]);
+  return <canvas ref={canvas} width={columns} height={rows} role="img" aria-label="Warped neighbourhood" />;
+}
+
+function viewName(view: number): string {
+  return scene.value?.views[view]?.name ?? `view ${view}`;
+}

@@ -1,0 +1,87 @@
+/** The selected thing in every view, each picture zoomed to it: "it lights up in every image". */
+import { useEffect, useRef } from "preact/hooks";
+import type { Selection } from "../../shared/selection";
+import { images, pointing, results, scene, selection, shownView, tab, textScale } from "../state/state";
+import { drawView } from "./drawing";
+import { type Mark, marksOf } from "./selectionMarks";
+import { fitPoints } from "./viewport";
+
+const WIDTH_PX = 190;
+const HEIGHT_PX = 128;
+/** Image pixels about the marked thing. */
+const MARGIN_PX = 30;
+const MAX_SCALE = 5;
+
+/** `unpicked` is shown while nothing is selected. */
+export function Filmstrip({ unpicked = null }: { unpicked?: Selection | null }) {
+  void [results.value, pointing.value, textScale.value];
+  const picked = selection.value ?? unpicked;
+  const shown = (scene.value?.views ?? [])
+    .map(({ name }, view) => ({ name, view, marks: marksOf(picked, view) }))
+    .filter(({ view, marks }) => marks.length > 0 && isInside(marks, view));
+  if (shown.length === 0) {
+    return <p class="lab-hint muted">Pick something: it lights up here in every view that shows it.</p>;
+  }
+  return (
+    <ul class="filmstrip" data-testid="filmstrip">
+      {shown.map(({ name, view, marks }) => (
+        <li key={view}>
+          <Frame view={view} marks={marks} />
+          <button
+            type="button"
+            class="link"
+            title={`Open ${name}`}
+            onClick={() => {
+              shownView.value = view;
+              tab.value = "images";
+            }}
+          >
+            {name}
+          </button>
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+function Frame({ view, marks }: { view: number; marks: readonly Mark[] }) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const image = images.value[view];
+  useEffect(() => {
+    const context = canvas.current?.getContext("2d");
+    if (context != null && image !== undefined) {
+      const points = marks.flatMap((mark) => mark.points);
+      const box = { width: WIDTH_PX, height: HEIGHT_PX };
+      const viewport = fitPoints(points, box, MARGIN_PX, MAX_SCALE) ?? { scale: 1, x: 0, y: 0 };
+      drawView(context, image, viewport, ratio(), { segments: null, supports: null }, null, marks);
+    }
+  });
+  return (
+    <canvas
+      ref={canvas}
+      width={WIDTH_PX * ratio()}
+      height={HEIGHT_PX * ratio()}
+      role="img"
+      aria-label="The selection in this view"
+    />
+  );
+}
+
+function ratio(): number {
+  return Math.max(1, Math.round(window.devicePixelRatio));
+}
+
+function boundsOf(marks: readonly Mark[]): [number, number, number, number] {
+  const points = marks.flatMap(({ points: own }) => own);
+  const xs = points.map(([x]) => x);
+  const ys = points.map(([, y]) => y);
+  return [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
+}
+
+/** Does the view show the middle of the marks? */
+function isInside(marks: readonly Mark[], view: number): boolean {
+  const [x0, y0, x1, y1] = boundsOf(marks);
+  const { width = 0, height = 0 } = scene.value?.views[view] ?? {};
+  const [x, y] = [(x0 + x1) / 2, (y0 + y1) / 2];
+  return x > 0 && y > 0 && x < width && y < height;
+}

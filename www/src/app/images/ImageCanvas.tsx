@@ -1,0 +1,222 @@
+/** One view, to zoom (wheel, + and -), pan (drag, arrows), fit (0) and pick (click). */
+import { useEffect, useRef, useState } from "preact/hooks";
+import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_STRIDE } from "../../shared/results";
+import type { Selection } from "../../shared/selection";
+import type { Vec2 } from "../../shared/traces";
+import { textScale } from "../state/state";
+import { drawView, type Overlay } from "./drawing";
+import type { Mark } from "./selectionMarks";
+import {
+  fitImage,
+  fitPoints,
+  nearestSegment,
+  type Point,
+  pan,
+  type Size,
+  toImage,
+  type Viewport,
+  zoomAt,
+} from "./viewport";
+
+interface Props {
+  view: number;
+  name: string;
+  image: ImageBitmap;
+  overlay: Overlay;
+  selection: Selection | null;
+  marks: readonly Mark[];
+  /** Zooms to the marks until the reader moves the image. */
+  follows: boolean;
+  onPick: (selection: Selection | null) => void;
+}
+
+const ZOOM_STEP = 1.25;
+const PAN_STEP_PX = 40;
+const PICK_REACH_PX = 8;
+const CLICK_SLACK_PX = 4;
+
+export function ImageCanvas({ view, name, image, overlay, selection, marks, follows, onPick }: Props) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  void textScale.value;
+  const [box, setBox] = useState<Size>({ width: 0, height: 0 });
+  const [moved, setMoved] = useState<Viewport | null>(null);
+  const drag = useRef<{ last: Point; travelled: number } | null>(null);
+  const fitted = fitImage(image, box);
+  const viewport = moved ?? (follows ? around(marks, image, box) : null) ?? fitted;
+
+  useEffect(() => observeSize(canvas.current, setBox), []);
+  // Another image starts whole.
+  useEffect(() => setMoved(null), [image]);
+  // So does another selection, where the image follows it.
+  useEffect(() => {
+    if (follows) {
+      setMoved(null);
+    }
+  }, [selection, follows]);
+  useEffect(() => {
+    const context = canvas.current?.getContext("2d");
+    if (context && box.width > 0) {
+      const ratio = window.devicePixelRatio;
+      resizeBacking(context.canvas, box, ratio);
+      drawView(context, image, viewport, ratio, overlay, selection, marks);
+    }
+  });
+
+  const zoom = (at: Point, factor: number) => setMoved(zoomAt(viewport, at, factor, fitted.scale * 0.5));
+  const onWheel = (event: WheelEvent) => {
+    event.preventDefault();
+    zoom({ x: event.offsetX, y: event.offsetY }, 1.0015 ** -event.deltaY);
+  };
+  const onPointerDown = (event: PointerEvent) => {
+    canvas.current?.setPointerCapture(event.pointerId);
+    drag.current = { last: { x: event.clientX, y: event.clientY }, travelled: 0 };
+  };
+  const onPointerMove = (event: PointerEvent) => {
+    const { current } = drag;
+    if (current !== null) {
+      const dx = event.clientX - current.last.x;
+      const dy = event.clientY - current.last.y;
+      drag.current = {
+        last: { x: event.clientX, y: event.clientY },
+        travelled: current.travelled + Math.hypot(dx, dy),
+      };
+      setMoved(pan(viewport, dx, dy));
+    }
+  };
+  const onPointerUp = (event: PointerEvent) => {
+    if (drag.current !== null && drag.current.travelled < CLICK_SLACK_PX) {
+      const at = toImage(viewport, { x: event.offsetX, y: event.offsetY });
+      onPick(pickAt(overlay, view, at, PICK_REACH_PX / viewport.scale));
+    }
+    drag.current = null;
+  };
+  const onKeyDown = (event: KeyboardEvent) => {
+    const next = viewportAfterKey(event.key, viewport, box, fitted.scale);
+    if (next !== undefined) {
+      event.preventDefault();
+      setMoved(next);
+    } else if (event.key === "Escape") {
+      onPick(null);
+    }
+  };
+
+  return (
+    <figure class="image-view">
+      <canvas
+        ref={canvas}
+        tabIndex={0}
+        role="img"
+        aria-label={`${name}: drag to move, scroll to zoom, click a line to pick it`}
+        onWheel={onWheel}
+        onPointerDown={onPointerDown}
+        onPointerMove={onPointerMove}
+        onPointerUp={onPointerUp}
+        onPointerCancel={() => {
+          drag.current = null;
+        }}
+        onDblClick={() => setMoved(null)}
+        onKeyDown={onKeyDown}
+      />
+      <figcaption class="numbers">
+        {name} · {Math.round(100 * viewport.scale)} %
+      </figcaption>
+    </figure>
+  );
+}
+
+/** Image pixels about marks that are zoomed to. */
+const MARGIN_PX = 45;
+const MAX_FOLLOW_SCALE = 3;
+
+/** The viewport of the marks; null where they are none of this image's. */
+function around(marks: readonly Mark[], image: Size, box: Size): Viewport | null {
+  // Dashed lines are endless: what they cross is shown anyway.
+  const inside = ([x, y]: Vec2) => x >= 0 && y >= 0 && x <= image.width && y <= image.height;
+  const points = marks.filter(({ dashed }) => dashed !== true).flatMap((mark) => mark.points.filter(inside));
+  return box.width === 0 ? null : fitPoints(points, box, MARGIN_PX, MAX_FOLLOW_SCALE);
+}
+
+/** The nearest line or segment, in the order that the overlay asks for; else what was refused, or the region below. */
+function pickAt(overlay: Overlay, view: number, at: Point, reach: number): Selection | null {
+  const { segments, supports, rejected, regions, segmentsFirst } = overlay;
+  const line = (): Selection | null => {
+    const support = supports === null ? -1 : nearestSegment(supports, SUPPORT_STRIDE, at, reach);
+    return support < 0 ? null : { kind: "line", index: supports?.[support * SUPPORT_STRIDE + 5] as number };
+  };
+  const segment = (): Selection | null => {
+    const index = segments === null ? -1 : nearestSegment(segments, SEGMENT_STRIDE, at, reach);
+    return index < 0 ? null : { kind: "segment", view, index };
+  };
+  const refused = (): Selection | null => {
+    const index = rejected == null ? -1 : nearestSegment(rejected, REJECTED_STRIDE, at, reach);
+    return index < 0 ? null : { kind: "refused", view, index };
+  };
+  const region = (): Selection | null => {
+    const index = regions?.findIndex(({ rings }) => holds(rings, at)) ?? -1;
+    return index < 0 ? null : { kind: "region", view, index };
+  };
+  return (segmentsFirst ? (segment() ?? line()) : (line() ?? segment())) ?? refused() ?? region();
+}
+
+/** Is the point inside the rings, holes left out? Counts the crossings of a ray to the right. */
+function holds(rings: readonly (readonly Vec2[])[], { x, y }: Point): boolean {
+  let inside = false;
+  for (const ring of rings) {
+    ring.forEach(([x0, y0], i) => {
+      const [x1, y1] = ring[(i + 1) % ring.length] as Vec2;
+      if (y0 > y !== y1 > y && x < x0 + ((y - y0) / (y1 - y0)) * (x1 - x0)) {
+        inside = !inside;
+      }
+    });
+  }
+  return inside;
+}
+
+/** Null: the whole image again; undefined: the key means nothing here. */
+function viewportAfterKey(
+  key: string,
+  viewport: Viewport,
+  box: Size,
+  fitScale: number,
+): Viewport | null | undefined {
+  const middle = { x: box.width / 2, y: box.height / 2 };
+  switch (key) {
+    case "+":
+    case "=":
+      return zoomAt(viewport, middle, ZOOM_STEP, fitScale * 0.5);
+    case "-":
+      return zoomAt(viewport, middle, 1 / ZOOM_STEP, fitScale * 0.5);
+    case "0":
+      return null;
+    case "ArrowLeft":
+      return pan(viewport, PAN_STEP_PX, 0);
+    case "ArrowRight":
+      return pan(viewport, -PAN_STEP_PX, 0);
+    case "ArrowUp":
+      return pan(viewport, 0, PAN_STEP_PX);
+    case "ArrowDown":
+      return pan(viewport, 0, -PAN_STEP_PX);
+    default:
+      return undefined;
+  }
+}
+
+function observeSize(element: HTMLElement | null, onSize: (size: Size) => void): (() => void) | undefined {
+  if (element === null) {
+    return undefined;
+  }
+  const observer = new ResizeObserver(() =>
+    onSize({ width: element.clientWidth, height: element.clientHeight }),
+  );
+  observer.observe(element);
+  return () => observer.disconnect();
+}
+
+function resizeBacking(canvas: HTMLCanvasElement, box: Size, ratio: number): void {
+  const width = Math.round(box.width * ratio);
+  const height = Math.round(box.height * ratio);
+  if (canvas.width !== width || canvas.height !== height) {
+    canvas.width = width;
+    canvas.height = height;
+  }
+}

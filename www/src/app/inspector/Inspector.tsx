@@ -1,0 +1,106 @@
+/** The picked thing in numbers, with units and the paper's symbols. */
+
+import { selection } from "../state/state";
+import type { Related, Row } from "./rowLinks";
+import { rowsOf, titleOf } from "./selectionRows";
+import { placeAmong, siblingsOf } from "./siblings";
+
+export function Inspector() {
+  const picked = selection.value;
+  return (
+    <section class="panel" data-testid="inspector">
+      <div class="row">
+        <h2>Inspector</h2>
+        <span class="grow" />
+        <Steps />
+        {picked !== null && (
+          <button
+            type="button"
+            class="quiet"
+            onClick={() => {
+              selection.value = null;
+            }}
+          >
+            Clear
+          </button>
+        )}
+      </div>
+      {picked === null ? (
+        <p class="muted">Click a segment, a line, a half-plane, a facet or a wall to see its numbers.</p>
+      ) : (
+        <Facts title={titleOf(picked)} rows={rowsOf(picked)} />
+      )}
+    </section>
+  );
+}
+
+/** To the previous and the next thing of the kind: what can be picked with a pointer can be reached with keys. */
+function Steps() {
+  const items = siblingsOf(selection.value);
+  const at = placeAmong(items, selection.value);
+  if (items.length === 0) {
+    return null;
+  }
+  const go = (step: number) => () => {
+    const next = at < 0 ? (step > 0 ? 0 : items.length - 1) : (at + step + items.length) % items.length;
+    selection.value = items[next] ?? null;
+  };
+  return (
+    <fieldset class="steps-through">
+      <legend class="visually-hidden">Go through</legend>
+      <button type="button" class="quiet" aria-label="Previous item" title="Previous" onClick={go(-1)}>
+        ‹
+      </button>
+      <span class="muted numbers">
+        {at < 0 ? "–" : at + 1} / {items.length}
+      </span>
+      <button type="button" class="quiet" aria-label="Next item" title="Next" onClick={go(1)}>
+        ›
+      </button>
+    </fieldset>
+  );
+}
+
+function Facts({ title, rows }: { title: string; rows: readonly Row[] }) {
+  return (
+    <>
+      <h3 class="picked">{title}</h3>
+      <dl class="facts">
+        {rows.map(([label, value, note]) => (
+          <div key={label}>
+            <dt>{label}</dt>
+            <dd class="numbers">
+              {typeof value === "string" ? value : <Links to={value} />}
+              {note !== undefined && <span class="muted"> {note}</span>}
+            </dd>
+          </div>
+        ))}
+      </dl>
+    </>
+  );
+}
+
+const MOST_LINKS = 12;
+
+function Links({ to }: { to: readonly Related[] }) {
+  if (to.length === 0) {
+    return <>–</>;
+  }
+  return (
+    <span class="links">
+      {to.slice(0, MOST_LINKS).map(({ name, selection: next }) => (
+        <button
+          key={name}
+          type="button"
+          class="link"
+          onClick={() => {
+            selection.value = next;
+          }}
+        >
+          {name}
+        </button>
+      ))}
+      {to.length > MOST_LINKS && <span class="muted">+ {to.length - MOST_LINKS}</span>}
+    </span>
+  );
+}

@@ -1,0 +1,59 @@
+/** What refinement made of buildings (B99 2), for the inspector and the figure. */
+
+import { RELATION_WORDS, refinementWords } from "../parts/reasonText";
+import { refinedFacets } from "../selection/selectionShapes";
+import { params, results } from "../state/state";
+import { linkToFacet, linkToRefinement, type Row } from "./rowLinks";
+
+/** The building that a facet of the model belonged to before refinement. */
+export function buildingOfFacet(facet: number): number | undefined {
+  const before = results.value.refinement?.before;
+  return before?.facets[before.sources[facet] ?? -1]?.building;
+}
+
+/** Up to this chi-square a relation is adopted, as the present parameters have it. */
+export function relationLimit(): number | null {
+  const refine = params.value["roof"]?.["refine"];
+  const limit = (refine as Record<string, unknown> | undefined)?.["relation_chi2"];
+  return typeof limit === "number" ? limit : null;
+}
+
+/** The refinement of the building that a facet is part of. */
+export function refinedRow(facet: number): Row[] {
+  const building = buildingOfFacet(facet);
+  const found = results.value.refinement?.trace.buildings[building ?? -1];
+  return building === undefined || found === undefined
+    ? []
+    : [["Refined", [linkToRefinement(building)], refinementWords(found)]];
+}
+
+export function refinementRows(index: number): Row[] {
+  const found = results.value.refinement?.trace.buildings[index];
+  if (found === undefined) {
+    return [];
+  }
+  const adopted = found.relations.filter((one) => one.adopted).length;
+  return [
+    ["Reprojection error", refinementWords(found)],
+    ["Straight sides", String(found.sides)],
+    ["Edges measured", String(found.sightings), "over all views"],
+    ["Largest move", `${found.largest_move_m.toFixed(2)} m`],
+    ["Relations adopted", `${adopted} of ${found.relations.length}`],
+    ["Facets", refinedFacets(index).map(linkToFacet)],
+  ];
+}
+
+export function relationRows(building: number, index: number): Row[] {
+  const found = results.value.refinement?.trace.buildings[building]?.relations[index];
+  if (found === undefined) {
+    return [];
+  }
+  const limit = relationLimit();
+  return [
+    ["Says", RELATION_WORDS[found.kind]],
+    ["Free solution off by", `${(100 * Math.abs(found.deviation_m)).toFixed(1)} cm`],
+    ["χ²", `${found.chi2.toFixed(2)}${limit === null ? "" : ` (≤ ${limit})`}`],
+    ["Verdict", found.adopted ? "adopted: it now holds" : "refused: the images contradict it"],
+    ["Building", [linkToRefinement(building)]],
+  ];
+}

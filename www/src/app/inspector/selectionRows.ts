@@ -1,0 +1,416 @@
+/** What the inspector says of the picked thing: its numbers, what made it and what it made. */
+
+import { type Facet, LINE_STRIDE, SEGMENT_STRIDE, type Vec3 } from "../../shared/results";
+import type { Selection } from "../../shared/selection";
+import { slopedArea } from "../parts/facetArea";
+import { grouped } from "../parts/numberText";
+import {
+  ORIGIN_WORDS,
+  outcomeWords,
+  PAIR_WORDS,
+  REFUTATION_WORDS,
+  REJECTION_WORDS,
+} from "../parts/reasonText";
+import { lineOfSegment } from "../selection/selectionShapes";
+import { params, pointing, results, scene } from "../state/state";
+import { refinedRow, refinementRows, relationRows } from "./refinementRows";
+import { clusterRows, refusedSegmentRows, withdrawnRows } from "./rejectedRows";
+import { linkToFacet, linkToGroup, linkToHalfPlane, linkToLine, type Related, type Row } from "./rowLinks";
+
+/** The indices of the items that pass. */
+function indicesOf<T>(
+  items: readonly T[] | null | undefined,
+  test: (item: T, index: number) => boolean,
+): number[] {
+  return (items ?? []).flatMap((item, i) => (test(item, i) ? [i] : []));
+}
+
+export function titleOf(picked: Selection): string {
+  switch (picked.kind) {
+    case "segment":
+      return `Segment ${picked.index} of ${viewName(picked.view)}`;
+    case "refused":
+      return `Refused line ${picked.index} of ${viewName(picked.view)}`;
+    case "line":
+      return `3D line ${picked.index}`;
+    case "side":
+      return `3D line ${picked.line}, ${picked.side} side`;
+    case "group":
+      return `Group ${picked.index}`;
+    case "region":
+      return `Region ${picked.index} of ${viewName(picked.view)}`;
+    case "pair":
+      return `Pair of lines ${results.value.rectangles?.pairs[picked.index]?.lines.join(" and ") ?? ""}`;
+    case "halfplane":
+      return `Half-plane ${picked.index}`;
+    case "facet":
+      return `Facet ${picked.index}`;
+    case "withdrawn":
+      return `Withdrawn facet ${picked.index}`;
+    case "cluster":
+      return `Refused cluster ${picked.index} of plane ${picked.plane}`;
+    case "refinement":
+      return `Building ${picked.index}, refined`;
+    case "relation":
+      return `Relation ${picked.index} of building ${picked.building}`;
+    case "surface":
+      return picked.surface.charAt(0).toUpperCase() + picked.surface.slice(1);
+    case "view":
+      return `View ${viewName(picked.index)}`;
+  }
+}
+
+export function rowsOf(picked: Selection): Row[] {
+  switch (picked.kind) {
+    case "segment":
+      return segmentRows(picked.view, picked.index);
+    case "refused":
+      return refusedSegmentRows(picked.view, picked.index);
+    case "line":
+      return lineRows(picked.index);
+    case "side":
+      return sideRows(picked.line, picked.side);
+    case "group":
+      return groupRows(picked.index);
+    case "region":
+      return regionRows(picked.view, picked.index);
+    case "pair":
+      return pairRows(picked.index);
+    case "halfplane":
+      return halfPlaneRows(picked.index);
+    case "facet":
+      return facetRows(picked.index);
+    case "withdrawn":
+      return withdrawnRows(picked.index);
+    case "cluster":
+      return clusterRows(picked.plane, picked.index);
+    case "refinement":
+      return refinementRows(picked.index);
+    case "relation":
+      return relationRows(picked.building, picked.index);
+    case "surface":
+      return surfaceRows(picked);
+    case "view":
+      return viewRows(picked.index);
+  }
+}
+
+function segmentRows(view: number, index: number): Row[] {
+  const data = results.value.segments[view];
+  const at = index * SEGMENT_STRIDE;
+  if (data === undefined || at + SEGMENT_STRIDE > data.length) {
+    return [];
+  }
+  const [x0, y0, x1, y1] = [...data.subarray(at, at + SEGMENT_STRIDE)] as [number, number, number, number];
+  return [
+    ["Length", `${Math.hypot(x1 - x0, y1 - y0).toFixed(1)} px`],
+    ["Start", `${x0.toFixed(2)}, ${y0.toFixed(2)} px`],
+    ["End", `${x1.toFixed(2)}, ${y1.toFixed(2)} px`],
+    ["Direction", `${degrees(Math.atan2(y1 - y0, x1 - x0))} (y down)`],
+    ...historyOfSegment(view, index),
+  ];
+}
+
+function historyOfSegment(view: number, index: number): Row[] {
+  const { story } = pointing.value;
+  const lines = lineOfSegment(view, index).map(linkToLine);
+  return [
+    ...(story === null
+      ? []
+      : [
+          ["Fate", outcomeWords(story.outcome)] as const,
+          ["Candidates", String(story.candidates.length)] as const,
+        ]),
+    ...(results.value.lines === null ? [] : [["3D line", lines] as const]),
+  ];
+}
+
+function sideRows(line: number, side: string): Row[] {
+  const record = results.value.sides.find((one) => one.line === line && one.side === side);
+  const own = indicesOf(results.value.halfPlanes, (one) => one.line === line && one.side === side);
+  return [
+    ["3D line", [linkToLine(line)]],
+    ["Half-plane", own.map(linkToHalfPlane)],
+    ...(record?.rejection == null
+      ? []
+      : [["Refused", REJECTION_WORDS[record.rejection] ?? record.rejection] as const]),
+  ];
+}
+
+function groupRows(index: number): Row[] {
+  const group = results.value.grouping?.groups[index];
+  if (group === undefined) {
+    return [];
+  }
+  const lines = [...new Set(group.members.map(({ line }) => line))];
+  const halfPlanes = group.members.flatMap(({ half_plane }) => (half_plane === null ? [] : [half_plane]));
+  const rectangles = group.rectangles ?? [];
+  const facets = indicesOf(
+    results.value.facets,
+    (facet) =>
+      (facet.half_planes ?? []).some((one) => halfPlanes.includes(one)) ||
+      (facet.rectangles ?? []).some((one) => rectangles.includes(one)),
+  );
+  return [
+    ["Slope of the plane", slopeText(group.plane.normal)],
+    ["3D lines", lines.map(linkToLine)],
+    ["Half-planes", halfPlanes.map(linkToHalfPlane)],
+    ...rectangleRow(group.rectangles),
+    ["Facets", facets.map(linkToFacet)],
+  ];
+}
+
+/** How many candidates of the other method have this plane. */
+function rectangleRow(rectangles: readonly number[] | undefined): Row[] {
+  const count = rectangles?.length ?? 0;
+  return count === 0 ? [] : [["Rectangles", `${count} in its plane (W96 3.6)`]];
+}
+
+function regionRows(view: number, index: number): Row[] {
+  const found = results.value.regions[view];
+  const region = found?.regions[index];
+  return region === undefined
+    ? []
+    : [
+        ["Area", `${grouped(region.area_px)} px`],
+        ["Perimeter", `${region.perimeter_px.toFixed(0)} px`],
+        ["Mean grey value", region.mean.toFixed(1)],
+        ["Standard deviation", Math.sqrt(region.variance).toFixed(1)],
+        ["Regions at first", grouped(found?.initial_regions ?? 0)],
+        ...Object.entries(found?.moves ?? {}).map(
+          ([move, count]) => [MOVES[move] ?? move, grouped(count)] as const,
+        ),
+      ];
+}
+
+const MOVES: Record<string, string> = { dropped: "Break points dropped", merged: "Regions merged" };
+
+function pairRows(index: number): Row[] {
+  const found = results.value.rectangles;
+  const pair = found?.pairs[index];
+  if (found == null || pair === undefined) {
+    return [];
+  }
+  const candidate = found.candidates.find(
+    ({ lines }) => lines.length === 2 && lines.every((line) => pair.lines.includes(line)),
+  );
+  const facets = indicesOf(
+    results.value.facets,
+    (facet) => facet.lines?.length === 2 && facet.lines.every((line) => pair.lines.includes(line)),
+  );
+  return [
+    ["3D lines", pair.lines.map(linkToLine)],
+    ["Lines that cross", String(pair.crossings.length)],
+    ["Ends found", String(pair.ends.length)],
+    ...(pair.rejection === null ? [] : [["Refused", PAIR_WORDS[pair.rejection] ?? pair.rejection] as const]),
+    ...(candidate === undefined
+      ? []
+      : [
+          ["Outline covered", `${Math.round(100 * candidate.support)} %`] as const,
+          ["Correlation inside", candidate.correlation.toFixed(2)] as const,
+          ["Measure M", `${candidate.measure.toFixed(1)} m²`] as const,
+        ]),
+    ["Facets", facets.map(linkToFacet)],
+  ];
+}
+
+function lineRows(index: number): Row[] {
+  const { lines } = results.value;
+  const rows: Row[] = [];
+  const at = index * LINE_STRIDE;
+  if (lines !== null && at + LINE_STRIDE <= lines.length) {
+    const p0 = [...lines.subarray(at, at + 3)] as unknown as Vec3;
+    const p1 = [...lines.subarray(at + 3, at + 6)] as unknown as Vec3;
+    const [dx, dy, dz] = [p1[0] - p0[0], p1[1] - p0[1], p1[2] - p0[2]];
+    const plan = Math.hypot(dx, dy);
+    rows.push(
+      ["Length", `${Math.hypot(plan, dz).toFixed(2)} m`],
+      ["Slope", degrees(Math.atan2(dz, plan))],
+      ["Azimuth", azimuth(dx, dy)],
+      ["Start", worldText(p0)],
+      ["End", worldText(p1)],
+      ...historyOfLine(index),
+    );
+  }
+  return rows;
+}
+
+/** What made a line, view by view, and what it is part of. */
+function historyOfLine(index: number): Row[] {
+  const { records, halfPlanes, sides, grouping, facets } = results.value;
+  const record = records[index];
+  const refused = sides.filter(({ line, rejection }) => line === index && rejection !== null);
+  return [
+    ...(record === undefined ? [] : [["Found", ORIGIN_WORDS[record.origin]] as const]),
+    ...(record?.refuted == null ? [] : [["Refuted", REFUTATION_WORDS[record.refuted]] as const]),
+    ...(record === undefined ? [] : [["σ across", `${(100 * record.sigma_m).toFixed(1)} cm`] as const]),
+    ...(record?.supports ?? []).map(
+      ({ view, segments, kind, score }) =>
+        [
+          viewName(view),
+          segments.map(
+            (segment): Related => ({
+              name: String(segment),
+              selection: { kind: "segment", view, index: segment },
+            }),
+          ),
+          `${kind} ${score.toFixed(2)}`,
+        ] as const,
+    ),
+    ...(halfPlanes === null
+      ? []
+      : [["Half-planes", indicesOf(halfPlanes, ({ line }) => line === index).map(linkToHalfPlane)] as const]),
+    ...refused.map(
+      ({ side, rejection }) =>
+        [`Refused, ${side}`, REJECTION_WORDS[rejection ?? ""] ?? rejection ?? ""] as const,
+    ),
+    ...(grouping === null
+      ? []
+      : [
+          [
+            "Groups",
+            indicesOf(grouping.groups, ({ members }) => members.some(({ line }) => line === index)).map(
+              linkToGroup,
+            ),
+          ] as const,
+        ]),
+    ...(facets === null
+      ? []
+      : [
+          [
+            "Facets",
+            indicesOf(facets, ({ lines }) => lines?.includes(index) === true).map(linkToFacet),
+          ] as const,
+        ]),
+  ];
+}
+
+function halfPlaneRows(index: number): Row[] {
+  const plane = results.value.halfPlanes?.[index];
+  if (plane === undefined) {
+    return [];
+  }
+  const sigma = plane.sigma_theta === undefined ? "" : ` ± ${degrees(plane.sigma_theta)}`;
+  return [
+    ["3D line", [linkToLine(plane.line)]],
+    ["Side", plane.side],
+    ["θ", `${degrees(plane.theta)}${sigma}`],
+    ["Sim(θ)", `${plane.similarity.toFixed(3)}${threshold("min_similarity")}`],
+    ["Curvature |Sim″|", `${plane.curvature.toFixed(1)}${threshold("min_curvature")}`],
+    ["Amplitude", `${plane.amplitude.toFixed(3)}${threshold("min_amplitude")}`],
+    ["P(plane at θ)", `${plane.probability.toFixed(3)}${threshold("min_probability")}`],
+    ["Slope of the plane", slopeText(plane.plane.normal)],
+    ["Views", plane.views.map(viewName).join(", ")],
+    ...(results.value.grouping === null
+      ? []
+      : [
+          [
+            "Group",
+            indicesOf(results.value.grouping.groups, ({ members }) =>
+              members.some(({ half_plane }) => half_plane === index),
+            ).map(linkToGroup),
+          ] as const,
+        ]),
+    ...(results.value.facets === null
+      ? []
+      : [
+          [
+            "Facets",
+            indicesOf(results.value.facets, ({ half_planes }) => half_planes?.includes(index) === true).map(
+              linkToFacet,
+            ),
+          ] as const,
+        ]),
+  ];
+}
+
+function facetRows(index: number): Row[] {
+  const facet = results.value.facets?.[index];
+  if (facet === undefined) {
+    return [];
+  }
+  const [nx, ny] = facet.plane.normal;
+  return [
+    ["Building", String(facet.building)],
+    ["Area", `${slopedArea(facet).toFixed(1)} m²`],
+    ["Slope", slopeText(facet.plane.normal)],
+    ["Faces", Math.hypot(nx, ny) < 0.02 ? "level" : azimuth(nx, ny)],
+    ["Corners", String(facet.outer.length + facet.holes.flat().length)],
+    ["Similarity", facet.similarity.toFixed(3)],
+    ["τ real", facet.real_ratio === undefined ? "–" : facet.real_ratio.toFixed(2)],
+    ["3D lines", (facet.lines ?? []).map(linkToLine)],
+    ...groupsOfFacet(facet),
+    ...refinedRow(index),
+    ...(results.value.grouping === null ? [] : rectangleRow(facet.rectangles)),
+    ...((facet.half_planes ?? []).length === 0
+      ? []
+      : [["Half-planes", (facet.half_planes ?? []).map(linkToHalfPlane)] as const]),
+  ];
+}
+
+/** The groups of the half-planes, or of the other method's planes, that a facet was made from. */
+function groupsOfFacet({ half_planes = [], rectangles = [] }: Facet): Row[] {
+  const groups = indicesOf(
+    results.value.grouping?.groups,
+    (group) =>
+      group.members.some(({ half_plane }) => half_plane !== null && half_planes.includes(half_plane)) ||
+      (group.rectangles ?? []).some((one) => rectangles.includes(one)),
+  );
+  return groups.length === 0 ? [] : [["Groups", groups.map(linkToGroup)]];
+}
+
+function surfaceRows(picked: Extract<Selection, { kind: "surface" }>): Row[] {
+  const rows: Row[] = [["Area", `${picked.areaM2.toFixed(1)} m²`]];
+  if (picked.building !== null) {
+    rows.push(["Building", String(picked.building)]);
+  }
+  if (picked.facet !== null) {
+    rows.push(
+      ["Facet", String(picked.facet)],
+      ...facetRows(picked.facet).filter(([label]) => !SHOWN.has(label)),
+    );
+  }
+  return rows;
+}
+
+/** Rows of a facet that a surface shows by itself. */
+const SHOWN = new Set(["Building", "Area"]);
+
+function viewRows(index: number): Row[] {
+  const view = scene.value?.views[index];
+  return view === undefined
+    ? []
+    : [
+        ["Size", `${view.width} × ${view.height} px`],
+        ["Centre", worldText(view.center)],
+      ];
+}
+
+function viewName(view: number): string {
+  return scene.value?.views[view]?.name ?? `view ${view}`;
+}
+
+/** The acceptance threshold of the sweep, as the present parameters have it. */
+function threshold(name: string): string {
+  const value = params.value["sweep"]?.[name];
+  return typeof value === "number" ? ` (≥ ${value})` : "";
+}
+
+/** A point of the local frame in the frame of the input. */
+function worldText([x, y, z]: Vec3): string {
+  const [ox, oy, oz] = scene.value?.origin ?? [0, 0, 0];
+  return `${(x + ox).toFixed(2)}, ${(y + oy).toFixed(2)}, ${(z + oz).toFixed(2)}\u00a0m`;
+}
+
+function degrees(radians: number): string {
+  return `${((radians * 180) / Math.PI).toFixed(1)}°`;
+}
+
+/** Clockwise from north. */
+function azimuth(east: number, north: number): string {
+  return `${(((Math.atan2(east, north) * 180) / Math.PI + 360) % 360).toFixed(0)}° from north`;
+}
+
+function slopeText([x, y, z]: Vec3): string {
+  return degrees(Math.atan2(Math.hypot(x, y), Math.abs(z)));
+}

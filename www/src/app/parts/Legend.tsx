@@ -1,0 +1,62 @@
+/** What the colours of the present tab mean. */
+import { type Tab, tab, withRejected } from "../state/state";
+
+const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
+  segments: [["unmatched", "segment"]],
+  matches: [
+    ["unmatched", "unmatched"],
+    ["matched", "matched"],
+    ["merged", "merged"],
+    ["grown", "grown"],
+  ],
+  lines: [
+    ["matched", "matched"],
+    ["grown", "from regions"],
+    ["border-intersection", "intersection"],
+    ["border-inplane", "border"],
+    ["rejected", "refuted"],
+  ],
+  halfplanes: [
+    ["matched", "3D line"],
+    ["half-plane", "half-plane"],
+    ["rejected", "refused side"],
+  ],
+  groups: [["bar", "line found in a plane"]],
+  directions: [
+    ["first-direction", "first direction"],
+    ["second-direction", "second direction"],
+    ["unmatched", "neither"],
+  ],
+  clusters: [
+    ["unmatched", "region boundary"],
+    ["matched", "3D line"],
+  ],
+  rectangles: [
+    ["normals", "hue: azimuth, strength: slope"],
+    ["plane-end", "end of a plane"],
+  ],
+  facets: [["normals", "hue: azimuth, strength: slope"]],
+  refinement: [
+    ["grown", "before"],
+    ["bar", "adopted"],
+    ["rejected", "refused; gap"],
+  ],
+};
+
+export function Legend() {
+  const refused = tab.value === "segments" && withRejected.value ? [["rejected", "refused"] as const] : [];
+  const entries = [...(ENTRIES[tab.value] ?? []), ...refused];
+  if (entries.length === 0) {
+    return null;
+  }
+  return (
+    <ul class="legend" aria-label="Colours">
+      {entries.map(([colour, meaning]) => (
+        <li key={meaning}>
+          <span class={`swatch ${colour}`} aria-hidden="true" />
+          {meaning}
+        </li>
+      ))}
+    </ul>
+  );
+}

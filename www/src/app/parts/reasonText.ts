@@ -1,0 +1,136 @@
+/** The core's reasons in words. */
+import type {
+  BuildingRefinement,
+  LineOrigin,
+  Refutation,
+  SegmentOutcome,
+  TestedRelation,
+} from "../../shared/traces";
+
+/** Why a side of a line has no half-plane (B99 4.1). */
+export const REJECTION_WORDS: Record<string, string> = {
+  on_ground: "the line lies on the ground",
+  no_frame: "the line is vertical",
+  too_short: "no view shows the whole line at sufficient length",
+  no_points_of_interest: "too little texture beside the line",
+  no_valid_view: "too few views agree at any angle",
+  at_interval_end: "Sim grows up to the end of the interval",
+  low_peak: "the peak is too low",
+  flat_curve: "the curve is too flat",
+  small_amplitude: "the amplitude is too small",
+  improbable: "the posterior probability is too low",
+};
+
+const NOT_VERIFIED: Record<string, string> = {
+  no_fit: "no line fits the segments",
+  ill_conditioned: "the line is not determined across itself",
+  unverified: "one view alone determines it",
+  too_few_edges: "the edge shows in fewer than three views",
+  too_few_segments: "too few views have a segment on it",
+  not_alike: "its surroundings differ between the views",
+  too_few_views: "too few views support it",
+  too_short: "the supported stretch is too short",
+  outside_heights: "it leaves the height range",
+};
+
+export function outcomeWords(outcome: SegmentOutcome | null): string {
+  switch (outcome?.fate) {
+    case undefined:
+      return "not matched yet";
+    case "matched":
+      return `matched, in match ${outcome.line}`;
+    case "no_candidate":
+      return "refused: no segment in any beam";
+    case "below_threshold":
+      return `refused: best score ${outcome.best.toFixed(2)} is below the threshold`;
+    case "not_verified":
+      return `refused: ${NOT_VERIFIED[outcome.reason] ?? outcome.reason}`;
+    case "left_out":
+      return `refused: match ${outcome.line}, which its pair became, fits better without it`;
+    case "lost_to":
+      return `lost its partners to match ${outcome.line}`;
+  }
+}
+
+/** How a 3D line was found. */
+export const ORIGIN_WORDS: Record<LineOrigin, string> = {
+  matched: "matched over the views",
+  clustered: "from boundaries of regions, in object space",
+  intersection: "new: two planes intersect here",
+  border: "new: a border, seen again in the views",
+};
+
+/** Why the model leaves a 3D line out of the files. */
+export const REFUTATION_WORDS: Record<Refutation, string> = {
+  hidden: "roofs hide it from all but two of its views",
+  underground: "it goes into the ground",
+  afloat: "it lies on no surface, and too few views are certain of it",
+  too_few_views: "three views show it where six can see it",
+  repeated: "a better line runs along it",
+};
+
+export const RELATION_WORDS: Record<TestedRelation["kind"], string> = {
+  horizontal: "level",
+  parallel: "parallel",
+  perpendicular: "perpendicular",
+  equal_height: "equal height",
+  symmetric: "symmetric",
+};
+
+/** Why a building keeps the shape that it had (B99 2). */
+const UNREFINED: Record<string, string> = {
+  too_large: "too many unknowns",
+  few_sightings: "too few sides show",
+  singular: "no solution",
+  no_gain: "the images fit no better",
+  broken: "the new outline does not close",
+  dissimilar: "the views agree less inside",
+};
+
+/** What refinement made of a building, in a line. */
+export function refinementWords({ error_before_px, error_after_px, refused }: BuildingRefinement): string {
+  return refused === null
+    ? `${error_before_px.toFixed(2)} → ${error_after_px.toFixed(2)} px`
+    : `not refined: ${UNREFINED[refused.reason] ?? refused.reason}`;
+}
+
+/** Why a pair of parallel lines gave no plane (W96 3.6). */
+export const PAIR_WORDS: Record<string, string> = {
+  shape: "too steep, too narrow or too wide",
+  near_ground: "not higher above the ground than a car",
+  no_ends: "crossing lines make no two ends",
+  weak: "its best measure is not positive",
+};
+
+export function facetRejectionWords(reason: Record<string, Record<string, number>>): string {
+  const [name, numbers] = Object.entries(reason)[0] ?? ["", {}];
+  const value = Object.values(numbers)[0] ?? 0;
+  switch (name) {
+    case "too_small":
+      return `too small (${value.toFixed(1)} m²)`;
+    case "too_narrow":
+      return `too narrow for windows of ${value.toFixed(1)} m to show it`;
+    case "near_ground":
+      return `near the ground (${value.toFixed(1)} m above it)`;
+    case "reaches_ground":
+      return `its low side lies on the ground (${value.toFixed(1)} m above it)`;
+    case "dissimilar":
+      return `the views do not agree inside (${value.toFixed(2)})`;
+    case "contradicted":
+      return `the views that see it do not agree inside (${value.toFixed(2)})`;
+    case "bridge":
+      return `steep, without a half-plane, and the views that see it agree by chance at most (${value.toFixed(2)}): it spans a gap`;
+    case "displaced":
+      return `the views agree better on it moved up or down (by ${value.toFixed(1)} σ)`;
+    case "beyond_line":
+      return `beyond a line that bounds it, where the views agree by chance at most (${value.toFixed(2)})`;
+    case "vegetation":
+      return `green as plants are, and no roof by its lines or its inside (${value.toFixed(2)})`;
+    case "outdone":
+      return `the views agree better on plane ${numbers["by"]} inside (by ${(numbers["sigmas"] ?? 0).toFixed(1)} σ)`;
+    case "unsupported":
+      return `too little of its outline is real (τ = ${value.toFixed(2)})`;
+    default:
+      return name;
+  }
+}

@@ -1,0 +1,54 @@
+/** The output files, as soon as their stage has run. */
+
+import { download } from "../session/stageRuns";
+import { exportNames, inspection, isBusy } from "../state/state";
+import { saveProject } from "./projectActions";
+
+const WHAT: Record<string, string> = {
+  "model.glb": "textured model, glTF 2.0",
+  "model.city.json": "CityJSON 2.0, LoD 2.2",
+  "model_atlas.jpg": "its texture, as of the OBJ file",
+  "model.obj": "triangles with texture",
+  "model.mtl": "material of the OBJ file",
+  "model.ply": "triangles, and 3D lines as edges",
+  "model.dxf": "3DFACE and LINE, AutoCAD R12",
+  "footprints.geojson": "outlines on the ground",
+  "lines.csv": "3D lines as a table",
+  "lines.json": "3D lines and their views",
+  "halfplanes.json": "half-planes and Sim(theta)",
+  "segments.json": "image segments",
+  "report.json": "counts, parameters, warnings",
+};
+
+export function Downloads() {
+  return (
+    <section class="panel">
+      <div class="row spread">
+        <h2>Output</h2>
+        <button
+          type="button"
+          class="quiet"
+          disabled={inspection.value === null || isBusy.value}
+          title="Images, orientation, choices, parameters and results in one file, which opens here and on the command line"
+          onClick={() => void saveProject()}
+        >
+          Save project
+        </button>
+      </div>
+      {exportNames.value.length === 0 ? (
+        <p class="muted">Files appear here once their stage has run.</p>
+      ) : (
+        <ul class="downloads">
+          {exportNames.value.map((name) => (
+            <li key={name}>
+              <button type="button" class="link" onClick={() => void download(name)}>
+                {name}
+              </button>
+              <span class="muted">{WHAT[name] ?? ""}</span>
+            </li>
+          ))}
+        </ul>
+      )}
+    </section>
+  );
+}

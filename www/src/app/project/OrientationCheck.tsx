@@ -1,0 +1,69 @@
+/** The doctor's report: how well the images agree with their orientation, what else was tried, and the cure. */
+
+import type { Agreement, DoctorReport } from "../../shared/results";
+import { grouped } from "../parts/numberText";
+import { setRunOptions } from "./projectActions";
+
+/** Trials beyond these explain nothing. */
+const MOST_TRIALS = 10;
+
+export function Diagnosis({ report }: { report: DoctorReport }) {
+  const { stated, cured, offsets_px: offsets, mistake, trials } = report;
+  return (
+    <div class="diagnosis" data-testid="diagnosis" data-finding={report.finding}>
+      <dl class="facts">
+        <Score name="Agreement as stated" agreement={stated} />
+        {cured !== null && <Score name="Without the mistake" agreement={cured} />}
+        {offsets?.map((offset, i) => (
+          <div key={i === 0 ? "before" : "after"}>
+            <dt>{i === 0 ? "Mean offset as stated" : "Without the mistake"}</dt>
+            <dd class="numbers">{offset.toFixed(2)} px</dd>
+          </div>
+        ))}
+      </dl>
+      {mistake !== null && (
+        <button type="button" class="primary" onClick={() => void setRunOptions({ applyFix: true })}>
+          Apply the fix
+        </button>
+      )}
+      {trials.length > 0 && (
+        <details class="trials" open={mistake === null}>
+          <summary>What was tried</summary>
+          <table>
+            <thead>
+              <tr>
+                <th scope="col">If</th>
+                <th scope="col">Agreement</th>
+                <th scope="col">Points</th>
+              </tr>
+            </thead>
+            <tbody>
+              {trials.slice(0, MOST_TRIALS).map(({ words, agreement, all_pairs }) => (
+                <tr key={words}>
+                  <td>{words}</td>
+                  <td class="numbers">{agreement.score.toFixed(2)}</td>
+                  <td class="numbers">
+                    {grouped(agreement.points)}
+                    {!all_pairs && " (few views)"}
+                  </td>
+                </tr>
+              ))}
+            </tbody>
+          </table>
+        </details>
+      )}
+    </div>
+  );
+}
+
+/** 0 is what chance gives, 1 is perfect. */
+function Score({ name, agreement: { score } }: { name: string; agreement: Agreement }) {
+  return (
+    <div>
+      <dt>{name}</dt>
+      <dd class="numbers">
+        <meter min={0} max={1} value={score} aria-label={name} /> {score.toFixed(2)}
+      </dd>
+    </div>
+  );
+}

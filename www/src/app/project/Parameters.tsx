@@ -1,0 +1,98 @@
+/** The parameters of every stage, from the core's own defaults; what differs from them is marked. */
+import { useState } from "preact/hooks";
+import { TextField } from "../parts/TextField";
+import { resetParams, setParam } from "../session/stageRuns";
+import {
+  fieldText,
+  type ParamField,
+  type ParamSection,
+  paramSections,
+  parseField,
+} from "../settings/parameterForm";
+import { defaults, params } from "../state/state";
+
+export function Parameters() {
+  const sections = paramSections(defaults.value, params.value);
+  const changed = sections.reduce((sum, section) => sum + section.changed, 0);
+  return (
+    <section class="panel">
+      <div class="row spread">
+        <h2>Parameters</h2>
+        {changed > 0 && (
+          <button type="button" class="quiet" onClick={resetParams}>
+            Reset {changed}
+          </button>
+        )}
+      </div>
+      <p class="muted">The defaults are the paper's. A change makes its stage and all later ones outdated.</p>
+      {sections.map((section) => (
+        <Section key={section.path} section={section} />
+      ))}
+    </section>
+  );
+}
+
+function Section({ section }: { section: ParamSection }) {
+  return (
+    <details class="params" open={section.changed > 0}>
+      <summary>
+        {section.title}
+        {section.changed > 0 && <span class="changed-mark">{section.changed} changed</span>}
+      </summary>
+      {section.fields.map((field) => (
+        <Field key={field.key} path={section.path} field={field} />
+      ))}
+    </details>
+  );
+}
+
+function Field({ path, field }: { path: string; field: ParamField }) {
+  const [error, setError] = useState("");
+  const id = `param-${path.replaceAll(".", "-")}-${field.key}`;
+  const change = (text: string) => {
+    const parsed = parseField(field, text);
+    setError("error" in parsed ? parsed.error : "");
+    if ("value" in parsed) {
+      setParam(`${path}.${field.key}`, parsed.value);
+    }
+    return "value" in parsed;
+  };
+  return (
+    <div class={`field ${field.changed ? "changed" : ""}`}>
+      <label for={id} title={field.key}>
+        {field.label}
+      </label>
+      {field.kind === "boolean" ? (
+        <input
+          id={id}
+          type="checkbox"
+          checked={field.value === true}
+          onChange={(event) => change(String(event.currentTarget.checked))}
+        />
+      ) : field.kind === "choice" ? (
+        <select
+          id={id}
+          value={fieldText(field.value)}
+          aria-describedby={`${id}-note`}
+          onChange={(event) => change(event.currentTarget.value)}
+        >
+          {field.choices.map((choice) => (
+            <option key={choice}>{choice}</option>
+          ))}
+        </select>
+      ) : (
+        <TextField
+          id={id}
+          inputMode={field.kind === "number" ? "decimal" : "text"}
+          value={fieldText(field.value)}
+          isInvalid={error !== ""}
+          onTake={change}
+        />
+      )}
+      <span class="unit muted">{field.unit}</span>
+      <span id={`${id}-note`} class={error === "" ? "muted note" : "error note"}>
+        {error || (field.changed ? `default ${fieldText(field.fallback)}` : "")}
+      </span>
+    </div>
+  );
+}

@@ -1,0 +1,260 @@
+/** The project: where files are dropped, and what each of them was recognised as. */
+import { useEffect, useRef, useState } from "preact/hooks";
+import type { ImageReport } from "../../shared/results";
+import { notify } from "../session/session";
+import { files, inspection, keptBytes, peakMb, projectName, runOptions, scene } from "../state/state";
+import { droppedFiles, pickedFiles } from "./inputFiles";
+import { Diagnosis } from "./OrientationCheck";
+import { addFiles, clearProject, openDemo, removeFile, setRunOptions } from "./projectActions";
+import { OrientationChoice, PlaceFields } from "./RunOptionFields";
+import { Thumbnail } from "./Thumbnail";
+
+export function Project() {
+  return (
+    <section class="panel">
+      <h2>Project{projectName.value !== "" && <span class="muted"> · {projectName}</span>}</h2>
+      <DropZone />
+      {files.value.length > 0 && <Views />}
+      {files.value.length > 0 && <OtherFiles />}
+      <Warnings />
+      {runOptions.value.applyFix && (
+        <button type="button" onClick={() => void setRunOptions({ applyFix: false })}>
+          Take the orientation as it is
+        </button>
+      )}
+      <KeptNote />
+    </section>
+  );
+}
+
+function DropZone() {
+  const isOver = useFileDrop();
+  const fileInput = useRef<HTMLInputElement>(null);
+  const folderInput = useRef<HTMLInputElement>(null);
+  const isEmpty = files.value.length === 0;
+
+  const onPick = (event: Event) => {
+    const input = event.currentTarget as HTMLInputElement;
+    const picked = pickedFiles(input.files ?? new DataTransfer().files);
+    input.value = "";
+    void addFiles(picked);
+  };
+
+  return (
+    <section class={`dropzone ${isOver ? "over" : ""}`} aria-label="Add files">
+      <p>
+        {isEmpty
+          ? "Drop three or more overlapping photographs and their orientation files: files or a folder, in one go, anywhere on the page."
+          : "Drop more files here."}
+      </p>
+      {isEmpty && (
+        <p class="muted">
+          JPEG, PNG or TIFF; orientation as COLMAP, Metashape, Pix4D, OpenSfM, Bundler and others write it,
+          matrices, or X Y Z omega phi kappa lists; also in a .zip.
+        </p>
+      )}
+      <div class="row">
+        <button type="button" onClick={() => fileInput.current?.click()}>
+          Files…
+        </button>
+        <button type="button" onClick={() => folderInput.current?.click()}>
+          Folder…
+        </button>
+        <button type="button" class={isEmpty ? "primary" : ""} onClick={() => void openDemo()}>
+          Demo scene
+        </button>
+      </div>
+      <input ref={fileInput} type="file" multiple hidden data-testid="file-input" onChange={onPick} />
+      <input
+        ref={folderInput}
+        type="file"
+        multiple
+        hidden
+        onChange={onPick}
+        {...({ webkitdirectory: true } as object)}
+      />
+    </section>
+  );
+}
+
+/** Takes files that are dropped anywhere, which the browser would open in the page's place; tells whether some are held over it. */
+function useFileDrop(): boolean {
+  const [isOver, setOver] = useState(false);
+  useEffect(() => {
+    const end = new AbortController();
+    const on = (name: "dragover" | "dragleave" | "drop", hear: (event: DragEvent) => void) =>
+      window.addEventListener(name, hear, { signal: end.signal });
+    on("dragover", (event) => {
+      if (event.dataTransfer?.types.includes("Files")) {
+        event.preventDefault();
+        setOver(true);
+      }
+    });
+    // From part to part of the page nothing is left.
+    on("dragleave", ({ relatedTarget }) => {
+      if (relatedTarget === null) {
+        setOver(false);
+      }
+    });
+    on("drop", (event) => {
+      setOver(false);
+      if (event.dataTransfer?.types.includes("Files")) {
+        event.preventDefault();
+        droppedFiles(event.dataTransfer).then(addFiles, (error: unknown) =>
+          notify({ severity: "error", title: "The dropped files cannot be read", text: String(error) }),
+        );
+      }
+    });
+    return () => end.abort();
+  }, []);
+  return isOver;
+}
+
+function Views() {
+  const report = inspection.value;
+  if (report === null) {
+    return <p class="muted">Reading {files.value.length} files…</p>;
+  }
+  return (
+    <>
+      <div class="row spread">
+        <h3>{countText(report.images)}</h3>
+        <button type="button" class="quiet" onClick={() => void clearProject()}>
+          Remove all
+        </button>
+      </div>
+      {peakMb.value !== null && <p class="muted numbers">about {peakMb} MB of memory in each worker</p>}
+      <ul class="views">
+        {report.images.map((image) => (
+          <ViewRow key={image.path} image={image} />
+        ))}
+      </ul>
+      <OrientationChoice />
+      <PlaceFields />
+    </>
+  );
+}
+
+function ViewRow({ image }: { image: ImageReport }) {
+  const blob = files.value.find(({ path }) => path === image.path)?.blob;
+  const { leftOut } = runOptions.value;
+  const isUsed = !leftOut.includes(image.path);
+  const others = leftOut.filter((path) => path !== image.path);
+  return (
+    <li class={`view ${isUsed ? "" : "left-out"}`}>
+      <input
+        type="checkbox"
+        checked={isUsed}
+        aria-label={`Use ${image.path}`}
+        onChange={() => void setRunOptions({ leftOut: isUsed ? [...others, image.path] : others })}
+      />
+      <Thumbnail blob={blob} />
+      <div class="view-text">
+        <span class="name" title={image.path}>
+          {baseName(image.path)}
+        </span>
+        <span class="muted numbers">
+          {image.size === null ? "unreadable" : `${image.size[0]} × ${image.size[1]} px`}
+        </span>
+        <span class={`status ${image.orientation === null ? "bad" : "good"}`} title={image.orientation ?? ""}>
+          {image.orientation === null ? "no orientation" : "oriented"}
+        </span>
+      </div>
+      <RemoveButton path={image.path} />
+    </li>
+  );
+}
+
+/** Files inside an archive come and go with it. */
+function RemoveButton({ path }: { path: string }) {
+  if (!files.value.some((file) => file.path === path)) {
+    return <span />;
+  }
+  return (
+    <button type="button" class="quiet" aria-label={`Remove ${path}`} onClick={() => void removeFile(path)}>
+      ✕
+    </button>
+  );
+}
+
+function OtherFiles() {
+  const report = inspection.value;
+  const others =
+    report?.files.filter(({ path }) => !report.images.some((image) => image.path === path)) ?? [];
+  if (others.length === 0) {
+    return null;
+  }
+  return (
+    <>
+      <h3>Orientation and other files</h3>
+      <ul class="files">
+        {others.map(({ path, description }) => (
+          <li key={path}>
+            <span class="name" title={path}>
+              {baseName(path)}
+            </span>
+            <span class="muted" title={description}>
+              {description}
+            </span>
+            <RemoveButton path={path} />
+          </li>
+        ))}
+      </ul>
+    </>
+  );
+}
+
+/** What the browser keeps, and how to have it forget. */
+function KeptNote() {
+  const bytes = keptBytes.value;
+  if (bytes === null || files.value.length === 0) {
+    return null;
+  }
+  return (
+    <p class="kept muted" data-testid="kept">
+      <span>Kept in this browser: {(bytes / 1e6).toFixed(1)} MB</span>
+      <button type="button" class="quiet" onClick={() => void clearProject()}>
+        Delete
+      </button>
+    </p>
+  );
+}
+
+function Warnings() {
+  const all = new Set([...(inspection.value?.warnings ?? []), ...(scene.value?.warnings ?? [])]);
+  if (all.size === 0) {
+    return null;
+  }
+  return (
+    <>
+      <h3>Warnings</h3>
+      <ul class="warnings">
+        {[...all].map((text) => (
+          <li key={text}>{text}</li>
+        ))}
+      </ul>
+      <Doubts />
+    </>
+  );
+}
+
+/** The doctor's report on a scene that was not refused, where there is something to see. */
+function Doubts() {
+  const report = scene.value?.doctor ?? null;
+  const isCured = runOptions.value.applyFix;
+  if (report === null || isCured || (report.mistake === null && report.trials.length === 0)) {
+    return null;
+  }
+  return <Diagnosis report={report} />;
+}
+
+/** "6 views", or "4 of 6 views" where some are left out. */
+function countText(images: readonly ImageReport[]): string {
+  const used = images.filter(({ path }) => !runOptions.value.leftOut.includes(path)).length;
+  const all = `${images.length} ${images.length === 1 ? "view" : "views"}`;
+  return used === images.length ? all : `${used} of ${all}`;
+}
+
+function baseName(path: string): string {
+  return path.slice(path.lastIndexOf("/") + 1);
+}

@@ -1,0 +1,114 @@
+/** Which orientation, which part of the ground, how high it lies. */
+import { signal } from "@preact/signals";
+import { useState } from "preact/hooks";
+import { TextField } from "../parts/TextField";
+import { type Parsed, parseHeight, parseRegion, parseTile } from "../settings/loadOptions";
+import { inspection, runOptions } from "../state/state";
+import { setRunOptions } from "./projectActions";
+
+/** Where the files hold the orientation several times: which one is taken. */
+export function OrientationChoice() {
+  const found = inspection.value?.orientations ?? [];
+  if (found.length < 2) {
+    return null;
+  }
+  return (
+    <div class="option">
+      <label for="orientation">Orientation</label>
+      <select
+        id="orientation"
+        value={runOptions.value.orientation ?? found[0]?.path}
+        onChange={(event) => void setRunOptions({ orientation: event.currentTarget.value })}
+      >
+        {found.map(({ label, path }) => (
+          <option key={path} value={path}>
+            {label}
+          </option>
+        ))}
+      </select>
+    </div>
+  );
+}
+
+/** Whether the fields were open last; views that are read again draw them anew. */
+const placeOpen = signal(false);
+
+/** Region of interest and height of the ground, both in the frame of the orientation. */
+export function PlaceFields() {
+  const { roi, groundZ, tileM, adjust } = runOptions.value;
+  return (
+    <details
+      class="params"
+      open={placeOpen.value || roi !== null || groundZ !== null || adjust}
+      onToggle={(event) => {
+        placeOpen.value = event.currentTarget.open;
+      }}
+    >
+      <summary>Region and ground</summary>
+      <OptionField
+        id="roi"
+        label="Region x0, y0, x1, y1 (m)"
+        placeholder="all"
+        value={roi}
+        parse={parseRegion}
+        onValue={(roi) => void setRunOptions({ roi })}
+      />
+      <OptionField
+        id="ground-z"
+        label="Height of the ground (m)"
+        placeholder="estimated"
+        value={groundZ}
+        parse={parseHeight}
+        onValue={(groundZ) => void setRunOptions({ groundZ })}
+      />
+      <OptionField
+        id="tile"
+        label="In tiles of (m)"
+        placeholder="in one"
+        value={tileM}
+        parse={parseTile}
+        onValue={(tileM) => void setRunOptions({ tileM })}
+      />
+      <label class="option">
+        <input type="checkbox" checked={adjust} onChange={() => void setRunOptions({ adjust: !adjust })} />
+        Adjust small errors of single views
+      </label>
+    </details>
+  );
+}
+
+interface FieldProps<T> {
+  id: string;
+  label: string;
+  placeholder: string;
+  value: T | null;
+  parse: (text: string) => Parsed<T>;
+  onValue: (value: T | null) => void;
+}
+
+function OptionField<T>({ id, label, placeholder, value, parse, onValue }: FieldProps<T>) {
+  const [error, setError] = useState("");
+  const change = (text: string) => {
+    const parsed = parse(text);
+    setError("error" in parsed ? parsed.error : "");
+    if ("value" in parsed) {
+      onValue(parsed.value);
+    }
+    return "value" in parsed;
+  };
+  return (
+    <div class="option">
+      <label for={id}>{label}</label>
+      <TextField
+        id={id}
+        value={Array.isArray(value) ? value.join(", ") : String(value ?? "")}
+        placeholder={placeholder}
+        isInvalid={error !== ""}
+        onTake={change}
+      />
+      <span id={`${id}-note`} class="error note">
+        {error}
+      </span>
+    </div>
+  );
+}

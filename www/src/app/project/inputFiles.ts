@@ -1,0 +1,63 @@
+/** Files from a drop, a folder or a picker, with their paths, hidden files left out. */
+import type { InputFile } from "../../shared/messages";
+
+/** Everything that was dropped, folders walked through. Must be called before the event's handler returns. */
+export function droppedFiles(transfer: DataTransfer): Promise<InputFile[]> {
+  const entries = [...transfer.items]
+    .map((item) => item.webkitGetAsEntry())
+    .filter((entry) => entry !== null);
+  if (entries.length === 0) {
+    return Promise.resolve(pickedFiles(transfer.files));
+  }
+  return Promise.all(entries.map(walk)).then((lists) => lists.flat().filter(isVisible));
+}
+
+export function pickedFiles(list: FileList): InputFile[] {
+  return [...list]
+    .map((file) => ({ path: withoutRoot(file.webkitRelativePath) || file.name, blob: file }))
+    .filter(isVisible);
+}
+
+async function walk(entry: FileSystemEntry): Promise<InputFile[]> {
+  if (entry.isFile) {
+    const file = await new Promise<File>((resolve, reject) =>
+      (entry as FileSystemFileEntry).file(resolve, reject),
+    );
+    return [{ path: entry.fullPath.replace(/^\//, ""), blob: file }];
+  }
+  const children = await readAll((entry as FileSystemDirectoryEntry).createReader());
+  return (await Promise.all(children.map(walk))).flat();
+}
+
+/** A directory reader gives its entries in batches, until an empty one. */
+async function readAll(reader: FileSystemDirectoryReader): Promise<FileSystemEntry[]> {
+  const all: FileSystemEntry[] = [];
+  for (;;) {
+    const batch = await new Promise<FileSystemEntry[]>((resolve, reject) =>
+      reader.readEntries(resolve, reject),
+    );
+    if (batch.length === 0) {
+      return all;
+    }
+    all.push(...batch);
+  }
+}
+
+/** The picked folder itself is not part of the paths below it. */
+function withoutRoot(path: string): string {
+  return path.slice(path.indexOf("/") + 1);
+}
+
+function isVisible({ path }: InputFile): boolean {
+  return !path.split("/").some((part) => part.startsWith(".") || part === "__MACOSX");
+}
+
+/** Saves a file through the browser. */
+export function save(name: string, blob: Blob): void {
+  const url = URL.createObjectURL(blob);
+  const link = document.createElement("a");
+  link.href = url;
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(url), 10_000);
+}

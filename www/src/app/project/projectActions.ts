@@ -1,0 +1,264 @@
+/** What a person can do with the project: files, the demo scene, and what is asked for beyond the files. */
+import { batch } from "@preact/signals";
+import type { InputFile } from "../../shared/messages";
+import { failureNotice } from "../session/failureNotice";
+import {
+  engine,
+  ensureInspected,
+  ensureScene,
+  guarded,
+  held,
+  listStages,
+  notify,
+  stopWorker,
+} from "../session/session";
+import { clearResults, runAll, runTo } from "../session/stageRuns";
+import { linkedParams } from "../settings/addressLink";
+import { loadOptions, wishesOf } from "../settings/loadOptions";
+import { changedParams, paramsOf } from "../settings/parameterForm";
+import {
+  defaults,
+  files,
+  freshStages,
+  images,
+  inspection,
+  isDemo,
+  keptResult,
+  NO_OPTIONS,
+  notices,
+  params,
+  peakMb,
+  projectName,
+  type RunOptions,
+  runOptions,
+  scene,
+  shownView,
+} from "../state/state";
+import { save } from "./inputFiles";
+import type { Kept } from "./storedProject";
+
+/** So many refusals are shown at once: the first ones usually explain the others. */
+const MAX_PROBLEMS = 4;
+
+/** Adds files (the same path replaces), inspects them, and loads the scene once it looks whole. */
+export async function addFiles(added: InputFile[], name?: string): Promise<void> {
+  if (added.length === 0) {
+    return;
+  }
+  removals = [];
+  const byPath = new Map(files.value.map((file) => [file.path, file]));
+  for (const file of added) {
+    byPath.set(file.path, file);
+  }
+  if (name !== undefined || projectName.value === "") {
+    projectName.value = name ?? "Own files";
+  }
+  await setProject([...byPath.values()], adoptProject);
+}
+
+/** Takes up what a project file among the added ones asks for. */
+async function adoptProject(): Promise<void> {
+  const opened = await engine.call("openedProject", {});
+  if (opened === null || inspection.value === null) {
+    return;
+  }
+  const wishes = wishesOf(opened.options, inspection.value);
+  batch(() => {
+    runOptions.value = wishes;
+    params.value = paramsOf(defaults.value, changedParams(defaults.value, opened.params));
+    inspection.value = null;
+  });
+  await listStages();
+  await ensureInspected();
+}
+
+/** Saves files, wishes, parameters and results as one file, which opens to the same state. */
+export async function saveProject(): Promise<void> {
+  await guarded("Writing the project", async () => {
+    await ensureInspected();
+    await engine.call("setParams", { params: params.value });
+    const options = loadOptions(runOptions.value, inspection.value);
+    const bytes = await engine.call("exportProject", { options });
+    save("ridgeline-project.zip", new Blob([bytes], { type: "application/zip" }));
+  });
+}
+
+export async function removeFile(path: string): Promise<void> {
+  await removing(path.slice(path.lastIndexOf("/") + 1), () =>
+    setProject(files.value.filter((file) => file.path !== path)),
+  );
+}
+
+export async function clearProject(): Promise<void> {
+  await removing("The project", async () => {
+    projectName.value = "";
+    await setProject([]);
+  });
+}
+
+const UNDO = "Undo";
+
+/** What was removed since files came last, and the project before that; the last removal is taken back first. */
+let removals: { what: string; before: Kept }[] = [];
+
+/** Removes something, and offers to take that back. */
+async function removing(what: string, remove: () => Promise<void>): Promise<void> {
+  const before: Kept = {
+    name: projectName.value,
+    isDemo: isDemo.value,
+    files: files.value,
+    options: runOptions.value,
+    params: params.value,
+  };
+  removals = [...removals, { what, before }];
+  // It is gone at once; reading what is left takes its time.
+  const reading = remove();
+  offerUndo();
+  await reading;
+}
+
+/** Offers to take back the last removal, in place of any other one. */
+function offerUndo(): void {
+  notices.value = notices.value.filter(({ action }) => action?.name !== UNDO);
+  const last = removals.at(-1);
+  if (last !== undefined) {
+    notify({
+      severity: "info",
+      title: `${last.what} was removed`,
+      text: "",
+      action: { name: UNDO, run: () => void undo(last.before) },
+    });
+  }
+}
+
+async function undo(before: Kept): Promise<void> {
+  removals = removals.slice(0, -1);
+  await restoreProject(before);
+  offerUndo();
+}
+
+/** Takes up the project of the last visit. */
+export async function restoreProject(kept: Kept): Promise<void> {
+  projectName.value = kept.name;
+  runOptions.value = { ...NO_OPTIONS, ...kept.options };
+  const linked = linkedParams();
+  params.value = paramsOf(defaults.value, { ...changedParams(defaults.value, kept.params), ...linked });
+  await guarded("", listStages);
+  await setProject(kept.files);
+  isDemo.value = kept.isDemo;
+}
+
+/**
+ * Fetches the demo scene from this site and drops it in as if it were the user's; then runs it up to a stage: the last
+ * one unless another is named, none for null.
+ */
+export async function openDemo(target?: string | null): Promise<void> {
+  const fetched = await guarded("Fetching the demo scene", fetchDemo);
+  if (fetched === undefined) {
+    return;
+  }
+  files.value = [];
+  runOptions.value = NO_OPTIONS;
+  await addFiles(fetched.files, fetched.title);
+  isDemo.value = true;
+  if (target === undefined) {
+    await runAll();
+  } else if (target !== null) {
+    await runTo(target);
+  }
+}
+
+/** Changes what is asked for beyond the files, and loads the scene again. */
+export async function setRunOptions(change: Partial<RunOptions>): Promise<void> {
+  stopWorker();
+  held.scene = false;
+  held.inspection = false;
+  freshStages.value = 0;
+  batch(() => {
+    runOptions.value = { ...runOptions.value, ...change };
+    if (change.orientation !== undefined) {
+      inspection.value = null;
+    }
+    notices.value = [];
+    clearScene();
+  });
+  await loadProject("Loading");
+}
+
+async function setProject(next: InputFile[], adopt?: () => Promise<void>): Promise<void> {
+  stopWorker();
+  held.files = false;
+  held.scene = false;
+  freshStages.value = 0;
+  batch(() => {
+    files.value = next;
+    isDemo.value = false;
+    inspection.value = null;
+    notices.value = [];
+    runOptions.value = next.length === 0 ? NO_OPTIONS : runOptions.value;
+    clearScene();
+  });
+  await loadProject("Reading files", adopt);
+}
+
+/** Inspects the files, says what stands against them, or loads the scene. */
+async function loadProject(what: string, adopt?: () => Promise<void>): Promise<void> {
+  if (files.value.length === 0) {
+    return;
+  }
+  await guarded(what, async () => {
+    await ensureInspected();
+    await adopt?.();
+    const problems = inspection.value?.errors ?? [];
+    // The inspection is of all images, and does not look into them: where that matters, loading says
+    // what is wrong.
+    const { leftOut, tileM } = runOptions.value;
+    const isFinal = leftOut.length === 0 && inspection.value?.is_implausible !== true;
+    if (tileM !== null) {
+      // A large area may be too much to load at once: where something stands against the whole, the plan of the tiles says
+      // whether it does against them.
+      const options = loadOptions(runOptions.value, inspection.value);
+      await (problems.length === 0 || engine.call("planTiles", { options, tileM }));
+      return;
+    }
+    if (problems.length === 0 || !isFinal) {
+      await ensureScene();
+      return;
+    }
+    for (const problem of problems.slice(0, MAX_PROBLEMS)) {
+      notify(failureNotice(problem, "input"));
+    }
+  });
+}
+
+function clearScene(): void {
+  for (const image of images.value) {
+    image.close();
+  }
+  scene.value = null;
+  peakMb.value = null;
+  images.value = [];
+  shownView.value = 0;
+  keptResult.value = null;
+  clearResults();
+}
+
+async function fetchDemo(): Promise<{ title: string; files: InputFile[] }> {
+  const folder = new URL("demo/", document.baseURI);
+  const manifest = (await (await fetchOk(new URL("manifest.json", folder))).json()) as {
+    title: string;
+    files: string[];
+  };
+  const fetched = await Promise.all(
+    manifest.files.map(async (path) => ({ path, blob: await (await fetchOk(new URL(path, folder))).blob() })),
+  );
+  return { title: manifest.title, files: fetched };
+}
+
+async function fetchOk(url: URL): Promise<Response> {
+  const response = await fetch(url);
+  if (!response.ok) {
+    throw new Error(`${url.pathname}: the site answered ${response.status}. Was the demo folder published?`);
+  }
+  return response;
+}

@@ -1,0 +1,74 @@
+/** A large area, tile by tile in the worker, and one model of all of them. */
+import { batch } from "@preact/signals";
+import { EngineError } from "../../core/engine";
+import type { TileReport } from "../../shared/results";
+import { loadOptions } from "../settings/loadOptions";
+import {
+  exportNames,
+  freshStages,
+  inspection,
+  NO_RESULTS,
+  params,
+  runOptions,
+  setResults,
+  tab,
+} from "../state/state";
+import { engine, ensureInspected, held, say, updateStage } from "./session";
+import { stageWords } from "./stageCatalogue";
+
+/** The progress of the whole area is shown at the last stage: only the model spans the tiles. */
+const STAGE = "model";
+
+/** Works off the region of interest in tiles of about this size, metres. */
+export async function runTiles(tileM: number): Promise<void> {
+  await ensureInspected();
+  await engine.call("setParams", { params: params.value });
+  const started = performance.now();
+  // The worker drops the scene: a tile needs the memory.
+  held.scene = false;
+  batch(() => {
+    freshStages.value = 0;
+    setResults(NO_RESULTS);
+    exportNames.value = [];
+    updateStage(STAGE, { status: "running", fraction: 0, warnings: [], counts: {} });
+  });
+  try {
+    const reports = await runEach(tileM);
+    await engine.call("joinTiles", {});
+    const glb = await engine.call("exportFile", { name: "model.glb" });
+    const names = await engine.call("exportNames", {});
+    batch(() => {
+      setResults({ ...NO_RESULTS, glb });
+      exportNames.value = names;
+      tab.value = stageWords(STAGE).tab;
+      updateStage(STAGE, {
+        status: "done",
+        fraction: 1,
+        seconds: (performance.now() - started) / 1000,
+        counts: { tiles: reports.length },
+        warnings: reports
+          .filter(({ outcome }) => !outcome.endsWith(" buildings"))
+          .map(({ outcome }) => outcome),
+      });
+    });
+    say(`${reports.length} tiles done and joined`);
+  } catch (error) {
+    const cancelled = error instanceof EngineError && error.kind === "cancelled";
+    updateStage(STAGE, { status: cancelled ? "waiting" : "failed", fraction: 0 });
+    throw error;
+  }
+}
+
+async function runEach(tileM: number): Promise<TileReport[]> {
+  const options = loadOptions(runOptions.value, inspection.value);
+  const tiles = await engine.call("planTiles", { options, tileM });
+  const reports: TileReport[] = [];
+  for (const index of tiles.keys()) {
+    say(`Tile ${index + 1} of ${tiles.length}`);
+    const report = await engine.call("runTile", { stage: STAGE, index, of: tiles.length });
+    if (report !== null) {
+      reports.push(report);
+    }
+  }
+  return reports;
+}

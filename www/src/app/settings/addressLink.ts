@@ -1,0 +1,156 @@
+/**
+ * The page's state in the address, behind "#", so that a link shows what the teacher sees: scene (the demo only: own
+ * files stay where they are), method, tab, view, selection and changed parameters.
+ */
+import { effect } from "@preact/signals";
+import type { ParamValue } from "../../shared/results";
+import type { Selection } from "../../shared/selection";
+import {
+  defaults,
+  isDemo,
+  lessonStep,
+  method,
+  methodNamed,
+  params,
+  selection,
+  shownView,
+  TABS,
+  type Tab,
+  tab,
+} from "../state/state";
+import { changedParams } from "./parameterForm";
+
+export interface Link {
+  scene: "demo" | null;
+  tab: Tab | null;
+  view: number | null;
+  selection: Selection | null;
+  params: Record<string, ParamValue>;
+  lesson: number | null;
+}
+
+/** What the address asked for when the page was opened. */
+export const opened: Link = parseLink(typeof location === "undefined" ? "" : location.hash);
+
+/** The parameters that the address changes; the method is one of them. */
+export function linkedParams(): Record<string, ParamValue> {
+  return opened.params;
+}
+
+export function parseLink(hash: string): Link {
+  const fields = new URLSearchParams(hash.replace(/^#/, ""));
+  const tabs: readonly string[] = TABS.combined;
+  const asked = fields.get("tab") ?? "";
+  const named = methodNamed(fields.get("method"));
+  const chosen = named === null ? {} : { method: named };
+  return {
+    scene: fields.get("scene") === "demo" ? "demo" : null,
+    tab: tabs.includes(asked) ? (asked as Tab) : null,
+    view: wholeNumber(fields.get("view")),
+    selection: parseSelection(fields.get("select")),
+    params: { ...parseParams(fields.get("params")), ...chosen },
+    lesson: wholeNumber(fields.get("lesson")),
+  };
+}
+
+export function formatLink(link: Link): string {
+  const { method: chosen, ...changed } = link.params;
+  const fields = new URLSearchParams();
+  const set = (name: string, value: string | number | null) => {
+    if (value !== null && value !== "") {
+      fields.set(name, String(value));
+    }
+  };
+  set("scene", link.scene);
+  set("method", chosen === undefined || chosen === "lines" ? null : String(chosen));
+  set("tab", link.tab);
+  set("view", link.view);
+  set("select", link.selection === null ? null : formatSelection(link.selection));
+  set("params", Object.keys(changed).length === 0 ? null : JSON.stringify(changed));
+  set("lesson", link.lesson);
+  return fields.toString();
+}
+
+/** "line:12", "segment:0.44" (view first), "side:12.left". */
+export function formatSelection(picked: Selection): string | null {
+  switch (picked.kind) {
+    case "segment":
+    case "refused":
+    case "region":
+      return `${picked.kind}:${picked.view}.${picked.index}`;
+    case "cluster":
+      return `cluster:${picked.plane}.${picked.index}`;
+    case "relation":
+      return `relation:${picked.building}.${picked.index}`;
+    case "side":
+      return `side:${picked.line}.${picked.side}`;
+    case "surface":
+      return picked.facet === null ? null : `facet:${picked.facet}`;
+    default:
+      return `${picked.kind}:${picked.index}`;
+  }
+}
+
+export function parseSelection(text: string | null): Selection | null {
+  const found = /^([a-z]+):(\d{1,9})(?:\.(\d{1,9}|left|right))?$/.exec(text ?? "");
+  if (found === null) {
+    return null;
+  }
+  const [, kind, first, second] = found as unknown as [string, string, string, string | undefined];
+  const index = Number(first);
+  switch (kind) {
+    case "segment":
+    case "refused":
+    case "region":
+      return /^\d+$/.test(second ?? "") ? { kind, view: index, index: Number(second) } : null;
+    case "cluster":
+      return /^\d+$/.test(second ?? "") ? { kind, plane: index, index: Number(second) } : null;
+    case "relation":
+      return /^\d+$/.test(second ?? "") ? { kind, building: index, index: Number(second) } : null;
+    case "side":
+      return second === "left" || second === "right" ? { kind, line: index, side: second } : null;
+    case "line":
+    case "halfplane":
+    case "group":
+    case "refinement":
+    case "facet":
+    case "withdrawn":
+    case "view":
+    case "pair":
+      return { kind, index };
+    default:
+      return null;
+  }
+}
+
+/** Keeps the address up to date, without filling the history. */
+export function followState(): void {
+  effect(() => {
+    const link: Link = {
+      scene: isDemo.value ? "demo" : null,
+      tab: tab.value,
+      view: shownView.value < 0 ? null : shownView.value,
+      selection: selection.value,
+      params: { ...changedParams(defaults.value, params.value), method: method.value },
+      lesson: lessonStep.value,
+    };
+    if (Object.keys(defaults.value).length > 0) {
+      history.replaceState(null, "", `#${formatLink(link)}`);
+    }
+  });
+}
+
+function wholeNumber(text: string | null): number | null {
+  return text !== null && /^\d{1,6}$/.test(text) ? Number(text) : null;
+}
+
+function parseParams(text: string | null): Record<string, ParamValue> {
+  try {
+    const value: unknown = JSON.parse(text ?? "{}");
+    return typeof value === "object" && value !== null && !Array.isArray(value)
+      ? (value as Record<string, ParamValue>)
+      : {};
+  } catch {
+    return {};
+  }
+}

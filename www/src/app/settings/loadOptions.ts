@@ -1,0 +1,73 @@
+/** What a person asks for beyond the files, as text in fields and as the core takes it. */
+import type { Inspection, LoadOptions, OpenedProject } from "../../shared/results";
+import type { RunOptions } from "../state/state";
+
+/** The core's options; the views are named only where some are left out. */
+export function loadOptions(wanted: RunOptions, inspection: Inspection | null): LoadOptions {
+  const { orientation, leftOut, roi, groundZ, applyFix, adjust, epsg } = wanted;
+  const used = (inspection?.images ?? []).filter(({ path }) => !leftOut.includes(path));
+  return {
+    ...(orientation !== null && { orientation }),
+    ...(leftOut.length > 0 && { views: used.map(({ name }) => name) }),
+    ...(roi !== null && { roi }),
+    ...(groundZ !== null && { groundZ }),
+    ...(applyFix && { applyFix }),
+    ...(adjust && { adjust }),
+    ...(epsg !== null && { epsg }),
+  };
+}
+
+/** What a project file asks for, as the page has it; images are left out that it does not name. */
+export function wishesOf(opened: OpenedProject["options"], inspection: Inspection): RunOptions {
+  const { orientation, views, roi, groundZ, epsg } = opened;
+  const isNamed = (name: string) => (views ?? []).some((view) => stem(view) === stem(name));
+  const leftOut = views === null ? [] : inspection.images.filter(({ name }) => !isNamed(name));
+  return {
+    orientation,
+    leftOut: leftOut.map(({ path }) => path),
+    roi,
+    groundZ,
+    epsg,
+    applyFix: opened.applyFix === true,
+    adjust: opened.adjust === true,
+    tileM: null,
+  };
+}
+
+function stem(name: string): string {
+  return name.replace(/\.[^.]*$/, "");
+}
+
+/** The size of a tile in metres; nothing is no tiles. */
+export function parseTile(text: string): Parsed<number> {
+  const parsed = parseHeight(text);
+  const isTooSmall = "value" in parsed && parsed.value !== null && parsed.value < LEAST_TILE_M;
+  return isTooSmall ? { error: `${LEAST_TILE_M} m or more` } : parsed;
+}
+
+/** Tiles have margins of this width. */
+const LEAST_TILE_M = 30;
+
+export type Parsed<T> = { value: T | null } | { error: string };
+
+/** "x0, y0, x1, y1" in metres; nothing is the whole scene. */
+export function parseRegion(text: string): Parsed<[number, number, number, number]> {
+  const words = text.split(/[\s,;]+/).filter((word) => word !== "");
+  if (words.length === 0) {
+    return { value: null };
+  }
+  const [x0, y0, x1, y1] = words.map(Number) as [number, number, number, number];
+  if (words.length !== 4 || ![x0, y0, x1, y1].every(Number.isFinite)) {
+    return { error: "four numbers: x0, y0, x1, y1" };
+  }
+  return x0 < x1 && y0 < y1 ? { value: [x0, y0, x1, y1] } : { error: "x0 < x1 and y0 < y1 are needed" };
+}
+
+/** A height in metres; nothing has it estimated. */
+export function parseHeight(text: string): Parsed<number> {
+  const trimmed = text.trim();
+  if (trimmed === "") {
+    return { value: null };
+  }
+  return Number.isFinite(Number(trimmed)) ? { value: Number(trimmed) } : { error: "a number in metres" };
+}

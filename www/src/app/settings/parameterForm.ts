@@ -1,0 +1,216 @@
+/** The form of the parameters, made from whatever defaults the core gives: nothing is retyped here. */
+import type { ParamGroup, Params, ParamValue } from "../../shared/results";
+
+export interface ParamField {
+  key: string;
+  label: string;
+  unit: string;
+  kind: "number" | "boolean" | "choice" | "text" | "json";
+  /** The words that a choice may be. */
+  choices: readonly string[];
+  value: ParamValue;
+  fallback: ParamValue;
+  changed: boolean;
+}
+
+export interface ParamSection {
+  /** Where its fields stand: names joined by dots. */
+  path: string;
+  title: string;
+  fields: ParamField[];
+  changed: number;
+}
+
+/** Suffixes of the core's names, longest first, and the unit that they stand for. */
+const UNITS: readonly (readonly [string, string])[] = [
+  ["_px", "px"],
+  ["_deg", "°"],
+  ["_m2", "m²"],
+  ["_m", "m"],
+  ["_s", "s"],
+];
+
+const TITLES: Record<string, string> = {
+  segments: "Segments",
+  matching: "Matching",
+  lines3d: "3D lines",
+  sweep: "Half-plane sweep",
+  roof: "Grouping and facets",
+  "roof.refine": "Regularisation and refinement",
+  texture: "Texture",
+  "objectspace.oris": "Regions (ORIS)",
+  "objectspace.windows": "Windows",
+  "objectspace.directions": "Main directions",
+  "objectspace.clusters": "Clusters",
+  "objectspace.planes": "Planes",
+};
+
+/** Fields that are one of a few words. */
+const CHOICES: Record<string, readonly string[]> = {
+  acceptance: ["printed", "posterior", "both"],
+};
+
+/** The groups that a method reads; "combined" reads all. */
+const GROUPS_OF_METHOD: Record<string, readonly string[]> = {
+  lines: ["segments", "matching", "lines3d", "sweep", "roof", "texture"],
+  rectangles: ["objectspace", "texture"],
+};
+
+/** One section a group, groups inside groups apart, in the core's order; only what the method reads. */
+export function paramSections(defaults: Params, values: Params): ParamSection[] {
+  const groups = GROUPS_OF_METHOD[String(values["method"] ?? "lines")];
+  return Object.entries(defaults)
+    .filter(([name, fallback]) => isGroup(fallback) && (groups?.includes(name) ?? true))
+    .flatMap(([name, fallback]) => sectionsOf(name, fallback, values[name] ?? {}));
+}
+
+function sectionsOf(path: string, defaults: ParamGroup, values: ParamGroup): ParamSection[] {
+  const own = Object.entries(defaults).filter(([, value]) => !isGroup(value));
+  const inner = Object.entries(defaults).filter(([, value]) => isGroup(value));
+  const fields = own.map(([key, fallback]) => paramField(key, fallback, values[key] ?? fallback));
+  const section = {
+    path,
+    title: TITLES[path] ?? innerTitle(path),
+    fields,
+    changed: fields.filter(({ changed }) => changed).length,
+  };
+  return [
+    ...(fields.length > 0 ? [section] : []),
+    ...inner.flatMap(([key, group]) =>
+      sectionsOf(`${path}.${key}`, group as ParamGroup, (values[key] ?? group) as ParamGroup),
+    ),
+  ];
+}
+
+/** "Segments: edgels". */
+function innerTitle(path: string): string {
+  const at = path.lastIndexOf(".");
+  const outer = TITLES[path.slice(0, at)];
+  const own = path.slice(at + 1).replaceAll("_", " ");
+  return outer === undefined ? words(path.slice(at + 1)) : `${outer}: ${own}`;
+}
+
+/** The parameters with another value at a path of names. */
+export function withParam(values: Params, path: string, value: ParamValue): Params {
+  const [first, ...rest] = path.split(".") as [string, ...string[]];
+  const set = (group: ParamValue | undefined, names: readonly string[]): ParamValue => {
+    const [name, ...deeper] = names;
+    return name === undefined
+      ? value
+      : { ...(group as ParamGroup), [name]: set((group as ParamGroup)[name], deeper) };
+  };
+  return { ...values, [first]: set(values[first] ?? {}, rest) as ParamGroup };
+}
+
+/** A parameter in words, with its group: "Half-plane sweep: Min similarity". */
+export function paramName(path: string): string {
+  const at = path.lastIndexOf(".");
+  const [group, key] = [path.slice(0, at), path.slice(at + 1)];
+  const { label, unit } = labelAndUnit(key);
+  return `${TITLES[group] ?? innerTitle(group)}: ${label}${unit === "" ? "" : ` (${unit})`}`;
+}
+
+/** What differs from the defaults, by path: what a link carries. */
+export function changedParams(defaults: Params, values: Params): Record<string, ParamValue> {
+  const changed: Record<string, ParamValue> = {};
+  const walk = (path: string, fallback: ParamValue, value: ParamValue) => {
+    if (isGroup(fallback) && isGroup(value)) {
+      for (const [key, inner] of Object.entries(fallback)) {
+        walk(path === "" ? key : `${path}.${key}`, inner, value[key] ?? inner);
+      }
+    } else if (fieldText(value) !== fieldText(fallback)) {
+      changed[path] = value;
+    }
+  };
+  walk("", defaults, values);
+  return changed;
+}
+
+/** The defaults with what a link carries; paths that the core does not know are left out. */
+export function paramsOf(defaults: Params, changed: Record<string, ParamValue>): Params {
+  let values = structuredClone(defaults);
+  for (const [path, value] of Object.entries(changed)) {
+    const known = path
+      .split(".")
+      .reduce<ParamValue | undefined>((group, name) => (isGroup(group) ? group[name] : undefined), defaults);
+    if (known !== undefined && !isGroup(known) && (known === null || typeof known === typeof value)) {
+      values = withParam(values, path, value);
+    }
+  }
+  return values;
+}
+
+/** The value of a field's text, or why it cannot be one. */
+export function parseField(field: ParamField, text: string): { value: ParamValue } | { error: string } {
+  switch (field.kind) {
+    case "number": {
+      const value = Number(text.trim().replace(",", "."));
+      return text.trim() === "" || !Number.isFinite(value) ? { error: "A number is expected" } : { value };
+    }
+    case "boolean":
+      return { value: text === "true" };
+    case "choice":
+    case "text":
+      return { value: text };
+    case "json":
+      return parseJson(text);
+  }
+}
+
+/** The text that shows a value in its field. */
+export function fieldText(value: ParamValue): string {
+  return typeof value === "object" ? JSON.stringify(value) : String(value);
+}
+
+function paramField(key: string, fallback: ParamValue, value: ParamValue): ParamField {
+  const { label, unit } = labelAndUnit(key);
+  return {
+    key,
+    label,
+    unit,
+    kind: key in CHOICES ? "choice" : fieldKind(fallback),
+    choices: CHOICES[key] ?? [],
+    value,
+    fallback,
+    changed: fieldText(value) !== fieldText(fallback),
+  };
+}
+
+function isGroup(value: ParamValue | undefined): value is ParamGroup {
+  return typeof value === "object" && value !== null && !Array.isArray(value);
+}
+
+function fieldKind(value: ParamValue): ParamField["kind"] {
+  switch (typeof value) {
+    case "number":
+      return "number";
+    case "boolean":
+      return "boolean";
+    case "string":
+      return "text";
+    default:
+      return "json";
+  }
+}
+
+function labelAndUnit(key: string): { label: string; unit: string } {
+  const found = UNITS.find(([suffix]) => key.endsWith(suffix) && key.length > suffix.length);
+  if (found === undefined) {
+    return { label: words(key), unit: "" };
+  }
+  const [suffix, unit] = found;
+  return { label: words(key.slice(0, -suffix.length)), unit };
+}
+
+function words(key: string): string {
+  const text = key.replaceAll("_", " ");
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+function parseJson(text: string): { value: ParamValue } | { error: string } {
+  try {
+    return { value: JSON.parse(text) as ParamValue };
+  } catch {
+    return { error: "JSON is expected" };
+  }
+}

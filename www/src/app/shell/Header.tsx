@@ -1,0 +1,66 @@
+/** The name, the method, the tour, and how the page looks. */
+
+import { setMethod } from "../session/stageRuns";
+import { activity, type Method, method, textScale } from "../state/state";
+import { biggerText, theme, toggleTheme } from "../state/theme";
+import { startTour } from "../tour/lessons";
+
+const METHODS: readonly (readonly [Method, string, string])[] = [
+  ["lines", "Lines", "Lines matched over the views, and half-planes at them (Baillard et al. 1999)"],
+  [
+    "rectangles",
+    "Rectangles",
+    "Regions, and planes between parallel lines in object space (Wiman, Axelsson 1996)",
+  ],
+  [
+    "combined",
+    "Combined",
+    "The lines and planes of both compete for one model; regions take most of its time",
+  ],
+];
+
+export function Header() {
+  const other = theme.value === "dark" ? "Light" : "Dark";
+  return (
+    <header class="header">
+      <img src="./icon.svg" alt="" width="22" height="22" />
+      <h1>ridgeline</h1>
+      <p class="muted">Aerial photographs in, textured roof models out. Nothing leaves this computer.</p>
+      {activity.value !== "" && (
+        <span class="activity">
+          <span class="spinner" aria-hidden="true" />
+          {activity}
+        </span>
+      )}
+      <fieldset class="choice">
+        <legend class="visually-hidden">Method</legend>
+        {METHODS.map(([name, title, what]) => (
+          <button
+            key={name}
+            type="button"
+            title={what}
+            aria-pressed={method.value === name}
+            onClick={() => void setMethod(name)}
+          >
+            {title}
+          </button>
+        ))}
+      </fieldset>
+      <button type="button" onClick={startTour}>
+        Tour
+      </button>
+      <button
+        type="button"
+        class="quiet"
+        aria-label={`Text size: ${Math.round(100 * textScale.value)} %, next`}
+        title="Text size"
+        onClick={biggerText}
+      >
+        Aa
+      </button>
+      <button type="button" class="quiet" onClick={toggleTheme}>
+        {other}
+      </button>
+    </header>
+  );
+}

@@ -1,0 +1,30 @@
+/** What went wrong or needs attention, in words, until it is dismissed. */
+
+import { Diagnosis } from "../project/OrientationCheck";
+import { dismiss } from "../session/session";
+import { notices } from "../state/state";
+
+export function Notices() {
+  return (
+    <div class="notices">
+      {notices.value.map(({ id, severity, title, text, advice, doctor, action }) => (
+        <section key={id} class={`notice ${severity}`} role={severity === "error" ? "alert" : "status"}>
+          <div>
+            <strong>{title}</strong>
+            {text !== "" && <p>{text}</p>}
+            {advice !== undefined && <p class="muted">{advice}</p>}
+            {doctor !== undefined && <Diagnosis report={doctor} />}
+            {action !== undefined && (
+              <button type="button" onClick={action.run}>
+                {action.name}
+              </button>
+            )}
+          </div>
+          <button type="button" class="quiet" aria-label={`Dismiss: ${title}`} onClick={() => dismiss(id)}>
+            ✕
+          </button>
+        </section>
+      ))}
+    </div>
+  );
+}

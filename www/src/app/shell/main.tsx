@@ -1,0 +1,33 @@
+/** Starts the page. */
+import "../../styles/base.css";
+import "../../styles/layout.css";
+import "../../styles/parts.css";
+import "../../styles/figures.css";
+import "../../styles/views.css";
+import "../../styles/tools.css";
+import { render } from "preact";
+import { keepProject } from "../project/storedProject";
+import { followSelection } from "../selection/selectionDetail";
+import { start } from "../session/session";
+import { followState } from "../settings/addressLink";
+import { App } from "./App";
+import { resume } from "./openingState";
+
+const root = document.getElementById("app");
+if (root !== null) {
+  render(<App />, root);
+  void open();
+}
+
+async function open(): Promise<void> {
+  await start();
+  followSelection();
+  await resume();
+  followState();
+  keepProject();
+}
+
+// Offline after the first load; only the built site has one.
+if (import.meta.env.PROD && "serviceWorker" in navigator) {
+  void navigator.serviceWorker.register("./sw.js").catch(() => undefined);
+}

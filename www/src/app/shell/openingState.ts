@@ -1,0 +1,54 @@
+/** What the page begins with: the scene of a link, or the project of the last visit. */
+import { batch } from "@preact/signals";
+import type { Selection } from "../../shared/selection";
+import { openDemo, restoreProject } from "../project/projectActions";
+import { readKept } from "../project/storedProject";
+import { lineEnds } from "../selection/selectionShapes";
+import { stageWords } from "../session/stageCatalogue";
+import { runTo } from "../session/stageRuns";
+import { opened } from "../settings/addressLink";
+import { method, results, scene, selection, shownView, stages, TABS, type Tab, tab } from "../state/state";
+import { goTo } from "../tour/lessons";
+
+export async function resume(): Promise<void> {
+  if (opened.scene === "demo") {
+    await openDemo(opened.tab === null ? null : stageOfTab());
+  } else {
+    const kept = await readKept();
+    if (kept !== null && kept.files.length > 0) {
+      await restoreProject(kept);
+      if (opened.tab !== null && opened.tab !== "images") {
+        await runTo(stageOfTab() ?? "");
+      }
+    }
+  }
+  if (scene.value === null) {
+    return;
+  }
+  if (isNewLine(opened.selection)) {
+    await runTo("facets");
+  }
+  const tabs: readonly Tab[] = TABS[method.value];
+  batch(() => {
+    if (opened.tab !== null && tabs.includes(opened.tab)) {
+      tab.value = opened.tab;
+    }
+    shownView.value = opened.view ?? shownView.value;
+    selection.value = opened.selection;
+  });
+  if (opened.lesson !== null && results.value.glb !== null) {
+    await goTo(opened.lesson);
+  }
+}
+
+/** A line that the model adds to the matched ones? */
+function isNewLine(picked: Selection | null): boolean {
+  const { lines, facets } = results.value;
+  return picked?.kind === "line" && lines !== null && facets === null && lineEnds(picked.index).length === 0;
+}
+
+/** The stage whose result the linked tab shows; none for the images. */
+function stageOfTab(): string | null {
+  const wanted = opened.tab === "groups" || opened.tab === "refinement" ? "facets" : opened.tab;
+  return stages.value.find(({ name }) => stageWords(name).tab === wanted)?.name ?? null;
+}

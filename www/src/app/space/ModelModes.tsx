@@ -1,0 +1,96 @@
+/** How the model looks in the 3D view, and what its colours mean. */
+import { computed, signal } from "@preact/signals";
+import { METHOD_COLOURS } from "../../shared/palette";
+import type { Facet } from "../../shared/results";
+import type { ModelMode } from "../../viewer/layers/model";
+import { keptResult, type Method, mainResults, method } from "../state/state";
+
+export const mode = signal<ModelMode>("textured");
+
+const MODES: readonly (readonly [ModelMode, string])[] = [
+  ["textured", "Textured"],
+  ["plain", "Plain"],
+  ["wireframe", "Wireframe"],
+  ["normals", "Normals"],
+  ["method", "By method"],
+];
+
+const METHOD_TITLES: Record<Method, string> = {
+  lines: "Lines (B99)",
+  rectangles: "Rectangles (W96)",
+  combined: "Both",
+};
+
+/** The method that proposed a facet's plane; where both ran, both may have. */
+function methodOfFacet({ half_planes, rectangles }: Facet, ran: Method): Method {
+  if (ran !== "combined" || (rectangles ?? []).length === 0) {
+    return ran === "combined" ? "lines" : ran;
+  }
+  return (half_planes ?? []).length > 0 ? "combined" : "rectangles";
+}
+
+export function facetColours(facets: readonly Facet[] | null, ran: Method): string[] {
+  return (facets ?? []).map((facet) => METHOD_COLOURS[methodOfFacet(facet, ran)]);
+}
+
+export function ModeSwitches() {
+  return (
+    <fieldset class="choice">
+      <legend class="visually-hidden">Appearance</legend>
+      {MODES.map(([name, title]) => (
+        <button
+          key={name}
+          type="button"
+          aria-pressed={mode.value === name}
+          onClick={() => {
+            mode.value = name;
+          }}
+        >
+          {title}
+        </button>
+      ))}
+    </fieldset>
+  );
+}
+
+/** The numbers of facets that each method made. */
+const made = computed(() => {
+  const methods = (mainResults.value.facets ?? []).map((facet) => methodOfFacet(facet, method.value));
+  const names = (Object.keys(METHOD_TITLES) as Method[]).filter(
+    (name) => name !== "combined" || method.value === name,
+  );
+  return names.map((name) => [name, methods.filter((one) => one === name).length] as const);
+});
+
+export function ModeLegend() {
+  if (mode.value === "normals") {
+    return (
+      <ul class="legend" aria-label="Colours">
+        <li>
+          <span class="swatch normals" aria-hidden="true" />
+          hue: azimuth, strength: slope
+        </li>
+      </ul>
+    );
+  }
+  if (mode.value !== "method") {
+    return null;
+  }
+  const kept = keptResult.value;
+  return (
+    <ul class="legend" aria-label="Colours" data-testid="method-legend">
+      {made.value.map(([name, count]) => (
+        <li key={name}>
+          <span class={`swatch by-${name}`} aria-hidden="true" />
+          {METHOD_TITLES[name]}: {count} {count === 1 ? "facet" : "facets"}
+        </li>
+      ))}
+      {kept !== null && (
+        <li>
+          <span class="swatch merged" aria-hidden="true" />
+          kept: {kept.title}, {kept.facets.length} facets
+        </li>
+      )}
+    </ul>
+  );
+}

@@ -1,0 +1,103 @@
+/** The profile along a vertical cut, drawn to one scale both ways, with heights and slopes. */
+import type { ProfilePiece, Section } from "../../viewer/tools/section";
+import { axesOf, Chart, type Frame, frameOf, type Scale } from "../parts/charts";
+import { scene } from "../state/state";
+
+const WIDTH = 460;
+const MOST_INNER_HEIGHT = 190;
+const LEAST_INNER_HEIGHT = 70;
+/** Labels nearer to each other than this are left out, units of the view box. */
+const LABEL_SPACE = 40;
+/** Steeper pieces are walls. */
+const WALL = (85 * Math.PI) / 180;
+
+export function SectionChart({ section }: { section: Section }) {
+  const ground = scene.value?.origin[2] ?? 0;
+  const heights = section.pieces.flatMap(({ from, to }) => [from[1], to[1]]);
+  if (heights.length === 0) {
+    return <p>Nothing between the two points is cut.</p>;
+  }
+  const [low, high] = [Math.min(...heights), Math.max(...heights)];
+  const places = section.pieces.flatMap(({ from, to }) => [from[0], to[0]]);
+  const reach = { min: Math.min(...places), max: Math.max(...places) };
+  const { frame, x, y } = scales(reach, low + ground, high + ground);
+  const [toX, toY] = axesOf(frame, x, y);
+  const at = ([along, height]: readonly [number, number]) => [toX(along), toY(height + ground)] as const;
+  return (
+    <>
+      <Chart
+        frame={frame}
+        x={x}
+        y={y}
+        xTitle="along the cut (m)"
+        yTitle="height (m)"
+        label={`Profile of ${section.lengthM.toFixed(1)} m`}
+        testid="profile"
+      >
+        {section.pieces.map((piece) => {
+          const [[x1, y1], [x2, y2]] = [at(piece.from), at(piece.to)];
+          return <line key={`${x1} ${y1} ${x2} ${y2}`} class="profile" x1={x1} y1={y1} x2={x2} y2={y2} />;
+        })}
+        {slopeLabels(section.pieces, at).map(([text, lx, ly]) => (
+          <text key={`${lx} ${ly}`} class="profile-slope" x={lx} y={ly} text-anchor="middle">
+            {text}
+          </text>
+        ))}
+        {heightLabels(section.pieces, at, ground).map(([text, lx, ly]) => (
+          <text key={`${lx} ${ly}`} class="profile-height" x={lx} y={ly} text-anchor="middle">
+            {text}
+          </text>
+        ))}
+      </Chart>
+      <p class="numbers">
+        {section.lengthM.toFixed(2)} m long, heights {(low + ground).toFixed(2)} to{" "}
+        {(high + ground).toFixed(2)} m ({(high - low).toFixed(2)} m), one scale both ways
+      </p>
+    </>
+  );
+}
+
+/** The same number of units per metre both ways: slopes look as steep as they are. */
+function scales(reach: Scale, low: number, high: number) {
+  const empty = frameOf(WIDTH, 0);
+  const inner = WIDTH - empty.left - empty.right;
+  const range = Math.max(1, 1.15 * (high - low));
+  const lengthM = Math.max(1, 1.1 * (reach.max - reach.min));
+  const perM = Math.min(inner / lengthM, MOST_INNER_HEIGHT / range);
+  const start = (reach.min + reach.max - inner / perM) / 2;
+  const height = Math.max(LEAST_INNER_HEIGHT, range * perM);
+  const frame: Frame = frameOf(WIDTH, height + empty.top + empty.bottom);
+  const middle = (low + high) / 2;
+  const half = height / perM / 2;
+  return {
+    frame,
+    x: { min: start, max: start + inner / perM },
+    y: { min: middle - half, max: middle + half },
+  };
+}
+
+type At = (point: readonly [number, number]) => readonly [number, number];
+type Label = [text: string, x: number, y: number];
+
+function slopeLabels(pieces: readonly ProfilePiece[], at: At): Label[] {
+  return pieces.flatMap(({ from, to, slope }): Label[] => {
+    const [[x1, y1], [x2, y2]] = [at(from), at(to)];
+    if (Math.abs(slope) > WALL || x2 - x1 < LABEL_SPACE) {
+      return [];
+    }
+    return [[`${((slope * 180) / Math.PI).toFixed(1)}°`, (x1 + x2) / 2, (y1 + y2) / 2 + 14]];
+  });
+}
+
+/** Heights at the ends of the pieces, the highest first, as far as there is room. */
+function heightLabels(pieces: readonly ProfilePiece[], at: At, ground: number): Label[] {
+  const ends = pieces.filter(({ slope }) => Math.abs(slope) <= WALL).flatMap(({ from, to }) => [from, to]);
+  const labels: Label[] = [];
+  for (const end of ends.sort((p, q) => q[1] - p[1])) {
+    const [x, y] = at(end);
+    if (labels.every(([, lx, ly]) => Math.abs(lx - x) > LABEL_SPACE || Math.abs(ly + 5 - y) > 20)) {
+      labels.push([(end[1] + ground).toFixed(2), x, y - 5]);
+    }
+  }
+  return labels;
+}

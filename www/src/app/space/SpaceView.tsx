@@ -1,0 +1,291 @@
+/** The 3D view: layers follow the results, the tab and the switches above it. */
+import { computed, signal, useSignalEffect } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import { THEME_COLOURS } from "../../shared/palette";
+import type { Vec3 } from "../../shared/results";
+import { GRID_STEP_M } from "../../viewer/layers/grid";
+import { warmLayers } from "../../viewer/layers/shaderWarmup";
+import { enlargement } from "../../viewer/layers/uncertainty";
+import { boundsOf, boundsOfFacets, boundsOfLines, withCameras } from "../../viewer/scene/bounds";
+import { Viewer } from "../../viewer/viewer";
+import { presentTitle } from "../comparison/comparedResults";
+import { Legend } from "../parts/Legend";
+import { notify } from "../session/session";
+import {
+  beforeGrowing,
+  isBusy,
+  keptResult,
+  method,
+  results,
+  scene,
+  selection,
+  type Tab,
+  tab,
+} from "../state/state";
+import { theme } from "../state/theme";
+import { canStandBeside, isBeside, wantsBeside } from "./keptBeside";
+import { ModeLegend, ModeSwitches } from "./ModelModes";
+import { model, showsKeptFacets, useModels } from "./modelLayers";
+import { followResults, LAYERS, type LayerName, shown } from "./resultLayers";
+import { SpaceTools } from "./SpaceTools";
+
+const LAYER_TITLES: Record<LayerName, string> = {
+  lines: "3D lines",
+  uncertainty: "Uncertainty",
+  fans: "Half-planes",
+  groups: "Groups",
+  facets: "Facets",
+  model: "Model",
+  cameras: "Cameras",
+};
+
+/** Layers that method "rectangles" does not fill. */
+const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "groups"];
+
+/** The viewer while it exists; the effects below wait for it. */
+export const viewer = signal<Viewer | null>(null);
+
+export function SpaceView({ hidden }: { hidden: boolean }) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  useEffect(() => createViewer(canvas.current), []);
+  useLayers();
+  const isEmpty = layerIsEmpty(tab.value);
+  return (
+    <div class="space-view" hidden={hidden}>
+      <div class="toolbar">
+        <LayerSwitches />
+        {shown.value[tab.value].includes("model") && <ModeSwitches />}
+        {tab.value === "lines" && <GrowingSwitch />}
+        {canStandBeside.value && <BesideSwitch />}
+        <span class="grow" />
+        <Legend />
+        {shown.value[tab.value].includes("model") && <ModeLegend />}
+        {shown.value[tab.value].includes("uncertainty") && results.value.records.length > 0 && (
+          <p class="legend">
+            <span class="swatch merged" aria-hidden="true" />1 σ, drawn {enlargement(results.value.records)} ×
+            as large
+          </p>
+        )}
+      </div>
+      {isBeside.value && (
+        <div class="halves" data-testid="halves">
+          <p>
+            <span class="muted">Kept:</span> {keptResult.value?.title}
+          </p>
+          <p>
+            <span class="muted">Now:</span> {presentTitle.value}
+          </p>
+        </div>
+      )}
+      <div class={`space-canvas ${isBeside.value ? "halved" : ""}`}>
+        <canvas
+          ref={canvas}
+          tabIndex={0}
+          role="img"
+          data-testid="viewer"
+          aria-label="3D view: drag to orbit, right-drag or arrows to move, scroll to zoom, click to pick"
+          onKeyDown={(event) => {
+            if (event.key === "Escape") {
+              selection.value = null;
+            }
+          }}
+        />
+        {isEmpty && (
+          <div class="empty over">
+            <p>Nothing to show yet.</p>
+            <p class="muted">This view fills when its stage has run.</p>
+          </div>
+        )}
+        {!isEmpty && <SpaceTools viewer={viewer.value} onFit={fitView} />}
+        {!isEmpty && <span class="scale muted numbers">grid {GRID_STEP_M} m</span>}
+      </div>
+    </div>
+  );
+}
+
+/** B99 figures 5 and 7 against 6 and 8. */
+function GrowingSwitch() {
+  return (
+    <fieldset class="choice">
+      <legend class="visually-hidden">Before or after growing</legend>
+      {[true, false].map((before) => (
+        <button
+          key={String(before)}
+          type="button"
+          aria-pressed={beforeGrowing.value === before}
+          onClick={() => {
+            beforeGrowing.value = before;
+          }}
+        >
+          {before ? "Before growing" : "After"}
+        </button>
+      ))}
+    </fieldset>
+  );
+}
+
+/** The kept result beside the present one, or its outlines over it. */
+function BesideSwitch() {
+  return (
+    <fieldset class="choice">
+      <legend class="visually-hidden">Where the kept result stands</legend>
+      {[true, false].map((beside) => (
+        <button
+          key={String(beside)}
+          type="button"
+          aria-pressed={wantsBeside.value === beside}
+          onClick={() => {
+            wantsBeside.value = beside;
+          }}
+        >
+          {beside ? "Side by side" : "Outlines over it"}
+        </button>
+      ))}
+    </fieldset>
+  );
+}
+
+/** Of the height of a tab that the canvas has, more or less: the rest is its figure's. */
+const CANVAS_SHARE = 0.6;
+/** Between two stages nothing runs for a moment. */
+const PAUSE_MS = 400;
+
+function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefined {
+  if (canvas === null) {
+    return undefined;
+  }
+  try {
+    const made = new Viewer(canvas, THEME_COLOURS[theme.peek()], (picked) => {
+      selection.value = picked;
+    });
+    const { clientWidth = 0, clientHeight = 0 } = canvas.closest(".stage-view") ?? {};
+    made.prepareSize(clientWidth, Math.round(CANVAS_SHARE * clientHeight));
+    warmLayers().forEach((layer, i) => {
+      made.showLayer(`warm ${i}`, false);
+      made.setLayer(`warm ${i}`, layer);
+    });
+    viewer.value = made;
+  } catch {
+    notify({
+      severity: "warning",
+      title: "No 3D view",
+      text: "This browser offers no WebGL 2. Everything else works, and the model can be downloaded.",
+      advice: "Switch on hardware acceleration in the browser's settings to see the model here.",
+    });
+  }
+  return () => {
+    viewer.value?.dispose();
+    viewer.value = null;
+  };
+}
+
+const lines = computed(() => results.value.lines);
+/** Changes when a stage has found the lines anew, but not when the model adds some. */
+const lineStage = computed(() => results.value.stretches ?? results.value.clusters);
+
+/** Keeps the viewer's layers, modes, theme and selection as the signals say. */
+function useLayers(): void {
+  useEffect(() => followResults(() => viewer.value, middleNow), []);
+  useSignalEffect(() => {
+    const space = viewer.value;
+    const isRunning = isBusy.value;
+    const timer = setTimeout(() => space?.holdSize(isRunning), isRunning ? 0 : PAUSE_MS);
+    return () => clearTimeout(timer);
+  });
+  useSignalEffect(() => {
+    const found = lines.peek();
+    if (lineStage.value !== null && found !== null) {
+      viewer.value?.lookAt(boundsOfLines(found));
+    }
+  });
+  useModels(viewer);
+  useSignalEffect(() => viewer.value?.setTheme(THEME_COLOURS[theme.value]));
+  useSignalEffect(() => {
+    viewer.value?.halve(isBeside.value ? ["kept", "keptModel"] : null);
+    viewer.value?.showLayer("kept", !isBeside.value || showsKeptFacets.value);
+  });
+  useSignalEffect(() => {
+    for (const name of LAYERS) {
+      viewer.value?.showLayer(name, shown.value[tab.value].includes(name));
+    }
+    const before = tab.value === "lines" && beforeGrowing.value;
+    viewer.value?.showLayer("stretches", before);
+    viewer.value?.showLayer("refinement", tab.value === "refinement");
+    if (before) {
+      viewer.value?.showLayer("lines", false);
+    }
+    viewer.value?.highlight(selection.value);
+  });
+}
+
+/** Looks at what is shown, the cameras with it where they are. */
+function fitView(): void {
+  const centres = scene.value?.views.map(({ center }) => center) ?? [];
+  const areShown = shown.value[tab.value].includes("cameras");
+  viewer.value?.lookAt(areShown ? withCameras(boundsNow(), centres) : boundsNow());
+}
+
+/** The middle of what is shown, local frame: the bounds are in the viewer's. */
+function middleNow(): Vec3 {
+  const { x, y, z } = boundsNow().center;
+  return [x, -z, y];
+}
+
+/** Tabs about facets. */
+const FACET_TABS: readonly Tab[] = ["facets", "refinement", "rectangles"];
+
+/** What the present tab shows, as a sphere in the viewer's frame. */
+function boundsNow() {
+  const { facets } = results.value;
+  if (tab.value === "model" && model.value !== null) {
+    return boundsOf(model.value.object);
+  }
+  if (FACET_TABS.includes(tab.value) && facets !== null && facets.length > 0) {
+    return boundsOfFacets(facets);
+  }
+  return boundsOfLines(lines.value ?? new Float64Array());
+}
+
+function layerIsEmpty(name: Tab): boolean {
+  const { halfPlanes, grouping, facets } = results.value;
+  switch (name) {
+    case "lines":
+      return lines.value === null;
+    case "halfplanes":
+      return halfPlanes === null;
+    case "groups":
+      return grouping === null;
+    case "refinement":
+      return results.value.refinement === null;
+    case "facets":
+    case "rectangles":
+      return facets === null;
+    case "model":
+      return results.value.glb === null;
+    default:
+      return false;
+  }
+}
+
+function LayerSwitches() {
+  const visible = shown.value[tab.value];
+  const toggle = (name: LayerName) => () => {
+    const next = visible.includes(name) ? visible.filter((one) => one !== name) : [...visible, name];
+    shown.value = { ...shown.value, [tab.value]: next };
+    if (name === "cameras") {
+      fitView();
+    }
+  };
+  return (
+    <fieldset class="choice">
+      <legend class="visually-hidden">Layers</legend>
+      {LAYERS.filter((name) => method.value !== "rectangles" || !LAYERS_OF_LINES.includes(name)).map(
+        (name) => (
+          <button key={name} type="button" aria-pressed={visible.includes(name)} onClick={toggle(name)}>
+            {LAYER_TITLES[name]}
+          </button>
+        ),
+      )}
+    </fieldset>
+  );
+}

@@ -1,0 +1,79 @@
+/** The textured models of the 3D view: the present one, and the kept one beside it. */
+import { computed, type ReadonlySignal, type Signal, signal, useSignalEffect } from "@preact/signals";
+import { THEME_COLOURS } from "../../shared/palette";
+import { buildModel, type ModelLayer } from "../../viewer/layers/model";
+import { boundsOf } from "../../viewer/scene/bounds";
+import { unpicked } from "../../viewer/scene/layer";
+import type { Viewer } from "../../viewer/viewer";
+import { notify } from "../session/session";
+import { keptResult, mainResults, method, selection, tab } from "../state/state";
+import { theme } from "../state/theme";
+import { isBeside } from "./keptBeside";
+import { facetColours, mode } from "./ModelModes";
+
+type Glb = Uint8Array<ArrayBuffer> | null;
+
+export const model = signal<ModelLayer | null>(null);
+const keptModel = signal<ModelLayer | null>(null);
+
+const presentGlb = computed(() => mainResults.value.glb);
+const keptGlb = computed(() => keptResult.value?.glb ?? null);
+/** The kept model is read once somebody looks at it. */
+const shownKeptGlb = computed(() => (isBeside.value && tab.value === "model" ? keptGlb.value : null));
+/** Where a kept result has no model, or another tab is open, its facets stand in its place. */
+export const showsKeptFacets = computed(() => isBeside.value && shownKeptGlb.value === null);
+
+/** Keeps both models, and how they look, as the signals say. */
+export function useModels(viewer: ReadonlySignal<Viewer | null>): void {
+  useSignalEffect(() => {
+    void show("model", presentGlb, model, viewer, () =>
+      facetColours(mainResults.peek().facets, method.peek()),
+    );
+  });
+  useSignalEffect(() => {
+    const kept = keptResult.peek();
+    const colours = () => (kept === null ? [] : facetColours(kept.facets, kept.method));
+    void show("keptModel", shownKeptGlb, keptModel, viewer, colours);
+  });
+  useSignalEffect(() => {
+    for (const layer of [model.value, keptModel.value]) {
+      layer?.setMode(mode.value);
+      layer?.setTheme(THEME_COLOURS[theme.value]);
+    }
+    viewer.value?.draw();
+  });
+  useSignalEffect(() => {
+    if (model.value !== null) {
+      viewer.peek()?.lookAt(boundsOf(model.value.object));
+    }
+  });
+}
+
+/** Reads a model and puts it into its layer, unless another one has come meanwhile. */
+async function show(
+  name: "model" | "keptModel",
+  glb: ReadonlySignal<Glb>,
+  shown: Signal<ModelLayer | null>,
+  viewer: ReadonlySignal<Viewer | null>,
+  colours: () => string[],
+): Promise<void> {
+  const bytes = glb.value;
+  if (bytes === null) {
+    shown.value = null;
+    viewer.peek()?.setLayer(name, null);
+    return;
+  }
+  try {
+    const layer = await buildModel(bytes, colours());
+    if (glb.peek() !== bytes) {
+      layer.dispose();
+      return;
+    }
+    layer.setMode(mode.peek());
+    layer.highlight(name === "model" ? selection.peek() : null);
+    viewer.peek()?.setLayer(name, name === "model" ? layer : unpicked(layer));
+    shown.value = layer;
+  } catch (error) {
+    notify({ severity: "error", title: "The model cannot be shown", text: String(error) });
+  }
+}

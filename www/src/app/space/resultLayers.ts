@@ -1,0 +1,146 @@
+/** The layers of the 3D view, from the results: each is built anew when what it shows has changed, in a task of its own. */
+import { effect, signal } from "@preact/signals";
+import { Vector3 } from "three";
+import { type Facet, LINE_STRIDE, type Vec3 } from "../../shared/results";
+import { buildCameras } from "../../viewer/layers/cameras";
+import { buildFacets } from "../../viewer/layers/facets";
+import { buildFans, buildTurning } from "../../viewer/layers/fans";
+import { buildGroups } from "../../viewer/layers/groups";
+import { buildPicked } from "../../viewer/layers/highlight";
+import { buildLines } from "../../viewer/layers/lines";
+import { buildOutlines } from "../../viewer/layers/outlines";
+import { buildRefinement } from "../../viewer/layers/refinement";
+import { buildStretches } from "../../viewer/layers/stretches";
+import { buildUncertainty, enlargement } from "../../viewer/layers/uncertainty";
+import { type Layer, unpicked } from "../../viewer/scene/layer";
+import type { Viewer } from "../../viewer/viewer";
+import { lineEnds, linesOfSelection, shapesOf } from "../selection/selectionShapes";
+import { images, keptResult, pointing, results, scene, selection, type Tab, tab } from "../state/state";
+import { isBeside } from "./keptBeside";
+
+/** Layers that a person switches; "stretches" and "turning" follow other switches. */
+export const LAYERS = ["lines", "uncertainty", "fans", "groups", "facets", "model", "cameras"] as const;
+export type LayerName = (typeof LAYERS)[number];
+
+/** What each tab shows until a person switches something. */
+export const shown = signal<Record<Tab, readonly LayerName[]>>({
+  images: [],
+  segments: [],
+  matches: [],
+  lines: ["lines"],
+  halfplanes: ["lines", "fans"],
+  groups: ["groups"],
+  facets: ["facets"],
+  refinement: ["facets"],
+  regions: [],
+  directions: [],
+  clusters: [],
+  rectangles: ["facets", "lines"],
+  model: ["model"],
+});
+/** A function that makes a layer, and what it makes it of; null where there is nothing to show. */
+type Plan = readonly [build: () => Layer, ...of: unknown[]] | null;
+
+/** What every layer shows now. `middle` is where cameras look at, local frame. */
+const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
+  lines: () => {
+    const { lines, records } = results.value;
+    return lines && [() => buildLines(lines, records, linesOfSelection), lines, records];
+  },
+  uncertainty: () => {
+    const { lines, records } = results.value;
+    // Thousands of tubes that few look at: not before somebody does.
+    const isShown = shown.value[tab.value].includes("uncertainty");
+    const has = isShown && lines !== null && records.length * LINE_STRIDE === lines.length;
+    return has
+      ? [() => buildUncertainty(lines, records, enlargement(records), linesOfSelection), records]
+      : null;
+  },
+  fans: () => {
+    const { lines, halfPlanes, sides } = results.value;
+    const has = lines !== null && halfPlanes !== null;
+    return has ? [() => buildFans(halfPlanes, lines, sides), halfPlanes, lines] : null;
+  },
+  groups: () => {
+    const { lines, grouping } = results.value;
+    return lines && grouping && [() => buildGroups(grouping, lines), grouping, lines];
+  },
+  stretches: () => {
+    const { stretches } = results.value;
+    return stretches && [() => buildStretches(stretches), stretches];
+  },
+  refinement: () => {
+    const { refinement } = results.value;
+    return refinement && [() => buildRefinement(refinement), refinement];
+  },
+  kept: () => {
+    const kept = keptResult.value;
+    const beside = isBeside.value;
+    const build = (facets: readonly Facet[]) =>
+      beside ? unpicked(buildFacets(facets)) : buildOutlines(facets);
+    return kept && [() => build(kept.facets), kept, beside];
+  },
+  picked: () => {
+    const shapes = shapesOf(selection.value).filter(({ role }) => role !== "before");
+    const areas = shapes.map(({ points, role }) => ({ points, closed: role === "area" }));
+    // A segment is in no place of space, but its line is.
+    const lines = selection.value?.kind === "segment" ? linesOfSelection(selection.value).map(lineEnds) : [];
+    const all = [...areas, ...lines.map((points) => ({ points, closed: false }))];
+    return all.length === 0 ? null : [() => buildPicked(all), selection.value, results.value];
+  },
+  turning: () => {
+    const { side, theta } = pointing.value;
+    const ends = side === null ? [] : lineEnds(side.line);
+    return side !== null && ends.length === 2 && tab.value === "halfplanes"
+      ? [() => buildTurning(ends as unknown as [Vec3, Vec3], side.side, theta), side, theta]
+      : null;
+  },
+  facets: () => {
+    const { facets } = results.value;
+    return facets && [() => buildFacets(facets), facets];
+  },
+  cameras: (middle) => {
+    const views = scene.value?.views;
+    // Every photograph is drawn anew: not before somebody looks.
+    if (views === undefined || !shown.value[tab.value].includes("cameras")) {
+      return null;
+    }
+    const [x, y, z] = middle();
+    const pictures = images.value;
+    return [() => buildCameras(views, new Vector3(x, y, z), pictures), views, pictures, x, y, z];
+  },
+};
+
+/** Keeps the viewer's layers as the results say, until the returned function is called. */
+export function followResults(viewer: () => Viewer | null, middle: () => Vec3): () => void {
+  const ends = Object.entries(PLANS).map(([name, plan]) => follow(name, viewer, () => plan(middle)));
+  return () => {
+    for (const end of ends) {
+      end();
+    }
+  };
+}
+
+function follow(name: string, viewer: () => Viewer | null, plan: () => Plan): () => void {
+  let shown: readonly unknown[] | null = null;
+  return effect(() => {
+    const space = viewer();
+    const next = plan();
+    const of = next === null || space === null ? null : [space, ...next.slice(1)];
+    if (space === null || isSame(of, shown)) {
+      return;
+    }
+    shown = of;
+    setTimeout(() => {
+      if (shown === of) {
+        const layer = next === null ? null : next[0]();
+        layer?.highlight(selection.peek());
+        space.setLayer(name, layer);
+      }
+    });
+  });
+}
+
+function isSame(a: readonly unknown[] | null, b: readonly unknown[] | null): boolean {
+  return a === b || (a !== null && b !== null && a.length === b.length && a.every((one, i) => one === b[i]));
+}

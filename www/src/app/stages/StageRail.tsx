@@ -1,0 +1,166 @@
+/** The stages in order: run, cancel, progress, time and counts. */
+
+import { KeepResult } from "../comparison/Comparison";
+import { grouped } from "../parts/numberText";
+import { stageWords } from "../session/stageCatalogue";
+import { cancel, runAll, runTo } from "../session/stageRuns";
+import {
+  chosenWorkers,
+  files,
+  freshStages,
+  isBusy,
+  runningStage,
+  type StageState,
+  type StageStatus,
+  stages,
+  tab,
+  usefulWorkers,
+} from "../state/state";
+
+const STATUS_WORDS: Record<StageStatus, string> = {
+  waiting: "not run",
+  running: "running",
+  done: "done",
+  outdated: "outdated",
+  failed: "failed",
+};
+
+export function StageRail() {
+  const isRunning = runningStage.value !== null;
+  return (
+    <section class="rail" aria-label="Stages">
+      <div class="rail-run">
+        {isRunning ? (
+          <button type="button" onClick={() => void cancel()}>
+            Cancel
+          </button>
+        ) : (
+          <button
+            type="button"
+            class="primary"
+            disabled={!canRun(stages.value.length)}
+            onClick={() => void runAll()}
+          >
+            Run all
+          </button>
+        )}
+        <span class="muted numbers">{totalTime(stages.value)}</span>
+        <WorkerChoice />
+        <KeepResult />
+      </div>
+      <ol>
+        {stages.value.map((stage, position) => (
+          <StageCard key={stage.name} stage={stage} position={position} />
+        ))}
+      </ol>
+    </section>
+  );
+}
+
+/** How many workers share a stage: the result is the same. */
+function WorkerChoice() {
+  const most = Math.max(navigator.hardwareConcurrency ?? 1, 3);
+  return (
+    <label class="workers" title="How many workers share a stage. The result does not depend on it.">
+      Workers
+      <select
+        value={String(chosenWorkers.value)}
+        onChange={(event) => {
+          chosenWorkers.value = Number(event.currentTarget.value);
+        }}
+      >
+        <option value="0">auto ({usefulWorkers.value})</option>
+        {Array.from({ length: most }, (_, i) => (
+          <option key={i + 1} value={String(i + 1)}>
+            {i + 1}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
+/** Whether there is something to run among the first `count` stages, and nothing else going on. */
+function canRun(count: number): boolean {
+  return files.value.length > 0 && !isBusy.value && freshStages.value < count;
+}
+
+function StageCard({ stage, position }: { stage: StageState; position: number }) {
+  const words = stageWords(stage.name);
+  const percent = Math.round(100 * stage.fraction);
+  return (
+    <li class={`stage ${stage.status}`} data-stage={stage.name} data-status={stage.status}>
+      <button
+        type="button"
+        class="link"
+        title={words.section}
+        onClick={() => {
+          tab.value = words.tab;
+        }}
+      >
+        {words.title}
+      </button>
+      {stage.status === "running" ? (
+        <progress max={1} value={stage.fraction} aria-label={`${words.title}: ${percent} %`} />
+      ) : (
+        <span class="numbers counts" title={countsText(stage)}>
+          {mainCount(stage) || STATUS_WORDS[stage.status]}
+        </span>
+      )}
+      <span class="muted numbers">{statusLine(stage)}</span>
+      <button
+        type="button"
+        class="quiet"
+        aria-label={`Run up to ${words.title}`}
+        title={`Run up to ${words.title}`}
+        disabled={!canRun(position + 1)}
+        onClick={() => void runTo(stage.name)}
+      >
+        ▸
+      </button>
+      {stage.warnings.length > 0 && (
+        <span class="stage-warning" title={stage.warnings.join("\n")}>
+          {stage.warnings.length} {stage.warnings.length === 1 ? "warning" : "warnings"}
+        </span>
+      )}
+    </li>
+  );
+}
+
+function statusLine(stage: StageState): string {
+  if (stage.status === "running") {
+    return `${Math.round(100 * stage.fraction)} %`;
+  }
+  const time = stage.seconds === null ? "" : `${stage.seconds.toFixed(1)} s`;
+  return stage.status === "outdated" || stage.status === "failed" ? STATUS_WORDS[stage.status] : time;
+}
+
+function countsText({ counts, seconds }: StageState): string {
+  const texts = Object.entries(counts).map(
+    ([name, count]) => `${grouped(count)} ${name.replaceAll("_", " ")}`,
+  );
+  if (counts["correlations"] !== undefined && seconds) {
+    texts.push(`${(counts["correlations"] / seconds / 1e6).toFixed(1)} million correlations per second`);
+  }
+  return texts.join(", ");
+}
+
+/** What the stage is for, counted; the rest stands in the tooltip. */
+function mainCount({ name, counts }: StageState): string {
+  const entries = Object.entries(counts);
+  const [what, count] = entries.find(([one]) => one === MAIN_COUNTS[name]) ?? entries[0] ?? [];
+  return what === undefined || count === undefined ? "" : `${grouped(count)} ${what.replaceAll("_", " ")}`;
+}
+
+const MAIN_COUNTS: Record<string, string> = {
+  segments: "segments",
+  halfplanes: "half-planes",
+  regions: "regions",
+  directions: "pairs of directions",
+  model: "textured faces",
+};
+
+function totalTime(all: readonly StageState[]): string {
+  const seconds = all.reduce((sum, stage) => sum + (stage.seconds ?? 0), 0);
+  return seconds > 0 ? `${seconds.toFixed(1)} s in all` : "";
+}

@@ -1,0 +1,101 @@
+/** The tabs, and below them either images with overlays or the 3D view, above the figure's own laboratory. */
+import type { ComponentType } from "preact";
+import { useRef } from "preact/hooks";
+import { ClusterLab } from "../figures/ClusterLab";
+import { DirectionLab } from "../figures/DirectionLab";
+import { FacetLab, GroupLab, LineLab } from "../figures/LineLabs";
+import { PointLab } from "../figures/PointLab";
+import { RectangleLab } from "../figures/RectangleLab";
+import { RefinementLab } from "../figures/RefinementLab";
+import { SimLab } from "../figures/SimLab";
+import { Filmstrip } from "../images/Filmstrip";
+import { ImageViews } from "../images/ImageViews";
+import { SpaceView } from "../space/SpaceView";
+import { images, method, TABS, type Tab, tab } from "../state/state";
+
+const TITLES: Record<Tab, string> = {
+  images: "Images",
+  segments: "Segments",
+  matches: "Matches",
+  lines: "3D lines",
+  halfplanes: "Half-planes",
+  groups: "Groups",
+  facets: "Facets",
+  refinement: "Refinement",
+  regions: "Regions",
+  directions: "Directions",
+  clusters: "Clusters",
+  rectangles: "Rectangles",
+  model: "Model",
+};
+
+/** Tabs that show images; the others show space. */
+const IMAGE_TABS: readonly Tab[] = ["images", "segments", "matches", "regions", "directions", "clusters"];
+
+/** What stands below the images or the space of a tab. */
+const LABS: Partial<Record<Tab, ComponentType>> = {
+  matches: PointLab,
+  lines: LineLab,
+  halfplanes: SimLab,
+  groups: GroupLab,
+  facets: FacetLab,
+  refinement: RefinementLab,
+  directions: DirectionLab,
+  clusters: ClusterLab,
+  rectangles: RectangleLab,
+  model: () => <Filmstrip />,
+};
+
+export function StageView() {
+  const list = useRef<HTMLDivElement>(null);
+  const isImageTab = IMAGE_TABS.includes(tab.value);
+  const names: readonly Tab[] = TABS[method.value];
+  const Lab = images.value.length > 0 ? LABS[tab.value] : undefined;
+  const onKeyDown = (event: KeyboardEvent) => {
+    const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
+    if (step !== 0) {
+      event.preventDefault();
+      const next = (names.indexOf(tab.value) + step + names.length) % names.length;
+      tab.value = names[next] as Tab;
+      (list.current?.children[next] as HTMLElement | undefined)?.focus();
+    }
+  };
+  return (
+    <>
+      <div
+        class="tabs"
+        role="tablist"
+        aria-label="Stage views"
+        tabIndex={-1}
+        ref={list}
+        onKeyDown={onKeyDown}
+      >
+        {names.map((name) => (
+          <button
+            key={name}
+            id={`tab-${name}`}
+            type="button"
+            role="tab"
+            aria-selected={tab.value === name}
+            aria-controls="stage-view"
+            tabIndex={tab.value === name ? 0 : -1}
+            onClick={() => {
+              tab.value = name;
+            }}
+          >
+            {TITLES[name]}
+          </button>
+        ))}
+      </div>
+      <div id="stage-view" class="stage-view" role="tabpanel" aria-labelledby={`tab-${tab.value}`}>
+        {isImageTab && <ImageViews />}
+        <SpaceView hidden={isImageTab} />
+        {Lab !== undefined && (
+          <section class="lab" aria-label={`${TITLES[tab.value]}: figure`}>
+            <Lab />
+          </section>
+        )}
+      </div>
+    </>
+  );
+}

@@ -1,0 +1,121 @@
+/** Roof facets, tinted by their normal: the hue says where a facet faces, its strength how steep it is. */
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshBasicMaterial,
+  ShapeUtils,
+  Vector2,
+  Vector3,
+} from "three";
+import { PALETTE } from "../../shared/palette";
+import type { Facet, Vec3 } from "../../shared/results";
+import type { Selection } from "../../shared/selection";
+import { zUpGroup } from "../scene/frame";
+import { BOTH_SIDES, disposeObject, type Layer } from "../scene/layer";
+import { Chosen } from "../scene/selectedObject";
+
+/** From this slope on, radians, the tint has its full strength. */
+const FULL_TINT_SLOPE = (40 * Math.PI) / 180;
+const DIMMED = 0.3;
+const OPACITY = 0.92;
+
+export function buildFacets(facets: readonly Facet[]): Layer {
+  const object = zUpGroup();
+  const triangles = facets.map(triangulate);
+  const facetOfTriangle = triangles.flatMap((positions, i) =>
+    new Array<number>(positions.length / 9).fill(i),
+  );
+  const all = facetMesh(triangles, facets.map(normalTint));
+  object.add(all, outlines(facets));
+  const chosen = new Chosen(object);
+
+  return {
+    object,
+    pick: (hit) => {
+      const index = facetOfTriangle[hit.faceIndex ?? -1];
+      return index === undefined ? null : { kind: "facet", index };
+    },
+    highlight(selection: Selection | null) {
+      all.material.opacity = selection === null ? OPACITY : DIMMED;
+      const one = selection?.kind === "facet" ? triangles[selection.index] : undefined;
+      chosen.show(one === undefined ? null : facetMesh([one], [new Color(PALETTE.selected)]));
+    },
+    dispose: () => disposeObject(object),
+  };
+}
+
+/** The tint of a plane: azimuth as hue, slope as chroma, equal lightness for all. */
+export function normalTint({ plane }: Pick<Facet, "plane">): Color {
+  const [x, y, z] = plane.normal;
+  const slope = Math.atan2(Math.hypot(x, y), Math.abs(z));
+  const chroma = 0.1 * Math.min(1, slope / FULL_TINT_SLOPE);
+  return fromOklch(0.76, chroma, Math.atan2(y, x));
+}
+
+/** Oklch (Ottosson 2020) to three's linear working space, clipped. */
+function fromOklch(lightness: number, chroma: number, hue: number): Color {
+  const a = chroma * Math.cos(hue);
+  const b = chroma * Math.sin(hue);
+  const l = (lightness + 0.3963377774 * a + 0.2158037573 * b) ** 3;
+  const m = (lightness - 0.1055613458 * a - 0.0638541728 * b) ** 3;
+  const s = (lightness - 0.0894841775 * a - 1.291485548 * b) ** 3;
+  return new Color(
+    clip(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+    clip(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+    clip(-0.0041960863 * l - 0.7034186147 * m + 1.707614701 * s),
+  );
+}
+
+function clip(value: number): number {
+  return Math.min(1, Math.max(0, value));
+}
+
+/** Positions of a facet's triangles, nine numbers each; its plan is triangulated, roofs do not overhang. */
+function triangulate({ outer, holes }: Facet): number[] {
+  const corners = [...outer, ...holes.flat()];
+  const plan = (ring: readonly Vec3[]) => ring.map(([x, y]) => new Vector2(x, y));
+  return ShapeUtils.triangulateShape(plan(outer), holes.map(plan)).flatMap((triangle) =>
+    triangle.flatMap((index) => [...(corners[index] as Vec3)]),
+  );
+}
+
+function facetMesh(
+  triangles: readonly number[][],
+  tints: readonly Color[],
+): Mesh<BufferGeometry, MeshBasicMaterial> {
+  const colours = triangles.flatMap((positions, i) => {
+    const tint = (tints[i] as Color).toArray();
+    return new Array(positions.length / 3).fill(tint).flat() as number[];
+  });
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(Float32Array.from(triangles.flat()), 3));
+  geometry.setAttribute("color", new BufferAttribute(Float32Array.from(colours), 3));
+  const material = new MeshBasicMaterial({
+    vertexColors: true,
+    ...BOTH_SIDES,
+    transparent: true,
+    opacity: OPACITY,
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+  });
+  return new Mesh(geometry, material);
+}
+
+function outlines(facets: readonly Facet[]): LineSegments {
+  const points = facets.flatMap(({ outer, holes }) =>
+    [outer, ...holes].flatMap((ring) =>
+      ring
+        .flatMap((corner, i) => [corner, ring[(i + 1) % ring.length] as Vec3])
+        .map((p) => new Vector3(...p)),
+    ),
+  );
+  const material = new LineBasicMaterial({ color: PALETTE.casing, transparent: true, opacity: 0.7 });
+  const lines = new LineSegments(new BufferGeometry().setFromPoints(points), material);
+  lines.raycast = () => undefined;
+  return lines;
+}

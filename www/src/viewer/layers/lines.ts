@@ -1,0 +1,93 @@
+/** 3D lines, matched and new, as lines of constant width on the screen. */
+import type { LineSegments2 } from "three/addons/lines/LineSegments2.js";
+import { PALETTE } from "../../shared/palette";
+import { LINE_STRIDE } from "../../shared/results";
+import type { Selection } from "../../shared/selection";
+import type { LineOrigin, LineRecord } from "../../shared/traces";
+import { zUpGroup } from "../scene/frame";
+import { disposeObject, type Layer } from "../scene/layer";
+import { Chosen } from "../scene/selectedObject";
+import { endsOf, strokes } from "../scene/strokes";
+
+const WIDTH_PX = 2.25;
+const SELECTED_WIDTH_PX = 5;
+const DIMMED = 0.35;
+/** Of lines that no view shows, metres. */
+const DASH_M = 0.4;
+
+/** As the border lines in plan. */
+export const ORIGIN_COLOURS: Record<LineOrigin, string> = {
+  matched: PALETTE.line,
+  clustered: PALETTE.grown,
+  intersection: PALETTE.merged,
+  border: PALETTE.bar,
+};
+
+/** A line without support in any view: it is where two planes intersect, and drawn dashed. */
+export function isUnseen({ origin, supports }: Pick<LineRecord, "origin" | "supports">): boolean {
+  return origin !== "matched" && supports.length === 0;
+}
+
+/** By how a line was found, and as what is refused where the model refutes it. */
+export function colourOf(record: Pick<LineRecord, "origin" | "refuted"> | undefined): string {
+  return record?.refuted == null ? ORIGIN_COLOURS[record?.origin ?? "matched"] : PALETTE.rejected;
+}
+
+/**
+ * @param lines p0 and p1 of each line, local frame, metres
+ * @param linesOf the lines that belong to a selection
+ */
+export function buildLines(
+  lines: Float64Array,
+  records: readonly LineRecord[],
+  linesOf: (selection: Selection | null) => readonly number[],
+): Layer {
+  const object = zUpGroup();
+  const count = Math.floor(lines.length / LINE_STRIDE);
+  const indices = Array.from({ length: count }, (_, i) => i);
+  const unseen = (index: number) => records[index] !== undefined && isUnseen(records[index]);
+  const colour = (index: number) => colourOf(records[index]);
+  const parts = [indices.filter((i) => !unseen(i)), indices.filter(unseen)].map((own, k) => {
+    const drawn = strokes(
+      own.flatMap((i) => endsOf(lines, i)),
+      own.map(colour),
+      WIDTH_PX,
+    );
+    return { own, drawn: k === 0 ? drawn : dashed(drawn) };
+  });
+  object.add(...parts.filter(({ own }) => own.length > 0).map(({ drawn }) => drawn));
+  const chosen = new Chosen(object);
+
+  return {
+    object,
+    pick: (hit) => {
+      const part = parts.find(({ drawn }) => drawn === hit.object);
+      const index = part?.own[hit.faceIndex ?? -1];
+      return index === undefined ? null : { kind: "line", index };
+    },
+    highlight(selection: Selection | null) {
+      for (const { drawn } of parts) {
+        drawn.material.opacity = selection === null ? 1 : DIMMED;
+      }
+      const own = linesOf(selection).filter((index) => index < count);
+      chosen.show(own.length === 0 ? null : above(own.flatMap((index) => endsOf(lines, index))));
+    },
+    dispose: () => disposeObject(object),
+  };
+}
+
+function dashed(drawn: LineSegments2): LineSegments2 {
+  drawn.computeLineDistances();
+  drawn.material.dashed = true;
+  drawn.material.dashSize = DASH_M;
+  drawn.material.gapSize = DASH_M / 2;
+  return drawn;
+}
+
+/** Selected lines, over whatever lies before them. */
+function above(positions: number[]): LineSegments2 {
+  const drawn = strokes(positions, PALETTE.selected, SELECTED_WIDTH_PX);
+  drawn.material.depthTest = false;
+  drawn.renderOrder = 2;
+  return drawn;
+}

@@ -1,0 +1,19 @@
+/** The facets of a model that was kept for comparison: their outlines only, over whatever is shown. */
+import { PALETTE } from "../../shared/palette";
+import type { Facet } from "../../shared/results";
+import { zUpGroup } from "../scene/frame";
+import { disposeObject, type Layer, unpicked } from "../scene/layer";
+import { sidesOf, strokes } from "../scene/strokes";
+
+const WIDTH_PX = 3;
+
+export function buildOutlines(facets: readonly Facet[]): Layer {
+  const object = zUpGroup();
+  const sides = sidesOf(facets.flatMap(({ outer, holes }) => [outer, ...holes]));
+  const lines = strokes(sides, PALETTE.merged, WIDTH_PX);
+  lines.material.depthTest = false;
+  lines.renderOrder = 3;
+  lines.raycast = () => undefined;
+  object.add(lines);
+  return unpicked({ object, dispose: () => disposeObject(object) });
+}

@@ -1,0 +1,78 @@
+/**
+ * One thing of each layer, never shown: its shaders are made when the page opens. Otherwise each is made when a stage first
+ * fills its layer, and asking for it waits for the graphics beside the running pipeline.
+ */
+import { Mesh, MeshBasicMaterial, type Object3D, Sphere, SphereGeometry, Texture, Vector3 } from "three";
+import { PALETTE } from "../../shared/palette";
+import type { Facet, HalfPlane } from "../../shared/results";
+import type { Grouping, LineRecord, SideRecord } from "../../shared/traces";
+import { disposeObject, type Layer, unpicked } from "../scene/layer";
+import { buildFacets } from "./facets";
+import { buildFans } from "./fans";
+import { buildGrid } from "./grid";
+import { buildGroups } from "./groups";
+import { buildPicked } from "./highlight";
+import { buildLines } from "./lines";
+import { edgeLines } from "./model";
+import { buildOutlines } from "./outlines";
+
+const LINES = Float64Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0);
+const PLANE = { normal: [0, 0, 1], d: 0 } as const;
+const NO_COVARIANCE = [0, 0, 0, 0, 0, 0] as const;
+const SEEN: LineRecord = {
+  origin: "matched",
+  refuted: null,
+  sigma_m: 0,
+  covariance: [NO_COVARIANCE, NO_COVARIANCE],
+  supports: [],
+};
+/** A line that no view shows has a shader of its own, for its dashes. */
+const RECORDS: readonly LineRecord[] = [SEEN, { ...SEEN, origin: "intersection" }];
+const HALF_PLANE: HalfPlane = {
+  line: 0,
+  side: "left",
+  theta: 0,
+  similarity: 1,
+  curvature: 1,
+  amplitude: 1,
+  probability: 1,
+  views: [],
+  plane: PLANE,
+};
+const REFUSED: SideRecord = { line: 0, side: "right", rejection: "flat_curve" };
+const FACET: Facet = {
+  building: 0,
+  plane: PLANE,
+  outer: [
+    [0, 0, 0],
+    [1, 0, 0],
+    [0, 1, 0],
+  ],
+  holes: [],
+  similarity: 1,
+};
+const GROUPING: Grouping = {
+  groups: [{ plane: PLANE, members: [{ line: 0, side: null, half_plane: null }] }],
+  plane_lines: [{ segment: { p0: [0, 0, 0], p1: [1, 0, 0] }, views: [] }],
+  borders: [],
+  cells: 0,
+  rejected: [],
+};
+
+export function warmLayers(): Layer[] {
+  return [
+    buildLines(LINES, RECORDS, () => []),
+    buildFans([HALF_PLANE], LINES, [REFUSED]),
+    buildGroups(GROUPING, LINES),
+    buildFacets([FACET]),
+    buildOutlines([FACET]),
+    buildPicked([{ points: FACET.outer, closed: true }]),
+    buildGrid(new Sphere(new Vector3(), 1), 0, PALETTE.unmatched),
+    onlySeen(edgeLines([...LINES])),
+    onlySeen(new Mesh(new SphereGeometry(), new MeshBasicMaterial({ map: new Texture() }))),
+  ];
+}
+
+function onlySeen(object: Object3D): Layer {
+  return unpicked({ object, dispose: () => disposeObject(object) });
+}

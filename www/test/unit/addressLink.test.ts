@@ -1,0 +1,59 @@
+import { describe, expect, it } from "vitest";
+import { formatLink, type Link, parseLink } from "../../src/app/settings/addressLink";
+
+const LINK: Link = {
+  scene: "demo",
+  tab: "halfplanes",
+  view: 2,
+  selection: { kind: "side", line: 12, side: "left" },
+  params: { method: "rectangles", "sweep.min_similarity": 0.45 },
+  lesson: 4,
+};
+
+describe("links", () => {
+  it("say what they said", () => {
+    expect(parseLink(`#${formatLink(LINK)}`)).toEqual(LINK);
+  });
+
+  it.each(["rectangles", "combined"])("name the method: %s", (method) => {
+    expect(parseLink(formatLink({ ...LINK, params: { method } })).params).toEqual({ method });
+  });
+
+  it.each([
+    { kind: "segment", view: 0, index: 44 },
+    { kind: "region", view: 3, index: 1 },
+    { kind: "refused", view: 2, index: 9 },
+    { kind: "withdrawn", index: 4 },
+    { kind: "cluster", plane: 1, index: 12 },
+    { kind: "line", index: 7 },
+    { kind: "facet", index: 0 },
+    { kind: "group", index: 9 },
+    { kind: "pair", index: 5 },
+    { kind: "refinement", index: 2 },
+    { kind: "relation", building: 2, index: 11 },
+  ] as const)("carry a selection: $kind", (selection) => {
+    expect(parseLink(formatLink({ ...LINK, selection })).selection).toEqual(selection);
+  });
+
+  it.each([
+    "tab=<script>",
+    "select=line:-1",
+    "select=line:1e9",
+    "select=side:3",
+    "select=segment:1.left",
+    "view=1.5",
+    "params={",
+    "params=[1]",
+    "scene=http://elsewhere",
+    "method=constructor",
+  ])("take nothing from %j", (hash) => {
+    expect(parseLink(hash)).toEqual({
+      scene: null,
+      tab: null,
+      view: null,
+      selection: null,
+      params: {},
+      lesson: null,
+    });
+  });
+});

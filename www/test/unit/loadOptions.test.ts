@@ -1,0 +1,49 @@
+import { describe, expect, it } from "vitest";
+import { loadOptions, parseHeight, parseRegion } from "../../src/app/settings/loadOptions";
+import { NO_OPTIONS } from "../../src/app/state/state";
+import type { Inspection } from "../../src/shared/results";
+
+const image = (path: string) => ({ path, name: path.replace("in/", ""), size: null, orientation: null });
+const inspection = { images: ["in/a.jpg", "in/b.jpg", "in/c.jpg"].map(image) } as unknown as Inspection;
+
+describe("run options", () => {
+  it("say nothing where nothing is asked for", () => {
+    expect(loadOptions(NO_OPTIONS, inspection)).toEqual({});
+  });
+
+  it("name the views that are left, the orientation, region and ground", () => {
+    const wanted = {
+      orientation: "x/b.out",
+      leftOut: ["in/b.jpg"],
+      roi: [1, 2, 3, 4] as const,
+      groundZ: 0,
+      applyFix: true,
+      adjust: true,
+      tileM: 50,
+      epsg: 25832,
+    };
+    expect(loadOptions({ ...wanted, roi: [...wanted.roi] }, inspection)).toEqual({
+      orientation: "x/b.out",
+      views: ["a.jpg", "c.jpg"],
+      roi: [1, 2, 3, 4],
+      groundZ: 0,
+      applyFix: true,
+      adjust: true,
+      epsg: 25832,
+    });
+  });
+
+  it("read a region with any separators, and say what is wrong with it", () => {
+    expect(parseRegion("1, 2;3  4.5")).toEqual({ value: [1, 2, 3, 4.5] });
+    expect(parseRegion("  ")).toEqual({ value: null });
+    expect(parseRegion("1,2,3")).toHaveProperty("error");
+    expect(parseRegion("1,2,x,4")).toHaveProperty("error");
+    expect(parseRegion("3,2,1,4")).toHaveProperty("error");
+  });
+
+  it("read a height; zero is one, nothing is none", () => {
+    expect(parseHeight("0")).toEqual({ value: 0 });
+    expect(parseHeight("")).toEqual({ value: null });
+    expect(parseHeight("12 m")).toHaveProperty("error");
+  });
+});

@@ -1,0 +1,130 @@
+import { describe, expect, it } from "vitest";
+import { firstStageOf } from "../../src/app/session/stageCatalogue";
+import {
+  changedParams,
+  type ParamField,
+  paramSections,
+  paramsOf,
+  parseField,
+  withParam,
+} from "../../src/app/settings/parameterForm";
+import type { Params } from "../../src/shared/results";
+
+const DEFAULTS = {
+  segments: { min_length_px: 15, area_m2: 2, closed: true },
+  lines3d: {},
+  sweep: { max_theta_deg: 75, steps: [1, 2] },
+};
+
+function field(group: string, key: string, values = DEFAULTS): ParamField {
+  const section = paramSections(DEFAULTS, values).find((one) => one.path === group);
+  const found = section?.fields.find((one) => one.key === key);
+  if (found === undefined) {
+    throw new Error(`no field ${group}.${key}`);
+  }
+  return found;
+}
+
+describe("paramSections", () => {
+  it("leaves out stages without parameters", () => {
+    expect(paramSections(DEFAULTS, DEFAULTS).map(({ path }) => path)).toEqual(["segments", "sweep"]);
+  });
+
+  it("makes no section of a single value", () => {
+    const withMethod: Params = JSON.parse(JSON.stringify({ method: "lines", ...DEFAULTS }));
+    expect(paramSections(withMethod, withMethod).map(({ path }) => path)).toEqual(["segments", "sweep"]);
+  });
+
+  it("reads the unit from the name", () => {
+    expect(field("segments", "min_length_px")).toMatchObject({ label: "Min length", unit: "px" });
+    expect(field("segments", "area_m2")).toMatchObject({ label: "Area", unit: "m²" });
+    expect(field("sweep", "max_theta_deg")).toMatchObject({ label: "Max theta", unit: "°" });
+  });
+
+  it("marks what differs from the default, and only that", () => {
+    const values = { ...DEFAULTS, segments: { ...DEFAULTS.segments, min_length_px: 12 } };
+    expect(field("segments", "min_length_px", values)).toMatchObject({
+      changed: true,
+      value: 12,
+      fallback: 15,
+    });
+    expect(field("segments", "closed", values).changed).toBe(false);
+    expect(paramSections(DEFAULTS, values)[0]?.changed).toBe(1);
+  });
+
+  it("compares lists by their content", () => {
+    const values = { ...DEFAULTS, sweep: { max_theta_deg: 75, steps: [1, 2] } };
+    expect(field("sweep", "steps", values).changed).toBe(false);
+  });
+});
+
+describe("groups inside groups", () => {
+  const nested: Params = JSON.parse(
+    '{"segments": {"min_length_px": 15, "edgels": {"low": 2}}, "objectspace": {"oris": {"noise": 4}}, "method": "lines"}',
+  );
+
+  it("are sections of their own, and those of the other method are left out", () => {
+    expect(paramSections(nested, nested).map(({ path, title }) => [path, title])).toEqual([
+      ["segments", "Segments"],
+      ["segments.edgels", "Segments: edgels"],
+    ]);
+    const other = { ...nested, method: "rectangles" as unknown as Params[string] };
+    expect(paramSections(nested, other).map(({ path }) => path)).toEqual(["objectspace.oris"]);
+    const both = { ...nested, method: "combined" as unknown as Params[string] };
+    expect(paramSections(nested, both)).toHaveLength(3);
+  });
+
+  it("are changed by path, and what was changed makes the same parameters again", () => {
+    const changed = withParam(nested, "segments.edgels.low", 3);
+    expect(changed["segments"]).toEqual({ min_length_px: 15, edgels: { low: 3 } });
+    expect(nested["segments"]).toMatchObject({ edgels: { low: 2 } });
+    expect(changedParams(nested, changed)).toEqual({ "segments.edgels.low": 3 });
+    expect(paramsOf(nested, changedParams(nested, changed))).toEqual(changed);
+  });
+
+  it("are not changed by a link that names what is not there, or of another type", () => {
+    const wrong = {
+      "segments.edgels": 3,
+      "segments.new": 1,
+      "segments.min_length_px": "15",
+      "__proto__.x": 1,
+    };
+    expect(paramsOf(nested, wrong)).toEqual(nested);
+  });
+});
+
+describe("parseField", () => {
+  it("takes numbers, with either decimal mark", () => {
+    expect(parseField(field("segments", "min_length_px"), " 12.5 ")).toEqual({ value: 12.5 });
+    expect(parseField(field("segments", "min_length_px"), "0,4")).toEqual({ value: 0.4 });
+  });
+
+  it.each(["", "abc", "1e999", "NaN", "1 2"])("refuses %j as a number", (text) => {
+    expect(parseField(field("segments", "min_length_px"), text)).toHaveProperty("error");
+  });
+
+  it("takes JSON for lists and refuses what is none", () => {
+    expect(parseField(field("sweep", "steps"), "[3]")).toEqual({ value: [3] });
+    expect(parseField(field("sweep", "steps"), "[3")).toHaveProperty("error");
+  });
+});
+
+describe("firstStageOf", () => {
+  const stages = ["segments", "matches", "lines", "halfplanes", "facets", "model"];
+
+  it("finds the stage that a group changes first", () => {
+    expect(firstStageOf("sweep", stages)).toBe(3);
+    expect(firstStageOf("texture", stages)).toBe(5);
+  });
+
+  it("tells parameters of one group apart, and leaves the other method alone", () => {
+    const rectangles = ["regions", "directions", "clusters", "rectangles", "model"];
+    expect(firstStageOf("objectspace.planes.min_measure_m2", rectangles)).toBe(3);
+    expect(firstStageOf("objectspace.planes.min_height_m", rectangles)).toBe(1);
+    expect(firstStageOf("sweep.min_similarity", rectangles)).toBe(5);
+  });
+
+  it("outdates everything for a group it does not know", () => {
+    expect(firstStageOf("novel", stages)).toBe(0);
+  });
+});

@@ -1,0 +1,154 @@
+import { beforeEach, describe, expect, it, vi } from "vitest";
+import type { Engine } from "../../src/core/engine";
+import type { Crew as CrewType } from "../../src/core/workerPool";
+
+/** Every call of every worker, in their order: worker, call, arguments, what moves along. */
+let calls: [number, string, Record<string, unknown>, readonly Transferable[]][] = [];
+/** The worker whose shares fail. */
+let broken = -1;
+let why = "crash";
+let made = 0;
+
+class FakeEngine {
+  readonly number = made++;
+  isOpen = true;
+  readonly onProgress: (stage: string, fraction: number) => void;
+
+  constructor(onProgress: (stage: string, fraction: number) => void) {
+    this.onProgress = onProgress;
+  }
+
+  open(): Promise<void> {
+    return Promise.resolve();
+  }
+
+  close(): void {
+    this.isOpen = false;
+  }
+
+  async call(
+    type: string,
+    args: Record<string, unknown>,
+    transfer: readonly Transferable[] = [],
+  ): Promise<unknown> {
+    calls.push([this.number, type, args, transfer]);
+    if (type === "sharedMaps") {
+      return { maps: ["heights", "pairs"], withColours: false };
+    }
+    if (type === "share") {
+      if (this.number === broken) {
+        throw new EngineError("stopped", why);
+      }
+      this.onProgress("matches", 0.5);
+    }
+    return new Uint8Array([this.number + 1]);
+  }
+}
+
+class EngineError extends Error {
+  readonly kind: string;
+
+  constructor(message: string, kind: string) {
+    super(message);
+    this.kind = kind;
+  }
+}
+
+vi.mock("../../src/core/engine", () => ({ Engine: FakeEngine, EngineError }));
+
+const fractions: number[] = [];
+const wanted = { stage: "matches", earlier: ["segments"], views: 2, params: {}, workers: 3 };
+
+async function crewOf(): Promise<CrewType> {
+  const { Crew } = await import("../../src/core/workerPool");
+  const engine = new FakeEngine((stage, fraction) => crew.engineReached(stage, fraction));
+  const crew = new Crew(engine as unknown as Engine, (_, fraction) => fractions.push(fraction));
+  return crew;
+}
+
+const of = (type: string) => calls.filter(([, name]) => name === type);
+
+describe("crew", () => {
+  beforeEach(() => {
+    calls = [];
+    fractions.length = 0;
+    broken = -1;
+    why = "crash";
+    made = 0;
+  });
+
+  it("deals every map to all workers and collects the shares by their index", async () => {
+    const crew = await crewOf();
+    expect(await crew.share(wanted)).toBe(true);
+    expect(of("share").map(([worker, , { map, index, of: all }]) => [worker, map, index, all])).toEqual([
+      [0, "heights", 0, 3],
+      [1, "heights", 1, 3],
+      [2, "heights", 2, 3],
+      [0, "pairs", 0, 3],
+      [1, "pairs", 1, 3],
+      [2, "pairs", 2, 3],
+    ]);
+    const learnt = of("learn");
+    expect(learnt.map(([worker, , { map }]) => [worker, map])).toEqual([
+      [0, "heights"],
+      [1, "heights"],
+      [2, "heights"],
+      [0, "pairs"],
+    ]);
+    expect(learnt[0]?.[2]["shares"]).toEqual([1, 2, 3].map((n) => new Uint8Array([n])));
+    expect(fractions.at(2)).toBeCloseTo(0.5);
+  });
+
+  it("gives views once, and results only when they are new", async () => {
+    const crew = await crewOf();
+    crew.hasRun("segments");
+    await crew.share(wanted);
+    expect(of("takeView").length).toBe(4);
+    expect(of("takeOver").length).toBe(2);
+    await crew.share(wanted);
+    expect(of("takeView").length).toBe(4);
+    expect(of("takeOver").length).toBe(2);
+    crew.hasRun("segments");
+    await crew.share(wanted);
+    expect(of("takeOver").length).toBe(4);
+    crew.forgetViews();
+    await crew.share(wanted);
+    expect(of("takeView").length).toBe(8);
+    expect(of("takeOver").length).toBe(6);
+  });
+
+  it("copies for all workers but the last, which gets the bytes themselves", async () => {
+    const crew = await crewOf();
+    crew.hasRun("segments");
+    await crew.share(wanted);
+    const moved = (type: string) => of(type).map(([worker, , , transfer]) => [worker, transfer.length]);
+    const eachView = [
+      [1, 0],
+      [2, 1],
+    ];
+    expect(moved("takeView")).toEqual([...eachView, ...eachView]);
+    expect(moved("takeOver")).toEqual(eachView);
+    expect(moved("learn")).toEqual([
+      [0, 0],
+      [1, 0],
+      [2, 3],
+      [0, 3],
+    ]);
+  });
+
+  it("ends with the run that is cancelled", async () => {
+    broken = 1;
+    why = "cancelled";
+    const crew = await crewOf();
+    await expect(crew.share(wanted)).rejects.toMatchObject({ kind: "cancelled" });
+  });
+
+  it("leaves the engine alone where a helper fails, or none is wanted", async () => {
+    broken = 2;
+    const crew = await crewOf();
+    expect(await crew.share(wanted)).toBe(false);
+    calls = [];
+    expect(await crew.share({ ...wanted, workers: 1 })).toBe(true);
+    expect(of("share")).toEqual([]);
+  });
+});
