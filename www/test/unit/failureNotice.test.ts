@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { failureNotice, splitAdvice, withNotice } from "../../src/app/session/failureNotice";
+import { failureNotice, splitAdvice } from "../../src/app/session/failureNotice";
+import { withNotice } from "../../src/app/state/notices";
 import type { DoctorReport } from "../../src/shared/results";
 
 describe("splitAdvice", () => {

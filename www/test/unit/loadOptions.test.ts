@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { loadOptions, parseHeight, parseRegion } from "../../src/app/settings/loadOptions";
-import { NO_OPTIONS } from "../../src/app/state/state";
+import { NO_OPTIONS } from "../../src/app/state/project";
 import type { Inspection } from "../../src/shared/results";
 
 const image = (path: string) => ({ path, name: path.replace("in/", ""), size: null, orientation: null });

@@ -1,21 +1,15 @@
 import { afterEach, describe, expect, it } from "vitest";
-import {
-  addResults,
-  mainResults,
-  NO_RESULTS,
-  params,
-  results,
-  setResults,
-  tab,
-} from "../../src/app/state/state";
+import { type params, replaceParams } from "../../src/app/state/parameters";
+import { addResults, mainResults, NO_RESULTS, results, setResults } from "../../src/app/state/results";
+import { showTab } from "../../src/app/state/viewState";
 
 const choose = (method: string) => {
-  params.value = { method } as unknown as typeof params.value;
+  replaceParams({ method } as unknown as typeof params.value);
 };
 
 afterEach(() => {
-  params.value = {};
-  tab.value = "images";
+  replaceParams({});
+  showTab("images");
   setResults(NO_RESULTS);
 });
 
@@ -26,11 +20,11 @@ describe("results", () => {
     addResults("clusters", { lines: clustered });
     addResults("lines", { lines: matched });
     for (const name of ["regions", "directions", "clusters", "rectangles"] as const) {
-      tab.value = name;
+      showTab(name);
       expect(results.value.lines).toBe(clustered);
     }
     for (const name of ["segments", "lines", "facets", "model"] as const) {
-      tab.value = name;
+      showTab(name);
       expect(results.value.lines).toBe(matched);
     }
     expect(mainResults.value.lines).toBe(matched);
@@ -40,7 +34,7 @@ describe("results", () => {
     choose("rectangles");
     const lines = new Float64Array(6);
     addResults("clusters", { lines });
-    tab.value = "model";
+    showTab("model");
     expect(results.value.lines).toBe(lines);
     expect(mainResults.value.lines).toBe(lines);
   });

@@ -1,6 +1,7 @@
 /** Two results: one is kept, and its numbers stand beside the present ones. In space it stands beside them, too (`beside.ts`). */
 
-import { keptResult, results } from "../state/state";
+import { keepResult, keptResult } from "../state/keptResult";
+import { results } from "../state/results";
 import { comparedRows, presentResult, presentTitle } from "./comparedResults";
 
 /** Keeps the present model, or lets go of the kept one. */
@@ -16,7 +17,7 @@ export function KeepResult() {
       aria-pressed={isKept}
       title="Keep this result, to compare another method or other parameters with it"
       onClick={() => {
-        keptResult.value = isKept ? null : presentResult();
+        keepResult(isKept ? null : presentResult());
       }}
     >
       {isKept ? "Drop kept" : "Compare"}

@@ -3,16 +3,11 @@ import { computed } from "@preact/signals";
 import type { Facet, Params } from "../../shared/results";
 import { slopedArea } from "../parts/facetArea";
 import { fieldText, paramName, paramSections } from "../settings/parameterForm";
-import {
-  defaults,
-  type KeptResult,
-  type Method,
-  mainResults,
-  method,
-  methodOf,
-  params,
-  stages,
-} from "../state/state";
+import type { KeptResult } from "../state/keptResult";
+import { type Method, methodOf } from "../state/methods";
+import { defaults, method, params } from "../state/parameters";
+import { mainResults } from "../state/results";
+import { stages } from "../state/stages";
 
 const METHOD_TITLES: Record<Method, string> = {
   lines: "Lines",

@@ -1,6 +1,7 @@
 /** What each stage view shows: a paragraph, its equation, and where it stands in the papers. */
 import type { ComponentChildren } from "preact";
-import { type Tab, tab } from "../state/state";
+import type { Tab } from "../state/methods";
+import { tab } from "../state/viewState";
 
 interface Figure {
   title: string;

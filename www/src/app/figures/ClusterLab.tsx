@@ -7,7 +7,8 @@ import type { ClusterTrace, Vec2 } from "../../shared/traces";
 import { axesOf, Chart, Fit, type Frame, pathOf, type Scale } from "../parts/charts";
 import { degreesOf } from "../parts/facetArea";
 import { grouped } from "../parts/numberText";
-import { results, selection, shownPlane } from "../state/state";
+import { results } from "../state/results";
+import { select, selection, shownPlane, showPlane } from "../state/viewState";
 import { PlaneChoice } from "./PlaneChoice";
 
 /** Figures 7 and 8: image lines of one direction in the plane across it, and the clusters that description length chose. */
@@ -24,7 +25,7 @@ export function ClusterLab() {
         names={clusters.map(({ azimuth }, i) => `${i}: ${degreesOf(azimuth).toFixed(0)}°`)}
         shown={shown}
         onShow={(i) => {
-          shownPlane.value = i;
+          showPlane(i);
         }}
       />
       <Fit>{(frame) => <ClusterPlane frame={frame} plane={shown} trace={trace} />}</Fit>
@@ -53,9 +54,11 @@ function ClusterPlane({ frame, plane, trace }: { frame: Frame; plane: number; tr
       onClick={(across, height) => {
         const distance = ([u, v]: Vec2) =>
           Math.hypot((u - across) / (x.max - x.min), (v - height) / (y.max - y.min));
-        selection.value = nearest(
-          [...linesOf(trace), ...refusedOf(plane, trace)],
-          ([one, at]) => distance(at) - (one.kind === "line" ? RING : 0),
+        select(
+          nearest(
+            [...linesOf(trace), ...refusedOf(plane, trace)],
+            ([one, at]) => distance(at) - (one.kind === "line" ? RING : 0),
+          ),
         );
       }}
     >

@@ -3,7 +3,9 @@ import { category } from "../../shared/palette";
 import type { MainDirections } from "../../shared/traces";
 import { axesOf, Chart, Fit, type Frame, pathOf } from "../parts/charts";
 import { degreesOf } from "../parts/facetArea";
-import { results, scene, shownPlane } from "../state/state";
+import { results } from "../state/results";
+import { scene } from "../state/scene";
+import { shownPlane, showPlane } from "../state/viewState";
 import { PlaneChoice } from "./PlaneChoice";
 
 const HALF = Math.PI / 2;
@@ -23,7 +25,7 @@ export function DirectionLab() {
         names={found.windows.map((_, i) => `Building ${i}`)}
         shown={shown}
         onShow={(i) => {
-          shownPlane.value = i;
+          showPlane(i);
         }}
       />
       {histogram !== undefined && (

@@ -5,7 +5,8 @@ import type { Grouping, LineRecord, Vec2 } from "../../shared/traces";
 import { Filmstrip } from "../images/Filmstrip";
 import { axesOf, Chart, dotsOf, Fit, type Frame, pathOf, type Scale } from "../parts/charts";
 import { facetRejectionWords } from "../parts/reasonText";
-import { results, selection } from "../state/state";
+import { results } from "../state/results";
+import { select, selection } from "../state/viewState";
 
 /** The 3D lines by number of views, and the picked one in every view. */
 export function LineLab() {
@@ -51,7 +52,7 @@ function Accuracy({ frame }: { frame: Frame }) {
       testid="accuracy"
       onClick={(views, sigma) => {
         const index = nearest(views, sigma, x, y);
-        selection.value = { kind: "line", index };
+        select({ kind: "line", index });
       }}
     >
       <path class="dot-line" d={dotsOf(places)} data-count={places.length} />
@@ -136,7 +137,7 @@ export function GroupLab() {
                 class="quiet"
                 aria-pressed={isChosen}
                 onClick={() => {
-                  selection.value = { kind: "group", index };
+                  select({ kind: "group", index });
                 }}
               >
                 <span class="dot" style={{ background: category(index) }} aria-hidden="true" />
@@ -268,7 +269,7 @@ function PlanArea(of: {
   const picked = selection.value;
   const isChosen = picked?.kind === kind && picked.index === index;
   const pick = () => {
-    selection.value = of.picks;
+    select(of.picks);
   };
   return (
     // biome-ignore lint/a11y/useSemanticElements: SVG has no button

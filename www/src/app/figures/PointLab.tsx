@@ -1,13 +1,15 @@
 /** B99 figures 2 to 4: the candidates of a segment, pointwise correspondence, and the two windows that are compared. */
 import { useEffect, useRef } from "preact/hooks";
 import { outcomeWords } from "../parts/reasonText";
-import { compareAt } from "../selection/selectionDetail";
-import { pointing, scene, selection } from "../state/state";
+import { compareAt } from "../selection/selectionQueries";
+import { scene } from "../state/scene";
+import { selectionDetail } from "../state/selectionDetail";
+import { selection } from "../state/viewState";
 
 const WINDOW_PX = 15;
 
 export function PointLab() {
-  const { story, candidate, at, correspondence } = pointing.value;
+  const { story, candidate, at, correspondence } = selectionDetail.value;
   if (selection.value?.kind !== "segment" || story === null) {
     return (
       <p class="lab-hint muted">

@@ -4,7 +4,8 @@ import type { PlaneTrace } from "../../shared/traces";
 import { Filmstrip } from "../images/Filmstrip";
 import { axesOf, Chart, Fit, type Frame, histogramOf, type Scale } from "../parts/charts";
 import { PAIR_WORDS } from "../parts/reasonText";
-import { results, selection } from "../state/state";
+import { results } from "../state/results";
+import { select, selection } from "../state/viewState";
 
 /** Figures 10 and 11: the window between two parallel lines, the lines that cross it, and their positions. */
 export function RectangleLab() {
@@ -24,7 +25,7 @@ export function RectangleLab() {
           <select
             value={shown}
             onChange={(event) => {
-              selection.value = { kind: "pair", index: Number(event.currentTarget.value) };
+              select({ kind: "pair", index: Number(event.currentTarget.value) });
             }}
           >
             {found.pairs.map((one, i) => (

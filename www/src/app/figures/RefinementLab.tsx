@@ -4,7 +4,8 @@ import { Filmstrip } from "../images/Filmstrip";
 import { buildingOfFacet, relationLimit } from "../inspector/refinementRows";
 import { axesOf, Chart, Fit, type Frame } from "../parts/charts";
 import { RELATION_WORDS, refinementWords } from "../parts/reasonText";
-import { results, selection } from "../state/state";
+import { results } from "../state/results";
+import { select, selection } from "../state/viewState";
 
 const KINDS = ["horizontal", "parallel", "perpendicular", "equal_height", "symmetric"] as const;
 /** The axis is the logarithm of chi-square, between these. */
@@ -27,7 +28,7 @@ export function RefinementLab() {
           <select
             value={shownBuilding()}
             onChange={(event) => {
-              selection.value = { kind: "refinement", index: Number(event.currentTarget.value) };
+              select({ kind: "refinement", index: Number(event.currentTarget.value) });
             }}
           >
             {buildings.map((one, i) => (
@@ -118,7 +119,7 @@ function Relations({ outer, building, of }: { outer: Frame; building: number; of
           cy={toY(row(one.kind)) + spread(i)}
           isPicked={isPicked(building, i)}
           onPick={() => {
-            selection.value = { kind: "relation", building, index: i };
+            select({ kind: "relation", building, index: i });
           }}
         />
       ))}

@@ -4,13 +4,16 @@ import { category } from "../../shared/palette";
 import type { SideTrace, WarpedPicture } from "../../shared/traces";
 import { axesOf, Chart, Fit, type Frame, pathOf } from "../parts/charts";
 import { REJECTION_WORDS } from "../parts/reasonText";
-import { bestTheta, sideOf, turnTo } from "../selection/selectionDetail";
-import { params, pointing, scene, selection } from "../state/state";
+import { bestTheta, sideOf, turnTo } from "../selection/selectionQueries";
+import { params } from "../state/parameters";
+import { scene } from "../state/scene";
+import { selectionDetail } from "../state/selectionDetail";
+import { select, selection } from "../state/viewState";
 
 const DEGREE = Math.PI / 180;
 
 export function SimLab() {
-  const { side, theta, warped } = pointing.value;
+  const { side, theta, warped } = selectionDetail.value;
   if (side === null) {
     return (
       <p class="lab-hint muted">
@@ -73,7 +76,7 @@ function SideHead({ side }: { side: SideTrace }) {
           type="button"
           class="quiet"
           onClick={() => {
-            selection.value = { kind: "side", line: side.line, side: other };
+            select({ kind: "side", line: side.line, side: other });
           }}
         >
           {other} side

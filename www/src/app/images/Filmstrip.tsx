@@ -1,7 +1,11 @@
 /** The selected thing in every view, each picture zoomed to it: "it lights up in every image". */
 import { useEffect, useRef } from "preact/hooks";
 import type { Selection } from "../../shared/selection";
-import { images, pointing, results, scene, selection, shownView, tab, textScale } from "../state/state";
+import { results } from "../state/results";
+import { images, scene } from "../state/scene";
+import { selectionDetail } from "../state/selectionDetail";
+import { textScale } from "../state/textScale";
+import { selection, showTab, showView } from "../state/viewState";
 import { drawView } from "./drawing";
 import { type Mark, marksOf } from "./selectionMarks";
 import { fitPoints } from "./viewport";
@@ -14,7 +18,7 @@ const MAX_SCALE = 5;
 
 /** `unpicked` is shown while nothing is selected. */
 export function Filmstrip({ unpicked = null }: { unpicked?: Selection | null }) {
-  void [results.value, pointing.value, textScale.value];
+  void [results.value, selectionDetail.value, textScale.value];
   const picked = selection.value ?? unpicked;
   const shown = (scene.value?.views ?? [])
     .map(({ name }, view) => ({ name, view, marks: marksOf(picked, view) }))
@@ -32,8 +36,8 @@ export function Filmstrip({ unpicked = null }: { unpicked?: Selection | null }) 
             class="link"
             title={`Open ${name}`}
             onClick={() => {
-              shownView.value = view;
-              tab.value = "images";
+              showView(view);
+              showTab("images");
             }}
           >
             {name}

@@ -3,7 +3,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_STRIDE } from "../../shared/results";
 import type { Selection } from "../../shared/selection";
 import type { Vec2 } from "../../shared/traces";
-import { textScale } from "../state/state";
+import { textScale } from "../state/textScale";
 import { drawView, type Overlay } from "./drawing";
 import type { Mark } from "./selectionMarks";
 import {

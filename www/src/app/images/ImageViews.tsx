@@ -3,17 +3,20 @@ import { category } from "../../shared/palette";
 import { directionColours } from "../figures/DirectionLab";
 import { Legend } from "../parts/Legend";
 import { openDemo } from "../project/projectActions";
+import { results } from "../state/results";
+import { images, scene } from "../state/scene";
+import { selectionDetail } from "../state/selectionDetail";
 import {
   followsSelection,
-  images,
-  pointing,
-  results,
-  scene,
+  select,
   selection,
   shownView,
+  showRejected,
+  showView,
   tab,
   withRejected,
-} from "../state/state";
+  zoomToSelection,
+} from "../state/viewState";
 import { startTour } from "../tour/lessons";
 import type { Overlay } from "./drawing";
 import { ImageCanvas } from "./ImageCanvas";
@@ -23,7 +26,7 @@ import { marksOf } from "./selectionMarks";
 export const ALL = -1;
 
 export function ImageViews() {
-  void pointing.value;
+  void selectionDetail.value;
   const views = scene.value?.views ?? [];
   if (views.length === 0 || images.value.length === 0) {
     return <Empty />;
@@ -51,7 +54,7 @@ export function ImageViews() {
             marks={marksOf(selection.value, view)}
             follows={followsSelection.value && shown.length > 1}
             onPick={(picked) => {
-              selection.value = picked;
+              select(picked);
             }}
           />
         ))}
@@ -103,7 +106,7 @@ function regionsOf(segmentation: (typeof results.value.regions)[number] | undefi
 function ViewPicker() {
   const views = scene.value?.views ?? [];
   const choose = (view: number) => () => {
-    shownView.value = view;
+    showView(view);
   };
   return (
     <fieldset class="choice">
@@ -127,7 +130,7 @@ function FollowSwitch() {
       aria-pressed={followsSelection.value}
       class="toggle"
       onClick={() => {
-        followsSelection.value = !followsSelection.value;
+        zoomToSelection(!followsSelection.value);
       }}
     >
       Zoom to selection
@@ -142,7 +145,7 @@ function RejectedSwitch() {
       aria-pressed={withRejected.value}
       class="toggle"
       onClick={() => {
-        withRejected.value = !withRejected.value;
+        showRejected(!withRejected.value);
       }}
     >
       Refused lines

@@ -3,7 +3,7 @@ import { PALETTE } from "../../shared/palette";
 import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_KINDS, SUPPORT_STRIDE } from "../../shared/results";
 import type { Selection } from "../../shared/selection";
 import type { Vec2 } from "../../shared/traces";
-import { textScale } from "../state/state";
+import { textScale } from "../state/textScale";
 import type { Mark } from "./selectionMarks";
 import type { Viewport } from "./viewport";
 

@@ -7,7 +7,9 @@ import { REJECTED_STRIDE, SEGMENT_STRIDE, type Vec3, type ViewInfo } from "../..
 import type { Selection } from "../../shared/selection";
 import type { Vec2 } from "../../shared/traces";
 import { type Shape, shapesOf } from "../selection/selectionShapes";
-import { type Pointing, pointing, type Results, results, scene } from "../state/state";
+import { type Results, results } from "../state/results";
+import { scene } from "../state/scene";
+import { type SelectionDetail, selectionDetail } from "../state/selectionDetail";
 import { windowOf } from "./pairWindow";
 
 /** A polyline over an image, pixels. */
@@ -50,7 +52,7 @@ export function marksOf(picked: Selection | null, view: number): Mark[] {
   }
   switch (picked.kind) {
     case "segment":
-      return segmentMarks(picked.view, picked.index, view, results.value, pointing.value);
+      return segmentMarks(picked.view, picked.index, view, results.value, selectionDetail.value);
     case "refused":
       return picked.view === view
         ? [{ points: ends(results.value.rejected[view], picked.index, REJECTED_STRIDE), ...CHOSEN }]
@@ -70,7 +72,7 @@ export function marksOf(picked: Selection | null, view: number): Mark[] {
       return [
         ...(picked.kind === "pair" ? windowMarks(info, view, picked.index) : []),
         ...shapes.flatMap(({ points, role }) => seenFrom(info, points, style(role))),
-        ...warpedMarks(view, pointing.value),
+        ...warpedMarks(view, selectionDetail.value),
       ];
     }
   }
@@ -122,7 +124,7 @@ function segmentMarks(
   index: number,
   view: number,
   { segments }: Results,
-  { story, candidate, correspondence }: Pointing,
+  { story, candidate, correspondence }: SelectionDetail,
 ): Mark[] {
   const marks: Mark[] = [];
   const segment = (of: number, i: number) => ends(segments[of], i, SEGMENT_STRIDE);
@@ -188,7 +190,7 @@ function epipolarMark([a, b, c]: Vec3, view: number): Mark[] {
 }
 
 /** Where the warped picture of a side lies in a view. */
-function warpedMarks(view: number, { warped }: Pointing): Mark[] {
+function warpedMarks(view: number, { warped }: SelectionDetail): Mark[] {
   const own = warped?.about.views.find((one) => one.view === view);
   return own?.outline == null
     ? []

@@ -1,6 +1,6 @@
 /** The picked thing in numbers, with units and the paper's symbols. */
 
-import { selection } from "../state/state";
+import { select, selection } from "../state/viewState";
 import type { Related, Row } from "./rowLinks";
 import { rowsOf, titleOf } from "./selectionRows";
 import { placeAmong, siblingsOf } from "./siblings";
@@ -18,7 +18,7 @@ export function Inspector() {
             type="button"
             class="quiet"
             onClick={() => {
-              selection.value = null;
+              select(null);
             }}
           >
             Clear
@@ -43,7 +43,7 @@ function Steps() {
   }
   const go = (step: number) => () => {
     const next = at < 0 ? (step > 0 ? 0 : items.length - 1) : (at + step + items.length) % items.length;
-    selection.value = items[next] ?? null;
+    select(items[next] ?? null);
   };
   return (
     <fieldset class="steps-through">
@@ -94,7 +94,7 @@ function Links({ to }: { to: readonly Related[] }) {
           type="button"
           class="link"
           onClick={() => {
-            selection.value = next;
+            select(next);
           }}
         >
           {name}

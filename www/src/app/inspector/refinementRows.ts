@@ -2,7 +2,8 @@
 
 import { RELATION_WORDS, refinementWords } from "../parts/reasonText";
 import { refinedFacets } from "../selection/selectionShapes";
-import { params, results } from "../state/state";
+import { params } from "../state/parameters";
+import { results } from "../state/results";
 import { linkToFacet, linkToRefinement, type Row } from "./rowLinks";
 
 /** The building that a facet of the model belonged to before refinement. */

@@ -2,7 +2,7 @@
 import { REJECTED_STRIDE, type Vec3 } from "../../shared/results";
 import { degreesOf } from "../parts/facetArea";
 import { facetRejectionWords } from "../parts/reasonText";
-import { results } from "../state/state";
+import { results } from "../state/results";
 import type { Row } from "./rowLinks";
 
 /** By the core's numbers for them. */

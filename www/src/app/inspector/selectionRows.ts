@@ -12,7 +12,10 @@ import {
   REJECTION_WORDS,
 } from "../parts/reasonText";
 import { lineOfSegment } from "../selection/selectionShapes";
-import { params, pointing, results, scene } from "../state/state";
+import { params } from "../state/parameters";
+import { results } from "../state/results";
+import { scene } from "../state/scene";
+import { selectionDetail } from "../state/selectionDetail";
 import { refinedRow, refinementRows, relationRows } from "./refinementRows";
 import { clusterRows, refusedSegmentRows, withdrawnRows } from "./rejectedRows";
 import { linkToFacet, linkToGroup, linkToHalfPlane, linkToLine, type Related, type Row } from "./rowLinks";
@@ -112,7 +115,7 @@ function segmentRows(view: number, index: number): Row[] {
 }
 
 function historyOfSegment(view: number, index: number): Row[] {
-  const { story } = pointing.value;
+  const { story } = selectionDetail.value;
   const lines = lineOfSegment(view, index).map(linkToLine);
   return [
     ...(story === null

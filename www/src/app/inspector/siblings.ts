@@ -2,7 +2,10 @@
 import { LINE_STRIDE, REJECTED_STRIDE, SEGMENT_STRIDE } from "../../shared/results";
 import type { Selection } from "../../shared/selection";
 import { formatSelection } from "../settings/addressLink";
-import { results, scene, shownView, type Tab, tab } from "../state/state";
+import type { Tab } from "../state/methods";
+import { results } from "../state/results";
+import { scene } from "../state/scene";
+import { shownView, tab } from "../state/viewState";
 
 /** The neighbours of the selected thing, or, where nothing is selected, what the present tab is about. */
 export function siblingsOf(picked: Selection | null): readonly Selection[] {

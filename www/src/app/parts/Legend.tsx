@@ -1,5 +1,6 @@
 /** What the colours of the present tab mean. */
-import { type Tab, tab, withRejected } from "../state/state";
+import type { Tab } from "../state/methods";
+import { tab, withRejected } from "../state/viewState";
 
 const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
   segments: [["unmatched", "segment"]],

@@ -2,7 +2,7 @@
 
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { textScale } from "../state/state";
+import { textScale } from "../state/textScale";
 import { grouped } from "./numberText";
 
 export interface Scale {

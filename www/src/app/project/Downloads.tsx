@@ -1,7 +1,9 @@
 /** The output files, as soon as their stage has run. */
 
 import { download } from "../session/stageRuns";
-import { exportNames, inspection, isBusy } from "../state/state";
+import { isBusy } from "../state/activity";
+import { inspection } from "../state/project";
+import { exportNames } from "../state/results";
 import { saveProject } from "./projectActions";
 
 const WHAT: Record<string, string> = {

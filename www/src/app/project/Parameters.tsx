@@ -9,7 +9,7 @@ import {
   paramSections,
   parseField,
 } from "../settings/parameterForm";
-import { defaults, params } from "../state/state";
+import { defaults, params } from "../state/parameters";
 
 export function Parameters() {
   const sections = paramSections(defaults.value, params.value);

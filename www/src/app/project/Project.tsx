@@ -1,12 +1,14 @@
 /** The project: where files are dropped, and what each of them was recognised as. */
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { ImageReport } from "../../shared/results";
-import { notify } from "../session/session";
-import { files, inspection, keptBytes, peakMb, projectName, runOptions, scene } from "../state/state";
+import { notify } from "../state/notices";
+import { files, inspection, projectName, runOptions } from "../state/project";
+import { peakMb, scene } from "../state/scene";
 import { droppedFiles, pickedFiles } from "./inputFiles";
 import { Diagnosis } from "./OrientationCheck";
 import { addFiles, clearProject, openDemo, removeFile, setRunOptions } from "./projectActions";
 import { OrientationChoice, PlaceFields } from "./RunOptionFields";
+import { storedBytes } from "./storedProject";
 import { Thumbnail } from "./Thumbnail";
 
 export function Project() {
@@ -206,13 +208,13 @@ function OtherFiles() {
 
 /** What the browser keeps, and how to have it forget. */
 function KeptNote() {
-  const bytes = keptBytes.value;
+  const bytes = storedBytes.value;
   if (bytes === null || files.value.length === 0) {
     return null;
   }
   return (
     <p class="kept muted" data-testid="kept">
-      <span>Kept in this browser: {(bytes / 1e6).toFixed(1)} MB</span>
+      <span>StoredProject in this browser: {(bytes / 1e6).toFixed(1)} MB</span>
       <button type="button" class="quiet" onClick={() => void clearProject()}>
         Delete
       </button>

@@ -3,7 +3,7 @@ import { signal } from "@preact/signals";
 import { useState } from "preact/hooks";
 import { TextField } from "../parts/TextField";
 import { type Parsed, parseHeight, parseRegion, parseTile } from "../settings/loadOptions";
-import { inspection, runOptions } from "../state/state";
+import { inspection, runOptions } from "../state/project";
 import { setRunOptions } from "./projectActions";
 
 /** Where the files hold the orientation several times: which one is taken. */

@@ -51,13 +51,3 @@ function withoutRoot(path: string): string {
 function isVisible({ path }: InputFile): boolean {
   return !path.split("/").some((part) => part.startsWith(".") || part === "__MACOSX");
 }
-
-/** Saves a file through the browser. */
-export function save(name: string, blob: Blob): void {
-  const url = URL.createObjectURL(blob);
-  const link = document.createElement("a");
-  link.href = url;
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(url), 10_000);
-}

@@ -1,41 +1,43 @@
 /** What a person can do with the project: files, the demo scene, and what is asked for beyond the files. */
 import { batch } from "@preact/signals";
 import type { InputFile } from "../../shared/messages";
+import { saveFile } from "../parts/saveFile";
 import { failureNotice } from "../session/failureNotice";
 import {
   engine,
   ensureInspected,
   ensureScene,
   guarded,
-  held,
   listStages,
-  notify,
+  outdateFiles,
+  outdateInspection,
+  outdateScene,
   stopWorker,
 } from "../session/session";
 import { clearResults, runAll, runTo } from "../session/stageRuns";
 import { linkedParams } from "../settings/addressLink";
 import { loadOptions, wishesOf } from "../settings/loadOptions";
 import { changedParams, paramsOf } from "../settings/parameterForm";
+import { keepResult } from "../state/keptResult";
+import { dismissAll, dismissOffers, notify } from "../state/notices";
+import { defaults, params, replaceParams } from "../state/parameters";
 import {
-  defaults,
   files,
-  freshStages,
-  images,
   inspection,
   isDemo,
-  keptResult,
+  markAsDemo,
   NO_OPTIONS,
-  notices,
-  params,
-  peakMb,
+  nameProject,
   projectName,
   type RunOptions,
+  replaceFiles,
+  replaceRunOptions,
   runOptions,
-  scene,
-  shownView,
-} from "../state/state";
-import { save } from "./inputFiles";
-import type { Kept } from "./storedProject";
+  setInspection,
+} from "../state/project";
+import { clearScene } from "../state/scene";
+import { showView } from "../state/viewState";
+import type { StoredProject } from "./storedProject";
 
 /** So many refusals are shown at once: the first ones usually explain the others. */
 const MAX_PROBLEMS = 4;
@@ -51,7 +53,7 @@ export async function addFiles(added: InputFile[], name?: string): Promise<void>
     byPath.set(file.path, file);
   }
   if (name !== undefined || projectName.value === "") {
-    projectName.value = name ?? "Own files";
+    nameProject(name ?? "Own files");
   }
   await setProject([...byPath.values()], adoptProject);
 }
@@ -64,9 +66,9 @@ async function adoptProject(): Promise<void> {
   }
   const wishes = wishesOf(opened.options, inspection.value);
   batch(() => {
-    runOptions.value = wishes;
-    params.value = paramsOf(defaults.value, changedParams(defaults.value, opened.params));
-    inspection.value = null;
+    replaceRunOptions(wishes);
+    replaceParams(paramsOf(defaults.value, changedParams(defaults.value, opened.params)));
+    setInspection(null);
   });
   await listStages();
   await ensureInspected();
@@ -79,7 +81,7 @@ export async function saveProject(): Promise<void> {
     await engine.call("setParams", { params: params.value });
     const options = loadOptions(runOptions.value, inspection.value);
     const bytes = await engine.call("exportProject", { options });
-    save("ridgeline-project.zip", new Blob([bytes], { type: "application/zip" }));
+    saveFile("ridgeline-project.zip", new Blob([bytes], { type: "application/zip" }));
   });
 }
 
@@ -91,7 +93,7 @@ export async function removeFile(path: string): Promise<void> {
 
 export async function clearProject(): Promise<void> {
   await removing("The project", async () => {
-    projectName.value = "";
+    nameProject("");
     await setProject([]);
   });
 }
@@ -99,11 +101,11 @@ export async function clearProject(): Promise<void> {
 const UNDO = "Undo";
 
 /** What was removed since files came last, and the project before that; the last removal is taken back first. */
-let removals: { what: string; before: Kept }[] = [];
+let removals: { what: string; before: StoredProject }[] = [];
 
 /** Removes something, and offers to take that back. */
 async function removing(what: string, remove: () => Promise<void>): Promise<void> {
-  const before: Kept = {
+  const before: StoredProject = {
     name: projectName.value,
     isDemo: isDemo.value,
     files: files.value,
@@ -119,7 +121,7 @@ async function removing(what: string, remove: () => Promise<void>): Promise<void
 
 /** Offers to take back the last removal, in place of any other one. */
 function offerUndo(): void {
-  notices.value = notices.value.filter(({ action }) => action?.name !== UNDO);
+  dismissOffers(UNDO);
   const last = removals.at(-1);
   if (last !== undefined) {
     notify({
@@ -131,21 +133,21 @@ function offerUndo(): void {
   }
 }
 
-async function undo(before: Kept): Promise<void> {
+async function undo(before: StoredProject): Promise<void> {
   removals = removals.slice(0, -1);
   await restoreProject(before);
   offerUndo();
 }
 
 /** Takes up the project of the last visit. */
-export async function restoreProject(kept: Kept): Promise<void> {
-  projectName.value = kept.name;
-  runOptions.value = { ...NO_OPTIONS, ...kept.options };
+export async function restoreProject(kept: StoredProject): Promise<void> {
+  nameProject(kept.name);
+  replaceRunOptions({ ...NO_OPTIONS, ...kept.options });
   const linked = linkedParams();
-  params.value = paramsOf(defaults.value, { ...changedParams(defaults.value, kept.params), ...linked });
+  replaceParams(paramsOf(defaults.value, { ...changedParams(defaults.value, kept.params), ...linked }));
   await guarded("", listStages);
   await setProject(kept.files);
-  isDemo.value = kept.isDemo;
+  markAsDemo(kept.isDemo);
 }
 
 /**
@@ -157,10 +159,9 @@ export async function openDemo(target?: string | null): Promise<void> {
   if (fetched === undefined) {
     return;
   }
-  files.value = [];
-  runOptions.value = NO_OPTIONS;
+  replaceFiles([]);
   await addFiles(fetched.files, fetched.title);
-  isDemo.value = true;
+  markAsDemo(true);
   if (target === undefined) {
     await runAll();
   } else if (target !== null) {
@@ -171,32 +172,26 @@ export async function openDemo(target?: string | null): Promise<void> {
 /** Changes what is asked for beyond the files, and loads the scene again. */
 export async function setRunOptions(change: Partial<RunOptions>): Promise<void> {
   stopWorker();
-  held.scene = false;
-  held.inspection = false;
-  freshStages.value = 0;
+  outdateScene();
+  outdateInspection();
   batch(() => {
-    runOptions.value = { ...runOptions.value, ...change };
+    replaceRunOptions({ ...runOptions.value, ...change });
     if (change.orientation !== undefined) {
-      inspection.value = null;
+      setInspection(null);
     }
-    notices.value = [];
-    clearScene();
+    dismissAll();
+    closeScene();
   });
   await loadProject("Loading");
 }
 
 async function setProject(next: InputFile[], adopt?: () => Promise<void>): Promise<void> {
   stopWorker();
-  held.files = false;
-  held.scene = false;
-  freshStages.value = 0;
+  outdateFiles();
   batch(() => {
-    files.value = next;
-    isDemo.value = false;
-    inspection.value = null;
-    notices.value = [];
-    runOptions.value = next.length === 0 ? NO_OPTIONS : runOptions.value;
-    clearScene();
+    replaceFiles(next);
+    dismissAll();
+    closeScene();
   });
   await loadProject("Reading files", adopt);
 }
@@ -231,15 +226,11 @@ async function loadProject(what: string, adopt?: () => Promise<void>): Promise<v
   });
 }
 
-function clearScene(): void {
-  for (const image of images.value) {
-    image.close();
-  }
-  scene.value = null;
-  peakMb.value = null;
-  images.value = [];
-  shownView.value = 0;
-  keptResult.value = null;
+/** Lets go of the scene and of all that was found in it. */
+function closeScene(): void {
+  clearScene();
+  showView(0);
+  keepResult(null);
   clearResults();
 }
 

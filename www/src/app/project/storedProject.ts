@@ -1,19 +1,11 @@
 /** The project kept in this browser (IndexedDB) over reloads: files, options and parameters; results are computed again. */
-import { effect } from "@preact/signals";
+import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import type { InputFile } from "../../shared/messages";
 import type { Params } from "../../shared/results";
-import {
-  defaults,
-  files,
-  isDemo,
-  keptBytes,
-  params,
-  projectName,
-  type RunOptions,
-  runOptions,
-} from "../state/state";
+import { defaults, params } from "../state/parameters";
+import { files, isDemo, projectName, type RunOptions, runOptions } from "../state/project";
 
-export interface Kept {
+export interface StoredProject {
   name: string;
   isDemo: boolean;
   files: InputFile[];
@@ -24,33 +16,37 @@ export interface Kept {
 const DATABASE = "ridgeline";
 const STORE = "project";
 const KEY = "present";
+const written = signal<number | null>(null);
+/** Bytes that the browser keeps of the project; null when it keeps nothing. */
+export const storedBytes: ReadonlySignal<number | null> = written;
+
 /** So long after the last change the project is written, milliseconds. */
 const DELAY_MS = 400;
 
 /** The project of the last visit; null where there is none, or storage is forbidden. */
-export async function readKept(): Promise<Kept | null> {
+export async function readStoredProject(): Promise<StoredProject | null> {
   try {
-    const kept = await request<Kept | undefined>("readonly", (store) => store.get(KEY));
+    const kept = await request<StoredProject | undefined>("readonly", (store) => store.get(KEY));
     return kept ?? null;
   } catch {
     return null;
   }
 }
 
-export async function forgetKept(): Promise<void> {
+export async function forgetStoredProject(): Promise<void> {
   try {
     await request("readwrite", (store) => store.delete(KEY));
   } catch {
     // Nothing was kept.
   }
-  keptBytes.value = null;
+  written.value = null;
 }
 
 /** Writes the project whenever it changes. */
-export function keepProject(): void {
+export function storeProject(): void {
   let timer = 0;
   effect(() => {
-    const kept: Kept = {
+    const kept: StoredProject = {
       name: projectName.value,
       isDemo: isDemo.value,
       files: files.value,
@@ -64,17 +60,17 @@ export function keepProject(): void {
   });
 }
 
-async function write(kept: Kept): Promise<void> {
+async function write(kept: StoredProject): Promise<void> {
   if (kept.files.length === 0) {
-    await forgetKept();
+    await forgetStoredProject();
     return;
   }
   try {
     await request("readwrite", (store) => store.put(kept, KEY));
-    keptBytes.value = kept.files.reduce((sum, { blob }) => sum + blob.size, 0);
+    written.value = kept.files.reduce((sum, { blob }) => sum + blob.size, 0);
   } catch {
     // Private windows and full disks: the project lasts until the page is closed.
-    keptBytes.value = null;
+    written.value = null;
   }
 }
 

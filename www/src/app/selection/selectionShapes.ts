@@ -4,7 +4,7 @@ import type { Selection } from "../../shared/selection";
 import type { Segment3 } from "../../shared/traces";
 import { fanCorners } from "../../viewer/layers/fans";
 import { outlinesOf } from "../../viewer/layers/refinement";
-import { results } from "../state/state";
+import { results } from "../state/results";
 
 /** A line, a closed outline with what is inside it, or the outline of what was there before. */
 export interface Shape {

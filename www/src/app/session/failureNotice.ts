@@ -1,7 +1,7 @@
 /** Failures in words. The core's messages end with what to do about them, after a semicolon. */
 import type { FailureKind } from "../../shared/messages";
 import type { DoctorReport } from "../../shared/results";
-import type { Notice } from "../state/state";
+import type { Notice } from "../state/notices";
 
 const TITLES: Record<FailureKind, string> = {
   input: "This input cannot be used",
@@ -41,11 +41,4 @@ export function splitAdvice(message: string): { text: string; advice?: string } 
   }
   const advice = message.slice(at + 2);
   return { text: message.slice(0, at), advice: advice.charAt(0).toUpperCase() + advice.slice(1) };
-}
-
-/** The notices with another one, which stands for one that says the same. */
-export function withNotice(shown: Notice[], added: Notice): Notice[] {
-  const same = ({ severity, title, text }: Notice) =>
-    severity === added.severity && title === added.title && text === added.text;
-  return [...shown.filter((notice) => !same(notice)), added];
 }

@@ -7,29 +7,16 @@ import type { SceneInfo } from "../../shared/results";
 import { linkedParams } from "../settings/addressLink";
 import { loadOptions } from "../settings/loadOptions";
 import { paramsOf } from "../settings/parameterForm";
-import {
-  activity,
-  announcement,
-  defaults,
-  files,
-  freshStages,
-  images,
-  inspection,
-  isBusy,
-  type Notice,
-  notices,
-  params,
-  peakMb,
-  runningStage,
-  runOptions,
-  type StageState,
-  scene,
-  stages,
-} from "../state/state";
-import { failureNotice, withNotice } from "./failureNotice";
+import { beginActivity, endActivity, isBusy } from "../state/activity";
+import { notify } from "../state/notices";
+import { params, replaceParams, setDefaults } from "../state/parameters";
+import { files, inspection, runOptions, setInspection } from "../state/project";
+import { images, setImages, setPeakMb, setScene } from "../state/scene";
+import { replaceStages, runningStage, setFreshStages, stages, updateStage } from "../state/stages";
+import { failureNotice } from "./failureNotice";
 
 /** Whether the present worker holds the project's files, has the scene loaded, and was asked about them as they are wanted now. */
-export const held = { files: false, scene: false, inspection: false };
+const held = { files: false, scene: false, inspection: false };
 
 export const engine = new Engine((stage, fraction) => crew.engineReached(stage, fraction));
 export const crew = new Crew(engine, (name, fraction) => {
@@ -62,29 +49,16 @@ export async function ask<K extends QueryName>(
   }
 }
 
-let lastNotice = 0;
-
-export function notify(notice: Omit<Notice, "id">): void {
-  lastNotice += 1;
-  notices.value = withNotice(notices.value, { ...notice, id: lastNotice });
-}
-
-export function dismiss(id: number): void {
-  notices.value = notices.value.filter((notice) => notice.id !== id);
-}
-
 /** Runs a task, shows what it is, and turns whatever it throws into a notice. */
 export async function guarded<T>(what: string, task: () => Promise<T>): Promise<T | undefined> {
-  activity.value = what;
+  beginActivity(what);
   try {
     return await task();
   } catch (error) {
     await report(error);
     return undefined;
   } finally {
-    if (activity.value === what) {
-      activity.value = "";
-    }
+    endActivity(what);
   }
 }
 
@@ -105,10 +79,10 @@ async function openEngine(): Promise<void> {
     return;
   }
   const core = await engine.open();
-  defaults.value = core.defaults;
+  setDefaults(core.defaults);
   if (stages.value.length === 0) {
     // With what has been chosen while the core was compiled.
-    params.value = paramsOf(core.defaults, { ...linkedParams(), ...params.value });
+    replaceParams(paramsOf(core.defaults, { ...linkedParams(), ...params.value }));
     await listStages();
   }
 }
@@ -117,10 +91,7 @@ async function openEngine(): Promise<void> {
 export async function listStages(): Promise<void> {
   await openEngine();
   await engine.call("setParams", { params: params.value });
-  const names = await engine.ask("chosenStages");
-  if (names.join() !== stages.value.map(({ name }) => name).join()) {
-    stages.value = names.map(freshStage);
-  }
+  replaceStages(await engine.ask("chosenStages"));
 }
 
 /** Gives the worker the project's files, where it does not hold them yet. */
@@ -135,7 +106,7 @@ export async function ensureInspected(): Promise<void> {
   if (inspection.value === null || !held.inspection) {
     // Of all images, also of those that are left out.
     const options = loadOptions({ ...runOptions.value, leftOut: [] }, null);
-    inspection.value = await engine.call("inspect", { options });
+    setInspection(await engine.call("inspect", { options }));
     held.inspection = true;
   }
 }
@@ -145,13 +116,13 @@ export async function ensureScene(): Promise<void> {
   await ensureInspected();
   if (!held.scene) {
     const options = loadOptions(runOptions.value, inspection.value);
-    peakMb.value = (await engine.call("inspect", { options })).peak_mb;
+    setPeakMb((await engine.call("inspect", { options })).peak_mb);
     const loaded = await engine.call("load", { options });
     held.scene = true;
     crew.forgetViews();
-    scene.value = loaded;
+    setScene(loaded);
     if (images.value.length !== loaded.views.length) {
-      images.value = await fetchImages(loaded);
+      setImages(await fetchImages(loaded));
     }
   }
   await engine.call("setParams", { params: params.value });
@@ -175,19 +146,22 @@ export function stopWorker(): void {
 
 export function forgetWorker(): void {
   crew.close();
+  outdateFiles();
+}
+
+/** There are other files than the worker's. */
+export function outdateFiles(): void {
   held.files = false;
+  outdateScene();
+}
+
+/** The scene is another one than the worker's, or the worker has dropped it. */
+export function outdateScene(): void {
   held.scene = false;
-  freshStages.value = 0;
+  setFreshStages(0);
 }
 
-export function freshStage(name: string): StageState {
-  return { name, status: "waiting", fraction: 0, seconds: null, counts: {}, warnings: [] };
-}
-
-export function updateStage(name: string, change: Partial<StageState>): void {
-  stages.value = stages.value.map((stage) => (stage.name === name ? { ...stage, ...change } : stage));
-}
-
-export function say(text: string): void {
-  announcement.value = text;
+/** The files are wanted in another way than they were inspected for. */
+export function outdateInspection(): void {
+  held.inspection = false;
 }

@@ -1,5 +1,5 @@
 /** The stages as the page names them. The core gives their order; this gives them words. */
-import type { Tab } from "../state/state";
+import type { Tab } from "../state/methods";
 
 interface StageWords {
   title: string;

@@ -1,6 +1,8 @@
 /** What a stage adds to the results. */
 import type { Queries } from "../../shared/messages";
-import { params, type Results, scene } from "../state/state";
+import { params } from "../state/parameters";
+import type { Results } from "../state/results";
+import { scene } from "../state/scene";
 import { engine } from "./session";
 
 /** What a stage adds to the results. */

@@ -2,42 +2,27 @@
 import { batch } from "@preact/signals";
 import { EngineError } from "../../core/engine";
 import type { Params, ParamValue } from "../../shared/results";
-import { save } from "../project/inputFiles";
+import { saveFile } from "../parts/saveFile";
 import { withParam } from "../settings/parameterForm";
+import { endAllActivity } from "../state/activity";
+import type { Method } from "../state/methods";
+import { announce, notify } from "../state/notices";
+import { defaults, method, params, replaceParams } from "../state/parameters";
+import { runOptions } from "../state/project";
+import { addResults, NO_RESULTS, setExportNames, setResults } from "../state/results";
+import { scene } from "../state/scene";
 import {
-  activity,
-  addResults,
-  chosenWorkers,
-  defaults,
-  exportNames,
   freshStages,
-  type Method,
-  method,
-  NO_RESULTS,
-  params,
-  runOptions,
-  scene,
-  selection,
-  setResults,
-  shownPlane,
+  haltStages,
+  outdateStages,
+  restartStages,
+  setFreshStages,
   stages,
-  tab,
-  workers,
-} from "../state/state";
-import {
-  crew,
-  engine,
-  ensureScene,
-  forgetWorker,
-  freshStage,
-  guarded,
-  listStages,
-  notify,
-  say,
-  start,
-  stopWorker,
   updateStage,
-} from "./session";
+} from "../state/stages";
+import { select, showPlane, showTab } from "../state/viewState";
+import { chooseWorkers, workers } from "../state/workers";
+import { crew, engine, ensureScene, forgetWorker, guarded, listStages, start, stopWorker } from "./session";
 import { firstStageOf, stageWords } from "./stageCatalogue";
 import { fetchResults } from "./stageResults";
 import { runTiles } from "./tiledRun";
@@ -50,7 +35,7 @@ export async function runTo(target: string): Promise<void> {
     const end = names.indexOf(target);
     for (let i = freshStages.value; i <= end; i += 1) {
       await runStage(names[i] as string);
-      freshStages.value = i + 1;
+      setFreshStages(i + 1);
     }
   });
 }
@@ -71,20 +56,18 @@ export async function cancel(): Promise<void> {
   forgetWorker();
   engine.close();
   batch(() => {
-    activity.value = "";
-    stages.value = stages.value.map((stage) =>
-      stage.status === "running" ? { ...stage, status: "waiting", fraction: 0 } : stage,
-    );
-    exportNames.value = [];
+    endAllActivity();
+    haltStages();
+    setExportNames([]);
   });
-  say("Cancelled. The next run begins with the first stage.");
+  announce("Cancelled. The next run begins with the first stage.");
   await start();
 }
 
 /** Changes the parameter at a path of names; stages that depend on it become outdated. */
 export function setParam(path: string, value: ParamValue): void {
-  params.value = withParam(params.value, path, value);
-  outdateFrom(
+  replaceParams(withParam(params.value, path, value));
+  outdateStages(
     firstStageOf(
       path,
       stages.value.map(({ name }) => name),
@@ -99,7 +82,7 @@ export async function setMethod(next: Method): Promise<void> {
   }
   stopWorker();
   batch(() => {
-    params.value = { ...params.value, method: next as unknown as Params[string] };
+    replaceParams({ ...params.value, method: next as unknown as Params[string] });
     clearResults();
   });
   await guarded("", listStages);
@@ -107,22 +90,22 @@ export async function setMethod(next: Method): Promise<void> {
 
 export function resetParams(): void {
   const chosen = method.value as unknown as Params[string];
-  params.value = { ...structuredClone(defaults.value), method: chosen };
-  outdateFrom(0);
+  replaceParams({ ...structuredClone(defaults.value), method: chosen });
+  outdateStages(0);
 }
 
 /** Saves one output file through the browser. */
 export async function download(name: string): Promise<void> {
   await guarded(`Writing ${name}`, async () => {
     const bytes = await engine.call("exportFile", { name });
-    save(name, new Blob([bytes], { type: mediaType(name) }));
+    saveFile(name, new Blob([bytes], { type: mediaType(name) }));
   });
 }
 
 async function runStage(name: string): Promise<void> {
   const started = performance.now();
   updateStage(name, { status: "running", fraction: 0, warnings: [] });
-  say(`${stageWords(name).title} running`);
+  announce(`${stageWords(name).title} running`);
   try {
     await shareStage(name);
     const summary = await engine.call("run", { stage: name });
@@ -132,12 +115,12 @@ async function runStage(name: string): Promise<void> {
     const names = await engine.call("exportNames", {});
     batch(() => {
       addResults(stageWords(name).tab, found);
-      exportNames.value = names;
-      selection.value = null;
-      tab.value = stageWords(name).tab;
+      setExportNames(names);
+      select(null);
+      showTab(stageWords(name).tab);
       updateStage(name, { ...summary, status: "done", fraction: 1, seconds });
     });
-    say(`${stageWords(name).title} done in ${seconds.toFixed(1)} s`);
+    announce(`${stageWords(name).title} done in ${seconds.toFixed(1)} s`);
   } catch (error) {
     const cancelled = error instanceof EngineError && error.kind === "cancelled";
     updateStage(name, { status: cancelled ? "waiting" : "failed", fraction: 0 });
@@ -156,7 +139,7 @@ async function shareStage(stage: string): Promise<void> {
     workers: workers.value,
   });
   if (!shared) {
-    chosenWorkers.value = 1;
+    chooseWorkers(1);
     notify({
       severity: "warning",
       title: "A worker stopped",
@@ -165,21 +148,13 @@ async function shareStage(stage: string): Promise<void> {
   }
 }
 
-function outdateFrom(index: number): void {
-  freshStages.value = Math.min(freshStages.value, index);
-  stages.value = stages.value.map((stage, i) =>
-    i >= index && stage.status === "done" ? { ...stage, status: "outdated" } : stage,
-  );
-}
-
 export function clearResults(): void {
-  freshStages.value = 0;
+  restartStages();
   setResults(NO_RESULTS);
-  exportNames.value = [];
-  selection.value = null;
-  shownPlane.value = 0;
-  tab.value = "images";
-  stages.value = stages.value.map(({ name }) => freshStage(name));
+  setExportNames([]);
+  select(null);
+  showPlane(0);
+  showTab("images");
 }
 
 function mediaType(name: string): string {

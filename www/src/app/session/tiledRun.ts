@@ -3,17 +3,13 @@ import { batch } from "@preact/signals";
 import { EngineError } from "../../core/engine";
 import type { TileReport } from "../../shared/results";
 import { loadOptions } from "../settings/loadOptions";
-import {
-  exportNames,
-  freshStages,
-  inspection,
-  NO_RESULTS,
-  params,
-  runOptions,
-  setResults,
-  tab,
-} from "../state/state";
-import { engine, ensureInspected, held, say, updateStage } from "./session";
+import { announce } from "../state/notices";
+import { params } from "../state/parameters";
+import { inspection, runOptions } from "../state/project";
+import { NO_RESULTS, setExportNames, setResults } from "../state/results";
+import { updateStage } from "../state/stages";
+import { showTab } from "../state/viewState";
+import { engine, ensureInspected, outdateScene } from "./session";
 import { stageWords } from "./stageCatalogue";
 
 /** The progress of the whole area is shown at the last stage: only the model spans the tiles. */
@@ -25,11 +21,10 @@ export async function runTiles(tileM: number): Promise<void> {
   await engine.call("setParams", { params: params.value });
   const started = performance.now();
   // The worker drops the scene: a tile needs the memory.
-  held.scene = false;
+  outdateScene();
   batch(() => {
-    freshStages.value = 0;
     setResults(NO_RESULTS);
-    exportNames.value = [];
+    setExportNames([]);
     updateStage(STAGE, { status: "running", fraction: 0, warnings: [], counts: {} });
   });
   try {
@@ -39,8 +34,8 @@ export async function runTiles(tileM: number): Promise<void> {
     const names = await engine.call("exportNames", {});
     batch(() => {
       setResults({ ...NO_RESULTS, glb });
-      exportNames.value = names;
-      tab.value = stageWords(STAGE).tab;
+      setExportNames(names);
+      showTab(stageWords(STAGE).tab);
       updateStage(STAGE, {
         status: "done",
         fraction: 1,
@@ -51,7 +46,7 @@ export async function runTiles(tileM: number): Promise<void> {
           .map(({ outcome }) => outcome),
       });
     });
-    say(`${reports.length} tiles done and joined`);
+    announce(`${reports.length} tiles done and joined`);
   } catch (error) {
     const cancelled = error instanceof EngineError && error.kind === "cancelled";
     updateStage(STAGE, { status: cancelled ? "waiting" : "failed", fraction: 0 });
@@ -64,7 +59,7 @@ async function runEach(tileM: number): Promise<TileReport[]> {
   const tiles = await engine.call("planTiles", { options, tileM });
   const reports: TileReport[] = [];
   for (const index of tiles.keys()) {
-    say(`Tile ${index + 1} of ${tiles.length}`);
+    announce(`Tile ${index + 1} of ${tiles.length}`);
     const report = await engine.call("runTile", { stage: STAGE, index, of: tiles.length });
     if (report !== null) {
       reports.push(report);

@@ -5,19 +5,11 @@
 import { effect } from "@preact/signals";
 import type { ParamValue } from "../../shared/results";
 import type { Selection } from "../../shared/selection";
-import {
-  defaults,
-  isDemo,
-  lessonStep,
-  method,
-  methodNamed,
-  params,
-  selection,
-  shownView,
-  TABS,
-  type Tab,
-  tab,
-} from "../state/state";
+import { methodNamed, TABS, type Tab } from "../state/methods";
+import { defaults, method, params } from "../state/parameters";
+import { isDemo } from "../state/project";
+import { lessonStep } from "../state/tour";
+import { selection, shownView, tab } from "../state/viewState";
 import { changedParams } from "./parameterForm";
 
 export interface Link {

@@ -1,8 +1,11 @@
 /** The name, the method, the tour, and how the page looks. */
 
 import { setMethod } from "../session/stageRuns";
-import { activity, type Method, method, textScale } from "../state/state";
-import { biggerText, theme, toggleTheme } from "../state/theme";
+import { activity } from "../state/activity";
+import type { Method } from "../state/methods";
+import { method } from "../state/parameters";
+import { biggerText, textScale } from "../state/textScale";
+import { theme, toggleTheme } from "../state/theme";
 import { startTour } from "../tour/lessons";
 
 const METHODS: readonly (readonly [Method, string, string])[] = [

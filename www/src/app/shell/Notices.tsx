@@ -1,8 +1,7 @@
 /** What went wrong or needs attention, in words, until it is dismissed. */
 
 import { Diagnosis } from "../project/OrientationCheck";
-import { dismiss } from "../session/session";
-import { notices } from "../state/state";
+import { dismiss, notices } from "../state/notices";
 
 export function Notices() {
   return (

@@ -6,8 +6,8 @@ import "../../styles/figures.css";
 import "../../styles/views.css";
 import "../../styles/tools.css";
 import { render } from "preact";
-import { keepProject } from "../project/storedProject";
-import { followSelection } from "../selection/selectionDetail";
+import { storeProject } from "../project/storedProject";
+import { askAboutSelection } from "../selection/selectionQueries";
 import { start } from "../session/session";
 import { followState } from "../settings/addressLink";
 import { App } from "./App";
@@ -21,10 +21,10 @@ if (root !== null) {
 
 async function open(): Promise<void> {
   await start();
-  followSelection();
+  askAboutSelection();
   await resume();
   followState();
-  keepProject();
+  storeProject();
 }
 
 // Offline after the first load; only the built site has one.

@@ -2,19 +2,24 @@
 import { batch } from "@preact/signals";
 import type { Selection } from "../../shared/selection";
 import { openDemo, restoreProject } from "../project/projectActions";
-import { readKept } from "../project/storedProject";
+import { readStoredProject } from "../project/storedProject";
 import { lineEnds } from "../selection/selectionShapes";
 import { stageWords } from "../session/stageCatalogue";
 import { runTo } from "../session/stageRuns";
 import { opened } from "../settings/addressLink";
-import { method, results, scene, selection, shownView, stages, TABS, type Tab, tab } from "../state/state";
+import { TABS, type Tab } from "../state/methods";
+import { method } from "../state/parameters";
+import { results } from "../state/results";
+import { scene } from "../state/scene";
+import { stages } from "../state/stages";
+import { select, shownView, showTab, showView } from "../state/viewState";
 import { goTo } from "../tour/lessons";
 
 export async function resume(): Promise<void> {
   if (opened.scene === "demo") {
     await openDemo(opened.tab === null ? null : stageOfTab());
   } else {
-    const kept = await readKept();
+    const kept = await readStoredProject();
     if (kept !== null && kept.files.length > 0) {
       await restoreProject(kept);
       if (opened.tab !== null && opened.tab !== "images") {
@@ -31,10 +36,10 @@ export async function resume(): Promise<void> {
   const tabs: readonly Tab[] = TABS[method.value];
   batch(() => {
     if (opened.tab !== null && tabs.includes(opened.tab)) {
-      tab.value = opened.tab;
+      showTab(opened.tab);
     }
-    shownView.value = opened.view ?? shownView.value;
-    selection.value = opened.selection;
+    showView(opened.view ?? shownView.value);
+    select(opened.selection);
   });
   if (opened.lesson !== null && results.value.glb !== null) {
     await goTo(opened.lesson);

@@ -1,11 +1,15 @@
 /** How the model looks in the 3D view, and what its colours mean. */
-import { computed, signal } from "@preact/signals";
+import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import { METHOD_COLOURS } from "../../shared/palette";
 import type { Facet } from "../../shared/results";
 import type { ModelMode } from "../../viewer/layers/model";
-import { keptResult, type Method, mainResults, method } from "../state/state";
+import { keptResult } from "../state/keptResult";
+import type { Method } from "../state/methods";
+import { method } from "../state/parameters";
+import { mainResults } from "../state/results";
 
-export const mode = signal<ModelMode>("textured");
+const chosen = signal<ModelMode>("textured");
+export const modelMode: ReadonlySignal<ModelMode> = chosen;
 
 const MODES: readonly (readonly [ModelMode, string])[] = [
   ["textured", "Textured"],
@@ -41,9 +45,9 @@ export function ModeSwitches() {
         <button
           key={name}
           type="button"
-          aria-pressed={mode.value === name}
+          aria-pressed={modelMode.value === name}
           onClick={() => {
-            mode.value = name;
+            chosen.value = name;
           }}
         >
           {title}
@@ -63,7 +67,7 @@ const made = computed(() => {
 });
 
 export function ModeLegend() {
-  if (mode.value === "normals") {
+  if (modelMode.value === "normals") {
     return (
       <ul class="legend" aria-label="Colours">
         <li>
@@ -73,7 +77,7 @@ export function ModeLegend() {
       </ul>
     );
   }
-  if (mode.value !== "method") {
+  if (modelMode.value !== "method") {
     return null;
   }
   const kept = keptResult.value;

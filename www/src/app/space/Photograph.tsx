@@ -1,13 +1,20 @@
 /** The photograph over the model, where the camera sees it, and the choice of the camera. */
-import { signal } from "@preact/signals";
+import { type ReadonlySignal, signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { fitShares } from "../../viewer/scene/photoProjection";
 import type { Viewer } from "../../viewer/viewer";
-import { images, scene } from "../state/state";
+import { images, scene } from "../state/scene";
 
 /** The view whose camera is looked through, and how opaque its photograph is. */
-export const through = signal<number | null>(null);
+const chosen = signal<number | null>(null);
+export const throughView: ReadonlySignal<number | null> = chosen;
 const opacity = signal(0.5);
+
+/** Through the camera of a view; null for the free one. */
+export function lookThrough(viewer: Viewer | null, view: number | null): void {
+  chosen.value = view;
+  viewer?.lookThrough(view === null ? null : (scene.value?.views[view] ?? null));
+}
 
 export function FlyTo({ viewer }: { viewer: Viewer | null }) {
   const views = scene.value?.views ?? [];
@@ -15,11 +22,10 @@ export function FlyTo({ viewer }: { viewer: Viewer | null }) {
     <div class="fly">
       <select
         aria-label="Look through the camera of a view"
-        value={through.value ?? ""}
+        value={throughView.value ?? ""}
         onChange={(event) => {
           const text = event.currentTarget.value;
-          through.value = text === "" ? null : Number(text);
-          viewer?.lookThrough(text === "" ? null : (views[Number(text)] ?? null));
+          lookThrough(viewer, text === "" ? null : Number(text));
         }}
       >
         <option value="">Free camera</option>
@@ -29,7 +35,7 @@ export function FlyTo({ viewer }: { viewer: Viewer | null }) {
           </option>
         ))}
       </select>
-      {through.value !== null && (
+      {throughView.value !== null && (
         <input
           type="range"
           min={0}

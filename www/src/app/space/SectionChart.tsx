@@ -1,7 +1,7 @@
 /** The profile along a vertical cut, drawn to one scale both ways, with heights and slopes. */
 import type { ProfilePiece, Section } from "../../viewer/tools/section";
 import { axesOf, Chart, type Frame, frameOf, type Scale } from "../parts/charts";
-import { scene } from "../state/state";
+import { scene } from "../state/scene";
 
 const WIDTH = 460;
 const MOST_INNER_HEIGHT = 190;

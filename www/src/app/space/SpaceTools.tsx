@@ -3,9 +3,9 @@ import { signal } from "@preact/signals";
 import type { Measured } from "../../viewer/tools/measure";
 import type { Section } from "../../viewer/tools/section";
 import type { Viewer } from "../../viewer/viewer";
-import { save } from "../project/inputFiles";
-import { tab } from "../state/state";
-import { FlyTo, Photograph, through } from "./Photograph";
+import { saveFile } from "../parts/saveFile";
+import { tab } from "../state/viewState";
+import { FlyTo, lookThrough, Photograph, throughView } from "./Photograph";
 import { SectionChart } from "./SectionChart";
 
 /** What clicks in the space view do besides picking. */
@@ -16,10 +16,7 @@ const measured = signal<Measured | null>(null);
 const section = signal<Section | null>(null);
 
 export function SpaceTools({ viewer, onFit }: { viewer: Viewer | null; onFit: () => void }) {
-  const leave = () => {
-    through.value = null;
-    viewer?.lookThrough(null);
-  };
+  const leave = () => lookThrough(viewer, null);
   const choose = (next: Tool) => {
     const isOn = tool.value === next;
     measured.value = null;
@@ -31,12 +28,12 @@ export function SpaceTools({ viewer, onFit }: { viewer: Viewer | null; onFit: ()
   const keepPicture = async () => {
     const blob = await viewer?.screenshot();
     if (blob != null) {
-      save(`${tab.value}.png`, blob);
+      saveFile(`${tab.value}.png`, blob);
     }
   };
   return (
     <>
-      {through.value !== null && <Photograph view={through.value} />}
+      {throughView.value !== null && <Photograph view={throughView.value} />}
       <div class="space-tools">
         <button
           type="button"

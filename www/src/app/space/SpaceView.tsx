@@ -10,23 +10,19 @@ import { boundsOf, boundsOfFacets, boundsOfLines, withCameras } from "../../view
 import { Viewer } from "../../viewer/viewer";
 import { presentTitle } from "../comparison/comparedResults";
 import { Legend } from "../parts/Legend";
-import { notify } from "../session/session";
-import {
-  beforeGrowing,
-  isBusy,
-  keptResult,
-  method,
-  results,
-  scene,
-  selection,
-  type Tab,
-  tab,
-} from "../state/state";
+import { isBusy } from "../state/activity";
+import { keptResult } from "../state/keptResult";
+import type { Tab } from "../state/methods";
+import { notify } from "../state/notices";
+import { method } from "../state/parameters";
+import { results } from "../state/results";
+import { scene } from "../state/scene";
 import { theme } from "../state/theme";
-import { canStandBeside, isBeside, wantsBeside } from "./keptBeside";
+import { beforeGrowing, select, selection, showBeforeGrowing, tab } from "../state/viewState";
+import { canStandBeside, isBeside, standBeside, wantsBeside } from "./keptBeside";
 import { ModeLegend, ModeSwitches } from "./ModelModes";
 import { model, showsKeptFacets, useModels } from "./modelLayers";
-import { followResults, LAYERS, type LayerName, shown } from "./resultLayers";
+import { followResults, LAYERS, type LayerName, shownLayers, toggleLayer } from "./resultLayers";
 import { SpaceTools } from "./SpaceTools";
 
 const LAYER_TITLES: Record<LayerName, string> = {
@@ -43,7 +39,7 @@ const LAYER_TITLES: Record<LayerName, string> = {
 const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "groups"];
 
 /** The viewer while it exists; the effects below wait for it. */
-export const viewer = signal<Viewer | null>(null);
+const viewer = signal<Viewer | null>(null);
 
 export function SpaceView({ hidden }: { hidden: boolean }) {
   const canvas = useRef<HTMLCanvasElement>(null);
@@ -54,13 +50,13 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
     <div class="space-view" hidden={hidden}>
       <div class="toolbar">
         <LayerSwitches />
-        {shown.value[tab.value].includes("model") && <ModeSwitches />}
+        {shownLayers.value[tab.value].includes("model") && <ModeSwitches />}
         {tab.value === "lines" && <GrowingSwitch />}
         {canStandBeside.value && <BesideSwitch />}
         <span class="grow" />
         <Legend />
-        {shown.value[tab.value].includes("model") && <ModeLegend />}
-        {shown.value[tab.value].includes("uncertainty") && results.value.records.length > 0 && (
+        {shownLayers.value[tab.value].includes("model") && <ModeLegend />}
+        {shownLayers.value[tab.value].includes("uncertainty") && results.value.records.length > 0 && (
           <p class="legend">
             <span class="swatch merged" aria-hidden="true" />1 σ, drawn {enlargement(results.value.records)} ×
             as large
@@ -86,7 +82,7 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
           aria-label="3D view: drag to orbit, right-drag or arrows to move, scroll to zoom, click to pick"
           onKeyDown={(event) => {
             if (event.key === "Escape") {
-              selection.value = null;
+              select(null);
             }
           }}
         />
@@ -114,7 +110,7 @@ function GrowingSwitch() {
           type="button"
           aria-pressed={beforeGrowing.value === before}
           onClick={() => {
-            beforeGrowing.value = before;
+            showBeforeGrowing(before);
           }}
         >
           {before ? "Before growing" : "After"}
@@ -135,7 +131,7 @@ function BesideSwitch() {
           type="button"
           aria-pressed={wantsBeside.value === beside}
           onClick={() => {
-            wantsBeside.value = beside;
+            standBeside(beside);
           }}
         >
           {beside ? "Side by side" : "Outlines over it"}
@@ -156,7 +152,7 @@ function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefine
   }
   try {
     const made = new Viewer(canvas, THEME_COLOURS[theme.peek()], (picked) => {
-      selection.value = picked;
+      select(picked);
     });
     const { clientWidth = 0, clientHeight = 0 } = canvas.closest(".stage-view") ?? {};
     made.prepareSize(clientWidth, Math.round(CANVAS_SHARE * clientHeight));
@@ -206,7 +202,7 @@ function useLayers(): void {
   });
   useSignalEffect(() => {
     for (const name of LAYERS) {
-      viewer.value?.showLayer(name, shown.value[tab.value].includes(name));
+      viewer.value?.showLayer(name, shownLayers.value[tab.value].includes(name));
     }
     const before = tab.value === "lines" && beforeGrowing.value;
     viewer.value?.showLayer("stretches", before);
@@ -221,7 +217,7 @@ function useLayers(): void {
 /** Looks at what is shown, the cameras with it where they are. */
 function fitView(): void {
   const centres = scene.value?.views.map(({ center }) => center) ?? [];
-  const areShown = shown.value[tab.value].includes("cameras");
+  const areShown = shownLayers.value[tab.value].includes("cameras");
   viewer.value?.lookAt(areShown ? withCameras(boundsNow(), centres) : boundsNow());
 }
 
@@ -268,10 +264,9 @@ function layerIsEmpty(name: Tab): boolean {
 }
 
 function LayerSwitches() {
-  const visible = shown.value[tab.value];
+  const visible = shownLayers.value[tab.value];
   const toggle = (name: LayerName) => () => {
-    const next = visible.includes(name) ? visible.filter((one) => one !== name) : [...visible, name];
-    shown.value = { ...shown.value, [tab.value]: next };
+    toggleLayer(name, tab.value);
     if (name === "cameras") {
       fitView();
     }

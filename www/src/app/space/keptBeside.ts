@@ -1,10 +1,17 @@
 /** Whether a kept result stands beside the present one in space, or its outlines over it. */
-import { computed, signal } from "@preact/signals";
-import { keptResult, type Tab, tab } from "../state/state";
-import { through } from "./Photograph";
+import { computed, type ReadonlySignal, signal } from "@preact/signals";
+import { keptResult } from "../state/keptResult";
+import type { Tab } from "../state/methods";
+import { tab } from "../state/viewState";
+import { throughView } from "./Photograph";
 
 /** What the person wants. */
-export const wantsBeside = signal(true);
+const wanted = signal(true);
+export const wantsBeside: ReadonlySignal<boolean> = wanted;
+
+export function standBeside(beside: boolean): void {
+  wanted.value = beside;
+}
 
 /** Tabs that show what a kept result holds. */
 const TABS_OF_RESULTS: readonly Tab[] = ["facets", "refinement", "rectangles", "model"];
@@ -12,4 +19,6 @@ const TABS_OF_RESULTS: readonly Tab[] = ["facets", "refinement", "rectangles", "
 export const canStandBeside = computed(
   () => keptResult.value !== null && TABS_OF_RESULTS.includes(tab.value),
 );
-export const isBeside = computed(() => canStandBeside.value && wantsBeside.value && through.value === null);
+export const isBeside = computed(
+  () => canStandBeside.value && wantsBeside.value && throughView.value === null,
+);

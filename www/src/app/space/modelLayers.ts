@@ -5,15 +5,19 @@ import { buildModel, type ModelLayer } from "../../viewer/layers/model";
 import { boundsOf } from "../../viewer/scene/bounds";
 import { unpicked } from "../../viewer/scene/layer";
 import type { Viewer } from "../../viewer/viewer";
-import { notify } from "../session/session";
-import { keptResult, mainResults, method, selection, tab } from "../state/state";
+import { keptResult } from "../state/keptResult";
+import { notify } from "../state/notices";
+import { method } from "../state/parameters";
+import { mainResults } from "../state/results";
 import { theme } from "../state/theme";
+import { selection, tab } from "../state/viewState";
 import { isBeside } from "./keptBeside";
-import { facetColours, mode } from "./ModelModes";
+import { facetColours, modelMode } from "./ModelModes";
 
 type Glb = Uint8Array<ArrayBuffer> | null;
 
-export const model = signal<ModelLayer | null>(null);
+const presentModel = signal<ModelLayer | null>(null);
+export const model: ReadonlySignal<ModelLayer | null> = presentModel;
 const keptModel = signal<ModelLayer | null>(null);
 
 const presentGlb = computed(() => mainResults.value.glb);
@@ -26,7 +30,7 @@ export const showsKeptFacets = computed(() => isBeside.value && shownKeptGlb.val
 /** Keeps both models, and how they look, as the signals say. */
 export function useModels(viewer: ReadonlySignal<Viewer | null>): void {
   useSignalEffect(() => {
-    void show("model", presentGlb, model, viewer, () =>
+    void show("model", presentGlb, presentModel, viewer, () =>
       facetColours(mainResults.peek().facets, method.peek()),
     );
   });
@@ -37,7 +41,7 @@ export function useModels(viewer: ReadonlySignal<Viewer | null>): void {
   });
   useSignalEffect(() => {
     for (const layer of [model.value, keptModel.value]) {
-      layer?.setMode(mode.value);
+      layer?.setMode(modelMode.value);
       layer?.setTheme(THEME_COLOURS[theme.value]);
     }
     viewer.value?.draw();
@@ -69,7 +73,7 @@ async function show(
       layer.dispose();
       return;
     }
-    layer.setMode(mode.peek());
+    layer.setMode(modelMode.peek());
     layer.highlight(name === "model" ? selection.peek() : null);
     viewer.peek()?.setLayer(name, name === "model" ? layer : unpicked(layer));
     shown.value = layer;

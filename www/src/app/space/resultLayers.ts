@@ -1,5 +1,5 @@
 /** The layers of the 3D view, from the results: each is built anew when what it shows has changed, in a task of its own. */
-import { effect, signal } from "@preact/signals";
+import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import { Vector3 } from "three";
 import { type Facet, LINE_STRIDE, type Vec3 } from "../../shared/results";
 import { buildCameras } from "../../viewer/layers/cameras";
@@ -15,7 +15,12 @@ import { buildUncertainty, enlargement } from "../../viewer/layers/uncertainty";
 import { type Layer, unpicked } from "../../viewer/scene/layer";
 import type { Viewer } from "../../viewer/viewer";
 import { lineEnds, linesOfSelection, shapesOf } from "../selection/selectionShapes";
-import { images, keptResult, pointing, results, scene, selection, type Tab, tab } from "../state/state";
+import { keptResult } from "../state/keptResult";
+import type { Tab } from "../state/methods";
+import { results } from "../state/results";
+import { images, scene } from "../state/scene";
+import { selectionDetail } from "../state/selectionDetail";
+import { selection, tab } from "../state/viewState";
 import { isBeside } from "./keptBeside";
 
 /** Layers that a person switches; "stretches" and "turning" follow other switches. */
@@ -23,7 +28,7 @@ export const LAYERS = ["lines", "uncertainty", "fans", "groups", "facets", "mode
 export type LayerName = (typeof LAYERS)[number];
 
 /** What each tab shows until a person switches something. */
-export const shown = signal<Record<Tab, readonly LayerName[]>>({
+const chosen = signal<Record<Tab, readonly LayerName[]>>({
   images: [],
   segments: [],
   matches: [],
@@ -38,6 +43,15 @@ export const shown = signal<Record<Tab, readonly LayerName[]>>({
   rectangles: ["facets", "lines"],
   model: ["model"],
 });
+export const shownLayers: ReadonlySignal<Record<Tab, readonly LayerName[]>> = chosen;
+
+/** Shows a layer in a tab, or hides it there. */
+export function toggleLayer(name: LayerName, inTab: Tab): void {
+  const visible = chosen.value[inTab];
+  const next = visible.includes(name) ? visible.filter((one) => one !== name) : [...visible, name];
+  chosen.value = { ...chosen.value, [inTab]: next };
+}
+
 /** A function that makes a layer, and what it makes it of; null where there is nothing to show. */
 type Plan = readonly [build: () => Layer, ...of: unknown[]] | null;
 
@@ -50,7 +64,7 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   uncertainty: () => {
     const { lines, records } = results.value;
     // Thousands of tubes that few look at: not before somebody does.
-    const isShown = shown.value[tab.value].includes("uncertainty");
+    const isShown = shownLayers.value[tab.value].includes("uncertainty");
     const has = isShown && lines !== null && records.length * LINE_STRIDE === lines.length;
     return has
       ? [() => buildUncertainty(lines, records, enlargement(records), linesOfSelection), records]
@@ -89,7 +103,7 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
     return all.length === 0 ? null : [() => buildPicked(all), selection.value, results.value];
   },
   turning: () => {
-    const { side, theta } = pointing.value;
+    const { side, theta } = selectionDetail.value;
     const ends = side === null ? [] : lineEnds(side.line);
     return side !== null && ends.length === 2 && tab.value === "halfplanes"
       ? [() => buildTurning(ends as unknown as [Vec3, Vec3], side.side, theta), side, theta]
@@ -102,7 +116,7 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   cameras: (middle) => {
     const views = scene.value?.views;
     // Every photograph is drawn anew: not before somebody looks.
-    if (views === undefined || !shown.value[tab.value].includes("cameras")) {
+    if (views === undefined || !shownLayers.value[tab.value].includes("cameras")) {
       return null;
     }
     const [x, y, z] = middle();

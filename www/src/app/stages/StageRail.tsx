@@ -4,18 +4,11 @@ import { KeepResult } from "../comparison/Comparison";
 import { grouped } from "../parts/numberText";
 import { stageWords } from "../session/stageCatalogue";
 import { cancel, runAll, runTo } from "../session/stageRuns";
-import {
-  chosenWorkers,
-  files,
-  freshStages,
-  isBusy,
-  runningStage,
-  type StageState,
-  type StageStatus,
-  stages,
-  tab,
-  usefulWorkers,
-} from "../state/state";
+import { isBusy } from "../state/activity";
+import { files } from "../state/project";
+import { freshStages, runningStage, type StageState, type StageStatus, stages } from "../state/stages";
+import { showTab } from "../state/viewState";
+import { chooseWorkers, chosenWorkers, usefulWorkers } from "../state/workers";
 
 const STATUS_WORDS: Record<StageStatus, string> = {
   waiting: "not run",
@@ -66,7 +59,7 @@ function WorkerChoice() {
       <select
         value={String(chosenWorkers.value)}
         onChange={(event) => {
-          chosenWorkers.value = Number(event.currentTarget.value);
+          chooseWorkers(Number(event.currentTarget.value));
         }}
       >
         <option value="0">auto ({usefulWorkers.value})</option>
@@ -95,7 +88,7 @@ function StageCard({ stage, position }: { stage: StageState; position: number })
         class="link"
         title={words.section}
         onClick={() => {
-          tab.value = words.tab;
+          showTab(words.tab);
         }}
       >
         {words.title}

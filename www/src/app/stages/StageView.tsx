@@ -11,7 +11,10 @@ import { SimLab } from "../figures/SimLab";
 import { Filmstrip } from "../images/Filmstrip";
 import { ImageViews } from "../images/ImageViews";
 import { SpaceView } from "../space/SpaceView";
-import { images, method, TABS, type Tab, tab } from "../state/state";
+import { TABS, type Tab } from "../state/methods";
+import { method } from "../state/parameters";
+import { images } from "../state/scene";
+import { showTab, tab } from "../state/viewState";
 
 const TITLES: Record<Tab, string> = {
   images: "Images",
@@ -56,7 +59,7 @@ export function StageView() {
     if (step !== 0) {
       event.preventDefault();
       const next = (names.indexOf(tab.value) + step + names.length) % names.length;
-      tab.value = names[next] as Tab;
+      showTab(names[next] as Tab);
       (list.current?.children[next] as HTMLElement | undefined)?.focus();
     }
   };
@@ -80,7 +83,7 @@ export function StageView() {
             aria-controls="stage-view"
             tabIndex={tab.value === name ? 0 : -1}
             onClick={() => {
-              tab.value = name;
+              showTab(name);
             }}
           >
             {TITLES[name]}

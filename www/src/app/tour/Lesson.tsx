@@ -1,6 +1,7 @@
 /** The present step of the guided tour: what is seen, a question, and whether the answer was found. */
 import { signal, useSignalEffect } from "@preact/signals";
-import { isBusy, lessonStep } from "../state/state";
+import { isBusy } from "../state/activity";
+import { lessonStep } from "../state/tour";
 import { endTour, goTo, isOnDemo, LESSONS } from "./lessons";
 
 /** Steps whose answer was found once: it does not go away again. */

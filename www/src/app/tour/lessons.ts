@@ -2,25 +2,25 @@
 import { effect } from "@preact/signals";
 import { isRefused } from "../../shared/traces";
 import { openDemo } from "../project/projectActions";
-import { bestTheta, turnTo } from "../selection/selectionDetail";
+import { bestTheta, turnTo } from "../selection/selectionQueries";
 import { runAll, setMethod } from "../session/stageRuns";
-import { through } from "../space/Photograph";
+import { throughView } from "../space/Photograph";
+import type { Method, Tab } from "../state/methods";
+import { method } from "../state/parameters";
+import { files, isDemo } from "../state/project";
+import { results } from "../state/results";
+import { selectionDetail } from "../state/selectionDetail";
+import { freshStages, stages } from "../state/stages";
+import { lessonStep, showLesson } from "../state/tour";
 import {
   beforeGrowing,
-  files,
-  freshStages,
-  isDemo,
-  lessonStep,
-  type Method,
-  method,
-  pointing,
-  results,
+  select,
   selection,
-  shownView,
-  stages,
-  type Tab,
+  showBeforeGrowing,
+  showTab,
+  showView,
   tab,
-} from "../state/state";
+} from "../state/viewState";
 
 export interface LessonStep {
   title: string;
@@ -60,9 +60,9 @@ export const LESSONS: readonly LessonStep[] = [
     method: "lines",
     tab: "matches",
     prepare: () => {
-      shownView.value = ALL_VIEWS;
+      showView(ALL_VIEWS);
     },
-    isFound: () => new Set(pointing.value.story?.candidates.map(({ view }) => view)).size >= 3,
+    isFound: () => new Set(selectionDetail.value.story?.candidates.map(({ view }) => view)).size >= 3,
   },
   {
     title: "Point by point",
@@ -73,11 +73,11 @@ export const LESSONS: readonly LessonStep[] = [
     method: "lines",
     tab: "matches",
     prepare: () => {
-      shownView.value = ALL_VIEWS;
+      showView(ALL_VIEWS);
       selectMatchedSegment();
     },
     isFound: () => {
-      const { isMoved, correspondence } = pointing.value;
+      const { isMoved, correspondence } = selectionDetail.value;
       return isMoved && (correspondence?.correlation ?? 0) > 0.9;
     },
   },
@@ -89,7 +89,7 @@ export const LESSONS: readonly LessonStep[] = [
     method: "lines",
     tab: "lines",
     prepare: () => {
-      beforeGrowing.value = true;
+      showBeforeGrowing(true);
     },
     isFound: () => !beforeGrowing.value && selection.value?.kind === "line",
   },
@@ -106,7 +106,7 @@ export const LESSONS: readonly LessonStep[] = [
       void turnAway();
     },
     isFound: () => {
-      const { side, theta, isTurned } = pointing.value;
+      const { side, theta, isTurned } = selectionDetail.value;
       return side !== null && isTurned && Math.abs(theta - bestTheta(side)) < 2 * DEGREE;
     },
   },
@@ -118,9 +118,9 @@ export const LESSONS: readonly LessonStep[] = [
     method: "lines",
     tab: "halfplanes",
     prepare: () => {
-      selection.value = null;
+      select(null);
     },
-    isFound: () => pointing.value.side !== null && isRefused(pointing.value.side),
+    isFound: () => selectionDetail.value.side !== null && isRefused(selectionDetail.value.side),
   },
   {
     title: "Planes",
@@ -143,7 +143,7 @@ export const LESSONS: readonly LessonStep[] = [
     answer: "Where model and photograph part, the model is wrong: the plainest check there is.",
     method: "lines",
     tab: "model",
-    isFound: () => through.value !== null,
+    isFound: () => throughView.value !== null,
   },
   {
     title: "Another way: object space",
@@ -153,7 +153,7 @@ export const LESSONS: readonly LessonStep[] = [
     method: "rectangles",
     tab: "clusters",
     prepare: () => {
-      shownView.value = ALL_VIEWS;
+      showView(ALL_VIEWS);
     },
     isFound: () => selection.value?.kind === "line" && tab.value === "clusters",
   },
@@ -164,7 +164,7 @@ export function startTour(): void {
 }
 
 export function endTour(): void {
-  lessonStep.value = null;
+  showLesson(null);
 }
 
 /** Opens a step: its method run to the end on the demo scene, its view, and what it is about. */
@@ -174,7 +174,7 @@ export async function goTo(step: number): Promise<void> {
     endTour();
     return;
   }
-  lessonStep.value = step;
+  showLesson(step);
   if (files.value.length === 0) {
     await openDemo();
   }
@@ -185,8 +185,8 @@ export async function goTo(step: number): Promise<void> {
     await runAll();
   }
   if (lessonStep.value === step) {
-    selection.value = null;
-    tab.value = lesson.tab;
+    select(null);
+    showTab(lesson.tab);
     lesson.prepare?.();
   }
 }
@@ -195,14 +195,14 @@ export async function goTo(step: number): Promise<void> {
 async function turnAway(): Promise<void> {
   const known = new Promise<void>((resolve) => {
     const stop = effect(() => {
-      if (pointing.value.warped !== null) {
+      if (selectionDetail.value.warped !== null) {
         queueMicrotask(() => stop());
         resolve();
       }
     });
   });
   await known;
-  await turnTo(pointing.peek().theta - 35 * DEGREE, false);
+  await turnTo(selectionDetail.peek().theta - 35 * DEGREE, false);
 }
 
 /** Whether the tour runs on the scene that it was written for. */
@@ -222,7 +222,7 @@ function selectMatchedSegment(): void {
     supports.filter(({ view }) => view === 0).flatMap(({ segments }) => segments),
   );
   const longest = own.reduce((best, one) => (lengthOf(0, one) > lengthOf(0, best) ? one : best), own[0] ?? 0);
-  selection.value = { kind: "segment", view: 0, index: longest };
+  select({ kind: "segment", view: 0, index: longest });
 }
 
 /** The half-plane with the highest Sim at an angle that is worth looking for. */
@@ -236,6 +236,6 @@ function selectClearHalfPlane(): void {
     sloped[0] ?? ({ one: all[0], index: 0 } as never),
   );
   if (best?.one !== undefined) {
-    selection.value = { kind: "halfplane", index: best.index };
+    select({ kind: "halfplane", index: best.index });
   }
 }

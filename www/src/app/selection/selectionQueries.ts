@@ -2,24 +2,19 @@
 import { effect } from "@preact/signals";
 import type { SideName, SideTrace } from "../../shared/traces";
 import { ask } from "../session/session";
-import {
-  NOTHING_POINTED,
-  type Pointing,
-  pointing,
-  results,
-  runningStage,
-  selection,
-  shownKeeper,
-} from "../state/state";
+import { results, shownKeeper } from "../state/results";
+import { beginDetail, changeDetail, NO_DETAIL, selectionDetail } from "../state/selectionDetail";
+import { runningStage } from "../state/stages";
+import { select, selection } from "../state/viewState";
 
 /** Follows the selection as long as the page is open. */
-export function followSelection(): void {
+export function askAboutSelection(): void {
   let last = { keeper: shownKeeper.peek(), picked: selection.peek() };
   effect(() => {
     const now = { keeper: shownKeeper.value, picked: selection.value };
     // The same number is another line there; a link names its own.
     if (now.keeper !== last.keeper && now.picked === last.picked) {
-      selection.value = null;
+      select(null);
     }
     last = { ...now, picked: selection.peek() };
   });
@@ -28,15 +23,15 @@ export function followSelection(): void {
     const picked = selection.value;
     if (shownKeeper.value === "regions") {
       // The figures of B99 are about its own segments and lines.
-      pointing.value = NOTHING_POINTED;
+      beginDetail();
     } else if (picked?.kind === "segment") {
-      void pointAtSegment(picked.view, picked.index);
+      void askAboutSegment(picked.view, picked.index);
     } else {
       const side = sideOf(picked);
       if (side !== null) {
-        void pointAtSide(side.line, side.side);
+        void askAboutSide(side.line, side.side);
       } else {
-        pointing.value = NOTHING_POINTED;
+        beginDetail();
       }
     }
   });
@@ -46,35 +41,35 @@ export function followSelection(): void {
 export async function compareAt(
   candidate: number,
   at: number,
-  isMoved = pointing.peek().isMoved,
+  isMoved = selectionDetail.peek().isMoved,
 ): Promise<void> {
-  change({ candidate, at, isMoved });
+  changeDetail({ candidate, at, isMoved });
   const picked = selection.peek();
-  const found = pointing.peek().story?.candidates[candidate];
+  const found = selectionDetail.peek().story?.candidates[candidate];
   if (picked?.kind !== "segment" || found === undefined) {
-    change({ correspondence: null });
+    changeDetail({ correspondence: null });
     return;
   }
   await latest("correspondence", async () => {
     const answer = await ask("correspondence", picked.view, picked.index, found.view, found.segment, at);
     if (selection.peek() === picked) {
-      change({ correspondence: answer });
+      changeDetail({ correspondence: answer });
     }
   });
 }
 
 /** Turns the half-plane of the selected side to an angle, radians; `isByHand` when the reader does it. */
 export async function turnTo(theta: number, isByHand = true): Promise<void> {
-  change({ theta, isTurned: isByHand });
-  const side = pointing.peek().side;
+  changeDetail({ theta, isTurned: isByHand });
+  const side = selectionDetail.peek().side;
   if (side === null) {
     return;
   }
   await latest("warped", async () => {
-    const { theta: wanted } = pointing.peek();
+    const { theta: wanted } = selectionDetail.peek();
     const warped = await ask("warped", side.line, side.side === "left", wanted);
-    if (pointing.peek().side === side) {
-      change({ warped });
+    if (selectionDetail.peek().side === side) {
+      changeDetail({ warped });
     }
   });
 }
@@ -100,24 +95,24 @@ export function sideOf(picked: typeof selection.value): { line: number; side: Si
   }
 }
 
-async function pointAtSegment(view: number, segment: number): Promise<void> {
+async function askAboutSegment(view: number, segment: number): Promise<void> {
   const story = results.peek().matching === null ? null : await ask("segmentStory", view, segment);
   const now = selection.peek();
   if (now?.kind === "segment" && now.view === view && now.index === segment) {
-    pointing.value = { ...NOTHING_POINTED, story };
-    await compareAt(0, NOTHING_POINTED.at, false);
+    beginDetail({ story });
+    await compareAt(0, NO_DETAIL.at, false);
   }
 }
 
-async function pointAtSide(line: number, side: SideName): Promise<void> {
+async function askAboutSide(line: number, side: SideName): Promise<void> {
   if (results.peek().halfPlanes === null) {
-    pointing.value = NOTHING_POINTED;
+    beginDetail();
     return;
   }
   const found = await ask("side", line, side === "left");
   const now = sideOf(selection.peek());
   if (now?.line === line && now.side === side) {
-    pointing.value = { ...NOTHING_POINTED, side: found, theta: bestTheta(found) };
+    beginDetail({ side: found, theta: bestTheta(found) });
     await turnTo(bestTheta(found), false);
   }
 }
@@ -136,10 +131,6 @@ export function bestTheta(side: SideTrace | null): number {
   const { thetas, similarity } = side.curve;
   const highest = Math.max(0, ...similarity);
   return highest > 0 ? (thetas[similarity.indexOf(highest)] ?? 0) : 0;
-}
-
-function change(part: Partial<Pointing>): void {
-  pointing.value = { ...pointing.peek(), ...part };
 }
 
 const running = new Set<string>();

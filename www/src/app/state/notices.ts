@@ -1,0 +1,54 @@
+/** What the person is told of, in notices and, for screen readers, in an announcement. */
+import { type ReadonlySignal, signal } from "@preact/signals";
+import type { DoctorReport } from "../../shared/results";
+
+export interface Notice {
+  id: number;
+  severity: "error" | "warning" | "info";
+  title: string;
+  text: string;
+  /** What to do about it. */
+  advice?: string;
+  /** What the images say of the orientation. */
+  doctor?: DoctorReport;
+  /** Something that can be done about it. */
+  action?: { name: string; run: () => void };
+}
+
+const shown = signal<Notice[]>([]);
+const said = signal("");
+
+export const notices: ReadonlySignal<Notice[]> = shown;
+/** What a screen reader is told of: the last thing that happened. */
+export const announcement: ReadonlySignal<string> = said;
+
+let lastNotice = 0;
+
+export function notify(notice: Omit<Notice, "id">): void {
+  lastNotice += 1;
+  shown.value = withNotice(shown.value, { ...notice, id: lastNotice });
+}
+
+export function dismiss(id: number): void {
+  shown.value = shown.value.filter((notice) => notice.id !== id);
+}
+
+/** Dismisses the notices that offer to do this. */
+export function dismissOffers(name: string): void {
+  shown.value = shown.value.filter(({ action }) => action?.name !== name);
+}
+
+export function dismissAll(): void {
+  shown.value = [];
+}
+
+export function announce(text: string): void {
+  said.value = text;
+}
+
+/** The notices with another one, which stands for one that says the same. */
+export function withNotice(shown: Notice[], added: Notice): Notice[] {
+  const same = ({ severity, title, text }: Notice) =>
+    severity === added.severity && title === added.title && text === added.text;
+  return [...shown.filter((notice) => !same(notice)), added];
+}

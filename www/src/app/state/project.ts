@@ -1,0 +1,74 @@
+/** The project: its files, what they were recognised as, and what is asked for beyond them. */
+import { batch, type ReadonlySignal, signal } from "@preact/signals";
+import type { InputFile } from "../../shared/messages";
+import type { Inspection } from "../../shared/results";
+
+/** What the person asked for beyond the files; images are left out by their path. */
+export interface RunOptions {
+  orientation: string | null;
+  leftOut: readonly string[];
+  roi: [number, number, number, number] | null;
+  groundZ: number | null;
+  /** Undo the mistake in the orientation that the images give away. */
+  applyFix: boolean;
+  /** Adjust small errors of single views. */
+  adjust: boolean;
+  /** Size of the tiles in which the region is worked off, metres; null: in one. */
+  tileM: number | null;
+  /** As a project file says. */
+  epsg: number | null;
+}
+
+export const NO_OPTIONS: RunOptions = {
+  orientation: null,
+  leftOut: [],
+  roi: null,
+  groundZ: null,
+  applyFix: false,
+  adjust: false,
+  tileM: null,
+  epsg: null,
+};
+
+const present = {
+  files: signal<InputFile[]>([]),
+  isDemo: signal(false),
+  name: signal(""),
+  options: signal<RunOptions>(NO_OPTIONS),
+  inspection: signal<Inspection | null>(null),
+};
+
+export const files: ReadonlySignal<InputFile[]> = present.files;
+/** Whether the project is the demo scene as it was fetched: a link may name that. */
+export const isDemo: ReadonlySignal<boolean> = present.isDemo;
+export const projectName: ReadonlySignal<string> = present.name;
+export const runOptions: ReadonlySignal<RunOptions> = present.options;
+export const inspection: ReadonlySignal<Inspection | null> = present.inspection;
+
+/** Other files: nothing is known of them yet, and without any nothing is asked for. */
+export function replaceFiles(next: InputFile[]): void {
+  batch(() => {
+    present.files.value = next;
+    present.isDemo.value = false;
+    present.inspection.value = null;
+    if (next.length === 0) {
+      present.options.value = NO_OPTIONS;
+    }
+  });
+}
+
+export function markAsDemo(isDemo: boolean): void {
+  present.isDemo.value = isDemo;
+}
+
+export function nameProject(name: string): void {
+  present.name.value = name;
+}
+
+export function replaceRunOptions(options: RunOptions): void {
+  present.options.value = options;
+}
+
+export function setInspection(found: Inspection | null): void {
+  present.inspection.value = found;
+}

@@ -1,0 +1,85 @@
+/** What the stages have found. */
+import { computed, type ReadonlySignal, signal } from "@preact/signals";
+import type { Facet, HalfPlane, Params } from "../../shared/results";
+import type * as traces from "../../shared/traces";
+import { REGION_TABS, type Tab } from "./methods";
+import { method } from "./parameters";
+import { tab } from "./viewState";
+
+/** What the stages have returned so far; arrays per view are empty until their stage has run. */
+export interface Results {
+  segments: Float32Array[];
+  supports: Float32Array[];
+  lines: Float64Array | null;
+  halfPlanes: HalfPlane[] | null;
+  facets: Facet[] | null;
+  /** The parameters that the facets were found with. */
+  madeWith: Params | null;
+  glb: Uint8Array<ArrayBuffer> | null;
+  rejected: Float32Array[];
+  matching: traces.MatchRecord | null;
+  records: traces.LineRecord[];
+  stretches: Float64Array | null;
+  sides: traces.SideRecord[];
+  grouping: traces.Grouping | null;
+  refinement: traces.Refinement | null;
+  regions: traces.Segmentation[];
+  directions: traces.Directions | null;
+  clusters: traces.ClusterTrace[] | null;
+  rectangles: traces.RectangleTrace | null;
+}
+
+export const NO_RESULTS: Results = {
+  segments: [],
+  supports: [],
+  lines: null,
+  halfPlanes: null,
+  facets: null,
+  madeWith: null,
+  glb: null,
+  rejected: [],
+  matching: null,
+  records: [],
+  stretches: null,
+  sides: [],
+  grouping: null,
+  refinement: null,
+  regions: [],
+  directions: null,
+  clusters: null,
+  rectangles: null,
+};
+
+/** Where a stage's results are kept: in method "combined" both methods have segments, lines and facets of their own. */
+type Keeper = "main" | "regions";
+const found = signal<Record<Keeper, Results>>({ main: NO_RESULTS, regions: NO_RESULTS });
+
+/** Of which stages the present tab tells. */
+export const shownKeeper = computed<Keeper>(() => keeperOf(tab.value));
+/** What the present tab tells of. */
+export const results = computed(() => found.value[shownKeeper.value]);
+/** What the model is made of. */
+export const mainResults = computed(() => found.value.main);
+
+export function setResults(all: Results): void {
+  found.value = { main: all, regions: NO_RESULTS };
+}
+
+/** Adds what a stage has found that `shownBy` shows. */
+export function addResults(shownBy: Tab, some: Partial<Results>): void {
+  const keeper = keeperOf(shownBy);
+  found.value = { ...found.value, [keeper]: { ...found.value[keeper], ...some } };
+}
+
+const writtenFiles = signal<string[]>([]);
+/** The output files that can be saved. */
+export const exportNames: ReadonlySignal<string[]> = writtenFiles;
+
+export function setExportNames(names: string[]): void {
+  writtenFiles.value = names;
+}
+
+function keeperOf(name: Tab): Keeper {
+  const names: readonly Tab[] = REGION_TABS;
+  return method.value === "combined" && names.includes(name) ? "regions" : "main";
+}

@@ -1,0 +1,62 @@
+/** The stages of the chosen method: how far each is, and how many are up to date. */
+import { computed, type ReadonlySignal, signal } from "@preact/signals";
+
+export type StageStatus = "waiting" | "running" | "done" | "outdated" | "failed";
+
+export interface StageState {
+  name: string;
+  status: StageStatus;
+  /** 0 to 1 while running. */
+  fraction: number;
+  seconds: number | null;
+  counts: Record<string, number>;
+  warnings: string[];
+}
+
+const all = signal<StageState[]>([]);
+const fresh = signal(0);
+
+export const stages: ReadonlySignal<StageState[]> = all;
+/** How many stages, from the first, the worker has run with the present files and parameters. */
+export const freshStages: ReadonlySignal<number> = fresh;
+export const runningStage = computed(() => stages.value.find((stage) => stage.status === "running") ?? null);
+
+/** The stages of another method begin anew; the same ones stay as they are. */
+export function replaceStages(names: readonly string[]): void {
+  if (names.join() !== all.value.map(({ name }) => name).join()) {
+    all.value = names.map(freshStage);
+  }
+}
+
+export function updateStage(name: string, change: Partial<StageState>): void {
+  all.value = all.value.map((stage) => (stage.name === name ? { ...stage, ...change } : stage));
+}
+
+/** None has run. */
+export function restartStages(): void {
+  fresh.value = 0;
+  all.value = all.value.map(({ name }) => freshStage(name));
+}
+
+/** What was running waits again. */
+export function haltStages(): void {
+  all.value = all.value.map((stage) =>
+    stage.status === "running" ? { ...stage, status: "waiting", fraction: 0 } : stage,
+  );
+}
+
+/** The results of this stage and those after it are out of date. */
+export function outdateStages(from: number): void {
+  fresh.value = Math.min(fresh.value, from);
+  all.value = all.value.map((stage, i) =>
+    i >= from && stage.status === "done" ? { ...stage, status: "outdated" } : stage,
+  );
+}
+
+export function setFreshStages(count: number): void {
+  fresh.value = count;
+}
+
+function freshStage(name: string): StageState {
+  return { name, status: "waiting", fraction: 0, seconds: null, counts: {}, warnings: [] };
+}

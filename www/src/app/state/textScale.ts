@@ -1,0 +1,37 @@
+/** How large the page writes: the usual size, until the person chooses. */
+import { effect, type ReadonlySignal, signal } from "@preact/signals";
+
+/** Sizes of text and controls: the second is for projectors. */
+const SCALES = [1, 1.15, 1.3, 1.5] as const;
+const SCALE_KEY = "ridgeline.text";
+
+const chosen = signal(storedScale());
+
+/** How large text and lines are: for projectors more than 1. */
+export const textScale: ReadonlySignal<number> = chosen;
+
+effect(() => {
+  if (typeof document !== "undefined") {
+    document.documentElement.style.setProperty("--scale", String(textScale.value));
+  }
+});
+
+/** The next larger text; after the largest, the usual one. */
+export function biggerText(): void {
+  const next = SCALES[(SCALES.indexOf(textScale.value as (typeof SCALES)[number]) + 1) % SCALES.length] ?? 1;
+  chosen.value = next;
+  try {
+    localStorage.setItem(SCALE_KEY, String(next));
+  } catch {
+    // Storage may be forbidden: the choice then lasts until the page is closed.
+  }
+}
+
+function storedScale(): number {
+  try {
+    const stored = Number(localStorage.getItem(SCALE_KEY));
+    return SCALES.find((scale) => scale === stored) ?? 1;
+  } catch {
+    return 1;
+  }
+}
