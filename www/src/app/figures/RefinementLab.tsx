@@ -1,9 +1,9 @@
 /** B99 2: what refinement made of a building, and the relations that were tested there, each by its chi-square. */
 import type { BuildingRefinement, TestedRelation } from "../../shared/traces";
 import { Filmstrip } from "../images/Filmstrip";
-import { buildingOfFacet, relationLimit } from "../inspector/refinementRows";
 import { axesOf, Chart, Fit, type Frame } from "../parts/charts";
 import { RELATION_WORDS, refinementWords } from "../parts/reasonText";
+import { buildingOfFacet, relationLimit } from "../selection/refinedBuildings";
 import { results } from "../state/results";
 import { select, selection } from "../state/viewState";
 

@@ -1,8 +1,7 @@
 /** The image tabs: one view or all of them, with what the tab's stage found drawn over. */
+import type { ComponentChildren } from "preact";
 import { category } from "../../shared/palette";
-import { directionColours } from "../figures/DirectionLab";
 import { Legend } from "../parts/Legend";
-import { openDemo } from "../project/projectActions";
 import { results } from "../state/results";
 import { images, scene } from "../state/scene";
 import { selectionDetail } from "../state/selectionDetail";
@@ -17,7 +16,7 @@ import {
   withRejected,
   zoomToSelection,
 } from "../state/viewState";
-import { startTour } from "../tour/lessons";
+import { directionColours } from "./directionColours";
 import type { Overlay } from "./drawing";
 import { ImageCanvas } from "./ImageCanvas";
 import { marksOf } from "./selectionMarks";
@@ -25,11 +24,12 @@ import { marksOf } from "./selectionMarks";
 /** All views side by side. */
 export const ALL = -1;
 
-export function ImageViews() {
+/** `empty` stands in their place as long as there are none. */
+export function ImageViews({ empty }: { empty: ComponentChildren }) {
   void selectionDetail.value;
   const views = scene.value?.views ?? [];
   if (views.length === 0 || images.value.length === 0) {
-    return <Empty />;
+    return <>{empty}</>;
   }
   const shown =
     shownView.value === ALL ? views.map((_, i) => i) : [Math.min(shownView.value, views.length - 1)];
@@ -150,24 +150,5 @@ function RejectedSwitch() {
     >
       Refused lines
     </button>
-  );
-}
-
-function Empty() {
-  return (
-    <div class="empty">
-      <p>No oriented views yet.</p>
-      <p class="muted">
-        Add photographs with their orientation on the left, or begin with six aerial views of detached houses.
-      </p>
-      <p class="row">
-        <button type="button" class="primary" onClick={() => void openDemo()}>
-          Reconstruct the example
-        </button>
-        <button type="button" onClick={startTour}>
-          Be shown how it works
-        </button>
-      </p>
-    </div>
   );
 }

@@ -1,23 +1,9 @@
 /** What refinement made of buildings (B99 2), for the inspector and the figure. */
 
 import { RELATION_WORDS, refinementWords } from "../parts/reasonText";
-import { refinedFacets } from "../selection/selectionShapes";
-import { params } from "../state/parameters";
+import { buildingOfFacet, refinedFacets, relationLimit } from "../selection/refinedBuildings";
 import { results } from "../state/results";
 import { linkToFacet, linkToRefinement, type Row } from "./rowLinks";
-
-/** The building that a facet of the model belonged to before refinement. */
-export function buildingOfFacet(facet: number): number | undefined {
-  const before = results.value.refinement?.before;
-  return before?.facets[before.sources[facet] ?? -1]?.building;
-}
-
-/** Up to this chi-square a relation is adopted, as the present parameters have it. */
-export function relationLimit(): number | null {
-  const refine = params.value["roof"]?.["refine"];
-  const limit = (refine as Record<string, unknown> | undefined)?.["relation_chi2"];
-  return typeof limit === "number" ? limit : null;
-}
 
 /** The refinement of the building that a facet is part of. */
 export function refinedRow(facet: number): Row[] {

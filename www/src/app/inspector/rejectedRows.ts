@@ -1,6 +1,6 @@
 /** What was refused, in numbers: lines of edgels (B99 3.2), facets (B99 4.3) and clusters (W96 3.5). */
 import { REJECTED_STRIDE, type Vec3 } from "../../shared/results";
-import { degreesOf } from "../parts/facetArea";
+import { degreesOf } from "../parts/numberText";
 import { facetRejectionWords } from "../parts/reasonText";
 import { results } from "../state/results";
 import type { Row } from "./rowLinks";

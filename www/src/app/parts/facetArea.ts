@@ -13,5 +13,3 @@ function planArea(ring: readonly Vec3[]): number {
     return sum + (x * nextY - nextX * y) / 2;
   }, 0);
 }
-
-export const degreesOf = (radians: number) => (radians * 180) / Math.PI;

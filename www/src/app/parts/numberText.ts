@@ -6,3 +6,5 @@ export function grouped(value: number): string {
   const text = whole.replace(/\B(?=(\d{3})+$)/g, ",");
   return decimals === undefined ? text : `${text}.${decimals}`;
 }
+
+export const degreesOf = (radians: number) => (radians * 180) / Math.PI;

@@ -1,10 +1,12 @@
 /** What a selection is in space: polylines in the local frame, which light up in every image and in the 3D view. */
+
 import { type HalfPlane, LINE_STRIDE, type Vec3 } from "../../shared/results";
 import type { Selection } from "../../shared/selection";
 import type { Segment3 } from "../../shared/traces";
 import { fanCorners } from "../../viewer/layers/fans";
 import { outlinesOf } from "../../viewer/layers/refinement";
 import { results } from "../state/results";
+import { refinedFacets } from "./refinedBuildings";
 
 /** A line, a closed outline with what is inside it, or the outline of what was there before. */
 export interface Shape {
@@ -99,14 +101,6 @@ export function lineOfSegment(view: number, segment: number): number[] {
 function groupLines(index: number): number[] {
   const members = results.value.grouping?.groups[index]?.members ?? [];
   return [...new Set(members.map(({ line }) => line))];
-}
-
-/** The facets of the model that refinement made of a building. */
-export function refinedFacets(building: number): number[] {
-  const before = results.value.refinement?.before;
-  return (before?.sources ?? []).flatMap((source, facet) =>
-    before?.facets[source]?.building === building ? [facet] : [],
-  );
 }
 
 /** A cluster has no ends (W96 3.5): it is drawn as far as any line of its direction reaches. */

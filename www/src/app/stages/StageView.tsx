@@ -15,6 +15,7 @@ import { TABS, type Tab } from "../state/methods";
 import { method } from "../state/parameters";
 import { images } from "../state/scene";
 import { showTab, tab } from "../state/viewState";
+import { EmptyStage } from "./EmptyStage";
 
 const TITLES: Record<Tab, string> = {
   images: "Images",
@@ -91,7 +92,7 @@ export function StageView() {
         ))}
       </div>
       <div id="stage-view" class="stage-view" role="tabpanel" aria-labelledby={`tab-${tab.value}`}>
-        {isImageTab && <ImageViews />}
+        {isImageTab && <ImageViews empty={<EmptyStage />} />}
         <SpaceView hidden={isImageTab} />
         {Lab !== undefined && (
           <section class="lab" aria-label={`${TITLES[tab.value]}: figure`}>
