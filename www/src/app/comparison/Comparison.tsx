@@ -1,5 +1,6 @@
 /** Two results: one is kept, and its numbers stand beside the present ones. In space it stands beside them, too (`beside.ts`). */
 
+import "./comparison.css";
 import { keepResult, keptResult } from "../state/keptResult";
 import { results } from "../state/results";
 import { comparedRows, presentResult, presentTitle } from "./comparedResults";

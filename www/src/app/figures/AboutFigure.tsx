@@ -1,4 +1,5 @@
 /** What each stage view shows: a paragraph, its equation, and where it stands in the papers. */
+import "./figures.css";
 import type { ComponentChildren } from "preact";
 import type { Tab } from "../state/methods";
 import { tab } from "../state/viewState";

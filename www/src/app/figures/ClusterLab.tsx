@@ -1,5 +1,6 @@
 /** W96 3.5: the plane across a main direction, its image lines and its clusters (figures 7 and 8). */
 
+import "./figures.css";
 import { category } from "../../shared/palette";
 import { LINE_STRIDE } from "../../shared/results";
 import type { Selection } from "../../shared/selection";

@@ -1,4 +1,5 @@
 /** W96 3.4: the histogram of azimuths (figures 4 and 5), and which direction an image line follows. */
+import "./figures.css";
 import { category } from "../../shared/palette";
 import type { MainDirections } from "../../shared/traces";
 import { axesOf, Chart, Fit, type Frame, pathOf } from "../parts/charts";

@@ -1,4 +1,5 @@
 /** B99 figure 9: accuracy against the number of views; figures 17 to 23: groups and border lines in plan. */
+import "./figures.css";
 import { category } from "../../shared/palette";
 import type { Vec3 } from "../../shared/results";
 import type { Grouping, LineRecord, Vec2 } from "../../shared/traces";

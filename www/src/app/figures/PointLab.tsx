@@ -1,4 +1,5 @@
 /** B99 figures 2 to 4: the candidates of a segment, pointwise correspondence, and the two windows that are compared. */
+import "./figures.css";
 import { useEffect, useRef } from "preact/hooks";
 import { outcomeWords } from "../parts/reasonText";
 import { compareAt } from "../selection/selectionQueries";

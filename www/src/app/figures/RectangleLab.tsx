@@ -1,4 +1,5 @@
 /** W96 3.6: the window of a plane between parallel lines, and the histogram of positions (figures 10 and 11). */
+import "./figures.css";
 import { category } from "../../shared/palette";
 import type { PlaneTrace } from "../../shared/traces";
 import { Filmstrip } from "../images/Filmstrip";

@@ -1,4 +1,5 @@
 /** B99 2: what refinement made of a building, and the relations that were tested there, each by its chi-square. */
+import "./figures.css";
 import type { BuildingRefinement, TestedRelation } from "../../shared/traces";
 import { Filmstrip } from "../images/Filmstrip";
 import { axesOf, Chart, Fit, type Frame } from "../parts/charts";

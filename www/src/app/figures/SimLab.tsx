@@ -1,4 +1,5 @@
 /** B99 figures 10 to 14: the half-plane turned by hand, the views warped onto it, and Sim(theta). */
+import "./figures.css";
 import { useEffect, useRef } from "preact/hooks";
 import { category } from "../../shared/palette";
 import type { SideTrace, WarpedPicture } from "../../shared/traces";

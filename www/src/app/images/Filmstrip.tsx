@@ -1,4 +1,5 @@
 /** The selected thing in every view, each picture zoomed to it: "it lights up in every image". */
+import "./images.css";
 import { useEffect, useRef } from "preact/hooks";
 import type { Selection } from "../../shared/selection";
 import { results } from "../state/results";

@@ -1,4 +1,5 @@
 /** The image tabs: one view or all of them, with what the tab's stage found drawn over. */
+import "./images.css";
 import type { ComponentChildren } from "preact";
 import { category } from "../../shared/palette";
 import { Legend } from "../parts/Legend";

@@ -1,5 +1,6 @@
 /** The picked thing in numbers, with units and the paper's symbols. */
 
+import "./inspector.css";
 import { select, selection } from "../state/viewState";
 import type { Related, Row } from "./rowLinks";
 import { rowsOf, titleOf } from "./selectionRows";

@@ -1,5 +1,6 @@
 /** The output files, as soon as their stage has run. */
 
+import "./project.css";
 import { download } from "../session/stageRuns";
 import { isBusy } from "../state/activity";
 import { inspection } from "../state/project";

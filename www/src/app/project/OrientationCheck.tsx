@@ -1,5 +1,6 @@
 /** The doctor's report: how well the images agree with their orientation, what else was tried, and the cure. */
 
+import "./project.css";
 import type { Agreement, DoctorReport } from "../../shared/results";
 import { grouped } from "../parts/numberText";
 import { setRunOptions } from "./projectActions";

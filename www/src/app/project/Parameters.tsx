@@ -1,4 +1,5 @@
 /** The parameters of every stage, from the core's own defaults; what differs from them is marked. */
+import "./project.css";
 import { useState } from "preact/hooks";
 import { TextField } from "../parts/TextField";
 import { resetParams, setParam } from "../session/stageRuns";

@@ -1,4 +1,5 @@
 /** The project: where files are dropped, and what each of them was recognised as. */
+import "./project.css";
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { ImageReport } from "../../shared/results";
 import { notify } from "../state/notices";

@@ -1,4 +1,5 @@
 /** The layout: project on the left, the stage views in the middle, what they mean and parameters on the right. */
+import "./shell.css";
 import { Comparison } from "../comparison/Comparison";
 import { AboutFigure } from "../figures/AboutFigure";
 import { Inspector } from "../inspector/Inspector";

@@ -1,5 +1,6 @@
 /** What went wrong or needs attention, in words, until it is dismissed. */
 
+import "./notices.css";
 import { Diagnosis } from "../project/OrientationCheck";
 import { dismiss, notices } from "../state/notices";
 

@@ -1,10 +1,7 @@
 /** Starts the page. */
-import "../../styles/base.css";
-import "../../styles/layout.css";
-import "../../styles/parts.css";
-import "../../styles/figures.css";
-import "../../styles/views.css";
-import "../../styles/tools.css";
+import "./base.css";
+import "../parts/parts.css";
+import "../parts/charts.css";
 import { render } from "preact";
 import { storeProject } from "../project/storedProject";
 import { askAboutSelection } from "../selection/selectionQueries";

@@ -1,4 +1,5 @@
 /** The 3D view: layers follow the results, the tab and the switches above it. */
+import "./space.css";
 import { computed, signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { THEME_COLOURS } from "../../shared/palette";

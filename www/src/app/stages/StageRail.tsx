@@ -1,5 +1,6 @@
 /** The stages in order: run, cancel, progress, time and counts. */
 
+import "./stages.css";
 import { KeepResult } from "../comparison/Comparison";
 import { grouped } from "../parts/numberText";
 import { stageWords } from "../session/stageCatalogue";

@@ -1,4 +1,5 @@
 /** The tabs, and below them either images with overlays or the 3D view, above the figure's own laboratory. */
+import "./stages.css";
 import type { ComponentType } from "preact";
 import { useRef } from "preact/hooks";
 import { ClusterLab } from "../figures/ClusterLab";

@@ -1,4 +1,5 @@
 /** The present step of the guided tour: what is seen, a question, and whether the answer was found. */
+import "./tour.css";
 import { signal, useSignalEffect } from "@preact/signals";
 import { isBusy } from "../state/activity";
 import { lessonStep } from "../state/tour";
