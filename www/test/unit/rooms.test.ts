@@ -1,0 +1,151 @@
+import { readdirSync, readFileSync } from "node:fs";
+import { dirname, join, relative } from "node:path";
+import { fileURLToPath } from "node:url";
+import { describe, expect, it } from "vitest";
+
+const SOURCES = fileURLToPath(new URL("../../src", import.meta.url));
+
+/** The rooms, each with those that it may import from besides itself: one that stands above it in this table never. */
+const ROOMS: Readonly<Record<string, readonly string[]>> = {
+  shared: [],
+  worker: ["shared"],
+  core: ["shared"],
+  "viewer/scene": ["shared"],
+  "viewer/layers": ["shared", "viewer/scene"],
+  "viewer/tools": ["shared", "viewer/scene"],
+  viewer: ["shared", "viewer/scene", "viewer/layers", "viewer/tools"],
+  ...floors(
+    ["shared", "core", "viewer/scene", "viewer/layers", "viewer/tools", "viewer"],
+    [
+      "app/state",
+      "app/parts",
+      "app/settings",
+      "app/session",
+      "app/project",
+      "app/selection",
+      "app/inspector",
+      "app/comparison",
+      "app/images",
+      "app/space",
+      "app/figures",
+      "app/tour",
+      "app/stages",
+      "app/shell",
+    ],
+  ),
+};
+
+/** So many files are found at a glance. */
+const MOST_FILES = 15;
+
+/** Each of `names` may import from `base` and from those before it. */
+function floors(base: readonly string[], names: readonly string[]): Record<string, readonly string[]> {
+  return Object.fromEntries(names.map((name, i) => [name, [...base, ...names.slice(0, i)]]));
+}
+
+/** What the build makes, and no room of the house. */
+const BUILT = "pkg";
+
+const files = readdirSync(SOURCES, { recursive: true, withFileTypes: true })
+  .filter((entry) => entry.isFile())
+  .map((entry) => relative(SOURCES, join(entry.parentPath, entry.name)))
+  .filter((path) => !path.startsWith(BUILT))
+  .sort();
+const modules = files.filter((path) => /\.tsx?$/.test(path));
+
+/** Every file with the files of this source tree that it imports. */
+const imports = new Map(modules.map((path) => [path, importsOf(path)]));
+
+function importsOf(path: string): string[] {
+  const text = readFileSync(join(SOURCES, path), "utf8");
+  return [...text.matchAll(/(?:^import|^export|^\}) ?[^;"]*"(\.[^"]+)"/gm)]
+    .map(([, named]) => join(dirname(path), named as string))
+    .flatMap((named) => {
+      const found = [named, `${named}.ts`, `${named}.tsx`].find((one) => files.includes(one));
+      return found === undefined ? [] : [found];
+    });
+}
+
+function roomOf(path: string): string {
+  return dirname(path);
+}
+
+/** Files that import each other, directly or over others: each circle by the way round it. */
+function circles(graph: ReadonlyMap<string, readonly string[]>): string[] {
+  const found: string[] = [];
+  const done = new Set<string>();
+  const visit = (path: string, way: readonly string[]) => {
+    const start = way.indexOf(path);
+    if (start >= 0) {
+      found.push([...way.slice(start), path].join(" > "));
+      return;
+    }
+    if (!done.has(path)) {
+      for (const next of graph.get(path) ?? []) {
+        visit(next, [...way, path]);
+      }
+      done.add(path);
+    }
+  };
+  for (const path of graph.keys()) {
+    visit(path, []);
+  }
+  return found;
+}
+
+describe("the rooms of the page", () => {
+  it("are all in the table, and none is crowded", () => {
+    const counts = new Map<string, number>();
+    for (const path of files) {
+      counts.set(roomOf(path), (counts.get(roomOf(path)) ?? 0) + 1);
+    }
+    expect([...counts.keys()].sort()).toEqual(Object.keys(ROOMS).sort());
+    expect([...counts].filter(([, count]) => count > MOST_FILES)).toEqual([]);
+  });
+
+  it("import only from those below them", () => {
+    const climbing = [...imports].flatMap(([path, named]) =>
+      named
+        .filter((one) => roomOf(one) !== roomOf(path) && !ROOMS[roomOf(path)]?.includes(roomOf(one)))
+        .map((one) => `${path} > ${one}`),
+    );
+    expect(climbing).toEqual([]);
+  });
+
+  it("have no circle of files", () => {
+    expect(circles(imports)).toEqual([]);
+    expect(
+      circles(
+        new Map([
+          ["a", ["b"]],
+          ["b", ["c"]],
+          ["c", ["b"]],
+        ]),
+      ),
+    ).toEqual(["b > c > b"]);
+  });
+
+  it("are read whole: the page's first file reaches almost all others", () => {
+    const reached = new Set<string>();
+    const walk = (path: string) => {
+      if (!reached.has(path)) {
+        reached.add(path);
+        imports.get(path)?.forEach(walk);
+      }
+    };
+    walk("app/shell/main.tsx");
+    const beyond = modules.filter((path) => !reached.has(path) && !path.startsWith("worker/"));
+    expect(beyond).toEqual([]);
+  });
+});
+
+describe("the page's state", () => {
+  it("can be written only by the module that holds it", () => {
+    const writable = modules.filter((path) =>
+      /^export (?:const|let) \w+(?:: Signal\b[^=]*)? = signal\b/m.test(
+        readFileSync(join(SOURCES, path), "utf8"),
+      ),
+    );
+    expect(writable).toEqual([]);
+  });
+});
