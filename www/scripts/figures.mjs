@@ -56,8 +56,8 @@ const B99 = [
   {
     name: "segments",
     figures: "3.2",
-    shows: "line segments of a view, and what was refused",
-    steps: [tab("Segments"), firstView, button("Refused lines")],
+    shows: "line segments of a view, and what was rejected",
+    steps: [tab("Segments"), firstView, button("Rejected lines")],
   },
   {
     name: "beam",
@@ -94,7 +94,7 @@ const B99 = [
   {
     name: "fans",
     figures: "15",
-    shows: "accepted half-planes as fans, refused sides as thin red lines",
+    shows: "accepted half-planes as fans, rejected sides as thin red lines",
     steps: [button("Clear")],
   },
   {

@@ -66,9 +66,9 @@ await withSite(PORT, async (browser) => {
   await page.locator('input[type="file"]').first().setInputFiles(filesOf(folder));
   await page.getByRole("button", { name: "Run all" }).click();
   const outcome = () => {
-    const refusal = document.querySelector('[role="alert"]')?.textContent;
+    const rejection = document.querySelector('[role="alert"]')?.textContent;
     const isDone = document.querySelector('[data-stage="model"]')?.dataset.status === "done";
-    return refusal ?? (isDone ? "done" : null);
+    return rejection ?? (isDone ? "done" : null);
   };
   const handle = await page.waitForFunction(outcome, undefined, { timeout: LONGEST_MS });
   const said = await handle.jsonValue();

@@ -13,17 +13,21 @@ import type {
   Request,
   Result,
 } from "../shared/messages";
-import type { DoctorReport } from "../shared/results";
+import type { OrientationCheckReport } from "../shared/results";
 
-/** A call that the worker refused, or that was cut short. */
+/** A call that the worker rejected, or that was cut short. */
 export class EngineError extends Error {
   readonly kind: FailureKind | "cancelled";
-  readonly doctor: DoctorReport | null;
+  readonly orientationCheck: OrientationCheckReport | null;
 
-  constructor(message: string, kind: FailureKind | "cancelled", doctor: DoctorReport | null = null) {
+  constructor(
+    message: string,
+    kind: FailureKind | "cancelled",
+    orientationCheck: OrientationCheckReport | null = null,
+  ) {
     super(message);
     this.kind = kind;
-    this.doctor = doctor;
+    this.orientationCheck = orientationCheck;
   }
 }
 
@@ -103,7 +107,7 @@ export class Engine {
       pending?.resolve(reply.result as never);
       return;
     }
-    const error = new EngineError(reply.message, reply.kind, reply.doctor);
+    const error = new EngineError(reply.message, reply.kind, reply.orientationCheck);
     pending?.reject(error);
     if (reply.kind === "crash") {
       this.close(error);

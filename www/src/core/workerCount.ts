@@ -9,7 +9,7 @@ export function automaticWorkers(cores: number, pixels: number): number {
 
 /** More are waiting for each other more than working. */
 const MOST_WORKERS = 8;
-/** What all helpers together may hold of the views. */
+/** What all workers together may hold of the views. */
 const MEMORY_BYTES = 2e9;
 /** Grey values, colours, and the maps of a stage at work: measured, 22 to 43 (docs/results.md). */
 const BYTES_PER_PIXEL = 45;

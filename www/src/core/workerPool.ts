@@ -1,14 +1,15 @@
 /**
- * The workers that help the engine with a stage: each has a wasm instance of its own and a copy of the views, does its
- * share of the stage's maps, and the engine then runs the stage with everybody's results. The core sees to it that
- * these are the bytes that the engine alone would find. Without helpers, or where one fails, it is alone.
+ * The worker pool: besides the engine's own worker, others that each have a wasm instance and a
+ * copy of the views. Every worker computes its shard of a stage's maps, and the engine then runs
+ * the stage with the merged shards. The core sees to it that these are the bytes that one worker
+ * would find. Without others, or where one fails, the engine runs by itself.
  */
 import type { Bytes } from "../shared/messages";
 import type { Params } from "../shared/results";
 import { Engine, EngineError } from "./engine";
 
 /** A worker, and what it holds of the run. */
-interface Helper {
+interface PooledWorker {
   worker: Engine;
   views: "none" | "grey" | "colour";
   /** For each stage, which of its results. */
@@ -25,10 +26,10 @@ interface Wanted {
   workers: number;
 }
 
-export class Crew {
-  #helpers: Helper[] = [];
-  #heard: number[] = [];
-  /** How often each stage was run: what a helper holds of an earlier run is out of date. */
+export class WorkerPool {
+  #pooled: PooledWorker[] = [];
+  #fractions: number[] = [];
+  /** How often each stage was run: what a worker holds of an earlier run is out of date. */
   readonly #runs = new Map<string, number>();
   readonly #engine: Engine;
   readonly #onProgress: (stage: string, fraction: number) => void;
@@ -38,14 +39,14 @@ export class Crew {
     this.#onProgress = onProgress;
   }
 
-  /** Does the shared maps of a stage; false where that failed and the engine is to run alone. */
-  async share(wanted: Wanted): Promise<boolean> {
+  /** Has all workers compute the sharded maps of a stage; false where that failed: the engine is to run by itself. */
+  async runShards(wanted: Wanted): Promise<boolean> {
     const { maps, withColours } = await this.#engine.call("sharedMaps", { stage: wanted.stage });
     if (wanted.workers < 2 || maps.length === 0) {
       return true;
     }
     try {
-      await this.#hire(wanted.workers - 1);
+      await this.#resize(wanted.workers - 1);
       await this.#giveViews(wanted.views, withColours);
       await this.#giveResults(wanted);
       await this.#doMaps(wanted.stage, maps);
@@ -72,56 +73,56 @@ export class Crew {
 
   /** There will be another scene. */
   forgetViews(): void {
-    for (const helper of this.#helpers) {
-      helper.views = "none";
+    for (const one of this.#pooled) {
+      one.views = "none";
     }
   }
 
-  /** Ends all helpers at once. */
+  /** Ends all workers but the engine's at once. */
   close(): void {
-    for (const { worker } of this.#helpers) {
+    for (const { worker } of this.#pooled) {
       worker.close();
     }
-    this.#helpers = [];
-    this.#heard = [];
+    this.#pooled = [];
+    this.#fractions = [];
   }
 
-  async #hire(count: number): Promise<void> {
-    for (const { worker } of this.#helpers.splice(count)) {
+  async #resize(count: number): Promise<void> {
+    for (const { worker } of this.#pooled.splice(count)) {
       worker.close();
     }
-    const hired: Promise<unknown>[] = [];
-    while (this.#helpers.length < count) {
-      const index = this.#helpers.length + 1;
+    const opening: Promise<unknown>[] = [];
+    while (this.#pooled.length < count) {
+      const index = this.#pooled.length + 1;
       const worker = new Engine((stage, fraction) => this.#reached(index, stage, fraction));
-      this.#helpers.push({ worker, views: "none", taken: new Map() });
-      hired.push(worker.open());
+      this.#pooled.push({ worker, views: "none", taken: new Map() });
+      opening.push(worker.open());
     }
-    await Promise.all(hired);
+    await Promise.all(opening);
   }
 
   /** View by view, so that only one of them is on its way at a time. */
   async #giveViews(count: number, withColours: boolean): Promise<void> {
     const wanted = withColours ? "colour" : "grey";
-    const lacking = this.#helpers.filter(({ views }) => views !== "colour" && views !== wanted);
+    const lacking = this.#pooled.filter(({ views }) => views !== "colour" && views !== wanted);
     for (let view = 0; view < count && lacking.length > 0; view += 1) {
       const packed = await this.#engine.call("packView", { view, withColours });
       await giveAll(workersOf(lacking), [packed], (worker, transfer) =>
         worker.call("takeView", { view, of: count, packed }, transfer),
       );
     }
-    for (const helper of lacking) {
-      helper.views = wanted;
-      helper.taken.clear();
+    for (const one of lacking) {
+      one.views = wanted;
+      one.taken.clear();
     }
   }
 
   /** Parameters first: they drop the results that they change, which the engine then has run again. */
   async #giveResults({ earlier, params }: Wanted): Promise<void> {
-    await Promise.all(this.#helpers.map(({ worker }) => worker.call("setParams", { params })));
+    await Promise.all(this.#pooled.map(({ worker }) => worker.call("setParams", { params })));
     for (const stage of earlier) {
       const run = this.#runs.get(stage) ?? 0;
-      const lacking = this.#helpers.filter(({ taken }) => taken.get(stage) !== run);
+      const lacking = this.#pooled.filter(({ taken }) => taken.get(stage) !== run);
       const found = lacking.length > 0 ? await this.#engine.call("handOver", { stage }) : new Uint8Array();
       if (found.length > 0) {
         await giveAll(workersOf(lacking), [found], (worker, transfer) =>
@@ -135,28 +136,30 @@ export class Crew {
   }
 
   async #doMaps(stage: string, maps: readonly string[]): Promise<void> {
-    const workers = [this.#engine, ...workersOf(this.#helpers)];
-    this.#heard = workers.map(() => 0);
+    const workers = [this.#engine, ...workersOf(this.#pooled)];
+    this.#fractions = workers.map(() => 0);
     const of = workers.length;
     for (const [step, map] of maps.entries()) {
-      const shares: Bytes[] = await Promise.all(
-        workers.map((worker, index) => worker.call("share", { stage, map, index, of })),
+      const shards: Bytes[] = await Promise.all(
+        workers.map((worker, index) => worker.call("computeShard", { stage, map, index, of })),
       );
       // After the last map only the engine goes on.
-      const learners = step + 1 < maps.length ? workers : [this.#engine];
-      await giveAll(learners, shares, (worker, transfer) => worker.call("learn", { map, shares }, transfer));
+      const merging = step + 1 < maps.length ? workers : [this.#engine];
+      await giveAll(merging, shards, (worker, transfer) =>
+        worker.call("mergeShards", { map, shards }, transfer),
+      );
     }
-    this.#heard = [];
+    this.#fractions = [];
   }
 
   /** Workers begin a stage anew for each of its maps: what counts is how far they came. */
   #reached(index: number, stage: string, fraction: number): void {
-    if (this.#heard.length === 0) {
+    if (this.#fractions.length === 0) {
       this.#onProgress(stage, fraction);
       return;
     }
-    this.#heard[index] = Math.max(this.#heard[index] ?? 0, fraction);
-    this.#onProgress(stage, this.#heard.reduce((sum, heard) => sum + heard, 0) / this.#heard.length);
+    this.#fractions[index] = Math.max(this.#fractions[index] ?? 0, fraction);
+    this.#onProgress(stage, this.#fractions.reduce((sum, one) => sum + one, 0) / this.#fractions.length);
   }
 }
 
@@ -170,6 +173,6 @@ async function giveAll(
   await Promise.all(workers.map((worker, i) => give(worker, i + 1 < workers.length ? [] : buffers)));
 }
 
-function workersOf(helpers: readonly Helper[]): Engine[] {
-  return helpers.map(({ worker }) => worker);
+function workersOf(pooled: readonly PooledWorker[]): Engine[] {
+  return pooled.map(({ worker }) => worker);
 }

@@ -1,11 +1,11 @@
 /** What page and worker say to each other: one union each way, discriminated by `type`. */
 import type {
-  DoctorReport,
   Facet,
   HalfPlane,
   Inspection,
   LoadOptions,
   OpenedProject,
+  OrientationCheckReport,
   Params,
   Region,
   SceneInfo,
@@ -23,7 +23,7 @@ export interface InputFile {
 export type Bytes = Uint8Array<ArrayBuffer>;
 
 /** Which items of a map in a stage a worker does: every `of`-th, from `index`. */
-export interface Share {
+export interface Shard {
   stage: string;
   map: string;
   index: number;
@@ -50,8 +50,8 @@ export interface Calls {
   takeView: { args: { view: number; of: number; packed: Bytes }; result: null };
   handOver: { args: { stage: string }; result: Bytes };
   takeOver: { args: { stage: string; found: Bytes }; result: null };
-  share: { args: Share; result: Bytes };
-  learn: { args: { map: string; shares: Bytes[] }; result: null };
+  computeShard: { args: Shard; result: Bytes };
+  mergeShards: { args: { map: string; shards: Bytes[] }; result: null };
   exportNames: { args: object; result: string[] };
   exportFile: { args: { name: string }; result: Bytes };
   planTiles: { args: { options: LoadOptions; tileM: number }; result: Region[] };
@@ -124,7 +124,7 @@ export interface Failure {
   message: string;
   kind: FailureKind;
   /** What the images say, where they speak against the orientation. */
-  doctor: DoctorReport | null;
+  orientationCheck: OrientationCheckReport | null;
 }
 
 /** Worker to page. */

@@ -45,7 +45,7 @@ export interface Inspection {
   /** Memory that a run takes at its peak, about, megabytes; 0 where there are no views. */
   peak_mb: number;
   warnings: string[];
-  /** Why a run would refuse these files; empty when it would not. */
+  /** Why a run would reject these files; empty when it would not. */
   errors: string[];
   /** Only the places of the cameras speak against them: loading looks at the images, and says more. */
   is_implausible: boolean;
@@ -100,7 +100,7 @@ export interface Agreement {
 }
 
 /** What the images say of their orientation. */
-export interface DoctorReport {
+export interface OrientationCheckReport {
   finding: "sound" | "unknown" | "explained" | "offset" | "odd" | "unexplained";
   stated: Agreement;
   cured: Agreement | null;
@@ -116,7 +116,7 @@ export interface SceneInfo {
   views: ViewInfo[];
   origin: Vec3;
   warnings: string[];
-  doctor: DoctorReport | null;
+  doctor: OrientationCheckReport | null;
 }
 
 export interface StageSummary {

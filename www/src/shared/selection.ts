@@ -4,15 +4,15 @@ import type { SideName } from "./traces";
 export type Selection =
   | { kind: "segment"; view: number; index: number }
   /** A line of edgels that is no segment. */
-  | { kind: "refused"; view: number; index: number }
+  | { kind: "rejectedSegment"; view: number; index: number }
   | { kind: "line"; index: number }
   /** A side of a 3D line, whether it has a half-plane or not. */
   | { kind: "side"; line: number; side: SideName }
   | { kind: "halfplane"; index: number }
   | { kind: "group"; index: number }
   | { kind: "facet"; index: number }
-  /** A facet that was withdrawn. */
-  | { kind: "withdrawn"; index: number }
+  /** A facet that was rejected. */
+  | { kind: "rejectedFacet"; index: number }
   /** What refinement made of a building; one of the relations tested there. */
   | { kind: "refinement"; index: number }
   | { kind: "relation"; building: number; index: number }
@@ -21,5 +21,5 @@ export type Selection =
   /** W96: a region of a view; a pair of parallel lines. */
   | { kind: "region"; view: number; index: number }
   | { kind: "pair"; index: number }
-  /** A refused cluster of a cluster plane; the selected ones are 3D lines. */
+  /** A rejected cluster of a cluster plane; the selected ones are 3D lines. */
   | { kind: "cluster"; plane: number; index: number };

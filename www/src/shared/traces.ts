@@ -84,12 +84,12 @@ export type Covariance = readonly [number, number, number, number, number, numbe
 /** How a 3D line was found: from segments, or with the model (B99 4.2, 4.3). */
 export type LineOrigin = "matched" | "clustered" | "intersection" | "border";
 
-/** Why the finished model leaves a line out. */
-export type Refutation = "hidden" | "underground" | "afloat" | "too_few_views" | "repeated";
+/** Why the finished model contradicts a line, and leaves it out. */
+export type Contradiction = "hidden" | "underground" | "afloat" | "too_few_views" | "repeated";
 
 export interface LineRecord {
   origin: LineOrigin;
-  refuted: Refutation | null;
+  refuted: Contradiction | null;
   /** The larger semi-axis of both ends' ellipses across the line, one standard deviation. */
   sigma_m: number;
   /** Of the start and of the end point. */
@@ -104,7 +104,7 @@ export interface SideRecord {
 }
 
 /** Was the side swept, and given up? Lines on the ground are not swept. */
-export function isRefused({ rejection }: SideRecord): boolean {
+export function isRejected({ rejection }: SideRecord): boolean {
   return rejection !== null && rejection !== "on_ground";
 }
 

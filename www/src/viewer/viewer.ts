@@ -19,7 +19,7 @@ import type { ThemeColours } from "../shared/palette";
 import type { ViewInfo } from "../shared/results";
 import type { Selection } from "../shared/selection";
 import { buildGrid } from "./layers/grid";
-import { finished } from "./scene/gpuFence";
+import { gpuFinished } from "./scene/gpuFence";
 import type { Layer } from "./scene/layer";
 import { CUT, MEASURED, OF_BOTH_HALVES, PICK_ORDER } from "./scene/layerRoles";
 import { clipFromViewer } from "./scene/photoProjection";
@@ -125,7 +125,7 @@ export class Viewer {
   async #compile(name: string, layer: Layer, old: Layer | undefined): Promise<void> {
     this.#compiling.add(layer);
     await this.#renderer.compileAsync(layer.object, this.#camera, this.#scene);
-    await finished(this.#renderer.getContext() as WebGL2RenderingContext);
+    await gpuFinished(this.#renderer.getContext() as WebGL2RenderingContext);
     this.#learnPrograms();
     this.#compiling.delete(layer);
     old?.dispose();
@@ -341,7 +341,7 @@ export class Viewer {
   async #resize(): Promise<void> {
     // Setting any size waits for what the graphics card has to do.
     if (this.#wantsSize()) {
-      await finished(this.#renderer.getContext() as WebGL2RenderingContext);
+      await gpuFinished(this.#renderer.getContext() as WebGL2RenderingContext);
     }
     if (this.#wantsSize()) {
       this.#takeSize();

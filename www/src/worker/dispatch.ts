@@ -9,7 +9,7 @@ import {
   type QueryName,
   type Request,
   type Result,
-  type Share,
+  type Shard,
 } from "../shared/messages";
 import type {
   Facet,
@@ -50,7 +50,7 @@ export interface CoreSession extends Answers {
   handOver(stage: string): Bytes;
   takeOver(stage: string, found: Bytes): void;
   share(stage: string, map: string, index: number, of: number, onProgress: (fraction: number) => void): Bytes;
-  learn(map: string, shares: Bytes[]): void;
+  learn(map: string, shards: Bytes[]): void;
   exportFile(name: string): Bytes;
   exportNames(): string[];
   planTiles(options: LoadOptions, tileM: number): Region[];
@@ -110,10 +110,10 @@ export async function dispatch(
     case "takeOver":
       session.takeOver(request.args.stage, request.args.found);
       return copied(null);
-    case "share":
-      return moved(shareOf(session, request.args, onProgress));
-    case "learn":
-      session.learn(request.args.map, request.args.shares);
+    case "computeShard":
+      return moved(shardOf(session, request.args, onProgress));
+    case "mergeShards":
+      session.learn(request.args.map, request.args.shards);
       return copied(null);
     case "segments":
       return moved(session.segments(request.args.view));
@@ -166,7 +166,7 @@ function sharedMaps(session: CoreSession, stage: string): Result<"sharedMaps"> {
   return { maps: session.sharedMaps(stage), withColours: session.sharesColours(stage) };
 }
 
-function shareOf(session: CoreSession, { stage, map, index, of }: Share, onProgress: OnProgress): Bytes {
+function shardOf(session: CoreSession, { stage, map, index, of }: Shard, onProgress: OnProgress): Bytes {
   return session.share(stage, map, index, of, throttled(stage, onProgress));
 }
 
@@ -176,8 +176,8 @@ function runTile(
   { stage, index, of }: Args<"runTile">,
   onProgress: OnProgress,
 ): TileReport | null {
-  const heard = throttled(stage, onProgress);
-  return session.runTile((fraction) => heard((index + fraction) / of)) ?? null;
+  const onTileProgress = throttled(stage, onProgress);
+  return session.runTile((fraction) => onTileProgress((index + fraction) / of)) ?? null;
 }
 
 /** Passes a stage's progress on, but not more often than the page can draw it. */

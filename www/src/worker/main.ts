@@ -2,7 +2,7 @@
 /// <reference lib="webworker" />
 import init, { Session } from "../pkg/ridgeline.js";
 import type { Failure, Reply, Request } from "../shared/messages";
-import type { DoctorReport, Params } from "../shared/results";
+import type { OrientationCheckReport, Params } from "../shared/results";
 import { type Answer, type Core, type CoreSession, dispatch } from "./dispatch";
 
 declare const self: DedicatedWorkerGlobalScope;
@@ -42,13 +42,17 @@ async function perform(request: Request): Promise<Answer> {
 function failureOf(error: unknown): Failure {
   if (error instanceof WebAssembly.RuntimeError) {
     const message = `The reconstruction core stopped (${error.message}).`;
-    return { message, kind: "crash", doctor: null };
+    return { message, kind: "crash", orientationCheck: null };
   }
   if (error instanceof Error) {
-    const { doctor = null } = error as Error & { doctor?: DoctorReport };
-    return { message: error.message, kind: error.name === "InputError" ? "input" : "internal", doctor };
+    const { doctor: orientationCheck = null } = error as Error & { doctor?: OrientationCheckReport };
+    return {
+      message: error.message,
+      kind: error.name === "InputError" ? "input" : "internal",
+      orientationCheck,
+    };
   }
-  return { message: String(error), kind: "internal", doctor: null };
+  return { message: String(error), kind: "internal", orientationCheck: null };
 }
 
 function post(reply: Reply, transfer: Transferable[] = []): void {

@@ -169,25 +169,27 @@ test("figures 16 to 23: groups, border lines and facets", async () => {
   await expect(inspector().locator(".picked")).toHaveText(/^3D line \d+$/);
 });
 
-test("what was refused is picked, too: it says why, and shows in every view and in space", async () => {
+test("what was rejected is picked, too: it says why, and shows in every view and in space", async () => {
   const title = inspector().locator(".picked");
   await openTab(page, "Segments");
-  await page.getByRole("button", { name: "Refused lines" }).click();
+  await page.getByRole("button", { name: "Rejected lines" }).click();
   await page.getByRole("group", { name: "View" }).getByRole("button", { name: /_01/ }).first().click();
   await pickUntil(page.locator(".image-view canvas").first(), async () =>
-    /^Refused line/.test((await title.allTextContents())[0] ?? ""),
+    /^Rejected line/.test((await title.allTextContents())[0] ?? ""),
   );
-  await expect(inspector().locator("div", { hasText: /^Refused/ })).toContainText(/curve|texture|bar beside/);
+  await expect(inspector().locator("div", { hasText: /^Rejected/ })).toContainText(
+    /curve|texture|bar beside/,
+  );
 
   await openTab(page, "Facets");
   await clear();
-  const withdrawn = page.getByTestId("plan").locator(".plan-rejected");
-  await expect(page.locator(".plan .legend")).toContainText(`withdrawn ${await withdrawn.count()}`);
+  const rejectedFacets = page.getByTestId("plan").locator(".plan-rejected");
+  await expect(page.locator(".plan .legend")).toContainText(`rejected ${await rejectedFacets.count()}`);
   const plain = await steadyLook(page, page.getByTestId("viewer"));
-  await withdrawn.first().press("Enter");
-  await expect(title).toHaveText("Withdrawn facet 0");
+  await rejectedFacets.first().press("Enter");
+  await expect(title).toHaveText("Rejected facet 0");
   // In words and with the number that decided, whichever reason comes first; a reason without words has neither.
-  await expect(inspector().locator("div", { hasText: /^Withdrawn/ })).toContainText(/[a-z] [a-z]+ .*\d/);
+  await expect(inspector().locator("div", { hasText: /^Rejected/ })).toContainText(/[a-z] [a-z]+ .*\d/);
   expect(await page.getByTestId("filmstrip").locator("canvas").count()).toBeGreaterThanOrEqual(3);
   expect((await steadyLook(page, page.getByTestId("viewer"))).vivid).not.toEqual(plain.vivid);
 });
@@ -200,10 +202,10 @@ test("everything is reached by key, and lights up in tabs that are not about it"
   const seen = new Set<string>();
   for (let i = 0; i < 30 && seen.size < 2; i += 1) {
     await next.press("Enter");
-    seen.add(/^Half-plane/.test((await title.textContent()) ?? "") ? "accepted" : "refused");
+    seen.add(/^Half-plane/.test((await title.textContent()) ?? "") ? "accepted" : "rejected");
   }
   // The sides of all lines, those without a half-plane among them.
-  expect([...seen].sort()).toEqual(["accepted", "refused"]);
+  expect([...seen].sort()).toEqual(["accepted", "rejected"]);
   await page.getByRole("button", { name: "Previous item" }).press("Enter");
   await openTab(page, "Model");
   const viewer = page.getByTestId("viewer");
@@ -213,7 +215,7 @@ test("everything is reached by key, and lights up in tabs that are not about it"
   expect(await steadyLook(page, viewer)).not.toEqual(marked);
 });
 
-test("refinement: outlines before, relations by their chi-square, adopted and refused", async () => {
+test("refinement: outlines before, relations by their chi-square, adopted and rejected", async () => {
   await openTab(page, "Refinement");
   const lab = page.getByTestId("refinement-lab");
   await expect(lab.locator("option").first()).toHaveText(/\d\.\d\d → \d\.\d\d px|not refined/);
@@ -226,7 +228,7 @@ test("refinement: outlines before, relations by their chi-square, adopted and re
   await expect(dots.nth(3)).toBeVisible();
   for (const dot of await dots.all()) {
     const [, chi2, verdict] =
-      /χ² ([\d.]+), (adopted|refused)$/.exec((await dot.getAttribute("aria-label")) ?? "") ?? [];
+      /χ² ([\d.]+), (adopted|rejected)$/.exec((await dot.getAttribute("aria-label")) ?? "") ?? [];
     expect(Number(chi2) <= limit + 0.05).toBe(verdict === "adopted");
   }
   const viewer = page.getByTestId("viewer");

@@ -174,7 +174,7 @@ const BAD_INPUTS: { what: string; files: () => Upload[]; says: RegExp }[] = [
 ];
 
 for (const { what, files, says } of BAD_INPUTS) {
-  test(`${what} is refused in words, and the page lives on`, async ({ page }) => {
+  test(`${what} is rejected in words, and the page lives on`, async ({ page }) => {
     const { problems } = watch(page);
     await page.goto("/");
     await give(page, files());

@@ -59,7 +59,7 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
     await openTab(page, "Clusters");
     await page.getByRole("group", { name: "View" }).getByRole("button", { name: "All" }).click();
     const before = await lookOf(page, image);
-    // Also where a refused cluster lies within the ring.
+    // Also where a rejected cluster lies within the ring.
     for (const ring of await page.getByTestId("cluster-plane").locator(".cluster").all()) {
       await ring.click({ force: true });
       await expect(inspector.locator(".picked")).toHaveText(/^3D line \d+$/);
@@ -68,19 +68,19 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
     await expect(async () => {
       expect(await lookOf(page, image)).not.toEqual(before);
     }).toPass({ timeout: 10_000 });
-    // A refused one, off the rings, says what it would have gained.
+    // A rejected one, off the rings, says what it would have gained.
     const picked = inspector.locator(".picked");
     const plane = page.getByTestId("cluster-plane");
     await plane
-      .locator(".refused-cluster")
+      .locator(".rejected-cluster")
       .nth(await plane.evaluate(loneliest))
       .click({ force: true });
-    await expect(picked).toHaveText(/^Refused cluster \d+ of plane 0$/);
+    await expect(picked).toHaveText(/^Rejected cluster \d+ of plane 0$/);
     await expect(inspector.locator("div", { hasText: /^Gain/ })).toContainText(/-?[\d.]+ bit/);
     await page.getByRole("button", { name: "Clear" }).click();
   });
 
-  await test.step("figures 10 to 12: the window of a pair of lines, and why pairs are refused", async () => {
+  await test.step("figures 10 to 12: the window of a pair of lines, and why pairs are rejected", async () => {
     await openTab(page, "Rectangles");
     await expect(page.getByTestId("plane-window").locator(".end").first()).toBeAttached();
     // The best pair's window in the views, before anything is picked.
@@ -88,9 +88,9 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
     const pairs = page.getByLabel("Pair of lines");
     const options = await pairs.getByRole("option").allTextContents();
     expect(options.some((text) => text.endsWith("selected"))).toBe(true);
-    const refused = options.findIndex((text) => text.includes("near") || text.includes("steep"));
-    await pairs.selectOption({ index: refused });
-    await expect(inspector.getByText("Refused")).toBeVisible();
+    const rejected = options.findIndex((text) => text.includes("near") || text.includes("steep"));
+    await pairs.selectOption({ index: rejected });
+    await expect(inspector.getByText("Rejected")).toBeVisible();
   });
 
   await test.step("its parameters stand in the place of the other method's", async () => {
@@ -140,7 +140,7 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
   expect(problems).toEqual([]);
 });
 
-/** In the page: the refused cluster that is farthest from all selected ones. */
+/** In the page: the rejected cluster that is farthest from all selected ones. */
 function loneliest(chart: Element): number {
   const placesOf = (what: string) =>
     [...chart.querySelectorAll<SVGCircleElement>(what)].map(({ cx, cy }) => [
@@ -148,7 +148,7 @@ function loneliest(chart: Element): number {
       cy.baseVal.value,
     ]) as [number, number][];
   const rings = placesOf(".cluster");
-  const distances = placesOf(".refused-cluster").map(([x, y]) =>
+  const distances = placesOf(".rejected-cluster").map(([x, y]) =>
     Math.min(...rings.map(([u, v]) => Math.hypot(x - u, y - v))),
   );
   return distances.indexOf(Math.max(...distances));

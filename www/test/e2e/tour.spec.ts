@@ -104,7 +104,7 @@ test("5: theta is turned until it is right", async () => {
   await expect(answer()).toBeVisible();
 });
 
-test("6: a refused side, with the reason", async () => {
+test("6: a rejected side, with the reason", async () => {
   await isAsked(6, "Half-planes");
   await pickIn(viewer());
   await expect(page.getByTestId("inspector")).toContainText(

@@ -22,8 +22,8 @@ describe("links", () => {
   it.each([
     { kind: "segment", view: 0, index: 44 },
     { kind: "region", view: 3, index: 1 },
-    { kind: "refused", view: 2, index: 9 },
-    { kind: "withdrawn", index: 4 },
+    { kind: "rejectedSegment", view: 2, index: 9 },
+    { kind: "rejectedFacet", index: 4 },
     { kind: "cluster", plane: 1, index: 12 },
     { kind: "line", index: 7 },
     { kind: "facet", index: 0 },

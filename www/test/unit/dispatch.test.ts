@@ -34,16 +34,16 @@ describe("dispatch", () => {
   });
 
   it("reports progress up to the end", async () => {
-    const heard: number[] = [];
+    const fractions: number[] = [];
     await dispatch(core(), ask({ type: "run", args: { stage: "segments" } }), (_, fraction) =>
-      heard.push(fraction),
+      fractions.push(fraction),
     );
-    expect(heard.at(-1)).toBe(1);
-    expect(heard).toEqual([...heard].sort((a, b) => a - b));
+    expect(fractions.at(-1)).toBe(1);
+    expect(fractions).toEqual([...fractions].sort((a, b) => a - b));
   });
 
-  it("passes a refusal on with its name", async () => {
-    const refused = dispatch(core(), ask({ type: "load", args: { options: {} } }), silent);
-    await expect(refused).rejects.toMatchObject({ name: "InputError" });
+  it("passes a rejection on with its name", async () => {
+    const rejected = dispatch(core(), ask({ type: "load", args: { options: {} } }), silent);
+    await expect(rejected).rejects.toMatchObject({ name: "InputError" });
   });
 });

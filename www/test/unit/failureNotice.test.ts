@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { failureNotice, splitAdvice } from "../../src/app/session/failureNotice";
 import { withNotice } from "../../src/app/state/notices";
-import type { DoctorReport } from "../../src/shared/results";
+import type { OrientationCheckReport } from "../../src/shared/results";
 
 describe("splitAdvice", () => {
   it("separates what is wrong from what to do", () => {
@@ -23,8 +23,8 @@ describe("failureNotice", () => {
   });
 });
 
-describe("the doctor's finding", () => {
-  const report: DoctorReport = {
+describe("the orientation check", () => {
+  const report: OrientationCheckReport = {
     finding: "explained",
     stated: { points: 900, score: 0.04 },
     cured: { points: 910, score: 0.61 },
@@ -35,20 +35,25 @@ describe("the doctor's finding", () => {
 
   it("takes the place of the advice where the page can undo the mistake", () => {
     const notice = failureNotice("the images contradict; correct the file", "input", report);
-    expect(notice.doctor).toEqual(report);
+    expect(notice.orientationCheck).toEqual(report);
     expect(notice).not.toHaveProperty("advice");
   });
 
   it("stands beside the advice where it cannot", () => {
     const notice = failureNotice("upside down; export again", "input", { ...report, mistake: null });
     expect(notice.advice).toBe("Export again");
-    expect(failureNotice("fewer than three views; add some", "input")).not.toHaveProperty("doctor");
+    expect(failureNotice("fewer than three views; add some", "input")).not.toHaveProperty("orientationCheck");
   });
 });
 
 describe("withNotice", () => {
   it("shows once what is said again, and last", () => {
-    const notice = (id: number, text: string) => ({ id, severity: "error" as const, title: "Refused", text });
+    const notice = (id: number, text: string) => ({
+      id,
+      severity: "error" as const,
+      title: "Rejected",
+      text,
+    });
     const shown = withNotice([notice(1, "too low"), notice(2, "too dark")], notice(3, "too low"));
     expect(shown.map(({ id }) => id)).toEqual([2, 3]);
   });

@@ -35,7 +35,7 @@ it("draws lines that no view shows apart, dashed, and knows them when they are p
   expect(pick(unseen, 1)).toBeNull();
 });
 
-it("shows a line that the model refutes like what is refused", () => {
+it("shows a line that the model contradicts like what is rejected", () => {
   expect(colourOf(record("border", 3))).toBe(ORIGIN_COLOURS.border);
   expect(colourOf({ origin: "border", refuted: "hidden" })).toBe(PALETTE.rejected);
   expect(colourOf(undefined)).toBe(ORIGIN_COLOURS.matched);

@@ -99,11 +99,11 @@ describe("parseField", () => {
     expect(parseField(field("segments", "min_length_px"), "0,4")).toEqual({ value: 0.4 });
   });
 
-  it.each(["", "abc", "1e999", "NaN", "1 2"])("refuses %j as a number", (text) => {
+  it.each(["", "abc", "1e999", "NaN", "1 2"])("rejects %j as a number", (text) => {
     expect(parseField(field("segments", "min_length_px"), text)).toHaveProperty("error");
   });
 
-  it("takes JSON for lists and refuses what is none", () => {
+  it("takes JSON for lists and rejects what is none", () => {
     expect(parseField(field("sweep", "steps"), "[3]")).toEqual({ value: [3] });
     expect(parseField(field("sweep", "steps"), "[3")).toHaveProperty("error");
   });

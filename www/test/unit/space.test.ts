@@ -65,7 +65,7 @@ describe("measure", () => {
 });
 
 describe("buildFans", () => {
-  it("draws the sides that were swept and refused, not those on the ground", () => {
+  it("draws the sides that were swept and rejected, not those on the ground", () => {
     const lines = Float64Array.from([0, 0, 0, 9, 0, 0, 0, 0, 5, 9, 0, 5]);
     const layer = buildFans([], lines, [
       { line: 0, side: "left", rejection: "on_ground" },

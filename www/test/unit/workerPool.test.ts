@@ -1,10 +1,10 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import type { Engine } from "../../src/core/engine";
-import type { Crew as CrewType } from "../../src/core/workerPool";
+import type { WorkerPool } from "../../src/core/workerPool";
 
 /** Every call of every worker, in their order: worker, call, arguments, what moves along. */
 let calls: [number, string, Record<string, unknown>, readonly Transferable[]][] = [];
-/** The worker whose shares fail. */
+/** The worker whose shards fail. */
 let broken = -1;
 let why = "crash";
 let made = 0;
@@ -35,7 +35,7 @@ class FakeEngine {
     if (type === "sharedMaps") {
       return { maps: ["heights", "pairs"], withColours: false };
     }
-    if (type === "share") {
+    if (type === "computeShard") {
       if (this.number === broken) {
         throw new EngineError("stopped", why);
       }
@@ -59,16 +59,16 @@ vi.mock("../../src/core/engine", () => ({ Engine: FakeEngine, EngineError }));
 const fractions: number[] = [];
 const wanted = { stage: "matches", earlier: ["segments"], views: 2, params: {}, workers: 3 };
 
-async function crewOf(): Promise<CrewType> {
-  const { Crew } = await import("../../src/core/workerPool");
-  const engine = new FakeEngine((stage, fraction) => crew.engineReached(stage, fraction));
-  const crew = new Crew(engine as unknown as Engine, (_, fraction) => fractions.push(fraction));
-  return crew;
+async function poolOf(): Promise<WorkerPool> {
+  const { WorkerPool: Pool } = await import("../../src/core/workerPool");
+  const engine = new FakeEngine((stage, fraction) => pool.engineReached(stage, fraction));
+  const pool = new Pool(engine as unknown as Engine, (_, fraction) => fractions.push(fraction));
+  return pool;
 }
 
 const of = (type: string) => calls.filter(([, name]) => name === type);
 
-describe("crew", () => {
+describe("worker pool", () => {
   beforeEach(() => {
     calls = [];
     fractions.length = 0;
@@ -77,10 +77,12 @@ describe("crew", () => {
     made = 0;
   });
 
-  it("deals every map to all workers and collects the shares by their index", async () => {
-    const crew = await crewOf();
-    expect(await crew.share(wanted)).toBe(true);
-    expect(of("share").map(([worker, , { map, index, of: all }]) => [worker, map, index, all])).toEqual([
+  it("gives a shard of every map to all workers and merges the shards by their index", async () => {
+    const pool = await poolOf();
+    expect(await pool.runShards(wanted)).toBe(true);
+    expect(
+      of("computeShard").map(([worker, , { map, index, of: all }]) => [worker, map, index, all]),
+    ).toEqual([
       [0, "heights", 0, 3],
       [1, "heights", 1, 3],
       [2, "heights", 2, 3],
@@ -88,39 +90,39 @@ describe("crew", () => {
       [1, "pairs", 1, 3],
       [2, "pairs", 2, 3],
     ]);
-    const learnt = of("learn");
-    expect(learnt.map(([worker, , { map }]) => [worker, map])).toEqual([
+    const merged = of("mergeShards");
+    expect(merged.map(([worker, , { map }]) => [worker, map])).toEqual([
       [0, "heights"],
       [1, "heights"],
       [2, "heights"],
       [0, "pairs"],
     ]);
-    expect(learnt[0]?.[2]["shares"]).toEqual([1, 2, 3].map((n) => new Uint8Array([n])));
+    expect(merged[0]?.[2]["shards"]).toEqual([1, 2, 3].map((n) => new Uint8Array([n])));
     expect(fractions.at(2)).toBeCloseTo(0.5);
   });
 
   it("gives views once, and results only when they are new", async () => {
-    const crew = await crewOf();
-    crew.hasRun("segments");
-    await crew.share(wanted);
+    const pool = await poolOf();
+    pool.hasRun("segments");
+    await pool.runShards(wanted);
     expect(of("takeView").length).toBe(4);
     expect(of("takeOver").length).toBe(2);
-    await crew.share(wanted);
+    await pool.runShards(wanted);
     expect(of("takeView").length).toBe(4);
     expect(of("takeOver").length).toBe(2);
-    crew.hasRun("segments");
-    await crew.share(wanted);
+    pool.hasRun("segments");
+    await pool.runShards(wanted);
     expect(of("takeOver").length).toBe(4);
-    crew.forgetViews();
-    await crew.share(wanted);
+    pool.forgetViews();
+    await pool.runShards(wanted);
     expect(of("takeView").length).toBe(8);
     expect(of("takeOver").length).toBe(6);
   });
 
   it("copies for all workers but the last, which gets the bytes themselves", async () => {
-    const crew = await crewOf();
-    crew.hasRun("segments");
-    await crew.share(wanted);
+    const pool = await poolOf();
+    pool.hasRun("segments");
+    await pool.runShards(wanted);
     const moved = (type: string) => of(type).map(([worker, , , transfer]) => [worker, transfer.length]);
     const eachView = [
       [1, 0],
@@ -128,7 +130,7 @@ describe("crew", () => {
     ];
     expect(moved("takeView")).toEqual([...eachView, ...eachView]);
     expect(moved("takeOver")).toEqual(eachView);
-    expect(moved("learn")).toEqual([
+    expect(moved("mergeShards")).toEqual([
       [0, 0],
       [1, 0],
       [2, 3],
@@ -139,16 +141,16 @@ describe("crew", () => {
   it("ends with the run that is cancelled", async () => {
     broken = 1;
     why = "cancelled";
-    const crew = await crewOf();
-    await expect(crew.share(wanted)).rejects.toMatchObject({ kind: "cancelled" });
+    const pool = await poolOf();
+    await expect(pool.runShards(wanted)).rejects.toMatchObject({ kind: "cancelled" });
   });
 
-  it("leaves the engine alone where a helper fails, or none is wanted", async () => {
+  it("leaves the engine by itself where a worker fails, or none is wanted", async () => {
     broken = 2;
-    const crew = await crewOf();
-    expect(await crew.share(wanted)).toBe(false);
+    const pool = await poolOf();
+    expect(await pool.runShards(wanted)).toBe(false);
     calls = [];
-    expect(await crew.share({ ...wanted, workers: 1 })).toBe(true);
-    expect(of("share")).toEqual([]);
+    expect(await pool.runShards({ ...wanted, workers: 1 })).toBe(true);
+    expect(of("computeShard")).toEqual([]);
   });
 });

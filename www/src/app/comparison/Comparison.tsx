@@ -1,4 +1,4 @@
-/** Two results: one is kept, and its numbers stand beside the present ones. In space it stands beside them, too (`beside.ts`). */
+/** Two results: one is kept, and its numbers stand beside the present ones. In space it stands beside them, too (`keptBeside.ts`). */
 
 import "./comparison.css";
 import { keepResult, keptResult } from "../state/keptResult";

@@ -62,7 +62,7 @@ const FIGURES: Record<Tab, Figure> = {
   segments: {
     title: "Line segments",
     source: "B99 3.2",
-    text: "Edgels with sub-pixel positions are linked into chains, broken where the tangent turns, and fitted by orthogonal regression: the line l leaves the smallest distances to its edgels x. Red: lines that were refused, as part of a curve or as texture.",
+    text: "Edgels with sub-pixel positions are linked into chains, broken where the tangent turns, and fitted by orthogonal regression: the line l leaves the smallest distances to its edgels x. Red: lines that were rejected, as part of a curve or as texture.",
     equation: (
       <mrow>
         <msup>
@@ -74,7 +74,7 @@ const FIGURES: Record<Tab, Figure> = {
         <mn>0</mn>
       </mrow>
     ),
-    hint: "Pick a segment for its length and direction; before matching that is all we know. Refused lines say why.",
+    hint: "Pick a segment for its length and direction; before matching that is all we know. Rejected lines say why.",
   },
   matches: {
     title: "Matching over views",
@@ -241,7 +241,7 @@ const FIGURES: Record<Tab, Figure> = {
         </msub>
       </mrow>
     ),
-    hint: "Hue: where a facet faces; strength: how steep it is. Red outlines in the plan were withdrawn.",
+    hint: "Hue: where a facet faces; strength: how steep it is. Red outlines in the plan were rejected.",
   },
   refinement: {
     title: "Regularisation and refinement",
@@ -362,7 +362,7 @@ const FIGURES: Record<Tab, Figure> = {
         <mn>0</mn>
       </mrow>
     ),
-    hint: "Pick a ring: its 3D line is projected back into every view. Small red rings were refused.",
+    hint: "Pick a ring: its 3D line is projected back into every view. Small red rings were rejected.",
   },
   rectangles: {
     title: "Rectangular planes",

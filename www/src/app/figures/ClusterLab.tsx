@@ -56,7 +56,7 @@ function ClusterPlane({ frame, plane, trace }: { frame: Frame; plane: number; tr
           Math.hypot((u - across) / (x.max - x.min), (v - height) / (y.max - y.min));
         select(
           nearest(
-            [...linesOf(trace), ...refusedOf(plane, trace)],
+            [...linesOf(trace), ...rejectedOf(plane, trace)],
             ([one, at]) => distance(at) - (one.kind === "line" ? RING : 0),
           ),
         );
@@ -80,7 +80,7 @@ function ClusterPlane({ frame, plane, trace }: { frame: Frame; plane: number; tr
           />
         ))}
         {trace.refused.map(([at], i) => (
-          <circle key={i} class="refused-cluster" {...dot(at)} r={2.5} />
+          <circle key={i} class="rejected-cluster" {...dot(at)} r={2.5} />
         ))}
         {trace.selected.map(([at, gain], i) => (
           <circle key={i} class="cluster" {...dot(at)} r={5}>
@@ -149,7 +149,7 @@ function isAlong(line: number, { azimuth }: ClusterTrace): boolean {
 
 /** Share of the chart's sides within which a click finds something. */
 const REACH = 0.03;
-/** So much of it a selected cluster's ring takes up: inside, the ring is meant, and not what was refused for its sake. */
+/** So much of it a selected cluster's ring takes up: inside, the ring is meant, and not what was rejected for its sake. */
 const RING = 0.012;
 
 /** The 3D lines of this direction and where they lie in the plane. */
@@ -160,7 +160,7 @@ function linesOf(trace: ClusterTrace): Place[] {
     .map((index): Place => [{ kind: "line", index }, placeOf(index, trace)]);
 }
 
-function refusedOf(plane: number, trace: ClusterTrace): Place[] {
+function rejectedOf(plane: number, trace: ClusterTrace): Place[] {
   return trace.refused.map(([at], index): Place => [{ kind: "cluster", plane, index }, at]);
 }
 

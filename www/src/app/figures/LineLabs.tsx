@@ -158,7 +158,7 @@ export function GroupLab() {
   );
 }
 
-/** Figures 21 to 23: border lines by their kind, what they enclose, and what was withdrawn. */
+/** Figures 21 to 23: border lines by their kind, what they enclose, and what was rejected. */
 export function FacetLab() {
   const { grouping, facets } = results.value;
   if (grouping === null || facets === null) {
@@ -180,7 +180,7 @@ export function FacetLab() {
             ))}
             <li>
               <span class="swatch rejected" aria-hidden="true" />
-              withdrawn {grouping.rejected.length}
+              rejected {grouping.rejected.length}
             </li>
           </ul>
         </figcaption>
@@ -229,7 +229,7 @@ function Plan({
       class="chart plan-chart"
       viewBox={`0 0 ${frame.width} ${frame.height}`}
       role="group"
-      aria-label={`Plan: ${grouping.borders.length} border lines cut it into ${grouping.cells} cells; ${outlines.length} facets, ${grouping.rejected.length} withdrawn`}
+      aria-label={`Plan: ${grouping.borders.length} border lines cut it into ${grouping.cells} cells; ${outlines.length} facets, ${grouping.rejected.length} rejected`}
       data-testid="plan"
     >
       {outlines.map((ring, i) => (
@@ -244,8 +244,8 @@ function Plan({
       {grouping.rejected.map(({ outline, reason }, i) => (
         <PlanArea
           key={i}
-          picks={{ kind: "withdrawn", index: i }}
-          name={`Withdrawn: ${facetRejectionWords(reason)}`}
+          picks={{ kind: "rejectedFacet", index: i }}
+          name={`Rejected: ${facetRejectionWords(reason)}`}
           className="plan-rejected"
           d={`${pathOf(outline.map(at))}Z`}
         />
@@ -261,7 +261,7 @@ function Plan({
 
 /** An outline that can be picked, by key as well. */
 function PlanArea(of: {
-  picks: { kind: "facet" | "withdrawn"; index: number };
+  picks: { kind: "facet" | "rejectedFacet"; index: number };
   name: string;
   className: string;
   d: string;

@@ -144,9 +144,9 @@ function Dot(of: {
     <circle
       role="button"
       {...FOCUSABLE}
-      aria-label={`${RELATION_WORDS[kind]}, χ² ${chi2.toFixed(1)}, ${adopted ? "adopted" : "refused"}`}
+      aria-label={`${RELATION_WORDS[kind]}, χ² ${chi2.toFixed(1)}, ${adopted ? "adopted" : "rejected"}`}
       aria-pressed={of.isPicked}
-      class={`relation ${adopted ? "adopted" : "refused"} ${of.isPicked ? "picked-dot" : ""}`}
+      class={`relation ${adopted ? "adopted" : "rejected"} ${of.isPicked ? "picked-dot" : ""}`}
       cx={of.cx}
       cy={of.cy}
       r={of.isPicked ? 6 : 4}

@@ -56,7 +56,7 @@ export function SimLab() {
   );
 }
 
-/** Which side of which line, the other one at hand, and why it was refused. */
+/** Which side of which line, the other one at hand, and why it was rejected. */
 function SideHead({ side }: { side: SideTrace }) {
   const other = side.side === "left" ? "right" : "left";
   const isPicked = sideOf(selection.value)?.line === side.line;
@@ -69,7 +69,7 @@ function SideHead({ side }: { side: SideTrace }) {
           · P(plane) {side.curve.posterior.plane.toFixed(2)}
         </span>
         {side.rejection !== null && (
-          <span class="refused"> · {REJECTION_WORDS[side.rejection] ?? side.rejection}</span>
+          <span class="rejection"> · {REJECTION_WORDS[side.rejection] ?? side.rejection}</span>
         )}
       </h3>
       {isPicked && (

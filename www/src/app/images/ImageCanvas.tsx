@@ -136,7 +136,7 @@ function around(marks: readonly Mark[], image: Size, box: Size): Viewport | null
   return box.width === 0 ? null : fitPoints(points, box, MARGIN_PX, MAX_FOLLOW_SCALE);
 }
 
-/** The nearest line or segment, in the order that the overlay asks for; else what was refused, or the region below. */
+/** The nearest line or segment, in the order that the overlay asks for; else what was rejected, or the region below. */
 function pickAt(overlay: Overlay, view: number, at: Point, reach: number): Selection | null {
   const { segments, supports, rejected, regions, segmentsFirst } = overlay;
   const line = (): Selection | null => {
@@ -147,15 +147,15 @@ function pickAt(overlay: Overlay, view: number, at: Point, reach: number): Selec
     const index = segments === null ? -1 : nearestSegment(segments, SEGMENT_STRIDE, at, reach);
     return index < 0 ? null : { kind: "segment", view, index };
   };
-  const refused = (): Selection | null => {
+  const rejectedOne = (): Selection | null => {
     const index = rejected == null ? -1 : nearestSegment(rejected, REJECTED_STRIDE, at, reach);
-    return index < 0 ? null : { kind: "refused", view, index };
+    return index < 0 ? null : { kind: "rejectedSegment", view, index };
   };
   const region = (): Selection | null => {
     const index = regions?.findIndex(({ rings }) => holds(rings, at)) ?? -1;
     return index < 0 ? null : { kind: "region", view, index };
   };
-  return (segmentsFirst ? (segment() ?? line()) : (line() ?? segment())) ?? refused() ?? region();
+  return (segmentsFirst ? (segment() ?? line()) : (line() ?? segment())) ?? rejectedOne() ?? region();
 }
 
 /** Is the point inside the rings, holes left out? Counts the crossings of a ray to the right. */

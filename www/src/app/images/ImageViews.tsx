@@ -149,7 +149,7 @@ function RejectedSwitch() {
         showRejected(!withRejected.value);
       }}
     >
-      Refused lines
+      Rejected lines
     </button>
   );
 }

@@ -12,7 +12,7 @@ export interface Overlay {
   segments: Float32Array | null;
   /** x0, y0, x1, y1, kind, line per support. */
   supports: Float32Array | null;
-  /** x0, y0, x1, y1, reason per refused line of edgels. */
+  /** x0, y0, x1, y1, reason per rejected line of edgels. */
   rejected?: Float32Array | null;
   /** Regions: their rings, each with its colour. */
   regions?: readonly { rings: readonly (readonly Vec2[])[]; colour: string }[] | null;

@@ -53,7 +53,7 @@ export function marksOf(picked: Selection | null, view: number): Mark[] {
   switch (picked.kind) {
     case "segment":
       return segmentMarks(picked.view, picked.index, view, results.value, selectionDetail.value);
-    case "refused":
+    case "rejectedSegment":
       return picked.view === view
         ? [{ points: ends(results.value.rejected[view], picked.index, REJECTED_STRIDE), ...CHOSEN }]
         : [];

@@ -40,7 +40,7 @@ export function relationRows(building: number, index: number): Row[] {
     ["Says", RELATION_WORDS[found.kind]],
     ["Free solution off by", `${(100 * Math.abs(found.deviation_m)).toFixed(1)} cm`],
     ["χ²", `${found.chi2.toFixed(2)}${limit === null ? "" : ` (≤ ${limit})`}`],
-    ["Verdict", found.adopted ? "adopted: it now holds" : "refused: the images contradict it"],
+    ["Verdict", found.adopted ? "adopted: it now holds" : "rejected: the images contradict it"],
     ["Building", [linkToRefinement(building)]],
   ];
 }

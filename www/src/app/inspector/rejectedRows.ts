@@ -1,4 +1,4 @@
-/** What was refused, in numbers: lines of edgels (B99 3.2), facets (B99 4.3) and clusters (W96 3.5). */
+/** What was rejected, in numbers: lines of edgels (B99 3.2), facets (B99 4.3) and clusters (W96 3.5). */
 import { REJECTED_STRIDE, type Vec3 } from "../../shared/results";
 import { degreesOf } from "../parts/numberText";
 import { facetRejectionWords } from "../parts/reasonText";
@@ -12,7 +12,7 @@ const SEGMENT_REASONS = [
   "a bar beside an edge that is a segment already",
 ];
 
-export function refusedSegmentRows(view: number, index: number): Row[] {
+export function rejectedSegmentRows(view: number, index: number): Row[] {
   const at = index * REJECTED_STRIDE;
   const [x0, y0, x1, y1, reason] = results.value.rejected[view]?.subarray(at, at + REJECTED_STRIDE) ?? [];
   if (x0 === undefined || y0 === undefined || x1 === undefined || y1 === undefined) {
@@ -22,18 +22,18 @@ export function refusedSegmentRows(view: number, index: number): Row[] {
     ["Length", `${Math.hypot(x1 - x0, y1 - y0).toFixed(1)} px`],
     ["Start", `${x0.toFixed(2)}, ${y0.toFixed(2)} px`],
     ["End", `${x1.toFixed(2)}, ${y1.toFixed(2)} px`],
-    ["Refused", SEGMENT_REASONS[reason ?? -1] ?? "unknown"],
+    ["Rejected", SEGMENT_REASONS[reason ?? -1] ?? "unknown"],
   ];
 }
 
-export function withdrawnRows(index: number): Row[] {
+export function rejectedFacetRows(index: number): Row[] {
   const facet = results.value.grouping?.rejected[index];
   if (facet === undefined) {
     return [];
   }
   const [x, y, z] = areaVector(facet.outline);
   return [
-    ["Withdrawn", facetRejectionWords(facet.reason)],
+    ["Rejected", facetRejectionWords(facet.reason)],
     ...(facet.group === undefined ? [] : [["Group", String(facet.group)] as const]),
     ["Area", `${Math.hypot(x, y, z).toFixed(1)} m²`],
     ["Slope", `${degreesOf(Math.atan2(Math.hypot(x, y), Math.abs(z))).toFixed(1)}°`],
@@ -41,7 +41,7 @@ export function withdrawnRows(index: number): Row[] {
   ];
 }
 
-export function clusterRows(plane: number, index: number): Row[] {
+export function rejectedClusterRows(plane: number, index: number): Row[] {
   const trace = results.value.clusters?.[plane];
   const found = trace?.refused[index];
   if (trace === undefined || found === undefined) {
@@ -53,7 +53,7 @@ export function clusterRows(plane: number, index: number): Row[] {
     ["Height", `${height.toFixed(2)} m`],
     ["Along", `${degreesOf(trace.azimuth).toFixed(1)}° from X towards Y`],
     ["Gain G", `${gain.toFixed(1)} bit`],
-    ["Refused", gain > 0 ? "better clusters need its image lines" : "it does not shorten the description"],
+    ["Rejected", gain > 0 ? "better clusters need its image lines" : "it does not shorten the description"],
   ];
 }
 

@@ -5,10 +5,10 @@ import type { Selection } from "../../shared/selection";
 import { slopedArea } from "../parts/facetArea";
 import { grouped } from "../parts/numberText";
 import {
+  CONTRADICTION_WORDS,
   ORIGIN_WORDS,
   outcomeWords,
   PAIR_WORDS,
-  REFUTATION_WORDS,
   REJECTION_WORDS,
 } from "../parts/reasonText";
 import { lineOfSegment } from "../selection/selectionShapes";
@@ -17,7 +17,7 @@ import { results } from "../state/results";
 import { scene } from "../state/scene";
 import { selectionDetail } from "../state/selectionDetail";
 import { refinedRow, refinementRows, relationRows } from "./refinementRows";
-import { clusterRows, refusedSegmentRows, withdrawnRows } from "./rejectedRows";
+import { rejectedClusterRows, rejectedFacetRows, rejectedSegmentRows } from "./rejectedRows";
 import { linkToFacet, linkToGroup, linkToHalfPlane, linkToLine, type Related, type Row } from "./rowLinks";
 
 /** The indices of the items that pass. */
@@ -32,8 +32,8 @@ export function titleOf(picked: Selection): string {
   switch (picked.kind) {
     case "segment":
       return `Segment ${picked.index} of ${viewName(picked.view)}`;
-    case "refused":
-      return `Refused line ${picked.index} of ${viewName(picked.view)}`;
+    case "rejectedSegment":
+      return `Rejected line ${picked.index} of ${viewName(picked.view)}`;
     case "line":
       return `3D line ${picked.index}`;
     case "side":
@@ -48,10 +48,10 @@ export function titleOf(picked: Selection): string {
       return `Half-plane ${picked.index}`;
     case "facet":
       return `Facet ${picked.index}`;
-    case "withdrawn":
-      return `Withdrawn facet ${picked.index}`;
+    case "rejectedFacet":
+      return `Rejected facet ${picked.index}`;
     case "cluster":
-      return `Refused cluster ${picked.index} of plane ${picked.plane}`;
+      return `Rejected cluster ${picked.index} of plane ${picked.plane}`;
     case "refinement":
       return `Building ${picked.index}, refined`;
     case "relation":
@@ -67,8 +67,8 @@ export function rowsOf(picked: Selection): Row[] {
   switch (picked.kind) {
     case "segment":
       return segmentRows(picked.view, picked.index);
-    case "refused":
-      return refusedSegmentRows(picked.view, picked.index);
+    case "rejectedSegment":
+      return rejectedSegmentRows(picked.view, picked.index);
     case "line":
       return lineRows(picked.index);
     case "side":
@@ -83,10 +83,10 @@ export function rowsOf(picked: Selection): Row[] {
       return halfPlaneRows(picked.index);
     case "facet":
       return facetRows(picked.index);
-    case "withdrawn":
-      return withdrawnRows(picked.index);
+    case "rejectedFacet":
+      return rejectedFacetRows(picked.index);
     case "cluster":
-      return clusterRows(picked.plane, picked.index);
+      return rejectedClusterRows(picked.plane, picked.index);
     case "refinement":
       return refinementRows(picked.index);
     case "relation":
@@ -121,7 +121,7 @@ function historyOfSegment(view: number, index: number): Row[] {
     ...(story === null
       ? []
       : [
-          ["Fate", outcomeWords(story.outcome)] as const,
+          ["Outcome", outcomeWords(story.outcome)] as const,
           ["Candidates", String(story.candidates.length)] as const,
         ]),
     ...(results.value.lines === null ? [] : [["3D line", lines] as const]),
@@ -136,7 +136,7 @@ function sideRows(line: number, side: string): Row[] {
     ["Half-plane", own.map(linkToHalfPlane)],
     ...(record?.rejection == null
       ? []
-      : [["Refused", REJECTION_WORDS[record.rejection] ?? record.rejection] as const]),
+      : [["Rejected", REJECTION_WORDS[record.rejection] ?? record.rejection] as const]),
   ];
 }
 
@@ -205,7 +205,7 @@ function pairRows(index: number): Row[] {
     ["3D lines", pair.lines.map(linkToLine)],
     ["Lines that cross", String(pair.crossings.length)],
     ["Ends found", String(pair.ends.length)],
-    ...(pair.rejection === null ? [] : [["Refused", PAIR_WORDS[pair.rejection] ?? pair.rejection] as const]),
+    ...(pair.rejection === null ? [] : [["Rejected", PAIR_WORDS[pair.rejection] ?? pair.rejection] as const]),
     ...(candidate === undefined
       ? []
       : [
@@ -242,10 +242,10 @@ function lineRows(index: number): Row[] {
 function historyOfLine(index: number): Row[] {
   const { records, halfPlanes, sides, grouping, facets } = results.value;
   const record = records[index];
-  const refused = sides.filter(({ line, rejection }) => line === index && rejection !== null);
+  const rejected = sides.filter(({ line, rejection }) => line === index && rejection !== null);
   return [
     ...(record === undefined ? [] : [["Found", ORIGIN_WORDS[record.origin]] as const]),
-    ...(record?.refuted == null ? [] : [["Refuted", REFUTATION_WORDS[record.refuted]] as const]),
+    ...(record?.refuted == null ? [] : [["Contradicted", CONTRADICTION_WORDS[record.refuted]] as const]),
     ...(record === undefined ? [] : [["σ across", `${(100 * record.sigma_m).toFixed(1)} cm`] as const]),
     ...(record?.supports ?? []).map(
       ({ view, segments, kind, score }) =>
@@ -263,9 +263,9 @@ function historyOfLine(index: number): Row[] {
     ...(halfPlanes === null
       ? []
       : [["Half-planes", indicesOf(halfPlanes, ({ line }) => line === index).map(linkToHalfPlane)] as const]),
-    ...refused.map(
+    ...rejected.map(
       ({ side, rejection }) =>
-        [`Refused, ${side}`, REJECTION_WORDS[rejection ?? ""] ?? rejection ?? ""] as const,
+        [`Rejected, ${side}`, REJECTION_WORDS[rejection ?? ""] ?? rejection ?? ""] as const,
     ),
     ...(grouping === null
       ? []

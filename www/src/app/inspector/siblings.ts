@@ -15,7 +15,7 @@ export function siblingsOf(picked: Selection | null): readonly Selection[] {
       return itemsOfTab(tab.value);
     case "segment":
       return segmentsOf(picked.view);
-    case "refused":
+    case "rejectedSegment":
       return numbered((rejected[picked.view]?.length ?? 0) / REJECTED_STRIDE, (index) => ({
         ...picked,
         index,
@@ -30,8 +30,8 @@ export function siblingsOf(picked: Selection | null): readonly Selection[] {
     case "facet":
     case "surface":
       return itemsOfTab("facets");
-    case "withdrawn":
-      return numbered(grouping?.rejected.length, (index) => ({ kind: "withdrawn", index }));
+    case "rejectedFacet":
+      return numbered(grouping?.rejected.length, (index) => ({ kind: "rejectedFacet", index }));
     case "refinement":
       return itemsOfTab("refinement");
     case "relation":

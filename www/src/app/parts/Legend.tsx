@@ -15,12 +15,12 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
     ["grown", "from regions"],
     ["border-intersection", "intersection"],
     ["border-inplane", "border"],
-    ["rejected", "refuted"],
+    ["rejected", "contradicted"],
   ],
   halfplanes: [
     ["matched", "3D line"],
     ["half-plane", "half-plane"],
-    ["rejected", "refused side"],
+    ["rejected", "rejected side"],
   ],
   groups: [["bar", "line found in a plane"]],
   directions: [
@@ -40,13 +40,13 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
   refinement: [
     ["grown", "before"],
     ["bar", "adopted"],
-    ["rejected", "refused; gap"],
+    ["rejected", "rejected; gap"],
   ],
 };
 
 export function Legend() {
-  const refused = tab.value === "segments" && withRejected.value ? [["rejected", "refused"] as const] : [];
-  const entries = [...(ENTRIES[tab.value] ?? []), ...refused];
+  const rejected = tab.value === "segments" && withRejected.value ? [["rejected", "rejected"] as const] : [];
+  const entries = [...(ENTRIES[tab.value] ?? []), ...rejected];
   if (entries.length === 0) {
     return null;
   }

@@ -8,7 +8,7 @@ interface Props {
   placeholder?: string;
   inputMode?: "decimal" | "text";
   isInvalid: boolean;
-  /** Takes what was typed, or refuses it: then it stays to be mended. */
+  /** Takes what was typed, or rejects it: then it stays to be mended. */
   onTake: (text: string) => boolean;
 }
 

@@ -1,8 +1,8 @@
 /** The core's reasons in words. */
 import type {
   BuildingRefinement,
+  Contradiction,
   LineOrigin,
-  Refutation,
   SegmentOutcome,
   TestedRelation,
 } from "../../shared/traces";
@@ -40,13 +40,13 @@ export function outcomeWords(outcome: SegmentOutcome | null): string {
     case "matched":
       return `matched, in match ${outcome.line}`;
     case "no_candidate":
-      return "refused: no segment in any beam";
+      return "rejected: no segment in any beam";
     case "below_threshold":
-      return `refused: best score ${outcome.best.toFixed(2)} is below the threshold`;
+      return `rejected: best score ${outcome.best.toFixed(2)} is below the threshold`;
     case "not_verified":
-      return `refused: ${NOT_VERIFIED[outcome.reason] ?? outcome.reason}`;
+      return `rejected: ${NOT_VERIFIED[outcome.reason] ?? outcome.reason}`;
     case "left_out":
-      return `refused: match ${outcome.line}, which its pair became, fits better without it`;
+      return `rejected: match ${outcome.line}, which its pair became, fits better without it`;
     case "lost_to":
       return `lost its partners to match ${outcome.line}`;
   }
@@ -60,8 +60,8 @@ export const ORIGIN_WORDS: Record<LineOrigin, string> = {
   border: "new: a border, seen again in the views",
 };
 
-/** Why the model leaves a 3D line out of the files. */
-export const REFUTATION_WORDS: Record<Refutation, string> = {
+/** Why the model contradicts a 3D line, which the files then leave out. */
+export const CONTRADICTION_WORDS: Record<Contradiction, string> = {
   hidden: "roofs hide it from all but two of its views",
   underground: "it goes into the ground",
   afloat: "it lies on no surface, and too few views are certain of it",

@@ -1,17 +1,17 @@
-/** The doctor's report: how well the images agree with their orientation, what else was tried, and the cure. */
+/** The orientation check: how well the images agree with their orientation, what else was tried, and the remedy. */
 
 import "./project.css";
-import type { Agreement, DoctorReport } from "../../shared/results";
+import type { Agreement, OrientationCheckReport } from "../../shared/results";
 import { grouped } from "../parts/numberText";
 import { setRunOptions } from "./projectActions";
 
 /** Trials beyond these explain nothing. */
 const MOST_TRIALS = 10;
 
-export function Diagnosis({ report }: { report: DoctorReport }) {
+export function OrientationCheck({ report }: { report: OrientationCheckReport }) {
   const { stated, cured, offsets_px: offsets, mistake, trials } = report;
   return (
-    <div class="diagnosis" data-testid="diagnosis" data-finding={report.finding}>
+    <div class="orientation-check" data-testid="orientation-check" data-finding={report.finding}>
       <dl class="facts">
         <Score name="Agreement as stated" agreement={stated} />
         {cured !== null && <Score name="Without the mistake" agreement={cured} />}

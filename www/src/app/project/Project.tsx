@@ -6,7 +6,7 @@ import { notify } from "../state/notices";
 import { files, inspection, projectName, runOptions } from "../state/project";
 import { peakMb, scene } from "../state/scene";
 import { droppedFiles, pickedFiles } from "./inputFiles";
-import { Diagnosis } from "./OrientationCheck";
+import { OrientationCheck } from "./OrientationCheck";
 import { addFiles, clearProject, openDemo, removeFile, setRunOptions } from "./projectActions";
 import { OrientationChoice, PlaceFields } from "./RunOptionFields";
 import { storedBytes } from "./storedProject";
@@ -241,14 +241,14 @@ function Warnings() {
   );
 }
 
-/** The doctor's report on a scene that was not refused, where there is something to see. */
+/** The orientation check of a scene that was not rejected, where there is something to see. */
 function Doubts() {
   const report = scene.value?.doctor ?? null;
   const isCured = runOptions.value.applyFix;
   if (report === null || isCured || (report.mistake === null && report.trials.length === 0)) {
     return null;
   }
-  return <Diagnosis report={report} />;
+  return <OrientationCheck report={report} />;
 }
 
 /** "6 views", or "4 of 6 views" where some are left out. */

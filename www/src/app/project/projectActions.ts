@@ -39,7 +39,7 @@ import { clearScene } from "../state/scene";
 import { showView } from "../state/viewState";
 import type { StoredProject } from "./storedProject";
 
-/** So many refusals are shown at once: the first ones usually explain the others. */
+/** So many rejections are shown at once: the first ones usually explain the others. */
 const MAX_PROBLEMS = 4;
 
 /** Adds files (the same path replaces), inspects them, and loads the scene once it looks whole. */

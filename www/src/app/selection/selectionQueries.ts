@@ -2,18 +2,18 @@
 import { effect } from "@preact/signals";
 import type { SideName, SideTrace } from "../../shared/traces";
 import { ask } from "../session/session";
-import { results, shownKeeper } from "../state/results";
+import { results, shownResultSet } from "../state/results";
 import { beginDetail, changeDetail, NO_DETAIL, selectionDetail } from "../state/selectionDetail";
 import { runningStage } from "../state/stages";
 import { select, selection } from "../state/viewState";
 
 /** Follows the selection as long as the page is open. */
 export function askAboutSelection(): void {
-  let last = { keeper: shownKeeper.peek(), picked: selection.peek() };
+  let last = { set: shownResultSet.peek(), picked: selection.peek() };
   effect(() => {
-    const now = { keeper: shownKeeper.value, picked: selection.value };
+    const now = { set: shownResultSet.value, picked: selection.value };
     // The same number is another line there; a link names its own.
-    if (now.keeper !== last.keeper && now.picked === last.picked) {
+    if (now.set !== last.set && now.picked === last.picked) {
       select(null);
     }
     last = { ...now, picked: selection.peek() };
@@ -21,7 +21,7 @@ export function askAboutSelection(): void {
   effect(() => {
     void [results.value, runningStage.value];
     const picked = selection.value;
-    if (shownKeeper.value === "regions") {
+    if (shownResultSet.value === "regions") {
       // The figures of B99 are about its own segments and lines.
       beginDetail();
     } else if (picked?.kind === "segment") {

@@ -30,7 +30,7 @@ export function shapesOf(picked: Selection | null): Shape[] {
       return areas(facetRings(picked.index));
     case "surface":
       return picked.facet === null ? [] : areas(facetRings(picked.facet));
-    case "withdrawn":
+    case "rejectedFacet":
       return areas([results.value.grouping?.rejected[picked.index]?.outline ?? []]);
     case "cluster":
       return openLine(clusterEnds(picked.plane, picked.index));

@@ -1,6 +1,6 @@
 /** Failures in words. The core's messages end with what to do about them, after a semicolon. */
 import type { FailureKind } from "../../shared/messages";
-import type { DoctorReport } from "../../shared/results";
+import type { OrientationCheckReport } from "../../shared/results";
 import type { Notice } from "../state/notices";
 
 const TITLES: Record<FailureKind, string> = {
@@ -14,22 +14,22 @@ const ADVICE: Record<Exclude<FailureKind, "input">, string> = {
   crash: "It was restarted and your files are still here. Run again with fewer or smaller images.",
 };
 
-/** A failure as a notice: what it is, and what to do; with the doctor's report where the images speak against the orientation. */
+/** A failure as a notice: what it is, and what to do; with the orientation check where the images speak against the orientation. */
 export function failureNotice(
   message: string,
   kind: FailureKind,
-  doctor: DoctorReport | null = null,
+  orientationCheck: OrientationCheckReport | null = null,
 ): Omit<Notice, "id"> {
   const { text, advice } = splitAdvice(message);
   const known = kind === "input" ? advice : (advice ?? ADVICE[kind]);
   // Where the page itself can undo the mistake, that is the advice.
-  const isCurable = doctor !== null && doctor.mistake !== null;
+  const isCurable = orientationCheck !== null && orientationCheck.mistake !== null;
   return {
     severity: "error",
     title: TITLES[kind],
     text,
     ...(known !== undefined && !isCurable && { advice: known }),
-    ...(doctor !== null && { doctor }),
+    ...(orientationCheck !== null && { orientationCheck }),
   };
 }
 

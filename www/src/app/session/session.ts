@@ -1,7 +1,7 @@
 /** The worker and what keeps it fit: opening, loading, questions, and what is said when something fails. */
 
 import { Engine, EngineError } from "../../core/engine";
-import { Crew } from "../../core/workerPool";
+import { WorkerPool } from "../../core/workerPool";
 import type { Queries, QueryName } from "../../shared/messages";
 import type { SceneInfo } from "../../shared/results";
 import { linkedParams } from "../settings/addressLink";
@@ -18,8 +18,8 @@ import { failureNotice } from "./failureNotice";
 /** Whether the present worker holds the project's files, has the scene loaded, and was asked about them as they are wanted now. */
 const held = { files: false, scene: false, inspection: false };
 
-export const engine = new Engine((stage, fraction) => crew.engineReached(stage, fraction));
-export const crew = new Crew(engine, (name, fraction) => {
+export const engine = new Engine((stage, fraction) => workerPool.engineReached(stage, fraction));
+export const workerPool = new WorkerPool(engine, (name, fraction) => {
   const running = stages.value.find((stage) => stage.name === name && stage.status === "running");
   if (running !== undefined && fraction > running.fraction) {
     updateStage(name, { fraction });
@@ -63,11 +63,12 @@ export async function guarded<T>(what: string, task: () => Promise<T>): Promise<
 }
 
 async function report(error: unknown): Promise<void> {
-  const { kind, doctor } = error instanceof EngineError ? error : { kind: "internal" as const, doctor: null };
+  const { kind, orientationCheck } =
+    error instanceof EngineError ? error : { kind: "internal" as const, orientationCheck: null };
   if (kind === "cancelled") {
     return;
   }
-  notify(failureNotice(error instanceof Error ? error.message : String(error), kind, doctor));
+  notify(failureNotice(error instanceof Error ? error.message : String(error), kind, orientationCheck));
   if (kind === "crash") {
     forgetWorker();
     await start();
@@ -119,7 +120,7 @@ export async function ensureScene(): Promise<void> {
     setPeakMb((await engine.call("inspect", { options })).peak_mb);
     const loaded = await engine.call("load", { options });
     held.scene = true;
-    crew.forgetViews();
+    workerPool.forgetViews();
     setScene(loaded);
     if (images.value.length !== loaded.views.length) {
       setImages(await fetchImages(loaded));
@@ -145,7 +146,7 @@ export function stopWorker(): void {
 }
 
 export function forgetWorker(): void {
-  crew.close();
+  workerPool.close();
   outdateFiles();
 }
 

@@ -22,7 +22,16 @@ import {
 } from "../state/stages";
 import { select, showPlane, showTab } from "../state/viewState";
 import { chooseWorkers, workers } from "../state/workers";
-import { crew, engine, ensureScene, forgetWorker, guarded, listStages, start, stopWorker } from "./session";
+import {
+  engine,
+  ensureScene,
+  forgetWorker,
+  guarded,
+  listStages,
+  start,
+  stopWorker,
+  workerPool,
+} from "./session";
 import { firstStageOf, stageWords } from "./stageCatalogue";
 import { fetchResults } from "./stageResults";
 import { runTiles } from "./tiledRun";
@@ -107,9 +116,9 @@ async function runStage(name: string): Promise<void> {
   updateStage(name, { status: "running", fraction: 0, warnings: [] });
   announce(`${stageWords(name).title} running`);
   try {
-    await shareStage(name);
+    await runShards(name);
     const summary = await engine.call("run", { stage: name });
-    crew.hasRun(name);
+    workerPool.hasRun(name);
     const found = await fetchResults(name);
     const seconds = (performance.now() - started) / 1000;
     const names = await engine.call("exportNames", {});
@@ -128,17 +137,17 @@ async function runStage(name: string): Promise<void> {
   }
 }
 
-/** Has the helpers do their part of a stage. */
-async function shareStage(stage: string): Promise<void> {
+/** Has the worker pool compute its shards of a stage. */
+async function runShards(stage: string): Promise<void> {
   const names = stages.value.map(({ name }) => name);
-  const shared = await crew.share({
+  const isMerged = await workerPool.runShards({
     stage,
     earlier: names.slice(0, names.indexOf(stage)),
     views: scene.value?.views.length ?? 0,
     params: params.value,
     workers: workers.value,
   });
-  if (!shared) {
+  if (!isMerged) {
     chooseWorkers(1);
     notify({
       severity: "warning",

@@ -63,13 +63,16 @@ export function formatLink(link: Link): string {
   return fields.toString();
 }
 
-/** "line:12", "segment:0.44" (view first), "side:12.left". */
+/** "line:12", "segment:0.44" (view first), "side:12.left"; links that were given away keep their words. */
 export function formatSelection(picked: Selection): string | null {
   switch (picked.kind) {
     case "segment":
-    case "refused":
     case "region":
       return `${picked.kind}:${picked.view}.${picked.index}`;
+    case "rejectedSegment":
+      return `refused:${picked.view}.${picked.index}`;
+    case "rejectedFacet":
+      return `withdrawn:${picked.index}`;
     case "cluster":
       return `cluster:${picked.plane}.${picked.index}`;
     case "relation":
@@ -92,9 +95,12 @@ export function parseSelection(text: string | null): Selection | null {
   const index = Number(first);
   switch (kind) {
     case "segment":
-    case "refused":
     case "region":
       return /^\d+$/.test(second ?? "") ? { kind, view: index, index: Number(second) } : null;
+    case "refused":
+      return /^\d+$/.test(second ?? "")
+        ? { kind: "rejectedSegment", view: index, index: Number(second) }
+        : null;
     case "cluster":
       return /^\d+$/.test(second ?? "") ? { kind, plane: index, index: Number(second) } : null;
     case "relation":
@@ -106,10 +112,11 @@ export function parseSelection(text: string | null): Selection | null {
     case "group":
     case "refinement":
     case "facet":
-    case "withdrawn":
     case "view":
     case "pair":
       return { kind, index };
+    case "withdrawn":
+      return { kind: "rejectedFacet", index };
     default:
       return null;
   }

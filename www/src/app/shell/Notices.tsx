@@ -1,19 +1,19 @@
 /** What went wrong or needs attention, in words, until it is dismissed. */
 
 import "./notices.css";
-import { Diagnosis } from "../project/OrientationCheck";
+import { OrientationCheck } from "../project/OrientationCheck";
 import { dismiss, notices } from "../state/notices";
 
 export function Notices() {
   return (
     <div class="notices">
-      {notices.value.map(({ id, severity, title, text, advice, doctor, action }) => (
+      {notices.value.map(({ id, severity, title, text, advice, orientationCheck, action }) => (
         <section key={id} class={`notice ${severity}`} role={severity === "error" ? "alert" : "status"}>
           <div>
             <strong>{title}</strong>
             {text !== "" && <p>{text}</p>}
             {advice !== undefined && <p class="muted">{advice}</p>}
-            {doctor !== undefined && <Diagnosis report={doctor} />}
+            {orientationCheck !== undefined && <OrientationCheck report={orientationCheck} />}
             {action !== undefined && (
               <button type="button" onClick={action.run}>
                 {action.name}

@@ -8,7 +8,7 @@ import { askAboutSelection } from "../selection/selectionQueries";
 import { start } from "../session/session";
 import { followState } from "../settings/addressLink";
 import { App } from "./App";
-import { resume } from "./openingState";
+import { restoreOpeningState } from "./openingState";
 
 const root = document.getElementById("app");
 if (root !== null) {
@@ -19,7 +19,7 @@ if (root !== null) {
 async function open(): Promise<void> {
   await start();
   askAboutSelection();
-  await resume();
+  await restoreOpeningState();
   followState();
   storeProject();
 }

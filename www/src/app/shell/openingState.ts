@@ -15,7 +15,7 @@ import { stages } from "../state/stages";
 import { select, shownView, showTab, showView } from "../state/viewState";
 import { goTo } from "../tour/lessons";
 
-export async function resume(): Promise<void> {
+export async function restoreOpeningState(): Promise<void> {
   if (opened.scene === "demo") {
     await openDemo(opened.tab === null ? null : stageOfTab());
   } else {

@@ -5,7 +5,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { THEME_COLOURS } from "../../shared/palette";
 import type { Vec3 } from "../../shared/results";
 import { GRID_STEP_M } from "../../viewer/layers/grid";
-import { warmLayers } from "../../viewer/layers/shaderWarmup";
+import { warmupLayers } from "../../viewer/layers/shaderWarmup";
 import { enlargement } from "../../viewer/layers/uncertainty";
 import { boundsOf, boundsOfFacets, boundsOfLines, withCameras } from "../../viewer/scene/bounds";
 import { Viewer } from "../../viewer/viewer";
@@ -157,7 +157,7 @@ function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefine
     });
     const { clientWidth = 0, clientHeight = 0 } = canvas.closest(".stage-view") ?? {};
     made.prepareSize(clientWidth, Math.round(CANVAS_SHARE * clientHeight));
-    warmLayers().forEach((layer, i) => {
+    warmupLayers().forEach((layer, i) => {
       made.showLayer(`warm ${i}`, false);
       made.setLayer(`warm ${i}`, layer);
     });

@@ -6,7 +6,7 @@ import { buildCameras } from "../../viewer/layers/cameras";
 import { buildFacets } from "../../viewer/layers/facets";
 import { buildFans, buildTurning } from "../../viewer/layers/fans";
 import { buildGroups } from "../../viewer/layers/groups";
-import { buildPicked } from "../../viewer/layers/highlight";
+import { buildHighlight } from "../../viewer/layers/highlight";
 import { buildLines } from "../../viewer/layers/lines";
 import { buildOutlines } from "../../viewer/layers/outlines";
 import { buildRefinement } from "../../viewer/layers/refinement";
@@ -100,7 +100,7 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
     // A segment is in no place of space, but its line is.
     const lines = selection.value?.kind === "segment" ? linesOfSelection(selection.value).map(lineEnds) : [];
     const all = [...areas, ...lines.map((points) => ({ points, closed: false }))];
-    return all.length === 0 ? null : [() => buildPicked(all), selection.value, results.value];
+    return all.length === 0 ? null : [() => buildHighlight(all), selection.value, results.value];
   },
   turning: () => {
     const { side, theta } = selectionDetail.value;

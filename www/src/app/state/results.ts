@@ -51,13 +51,13 @@ export const NO_RESULTS: Results = {
 };
 
 /** Where a stage's results are kept: in method "combined" both methods have segments, lines and facets of their own. */
-type Keeper = "main" | "regions";
-const found = signal<Record<Keeper, Results>>({ main: NO_RESULTS, regions: NO_RESULTS });
+type ResultSet = "main" | "regions";
+const found = signal<Record<ResultSet, Results>>({ main: NO_RESULTS, regions: NO_RESULTS });
 
 /** Of which stages the present tab tells. */
-export const shownKeeper = computed<Keeper>(() => keeperOf(tab.value));
+export const shownResultSet = computed<ResultSet>(() => resultSetOf(tab.value));
 /** What the present tab tells of. */
-export const results = computed(() => found.value[shownKeeper.value]);
+export const results = computed(() => found.value[shownResultSet.value]);
 /** What the model is made of. */
 export const mainResults = computed(() => found.value.main);
 
@@ -67,8 +67,8 @@ export function setResults(all: Results): void {
 
 /** Adds what a stage has found that `shownBy` shows. */
 export function addResults(shownBy: Tab, some: Partial<Results>): void {
-  const keeper = keeperOf(shownBy);
-  found.value = { ...found.value, [keeper]: { ...found.value[keeper], ...some } };
+  const set = resultSetOf(shownBy);
+  found.value = { ...found.value, [set]: { ...found.value[set], ...some } };
 }
 
 const writtenFiles = signal<string[]>([]);
@@ -79,7 +79,7 @@ export function setExportNames(names: string[]): void {
   writtenFiles.value = names;
 }
 
-function keeperOf(name: Tab): Keeper {
+function resultSetOf(name: Tab): ResultSet {
   const names: readonly Tab[] = REGION_TABS;
   return method.value === "combined" && names.includes(name) ? "regions" : "main";
 }

@@ -1,6 +1,6 @@
 /** The guided tour: eight steps through B99 and one through W96, in the views themselves, on the demo scene. */
 import { effect } from "@preact/signals";
-import { isRefused } from "../../shared/traces";
+import { isRejected } from "../../shared/traces";
 import { openDemo } from "../project/projectActions";
 import { bestTheta, turnTo } from "../selection/selectionQueries";
 import { runAll, setMethod } from "../session/stageRuns";
@@ -112,15 +112,15 @@ export const LESSONS: readonly LessonStep[] = [
   },
   {
     title: "Occlusion",
-    text: "Beyond a rake or an eave there is no roof: no angle makes the views agree, and the side is refused. It is drawn as a thin red line.",
-    question: "Pick a red line, and read in the inspector why it was refused.",
+    text: "Beyond a rake or an eave there is no roof: no angle makes the views agree, and the side is rejected. It is drawn as a thin red line.",
+    question: "Pick a red line, and read in the inspector why it was rejected.",
     answer: "Low peaks and flat curves tell eaves from ridges, without any knowledge of roofs.",
     method: "lines",
     tab: "halfplanes",
     prepare: () => {
       select(null);
     },
-    isFound: () => selectionDetail.value.side !== null && isRefused(selectionDetail.value.side),
+    isFound: () => selectionDetail.value.side !== null && isRejected(selectionDetail.value.side),
   },
   {
     title: "Planes",

@@ -16,7 +16,7 @@ import type { Facet, Vec3 } from "../../shared/results";
 import type { Selection } from "../../shared/selection";
 import { zUpGroup } from "../scene/frame";
 import { BOTH_SIDES, disposeObject, type Layer } from "../scene/layer";
-import { Chosen } from "../scene/selectedObject";
+import { SelectedObject } from "../scene/selectedObject";
 
 /** From this slope on, radians, the tint has its full strength. */
 const FULL_TINT_SLOPE = (40 * Math.PI) / 180;
@@ -31,7 +31,7 @@ export function buildFacets(facets: readonly Facet[]): Layer {
   );
   const all = facetMesh(triangles, facets.map(normalTint));
   object.add(all, outlines(facets));
-  const chosen = new Chosen(object);
+  const chosen = new SelectedObject(object);
 
   return {
     object,

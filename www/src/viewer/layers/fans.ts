@@ -11,19 +11,19 @@ import {
 import { PALETTE } from "../../shared/palette";
 import { type HalfPlane, LINE_STRIDE, type Vec3 } from "../../shared/results";
 import type { Selection } from "../../shared/selection";
-import { isRefused, type SideName, type SideRecord } from "../../shared/traces";
+import { isRejected, type SideName, type SideRecord } from "../../shared/traces";
 import { zUpGroup } from "../scene/frame";
 import { BOTH_SIDES, disposeObject, type Layer, rgb } from "../scene/layer";
 
 /** Width of a fan over the length of its line, and its limits in metres: for the eye only. */
 const RELATIVE_WIDTH = 0.35;
 const WIDTH_M = { min: 0.6, max: 3 };
-const REFUSED_OFFSET_M = 0.25;
+const REJECTED_OFFSET_M = 0.25;
 const ALPHA = { near: 0.75, far: 0.08, dimmed: 0.3 };
 
 /**
  * @param lines p0 and p1 of each 3D line, local frame, metres
- * @param sides every side of every line: the refused ones become thin red lines beside theirs
+ * @param sides every side of every line: the rejected ones become thin red lines beside theirs
  */
 export function buildFans(
   halfPlanes: readonly HalfPlane[],
@@ -33,18 +33,18 @@ export function buildFans(
   const object = zUpGroup();
   const corners = halfPlanes.map((halfPlane) => fanCorners(halfPlane, lines));
   const all = fanMesh(corners, PALETTE.halfPlane);
-  const refusedSides = sides.filter(isRefused);
-  const refused = refusedLines(refusedSides, lines);
-  object.add(all, refused);
+  const rejectedSides = sides.filter(isRejected);
+  const rejected = rejectedLines(rejectedSides, lines);
+  object.add(all, rejected);
   let chosen: Mesh<BufferGeometry, MeshBasicMaterial> | null = null;
 
   return {
     object,
     pick: (hit) => {
-      if (hit.object !== refused) {
+      if (hit.object !== rejected) {
         return { kind: "halfplane", index: Math.floor((hit.faceIndex ?? 0) / 2) };
       }
-      const side = refusedSides[Math.floor((hit.index ?? -1) / 2)];
+      const side = rejectedSides[Math.floor((hit.index ?? -1) / 2)];
       return side === undefined ? null : { kind: "side", line: side.line, side: side.side };
     },
     highlight(selection: Selection | null) {
@@ -54,7 +54,7 @@ export function buildFans(
         chosen = null;
       }
       all.material.opacity = selection === null ? 1 : ALPHA.dimmed;
-      refused.material.opacity = selection === null ? 0.8 : ALPHA.dimmed;
+      rejected.material.opacity = selection === null ? 0.8 : ALPHA.dimmed;
       const corner = selection?.kind === "halfplane" ? corners[selection.index] : undefined;
       if (corner !== undefined) {
         chosen = fanMesh([corner], PALETTE.selected);
@@ -91,8 +91,8 @@ function fanWidth(lengthM: number): number {
   return Math.min(WIDTH_M.max, Math.max(WIDTH_M.min, lengthM * RELATIVE_WIDTH));
 }
 
-/** A thin line beside the 3D line, on the refused side of it. */
-function refusedLines(
+/** A thin line beside the 3D line, on the rejected side of it. */
+function rejectedLines(
   sides: readonly SideRecord[],
   lines: Float64Array,
 ): LineSegments<BufferGeometry, LineBasicMaterial> {
@@ -101,7 +101,7 @@ function refusedLines(
     const p0 = new Vector3().fromArray(lines, at);
     const p1 = new Vector3().fromArray(lines, at + 3);
     const left = new Vector3(p0.y - p1.y, p1.x - p0.x, 0).normalize();
-    const away = left.multiplyScalar(side === "left" ? REFUSED_OFFSET_M : -REFUSED_OFFSET_M);
+    const away = left.multiplyScalar(side === "left" ? REJECTED_OFFSET_M : -REJECTED_OFFSET_M);
     return [p0.add(away), p1.add(away)];
   });
   const material = new LineBasicMaterial({ color: PALETTE.rejected, transparent: true });

@@ -4,7 +4,7 @@ import type { Selection } from "../../shared/selection";
 import type { Grouping } from "../../shared/traces";
 import { zUpGroup } from "../scene/frame";
 import { disposeObject, type Layer } from "../scene/layer";
-import { Chosen } from "../scene/selectedObject";
+import { SelectedObject } from "../scene/selectedObject";
 import { endsOf, strokes } from "../scene/strokes";
 
 const WIDTH_PX = 2.5;
@@ -39,7 +39,7 @@ export function buildGroups(grouping: Grouping, lines: Float64Array): Layer {
     NEW_LINE_PX,
   );
   object.add(grouped, found);
-  const chosen = new Chosen(object);
+  const chosen = new SelectedObject(object);
 
   return {
     object,

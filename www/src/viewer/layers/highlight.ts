@@ -12,7 +12,7 @@ export interface Polyline {
   closed: boolean;
 }
 
-export function buildPicked(polylines: readonly Polyline[]): Layer {
+export function buildHighlight(polylines: readonly Polyline[]): Layer {
   const object = zUpGroup();
   const sides = polylines.flatMap(({ points, closed }) => {
     const positions = sidesOf([points]);

@@ -6,7 +6,7 @@ import type { Selection } from "../../shared/selection";
 import type { LineOrigin, LineRecord } from "../../shared/traces";
 import { zUpGroup } from "../scene/frame";
 import { disposeObject, type Layer } from "../scene/layer";
-import { Chosen } from "../scene/selectedObject";
+import { SelectedObject } from "../scene/selectedObject";
 import { endsOf, strokes } from "../scene/strokes";
 
 const WIDTH_PX = 2.25;
@@ -28,7 +28,7 @@ export function isUnseen({ origin, supports }: Pick<LineRecord, "origin" | "supp
   return origin !== "matched" && supports.length === 0;
 }
 
-/** By how a line was found, and as what is refused where the model refutes it. */
+/** By how a line was found, and as what is rejected where the model contradicts it. */
 export function colourOf(record: Pick<LineRecord, "origin" | "refuted"> | undefined): string {
   return record?.refuted == null ? ORIGIN_COLOURS[record?.origin ?? "matched"] : PALETTE.rejected;
 }
@@ -56,7 +56,7 @@ export function buildLines(
     return { own, drawn: k === 0 ? drawn : dashed(drawn) };
   });
   object.add(...parts.filter(({ own }) => own.length > 0).map(({ drawn }) => drawn));
-  const chosen = new Chosen(object);
+  const chosen = new SelectedObject(object);
 
   return {
     object,

@@ -20,7 +20,7 @@ import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { PALETTE, type ThemeColours } from "../../shared/palette";
 import type { Selection } from "../../shared/selection";
 import { disposeObject, type Layer } from "../scene/layer";
-import { Chosen } from "../scene/selectedObject";
+import { SelectedObject } from "../scene/selectedObject";
 import { normalTint } from "./facets";
 
 export type ModelMode = "textured" | "plain" | "wireframe" | "normals" | "method";
@@ -73,7 +73,7 @@ export async function buildModel(
   await inShortTasks(meshes, (mesh) => positions.push(...edgePositions(mesh)));
   const edges = edgeLines(positions);
   object.add(edges);
-  const marker = new Chosen(object);
+  const marker = new SelectedObject(object);
 
   return {
     object,

@@ -9,7 +9,7 @@ import type { Selection } from "../../shared/selection";
 import type { Refinement, Segment3 } from "../../shared/traces";
 import { zUpGroup } from "../scene/frame";
 import { disposeObject, type Layer } from "../scene/layer";
-import { Chosen } from "../scene/selectedObject";
+import { SelectedObject } from "../scene/selectedObject";
 import { sidesOf, strokes } from "../scene/strokes";
 
 const WIDTH_PX = 1.75;
@@ -26,7 +26,7 @@ export function buildRefinement(refinement: Refinement): Layer {
   );
   const gaps = over(ends(refinement.partings.map(({ side }) => side)), PALETTE.rejected, WIDTH_PX);
   object.add(before, gaps);
-  const chosen = new Chosen(object);
+  const chosen = new SelectedObject(object);
   return {
     object,
     pick: () => null,

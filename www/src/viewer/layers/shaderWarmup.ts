@@ -11,7 +11,7 @@ import { buildFacets } from "./facets";
 import { buildFans } from "./fans";
 import { buildGrid } from "./grid";
 import { buildGroups } from "./groups";
-import { buildPicked } from "./highlight";
+import { buildHighlight } from "./highlight";
 import { buildLines } from "./lines";
 import { edgeLines } from "./model";
 import { buildOutlines } from "./outlines";
@@ -39,7 +39,7 @@ const HALF_PLANE: HalfPlane = {
   views: [],
   plane: PLANE,
 };
-const REFUSED: SideRecord = { line: 0, side: "right", rejection: "flat_curve" };
+const REJECTED: SideRecord = { line: 0, side: "right", rejection: "flat_curve" };
 const FACET: Facet = {
   building: 0,
   plane: PLANE,
@@ -59,14 +59,14 @@ const GROUPING: Grouping = {
   rejected: [],
 };
 
-export function warmLayers(): Layer[] {
+export function warmupLayers(): Layer[] {
   return [
     buildLines(LINES, RECORDS, () => []),
-    buildFans([HALF_PLANE], LINES, [REFUSED]),
+    buildFans([HALF_PLANE], LINES, [REJECTED]),
     buildGroups(GROUPING, LINES),
     buildFacets([FACET]),
     buildOutlines([FACET]),
-    buildPicked([{ points: FACET.outer, closed: true }]),
+    buildHighlight([{ points: FACET.outer, closed: true }]),
     buildGrid(new Sphere(new Vector3(), 1), 0, PALETTE.unmatched),
     onlySeen(edgeLines([...LINES])),
     onlySeen(new Mesh(new SphereGeometry(), new MeshBasicMaterial({ map: new Texture() }))),

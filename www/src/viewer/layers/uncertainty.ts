@@ -9,7 +9,7 @@ import type { Selection } from "../../shared/selection";
 import type { Covariance, LineRecord } from "../../shared/traces";
 import { zUpGroup } from "../scene/frame";
 import { BOTH_SIDES, disposeObject, type Layer } from "../scene/layer";
-import { Chosen } from "../scene/selectedObject";
+import { SelectedObject } from "../scene/selectedObject";
 
 /** Corners of an ellipse. */
 const CORNERS = 16;
@@ -40,7 +40,7 @@ export function buildUncertainty(
   const tubes = records.map((record, i) => tubeOf(lines, i, record, factor));
   const all = meshOf(tubes, PALETTE.merged);
   object.add(all);
-  const chosen = new Chosen(object);
+  const chosen = new SelectedObject(object);
   return {
     object,
     pick: (hit) => ({ kind: "line", index: Math.floor((hit.faceIndex ?? 0) / (2 * CORNERS)) }),

@@ -3,7 +3,7 @@
 const POLL_MS = 10;
 
 /** Once the graphics card has done all that it was told so far: a question about a shader would wait for that. */
-export async function finished(gl: WebGL2RenderingContext): Promise<void> {
+export async function gpuFinished(gl: WebGL2RenderingContext): Promise<void> {
   const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
   gl.flush();
   while (

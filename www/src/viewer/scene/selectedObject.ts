@@ -2,7 +2,7 @@
 import type { Object3D } from "three";
 import { disposeObject } from "./layer";
 
-export class Chosen {
+export class SelectedObject {
   #shown: Object3D | null = null;
   readonly #parent: Object3D;
 

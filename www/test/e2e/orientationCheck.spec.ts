@@ -1,4 +1,4 @@
-/** The orientation doctor: it names the mistake, and undoes it on request. */
+/** The orientation check: it names the mistake, and undoes it on request. */
 import { expect, test } from "@playwright/test";
 import { demoImages, demoOrientation, give, waitForStage, watch } from "./helpers";
 
@@ -10,24 +10,24 @@ test("a mistake in the orientation is undone with one click", async ({ page }) =
       [start, ...angles.slice(0, 3).map((angle: string) => Number(angle) / 0.9)].join(" "),
     );
   await give(page, [...demoImages(6), ...demoOrientation(inDegreesAsGon)]);
-  const diagnosis = page.getByTestId("diagnosis");
-  await expect(diagnosis).toBeVisible({ timeout: 60_000 });
-  await expect(diagnosis).toHaveAttribute("data-finding", "explained");
-  await diagnosis.getByText("What was tried").click();
-  const rows = diagnosis.locator("tbody tr");
+  const check = page.getByTestId("orientation-check");
+  await expect(check).toBeVisible({ timeout: 60_000 });
+  await expect(check).toHaveAttribute("data-finding", "explained");
+  await check.getByText("What was tried").click();
+  const rows = check.locator("tbody tr");
   expect(await rows.count()).toBeGreaterThan(4);
   await expect(rows.first()).toContainText("in gon");
-  const [before, after] = (await diagnosis.locator("dd").allTextContents()).map(Number) as [number, number];
+  const [before, after] = (await check.locator("dd").allTextContents()).map(Number) as [number, number];
   expect(before).toBeLessThan(0.25);
   expect(after).toBeGreaterThan(0.3);
 
-  await diagnosis.getByRole("button", { name: "Apply the fix" }).click();
+  await check.getByRole("button", { name: "Apply the fix" }).click();
   await expect(page.getByRole("alert")).toHaveCount(0, { timeout: 60_000 });
   await expect(page.locator(".warnings")).toContainText("the orientation was corrected");
   await page.getByRole("button", { name: "Run up to 3D lines" }).click();
   await waitForStage(page, "lines");
   await expect(page.locator('[data-stage="lines"]')).toContainText(/[1-9]\d* lines/);
   await page.getByRole("button", { name: "Take the orientation as it is" }).click();
-  await expect(page.getByTestId("diagnosis")).toBeVisible({ timeout: 60_000 });
+  await expect(page.getByTestId("orientation-check")).toBeVisible({ timeout: 60_000 });
   expect(problems).toEqual([]);
 });
