@@ -39,7 +39,7 @@ export class WorkerPool {
     this.#onProgress = onProgress;
   }
 
-  /** Has all workers compute the sharded maps of a stage; false where that failed: the engine is to run by itself. */
+  /** Computes the maps of a stage in shards; false where that failed and the engine is to run by itself. */
   async runShards(wanted: Wanted): Promise<boolean> {
     const { maps, withColours } = await this.#engine.call("sharedMaps", { stage: wanted.stage });
     if (wanted.workers < 2 || maps.length === 0) {

@@ -5,7 +5,7 @@ import { describe, expect, it } from "vitest";
 
 const SOURCES = fileURLToPath(new URL("../../src", import.meta.url));
 
-/** The rooms, each with those that it may import from besides itself: one that stands above it in this table never. */
+/** The rooms from the ground up, each with those that it may import from besides itself. */
 const ROOMS: Readonly<Record<string, readonly string[]>> = {
   shared: [],
   worker: ["shared"],
@@ -125,7 +125,7 @@ describe("the rooms of the page", () => {
     ).toEqual(["b > c > b"]);
   });
 
-  it("are read whole: the page's first file reaches almost all others", () => {
+  it("are all lived in: the page's first file reaches every module but the worker's", () => {
     const reached = new Set<string>();
     const walk = (path: string) => {
       if (!reached.has(path)) {

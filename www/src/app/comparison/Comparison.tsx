@@ -1,4 +1,4 @@
-/** Two results: one is kept, and its numbers stand beside the present ones. In space it stands beside them, too (`keptBeside.ts`). */
+/** Two results: the numbers of the kept one beside the present ones; in space see `keptBeside.ts`. */
 
 import "./comparison.css";
 import { keepResult, keptResult } from "../state/keptResult";

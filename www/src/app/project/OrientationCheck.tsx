@@ -1,4 +1,4 @@
-/** The orientation check: how well the images agree with their orientation, what else was tried, and the remedy. */
+/** The orientation check: how well the images agree, what else was tried, and the remedy. */
 
 import "./project.css";
 import type { Agreement, OrientationCheckReport } from "../../shared/results";

@@ -14,7 +14,7 @@ const ADVICE: Record<Exclude<FailureKind, "input">, string> = {
   crash: "It was restarted and your files are still here. Run again with fewer or smaller images.",
 };
 
-/** A failure as a notice: what it is, and what to do; with the orientation check where the images speak against the orientation. */
+/** A failure as a notice: what it is, what to do, and what the images say of the orientation. */
 export function failureNotice(
   message: string,
   kind: FailureKind,

@@ -63,7 +63,7 @@ export function formatLink(link: Link): string {
   return fields.toString();
 }
 
-/** "line:12", "segment:0.44" (view first), "side:12.left"; links that were given away keep their words. */
+/** "line:12", "segment:0.44" (view first), "side:12.left"; the words are a format and stay. */
 export function formatSelection(picked: Selection): string | null {
   switch (picked.kind) {
     case "segment":

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { quantile } from "../../src/app/figures/LineLabs";
-import { axesOf, frameOf, histogramOf, ticks } from "../../src/app/parts/charts";
+import { quantile } from "../../../src/app/figures/LineLabs";
+import { axesOf, frameOf, histogramOf, ticks } from "../../../src/app/parts/charts";
 
 describe("ticks", () => {
   it("are round and inside", () => {

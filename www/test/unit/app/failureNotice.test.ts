@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
-import { failureNotice, splitAdvice } from "../../src/app/session/failureNotice";
-import { withNotice } from "../../src/app/state/notices";
-import type { OrientationCheckReport } from "../../src/shared/results";
+import { failureNotice, splitAdvice } from "../../../src/app/session/failureNotice";
+import { withNotice } from "../../../src/app/state/notices";
+import type { OrientationCheckReport } from "../../../src/shared/results";
 
 describe("splitAdvice", () => {
   it("separates what is wrong from what to do", () => {

@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
-import type { Engine } from "../../src/core/engine";
-import type { WorkerPool } from "../../src/core/workerPool";
+import type { Engine } from "../../../src/core/engine";
+import type { WorkerPool } from "../../../src/core/workerPool";
 
 /** Every call of every worker, in their order: worker, call, arguments, what moves along. */
 let calls: [number, string, Record<string, unknown>, readonly Transferable[]][] = [];
@@ -54,13 +54,13 @@ class EngineError extends Error {
   }
 }
 
-vi.mock("../../src/core/engine", () => ({ Engine: FakeEngine, EngineError }));
+vi.mock("../../../src/core/engine", () => ({ Engine: FakeEngine, EngineError }));
 
 const fractions: number[] = [];
 const wanted = { stage: "matches", earlier: ["segments"], views: 2, params: {}, workers: 3 };
 
 async function poolOf(): Promise<WorkerPool> {
-  const { WorkerPool: Pool } = await import("../../src/core/workerPool");
+  const { WorkerPool: Pool } = await import("../../../src/core/workerPool");
   const engine = new FakeEngine((stage, fraction) => pool.engineReached(stage, fraction));
   const pool = new Pool(engine as unknown as Engine, (_, fraction) => fractions.push(fraction));
   return pool;

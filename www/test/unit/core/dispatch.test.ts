@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
-import type { Request } from "../../src/shared/messages";
-import { type Core, dispatch } from "../../src/worker/dispatch";
-import { Session } from "../fake/ridgeline";
+import type { Request } from "../../../src/shared/messages";
+import { type Core, dispatch } from "../../../src/worker/dispatch";
+import { Session } from "../../fake/ridgeline";
 
 type Answerable = Exclude<Request, { type: "open" }>;
 

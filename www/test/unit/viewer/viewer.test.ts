@@ -1,11 +1,11 @@
 import { Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import type { HalfPlane } from "../../src/shared/results";
-import { groundCorners } from "../../src/viewer/layers/cameras";
-import { normalTint } from "../../src/viewer/layers/facets";
-import { fanCorners } from "../../src/viewer/layers/fans";
-import { boundsOfLines } from "../../src/viewer/scene/bounds";
-import { yUp, zUpGroup } from "../../src/viewer/scene/frame";
+import type { HalfPlane } from "../../../src/shared/results";
+import { groundCorners } from "../../../src/viewer/layers/cameras";
+import { normalTint } from "../../../src/viewer/layers/facets";
+import { fanCorners } from "../../../src/viewer/layers/fans";
+import { boundsOfLines } from "../../../src/viewer/scene/bounds";
+import { yUp, zUpGroup } from "../../../src/viewer/scene/frame";
 
 describe("frame", () => {
   it("turns Z up into Y up as the GLB does", () => {

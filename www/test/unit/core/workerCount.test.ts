@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { automaticWorkers } from "../../src/core/workerCount";
+import { automaticWorkers } from "../../../src/core/workerCount";
 
 it("takes as many workers as cores and memory allow", () => {
   expect(automaticWorkers(1, 1e6)).toBe(1);

@@ -1,7 +1,7 @@
 import { afterEach, describe, expect, it } from "vitest";
-import { type params, replaceParams } from "../../src/app/state/parameters";
-import { addResults, mainResults, NO_RESULTS, results, setResults } from "../../src/app/state/results";
-import { showTab } from "../../src/app/state/viewState";
+import { type params, replaceParams } from "../../../src/app/state/parameters";
+import { addResults, mainResults, NO_RESULTS, results, setResults } from "../../../src/app/state/results";
+import { showTab } from "../../../src/app/state/viewState";
 
 const choose = (method: string) => {
   replaceParams({ method } as unknown as typeof params.value);

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { firstStageOf } from "../../src/app/session/stageCatalogue";
+import { firstStageOf } from "../../../src/app/session/stageCatalogue";
 import {
   changedParams,
   type ParamField,
@@ -7,8 +7,8 @@ import {
   paramsOf,
   parseField,
   withParam,
-} from "../../src/app/settings/parameterForm";
-import type { Params } from "../../src/shared/results";
+} from "../../../src/app/settings/parameterForm";
+import type { Params } from "../../../src/shared/results";
 
 const DEFAULTS = {
   segments: { min_length_px: 15, area_m2: 2, closed: true },

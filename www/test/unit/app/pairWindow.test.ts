@@ -1,6 +1,6 @@
 import { afterEach, describe, expect, it } from "vitest";
-import { windowOf } from "../../src/app/images/pairWindow";
-import { NO_RESULTS, setResults } from "../../src/app/state/results";
+import { windowOf } from "../../../src/app/images/pairWindow";
+import { NO_RESULTS, setResults } from "../../../src/app/state/results";
 
 /** An eave along y = 2 at 5 m and a ridge along y = 6 at 8 m: 5 m apart in their plane. */
 const LINES = Float64Array.of(1, 2, 5, 11, 2, 5, 3, 6, 8, 9, 6, 8);

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { formatLink, type Link, parseLink } from "../../src/app/settings/addressLink";
+import { formatLink, type Link, parseLink } from "../../../src/app/settings/addressLink";
 
 const LINK: Link = {
   scene: "demo",

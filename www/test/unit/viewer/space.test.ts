@@ -1,11 +1,11 @@
 import { type Intersection, type LineSegments, Vector3, Vector4 } from "three";
 import { describe, expect, it } from "vitest";
-import { project } from "../../src/app/images/selectionMarks";
-import type { Vec3, ViewInfo } from "../../src/shared/results";
-import { buildFans, buildTurning, fanCorners } from "../../src/viewer/layers/fans";
-import { yUp } from "../../src/viewer/scene/frame";
-import { clipFromViewer, fitShares } from "../../src/viewer/scene/photoProjection";
-import { measure } from "../../src/viewer/tools/measure";
+import { project } from "../../../src/app/images/selectionMarks";
+import type { Vec3, ViewInfo } from "../../../src/shared/results";
+import { buildFans, buildTurning, fanCorners } from "../../../src/viewer/layers/fans";
+import { yUp } from "../../../src/viewer/scene/frame";
+import { clipFromViewer, fitShares } from "../../../src/viewer/scene/photoProjection";
+import { measure } from "../../../src/viewer/tools/measure";
 
 /** Looks down from 1000 m, principal point far outside the image. */
 const VIEW: ViewInfo = {

@@ -1,10 +1,10 @@
 import type { Intersection } from "three";
 import type { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { expect, it } from "vitest";
-import { PALETTE } from "../../src/shared/palette";
-import type { LineOrigin, LineRecord } from "../../src/shared/traces";
-import { buildLines, colourOf, ORIGIN_COLOURS } from "../../src/viewer/layers/lines";
-import { sidesOf } from "../../src/viewer/scene/strokes";
+import { PALETTE } from "../../../src/shared/palette";
+import type { LineOrigin, LineRecord } from "../../../src/shared/traces";
+import { buildLines, colourOf, ORIGIN_COLOURS } from "../../../src/viewer/layers/lines";
+import { sidesOf } from "../../../src/viewer/scene/strokes";
 
 const record = (origin: LineOrigin, views: number): LineRecord => ({
   origin,

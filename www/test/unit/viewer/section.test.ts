@@ -9,7 +9,7 @@ import {
   Vector3,
 } from "three";
 import { describe, expect, it } from "vitest";
-import { clippingPlane, sectionOf } from "../../src/viewer/tools/section";
+import { clippingPlane, sectionOf } from "../../../src/viewer/tools/section";
 
 /** A roof whose ridge runs along x at height 8, eaves at height 5 and z = -4 and 4. */
 function roof(): Mesh {
