@@ -215,7 +215,7 @@ function KeptNote() {
   }
   return (
     <p class="kept muted" data-testid="kept">
-      <span>StoredProject in this browser: {(bytes / 1e6).toFixed(1)} MB</span>
+      <span>Kept in this browser: {(bytes / 1e6).toFixed(1)} MB</span>
       <button type="button" class="quiet" onClick={() => void clearProject()}>
         Delete
       </button>
