@@ -18,14 +18,13 @@ SHELL := bash
 .DELETE_ON_ERROR:
 .PHONY: demo test build lint identical golden score jury bench fuzz native setup clean
 
-# The command-line tool must be of exactly the crate's version: stated once, in Cargo.toml.
-WASM_BINDGEN_VERSION := $(shell sed -n 's/^wasm-bindgen = "=\(.*\)"/\1/p' Cargo.toml)
-WASM_PACK_VERSION := 0.15.1
-
-TOOLS := $(or $(RIDGELINE_CACHE),$(HOME)/.cache/ridgeline)/tools
-WASM_BINDGEN := $(TOOLS)/wasm-bindgen-$(WASM_BINDGEN_VERSION)/bin/wasm-bindgen
-WASM_PACK := $(TOOLS)/wasm-pack-$(WASM_PACK_VERSION)/bin/wasm-pack
-export PATH := $(dir $(WASM_BINDGEN)):$(dir $(WASM_PACK)):$(PATH)
+# Small programs of our own on the crates of wasm-bindgen and wasm-pack, kept for all clones that have the same ones.
+CACHE := $(or $(RIDGELINE_CACHE),$(HOME)/.cache/ridgeline)
+TOOLS := $(CACHE)/tools/$(shell find tools -type f | sort | xargs cat | cksum | tr ' ' '-')
+WASM_BINDGEN := $(TOOLS)/wasm-bindgen
+WASM_PACK := $(TOOLS)/wasm-pack
+# Beside each other: that is where wasm-pack looks for the test runner.
+export PATH := $(TOOLS):$(PATH)
 
 STAMPS := target/stamps
 WASM32 := $(STAMPS)/wasm32-$(shell rustc --version | cut -d ' ' -f 2)
@@ -80,15 +79,19 @@ clean:
 
 # ---- the wasm package and the site -------------------------------------------------------------
 
-# What makes the linked whole smaller and no slower: few of its loops gain by being unrolled, straight code by vectors that
-# are not written as such, or large functions by being inlined because they are generic.
-SMALL := -C no-vectorize-slp $(addprefix -C llvm-args=-,unroll-runtime=false unroll-threshold-default=100 \
-	unroll-threshold-aggressive=100 inlinehint-threshold=50)
+# `build` takes its time for a smaller and faster wasm; all else wants it soon.
+PROFILE := $(if $(filter build,$(MAKECMDGOALS)),site,page)
+CHOSEN := $(STAMPS)/profile-$(PROFILE)
 
-$(PACKAGE): $(RUST_SOURCES) $(WASM32) $(WASM_BINDGEN) $(NPM)
-	cargo rustc --lib --profile wasm --target wasm32-unknown-unknown -- $(SMALL)
-	wasm-bindgen target/wasm32-unknown-unknown/wasm/ridgeline.wasm --target web --out-dir $(@D) --out-name ridgeline
-	node www/scripts/strip.mjs $@
+# When another profile is wanted than the last time, the package is made anew.
+$(CHOSEN):
+	mkdir -p $(STAMPS)
+	rm -f $(STAMPS)/profile-*
+	touch $@
+
+$(PACKAGE): $(RUST_SOURCES) $(WASM32) $(WASM_BINDGEN) $(NPM) $(CHOSEN)
+	cargo build --lib --profile $(PROFILE) --target wasm32-unknown-unknown
+	wasm-bindgen target/wasm32-unknown-unknown/$(PROFILE)/ridgeline.wasm $(@D) ridgeline
 
 $(SITE): $(PACKAGE) $(NPM) $(WWW_SOURCES)
 	cd www && npm run build
@@ -101,15 +104,24 @@ $(WASM32):
 	rustup target add wasm32-unknown-unknown
 	touch $@
 
-# Built from source, for any processor: the download pages of ready-made binaries are not reachable everywhere. The
-# locked versions may have been withdrawn since; then any that fit will do.
-$(WASM_BINDGEN):
-	RUSTFLAGS= cargo install --locked --root $(TOOLS)/wasm-bindgen-$(WASM_BINDGEN_VERSION) wasm-bindgen-cli --version $(WASM_BINDGEN_VERSION) \
-		|| RUSTFLAGS= cargo install --root $(TOOLS)/wasm-bindgen-$(WASM_BINDGEN_VERSION) wasm-bindgen-cli --version $(WASM_BINDGEN_VERSION)
+# wasm and program must speak of the same wasm-bindgen.
+VERSION_OF = $(shell sed -nE 's/^$(1) = .*"=([0-9.]+)".*/\1/p' $(2))
+SAME_VERSION = test "$(call VERSION_OF,wasm-bindgen,Cargo.toml)" = "$(call VERSION_OF,wasm-bindgen-cli-support,tools/Cargo.toml)" \
+	|| { echo "wasm-bindgen is of another version in Cargo.toml than in tools/Cargo.toml" >&2; exit 1; }
 
-$(WASM_PACK):
-	RUSTFLAGS= cargo install --locked --root $(TOOLS)/wasm-pack-$(WASM_PACK_VERSION) wasm-pack --version $(WASM_PACK_VERSION) \
-		|| RUSTFLAGS= cargo install --root $(TOOLS)/wasm-pack-$(WASM_PACK_VERSION) wasm-pack --version $(WASM_PACK_VERSION)
+# From source: the download pages of ready-made programs are not reachable everywhere. RUSTFLAGS= makes them fit any processor.
+BUILD_TOOL = RUSTFLAGS= cargo build --locked --manifest-path tools/Cargo.toml --target-dir target/tools
+
+$(WASM_BINDGEN):
+	@$(SAME_VERSION)
+	$(BUILD_TOOL) --package bindgen
+	mkdir -p $(TOOLS)
+	cp target/tools/debug/bindgen $@
+
+$(WASM_PACK): $(WASM_BINDGEN)
+	$(BUILD_TOOL) --package wasm-tests
+	cp target/tools/debug/wasm-bindgen-test-runner $(TOOLS)
+	cp target/tools/debug/wasm-pack $@
 
 # The lock file's content decides, not its time: a fresh checkout of the same lock installs nothing.
 $(NPM):

@@ -39,15 +39,18 @@ step() {
 
 www() { (cd www && npm run --silent "$@"); }
 
-step format check cargo fmt --check
+formatted() { cargo fmt --all --check && cargo fmt --all --check --manifest-path tools/Cargo.toml; }
+
+step format check formatted
 step clippy-native check cargo clippy --all-targets --quiet -- -D warnings
-step clippy-wasm32 check cargo clippy --lib --bins --tests --quiet --target wasm32-unknown-unknown -- -D warnings
+# With the page's profile, which has its derives compiled already.
+step clippy-wasm32 check cargo clippy --lib --bins --tests --quiet --profile page --target wasm32-unknown-unknown -- -D warnings
 step typecheck check www typecheck
 step biome check www lint
 if [ "${1:-all}" = all ]; then
     step native cargo cargo test --quiet
     step doc check env RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --quiet
-    step wasm cargo wasm-pack test --node --release --mode no-install -- --test wasm
+    step wasm cargo wasm-pack test --node --mode no-install -- --test wasm --profile page
     step identical check node tests/identical.mjs target/debug/ridgeline
     step typescript node www test:unit
     step size check www size
