@@ -50,7 +50,7 @@ step biome check www lint
 if [ "${1:-all}" = all ]; then
     step native cargo cargo test --quiet
     step doc check env RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --quiet
-    step wasm cargo wasm-pack test --node --mode no-install -- --test wasm --profile page
+    step wasm cargo wasm-pack test --node --mode no-install tests/wasm --profile page
     step identical check node tests/identical.mjs target/debug/ridgeline
     step typescript node www test:unit
     step size check www size
