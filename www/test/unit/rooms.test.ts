@@ -10,6 +10,7 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
   shared: [],
   worker: ["shared"],
   core: ["shared"],
+  package: ["shared"],
   "viewer/scene": ["shared"],
   "viewer/layers": ["shared", "viewer/scene"],
   "viewer/tools": ["shared", "viewer/scene"],
@@ -34,6 +35,11 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
     ],
   ),
 };
+
+/** What the package's exports and workers start from. */
+const PACKAGE_ENTRIES = ["browser", "browserWorker", "node", "nodeWorker"].map(
+  (name) => `package/${name}.ts`,
+);
 
 /** So many files are found at a glance. */
 const MOST_FILES = 15;
@@ -61,7 +67,9 @@ function importsOf(path: string): string[] {
   return [...text.matchAll(/(?:^import|^export|^\}) ?[^;"]*"(\.[^"]+)"/gm)]
     .map(([, named]) => join(dirname(path), named as string))
     .flatMap((named) => {
-      const found = [named, `${named}.ts`, `${named}.tsx`].find((one) => files.includes(one));
+      const found = [named, `${named}.ts`, `${named}.tsx`, named.replace(/\.js$/, ".ts")].find((one) =>
+        files.includes(one),
+      );
       return found === undefined ? [] : [found];
     });
 }
@@ -125,7 +133,7 @@ describe("the rooms of the page", () => {
     ).toEqual(["b > c > b"]);
   });
 
-  it("are all lived in: the page's first file reaches every module but the worker's", () => {
+  it("are all lived in: the first files of page and package reach every module but the worker's", () => {
     const reached = new Set<string>();
     const walk = (path: string) => {
       if (!reached.has(path)) {
@@ -133,7 +141,7 @@ describe("the rooms of the page", () => {
         imports.get(path)?.forEach(walk);
       }
     };
-    walk("app/shell/main.tsx");
+    for (const entry of ["app/shell/main.tsx", ...PACKAGE_ENTRIES]) walk(entry);
     const beyond = modules.filter((path) => !reached.has(path) && !path.startsWith("worker/"));
     expect(beyond).toEqual([]);
   });

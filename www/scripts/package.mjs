@@ -1,0 +1,25 @@
+// The npm package: compiles src/package, puts the wasm core beside it and packs both.
+// Prints the tarball's path. The core is the one in src/pkg (make build for the smallest).
+import { execFileSync } from "node:child_process";
+import { cpSync, readFileSync, rmSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const www = join(dirname(fileURLToPath(import.meta.url)), "..");
+const folder = join(www, "package");
+const manifest = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
+const version = /^version = "(.+)"/m.exec(readFileSync(join(www, "../Cargo.toml"), "utf8"))[1];
+if (manifest.version !== version) {
+  throw new Error(`package/package.json is of version ${manifest.version}, Cargo.toml of ${version}`);
+}
+
+rmSync(join(folder, "dist"), { recursive: true, force: true });
+execFileSync(join(www, "node_modules/.bin/tsc"), ["-p", join(www, "tsconfig.package.json")], {
+  stdio: "inherit",
+});
+cpSync(join(www, "src/pkg"), join(folder, "dist/pkg"), { recursive: true });
+rmSync(join(folder, "dist/pkg/.gitignore"), { force: true });
+for (const licence of ["LICENSE-MIT", "LICENSE-APACHE"])
+  cpSync(join(www, "..", licence), join(folder, licence));
+const packed = execFileSync("npm", ["pack", "--json", "--silent"], { cwd: folder, encoding: "utf8" });
+console.log(join(folder, JSON.parse(packed)[0].filename));
