@@ -1,4 +1,5 @@
-//! Lens distortion (Brown 1966, with the rational form that OpenCV and COLMAP share) and its removal.
+//! Lens distortion (Brown 1966, with the rational form that OpenCV and COLMAP share) and its
+//! removal.
 //!
 //! With x, y the ideal image coordinates (principal point subtracted, divided by the focal length),
 //! `r^2 = x^2 + y^2`:
@@ -9,8 +10,9 @@
 //! y' = y g + 2 p2 x y + p1 (r^2 + 2 y^2)
 //! ```
 //!
-//! x', y' is where the lens puts the point; l4 is what Metashape calls k4. Images are resampled once on loading to a pinhole of the same
-//! size and calibration: each new pixel looks up one place of the photograph, so no inverse is needed.
+//! x', y' are the distorted coordinates; l4 is what Metashape calls k4. Images are resampled once
+//! on loading to a pinhole of the same size and calibration: each new pixel looks up one place of
+//! the photograph, so no inverse is needed.
 
 use nalgebra::{Matrix3, Point2, Vector2};
 
@@ -25,13 +27,14 @@ pub struct Distortion {
     pub radial_below: [f64; 3],
     /// p1, p2.
     pub tangential: [f64; 2],
-    /// Where the lens is centred, against the principal point, divided by the focal length: x and y above count from
-    /// there.
+    /// Centre of distortion against the principal point, divided by the focal length: x and y above
+    /// count from there.
     pub center: [f64; 2],
 }
 
 impl Distortion {
-    /// Radial k1, k2, k3, l4, as many as there are, and tangential p1, p2; `None` where all are zero.
+    /// Radial k1, k2, k3, l4, as many as there are, and tangential p1, p2; `None` where all are
+    /// zero.
     pub fn brown<const N: usize>(radial: [f64; N], tangential: [f64; 2]) -> Option<Self> {
         const { assert!(N <= 4) };
         let any = radial.iter().chain(&tangential).any(|&v| v != 0.0);
@@ -43,7 +46,7 @@ impl Distortion {
         })
     }
 
-    /// Where the lens puts an ideal normalised image point.
+    /// The distorted position of an ideal normalised image point.
     pub fn distort(&self, ideal: &Point2<f64>) -> Point2<f64> {
         let center = Vector2::from(self.center);
         let (x, y) = (ideal.x - center.x, ideal.y - center.y);
@@ -56,8 +59,8 @@ impl Distortion {
         ) + center
     }
 
-    /// Does the lens keep the order of points over an image of this size? Beyond the turning point of
-    /// its polynomial a distortion folds the image over, which no lens does.
+    /// Does the lens keep the order of points over an image of this size? Beyond the turning point
+    /// of its polynomial a distortion folds the image over, which no lens does.
     pub fn is_plausible(&self, k: &Matrix3<f64>, width: u32, height: u32) -> bool {
         const STEPS: u32 = 16;
         (0..=STEPS * STEPS).all(|i| {
@@ -117,8 +120,8 @@ pub fn undistort(photograph: &Photograph, k: &Matrix3<f64>, lens: &Distortion) -
     }
 }
 
-/// Bilinear colour and grey value at an image point; outside the centres of the border pixels, those of
-/// the border.
+/// Bilinear colour and grey value at an image point; outside the centres of the border pixels,
+/// those of the border.
 fn bilinear(photograph: &Photograph, at: &Point2<f64>) -> ([u8; 3], f32) {
     let (width, height) = photograph.rgb.dimensions();
     let inside = |v: f64, size: u32| (v - 0.5).max(0.0).min(f64::from(size - 1));
@@ -150,8 +153,8 @@ mod tests {
 
     #[test]
     fn a_photograph_of_known_colours_is_straightened() {
-        // The photograph shows, at each place, the ideal coordinates that the lens brought there: found
-        // by iteration here, independent of the look-up.
+        // Each colour is the ideal position of its pixel, found by iteration independent of the
+        // look-up.
         let k = Matrix3::new(200.0, 0.0, 103.0, 0.0, 210.0, 74.0, 0.0, 0.0, 1.0);
         let photograph = image::RgbImage::from_fn(200, 150, |c, r| {
             let d = Point2::new(

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Point2, Vector3};
 
-use super::Camera;
+use super::pinhole::Camera;
 use crate::geometry::Plane;
 
 /// F with `x'^T F x = 0` for corresponding points x of `first` and x' of `second` (B99 3.1).
@@ -43,8 +43,8 @@ pub fn homography_of_plane(first: &Camera, second: &Camera, plane: &Plane) -> Op
     let b = first.center - second.center;
     let m = Matrix3::identity() * h - b * plane.normal.transpose();
     let h_matrix = second.k * second.r * m * first.r.transpose() * first.k_inverse();
-    // m maps a ray r to (C - C')(n.r) - h r times -1; in front of both cameras the scale is h > 0 or
-    // h < 0 with the side of the plane on which the first camera is.
+    // m maps a ray r to (C - C')(n.r) - h r times -1; in front of both cameras the scale is h > 0
+    // or h < 0 with the side of the plane on which the first camera is.
     Some(Homography(h_matrix / h))
 }
 
@@ -54,11 +54,11 @@ pub fn plane_of_image_line(camera: &Camera, line: &Vector3<f64>) -> Option<Plane
     Plane::from_point_normal(&camera.center, &normal)
 }
 
-/// Trifocal transfer of a line: the image in `third` of the 3D line seen as `l1` in `first` and `l2` in
-/// `second` (B99 3.2), scaled so that `l . (x, y, 1)` is a distance in pixels. The trifocal tensor's
-/// action is computed through the 3D line in which the two interpretation planes meet, which is the
-/// same map and stays in metric units. `None` when the planes are parallel (line near an epipolar
-/// plane).
+/// Trifocal transfer of a line: the image in `third` of the 3D line seen as `l1` in `first` and
+/// `l2` in `second` (B99 3.2), scaled so that `l . (x, y, 1)` is a distance in pixels. The
+/// trifocal tensor's action is computed through the 3D line in which the two interpretation planes
+/// meet, which is the same map and stays in metric units. `None` when the planes are parallel
+/// (line near an epipolar plane).
 pub fn transfer_line(
     first: &Camera,
     l1: &Vector3<f64>,
@@ -80,7 +80,7 @@ pub fn transfer_line(
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::crop_camera;
+    use super::super::testing::crop_camera;
     use super::*;
     use nalgebra::Point3;
 

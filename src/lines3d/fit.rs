@@ -410,7 +410,7 @@ pub(crate) fn line_frame(direction: &Vector3<f64>) -> [Vector3<f64>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::tests::crop_camera;
+    use crate::camera::testing::crop_camera;
     use nalgebra::Point2;
 
     fn cameras() -> Vec<Camera> {

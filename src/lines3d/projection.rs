@@ -92,7 +92,7 @@ impl ProjectedLine {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::tests::crop_camera;
+    use crate::camera::testing::crop_camera;
     use nalgebra::Point3;
 
     #[test]

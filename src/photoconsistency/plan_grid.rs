@@ -105,7 +105,7 @@ pub fn orthophoto(gray: &Gray, camera: &Camera, plane: &Plane, grid: &PlanGrid) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::tests::crop_camera;
+    use crate::camera::testing::crop_camera;
     use nalgebra::{Point3, Vector3};
 
     #[test]

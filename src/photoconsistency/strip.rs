@@ -238,7 +238,7 @@ mod tests {
     #[test]
     fn the_strip_lies_on_the_side_of_the_frame() {
         use crate::lines3d::Side;
-        let camera = crate::camera::tests::crop_camera(0.0, 0.0, 2.0);
+        let camera = crate::camera::testing::crop_camera(0.0, 0.0, 2.0);
         let line = Segment3::new(Point3::new(-4.0, 1.0, 8.0), Point3::new(5.0, 3.0, 8.0));
         for side in [Side::Left, Side::Right] {
             let frame = ThetaFrame::new(&line, side).unwrap();
