@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 use image::{DynamicImage, ImageFormat};
 use ridgeline::orientation::InputFile;
 use ridgeline::orientation::{detect, orientation_sets};
-use ridgeline::raster::{image_header, load_image, load_part};
+use ridgeline::raster::{image_header, load_image, load_window};
 use ridgeline::scene_loader::{
     LoadOptions, Project, inspect_files, load_scene, open_project, unpack,
 };
@@ -191,7 +191,7 @@ fn read_image(files: &[InputFile]) {
                 header.width.div_ceil(3),
                 header.height.div_ceil(3),
             ];
-            check(load_part(&file.path, &file.bytes, part).map(|_| ()));
+            check(load_window(&file.path, &file.bytes, part).map(|_| ()));
         }
     }
 }

@@ -16,7 +16,7 @@ use ridgeline::model::{Facet, check_invariants};
 use ridgeline::orientation::InputFile;
 use ridgeline::params::{Method, Params};
 use ridgeline::pipeline::{PackedView, Run, Stage};
-use ridgeline::raster::Warmth;
+use ridgeline::raster::RedBlueDifference;
 use ridgeline::scene_loader::{LoadOptions, load_scene};
 use ridgeline::synthetic::{SyntheticTruth, l_scene, to_files};
 
@@ -354,7 +354,7 @@ fn new_parameters_of_one_method_keep_what_the_other_found_before() {
 fn the_lines_of_a_house_that_shows_in_colour_alone_are_found() {
     let (mut scene, truth) = l_scene(SIZE_PX);
     for view in &mut scene.views {
-        view.warmth = Some(Warmth::new(view.gray.clone()));
+        view.red_blue = Some(RedBlueDifference::new(view.gray.clone()));
         view.gray.data.fill(0.5);
     }
     let mut params = Params::default();
@@ -378,7 +378,7 @@ fn images_without_structure_give_an_empty_model_and_say_so() {
     let (mut scene, _) = l_scene(64);
     for view in &mut scene.views {
         view.gray.data.fill(0.5);
-        view.warmth = None;
+        view.red_blue = None;
     }
     let mut run = Run::new(scene, Params::default());
     run.run_all();

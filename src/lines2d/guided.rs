@@ -6,7 +6,7 @@
 //! sought again along the prediction: the profile across it is averaged over short pieces, so that a
 //! step far below the noise of a pixel shows, each piece gives one offset, and a robust line through the
 //! offsets is the measurement. Whether there is an edge is asked of the grey values, where it is of their light
-//! ([`crate::raster::Channel::to_light`]). A view in which the pieces do not line up has no such edge.
+//! ([`crate::raster::Channel::to_linear_light`]). A view in which the pieces do not line up has no such edge.
 //!
 //! Deviation: the paper verifies a view without a segment by correlation alone. Correlation says that
 //! the surroundings are alike, not where the line is; a measured offset takes part in the fit.
@@ -151,7 +151,7 @@ fn measure_piece(
     }
     profile.iter_mut().for_each(|v| *v /= rows as f64);
     let mut light = profile;
-    kind.channel().to_light(&mut light);
+    kind.channel().to_linear_light(&mut light);
     let filter = Filter::of(kind, against);
     let [response, light] = [profile, light].map(|p| filter.response(&p));
     let least = SIGNIFICANT * noise * filter.gain() / (rows as f64).sqrt();

@@ -62,7 +62,7 @@ impl SegmentKind {
     /// The channel that shows such a segment.
     pub fn channel(self) -> Channel {
         match self {
-            Self::Color => Channel::Warmth,
+            Self::Color => Channel::RedBlue,
             Self::Edge | Self::BrightBar | Self::DarkBar => Channel::Grey,
         }
     }

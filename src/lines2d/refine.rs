@@ -5,7 +5,7 @@
 //! is needed, because the pixels along it can be averaged instead (the slanted-edge method by which ISO 12233
 //! measures lenses). Stretch by stretch, rows of pixels across the line are shifted to the line and
 //! averaged; the stretch's edgels then move together to the crest of the derivative of the mean profile, of its light
-//! ([`Channel::to_light`]).
+//! ([`Channel::to_linear_light`]).
 
 use nalgebra::{Matrix2, Point2, Vector2};
 
@@ -46,7 +46,7 @@ pub fn refine(
         let Some(mut profile) = axes.mean_profile(points, image) else {
             continue;
         };
-        channel.to_light(&mut profile);
+        channel.to_linear_light(&mut profile);
         let Some(crest) = Crest::of(&profile) else {
             continue;
         };
@@ -222,7 +222,7 @@ mod tests {
             let gray = step_edge(80, 80, angle, 0.3);
             for off in [-0.6, 0.0, 0.4] {
                 let (all, mut line) = beside(&gray, angle, off);
-                refine(&mut line, &all, &gray, Channel::Warmth, 3.0);
+                refine(&mut line, &all, &gray, Channel::RedBlue, 3.0);
                 let miss = distance_to_edge(&gray, angle, &line.line.centroid);
                 assert!(miss.abs() < 0.03, "{miss} px from {off} at {angle}");
             }
@@ -239,7 +239,7 @@ mod tests {
                 refine(&mut line, &all, &gray, channel, 0.0);
                 distance_to_edge(&gray, angle, &line.line.centroid)
             };
-            let (light, value) = (miss(Channel::Grey), miss(Channel::Warmth));
+            let (light, value) = (miss(Channel::Grey), miss(Channel::RedBlue));
             assert!(light.abs() < 0.05, "{light} px at {angle}");
             assert!(value < -0.15, "{value} px at {angle}: on the dark side");
         }
@@ -250,7 +250,7 @@ mod tests {
         let gray = Gray::from_fn(80, 80, |_, _| 0.5);
         let (all, mut line) = beside(&gray, 0.3, 0.4);
         let before = line.line;
-        refine(&mut line, &all, &gray, Channel::Warmth, 3.0);
+        refine(&mut line, &all, &gray, Channel::RedBlue, 3.0);
         assert_eq!(line.line, before);
     }
 }

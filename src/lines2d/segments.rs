@@ -3,8 +3,8 @@
 //! Deviations: lines grow past the ends of their chains ([`super::grow`]), and a test of significance
 //! ([`super::significance`]) stands in for a global threshold of contrast.
 //!
-//! B99 has grey photographs. Where there is colour, the same detector also runs on the warmth of the pixels
-//! ([`crate::raster::Warmth`]), and what it finds beside no edge in grey values is a segment too: on the six views of a rendered
+//! B99 has grey photographs. Where there is colour, the same detector also runs on the red_blue of the pixels
+//! ([`crate::raster::RedBlueDifference`]), and what it finds beside no edge in grey values is a segment too: on the six views of a rendered
 //! suburb the segments then cover 81 % of the true roof edges instead of 62 %. Each kind is matched with its own, in its own
 //! channel: lines of both together lay up to 0.2 m off on photographs whose lens does not focus red and blue alike.
 //!
@@ -12,7 +12,7 @@
 //! scenes, the crest of the mean profile of grey values itself scatters by 0.2 to 0.3 px on eaves and rakes, whose visible
 //! fascias and gutters are half a pixel to two pixels wide. Hips, which have none, scatter by 0.08 to 0.15 px. The covariance
 //! holds a term for it. (About a quarter of it is no property of the roof: profiles are measured in light since, see
-//! [`crate::raster::Channel::to_light`].)
+//! [`crate::raster::Channel::to_linear_light`].)
 //!
 //! Tried and left out: evidence from the directions of the edgels besides their strength (the same
 //! coverage of true roof edges at the same number of segments), and chains alone without growing (on two
@@ -30,22 +30,22 @@ use super::trace::SegmentTrace;
 use super::{ImageSegment, SegmentKind};
 use crate::geometry::Segment2;
 use crate::params::SegmentParams;
-use crate::raster::{Gray, Warmth, gaussian_blur};
+use crate::raster::{Gray, RedBlueDifference, gaussian_blur};
 
 /// The straight segments of an image, directed by contrast: edges in grey values first, then in colour, then bars. `gray` and
-/// `warmth` are of one size; there is no `warmth` where there is no colour.
+/// `red_blue` are of one size; there is no `red_blue` where there is no colour.
 pub fn detect_segments(
     gray: &Gray,
-    warmth: Option<&Warmth>,
+    red_blue: Option<&RedBlueDifference>,
     params: &SegmentParams,
 ) -> (Vec<ImageSegment>, SegmentTrace) {
     let smooth = gaussian_blur(gray, params.edgels.smoothing_px);
     let mut trace = SegmentTrace::default();
     let mut segments = edge_segments(gray, &smooth, SegmentKind::Edge, params, &mut trace);
     if params.colors.detect
-        && let Some(warmth) = warmth
+        && let Some(red_blue) = red_blue
     {
-        let found = color_segments(warmth, params, &mut trace);
+        let found = color_segments(red_blue, params, &mut trace);
         add_clear(&mut segments, found, params.colors.clear_px, &mut trace);
     }
     if params.bars.detect {
@@ -57,16 +57,16 @@ pub fn detect_segments(
 
 /// Segments on steps of colour, sought where each pixel has a colour of its own.
 fn color_segments(
-    warmth: &Warmth,
+    red_blue: &RedBlueDifference,
     params: &SegmentParams,
     trace: &mut SegmentTrace,
 ) -> Vec<ImageSegment> {
-    let image = warmth.at_grain();
+    let image = red_blue.at_full_color();
     let smooth = gaussian_blur(&image, params.edgels.smoothing_px);
     let mut own = SegmentTrace::default();
     let found = edge_segments(&image, &smooth, SegmentKind::Color, params, &mut own);
-    trace.add(own, warmth.grain_px);
-    let enlarged = found.into_iter().map(|s| s.enlarged(warmth.grain_px));
+    trace.add(own, red_blue.subsampling);
+    let enlarged = found.into_iter().map(|s| s.enlarged(red_blue.subsampling));
     enlarged.collect()
 }
 
@@ -189,7 +189,7 @@ mod tests {
             let mut gray = Gray::from_fn(64, 64, |_, _| 0.5);
             add_noise(&mut warm, 2.0 / 255.0, step as u64);
             add_noise(&mut gray, 2.0 / 255.0, 100 + step as u64);
-            let warm = Warmth::new(warm);
+            let warm = RedBlueDifference::new(warm);
             let (segments, _) = detect_segments(&gray, Some(&warm), &SegmentParams::default());
             assert_eq!(segments.len(), 1, "at {angle}");
             let found = &segments[0];
@@ -234,9 +234,9 @@ mod tests {
             let mut warm = step_edge(128, 128, angle, 0.2);
             let gray = Gray::from_fn(128, 128, |_, _| 0.5);
             add_noise(&mut warm, 2.0 / 255.0, step as u64);
-            let own = Warmth::new(warm.clone());
-            let shared = Warmth::new(subsampled(&warm));
-            assert_eq!((own.grain_px, shared.grain_px), (1, 2), "at {angle}");
+            let own = RedBlueDifference::new(warm.clone());
+            let shared = RedBlueDifference::new(subsampled(&warm));
+            assert_eq!((own.subsampling, shared.subsampling), (1, 2), "at {angle}");
             let ratio = shared.noise / own.noise;
             // Interpolating smooths the noise, too: to (1 6 1) / 8 of it in either direction, of which the filter sees 0.35.
             assert!((0.3..0.4).contains(&ratio), "{ratio}");
@@ -257,8 +257,8 @@ mod tests {
     fn tiny_photographs_whose_colour_was_interpolated_have_no_segments() {
         for (width, height) in [(9, 1), (1, 9), (9, 2), (9, 3), (4, 4)] {
             let ramp = |x: usize, y: usize| 0.1 * (x + y) as f32;
-            let warm = Warmth::new(Gray::from_fn(width, height, ramp));
-            assert_eq!(warm.grain_px, 2, "{width} x {height}");
+            let warm = RedBlueDifference::new(Gray::from_fn(width, height, ramp));
+            assert_eq!(warm.subsampling, 2, "{width} x {height}");
             let gray = Gray::from_fn(width, height, |_, _| 0.5);
             let (segments, _) = detect_segments(&gray, Some(&warm), &SegmentParams::default());
             assert!(segments.is_empty());
@@ -271,14 +271,14 @@ mod tests {
         let gray = Gray::from_fn(400, 400, |_, _| 0.5);
         let mut warm = step_edge(400, 400, 0.3, 0.3);
         add_noise(&mut warm, 8.0 / 255.0, 3);
-        let shared = Warmth::new(subsampled(&warm));
-        let found = |warmth: &Warmth| {
-            let (segments, _) = detect_segments(&gray, Some(warmth), &SegmentParams::default());
+        let shared = RedBlueDifference::new(subsampled(&warm));
+        let found = |red_blue: &RedBlueDifference| {
+            let (segments, _) = detect_segments(&gray, Some(red_blue), &SegmentParams::default());
             segments.len()
         };
         assert_eq!(found(&shared), 1);
-        let believed = Warmth {
-            grain_px: 1,
+        let believed = RedBlueDifference {
+            subsampling: 1,
             ..shared
         };
         assert!(found(&believed) > 1, "or nothing was planted");

@@ -253,7 +253,7 @@ impl Run {
         match stage {
             Stage::Segments => {
                 let per_view = map_shared("views", &scene.views, 0.0..1.0, |_, view| {
-                    detect_segments(&view.gray, view.warmth.as_ref(), &params.segments)
+                    detect_segments(&view.gray, view.red_blue.as_ref(), &params.segments)
                 });
                 let (value, trace) = per_view.into_iter().unzip();
                 r.segments = Some(Outcome { value, trace });

@@ -106,7 +106,7 @@ pub fn seen_alone(scene: &Scene, plane: &Plane, region: &Region, map: &Consisten
         if alone.peek().is_none() {
             continue;
         }
-        let warmth = look(view, Channel::Warmth);
+        let warmth = look(view, Channel::RedBlue);
         let looks = Looks { grey, warmth };
         let Some(surface) = Surface::known(&looks, &known, least, map) else {
             continue;

@@ -68,7 +68,7 @@ pub fn fill_gaps(colours: &mut [[f32; 3]], known: &[bool], width: usize, height:
 
 /// The colour of a pixel in a raster of half the size, bilinear.
 fn doubled(half: &[[f32; 3]], w: usize, h: usize, x: usize, y: usize) -> [f32; 3] {
-    // The centre of pixel x lies at (x + 0.5) / 2: a quarter before or behind the centre of pixel x / 2.
+    // The centre of pixel x lies a quarter before or behind the centre of pixel x / 2.
     let near = |i: usize, n: usize| {
         let other = if i.is_multiple_of(2) {
             (i / 2).saturating_sub(1)

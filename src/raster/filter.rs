@@ -1,9 +1,10 @@
 //! Separable filters with clamped borders.
 
-use super::Gray;
+use super::gray::Gray;
 use crate::math;
 
-/// Gaussian blur with standard deviation `sigma_px`; borders are clamped. The kernel reaches 3 sigma.
+/// Gaussian blur with standard deviation `sigma_px`; borders are clamped. The kernel reaches 3
+/// sigma.
 pub fn gaussian_blur(input: &Gray, sigma_px: f64) -> Gray {
     let radius = (3.0 * sigma_px).ceil().max(1.0) as usize;
     let mut kernel: Vec<f64> = (0..=radius)
@@ -18,7 +19,7 @@ pub fn gaussian_blur(input: &Gray, sigma_px: f64) -> Gray {
         return Gray::new(w, h);
     }
 
-    // Rows blurred along x are kept only as long as a row around them wants them: row y in slot y mod slots.
+    // Rows blurred along x are kept in a ring, as long as a row within the radius needs them.
     let slots = 2 * radius + 1;
     let mut rows = vec![0.0f32; slots * w];
     let mut padded = vec![0.0f32; w + 2 * radius];
@@ -53,7 +54,7 @@ pub fn gaussian_blur(input: &Gray, sigma_px: f64) -> Gray {
     output
 }
 
-/// Blurs one row; `padded` is room for it and the reach of the kernel on either side.
+/// Blurs one row; `padded` is a buffer for it and the kernel radius on either side.
 fn blur_row(row: &[f32], kernel: &[f32], padded: &mut [f32], out: &mut [f32]) {
     let (w, radius) = (row.len(), kernel.len() - 1);
     padded[..radius].fill(row[0]);

@@ -1,5 +1,6 @@
-//! JPEG, decoded as crate `image` does it, but by the one instance of the decoder that crate `tiff` brings along for JPEG in
-//! TIFF: `image` would bring two more, for other ways to hold the same bytes (a tenth of a megabyte of wasm).
+//! JPEG, decoded as crate `image` does it, but by the instance of the decoder that crate `tiff`
+//! brings along: `image` would add two more, for other ways to hold the same bytes (100 kB of
+//! wasm).
 
 use image::error::{DecodingError, ImageFormatHint, LimitError, LimitErrorKind};
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageResult};
@@ -59,7 +60,7 @@ impl ImageDecoder for Jpeg {
     }
 
     fn read_image_boxed(self: Box<Self>, buf: &mut [u8]) -> ImageResult<()> {
-        // Without the asterisk the box would be asked, and ask this again.
+        // Without the asterisk this method would call itself.
         (*self).read_image(buf)
     }
 }

@@ -1,9 +1,9 @@
 //! Photographs from JPEG, PNG and TIFF bytes.
 //!
-//! The format is told by the content. Alpha is dropped. 16-bit images, of which many cameras fill only
-//! 10 to 14 bits, are divided by the smallest power of two that holds their brightest value, and their
-//! grey values keep the full depth. An orientation in the EXIF header is reported, never applied: the
-//! orientation files describe the pixels as they are stored.
+//! The format follows from the content. Alpha is dropped. 16-bit images, of which many cameras
+//! fill only 10 to 14 bits, are divided by the smallest power of two that holds their brightest
+//! value, and their grey values keep the full depth. An orientation in the EXIF header is
+//! reported, never applied: the orientation files describe the pixels as they are stored.
 
 use std::io::Cursor;
 
@@ -12,30 +12,10 @@ use image::codecs::tiff::TiffDecoder;
 use image::error::{LimitError, LimitErrorKind};
 use image::{ImageDecoder, ImageError, ImageFormat, ImageResult, Limits};
 
-use super::Gray;
 use super::jpeg::Jpeg;
+use super::photograph::Photograph;
 use super::samples::Samples;
 use crate::error::{Error, Result};
-
-/// A decoded photograph.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Photograph {
-    /// Colours; a grey image has three equal channels.
-    pub rgb: image::RgbImage,
-    /// Grey values, 0 to 1.
-    pub gray: Gray,
-}
-
-impl Photograph {
-    /// The part at column, row of this width and height; it must lie inside.
-    pub fn crop(&self, [column, row, width, height]: [u32; 4]) -> Self {
-        let rgb = image::imageops::crop_imm(&self.rgb, column, row, width, height).to_image();
-        let gray = Gray::from_fn(width as usize, height as usize, |x, y| {
-            self.gray.get(x + column as usize, y + row as usize)
-        });
-        Self { rgb, gray }
-    }
-}
 
 /// What the header of an image says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,14 +24,15 @@ pub struct ImageHeader {
     pub width: u32,
     /// Height, pixels.
     pub height: u32,
-    /// Does EXIF ask viewers to turn the image?
+    /// Does EXIF say that viewers should turn the image?
     pub turned: bool,
 }
 
 /// Most pixels in one image: larger than the largest aerial frame camera (about 450 megapixels).
 const MAX_PIXELS: u64 = 600_000_000;
 
-/// No encoding packs more pixels into a byte (deflate: a thousand bytes): what claims more would only cost memory.
+/// No encoding packs more pixels into a byte (deflate: a thousand), so that a file which claims
+/// more is refused before memory is taken.
 const MOST_PIXELS_PER_BYTE: u64 = 4096;
 
 /// The format of an image that can be read, by its first bytes.
@@ -82,7 +63,7 @@ pub fn load_image(file: &str, bytes: &[u8]) -> Result<Photograph> {
 /// The samples as they are stored.
 pub(crate) fn decode(file: &str, bytes: &[u8]) -> Result<Samples> {
     if image_format(bytes) == Some(ImageFormat::Jpeg) && !jpeg_is_complete(bytes) {
-        // The decoder would fill what is missing with grey, where no line is ever found.
+        // The decoder would fill the missing part with grey.
         return Err(unreadable(file, "the JPEG is cut off before its end"));
     }
     let decoder = decoder(file, bytes)?;
@@ -96,17 +77,17 @@ pub(crate) fn decode(file: &str, bytes: &[u8]) -> Result<Samples> {
     })
 }
 
-/// What is asked of a decoder. All else that crate `image` can ask of one stays out of the wasm.
-trait Source {
+/// The part of a decoder's interface that is used: the rest stays out of the wasm.
+trait SampleSource {
     /// Width and height, pixels.
     fn size(&self) -> (u32, u32);
-    /// Does EXIF ask viewers to turn the image?
+    /// Does EXIF say that viewers should turn the image?
     fn turned(&mut self) -> bool;
     /// All samples; `None` for floating-point values.
     fn samples(self: Box<Self>) -> ImageResult<Option<Samples>>;
 }
 
-impl<D: ImageDecoder> Source for D {
+impl<D: ImageDecoder> SampleSource for D {
     fn size(&self) -> (u32, u32) {
         self.dimensions()
     }
@@ -118,13 +99,13 @@ impl<D: ImageDecoder> Source for D {
 
     fn samples(self: Box<Self>) -> ImageResult<Option<Samples>> {
         let (size, color) = (self.dimensions(), self.color_type());
-        let mut bytes = room(self.total_bytes())?;
+        let mut bytes = zeroed_buffer(self.total_bytes())?;
         (*self).read_image(&mut bytes)?;
         Ok(Samples::from_bytes(size, color, bytes))
     }
 }
 
-fn room(total_bytes: u64) -> ImageResult<Vec<u8>> {
+fn zeroed_buffer(total_bytes: u64) -> ImageResult<Vec<u8>> {
     let most = isize::MAX as u64;
     if total_bytes > most {
         let kind = LimitErrorKind::InsufficientMemory;
@@ -133,7 +114,7 @@ fn room(total_bytes: u64) -> ImageResult<Vec<u8>> {
     Ok(vec![0; total_bytes as usize])
 }
 
-fn decoder<'a>(file: &str, bytes: &'a [u8]) -> Result<Box<dyn Source + 'a>> {
+fn decoder<'a>(file: &str, bytes: &'a [u8]) -> Result<Box<dyn SampleSource + 'a>> {
     let format = image_format(bytes)
         .ok_or_else(|| unreadable(file, "its content is neither JPEG nor PNG nor TIFF"))?;
     let decoder = decoder_of(format, bytes).map_err(|e| unreadable(file, &e.to_string()))?;
@@ -159,7 +140,7 @@ fn decoder<'a>(file: &str, bytes: &'a [u8]) -> Result<Box<dyn Source + 'a>> {
     Ok(decoder)
 }
 
-fn decoder_of<'a>(format: ImageFormat, bytes: &'a [u8]) -> ImageResult<Box<dyn Source + 'a>> {
+fn decoder_of<'a>(format: ImageFormat, bytes: &'a [u8]) -> ImageResult<Box<dyn SampleSource + 'a>> {
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(MAX_PIXELS * 8);
     let file = Cursor::new(bytes);
@@ -173,7 +154,7 @@ fn decoder_of<'a>(format: ImageFormat, bytes: &'a [u8]) -> ImageResult<Box<dyn S
 fn limited<'a>(
     mut decoder: impl ImageDecoder + 'a,
     limits: Limits,
-) -> ImageResult<Box<dyn Source + 'a>> {
+) -> ImageResult<Box<dyn SampleSource + 'a>> {
     decoder.set_limits(limits)?;
     Ok(Box::new(decoder))
 }
@@ -186,8 +167,10 @@ fn unreadable(file: &str, problem: &str) -> Error {
     }
 }
 
-/// Does the entropy-coded data of a JPEG run to its end-of-image marker? Segments are stepped over by their
-/// lengths, so that a thumbnail's marker inside one does not count.
+/// Does the entropy-coded data of a JPEG run to its end-of-image marker?
+///
+/// Segments are skipped by their lengths, so that the marker of a thumbnail inside one does not
+/// count.
 fn jpeg_is_complete(bytes: &[u8]) -> bool {
     let mut i = 2;
     while let Some(&[a, marker]) = bytes.get(i..i + 2) {
@@ -209,6 +192,7 @@ fn jpeg_is_complete(bytes: &[u8]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::raster::Gray;
     use image::{DynamicImage, ImageBuffer, Luma, Rgb, Rgba};
 
     fn encode(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {

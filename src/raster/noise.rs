@@ -1,21 +1,21 @@
-//! How noisy an image is (Immerkaer 1996, "Fast noise variance estimation").
+//! Standard deviation of the noise of an image (Immerkaer 1996, "Fast noise variance estimation").
 //!
-//! The difference of two Laplacians is blind to planes and, nearly, to edges; what it shows of a flat area is noise.
-//! The median instead of the published mean keeps textured areas out.
+//! The difference of two Laplacians is zero on planes and nearly so on edges: on a flat area it is
+//! noise. The median instead of the published mean keeps textured areas out.
 
-use super::Gray;
+use super::gray::Gray;
 
-/// Every how many rows the image is looked at: noise is everywhere.
+/// Only every fourth row is used, because noise is everywhere.
 const ROW_STEP: usize = 4;
 /// Standard deviation of the response to white noise of standard deviation one.
 const GAIN: f64 = 6.0;
 /// Median of the absolute value of a standard normal variable.
 const MEDIAN_OF_NORMAL: f64 = 0.6745;
-/// Rounding to 256 grey values alone.
+/// Standard deviation of rounding to 256 grey values.
 const QUANTISATION: f64 = 0.29 / 255.0;
 
 /// Standard deviation of the noise of one pixel, grey values 0 to 1; never below that of rounding.
-pub fn noise_of(gray: &Gray) -> f64 {
+pub fn estimate_noise(gray: &Gray) -> f64 {
     let rows = (1..gray.height.saturating_sub(1)).step_by(ROW_STEP);
     let mut responses: Vec<f64> = rows
         .flat_map(|y| (1..gray.width.saturating_sub(1)).map(move |x| (x, y)))
@@ -48,7 +48,7 @@ mod tests {
     #[test]
     fn planted_noise_is_recovered_beside_slopes_and_edges() {
         for sigma in [0.004f32, 0.01, 0.03] {
-            let found = noise_of(&noisy(sigma));
+            let found = estimate_noise(&noisy(sigma));
             assert!(
                 (found / f64::from(sigma) - 1.0).abs() < 0.06,
                 "{found} of {sigma}"
@@ -63,7 +63,7 @@ mod tests {
             Gray::from_fn(2, 2, |_, _| 0.5),
             Gray::from_fn(0, 0, |_, _| 0.5),
         ] {
-            assert_eq!(noise_of(&gray), QUANTISATION);
+            assert_eq!(estimate_noise(&gray), QUANTISATION);
         }
     }
 }

@@ -1,12 +1,12 @@
 //! Samples as an image file stores them, and the photograph they make.
 //!
-//! What crate `image` would convert for us comes with conversions between all its kinds of pixels and colour spaces (30 kB
-//! of wasm); a photograph needs two depths of grey or RGB.
+//! The conversions of crate `image` bring in those between all its pixel types and colour spaces
+//! (30 kB of wasm); a photograph needs two depths of grey or RGB.
 
 use image::ColorType;
 
-use super::Gray;
-use super::load::Photograph;
+use super::gray::Gray;
+use super::photograph::{Photograph, PixelWindow};
 
 /// The samples of all pixels, row by row.
 pub(crate) struct Samples {
@@ -48,13 +48,13 @@ impl Samples {
         })
     }
 
-    /// The part at column, row of this width and height; it must lie inside.
-    pub fn crop(&self, part: [u32; 4]) -> Self {
-        let [_, _, width, height] = part;
+    /// The window at column, row of this width and height; it must lie inside.
+    pub fn crop(&self, window: PixelWindow) -> Self {
+        let [_, _, width, height] = window;
         let (across, channels) = (self.width as usize, self.channels);
         let values = match &self.values {
-            Values::Eight(all) => Values::Eight(cut(all, across, channels, part)),
-            Values::Sixteen(all) => Values::Sixteen(cut(all, across, channels, part)),
+            Values::Eight(all) => Values::Eight(cut(all, across, channels, window)),
+            Values::Sixteen(all) => Values::Sixteen(cut(all, across, channels, window)),
         };
         Self {
             width,
@@ -72,7 +72,7 @@ impl Samples {
         }
     }
 
-    /// Colours and grey values; `brightest` is the brightest value of the whole image, where it has 16 bits.
+    /// Colours and grey values; `brightest` is that of the whole image, where it has 16 bits.
     pub fn photograph(self, brightest: u16) -> Photograph {
         let (width, height, channels) = (self.width, self.height, self.channels);
         match self.values {
@@ -107,8 +107,8 @@ fn rgb<T: Copy>(pixel: &[T]) -> [T; 3] {
     }
 }
 
-fn cut<T: Copy>(all: &[T], across: usize, channels: usize, part: [u32; 4]) -> Vec<T> {
-    let [column, row, width, height] = part.map(|v| v as usize);
+fn cut<T: Copy>(all: &[T], across: usize, channels: usize, window: PixelWindow) -> Vec<T> {
+    let [column, row, width, height] = window.map(|v| v as usize);
     (row..row + height)
         .flat_map(|y| {
             let start = (y * across + column) * channels;

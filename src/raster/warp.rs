@@ -1,11 +1,11 @@
-//! Rasters filled from an image by a homography, four bilinear samples at a time: more would not fit the registers
-//! of either target.
+//! Rasters filled from an image by a homography, four bilinear samples at a time: more would not
+//! fit the registers of either target.
 
 use nalgebra::{Matrix3, Point2, Vector3};
-use wide::bytemuck::cast;
-use wide::{f32x4, i32x4};
+use wide::f32x4;
 
-use super::Gray;
+use super::bilinear::bilinear;
+use super::gray::Gray;
 use crate::geometry::bounds;
 
 /// A homography in f32, relative to a whole pixel near the raster so that no digits are lost.
@@ -18,7 +18,7 @@ pub struct Warp<'a> {
     limit: [f32; 2],
     /// Columns over which the positions of a row are a parabola, see [`span_of`].
     span: usize,
-    /// Everything falls into the image.
+    /// All samples lie inside the image.
     inside: bool,
 }
 
@@ -31,12 +31,13 @@ pub enum Outside {
     Nan,
 }
 
-/// How far, in pixels, the parabola of a row may lead from the true positions.
+/// Largest distance of the parabola of a row from the true positions, pixels.
 const TOLERANCE_PX: f64 = 1.0 / 256.0;
 
 impl<'a> Warp<'a> {
-    /// For a raster of `columns` by `rows`; `image_from_raster` maps its cells, whose centres are at + 0.5, to pixels. `None`
-    /// when some of it is behind the camera, or the image has less than two rows or columns.
+    /// For a raster of `columns` by `rows`; `image_from_raster` maps its cells, whose centres are
+    /// at + 0.5, to pixels. `None` when some of it is behind the camera, or the image has less
+    /// than two rows or columns.
     pub fn new(
         image: &'a Gray,
         image_from_raster: &Matrix3<f64>,
@@ -50,7 +51,8 @@ impl<'a> Warp<'a> {
         // The pixel whose centre lies before the first position.
         let start = |x: f64, size: usize| (x - 0.5).floor().clamp(0.0, (size - 2) as f64);
         let (x, y) = (start(min.x, image.width), start(min.y, image.height));
-        // Coordinates count from half a pixel beyond the first pixel's centre: rounded, they are its column and row.
+        // Coordinates count from half a pixel beyond the first pixel's centre: rounded, they are
+        // its column and row.
         let to_index = Matrix3::new(1.0, 0.0, -1.0 - x, 0.0, 1.0, -1.0 - y, 0.0, 0.0, 1.0);
         let to_centre = Matrix3::new(1.0, 0.0, 0.5, 0.0, 1.0, 0.5, 0.0, 0.0, 1.0);
         let m = to_index * image_from_raster * to_centre;
@@ -80,7 +82,7 @@ impl<'a> Warp<'a> {
     ) {
         let (image, first) = (self.image, self.first);
         let (low, [right, lower]) = (f32x4::splat(-0.5), self.limit.map(f32x4::splat));
-        // Written so that what is no number becomes a border, too.
+        // Written so that NaN becomes a border, too.
         let clamp = |x: f32x4, high: f32x4| {
             let x = x.simd_ge(low).select(x, low);
             x.simd_le(high).select(x, high)
@@ -104,8 +106,9 @@ impl<'a> Warp<'a> {
         });
     }
 
-    /// Fills a row of the raster by what `value` makes of the coordinates of each four positions: true ones at both
-    /// ends and in the middle of every span, a parabola by forward differences between.
+    /// Fills a row of the raster by what `value` makes of the coordinates of each four positions:
+    /// true ones at both ends and in the middle of every span, a parabola by forward differences
+    /// between.
     #[inline(always)]
     fn positions(&self, row: usize, out: &mut [f32], value: impl Fn(f32x4, f32x4) -> f32x4) {
         let v = row as f32;
@@ -123,7 +126,7 @@ impl<'a> Warp<'a> {
             column += length;
             let end = position(column);
             let [mut x, mut y] =
-                [0, 1].map(|i| Parabola::new([start[i], middle[i], end[i]], length));
+                [0, 1].map(|i| ForwardDifferences::new([start[i], middle[i], end[i]], length));
             start = end;
             let mut fours = out.chunks_exact_mut(4);
             for out in &mut fours {
@@ -143,13 +146,14 @@ fn last_before(end: f32) -> f32 {
     end.next_down() - 0.5
 }
 
-/// Do all samples have four pixels around them? Rows are filled in fours, a little beyond their ends.
+/// Do all samples have four pixels around them? Rows are filled in fours, a little beyond their
+/// ends.
 fn falls_inside(
     image: &Gray,
     image_from_raster: &Matrix3<f64>,
     [columns, rows]: [usize; 2],
 ) -> bool {
-    // Far more than f32 and the parabola are off by, in the largest images, too: nothing looks for the border then.
+    // Far more than the errors of f32 and of the parabola, so that no sample need be checked.
     const MARGIN_PX: f64 = 0.5;
     let end = [columns.next_multiple_of(4) as f64, rows as f64];
     let Some(corners) = corners(image_from_raster, [0.0, 0.0], end) else {
@@ -162,9 +166,11 @@ fn falls_inside(
     within(min.x, max.x, image.width) && within(min.y, max.y, image.height)
 }
 
-/// Over how many columns, a power of two from 4 to 256, positions `m` (u, v, 1) are a parabola in u: through both ends and
-/// the middle of L columns it is off by less than `0.05 L^3 |f| / 6`, with the third derivative `f = 6 x' (m20 / w)^2`,
-/// which is largest at a corner.
+/// Number of columns, a power of two from 4 to 256, over which the positions `m` (u, v, 1) are a
+/// parabola in u within [`TOLERANCE_PX`].
+///
+/// The error of the parabola through both ends and the middle of L columns is below `0.05 L^3 |f|
+/// / 6`, with the third derivative `f = 6 x' (m20 / w)^2`, which is largest at a corner.
 fn span_of(m: &Matrix3<f64>, [columns, rows]: [f64; 2]) -> usize {
     let mut off_by = 0.0_f64;
     for (u, v) in [(0.0, 0.0), (columns, 0.0), (0.0, rows), (columns, rows)] {
@@ -180,8 +186,8 @@ fn span_of(m: &Matrix3<f64>, [columns, rows]: [f64; 2]) -> usize {
     span
 }
 
-/// The values of a parabola at 0, 1, 2 and so on, four at a time.
-struct Parabola {
+/// The values of a parabola at 0, 1, 2 and so on by forward differences, four at a time.
+struct ForwardDifferences {
     /// The next four.
     values: f32x4,
     /// From these to the four after them.
@@ -190,7 +196,7 @@ struct Parabola {
     growth: f32x4,
 }
 
-impl Parabola {
+impl ForwardDifferences {
     /// From the values at 0, n / 2 and n.
     #[inline(always)]
     fn new([start, middle, end]: [f32; 3], n: f32) -> Self {
@@ -215,59 +221,7 @@ impl Parabola {
     }
 }
 
-/// Bilinear values at coordinates counted from half a pixel right of and below the centre of pixel `first`, which must
-/// have a right and a lower neighbour.
-// Everything below is inlined by force: called for every four samples, the calls took longer than the samples.
-#[inline(always)]
-pub(crate) fn bilinear(image: &Gray, first: usize, x: f32x4, y: f32x4) -> f32x4 {
-    // Adding 1.5 x 2^23 rounds to a whole number, which the last bits then hold; a conversion costs wasm six instructions.
-    const SHIFT: f32 = 12_582_912.0;
-    const SHIFT_BITS: i32 = SHIFT.to_bits() as i32;
-    // Of fewer bits, the sum of an index and a width cannot overflow, and nothing needs to look whether it does.
-    const INDEX: i32 = i32::MAX;
-    const WIDTH: i32 = i32::MAX / 2;
-    let (shift, half) = (f32x4::splat(SHIFT), f32x4::splat(0.5));
-    let (column, row) = (x + shift, y + shift);
-    let (fx, fy) = (x - (column - shift) + half, y - (row - shift) + half);
-    let width = image.width as i32 & WIDTH;
-    let first = (first as i32)
-        .wrapping_sub(SHIFT_BITS)
-        .wrapping_sub(SHIFT_BITS.wrapping_mul(width));
-    let (column, row): (i32x4, i32x4) = (cast(column), cast(row));
-    let index = (row * i32x4::splat(width) + column + i32x4::splat(first)) & i32x4::splat(INDEX);
-    let [i, j, k, l] = index.to_array();
-    let [i, j, k, l] = [
-        block_at(image, i, width),
-        block_at(image, j, width),
-        block_at(image, k, width),
-        block_at(image, l, width),
-    ];
-    let [a, b] = columns([i[0], j[0], k[0], l[0]]);
-    let [c, d] = columns([i[1], j[1], k[1], l[1]]);
-    let top = a + (b - a) * fx;
-    let bottom = c + (d - c) * fx;
-    top + (bottom - top) * fy
-}
-
-/// A pixel and its right neighbour, and the two below.
-#[inline(always)]
-fn block_at(image: &Gray, index: i32, width: i32) -> [[f32; 2]; 2] {
-    let (i, w) = (index as u32 as usize, width as u32 as usize);
-    // One comparison for all four.
-    let pixels = &image.data[i..i + (w + 2)];
-    [[pixels[0], pixels[1]], [pixels[w], pixels[w + 1]]]
-}
-
-/// The left and the right of four pairs.
-#[inline(always)]
-fn columns([i, j, k, l]: [[f32; 2]; 4]) -> [f32x4; 2] {
-    let first: f32x4 = cast([i, j]);
-    let last: f32x4 = cast([k, l]);
-    let (even, odd) = (first.unpack_lo(last), first.unpack_hi(last));
-    [even.unpack_lo(odd), even.unpack_hi(odd)]
-}
-
-/// Where the corners of a rectangle go under a homography; `None` when one is beyond the horizon.
+/// The corners of a rectangle mapped by a homography; `None` when one is beyond the horizon.
 pub fn corners(h: &Matrix3<f64>, min: [f64; 2], max: [f64; 2]) -> Option<[Point2<f64>; 4]> {
     let mut out = [Point2::origin(); 4];
     let rectangle = [

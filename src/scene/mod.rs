@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::camera::Camera;
 use crate::ids::ViewId;
-use crate::raster::{Channel, Gray, Warmth, noise_of};
+use crate::raster::{Channel, Gray, RedBlueDifference, estimate_noise};
 
 /// One photograph with its orientation.
 #[derive(Clone, Debug)]
@@ -23,29 +23,29 @@ pub struct View {
     pub rgb: image::RgbImage,
     /// Standard deviation of the noise of one pixel of `gray`.
     pub noise: f64,
-    /// The warmth of the colours, of the camera's size; `None` for a photograph without colour.
-    pub warmth: Option<Warmth>,
+    /// The red_blue of the colours, of the camera's size; `None` for a photograph without colour.
+    pub red_blue: Option<RedBlueDifference>,
 }
 
 impl View {
     /// A view, whose noise is measured.
     pub fn new(name: String, camera: Camera, gray: Gray, rgb: image::RgbImage) -> Self {
-        let (noise, warmth) = (noise_of(&gray), Warmth::of(&rgb));
+        let (noise, red_blue) = (estimate_noise(&gray), RedBlueDifference::of(&rgb));
         Self {
             name,
             camera,
             gray,
             rgb,
             noise,
-            warmth,
+            red_blue,
         }
     }
 
     /// A channel of the view, and the standard deviation of the noise of one of its pixels. Grey values stand for a
-    /// warmth that is not there.
+    /// red_blue that is not there.
     pub fn channel(&self, channel: Channel) -> (&Gray, f64) {
-        match (&self.warmth, channel) {
-            (Some(warmth), Channel::Warmth) => (&warmth.image, warmth.noise),
+        match (&self.red_blue, channel) {
+            (Some(red_blue), Channel::RedBlue) => (&red_blue.image, red_blue.noise),
             _ => (&self.gray, self.noise),
         }
     }

@@ -37,7 +37,7 @@ use crate::camera::undistort;
 use crate::error::{Error, Result};
 use crate::orientation::InputFile;
 use crate::orientation_check::Patient;
-use crate::raster::{Gray, load_image, load_part};
+use crate::raster::{Gray, load_image, load_window};
 use crate::scene::{Scene, Survey, View};
 
 use self::plan::{Plan, PlannedView};
@@ -141,7 +141,7 @@ fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
     };
     let mut photograph = match source == all {
         true => load_image(&file.path, &file.bytes)?,
-        false => load_part(&file.path, &file.bytes, source)?,
+        false => load_window(&file.path, &file.bytes, source)?,
     };
     if photograph.rgb.dimensions() != (source[2], source[3]) {
         return Err(Error::File {

@@ -538,7 +538,7 @@ mod tests {
         let (mut scene, truth) = hip_scene(320);
         for view in &mut scene.views {
             view.gray.data.fill(0.5);
-            view.warmth = None;
+            view.red_blue = None;
         }
         // A line far away, to which the facets owe their certainty.
         let far = known(Segment3::new(
@@ -601,7 +601,7 @@ mod tests {
             let mut scene = scene.clone();
             for view in &mut scene.views[..blank] {
                 view.gray.data.fill(0.5);
-                view.warmth = None;
+                view.red_blue = None;
             }
             found(&scene, &[], &model(&truth, &[])).len()
         };

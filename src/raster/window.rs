@@ -1,8 +1,9 @@
-//! A part of a photograph, without holding all of it where the format allows.
+//! A window of a photograph, read without holding all of it where the format allows.
 //!
-//! TIFF is stored in strips or tiles: only those that touch the part are decoded. JPEG and PNG are decoded whole and
-//! cut at once. TIFFs in other colours than grey, RGB and RGBA of 8 or 16 bits, or with separate planes, are decoded
-//! whole too. Of those with 16 bits every chunk is looked at once, for the brightest value.
+//! TIFF is stored in strips or tiles, and only those that touch the window are decoded. JPEG and
+//! PNG are decoded whole and cropped at once, as are TIFFs with separate planes or in other
+//! colours than grey, RGB and RGBA of 8 or 16 bits. With 16 bits every chunk is read once for the
+//! brightest value, which scales all windows of an image alike.
 
 use std::io::Cursor;
 
@@ -11,27 +12,24 @@ use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::Tag;
 
-use super::load::decode;
-use super::load::{Photograph, image_format};
+use super::load::{decode, image_format};
+use super::photograph::{Photograph, PixelWindow};
 use super::samples::{Samples, Values, brightest};
 use crate::error::Result;
 
-/// Column, row, width, height, pixels.
-pub type Part = [u32; 4];
-
-/// Decodes a part of an image; it must lie inside. `file` is for messages.
-pub fn load_part(file: &str, bytes: &[u8], part: Part) -> Result<Photograph> {
-    let (samples, brightest) = match tiff_part(bytes, part) {
+/// Decodes a window of an image, inside which it must lie. `file` is for messages.
+pub fn load_window(file: &str, bytes: &[u8], window: PixelWindow) -> Result<Photograph> {
+    let (samples, brightest) = match tiff_window(bytes, window) {
         Some(found) => found,
         None => {
             let whole = decode(file, bytes)?;
-            (whole.crop(part), whole.brightest())
+            (whole.crop(window), whole.brightest())
         }
     };
     Ok(samples.photograph(brightest))
 }
 
-/// Bytes that decoding a part takes beyond the part itself: the whole image, or one strip or tile.
+/// Bytes that decoding a window takes beyond the window itself: the whole image, or one chunk.
 pub fn decoding_bytes(bytes: &[u8], [width, height]: [u32; 2]) -> u64 {
     const BYTES_PER_PIXEL: u64 = 6;
     let chunk = open(bytes).map(|tiff| tiff.decoder.chunk_dimensions());
@@ -41,7 +39,7 @@ pub fn decoding_bytes(bytes: &[u8], [width, height]: [u32; 2]) -> u64 {
 
 struct Tiff<'a> {
     decoder: Decoder<Cursor<&'a [u8]>>,
-    /// Samples of a pixel.
+    /// Samples a pixel.
     samples: usize,
     bits: u8,
     size: (u32, u32),
@@ -83,22 +81,22 @@ fn open(bytes: &[u8]) -> Option<Tiff<'_>> {
     })
 }
 
-/// The part, from the chunks that touch it, and the brightest value of the whole where it has 16 bits; `None` where
-/// the file is none of those that can be read so.
-fn tiff_part(bytes: &[u8], part: Part) -> Option<(Samples, u16)> {
+/// The window from the chunks that touch it, and the brightest value of the whole image where it
+/// has 16 bits; `None` for a file that cannot be read chunk by chunk.
+fn tiff_window(bytes: &[u8], window: PixelWindow) -> Option<(Samples, u16)> {
     let mut tiff = open(bytes)?;
-    let [_, _, width, height] = part;
+    let [_, _, width, height] = window;
     let count = width as usize * height as usize * tiff.samples;
     let (values, brightest) = if tiff.bits == 8 {
         let mut pixels = vec![0u8; count];
-        tiff.read(part, &mut pixels, |chunk| match chunk {
+        tiff.read(window, &mut pixels, |chunk| match chunk {
             DecodingResult::U8(values) => Some(values),
             _ => None,
         })?;
         (Values::Eight(pixels), 0)
     } else {
         let mut pixels = vec![0u16; count];
-        tiff.read(part, &mut pixels, |chunk| match chunk {
+        tiff.read(window, &mut pixels, |chunk| match chunk {
             DecodingResult::U16(values) => Some(values),
             _ => None,
         })?;
@@ -114,8 +112,8 @@ fn tiff_part(bytes: &[u8], part: Part) -> Option<(Samples, u16)> {
 }
 
 impl Tiff<'_> {
-    /// The brightest value of the whole image, chunk by chunk: parts of views must not be scaled each in its own
-    /// way. Alpha does not count.
+    /// The brightest value of the whole image, chunk by chunk, so that every window of it is scaled
+    /// alike. Alpha does not count.
     fn brightest(&mut self) -> Option<u16> {
         let (w, h) = self.decoder.chunk_dimensions();
         let count = self
@@ -133,10 +131,10 @@ impl Tiff<'_> {
         Some(most)
     }
 
-    /// Copies the part out of the chunks that touch it.
+    /// Copies the window out of the chunks that touch it.
     fn read<T: Copy>(
         &mut self,
-        [column, row, width, height]: Part,
+        [column, row, width, height]: PixelWindow,
         pixels: &mut [T],
         values: impl Fn(DecodingResult) -> Option<Vec<T>>,
     ) -> Option<()> {
@@ -184,7 +182,8 @@ mod tests {
         })
     }
 
-    /// The same as an uncompressed TIFF in tiles of 16 x 16 pixels, padded at the right and at the bottom.
+    /// The same as an uncompressed TIFF in tiles of 16 x 16 pixels, padded at the right and at the
+    /// bottom.
     fn tiled(rgb: &image::RgbImage) -> Vec<u8> {
         let (w, h) = rgb.dimensions();
         let (across, down) = (w.div_ceil(16), h.div_ceil(16));
@@ -241,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_has_the_pixels_of_the_whole() {
+    fn a_window_has_the_pixels_of_the_whole() {
         let rgb = places(101, 83);
         let deep = DynamicImage::ImageRgb8(rgb.clone()).into_rgb16();
         let files = [
@@ -257,21 +256,21 @@ mod tests {
         ];
         for bytes in &files {
             let whole = load_image("a", bytes).unwrap();
-            for part in [
+            for window in [
                 [0, 0, 101, 83],
                 [17, 30, 40, 33],
                 [90, 70, 11, 13],
                 [16, 16, 16, 16],
             ] {
                 assert_eq!(
-                    load_part("a", bytes, part).unwrap().rgb,
-                    whole.crop(part).rgb,
-                    "{part:?}"
+                    load_window("a", bytes, window).unwrap().rgb,
+                    whole.crop(window).rgb,
+                    "{window:?}"
                 );
             }
         }
         assert!(
-            tiff_part(&files[0], [17, 30, 40, 33]).is_some(),
+            tiff_window(&files[0], [17, 30, 40, 33]).is_some(),
             "tiles are read one by one"
         );
         assert_eq!(decoding_bytes(&files[0], [101, 83]), 16 * 16 * 6);
@@ -283,8 +282,8 @@ mod tests {
         let mut bytes = tiled(&places(64, 64));
         let end = bytes.len();
         bytes.truncate(end - 100);
-        assert!(load_part("a.tif", &bytes, [0, 0, 16, 16]).is_ok());
-        let message = load_part("a.tif", &bytes, [50, 50, 10, 10])
+        assert!(load_window("a.tif", &bytes, [0, 0, 16, 16]).is_ok());
+        let message = load_window("a.tif", &bytes, [50, 50, 10, 10])
             .unwrap_err()
             .to_string();
         assert!(
