@@ -1,35 +1,34 @@
 //! Straight pieces grown along their own line through the edgels ahead.
 //!
-//! B99 3.2 links edgels across one-pixel gaps only. On a tiled roof that leaves a weak ridge or eave in crumbs, all of
-//! them shorter than the 15 px that matching asks for, although together they are one line beyond doubt. So
-//! a piece predicts where its line goes on, takes up the edgels there that point the same way, and is
-//! fitted again. The whole line must then pass the tight threshold and the test of significance, in which the pixels
-//! of its gaps count against it.
+//! B99 3.2 links edgels across one-pixel gaps only. On a tiled roof that leaves a weak ridge or
+//! eave in fragments shorter than the 15 px that matching requires, although together they are
+//! clearly one line. Therefore a piece predicts where its line continues, takes up the edgels
+//! there with the same direction, and is fitted again. The whole line must then pass the tight
+//! threshold and the test of significance, in which the pixels of its gaps count against it.
 
 use nalgebra::Point2;
 
-use super::edgels::Edgel;
-use super::edgels::{NONE, Raster};
-use super::fit::{LineFit, Moments};
+use super::edgels::{Edgel, NONE, Raster};
+use super::regression::{PointMoments, RegressionLine};
 use crate::geometry::Segment2;
 use crate::params::SegmentParams;
 
 /// The edgels of a line in order along it, and the line.
 #[derive(Clone, Debug)]
-pub struct Grown {
+pub struct GrownLine {
     /// Indices into the edgels.
     pub edgels: Vec<u32>,
     /// Their positions, px.
     pub points: Vec<Point2<f64>>,
     /// The line fitted to them.
-    pub line: LineFit,
+    pub line: RegressionLine,
 }
 
-impl Grown {
+impl GrownLine {
     /// A line through these edgels.
     pub fn new(all: &[Edgel], edgels: Vec<u32>) -> Self {
         let points: Vec<_> = edgels.iter().map(|&i| all[i as usize].position).collect();
-        let line = LineFit::new(&points);
+        let line = RegressionLine::new(&points);
         Self {
             edgels,
             points,
@@ -61,15 +60,15 @@ pub fn grow_tight(
     seed: &[u32],
     free: &impl Fn(u32) -> bool,
     params: &SegmentParams,
-) -> Grown {
-    // Long gaps lead a weak line astray in texture; then it may still do with short ones.
+) -> GrownLine {
+    // Long gaps lead a weak line astray in texture, where short ones may still succeed.
     for gap_px in [params.grow_gap_px, params.grow_gap_px / 3] {
         let grown = grow(all, raster, seed, gap_px, free, params);
         if grown.line.is_tight(&grown.points, params) {
             return grown;
         }
     }
-    Grown::new(all, seed.to_vec())
+    GrownLine::new(all, seed.to_vec())
 }
 
 /// Grows a seed at both ends through the edgels that `free` allows.
@@ -80,10 +79,10 @@ fn grow(
     gap_px: usize,
     free: &impl Fn(u32) -> bool,
     params: &SegmentParams,
-) -> Grown {
-    let mut grown = Grown::new(all, seed.to_vec());
+) -> GrownLine {
+    let mut grown = GrownLine::new(all, seed.to_vec());
     let cosine = crate::math::cos(params.grow_turn_deg.to_radians());
-    let mut moments = Moments::about(grown.points[0]);
+    let mut moments = PointMoments::about(grown.points[0]);
     grown.points.iter().for_each(|p| moments.add(p));
     // The direction follows the contrast while growing forward and opposes it while growing back.
     for sense in [1.0, -1.0] {
@@ -99,12 +98,12 @@ fn grow(
     grown
 }
 
-/// The next edgel along the line beyond the last one, within the largest gap. `cosine` is the least one of its turn,
-/// negative where edgels run against the line.
+/// The next edgel along the line beyond the last one, within the largest gap. `cosine` is that of
+/// the largest turn, negative where edgels run against the line.
 fn ahead(
     all: &[Edgel],
     raster: &Raster,
-    grown: &Grown,
+    grown: &GrownLine,
     gap_px: usize,
     cosine: f64,
     free: &impl Fn(u32) -> bool,

@@ -1,19 +1,21 @@
-//! Edges measured again where a line is expected: "the third view without a segment" of B99 3.2, for
-//! every view of 3.4.
+//! Edges measured again where a line is expected: "the third view without a segment" of B99 3.2,
+//! for every view of 3.4.
 //!
-//! A detector decides before it knows of the other views: it cuts a weak edge into fragments, misses it, or
+//! A detector does not know the other views: it breaks a weak edge into fragments, misses it, or
 //! follows a gutter for half of its way along an eave. Once two views predict a line, the edge is
-//! sought again along the prediction: the profile across it is averaged over short pieces, so that a
-//! step far below the noise of a pixel shows, each piece gives one offset, and a robust line through the
-//! offsets is the measurement. Whether there is an edge is asked of the grey values, where it is of their light
-//! ([`crate::raster::Channel::to_linear_light`]). A view in which the pieces do not line up has no such edge.
+//! measured along the prediction: the profile across it is averaged over short pieces, so that a
+//! step far below the noise of a pixel shows, each piece gives one offset, and a robust line
+//! through the offsets is the measurement. Grey values decide whether there is an edge, linear
+//! light where it is ([`crate::raster::Channel::to_linear_light`]). A view in which the pieces do
+//! not line up has no edge there.
 //!
-//! Deviation: the paper verifies a view without a segment by correlation alone. Correlation says that
-//! the surroundings are alike, not where the line is; a measured offset takes part in the fit.
+//! Deviation: the paper verifies a view without a segment by correlation alone. Correlation says
+//! that the surroundings are alike, not where the line is; a measured offset takes part in the
+//! fit.
 
 use nalgebra::{Matrix2, Point2};
 
-use super::SegmentKind;
+use super::segment::SegmentKind;
 use crate::geometry::Segment2;
 use crate::ids::ViewId;
 use crate::raster::Gray;
@@ -21,8 +23,8 @@ use crate::sorting::sort_by;
 
 /// Shortest piece whose profile is averaged, px.
 pub const PIECE_PX: f64 = 5.0;
-/// Distance from the prediction up to which an edge is sought, px. Assumption: half the least distance of two
-/// edges that a detector with a smoothing of one pixel keeps apart.
+/// Distance from the prediction up to which an edge is sought, px. Assumption: half the least
+/// distance of two edges that a detector with a smoothing of one pixel keeps apart.
 const REACH_PX: f64 = 1.5;
 /// Step of the profile, px.
 const STEP_PX: f64 = 0.5;
@@ -32,7 +34,7 @@ const BASE: usize = 2;
 const SAMPLES: usize = STEPS + 2 * BASE;
 /// Steps of the profile.
 const STEPS: usize = 2 * (3 + 1) + 1;
-/// Least step of a piece against its own noise, standard deviations.
+/// Least step of a piece reversed_contrast its own noise, standard deviations.
 const SIGNIFICANT: f64 = 4.0;
 /// Offset from the robust line beyond which a piece does not belong to the edge, px.
 const INLIER_PX: f64 = 0.6;
@@ -50,7 +52,7 @@ const MIN_SHARE: f64 = 0.5;
 pub struct GuidedEdge {
     /// The view.
     pub view: ViewId,
-    /// What it is in the image: a step, or a bar.
+    /// Step or bar, and in which channel.
     pub kind: SegmentKind,
     /// The edge, from its first to its last piece, px.
     pub segment: Segment2,
@@ -62,28 +64,29 @@ pub struct GuidedEdge {
 
 /// A piece of the prediction: place along it and offset of the edge across it, px.
 #[derive(Clone, Copy)]
-struct Piece {
+struct ProfilePiece {
     along: f64,
     /// `None` without a significant edge in reach.
     offset: Option<f64>,
 }
 
-/// Seeks the edge along `expected` (directed by contrast: bright on the side of its normal). `core` is the
-/// stretch, px from the start, that decides whether there is one; beyond it pieces that lie on the same edge
-/// are kept. In a view that shows the line `against` its contrast the dark side is sought there; a bar has no sides, and is sought by
-/// its middle. The image is that of the channel of the `kind`, with the standard deviation of the noise of a pixel.
+/// Measures the edge along `expected` (directed by contrast: bright on the side of its normal).
+/// The stretch `core`, px from the start, decides whether there is one; beyond it, pieces on the
+/// same edge are kept. With `reversed_contrast` the dark side is on the side of the normal; a bar
+/// is measured along its middle. The image is that of the channel of the `kind`, with the standard
+/// deviation of the noise of a pixel.
 pub fn measure_edge(
     view: ViewId,
     (image, noise): (&Gray, f64),
     kind: SegmentKind,
     expected: &Segment2,
     core: [f64; 2],
-    against: bool,
+    reversed_contrast: bool,
 ) -> Option<GuidedEdge> {
     let count = (expected.length() / PIECE_PX) as usize;
     (count >= MIN_PIECES).then_some(())?;
     let size = expected.length() / count as f64;
-    let pieces: Vec<Piece> = (0..count)
+    let pieces: Vec<ProfilePiece> = (0..count)
         .filter_map(|i| {
             measure_piece(
                 image,
@@ -91,23 +94,24 @@ pub fn measure_edge(
                 expected,
                 (i as f64 + 0.5) * size,
                 size,
-                against,
+                reversed_contrast,
                 noise,
             )
         })
         .collect();
-    let decides = |p: &&Piece| p.along >= core[0] && p.along <= core[1];
-    let asked: Vec<Piece> = pieces.iter().filter(decides).copied().collect();
-    let line = OffsetLine::robust(&asked)?;
-    let on_edge = asked.iter().filter(|p| line.holds(p)).count();
-    if on_edge < MIN_PIECES || (on_edge as f64) < MIN_SHARE * asked.len() as f64 {
+    let inside_core = |p: &&ProfilePiece| p.along >= core[0] && p.along <= core[1];
+    let in_core: Vec<ProfilePiece> = pieces.iter().filter(inside_core).copied().collect();
+    let line = OffsetLine::robust(&in_core)?;
+    let on_edge = in_core.iter().filter(|p| line.contains(p)).count();
+    if on_edge < MIN_PIECES || (on_edge as f64) < MIN_SHARE * in_core.len() as f64 {
         return None;
     }
-    // A piece alone between others that are not on the edge lines up by chance.
-    let holds: Vec<bool> = pieces.iter().map(|p| line.holds(p)).collect();
-    let beside = |i: usize| (i > 0 && holds[i - 1]) || holds.get(i + 1).is_some_and(|h| *h);
-    let kept: Vec<Piece> = (0..pieces.len())
-        .filter(|&i| holds[i] && beside(i))
+    // A single piece between others off the edge lines up by chance.
+    let is_on_edge: Vec<bool> = pieces.iter().map(|p| line.contains(p)).collect();
+    let beside =
+        |i: usize| (i > 0 && is_on_edge[i - 1]) || is_on_edge.get(i + 1).is_some_and(|on| *on);
+    let kept: Vec<ProfilePiece> = (0..pieces.len())
+        .filter(|&i| is_on_edge[i] && beside(i))
         .map(|i| pieces[i])
         .collect();
     if kept.len() < MIN_PIECES {
@@ -123,9 +127,9 @@ fn measure_piece(
     expected: &Segment2,
     along: f64,
     size: f64,
-    against: bool,
+    reversed_contrast: bool,
     noise: f64,
-) -> Option<Piece> {
+) -> Option<ProfilePiece> {
     let (direction, normal) = (expected.direction(), expected.normal());
     let rows = size.round() as usize;
     let mut profile = [0.0f64; SAMPLES];
@@ -152,23 +156,24 @@ fn measure_piece(
     profile.iter_mut().for_each(|v| *v /= rows as f64);
     let mut light = profile;
     kind.channel().to_linear_light(&mut light);
-    let filter = Filter::of(kind, against);
+    let filter = Filter::of(kind, reversed_contrast);
     let [response, light] = [profile, light].map(|p| filter.response(&p));
     let least = SIGNIFICANT * noise * filter.gain() / (rows as f64).sqrt();
-    Some(Piece {
+    Some(ProfilePiece {
         along,
         offset: nearest_edge(&response, least).and_then(|k| offset(&light, k)),
     })
 }
 
-/// Weights of the grey values a pixel before, at and a pixel behind a place: their sum is largest where the edge is.
+/// Weights of the grey values one pixel before, at and one pixel beyond a place: the weighted sum
+/// is largest on the edge.
 #[derive(Clone, Copy)]
 struct Filter([f64; 3]);
 
 impl Filter {
-    fn of(kind: SegmentKind, against: bool) -> Self {
+    fn of(kind: SegmentKind, reversed_contrast: bool) -> Self {
         Self(match kind {
-            SegmentKind::Edge | SegmentKind::Color if against => [1.0, 0.0, -1.0],
+            SegmentKind::Edge | SegmentKind::Color if reversed_contrast => [1.0, 0.0, -1.0],
             SegmentKind::Edge | SegmentKind::Color => [-1.0, 0.0, 1.0],
             SegmentKind::BrightBar => [-0.5, 1.0, -0.5],
             SegmentKind::DarkBar => [0.5, -1.0, 0.5],
@@ -189,7 +194,8 @@ impl Filter {
     }
 }
 
-/// Index of the edge nearest to the middle of a profile: a maximum of the response that is at least half the largest one.
+/// Index of the edge nearest to the middle of a profile: a maximum of the response of at least
+/// half the largest one.
 fn nearest_edge(response: &[f64; STEPS], least: f64) -> Option<usize> {
     let inner = 1..STEPS - 1;
     let largest = response[inner.clone()].iter().copied().fold(0.0, f64::max);
@@ -218,7 +224,7 @@ struct OffsetLine {
 
 impl OffsetLine {
     /// The robust line through the offsets: iteratively reweighted least squares from their median.
-    fn robust(pieces: &[Piece]) -> Option<Self> {
+    fn robust(pieces: &[ProfilePiece]) -> Option<Self> {
         let points: Vec<(f64, f64)> = pieces
             .iter()
             .filter_map(|p| Some((p.along, p.offset?)))
@@ -261,7 +267,7 @@ impl OffsetLine {
         self.offset + self.slope * (along - self.middle)
     }
 
-    fn holds(&self, piece: &Piece) -> bool {
+    fn contains(&self, piece: &ProfilePiece) -> bool {
         piece
             .offset
             .is_some_and(|o| (o - self.at(piece.along)).abs() <= INLIER_PX)
@@ -272,11 +278,11 @@ impl OffsetLine {
         &self,
         (view, kind): (ViewId, SegmentKind),
         expected: &Segment2,
-        kept: &[Piece],
+        kept: &[ProfilePiece],
         size: f64,
     ) -> GuidedEdge {
         let n = kept.len() as f64;
-        let residual = |p: &Piece| p.offset.unwrap_or(0.0) - self.at(p.along);
+        let residual = |p: &ProfilePiece| p.offset.unwrap_or(0.0) - self.at(p.along);
         let squares: f64 = kept.iter().map(|p| residual(p) * residual(p)).sum();
         let variance = (squares / (n - 2.0).max(1.0)).max(FLOOR_PX * FLOOR_PX);
         let centre = kept.iter().map(|p| p.along).sum::<f64>() / n;
@@ -289,8 +295,9 @@ impl OffsetLine {
         let place = |along: f64| -> Point2<f64> {
             expected.p0 + expected.direction() * along + expected.normal() * self.at(along)
         };
-        let piece =
-            |p: &Piece| Segment2::new(place(p.along - 0.5 * size), place(p.along + 0.5 * size));
+        let piece = |p: &ProfilePiece| {
+            Segment2::new(place(p.along - 0.5 * size), place(p.along + 0.5 * size))
+        };
         let (first, last) = (
             kept[0].along - 0.5 * size,
             kept[kept.len() - 1].along + 0.5 * size,
@@ -329,7 +336,7 @@ mod tests {
         })
     }
 
-    fn measured(image: &Gray, expected: &Segment2, against: bool) -> Option<GuidedEdge> {
+    fn measured(image: &Gray, expected: &Segment2, reversed_contrast: bool) -> Option<GuidedEdge> {
         let core = [0.0, expected.length()];
         measure_edge(
             ViewId(0),
@@ -337,7 +344,7 @@ mod tests {
             SegmentKind::Color,
             expected,
             core,
-            against,
+            reversed_contrast,
         )
     }
 
@@ -369,12 +376,12 @@ mod tests {
     #[test]
     fn the_other_contrast_and_flat_ground_are_no_edge() {
         let gray = step(&edge(), 0.1, 0.004, 1);
-        let against = Segment2::new(edge().p1, edge().p0);
-        assert!(measured(&gray, &against, false).is_none());
+        let reversed_contrast = Segment2::new(edge().p1, edge().p0);
+        assert!(measured(&gray, &reversed_contrast, false).is_none());
         let flat = step(&edge(), 0.0, 0.004, 1);
         assert!(measured(&flat, &edge(), false).is_none());
         // Where the view is known to show the other contrast it is one, in the same place.
-        let found = measured(&gray, &against, true).unwrap();
+        let found = measured(&gray, &reversed_contrast, true).unwrap();
         for p in [found.segment.p0, found.segment.p1] {
             let line = edge().line();
             assert!((line.x * p.x + line.y * p.y + line.z).abs() < 0.1);

@@ -1,147 +1,38 @@
 //! Straight image segments (B99 3.2, "Implementation details").
 //!
 //! ```text
-//! canny          gradient, sub-pixel edgels above a multiple of the local noise (noise)
-//!    -> chain    edgels linked over gaps of one pixel, hysteresis
-//!    -> worm     chains broken where the tangent turns
-//!    -> fit      straight pieces by orthogonal regression, tight threshold, covariance
+//! edgels         edges and bars as edgels with local noise, linked into chains, broken at bends
+//!    -> regression     straight pieces by orthogonal regression, tight threshold, covariance
 //!    -> grow     pieces grown along their line through the edgels ahead
-//!    -> lines    length, curvature and significance decide
-//!    -> refine   lines moved to the crest of the unsmoothed edge
-//!    -> segments covariance and contrast
+//!    -> significant_lines    length, curvature and significance (significance) decide
+//!    -> refine   lines moved to the steepest place of the unsmoothed edge
+//!    -> detect   the stage: edges in grey values, in the red-blue difference, and bars
+//!    -> overlap  colour edges and bars along an edge in grey values are rejected
 //!
-//! colour         the same on the warmth of the pixels (`raster::warmth`): edges between colours of one grey value
-//! bar            thin bright or dark lines as edgels, on the same way from chain to lines
-//! clear          what edges in grey values stand for already is refused
+//! segment        a segment: kind, end points, contrast, covariance
+//! guided         an edge measured again along the line that other views predict
+//! trace          counts, and every rejected line with its reason
 //! ```
+//!
+//! Invariant: a step has its bright side (or the redder one) to its right as seen on the screen.
 
-mod clear;
+mod detect;
 mod edgels;
-mod fit;
 mod grow;
 mod guided;
-mod lines;
+mod overlap;
 mod refine;
-mod segments;
+mod regression;
+mod segment;
 mod significance;
+mod significant_lines;
 #[cfg(test)]
 mod testing;
 mod trace;
 
+pub use detect::detect_segments;
 pub use edgels::{Chain, Edgel, detect_edgels, link_chains};
 pub(crate) use guided::PIECE_PX;
 pub use guided::{GuidedEdge, measure_edge};
-pub use segments::detect_segments;
+pub use segment::{ImageSegment, SegmentKind};
 pub use trace::{RejectedSegment, SegmentRejection, SegmentTrace};
-
-use nalgebra::Matrix2;
-use serde::{Deserialize, Serialize};
-
-use crate::geometry::Segment2;
-use crate::raster::Channel;
-
-/// What a segment was found on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SegmentKind {
-    /// A step between two grey values.
-    #[default]
-    Edge,
-    /// A step between two colours that differ little in grey value.
-    Color,
-    /// A thin line brighter than both its sides.
-    BrightBar,
-    /// A thin line darker than both its sides.
-    DarkBar,
-}
-
-impl SegmentKind {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Edge, Self::Color, Self::BrightBar, Self::DarkBar];
-
-    /// The channel that shows such a segment.
-    pub fn channel(self) -> Channel {
-        match self {
-            Self::Color => Channel::RedBlue,
-            Self::Edge | Self::BrightBar | Self::DarkBar => Channel::Grey,
-        }
-    }
-
-    /// Is it a step, which has a brighter side? A bar has none.
-    pub fn is_step(self) -> bool {
-        matches!(self, Self::Edge | Self::Color)
-    }
-
-    /// How a further view may show in the same place what one view shows so: an eave may stand out in colour alone, and a
-    /// gutter be dark in one strip and glint in the other. A step and a bar are never in the same place.
-    pub fn other(self) -> Self {
-        match self {
-            Self::Edge => Self::Color,
-            Self::Color => Self::Edge,
-            Self::BrightBar => Self::DarkBar,
-            Self::DarkBar => Self::BrightBar,
-        }
-    }
-}
-
-/// A straight segment detected in one view, directed by contrast: the brighter side (with [`SegmentKind::Color`] the
-/// warmer one, of more red than blue) lies in the direction of [`Segment2::normal`], to the right of the direction as
-/// seen on the screen.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ImageSegment {
-    /// Edge in grey values or in colour, or bar. A bar runs along its middle and is directed by the difference between its two
-    /// sides, which may be small: matching does not ask for its direction.
-    pub kind: SegmentKind,
-    /// End points, pixels.
-    pub segment: Segment2,
-    /// Mean difference across the edge, bright minus dark side, grey values 0 to 1; of a colour edge, warm minus cool side,
-    /// half the difference of red and blue.
-    pub contrast: f32,
-    /// Number of edgels that the line was fitted to.
-    pub edgels: u32,
-    /// Covariance of (offset along the normal at the midpoint in px, angle in rad), 2 x 2.
-    pub covariance: Matrix2<f64>,
-}
-
-impl ImageSegment {
-    /// The same segment in an image `factor` times as large.
-    pub fn enlarged(&self, factor: usize) -> Self {
-        let scale = factor as f64;
-        let enlarge = Matrix2::new(scale * scale, scale, scale, 1.0);
-        Self {
-            segment: self.segment.enlarged(scale),
-            edgels: self.edgels * factor as u32,
-            covariance: self.covariance.component_mul(&enlarge),
-            ..self.clone()
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use nalgebra::Point2;
-
-    #[test]
-    fn in_a_larger_image_points_of_the_line_are_as_much_less_certain() {
-        let small = ImageSegment {
-            kind: SegmentKind::Color,
-            segment: Segment2::new(Point2::new(10.0, 20.0), Point2::new(40.0, 60.0)),
-            contrast: 0.2,
-            edgels: 50,
-            covariance: Matrix2::new(0.02, 3e-4, 3e-4, 1e-5),
-        };
-        let large = small.enlarged(2);
-        assert_eq!(large.segment.p1, Point2::new(80.0, 120.0));
-        assert_eq!((large.edgels, large.contrast), (100, 0.2));
-        // Variance across the line, at a distance along it from the middle.
-        let variance = |s: &ImageSegment, along: f64| {
-            let c = &s.covariance;
-            c[(0, 0)] + 2.0 * along * c[(0, 1)] + along * along * c[(1, 1)]
-        };
-        for along in [-25.0, 0.0, 10.0] {
-            let ratio = variance(&large, 2.0 * along) / variance(&small, along);
-            assert!((ratio - 4.0).abs() < 1e-12, "{ratio} at {along}");
-        }
-    }
-}

@@ -1,17 +1,17 @@
 //! Lines moved to where the unsmoothed image has its edge.
 //!
-//! Smoothing makes edgels steady, and blends two edges closer than about 2 px into one between them: an
-//! eave with its fascia below and its gutter in front has such pairs everywhere. Once the line is known no smoothing
-//! is needed, because the pixels along it can be averaged instead (the slanted-edge method by which ISO 12233
-//! measures lenses). Stretch by stretch, rows of pixels across the line are shifted to the line and
-//! averaged; the stretch's edgels then move together to the crest of the derivative of the mean profile, of its light
-//! ([`Channel::to_linear_light`]).
+//! Smoothing reduces noise, but blends two edges closer than about 2 px into one between them: an
+//! eave with its fascia below and its gutter in front is full of such pairs. Once the line is
+//! known no smoothing is needed, because the pixels along it can be averaged instead (the
+//! slanted-edge method of ISO 12233). Stretch by stretch, rows of pixels across the line are
+//! shifted to the line and averaged; the edgels of the stretch then move together to the steepest
+//! place of the mean profile in linear light ([`Channel::to_linear_light`]).
 
 use nalgebra::{Matrix2, Point2, Vector2};
 
 use super::edgels::Edgel;
-use super::fit::LineFit;
-use super::grow::Grown;
+use super::grow::GrownLine;
+use super::regression::RegressionLine;
 use crate::raster::{Channel, Gray};
 
 /// Edgels in a stretch: as many as smoothing to 1/4 of the noise of a pixel takes.
@@ -21,20 +21,22 @@ const REACH: usize = 4;
 /// Samples of a profile.
 const SAMPLES: usize = 2 * REACH + 1;
 
-/// Standard deviation of a pixel over that of a gradient component after smoothing by 0.8 px, for white noise.
+/// Standard deviation of a pixel over that of a gradient component after smoothing by 0.8 px, for
+/// white noise.
 const PIXEL_NOISE: f64 = 4.5;
 
-/// Moves the edgels of a line found on a step and fits the line again. A stretch moves only by more than `sigmas`
-/// standard deviations of its crest: where blending is not the matter, smoothed edgels are less noisy. Returns
-/// the covariance of (offset in px, angle in rad) that the noise of the crests adds at the middle of the line.
+/// Moves the edgels of a line found on a step and fits the line again. A stretch moves only by
+/// more than `sigmas` standard deviations of its steepest place, because unblended edgels are less
+/// noisy after smoothing. Returns the covariance of (offset in px, angle in rad) that the noise
+/// adds at the middle of the line.
 pub fn refine(
-    line: &mut Grown,
+    line: &mut GrownLine,
     all: &[Edgel],
     image: &Gray,
     channel: Channel,
     sigmas: f64,
 ) -> Matrix2<f64> {
-    let axes = Axes::of(&line.line);
+    let axes = ProfileAxes::of(&line.line);
     let normal = line.line.normal();
     let scale = axes.across(&normal).abs();
     let count = line.points.len();
@@ -62,9 +64,10 @@ pub fn refine(
                 .for_each(|p| *p += normal * shift);
         }
     }
-    line.line = LineFit::new(&line.points);
+    line.line = RegressionLine::new(&line.points);
     let m = stretches as f64;
-    // m stretches of equal length L/m: the sum of their squared distances from the middle is L^2 (m^2 - 1) / 12 m.
+    // m stretches of equal length L/m: the sum of their squared distances from the middle is L^2
+    // (m^2 - 1) / 12 m.
     let lever = line.extent().length() * ((m * m - 1.0) / (12.0 * m)).sqrt();
     let angle = if stretches > 1 {
         variance / (lever * lever)
@@ -75,7 +78,7 @@ pub fn refine(
 }
 
 /// The image axis that is more across a line, and the line as a function of the other one.
-struct Axes {
+struct ProfileAxes {
     /// Whether rows are across the line (columns otherwise).
     rows: bool,
     /// Change of the position across per pixel along.
@@ -86,8 +89,8 @@ struct Axes {
     sense: f64,
 }
 
-impl Axes {
-    fn of(line: &LineFit) -> Self {
+impl ProfileAxes {
+    fn of(line: &RegressionLine) -> Self {
         let normal = line.normal();
         let mut axes = Self {
             rows: normal.x.abs() >= normal.y.abs(),
@@ -110,7 +113,8 @@ impl Axes {
         if self.rows { v.y } else { v.x }
     }
 
-    /// Mean grey values across the line, from the dark to the bright side; `None` too near the border.
+    /// Mean grey values across the line, from the dark to the bright side; `None` too near the
+    /// border.
     fn mean_profile(&self, points: &[Point2<f64>], gray: &Gray) -> Option<[f64; SAMPLES]> {
         let (step, stride, length) = if self.rows {
             (1, gray.width, gray.width)
@@ -158,8 +162,8 @@ fn catmull_rom(f: f32) -> [f32; 4] {
 struct Crest {
     /// Position, samples from the middle.
     position: f64,
-    /// Second difference of the rises there, negated, grey values: noise of a standard deviation s in the profile
-    /// moves the crest by s over this.
+    /// Second difference of the rises there, negated, grey values: noise of a standard deviation s
+    /// in the profile moves the crest by s over this.
     sharpness: f64,
 }
 
@@ -199,7 +203,7 @@ mod tests {
     use super::*;
 
     /// A line of edgels beside the planted edge, at this distance towards the brighter side, px.
-    fn beside(gray: &Gray, angle: f64, off: f64) -> (Vec<Edgel>, Grown) {
+    fn beside(gray: &Gray, angle: f64, off: f64) -> (Vec<Edgel>, GrownLine) {
         let (s, c) = crate::math::sin_cos(angle);
         let centre = Point2::new(
             gray.width as f64 / 2.0 + 0.2,
@@ -211,7 +215,7 @@ mod tests {
             .map(|p| edgel(p.x, p.y, (c as f32, s as f32)))
             .map(|e| Edgel { noise: 0.001, ..e })
             .collect();
-        let grown = Grown::new(&all, (0..50).collect());
+        let grown = GrownLine::new(&all, (0..50).collect());
         (all, grown)
     }
 

@@ -1,15 +1,15 @@
-//! Whether a fitted line stands out from its surroundings (Helmholtz principle).
+//! Significance of a fitted line against its surroundings (Helmholtz principle).
 //!
 //! Were the edgels of a line ordinary pixels of their surroundings, their `-ln H(g)`
-//! ([`super::edgels::noise`]) would be independent exponential variables; the sum over `n` of them is then Gamma(n, 1)
-//! distributed (Fisher's method). The line is significant when the expected number of lines with such
-//! a sum by chance among all tested ones is below one. So a long weak ridge is kept and a short
-//! strong streak of foliage is not.
+//! ([`super::edgels::LocalStrengths`]) would be independent exponential variables; the sum over
+//! `n` of them is then Gamma(n, 1) distributed (Fisher's method). The line is significant when the
+//! expected number of lines with such a sum by chance among all tested ones is below one. So a
+//! long weak ridge is kept and a short strong streak of foliage is not.
 
-/// How likely lines are by chance among `tests` of them.
+/// Expected number of lines by chance among `tests` of them.
 pub struct FalseAlarms {
     ln_tests: f64,
-    /// ln k! for k = 0, 1, ..., as far as was asked.
+    /// ln k! for k = 0, 1, ..., computed as needed.
     ln_factorials: Vec<f64>,
 }
 
@@ -66,7 +66,8 @@ mod tests {
     #[test]
     fn the_tail_is_that_of_a_gamma_distribution() {
         let ln_gamma_tail = |shape, x| FalseAlarms::new(1).ln_gamma_tail(shape, x);
-        // Shape 1 is the exponential distribution; the others are from tables of chi-squared: P(chi2(2n) > 2x).
+        // Shape 1 is the exponential distribution; the others are from tables of chi-squared:
+        // P(chi2(2n) > 2x).
         assert!((ln_gamma_tail(1.0, 3.0) + 3.0).abs() < 1e-12);
         assert!((crate::math::exp(ln_gamma_tail(5.0, 18.307 / 2.0)) - 0.05).abs() < 1e-4);
         assert!((crate::math::exp(ln_gamma_tail(10.0, 37.566 / 2.0)) - 0.01).abs() < 1e-5);

@@ -11,8 +11,8 @@ const BLUR_PX: f64 = 0.7;
 /// Grey value of the dark side.
 const DARK: f64 = 0.35;
 
-/// An edge of the given contrast through the centre of an image, blurred as grey values. `angle` is that of its normal, to the
-/// brighter side (0: right, pi/2: down).
+/// An edge of the given contrast through the centre of an image, blurred as grey values. `angle`
+/// is that of its normal, to the brighter side (0: right, pi/2: down).
 pub fn step_edge(width: usize, height: usize, angle: f64, contrast: f64) -> Gray {
     blurred_edge(width, height, angle, |share| DARK + contrast * share)
 }
@@ -50,9 +50,10 @@ pub fn distance_to_edge(gray: &Gray, angle: f64, point: &Point2<f64>) -> f64 {
     Vector2::new(c, s).dot(&(point - centre))
 }
 
-/// Adds white noise of standard deviation `sigma` (nearly normal: the sum of twelve uniform numbers).
+/// Adds white noise of standard deviation `sigma` (nearly normal: the sum of twelve uniform
+/// numbers).
 pub fn add_noise(gray: &mut Gray, sigma: f64, seed: u64) {
-    let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) + 1);
+    let mut random = Xorshift(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) + 1);
     for value in &mut gray.data {
         let sum: f64 = (0..12).map(|_| random.uniform()).sum();
         *value += (sigma * (sum - 6.0)) as f32;
@@ -69,10 +70,10 @@ pub fn edgel(x: f64, y: f64, gradient: (f32, f32)) -> Edgel {
     }
 }
 
-/// Xorshift.
-struct Random(u64);
+/// Marsaglia's generator of uniform numbers.
+struct Xorshift(u64);
 
-impl Random {
+impl Xorshift {
     fn uniform(&mut self) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;

@@ -1,4 +1,4 @@
-//! What the segment stage did in a view, and why a line of edgels is no segment.
+//! The trace of the segment stage in a view, with the reasons for rejected lines.
 
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
@@ -19,16 +19,16 @@ pub enum SegmentRejection {
     BesideEdge,
 }
 
-/// A line that was refused, with the reason.
+/// A rejected line, with the reason.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RejectedSegment {
     /// The line, px.
     pub segment: Segment2,
-    /// Why it was refused.
+    /// Why it was rejected.
     pub reason: SegmentRejection,
 }
 
-/// What the detector did in one view.
+/// The counts of the detector in one view.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SegmentTrace {
     /// Edgels above the low threshold.
@@ -41,7 +41,7 @@ pub struct SegmentTrace {
     pub worm_breaks: Vec<Point2<f64>>,
     /// Straight pieces of chains, from which lines are grown.
     pub seeds: usize,
-    /// Seeds that a longer one has swallowed.
+    /// Seeds most of whose edgels belong to a line already.
     pub taken: usize,
     /// Lines that are too short.
     pub too_short: usize,
@@ -51,12 +51,12 @@ pub struct SegmentTrace {
     pub not_significant: usize,
     /// Bars along an edge that is a segment already.
     pub beside_edge: usize,
-    /// The refused lines of at least the minimum length.
+    /// The rejected lines of at least the minimum length.
     pub rejected: Vec<RejectedSegment>,
 }
 
 impl SegmentTrace {
-    /// Adds what the detector did in an image reduced by `factor`.
+    /// Adds the trace of an image reduced by `factor`.
     pub(crate) fn add(&mut self, other: Self, factor: usize) {
         self.edgels += other.edgels;
         self.chains += other.chains;
@@ -77,16 +77,16 @@ impl SegmentTrace {
         self.rejected.extend(rejected);
     }
 
-    /// Counts a refused line, and keeps it unless it is too short.
-    pub(crate) fn refuse(&mut self, refused: RejectedSegment) {
-        match refused.reason {
+    /// Counts a rejected line, and keeps it unless it is too short.
+    pub(crate) fn reject(&mut self, rejected: RejectedSegment) {
+        match rejected.reason {
             SegmentRejection::TooShort => self.too_short += 1,
             SegmentRejection::Curved => self.curved += 1,
             SegmentRejection::NotSignificant => self.not_significant += 1,
             SegmentRejection::BesideEdge => self.beside_edge += 1,
         }
-        if refused.reason != SegmentRejection::TooShort {
-            self.rejected.push(refused);
+        if rejected.reason != SegmentRejection::TooShort {
+            self.rejected.push(rejected);
         }
     }
 }
@@ -104,7 +104,7 @@ mod tests {
             worm_breaks: vec![Point2::new(5.0, 3.0)],
             ..SegmentTrace::default()
         };
-        reduced.refuse(RejectedSegment { segment, reason });
+        reduced.reject(RejectedSegment { segment, reason });
         let mut trace = SegmentTrace {
             edgels: 3,
             ..SegmentTrace::default()

@@ -1,17 +1,17 @@
 //! Bars: thin bright or dark lines, found where the second derivative is strong (B99 section 5).
 //!
-//! B99 5 asks for "a bar detector" besides the edge detector: a ridge cap, a gutter or a joint is a line
-//! one or two pixels wide, on which an edge detector finds two edges that blur has pushed apart, or nothing.
-//! After Steger 1998, "An unbiased detector of curvilinear structures": with g the gradient and H
-//! the Hessian of the smoothed image, n the eigenvector of H whose eigenvalue is largest in size, the line point
-//! is where the derivative along n vanishes, t = -(g . n) / (n' H n) from the pixel's centre; it
-//! counts when it lies inside the pixel. Beside a step edge the second derivative is strong too, but the first
-//! one does not vanish there: edges are no bars.
+//! B99 5 asks for "a bar detector" besides the edge detector: a ridge cap, a gutter or a joint is
+//! a line one or two pixels wide, on which an edge detector finds two edges that blur has pushed
+//! apart, or nothing. After Steger 1998, "An unbiased detector of curvilinear structures": with g
+//! the gradient and H the Hessian of the smoothed image, n the eigenvector of H whose eigenvalue
+//! is largest in size, the line point is where the derivative along n vanishes, t = -(g . n) / (n'
+//! H n) from the pixel's centre; it counts when it lies inside the pixel. Beside a step edge the
+//! second derivative is strong too, but the first one does not vanish there: edges are no bars.
 //!
-//! A bar has no brighter side, so its normal has no sign, and linking wants one. Therefore the edgels are handed
-//! out in two fans: normals within 60 degrees of the x axis, pointing to the right, and those within 60 degrees of the
-//! y axis, pointing downwards. A line belongs to the fan of its own nearer axis ([`Fan::holds`]); the
-//! overlap keeps lines near 45 degrees whole.
+//! A bar has no brighter side and its normal no sign, which linking needs. Therefore the edgels
+//! come in two fans: normals within 60 degrees of the x axis, pointing to the right, and normals
+//! within 60 degrees of the y axis, pointing down. A line belongs to the fan of its nearer axis
+//! ([`Fan::contains`]); the overlap keeps lines near 45 degrees whole.
 
 use nalgebra::{Point2, Vector2};
 
@@ -21,8 +21,8 @@ use crate::raster::Gray;
 
 /// Sine of the half-opening of a fan.
 const FAN_SINE: f32 = 0.866_025_4;
-/// A vanishing first derivative this far from the centre of the pixel still counts, px (Steger: 0.6, for
-/// noise may shift it out of all pixels).
+/// Largest distance of the vanishing first derivative from the centre of the pixel, px (Steger:
+/// 0.6, because noise may shift it out of all pixels).
 const REACH_PX: f32 = 0.6;
 
 /// Bars with normals near one of the axes.
@@ -36,7 +36,7 @@ pub enum Fan {
 
 impl Fan {
     /// Whether a line with this normal belongs here; every normal belongs to exactly one fan.
-    pub fn holds(self, normal: &Vector2<f64>) -> bool {
+    pub fn contains(self, normal: &Vector2<f64>) -> bool {
         (normal.x.abs() >= normal.y.abs()) == (self == Self::Right)
     }
 
@@ -59,7 +59,7 @@ pub struct BarPoint {
     normal: Vector2<f32>,
     /// Second derivative across the bar, grey values per px^2: negative on a bright bar.
     second: f32,
-    /// What is ordinary around here.
+    /// Local scale of the second derivative.
     noise: f32,
 }
 
@@ -168,7 +168,7 @@ fn bar_point(smooth: &Gray, x: usize, y: usize, noise: f32) -> Option<BarPoint> 
     if offset.amax().is_nan() || offset.amax() > REACH_PX {
         return None;
     }
-    // Just inside the pixel, so that its index can be had back from the position.
+    // Just inside the pixel, so that its index follows from the position.
     let offset = offset.map(|v| f64::from(v).clamp(-0.499, 0.499));
     Some(BarPoint {
         position: Point2::new(x as f64 + 0.5, y as f64 + 0.5) + offset,
@@ -178,8 +178,8 @@ fn bar_point(smooth: &Gray, x: usize, y: usize, noise: f32) -> Option<BarPoint> 
     })
 }
 
-/// The points of bright or dark bars in one fan as edgels: their gradient is the normal times the size of the
-/// second derivative.
+/// The points of bright or dark bars in one fan as edgels: their gradient is the normal times the
+/// size of the second derivative.
 pub fn fan_edgels(points: &[BarPoint], bright: bool, fan: Fan) -> Vec<Edgel> {
     let of_kind = points.iter().filter(|p| (p.second < 0.0) == bright);
     of_kind

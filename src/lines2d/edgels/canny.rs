@@ -1,10 +1,10 @@
 //! Edgels: a local Canny detector with sub-pixel positions (B99 3.2).
 //!
-//! The image is smoothed by a Gaussian and differentiated centrally. An edgel is a pixel whose gradient
-//! is stronger than both neighbours along the gradient; its position is the top of the parabola through
-//! the three. The threshold is a multiple of the local gradient noise ([`super::noise`]), because the paper
-//! gives none and one number cannot suit both a plain roof and a tree. Canny's hysteresis acts on
-//! whole chains, see [`super::chain`].
+//! The image is smoothed by a Gaussian and differentiated centrally. An edgel is a pixel whose
+//! gradient is stronger than both neighbours along the gradient; its position is the top of the
+//! parabola through the three. The threshold is a multiple of the local gradient noise
+//! ([`super::noise`]), because the paper gives none and one number cannot suit both a plain roof
+//! and a tree. Canny's hysteresis acts on whole chains, see [`super::chain`].
 
 use nalgebra::{Point2, Vector2};
 use serde::Serialize;
@@ -26,8 +26,9 @@ pub struct Edgel {
 }
 
 impl Edgel {
-    /// Unit direction along the edge, with the brighter side to the right as seen on the screen: then
-    /// [`crate::geometry::Segment2::normal`] of a segment that runs this way points to the brighter side.
+    /// Unit direction along the edge, with the brighter side to the right as seen on the screen:
+    /// then [`crate::geometry::Segment2::normal`] of a segment that runs this way points to the
+    /// brighter side.
     pub fn tangent(&self) -> Vector2<f64> {
         let length = f64::from(self.strength);
         Vector2::new(
@@ -42,15 +43,15 @@ impl Edgel {
     }
 }
 
-/// The edgels of an image smoothed by `smoothing_px` whose gradient is at least `least`, wherever they are, row by row. Nothing
-/// closer than two pixels to the border is found. The `noise` of the edgels is `least`.
+/// The edgels of an image smoothed by `smoothing_px` with a gradient of at least `least`, row by
+/// row. None lies closer than two pixels to the border. Their `noise` is `least`.
 pub fn detect_edgels(gray: &Gray, smoothing_px: f64, least: f32) -> Vec<Edgel> {
     let smooth = gaussian_blur(gray, smoothing_px);
     suppress(&Gradient::new(&smooth), &|_, row| row.fill(least), 1.0)
 }
 
-/// Gradient of a smoothed image; zero on the border pixels. Only its length is stored: the components are cheap
-/// to take where they are wanted.
+/// Gradient of a smoothed image; zero on the border pixels. Only its length is stored, because the
+/// components are needed at few pixels.
 pub struct Gradient<'a> {
     smooth: &'a Gray,
     /// Length of the gradient, grey values per px, row by row.
@@ -98,7 +99,8 @@ fn strength_row(smooth: &[f32], w: usize, y: usize, out: &mut [f32]) {
     }
 }
 
-/// Non-maximum suppression: the edgels stronger than `low` times the noise around them, which `noise_row` writes for a row.
+/// Non-maximum suppression: the edgels stronger than `low` times the local noise, which
+/// `noise_row` writes for a row.
 pub fn suppress(
     gradient: &Gradient,
     noise_row: &dyn Fn(usize, &mut [f32]),
@@ -130,8 +132,9 @@ pub fn suppress(
     edgels
 }
 
-/// Offset in px from the centre of pixel `i` to the crest of the gradient strength, across the edge; `None`
-/// where a neighbour across the edge is stronger. Both components stay within half a pixel.
+/// Offset in px from the centre of pixel `i` to the crest of the gradient strength, across the
+/// edge; `None` where a neighbour across the edge is stronger. Both components stay within half a
+/// pixel.
 fn crest(s: &[f32], width: usize, i: usize, gradient: &Vector2<f32>) -> Option<Vector2<f64>> {
     let (gx, gy) = (gradient.x, gradient.y);
     let along_x = gx.abs() >= gy.abs();
@@ -146,7 +149,8 @@ fn crest(s: &[f32], width: usize, i: usize, gradient: &Vector2<f32>) -> Option<V
     if large == 0.0 {
         return None;
     }
-    // Strengths a step along the larger component away, interpolated; all times its size, to save the division.
+    // Interpolated strengths one step along the larger component, all times its size, which saves
+    // the division.
     let (large_size, small_size) = (large.abs(), small.abs());
     let mix = |near: usize, far: usize| s[near] * (large_size - small_size) + s[far] * small_size;
     let m = s[i] * large_size;
@@ -156,7 +160,7 @@ fn crest(s: &[f32], width: usize, i: usize, gradient: &Vector2<f32>) -> Option<V
         return None;
     }
     let t = 0.5 * (ahead - behind) / (2.0 * m - ahead - behind);
-    // Just inside the pixel, so that its index can be had back from the position.
+    // Just inside the pixel, so that its index follows from the position.
     let t = f64::from(t).clamp(-0.499, 0.499);
     let slope = f64::from(small / large);
     Some(if along_x {

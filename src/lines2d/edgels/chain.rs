@@ -1,9 +1,9 @@
 //! Edgels linked into chains, jumping a gap of one pixel (B99 3.2).
 //!
 //! Every edgel looks for the next one along its tangent among its 8 neighbours and, when there is
-//! none, in the ring of 16 behind them; a link stands when both ends choose each other. Because tangents are
-//! directed by contrast, chains are too, and the outcome does not depend on where the linking starts.
-//! Canny's hysteresis is applied to whole chains: one strong edgel keeps all.
+//! none, in the ring of 16 behind them; a link stands when both ends choose each other. Because
+//! tangents are directed by contrast, chains are too, and the outcome does not depend on where the
+//! linking starts. Canny's hysteresis is applied to whole chains: one strong edgel keeps all.
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -23,14 +23,14 @@ pub struct Chain {
 /// No edgel.
 pub const NONE: u32 = u32::MAX;
 
-/// Links edgels (one a pixel at most, as [`super::canny::detect_edgels`] gives them) into chains of two
-/// and more; chains without any edgel of at least `high` times its noise are dropped. Chains are
-/// ordered by their first edgel's index.
+/// Links edgels (one a pixel at most, as [`super::canny::detect_edgels`] gives them) into chains
+/// of two and more; chains without any edgel of at least `high` times its noise are dropped.
+/// Chains are ordered by their first edgel's index.
 pub fn link_chains(edgels: &[Edgel], high: f64) -> Vec<Chain> {
     link_on(edgels, &Raster::new(edgels), high)
 }
 
-/// [`link_chains`] on a raster of the edgels that is at hand.
+/// [`link_chains`] on an existing raster of the edgels.
 pub fn link_on(edgels: &[Edgel], raster: &Raster, high: f64) -> Vec<Chain> {
     let (next, previous) = choose(edgels, raster);
     let mutual = |i: u32| {
@@ -45,7 +45,7 @@ pub fn link_on(edgels: &[Edgel], raster: &Raster, high: f64) -> Vec<Chain> {
     let mut seen = vec![false; edgels.len()];
     let mut chains = Vec::new();
     let count = u32::try_from(edgels.len()).expect("fewer than 2^32 edgels");
-    // Open chains begin where nothing links in; what is left after them are rings.
+    // Open chains begin where nothing links in; the remaining ones are closed.
     for rings in [false, true] {
         for start in 0..count {
             if seen[start as usize] || (!rings && has_previous(start)) {
@@ -89,7 +89,7 @@ fn choose(edgels: &[Edgel], raster: &Raster) -> (Vec<u32>, Vec<u32>) {
         if near.next == NONE || near.previous == NONE {
             choice.look(edgels, raster, from, around & RING_2);
         }
-        // What is adjacent goes before what lies across a gap.
+        // Adjacent edgels precede those across a gap.
         next.push(if near.next != NONE {
             near.next
         } else {
@@ -130,10 +130,10 @@ impl Default for Choice {
 }
 
 impl Choice {
-    /// Considers the edgels of these pixels around `from`. The cost of a link is the distance along the
-    /// tangent plus twice the distance aside (times the gradient's strength, which is the same for
-    /// all); there is none when the other edgel lies more aside than along or its contrast has turned by more than a
-    /// right angle.
+    /// Considers the edgels of these pixels around `from`. The cost of a link is the distance
+    /// along the tangent plus twice the distance aside (times the gradient's strength, which is
+    /// the same for all); there is none when the other edgel lies more aside than along or its
+    /// contrast has turned by more than a right angle.
     fn look(&mut self, edgels: &[Edgel], raster: &Raster, from: &Edgel, pixels: u32) {
         let gradient = from.gradient.cast::<f64>();
         let tangent = Vector2::new(gradient.y, -gradient.x);
@@ -155,7 +155,7 @@ impl Choice {
     }
 }
 
-/// Empty pixels around a raster, so that looking two pixels around an edgel needs no care.
+/// Empty pixels around a raster, so that the neighbourhood of an edgel needs no bounds check.
 const MARGIN: usize = 2;
 
 /// Which edgel a pixel holds ([`NONE`] elsewhere).
@@ -163,7 +163,8 @@ pub struct Raster {
     width: usize,
     height: usize,
     index: Vec<u32>,
-    /// One bit a pixel, `words` words a row: most pixels are empty, and bits say so without a look at each.
+    /// One bit a pixel, `words` words a row: most pixels are empty, and bits tell that for many at
+    /// once.
     occupied: Vec<u32>,
     words: usize,
 }
@@ -217,7 +218,8 @@ impl Raster {
         bits
     }
 
-    /// The edgels of some of the 5 x 5 pixels around that of an edgel, row by row; they must be there.
+    /// The edgels of some of the 5 x 5 pixels around that of an edgel, row by row; they must be
+    /// there.
     fn of(&self, edgel: &Edgel, mut pixels: u32) -> impl Iterator<Item = u32> {
         let (x, y) = edgel.pixel();
         let first = y * self.width + x;

@@ -1,9 +1,18 @@
-//! lines2d::edgels
+//! Edgels, points of edges and of bars, and their chains (B99 3.2 and 5).
+//!
+//! ```text
+//! canny, bar    edgels of steps and of thin lines, with sub-pixel positions
+//! noise         local statistics of the strengths, to which thresholds are relative
+//! chain         edgels linked across gaps of one pixel, with hysteresis
+//! worm          chains broken where their tangent turns
+//! ```
+//!
+//! Invariant: an edgel lies inside the pixel that found it, and a pixel holds one edgel at most.
 
 mod bar;
 mod canny;
 mod chain;
-pub(crate) mod noise;
+mod noise;
 mod worm;
 
 pub(crate) use bar::{Fan, Hessian, bar_points, fan_edgels};

@@ -1,11 +1,12 @@
-//! What gradients are ordinary here: statistics of the gradient strength, block by block.
+//! Local statistics of the gradient strength, block by block.
 //!
 //! B99 3.2 names the Canny detector and no thresholds. One threshold for a whole photograph either
-//! loses the weak ridge between two roof planes of similar shade or drowns in the crowns of trees, so
-//! everything here is relative to the surroundings: [`LocalStrengths::noise`] is the scale of the
-//! gradients nearby, and [`LocalStrengths::surprise`] is `-ln H(g)`, where `H(g)` is the share of
-//! the pixels nearby whose gradient is stronger than `g` (Desolneux, Moisan, Morel 2001, "Edge
-//! detection by Helmholtz principle", with the distribution taken locally instead of globally).
+//! loses the weak ridge between two roof planes of similar shade or drowns in the crowns of trees,
+//! so everything here is relative to the surroundings: [`LocalStrengths::noise`] is the scale of
+//! the gradients nearby, and [`LocalStrengths::surprisal`] is `-ln H(g)`, where `H(g)` is the
+//! share of the pixels nearby whose gradient is stronger than `g` (Desolneux, Moisan, Morel 2001,
+//! "Edge detection by Helmholtz principle", with the distribution taken locally instead of
+//! globally).
 
 /// Side of a block, px. Statistics are pooled over 3 x 3 blocks: a roof plane's size.
 const BLOCK_PX: usize = 32;
@@ -14,8 +15,8 @@ const BINS: usize = 256;
 /// Width of a bin, grey values (0 to 1) per px: the last bin begins at 0.125 per px, a third of
 /// full contrast in one pixel, where nothing is ordinary any more.
 const BIN_WIDTH: f32 = 1.0 / 2048.0;
-/// Gradient noise never counts as less than this, grey values per px: rounding to 8 bits alone has a
-/// standard deviation of 1/255/sqrt(12), and a quarter of it is left after smoothing.
+/// Gradient noise never counts as less than this, grey values per px: rounding to 8 bits alone has
+/// a standard deviation of 1/255/sqrt(12), and a quarter of it is left after smoothing.
 const MIN_NOISE: f32 = 0.25 / 255.0 / 3.464_101_6;
 /// Median of a Rayleigh distribution, the strength of a gradient whose components are Gaussian with
 /// standard deviation 1.
@@ -26,7 +27,7 @@ pub struct LocalStrengths {
     columns: usize,
     rows: usize,
     noise: Vec<f32>,
-    surprise: Vec<[f32; BINS]>,
+    surprisal: Vec<[f32; BINS]>,
 }
 
 impl LocalStrengths {
@@ -39,13 +40,13 @@ impl LocalStrengths {
             columns,
             rows,
             noise: counts.iter().map(noise_of).collect(),
-            surprise: counts.iter().map(surprise_of).collect(),
+            surprisal: counts.iter().map(surprisal_of).collect(),
         }
     }
 
-    /// Scale of the gradients around each pixel of row `y`: the standard deviation of a component, grey
-    /// values per px, were they all noise. Bilinear between block centres, so that thresholds have no
-    /// steps at block borders.
+    /// Scale of the gradients around each pixel of row `y`: the standard deviation of a component,
+    /// grey values per px, were they all noise. Bilinear between block centres, so that thresholds
+    /// have no steps at block borders.
     pub fn noise_row(&self, y: usize, row: &mut [f32]) {
         let (above, f) = interval(y, self.rows);
         let below = (above + 1).min(self.rows - 1);
@@ -66,11 +67,11 @@ impl LocalStrengths {
         }
     }
 
-    /// `-ln H(strength)` around a pixel: 0 for what is ordinary there, large for what is rare.
-    pub fn surprise(&self, x: usize, y: usize, strength: f32) -> f32 {
+    /// `-ln H(strength)` around a pixel: 0 for a common strength, large for a rare one.
+    pub fn surprisal(&self, x: usize, y: usize, strength: f32) -> f32 {
         let column = (x / BLOCK_PX).min(self.columns - 1);
         let row = (y / BLOCK_PX).min(self.rows - 1);
-        self.surprise[row * self.columns + column][bin(strength)]
+        self.surprisal[row * self.columns + column][bin(strength)]
     }
 }
 
@@ -131,20 +132,20 @@ fn noise_of(counts: &[u32; BINS]) -> f32 {
     (median / RAYLEIGH_MEDIAN).max(MIN_NOISE)
 }
 
-fn surprise_of(counts: &[u32; BINS]) -> [f32; BINS] {
+fn surprisal_of(counts: &[u32; BINS]) -> [f32; BINS] {
     let total = counts.iter().sum::<u32>().max(1);
-    let mut surprise = [0.0; BINS];
-    // Never zero: what no pixel reaches is at most as rare as one in the sample.
+    let mut surprisal = [0.0; BINS];
+    // A strength that no pixel reaches is taken as rare as one pixel of the sample.
     let mut value = crate::math::ln(f64::from(total)) as f32;
     let mut stronger = 0;
-    for (s, &n) in surprise.iter_mut().zip(counts).rev() {
+    for (s, &n) in surprisal.iter_mut().zip(counts).rev() {
         if n > 0 {
             stronger += n;
             value = -crate::math::ln(f64::from(stronger) / f64::from(total)) as f32;
         }
         *s = value;
     }
-    surprise
+    surprisal
 }
 
 #[cfg(test)]
@@ -154,9 +155,9 @@ mod tests {
     use crate::lines2d::testing::{add_noise, step_edge};
     use crate::raster::{Gray, gaussian_blur};
 
-    /// What smoothing by 1 px and a central difference leave of white noise of 1: smoothed noise is
-    /// correlated as R(d) = exp(-d^2 / 4) / 4 pi, and the variance of a difference over 2 px, halved,
-    /// is (R(0) - R(2)) / 2.
+    /// What smoothing by 1 px and a central difference leave of white noise of 1: smoothed noise
+    /// is correlated as R(d) = exp(-d^2 / 4) / 4 pi, and the variance of a difference over 2 px,
+    /// halved, is (R(0) - R(2)) / 2.
     const GAIN: f32 = 0.1586;
 
     fn noisy(sigma: f64) -> LocalStrengths {
@@ -186,11 +187,11 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_is_a_surprise_and_noise_is_none() {
+    fn an_edge_is_rare_and_noise_is_not() {
         let mut gray = step_edge(160, 160, 0.3, 0.2);
         add_noise(&mut gray, 0.02, 7);
         let local = Gradient::new(&gaussian_blur(&gray, 1.0)).statistics();
-        assert!(local.surprise(80, 80, 0.02 * GAIN) < 1.0);
-        assert!(local.surprise(80, 80, 0.06) > 3.0);
+        assert!(local.surprisal(80, 80, 0.02 * GAIN) < 1.0);
+        assert!(local.surprisal(80, 80, 0.06) > 3.0);
     }
 }

@@ -1,12 +1,12 @@
 //! Tangent discontinuities of a chain, found by a worm (B99 3.2).
 //!
-//! The worm is two arms of a few edgels that crawl along the chain joined at an edgel; it breaks the
-//! chain where the angle between its arms is largest and above a threshold. An arm's direction is that of
-//! its orthogonal regression line.
+//! The worm is two arms of a few edgels that crawl along the chain joined at an edgel; it breaks
+//! the chain where the angle between its arms is largest and above a threshold. An arm's direction
+//! is that of its orthogonal regression line.
 
 use nalgebra::{Point2, Vector2};
 
-use crate::lines2d::fit::LineFit;
+use crate::lines2d::regression::RegressionLine;
 use crate::params::SegmentParams;
 
 /// Positions in the chain at which the tangent breaks, ascending, never the first or the last.
@@ -29,7 +29,7 @@ pub fn tangent_breaks(points: &[Point2<f64>], params: &SegmentParams) -> Vec<usi
 
 /// Unit direction of a run of edgels, pointing from its first to its last.
 fn arm_direction(points: &[Point2<f64>]) -> Vector2<f64> {
-    LineFit::new(points).direction
+    RegressionLine::new(points).direction
 }
 
 /// One minus the cosine of the angle between two arms: 0 when straight, 1 at a right angle.

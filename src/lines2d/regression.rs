@@ -2,19 +2,19 @@
 //!
 //! "A very tight threshold is used for the line fitting so that curves are not piecewise linear
 //! approximated." A run that does not fit is split where it is farthest from its chord, and
-//! neighbouring pieces that fit one line together are joined again. A piece that still bends (a parabola
-//! explains it significantly better than the line) belongs to a curve and is refused.
+//! neighbouring pieces that fit one line together are joined again. A piece that still bends (a
+//! parabola explains it significantly better than the line) belongs to a curve and is rejected.
 
 use nalgebra::{Matrix2, Point2, Vector2};
 
 use crate::params::SegmentParams;
 
-/// Fewest edgels of a piece on the way; shorter ones are not worth splitting.
+/// Fewest edgels of a piece on the way; shorter ones are not split.
 const MIN_EDGELS: usize = 4;
 
 /// An orthogonal regression line through points in order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineFit {
+pub struct RegressionLine {
     /// Mean of the points, px.
     pub centroid: Point2<f64>,
     /// Unit direction, from the first point to the last.
@@ -27,10 +27,10 @@ pub struct LineFit {
     pub rms: f64,
 }
 
-impl LineFit {
+impl RegressionLine {
     /// Fits a line to at least two distinct points.
     pub fn new(points: &[Point2<f64>]) -> Self {
-        let mut moments = Moments::about(points[0]);
+        let mut moments = PointMoments::about(points[0]);
         points.iter().for_each(|p| moments.add(p));
         moments.line(&(points[points.len() - 1] - points[0]))
     }
@@ -58,8 +58,9 @@ impl LineFit {
                 .all(|p| self.across(p).abs() <= params.max_residual_px)
     }
 
-    /// Covariance of (offset along the normal in px, angle in rad) at the position `along` the line.
-    /// `correlated` consecutive edgels count as one; `floor_px` is the least standard deviation of an edgel.
+    /// Covariance of (offset along the normal in px, angle in rad) at the position `along` the
+    /// line. `correlated` consecutive edgels count as one; `floor_px` is the least standard
+    /// deviation of an edgel.
     pub fn covariance(&self, along: f64, correlated: f64, floor_px: f64) -> Matrix2<f64> {
         // Two parameters are taken out of the independent errors.
         let independent = (self.count as f64 / correlated - 2.0).max(1.0);
@@ -75,12 +76,12 @@ impl LineFit {
         )
     }
 
-    /// How many consecutive edgels err together: 1 + 2 sum of the autocorrelation of their distances from
-    /// the line, up to the first lag without any.
+    /// How many consecutive edgels err together: 1 + 2 sum of the autocorrelation of their
+    /// distances from the line, up to the first lag without any.
     ///
-    /// Smoothing alone makes neighbours alike: white noise after a Gaussian of standard
-    /// deviation s is correlated as exp(-d^2 / 4 s^2), so that it is 2 sqrt(pi) s at least. Tiles, planks and
-    /// shadows reach farther.
+    /// Smoothing alone makes neighbours alike: white noise after a Gaussian of standard deviation
+    /// s is correlated as exp(-d^2 / 4 s^2), so that it is 2 sqrt(pi) s at least. Tiles, planks
+    /// and shadows reach farther.
     pub fn correlated_edgels(&self, points: &[Point2<f64>], smoothing_px: f64) -> f64 {
         let least = (2.0 * std::f64::consts::PI.sqrt() * smoothing_px).max(1.0);
         let across: Vec<f64> = points.iter().map(|p| self.across(p)).collect();
@@ -122,7 +123,7 @@ fn cubed(t: f64) -> f64 {
 
 /// Sums over points from which their line follows, to which points can be added one by one.
 #[derive(Clone, Copy, Debug)]
-pub struct Moments {
+pub struct PointMoments {
     /// What the sums are about, near the points: sums about the image's corner would lose digits.
     origin: Point2<f64>,
     count: usize,
@@ -132,7 +133,7 @@ pub struct Moments {
     yy: f64,
 }
 
-impl Moments {
+impl PointMoments {
     /// Of no points yet.
     pub fn about(origin: Point2<f64>) -> Self {
         Self {
@@ -156,7 +157,7 @@ impl Moments {
     }
 
     /// The orthogonal regression line, in the sense of `chord`.
-    pub fn line(&self, chord: &Vector2<f64>) -> LineFit {
+    pub fn line(&self, chord: &Vector2<f64>) -> RegressionLine {
         let n = self.count as f64;
         let mean = self.sum / n;
         let xx = self.xx - n * mean.x * mean.x;
@@ -172,7 +173,7 @@ impl Moments {
         };
         let axis = if axis.dot(chord) < 0.0 { -axis } else { axis };
         let norm = axis.norm();
-        LineFit {
+        RegressionLine {
             centroid: self.origin + mean,
             direction: if norm > 0.0 {
                 axis / norm
@@ -188,13 +189,13 @@ impl Moments {
 
 /// A stretch of a chain (`points[from..to]`) with its line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
+pub struct StraightPiece {
     /// First point.
     pub from: usize,
     /// One past the last point.
     pub to: usize,
     /// The line.
-    pub line: LineFit,
+    pub line: RegressionLine,
 }
 
 /// The straight pieces of one smooth run `points[from..to]`, in order.
@@ -203,10 +204,10 @@ pub fn straight_pieces(
     from: usize,
     to: usize,
     params: &SegmentParams,
-) -> Vec<Piece> {
+) -> Vec<StraightPiece> {
     let mut pieces = Vec::new();
     split(points, from, to, params, &mut pieces);
-    let mut joined: Vec<Piece> = Vec::new();
+    let mut joined: Vec<StraightPiece> = Vec::new();
     for piece in pieces {
         let piece = match joined.last() {
             Some(last) => match join(points, last, &piece, params) {
@@ -228,15 +229,15 @@ fn split(
     from: usize,
     to: usize,
     params: &SegmentParams,
-    pieces: &mut Vec<Piece>,
+    pieces: &mut Vec<StraightPiece>,
 ) {
     if to - from < MIN_EDGELS {
         return;
     }
     let run = &points[from..to];
-    let line = LineFit::new(run);
+    let line = RegressionLine::new(run);
     if line.is_tight(run, params) {
-        pieces.push(Piece { from, to, line });
+        pieces.push(StraightPiece { from, to, line });
         return;
     }
     let middle = from + farthest_from_chord(run);
@@ -258,10 +259,15 @@ fn farthest_from_chord(run: &[Point2<f64>]) -> usize {
     best.1
 }
 
-fn join(points: &[Point2<f64>], a: &Piece, b: &Piece, params: &SegmentParams) -> Option<Piece> {
+fn join(
+    points: &[Point2<f64>],
+    a: &StraightPiece,
+    b: &StraightPiece,
+    params: &SegmentParams,
+) -> Option<StraightPiece> {
     let run = &points[a.from..b.to];
-    let line = LineFit::new(run);
-    line.is_tight(run, params).then_some(Piece {
+    let line = RegressionLine::new(run);
+    line.is_tight(run, params).then_some(StraightPiece {
         from: a.from,
         to: b.to,
         line,
@@ -280,7 +286,7 @@ mod tests {
             let (direction, normal) = (Vector2::new(c, s), Vector2::new(-s, c));
             let at = |t: i32| Point2::from(direction * f64::from(t) + normal * offset);
             let points: Vec<_> = (0..20).map(at).collect();
-            let line = LineFit::new(&points);
+            let line = RegressionLine::new(&points);
             prop_assert!((line.direction - direction).norm() < 1e-9);
             prop_assert!((line.normal().dot(&line.centroid.coords) - offset).abs() < 1e-9);
             prop_assert!(line.rms < 1e-6);
@@ -288,7 +294,8 @@ mod tests {
         }
     }
 
-    /// Points of a circle through the origin, curved to the side of the normal for a positive radius.
+    /// Points of a circle through the origin, curved to the side of the normal for a positive
+    /// radius.
     fn arc(radius: f64, count: i32) -> Vec<Point2<f64>> {
         let at = |i: i32| {
             let (s, c) = crate::math::sin_cos(f64::from(i) / radius.abs());
@@ -301,7 +308,7 @@ mod tests {
     fn the_curvature_of_an_arc_is_one_over_its_radius() {
         for radius in [150.0, -400.0] {
             let points = arc(radius, 40);
-            let (curvature, sigma) = LineFit::new(&points).curvature(&points);
+            let (curvature, sigma) = RegressionLine::new(&points).curvature(&points);
             assert!((curvature * radius - 1.0).abs() < 0.02, "{curvature}");
             assert!(curvature.abs() > 3.0 * sigma);
         }
@@ -322,7 +329,7 @@ mod tests {
         let points: Vec<_> = (0..40)
             .map(|i| Point2::new(f64::from(i), if i % 2 == 0 { 0.1 } else { -0.1 }))
             .collect();
-        let line = LineFit::new(&points);
+        let line = RegressionLine::new(&points);
         let c = line.covariance(0.0, 1.0, 0.0);
         let sigma2 = 0.01 * 40.0 / 38.0;
         assert!((c[(0, 0)] / (sigma2 / 40.0) - 1.0).abs() < 0.01);

@@ -1,38 +1,35 @@
-//! From edgels to the straight lines among them that stand out.
+//! From edgels to the significant straight lines among them.
 //!
-//! Edges and bars go the same way: chains, straight pieces, growth along the line, and then length, curvature and
-//! significance decide.
+//! Edges and bars take the same steps: chains, straight pieces, growth along the line, and then
+//! the tests of length, curvature and significance.
 
 use nalgebra::Point2;
 
-use super::edgels::Edgel;
-use super::edgels::LocalStrengths;
-use super::edgels::tangent_breaks;
-use super::edgels::{Chain, Raster, link_on};
-use super::fit::straight_pieces;
-use super::grow::{Grown, grow_tight};
+use super::edgels::{Chain, Edgel, LocalStrengths, Raster, link_on, tangent_breaks};
+use super::grow::{GrownLine, grow_tight};
+use super::regression::straight_pieces;
 use super::significance::FalseAlarms;
 use super::trace::{RejectedSegment, SegmentRejection, SegmentTrace};
 use crate::geometry::Segment2;
 use crate::params::SegmentParams;
 use crate::sorting::sort_by_key;
 
-/// The lines of some edgels, those of the longest pieces first. `high` is the least strength of the strongest edgel
-/// of a chain, in local noise units.
+/// The lines of some edgels, those of the longest pieces first. `high` is the least strength of
+/// the strongest edgel of a chain, in local noise units.
 pub fn significant_lines(
     edgels: &[Edgel],
     local: &LocalStrengths,
     high: f64,
     params: &SegmentParams,
     trace: &mut SegmentTrace,
-) -> Vec<Grown> {
+) -> Vec<GrownLine> {
     let raster = Raster::new(edgels);
     let chains = link_on(edgels, &raster, high);
     let mut seeds: Vec<Vec<u32>> = chains
         .iter()
         .flat_map(|chain| seeds_of(chain, edgels, params, trace))
         .collect();
-    // The longest first: they predict best. The sort is stable, equals stay in the order of their chains.
+    // The longest predict best and come first; the stable sort keeps the order of the chains.
     sort_by_key(&mut seeds, |seed| std::cmp::Reverse(seed.len()));
     trace.edgels += edgels.len();
     trace.chains += chains.len();
@@ -48,12 +45,12 @@ pub fn significant_lines(
         }
         let line = grow_tight(edgels, &raster, seed, &|i| !taken[i as usize], params);
         let segment = line.extent();
-        match judge(&line, &segment, edgels, local, &mut alarms, params) {
+        match rejection_of(&line, &segment, edgels, local, &mut alarms, params) {
             None => {
                 line.edgels.iter().for_each(|&i| taken[i as usize] = true);
                 lines.push(line);
             }
-            Some(reason) => trace.refuse(RejectedSegment { segment, reason }),
+            Some(reason) => trace.reject(RejectedSegment { segment, reason }),
         }
     }
     lines
@@ -85,8 +82,8 @@ fn seeds_of(
 }
 
 /// Why the line is no segment, if it is none.
-fn judge(
-    grown: &Grown,
+fn rejection_of(
+    grown: &GrownLine,
     segment: &Segment2,
     edgels: &[Edgel],
     local: &LocalStrengths,
@@ -104,13 +101,13 @@ fn judge(
         return Some(SegmentRejection::Curved);
     }
     let normal = line.normal();
-    let surprise = |&i: &u32| {
+    let surprisal = |&i: &u32| {
         let edgel = &edgels[i as usize];
         let (x, y) = edgel.pixel();
         let across = edgel.gradient.cast::<f64>().dot(&normal).max(0.0);
-        f64::from(local.surprise(x, y, across as f32))
+        f64::from(local.surprisal(x, y, across as f32))
     };
-    let sum: f64 = grown.edgels.iter().map(surprise).sum();
+    let sum: f64 = grown.edgels.iter().map(surprisal).sum();
     // One edgel a pixel along the main axis, were there no gaps.
     let step = segment.p1 - segment.p0;
     let pixels = (step.x.abs().max(step.y.abs()) + 1.0).max(grown.edgels.len() as f64);

@@ -1,39 +1,42 @@
 //! From an image to its straight segments: the stage (B99 3.2, "Implementation details").
 //!
-//! Deviations: lines grow past the ends of their chains ([`super::grow`]), and a test of significance
-//! ([`super::significance`]) stands in for a global threshold of contrast.
+//! Deviations: lines grow past the ends of their chains ([`super::grow`]), and a test of
+//! significance ([`super::significance`]) replaces a global threshold of contrast.
 //!
-//! B99 has grey photographs. Where there is colour, the same detector also runs on the red_blue of the pixels
-//! ([`crate::raster::RedBlueDifference`]), and what it finds beside no edge in grey values is a segment too: on the six views of a rendered
-//! suburb the segments then cover 81 % of the true roof edges instead of 62 %. Each kind is matched with its own, in its own
-//! channel: lines of both together lay up to 0.2 m off on photographs whose lens does not focus red and blue alike.
+//! B99 has grey photographs. Where there is colour, the same detector also runs on the red-blue
+//! difference ([`crate::raster::RedBlueDifference`]), and its segments count where no edge in grey
+//! values runs along them: on six views of a rendered suburb the segments then cover 81 % of the
+//! true roof edges instead of 62 %. Each kind is matched with its own, in its own channel, because
+//! lines of both together lay up to 0.2 m off on photographs with chromatic aberration.
 //!
-//! What limits the position of a segment is the roof, not the image: measured along true edges of two rendered
-//! scenes, the crest of the mean profile of grey values itself scatters by 0.2 to 0.3 px on eaves and rakes, whose visible
-//! fascias and gutters are half a pixel to two pixels wide. Hips, which have none, scatter by 0.08 to 0.15 px. The covariance
-//! holds a term for it. (About a quarter of it is no property of the roof: profiles are measured in light since, see
-//! [`crate::raster::Channel::to_linear_light`].)
+//! The accuracy of a segment is limited by the roof, not by the image: along true edges of two
+//! rendered scenes, the steepest place of the mean profile itself scatters by 0.2 to 0.3 px on
+//! eaves and rakes, whose visible fascias and gutters are 0.5 to 2 px wide, and by 0.08 to 0.15 px
+//! on hips, which have none. The covariance has a term for it. About a quarter of that scatter
+//! came from stored grey values; profiles are now taken in linear light
+//! ([`crate::raster::Channel::to_linear_light`]).
 //!
-//! Tried and left out: evidence from the directions of the edgels besides their strength (the same
-//! coverage of true roof edges at the same number of segments), and chains alone without growing (on two
-//! rendered views of a suburb, about 880 segments each: 48 % of the true roof edges covered instead of 59 %).
+//! Rejected: evidence from the directions of the edgels besides their strength (the same coverage
+//! of true roof edges at the same number of segments), and chains without growing (on two rendered
+//! views of a suburb with about 880 segments each, 48 % of the true roof edges covered instead of
+//! 59 %).
 
 use nalgebra::{Matrix2, Point2};
 
-use super::clear::add_clear;
-use super::edgels::{Fan, Hessian, bar_points, fan_edgels};
-use super::edgels::{Gradient, suppress};
-use super::grow::Grown;
-use super::lines::significant_lines;
+use super::edgels::{Fan, Gradient, Hessian, bar_points, fan_edgels, suppress};
+use super::grow::GrownLine;
+use super::overlap::add_without_overlap;
 use super::refine::refine;
+use super::segment::{ImageSegment, SegmentKind};
+use super::significant_lines::significant_lines;
 use super::trace::SegmentTrace;
-use super::{ImageSegment, SegmentKind};
 use crate::geometry::Segment2;
 use crate::params::SegmentParams;
 use crate::raster::{Gray, RedBlueDifference, gaussian_blur};
 
-/// The straight segments of an image, directed by contrast: edges in grey values first, then in colour, then bars. `gray` and
-/// `red_blue` are of one size; there is no `red_blue` where there is no colour.
+/// The straight segments of an image, directed by contrast: edges in grey values first, then in
+/// colour, then bars. `gray` and `red_blue` are of one size; a photograph without colour has no
+/// `red_blue`.
 pub fn detect_segments(
     gray: &Gray,
     red_blue: Option<&RedBlueDifference>,
@@ -46,16 +49,16 @@ pub fn detect_segments(
         && let Some(red_blue) = red_blue
     {
         let found = color_segments(red_blue, params, &mut trace);
-        add_clear(&mut segments, found, params.colors.clear_px, &mut trace);
+        add_without_overlap(&mut segments, found, params.colors.clear_px, &mut trace);
     }
     if params.bars.detect {
         let found = bar_segments(gray, &smooth, params, &mut trace);
-        add_clear(&mut segments, found, params.bars.clear_px, &mut trace);
+        add_without_overlap(&mut segments, found, params.bars.clear_px, &mut trace);
     }
     (segments, trace)
 }
 
-/// Segments on steps of colour, sought where each pixel has a colour of its own.
+/// Segments on steps of colour, detected at the resolution in which colour is stored.
 fn color_segments(
     red_blue: &RedBlueDifference,
     params: &SegmentParams,
@@ -114,14 +117,19 @@ fn bar_segments(
         for fan in [Fan::Right, Fan::Down] {
             let edgels = fan_edgels(&points, kind == SegmentKind::BrightBar, fan);
             let lines = significant_lines(&edgels, &local, params.bars.high, params, trace);
-            let own = lines.iter().filter(|l| fan.holds(&l.line.normal()));
+            let own = lines.iter().filter(|l| fan.contains(&l.line.normal()));
             segments.extend(own.map(|line| finish(line, kind, gray, params)));
         }
     }
     segments
 }
 
-fn finish(grown: &Grown, kind: SegmentKind, gray: &Gray, params: &SegmentParams) -> ImageSegment {
+fn finish(
+    grown: &GrownLine,
+    kind: SegmentKind,
+    gray: &Gray,
+    params: &SegmentParams,
+) -> ImageSegment {
     let line = &grown.line;
     let mut segment = grown.extent();
     let mut contrast = contrast(gray, &segment, params.contrast_distance_px);
@@ -140,9 +148,9 @@ fn finish(grown: &Grown, kind: SegmentKind, gray: &Gray, params: &SegmentParams)
     }
 }
 
-/// Covariance of (offset, angle) at the segment's midpoint: that of the fit, and at either end an independent
-/// distance between the edge that the image shows and the edge that is meant.
-fn covariance(grown: &Grown, segment: &Segment2, params: &SegmentParams) -> Matrix2<f64> {
+/// Covariance of (offset, angle) at the midpoint of the segment: that of the fit, and at either
+/// end an independent distance between the edge in the image and that of the roof.
+fn covariance(grown: &GrownLine, segment: &Segment2, params: &SegmentParams) -> Matrix2<f64> {
     let line = &grown.line;
     let correlated = line.correlated_edgels(&grown.points, params.edgels.smoothing_px);
     let along = line.along(&segment.midpoint());
@@ -180,17 +188,19 @@ mod tests {
         detect_segments(gray, None, params)
     }
 
-    /// A planted edge between two colours of one grey value, the warm one on the side where a step edge is bright.
+    /// A planted edge between two colours of one grey value, the difference one on the side where
+    /// a step edge is bright.
     #[test]
     fn an_edge_between_colours_of_one_grey_is_found() {
         for step in 0..12 {
             let angle = f64::from(step) * 30f64.to_radians() + 0.02;
-            let mut warm = step_edge(64, 64, angle, 0.2);
+            let mut difference = step_edge(64, 64, angle, 0.2);
             let mut gray = Gray::from_fn(64, 64, |_, _| 0.5);
-            add_noise(&mut warm, 2.0 / 255.0, step as u64);
+            add_noise(&mut difference, 2.0 / 255.0, step as u64);
             add_noise(&mut gray, 2.0 / 255.0, 100 + step as u64);
-            let warm = RedBlueDifference::new(warm);
-            let (segments, _) = detect_segments(&gray, Some(&warm), &SegmentParams::default());
+            let difference = RedBlueDifference::new(difference);
+            let (segments, _) =
+                detect_segments(&gray, Some(&difference), &SegmentParams::default());
             assert_eq!(segments.len(), 1, "at {angle}");
             let found = &segments[0];
             assert_eq!(found.kind, SegmentKind::Color);
@@ -200,15 +210,15 @@ mod tests {
             assert!(miss.abs() < 0.1, "{miss} px at {angle}");
             let turn = turn(found, angle).to_degrees();
             assert!(turn.abs() < 0.3, "{turn} degrees at {angle}");
-            // Where grey values show it too, the edge in grey values stands for it.
+            // Where grey values show it too, only the edge in grey values remains.
             let params = SegmentParams::default();
-            let (both, trace) = detect_segments(&warm.image, Some(&warm), &params);
+            let (both, trace) = detect_segments(&difference.image, Some(&difference), &params);
             assert!(both.iter().all(|s| s.kind == SegmentKind::Edge));
             assert!(trace.beside_edge > 0);
         }
     }
 
-    /// The image with one value kept for four pixels, and interpolated between as decoders do it.
+    /// The image with one value stored for four pixels, interpolated as decoders do it.
     fn subsampled(image: &Gray) -> Gray {
         let kept = image.reduced(2);
         Gray::from_fn(image.width, image.height, |x, y| {
@@ -231,14 +241,15 @@ mod tests {
     fn an_edge_between_colours_kept_for_four_pixels_is_found_where_it_is() {
         for step in 0..12 {
             let angle = f64::from(step) * 30f64.to_radians() + 0.02;
-            let mut warm = step_edge(128, 128, angle, 0.2);
+            let mut difference = step_edge(128, 128, angle, 0.2);
             let gray = Gray::from_fn(128, 128, |_, _| 0.5);
-            add_noise(&mut warm, 2.0 / 255.0, step as u64);
-            let own = RedBlueDifference::new(warm.clone());
-            let shared = RedBlueDifference::new(subsampled(&warm));
+            add_noise(&mut difference, 2.0 / 255.0, step as u64);
+            let own = RedBlueDifference::new(difference.clone());
+            let shared = RedBlueDifference::new(subsampled(&difference));
             assert_eq!((own.subsampling, shared.subsampling), (1, 2), "at {angle}");
             let ratio = shared.noise / own.noise;
-            // Interpolating smooths the noise, too: to (1 6 1) / 8 of it in either direction, of which the filter sees 0.35.
+            // Interpolating smooths the noise, too: to (1 6 1) / 8 of it in either direction, of
+            // which the filter sees 0.35.
             assert!((0.3..0.4).contains(&ratio), "{ratio}");
             let (segments, trace) =
                 detect_segments(&gray, Some(&shared), &SegmentParams::default());
@@ -257,31 +268,32 @@ mod tests {
     fn tiny_photographs_whose_colour_was_interpolated_have_no_segments() {
         for (width, height) in [(9, 1), (1, 9), (9, 2), (9, 3), (4, 4)] {
             let ramp = |x: usize, y: usize| 0.1 * (x + y) as f32;
-            let warm = RedBlueDifference::new(Gray::from_fn(width, height, ramp));
-            assert_eq!(warm.subsampling, 2, "{width} x {height}");
+            let difference = RedBlueDifference::new(Gray::from_fn(width, height, ramp));
+            assert_eq!(difference.subsampling, 2, "{width} x {height}");
             let gray = Gray::from_fn(width, height, |_, _| 0.5);
-            let (segments, _) = detect_segments(&gray, Some(&warm), &SegmentParams::default());
+            let (segments, _) =
+                detect_segments(&gray, Some(&difference), &SegmentParams::default());
             assert!(segments.is_empty());
         }
     }
 
-    /// What is noise in single pixels looks like lines once it was interpolated.
+    /// Noise of single pixels looks like lines once it has been interpolated.
     #[test]
     fn noise_between_pixels_that_share_their_colour_is_no_edge() {
         let gray = Gray::from_fn(400, 400, |_, _| 0.5);
-        let mut warm = step_edge(400, 400, 0.3, 0.3);
-        add_noise(&mut warm, 8.0 / 255.0, 3);
-        let shared = RedBlueDifference::new(subsampled(&warm));
+        let mut difference = step_edge(400, 400, 0.3, 0.3);
+        add_noise(&mut difference, 8.0 / 255.0, 3);
+        let shared = RedBlueDifference::new(subsampled(&difference));
         let found = |red_blue: &RedBlueDifference| {
             let (segments, _) = detect_segments(&gray, Some(red_blue), &SegmentParams::default());
             segments.len()
         };
         assert_eq!(found(&shared), 1);
-        let believed = RedBlueDifference {
+        let not_reduced = RedBlueDifference {
             subsampling: 1,
             ..shared
         };
-        assert!(found(&believed) > 1, "or nothing was planted");
+        assert!(found(&not_reduced) > 1, "or nothing was planted");
     }
 
     /// The segment on the planted edge; there must be exactly one.
@@ -353,8 +365,9 @@ mod tests {
         }
     }
 
-    /// The share of a planted edge that segments of its direction lie on, with the shipped parameters, in the mean of some
-    /// images: `contrast` in standard deviations of a pixel's noise.
+    /// The share of a planted edge that segments of its direction lie on, with the shipped
+    /// parameters, in the mean of some images: `contrast` in standard deviations of a pixel's
+    /// noise.
     fn share_found(contrast: f64) -> f64 {
         const SIZE: usize = 160;
         let share = |seed: u32| {
@@ -487,7 +500,7 @@ mod tests {
     fn a_thin_line_is_a_bar_along_its_middle() {
         let mut params = SegmentParams::default();
         params.bars.detect = true;
-        // Its two sides are edges, which would stand for it.
+        // Its two sides are edges, along which it would be rejected.
         params.bars.clear_px = 0.0;
         for step in 0..12 {
             let angle = f64::from(step) * 15f64.to_radians() + 0.02;

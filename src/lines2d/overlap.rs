@@ -1,24 +1,24 @@
-//! Segments of the second sources (colour, bars) only count where no edge in grey values stands for them.
+//! Colour edges and bars are rejected where an edge in grey values runs along them.
 
 use nalgebra::{Point2, Vector2};
 
-use super::ImageSegment;
+use super::segment::ImageSegment;
 use super::trace::{RejectedSegment, SegmentRejection, SegmentTrace};
 use crate::geometry::Segment2;
 
-/// Adds the candidates that no segment runs along; the others are traced.
-pub fn add_clear(
+/// Adds the candidates that no segment runs along; the others are recorded as rejected.
+pub fn add_without_overlap(
     segments: &mut Vec<ImageSegment>,
     candidates: Vec<ImageSegment>,
     clear_px: f64,
     trace: &mut SegmentTrace,
 ) {
     let boxes: Vec<Bounds> = segments.iter().map(|s| bounds(&s.segment)).collect();
-    let (clear, beside): (Vec<_>, Vec<_>) =
-        (candidates.into_iter()).partition(|c| is_clear(c, segments, &boxes, clear_px));
-    segments.extend(clear);
+    let (apart, beside): (Vec<_>, Vec<_>) =
+        (candidates.into_iter()).partition(|c| is_apart(c, segments, &boxes, clear_px));
+    segments.extend(apart);
     for candidate in beside {
-        trace.refuse(RejectedSegment {
+        trace.reject(RejectedSegment {
             segment: candidate.segment,
             reason: SegmentRejection::BesideEdge,
         });
@@ -26,14 +26,14 @@ pub fn add_clear(
 }
 
 /// Do the edges, which lie in these boxes, run along less than half of the candidate?
-fn is_clear(
+fn is_apart(
     candidate: &ImageSegment,
     edges: &[ImageSegment],
     boxes: &[Bounds],
     clear_px: f64,
 ) -> bool {
     let [low, high] = bounds(&candidate.segment);
-    // A pixel more than what counts, against rounding. Most edges are elsewhere in the image.
+    // A pixel more than the threshold against rounding; the boxes exclude most edges of the image.
     let reach = Vector2::repeat(clear_px + 1.0);
     let (low, high) = (low - reach, high + reach);
     let near =
