@@ -7,7 +7,7 @@
 pub use libm::{acos, asin, atan, atan2, cos, exp, hypot, log as ln, log2, pow, sin, tan};
 pub use libm::{cosf, expf, hypotf, sinf};
 
-/// The larger of two numbers, neither NaN. (`f64::max` also says what becomes of NaN: a call in wasm.)
+/// The larger of two numbers, neither NaN: `f64::max`, which treats NaN, is a call in wasm.
 #[inline]
 pub fn larger<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }

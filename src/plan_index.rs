@@ -1,8 +1,8 @@
-//! Boxes in plan, found by where they are.
+//! A spatial index of boxes in plan.
 //!
-//! One R-tree serves whoever asks: each further kind of tree would be compiled anew, sorts and all, some 25 kB of wasm. Points
-//! are boxes without extent. The tree is only ever built whole, because its insertion would be another 20 kB of wasm: boxes
-//! that come later are looked at one by one until they are many, and then a tree is built of all.
+//! Points are boxes without extent, because each further type of R-tree would add 25 kB of wasm.
+//! The tree is always bulk-loaded, because its insertion would add another 20 kB: boxes inserted
+//! later are searched linearly until they are many, and then the tree is built again.
 
 use nalgebra::Point2;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -12,14 +12,14 @@ use rstar::{AABB, Envelope, RTree, RTreeObject};
 #[derive(Default)]
 pub struct PlanIndex {
     boxes: Vec<Numbered>,
-    /// Of the first boxes; the others came later.
+    /// The tree of the first boxes; the others were inserted later.
     tree: RTree<Numbered>,
 }
 
 type Numbered = GeomWithData<Rectangle<[f64; 2]>, u32>;
 
-/// So many boxes beyond the tree, and an eighth of those in it, are looked at one by one.
-const LATE: usize = 32;
+/// Number of boxes outside the tree, besides an eighth of those in it, that are searched linearly.
+const MAX_OUTSIDE: usize = 32;
 
 impl PlanIndex {
     /// Indexes the boxes between two corners, numbered in their order.
@@ -33,13 +33,12 @@ impl PlanIndex {
     pub fn insert(&mut self, corners: [Point2<f64>; 2], number: u32) {
         self.boxes.push(numbered(corners, number));
         let grown = self.tree.size();
-        if self.boxes.len() > grown + grown / 8 + LATE {
+        if self.boxes.len() > grown + grown / 8 + MAX_OUTSIDE {
             self.tree = RTree::bulk_load(self.boxes.clone());
         }
     }
 
-    /// The numbers of the boxes that share a point, be it on the border, with the box widened by `margin` on all sides; in
-    /// no order.
+    /// The numbers of the boxes that touch the box widened by `margin` on all sides, in no order.
     pub fn touching(
         &self,
         [a, b]: [Point2<f64>; 2],

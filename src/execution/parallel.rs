@@ -28,11 +28,11 @@ pub fn map<T: Sync, R: Send>(items: &[T], f: impl Fn(usize, &T) -> R + Sync) -> 
         .collect()
 }
 
-/// The part of a map that is not worth speaking of.
+/// The progress of a map that reports none.
 pub const SILENT: Range<f64> = 0.0..0.0;
 
-/// [`map`], as the part of a stage's work that runs from fraction `part.start` to `part.end`: the stage's
-/// listener hears of every item done, unless the part is [`SILENT`].
+/// [`map`] as the part of a stage's work from fraction `part.start` to `part.end`: the stage's
+/// listener is called after every item, unless the part is [`SILENT`].
 pub fn map_part<T: Sync, R: Send>(
     items: &[T],
     part: Range<f64>,
@@ -41,7 +41,7 @@ pub fn map_part<T: Sync, R: Send>(
     if part.is_empty() {
         return map(items, f);
     }
-    let results = progress::counted(|listener| {
+    let results = progress::with_detached_listener(|listener| {
         let Some(listener) = listener else {
             return map(items, f);
         };
@@ -49,7 +49,7 @@ pub fn map_part<T: Sync, R: Send>(
         let done = Mutex::new(0u32);
         map(items, |i, item| {
             let result = f(i, item);
-            // Spoken under the lock, so that fractions never fall.
+            // Called under the lock, so that fractions never fall.
             let mut done = done.lock().expect("a listener does not panic");
             *done += 1;
             listener(part.start + step * f64::from(*done));
@@ -68,15 +68,15 @@ mod tests {
     #[test]
     fn a_part_reports_rising_fractions_and_changes_no_result() {
         let items: Vec<u32> = (0..100).collect();
-        // Maps inside a map are silent.
+        // Maps inside a map report nothing.
         let work =
             |i: usize, item: &u32| map_part(&[1u32, 2], 0.0..1.0, |_, n| n * item)[1] + i as u32;
         let mut results = Vec::new();
-        let heard = fractions(|| results = map_part(&items, 0.2..0.7, work));
+        let reported = fractions(|| results = map_part(&items, 0.2..0.7, work));
         assert_eq!(results, map(&items, work));
-        assert_eq!(heard.len(), 101);
-        assert!(heard.is_sorted() && heard[0] > 0.2 && heard[0] < 0.21);
-        assert_eq!(heard[100], 0.7);
+        assert_eq!(reported.len(), 101);
+        assert!(reported.is_sorted() && reported[0] > 0.2 && reported[0] < 0.21);
+        assert_eq!(reported[100], 0.7);
         assert_eq!(
             fractions(|| drop(map_part(&[0u8; 0], 0.0..0.5, |_, _| 0))),
             [0.5]

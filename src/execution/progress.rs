@@ -1,49 +1,50 @@
-//! How far a stage has come: for a bar or a page, never for the result.
+//! Progress of a stage, for a progress bar.
 //!
-//! Stages are functions from values to values and know of no listener. Whoever runs one lends a [`Listener`] to
-//! the thread for that time ([`heard`]); the long loops of the stage say which part of its work they are
-//! (`parallel::map_part`, [`reached`]). Without a listener that costs nothing.
+//! Stages are functions from values to values without a callback among their arguments, which
+//! would run through twenty signatures without influence on any result. The caller sets a
+//! [`Listener`] for the thread while a stage runs ([`with_listener`]); the long loops of the stage
+//! report which fraction of its work they have done (`parallel::map_part`, [`reached`]). Without a
+//! listener that costs nothing.
 //!
-//! Rejected: a callback as an argument of every stage. It would run through twenty signatures and their tests for the
-//! sake of something that has no influence on what they return.
+//! Invariant: progress never influences a result.
 
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// Hears fractions of a stage's work, 0 to 1, never falling; perhaps from other threads.
+/// Receives the done fraction of a stage's work, 0 to 1 and never falling, from any thread.
 pub type Listener = Arc<dyn Fn(f64) + Send + Sync>;
 
 thread_local! {
     static LISTENER: RefCell<Option<Listener>> = const { RefCell::new(None) };
 }
 
-/// Nobody listens.
+/// A listener that ignores all reports.
 pub fn silent() -> Listener {
     Arc::new(|_| ())
 }
 
-/// Runs `work` on this thread; `listener` hears what it says by [`reached`].
-pub fn heard<R>(listener: Listener, work: impl FnOnce() -> R) -> R {
+/// Runs `work` on this thread; `listener` receives what it reports by [`reached`].
+pub fn with_listener<R>(listener: Listener, work: impl FnOnce() -> R) -> R {
     let _restored = Restored(LISTENER.replace(Some(listener)));
     work()
 }
 
-/// Says that the stage on this thread has done this fraction of its work.
+/// Reports that the stage on this thread has done this fraction of its work.
 pub fn reached(fraction: f64) {
     if let Some(listener) = LISTENER.with_borrow(Option::clone) {
         listener(fraction);
     }
 }
 
-/// Runs `work` without a listener of its own, and hands it to the work instead: a map counts its items,
-/// whatever maps they run inside.
-pub(crate) fn counted<R>(work: impl FnOnce(Option<&Listener>) -> R) -> R {
+/// Runs `work` with the thread's listener removed and passed as an argument, so that a map reports
+/// its items but the maps inside them report nothing.
+pub(crate) fn with_detached_listener<R>(work: impl FnOnce(Option<&Listener>) -> R) -> R {
     let listener = LISTENER.take();
     let _restored = Restored(listener.clone());
     work(listener.as_ref())
 }
 
-/// Puts the thread's listener back, also when a panic passes.
+/// Restores the thread's listener, also during a panic.
 struct Restored(Option<Listener>);
 
 impl Drop for Restored {
@@ -58,19 +59,19 @@ pub(crate) mod tests {
 
     use super::*;
 
-    /// What a listener hears while `work` runs.
+    /// The fractions that a listener receives while `work` runs.
     pub(crate) fn fractions(work: impl FnOnce()) -> Vec<f64> {
-        let heard_so_far = Arc::new(Mutex::new(Vec::new()));
-        let ear = Arc::clone(&heard_so_far);
-        heard(
-            Arc::new(move |f| ear.lock().expect("no panic").push(f)),
+        let received = Arc::new(Mutex::new(Vec::new()));
+        let sink = Arc::clone(&received);
+        with_listener(
+            Arc::new(move |f| sink.lock().expect("no panic").push(f)),
             work,
         );
-        heard_so_far.lock().expect("no panic").clone()
+        received.lock().expect("no panic").clone()
     }
 
     #[test]
-    fn a_listener_hears_its_own_work_only() {
+    fn a_listener_receives_its_own_work_only() {
         let inner = RefCell::new(Vec::new());
         let outer = fractions(|| {
             reached(0.1);

@@ -183,7 +183,7 @@ impl Run {
         }
         self.drop_from(stage);
         progress(0.0);
-        progress::heard(Listener::clone(progress), || {
+        progress::with_listener(Listener::clone(progress), || {
             with_known(known, || self.run_stage(stage));
         });
         progress(1.0);

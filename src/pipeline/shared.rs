@@ -174,7 +174,7 @@ impl Run {
             return Vec::new();
         }
         self.drop_from(stage);
-        let bytes = progress::heard(Listener::clone(progress), || {
+        let bytes = progress::with_listener(Listener::clone(progress), || {
             share(task, known, || self.run_stage(stage))
         });
         self.drop_from(stage);
