@@ -20,8 +20,8 @@ pub fn mean_point<const D: usize>(points: &[Point<f64, D>]) -> Point<f64, D> {
     Point::from(sum / points.len() as f64)
 }
 
-/// The part of a ring on the positive side of a linear function (Sutherland and Hodgman). Edges that it adds lie
-/// on the border and cancel under the even-odd rule.
+/// The part of a ring on the positive side of a linear function (Sutherland and Hodgman). Added
+/// edges lie on the border and cancel under the even-odd rule.
 pub fn clip(ring: &[Point3<f64>], side: impl Fn(&Point3<f64>) -> f64) -> Vec<Point3<f64>> {
     let mut out = Vec::with_capacity(ring.len() + 2);
     for (i, p) in ring.iter().enumerate() {
@@ -134,13 +134,19 @@ impl Segment3 {
         self.p0 + (self.p1 - self.p0) * t
     }
 
-    /// First and last place of another segment along this one, metres from its start.
+    /// The stretch of the infinite line between two distances from the start, metres.
+    pub fn stretch(&self, from_m: f64, to_m: f64) -> Self {
+        let d = self.direction();
+        Self::new(self.p0 + d * from_m, self.p0 + d * to_m)
+    }
+
+    /// Start and end of another segment's projection onto this one, metres from its start.
     pub fn span_of(&self, other: &Self) -> [f64; 2] {
         let [t0, t1] = [other.p0, other.p1].map(|p| (p - self.p0).dot(&self.direction()));
         [t0.min(t1), t0.max(t1)]
     }
 
-    /// Does this one run along at least a share of another's length?
+    /// Does this segment cover at least a share of another's length?
     pub fn covers(&self, other: &Self, share: f64) -> bool {
         let [from, to] = self.span_of(other);
         to.min(self.length()) - from.max(0.0) >= share * other.length()
@@ -151,21 +157,21 @@ impl Segment3 {
         (point - self.p0).cross(&self.direction()).norm()
     }
 
-    /// How another segment runs along this one in plan; `None` where it does not, or the sine of the angle between them is
-    /// larger than `sine`.
-    pub fn alongside(&self, other: &Self, sine: f64) -> Option<Alongside> {
+    /// The overlap of another segment with this one in plan; `None` without one, or where the sine
+    /// of the angle between them is larger than `sine`.
+    pub fn alongside(&self, other: &Self, sine: f64) -> Option<PlanOverlap> {
         let along = self.p1.xy() - self.p0.xy();
         let length = along.norm();
         let direction = along / length;
         let [a, b] = [other.p0, other.p1].map(|p| p.xy() - self.p0.xy());
         let (s, t) = (a.dot(&direction), b.dot(&direction));
         let stretch = [s.min(t).max(0.0), s.max(t).min(length)];
-        // Written so that a segment without length has none beside it.
+        // Written so that a segment without length has no overlap.
         let parallel = direction.perp(&(b - a)).abs() <= sine * (b - a).norm();
         (parallel && stretch[1] > stretch[0]).then_some(())?;
         let middle = 0.5 * (stretch[0] + stretch[1]);
         let (own, beside) = (self.at(middle / length), other.at((middle - s) / (t - s)));
-        Some(Alongside {
+        Some(PlanOverlap {
             stretch,
             apart: direction.perp(&(beside.xy() - own.xy())).abs(),
             rise: beside.z - own.z,
@@ -173,14 +179,14 @@ impl Segment3 {
     }
 }
 
-/// How a segment runs along another in plan, metres.
+/// Overlap of two nearly parallel segments in plan, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Alongside {
-    /// Where, from the other's start.
+pub struct PlanOverlap {
+    /// Stretch of the first segment, from its start.
     pub stretch: [f64; 2],
-    /// Distance in plan, in the middle of the stretch.
+    /// Distance in plan between the two, at the middle of the stretch.
     pub apart: f64,
-    /// Height over the other there.
+    /// Height of the second segment above the first there.
     pub rise: f64,
 }
 
@@ -289,7 +295,7 @@ impl Plane {
     }
 }
 
-/// Length of `within` that the stretches cover together.
+/// Length of the part of `within` that the union of the stretches covers.
 pub fn covered(stretches: impl Iterator<Item = [f64; 2]>, within: [f64; 2]) -> f64 {
     let mut inside: Vec<[f64; 2]> = stretches
         .map(|s| [s[0].max(within[0]), s[1].min(within[1])])
@@ -395,7 +401,7 @@ mod tests {
         let segment = |x: [f64; 2], y: [f64; 2], z: [f64; 2]| {
             Segment3::new(Point3::new(x[0], y[0], z[0]), Point3::new(x[1], y[1], z[1]))
         };
-        // It rises by 1 in 10 and comes nearer by 1 in 20; the middle of what both share is at x = 9.
+        // It rises by 1 in 10 and converges by 1 in 20; the middle of the overlap is at x = 9.
         let other = segment([17.0, 7.0], [2.6, 2.1], [9.0, 8.0]);
         let found = own.alongside(&other, 0.1).expect("nearly parallel");
         assert!((found.stretch[0] - 6.0).abs() < 1e-12 && (found.stretch[1] - 10.0).abs() < 1e-12);

@@ -1,67 +1,52 @@
-//! Small errors of the orientation, taken back by a bundle adjustment over matched lines.
+//! Small errors of the orientation, corrected by a bundle adjustment over matched lines.
 //!
 //! ```text
-//! sum over lines and views  rho(r(line, pose)) + sum over free views  |pose change / prior|^2  ->  min
+//! sum over lines, views  rho(r(line, pose)) + sum over free views  |pose change / prior|^2  ->  min
 //! ```
 //!
-//! r are the offset and the angle between an edge measured in a view and the image of its line, whitened, and rho is
-//! Cauchy's, both as in [`crate::lines3d`]. A free view has six unknowns: turned about its centre, and moved. The
-//! priors only part what a crop of a frame hardly shows: a turn moves its image as a move of the camera does.
+//! r are the whitened offset and angle between a measured edge and the image of its line, and rho
+//! is Cauchy's loss, both as in [`crate::lines3d`]. A free view has six unknowns, a rotation about
+//! its centre and a shift. The priors separate the two, which have nearly the same effect on a
+//! crop of a frame.
 //!
-//! Changes of all views that only bend the world are nearly invisible, and sound orientations would be made worse by
-//! adjusting all views at once. Therefore views are freed one by one, the one first that helps most, as long as it helps
-//! much, and never more than half of them: the others hold the world where it is.
+//! Common changes of all views that only deform the object space are nearly unobservable, and
+//! adjusting all views at once would degrade sound orientations. Therefore views are freed one by
+//! one, each time the one that lowers the cost most, as long as it lowers it much, and never more
+//! than half of them: the others are the datum.
+//!
+//! Invariant: where no view stands out, the cameras stay as they are.
 
+mod pose;
 mod system;
 
-use nalgebra::{Point2, Vector2, Vector3};
+use nalgebra::Vector2;
 
-use self::system::{Bundle, State};
+use self::system::{AdjustmentState, BundleAdjustment};
 use crate::camera::Camera;
-use crate::geometry::rotation_from_axis_angle;
 use crate::lines3d::Line3d;
 use crate::math;
 use crate::params::Lines3dParams;
 use crate::scene::{Scene, ViewAdjustment};
 
-/// Share of the cost that freeing a view must take away. Assumption: sound scenes show at most 0.025, rendered and real.
+/// Least share of the cost that freeing a view must remove. Assumption: sound scenes, rendered and
+/// real, show at most 0.025.
 const LEAST_GAIN: f64 = 0.05;
 
-/// Least motion of a view's edges that matters, pixels: lines are found to about a tenth of a pixel.
+/// Least shift of a view's edges that is corrected, pixels: lines are located to about 0.1 px.
 const LEAST_MOTION_PX: f64 = 0.15;
 
-/// Fewest edges of a view for a statement about it.
+/// Fewest edges of a view that may be freed.
 const FEWEST_EDGES: usize = 12;
 
-/// A change of a camera's pose.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PoseChange {
-    /// Turn about the projection centre: axis times angle, radians, world frame.
-    pub turn: Vector3<f64>,
-    /// Move of the projection centre, metres.
-    pub shift_m: Vector3<f64>,
-}
-
-impl PoseChange {
-    /// The camera turned and moved.
-    pub fn apply(&self, camera: &Camera) -> Camera {
-        Camera {
-            r: camera.r * rotation_from_axis_angle(&self.turn).inverse().matrix(),
-            center: camera.center + self.shift_m,
-            ..camera.clone()
-        }
-    }
-}
-
-/// Adjusts the cameras of a scene to its matched lines; the cameras, and one record for each view. Where no view stands
-/// out the cameras are those of the scene.
+/// Adjusts the cameras of a scene to its matched lines. Returns the cameras and one record for
+/// each view; where no view stands out the cameras are those of the scene.
 pub fn adjust_views(
     scene: &Scene,
     lines: &[Line3d],
     params: &Lines3dParams,
 ) -> (Vec<Camera>, Vec<ViewAdjustment>) {
     let stated: Vec<Camera> = scene.views.iter().map(|v| v.camera.clone()).collect();
-    let bundle = Bundle::new(lines, stated.len(), params);
+    let bundle = BundleAdjustment::new(lines, stated.len(), params);
     let start = bundle.state(&stated);
     let best = free_views(&bundle, &stated, start.clone());
     let cameras: Vec<Camera> = (stated.iter().zip(&best.changes))
@@ -74,7 +59,11 @@ pub fn adjust_views(
 }
 
 /// Frees views one by one.
-fn free_views(bundle: &Bundle, stated: &[Camera], start: State) -> State {
+fn free_views(
+    bundle: &BundleAdjustment,
+    stated: &[Camera],
+    start: AdjustmentState,
+) -> AdjustmentState {
     let mut best = start;
     while 2 * (best.free.len() + 1) <= stated.len() {
         let candidates = (0..stated.len())
@@ -82,7 +71,7 @@ fn free_views(bundle: &Bundle, stated: &[Camera], start: State) -> State {
         let next = candidates
             .map(|view| bundle.freeing(view, &best, stated))
             .min_by(|a, b| a.cost.total_cmp(&b.cost));
-        let helps = |next: &State| next.cost < (1.0 - LEAST_GAIN) * best.cost;
+        let helps = |next: &AdjustmentState| next.cost < (1.0 - LEAST_GAIN) * best.cost;
         match next.filter(helps) {
             Some(next) => best = next,
             None => break,
@@ -91,15 +80,15 @@ fn free_views(bundle: &Bundle, stated: &[Camera], start: State) -> State {
     let moves = |view: usize| rms(&bundle.motions(view, stated, &best)) > LEAST_MOTION_PX;
     match best.free.iter().all(|&view| moves(view)) {
         true => best,
-        // What is freed for less than that explains noise.
+        // Smaller changes only fit the noise.
         false => bundle.state(stated),
     }
 }
 
 fn record(
-    bundle: &Bundle,
+    bundle: &BundleAdjustment,
     view: usize,
-    [start, best]: [&State; 2],
+    [start, best]: [&AdjustmentState; 2],
     [stated, cameras]: [&[Camera]; 2],
 ) -> ViewAdjustment {
     let motions = bundle.motions(view, stated, best);
@@ -123,18 +112,15 @@ fn rms(motions: &[Vector2<f64>]) -> f64 {
     (squares / motions.len().max(1) as f64).sqrt()
 }
 
-/// The middle of a segment's image.
-fn middle_of(camera: &Camera, line: &crate::geometry::Segment3) -> Option<Point2<f64>> {
-    camera.project(&line.at(0.5))
-}
-
 #[cfg(test)]
 mod tests {
+    use super::pose::PoseChange;
     use super::*;
     use crate::execution::silent;
     use crate::params::Params;
     use crate::pipeline::{Run, Stage};
     use crate::synthetic::l_scene;
+    use nalgebra::{Point2, Vector3};
 
     /// Largest distance between the places where two cameras put points of the scene, pixels.
     fn difference_px(a: &Camera, b: &Camera) -> f64 {

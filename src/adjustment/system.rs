@@ -1,71 +1,76 @@
-//! The equations of the adjustment. Lines are eliminated: for every set of poses each line is fitted anew
-//! ([`fit_line`]), and a pose's step takes the lines along (Schur complement).
+//! The normal equations of the adjustment. Lines are eliminated by the Schur complement: for every
+//! set of poses each line is fitted anew ([`fit_line`]), and the step of a pose takes the lines
+//! along.
 //!
-//! Turning and moving a camera changes the image of a line as turning and moving the line the other way does. The
-//! derivatives by the pose are therefore those by the line's four parameters, times D (4 x 6): what the change does to its
-//! two anchors across it.
+//! Rotating and shifting a camera changes the image of a line as the inverse motion of the line
+//! does. The derivatives by the pose are therefore those by the four parameters of the line, times
+//! D (4 x 6), the effect of the motion on its two anchors across it.
 //!
 //! ```text
 //! X - C  ->  (X - C) - shift - turn x (X - C)
 //! ```
 
-use nalgebra::{DMatrix, DVector, Matrix4, Matrix4x6, Matrix6x2, Matrix6x4, Vector2, Vector3};
+use nalgebra::{
+    DMatrix, DVector, Matrix4, Matrix4x6, Matrix6x2, Matrix6x4, Point2, Vector2, Vector3, Vector6,
+};
 
-use super::{PoseChange, middle_of};
+use super::pose::PoseChange;
 use crate::camera::Camera;
 use crate::execution::parallel;
 use crate::geometry::Segment3;
 use crate::lines2d::GuidedEdge;
-use crate::lines3d::{Line3d, Observation, Weighted, fit_line, line_frame};
+use crate::lines3d::{
+    Line3d, Observation, ProjectedLine, WhitenedObservation, fit_line, line_frame,
+};
 use crate::params::Lines3dParams;
 
-/// Standard deviation of what a free pose may do to its image by turning, and by moving, pixels: small enough to part
-/// the two, large enough to take back errors of several pixels.
+/// Prior standard deviation of the effect of a rotation, and of a shift, on the image, pixels:
+/// small enough to separate the two, large enough to correct errors of several pixels.
 const PRIOR_PX: f64 = 5.0;
 
-/// Rounds of linearising and weighting.
+/// Number of linearisations.
 const ROUNDS: usize = 6;
 
 /// A step that lowers the cost by a smaller share ends the rounds.
 const LEAST_STEP: f64 = 1e-4;
 
-/// Fewest edges of a line: two always agree with some line.
+/// Fewest edges of a line: two interpretation planes always meet in a line.
 const FEWEST_EDGES: usize = 3;
 
 /// A line and its edges.
-struct Track {
+struct EdgeTrack {
     line: Segment3,
     edges: Vec<GuidedEdge>,
 }
 
 /// All lines with their edges.
-pub(crate) struct Bundle<'a> {
-    tracks: Vec<Track>,
+pub(crate) struct BundleAdjustment<'a> {
+    tracks: Vec<EdgeTrack>,
     views: usize,
     params: &'a Lines3dParams,
 }
 
 /// Poses and the lines that fit them.
 #[derive(Clone)]
-pub(crate) struct State {
+pub(crate) struct AdjustmentState {
     /// Views that may move.
     pub free: Vec<usize>,
     /// Changes of the poses of all views.
     pub changes: Vec<PoseChange>,
     /// The lines; `None` where none fits.
     lines: Vec<Option<Segment3>>,
-    /// What is minimised.
+    /// The minimised sum.
     pub cost: f64,
 }
 
-impl<'a> Bundle<'a> {
+impl<'a> BundleAdjustment<'a> {
     pub fn new(lines: &[Line3d], views: usize, params: &'a Lines3dParams) -> Self {
         let track = |line: &Line3d| {
             let edges: Vec<_> = (line.supports.iter())
                 .filter_map(|s| s.edge.clone())
                 .collect();
             let line = line.segment;
-            (edges.len() >= FEWEST_EDGES).then_some(Track { line, edges })
+            (edges.len() >= FEWEST_EDGES).then_some(EdgeTrack { line, edges })
         };
         Self {
             tracks: lines.iter().filter_map(track).collect(),
@@ -86,13 +91,18 @@ impl<'a> Bundle<'a> {
     }
 
     /// The lines that fit these cameras, nothing being free.
-    pub fn state(&self, cameras: &[Camera]) -> State {
+    pub fn state(&self, cameras: &[Camera]) -> AdjustmentState {
         let changes = vec![PoseChange::default(); self.views];
         self.fitted(cameras, Vec::new(), changes, None)
     }
 
     /// The same with one more view free.
-    pub fn freeing(&self, view: usize, from: &State, stated: &[Camera]) -> State {
+    pub fn freeing(
+        &self,
+        view: usize,
+        from: &AdjustmentState,
+        stated: &[Camera],
+    ) -> AdjustmentState {
         let mut state = from.clone();
         state.free.push(view);
         for _ in 0..ROUNDS {
@@ -114,7 +124,12 @@ impl<'a> Bundle<'a> {
     }
 
     /// The state after a step of the free poses.
-    fn stepped(&self, from: &State, step: &DVector<f64>, stated: &[Camera]) -> State {
+    fn stepped(
+        &self,
+        from: &AdjustmentState,
+        step: &DVector<f64>,
+        stated: &[Camera],
+    ) -> AdjustmentState {
         let mut changes = from.changes.clone();
         for (k, &view) in from.free.iter().enumerate() {
             changes[view].turn += step.fixed_rows::<3>(6 * k);
@@ -130,7 +145,7 @@ impl<'a> Bundle<'a> {
         free: Vec<usize>,
         changes: Vec<PoseChange>,
         near: Option<&[Option<Segment3>]>,
-    ) -> State {
+    ) -> AdjustmentState {
         let cameras = moved(stated, &changes);
         let fits = parallel::map(&self.tracks, |i, track| {
             let start = near.and_then(|lines| lines[i]).unwrap_or(track.line);
@@ -148,7 +163,7 @@ impl<'a> Bundle<'a> {
             let squares = pose(&changes[view]).component_mul(&pose(&changes[view]));
             cost += 0.5 * squares.dot(&prior);
         }
-        State {
+        AdjustmentState {
             free,
             changes,
             lines: fits.into_iter().map(|f| f.map(|f| f.0)).collect(),
@@ -163,17 +178,17 @@ impl<'a> Bundle<'a> {
     }
 
     /// Weights of (turn, shift) of a view, 1 / rad^2 and 1 / m^2.
-    fn prior(&self, camera: &Camera) -> nalgebra::Vector6<f64> {
+    fn prior(&self, camera: &Camera) -> Vector6<f64> {
         let focal_px = camera.k[(0, 0)].abs();
         let turn = focal_px / PRIOR_PX;
         let depths = self.tracks.iter().map(|t| camera.depth(&t.line.at(0.5)));
         let depth = crate::math::median(&mut depths.collect::<Vec<_>>()).unwrap_or(1.0);
         let shift = focal_px / (PRIOR_PX * depth.max(1e-6));
-        nalgebra::Vector6::new(turn, turn, turn, shift, shift, shift).map(|w| w * w)
+        Vector6::new(turn, turn, turn, shift, shift, shift).map(|w| w * w)
     }
 
     /// Gauss-Newton's step of the free poses.
-    fn step(&self, state: &State, stated: &[Camera]) -> Option<DVector<f64>> {
+    fn step(&self, state: &AdjustmentState, stated: &[Camera]) -> Option<DVector<f64>> {
         let cameras = moved(stated, &state.changes);
         let size = 6 * state.free.len();
         let (mut normal, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));
@@ -202,7 +217,7 @@ impl<'a> Bundle<'a> {
     /// Adds a line's part of the normal equations, the line itself eliminated.
     fn add(
         &self,
-        track: &Track,
+        track: &EdgeTrack,
         line: &Segment3,
         cameras: &[Camera],
         free: &[usize],
@@ -213,7 +228,7 @@ impl<'a> Bundle<'a> {
         let mut of_line = Matrix4::zeros();
         let mut of_poses: Vec<(usize, Matrix6x4<f64>)> = Vec::new();
         for (edge, seen) in track.edges.iter().zip(track.observations(cameras)) {
-            let (r, j) = Weighted::new(&seen, self.params).residual(line, &across)?;
+            let (r, j) = WhitenedObservation::new(&seen, self.params).residual(line, &across)?;
             let weight = 1.0 / (1.0 + r.norm_squared() / c2);
             of_line += j * j.transpose() * weight;
             let Some(k) = free.iter().position(|&v| v == edge.view.index()) else {
@@ -236,8 +251,13 @@ impl<'a> Bundle<'a> {
         Some(())
     }
 
-    /// How far the changed pose moves the images of the lines that a view sees, pixels.
-    pub fn motions(&self, view: usize, stated: &[Camera], state: &State) -> Vec<Vector2<f64>> {
+    /// Shifts of the images of the lines in a view by its changed pose, pixels.
+    pub fn motions(
+        &self,
+        view: usize,
+        stated: &[Camera],
+        state: &AdjustmentState,
+    ) -> Vec<Vector2<f64>> {
         let changed = state.changes[view].apply(&stated[view]);
         let motion = |(i, _): (usize, &GuidedEdge)| {
             let line = state.lines[i]?;
@@ -247,9 +267,9 @@ impl<'a> Bundle<'a> {
     }
 
     /// Distances of the middles of a view's edges from the images of their lines, pixels.
-    pub fn distances(&self, view: usize, cameras: &[Camera], state: &State) -> Vec<f64> {
+    pub fn distances(&self, view: usize, cameras: &[Camera], state: &AdjustmentState) -> Vec<f64> {
         let distance = |(i, edge): (usize, &GuidedEdge)| {
-            let image = crate::lines3d::ProjectedLine::new(&cameras[view], &state.lines[i]?)?;
+            let image = ProjectedLine::new(&cameras[view], &state.lines[i]?)?;
             Some(image.distance(&edge.segment.midpoint()).abs())
         };
         self.edges_of(view).filter_map(distance).collect()
@@ -259,11 +279,16 @@ impl<'a> Bundle<'a> {
 /// Residual of an edge whose line cannot be fitted, standard deviations.
 const GROSS: f64 = 10.0;
 
-impl Track {
+impl EdgeTrack {
     fn observations<'a>(&self, cameras: &'a [Camera]) -> Vec<Observation<'a>> {
         let seen = |edge: &GuidedEdge| Observation::of(edge, &cameras[edge.view.index()]);
         self.edges.iter().map(seen).collect()
     }
+}
+
+/// The middle of a segment's image.
+fn middle_of(camera: &Camera, line: &Segment3) -> Option<Point2<f64>> {
+    camera.project(&line.at(0.5))
 }
 
 fn moved(stated: &[Camera], changes: &[PoseChange]) -> Vec<Camera> {
@@ -271,9 +296,9 @@ fn moved(stated: &[Camera], changes: &[PoseChange]) -> Vec<Camera> {
     pairs.map(|(camera, change)| change.apply(camera)).collect()
 }
 
-fn pose(change: &PoseChange) -> nalgebra::Vector6<f64> {
+fn pose(change: &PoseChange) -> Vector6<f64> {
     let (t, s) = (&change.turn, &change.shift_m);
-    nalgebra::Vector6::new(t.x, t.y, t.z, s.x, s.y, s.z)
+    Vector6::new(t.x, t.y, t.z, s.x, s.y, s.z)
 }
 
 /// D: how far the line's anchors move across it, as the camera sees them, for small (turn, shift).

@@ -3,7 +3,7 @@
 //! ```text
 //! pinhole       K, R, C: projection, rays
 //! distortion    the lens, and photographs resampled to a pinhole
-//! two_view      fundamental matrix, plane homographies (B99 3.1, 4.1), trifocal line transfer (3.2)
+//! two_view      fundamental matrix, plane homographies (B99 3.1, 4.1), line transfer (3.2)
 //! ```
 //!
 //! Invariant: the world is in metres, Z up, right-handed, reduced by the scene origin; in an image

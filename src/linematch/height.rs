@@ -3,12 +3,12 @@
 //!
 //! The paper does not say how. Here the ends of the longest segments are swept along their rays
 //! through all depths at which another view can see them; an unambiguous maximum of correlation
-//! that two more views confirm gives a height. The range spans the heights that have company, so
-//! that a few wrong maxima do not widen it and a single tower does.
+//! that two more views confirm gives a height. The range spans the heights with enough neighbours,
+//! so that a few wrong maxima do not widen it and a single tower does.
 
 use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3};
 
-use super::sight::Sights;
+use super::segment_geometry::PreparedSegments;
 use crate::camera::{Camera, fundamental, homography_of_plane};
 use crate::execution::map_shared;
 use crate::execution::parallel;
@@ -24,20 +24,20 @@ const SEGMENTS: usize = 360;
 const STRIDE_PX: f64 = 2.0;
 /// Step along the epipolar line, px.
 const STEP_PX: f64 = 2.0;
-/// Least correlation in the first partner for a depth to be looked at again.
+/// Least correlation in the nearest view of a depth that the others test.
 const CANDIDATE: f64 = 0.6;
-/// Least mean correlation over the partners.
+/// Least mean correlation over the other views.
 const ACCEPTED: f64 = 0.75;
-/// By how much the best depth must beat any other.
+/// Least margin of the best depth over any other.
 const UNIQUE: f64 = 0.1;
-/// A height counts when this many others lie within [`COMPANY_M`]...
-const COMPANY: usize = 4;
+/// A height counts when this many others lie within [`NEIGHBOUR_M`]...
+const MIN_NEIGHBOURS: usize = 4;
 /// ... metres of it.
-const COMPANY_M: f64 = 2.0;
+const NEIGHBOUR_M: f64 = 2.0;
 /// The range reaches past the lowest and highest such heights by this, metres: half a storey.
 const MARGIN_M: f64 = 2.0;
 
-/// The range of heights, and what it rests on.
+/// The range of heights, and the heights that it is derived from.
 pub struct HeightRange {
     /// Lowest and highest, metres.
     pub z: [f64; 2],
@@ -46,24 +46,27 @@ pub struct HeightRange {
 }
 
 /// Estimates the range; `None` when too few points agree.
-pub fn height_range(scene: &Scene, sights: &Sights) -> Option<HeightRange> {
+pub fn height_range(scene: &Scene, prepared: &PreparedSegments) -> Option<HeightRange> {
     let blurred: Vec<Gray> = parallel::map(&scene.views, |_, v| gaussian_blur(&v.gray, 1.0));
-    let points = interest_points(scene, sights);
+    let points = interest_points(scene, prepared);
     let found = map_shared("heights", &points, 0.0..0.2, |_, (view, x)| {
         sweep(scene, &blurred, *view, x)
     });
     let mut heights: Vec<f64> = found.into_iter().flatten().collect();
     sort_by(&mut heights, f64::total_cmp);
-    let company = |z: f64| {
-        let from = heights.partition_point(|h| *h < z - COMPANY_M);
-        heights.partition_point(|h| *h <= z + COMPANY_M) - from - 1
+    let neighbours = |z: f64| {
+        let from = heights.partition_point(|h| *h < z - NEIGHBOUR_M);
+        heights.partition_point(|h| *h <= z + NEIGHBOUR_M) - from - 1
     };
-    let mut low = heights.iter().copied().find(|z| company(*z) >= COMPANY)?;
+    let mut low = heights
+        .iter()
+        .copied()
+        .find(|z| neighbours(*z) >= MIN_NEIGHBOURS)?;
     let high = heights
         .iter()
         .rev()
         .copied()
-        .find(|z| company(*z) >= COMPANY)?;
+        .find(|z| neighbours(*z) >= MIN_NEIGHBOURS)?;
     if let Some(ground) = scene.ground_z {
         low = low.min(ground);
     }
@@ -90,11 +93,11 @@ pub fn any_height(scene: &Scene) -> [f64; 2] {
 }
 
 /// Both ends of the longest segments of each view.
-fn interest_points(scene: &Scene, sights: &Sights) -> Vec<(ViewId, Point2<f64>)> {
+fn interest_points(scene: &Scene, prepared: &PreparedSegments) -> Vec<(ViewId, Point2<f64>)> {
     let each = SEGMENTS / scene.views.len().max(1) + 1;
     let mut points = Vec::new();
     for view in scene.view_ids() {
-        let mut segments: Vec<_> = sights.of_view(view).collect();
+        let mut segments: Vec<_> = prepared.of_view(view).collect();
         sort_by(&mut segments, |(a, s), (b, t)| {
             t.length_px.total_cmp(&s.length_px).then(a.cmp(b))
         });
@@ -109,9 +112,9 @@ fn interest_points(scene: &Scene, sights: &Sights) -> Vec<(ViewId, Point2<f64>)>
 /// Height of an image point from the depth at which its patch agrees with three other views.
 fn sweep(scene: &Scene, images: &[Gray], view: ViewId, x: &Point2<f64>) -> Option<f64> {
     let camera = scene.camera(view);
-    let partners = nearest_views(scene, view);
-    let (first, others) = partners.split_first()?;
-    let patch = Patch::reference(&images[view.index()], x)?;
+    let nearest = nearest_views(scene, view);
+    let (first, others) = nearest.split_first()?;
+    let patch = CorrelationPatch::reference(&images[view.index()], x)?;
     let depths = epipolar_depths(camera, scene.camera(*first), x);
     let score = |j: ViewId, depth: f64| {
         let point = camera.center + camera.ray(x) * depth;
@@ -129,7 +132,8 @@ fn sweep(scene: &Scene, images: &[Gray], view: ViewId, x: &Point2<f64>) -> Optio
     });
     maxima.truncate(12);
 
-    // The step in the first partner may be several pixels in the others: look around each maximum.
+    // A step in the nearest view may be several pixels in the others, so that depths around each
+    // maximum are tested.
     let confirm = |i: usize| {
         let around = (-4..=4).map(|k| {
             let f = f64::from(k) / 4.0;
@@ -200,12 +204,12 @@ fn epipolar_depths(first: &Camera, second: &Camera, x: &Point2<f64>) -> Vec<f64>
 }
 
 /// A 7 x 7 patch about an image point.
-struct Patch {
+struct CorrelationPatch {
     x: Point2<f64>,
     values: Vec<f64>,
 }
 
-impl Patch {
+impl CorrelationPatch {
     fn reference(image: &Gray, x: &Point2<f64>) -> Option<Self> {
         let values = sample(image, x, &Matrix2::identity())?;
         (variance(&values) > 1e-4).then_some(Self { x: *x, values })

@@ -1,27 +1,30 @@
 //! Lines joined by mutual reprojection (B99 3.4).
 //!
-//! "A correspondence is established between the two triples if the projection of L123 onto the images 4-6 matches at least two of the
-//! lines I4, I5, I6, and reciprocally." Adopting the segments beside a line's projection joins most triples as they are found; what two
-//! hypotheses still made two lines of is joined here, such as the views of two strips, and fragments whose own ends do not reach each
-//! other. The image of either lies on the edges of the other, as near as a segment must and within three standard deviations of the
-//! prediction, in two views of three; they overlap, or the views correlate in the gap between them (3.3).
+//! "A correspondence is established between the two triples if the projection of L123 onto the
+//! images 4-6 matches at least two of the lines I4, I5, I6, and reciprocally." Adopting the
+//! segments beside a line's projection joins most triples as they are found. Joined here are lines
+//! that two hypotheses still have in common, such as those of the views of two strips, and
+//! fragments that do not reach each other. The image of either lies on the edges of the other in
+//! two views of three, within the gate of a segment and three standard deviations of the
+//! prediction; the two overlap, or the views correlate in the gap between them (3.3).
 
-use super::nviews::{Context, Line, Taken, complete_line};
-use crate::linematch::select::{Fate, Selection};
-use crate::linematch::sight::SegmentRef;
+use super::nview::{CompletedLine, IsTaken, MatchContext, complete_line};
+use super::segment_geometry::SegmentRef;
+use super::selection::{BundleOutcome, Selection};
 use crate::lines2d::GuidedEdge;
-use crate::lines3d::{Gate, ProjectedLine};
+use crate::lines3d::{ProjectedLine, ReprojectionGate};
 
-/// A line less certain than this many pixels at another's edge (one standard deviation) tells nothing of it.
+/// Largest standard deviation of a line's image at the edge of another that is compared with it,
+/// px.
 const MAX_SIGMA_PX: f64 = 2.0;
 /// Cosine of the largest angle between two lines that are compared, 10 degrees.
 const PARALLEL: f64 = 0.984_807_753_012_208;
 /// Least share of either line's length that the joined one covers.
 const COVERED: f64 = 0.9;
 
-/// Joins the lines that are one.
-pub fn join_lines(context: &Context, selection: &mut Selection) {
-    let mut lines: Vec<Option<Line>> = selection.lines.drain(..).map(Some).collect();
+/// Joins the lines that are images of one edge.
+pub fn join_lines(context: &MatchContext, selection: &mut Selection) {
+    let mut lines: Vec<Option<CompletedLine>> = selection.lines.drain(..).map(Some).collect();
     // The line that each one has become part of.
     let mut joined: Vec<usize> = (0..lines.len()).collect();
     for i in 0..lines.len() {
@@ -38,7 +41,7 @@ pub fn join_lines(context: &Context, selection: &mut Selection) {
                 lines[j] = None;
                 let part_of_j = joined.iter_mut().filter(|k| **k == j);
                 part_of_j.for_each(|k| *k = i);
-                // It may reach others now.
+                // The longer line may reach others.
                 j = i;
             }
             j += 1;
@@ -47,11 +50,16 @@ pub fn join_lines(context: &Context, selection: &mut Selection) {
     selection.renumber(lines, &joined);
 }
 
-/// The line that the segments of two make, if they are one. What only repeats another line stays beside it: grey values and colour
-/// are two witnesses of an edge.
-fn join(context: &Context, a: &Line, b: &Line, taken: Taken) -> Option<Line> {
+/// The line through the segments of two, if they are one. A mere duplicate stays, because grey
+/// values and colour are independent evidence for an edge.
+fn join(
+    context: &MatchContext,
+    a: &CompletedLine,
+    b: &CompletedLine,
+    taken: IsTaken,
+) -> Option<CompletedLine> {
     (near(context, a, b) && reprojects(context, a, b) && reprojects(context, b, a)).then_some(())?;
-    if repeats(a, b) || repeats(b, a) {
+    if is_duplicate_of(a, b) || is_duplicate_of(b, a) {
         return None;
     }
     let mut seeds: Vec<SegmentRef> = segments(a).chain(segments(b)).collect();
@@ -62,14 +70,14 @@ fn join(context: &Context, a: &Line, b: &Line, taken: Taken) -> Option<Line> {
     is_both(context, &joined, [a, b]).then_some(joined)
 }
 
-/// Does a line show nothing that another one does not, neither a view nor a stretch?
-fn repeats(line: &Line, other: &Line) -> bool {
+/// Do the views and the stretch of another line include those of this one?
+fn is_duplicate_of(line: &CompletedLine, other: &CompletedLine) -> bool {
     let supports = |view| other.supports.iter().any(|s| s.view == view);
     line.supports.iter().all(|s| supports(s.view)) && other.segment.covers(&line.segment, COVERED)
 }
 
-/// Is a line that was completed from the segments of two those two?
-fn is_both(context: &Context, line: &Line, parts: [&Line; 2]) -> bool {
+/// Does the line completed from the segments of two include both?
+fn is_both(context: &MatchContext, line: &CompletedLine, parts: [&CompletedLine; 2]) -> bool {
     parts.iter().all(|part| {
         line.supports.len() >= part.supports.len()
             && reprojects(context, line, part)
@@ -77,7 +85,7 @@ fn is_both(context: &Context, line: &Line, parts: [&Line; 2]) -> bool {
     })
 }
 
-fn segments(line: &Line) -> impl Iterator<Item = SegmentRef> + '_ {
+fn segments(line: &CompletedLine) -> impl Iterator<Item = SegmentRef> + '_ {
     line.supports.iter().flat_map(|support| {
         let view = support.view;
         let segments = support.segments.iter();
@@ -86,7 +94,7 @@ fn segments(line: &Line) -> impl Iterator<Item = SegmentRef> + '_ {
 }
 
 /// Are two lines nearly parallel and no farther apart along them than a gap may be?
-fn near(context: &Context, a: &Line, b: &Line) -> bool {
+fn near(context: &MatchContext, a: &CompletedLine, b: &CompletedLine) -> bool {
     let pixel_m = context
         .scene
         .camera(a.supports[0].view)
@@ -98,16 +106,16 @@ fn near(context: &Context, a: &Line, b: &Line) -> bool {
 }
 
 /// Does the image of a line lie on the edges of another, in two of three views that show one?
-fn reprojects(context: &Context, line: &Line, onto: &Line) -> bool {
+fn reprojects(context: &MatchContext, line: &CompletedLine, onto: &CompletedLine) -> bool {
     let length = line.fit.line.length();
     let covariance_at = |t: f64| line.fit.covariance_at(t / length);
-    let gate = Gate {
+    let gate = ReprojectionGate {
         width_px: context.params.gate_px,
         max_sigma_px: MAX_SIGMA_PX,
     };
     let lies_on = |edge: &GuidedEdge| {
         let image = ProjectedLine::new(context.scene.camera(edge.view), &line.fit.line);
-        image.is_some_and(|image| image.holds(&edge.segment, gate, covariance_at))
+        image.is_some_and(|image| image.contains(&edge.segment, gate, covariance_at))
     };
     let edges: Vec<bool> = (onto.supports.iter().filter_map(|s| s.edge.as_ref()))
         .map(lies_on)
@@ -116,18 +124,18 @@ fn reprojects(context: &Context, line: &Line, onto: &Line) -> bool {
 }
 
 impl Selection {
-    /// Takes these lines, without gaps between them, for what it had; `joined` names the one that each has become part of.
-    fn renumber(&mut self, lines: Vec<Option<Line>>, joined: &[usize]) {
+    /// Replaces the lines by those that remain; `joined` is the line that each has become part of.
+    fn renumber(&mut self, lines: Vec<Option<CompletedLine>>, joined: &[usize]) {
         let mut numbers = vec![0; lines.len()];
         for (old, line) in lines.into_iter().enumerate() {
             numbers[old] = self.lines.len();
             self.lines.extend(line);
         }
         let number = |old: &mut usize| *old = numbers[joined[*old]];
-        for fate in &mut self.fates {
-            match fate {
-                Fate::Won(line) | Fate::Lost(line) => number(line),
-                Fate::Rejected(_) => {}
+        for outcome in &mut self.outcomes {
+            match outcome {
+                BundleOutcome::Accepted(line) | BundleOutcome::Superseded(line) => number(line),
+                BundleOutcome::Rejected(_) => {}
             }
         }
         self.owners.iter_mut().flatten().flatten().for_each(number);
@@ -136,26 +144,27 @@ impl Selection {
 
 #[cfg(test)]
 mod tests {
+    use super::super::testing::PlantedRoof;
     use super::*;
     use crate::geometry::{Segment2, Segment3};
     use crate::ids::SegmentId;
     use crate::ids::ViewId;
-    use crate::linematch::planted;
-    use crate::linematch::planted::Roof;
     use crate::lines2d::SegmentKind;
+    use crate::lines3d::planted;
     use crate::lines3d::{LineSupport, SupportKind};
     use crate::lines3d::{Observation, fit_line};
     use nalgebra::Matrix2;
 
-    impl Roof {
-        /// The line through a part of an edge as some views show it, whose edges are `beside_px` off in the view that is named.
+    impl PlantedRoof {
+        /// The line through a part of an edge from some views, with the edge displaced in one of
+        /// them: `beside_px` is that view and the distance.
         fn line(
             &self,
             edge: usize,
             [from, to]: [f64; 2],
             views: &[u32],
             beside_px: (u32, f64),
-        ) -> Line {
+        ) -> CompletedLine {
             let support = |&view: &u32| {
                 let exact = planted::part_of(&self.scene, view as usize, edge, from, to);
                 let off = if view == beside_px.0 {
@@ -188,14 +197,14 @@ mod tests {
                 .map(|e| Observation::of(e, self.scene.camera(e.view)))
                 .collect();
             let fit = fit_line(&observed, &segment, &self.fitting).expect("a line");
-            Line {
+            CompletedLine {
                 segment,
                 fit,
                 supports,
             }
         }
 
-        fn joined(&self, a: &Line, b: &Line) -> Option<Line> {
+        fn joined(&self, a: &CompletedLine, b: &CompletedLine) -> Option<CompletedLine> {
             join(&self.context(), a, b, &|_| false)
         }
     }
@@ -205,7 +214,7 @@ mod tests {
 
     #[test]
     fn the_lines_of_two_strips_and_of_two_halves_are_one() {
-        let roof = Roof::new();
+        let roof = PlantedRoof::new();
         let whole = planted::edges()[2];
         let outward = roof.line(2, [0.0, 1.0], &[0, 1, 4], NOWHERE);
         let back = roof.line(2, [0.0, 1.0], &[2, 3, 4], NOWHERE);
@@ -229,10 +238,12 @@ mod tests {
 
     #[test]
     fn each_line_has_to_reproject_onto_two_of_three_edges_of_the_other() {
-        let roof = Roof::new();
+        let roof = PlantedRoof::new();
         let line = roof.line(2, [0.0, 1.0], &ALL, NOWHERE);
         let short = roof.line(2, [0.48, 0.53], &[0, 1, 2], NOWHERE);
-        let reprojects = |line: &Line, onto: &Line| super::reprojects(&roof.context(), line, onto);
+        let reprojects = |line: &CompletedLine, onto: &CompletedLine| {
+            super::reprojects(&roof.context(), line, onto)
+        };
         assert!(reprojects(&line, &short));
         // Five pixels do not tell where a hundred end.
         assert!(!reprojects(&short, &line));
@@ -250,16 +261,16 @@ mod tests {
 
     #[test]
     fn a_line_that_repeats_another_stays() {
-        let roof = Roof::new();
+        let roof = PlantedRoof::new();
         let line = roof.line(2, [0.0, 1.0], &ALL, NOWHERE);
         let part = roof.line(2, [0.1, 0.8], &[0, 1, 2], NOWHERE);
-        assert!(repeats(&part, &line) && !repeats(&line, &part));
+        assert!(is_duplicate_of(&part, &line) && !is_duplicate_of(&line, &part));
         assert!(roof.joined(&part, &line).is_none());
         // Not where it has a view or a stretch of its own.
         let fewer = roof.line(2, [0.0, 1.0], &[0, 1, 4], NOWHERE);
         let shorter = roof.line(2, [0.0, 0.6], &ALL, NOWHERE);
         for other in [fewer, shorter] {
-            assert!(!repeats(&part, &other));
+            assert!(!is_duplicate_of(&part, &other));
             let joined = roof.joined(&part, &other).expect("one line");
             assert!(joined.segment.covers(&part.segment, COVERED));
         }
@@ -267,8 +278,8 @@ mod tests {
 
     #[test]
     fn joined_lines_leave_no_gap_in_the_numbers() {
-        let roof = Roof::new();
-        let mut selection = Selection::none(&roof.segments);
+        let roof = PlantedRoof::new();
+        let mut selection = Selection::empty(&roof.segments);
         selection.lines = vec![
             roof.line(2, [0.0, 0.45], &ALL, NOWHERE),
             roof.line(0, [0.0, 1.0], &ALL, NOWHERE),
@@ -278,15 +289,15 @@ mod tests {
         let owned = [(0, 2), (1, 0), (2, 4), (3, 1)];
         for (line, segment) in owned {
             selection.owners[0][segment] = Some(line);
-            selection.fates.push(Fate::Won(line));
+            selection.outcomes.push(BundleOutcome::Accepted(line));
         }
-        selection.fates.push(Fate::Lost(2));
+        selection.outcomes.push(BundleOutcome::Superseded(2));
         join_lines(&roof.context(), &mut selection);
         let numbers = owned.map(|(_, segment)| selection.owners[0][segment]);
         assert_eq!(numbers, [Some(0), Some(1), Some(0), Some(2)]);
-        let fates = [0, 1, 0, 2].map(Fate::Won);
-        assert_eq!(selection.fates[..4], fates);
-        assert_eq!(selection.fates[4], Fate::Lost(0));
+        let outcomes = [0, 1, 0, 2].map(BundleOutcome::Accepted);
+        assert_eq!(selection.outcomes[..4], outcomes);
+        assert_eq!(selection.outcomes[4], BundleOutcome::Superseded(0));
         let edges = planted::edges();
         for (line, edge) in selection.lines.iter().zip([2, 0, 1]) {
             assert!(line.segment.covers(&edges[edge], COVERED), "edge {edge}");

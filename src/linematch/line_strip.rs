@@ -70,9 +70,9 @@ impl StripFrame {
     }
 }
 
-/// Grey values of a strip, column by column: what is done row by row is done for eight rows at once. The rows reach half a
-/// window past the first and last edgel.
-pub struct Strip {
+/// Grey values of a strip, stored by column so that eight rows are processed at once. The rows
+/// reach half a window past the first and last edgel.
+pub struct LineStrip {
     half: usize,
     /// Length of a column: the number of rows, made a multiple of eight.
     stride: usize,
@@ -105,7 +105,7 @@ impl StripSide {
     }
 }
 
-impl Strip {
+impl LineStrip {
     /// Samples the strip in the reference view itself.
     pub fn reference(gray: &Gray, frame: &StripFrame) -> Self {
         let identity = Homography(nalgebra::Matrix3::identity());
@@ -141,7 +141,7 @@ impl Strip {
                 if x.z <= 1e-12 {
                     continue;
                 }
-                // To first order across the line: over seven pixels the second order is below 0.01 px.
+                // The second order across the line is below 0.01 px over seven pixels.
                 let centre = x.xy() / x.z;
                 let step = (across.xy() - centre * across.z) / x.z;
                 let inside = RowPlace::new(gray, centre + step * left, step, columns.len());
@@ -193,7 +193,7 @@ impl Strip {
     }
 }
 
-/// Where the samples of a row lie: from the first one on, counted from the centre of the top-left pixel.
+/// Sample positions of a row from the first one on, counted from the centre of the top-left pixel.
 #[derive(Clone, Copy, Default)]
 struct RowPlace {
     x: f32,
@@ -232,7 +232,7 @@ struct Sums {
 
 impl Sums {
     /// The sums of eight rows each, from `first` on, over some columns.
-    fn of_rows(a: &Strip, b: &Strip, columns: Range<usize>, first: usize) -> [Self; 8] {
+    fn of_rows(a: &LineStrip, b: &LineStrip, columns: Range<usize>, first: usize) -> [Self; 8] {
         let [mut sa, mut sb, mut saa, mut sbb, mut sab] = [f32x8::ZERO; 5];
         for column in columns {
             // Centred on mid grey, squares keep their digits in f32.
@@ -280,7 +280,7 @@ impl Sums {
 
 /// Correlation of one side of two strips of the same frame at each edgel; NaN where the window
 /// lacks more than a quarter of its rows.
-pub fn correlate(a: &Strip, b: &Strip, side: StripSide, noise: f64) -> Vec<f32> {
+pub fn correlate(a: &LineStrip, b: &LineStrip, side: StripSide, noise: f64) -> Vec<f32> {
     let columns = side.columns(a.half);
     let window = 2 * a.half + 1;
     let mut rows: Vec<Sums> = Vec::with_capacity(a.stride);
@@ -372,10 +372,10 @@ mod tests {
         let (a, b) = (image(&Matrix3::identity()), image(&h));
         let line = Segment2::new(Point2::new(50.0, 60.0), Point2::new(90.0, 75.0));
         let frame = StripFrame::new(&line, 15);
-        let reference = Strip::reference(&a, &frame);
+        let reference = LineStrip::reference(&a, &frame);
         for side in StripSide::BOTH {
             let scores = |h: Matrix3<f64>| {
-                let warped = Strip::warped(&b, &Homography(h), &frame, side);
+                let warped = LineStrip::warped(&b, &Homography(h), &frame, side);
                 EdgelScore::of(&correlate(&reference, &warped, side, 0.005), 0.6)
             };
             let right = scores(h);
@@ -396,10 +396,10 @@ mod tests {
         });
         let line = Segment2::new(Point2::new(81.0, 50.0), Point2::new(81.0, 100.0));
         let frame = StripFrame::new(&line, 15);
-        let reference = Strip::reference(&a, &frame);
+        let reference = LineStrip::reference(&a, &frame);
         let identity = Homography(Matrix3::identity());
         let [left, right] = StripSide::BOTH.map(|side| {
-            let warped = Strip::warped(&b, &identity, &frame, side);
+            let warped = LineStrip::warped(&b, &identity, &frame, side);
             EdgelScore::of(&correlate(&reference, &warped, side, 0.005), 0.6).score
         });
         assert!(left > 0.95 && right < 0.5, "left {left}, right {right}");
@@ -410,7 +410,7 @@ mod tests {
         let flat = Gray::from_fn(80, 80, |c, r| 0.5 + 0.0005 * ((c * 7 + r * 3) % 5) as f32);
         let line = Segment2::new(Point2::new(20.0, 40.0), Point2::new(60.0, 40.0));
         let frame = StripFrame::new(&line, 15);
-        let strip = Strip::reference(&flat, &frame);
+        let strip = LineStrip::reference(&flat, &frame);
         let c = correlate(&strip, &strip, StripSide::Left, 0.006);
         assert!(c.iter().all(|c| *c < 0.1));
     }
@@ -420,7 +420,7 @@ mod tests {
         let a = image(&Matrix3::identity());
         let line = Segment2::new(Point2::new(20.0, 3.0), Point2::new(60.0, 3.0));
         let frame = StripFrame::new(&line, 15);
-        let strip = Strip::reference(&a, &frame);
+        let strip = LineStrip::reference(&a, &frame);
         assert!(
             correlate(&strip, &strip, StripSide::Left, 0.005)
                 .iter()

@@ -2,18 +2,20 @@
 //! lines' neighbourhoods.
 //!
 //! The paper matches consecutive views only. A line near-parallel to a baseline is undetermined by
-//! that pair, whatever its segments, so here every pair of partner views is searched and each
-//! hypothesis judged by its own conditioning: lines along the flight are matched across it.
+//! that pair, so here every selected pair of views is searched and each hypothesis tested for its
+//! own conditioning: lines along the flight are matched across it.
 //!
-//! Work: each segment meets only the segments in its beam (about 3 to 10 with the height range of a
-//! suburb), so that the work grows with segments x partners x density, not with their square.
+//! Each segment is compared only with those in its beam (about 3 to 10 with the height range of a
+//! suburb), so that the work grows with segments x views x density, not with their square.
 
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::Pass;
-use super::sight::{Alike, SegmentRef, Sight, Sights, epipolar_beam, ray_in_plane};
-use super::strip::{EdgelScore, Strip, StripFrame, StripSide, correlate};
+use super::line_strip::{EdgelScore, LineStrip, StripFrame, StripSide, correlate};
+use super::pass::Pass;
+use super::segment_geometry::{
+    Compatibility, PreparedSegments, SegmentGeometry, SegmentRef, epipolar_beam, ray_in_plane,
+};
 use crate::camera::{Camera, Homography, homography_of_plane};
 use crate::execution::map_shared;
 use crate::geometry::{Plane, Segment3};
@@ -25,7 +27,7 @@ use crate::scene::Scene;
 
 /// Two segments that may be images of one line.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Pair {
+pub struct SegmentPair {
     /// Segment of the view with the lower index.
     pub a: SegmentRef,
     /// Segment of the other view.
@@ -38,7 +40,7 @@ pub struct Pair {
     pub score: f64,
 }
 
-/// What became of one segment in the pair search.
+/// The outcome of the pair search for one segment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PairSearch {
     /// Candidates in beams that passed the geometric tests.
@@ -47,29 +49,29 @@ pub struct PairSearch {
     pub best: f64,
 }
 
-/// All pair hypotheses that can serve anywhere: those above `pair_score * with_segment`.
+/// All pair hypotheses that any later step uses: those above `pair_score * with_segment`.
 #[derive(Default)]
-pub struct Pairs {
-    /// Of one pass sorted by (a, b).
-    pub pairs: Vec<Pair>,
-    /// For each view and segment, what its search found, in both directions.
+pub struct SegmentPairs {
+    /// The pairs of one pass, sorted by (a, b).
+    pub pairs: Vec<SegmentPair>,
+    /// For each view and segment, the outcome of its search in both directions.
     pub searches: Vec<Vec<PairSearch>>,
 }
 
-/// What a search for pairs needs of the whole.
+/// The input of a search for pairs.
 pub struct PairScope<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// Its segments.
-    pub sights: &'a Sights,
+    pub prepared: &'a PreparedSegments,
     /// Pairs of views with common ground.
-    pub partners: &'a [(ViewId, ViewId)],
+    pub view_pairs: &'a [(ViewId, ViewId)],
     /// Heights between which lines are sought, metres.
     pub z_range: [f64; 2],
     /// Matching parameters.
     pub params: &'a MatchParams,
-    /// What two segments must have in common.
-    pub alike: Alike,
+    /// The properties in which two segments must agree.
+    pub compatibility: Compatibility,
 }
 
 /// Matches every segment that is not taken yet with those of its partner views.
@@ -77,19 +79,22 @@ pub fn match_pairs(
     scope: &PairScope,
     taken: impl Fn(SegmentRef) -> bool + Sync,
     pass: Pass,
-) -> Pairs {
+) -> SegmentPairs {
     let free: Vec<SegmentRef> = (scope.scene.view_ids())
-        .flat_map(|view| scope.sights.of_view(view))
+        .flat_map(|view| scope.prepared.of_view(view))
         .map(|(name, _)| name)
         .filter(|name| !taken(*name))
         .collect();
-    let found = map_shared(pass.map("pairs"), &free, pass.part(0.2..0.5), |_, name| {
-        scope.pairs_of(*name, &taken)
-    });
-    let mut searches: Vec<Vec<PairSearch>> = (scope.sights.views.iter())
-        .map(|v| vec![PairSearch::default(); v.sights.len()])
+    let found = map_shared(
+        pass.map_name("pairs"),
+        &free,
+        pass.progress_part(0.2..0.5),
+        |_, name| scope.pairs_of(*name, &taken),
+    );
+    let mut searches: Vec<Vec<PairSearch>> = (scope.prepared.views.iter())
+        .map(|v| vec![PairSearch::default(); v.segments.len()])
         .collect();
-    let mut pairs: Vec<Pair> = Vec::new();
+    let mut pairs: Vec<SegmentPair> = Vec::new();
     let least = scope.params.pair_score * scope.params.with_segment;
     for pair in found.into_iter().flatten() {
         for s in [pair.a, pair.b] {
@@ -101,10 +106,10 @@ pub fn match_pairs(
             pairs.push(pair);
         }
     }
-    Pairs { pairs, searches }
+    SegmentPairs { pairs, searches }
 }
 
-impl Pairs {
+impl SegmentPairs {
     /// Adds those of a further pass.
     pub fn append(&mut self, more: Self) {
         self.pairs.extend(more.pairs);
@@ -121,39 +126,43 @@ impl Pairs {
 
 impl PairScope<'_> {
     /// Scores a segment against its candidates in all partner views of higher index.
-    fn pairs_of(&self, name: SegmentRef, taken: &impl Fn(SegmentRef) -> bool) -> Vec<Pair> {
-        let Some(sight) = self.sights.get(name) else {
+    fn pairs_of(&self, name: SegmentRef, taken: &impl Fn(SegmentRef) -> bool) -> Vec<SegmentPair> {
+        let Some(geometry) = self.prepared.get(name) else {
             return Vec::new();
         };
         let first = self.scene.view(name.view);
-        let frame = StripFrame::new(&sight.segment, self.params.window_px);
-        // What lies beside a line shows in grey values, whichever channel shows the line.
-        let channel = if self.alike.kind {
-            sight.kind.channel()
+        let frame = StripFrame::new(&geometry.segment, self.params.window_px);
+        // The surroundings of a line show in grey values, whichever channel shows the line.
+        let channel = if self.compatibility.kind {
+            geometry.kind.channel()
         } else {
             Channel::Grey
         };
-        let strip = Strip::reference(first.channel(channel).0, &frame);
+        let strip = LineStrip::reference(first.channel(channel).0, &frame);
         let mut pairs = Vec::new();
-        for (_, other) in self.partners.iter().filter(|(view, _)| *view == name.view) {
+        for (_, other) in self
+            .view_pairs
+            .iter()
+            .filter(|(view, _)| *view == name.view)
+        {
             let camera = self.scene.camera(*other);
-            let Some(beam) = epipolar_beam(&first.camera, &sight.segment, camera, self.z_range)
+            let Some(beam) = epipolar_beam(&first.camera, &geometry.segment, camera, self.z_range)
             else {
                 continue;
             };
             let near =
-                (self.sights.views[other.index()].index).near_quad(&beam, self.params.gate_px);
+                (self.prepared.views[other.index()].index).near_quad(&beam, self.params.gate_px);
             for id in near {
                 let b = SegmentRef {
                     view: *other,
                     segment: crate::ids::SegmentId(id),
                 };
                 let candidate = self
-                    .sights
+                    .prepared
                     .get(b)
-                    .filter(|c| !taken(b) && self.alike.holds(sight.kind, c.kind));
-                let Some(geometry) = candidate
-                    .and_then(|c| PairGeometry::new([&first.camera, camera], [sight, c], self))
+                    .filter(|c| !taken(b) && self.compatibility.allows(geometry.kind, c.kind));
+                let Some(common) = candidate
+                    .and_then(|c| PairGeometry::new([&first.camera, camera], [geometry, c], self))
                 else {
                     continue;
                 };
@@ -164,14 +173,14 @@ impl PairScope<'_> {
                     channel,
                     &frame,
                     &strip,
-                    &geometry,
+                    &common,
                     self.params,
                 );
-                pairs.push(Pair {
+                pairs.push(SegmentPair {
                     a: name,
                     b,
-                    overlap: geometry.overlap,
-                    overlap_px: geometry.to_px - geometry.from_px,
+                    overlap: common.overlap,
+                    overlap_px: common.to_px - common.from_px,
                     score,
                 });
             }
@@ -191,7 +200,11 @@ struct PairGeometry {
 impl PairGeometry {
     /// The common stretch, where it is long enough, well conditioned, in the height range, not too
     /// steep, and of one contrast direction.
-    fn new([first, second]: [&Camera; 2], [a, b]: [&Sight; 2], scope: &PairScope) -> Option<Self> {
+    fn new(
+        [first, second]: [&Camera; 2],
+        [a, b]: [&SegmentGeometry; 2],
+        scope: &PairScope,
+    ) -> Option<Self> {
         let params = scope.params;
         let sine = |plane: &Plane, rays: &[Vector3<f64>; 2]| {
             let [s, e] = rays.map(|r| plane.normal.dot(&r).abs());
@@ -213,7 +226,7 @@ impl PairGeometry {
         let length = (a1 - a0).norm();
         let direction = (a1 - a0) / length.max(1e-9);
         let (t0, t1) = ((b0 - a0).dot(&direction), (b1 - a0).dot(&direction));
-        if scope.alike.directs(a.kind) && t1 <= t0 {
+        if scope.compatibility.is_directed(a.kind) && t1 <= t0 {
             return None;
         }
         let (from, to) = (t0.min(t1).max(0.0), t0.max(t1).min(length));
@@ -242,12 +255,12 @@ fn pair_score(
     views: [ViewId; 2],
     channel: Channel,
     frame: &StripFrame,
-    strip: &Strip,
-    geometry: &PairGeometry,
+    strip: &LineStrip,
+    common: &PairGeometry,
     params: &MatchParams,
 ) -> f64 {
-    let start = (geometry.from_px.round() as usize).min(frame.edgels - 1);
-    let end = (geometry.to_px.round() as usize).clamp(start + 1, frame.edgels);
+    let start = (common.from_px.round() as usize).min(frame.edgels - 1);
+    let end = (common.to_px.round() as usize).clamp(start + 1, frame.edgels);
     let part = frame.part(start, end - start);
     let strip = strip.part(start, end - start);
     let score = |side: StripSide, theta_deg: f64| {
@@ -257,7 +270,7 @@ fn pair_score(
             channel,
             &part,
             &strip,
-            &geometry.overlap,
+            &common.overlap,
             side,
             theta_deg,
             params,
@@ -271,7 +284,7 @@ fn pair_score(
         for side in StripSide::BOTH {
             best = best.max(score(side, theta));
         }
-        // Where a plane explains a side well enough, no other need be tried.
+        // Where a plane explains a side well enough, no other is tried.
         if best >= 1.5 * params.pair_score {
             break;
         }
@@ -280,13 +293,13 @@ fn pair_score(
 }
 
 /// Correlations at the edgels of a reference strip with another view, see [`side_strip`].
-#[allow(clippy::too_many_arguments)] // Every one is another thing; a struct would be used once.
+#[allow(clippy::too_many_arguments)] // A struct of them would be used once.
 fn side_correlation(
     scene: &Scene,
     views: [ViewId; 2],
     channel: Channel,
     frame: &StripFrame,
-    strip: &Strip,
+    strip: &LineStrip,
     line: &Segment3,
     side: StripSide,
     theta_deg: f64,
@@ -296,8 +309,8 @@ fn side_correlation(
     Some(correlate(strip, &warped, side, params.noise))
 }
 
-/// One side of a line's strip in another view (the second of the two), warped by the half-plane at `theta_deg`. `None` for
-/// a line without such a plane.
+/// One side of a line's strip in the second view, warped by the half-plane at `theta_deg`. `None`
+/// for a line without such a plane.
 pub fn side_strip(
     scene: &Scene,
     [first, second]: [ViewId; 2],
@@ -306,10 +319,10 @@ pub fn side_strip(
     line: &Segment3,
     side: StripSide,
     theta_deg: f64,
-) -> Option<Strip> {
+) -> Option<LineStrip> {
     let view = scene.view(second);
     let h = side_homography(scene.camera(first), &view.camera, line, side, theta_deg)?;
-    Some(Strip::warped(view.channel(channel).0, &h, frame, side))
+    Some(LineStrip::warped(view.channel(channel).0, &h, frame, side))
 }
 
 /// The homography of the half-plane at `theta_deg` on one side of a line, the side as seen in
@@ -332,10 +345,10 @@ fn side_homography(
 
 #[cfg(test)]
 mod tests {
-    use super::super::planted;
     use super::*;
     use crate::geometry::Segment2;
     use crate::lines2d::SegmentKind;
+    use crate::lines3d::planted;
 
     #[test]
     fn a_rising_side_is_warped_as_it_rises() {
@@ -367,23 +380,23 @@ mod tests {
 
     fn pairs_of(
         scene: &Scene,
-        sights: &Sights,
-        partners: &[(ViewId, ViewId)],
-        alike: Alike,
-    ) -> Pairs {
+        prepared: &PreparedSegments,
+        view_pairs: &[(ViewId, ViewId)],
+        compatibility: Compatibility,
+    ) -> SegmentPairs {
         let params = MatchParams::default();
         let scope = PairScope {
             scene,
-            sights,
-            partners,
+            prepared,
+            view_pairs,
             z_range: [-2.0, 8.0],
             params: &params,
-            alike,
+            compatibility,
         };
         match_pairs(&scope, |_| false, Pass::Second)
     }
 
-    const ALIKE: Alike = Alike {
+    const COMPATIBLE: Compatibility = Compatibility {
         contrast: true,
         kind: true,
     };
@@ -392,11 +405,11 @@ mod tests {
     fn a_line_along_the_baseline_is_no_pair() {
         let scene = planted::scene();
         let segments = planted::segments(&scene);
-        let sights = Sights::new(&scene, &segments);
-        let partners: Vec<_> = [(0, 1), (0, 3)]
+        let prepared = PreparedSegments::new(&scene, &segments);
+        let view_pairs: Vec<_> = [(0, 1), (0, 3)]
             .map(|(a, b)| (ViewId(a), ViewId(b)))
             .to_vec();
-        let pairs = pairs_of(&scene, &sights, &partners, ALIKE);
+        let pairs = pairs_of(&scene, &prepared, &view_pairs, COMPATIBLE);
         // Edge 1 runs along x, the direction of the baseline of views 0 and 1, edge 0 across it.
         let found = |edge: u32, other: u32| {
             let name = |v| SegmentRef {
@@ -418,7 +431,7 @@ mod tests {
                 vec![planted::detected(Segment2::new(end(0.05), end(0.95)), 0)]
             })
             .collect();
-        let sights = Sights::new(&scene, &segments);
+        let prepared = PreparedSegments::new(&scene, &segments);
         let name = |v| SegmentRef {
             view: ViewId(v),
             segment: crate::ids::SegmentId(0),
@@ -430,11 +443,11 @@ mod tests {
             };
             let scope = PairScope {
                 scene: &scene,
-                sights: &sights,
-                partners: &[(ViewId(0), ViewId(other))],
+                prepared: &prepared,
+                view_pairs: &[(ViewId(0), ViewId(other))],
                 z_range: [-2.0, 8.0],
                 params: &params,
-                alike: ALIKE,
+                compatibility: COMPATIBLE,
             };
             match_pairs(&scope, |_| false, Pass::Second).score(name(0), name(other))
         };
@@ -454,27 +467,27 @@ mod tests {
     #[test]
     fn segments_in_colour_and_in_grey_values_are_no_pair() {
         let scene = planted::scene();
-        let partners = [(ViewId(0), ViewId(3))];
+        let view_pairs = [(ViewId(0), ViewId(3))];
         let name = |v| SegmentRef {
             view: ViewId(v),
             segment: crate::ids::SegmentId(1),
         };
-        let score = |in_color: &[usize], alike: Alike| {
+        let score = |in_color: &[usize], compatibility: Compatibility| {
             let mut segments = planted::segments(&scene);
             for &view in in_color {
                 segments[view][1].kind = SegmentKind::Color;
             }
-            let sights = Sights::new(&scene, &segments);
-            let pairs = pairs_of(&scene, &sights, &partners, alike);
+            let prepared = PreparedSegments::new(&scene, &segments);
+            let pairs = pairs_of(&scene, &prepared, &view_pairs, compatibility);
             pairs.score(name(0), name(3))
         };
         // The scene has no colour, so that grey values stand for it.
-        assert!(score(&[], ALIKE) > 0.0 && score(&[0, 3], ALIKE) > 0.0);
-        assert_eq!(score(&[0], ALIKE), 0.0);
-        assert_eq!(score(&[3], ALIKE), 0.0);
-        let any = Alike {
+        assert!(score(&[], COMPATIBLE) > 0.0 && score(&[0, 3], COMPATIBLE) > 0.0);
+        assert_eq!(score(&[0], COMPATIBLE), 0.0);
+        assert_eq!(score(&[3], COMPATIBLE), 0.0);
+        let any = Compatibility {
             kind: false,
-            ..ALIKE
+            ..COMPATIBLE
         };
         assert!(score(&[3], any) > 0.0, "where they need not be alike");
     }

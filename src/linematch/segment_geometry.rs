@@ -1,4 +1,4 @@
-//! What matching asks of a detected segment again and again, computed once.
+//! The geometry of detected segments that matching uses repeatedly, computed once.
 
 use nalgebra::{Point2, Point3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -6,12 +6,11 @@ use serde::{Deserialize, Serialize};
 use super::index::SegmentIndex;
 use crate::camera::{Camera, plane_of_image_line};
 use crate::geometry::{Plane, Segment2};
-use crate::ids::SegmentId;
-use crate::ids::ViewId;
+use crate::ids::{SegmentId, ViewId};
 use crate::lines2d::{ImageSegment, SegmentKind};
 use crate::scene::Scene;
 
-/// Names a segment of a view.
+/// The identity of a segment of a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct SegmentRef {
     /// The view.
@@ -20,32 +19,32 @@ pub struct SegmentRef {
     pub segment: SegmentId,
 }
 
-/// What must be the same of all segments that show a line.
+/// The properties in which all segments of a line must agree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Alike {
-    /// The bright side, if they are steps.
+pub struct Compatibility {
+    /// The bright side, for steps.
     pub contrast: bool,
-    /// The kind. Where it need not be, steps are still no bars: those run beside the line's edges.
+    /// The kind. Without this condition a step is still no bar, which runs beside the line's edges.
     pub kind: bool,
 }
 
-impl Alike {
+impl Compatibility {
     /// May segments of these kinds show one line?
-    pub fn holds(self, a: SegmentKind, b: SegmentKind) -> bool {
+    pub fn allows(self, a: SegmentKind, b: SegmentKind) -> bool {
         a == b || (!self.kind && a.is_step() == b.is_step())
     }
 
     /// Must a segment of this kind run the same way as the others?
-    pub fn directs(self, kind: SegmentKind) -> bool {
+    pub fn is_directed(self, kind: SegmentKind) -> bool {
         self.contrast && kind.is_step()
     }
 }
 
 /// A segment with its rays and its interpretation plane.
-pub struct Sight {
+pub struct SegmentGeometry {
     /// The segment, directed by contrast.
     pub segment: Segment2,
-    /// What it was found on.
+    /// Step or bar, and in which channel.
     pub kind: SegmentKind,
     /// Its length, pixels.
     pub length_px: f64,
@@ -57,7 +56,7 @@ pub struct Sight {
     pub sigma_px: f64,
 }
 
-impl Sight {
+impl SegmentGeometry {
     fn new(camera: &Camera, detected: &ImageSegment) -> Option<Self> {
         let segment = detected.segment;
         let length_px = segment.length();
@@ -76,18 +75,21 @@ impl Sight {
 }
 
 /// The segments of one view, ready for matching.
-pub struct ViewSights {
+pub struct PreparedView {
     /// One for each detected segment; `None` for one without length.
-    pub sights: Vec<Option<Sight>>,
-    /// Where they are.
+    pub segments: Vec<Option<SegmentGeometry>>,
+    /// The same by place.
     pub index: SegmentIndex,
 }
 
-impl ViewSights {
+impl PreparedView {
     /// Prepares the segments of one view.
     pub fn new(camera: &Camera, detected: &[ImageSegment]) -> Self {
         Self {
-            sights: detected.iter().map(|s| Sight::new(camera, s)).collect(),
+            segments: detected
+                .iter()
+                .map(|s| SegmentGeometry::new(camera, s))
+                .collect(),
             index: SegmentIndex::new(
                 camera.width,
                 camera.height,
@@ -98,44 +100,45 @@ impl ViewSights {
 }
 
 /// All views' segments, ready for matching.
-pub struct Sights {
+pub struct PreparedSegments {
     /// One for each view.
-    pub views: Vec<ViewSights>,
+    pub views: Vec<PreparedView>,
 }
 
-impl Sights {
+impl PreparedSegments {
     /// Prepares the segments of all views.
     pub fn new(scene: &Scene, segments: &[Vec<ImageSegment>]) -> Self {
         let views = scene
             .views
             .iter()
             .zip(segments)
-            .map(|(view, detected)| ViewSights::new(&view.camera, detected))
+            .map(|(view, detected)| PreparedView::new(&view.camera, detected))
             .collect();
         Self { views }
     }
 
     /// The segment of this name; `None` for one without length.
-    pub fn get(&self, name: SegmentRef) -> Option<&Sight> {
-        self.views[name.view.index()].sights[name.segment.index()].as_ref()
+    pub fn get(&self, name: SegmentRef) -> Option<&SegmentGeometry> {
+        self.views[name.view.index()].segments[name.segment.index()].as_ref()
     }
 
-    /// The kind of most of a line's segments, of as many the one that comes first in [`SegmentKind::ALL`]; `None` without segments.
+    /// The most frequent kind of a line's segments, on a tie the first in [`SegmentKind::ALL`];
+    /// `None` without segments.
     pub fn kind(&self, segments: &[SegmentRef]) -> Option<SegmentKind> {
         let shown = |kind: &SegmentKind| {
             let own = segments.iter().filter_map(|s| self.get(*s));
-            own.filter(|sight| sight.kind == *kind).count()
+            own.filter(|geometry| geometry.kind == *kind).count()
         };
         let most = SegmentKind::ALL.into_iter().rev().max_by_key(shown)?;
         (shown(&most) > 0).then_some(most)
     }
 
     /// The names of all segments of a view that can be matched.
-    pub fn of_view(&self, view: ViewId) -> impl Iterator<Item = (SegmentRef, &Sight)> {
-        let sights = self.views[view.index()].sights.iter().enumerate();
-        sights.filter_map(move |(i, sight)| {
+    pub fn of_view(&self, view: ViewId) -> impl Iterator<Item = (SegmentRef, &SegmentGeometry)> {
+        let segments = self.views[view.index()].segments.iter().enumerate();
+        segments.filter_map(move |(i, geometry)| {
             let segment = SegmentId::from_index(i);
-            Some((SegmentRef { view, segment }, sight.as_ref()?))
+            Some((SegmentRef { view, segment }, geometry.as_ref()?))
         })
     }
 }
@@ -177,24 +180,24 @@ mod tests {
     use SegmentKind::{BrightBar, Color, DarkBar, Edge};
 
     #[test]
-    fn bars_and_steps_are_never_alike() {
-        let first = Alike {
+    fn bars_and_steps_are_never_compatible() {
+        let first = Compatibility {
             contrast: true,
             kind: true,
         };
-        let second = Alike {
+        let second = Compatibility {
             contrast: false,
             kind: false,
         };
         for a in SegmentKind::ALL {
-            assert!(first.holds(a, a) && second.holds(a, a));
-            assert!(!first.holds(a, a.other()) && second.holds(a, a.other()));
+            assert!(first.allows(a, a) && second.allows(a, a));
+            assert!(!first.allows(a, a.other()) && second.allows(a, a.other()));
             assert_eq!(a.other().other(), a);
-            assert!(!second.directs(a));
+            assert!(!second.is_directed(a));
         }
-        assert!(!second.holds(Edge, BrightBar) && !second.holds(DarkBar, Color));
+        assert!(!second.allows(Edge, BrightBar) && !second.allows(DarkBar, Color));
         assert_eq!(
-            [Edge, Color, BrightBar, DarkBar].map(|k| first.directs(k)),
+            [Edge, Color, BrightBar, DarkBar].map(|k| first.is_directed(k)),
             [true, true, false, false]
         );
     }

@@ -2,68 +2,67 @@
 //!
 //! "Whenever a line belongs to several triples, only the triple with the best score is retained."
 //! With N views the unit is the bundle of triples of one pair: bundles are taken in the order of
-//! their evidence, completed to lines over all views, and own their segments from then on. The
-//! losers' segments are not thrown away: those that lie on the winner's line were adopted by it
-//! (merging), the others remain free for the next bundle.
+//! their evidence, completed to lines over all views, and own their segments from then on.
+//! Segments of a superseded bundle that lie on the winner's line were adopted by it (merging); the
+//! others remain free for the next bundle.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::Pass;
-use super::nview::{Context, Line, Rejection, complete_line};
-use super::pairs::{Pair, Pairs};
-use super::sight::SegmentRef;
-use super::triples::Bundle;
-use crate::execution::SILENT;
-use crate::execution::map_shared;
-use crate::execution::reached;
+use super::nview::{CompletedLine, MatchContext, MatchRejection, complete_line};
+use super::pairs::{SegmentPair, SegmentPairs};
+use super::pass::Pass;
+use super::segment_geometry::SegmentRef;
+use super::triples::TripleBundle;
+use crate::execution::{SILENT, map_shared, reached};
 use crate::lines2d::ImageSegment;
 
-/// What became of a bundle.
+/// The outcome of a bundle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Fate {
+pub enum BundleOutcome {
     /// It became this line.
-    Won(usize),
+    Accepted(usize),
     /// Its segments belong to this line.
-    Lost(usize),
-    /// It failed on its own.
-    Rejected(Rejection),
+    Superseded(usize),
+    /// It was rejected by itself.
+    Rejected(MatchRejection),
 }
 
-/// The lines, and the fate of each bundle.
+/// The lines, and the outcome of each bundle.
 pub struct Selection {
     /// Accepted lines, the best first.
-    pub lines: Vec<Line>,
+    pub lines: Vec<CompletedLine>,
     /// One for each bundle.
-    pub fates: Vec<Fate>,
+    pub outcomes: Vec<BundleOutcome>,
     /// For each view and segment, the line that owns it.
     pub owners: Vec<Vec<Option<usize>>>,
 }
 
 /// Takes bundles by falling evidence; `selection` holds what an earlier pass has taken.
 pub fn winner_takes_all(
-    context: &Context,
-    pairs: &Pairs,
-    bundles: &[Bundle],
+    context: &MatchContext,
+    pairs: &SegmentPairs,
+    bundles: &[TripleBundle],
     pass: Pass,
     selection: &mut Selection,
 ) {
-    let mut fates = vec![Fate::Rejected(Rejection::NoFit); bundles.len()];
-    let weighed = map_shared(pass.map("bundles"), bundles, SILENT, |_, b| {
+    let mut outcomes = vec![BundleOutcome::Rejected(MatchRejection::NoFit); bundles.len()];
+    let weighed = map_shared(pass.map_name("bundles"), bundles, SILENT, |_, b| {
         evidence(context, &pairs.pairs[b.pair], b)
     });
-    let mut queue: BinaryHeap<Entry> = (weighed.into_iter().enumerate())
-        .map(|(bundle, evidence)| Entry { evidence, bundle })
+    let mut queue: BinaryHeap<QueuedBundle> = (weighed.into_iter().enumerate())
+        .map(|(bundle, evidence)| QueuedBundle { evidence, bundle })
         .collect();
     while let Some(entry) = queue.pop() {
         let bundle = &bundles[entry.bundle];
         let pair = &pairs.pairs[bundle.pair];
         if let Some(owner) = selection.owner(pair.a).or(selection.owner(pair.b)) {
-            fates[entry.bundle] = Fate::Lost(owner);
+            outcomes[entry.bundle] = BundleOutcome::Superseded(owner);
             continue;
         }
-        // What others took since does not count any more: back into the queue with the rest.
-        let rest = Bundle {
+        // Segments that other lines have taken meanwhile do not count: it is queued again with the
+        // rest.
+        let rest = TripleBundle {
             pair: bundle.pair,
             verified: bundle
                 .verified
@@ -75,29 +74,30 @@ pub fn winner_takes_all(
         if rest.verified.len() < bundle.verified.len() {
             let evidence = evidence(context, pair, &rest);
             if evidence < entry.evidence {
-                queue.push(Entry { evidence, ..entry });
+                queue.push(QueuedBundle { evidence, ..entry });
                 continue;
             }
         }
         let mut seeds = vec![pair.a, pair.b];
         seeds.extend(rest.verified.iter().map(|v| v.segment));
         let taken = |s: SegmentRef| selection.owner(s).is_some();
-        let fate = match complete_line(context, &pair.overlap, &seeds, &taken) {
+        let outcome = match complete_line(context, &pair.overlap, &seeds, &taken) {
             Ok(line) => selection.accept(line),
-            Err(reason) => Fate::Rejected(reason),
+            Err(reason) => BundleOutcome::Rejected(reason),
         };
-        fates[entry.bundle] = fate;
+        outcomes[entry.bundle] = outcome;
         if pass == Pass::First {
             reached(0.6 + 0.4 * (1.0 - queue.len() as f64 / bundles.len() as f64));
         }
     }
-    selection.fates.extend(fates);
+    selection.outcomes.extend(outcomes);
 }
 
-/// Evidence for the line of a bundle: seen length times the sum over the views of the best score,
-/// each as much as the segment agrees with the line that fits them all. Without that, a pair of a ridge in one
-/// view with the gutter a pixel beside it in another counts as much as two images of the ridge.
-fn evidence(context: &Context, pair: &Pair, bundle: &Bundle) -> f64 {
+/// Evidence for the line of a bundle: its length in the first view times the sum over the views of
+/// the best score, weighted by the agreement of the segment with the line that fits them all.
+/// Without the weight, a pair of a ridge with the gutter a pixel beside it would count as much as
+/// two images of the ridge.
+fn evidence(context: &MatchContext, pair: &SegmentPair, bundle: &TripleBundle) -> f64 {
     let scores = [(pair.a, pair.score), (pair.b, pair.score)];
     let verified = bundle.verified.iter().map(|v| (v.segment, v.score));
     let (seeds, scores): (Vec<SegmentRef>, Vec<f64>) = scores.into_iter().chain(verified).unzip();
@@ -113,11 +113,11 @@ fn evidence(context: &Context, pair: &Pair, bundle: &Bundle) -> f64 {
 }
 
 impl Selection {
-    /// Of segments (one list a view) none is taken yet.
-    pub fn none(segments: &[Vec<ImageSegment>]) -> Self {
+    /// The selection without lines, for these segments (one list a view).
+    pub fn empty(segments: &[Vec<ImageSegment>]) -> Self {
         Self {
             lines: Vec::new(),
-            fates: Vec::new(),
+            outcomes: Vec::new(),
             owners: segments.iter().map(|v| vec![None; v.len()]).collect(),
         }
     }
@@ -127,15 +127,15 @@ impl Selection {
         self.owners[s.view.index()][s.segment.index()]
     }
 
-    fn accept(&mut self, line: Line) -> Fate {
+    fn accept(&mut self, line: CompletedLine) -> BundleOutcome {
         let index = self.lines.len();
         self.own(&line, index);
         self.lines.push(line);
-        Fate::Won(index)
+        BundleOutcome::Accepted(index)
     }
 
     /// Gives the segments of a line to its number.
-    pub fn own(&mut self, line: &Line, index: usize) {
+    pub fn own(&mut self, line: &CompletedLine, index: usize) {
         for support in &line.supports {
             for segment in &support.segments {
                 self.owners[support.view.index()][segment.index()] = Some(index);
@@ -146,12 +146,12 @@ impl Selection {
 
 /// A bundle in the queue: the most evidence first, the lower index on a tie.
 #[derive(Clone, Copy)]
-struct Entry {
+struct QueuedBundle {
     evidence: f64,
     bundle: usize,
 }
 
-impl Ord for Entry {
+impl Ord for QueuedBundle {
     fn cmp(&self, other: &Self) -> Ordering {
         self.evidence
             .total_cmp(&other.evidence)
@@ -159,40 +159,45 @@ impl Ord for Entry {
     }
 }
 
-impl PartialOrd for Entry {
+impl PartialOrd for QueuedBundle {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Entry {
+impl PartialEq for QueuedBundle {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Entry {}
+impl Eq for QueuedBundle {}
 
 #[cfg(test)]
 mod tests {
     use super::super::pairs::{PairScope, match_pairs};
-    use super::super::planted;
-    use super::super::planted::Roof;
-    use super::super::sight::Alike;
+    use super::super::segment_geometry::Compatibility;
+    use super::super::testing::PlantedRoof;
     use super::super::triples::{Verification, verify_pairs};
     use super::*;
     use crate::geometry::Segment3;
     use crate::ids::SegmentId;
     use crate::ids::ViewId;
+    use crate::lines3d::planted;
 
     const Z_RANGE: [f64; 2] = [-2.0, 8.0];
-    const ALIKE: Alike = Alike {
+    const COMPATIBLE: Compatibility = Compatibility {
         contrast: true,
         kind: true,
     };
 
-    impl Roof {
-        fn select(&self, pairs: &Pairs, bundles: &[Bundle], mut selection: Selection) -> Selection {
+    impl PlantedRoof {
+        fn select(
+            &self,
+            pairs: &SegmentPairs,
+            bundles: &[TripleBundle],
+            mut selection: Selection,
+        ) -> Selection {
             winner_takes_all(
                 &self.context(),
                 pairs,
@@ -204,7 +209,7 @@ mod tests {
         }
 
         fn nothing_taken(&self) -> Selection {
-            Selection::none(&self.segments)
+            Selection::empty(&self.segments)
         }
     }
 
@@ -216,8 +221,8 @@ mod tests {
     }
 
     /// The pair of an edge's segments in two views.
-    fn pair(edge: u32, [a, b]: [u32; 2], score: f64) -> Pair {
-        Pair {
+    fn pair(edge: u32, [a, b]: [u32; 2], score: f64) -> SegmentPair {
+        SegmentPair {
             a: name(a, edge),
             b: name(b, edge),
             overlap: planted::edges()[edge as usize],
@@ -227,18 +232,18 @@ mod tests {
     }
 
     /// The bundle of a pair with segments that verify it, all of one score.
-    fn bundle(pair: usize, verified: &[SegmentRef], score: f64) -> Bundle {
+    fn bundle(pair: usize, verified: &[SegmentRef], score: f64) -> TripleBundle {
         let verified = verified
             .iter()
             .map(|&segment| Verification { segment, score });
-        Bundle {
+        TripleBundle {
             pair,
             verified: verified.collect(),
         }
     }
 
-    fn all(pairs: impl Into<Vec<Pair>>) -> Pairs {
-        Pairs {
+    fn all(pairs: impl Into<Vec<SegmentPair>>) -> SegmentPairs {
+        SegmentPairs {
             pairs: pairs.into(),
             searches: Vec::new(),
         }
@@ -246,19 +251,25 @@ mod tests {
 
     #[test]
     fn of_two_bundles_that_share_a_segment_the_one_with_more_evidence_wins() {
-        let roof = Roof::new();
+        let roof = PlantedRoof::new();
         // Both are of edge 1 and its segment in view 0.
         let pairs = all([pair(1, [0, 2], 0.9), pair(1, [0, 3], 0.9)]);
-        for (scores, fates) in [
-            ([0.5, 0.8], [Fate::Lost(0), Fate::Won(0)]),
-            ([0.8, 0.5], [Fate::Won(0), Fate::Lost(0)]),
+        for (scores, outcomes) in [
+            (
+                [0.5, 0.8],
+                [BundleOutcome::Superseded(0), BundleOutcome::Accepted(0)],
+            ),
+            (
+                [0.8, 0.5],
+                [BundleOutcome::Accepted(0), BundleOutcome::Superseded(0)],
+            ),
         ] {
             let bundles = [
                 bundle(0, &[name(3, 1), name(4, 1)], scores[0]),
                 bundle(1, &[name(2, 1), name(4, 1)], scores[1]),
             ];
             let selection = roof.select(&pairs, &bundles, roof.nothing_taken());
-            assert_eq!(selection.fates, fates);
+            assert_eq!(selection.outcomes, outcomes);
             assert_eq!(selection.lines.len(), 1);
             for view in 0..5 {
                 assert_eq!(selection.owner(name(view, 1)), Some(0), "view {view}");
@@ -266,20 +277,20 @@ mod tests {
             // Either wins where it is alone.
             for bundle in bundles {
                 let selection = roof.select(&pairs, &[bundle], roof.nothing_taken());
-                assert_eq!(selection.fates, [Fate::Won(0)]);
+                assert_eq!(selection.outcomes, [BundleOutcome::Accepted(0)]);
             }
         }
     }
 
     #[test]
     fn a_bundle_whose_segments_were_taken_waits_for_those_that_have_more_evidence_than_its_rest() {
-        let roof = Roof::new();
+        let roof = PlantedRoof::new();
         let pairs = all([pair(1, [0, 3], 0.8), pair(3, [0, 3], 0.7)]);
         let bundles = [
             bundle(0, &[name(1, 1), name(2, 1), name(4, 1)], 0.8),
             bundle(1, &[name(1, 3), name(2, 3), name(4, 3)], 0.7),
         ];
-        let fates_where_taken = |taken: &[SegmentRef]| {
+        let outcomes_where_taken = |taken: &[SegmentRef]| {
             // A line of an earlier pass, whose supports do not matter here.
             let mut selection = roof.nothing_taken();
             let segment = Segment3::new(planted::edges()[0].p0, planted::edges()[0].p1);
@@ -289,7 +300,7 @@ mod tests {
                 covariance: nalgebra::Matrix4::identity(),
                 residuals: Vec::new(),
             };
-            selection.accept(Line {
+            selection.accept(CompletedLine {
                 segment,
                 fit,
                 supports: Vec::new(),
@@ -297,36 +308,39 @@ mod tests {
             for s in taken {
                 selection.owners[s.view.index()][s.segment.index()] = Some(0);
             }
-            roof.select(&pairs, &bundles, selection).fates
+            roof.select(&pairs, &bundles, selection).outcomes
         };
-        assert_eq!(fates_where_taken(&[]), [Fate::Won(1), Fate::Won(2)]);
+        assert_eq!(
+            outcomes_where_taken(&[]),
+            [BundleOutcome::Accepted(1), BundleOutcome::Accepted(2)]
+        );
         // Four views that score 0.8 are less than five that score 0.7.
         assert_eq!(
-            fates_where_taken(&[name(2, 1)]),
-            [Fate::Won(2), Fate::Won(1)]
+            outcomes_where_taken(&[name(2, 1)]),
+            [BundleOutcome::Accepted(2), BundleOutcome::Accepted(1)]
         );
         // A segment of the pair itself is no rest to go on with.
         assert_eq!(
-            fates_where_taken(&[name(3, 1)]),
-            [Fate::Lost(0), Fate::Won(1)]
+            outcomes_where_taken(&[name(3, 1)]),
+            [BundleOutcome::Superseded(0), BundleOutcome::Accepted(1)]
         );
     }
 
     #[test]
     fn the_order_of_the_bundles_does_not_matter() {
-        let roof = Roof::new();
+        let roof = PlantedRoof::new();
         let views = 0..roof.scene.views.len() as u32;
-        let partners: Vec<_> = views
+        let view_pairs: Vec<_> = views
             .clone()
             .flat_map(|a| (a + 1..views.end).map(move |b| (ViewId(a), ViewId(b))))
             .collect();
         let scope = PairScope {
             scene: &roof.scene,
-            sights: &roof.sights,
-            partners: &partners,
+            prepared: &roof.prepared,
+            view_pairs: &view_pairs,
             z_range: Z_RANGE,
             params: &roof.params,
-            alike: ALIKE,
+            compatibility: COMPATIBLE,
         };
         let pairs = match_pairs(&scope, |_| false, Pass::Second);
         let bundles = verify_pairs(&scope, &pairs, Pass::Second);
@@ -342,8 +356,8 @@ mod tests {
             let shuffled: Vec<_> = order.iter().map(|&i| bundles[i].clone()).collect();
             let selection = roof.select(&pairs, &shuffled, roof.nothing_taken());
             assert_eq!(selection.owners, expected.owners);
-            for (&i, fate) in order.iter().zip(&selection.fates) {
-                assert_eq!(*fate, expected.fates[i], "bundle {i}");
+            for (&i, outcome) in order.iter().zip(&selection.outcomes) {
+                assert_eq!(*outcome, expected.outcomes[i], "bundle {i}");
             }
             for (line, other) in selection.lines.iter().zip(&expected.lines) {
                 assert_eq!(line.segment, other.segment);

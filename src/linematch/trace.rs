@@ -1,13 +1,12 @@
-//! What a teacher would draw of the matching: heights, pairs, triples, and for each segment its
-//! fate.
+//! The trace of matching for the page: heights, pairs, triples, and the outcome of each segment.
 
 use serde::Serialize;
 
-use super::nview::Rejection;
-use super::pairs::Pairs;
-use super::select::{Fate, Selection};
-use super::sight::SegmentRef;
-use super::triples::{Bundle, Verification};
+use super::nview::MatchRejection;
+use super::pairs::SegmentPairs;
+use super::segment_geometry::SegmentRef;
+use super::selection::{BundleOutcome, Selection};
+use super::triples::{TripleBundle, Verification};
 use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;
 use crate::lines3d::SupportKind;
@@ -16,13 +15,13 @@ use crate::sorting::sort_by;
 /// Most pairs kept in the trace, the best of each segment first.
 const MAX_PAIRS_PER_SEGMENT: usize = 12;
 
-/// What became of one segment.
+/// The outcome of one segment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "fate", rename_all = "snake_case")]
 pub enum SegmentOutcome {
-    /// It belongs to a match.
+    /// It belongs to a line track.
     Matched {
-        /// Index of the match.
+        /// Index of the line track.
         line: u32,
     },
     /// No segment in any epipolar beam passed the geometric tests.
@@ -32,19 +31,19 @@ pub enum SegmentOutcome {
         /// The best score, 0 to 1.
         best: f32,
     },
-    /// It had pairs, but no match came of them.
+    /// It had pairs, but no line track came of them.
     NotVerified {
         /// Why its best pair failed.
-        reason: Rejection,
+        reason: MatchRejection,
     },
-    /// The match that its best pair became fits better without it.
+    /// The line track that its best pair became fits better without it.
     LeftOut {
-        /// Index of that match.
+        /// Index of that line track.
         line: u32,
     },
-    /// The partner segments of its best pair went to another match.
+    /// The other segment of its best pair belongs to another line track.
     LostTo {
-        /// Index of that match.
+        /// Index of that line track.
         line: u32,
     },
 }
@@ -60,7 +59,7 @@ pub struct PairTrace {
     pub score: f32,
     /// Segments of third views at the predicted position: each makes a triple.
     pub verified: Vec<Verification>,
-    /// The match that it became, after winner takes all.
+    /// The line track that it became, after winner takes all.
     pub line: Option<u32>,
 }
 
@@ -83,14 +82,14 @@ impl StepCount {
 /// The trace of [`super::match_lines`].
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct MatchTrace {
-    /// Heights between which lines were sought, metres; [`super::sight::epipolar_beam`] draws beams with
-    /// it.
+    /// Heights between which lines were sought, metres; [`super::segment_geometry::epipolar_beam`]
+    /// draws beams with it.
     pub z_range_m: Option<[f64; 2]>,
     /// Heights found by the sweep that the range rests on, metres, sorted.
     pub heights_m: Vec<f64>,
     /// Pairs of views that were matched.
     pub view_pairs: Vec<(ViewId, ViewId)>,
-    /// For each view, the fate of each segment.
+    /// For each view, the outcome of each segment.
     pub outcomes: Vec<Vec<SegmentOutcome>>,
     /// The best pairs of each segment.
     pub pairs: Vec<PairTrace>,
@@ -104,7 +103,7 @@ pub struct MatchTrace {
     pub triples_after: usize,
     /// Segments given.
     pub detected: StepCount,
-    /// Segments that belong to a match.
+    /// Segments that belong to a line track.
     pub matched: StepCount,
     /// Of these, the ones joined to another segment of the same view.
     pub merged: StepCount,
@@ -117,8 +116,8 @@ impl MatchTrace {
     pub(crate) fn record(
         &mut self,
         segments: &[Vec<ImageSegment>],
-        pairs: &Pairs,
-        bundles: &[Bundle],
+        pairs: &SegmentPairs,
+        bundles: &[TripleBundle],
         selection: &Selection,
     ) {
         self.candidates = pairs
@@ -164,8 +163,8 @@ impl MatchTrace {
 
 fn outcomes(
     segments: &[Vec<ImageSegment>],
-    pairs: &Pairs,
-    bundles: &[Bundle],
+    pairs: &SegmentPairs,
+    bundles: &[TripleBundle],
     selection: &Selection,
 ) -> Vec<Vec<SegmentOutcome>> {
     let mut outcomes: Vec<Vec<SegmentOutcome>> = segments
@@ -182,17 +181,17 @@ fn outcomes(
                 .collect()
         })
         .collect();
-    // Weak pairs first, so that the best one has the last word.
+    // Weak pairs first, so that the best one decides.
     let mut order: Vec<usize> = (0..bundles.len()).collect();
     sort_by(&mut order, |&i, &j| {
         let score = |b: usize| pairs.pairs[bundles[b].pair].score;
         score(i).total_cmp(&score(j)).then(j.cmp(&i))
     });
     for i in order {
-        let outcome = match selection.fates[i] {
-            Fate::Won(line) => SegmentOutcome::LeftOut { line: line as u32 },
-            Fate::Lost(line) => SegmentOutcome::LostTo { line: line as u32 },
-            Fate::Rejected(reason) => SegmentOutcome::NotVerified { reason },
+        let outcome = match selection.outcomes[i] {
+            BundleOutcome::Accepted(line) => SegmentOutcome::LeftOut { line: line as u32 },
+            BundleOutcome::Superseded(line) => SegmentOutcome::LostTo { line: line as u32 },
+            BundleOutcome::Rejected(reason) => SegmentOutcome::NotVerified { reason },
         };
         let pair = &pairs.pairs[bundles[i].pair];
         for s in [pair.a, pair.b] {
@@ -212,8 +211,8 @@ fn outcomes(
 /// The pairs above the threshold, at most so many a segment.
 fn best_pairs(
     segments: &[Vec<ImageSegment>],
-    pairs: &Pairs,
-    bundles: &[Bundle],
+    pairs: &SegmentPairs,
+    bundles: &[TripleBundle],
     selection: &Selection,
 ) -> Vec<PairTrace> {
     let mut order: Vec<usize> = (0..bundles.len()).collect();
@@ -233,8 +232,8 @@ fn best_pairs(
                 b: pair.b,
                 score: pair.score as f32,
                 verified: bundles[i].verified.clone(),
-                line: match selection.fates[i] {
-                    Fate::Won(line) => Some(line as u32),
+                line: match selection.outcomes[i] {
+                    BundleOutcome::Accepted(line) => Some(line as u32),
                     _ => None,
                 },
             })
@@ -244,23 +243,24 @@ fn best_pairs(
 
 #[cfg(test)]
 mod tests {
-    use super::super::pairs::{Pair, PairSearch};
-    use super::super::planted;
+    use super::super::pairs::{PairSearch, SegmentPair};
     use super::*;
     use crate::geometry::Segment3;
     use crate::ids::SegmentId;
+    use crate::lines3d::planted;
     use nalgebra::Point3;
 
     #[test]
-    fn every_segment_is_told_why_it_is_matched_or_not() {
+    fn every_segment_has_the_reason_why_it_is_matched_or_not() {
         let one = planted::segments(&planted::scene())[0][0].clone();
         let segments = vec![vec![one; 6]; 2];
         let name = |view, segment| SegmentRef {
             view: ViewId(view),
             segment: SegmentId(segment),
         };
-        // The pairs of segments 1 to 4 of both views, and a weaker one of segment 4 with its neighbour.
-        let pair = |a, b, score| Pair {
+        // The pairs of segments 1 to 4 of both views, and a weaker one of segment 4 with its
+        // neighbour.
+        let pair = |a, b, score| SegmentPair {
             a: name(0, a),
             b: name(1, b),
             overlap: Segment3::new(Point3::origin(), Point3::new(1.0, 0.0, 0.0)),
@@ -276,7 +276,7 @@ mod tests {
             found(2, 0.6),
             found(1, 0.1),
         ];
-        let pairs = Pairs {
+        let pairs = SegmentPairs {
             pairs: vec![
                 pair(4, 3, 0.5),
                 pair(1, 1, 0.9),
@@ -286,37 +286,37 @@ mod tests {
             ],
             searches: vec![searches; 2],
         };
-        let bundles: Vec<Bundle> = (0..5)
-            .map(|pair| Bundle {
+        let bundles: Vec<TripleBundle> = (0..5)
+            .map(|pair| TripleBundle {
                 pair,
                 verified: Vec::new(),
             })
             .collect();
-        let mut selection = Selection::none(&segments);
-        selection.fates = vec![
-            Fate::Lost(0),
-            Fate::Won(0),
-            Fate::Lost(0),
-            Fate::Rejected(Rejection::TooShort),
-            Fate::Won(1),
+        let mut selection = Selection::empty(&segments);
+        selection.outcomes = vec![
+            BundleOutcome::Superseded(0),
+            BundleOutcome::Accepted(0),
+            BundleOutcome::Superseded(0),
+            BundleOutcome::Rejected(MatchRejection::TooShort),
+            BundleOutcome::Accepted(1),
         ];
         // Line 1 was fitted without the segment of the second view.
         selection.owners[0][1] = Some(0);
         selection.owners[1][1] = Some(0);
         selection.owners[0][4] = Some(1);
-        let told = outcomes(&segments, &pairs, &bundles, &selection);
+        let outcome_of = outcomes(&segments, &pairs, &bundles, &selection);
         let first = [
             SegmentOutcome::NoCandidate,
             SegmentOutcome::Matched { line: 0 },
             SegmentOutcome::LostTo { line: 0 },
             SegmentOutcome::NotVerified {
-                reason: Rejection::TooShort,
+                reason: MatchRejection::TooShort,
             },
             SegmentOutcome::Matched { line: 1 },
             SegmentOutcome::BelowThreshold { best: 0.1 },
         ];
-        assert_eq!(told[0], first);
-        assert_eq!(told[1][..4], first[..4]);
-        assert_eq!(told[1][4], SegmentOutcome::LeftOut { line: 1 });
+        assert_eq!(outcome_of[0], first);
+        assert_eq!(outcome_of[1][..4], first[..4]);
+        assert_eq!(outcome_of[1][4], SegmentOutcome::LeftOut { line: 1 });
     }
 }

@@ -2,27 +2,27 @@
 //! transfer of the pair, and a segment found there verifies it.
 //!
 //! Every third view that verifies a pair makes a triple. The triples of one pair share their line,
-//! so they are kept together as a [`Bundle`]: that is the join of triplets of B99 3.4 for triples
-//! with two segments in common. Because each pair of views takes its turn as the first two, all
-//! search directions are covered.
+//! so they are kept together as a [`TripleBundle`]: that is the join of triplets of B99 3.4 for
+//! triples with two segments in common. Because each pair of views takes its turn as the first
+//! two, all search directions are covered.
 //!
-//! Deviation: the photometric test alone ("without a segment") adds views to a line in `nviews` but
+//! Deviation: the photometric test alone ("without a segment") adds views to a line in `nview` but
 //! does not replace the third segment. Of the lines with two segments and correlation in two or
 //! more other views, 28 % were wrong on six views with a base-to-height ratio of 0.2 to 0.4.
 
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::Pass;
-use super::pairs::{Pair, PairScope, Pairs};
-use super::sight::{SegmentRef, Sight, Sights};
+use super::pairs::{PairScope, SegmentPair, SegmentPairs};
+use super::pass::Pass;
+use super::segment_geometry::{PreparedSegments, SegmentGeometry, SegmentRef};
 use crate::execution::map_shared;
-use crate::geometry::Segment3;
+use crate::geometry::Segment2;
 use crate::ids::ViewId;
 use crate::lines3d::ProjectedLine;
 use crate::scene::Scene;
 
-/// Predictions less certain than this many pixels (one standard deviation) verify nothing.
+/// Largest standard deviation of a transferred line that can be verified, px.
 const MAX_SIGMA_PX: f64 = 2.0;
 
 /// A segment at the position that a pair predicts in a third view.
@@ -36,14 +36,14 @@ pub struct Verification {
 
 /// A pair with the segments of all third views that verify it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Bundle {
-    /// Index into [`Pairs::pairs`].
+pub struct TripleBundle {
+    /// Index into [`SegmentPairs::pairs`].
     pub pair: usize,
     /// By view and segment; several in one view are fragments of one line.
     pub verified: Vec<Verification>,
 }
 
-impl Bundle {
+impl TripleBundle {
     /// The verifications of each third view.
     pub fn views(&self) -> impl Iterator<Item = &[Verification]> {
         self.verified
@@ -52,19 +52,19 @@ impl Bundle {
 }
 
 /// Verifies every pair above the threshold in all other views.
-pub fn verify_pairs(scope: &PairScope, pairs: &Pairs, pass: Pass) -> Vec<Bundle> {
+pub fn verify_pairs(scope: &PairScope, pairs: &SegmentPairs, pass: Pass) -> Vec<TripleBundle> {
     let strong: Vec<usize> = (0..pairs.pairs.len())
         .filter(|&i| pairs.pairs[i].score >= scope.params.pair_score)
         .collect();
     map_shared(
-        pass.map("triples"),
+        pass.map_name("triples"),
         &strong,
-        pass.part(0.5..0.6),
+        pass.progress_part(0.5..0.6),
         |_, &index| {
             let pair = &pairs.pairs[index];
             let others =
                 (scope.scene.view_ids()).filter(|v| *v != pair.a.view && *v != pair.b.view);
-            Bundle {
+            TripleBundle {
                 pair: index,
                 verified: others
                     .flat_map(|view| verify_in_view(scope, pairs, pair, view))
@@ -77,12 +77,12 @@ pub fn verify_pairs(scope: &PairScope, pairs: &Pairs, pass: Pass) -> Vec<Bundle>
 /// Segments of one view at the predicted position that also pass the photometric test.
 fn verify_in_view(
     scope: &PairScope,
-    pairs: &Pairs,
-    pair: &Pair,
+    pairs: &SegmentPairs,
+    pair: &SegmentPair,
     view: ViewId,
 ) -> Vec<Verification> {
-    let (scene, sights) = (scope.scene, scope.sights);
-    let Some(prediction) = Prediction::new(scene, sights, pair, view) else {
+    let (scene, prepared) = (scope.scene, scope.prepared);
+    let Some(prediction) = TransferredLine::new(scene, prepared, pair, view) else {
         return Vec::new();
     };
     let reach = scope.params.gate_px.max(3.0 * prediction.sigma_px);
@@ -93,8 +93,8 @@ fn verify_in_view(
     let [Some(start), Some(end)] = ends else {
         return Vec::new();
     };
-    let stretch = crate::geometry::Segment2::new(start, end);
-    let near = sights.views[view.index()]
+    let stretch = Segment2::new(start, end);
+    let near = prepared.views[view.index()]
         .index
         .near_segment(&stretch, reach);
     near.into_iter()
@@ -103,8 +103,8 @@ fn verify_in_view(
                 view,
                 segment: crate::ids::SegmentId(id),
             };
-            let sight = sights.get(segment)?;
-            prediction.agrees(sight, reach, scope).then_some(())?;
+            let geometry = prepared.get(segment)?;
+            prediction.agrees(geometry, reach, scope).then_some(())?;
             let score = pairs
                 .score(pair.a, segment)
                 .max(pairs.score(pair.b, segment));
@@ -113,7 +113,7 @@ fn verify_in_view(
         .collect()
 }
 
-impl Pairs {
+impl SegmentPairs {
     /// Score of two segments of different views in either order; zero when they are no pair.
     pub fn score(&self, s: SegmentRef, t: SegmentRef) -> f64 {
         let key = (s.min(t), s.max(t));
@@ -124,7 +124,7 @@ impl Pairs {
 }
 
 /// The trifocal transfer of a pair to a third view, with its uncertainty.
-struct Prediction {
+struct TransferredLine {
     image: ProjectedLine,
     /// Length of the predicted stretch along the 3D line, metres.
     length: f64,
@@ -132,12 +132,17 @@ struct Prediction {
     sigma_px: f64,
 }
 
-impl Prediction {
-    fn new(scene: &Scene, sights: &Sights, pair: &Pair, view: ViewId) -> Option<Self> {
+impl TransferredLine {
+    fn new(
+        scene: &Scene,
+        prepared: &PreparedSegments,
+        pair: &SegmentPair,
+        view: ViewId,
+    ) -> Option<Self> {
         let camera = scene.camera(view);
         let image = ProjectedLine::new(camera, &pair.overlap)?;
         let length = pair.overlap.length();
-        let sigma_px = transfer_sigma(scene, sights, pair, view, &image)?;
+        let sigma_px = transfer_sigma(scene, prepared, pair, view, &image)?;
         (sigma_px <= MAX_SIGMA_PX).then_some(Self {
             image,
             length,
@@ -146,22 +151,22 @@ impl Prediction {
     }
 
     /// Does a segment lie on the prediction, over their common stretch?
-    fn agrees(&self, sight: &Sight, reach: f64, scope: &PairScope) -> bool {
-        let ends = [sight.segment.p0, sight.segment.p1];
+    fn agrees(&self, geometry: &SegmentGeometry, reach: f64, scope: &PairScope) -> bool {
+        let ends = [geometry.segment.p0, geometry.segment.p1];
         let [t0, t1] = ends.map(|p| self.image.t_of(&p));
-        if scope.alike.directs(sight.kind) && t1 <= t0 {
+        if scope.compatibility.is_directed(geometry.kind) && t1 <= t0 {
             return false;
         }
         let (from, to) = (t0.min(t1).max(0.0), t0.max(t1).min(self.length));
         let span = (t1 - t0).abs();
         // Half a window in common, or half of a short one.
-        let px = sight.length_px / span.max(1e-9);
-        if (to - from) * px < 0.5 * (scope.params.window_px as f64).min(sight.length_px) {
+        let px = geometry.length_px / span.max(1e-9);
+        if (to - from) * px < 0.5 * (scope.params.window_px as f64).min(geometry.length_px) {
             return false;
         }
-        let gate = (reach * reach + 9.0 * sight.sigma_px * sight.sigma_px).sqrt();
+        let gate = (reach * reach + 9.0 * geometry.sigma_px * geometry.sigma_px).sqrt();
         [from, to].iter().all(|t| {
-            let p = sight.segment.at((t - t0) / (t1 - t0));
+            let p = geometry.segment.at((t - t0) / (t1 - t0));
             self.image.distance(&p).abs() <= gate
         })
     }
@@ -171,12 +176,12 @@ impl Prediction {
 /// of `b` moves the point where a ray of `a` meets b's plane along that ray, and the reverse.
 fn transfer_sigma(
     scene: &Scene,
-    sights: &Sights,
-    pair: &Pair,
+    prepared: &PreparedSegments,
+    pair: &SegmentPair,
     view: ViewId,
     image: &ProjectedLine,
 ) -> Option<f64> {
-    let (a, b) = (sights.get(pair.a)?, sights.get(pair.b)?);
+    let (a, b) = (prepared.get(pair.a)?, prepared.get(pair.b)?);
     let (first, second) = (scene.camera(pair.a.view), scene.camera(pair.b.view));
     let third = scene.camera(view);
     let shift =
@@ -193,21 +198,15 @@ fn transfer_sigma(
     worst.is_finite().then_some(worst)
 }
 
-/// The stretch of a line between two places along it, metres.
-pub fn stretch_of(line: &Segment3, from: f64, to: f64) -> Segment3 {
-    let d = line.direction();
-    Segment3::new(line.p0 + d * from, line.p0 + d * to)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::pairs::match_pairs;
-    use super::super::planted;
-    use super::super::sight::{Alike, ray_in_plane};
+    use super::super::segment_geometry::{Compatibility, ray_in_plane};
     use super::*;
-    use crate::geometry::Segment2;
+    use crate::geometry::Segment3;
     use crate::ids::SegmentId;
     use crate::lines2d::ImageSegment;
+    use crate::lines3d::planted;
     use crate::params::MatchParams;
     use nalgebra::Matrix2;
 
@@ -218,27 +217,28 @@ mod tests {
         }
     }
 
-    /// The segments of view 3 that verify the first edge's pair of views 0 and 1, after a change of that view's own segment.
+    /// The segments of view 3 that verify the pair of the first edge in views 0 and 1, after a
+    /// change of the segment of view 3.
     fn verified(contrast: bool, change: impl Fn(&mut ImageSegment)) -> Vec<SegmentRef> {
         let scene = planted::scene();
         let mut segments = planted::segments(&scene);
         change(&mut segments[3][0]);
-        let partners: Vec<_> = (0..5)
+        let view_pairs: Vec<_> = (0..5)
             .flat_map(|a| (a + 1..5).map(move |b| (ViewId(a), ViewId(b))))
             .collect();
         let scope = PairScope {
             scene: &scene,
-            sights: &Sights::new(&scene, &segments),
-            partners: &partners,
+            prepared: &PreparedSegments::new(&scene, &segments),
+            view_pairs: &view_pairs,
             z_range: [-2.0, 8.0],
             params: &MatchParams::default(),
-            alike: Alike {
+            compatibility: Compatibility {
                 contrast,
                 kind: true,
             },
         };
         let pairs = match_pairs(&scope, |_| false, Pass::Second);
-        let of_edge = |p: &&Pair| p.a == name(0, 0) && p.b == name(1, 0);
+        let of_edge = |p: &&SegmentPair| p.a == name(0, 0) && p.b == name(1, 0);
         let pair = pairs.pairs.iter().find(of_edge).expect("the pair");
         let found = verify_in_view(&scope, &pairs, pair, ViewId(3));
         found.into_iter().map(|v| v.segment).collect()
@@ -266,8 +266,9 @@ mod tests {
         assert_eq!(verified(true, elsewhere), [], "behind its end");
     }
 
-    /// How uncertain the pair of views 0 and `second` leaves an edge in view `third`, px, if only the second one's segment is
-    /// `sigma` px uncertain: as stated, and by moving that segment.
+    /// Standard deviation in view `third` of an edge transferred from views 0 and `second`, px, if
+    /// only the segment of the second one is uncertain by `sigma` px: as stated, and from a shift
+    /// of that segment.
     fn transferred(edge: u32, second: u32, third: u32, sigma: f64) -> [f64; 2] {
         let scene = planted::scene();
         let whole = |view: u32, sigma: f64| ImageSegment {
@@ -285,16 +286,16 @@ mod tests {
         let off = s.normal() * sigma;
         *s = Segment2::new(s.p0 + off, s.p1 + off);
         let overlap = |segments: &[Vec<ImageSegment>]| {
-            let sights = Sights::new(&scene, segments);
+            let prepared = PreparedSegments::new(&scene, segments);
             let (a, b) = (
-                sights.get(name(0, 0)).unwrap(),
-                sights.get(name(second, 0)).unwrap(),
+                prepared.get(name(0, 0)).unwrap(),
+                prepared.get(name(second, 0)).unwrap(),
             );
             let center = scene.camera(ViewId(0)).center;
             let [start, end] = a.rays.map(|r| ray_in_plane(&center, &r, &b.plane).unwrap());
             Segment3::new(start, end)
         };
-        let pair = Pair {
+        let pair = SegmentPair {
             a: name(0, 0),
             b: name(second, 0),
             overlap: overlap(&segments),
@@ -303,8 +304,8 @@ mod tests {
         };
         let third = ViewId(third);
         let image = ProjectedLine::new(scene.camera(third), &pair.overlap).unwrap();
-        let sights = Sights::new(&scene, &segments);
-        let stated = transfer_sigma(&scene, &sights, &pair, third, &image).unwrap();
+        let prepared = PreparedSegments::new(&scene, &segments);
+        let stated = transfer_sigma(&scene, &prepared, &pair, third, &image).unwrap();
         let shift = |p| {
             image
                 .distance(&scene.camera(third).project(&p).unwrap())
@@ -324,7 +325,8 @@ mod tests {
                 "{stated} {moved}"
             );
         }
-        // Edge 1 runs along the strip of views 0 and 1: what it is in another strip they hardly know.
+        // Edge 1 runs along the strip of views 0 and 1, which leave it undetermined in another
+        // strip.
         let [along, _] = transferred(1, 1, 3, 0.2);
         let [across, _] = transferred(1, 3, 2, 0.2);
         assert!(

@@ -1,4 +1,4 @@
-//! Which pairs of views are matched with each other.
+//! The pairs of views that are matched with each other.
 
 use nalgebra::{Point2, Vector2};
 
@@ -10,13 +10,13 @@ use crate::sorting::{sort_by, sort_by_key};
 
 /// Points of a grid over a view, each way, whose visibility in another view measures the overlap.
 const GRID: usize = 5;
-/// Least share of a view that the partner must see.
+/// Least share of a view that the other view must see.
 const MIN_OVERLAP: f64 = 0.1;
 
 /// Pairs (lower, higher) of views that see the same ground at the middle of the height range. A
-/// view with more candidates than `max_partners` keeps the nearest, as many in every direction: all along the strip would
-/// leave lines along the flight without a pair that determines them.
-pub fn partner_views(
+/// view with more candidates than `max_partners` keeps the nearest ones, equally many in every
+/// direction: pairs along the strip alone would leave lines along the flight undetermined.
+pub fn select_view_pairs(
     scene: &Scene,
     z_range: [f64; 2],
     params: &MatchParams,
@@ -43,8 +43,9 @@ pub fn partner_views(
     pairs
 }
 
-/// At most `count` of `nearest_first`: the nearest of each of four sectors of baselines in plan, then the second ones, and so on.
-/// A baseline has no sense, and the middle of the first sector is the nearest view's.
+/// At most `count` of `nearest_first`: the nearest of each of four sectors of baseline directions
+/// in plan, then the second nearest, and so on. Opposite baselines share a sector, and the first
+/// sector is centred on the nearest view.
 fn in_all_directions(
     nearest_first: Vec<ViewId>,
     count: usize,
@@ -89,8 +90,8 @@ fn overlap(scene: &Scene, view: ViewId, other: ViewId, z: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::planted;
     use super::*;
+    use crate::lines3d::planted;
     use std::f64::consts::PI;
 
     /// Two strips of nine views, 20 m apart in the strip and 200 m across.
@@ -112,11 +113,11 @@ mod tests {
             max_partners,
             ..MatchParams::default()
         };
-        partner_views(&block(), [0.0, 6.0], &params)
+        select_view_pairs(&block(), [0.0, 6.0], &params)
     }
 
     #[test]
-    fn every_view_has_a_partner_across_its_strip() {
+    fn every_view_is_paired_across_its_strip() {
         let strip = |v: ViewId| v.index() / 9;
         let few = pairs(4);
         assert!(few.len() <= 18 * 4);
@@ -136,11 +137,11 @@ mod tests {
     }
 
     #[test]
-    fn views_of_other_ground_are_no_partners() {
+    fn views_of_other_ground_are_not_paired() {
         let mut scene = planted::views_from(&[(0.0, 0.0, 0.0), (20.0, 0.0, 0.0), (40.0, 0.0, 0.0)]);
         // The last one looks past the ground of the others.
         scene.views[2].camera.k[(0, 2)] += 400.0;
-        let found = partner_views(&scene, [0.0, 6.0], &MatchParams::default());
+        let found = select_view_pairs(&scene, [0.0, 6.0], &MatchParams::default());
         assert_eq!(found, [(ViewId(0), ViewId(1))]);
     }
 }

@@ -6,9 +6,10 @@ use crate::geometry::Segment3;
 use crate::scene::Scene;
 use crate::sorting::sort_by;
 
-/// The outermost places along the line (metres from its start) that a view supports. One view may be all there is where the
-/// images of the others end; how much a place must show for a support to reach it is growing's to say. `None` without supports, or
-/// where one does not see the line.
+/// The outermost places along the line that a view supports, metres from its start.
+///
+/// One view is enough, because the images of the others may end before; which places a support
+/// reaches, growing has decided. `None` without supports, or where one does not see the line.
 pub fn extent_of(scene: &Scene, line: &Segment3, supports: &[LineSupport]) -> Option<(f64, f64)> {
     let mut union = (f64::INFINITY, f64::NEG_INFINITY);
     for support in supports {
@@ -43,7 +44,7 @@ mod tests {
     use super::super::track::SupportKind;
     use super::*;
     use crate::ids::ViewId;
-    use crate::linematch::planted;
+    use crate::lines3d::planted;
 
     fn ends(intervals: &[(f64, f64)]) -> Vec<(f64, i32)> {
         intervals
@@ -52,7 +53,7 @@ mod tests {
             .collect()
     }
 
-    /// The part of the planted roof's first edge that supports by these parts of it, one a view, make.
+    /// The extent of the planted roof's first edge from supports by parts of it, one part a view.
     fn extent(parts: &[(f64, f64)]) -> Option<(f64, f64)> {
         let scene = planted::scene_without_photographs();
         let edge = planted::edges()[0];
@@ -73,7 +74,7 @@ mod tests {
     fn a_line_reaches_as_far_as_any_of_its_views_supports_it() {
         let (from, to) = extent(&[(0.2, 0.6), (0.1, 0.5), (0.3, 0.9)]).expect("a stretch");
         assert!((from - 0.1).abs() < 1e-9 && (to - 0.9).abs() < 1e-9);
-        // Whichever way a view's stretch runs.
+        // A stretch may run either way.
         assert_eq!(extent(&[(0.6, 0.2)]).map(|(f, t)| f < t), Some(true));
         assert_eq!(extent(&[]), None);
     }

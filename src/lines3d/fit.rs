@@ -1,80 +1,22 @@
-//! One 3D line from its image segments (B99 3.2, figure 4): Levenberg-Marquardt on the distances
-//! between measured segments and the image of the line.
+//! One 3D line fitted to its image segments (B99 3.2, figure 4): Levenberg-Marquardt on the
+//! distances between measured segments and the image of the line.
 //!
 //! The line has four parameters: the offsets of two anchor points in the two directions across it,
 //! in metres. That is minimal, free of singularities for the small steps taken here, and its
 //! covariance is that of the end points directly. The offsets are applied and the frame rebuilt
-//! after each step.
-//!
-//! The paper sums the distances of the measured end points from the image of the line. Those two
-//! distances are taken here as (offset at the middle, angle) and weighted by the segment's
-//! covariance, which makes long and well-defined segments count for what they are worth. The loss
-//! is Cauchy's, so that one wrong segment among several views does not move the line.
+//! after each step. The loss is Cauchy's, so that one wrong segment among several views does not
+//! move the line.
 
-use nalgebra::{Matrix2, Matrix3, Matrix4, Matrix4x2, Point3, Vector2, Vector3, Vector4};
+use nalgebra::{Matrix3, Matrix4, Matrix4x2, Vector2, Vector3, Vector4};
 
-use crate::camera::Camera;
-use crate::geometry::{Plane, Segment2, Segment3};
-use crate::lines2d::GuidedEdge;
+use super::observation::{
+    Observation, PlaneConstraint, WhitenedObservation, cauchy_weight, line_frame,
+};
+use crate::geometry::Segment3;
 use crate::params::Lines3dParams;
-use crate::sorting::sort_by;
 
-/// Weight of the belief that the covariances are right, in residuals.
+/// Weight of the prior that the stated covariances are right, in residuals.
 const SCATTER_PRIOR: f64 = 4.0;
-
-/// A measured image segment.
-#[derive(Clone, Debug)]
-pub struct Observation<'a> {
-    /// The camera that saw it.
-    pub camera: &'a Camera,
-    /// Its end points, pixels.
-    pub segment: Segment2,
-    /// Covariance of (offset along the normal at the middle in px, angle in rad).
-    pub covariance: Matrix2<f64>,
-}
-
-impl<'a> Observation<'a> {
-    /// An edge that a camera shows.
-    pub fn of(edge: &GuidedEdge, camera: &'a Camera) -> Self {
-        Self {
-            camera,
-            segment: edge.segment,
-            covariance: edge.covariance,
-        }
-    }
-
-    /// How far [`fit_line`] believes this to be the image of a line, from 0 to 1.
-    pub fn weight(&self, line: &Segment3, params: &Lines3dParams) -> f64 {
-        let residual = Weighted::new(self, params).residual(line, &line_frame(&line.direction()));
-        let c2 = params.loss_scale * params.loss_scale;
-        residual.map_or(0.0, |(r, _)| cauchy_weight(r.norm_squared(), c2))
-    }
-}
-
-/// A plane that the line is known to lie in.
-#[derive(Clone, Copy, Debug)]
-pub struct Carrier {
-    /// The plane.
-    pub plane: Plane,
-    /// Its standard deviation along its normal, metres.
-    pub sigma_m: f64,
-}
-
-impl Carrier {
-    /// Whitened distances of both ends of a line from the plane and their 4 x 2 transposed Jacobian.
-    fn residual(
-        &self,
-        line: &Segment3,
-        across: &[Vector3<f64>; 2],
-    ) -> (Vector2<f64>, Matrix4x2<f64>) {
-        let distance = |p| self.plane.signed_distance(p) / self.sigma_m;
-        let [u, v] = across.map(|a| self.plane.normal.dot(&a) / self.sigma_m);
-        (
-            Vector2::new(distance(&line.p0), distance(&line.p1)),
-            Matrix4x2::new(u, 0.0, v, 0.0, 0.0, u, 0.0, v),
-        )
-    }
-}
 
 /// A fitted 3D line.
 #[derive(Clone, Debug)]
@@ -85,7 +27,8 @@ pub struct LineFit {
     pub across: [Vector3<f64>; 2],
     /// Covariance of (start along `across[0]`, start along `across[1]`, end likewise), m^2.
     pub covariance: Matrix4<f64>,
-    /// Weighted residual length of each observation, in standard deviations (two values in one).
+    /// Length of the whitened residual of each observation, in standard deviations (two values in
+    /// one).
     pub residuals: Vec<f64>,
 }
 
@@ -111,70 +54,6 @@ impl LineFit {
     }
 }
 
-/// The line nearest to all interpretation planes in the least-squares sense: direction across all
-/// their normals, position by least squares. A start for [`fit_line`]; its end points are those of
-/// the longest observation. `None` when the planes do not fix a line.
-pub fn line_of_planes(observations: &[Observation]) -> Option<Segment3> {
-    let planes: Vec<_> = observations
-        .iter()
-        .filter_map(|o| {
-            let plane = crate::camera::plane_of_image_line(o.camera, &o.segment.line())?;
-            Some((plane, o.segment.length()))
-        })
-        .collect();
-    let longest = observations
-        .iter()
-        .max_by(|a, b| a.segment.length().total_cmp(&b.segment.length()))?;
-    let scatter = planes.iter().fold(Matrix3::zeros(), |s, (p, w)| {
-        s + p.normal * p.normal.transpose() * *w
-    });
-    let eigen = scatter.symmetric_eigen();
-    let mut order = [0, 1, 2];
-    sort_by(&mut order, |&a, &b| {
-        eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b])
-    });
-    // Planes that are nearly one plane (all within about 0.1 degree) fix no line.
-    if eigen.eigenvalues[order[1]] < 3e-6 * eigen.eigenvalues[order[2]] {
-        return None;
-    }
-    let direction = eigen.eigenvectors.column(order[0]).into_owned();
-    let origin = least_squares_point(&planes, &scatter, &direction, longest)?;
-    let ends = [longest.segment.p0, longest.segment.p1]
-        .map(|x| nearest_on_line(&origin, &direction, longest.camera, &x));
-    Some(Segment3::new(ends[0]?, ends[1]?))
-}
-
-/// The point on all planes, in the plane through the longest segment's ray across the direction.
-fn least_squares_point(
-    planes: &[(Plane, f64)],
-    scatter: &Matrix3<f64>,
-    direction: &Vector3<f64>,
-    longest: &Observation,
-) -> Option<Point3<f64>> {
-    let near = longest.camera.center;
-    let rhs = planes.iter().fold(Vector3::zeros(), |s, (p, w)| {
-        s - p.normal * (p.signed_distance(&near) * w)
-    });
-    // The direction is free in the scatter; fixing the step along it to zero makes it regular.
-    let full = scatter + direction * direction.transpose() * scatter.trace();
-    Some(near + full.cholesky()?.solve(&rhs))
-}
-
-/// The point of a line nearest to the ray through an image point.
-fn nearest_on_line(
-    origin: &Point3<f64>,
-    direction: &Vector3<f64>,
-    camera: &Camera,
-    x: &nalgebra::Point2<f64>,
-) -> Option<Point3<f64>> {
-    let ray = camera.ray(x);
-    let between = camera.center - origin;
-    let c = ray.dot(direction);
-    let sine2 = 1.0 - c * c;
-    (sine2 > 1e-9)
-        .then(|| origin + direction * ((between.dot(direction) - between.dot(&ray) * c) / sine2))
-}
-
 /// Fits the line to the observations, starting at `initial`. `None` with fewer than two
 /// observations or when they leave the line undetermined.
 pub fn fit_line(
@@ -185,22 +64,22 @@ pub fn fit_line(
     fit_line_on(observations, &[], initial, params)
 }
 
-/// The same for a line that lies in planes, which determine it where the observations alone do not: the border of a roof
-/// along the baseline of two views.
+/// The same for a line that lies in known planes, which determine it where the observations alone
+/// do not: the border of a roof along the baseline of two views.
 pub fn fit_line_on(
     observations: &[Observation],
-    carriers: &[Carrier],
+    constraints: &[PlaneConstraint],
     initial: &Segment3,
     params: &Lines3dParams,
 ) -> Option<LineFit> {
     if observations.len() < 2 || initial.length() < 1e-6 {
         return None;
     }
-    let weighted: Vec<_> = observations
+    let whitened: Vec<_> = observations
         .iter()
-        .map(|o| Weighted::new(o, params))
+        .map(|o| WhitenedObservation::new(o, params))
         .collect();
-    let normal_equations = |line: &Segment3| normal_equations(&weighted, carriers, line, params);
+    let normal_equations = |line: &Segment3| normal_equations(&whitened, constraints, line, params);
     let mut line = *initial;
     let mut state = normal_equations(&line)?;
     let mut damping = 1e-4;
@@ -227,7 +106,7 @@ pub fn fit_line_on(
             break;
         }
     }
-    finish(line, state, carriers.len())
+    finish(line, state, constraints.len())
 }
 
 /// How well observations would determine a line if they agreed with it: [`LineFit`] without
@@ -237,13 +116,13 @@ pub fn conditioning(
     line: &Segment3,
     params: &Lines3dParams,
 ) -> Option<LineFit> {
-    let weighted: Vec<_> = observations
+    let whitened: Vec<_> = observations
         .iter()
-        .map(|o| Weighted::new(o, params))
+        .map(|o| WhitenedObservation::new(o, params))
         .collect();
     let across = line_frame(&line.direction());
     let mut information = Matrix4::zeros();
-    for o in &weighted {
+    for o in &whitened {
         let (_, j) = o.residual(line, &across)?;
         information += j * j.transpose();
     }
@@ -255,13 +134,12 @@ pub fn conditioning(
     })
 }
 
-fn finish(line: Segment3, state: Normal, carriers: usize) -> Option<LineFit> {
-    // Where nothing determines the line, rounding may leave the information indefinite: Cholesky refuses that.
+fn finish(line: Segment3, state: NormalEquations, constraints: usize) -> Option<LineFit> {
+    // Where nothing determines the line, rounding may leave the information indefinite.
     let covariance = state.hessian.cholesky()?.inverse();
-    // Observations that scatter more than their covariances say make the line less certain. Three
-    // views have a redundancy of two, which hardly tells; the prior counts like as many expected
-    // residuals.
-    let redundancy = (2.0 * (state.residuals.len() + carriers) as f64 - 4.0).max(0.0);
+    // The covariance is scaled by the variance of unit weight. Three views have a redundancy of
+    // only two; the prior counts like as many expected residuals.
+    let redundancy = (2.0 * (state.residuals.len() + constraints) as f64 - 4.0).max(0.0);
     let factor = (2.0 * state.cost + SCATTER_PRIOR) / (redundancy + SCATTER_PRIOR);
     let factor = factor.max(1.0);
     Some(LineFit {
@@ -272,74 +150,8 @@ fn finish(line: Segment3, state: Normal, carriers: usize) -> Option<LineFit> {
     })
 }
 
-/// An observation with its projection matrix and the whitening of its two residuals.
-pub(crate) struct Weighted {
-    m: Matrix3<f64>,
-    center: Point3<f64>,
-    segment: Segment2,
-    length: f64,
-    whitening: Matrix2<f64>,
-}
-
-impl Weighted {
-    pub fn new(o: &Observation, params: &Lines3dParams) -> Self {
-        let length = o.segment.length().max(1.0);
-        let floor = params.position_floor_px;
-        let mut c = o.covariance;
-        c[(0, 0)] += floor * floor;
-        // The same floor at the two ends, opposite in sign, seen as an angle.
-        c[(1, 1)] += 4.0 * floor * floor / (length * length);
-        let whitening = c
-            .cholesky()
-            .and_then(|l| l.l().try_inverse())
-            .unwrap_or_else(|| Matrix2::new(1.0 / floor, 0.0, 0.0, 0.5 * length / floor));
-        Self {
-            m: o.camera.k * o.camera.r,
-            center: o.camera.center,
-            segment: o.segment,
-            length,
-            whitening,
-        }
-    }
-
-    /// Whitened (offset, angle) and its 4 x 2 transposed Jacobian; `None` behind the camera.
-    pub fn residual(
-        &self,
-        line: &Segment3,
-        across: &[Vector3<f64>; 2],
-    ) -> Option<(Vector2<f64>, Matrix4x2<f64>)> {
-        let (x0, x1) = (
-            self.m * (line.p0 - self.center),
-            self.m * (line.p1 - self.center),
-        );
-        if x0.z <= 1e-9 || x1.z <= 1e-9 {
-            return None;
-        }
-        let l = x0.cross(&x1);
-        let n = l.xy().norm();
-        if n < 1e-12 {
-            return None;
-        }
-        let [u, v] = across.map(|a| self.m * a);
-        let changes = [u.cross(&x1), v.cross(&x1), x0.cross(&u), x0.cross(&v)];
-        // The sense of the normal of l follows p0 -> p1, that of the residual the measured segment.
-        let mut e = Vector2::zeros();
-        let mut de = Matrix4x2::zeros();
-        for (i, p) in [self.segment.p0, self.segment.p1].iter().enumerate() {
-            let x = Vector3::new(p.x, p.y, 1.0);
-            e[i] = l.dot(&x) / n;
-            for (j, dl) in changes.iter().enumerate() {
-                de[(j, i)] = dl.dot(&x) / n - e[i] * l.xy().dot(&dl.xy()) / (n * n);
-            }
-        }
-        let to_offset_angle = Matrix2::new(0.5, 0.5, -1.0 / self.length, 1.0 / self.length);
-        let w = self.whitening * to_offset_angle;
-        Some((w * e, de * w.transpose()))
-    }
-}
-
 /// Gauss-Newton's normal equations at a line.
-struct Normal {
+struct NormalEquations {
     across: [Vector3<f64>; 2],
     cost: f64,
     gradient: Vector4<f64>,
@@ -348,14 +160,14 @@ struct Normal {
 }
 
 fn normal_equations(
-    observations: &[Weighted],
-    carriers: &[Carrier],
+    observations: &[WhitenedObservation],
+    constraints: &[PlaneConstraint],
     line: &Segment3,
     params: &Lines3dParams,
-) -> Option<Normal> {
+) -> Option<NormalEquations> {
     let across = line_frame(&line.direction());
     let c2 = params.loss_scale * params.loss_scale;
-    let mut normal = Normal {
+    let mut normal = NormalEquations {
         across,
         cost: 0.0,
         gradient: Vector4::zeros(),
@@ -367,15 +179,16 @@ fn normal_equations(
         let length = normal.add(r, j, c2);
         normal.residuals.push(length);
     }
-    for carrier in carriers {
-        let (r, j) = carrier.residual(line, &across);
+    for constraint in constraints {
+        let (r, j) = constraint.residual(line, &across);
         normal.add(r, j, c2);
     }
     Some(normal)
 }
 
-impl Normal {
-    /// Adds two residuals with Cauchy's loss: rho = c^2/2 ln(1 + e^2/c^2), weight 1 / (1 + e^2/c^2). Returns e.
+impl NormalEquations {
+    /// Adds two residuals with Cauchy's loss rho = c^2/2 ln(1 + e^2/c^2), whose weight is 1 / (1 +
+    /// e^2/c^2). Returns e.
     fn add(&mut self, r: Vector2<f64>, j: Matrix4x2<f64>, c2: f64) -> f64 {
         let e2 = r.norm_squared();
         self.cost += 0.5 * c2 * crate::math::ln(1.0 + e2 / c2);
@@ -386,11 +199,6 @@ impl Normal {
     }
 }
 
-/// What Cauchy's loss of scale c leaves of an observation with residual e.
-fn cauchy_weight(e2: f64, c2: f64) -> f64 {
-    1.0 / (1.0 + e2 / c2)
-}
-
 fn displace(line: &Segment3, across: &[Vector3<f64>; 2], step: &Vector4<f64>) -> Segment3 {
     Segment3::new(
         line.p0 + across[0] * step[0] + across[1] * step[1],
@@ -398,20 +206,14 @@ fn displace(line: &Segment3, across: &[Vector3<f64>; 2], step: &Vector4<f64>) ->
     )
 }
 
-/// Two unit vectors across a direction, built on the coordinate axis farthest from it.
-pub(crate) fn line_frame(direction: &Vector3<f64>) -> [Vector3<f64>; 2] {
-    let axis = direction.iamin();
-    let mut e = Vector3::zeros();
-    e[axis] = 1.0;
-    let u = direction.cross(&e).normalize();
-    [u, direction.cross(&u)]
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::plane_intersection::line_of_planes;
     use super::*;
+    use crate::camera::Camera;
     use crate::camera::testing::crop_camera;
-    use nalgebra::Point2;
+    use crate::geometry::{Plane, Segment2};
+    use nalgebra::{Matrix2, Point2, Point3};
 
     fn cameras() -> Vec<Camera> {
         [
@@ -492,11 +294,11 @@ mod tests {
         assert!(free_sigma > 10.0, "{free_sigma}");
         let roof =
             Plane::from_point_normal(&line.p0, &baseline.cross(&Vector3::new(1.0, 3.0, 0.5)));
-        let carrier = Carrier {
+        let constraint = PlaneConstraint {
             plane: roof.unwrap().upwards(),
             sigma_m: 0.02,
         };
-        let fit = fit_line_on(&observations, &[carrier], &initial, &params).unwrap();
+        let fit = fit_line_on(&observations, &[constraint], &initial, &params).unwrap();
         for p in [fit.line.p0, fit.line.p1] {
             assert!(line.line_distance(&p) < 1e-3, "{}", line.line_distance(&p));
         }
@@ -529,7 +331,7 @@ mod tests {
         let line = planted();
         let across = line_frame(&line.direction());
         for o in &observations {
-            let o = Weighted::new(o, &Lines3dParams::default());
+            let o = WhitenedObservation::new(o, &Lines3dParams::default());
             let (_, j) = o.residual(&line, &across).unwrap();
             for k in 0..4 {
                 let mut step = Vector4::zeros();
@@ -598,7 +400,7 @@ mod tests {
     }
 
     #[test]
-    fn an_observation_is_believed_the_less_the_farther_it_lies_from_the_line() {
+    fn the_weight_of_an_observation_falls_with_its_distance_from_the_line() {
         let camera = &cameras()[0];
         let image = [planted().p0, planted().p1].map(|p| camera.project(&p).expect("in front"));
         let params = Lines3dParams {

@@ -3,14 +3,9 @@
 
 use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector3};
 
-use super::nview::Context;
-use super::sight::Sights;
 use crate::camera::Camera;
-use crate::geometry::rotation_from_axis_angle;
-use crate::geometry::{Segment2, Segment3};
+use crate::geometry::{Segment2, Segment3, rotation_from_axis_angle};
 use crate::lines2d::{ImageSegment, SegmentKind};
-use crate::params::Lines3dParams;
-use crate::params::MatchParams;
 use crate::raster::Gray;
 use crate::scene::{Scene, View};
 
@@ -70,7 +65,7 @@ fn texture(x: f64, y: f64) -> f64 {
     top * (1.0 - b) + low * b
 }
 
-/// What lies above the ground.
+/// The roof above the ground.
 #[derive(Clone, Copy)]
 enum Cover {
     /// A flat roof, [`edges`].
@@ -107,7 +102,7 @@ impl Cover {
     }
 }
 
-/// Four by four samples a pixel: an edge is where it is, not where the nearest pixel begins.
+/// Rendered with four by four samples a pixel, so that edges lie between pixels.
 fn render(camera: &Camera, roof: Cover) -> Gray {
     let seen = |x: &Point2<f64>| {
         roof.seen(camera, x).unwrap_or_else(|| {
@@ -124,9 +119,9 @@ fn render(camera: &Camera, roof: Cover) -> Gray {
     })
 }
 
-/// Where the photographs were taken and how they are turned: views 0, 1 and 4 of one strip, 2 and 3 of another, turned by 180
-/// degrees.
-const PLACES: [(f64, f64, f64); 5] = [
+/// Position (x, y) and kappa of the photographs: views 0, 1 and 4 of one strip, 2 and 3 of another
+/// one flown in the opposite direction.
+const POSITIONS: [(f64, f64, f64); 5] = [
     (-40.0, -45.0, 0.0),
     (40.0, -40.0, 0.02),
     (42.0, 45.0, 3.12),
@@ -136,15 +131,16 @@ const PLACES: [(f64, f64, f64); 5] = [
 
 /// The flat roof.
 pub fn scene() -> Scene {
-    scene_of(&PLACES, |camera| render(camera, Cover::Flat))
+    scene_of(&POSITIONS, |camera| render(camera, Cover::Flat))
 }
 
 /// The same with a darker roof and on it a bright bar, [`bar`].
 pub fn scene_with_bar() -> Scene {
-    scene_of(&PLACES, |camera| render(camera, Cover::Bar))
+    scene_of(&POSITIONS, |camera| render(camera, Cover::Bar))
 }
 
-/// A gable roof from three times as far apart: views 0 and 1 of one strip, 2 of another, turned by 180 degrees.
+/// A gable roof with baselines three times as long: views 0 and 1 of one strip, 2 of another one
+/// flown in the opposite direction.
 pub fn gable() -> Scene {
     let places = [
         (-120.0, -20.0, 0.0),
@@ -154,12 +150,12 @@ pub fn gable() -> Scene {
     scene_of(&places, |camera| render(camera, Cover::Gable))
 }
 
-/// The views of [`scene`], black.
+/// The views of [`scene`] with black photographs.
 pub fn scene_without_photographs() -> Scene {
-    views_from(&PLACES)
+    views_from(&POSITIONS)
 }
 
-/// Views of nothing from some places.
+/// Black photographs from these positions.
 pub fn views_from(places: &[(f64, f64, f64)]) -> Scene {
     scene_of(places, |_| Gray::new(SIZE as usize, SIZE as usize))
 }
@@ -223,8 +219,8 @@ pub fn part_of(scene: &Scene, view: usize, edge: usize, from: f64, to: f64) -> S
     Segment2::new(at(from), at(to))
 }
 
-/// What a detector gives: each view's four edges in order, then distractors. In view 1 edge 0 is
-/// broken in two, in view 2 it lacks its last third.
+/// The segments of a detector: each view's four edges in order, then distractors. In view 1 edge 0
+/// is broken in two, in view 2 it lacks its last third.
 pub fn segments(scene: &Scene) -> Vec<Vec<ImageSegment>> {
     (0..scene.views.len())
         .map(|view| {
@@ -249,39 +245,4 @@ pub fn segments(scene: &Scene) -> Vec<Vec<ImageSegment>> {
             found
         })
         .collect()
-}
-
-/// The flat roof with what its matching needs; the first segments of each view have the number of their edge.
-pub struct Roof {
-    /// Its views.
-    pub scene: Scene,
-    /// [`segments`].
-    pub segments: Vec<Vec<ImageSegment>>,
-    /// The same, prepared.
-    pub sights: Sights,
-    /// Defaults.
-    pub params: MatchParams,
-    /// Defaults.
-    pub fitting: Lines3dParams,
-}
-
-impl Roof {
-    /// [`scene`].
-    pub fn new() -> Self {
-        let scene = scene();
-        let segments = segments(&scene);
-        Self {
-            sights: Sights::new(&scene, &segments),
-            scene,
-            segments,
-            params: MatchParams::default(),
-            fitting: Lines3dParams::default(),
-        }
-    }
-
-    /// That of a first pass.
-    pub fn context(&self) -> Context<'_> {
-        let params = (&self.params, &self.fitting);
-        Context::of_planted(&self.scene, &self.segments, &self.sights, params)
-    }
 }

@@ -20,12 +20,12 @@ pub struct ProjectedLine {
     pub line: Vector3<f64>,
 }
 
-/// How near a segment must be to a line's image, for [`ProjectedLine::holds`].
+/// Largest distance of a segment from a line's image, for [`ProjectedLine::contains`].
 #[derive(Clone, Copy, Debug)]
-pub struct Gate {
-    /// Beside three standard deviations of the line, px.
+pub struct ReprojectionGate {
+    /// Distance allowed in addition to three standard deviations of the line, px.
     pub width_px: f64,
-    /// A line less certain than this tells nothing, px (one standard deviation).
+    /// Largest standard deviation of a line's image that is compared, px.
     pub max_sigma_px: f64,
 }
 
@@ -65,19 +65,21 @@ impl ProjectedLine {
         self.line.x * x.x + self.line.y * x.y + self.line.z
     }
 
-    /// Standard deviation across the image line, pixels, of the image of the point at `t` metres, whose covariance is given in m^2.
-    /// Moving the point by dX moves its image by l . M dX / z off the line l, where M = K R.
+    /// Standard deviation across the image line, pixels, of the image of the point at `t` metres
+    /// with this covariance (m^2). A shift dX of the point moves its image by l . M dX / z off the
+    /// line l, where M = K R.
     pub fn sigma_px(&self, t: f64, covariance: &Matrix3<f64>) -> f64 {
         let gradient = self.m.tr_mul(&self.line) / (self.a.z + t * self.b.z);
         gradient.dot(&(covariance * gradient)).max(0.0).sqrt()
     }
 
-    /// Do both ends of a segment lie on the image line, as near as a gate and three standard deviations of the line there?
-    /// `covariance_at` is that of the line's point at `t` metres, m^2.
-    pub fn holds(
+    /// Do both ends of a segment lie on the image line, within the gate and three standard
+    /// deviations of the line there? `covariance_at` is that of the line's point at `t` metres,
+    /// m^2.
+    pub fn contains(
         &self,
         segment: &Segment2,
-        gate: Gate,
+        gate: ReprojectionGate,
         covariance_at: impl Fn(f64) -> Matrix3<f64>,
     ) -> bool {
         [segment.p0, segment.p1].iter().all(|x| {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::{Plane, Segment3};
 
-/// Which side of a directed 3D line, seen from above with Z towards the eye.
+/// A side of a directed 3D line, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Side {
@@ -15,9 +15,10 @@ pub enum Side {
     Right,
 }
 
-/// The frame in which theta is measured about a 3D line: `direction`, `outward` (horizontal, away from the
-/// line to the chosen side) and `up` (perpendicular to both, upwards). theta = 0 is the half-plane
-/// through `outward` (horizontal for a horizontal line); it rises away from the line for theta > 0.
+/// The frame in which theta is measured about a 3D line: `direction`, `outward` (horizontal, away
+/// from the line to the chosen side) and `up` (perpendicular to both, upwards). theta = 0 is the
+/// half-plane through `outward` (horizontal for a horizontal line); it rises away from the line
+/// for theta > 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThetaFrame {
     /// Unit direction of the line.
@@ -29,7 +30,8 @@ pub struct ThetaFrame {
 }
 
 impl ThetaFrame {
-    /// The frame of one side of a line; `None` for a line that is vertical within about half a degree.
+    /// The frame of one side of a line; `None` for a line that is vertical within about half a
+    /// degree.
     pub fn new(line: &Segment3, side: Side) -> Option<Self> {
         let direction = line.direction();
         let left = Vector3::z().cross(&direction);

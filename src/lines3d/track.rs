@@ -1,13 +1,13 @@
-//! Line tracks: the segments and measured edges of several views that are images of one 3D line (B99 3.4).
+//! Line tracks: the segments and measured edges of several views that are images of one 3D line
+//! (B99 3.4).
 
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Segment2;
-use crate::ids::SegmentId;
-use crate::ids::ViewId;
+use crate::ids::{SegmentId, ViewId};
 use crate::lines2d::GuidedEdge;
 
-/// How a stretch of a line came to be part of a match (the page colours it so).
+/// How the support of a line in one view was found (the page colours it so).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SupportKind {
@@ -34,15 +34,15 @@ pub struct LineSupport {
     pub score: f64,
     /// How it was found.
     pub kind: SupportKind,
-    /// The edge measured along the line, which the 3D line is fitted to; `None` where correlation alone
-    /// supports it.
+    /// The edge measured along the line, which the 3D line is fitted to; `None` where correlation
+    /// alone supports it.
     #[serde(skip)]
     pub edge: Option<GuidedEdge>,
 }
 
-/// A line matched over at least three views.
+/// The supports of one line in at least three views.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LineMatch {
+pub struct LineTrack {
     /// Supports, at most one a view, ordered by view.
     pub supports: Vec<LineSupport>,
     /// Mean photometric score, 0 to 1.

@@ -31,7 +31,7 @@ use crate::export::export_all;
 use crate::facets::RoofEvidence;
 use crate::linematch::{MatchTrace, match_lines};
 use crate::lines2d::{ImageSegment, SegmentTrace, detect_segments};
-use crate::lines3d::LineMatch;
+use crate::lines3d::LineTrack;
 use crate::lines3d::{Line3d, LineTrace, reconstruct_lines};
 use crate::model::RoofModel;
 use crate::objectspace::ClusterTrace;
@@ -67,7 +67,7 @@ pub struct Results {
     /// Segments of each view, in the order of the views.
     pub segments: Option<Outcome<Vec<Vec<ImageSegment>>, Vec<SegmentTrace>>>,
     /// Matches.
-    pub matches: Option<Outcome<Vec<LineMatch>, MatchTrace>>,
+    pub matches: Option<Outcome<Vec<LineTrack>, MatchTrace>>,
     /// 3D lines.
     pub lines: Option<Outcome<Vec<Line3d>, LineTrace>>,
     /// The ground, which comes before half-planes.

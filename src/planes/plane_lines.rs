@@ -13,7 +13,7 @@ use super::grouping::Region;
 use crate::camera::Camera;
 use crate::geometry::{Plane, Segment3};
 use crate::ids::ViewId;
-use crate::linematch::AROUND_EDGE_PX;
+use crate::linematch::EDGE_MARGIN_PX;
 use crate::lines2d::ImageSegment;
 use crate::scene::Scene;
 use crate::sorting::sort_by;
@@ -150,7 +150,7 @@ pub fn lines_in_plane(
 /// How many views have a point in their image, with what is around it.
 fn views_with(scene: &Scene, point: &Point3<f64>) -> usize {
     let has = |camera: &Camera| {
-        (camera.project(point)).is_some_and(|p| camera.contains(&p, AROUND_EDGE_PX))
+        (camera.project(point)).is_some_and(|p| camera.contains(&p, EDGE_MARGIN_PX))
     };
     scene.views.iter().filter(|v| has(&v.camera)).count()
 }

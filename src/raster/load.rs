@@ -260,7 +260,7 @@ mod tests {
     fn absurd_sizes_are_refused_before_memory_is_taken() {
         let mut png = encode(&ramp().into(), ImageFormat::Png);
         png[16..24].copy_from_slice(&[0, 1, 0x86, 0xa0, 0, 1, 0x86, 0xa0]);
-        // The checksum of the header chunk must fit for the decoder to believe it.
+        // The decoder checks the checksum of the header chunk.
         let crc = crc32(&png[12..29]);
         png[29..33].copy_from_slice(&crc.to_be_bytes());
         let message = load_image("a.png", &png).unwrap_err().to_string();

@@ -23,7 +23,7 @@ use super::new_lines::new_lines;
 use super::surfaces::{Surfaces, share};
 use crate::ids::LineId;
 use crate::ids::ViewId;
-use crate::linematch::{AROUND_EDGE_PX, MANY_VIEWS};
+use crate::linematch::{EDGE_MARGIN_PX, MANY_VIEWS};
 use crate::lines2d::GuidedEdge;
 use crate::lines3d::LineSupport;
 use crate::lines3d::{Line3d, LineOrigin, Observation, ProjectedLine, Refutation};
@@ -181,7 +181,7 @@ fn can_see(scene: &Scene, line: &Line3d, view: ViewId, occluders: &Occluders) ->
     let camera = scene.camera(view);
     let visible = |p: &Point3<f64>| {
         let image = camera.project(p);
-        image.is_some_and(|x| camera.contains(&x, AROUND_EDGE_PX))
+        image.is_some_and(|x| camera.contains(&x, EDGE_MARGIN_PX))
             && !occluders.hide_past_eaves(p, &camera.center, OVERHANG_M)
     };
     share(line, [0.0, 1.0], visible) > 1.0 - HIDDEN_SHARE

@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use crate::ids::LineId;
 use crate::lines2d::GuidedEdge;
-use crate::lines3d::{Gate, Line3d, ProjectedLine};
+use crate::lines3d::{Line3d, ProjectedLine, ReprojectionGate};
 use crate::scene::Scene;
 
 /// Least share of a line along which a better one runs.
@@ -55,14 +55,14 @@ fn runs_along(line: &Line3d, part: &Line3d) -> bool {
 
 /// Does the image of a line lie on the edges of another, in two of three views that show one?
 fn lies_on(scene: &Scene, line: &Line3d, onto: &Line3d, gate_px: f64) -> bool {
-    let gate = Gate {
+    let gate = ReprojectionGate {
         width_px: gate_px,
         max_sigma_px: f64::INFINITY,
     };
     let nearer_end = |t: f64| line.covariance[usize::from(t > 0.5 * line.segment.length())];
     let on_edge = |edge: &GuidedEdge| {
         let image = ProjectedLine::new(scene.camera(edge.view), &line.segment);
-        image.is_some_and(|image| image.holds(&edge.segment, gate, nearer_end))
+        image.is_some_and(|image| image.contains(&edge.segment, gate, nearer_end))
     };
     let edges = onto.supports.iter().filter_map(|s| s.edge.as_ref());
     let (on, all) = edges.fold((0, 0), |(on, all), edge| {
@@ -76,8 +76,8 @@ mod tests {
     use super::*;
     use crate::geometry::{Segment2, Segment3};
     use crate::ids::ViewId;
-    use crate::linematch::planted;
     use crate::lines2d::SegmentKind;
+    use crate::lines3d::planted;
     use crate::lines3d::{LineSupport, SupportKind};
     use crate::testing;
 

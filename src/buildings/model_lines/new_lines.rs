@@ -19,7 +19,7 @@ use crate::ids::ViewId;
 use crate::lines2d::SegmentKind;
 use crate::lines2d::{GuidedEdge, measure_edge};
 use crate::lines3d::{
-    Carrier, Line3d, LineFit, LineOrigin, Observation, ProjectedLine, fit_line_on,
+    Line3d, LineFit, LineOrigin, Observation, PlaneConstraint, ProjectedLine, fit_line_on,
 };
 use crate::lines3d::{LineSupport, SupportKind};
 use crate::model::{Facet, Occluders, RoofModel};
@@ -184,7 +184,8 @@ impl Context<'_> {
         (self.few_views() || is_alike(&shown)).then_some(())?;
         let edges: Vec<GuidedEdge> = shown.into_iter().map(|s| s.edge).collect();
         let least = self.least_views(part);
-        let fit = |carriers: &[Carrier]| self.fit(edges.clone(), least, carriers, part, pixel_m);
+        let fit =
+            |carriers: &[PlaneConstraint]| self.fit(edges.clone(), least, carriers, part, pixel_m);
         fit(&[]).or_else(|| fit(&self.carriers(edge)?))
     }
 
@@ -194,10 +195,10 @@ impl Context<'_> {
     }
 
     /// The planes that a model edge lies in.
-    fn carriers(&self, edge: &ModelEdge) -> Option<Vec<Carrier>> {
+    fn carriers(&self, edge: &ModelEdge) -> Option<Vec<PlaneConstraint>> {
         let carrier = |f: &FacetId| {
             let facet = &self.model.facets[f.index()];
-            Some(Carrier {
+            Some(PlaneConstraint {
                 plane: facet.plane,
                 sigma_m: self.typical_sigma(facet)?,
             })
@@ -210,7 +211,7 @@ impl Context<'_> {
         &self,
         mut edges: Vec<GuidedEdge>,
         least: usize,
-        carriers: &[Carrier],
+        carriers: &[PlaneConstraint],
         part: &Segment3,
         pixel_m: f64,
     ) -> Option<Line3d> {

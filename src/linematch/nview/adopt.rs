@@ -1,36 +1,34 @@
-//! What each view shows of a line: the segments that lie on its image, and the edge measured again along it (B99 3.2,
-//! 3.4).
+//! The observations of a line in each view: the segments on its image, and the edge measured again
+//! along it (B99 3.2, 3.4).
 //!
-//! The hypothesis comes from segments of one kind that are bright on the same side. A further view may show the line
-//! in another way, and is asked for that where it does not show it in the same: two strips may see an eave bright on
-//! different sides, and before the shadow of the house in colour alone.
+//! The hypothesis comes from segments of one kind with the same bright side. Other kinds and
+//! contrasts are accepted in a further view that shows none like it: in two strips an eave may be
+//! bright on different sides, and before the shadow of the house visible in colour alone.
 
 use nalgebra::Point2;
 
-use super::nviews::{Context, Taken};
+use super::context::{IsTaken, MatchContext};
 use crate::geometry::{Segment2, Segment3};
-use crate::ids::SegmentId;
-use crate::ids::ViewId;
-use crate::linematch::sight::{SegmentRef, Sight};
-use crate::lines2d::SegmentKind;
-use crate::lines2d::{GuidedEdge, measure_edge};
+use crate::ids::{SegmentId, ViewId};
+use crate::linematch::segment_geometry::{SegmentGeometry, SegmentRef};
+use crate::lines2d::{GuidedEdge, SegmentKind, measure_edge};
 use crate::lines3d::{ProjectedLine, doubly_covered};
 
-/// How near the segment of another line an edge measured again is that same edge, px. Assumption: three times what edges of
-/// one line are off (`position_floor_px`).
+/// Largest distance of a measured edge from the segment of another line that is the same edge, px.
+/// Assumption: three times the scatter of the edges of one line (`position_floor_px`).
 const SAME_EDGE_PX: f64 = 0.3;
 
-impl Context<'_> {
-    /// The edge that a view shows along the line: of the kind of the line's segments or, where there is none,
-    /// of the other one, if a segment of that lies there.
+impl MatchContext<'_> {
+    /// The edge of a view along the line: of the kind of the line's segments or, without one, of
+    /// the other kind, if a segment of that kind lies there.
     pub fn measure(
         &self,
         line: &Segment3,
         segments: &[SegmentRef],
         view: ViewId,
-        taken: Taken,
+        taken: IsTaken,
     ) -> Option<GuidedEdge> {
-        let kind = self.sights.kind(segments)?;
+        let kind = self.prepared.kind(segments)?;
         let edge = self.measure_in(kind, line, segments, view).or_else(|| {
             let other = self.adopt_in(view, kind.other(), line, segments, 1.0, taken);
             (!other.is_empty()).then_some(())?;
@@ -39,23 +37,23 @@ impl Context<'_> {
             self.measure_in(kind.other(), line, &known, view)
         });
         let own_segment = segments.iter().any(|s| s.view == view);
-        edge.filter(|edge| own_segment || !self.is_of_another(edge, taken))
+        edge.filter(|edge| own_segment || !self.belongs_to_another(edge, taken))
     }
 
-    /// Does most of an edge lie on segments that belong to other lines? Winner takes all (B99 3.2): an eave in front of a line on
-    /// the ground is not seen twice.
-    fn is_of_another(&self, edge: &GuidedEdge, taken: Taken) -> bool {
+    /// Does most of an edge lie on segments of other lines? Winner takes all (B99 3.2): an eave in
+    /// front of a line on the ground is one edge.
+    fn belongs_to_another(&self, edge: &GuidedEdge, taken: IsTaken) -> bool {
         let view = edge.view;
         let near =
-            (self.sights.views[view.index()].index).near_segment(&edge.segment, SAME_EDGE_PX);
-        let others: Vec<&Sight> = (near.into_iter())
+            (self.prepared.views[view.index()].index).near_segment(&edge.segment, SAME_EDGE_PX);
+        let others: Vec<&SegmentGeometry> = (near.into_iter())
             .map(|id| SegmentRef {
                 view,
                 segment: SegmentId(id),
             })
             .filter(|name| taken(*name))
-            .filter_map(|name| self.sights.get(name))
-            .filter(|sight| sight.kind == edge.kind)
+            .filter_map(|name| self.prepared.get(name))
+            .filter(|geometry| geometry.kind == edge.kind)
             .collect();
         let on_another = |piece: &&Segment2| {
             let middle = piece.at(0.5);
@@ -85,7 +83,7 @@ impl Context<'_> {
         measure_edge(view, seen, kind, &expected, core, against)
     }
 
-    /// Is the bright side of this view's own segments the other one than the line's?
+    /// Are this view's own segments directed against the line, with the bright side on its left?
     fn against_contrast(
         &self,
         image: &ProjectedLine,
@@ -93,20 +91,20 @@ impl Context<'_> {
         view: ViewId,
     ) -> bool {
         let along = |s: &SegmentRef| {
-            let sight = self.sights.get(*s)?;
-            Some(sight.length_px * sight.segment.direction().dot(&image.direction))
+            let geometry = self.prepared.get(*s)?;
+            Some(geometry.length_px * geometry.segment.direction().dot(&image.direction))
         };
         let own = segments.iter().filter(|s| s.view == view);
         own.filter_map(along).sum::<f64>() < 0.0
     }
 
-    /// The stretch of a line, metres, along which a view must show an edge: that of its own segments, or what
-    /// two other views detected.
+    /// The stretch of a line along which a view must show an edge, metres: that of its own
+    /// segments, or the stretch detected in two other views.
     fn core(&self, line: &Segment3, segments: &[SegmentRef], view: ViewId) -> Option<(f64, f64)> {
         let place = |s: &SegmentRef| {
             let image = ProjectedLine::new(self.scene.camera(s.view), line)?;
-            let sight = self.sights.get(*s)?;
-            let [t0, t1] = [&sight.segment.p0, &sight.segment.p1].map(|p| image.t_of(p));
+            let geometry = self.prepared.get(*s)?;
+            let [t0, t1] = [&geometry.segment.p0, &geometry.segment.p1].map(|p| image.t_of(p));
             Some((t0.min(t1), t0.max(t1)))
         };
         let own = segments.iter().filter(|s| s.view == view).filter_map(place);
@@ -115,32 +113,32 @@ impl Context<'_> {
         hull.or_else(|| doubly_covered(all.flat_map(|(s, e)| [(s, 1), (e, -1)]).collect()))
     }
 
-    /// The segments of all views that lie on the projection of the line, or not farther beyond its
-    /// ends than a gap may be; `reach` times the gate is near enough. Those of a view are of the kind that
-    /// its measured edge is of, or else of the line's.
+    /// The segments of all views on the projection of the line, or beyond its ends by no more than
+    /// the largest gap, within `reach` times the gate. In each view they are of the kind of its
+    /// measured edge, or else of the line.
     pub fn adopt(
         &self,
         line: &Segment3,
         known: &[SegmentRef],
         edges: &[GuidedEdge],
         reach: f64,
-        taken: Taken,
+        taken: IsTaken,
     ) -> Vec<SegmentRef> {
-        let Some(kind) = self.sights.kind(known) else {
+        let Some(kind) = self.prepared.kind(known) else {
             return Vec::new();
         };
         let shown = |view| {
             let own: Vec<SegmentRef> = known.iter().copied().filter(|s| s.view == view).collect();
             let edge = edges.iter().find(|e| e.view == view).map(|e| e.kind);
-            edge.or_else(|| self.sights.kind(&own)).unwrap_or(kind)
+            edge.or_else(|| self.prepared.kind(&own)).unwrap_or(kind)
         };
         (self.scene.view_ids())
             .flat_map(|view| self.adopt_in(view, shown(view), line, known, reach, taken))
             .collect()
     }
 
-    /// Those of one view and kind. Two strips may see an eave bright on different sides: where none is directed
-    /// like the line, those against it are taken.
+    /// The segments of one view and kind. Without one directed like the line, those against it are
+    /// taken, because two strips may see an eave bright on different sides.
     fn adopt_in(
         &self,
         view: ViewId,
@@ -148,7 +146,7 @@ impl Context<'_> {
         line: &Segment3,
         known: &[SegmentRef],
         reach: f64,
-        taken: Taken,
+        taken: IsTaken,
     ) -> Vec<SegmentRef> {
         let Some((image, extent)) = self.extent(line, known, view) else {
             return Vec::new();
@@ -158,7 +156,7 @@ impl Context<'_> {
             extent.p1 + image.direction * self.params.max_gap_px,
         );
         let stretch = Segment2::new(from, to);
-        let index = &self.sights.views[view.index()].index;
+        let index = &self.prepared.views[view.index()].index;
         let ahead = |p: Point2<f64>| (p - from).dot(&image.direction);
         let near = index.near_segment(&stretch, reach * self.params.gate_px);
         let on_line = near.into_iter().filter_map(|id| {
@@ -166,17 +164,20 @@ impl Context<'_> {
                 view,
                 segment: SegmentId(id),
             };
-            let sight = self.sights.get(name)?;
-            let (s0, s1) = (ahead(sight.segment.p0), ahead(sight.segment.p1));
-            (self.alike.holds(sight.kind, kind)
+            let geometry = self.prepared.get(name)?;
+            let (s0, s1) = (ahead(geometry.segment.p0), ahead(geometry.segment.p1));
+            (self.compatibility.allows(geometry.kind, kind)
                 && s0.max(s1) >= 0.0
                 && s0.min(s1) <= stretch.length()
-                && self.lies_on(&image, sight, reach)
+                && self.lies_on(&image, geometry, reach)
                 && !taken(name))
-            .then_some((name, sight.segment.direction().dot(&image.direction) > 0.0))
+            .then_some((
+                name,
+                geometry.segment.direction().dot(&image.direction) > 0.0,
+            ))
         });
         let (along, against): (Vec<_>, Vec<_>) =
-            on_line.partition(|(_, along)| *along || !self.alike.directs(kind));
+            on_line.partition(|(_, along)| *along || !self.compatibility.is_directed(kind));
         let own = if along.is_empty() { against } else { along };
         own.into_iter().map(|(name, _)| name).collect()
     }
@@ -191,8 +192,8 @@ impl Context<'_> {
         let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
         for s in known {
             let image = ProjectedLine::new(self.scene.camera(s.view), line)?;
-            let sight = self.sights.get(*s)?;
-            for p in [sight.segment.p0, sight.segment.p1] {
+            let geometry = self.prepared.get(*s)?;
+            for p in [geometry.segment.p0, geometry.segment.p1] {
                 let t = image.t_of(&p);
                 (from, to) = (from.min(t), to.max(t));
             }
@@ -201,14 +202,14 @@ impl Context<'_> {
         Some((image, Segment2::new(image.at(from)?, image.at(to)?)))
     }
 
-    fn lies_on(&self, image: &ProjectedLine, sight: &Sight, reach: f64) -> bool {
-        let along = sight.segment.direction().dot(&image.direction);
+    fn lies_on(&self, image: &ProjectedLine, geometry: &SegmentGeometry, reach: f64) -> bool {
+        let along = geometry.segment.direction().dot(&image.direction);
         let near = |p| image.distance(p).abs() <= reach * self.params.gate_px;
-        along.abs() > 0.9 && near(&sight.segment.p0) && near(&sight.segment.p1)
+        along.abs() > 0.9 && near(&geometry.segment.p0) && near(&geometry.segment.p1)
     }
 }
 
-/// Does a segment pass a point within [`SAME_EDGE_PX`], between its ends?
+/// Does a segment pass by a point within [`SAME_EDGE_PX`], between its ends?
 fn passes(segment: &Segment2, point: &Point2<f64>) -> bool {
     let to_point = point - segment.p0;
     let along = to_point.dot(&segment.direction());
@@ -219,10 +220,9 @@ fn passes(segment: &Segment2, point: &Point2<f64>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linematch::planted;
-    use crate::linematch::sight::Sights;
-    use crate::params::Lines3dParams;
-    use crate::params::MatchParams;
+    use crate::linematch::segment_geometry::PreparedSegments;
+    use crate::lines3d::planted;
+    use crate::params::{Lines3dParams, MatchParams};
 
     #[test]
     fn an_edge_of_another_line_is_not_measured_again() {
@@ -240,8 +240,8 @@ mod tests {
         let whole = segments[last.index()][0].clone();
         segments[last.index()].push(whole);
         let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
-        let sights = Sights::new(&scene, &segments);
-        let context = Context::of_planted(&scene, &segments, &sights, (&params, &fitting));
+        let prepared = PreparedSegments::new(&scene, &segments);
+        let context = MatchContext::of_planted(&scene, &segments, &prepared, (&params, &fitting));
         let shows = |known: &[SegmentRef], taken: &[SegmentRef]| {
             let line = planted::edges()[0];
             let taken = |s| taken.contains(&s);
@@ -266,8 +266,9 @@ mod tests {
             let mut segments = planted::segments(&scene);
             change(&mut segments[last.index()]);
             let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
-            let sights = Sights::new(&scene, &segments);
-            let context = Context::of_planted(&scene, &segments, &sights, (&params, &fitting));
+            let prepared = PreparedSegments::new(&scene, &segments);
+            let context =
+                MatchContext::of_planted(&scene, &segments, &prepared, (&params, &fitting));
             let line = planted::edges()[0];
             let mut found = context.adopt(&line, &[own(first)], &[], 1.0, &|_| false);
             found.retain(|s| s.view == last);

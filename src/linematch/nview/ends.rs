@@ -1,34 +1,40 @@
 //! Ends of a line to a pixel.
 //!
-//! Support (B99 3.3) is known by pieces of some pixels, and a piece in which the edge ends counts as a whole. Where the stretch
-//! ends is therefore asked once more, edgel by edgel: the step across the line, taken together over the views that show the edge,
-//! falls there from what it is inside to nothing. The end lies where it passes through half.
+//! Support (B99 3.3) is known by pieces of some pixels, and a piece in which the edge ends counts
+//! as a whole. The end of a stretch is therefore located edgel by edgel: the step across the line,
+//! averaged over the views with the edge, falls there from its size inside to zero. The end lies
+//! where it passes through half.
 
-use super::profile::{Profile, ViewProfile};
-use crate::lines2d::PIECE_PX;
-use crate::lines2d::SegmentKind;
+use super::profile::{LineProfile, ViewProfile};
+use crate::lines2d::{PIECE_PX, SegmentKind};
 use crate::scene::Scene;
 
-/// How far from a stretch's end the edge may end, edgels: the piece before it, and half of one behind it.
+/// Range about the end of a stretch in which the edge may end, edgels: the piece before it, and
+/// half a piece beyond it.
 const BEFORE: usize = PIECE_PX as usize + 1;
-const BEHIND: usize = PIECE_PX as usize / 2;
-/// Edgels farther inside that say how strong the edge is there.
+const BEYOND: usize = PIECE_PX as usize / 2;
+/// Number of edgels farther inside from which the size of the step is taken.
 const INSIDE: usize = 3 * PIECE_PX as usize;
-/// The fewest of them.
+/// Fewest of them.
 const LEAST_INSIDE: usize = PIECE_PX as usize;
 /// Half the base of the step across the line, px.
 const BASE_PX: f64 = 1.0;
 
-/// The stretch with both ends where the edge ends. One that is too short to have an inside stays as it is.
-pub fn sharpened(scene: &Scene, profile: &Profile, (start, end): (usize, usize)) -> (usize, usize) {
+/// The stretch between the located ends of the edge. One that is too short to have an inside stays
+/// as it is.
+pub fn located_ends(
+    scene: &Scene,
+    profile: &LineProfile,
+    (start, end): (usize, usize),
+) -> (usize, usize) {
     if end - start < 2 * BEFORE + LEAST_INSIDE {
         return (start, end);
     }
     let inner = (end - BEFORE).saturating_sub(INSIDE).max(start + BEFORE);
-    let last = (end + BEHIND).min(profile.t.len() - 1);
+    let last = (end + BEYOND).min(profile.t.len() - 1);
     let forward: Vec<usize> = (inner..=last).collect();
     let outer = (start + BEFORE + INSIDE).min(end - BEFORE);
-    let first = start.saturating_sub(BEHIND);
+    let first = start.saturating_sub(BEYOND);
     let backward: Vec<usize> = (first..=outer).rev().collect();
     let ends_at = |edgels: &[usize], inside: usize| {
         let steps = steps(scene, profile, edgels, inside)?;
@@ -40,9 +46,14 @@ pub fn sharpened(scene: &Scene, profile: &Profile, (start, end): (usize, usize))
     )
 }
 
-/// The step across the line at some edgels, as a share of its mean over those `inside`, the first of them. Views with a stronger step say
-/// more. `None` where no view shows all of them.
-fn steps(scene: &Scene, profile: &Profile, edgels: &[usize], inside: usize) -> Option<Vec<f64>> {
+/// The step across the line at some edgels, relative to its mean over the first `inside` of them,
+/// averaged with the step as weight. `None` where no view shows all of them.
+fn steps(
+    scene: &Scene,
+    profile: &LineProfile,
+    edgels: &[usize],
+    inside: usize,
+) -> Option<Vec<f64>> {
     let mut sums = vec![0.0; edgels.len()];
     let mut total = 0.0;
     for view in &profile.views {
@@ -58,10 +69,11 @@ fn steps(scene: &Scene, profile: &Profile, edgels: &[usize], inside: usize) -> O
     (total > 0.0).then(|| sums.into_iter().map(|s| s / total).collect())
 }
 
-/// The step that one view shows across its measured edge; `None` without one, or where it leaves the image.
+/// The step that one view shows across its measured edge; `None` without one, or where it leaves
+/// the image.
 fn steps_in(
     scene: &Scene,
-    profile: &Profile,
+    profile: &LineProfile,
     view: &ViewProfile,
     edgels: &[usize],
 ) -> Option<Vec<f64>> {
@@ -78,14 +90,15 @@ fn steps_in(
         let (left, right) = (beside(-BASE_PX)?, beside(BASE_PX)?);
         Some(match edge.kind {
             SegmentKind::Edge | SegmentKind::Color => right - left,
-            // Of either sign: the mean inside has the same.
+            // The sign does not matter, because the mean inside has the same.
             SegmentKind::BrightBar | SegmentKind::DarkBar => 2.0 * beside(0.0)? - left - right,
         })
     };
     edgels.iter().map(step).collect()
 }
 
-/// Index of the last edgel of an edge that begins inside: the best place for a fall of its `steps` from one to nothing.
+/// Index of the last edgel of an edge that begins inside: the best place of a fall of `steps` from
+/// one to zero.
 fn last_of_edge(steps: &[f64]) -> usize {
     let (mut sum, mut most, mut last) = (0.0, f64::NEG_INFINITY, 0);
     for (k, step) in steps.iter().enumerate() {
@@ -100,9 +113,9 @@ fn last_of_edge(steps: &[f64]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linematch::planted;
     use crate::lines2d::measure_edge;
     use crate::lines3d::ProjectedLine;
+    use crate::lines3d::planted;
 
     #[test]
     fn an_edge_ends_where_its_step_falls_to_half() {
@@ -143,19 +156,23 @@ mod tests {
             .collect();
         let count = (reached.length() / 0.1) as usize;
         let t: Vec<f64> = (0..count).map(|k| (k as f64 + 0.5) * 0.1).collect();
-        let profile = Profile {
+        let profile = LineProfile {
             t,
             reference: 0,
             views,
         };
-        let (start, end) = sharpened(&scene, &profile, (0, count - 1));
+        let (start, end) = located_ends(&scene, &profile, (0, count - 1));
         assert!(start.abs_diff(3) <= 1, "starts at {start}");
         assert!(end.abs_diff(count - 4) <= 1, "ends at {end} of {count}");
         assert_eq!(
-            sharpened(&scene, &profile, (4, count - 5)),
+            located_ends(&scene, &profile, (4, count - 5)),
             (start, end),
             "and from a pixel too short"
         );
-        assert_eq!(sharpened(&scene, &profile, (40, 50)), (40, 50), "too short");
+        assert_eq!(
+            located_ends(&scene, &profile, (40, 50)),
+            (40, 50),
+            "too short"
+        );
     }
 }

@@ -1,23 +1,25 @@
-//! Merging and growing (B99 3.3): which stretch of a 3D line the views support.
+//! Merging and growing (B99 3.3): the stretch of a 3D line that the views support.
 //!
-//! * Where most of its views have the edge, the line is there: most of those whose image reaches so far, for the line
-//!   itself is known beyond the place that all of them show.
-//! * Growing: where one view only has a segment, the others are taken along if the neighbourhoods
+//! * A place is supported where most of the views with an edge have it there, of those whose image
+//!   reaches the place.
+//! * Growing: where one view too few has the edge, the place counts if the neighbourhoods
 //!   correlate over three views ("the end points may be extended provided the grown edgels satisfy
 //!   the photometric correlation tests over the three views").
-//! * Merging: a gap between fragments that no view closes is bridged by the same test. What has only grown beyond it is no fragment: on
-//!   textured ground single pieces line up by chance.
+//! * Merging: a gap between fragments in all views is bridged by the same test. A stretch that has
+//!   only grown beyond the gap is no fragment, because on textured ground single pieces line up by
+//!   chance.
 
-use super::profile::Profile;
+use super::profile::LineProfile;
 use crate::params::MatchParams;
 
-/// Holes of this many edgels are closed without a test, as chains of edgels are ("jumping up to a one pixel gap", 3.2).
-const HOLE_PX: usize = 1;
+/// Gaps of this many edgels are closed without a test, as in chains ("jumping up to a one pixel
+/// gap", 3.2).
+const CLOSED_GAP_PX: usize = 1;
 /// Share of a gap's edgels that must correlate over three views.
 const GAP_SHARE: f64 = 0.8;
 
 /// The supported stretch: first and last edgel of the profile. `None` where too few views agree.
-pub fn supported_stretch(profile: &Profile, params: &MatchParams) -> Option<(usize, usize)> {
+pub fn supported_stretch(profile: &LineProfile, params: &MatchParams) -> Option<(usize, usize)> {
     let n = profile.t.len();
     let needed = needed_views(profile.measured());
     let detections: Vec<usize> = (0..n).map(|e| profile.detections(e)).collect();
@@ -54,13 +56,13 @@ fn reversed<T: Copy>(values: &[T]) -> Vec<T> {
     values.iter().rev().copied().collect()
 }
 
-/// Number of views that must see the edge at a place, of those that see it somewhere: more than half, because
-/// in a textured neighbourhood single pieces line up by chance.
+/// Number of views that must have the edge at a place, of those that have it anywhere: more than
+/// half, because in a textured neighbourhood single pieces line up by chance.
 fn needed_views(measured: usize) -> usize {
     (measured / 2 + 1).max(2)
 }
 
-/// The same where so many of them reach the place: one must see it where it is alone.
+/// The same for a place that so many of them reach: a single one suffices where no other reaches.
 fn needed_of(reaching: usize) -> usize {
     needed_views(reaching).min(reaching.max(1))
 }
@@ -79,7 +81,7 @@ fn longest_run(detections: &[usize], needed: usize) -> Option<(usize, usize)> {
     best
 }
 
-/// How far support reaches from the first edgel on, which is supported.
+/// Number of edgels by which support extends beyond the first one, which is supported.
 fn extend(support: &[Support], agreeing: &[bool], params: &MatchParams) -> usize {
     let mut reached = 0;
     while reached + 1 < support.len() {
@@ -94,7 +96,7 @@ fn extend(support: &[Support], agreeing: &[bool], params: &MatchParams) -> usize
         let bridged = &agreeing[reached + 1..reached + 1 + gap];
         let agreed = bridged.iter().filter(|a| **a).count() as f64;
         let by_correlation = gap as f64 <= params.max_gap_px && agreed >= GAP_SHARE * gap as f64;
-        if gap > HOLE_PX && !by_correlation {
+        if gap > CLOSED_GAP_PX && !by_correlation {
             break;
         }
         reached += gap + 1;
@@ -108,17 +110,17 @@ mod tests {
     use super::*;
     use crate::geometry::Segment2;
     use crate::ids::ViewId;
-    use crate::linematch::planted;
     use crate::lines2d::GuidedEdge;
     use crate::lines2d::SegmentKind;
     use crate::lines3d::ProjectedLine;
+    use crate::lines3d::planted;
     use nalgebra::{Matrix2, Point2};
 
     fn bools(s: &str) -> Vec<bool> {
         s.bytes().map(|b| b == b'x').collect()
     }
 
-    /// How far `support` reaches: x where enough views detected the edge, g where it has grown.
+    /// The extension of `support`: x where enough views detected the edge, g where it has grown.
     fn reach(support: &str, agreeing: &str) -> usize {
         let at = |b| match b {
             b'x' => Support::Detected,
@@ -158,8 +160,8 @@ mod tests {
         assert_eq!(reach("xxgg..ggg.....", agreeing), 3, "beyond a small one");
     }
 
-    /// The last edgel of a line that five views show up to edgel 25 and one of them up to 39; the images of the
-    /// others reach no farther than `reach`.
+    /// The last edgel of a line that five views show up to edgel 25 and one of them up to 39; the
+    /// images of the others end at `reach`.
     fn end_where_one_goes_on(reach: usize) -> usize {
         let (scene, line) = (planted::scene(), planted::edges()[0]);
         let camera = |view: usize| &scene.views[view % scene.views.len()].camera;
@@ -183,7 +185,7 @@ mod tests {
                 agreement: 1.0,
             }
         };
-        let profile = Profile {
+        let profile = LineProfile {
             t: (0..40).map(|e| e as f64 * 0.1).collect(),
             reference: 0,
             views: (0..5).map(view).collect(),

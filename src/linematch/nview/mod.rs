@@ -1,13 +1,31 @@
-//! linematch::nview
+//! A hypothesis completed over all views (B99 3.3, 3.4).
+//!
+//! ```text
+//! complete          the order of the steps
+//!    -> fitting     the line fitted to segments or edges, the worst of which are dropped
+//!    -> adopt       segments near the reprojection, and edges measured again along it       3.4
+//!    -> profile     detection and correlation of every view along the line
+//!    -> grow, ends  the supported stretch, merged and grown, and its ends to a pixel        3.3
+//!    -> support     the views that support the stretch, and those that show another edge    3.2
+//!    -> checks      precision, number of views, length, heights                             3.4
+//!
+//! context           the input of a completion, its result and the reasons for a rejection
+//! ```
+//!
+//! Invariant: a completed line has measured edges in three views at least.
 
 mod adopt;
+mod checks;
+mod complete;
+mod context;
 mod ends;
+mod fitting;
 mod grow;
-mod join;
-mod nviews;
 mod profile;
+mod support;
 
-pub(crate) use join::join_lines;
-pub(crate) use nviews::{Context, Line, complete_line};
-pub use nviews::{MANY_VIEWS, Rejection};
-pub(crate) use profile::AROUND_EDGE_PX;
+pub use checks::MANY_VIEWS;
+pub(crate) use complete::complete_line;
+pub use context::MatchRejection;
+pub(crate) use context::{CompletedLine, IsTaken, MatchContext};
+pub(crate) use profile::EDGE_MARGIN_PX;

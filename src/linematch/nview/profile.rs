@@ -4,22 +4,20 @@
 use nalgebra::Point2;
 
 use crate::geometry::{Segment2, Segment3};
-use crate::ids::SegmentId;
-use crate::ids::ViewId;
+use crate::ids::{SegmentId, ViewId};
+use crate::linematch::line_strip::{EdgelScore, LineStrip, StripFrame, StripSide, correlate};
 use crate::linematch::pairs::side_strip;
-use crate::linematch::sight::{SegmentRef, Sights};
-use crate::linematch::strip::{EdgelScore, Strip, StripFrame, StripSide, correlate};
-use crate::linematch::triples::stretch_of;
+use crate::linematch::segment_geometry::{PreparedSegments, SegmentRef};
 use crate::lines2d::GuidedEdge;
 use crate::lines3d::ProjectedLine;
 use crate::params::MatchParams;
 use crate::raster::Channel;
 use crate::scene::Scene;
 
-/// What an image must hold around an edgel so that its edge may show, px.
-pub const AROUND_EDGE_PX: f64 = 4.0;
+/// Least distance of an edgel from the border of the image so that its edge can be seen, px.
+pub const EDGE_MARGIN_PX: f64 = 4.0;
 
-/// What one view says along the line.
+/// The evidence of one view along the line.
 pub struct ViewProfile {
     /// The view.
     pub view: ViewId,
@@ -31,7 +29,7 @@ pub struct ViewProfile {
     pub edge: Option<GuidedEdge>,
     /// At each edgel: does a segment or a piece of the measured edge lie there?
     pub detected: Vec<bool>,
-    /// At each edgel: does the image reach there, with what is needed around it to see an edge?
+    /// At each edgel: is it far enough inside the image for its edge to be seen?
     pub inside: Vec<bool>,
     /// At each edgel: correlation with the reference view on the better side; NaN where the view
     /// does not see it. All ones in the reference view itself.
@@ -56,8 +54,8 @@ impl ViewProfile {
     }
 }
 
-/// What all views say along the line.
-pub struct Profile {
+/// The evidence of all views along the line.
+pub struct LineProfile {
     /// Metres along the line of each edgel; edgels are a pixel apart in the reference view.
     pub t: Vec<f64>,
     /// Index in `views` of the reference view: of those with segments the one most like the others.
@@ -66,11 +64,11 @@ pub struct Profile {
     pub views: Vec<ViewProfile>,
 }
 
-impl Profile {
+impl LineProfile {
     /// Samples the evidence along `line`, as far as its segments reach.
     pub fn new(
         scene: &Scene,
-        sights: &Sights,
+        prepared: &PreparedSegments,
         line: &Segment3,
         segments: &[SegmentRef],
         edges: &[GuidedEdge],
@@ -79,7 +77,7 @@ impl Profile {
         let mut views: Vec<ViewProfile> = scene
             .view_ids()
             .filter_map(|view| {
-                let mut profile = view_segments(scene, sights, line, segments, view)?;
+                let mut profile = view_segments(scene, prepared, line, segments, view)?;
                 profile.edge = edges.iter().find(|e| e.view == view).cloned();
                 Some(profile)
             })
@@ -107,14 +105,14 @@ impl Profile {
             let on_edge = |t: &f64| covered.iter().any(|[s, e]| t >= s && t <= e);
             view.detected = t.iter().map(on_edge).collect();
             let camera = scene.camera(view.view);
-            let in_image = |x: Point2<f64>| camera.contains(&x, AROUND_EDGE_PX);
+            let in_image = |x: Point2<f64>| camera.contains(&x, EDGE_MARGIN_PX);
             view.inside = (t.iter())
                 .map(|t| view.image.at(*t).is_some_and(in_image))
                 .collect();
         }
-        let stretch = stretch_of(line, from, to);
-        let channel = sights.kind(segments)?.channel();
-        let strips = Strips::new(scene, channel, &stretch, &frame, longest, &views, params)?;
+        let stretch = line.stretch(from, to);
+        let channel = prepared.kind(segments)?.channel();
+        let strips = ProfileStrips::new(scene, channel, &stretch, &frame, longest, &views, params)?;
         let reference = strips.compare(&mut views, params)?;
         Some(Self {
             t,
@@ -149,7 +147,7 @@ impl Profile {
 /// A view with its share of the segments; `None` where it does not see the line.
 fn view_segments(
     scene: &Scene,
-    sights: &Sights,
+    prepared: &PreparedSegments,
     line: &Segment3,
     segments: &[SegmentRef],
     view: ViewId,
@@ -159,8 +157,11 @@ fn view_segments(
         .iter()
         .filter(|s| s.view == view)
         .filter_map(|s| {
-            let sight = sights.get(*s)?;
-            let (t0, t1) = (image.t_of(&sight.segment.p0), image.t_of(&sight.segment.p1));
+            let geometry = prepared.get(*s)?;
+            let (t0, t1) = (
+                image.t_of(&geometry.segment.p0),
+                image.t_of(&geometry.segment.p1),
+            );
             Some((s.segment, [t0.min(t1), t0.max(t1)]))
         })
         .collect();
@@ -178,11 +179,11 @@ fn view_segments(
 
 /// The strips of all views on one grid, on either side of the line, warped by the half-plane that
 /// agrees best over the views with segments. On one grid any two views compare without new samples.
-struct Strips {
-    sides: [Vec<Strip>; 2],
+struct ProfileStrips {
+    sides: [Vec<LineStrip>; 2],
 }
 
-impl Strips {
+impl ProfileStrips {
     fn new(
         scene: &Scene,
         channel: Channel,
@@ -198,9 +199,9 @@ impl Strips {
         let warped =
             |view, side, theta| side_strip(scene, [first, view], channel, frame, line, side, theta);
         let best = |side: StripSide| {
-            let mut chosen: Option<(f64, f64, Vec<Strip>)> = None;
+            let mut chosen: Option<(f64, f64, Vec<LineStrip>)> = None;
             'angles: for &theta in &params.plane_angles_deg {
-                let mut strips: Vec<Strip> = Vec::with_capacity(measured.len());
+                let mut strips: Vec<LineStrip> = Vec::with_capacity(measured.len());
                 let (mut total, mut left) = (0.0, pairs);
                 for &i in &measured {
                     let strip = warped(views[i].view, side, theta)?;
@@ -208,7 +209,7 @@ impl Strips {
                         total += side_score(&strip, other, side, params);
                         left -= 1.0;
                     }
-                    // No pair scores more than one: what cannot win any more is not looked at further.
+                    // No pair scores more than one, so that this angle cannot win any more.
                     if chosen.as_ref().is_some_and(|c| total + left <= c.0) {
                         continue 'angles;
                     }
@@ -227,7 +228,7 @@ impl Strips {
                 let known = v.measured().then(|| sampled.next()).flatten();
                 known.or_else(|| warped(v.view, side, theta))
             };
-            views.iter().map(strip).collect::<Option<Vec<Strip>>>()
+            views.iter().map(strip).collect::<Option<Vec<LineStrip>>>()
         };
         let [left, right] = StripSide::BOTH.map(best);
         Some(Self {
@@ -279,7 +280,7 @@ fn with_segments(views: &[ViewProfile]) -> impl Iterator<Item = usize> {
     (0..views.len()).filter(|i| views[*i].measured())
 }
 
-fn side_score(a: &Strip, b: &Strip, side: StripSide, params: &MatchParams) -> f64 {
+fn side_score(a: &LineStrip, b: &LineStrip, side: StripSide, params: &MatchParams) -> f64 {
     EdgelScore::of(
         &correlate(a, b, side, params.noise),
         params.edgel_correlation,
