@@ -245,7 +245,7 @@ mod tests {
             super::reprojects(&roof.context(), line, onto)
         };
         assert!(reprojects(&line, &short));
-        // Five pixels do not tell where a hundred end.
+        // A line of five pixels does not determine the ends of one of a hundred.
         assert!(!reprojects(&short, &line));
         // Three pixels off is another edge, in one view of three and in two.
         let mut beside = short.clone();

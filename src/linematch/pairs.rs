@@ -481,7 +481,7 @@ mod tests {
             let pairs = pairs_of(&scene, &prepared, &view_pairs, compatibility);
             pairs.score(name(0), name(3))
         };
-        // The scene has no colour, so that grey values stand for it.
+        // The scene has no colour, so that grey values replace it.
         assert!(score(&[], COMPATIBLE) > 0.0 && score(&[0, 3], COMPATIBLE) > 0.0);
         assert_eq!(score(&[0], COMPATIBLE), 0.0);
         assert_eq!(score(&[3], COMPATIBLE), 0.0);

@@ -33,8 +33,8 @@ pub fn mark_inside(rings: &[Vec<Point2<f64>>], width: usize, height: usize, mask
     }
 }
 
-/// Gives the pixels that are not `known` smooth colours from the known ones around them (push-pull
-/// pyramid, Gortler et al. 1996). Without any known pixel nothing changes.
+/// Fills the pixels that are not `known` with smooth colours from the known ones around them
+/// (push-pull pyramid, Gortler et al. 1996). Without any known pixel nothing changes.
 pub fn fill_gaps(colours: &mut [[f32; 3]], known: &[bool], width: usize, height: usize) {
     if known.iter().all(|&k| k) || !known.contains(&true) {
         return;

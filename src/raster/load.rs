@@ -17,14 +17,14 @@ use super::photograph::Photograph;
 use super::samples::Samples;
 use crate::error::{Error, Result};
 
-/// What the header of an image says.
+/// The header of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageHeader {
     /// Width, pixels.
     pub width: u32,
     /// Height, pixels.
     pub height: u32,
-    /// Does EXIF say that viewers should turn the image?
+    /// Is the EXIF orientation other than upright?
     pub turned: bool,
 }
 
@@ -81,7 +81,7 @@ pub(crate) fn decode(file: &str, bytes: &[u8]) -> Result<Samples> {
 trait SampleSource {
     /// Width and height, pixels.
     fn size(&self) -> (u32, u32);
-    /// Does EXIF say that viewers should turn the image?
+    /// Is the EXIF orientation other than upright?
     fn turned(&mut self) -> bool;
     /// All samples; `None` for floating-point values.
     fn samples(self: Box<Self>) -> ImageResult<Option<Samples>>;

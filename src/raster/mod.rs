@@ -7,7 +7,7 @@
 //!    -> photograph    colours and grey values
 //!
 //! gray            a raster of f32: a grey value, or the red-blue difference of a pixel (red_blue)
-//! channel         which of the two is meant; linear_light undoes the camera's tone curve
+//! channel         the choice between the two; linear_light undoes the camera's tone curve
 //! noise           standard deviation of a pixel
 //! bilinear, warp  sub-pixel values, one by one or along the rows of a homography
 //! filter, fill    Gaussian blur; polygons into masks and gaps filled smoothly

@@ -281,7 +281,7 @@ mod tests {
 
     #[test]
     fn long_rows_keep_to_the_homography() {
-        // Grey values that tell the position.
+        // Grey values that encode the position.
         let size = [700, 500];
         let column = Gray::from_fn(size[0], size[1], |x, _| x as f32 + 0.5);
         let row = Gray::from_fn(size[0], size[1], |_, y| y as f32 + 0.5);

@@ -163,8 +163,7 @@ pub struct Raster {
     width: usize,
     height: usize,
     index: Vec<u32>,
-    /// One bit a pixel, `words` words a row: most pixels are empty, and bits tell that for many at
-    /// once.
+    /// One bit a pixel, `words` words a row: most pixels are empty, and 32 are tested at once.
     occupied: Vec<u32>,
     words: usize,
 }
