@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Point2, Vector2};
 
-use super::borders::{Arrangement, DisjointSets};
+use super::borders::Arrangement;
 use super::labelling::NO_PLANE;
 use crate::geometry::Plane;
 use crate::sorting::sort_by;
@@ -41,7 +41,7 @@ const STRAIGHT: f64 = 0.12;
 
 /// The outlines of all facets of a labelling.
 pub fn delineate(arrangement: &Arrangement, labels: &[u32], planes: &[Plane]) -> Delineation {
-    let component = components(arrangement, labels);
+    let component = arrangement.components(labels);
     let borders = border_edges(arrangement, labels, &component);
     let keep = corner_vertices(arrangement, &borders);
     let mut outlines = Vec::new();
@@ -117,17 +117,6 @@ fn remove_spikes(ring: &mut Vec<usize>) {
             (None, None) => return,
         }
     }
-}
-
-/// The lowest cell of each cell's facet.
-pub fn components(arrangement: &Arrangement, labels: &[u32]) -> Vec<usize> {
-    let mut sets = DisjointSets::new(arrangement.cells);
-    for e in &arrangement.edges {
-        if labels[e.left] == labels[e.right] {
-            sets.join(e.left, e.right);
-        }
-    }
-    (0..arrangement.cells).map(|c| sets.find(c)).collect()
 }
 
 /// A piece of a facet's outline with the facet on its left, and what lies to its right.

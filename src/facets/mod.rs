@@ -48,8 +48,11 @@
 //! ```
 
 mod borders;
+mod competing_planes;
 mod delineation;
+mod evidence;
 mod input;
+mod islands;
 mod labelling;
 mod reconstruct;
 mod verification;

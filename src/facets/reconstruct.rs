@@ -5,36 +5,30 @@
 //! withdrawn and its neighbours are decided again without it, as the paper updates the
 //! neighbours of a plane that is removed.
 
-use nalgebra::{Point2, Point3};
+use nalgebra::Point2;
 use serde::Serialize;
 
-use super::borders::Arrangement;
-use super::borders::LineIndex;
-use super::borders::bounding_lines;
-use super::borders::{Border, border_lines};
-use super::borders::{BorderCosts, LINE_HEIGHT};
-use super::delineation::{Delineation, Outline, delineate};
+use super::borders::{
+    Arrangement, Border, BorderCosts, BorderKind, LineIndex, border_lines, bounding_lines,
+};
+use super::competing_planes::CompetingPlanes;
+use super::delineation::delineate;
+use super::evidence::Evidence;
 use super::input::RoofEvidence;
-use super::labelling::Evidence;
+use super::islands::without_islands;
 use super::labelling::Labelling;
-use super::labelling::ShiftableWindows;
-use super::labelling::without_islands;
-use super::verification::{FacetRejection, RejectedFacet, tail_on_ground};
-use crate::geometry::{Plane, Segment3, bounds};
-use crate::ids::BuildingId;
+use super::verification::{
+    FacetRejection, RejectedFacet, boundary_leakage, tail_on_ground, verify,
+};
+use crate::geometry::{Plane, bounds};
 use crate::lines3d::Line3d;
 use crate::model::{Facet, Occluders};
 use crate::params::RoofParams;
-use crate::photoconsistency::PlanGrid;
-use crate::photoconsistency::{ConsistencyMap, consistency_map};
-use crate::planes::PlaneLine;
-use crate::planes::Region;
-use crate::planes::add_rectangles;
-use crate::planes::hypotheses;
-use crate::planes::is_wall;
-use crate::planes::line_neighbours;
-use crate::planes::{GroupingInput, Member, PlaneGroup, group_planes};
-use crate::planes::{group_repeated, with_repeated};
+use crate::photoconsistency::{ConsistencyMap, PlanGrid, ShiftableWindows, consistency_map};
+use crate::planes::{
+    GroupingInput, Member, PlaneGroup, PlaneLine, Region, add_rectangles, group_planes,
+    group_repeated, hypotheses, is_wall, line_neighbours, with_repeated,
+};
 use crate::scene::Scene;
 use crate::terrain::Ground;
 
@@ -131,8 +125,8 @@ pub fn reconstruct_facets(
         .chain(plane_lines.iter().map(|l| l.segment));
     let index = LineIndex::new(real.collect());
     let energy = evidence.energy(&arrangement, &planes, &index, params);
-    let mut solver = Solver {
-        labelling: Labelling::new(energy, planes.len() as u32),
+    let mut labelling = Labelling::new(energy, planes.len() as u32);
+    let competing = CompetingPlanes {
         evidence,
         arrangement,
         planes,
@@ -141,8 +135,8 @@ pub fn reconstruct_facets(
         bounding,
         scene: reduced,
     };
-    let (facets, rejected) = solver.solve(&groups, ground, scene, params);
-    let cells = solver.arrangement.cells;
+    let (facets, rejected) = solve(&mut labelling, &competing, &groups, ground, scene, params);
+    let cells = competing.arrangement.cells;
     (
         facets,
         FacetTrace {
@@ -221,170 +215,160 @@ fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {
         Point2::new(x0, y1),
     ];
     let frame = (0..4).map(|i| Border {
-        kind: super::borders::BorderKind::Closing,
+        kind: BorderKind::Closing,
         a: corner[i],
         b: corner[(i + 1) % 4],
     });
     borders.iter().copied().chain(frame).collect()
 }
 
-/// The labelling on its way to facets, and what they are verified by.
-pub(crate) struct Solver {
-    labelling: Labelling<BorderCosts>,
-    pub(crate) evidence: Evidence,
-    pub(crate) arrangement: Arrangement,
-    pub(crate) planes: Vec<Plane>,
-    index: LineIndex,
-    /// How the views agree on each plane.
-    pub(crate) maps: Vec<ConsistencyMap>,
-    /// The lines that may bound a facet.
-    pub(crate) bounding: Vec<Segment3>,
-    /// With pixels about as wide as the cells of the maps.
-    pub(crate) scene: Scene,
-}
-
-impl Solver {
-    /// Labels, delineates and verifies until no facet is withdrawn.
-    fn solve(
-        &mut self,
-        groups: &[PlaneGroup],
-        ground: &Ground,
-        colours: &Scene,
-        params: &RoofParams,
-    ) -> (Vec<Facet>, Vec<RejectedFacet>) {
-        const ROUNDS: usize = 4;
-        let mut rejected = Vec::new();
-        for round in 1..=ROUNDS {
-            self.labelling.minimise();
-            let labels = self.labelling.labels().to_vec();
-            let labels = without_islands(&self.arrangement, labels, params.min_area_m2);
-            let delineation = delineate(&self.arrangement, &labels, &self.planes);
-            self.labelling.relabel(labels);
-            let mut facets = Vec::new();
-            let mut withdrawn: Vec<(u32, Vec<usize>)> = Vec::new();
-            // No roof, but no other plane may have their place: they stay in the labelling.
-            let mut on_ground = Vec::new();
-            let found: Vec<Facet> = (delineation.outlines.iter())
-                .map(|outline| self.facet(outline, &delineation, groups))
-                .collect();
-            let occluders = Occluders::new(&found);
-            let results: Vec<_> = (delineation.outlines.iter().zip(&found))
-                .map(|(outline, facet)| {
-                    self.verify(facet, outline, &occluders, ground, colours, params)?;
-                    // In the last round nothing would take its place.
-                    let beyond = || self.overreach(facet, outline, &occluders, params);
-                    Ok((round < ROUNDS).then(beyond).flatten())
-                })
-                .collect();
-            for ((outline, facet), result) in delineation.outlines.iter().zip(found).zip(results) {
-                let result = match result {
-                    // The same holds for the whole of it.
-                    Err(FacetRejection::Outdone { .. }) if round == ROUNDS => Ok(None),
-                    result => result,
-                };
-                let reason = match result {
-                    Ok(Some((cells, refused))) => {
-                        rejected.push(refused);
-                        withdrawn.push((outline.plane, cells));
-                        continue;
-                    }
-                    Ok(None) => {
-                        facets.push(facet);
-                        continue;
-                    }
-                    Err(reason) => reason,
-                };
-                if round < ROUNDS
-                    && matches!(reason, FacetRejection::ReachesGround { .. })
-                    && let Some(tail) =
-                        tail_on_ground(&facet.plane, &outline.cells, &self.arrangement, ground)
-                {
-                    withdrawn.push((outline.plane, tail));
+/// Labels, delineates and verifies until no facet is rejected.
+fn solve(
+    labelling: &mut Labelling<BorderCosts>,
+    competing: &CompetingPlanes,
+    groups: &[PlaneGroup],
+    ground: &Ground,
+    colours: &Scene,
+    params: &RoofParams,
+) -> (Vec<Facet>, Vec<RejectedFacet>) {
+    const ROUNDS: usize = 4;
+    let mut rejected = Vec::new();
+    for round in 1..=ROUNDS {
+        labelling.minimise();
+        let labels = labelling.labels().to_vec();
+        let labels = without_islands(&competing.arrangement, labels, params.min_area_m2);
+        let delineation = delineate(&competing.arrangement, &labels, &competing.planes);
+        labelling.relabel(labels);
+        let mut facets = Vec::new();
+        let mut excluded: Vec<(u32, Vec<usize>)> = Vec::new();
+        // No roof, but no other plane may have their place: they stay in the labelling.
+        let mut on_ground = Vec::new();
+        let found: Vec<Facet> = (delineation.outlines.iter())
+            .map(|outline| competing.facet(outline, &delineation, groups))
+            .collect();
+        let occluders = Occluders::new(&found);
+        let results: Vec<_> = (delineation.outlines.iter().zip(&found))
+            .map(|(outline, facet)| {
+                verify(
+                    competing, facet, outline, &occluders, ground, colours, params,
+                )?;
+                // In the last round nothing would take its place.
+                let beyond = || boundary_leakage(competing, facet, outline, &occluders, params);
+                Ok((round < ROUNDS).then(beyond).flatten())
+            })
+            .collect();
+        for ((outline, facet), result) in delineation.outlines.iter().zip(found).zip(results) {
+            let result = match result {
+                // The same holds for the whole of it.
+                Err(FacetRejection::Outdone { .. }) if round == ROUNDS => Ok(None),
+                result => result,
+            };
+            let reason = match result {
+                Ok(Some((cells, rejection))) => {
+                    rejected.push(rejection);
+                    excluded.push((outline.plane, cells));
                     continue;
                 }
-                let refused = RejectedFacet {
-                    group: outline.plane,
-                    outline: facet.outer,
-                    reason,
-                };
-                if matches!(reason, FacetRejection::NearGround { .. }) {
-                    on_ground.push(refused);
-                } else {
-                    rejected.push(refused);
-                    withdrawn.push((outline.plane, outline.cells.clone()));
+                Ok(None) => {
+                    facets.push(facet);
+                    continue;
                 }
+                Err(reason) => reason,
+            };
+            if round < ROUNDS
+                && matches!(reason, FacetRejection::ReachesGround { .. })
+                && let Some(tail) =
+                    tail_on_ground(&facet.plane, &outline.cells, &competing.arrangement, ground)
+            {
+                excluded.push((outline.plane, tail));
+                continue;
             }
-            if withdrawn.is_empty() || round == ROUNDS {
-                rejected.extend(on_ground);
-                return (facets, rejected);
-            }
-            for (plane, cells) in withdrawn {
-                self.labelling.withdraw(plane, &cells);
-            }
-        }
-        unreachable!("the last round returns")
-    }
-
-    fn facet(&self, outline: &Outline, delineation: &Delineation, groups: &[PlaneGroup]) -> Facet {
-        let plane = self.planes[outline.plane as usize];
-        let group = &groups[outline.plane as usize];
-        let lift = |ring: &Vec<usize>| -> Vec<Point3<f64>> {
-            ring.iter()
-                .map(|&v| delineation.vertices[v])
-                .map(|p| plane.lift(p.x, p.y))
-                .collect()
-        };
-        let (mut weight, mut correlation) = (0.0, 0.0);
-        for e in outline
-            .cells
-            .iter()
-            .filter_map(|&c| self.evidence.get(c, outline.plane))
-        {
-            weight += e.weight;
-            correlation += e.correlation;
-        }
-        Facet {
-            building: BuildingId(0),
-            plane,
-            outer: lift(&outline.outer),
-            holes: outline.holes.iter().map(lift).collect(),
-            similarity: if weight > 0.0 {
-                correlation / weight
+            let rejection = RejectedFacet {
+                group: outline.plane,
+                outline: facet.outer,
+                reason,
+            };
+            if matches!(reason, FacetRejection::NearGround { .. }) {
+                on_ground.push(rejection);
             } else {
-                0.0
-            },
-            real_ratio: self.real_ratio(outline, delineation),
-            lines: group.lines(),
-            half_planes: group.half_planes(),
-            rectangles: group.rectangles.clone(),
+                rejected.push(rejection);
+                excluded.push((outline.plane, outline.cells.clone()));
+            }
+        }
+        if excluded.is_empty() || round == ROUNDS {
+            rejected.extend(on_ground);
+            return (facets, rejected);
+        }
+        for (plane, cells) in excluded {
+            labelling.exclude(plane, &cells);
+        }
+    }
+    unreachable!("the last round returns")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::planes::ProposedPlane;
+    use crate::planes::rendered_planes::{Surface, scene};
+    use crate::testing::line;
+    use nalgebra::{Point3, Vector3};
+
+    const ROOF_Z: f64 = 5.0;
+
+    fn level(z: f64) -> Plane {
+        Plane {
+            normal: Vector3::z(),
+            d: -z,
         }
     }
 
-    /// tau_real: the share of the outline on reconstructed lines, B99 4.3.
-    fn real_ratio(&self, outline: &Outline, delineation: &Delineation) -> f64 {
-        let plane = &self.planes[outline.plane as usize];
-        let (mut real, mut total) = (0.0, 0.0);
-        for (i, &v) in outline.outer.iter().enumerate() {
-            let a = delineation.vertices[v];
-            let b = delineation.vertices[outline.outer[(i + 1) % outline.outer.len()]];
-            let pieces = ((b - a).norm() / 0.25).ceil().max(1.0);
-            for k in 0..pieces as usize {
-                let (p, q) = (
-                    a + (b - a) * (k as f64 / pieces),
-                    a + (b - a) * ((k + 1) as f64 / pieces),
-                );
-                let z = plane.z_at(0.5 * (p.x + q.x), 0.5 * (p.y + q.y));
-                total += (q - p).norm();
-                if self
-                    .index
-                    .heights_along(&p, &q)
-                    .iter()
-                    .any(|h| (h - z).abs() < LINE_HEIGHT)
-                {
-                    real += (q - p).norm();
-                }
-            }
+    /// A rectangle of 8 m by 6 m around the origin, at a height.
+    fn rectangle(index: u32, z: f64) -> ProposedPlane {
+        let corners = [(-4.0, -3.0), (4.0, -3.0), (4.0, 3.0), (-4.0, 3.0)];
+        ProposedPlane {
+            index,
+            plane: level(z),
+            ring: corners.map(|(x, y)| Point3::new(x, y, z)).to_vec(),
         }
-        if total > 0.0 { real / total } else { 0.0 }
+    }
+
+    /// The facets of a flat roof of which one eave was matched, without a half-plane, with planes that are proposed for it.
+    fn facets(rectangles: &[ProposedPlane]) -> Vec<Facet> {
+        let on_roof = |x: f64, y: f64| x.abs() < 4.0 && y.abs() < 3.0;
+        let textured = |plane, exists| Surface {
+            plane,
+            exists,
+            texture: 0.3,
+        };
+        let scene = scene(&[
+            textured(level(ROOF_Z), on_roof),
+            textured(level(0.0), |_, _| true),
+        ]);
+        let eave = line(
+            Point3::new(-4.0, -3.0, ROOF_Z),
+            Point3::new(4.0, -3.0, ROOF_Z),
+        );
+        let evidence = RoofEvidence {
+            segments: &[],
+            lines: &[eave],
+            half_planes: &[],
+            ground: &Ground::level(0.0),
+            rectangles,
+        };
+        reconstruct_facets(&scene, &evidence, &RoofParams::default()).0
+    }
+
+    #[test]
+    fn a_rectangle_is_a_facet_where_half_planes_are_absent() {
+        assert!(facets(&[]).is_empty());
+        // The wrong ones come first, and lose.
+        let proposed = [rectangle(7, 7.5), rectangle(8, 2.5), rectangle(9, ROOF_Z)];
+        let found = facets(&proposed);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(found[0].rectangles, [9]);
+        assert!((found[0].plane.z_at(0.0, 0.0) - ROOF_Z).abs() < 0.05);
+        let covered = |p: &Point3<f64>| p.x.abs() < 4.5 && p.y.abs() < 3.5;
+        assert!(found[0].outer.iter().all(covered), "{:?}", found[0].outer);
     }
 }

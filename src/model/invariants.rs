@@ -8,7 +8,7 @@ use i_overlay::float::single::SingleFloatOverlay;
 use nalgebra::{Point2, Point3, Vector3};
 use serde::Serialize;
 
-use super::{Facet, RoofModel, Solid, SolidFace, Surface, WELD_M};
+use super::roof_model::{Facet, RoofModel, Solid, SolidFace, Surface, WELD_M};
 use crate::ids::BuildingId;
 use crate::ids::FacetId;
 use crate::sorting::sort_by;

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point2, Point3};
 
-use super::Facet;
+use super::roof_model::Facet;
 
 /// A roof hides what lies deeper below it, metres: a side must not be hide by its own facet, nor by a neighbour
 /// that is known to a few decimetres only.

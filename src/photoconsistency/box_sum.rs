@@ -10,6 +10,8 @@ use super::plan_grid::PlanGrid;
 pub const HALF_WINDOW: usize = 5;
 /// Side of a window, cells.
 pub const WINDOW: usize = 2 * HALF_WINDOW + 1;
+/// Cells of a window.
+pub const WINDOW_CELLS: f32 = (WINDOW * WINDOW) as f32;
 
 /// Rows of a window, and the one that leaves it.
 const KEPT_ROWS: usize = 2 * HALF_WINDOW + 2;

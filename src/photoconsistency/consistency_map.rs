@@ -1,29 +1,13 @@
-//! Intensity similarity of a plane over the complete image set (B99 4.3, verification).
-//!
-//! B99 verifies a delineated face "by assessing intensity similarity over the complete image set, at
-//! corresponding points within the projected delineation". Here every view is warped to the plan by
-//! the plane under test, once; centred normalised cross-correlations of small windows over all pairs
-//! of views follow from running sums. Two deviations, both against failure on real roofs:
-//!
-//! * Occlusion: while planes compete nobody knows what hides them, so that at each plan position only the better half of the
-//!   pairs counts: one or two views in which something stands in front do not condemn a plane. Once there are facets, all
-//!   pairs are asked that see one past the others ([`consistency_map_behind`]).
-//! * Weak texture: where the grey values vary no more than the noise, correlation says nothing for or
-//!   against; each position carries the weight `s^2 / (s^2 + n^2)` with s the standard deviation
-//!   within the window and n that of the noise. It is also about what the views of a true plane correlate
-//!   by more than chance, so that as little is asked of them ([`least_correlation`]).
+//! The photo-consistency map of a plane, and the correlation that windows reach by chance.
 
 use std::ops::Range;
 
-use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
 
-use super::agreement::compare;
-use super::plan_grid::{PlanGrid, orthophoto};
-use crate::camera::Camera;
-use crate::geometry::Plane;
-use crate::ids::ViewId;
-use crate::scene::Scene;
+use super::plan_grid::PlanGrid;
+
+/// Most views compared: pairs grow with the square and six views saturate the measure.
+pub(crate) const MAX_VIEWS: usize = 6;
 
 /// How well the views agree on a plane, at every cell of a plan grid.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -100,103 +84,6 @@ pub fn least_correlation(weight: f64, textured: f64) -> f64 {
 /// The same for [`ConsistencyMap::overall`].
 pub fn least_overall(weight: f64, textured: f64) -> f64 {
     CHANCE_OVERALL + (textured - CHANCE_OVERALL) * weight
-}
-
-/// What keeps two views of one surface from being alike, against the noise of a pixel: besides the noise, the sampling and
-/// the shading. Measured on true planes.
-const UNLIKE: f64 = 1.25;
-/// Most views compared: pairs grow with the square and six views saturate the measure.
-pub(crate) const MAX_VIEWS: usize = 6;
-
-/// Compares all views on `plane` over `grid`.
-pub fn consistency_map(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> ConsistencyMap {
-    let views = views_of_plane(scene, plane, grid);
-    let photo = |&v: &ViewId| orthophoto(&scene.view(v).gray, scene.camera(v), plane, grid);
-    compare(views.iter().map(photo), unlike(scene, &views), grid)
-}
-
-/// The same where something known stands in front of the plane: `hidden` says whether a view sees a point of it.
-pub fn consistency_map_behind(
-    scene: &Scene,
-    plane: &Plane,
-    grid: &PlanGrid,
-    hidden: &dyn Fn(ViewId, &Point3<f64>) -> bool,
-) -> ConsistencyMap {
-    let views = views_of_plane(scene, plane, grid);
-    let photo = |&v: &ViewId| {
-        let mut photo = orthophoto(&scene.view(v).gray, scene.camera(v), plane, grid);
-        for (k, gray) in photo.iter_mut().enumerate() {
-            let at = grid.center(k % grid.width, k / grid.width);
-            if hidden(v, &plane.lift(at.x, at.y)) {
-                *gray = f32::NAN;
-            }
-        }
-        photo
-    };
-    compare(views.iter().map(photo), unlike(scene, &views), grid)
-}
-
-/// Positions along each side of the window at which views are asked whether they see it.
-const SAMPLES: usize = 6;
-
-/// The views to compare: at most [`MAX_VIEWS`], such that every part of the window is seen by as many as
-/// possible, frontal ones first. Crops of large photographs often show a part only.
-fn views_of_plane(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> Vec<ViewId> {
-    let candidates: Vec<Candidate> = (scene.view_ids())
-        .filter_map(|v| Candidate::new(v, scene.camera(v), plane, grid))
-        .collect();
-    let mut seen_by = [0u32; SAMPLES * SAMPLES];
-    let mut chosen: Vec<usize> = Vec::new();
-    while chosen.len() < MAX_VIEWS {
-        let best = (0..candidates.len())
-            .filter(|i| !chosen.contains(i))
-            .map(|i| (candidates[i].gain(&seen_by), i))
-            .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
-        let Some((_, best)) = best else { break };
-        let sees = candidates[best].sees.iter();
-        (seen_by.iter_mut().zip(sees)).for_each(|(n, sees)| *n += u32::from(*sees));
-        chosen.push(best);
-    }
-    chosen.into_iter().map(|i| candidates[i].view).collect()
-}
-
-/// A view that sees some of the window.
-struct Candidate {
-    view: ViewId,
-    /// Cosine of the angle between the plane's normal and the direction to the camera.
-    toward: f64,
-    sees: [bool; SAMPLES * SAMPLES],
-}
-
-impl Candidate {
-    fn new(view: ViewId, camera: &Camera, plane: &Plane, grid: &PlanGrid) -> Option<Self> {
-        let at = |fx: f64, fy: f64| {
-            let (x, y) = (fx * grid.width as f64, fy * grid.height as f64);
-            plane.lift(grid.origin.x + x * grid.step, grid.origin.y + y * grid.step)
-        };
-        let middle = at(0.5, 0.5);
-        let toward = (camera.center - middle).normalize().dot(&plane.normal);
-        let sees = std::array::from_fn(|k| {
-            let part = |i: usize| (i as f64 + 0.5) / SAMPLES as f64;
-            let p = at(part(k % SAMPLES), part(k / SAMPLES));
-            (camera.project(&p)).is_some_and(|x| camera.contains(&x, 1.0))
-        });
-        // A plane seen at a grazing angle (below 15 degrees) has no usable pixels.
-        (toward > 0.26 && sees.contains(&true)).then_some(Self { view, toward, sees })
-    }
-
-    /// What the view adds: less where others see the position already.
-    fn gain(&self, seen_by: &[u32]) -> f64 {
-        let seen = seen_by.iter().zip(&self.sees).filter(|(_, sees)| **sees);
-        self.toward * seen.map(|(n, _)| 1.0 / f64::from(1 + n * n)).sum::<f64>()
-    }
-}
-
-/// Variance by which the grey values of the views differ at random.
-fn unlike(scene: &Scene, views: &[ViewId]) -> f32 {
-    let sum: f64 = views.iter().map(|v| scene.view(*v).noise).sum();
-    let noise = UNLIKE * sum / views.len().max(1) as f64;
-    (noise * noise) as f32
 }
 
 #[cfg(test)]

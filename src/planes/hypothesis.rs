@@ -1,9 +1,10 @@
 //! Plane hypotheses ready to compete: a group, where it may reach, what the images say there, its lines.
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::Vector2;
 
 use super::grouping::Region;
 use super::grouping::{GroupingInput, PlaneGroup};
+use super::line_sides::{NEXT_TO, across, beside, crosses_surface};
 use super::plane_lines::{PlaneLine, lines_in_plane, rays_through_ends};
 use super::single_view::{Alone, seen_alone};
 use crate::execution::map_shared;
@@ -74,23 +75,6 @@ pub fn hypotheses(
         .collect()
 }
 
-/// Correlation and texture weight from which on a position clearly shows the plane's surface.
-pub const ON_SURFACE: f32 = 0.65;
-/// See [`ON_SURFACE`].
-pub const TEXTURED: f32 = 0.3;
-
-/// Does the plane's surface clearly go on at both sides of the line? Rows of tiles do that, borders do not.
-pub fn crosses_surface(map: &ConsistencyMap, line: &Segment3) -> bool {
-    [Side::Left, Side::Right].into_iter().all(|side| {
-        let seen = beside(map, line, side, NEXT_TO);
-        let on = seen
-            .iter()
-            .filter(|(c, w)| *c >= ON_SURFACE && *w >= TEXTURED)
-            .count();
-        !seen.is_empty() && on * 5 >= seen.len() * 4
-    })
-}
-
 /// Do the images, where they can tell, agree with the plane beside at least two of its lines?
 fn supported(
     input: &GroupingInput,
@@ -154,57 +138,18 @@ fn grid_beside(line: &Segment3, side: Side, step: f64) -> PlanGrid {
     PlanGrid::covering(low - half_window, high + half_window, step)
 }
 
-/// Horizontal unit vector across a line to a side.
-fn across(line: &Segment3, side: Side) -> Vector2<f64> {
-    let d = line.direction().xy().normalize();
-    match side {
-        Side::Left => Vector2::new(-d.y, d.x),
-        Side::Right => Vector2::new(d.y, -d.x),
-    }
-}
-
-/// How far beside a line it is looked, cells: farther than half a window.
-const NEXT_TO: f64 = 8.0;
 /// Mean texture weight below which a sweep may miss a half-plane. Measured: of the repeated planes of rendered scenes that became facets, false ones have
 /// 0.84 and more, 10 of 12 true ones less than 0.81; beside their lines the limit must be lower still.
 const WEAK: f64 = 0.65;
 /// Scatter of the mean correlation beside a line. Assumption: some ten independent windows.
 const SCATTER: f64 = 0.05;
 
-/// Correlation and weight at positions beside a line, some cells away from it.
-fn beside(map: &ConsistencyMap, line: &Segment3, side: Side, cells: f64) -> Vec<(f32, f32)> {
-    places_beside(&map.grid, line, side, cells)
-        .map(|k| (map.correlation(k), map.weight(k)))
-        .collect()
-}
-
-/// Positions of a grid (row by row) beside a line, some cells away from it.
-pub fn places_beside(
-    grid: &PlanGrid,
-    line: &Segment3,
-    side: Side,
-    cells: f64,
-) -> impl Iterator<Item = usize> + Clone {
-    let (a, b) = (line.p0.xy(), line.p1.xy());
-    let length = (b - a).norm();
-    let count = match length < 1e-6 {
-        true => 0.0,
-        false => (length / (3.0 * grid.step)).ceil(),
-    };
-    let across = across(line, side) * (cells * grid.step);
-    (0..count as usize).filter_map(move |i| {
-        let p: Point2<f64> = a + (b - a) * ((i as f64 + 0.5) / count) + across;
-        let (c, r) = grid.cell(&p)?;
-        Some(r * grid.width + c)
-    })
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::fixture::{Surface, scene};
     use super::super::grouping::Member;
     use super::super::grouping::line_neighbours;
     use super::super::grouping::propagated::half_plane;
+    use super::super::rendered_planes::{Surface, scene};
     use super::*;
     use crate::ids::HalfPlaneId;
     use crate::ids::LineId;

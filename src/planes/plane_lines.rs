@@ -224,7 +224,7 @@ fn common_line(
 
 #[cfg(test)]
 mod tests {
-    use super::super::fixture;
+    use super::super::rendered_planes;
     use super::*;
     use crate::testing::line;
     use nalgebra::Point3;
@@ -234,7 +234,7 @@ mod tests {
         let plane =
             Plane::from_point_normal(&Point3::new(0.0, 0.0, 6.0), &Vector3::z()).expect("upright");
         let ridge = line(Point3::new(-9.0, 0.0, 6.0), Point3::new(9.0, 0.0, 6.0));
-        (plane, fixture::region_beside(ridge, plane))
+        (plane, super::super::grouping::region_beside(ridge, plane))
     }
 
     /// The rays that views have through the ends of the parts of 3D lines that they show.
@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     fn segments_that_coincide_in_the_plane_make_a_line_and_those_above_it_do_not() {
-        let scene = fixture::scene(&[]);
+        let scene = rendered_planes::scene(&[]);
         let both: &[_] = &[IN_PLANE, ABOVE];
         let lines = found(&scene, &[both; 4]);
         assert_eq!(lines.len(), 1);
@@ -284,7 +284,7 @@ mod tests {
 
     #[test]
     fn two_views_are_enough_where_three_could_show_the_line() {
-        let mut scene = fixture::scene(&[]);
+        let mut scene = rendered_planes::scene(&[]);
         let one: &[_] = &[IN_PLANE];
         assert!(
             found(&scene, &[one, &[], one, &[]]).is_empty(),
@@ -302,7 +302,7 @@ mod tests {
 
     #[test]
     fn the_only_view_shows_a_line_where_the_surface_ends() {
-        let mut scene = fixture::scene(&[]);
+        let mut scene = rendered_planes::scene(&[]);
         let (plane, region) = plane_and_region();
         let one: &[_] = &[IN_PLANE];
         let found = |scene: &Scene, ends: bool| {
@@ -320,7 +320,7 @@ mod tests {
 
     #[test]
     fn a_line_reaches_as_far_as_two_views_show_it_or_the_only_one_that_could() {
-        let mut scene = fixture::scene(&[]);
+        let mut scene = rendered_planes::scene(&[]);
         scene.views.truncate(2);
         let [from, to] = IN_PLANE;
         let middle: [f64; 3] = std::array::from_fn(|i| 0.5 * (from[i] + to[i]));

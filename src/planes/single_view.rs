@@ -9,12 +9,12 @@ use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 
 use super::grouping::Region;
-use super::hypothesis::{ON_SURFACE, TEXTURED, places_beside};
+use super::line_sides::{ON_SURFACE, TEXTURED, places_beside};
 use crate::geometry::{Plane, Segment3};
 use crate::lines3d::Side;
 use crate::math::median;
 use crate::photoconsistency::ConsistencyMap;
-use crate::photoconsistency::FULL;
+use crate::photoconsistency::WINDOW_CELLS;
 use crate::photoconsistency::{BoxSum, HALF_WINDOW, RowSum};
 use crate::photoconsistency::{PlanGrid, orthophoto};
 use crate::raster::Channel;
@@ -180,7 +180,7 @@ fn window_means(photo: &[f32], grid: &PlanGrid) -> Vec<f32> {
             let known = row_of(y).map(|v| if v.is_finite() { *v } else { 0.0 });
             out.iter_mut().zip(known).for_each(|(o, v)| *o = v);
         });
-        let mean = |(sum, count): (&f32, &f32)| match *count > FULL - 0.5 {
+        let mean = |(sum, count): (&f32, &f32)| match *count > WINDOW_CELLS - 0.5 {
             true => sum / count,
             false => f32::NAN,
         };
@@ -265,7 +265,7 @@ impl Surface {
 
 #[cfg(test)]
 mod tests {
-    use super::super::fixture;
+    use super::super::rendered_planes;
     use super::*;
     use crate::photoconsistency::consistency_map;
     use crate::raster::Gray;
@@ -283,12 +283,12 @@ mod tests {
     /// Two views of a level roof from -9 m to [`END`]; `around` is what they show beside it, and the second does not reach
     /// beyond `reach` metres along x.
     fn scene(around: f32, reach: f64) -> Scene {
-        let surface = fixture::Surface {
+        let surface = rendered_planes::Surface {
             plane: roof(),
             exists: |x, _| x > -9.0 && x < END,
             texture: 0.2,
         };
-        let mut scene = fixture::scene(&[surface]);
+        let mut scene = rendered_planes::scene(&[surface]);
         scene.views.truncate(2);
         for (i, view) in scene.views.iter_mut().enumerate() {
             let (camera, shown) = (view.camera.clone(), view.gray.clone());
@@ -314,7 +314,7 @@ mod tests {
     /// How the views agree on the roof, beside a ridge through its middle, and what is seen alone of it.
     fn seen(scene: &Scene) -> (ConsistencyMap, Alone) {
         let ridge = line(Point3::new(-8.0, 0.0, 6.0), Point3::new(5.0, 0.0, 6.0));
-        let region = fixture::region_beside(ridge, roof());
+        let region = super::super::grouping::region_beside(ridge, roof());
         let grid = PlanGrid::covering(Point2::new(-9.0, -5.0), Point2::new(9.0, 5.0), 0.1);
         let map = consistency_map(scene, &roof(), &grid);
         let alone = seen_alone(scene, &roof(), &region, &map);

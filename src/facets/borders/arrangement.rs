@@ -9,7 +9,7 @@
 use nalgebra::{Point2, Vector2};
 use spade::{ConstrainedDelaunayTriangulation, Triangulation};
 
-use super::border_lines::Border;
+use super::border::Border;
 use crate::photoconsistency::PlanGrid;
 use crate::plan_index::PlanIndex;
 use crate::sorting::sort_by;
@@ -132,6 +132,17 @@ impl Arrangement {
             edges,
             open,
         }
+    }
+
+    /// For each cell the lowest of the connected cells that have its label.
+    pub fn components(&self, labels: &[u32]) -> Vec<usize> {
+        let mut sets = DisjointSets::new(self.cells);
+        for e in &self.edges {
+            if labels[e.left] == labels[e.right] {
+                sets.join(e.left, e.right);
+            }
+        }
+        (0..self.cells).map(|c| sets.find(c)).collect()
     }
 
     /// The cell under the centre of each grid cell; `u32::MAX` outside all triangles.
@@ -263,20 +274,20 @@ impl Snapper {
 }
 
 /// Union-find with path halving; the smaller index is the root.
-pub struct DisjointSets {
+struct DisjointSets {
     parent: Vec<usize>,
 }
 
 impl DisjointSets {
     /// `n` sets of one element.
-    pub fn new(n: usize) -> Self {
+    fn new(n: usize) -> Self {
         Self {
             parent: (0..n).collect(),
         }
     }
 
     /// The representative of the set of `i`.
-    pub fn find(&mut self, mut i: usize) -> usize {
+    fn find(&mut self, mut i: usize) -> usize {
         while self.parent[i] != i {
             self.parent[i] = self.parent[self.parent[i]];
             i = self.parent[i];
@@ -285,7 +296,7 @@ impl DisjointSets {
     }
 
     /// Makes the sets of `i` and `j` one.
-    pub fn join(&mut self, i: usize, j: usize) {
+    fn join(&mut self, i: usize, j: usize) {
         let (a, b) = (self.find(i), self.find(j));
         self.parent[a.max(b)] = a.min(b);
     }
@@ -293,7 +304,7 @@ impl DisjointSets {
 
 #[cfg(test)]
 mod tests {
-    use super::super::border_lines::BorderKind;
+    use super::super::border::BorderKind;
     use super::*;
 
     fn border(a: [f64; 2], b: [f64; 2]) -> Border {

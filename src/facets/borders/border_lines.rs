@@ -12,65 +12,15 @@
 //! their planes meet.
 
 use nalgebra::{Point2, Vector2};
-use serde::Serialize;
 
+use super::border::{Border, BorderKind};
 use super::extent::extent_lines;
-use crate::facets::labelling::ShiftableWindows;
 use crate::geometry::Segment3;
 use crate::lines3d::ThetaFrame;
 use crate::params::RoofParams;
-use crate::planes::Hypothesis;
-use crate::planes::MARGIN;
-use crate::planes::{GroupingInput, Member};
+use crate::photoconsistency::ShiftableWindows;
+use crate::planes::{GroupingInput, Hypothesis, MARGIN, Member};
 use crate::sorting::sort_by;
-
-/// Where a border line comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum BorderKind {
-    /// A reconstructed 3D line.
-    Real,
-    /// A line found in a plane.
-    InPlane,
-    /// Two planes meet there.
-    Intersection,
-    /// Hypothesised across the end of a line.
-    Closing,
-    /// The side of a rectangle (W96 3.6).
-    Rectangle,
-}
-
-/// A border line in plan, metres.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Border {
-    /// Where it comes from.
-    pub kind: BorderKind,
-    /// One end.
-    pub a: Point2<f64>,
-    /// The other end.
-    pub b: Point2<f64>,
-}
-
-impl Border {
-    /// Length in plan, metres.
-    pub fn length(&self) -> f64 {
-        (self.b - self.a).norm()
-    }
-
-    fn direction(&self) -> Vector2<f64> {
-        (self.b - self.a) / self.length().max(1e-12)
-    }
-
-    fn distance(&self, p: &Point2<f64>) -> f64 {
-        let d = self.direction();
-        (d.x * (p.y - self.a.y) - d.y * (p.x - self.a.x)).abs()
-    }
-
-    fn foot(&self, p: &Point2<f64>) -> Point2<f64> {
-        let d = self.direction();
-        self.a + d * (p - self.a).dot(&d)
-    }
-}
 
 /// A line within this distance of an intersection, metres, and this angle is the same line.
 const SAME_LINE: f64 = 0.3;

@@ -8,13 +8,11 @@
 
 use nalgebra::{Point2, Vector2};
 
-use super::border_lines::{Border, BorderKind};
-use crate::facets::labelling::ShiftableWindows;
+use super::border::{Border, BorderKind};
 use crate::geometry::Segment3;
 use crate::params::RoofParams;
-use crate::photoconsistency::WINDOW;
-use crate::planes::GroupingInput;
-use crate::planes::Hypothesis;
+use crate::photoconsistency::{ShiftableWindows, WINDOW};
+use crate::planes::{GroupingInput, Hypothesis};
 
 /// Width of a strip, metres: about a pixel of aerial photographs.
 const STRIP_M: f64 = 0.1;

@@ -1,6 +1,6 @@
 //! The best of all moves in which cells keep their plane or take a new one: a minimum cut.
 //!
-//! One expansion of [`super`]. Costs become integers, so that the cut is exact and the same on every machine.
+//! One expansion of [`super::expansion`]. Costs become integers, so that the cut is exact and the same on every machine.
 
 use super::flow::Flow;
 

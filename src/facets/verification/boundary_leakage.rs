@@ -10,11 +10,10 @@ use nalgebra::{Point2, Point3};
 
 use super::displaced_plane::{PROMINENT, prominence};
 use super::interior::{Inside, seen_inside};
-use super::{FacetRejection, RejectedFacet};
-use crate::facets::borders::Arrangement;
-use crate::facets::borders::lies_in;
+use super::rejection::{FacetRejection, RejectedFacet};
+use crate::facets::borders::{Arrangement, lies_in};
+use crate::facets::competing_planes::CompetingPlanes;
 use crate::facets::delineation::Outline;
-use crate::facets::reconstruct::Solver;
 use crate::geometry::{Segment3, clip, covered, mean_point};
 use crate::ids::ViewId;
 use crate::model::{Facet, Occluders};
@@ -33,34 +32,35 @@ const LEAST_PART_M2: f64 = 0.5;
 /// the next. Measured: parts that are beyond the roof have 13 and more, the corners of hips 3 and less.
 const LEAST_WEIGHT: f64 = WINDOW as f64;
 
-impl Solver {
-    /// The cells of a facet, itself verified, that lie beyond a line that bounds it and that the views do not bear out: of several such parts that
-    /// which they speak against most.
-    pub(crate) fn overreach(
-        &self,
-        facet: &Facet,
-        outline: &Outline,
-        occluders: &Occluders,
-        params: &RoofParams,
-    ) -> Option<(Vec<usize>, RejectedFacet)> {
-        let map = &self.maps[outline.plane as usize];
-        let hidden = self.hidden_by(occluders);
-        let in_plane = self.bounding.iter().filter(|l| lies_in(&facet.plane, l));
-        let parts = in_plane.filter_map(|line| Some((line, part_beyond(facet, line)?)));
-        let refused = parts.filter_map(|(line, part)| {
-            let least = params.min_correlation;
-            let (short, reason) = chance_inside(&self.scene, &part, map, &hidden, least)?;
-            Some((short, line, part, reason))
-        });
-        let (_, line, part, reason) = refused.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let cells = cells_beyond(line, &part, &outline.cells, &self.arrangement);
-        let refused = RejectedFacet {
-            group: outline.plane,
-            outline: part.outer,
-            reason,
-        };
-        (!cells.is_empty() && cells.len() < outline.cells.len()).then_some((cells, refused))
-    }
+/// The cells of a facet, itself verified, that lie beyond a line that bounds it and that the views do not bear out: of several such parts that
+/// which they speak against most.
+pub(crate) fn boundary_leakage(
+    competing: &CompetingPlanes,
+    facet: &Facet,
+    outline: &Outline,
+    occluders: &Occluders,
+    params: &RoofParams,
+) -> Option<(Vec<usize>, RejectedFacet)> {
+    let map = &competing.maps[outline.plane as usize];
+    let hidden = competing.hidden_by(occluders);
+    let in_plane = competing
+        .bounding
+        .iter()
+        .filter(|l| lies_in(&facet.plane, l));
+    let parts = in_plane.filter_map(|line| Some((line, part_beyond(facet, line)?)));
+    let refused = parts.filter_map(|(line, part)| {
+        let least = params.min_correlation;
+        let (short, reason) = chance_inside(&competing.scene, &part, map, &hidden, least)?;
+        Some((short, line, part, reason))
+    });
+    let (_, line, part, reason) = refused.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let cells = cells_beyond(line, &part, &outline.cells, &competing.arrangement);
+    let refused = RejectedFacet {
+        group: outline.plane,
+        outline: part.outer,
+        reason,
+    };
+    (!cells.is_empty() && cells.len() < outline.cells.len()).then_some((cells, refused))
 }
 
 /// By how much the views agree less than by chance inside a part of a facet that does not stand out either; `None` where the part is borne out. `map`

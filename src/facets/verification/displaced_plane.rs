@@ -7,8 +7,8 @@
 
 use nalgebra::{Point2, Point3, Vector2};
 
-use super::FacetRejection;
 use super::interior::{Inside, Interior, map_inside};
+use super::rejection::FacetRejection;
 use crate::geometry::Plane;
 use crate::ids::ViewId;
 use crate::math::larger;

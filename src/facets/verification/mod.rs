@@ -6,107 +6,27 @@
 mod boundary_leakage;
 mod displaced_plane;
 mod interior;
+mod rejection;
 mod vegetation;
 
-use std::collections::BTreeSet;
+pub(crate) use boundary_leakage::boundary_leakage;
+pub use rejection::{FacetRejection, RejectedFacet};
 
-use nalgebra::Point3;
-use serde::Serialize;
+use std::collections::BTreeSet;
 
 use self::displaced_plane::{prominence, stands_out};
 use self::interior::{Inside, Interior, seen_inside};
 use self::vegetation::{GREEN, excess_green};
 use super::borders::Arrangement;
+use super::competing_planes::CompetingPlanes;
 use super::delineation::Outline;
-use super::reconstruct::Solver;
 use crate::geometry::{Plane, mean_point};
-use crate::ids::ViewId;
 use crate::model::{Facet, Occluders};
 use crate::params::RoofParams;
 use crate::photoconsistency::WINDOW;
 use crate::planes::{ON_SURFACE, TEXTURED};
 use crate::scene::Scene;
 use crate::terrain::Ground;
-
-/// Why a facet was withdrawn.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FacetRejection {
-    /// Smaller than the least area.
-    TooSmall {
-        /// Sloped area, square metres.
-        area_m2: f64,
-    },
-    /// Windows fit into little of it, so that nothing but its edges speaks for it.
-    TooNarrow {
-        /// Side of the window, metres.
-        window_m: f64,
-    },
-    /// On the ground, or too little above it.
-    NearGround {
-        /// Height of its middle above the ground, metres.
-        height_m: f64,
-    },
-    /// Its low side lies on the ground: a bank, or the shadow of an eave, but no roof.
-    ReachesGround {
-        /// Height of its lowest corner above the ground, metres.
-        lowest_m: f64,
-    },
-    /// The views do not agree inside the outline.
-    Dissimilar {
-        /// Mean correlation inside the outline.
-        similarity: f64,
-    },
-    /// The views that nothing hides it from do not agree inside the outline.
-    Contradicted {
-        /// Mean correlation of all their pairs inside the outline.
-        similarity: f64,
-    },
-    /// Steep, without a half-plane, and the views that nothing hides it from agree inside it by chance at most: it spans from one edge to
-    /// a lower one across a gap.
-    Bridge {
-        /// Mean correlation of all their pairs inside the outline.
-        similarity: f64,
-    },
-    /// The views agree better inside the outline on the plane moved up or down, and the outline is not on lines on most sides.
-    Displaced {
-        /// How much better, in standard deviations.
-        sigmas: f64,
-    },
-    /// The part of a facet beyond a line that bounds it, on whose plane the views agree by chance at most there.
-    BeyondLine {
-        /// Mean correlation of all their pairs inside that part.
-        similarity: f64,
-    },
-    /// As green as plants, and a roof neither by its outline nor by its inside.
-    Vegetation {
-        /// (2 G - R - B) / (R + G + B).
-        excess_green: f64,
-    },
-    /// Inside the outline the views agree better on the plane of another group.
-    Outdone {
-        /// Index of that group.
-        by: u32,
-        /// How much better, in standard deviations.
-        sigmas: f64,
-    },
-    /// Too little of its outline lies on reconstructed lines, and the images do not clearly show it.
-    Unsupported {
-        /// tau_real, 0 to 1.
-        real_ratio: f64,
-    },
-}
-
-/// A withdrawn facet.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RejectedFacet {
-    /// Index of the group whose plane it has.
-    pub group: u32,
-    /// Its outline, metres, local frame.
-    pub outline: Vec<Point3<f64>>,
-    /// Why.
-    pub reason: FacetRejection,
-}
 
 /// Height above the ground that no eave is below, metres. Assumption: with a few decimetres for the ground's own error.
 const LOWEST_EAVE: f64 = 1.0;
@@ -193,117 +113,117 @@ pub(crate) fn tail_on_ground(
     (few && !low.is_empty()).then(|| low.into_iter().collect())
 }
 
-impl Solver {
-    /// Does the facet stay, between the other facets and over the ground? `colours` are the photographs as they were taken.
-    pub(crate) fn verify(
-        &self,
-        facet: &Facet,
-        outline: &Outline,
-        occluders: &Occluders,
-        ground: &Ground,
-        colours: &Scene,
-        params: &RoofParams,
-    ) -> Result<(), FacetRejection> {
-        is_placed_like_a_roof(facet, ground, params)?;
-        let map = &self.maps[outline.plane as usize];
-        let inside = Inside::of(facet, map);
-        if inside.is_narrow() {
-            return Err(FacetRejection::TooNarrow {
-                window_m: WINDOW as f64 * map.grid.step,
-            });
-        }
-        let interior = inside.sums(params.min_correlation);
-        let agreed = self.is_agreed_on(facet, outline, &interior, occluders, params);
-        let hidden = self.hidden_by(occluders);
-        let prominence =
-            |least_m: f64| prominence(&self.scene, facet, map.grid.step, least_m, &hidden);
-        stands_out(agreed, facet, &interior, prominence)?;
-        if let Some(excess_green) = vegetation(facet, &inside, &interior, colours) {
-            return Err(FacetRejection::Vegetation { excess_green });
-        }
-        if let Some((by, sigmas)) = self.outdone(outline, &inside) {
-            return Err(FacetRejection::Outdone { by, sigmas });
-        }
-        Ok(())
+/// Does the facet stay, between the other facets and over the ground? `colours` are the photographs as they were taken.
+pub(crate) fn verify(
+    competing: &CompetingPlanes,
+    facet: &Facet,
+    outline: &Outline,
+    occluders: &Occluders,
+    ground: &Ground,
+    colours: &Scene,
+    params: &RoofParams,
+) -> Result<(), FacetRejection> {
+    is_placed_like_a_roof(facet, ground, params)?;
+    let map = &competing.maps[outline.plane as usize];
+    let inside = Inside::of(facet, map);
+    if inside.is_narrow() {
+        return Err(FacetRejection::TooNarrow {
+            window_m: WINDOW as f64 * map.grid.step,
+        });
     }
+    let interior = inside.sums(params.min_correlation);
+    let agreed = is_agreed_on(competing, facet, outline, &interior, occluders, params);
+    let hidden = competing.hidden_by(occluders);
+    let prominence =
+        |least_m: f64| prominence(&competing.scene, facet, map.grid.step, least_m, &hidden);
+    stands_out(agreed, facet, &interior, prominence)?;
+    if let Some(excess_green) = vegetation(facet, &inside, &interior, colours) {
+        return Err(FacetRejection::Vegetation { excess_green });
+    }
+    if let Some((by, sigmas)) = better_plane(competing, outline, &inside) {
+        return Err(FacetRejection::Outdone { by, sigmas });
+    }
+    Ok(())
+}
 
-    /// Do the images agree inside a facet as much as they must, with what its outline shows?
-    fn is_agreed_on(
-        &self,
-        facet: &Facet,
-        outline: &Outline,
-        interior: &Interior,
-        occluders: &Occluders,
-        params: &RoofParams,
-    ) -> Result<(), FacetRejection> {
-        if interior.speaks_against() {
-            return Err(FacetRejection::Dissimilar {
-                similarity: interior.correlation / interior.weight,
-            });
-        }
-        // The better half of the pairs excuses the views in which something stands in front of the facet, and with them
-        // as many in which nothing does.
-        let doubtful = may_bridge(facet) && interior.is_doubtful();
-        if doubtful || interior.speaks_against_overall() {
-            let step = self.maps[outline.plane as usize].grid.step;
-            let hidden = self.hidden_by(occluders);
-            let seen = seen_inside(&self.scene, facet, step, &hidden, params.min_correlation);
-            let similarity = seen.overall / seen.weight;
-            if seen.speaks_against_overall() {
-                return Err(FacetRejection::Contradicted { similarity });
-            }
-            if doubtful && seen.is_by_chance() {
-                return Err(FacetRejection::Bridge { similarity });
-            }
-        }
-        // What little texture there is must not speak against the plane.
-        let (weight, least) = self.texture(outline);
-        let sloped_m2 = sloped_area(facet);
-        if facet.similarity * weight < least && weight > 0.1 * sloped_m2 {
-            return Err(FacetRejection::Dissimilar {
-                similarity: facet.similarity,
-            });
-        }
-        // Where the images show the surface itself, its outline need not lie on lines.
-        let shown = facet.similarity >= f64::from(ON_SURFACE)
-            && weight >= f64::from(TEXTURED) * sloped_m2 * facet.plane.normal.z;
-        if facet.real_ratio < params.min_real_ratio && !shown {
-            return Err(FacetRejection::Unsupported {
-                real_ratio: facet.real_ratio,
-            });
-        }
-        Ok(())
+/// Do the images agree inside a facet as much as they must, with what its outline shows?
+fn is_agreed_on(
+    competing: &CompetingPlanes,
+    facet: &Facet,
+    outline: &Outline,
+    interior: &Interior,
+    occluders: &Occluders,
+    params: &RoofParams,
+) -> Result<(), FacetRejection> {
+    if interior.speaks_against() {
+        return Err(FacetRejection::Dissimilar {
+            similarity: interior.correlation / interior.weight,
+        });
     }
+    // The better half of the pairs excuses the views in which something stands in front of the facet, and with them
+    // as many in which nothing does.
+    let doubtful = may_bridge(facet) && interior.is_doubtful();
+    if doubtful || interior.speaks_against_overall() {
+        let step = competing.maps[outline.plane as usize].grid.step;
+        let hidden = competing.hidden_by(occluders);
+        let seen = seen_inside(
+            &competing.scene,
+            facet,
+            step,
+            &hidden,
+            params.min_correlation,
+        );
+        let similarity = seen.overall / seen.weight;
+        if seen.speaks_against_overall() {
+            return Err(FacetRejection::Contradicted { similarity });
+        }
+        if doubtful && seen.is_by_chance() {
+            return Err(FacetRejection::Bridge { similarity });
+        }
+    }
+    // What little texture there is must not speak against the plane.
+    let (weight, least) = texture(competing, outline);
+    let sloped_m2 = sloped_area(facet);
+    if facet.similarity * weight < least && weight > 0.1 * sloped_m2 {
+        return Err(FacetRejection::Dissimilar {
+            similarity: facet.similarity,
+        });
+    }
+    // Where the images show the surface itself, its outline need not lie on lines.
+    let shown = facet.similarity >= f64::from(ON_SURFACE)
+        && weight >= f64::from(TEXTURED) * sloped_m2 * facet.plane.normal.z;
+    if facet.real_ratio < params.min_real_ratio && !shown {
+        return Err(FacetRejection::Unsupported {
+            real_ratio: facet.real_ratio,
+        });
+    }
+    Ok(())
+}
 
-    /// Which views other facets hide a point from.
-    pub(crate) fn hidden_by<'s>(
-        &'s self,
-        occluders: &'s Occluders,
-    ) -> impl Fn(ViewId, &Point3<f64>) -> bool + 's {
-        |view, point| occluders.hide(point, &self.scene.camera(view).center)
-    }
+/// The plane that could lie over a facet and that the views agree on clearly better inside it. A level plane through
+/// the ridges of two roofs has more edges than the roof between them, and little else.
+fn better_plane(
+    competing: &CompetingPlanes,
+    outline: &Outline,
+    inside: &Inside,
+) -> Option<(u32, f64)> {
+    let area = |plane: u32| -> f64 {
+        let evidence = (outline.cells.iter()).filter_map(|&c| competing.evidence.get(c, plane));
+        evidence.map(|e| e.area).sum()
+    };
+    let most = ALMOST_ALL * area(outline.plane);
+    let others = (0..competing.planes.len() as u32).filter(|p| *p != outline.plane);
+    let rivals = others.filter(|p| area(*p) >= most);
+    let best = rivals
+        .map(|p| (p, inside.advantage_of(&competing.maps[p as usize])))
+        .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))?;
+    (best.1 > CLEARLY).then_some(best)
+}
 
-    /// The plane that could lie over a facet and that the views agree on clearly better inside it. A level plane through
-    /// the ridges of two roofs has more edges than the roof between them, and little else.
-    fn outdone(&self, outline: &Outline, inside: &Inside) -> Option<(u32, f64)> {
-        let area = |plane: u32| -> f64 {
-            let evidence = (outline.cells.iter()).filter_map(|&c| self.evidence.get(c, plane));
-            evidence.map(|e| e.area).sum()
-        };
-        let most = ALMOST_ALL * area(outline.plane);
-        let others = (0..self.planes.len() as u32).filter(|p| *p != outline.plane);
-        let rivals = others.filter(|p| area(*p) >= most);
-        let best = rivals
-            .map(|p| (p, inside.advantage_of(&self.maps[p as usize])))
-            .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))?;
-        (best.1 > CLEARLY).then_some(best)
-    }
-
-    /// Texture weight over an outline, square metres, and its product with the least correlation.
-    fn texture(&self, outline: &Outline) -> (f64, f64) {
-        let evidence = (outline.cells.iter()).filter_map(|&c| self.evidence.get(c, outline.plane));
-        evidence.fold((0.0, 0.0), |(w, l), e| (w + e.weight, l + e.least))
-    }
+/// Texture weight over an outline, square metres, and its product with the least correlation.
+fn texture(competing: &CompetingPlanes, outline: &Outline) -> (f64, f64) {
+    let evidence = (outline.cells.iter()).filter_map(|&c| competing.evidence.get(c, outline.plane));
+    evidence.fold((0.0, 0.0), |(w, l), e| (w + e.weight, l + e.least))
 }
 
 #[cfg(test)]
@@ -311,10 +231,10 @@ mod tests {
     use super::super::borders::{Border, BorderKind};
     use super::interior::map_inside;
     use super::*;
-    use crate::ids::HalfPlaneId;
+    use crate::ids::{HalfPlaneId, ViewId};
     use crate::synthetic::gable_scene;
     use crate::testing;
-    use nalgebra::Vector3;
+    use nalgebra::{Point3, Vector3};
 
     const MIN_CORRELATION: f64 = 0.45;
 

@@ -4,10 +4,10 @@
 //! a plane propose it; what the images say beside them decides (`hypothesis`). Lines that are
 //! neighbours around a corner only are asked where the sweep found no half-plane between them.
 
+use super::coplanarity::{all_lie_in, fit_plane, lies_in_plane};
+use super::growth::{extend, infer_sides};
+use super::plane_group::{GroupingInput, PlaneGroup, member};
 use super::region::Region;
-use super::{
-    GroupingInput, PlaneGroup, all_lie_in, extend, fit_plane, infer_sides, lies_in_plane, member,
-};
 use crate::geometry::Plane;
 use crate::ids::HalfPlaneId;
 use crate::ids::LineId;

@@ -7,7 +7,8 @@
 //! Tried without gain: planes of the same slope that fall the other way or around the corner, as of gables and hips, and strong
 //! texture. The sweep seldom misses those, and parapets and gaps take more of them than roofs do.
 
-use super::{GroupingInput, PlaneGroup, by_strength, grow, infer_sides, merge_groups};
+use super::growth::{by_strength, grow, infer_sides, merge_groups};
+use super::plane_group::{GroupingInput, PlaneGroup};
 use crate::geometry::Plane;
 use crate::ids::HalfPlaneId;
 use crate::ids::LineId;

@@ -4,8 +4,8 @@ use nalgebra::{Point2, Vector2};
 use serde::{Deserialize, Serialize};
 use spade::{ConstrainedDelaunayTriangulation, Triangulation};
 
-use super::proposed::ProposedPlane;
-use super::{GroupingInput, PlaneGroup};
+use super::plane_group::{GroupingInput, PlaneGroup};
+use super::proposed_plane::ProposedPlane;
 use crate::geometry::{Plane, bounds};
 use crate::lines3d::Side;
 use crate::params::RoofParams;
@@ -160,12 +160,35 @@ fn is_inside(ring: &[Point2<f64>], p: &Point2<f64>) -> bool {
         && ((0..ring.len()).all(|i| side(i) > 0.0) || (0..ring.len()).all(|i| side(i) < 0.0))
 }
 
+/// What a plane may cover to both sides of a line in it.
+#[cfg(test)]
+pub(crate) fn region_beside(line: crate::lines3d::Line3d, plane: Plane) -> Region {
+    let member = |side| super::plane_group::Member {
+        line: crate::ids::LineId(0),
+        side: Some(side),
+        half_plane: None,
+    };
+    let group = PlaneGroup {
+        plane,
+        members: [Side::Left, Side::Right].map(member).to_vec(),
+        rectangles: Vec::new(),
+    };
+    let lines = [line];
+    let input = GroupingInput {
+        lines: &lines,
+        half_planes: &[],
+        neighbours: &super::neighbourhood::line_neighbours(&lines),
+        rectangles: &[],
+    };
+    Region::new(&input, &group, &RoofParams::default())
+}
+
 #[cfg(test)]
 mod tests {
     use nalgebra::Point3;
 
-    use super::super::Member;
     use super::super::neighbourhood::line_neighbours;
+    use super::super::plane_group::Member;
     use super::*;
     use crate::ids::LineId;
     use crate::testing::line;

@@ -332,7 +332,7 @@ fn most_textured(
 mod tests {
     use super::*;
     use crate::geometry::Plane;
-    use crate::planes::fixture::{Surface, scene};
+    use crate::planes::rendered_planes::{Surface, scene};
     use nalgebra::{Point3, Vector3};
 
     #[test]

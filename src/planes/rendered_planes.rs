@@ -2,16 +2,9 @@
 
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
-use super::grouping::Region;
-use super::grouping::line_neighbours;
-use super::grouping::{GroupingInput, Member, PlaneGroup};
 use crate::camera::Camera;
 use crate::geometry::Plane;
 use crate::geometry::rotation_from_axis_angle;
-use crate::ids::LineId;
-use crate::lines3d::Line3d;
-use crate::lines3d::Side;
-use crate::params::RoofParams;
 use crate::raster::Gray;
 use crate::scene::{Scene, View};
 
@@ -21,28 +14,6 @@ pub(crate) struct Surface {
     pub exists: fn(f64, f64) -> bool,
     /// Amplitude of the texture, 0 to 0.5.
     pub texture: f64,
-}
-
-/// What a plane may cover to both sides of a line in it.
-pub(crate) fn region_beside(line: Line3d, plane: Plane) -> Region {
-    let member = |side| Member {
-        line: LineId(0),
-        side: Some(side),
-        half_plane: None,
-    };
-    let group = PlaneGroup {
-        plane,
-        members: [Side::Left, Side::Right].map(member).to_vec(),
-        rectangles: Vec::new(),
-    };
-    let lines = [line];
-    let input = GroupingInput {
-        lines: &lines,
-        half_planes: &[],
-        neighbours: &line_neighbours(&lines),
-        rectangles: &[],
-    };
-    Region::new(&input, &group, &RoofParams::default())
 }
 
 /// Four views, 250 x 250 px of 0.1 m, in two strips flown in opposite directions.

@@ -6,8 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::facets::borders::Arrangement;
-use crate::facets::delineation::components;
+use super::borders::Arrangement;
 
 /// Labels in which no facet, and no hole within facets, has less than `min_area_m2` of plan area.
 pub fn without_islands(
@@ -52,7 +51,7 @@ struct Islands {
 
 impl Islands {
     fn new(arrangement: &Arrangement, labels: &[u32]) -> Self {
-        let of_cell = components(arrangement, labels);
+        let of_cell = arrangement.components(labels);
         let mut areas = BTreeMap::<usize, f64>::new();
         for (&island, area) in of_cell.iter().zip(&arrangement.areas) {
             *areas.entry(island).or_default() += area;
@@ -90,7 +89,7 @@ impl Islands {
 
 #[cfg(test)]
 mod tests {
-    use super::super::NO_PLANE;
+    use super::super::labelling::NO_PLANE;
     use super::*;
     use crate::facets::borders::{Border, BorderKind};
     use nalgebra::Point2;

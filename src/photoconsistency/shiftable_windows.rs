@@ -9,13 +9,11 @@
 //! All planes are judged by the same windows, wherever their own lines are. Were each shifted from its own lines alone,
 //! the plane with fewer lines would be asked less.
 
+use super::box_sum::{HALF_WINDOW, WINDOW};
+use super::consistency_map::{ConsistencyMap, least_correlation};
+use super::plan_grid::PlanGrid;
 use crate::geometry::Segment3;
-use crate::photoconsistency::HALF_WINDOW;
-use crate::photoconsistency::PlanGrid;
-use crate::photoconsistency::{ConsistencyMap, least_correlation};
 
-/// Cells along the side of a window.
-const WINDOW: usize = 2 * HALF_WINDOW + 1;
 /// How much of the texture counts that only the edge has, beside a side that is bare. Assumption: most of it, for there are as many bare roofs as
 /// bare streets. Measured: 0.6 and 0.7 give the same models, from 0.8 on roofs reach out over shaded gaps.
 const EDGE_SHARE: f64 = 0.6;

@@ -2,17 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Energy;
-use super::shiftable::ShiftableWindows;
-use crate::facets::borders::Arrangement;
-use crate::facets::borders::BorderCosts;
-use crate::facets::borders::LineIndex;
+use super::borders::{Arrangement, BorderCosts, LineIndex};
+use super::labelling::Energy;
 use crate::geometry::Plane;
 use crate::lines3d::ThetaFrame;
 use crate::math::larger;
 use crate::params::RoofParams;
-use crate::photoconsistency::ConsistencyMap;
-use crate::photoconsistency::PlanGrid;
+use crate::photoconsistency::{ConsistencyMap, PlanGrid, ShiftableWindows};
 use crate::planes::Hypothesis;
 use crate::planes::{GroupingInput, PlaneGroup};
 

@@ -5,7 +5,7 @@
 
 use wide::f32x8;
 
-use super::box_sum::{BoxSum, HALF_WINDOW, RowSum};
+use super::box_sum::{BoxSum, HALF_WINDOW, RowSum, WINDOW_CELLS};
 use super::consistency_map::{ConsistencyMap, MAX_VIEWS};
 use super::plan_grid::PlanGrid;
 use crate::math::larger;
@@ -65,8 +65,6 @@ pub fn compare(
     map
 }
 
-/// Cells of a window.
-pub const FULL: f32 = ((2 * HALF_WINDOW + 1) * (2 * HALF_WINDOW + 1)) as f32;
 /// Least variance that is not the rounding of a constant.
 const LEAST_VARIANCE: f32 = 1e-7;
 /// Cells that are looked at at once.
@@ -142,7 +140,7 @@ impl ViewWindows {
         let row_of = |y: usize| &gray[y * w..(y + 1) * w];
         let sums = (self.sum).next_row(line, |y, out| out.copy_from_slice(row_of(y)));
         for (mean, sum) in self.mean.iter_mut().zip(sums) {
-            *mean = sum / FULL;
+            *mean = sum / WINDOW_CELLS;
         }
         let squares = self.squares.next_row(line, |y, out| {
             for (o, g) in out.iter_mut().zip(row_of(y)) {
@@ -150,7 +148,7 @@ impl ViewWindows {
             }
         });
         for ((v, sum), m) in self.variance.iter_mut().zip(squares).zip(&self.mean) {
-            *v = larger(sum / FULL - m * m, 0.0);
+            *v = larger(sum / WINDOW_CELLS - m * m, 0.0);
         }
         if let Some(reach) = &mut self.reach {
             let inside = &reach.inside;
@@ -158,7 +156,11 @@ impl ViewWindows {
                 out.copy_from_slice(&inside[y * w..(y + 1) * w]);
             });
             for (v, count) in self.variance.iter_mut().zip(count) {
-                *v = if *count > FULL - 0.5 { *v } else { UNSEEN };
+                *v = if *count > WINDOW_CELLS - 0.5 {
+                    *v
+                } else {
+                    UNSEEN
+                };
             }
         } else if y < HALF_WINDOW || y + HALF_WINDOW >= grid.height || w <= 2 * HALF_WINDOW {
             self.variance.fill(UNSEEN);
@@ -202,7 +204,7 @@ impl PairWindows {
         let inverses = a.inverse_deviation.iter().zip(&b.inverse_deviation);
         let row = self.row.iter_mut().zip(sums);
         for (((c, sum), (mean_a, mean_b)), (by_a, by_b)) in row.zip(means).zip(inverses) {
-            let r = (sum / FULL - mean_a * mean_b) * (by_a * by_b);
+            let r = (sum / WINDOW_CELLS - mean_a * mean_b) * (by_a * by_b);
             *c = if r.is_nan() {
                 UNSEEN
             } else {

@@ -1,0 +1,107 @@
+//! The planes that compete for the plan, with all that facets on them are measured by.
+
+use nalgebra::Point3;
+
+use super::borders::{Arrangement, LINE_HEIGHT, LineIndex};
+use super::delineation::{Delineation, Outline};
+use super::evidence::Evidence;
+use crate::geometry::{Plane, Segment3};
+use crate::ids::{BuildingId, ViewId};
+use crate::model::{Facet, Occluders};
+use crate::photoconsistency::ConsistencyMap;
+use crate::planes::PlaneGroup;
+use crate::scene::Scene;
+
+/// The planes that compete for the plan, and what facets on them are verified by.
+pub struct CompetingPlanes {
+    pub evidence: Evidence,
+    pub arrangement: Arrangement,
+    pub planes: Vec<Plane>,
+    /// The real lines, by which the outlines are rated.
+    pub index: LineIndex,
+    /// How the views agree on each plane.
+    pub maps: Vec<ConsistencyMap>,
+    /// The lines that may bound a facet.
+    pub bounding: Vec<Segment3>,
+    /// With pixels about as wide as the cells of the maps.
+    pub scene: Scene,
+}
+
+impl CompetingPlanes {
+    /// The facet over an outline; its `building` is still unset (0).
+    pub fn facet(
+        &self,
+        outline: &Outline,
+        delineation: &Delineation,
+        groups: &[PlaneGroup],
+    ) -> Facet {
+        let plane = self.planes[outline.plane as usize];
+        let group = &groups[outline.plane as usize];
+        let lift = |ring: &Vec<usize>| -> Vec<Point3<f64>> {
+            ring.iter()
+                .map(|&v| delineation.vertices[v])
+                .map(|p| plane.lift(p.x, p.y))
+                .collect()
+        };
+        let (mut weight, mut correlation) = (0.0, 0.0);
+        for e in outline
+            .cells
+            .iter()
+            .filter_map(|&c| self.evidence.get(c, outline.plane))
+        {
+            weight += e.weight;
+            correlation += e.correlation;
+        }
+        Facet {
+            building: BuildingId(0),
+            plane,
+            outer: lift(&outline.outer),
+            holes: outline.holes.iter().map(lift).collect(),
+            similarity: if weight > 0.0 {
+                correlation / weight
+            } else {
+                0.0
+            },
+            real_ratio: self.real_ratio(outline, delineation),
+            lines: group.lines(),
+            half_planes: group.half_planes(),
+            rectangles: group.rectangles.clone(),
+        }
+    }
+
+    /// tau_real: the share of the outline on reconstructed lines, B99 4.3.
+    fn real_ratio(&self, outline: &Outline, delineation: &Delineation) -> f64 {
+        let plane = &self.planes[outline.plane as usize];
+        let (mut real, mut total) = (0.0, 0.0);
+        for (i, &v) in outline.outer.iter().enumerate() {
+            let a = delineation.vertices[v];
+            let b = delineation.vertices[outline.outer[(i + 1) % outline.outer.len()]];
+            let pieces = ((b - a).norm() / 0.25).ceil().max(1.0);
+            for k in 0..pieces as usize {
+                let (p, q) = (
+                    a + (b - a) * (k as f64 / pieces),
+                    a + (b - a) * ((k + 1) as f64 / pieces),
+                );
+                let z = plane.z_at(0.5 * (p.x + q.x), 0.5 * (p.y + q.y));
+                total += (q - p).norm();
+                if self
+                    .index
+                    .heights_along(&p, &q)
+                    .iter()
+                    .any(|h| (h - z).abs() < LINE_HEIGHT)
+                {
+                    real += (q - p).norm();
+                }
+            }
+        }
+        if total > 0.0 { real / total } else { 0.0 }
+    }
+
+    /// Which views other facets hide a point from.
+    pub fn hidden_by<'s>(
+        &'s self,
+        occluders: &'s Occluders,
+    ) -> impl Fn(ViewId, &Point3<f64>) -> bool + 's {
+        |view, point| occluders.hide(point, &self.scene.camera(view).center)
+    }
+}

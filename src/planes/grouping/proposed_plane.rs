@@ -1,0 +1,55 @@
+//! A plane that the other method proposes (W96 3.6).
+
+use nalgebra::{Point2, Point3};
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::{Plane, mean_point};
+use crate::params::RoofParams;
+
+/// A convex polygon in a plane.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProposedPlane {
+    /// Its index where it comes from.
+    pub index: u32,
+    /// The plane.
+    pub plane: Plane,
+    /// Corners, metres, counter-clockwise seen from above.
+    pub ring: Vec<Point3<f64>>,
+}
+
+impl ProposedPlane {
+    /// The sides in plan, metres.
+    pub fn sides(&self) -> impl Iterator<Item = [Point2<f64>; 2]> {
+        let n = self.ring.len();
+        (0..n).map(move |i| [self.ring[i].xy(), self.ring[(i + 1) % n].xy()])
+    }
+
+    /// Distance of a position from it in plan, metres; 0 inside.
+    pub fn distance(&self, p: &Point2<f64>) -> f64 {
+        let inside = |[a, b]: [Point2<f64>; 2]| (b - a).perp(&(p - a)) >= 0.0;
+        if self.sides().all(inside) {
+            return 0.0;
+        }
+        let from_side = |[a, b]: [Point2<f64>; 2]| {
+            let d = b - a;
+            let t = ((p - a).dot(&d) / d.norm_squared().max(1e-12)).clamp(0.0, 1.0);
+            (p - (a + d * t)).norm()
+        };
+        self.sides().map(from_side).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The middle of the corners.
+    pub(super) fn middle(&self) -> Point3<f64> {
+        mean_point(&self.ring)
+    }
+
+    /// Do its corners lie in a plane, as well as the lines of one plane do?
+    pub(super) fn lies_in(&self, plane: &Plane, params: &RoofParams) -> bool {
+        let far = 2.0 * params.coplanar_distance_m;
+        plane.angle_to(&self.plane) < params.coplanar_angle_deg.to_radians()
+            && self
+                .ring
+                .iter()
+                .all(|p| plane.signed_distance(p).abs() <= far)
+    }
+}

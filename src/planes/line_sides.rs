@@ -1,0 +1,63 @@
+//! What a photo-consistency map shows on both sides of a line.
+
+use nalgebra::{Point2, Vector2};
+
+use crate::geometry::Segment3;
+use crate::lines3d::Side;
+use crate::photoconsistency::{ConsistencyMap, PlanGrid};
+
+/// How far beside a line it is looked, cells: farther than half a window.
+pub const NEXT_TO: f64 = 8.0;
+/// Correlation and texture weight from which on a position clearly shows the plane's surface.
+pub const ON_SURFACE: f32 = 0.65;
+/// See [`ON_SURFACE`].
+pub const TEXTURED: f32 = 0.3;
+
+/// Does the plane's surface clearly go on at both sides of the line? Rows of tiles do that, borders do not.
+pub fn crosses_surface(map: &ConsistencyMap, line: &Segment3) -> bool {
+    [Side::Left, Side::Right].into_iter().all(|side| {
+        let seen = beside(map, line, side, NEXT_TO);
+        let on = seen
+            .iter()
+            .filter(|(c, w)| *c >= ON_SURFACE && *w >= TEXTURED)
+            .count();
+        !seen.is_empty() && on * 5 >= seen.len() * 4
+    })
+}
+
+/// Horizontal unit vector across a line to a side.
+pub fn across(line: &Segment3, side: Side) -> Vector2<f64> {
+    let d = line.direction().xy().normalize();
+    match side {
+        Side::Left => Vector2::new(-d.y, d.x),
+        Side::Right => Vector2::new(d.y, -d.x),
+    }
+}
+
+/// Correlation and weight at positions beside a line, some cells away from it.
+pub fn beside(map: &ConsistencyMap, line: &Segment3, side: Side, cells: f64) -> Vec<(f32, f32)> {
+    places_beside(&map.grid, line, side, cells)
+        .map(|k| (map.correlation(k), map.weight(k)))
+        .collect()
+}
+
+/// Positions of a grid (row by row) beside a line, some cells away from it.
+pub fn places_beside(
+    grid: &PlanGrid,
+    line: &Segment3,
+    side: Side,
+    cells: f64,
+) -> impl Iterator<Item = usize> + Clone {
+    let (a, b) = (line.p0.xy(), line.p1.xy());
+    let length = (b - a).norm();
+    let count = match length < 1e-6 {
+        true => 0.0,
+        false => (length / (3.0 * grid.step)).ceil(),
+    };
+    let across = across(line, side) * (cells * grid.step);
+    (0..count as usize).filter_map(move |i| {
+        let p: Point2<f64> = a + (b - a) * ((i as f64 + 0.5) / count) + across;
+        let (c, r) = grid.cell(&p)?;
+        Some(r * grid.width + c)
+    })
+}
