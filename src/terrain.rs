@@ -1,9 +1,10 @@
 //! Height of the ground from the images: a sweep of horizontal planes.
 //!
-//! Every view, reduced four times, is compared with the others on horizontal planes at steps of height
-//! (the same measure that verifies facets, `halfplane::consistency`). Each position takes the height at which the views
-//! agree best; the ground near a building is the lowest height that many positions around it share, since roofs and trees only rise above
-//! it and wrong matches share none. What is matched at about the height of the plane through those then settles the height.
+//! Every view, reduced four times, is compared with the others on horizontal planes at steps of
+//! height (the measure that verifies facets, [`crate::photoconsistency`]). Each position takes the
+//! height at which the views agree best; the ground near a building is the lowest height that many
+//! positions around it share, since roofs and trees only rise above it and wrong matches share
+//! none. What is matched at about the height of the plane through those then settles the height.
 
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
@@ -27,15 +28,16 @@ pub struct Ground {
     plane: Plane,
 }
 
-/// Blocks higher than this above the common plane show no ground, metres: lower than any eave. Assumption: the
-/// ground of one scene is nearly plane.
+/// Blocks higher than this above the common plane show no ground, metres: lower than any eave.
+/// Assumption: the ground of one scene is nearly plane.
 const STANDS_OUT: f64 = 1.0;
-/// Ground as a whole slopes less than this (normal's z of 8 degrees). Assumption: a steeper fit follows a roof.
+/// Ground as a whole slopes less than this (normal's z of 8 degrees). Assumption: a steeper fit
+/// follows a roof.
 const LEAST_LEVEL: f64 = 0.99;
 /// Cell of the ground grid, metres.
 const CELL: f64 = 5.0;
-/// Matched positions within this distance tell the ground height of a cell, metres: more than half
-/// the width of a building.
+/// Matched positions within this distance determine the ground height of a cell, metres: more than
+/// half the width of a building.
 const RADIUS: f64 = 18.0;
 /// Images are reduced by this factor for the sweep.
 const REDUCE: usize = 4;
@@ -44,12 +46,12 @@ const MAX_LEVELS: usize = 64;
 /// A position counts as matched from this correlation and texture weight on.
 const MIN_CORRELATION: f32 = 0.7;
 const MIN_WEIGHT: f32 = 0.5;
-/// Fewer matched positions tell no height.
+/// Fewer matched positions determine no height.
 const MIN_SAMPLES: usize = 30;
 /// Positions within this height share it, metres: as rough as ground is.
 const ONE_HEIGHT: f64 = 1.0;
-/// The ground has at least this share of the positions of the height that most share, which may be a roof's. Assumption: wrong
-/// matches on real photographs have up to a sixth.
+/// The ground has at least this share of the positions of the height that most share, which may be
+/// a roof's. Assumption: wrong matches on real photographs have up to a sixth.
 const LEAST_OF_MOST: f64 = 0.25;
 
 impl Ground {
@@ -70,14 +72,15 @@ impl Ground {
         low(&line.p0) && low(&line.p1)
     }
 
-    /// Sweeps the scene between the heights that its 3D lines span; the given height when there is one.
+    /// Sweeps the scene between the heights that its 3D lines span; the given height when there is
+    /// one.
     pub fn estimate(scene: &Scene, lines: &[Line3d]) -> Self {
         let segments: Vec<Segment3> = lines.iter().map(|l| l.segment).collect();
         Self::of_segments(scene, &segments, None)
     }
 
-    /// The same from 3D lines without their accuracy, swept between two heights where they are known: the lines may all
-    /// be those of a roof.
+    /// The same from 3D lines without their accuracy, swept between two heights where they are
+    /// known: the lines may all be those of a roof.
     pub fn of_segments(scene: &Scene, lines: &[Segment3], z_range: Option<[f64; 2]>) -> Self {
         if let Some(z) = scene.ground_z {
             return Self::level(z);
@@ -160,7 +163,8 @@ impl Ground {
         Point3::new(p.x, p.y, self.heights[k])
     }
 
-    /// Lays every block in the common plane, and then to the middle of what is matched around it at about that height.
+    /// Lays every block in the common plane, and then to the middle of what is matched around it at
+    /// about that height.
     fn settle(&mut self, samples: &[Point3<f64>]) {
         let plane = self.plane;
         let rise = |p: &Point3<f64>| p.z - plane.z_at(p.x, p.y);
@@ -205,8 +209,8 @@ fn level_plane(z: f64) -> Plane {
     }
 }
 
-/// The plane that most of the blocks lie in, or the lowest of those that at least half as many do: a town may have more flat
-/// roofs of one height than ground. `None` without blocks.
+/// The plane that most of the blocks lie in, or the lowest of those that at least half as many do:
+/// a town may have more flat roofs of one height than ground. `None` without blocks.
 fn common_plane(blocks: &[Point3<f64>]) -> Option<Plane> {
     const STARTS: usize = 10;
     const ROUNDS: usize = 10;
@@ -239,7 +243,7 @@ fn common_plane(blocks: &[Point3<f64>]) -> Option<Plane> {
     })
 }
 
-/// Does a matched position tell the height of the ground here?
+/// Is a matched position near enough to determine the ground height here?
 fn is_near(sample: &Point3<f64>, at: &Point2<f64>) -> bool {
     (sample.xy() - at).norm_squared() <= RADIUS * RADIUS
 }
@@ -287,7 +291,7 @@ fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3
         bound(f64::max, f64::NEG_INFINITY) + margin,
     );
     let grid = PlanGrid::covering(min, max, step);
-    // A window of many cells on end cannot be larger than what the views see: keep memory bounded.
+    // Bounds the memory of a window that a wrong line has stretched.
     if grid.width * grid.height > 4_000_000 {
         return Vec::new();
     }
@@ -332,7 +336,8 @@ fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3
     samples
 }
 
-/// Where the parabola through a correlation and those a level below and above it has its top, in levels.
+/// Where the parabola through a correlation and those a level below and above it has its top, in
+/// levels.
 fn top_between([below, above]: [Option<f64>; 2], at: f64) -> f64 {
     let (Some(below), Some(above)) = (below, above) else {
         return 0.0;
@@ -350,8 +355,8 @@ mod tests {
     use super::*;
     use crate::testing::uniform;
 
-    /// Matched positions half a metre apart on 60 m by 60 m: rough ground that slopes, a roof on two thirds of the
-    /// place around the middle, a few wrong matches below.
+    /// Matched positions half a metre apart on 60 m by 60 m: rough ground that slopes, a roof on
+    /// two thirds of the place around the middle, a few wrong matches below.
     fn samples() -> Vec<Point3<f64>> {
         let mut even = uniform(7);
         let mut samples = Vec::new();

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::refine::{Parting, RefineTrace, part_roofs, refine_roofs};
-use crate::facets::RoofEvidence;
+use crate::facets::FacetInput;
 use crate::facets::{FacetTrace, reconstruct_facets};
 use crate::ids::LineId;
 use crate::lines3d::{Line3d, Refutation};
@@ -43,10 +43,10 @@ pub struct Unrefined {
 /// Groups, delineates and verifies facets, refines the buildings and closes the solids.
 pub fn reconstruct_roofs(
     scene: &Scene,
-    evidence: &RoofEvidence,
+    evidence: &FacetInput,
     params: &RoofParams,
 ) -> (RoofModel, RoofTrace) {
-    let RoofEvidence { lines, ground, .. } = *evidence;
+    let FacetInput { lines, ground, .. } = *evidence;
     let (facets, facet_trace) = reconstruct_facets(scene, evidence, params);
     let below = |members: &[&Facet]| ground.below(members);
     // Refinement needs facets that share vertices, and moves them; so the solids are made again.

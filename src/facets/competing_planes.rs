@@ -4,7 +4,7 @@ use nalgebra::Point3;
 
 use super::borders::{Arrangement, LINE_HEIGHT, LineIndex};
 use super::delineation::{Delineation, Outline};
-use super::evidence::Evidence;
+use super::evidence::PlaneEvidence;
 use crate::geometry::{Plane, Segment3};
 use crate::ids::{BuildingId, ViewId};
 use crate::model::{Facet, Occluders};
@@ -14,7 +14,7 @@ use crate::scene::Scene;
 
 /// The planes that compete for the plan, and what facets on them are verified by.
 pub struct CompetingPlanes {
-    pub evidence: Evidence,
+    pub evidence: PlaneEvidence,
     pub arrangement: Arrangement,
     pub planes: Vec<Plane>,
     /// The real lines, by which the outlines are rated.
@@ -97,7 +97,7 @@ impl CompetingPlanes {
         if total > 0.0 { real / total } else { 0.0 }
     }
 
-    /// Which views other facets hide a point from.
+    /// The views from which other facets hide a point.
     pub fn hidden_by<'s>(
         &'s self,
         occluders: &'s Occluders,

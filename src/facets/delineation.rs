@@ -1,9 +1,9 @@
 //! Closed outlines of facets from labelled cells (B99 4.3, figures 22 and 23).
 //!
 //! Cells of one plane that touch form a facet; its outline runs along the cells' borders and may be
-//! concave or have holes. Where facets meet they share vertices. A vertex at which planes of about the same
-//! height meet is moved to where these planes really intersect, the counterpart of figure 22's "two close
-//! end points are replaced by the intersection of the two lines".
+//! concave or have holes. Where facets meet they share vertices. A vertex at which planes of about
+//! the same height meet is moved to where these planes really intersect, the counterpart of figure
+//! 22's "two close end points are replaced by the intersection of the two lines".
 
 use std::collections::BTreeMap;
 
@@ -188,7 +188,8 @@ fn rings(edges: &[(usize, usize)], vertices: &[Point2<f64>]) -> Vec<Vec<usize>> 
     rings
 }
 
-/// Of the edges that leave `at`, the one that turns most to the left: it bounds the same corner of the facet.
+/// Of the edges that leave `at`, the one that turns most to the left: it bounds the same corner of
+/// the facet.
 fn sharpest_left(
     previous: Option<usize>,
     at: usize,
@@ -259,8 +260,8 @@ fn inside(p: &Point2<f64>, ring: &[usize], vertices: &[Point2<f64>]) -> bool {
     })
 }
 
-/// Which vertices stay: junctions of borders, and bends of the chains between them (Douglas and Peucker 1973).
-/// Chains are shared by the facets on both sides, so both keep the same vertices.
+/// Which vertices stay: junctions of borders, and bends of the chains between them (Douglas and
+/// Peucker 1973). Chains are shared by the facets on both sides, so both keep the same vertices.
 fn corner_vertices(arrangement: &Arrangement, borders: &[BorderEdge]) -> Vec<bool> {
     let mut links: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for e in borders {
@@ -366,8 +367,9 @@ fn move_to_intersections(
     moved
 }
 
-/// The shortest solution of the normal equations `normal x = right` in the directions that they determine: planes that are nearly
-/// parallel do not tell where they meet. `None` if they determine none.
+/// The shortest solution of the normal equations `normal x = right` in the directions that they
+/// determine: planes that are nearly parallel do not tell where they meet. `None` if they determine
+/// none.
 fn least_squares_step(normal: &Matrix2<f64>, right: &Vector2<f64>) -> Option<Vector2<f64>> {
     /// Square of the least difference in slope: 5 %.
     const LEAST: f64 = 0.05 * 0.05;
@@ -390,7 +392,8 @@ fn common_point(p: &Point2<f64>, list: &[u32], planes: &[Plane]) -> Option<Point
         .map(|q| (q.z_at(p.x, p.y), q))
         .collect();
     sort_by(&mut at, |a, b| a.0.total_cmp(&b.0));
-    // Differences of neighbouring heights within a cluster: slope difference . step = - height difference.
+    // Differences of neighbouring heights within a cluster: slope difference . step = - height
+    // difference.
     let rows: Vec<(Vector2<f64>, f64)> = at
         .windows(2)
         .filter(|w| w[1].0 - w[0].0 < SAME_HEIGHT)

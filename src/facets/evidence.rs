@@ -1,4 +1,5 @@
-//! What images and lines say for each plane over each cell: the terms of the labelling energy.
+//! Evidence of images and lines for each plane over each cell: the data term of the labelling
+//! energy.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,10 +10,10 @@ use crate::lines3d::ThetaFrame;
 use crate::math::larger;
 use crate::params::RoofParams;
 use crate::photoconsistency::{ConsistencyMap, PlanGrid, ShiftableWindows};
-use crate::planes::Hypothesis;
+use crate::planes::PlaneHypothesis;
 use crate::planes::{GroupingInput, PlaneGroup};
 
-/// What the images say about one plane in one cell.
+/// Photo-consistency of one plane in one cell.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CellEvidence {
     /// Plan area seen with the plane's region over it, square metres.
@@ -23,16 +24,18 @@ pub struct CellEvidence {
     pub correlation: f64,
     /// The same for the correlation at which the plane is as good as none.
     pub least: f64,
-    /// Sum over the area of what one view says where it is alone, square metres.
-    pub alone: f64,
+    /// Sum of the single-view evidence over the area, square metres.
+    pub single_view: f64,
 }
 
-/// Least texture weight with which planes are compared with each other. What weak texture correlates by chance is the same for every plane
-/// at one place, so that it tells planes apart better than it tells a plane from none. Measured: from 1 on it is noise that decides between them.
+/// Least texture weight with which planes are compared with each other. Chance correlation is the
+/// same for every plane at one place, so that weak texture discriminates between planes better than
+/// between a plane and none. Measured: from 1 on it is noise that decides between them.
 const AMONG_PLANES: f64 = 0.5;
 
-/// What the looks of a surface in one view count, against perfect agreement of several. Assumption: half of what agreement mostly reaches beyond what is asked.
-const ALONE: f64 = 0.2;
+/// Weight of single-view evidence against perfect agreement of several views. Assumption: half of
+/// what agreement mostly reaches beyond the threshold.
+const SINGLE_VIEW_WEIGHT: f64 = 0.2;
 
 impl CellEvidence {
     /// Mean correlation of the texture; `None` without any.
@@ -40,7 +43,7 @@ impl CellEvidence {
         (self.weight > 0.0).then(|| self.correlation / self.weight)
     }
 
-    /// What it costs a plane of weak texture that another one correlates by `best`, beyond what its weight says.
+    /// Extra cost of a plane of weak texture where another one correlates by `best`.
     fn behind(&self, best: f64) -> f64 {
         let lacking = (AMONG_PLANES * self.area - self.weight).max(0.0);
         (self.mean_correlation()).map_or(0.0, |correlation| lacking * (best - correlation))
@@ -48,19 +51,20 @@ impl CellEvidence {
 }
 
 /// The evidence for every plane in every cell that it may cover.
-pub struct Evidence {
+pub struct PlaneEvidence {
     /// Per cell: (plane, evidence), ascending by plane.
     cells: Vec<Vec<(u32, CellEvidence)>>,
-    /// Per cell: what the ground costs a roof, from the sum of weight x (correlation - least correlation), square metres.
+    /// Per cell: what the ground costs a roof, from the sum of weight x (correlation - least
+    /// correlation), square metres.
     ground: Vec<f64>,
 }
 
-impl Evidence {
-    /// Sums each hypothesis' consistency map over the cells; `ground` are the maps of the ground plane at
-    /// a few heights, over `grid`.
+impl PlaneEvidence {
+    /// Sums each hypothesis' consistency map over the cells; `ground` are the maps of the ground
+    /// plane at a few heights, over `grid`.
     pub fn collect(
         input: &GroupingInput,
-        hypotheses: &[Hypothesis],
+        hypotheses: &[PlaneHypothesis],
         arrangement: &Arrangement,
         grid: &PlanGrid,
         ground: Option<&ConsistencyMap>,
@@ -83,16 +87,16 @@ impl Evidence {
         let mut cells = vec![Vec::new(); arrangement.cells];
         for (i, group_cells) in per_group.into_iter().enumerate() {
             for (cell, e) in group_cells {
-                // Most of the cell must lie in the plane's region and be seen. Samples are counted, not areas: a
-                // splinter has few, and its area says little about how many.
+                // Most of the cell must lie in the plane's region and be seen. Samples are counted,
+                // not areas: a splinter has few, and its area says little about how many.
                 let whole = f64::from(samples[cell]) * sample_m2;
                 if !arrangement.open[cell] && e.area >= 0.7 * whole {
                     cells[cell].push((i as u32, e));
                 }
             }
         }
-        let silent = |cell: usize| samples[cell] == 0 && !arrangement.open[cell];
-        cover_silent_cells(&mut cells, arrangement, silent);
+        let unsampled = |cell: usize| samples[cell] == 0 && !arrangement.open[cell];
+        cover_unsampled_cells(&mut cells, arrangement, unsampled);
         Self { cells, ground }
     }
 
@@ -122,8 +126,10 @@ impl Evidence {
                 (candidates.iter())
                     .map(|(plane, e)| {
                         // sum of weight x (least correlation - correlation): negative for a match.
-                        let mismatch = e.least - e.correlation + e.behind(best) - ALONE * e.alone;
-                        // "No plane" keeps the cost 0, so what speaks for the ground counts against roofs.
+                        let mismatch = e.least - e.correlation + e.behind(best)
+                            - SINGLE_VIEW_WEIGHT * e.single_view;
+                        // "No plane" keeps the cost 0, so evidence for the ground counts against
+                        // roofs.
                         (*plane, mismatch + ground)
                     })
                     .collect()
@@ -148,17 +154,16 @@ fn samples_of_cells(raster: &[u32], cells: usize) -> Vec<u32> {
     samples
 }
 
-/// Splinters between the samples say nothing for or against any plane: what may cover a cell beside one may
-/// cover it.
-fn cover_silent_cells(
+/// Slivers between the samples hold no evidence: what may cover a cell beside one may cover it.
+fn cover_unsampled_cells(
     cells: &mut [Vec<(u32, CellEvidence)>],
     arrangement: &Arrangement,
-    silent: impl Fn(usize) -> bool,
+    unsampled: impl Fn(usize) -> bool,
 ) {
     let mut planes: BTreeMap<usize, BTreeSet<u32>> = BTreeMap::new();
     for e in &arrangement.edges {
         for (cell, beside) in [(e.left, e.right), (e.right, e.left)] {
-            if silent(cell) {
+            if unsampled(cell) {
                 let around = cells[beside].iter().map(|c| c.0);
                 planes.entry(cell).or_default().extend(around);
             }
@@ -171,11 +176,13 @@ fn cover_silent_cells(
     }
 }
 
-/// How much of the ground's match counts. Assumption: most of it. Rows of tiles or seams that run along the parallax
-/// correlate at any height, so a match with the ground is weaker evidence than a half-plane's.
+/// How much of the ground's match counts. Assumption: most of it. Rows of tiles or seams that run
+/// along the parallax correlate at any height, so a match with the ground is weaker evidence than a
+/// half-plane's.
 const GROUND_SHARE: f64 = 0.8;
 
-/// How much of the ground's mismatch counts for roofs. Assumption: a quarter. What is no ground may be a tree.
+/// How much of the ground's mismatch counts for roofs. Assumption: a quarter. What is no ground may
+/// be a tree.
 const NOT_GROUND_SHARE: f64 = 0.25;
 
 /// What the ground explains at least as well as a roof could, per cell.
@@ -190,8 +197,8 @@ fn ground_evidence(
     let mut evidence = vec![0.0f64; cells];
     for (k, &cell) in raster.iter().enumerate().filter(|(_, c)| **c != u32::MAX) {
         let at = [k % map.grid.width, k / map.grid.width];
-        let judgement = windows.judge(map, at, params.min_correlation);
-        evidence[cell as usize] += judgement.gain() * area;
+        let observed = windows.evidence_at(map, at, params.min_correlation);
+        evidence[cell as usize] += observed.gain() * area;
     }
     evidence.into_iter().map(against_roofs).collect()
 }
@@ -206,7 +213,7 @@ fn against_roofs(agreement: f64) -> f64 {
 }
 
 fn sum_over_cells(
-    hypothesis: &Hypothesis,
+    hypothesis: &PlaneHypothesis,
     windows: &ShiftableWindows,
     raster: &[u32],
     grid: &PlanGrid,
@@ -233,9 +240,9 @@ fn sum_over_cells(
             }
             let cell = raster[r as usize * grid.width + c as usize];
             let k = row * window.width + column;
-            let alone = hypothesis.alone.says(k);
+            let single_view = hypothesis.single_view.at(k);
             if cell == u32::MAX
-                || (map.weight(k) == 0.0 && alone == 0.0)
+                || (map.weight(k) == 0.0 && single_view == 0.0)
                 || !region.contains(&window.center(column, row))
             {
                 continue;
@@ -246,23 +253,24 @@ fn sum_over_cells(
                 run = (cell, cells.get(&cell).copied().unwrap_or_default());
             }
             let e = &mut run.1;
-            e.alone += alone * area;
-            let judgement = windows.judge(map, [column, row], params.min_correlation);
-            let weight = judgement.weight * area;
+            e.single_view += single_view * area;
+            let observed = windows.evidence_at(map, [column, row], params.min_correlation);
+            let weight = observed.weight * area;
             e.area += area;
             e.weight += weight;
-            e.correlation += weight * judgement.correlation;
-            e.least += weight * judgement.least;
+            e.correlation += weight * observed.correlation;
+            e.least += weight * observed.least;
         }
     }
     store(&mut cells, run);
     cells
 }
 
-/// Metres of line beside each cell with a half-plane over it, of the group that has most: there is a roof, whichever.
+/// Metres of line beside each cell with a half-plane over it, of the group that has most: there is
+/// a roof, whichever.
 fn half_planes_over_cells(
     input: &GroupingInput,
-    hypotheses: &[Hypothesis],
+    hypotheses: &[PlaneHypothesis],
     raster: &[u32],
     grid: &PlanGrid,
 ) -> BTreeMap<usize, f64> {
@@ -317,9 +325,9 @@ mod tests {
     use crate::lines3d::Side;
     use crate::planes::HalfPlane;
     use crate::planes::Member;
-    use crate::planes::Region;
+    use crate::planes::PlanRegion;
     use crate::planes::line_neighbours;
-    use crate::planes::single_view::Alone;
+    use crate::planes::single_view::SingleViewEvidence;
     use crate::testing::line;
     use nalgebra::{Point2, Point3, Vector3};
 
@@ -389,18 +397,19 @@ mod tests {
         let metres = half_planes_of(&input, &group, &raster, &grid);
         assert_eq!(metres.keys().collect::<Vec<_>>(), [&1]);
         assert!((metres[&1] - 8.0).abs() < 1e-9);
-        let mut repeated = half_planes.clone();
-        repeated[0].views.clear();
+        let mut propagated = half_planes.clone();
+        propagated[0].views.clear();
         let input = GroupingInput {
-            half_planes: &repeated,
+            half_planes: &propagated,
             ..input
         };
         assert!(half_planes_of(&input, &group, &raster, &grid).is_empty());
     }
 
-    /// What the planes of a group with a half-plane and of one without cost over all cells, with a `gain` for the half-plane,
-    /// correlation and weight of the maps, and what one view says everywhere.
-    fn costs(gain: f64, correlation: i8, weight: u8, alone: i8) -> [f64; 2] {
+    /// What the planes of a group with a half-plane and of one without cost over all cells, with a
+    /// `gain` for the half-plane, correlation and weight of the maps, and what one view says
+    /// everywhere.
+    fn costs(gain: f64, correlation: i8, weight: u8, single_view: i8) -> [f64; 2] {
         let (lines, half_planes, group) = line_with_half_plane();
         let input = GroupingInput {
             lines: &lines,
@@ -421,9 +430,9 @@ mod tests {
             ..RoofParams::default()
         };
         let cells = grid.width * grid.height;
-        let hypotheses = [&group, &other].map(|g| Hypothesis {
+        let hypotheses = [&group, &other].map(|g| PlaneHypothesis {
             group: g.clone(),
-            region: Region::new(&input, g, &params),
+            region: PlanRegion::new(&input, g, &params),
             map: ConsistencyMap {
                 grid,
                 correlation: vec![correlation; cells],
@@ -431,11 +440,11 @@ mod tests {
                 weight: vec![weight; cells],
                 common_weight: vec![weight; cells],
             },
-            alone: Alone::everywhere(cells, alone),
+            single_view: SingleViewEvidence::everywhere(cells, single_view),
             lines: Vec::new(),
         });
         let windows = ShiftableWindows::new([], &grid);
-        let evidence = Evidence::collect(
+        let evidence = PlaneEvidence::collect(
             &input,
             &hypotheses,
             &arrangement,
@@ -462,8 +471,8 @@ mod tests {
     }
 
     #[test]
-    fn what_one_view_says_counts_where_it_is_alone() {
-        let [nothing, alike, unlike] = [0, 127, -127].map(|says| costs(0.0, 0, 0, says)[0]);
+    fn single_view_evidence_counts_where_nothing_else_does() {
+        let [nothing, alike, unlike] = [0, 127, -127].map(|value| costs(0.0, 0, 0, value)[0]);
         assert_eq!(nothing, 0.0, "nobody sees it");
         assert!(alike < -1.0 && (alike + unlike).abs() < 1e-9);
     }
@@ -475,7 +484,7 @@ mod tests {
             weight: 10.0 * weight,
             correlation: 10.0 * weight * correlation,
             least: 0.0,
-            alone: 0.0,
+            single_view: 0.0,
         };
         let (weak, strong) = (cell(0.1, 0.3), cell(0.9, 0.3));
         assert!((weak.behind(0.4) - 0.1 * (5.0 - 1.0)).abs() < 1e-12);
@@ -512,7 +521,7 @@ mod tests {
         let mut cells = vec![Vec::new(); arrangement.cells];
         cells[left] = vec![(3, seen), (7, seen)];
         cells[right] = vec![(4, seen)];
-        cover_silent_cells(&mut cells, &arrangement, |c| samples[c] == 0);
+        cover_unsampled_cells(&mut cells, &arrangement, |c| samples[c] == 0);
         let planes: Vec<u32> = cells[splinter].iter().map(|c| c.0).collect();
         assert_eq!(planes, [3, 4, 7]);
         assert!(cells[splinter].iter().all(|c| c.1.weight == 0.0));

@@ -1,13 +1,13 @@
-//! What facets are made of: the results of the stages before them.
+//! Input of the facet stage: the results of the stages before it.
 
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
 use crate::planes::{HalfPlane, ProposedPlane};
 use crate::terrain::Ground;
 
-/// What roofs are made of.
+/// Everything that facets are reconstructed from.
 #[derive(Clone, Copy, Debug)]
-pub struct RoofEvidence<'a> {
+pub struct FacetInput<'a> {
     /// Segments of each view, in the order of the views.
     pub segments: &'a [Vec<ImageSegment>],
     /// 3D lines.

@@ -1,8 +1,8 @@
 //! Islands of the labelling too small to be a facet or a hole (B99 4.3).
 //!
-//! Where texture is weak, a few cells take another plane than all around them, or none. Such an island is less
-//! than the least facet, so no verification could ever tell it from an error: it joins the neighbour with
-//! which it shares most of its border.
+//! Where texture is weak, a few cells take another plane than all around them, or none. Such an
+//! island is smaller than the least facet and cannot be verified: it joins the neighbour with which
+//! it shares most of its border.
 
 use std::collections::BTreeMap;
 

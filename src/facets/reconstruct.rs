@@ -1,9 +1,9 @@
 //! From half-planes to facets: the stage that orders B99 4.2 and 4.3.
 //!
-//! lines and half-planes -> groups -> regions, border lines -> plan cells -> consistency of every plane
-//! over its region -> labelling -> outlines -> verification. A facet that fails verification is
-//! withdrawn and its neighbours are decided again without it, as the paper updates the
-//! neighbours of a plane that is removed.
+//! lines and half-planes -> groups -> regions, border lines -> plan cells -> consistency of every
+//! plane over its region -> labelling -> outlines -> verification. A facet that fails verification
+//! is rejected and the labelling continues without it, as the paper updates the neighbours of a
+//! plane that is removed.
 
 use nalgebra::Point2;
 use serde::Serialize;
@@ -13,8 +13,8 @@ use super::borders::{
 };
 use super::competing_planes::CompetingPlanes;
 use super::delineation::delineate;
-use super::evidence::Evidence;
-use super::input::RoofEvidence;
+use super::evidence::PlaneEvidence;
+use super::input::FacetInput;
 use super::islands::without_islands;
 use super::labelling::Labelling;
 use super::verification::{
@@ -26,8 +26,8 @@ use crate::model::{Facet, Occluders};
 use crate::params::RoofParams;
 use crate::photoconsistency::{ConsistencyMap, PlanGrid, ShiftableWindows, consistency_map};
 use crate::planes::{
-    GroupingInput, Member, PlaneGroup, PlaneLine, Region, add_rectangles, group_planes,
-    group_repeated, hypotheses, is_wall, line_neighbours, with_repeated,
+    GroupingInput, Member, PlanRegion, PlaneGroup, PlaneLine, add_rectangles, group_planes,
+    group_propagated, is_wall, line_neighbours, plane_hypotheses, with_propagated,
 };
 use crate::scene::Scene;
 use crate::terrain::Ground;
@@ -43,18 +43,18 @@ pub struct FacetTrace {
     pub borders: Vec<Border>,
     /// Number of cells that the border lines cut the plan into.
     pub cells: usize,
-    /// Withdrawn facets.
+    /// Rejected facets.
     pub rejected: Vec<RejectedFacet>,
 }
 
-/// Facets from 3D lines and half-planes (B99 4.2, 4.3). Their `building` is still unset (0): facets that
-/// touch become buildings when walls are added.
+/// Facets from 3D lines and half-planes (B99 4.2, 4.3). Their `building` is still unset (0): facets
+/// that touch become buildings when walls are added.
 pub fn reconstruct_facets(
     scene: &Scene,
-    evidence: &RoofEvidence,
+    evidence: &FacetInput,
     params: &RoofParams,
 ) -> (Vec<Facet>, FacetTrace) {
-    let RoofEvidence {
+    let FacetInput {
         segments,
         lines,
         half_planes,
@@ -70,16 +70,16 @@ pub fn reconstruct_facets(
     };
     let mut groups: Vec<PlaneGroup> = group_planes(&input, params);
     groups.retain(|g| !is_wall(&g.plane) && !lies_on_ground(&input, g, ground, params));
-    let half_planes = with_repeated(&input, &groups, ground, params);
+    let half_planes = with_propagated(&input, &groups, ground, params);
     let input = GroupingInput {
         half_planes: &half_planes,
         ..input
     };
-    groups.extend(group_repeated(&input, params));
+    groups.extend(group_propagated(&input, params));
     add_rectangles(&input, &mut groups, params);
-    let regions: Vec<Region> = groups
+    let regions: Vec<PlanRegion> = groups
         .iter()
-        .map(|g| Region::new(&input, g, params))
+        .map(|g| PlanRegion::new(&input, g, params))
         .collect();
     let Some(grid) = plan_window(scene, lines, &regions) else {
         return (
@@ -97,13 +97,13 @@ pub fn reconstruct_facets(
         .fold(f64::INFINITY, f64::min);
     let reduced = scene.reduced(((grid.step / fine) as usize).max(1));
     let ground_map = ground_map(&reduced, ground, &grid);
-    let hypotheses = hypotheses(scene, &reduced, segments, &input, groups, grid.step, params);
+    let hypotheses = plane_hypotheses(scene, &reduced, segments, &input, groups, grid.step, params);
     let windows = ShiftableWindows::new(lines.iter().map(|l| l.segment), &grid);
     let bounding = bounding_lines(&input, &hypotheses, ground, params);
     let borders = border_lines(&input, &hypotheses, &bounding, &windows, params);
     let arrangement = Arrangement::new(&with_frame(&borders, &grid));
 
-    let evidence = Evidence::collect(
+    let evidence = PlaneEvidence::collect(
         &input,
         &hypotheses,
         &arrangement,
@@ -113,7 +113,7 @@ pub fn reconstruct_facets(
         params,
     );
     let groups: Vec<PlaneGroup> = (hypotheses.iter())
-        .map(|h| h.group.as_swept(&input))
+        .map(|h| h.group.without_propagated(&input))
         .collect();
     let (maps, plane_lines): (Vec<ConsistencyMap>, Vec<Vec<PlaneLine>>) =
         hypotheses.into_iter().map(|h| (h.map, h.lines)).unzip();
@@ -162,7 +162,7 @@ fn lies_on_ground(
 }
 
 /// The plan grid of the whole scene: the ground pixel as cell, the regions of all groups as window.
-fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[Region]) -> Option<PlanGrid> {
+fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[PlanRegion]) -> Option<PlanGrid> {
     let middle = lines.get(lines.len() / 2)?.at(0.5);
     let mut steps: Vec<f64> = scene
         .views
@@ -170,15 +170,15 @@ fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[Region]) -> Option<Pl
         .map(|v| v.camera.ground_pixel(&middle))
         .collect();
     let step = crate::math::median(&mut steps)?;
-    let [min, max] = bounds(regions.iter().flat_map(Region::bounds));
+    let [min, max] = bounds(regions.iter().flat_map(PlanRegion::bounds));
     let size = max - min;
     // Coarser cells for a very large window: at most 36 million.
     let step = step.max(FINEST_CELL).max((size.x * size.y / 36e6).sqrt());
     (size.x > 0.0 && size.y > 0.0 && step.is_finite()).then(|| PlanGrid::covering(min, max, step))
 }
 
-/// Similarity of the views on the ground. Its height is only known to a few decimetres: at every position the views may agree
-/// at the height that it has there or a step beside it.
+/// Similarity of the views on the ground. Its height is only known to a few decimetres: at every
+/// position the views may agree at the height that it has there or a step beside it.
 fn ground_map(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Option<ConsistencyMap> {
     const STEP: f64 = 0.3;
     let plane = ground.plane();
@@ -199,7 +199,8 @@ fn ground_map(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Option<Consist
     })
 }
 
-/// Finest cell, metres. Assumption: what a roof's border lines can be told apart by; sharper images are reduced.
+/// Finest cell, metres. Assumption: what a roof's border lines can be told apart by; sharper images
+/// are reduced.
 const FINEST_CELL: f64 = 0.06;
 
 /// The borders and a frame around the window, so that every cell that matters is closed.
@@ -241,7 +242,7 @@ fn solve(
         labelling.relabel(labels);
         let mut facets = Vec::new();
         let mut excluded: Vec<(u32, Vec<usize>)> = Vec::new();
-        // No roof, but no other plane may have their place: they stay in the labelling.
+        // On the ground no other plane may take their place: they stay in the labelling.
         let mut on_ground = Vec::new();
         let found: Vec<Facet> = (delineation.outlines.iter())
             .map(|outline| competing.facet(outline, &delineation, groups))
@@ -259,7 +260,7 @@ fn solve(
             .collect();
         for ((outline, facet), result) in delineation.outlines.iter().zip(found).zip(results) {
             let result = match result {
-                // The same holds for the whole of it.
+                // In the last round nothing would take the facet's place either.
                 Err(FacetRejection::Outdone { .. }) if round == ROUNDS => Ok(None),
                 result => result,
             };
@@ -310,7 +311,7 @@ fn solve(
 mod tests {
     use super::*;
     use crate::planes::ProposedPlane;
-    use crate::planes::rendered_planes::{Surface, scene};
+    use crate::planes::rendered_planes::{TexturedPlane, scene};
     use crate::testing::line;
     use nalgebra::{Point3, Vector3};
 
@@ -333,10 +334,11 @@ mod tests {
         }
     }
 
-    /// The facets of a flat roof of which one eave was matched, without a half-plane, with planes that are proposed for it.
+    /// The facets of a flat roof of which one eave was matched, without a half-plane, with planes
+    /// that are proposed for it.
     fn facets(rectangles: &[ProposedPlane]) -> Vec<Facet> {
         let on_roof = |x: f64, y: f64| x.abs() < 4.0 && y.abs() < 3.0;
-        let textured = |plane, exists| Surface {
+        let textured = |plane, exists| TexturedPlane {
             plane,
             exists,
             texture: 0.3,
@@ -349,7 +351,7 @@ mod tests {
             Point3::new(-4.0, -3.0, ROOF_Z),
             Point3::new(4.0, -3.0, ROOF_Z),
         );
-        let evidence = RoofEvidence {
+        let evidence = FacetInput {
             segments: &[],
             lines: &[eave],
             half_planes: &[],

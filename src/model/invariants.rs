@@ -1,4 +1,5 @@
-//! What every roof model must fulfil, whichever method made it. Tests call this after each pipeline run.
+//! Invariants of every roof model, whichever method made it; tests check them after each pipeline
+//! run.
 
 use std::collections::BTreeMap;
 
@@ -13,9 +14,9 @@ use crate::ids::BuildingId;
 use crate::ids::FacetId;
 use crate::sorting::sort_by;
 
-/// Faces of solids are planar within this distance, metres. Welding moves a corner by up to 1 mm in plan, and two
-/// steep roofs that meet there are welded in height by a few millimetres; writers of city models
-/// accept 1 cm.
+/// Faces of solids are planar within this distance, metres. Welding moves a corner by up to 1 mm in
+/// plan, and two steep roofs that meet there are welded in height by a few millimetres; writers of
+/// city models accept 1 cm.
 pub const PLANAR_M: f64 = 5e-3;
 
 /// Facets are planar within this distance, metres: their corners are computed from the plane.
@@ -84,7 +85,8 @@ pub enum Violation {
         /// The corner, metres.
         at: Point3<f64>,
     },
-    /// A ring of a face has fewer than three corners, touches or crosses itself, or refers to no corner.
+    /// A ring of a face has fewer than three corners, touches or crosses itself, or refers to no
+    /// corner.
     FaceRingNotSimple {
         /// The building.
         building: BuildingId,
@@ -141,7 +143,8 @@ pub fn check_invariants(model: &RoofModel) -> Vec<Violation> {
 impl Solid {
     /// Volume, m^3: positive when the faces look outwards.
     pub fn volume(&self) -> f64 {
-        // Divergence theorem: a third of the sum of (face centroid . vector area), about a near origin.
+        // Divergence theorem: a third of the sum of (face centroid . vector area), about a near
+        // origin.
         let Some(origin) = self.vertices.first() else {
             return 0.0;
         };

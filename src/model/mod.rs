@@ -1,4 +1,12 @@
 //! The roof model in which all methods end: planar facets, buildings, solids down to the ground.
+//!
+//! ```text
+//! roof_model  facets, buildings and their closed solids
+//! invariants  what every model must fulfil
+//! visibility  occlusion of points by roofs
+//! ```
+//!
+//! Invariant: [`check_invariants`] finds nothing in a model of any method.
 
 mod invariants;
 mod roof_model;

@@ -9,8 +9,8 @@ use crate::ids::FacetId;
 use crate::ids::HalfPlaneId;
 use crate::ids::LineId;
 
-/// Plan positions closer than this are one, metres. Ten times the step in which coordinates are written,
-/// so that no two corners of a solid become equal in a file.
+/// Plan positions closer than this are one, metres. Ten times the step in which coordinates are
+/// written, so that no two corners of a solid become equal in a file.
 pub const WELD_M: f64 = 1e-3;
 
 /// A planar roof facet.
@@ -76,8 +76,9 @@ pub struct SolidFace {
     pub rings: Vec<Vec<u32>>,
 }
 
-/// A closed polyhedron. Invariants: every edge of a ring is run through once in each direction by the
-/// rings of all faces together (closed, oriented 2-manifold); faces are planar within [`super::PLANAR_M`].
+/// A closed polyhedron. Invariants: every edge of a ring is run through once in each direction by
+/// the rings of all faces together (closed, oriented 2-manifold); faces are planar within
+/// [`super::PLANAR_M`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Solid {
     /// Corners, metres, local frame.

@@ -1,11 +1,11 @@
-//! What roofs hide: is there a roof between a point and a camera?
+//! Occlusion by roofs: is there one between a point and a camera?
 
 use nalgebra::{Point2, Point3};
 
 use super::roof_model::Facet;
 
-/// A roof hides what lies deeper below it, metres: a side must not be hide by its own facet, nor by a neighbour
-/// that is known to a few decimetres only.
+/// A roof hides what lies deeper below it, metres: a point must not be occluded by its own facet,
+/// nor by a neighbour known to a few decimetres only.
 const LEAST_DEPTH_M: f64 = 0.3;
 /// Step along the ray in plan, metres: finer than any roof.
 const STEP_M: f64 = 0.4;
@@ -32,7 +32,8 @@ impl<'a> Occluders<'a> {
         self.places(point, center).any(|p| self.covers(&p))
     }
 
-    /// The same where walls stand back below their eaves: a ray may pass under a roof for `overhang_m` in plan, but through none.
+    /// The same where walls stand back below their eaves: a ray may pass under a roof for
+    /// `overhang_m` in plan, but through none.
     pub fn hide_past_eaves(
         &self,
         point: &Point3<f64>,
@@ -110,7 +111,8 @@ mod tests {
         let roof = gable();
         let occluders = Occluders::new(&roof);
         let south = Point3::new(0.0, -1000.0, 1000.0);
-        // The gable reaches from y = -4 to 4, eaves at 6 m, ridge at 9 m; rays rise by a metre for a metre.
+        // The gable reaches from y = -4 to 4, eaves at 6 m, ridge at 9 m; rays rise by a metre for
+        // a metre.
         assert!(occluders.hide(&Point3::new(0.0, 5.0, 3.0), &south));
         assert!(!occluders.hide(&Point3::new(0.0, 9.0, 3.0), &south));
         assert!(!occluders.hide(&Point3::new(0.0, -6.0, 3.0), &south));
@@ -124,7 +126,8 @@ mod tests {
         let south = Point3::new(0.0, -1000.0, 1000.0);
         let hide =
             |y, z, overhang| occluders.hide_past_eaves(&Point3::new(0.0, y, z), &south, overhang);
-        // The wall stands back by 0.7 m below the eave at y = -4: one step of the ray is below the roof.
+        // The wall stands back by 0.7 m below the eave at y = -4: one step of the ray is below the
+        // roof.
         assert!(occluders.hide(&Point3::new(0.0, -3.3, 1.0), &south));
         assert!(!hide(-3.3, 1.0, 0.8) && hide(-3.3, 1.0, 0.2));
         assert!(hide(-1.0, 3.0, 0.8), "3 m to the wall");

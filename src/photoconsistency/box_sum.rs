@@ -1,7 +1,7 @@
 //! Sums over the window around every cell of a plan grid, by running sums, one row after the other.
 //!
-//! Only the rows of one window are kept: a plane is compared in many views, and rasters of all their sums would
-//! not stay near the processor.
+//! Only the rows of one window are kept: a plane is compared in many views, and rasters of all
+//! their sums would not stay near the processor.
 
 use super::plan_grid::PlanGrid;
 
@@ -16,8 +16,8 @@ pub const WINDOW_CELLS: f32 = (WINDOW * WINDOW) as f32;
 /// Rows of a window, and the one that leaves it.
 const KEPT_ROWS: usize = 2 * HALF_WINDOW + 2;
 
-/// Sum over the window around every cell, along rows and then along columns; windows that stick out of the
-/// grid are cut off.
+/// Sum over the window around every cell, along rows and then along columns; windows that stick out
+/// of the grid are cut off.
 pub struct BoxSum {
     width: usize,
     height: usize,
@@ -27,7 +27,7 @@ pub struct BoxSum {
     sums: Vec<f32>,
     /// Rows that have entered.
     entered: usize,
-    /// The next row to be asked for.
+    /// The next row to be returned.
     next: usize,
 }
 
@@ -71,8 +71,8 @@ impl BoxSum {
     }
 }
 
-/// Sums of 11 neighbours in a row, by doubling: 2, 4, 8, 8 + 2 + 1. No sum waits for the one before it,
-/// so the compiler adds many at once.
+/// Sums of 11 neighbours in a row, by doubling: 2, 4, 8, 8 + 2 + 1. No sum waits for the one before
+/// it, so the compiler adds many at once.
 pub struct RowSum {
     padded: Vec<f32>,
     two: Vec<f32>,

@@ -14,7 +14,8 @@ pub(crate) const MAX_VIEWS: usize = 6;
 pub struct ConsistencyMap {
     /// The window of the plan.
     pub grid: PlanGrid,
-    /// Correlation in steps of 1 / 127. A scene has hundreds of maps: a byte a value keeps them small.
+    /// Correlation in steps of 1 / 127. A scene has hundreds of maps: a byte a value keeps them
+    /// small.
     pub(crate) correlation: Vec<i8>,
     /// The same of all pairs.
     pub(crate) overall: Vec<i8>,
@@ -25,14 +26,14 @@ pub struct ConsistencyMap {
 }
 
 impl ConsistencyMap {
-    /// Mean of the better half of the pairwise correlations at cell `k` (row by row), -1 to 1; 0 where
-    /// the weight is 0.
+    /// Mean of the better half of the pairwise correlations at cell `k` (row by row), -1 to 1; 0
+    /// where the weight is 0.
     pub fn correlation(&self, k: usize) -> f32 {
         f32::from(self.correlation[k]) / 127.0
     }
 
-    /// At every cell the one of some maps of the same grid that the views agree best on, of those that `among` names for its
-    /// column and row. `None` without maps.
+    /// Of maps of one grid, at every cell the one with the highest correlation among those that
+    /// `among` selects for its column and row. `None` without maps.
     pub(crate) fn best_of(
         maps: &[Self],
         among: impl Fn(usize, usize) -> Range<usize>,
@@ -52,31 +53,33 @@ impl ConsistencyMap {
         Some(best)
     }
 
-    /// Mean of all pairwise correlations, whatever stands in front of the cell in some of the views.
+    /// Mean of all pairwise correlations, whatever stands in front of the cell in some of the
+    /// views.
     pub fn overall(&self, k: usize) -> f32 {
         f32::from(self.overall[k]) / 127.0
     }
 
-    /// How much the texture at cell `k` can tell, 0 to 1; 0 where fewer than two views see the window.
+    /// Texture weight of the window at cell `k`, 0 to 1; 0 where fewer than two views see the
+    /// window.
     pub fn weight(&self, k: usize) -> f32 {
         f32::from(self.weight[k]) / 255.0
     }
 
-    /// The same for the texture that most views show: what hides the cell in some of them has no say.
+    /// The same from the median of the views, which an occluder in some of them does not change.
     pub fn common_weight(&self, k: usize) -> f32 {
         f32::from(self.common_weight[k]) / 255.0
     }
 }
 
-/// What windows that hardly have anything in common correlate by, in the better half of the pairs. Measured: 0.2 to 0.4 on
-/// planes a metre beside the true ones.
+/// Chance correlation of unrelated windows, in the better half of the pairs. Measured: 0.2 to 0.4
+/// on planes a metre beside the true ones.
 const CHANCE: f64 = 0.3;
 
 /// The same of all pairs. Measured: 0.1 to 0.3.
 const CHANCE_OVERALL: f64 = 0.2;
 
-/// Correlation at which a plane is as good as no plane, for a texture `weight`: `textured` where the texture
-/// is strong, chance where there is none.
+/// Correlation at which a plane is as good as no plane, for a texture `weight`: `textured` where
+/// the texture is strong, chance where there is none.
 pub fn least_correlation(weight: f64, textured: f64) -> f64 {
     CHANCE + (textured - CHANCE) * weight
 }

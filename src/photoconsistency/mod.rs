@@ -1,19 +1,37 @@
-//! photoconsistency
+//! Photo-consistency: how well the views agree on a plane.
+//!
+//! Two measures, both of centred normalised cross-correlation. Beside a line the sweep correlates
+//! windows of one reference view with every other view under `H(theta)` (B99 4.1); over the plan all
+//! pairs of views are correlated on a plane at once (B99 4.3, verification).
+//!
+//! ```text
+//! line_side_strip       the neighbourhood of a line side, and how a view is warped into it
+//! windows               correlations of all windows of two strips by running sums
+//! plan_grid             a raster of plan positions, and the orthophoto of a view on a plane
+//! box_sum               sums over windows of the plan grid
+//! consistency_map       the photo-consistency map, and what windows correlate by chance
+//! pairwise_correlation  correlations of all pairs of orthophotos by running sums
+//! plane_consistency     view selection and the map of a plane over the image set
+//! shiftable_windows     windows that stay on one side of a line
+//! ```
+//!
+//! Invariant: nothing here knows lines of the model, half-planes or facets; a plane and a grid are
+//! all that a map needs.
 
 mod box_sum;
 mod consistency_map;
+mod line_side_strip;
 mod pairwise_correlation;
 mod plan_grid;
 mod plane_consistency;
 mod shiftable_windows;
-mod strip;
 mod windows;
 
 pub(crate) use box_sum::{BoxSum, HALF_WINDOW, RowSum, WINDOW, WINDOW_CELLS};
 pub use consistency_map::ConsistencyMap;
 pub(crate) use consistency_map::{least_correlation, least_overall};
+pub(crate) use line_side_strip::{LineSideStrip, StripPatch};
 pub use plan_grid::{PlanGrid, image_from_plan, orthophoto};
 pub use plane_consistency::{consistency_map, consistency_map_behind};
 pub(crate) use shiftable_windows::ShiftableWindows;
-pub(crate) use strip::{Patch, Strip};
-pub(crate) use windows::Windows;
+pub(crate) use windows::CorrelationWindows;

@@ -1,7 +1,8 @@
-//! Correlations of several views of a plane over the window around every cell (B99 4.3, verification).
+//! Correlations of several views of a plane over the window around every cell (B99 4.3,
+//! verification).
 //!
-//! All running sums advance together, row by row: what a row needs of six views and their fifteen pairs stays near
-//! the processor, whatever the size of the grid.
+//! All running sums advance together, row by row: what a row needs of six views and their fifteen
+//! pairs stays near the processor, whatever the size of the grid.
 
 use wide::f32x8;
 
@@ -10,11 +11,12 @@ use super::consistency_map::{ConsistencyMap, MAX_VIEWS};
 use super::plan_grid::PlanGrid;
 use crate::math::larger;
 
-/// Compares orthophotos on `grid` (row by row, NaN where a view does not reach), at most [`MAX_VIEWS`]; `unlike` is the
-/// variance by which the grey values of the views differ at random.
-pub fn compare(
+/// Compares orthophotos on `grid` (row by row, NaN where a view does not reach), at most
+/// [`MAX_VIEWS`]; `residual_variance` is the variance by which the grey values of the views differ
+/// at random.
+pub fn correlate_views(
     photos: impl Iterator<Item = Vec<f32>>,
-    unlike: f32,
+    residual_variance: f32,
     grid: &PlanGrid,
 ) -> ConsistencyMap {
     let cells = grid.width * grid.height;
@@ -47,8 +49,8 @@ pub fn compare(
                 (better * f32x8::splat(127.0)).round(),
                 (all * f32x8::splat(127.0)).round(),
                 seen,
-                weight_of(variance, unlike),
-                weight_of(median, unlike),
+                weight_of(variance, residual_variance),
+                weight_of(median, residual_variance),
             ]
             .map(|x| x.to_array());
             for (lane, x) in (start..grid.width.min(start + LANES)).enumerate() {
@@ -67,14 +69,14 @@ pub fn compare(
 
 /// Least variance that is not the rounding of a constant.
 const LEAST_VARIANCE: f32 = 1e-7;
-/// Cells that are looked at at once.
+/// Cells per SIMD register.
 const LANES: usize = 8;
 /// Pairs of [`MAX_VIEWS`] views.
 const MAX_PAIRS: usize = MAX_VIEWS * (MAX_VIEWS - 1) / 2;
-/// In place of a correlation or a variance, and below all of them: not seen.
+/// Marks a correlation or variance as not seen; below every real value.
 const UNSEEN: f32 = -4.0;
 
-/// A row of values that are not seen, as long as whole lanes.
+/// A row of unseen values, padded to whole registers.
 fn unseen_row(grid: &PlanGrid) -> Vec<f32> {
     vec![UNSEEN; grid.width.next_multiple_of(LANES)]
 }
@@ -215,8 +217,8 @@ impl PairWindows {
 }
 
 /// Weights of windows with these variances, in steps; 0 is kept for what is not seen at all.
-fn weight_of(variance: f32x8, unlike: f32) -> f32x8 {
-    let weight = variance / (variance + f32x8::splat(unlike));
+fn weight_of(variance: f32x8, residual_variance: f32) -> f32x8 {
+    let weight = variance / (variance + f32x8::splat(residual_variance));
     (weight * f32x8::splat(255.0)).round().fast_max(f32x8::ONE)
 }
 
@@ -294,7 +296,8 @@ impl Ranking {
         }
     }
 
-    /// The largest values of every lane, in descending order; behind [`Self::ranked`] the others, in none.
+    /// The largest values of every lane, in descending order; behind [`Self::ranked`] the others,
+    /// in none.
     fn rank(&self, columns: &mut Columns) {
         for [i, j] in &self.exchanges {
             // The remainder changes nothing; the compiler sees that both are inside.
@@ -304,7 +307,8 @@ impl Ranking {
         }
     }
 
-    /// Means of the better half of the pairs' correlations and of all of them, and the number of pairs that see the cell.
+    /// Means of the better half of the pairs' correlations and of all of them, and the number of
+    /// pairs that see the cell.
     fn agreement(&self, pairs: &[&[f32]], start: usize) -> [f32x8; 3] {
         let mut columns = columns(pairs, start);
         let (total, seen) = sum_of_seen(&columns[..self.columns]);
@@ -408,14 +412,14 @@ mod tests {
         };
         let part: Vec<f32> = (0..37 * 30).map(part).collect();
         let other: Vec<f32> = (0..37 * 30).map(|k| noise(k, 5)).collect();
-        let map = compare([whole.clone(), part].into_iter(), 1e-4, &grid);
+        let map = correlate_views([whole.clone(), part].into_iter(), 1e-4, &grid);
         for k in 0..37 * 30 {
             let (x, y) = (k % 37, k / 37);
             let seen = (17..32).contains(&x) && (5..25).contains(&y);
             assert_eq!(map.weight(k) > 0.0, seen, "at {x}, {y}");
             assert_eq!(map.correlation(k), if seen { 1.0 } else { 0.0 });
         }
-        let map = compare([whole, other].into_iter(), 1e-4, &grid);
+        let map = correlate_views([whole, other].into_iter(), 1e-4, &grid);
         for k in 0..37 * 30 {
             let whole_window = (5..32).contains(&(k % 37)) && (5..25).contains(&(k / 37));
             assert_eq!(map.weight(k) > 0.9, whole_window, "cell {k}");

@@ -7,7 +7,8 @@ use crate::camera::Camera;
 use crate::geometry::Plane;
 use crate::raster::{Gray, Outside, Warp};
 
-/// A window of plan positions; the centre of cell (column, row) is `origin + (column + 0.5, row + 0.5) step`.
+/// A window of plan positions; the centre of cell (column, row) is `origin + (column + 0.5, row +
+/// 0.5) step`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlanGrid {
     /// Least x and y, metres.
@@ -21,7 +22,8 @@ pub struct PlanGrid {
 }
 
 impl PlanGrid {
-    /// The grid that covers a box, aligned to multiples of `step` so that windows of one scene share cells.
+    /// The grid that covers a box, aligned to multiples of `step` so that windows of one scene
+    /// share cells.
     pub fn covering(min: Point2<f64>, max: Point2<f64>, step: f64) -> Self {
         let (c0, r0) = ((min.x / step).floor(), (min.y / step).floor());
         let (c1, r1) = ((max.x / step).ceil(), (max.y / step).ceil());
@@ -79,7 +81,8 @@ pub fn image_from_plan(camera: &Camera, plane: &Plane) -> Matrix3<f64> {
 }
 
 /// The image seen from straight above under the hypothesis that the surface is `plane`: grey values
-/// on the grid, NaN where the image does not reach, or everywhere when the plane rises to the camera within the grid.
+/// on the grid, NaN where the image does not reach, or everywhere when the plane rises to the
+/// camera within the grid.
 pub fn orthophoto(gray: &Gray, camera: &Camera, plane: &Plane, grid: &PlanGrid) -> Vec<f32> {
     let plan_from_grid = Matrix3::new(
         grid.step,

@@ -1,40 +1,46 @@
 //! Intensity similarity of a plane over the complete image set (B99 4.3, verification).
 //!
-//! B99 verifies a delineated face "by assessing intensity similarity over the complete image set, at
-//! corresponding points within the projected delineation". Here every view is warped to the plan by
-//! the plane under test, once; centred normalised cross-correlations of small windows over all pairs
-//! of views follow from running sums. Two deviations, both against failure on real roofs:
+//! B99 verifies a delineated face "by assessing intensity similarity over the complete image set,
+//! at corresponding points within the projected delineation". Here every view is warped to the plan
+//! by the plane under test, once; centred normalised cross-correlations of small windows over all
+//! pairs of views follow from running sums. Two deviations, both against failure on real roofs:
 //!
-//! * Occlusion: while planes compete nobody knows what hides them, so that at each plan position only the better half of the
-//!   pairs counts: one or two views in which something stands in front do not condemn a plane. Once there are facets, all
-//!   pairs are asked that see one past the others ([`consistency_map_behind`]).
-//! * Weak texture: where the grey values vary no more than the noise, correlation says nothing for or
-//!   against; each position carries the weight `s^2 / (s^2 + n^2)` with s the standard deviation
-//!   within the window and n that of the noise. It is also about what the views of a true plane correlate
-//!   by more than chance, so that as little is asked of them ([`least_correlation`]).
+//! * Occlusion: while planes compete nobody knows what hides them, so only the better half of the
+//!   pairs counts at each plan position: one or two occluded views do not reject a plane. Once
+//!   there are facets, all pairs of views that see one past the others count
+//!   ([`consistency_map_behind`]).
+//! * Weak texture: where the grey values vary no more than the noise, correlation says nothing for
+//!   or against; each position carries the weight `s^2 / (s^2 + n^2)` with s the standard deviation
+//!   within the window and n that of the noise. It is also about what the views of a true plane
+//!   correlate by beyond chance, so the threshold falls with it ([`least_correlation`]).
 
 use nalgebra::Point3;
 
 use super::consistency_map::{ConsistencyMap, MAX_VIEWS};
-use super::pairwise_correlation::compare;
+use super::pairwise_correlation::correlate_views;
 use super::plan_grid::{PlanGrid, orthophoto};
 use crate::camera::Camera;
 use crate::geometry::Plane;
 use crate::ids::ViewId;
 use crate::scene::Scene;
 
-/// What keeps two views of one surface from being alike, against the noise of a pixel: besides the noise, the sampling and
-/// the shading. Measured on true planes.
-const UNLIKE: f64 = 1.25;
+/// Standard deviation between two views of one surface over that of the pixel noise: sampling and
+/// shading add to the noise. Measured on true planes.
+const RESIDUAL_NOISE: f64 = 1.25;
 
 /// Compares all views on `plane` over `grid`.
 pub fn consistency_map(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> ConsistencyMap {
     let views = views_of_plane(scene, plane, grid);
     let photo = |&v: &ViewId| orthophoto(&scene.view(v).gray, scene.camera(v), plane, grid);
-    compare(views.iter().map(photo), unlike(scene, &views), grid)
+    correlate_views(
+        views.iter().map(photo),
+        residual_variance(scene, &views),
+        grid,
+    )
 }
 
-/// The same where something known stands in front of the plane: `hidden` says whether a view sees a point of it.
+/// The same with known occluders: `hidden` tells whether a point of the plane is occluded in a
+/// view.
 pub fn consistency_map_behind(
     scene: &Scene,
     plane: &Plane,
@@ -52,17 +58,21 @@ pub fn consistency_map_behind(
         }
         photo
     };
-    compare(views.iter().map(photo), unlike(scene, &views), grid)
+    correlate_views(
+        views.iter().map(photo),
+        residual_variance(scene, &views),
+        grid,
+    )
 }
 
-/// Positions along each side of the window at which views are asked whether they see it.
+/// Positions along each side of the window at which the visibility is sampled.
 const SAMPLES: usize = 6;
 
-/// The views to compare: at most [`MAX_VIEWS`], such that every part of the window is seen by as many as
-/// possible, frontal ones first. Crops of large photographs often show a part only.
+/// The views to compare: at most [`MAX_VIEWS`], such that every part of the window is seen by as
+/// many as possible, frontal ones first. Crops of large photographs often show a part only.
 fn views_of_plane(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> Vec<ViewId> {
-    let candidates: Vec<Candidate> = (scene.view_ids())
-        .filter_map(|v| Candidate::new(v, scene.camera(v), plane, grid))
+    let candidates: Vec<CandidateView> = (scene.view_ids())
+        .filter_map(|v| CandidateView::new(v, scene.camera(v), plane, grid))
         .collect();
     let mut seen_by = [0u32; SAMPLES * SAMPLES];
     let mut chosen: Vec<usize> = Vec::new();
@@ -79,41 +89,41 @@ fn views_of_plane(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> Vec<ViewId> 
     chosen.into_iter().map(|i| candidates[i].view).collect()
 }
 
-/// A view that sees some of the window.
-struct Candidate {
+/// A view that sees part of the window.
+struct CandidateView {
     view: ViewId,
     /// Cosine of the angle between the plane's normal and the direction to the camera.
-    toward: f64,
+    cosine: f64,
     sees: [bool; SAMPLES * SAMPLES],
 }
 
-impl Candidate {
+impl CandidateView {
     fn new(view: ViewId, camera: &Camera, plane: &Plane, grid: &PlanGrid) -> Option<Self> {
         let at = |fx: f64, fy: f64| {
             let (x, y) = (fx * grid.width as f64, fy * grid.height as f64);
             plane.lift(grid.origin.x + x * grid.step, grid.origin.y + y * grid.step)
         };
         let middle = at(0.5, 0.5);
-        let toward = (camera.center - middle).normalize().dot(&plane.normal);
+        let cosine = (camera.center - middle).normalize().dot(&plane.normal);
         let sees = std::array::from_fn(|k| {
             let part = |i: usize| (i as f64 + 0.5) / SAMPLES as f64;
             let p = at(part(k % SAMPLES), part(k / SAMPLES));
             (camera.project(&p)).is_some_and(|x| camera.contains(&x, 1.0))
         });
         // A plane seen at a grazing angle (below 15 degrees) has no usable pixels.
-        (toward > 0.26 && sees.contains(&true)).then_some(Self { view, toward, sees })
+        (cosine > 0.26 && sees.contains(&true)).then_some(Self { view, cosine, sees })
     }
 
-    /// What the view adds: less where others see the position already.
+    /// The gain in coverage: less where others see the position already.
     fn gain(&self, seen_by: &[u32]) -> f64 {
         let seen = seen_by.iter().zip(&self.sees).filter(|(_, sees)| **sees);
-        self.toward * seen.map(|(n, _)| 1.0 / f64::from(1 + n * n)).sum::<f64>()
+        self.cosine * seen.map(|(n, _)| 1.0 / f64::from(1 + n * n)).sum::<f64>()
     }
 }
 
-/// Variance by which the grey values of the views differ at random.
-fn unlike(scene: &Scene, views: &[ViewId]) -> f32 {
+/// Variance of the grey values of one surface point between views.
+fn residual_variance(scene: &Scene, views: &[ViewId]) -> f32 {
     let sum: f64 = views.iter().map(|v| scene.view(*v).noise).sum();
-    let noise = UNLIKE * sum / views.len().max(1) as f64;
+    let noise = RESIDUAL_NOISE * sum / views.len().max(1) as f64;
     (noise * noise) as f32
 }

@@ -1,36 +1,40 @@
-//! Windows beside lines: what a position is judged by where its own window lies across an edge.
+//! Shiftable windows: the support of a position whose own window lies across an edge.
 //!
-//! Within half a window of an edge every plane through it correlates alike, on the roof as well as beyond the
-//! eave, for the edge is all that such windows see. The shiftable windows of stereo matching (Bobick and Intille 1999)
-//! tell the sides apart: a position is judged by a window that holds it and stays on its side of the line. Here it is
-//! only when that window contradicts the plane that it counts in place of the position's own: where the sides are bare,
-//! the edge is still the best evidence there is, but it counts for less: it says the same of what is not the roof.
+//! Within half a window of an edge every plane through it correlates alike, on the roof as well as
+//! beyond the eave, for the edge is all that such windows see. The shiftable windows of stereo
+//! matching (Bobick and Intille 1999) tell the sides apart: a position is supported by a window
+//! that holds it and stays on its side of the line. Here that window replaces the position's own
+//! only when it contradicts the plane: where the sides are bare, the edge is still the best
+//! evidence, but with less weight, since it supports what is beyond the roof as well.
 //!
-//! All planes are judged by the same windows, wherever their own lines are. Were each shifted from its own lines alone,
-//! the plane with fewer lines would be asked less.
+//! All planes share the same windows, wherever their own lines are. If each were shifted from its
+//! own lines only, a plane with fewer lines would be tested less strictly.
 
 use super::box_sum::{HALF_WINDOW, WINDOW};
 use super::consistency_map::{ConsistencyMap, least_correlation};
 use super::plan_grid::PlanGrid;
 use crate::geometry::Segment3;
 
-/// How much of the texture counts that only the edge has, beside a side that is bare. Assumption: most of it, for there are as many bare roofs as
-/// bare streets. Measured: 0.6 and 0.7 give the same models, from 0.8 on roofs reach out over shaded gaps.
+/// Share of the edge's texture weight that counts on a bare side. Assumption: most of it, for there
+/// are as many bare roofs as bare streets. Measured: 0.6 and 0.7 give the same models, from 0.8 on
+/// roofs reach out over shaded gaps.
 const EDGE_SHARE: f64 = 0.6;
-/// In place of a shift: the position's own window, for there is no line in it, or no room beside the line.
+/// In place of a shift: the position's own window, for there is no line in it, or no room beside
+/// the line.
 const STAYS: u8 = (HALF_WINDOW * WINDOW + HALF_WINDOW) as u8;
 
 /// For every cell of a plan grid the nearest window that holds it and no line.
 pub struct ShiftableWindows {
     grid: PlanGrid,
-    /// Row by row: `(dy + 5) * 11 + dx + 5` for a window whose middle is dx columns and dy rows away.
+    /// Row by row: `(dy + 5) * 11 + dx + 5` for a window whose middle is dx columns and dy rows
+    /// away.
     shifts: Vec<u8>,
 }
 
-/// What the window says that a position is judged by.
+/// Correlation and texture weight of the window that supports a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Judgement {
-    /// How much its texture can tell, 0 to 1; 0 where fewer than two views see it.
+pub struct WindowEvidence {
+    /// Texture weight, 0 to 1; 0 where fewer than two views see it.
     pub weight: f64,
     /// How well the views agree, -1 to 1.
     pub correlation: f64,
@@ -38,7 +42,7 @@ pub struct Judgement {
     pub least: f64,
 }
 
-impl Judgement {
+impl WindowEvidence {
     fn of(map: &ConsistencyMap, k: usize, min_correlation: f64) -> Self {
         let weight = f64::from(map.weight(k));
         Self {
@@ -48,7 +52,7 @@ impl Judgement {
         }
     }
 
-    /// What it counts for the plane, or against it.
+    /// Its evidence for the plane; negative against it.
     pub fn gain(&self) -> f64 {
         self.weight * (self.correlation - self.least)
     }
@@ -67,19 +71,19 @@ impl ShiftableWindows {
         windows
     }
 
-    /// What the position of a cell of `map` is judged by; `min_correlation` is what strong texture must reach.
-    pub fn judge(
+    /// The window evidence at a cell of `map`; `min_correlation` is what strong texture must reach.
+    pub fn evidence_at(
         &self,
         map: &ConsistencyMap,
         [column, row]: [usize; 2],
         min_correlation: f64,
-    ) -> Judgement {
-        let of = |k| Judgement::of(map, k, min_correlation);
+    ) -> WindowEvidence {
+        let of = |k| WindowEvidence::of(map, k, min_correlation);
         let own = of(row * map.grid.width + column);
         let beside = self.window_of(&map.grid, [column, row]).map(of);
         match beside.filter(|beside| beside.weight > 0.0) {
             Some(contradicts) if contradicts.gain() < 0.0 => contradicts,
-            Some(bare) if bare.weight < own.weight => Judgement {
+            Some(bare) if bare.weight < own.weight => WindowEvidence {
                 weight: bare.weight + EDGE_SHARE * (own.weight - bare.weight),
                 ..own
             },
@@ -87,7 +91,8 @@ impl ShiftableWindows {
         }
     }
 
-    /// The cell of `part`, a window of the plan, in the middle of the shifted window of another; `None` where it stays.
+    /// The cell of `part`, a window of the plan, in the middle of the shifted window of another;
+    /// `None` where it stays.
     fn window_of(&self, part: &PlanGrid, [column, row]: [usize; 2]) -> Option<usize> {
         let (dc, dr) = part.offset_in(&self.grid);
         let inside = |at: usize, d: isize, size: usize| {
@@ -103,8 +108,8 @@ impl ShiftableWindows {
         Some(inside(row, dy, part.height)? * part.width + inside(column, dx, part.width)?)
     }
 
-    /// Gives the windows in `crossed` the shift to the nearest that is not, from neighbour to neighbour so that
-    /// none is found across a line.
+    /// Gives the windows in `crossed` the shift to the nearest that is not, from neighbour to
+    /// neighbour so that none is found across a line.
     fn shift(&mut self, on_line: &[bool], mut crossed: Vec<bool>) {
         let (w, h) = (self.grid.width, self.grid.height);
         let mut open: Vec<usize> = (0..w * h).filter(|&k| crossed[k] && !on_line[k]).collect();
@@ -235,11 +240,12 @@ mod tests {
         }
     }
 
-    fn judged(windows: &ShiftableWindows, map: &ConsistencyMap, at: [usize; 2]) -> f64 {
-        windows.judge(map, at, MIN_CORRELATION).correlation
+    fn correlation_at(windows: &ShiftableWindows, map: &ConsistencyMap, at: [usize; 2]) -> f64 {
+        windows.evidence_at(map, at, MIN_CORRELATION).correlation
     }
 
-    /// A roof in the rows below 20 with an eave along row 20: windows across the eave agree on both sides of it.
+    /// A roof in the rows below 20 with an eave along row 20: windows across the eave agree on both
+    /// sides of it.
     fn roof_with_eave(row: usize) -> f64 {
         if row < 20 + HALF_WINDOW { 0.9 } else { 0.1 }
     }
@@ -273,12 +279,21 @@ mod tests {
         let none = ShiftableWindows::new([], &grid());
         let eave = ShiftableWindows::new([line([0, 20], [59, 20])], &grid());
         for column in [0, 30, 59] {
-            assert!(judged(&none, &roof, [column, 23]) > 0.8, "by its edge");
+            assert!(
+                correlation_at(&none, &roof, [column, 23]) > 0.8,
+                "by its edge"
+            );
             for row in 21..=25 {
-                assert!(judged(&eave, &roof, [column, row]) < 0.2, "beyond, {row}");
+                assert!(
+                    correlation_at(&eave, &roof, [column, row]) < 0.2,
+                    "beyond, {row}"
+                );
             }
             for row in 10..=19 {
-                assert!(judged(&eave, &roof, [column, row]) > 0.8, "the roof, {row}");
+                assert!(
+                    correlation_at(&eave, &roof, [column, row]) > 0.8,
+                    "the roof, {row}"
+                );
             }
         }
     }
@@ -290,11 +305,14 @@ mod tests {
             |_, row| if row.abs_diff(20) <= 5 { 0.9 } else { 0.33 },
         );
         let eave = ShiftableWindows::new([line([0, 20], [59, 20])], &grid());
-        assert!(judged(&eave, &roof, [30, 17]) < 0.4, "texture contradicts");
+        assert!(
+            correlation_at(&eave, &roof, [30, 17]) < 0.4,
+            "texture contradicts"
+        );
         for row in (0..50).filter(|row: &usize| row.abs_diff(20) > 5) {
             roof.weight[row * 60..(row + 1) * 60].fill(10);
         }
-        let by_edge = eave.judge(&roof, [30, 17], MIN_CORRELATION);
+        let by_edge = eave.evidence_at(&roof, [30, 17], MIN_CORRELATION);
         assert!(by_edge.correlation > 0.8, "nothing does");
         // 10 of 255 are its side's own, 190 the edge's.
         assert!((by_edge.weight - (10.0 + 0.6 * 190.0) / 255.0).abs() < 1e-6);
@@ -325,11 +343,11 @@ mod tests {
         };
         let roof = map(part, |_, row| roof_with_eave(row + 12));
         let eave = ShiftableWindows::new([line([0, 20], [59, 20])], &grid());
-        assert!(judged(&eave, &roof, [15, 22 - 12]) < 0.2);
-        assert!(judged(&eave, &roof, [15, 18 - 12]) > 0.8);
+        assert!(correlation_at(&eave, &roof, [15, 22 - 12]) < 0.2);
+        assert!(correlation_at(&eave, &roof, [15, 18 - 12]) > 0.8);
         // The window beside the line lies outside of a lower map.
         let low = PlanGrid { height: 12, ..part };
         let roof = map(low, |_, row| roof_with_eave(row + 12));
-        assert!(judged(&eave, &roof, [15, 22 - 12]) > 0.8);
+        assert!(correlation_at(&eave, &roof, [15, 22 - 12]) > 0.8);
     }
 }

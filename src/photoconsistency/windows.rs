@@ -1,10 +1,10 @@
-//! Centred normalised cross-correlation `Cor` (B99 3.2, 4.1) of all windows of two patches by running
-//! sums.
+//! Centred normalised cross-correlation `Cor` (B99 3.2, 4.1) of all windows of two patches by
+//! running sums.
 //!
-//! Over the n pixels of a window, with a the reference and b the warped view,
-//! `Cor = (n Sab - Sa Sb) / sqrt((n Saa - Sa^2) (n Sbb - Sb^2))`. Column sums over the height of the
-//! window slide down the patch, one row in and one row out; a window is then the sum of 15 of them. The
-//! grey values are whole numbers (see [`super::strip`]), so every sum is exact.
+//! Over the n pixels of a window, with a the reference and b the warped view, `Cor = (n Sab - Sa
+//! Sb) / sqrt((n Saa - Sa^2) (n Sbb - Sb^2))`. Column sums over the height of the window slide down
+//! the patch, one row in and one row out; a window is then the sum of 15 of them. The grey values
+//! are whole numbers (see [`super::line_side_strip`]), so every sum is exact.
 //!
 //! Windows are cut at the border of the strip: B99 does not say what a window that crosses the line
 //! does, but its pixels beyond the line belong to another surface and would pull the peak away.
@@ -12,10 +12,10 @@
 use wide::bytemuck::cast;
 use wide::{f32x4, f32x8};
 
-use super::strip::Patch;
+use super::line_side_strip::StripPatch;
 
-/// Least variance of a window, in units of (1/510)^2: half a unit of standard deviation. Below it there
-/// is nothing but the rounding of the values.
+/// Least variance of a window, in units of (1/510)^2: half a unit of standard deviation. Below it
+/// there is nothing but the rounding of the values.
 const MIN_VARIANCE: f64 = 0.25;
 
 /// Units of the patches in the range of grey values.
@@ -38,13 +38,13 @@ pub(crate) struct Site {
 
 /// The reference patch with the windows that are correlated, and room for the running sums.
 #[derive(Clone, Debug)]
-pub(crate) struct Windows {
-    reference: Patch,
+pub(crate) struct CorrelationWindows {
+    reference: StripPatch,
     half: usize,
     /// Ordered by row, then column.
     pub sites: Vec<Site>,
     columns: ColumnSums,
-    /// Room for what the covariances of the sites are divided by the roots of.
+    /// Products of both scatters, whose roots divide the covariances of the sites.
     powers: Vec<f64>,
 }
 
@@ -62,10 +62,10 @@ const PADDING: usize = 8;
 /// Half of the largest window, without its centre: sums of 15 x 15 products are still exact.
 const MAX_HALF: usize = 7;
 
-impl Windows {
+impl CorrelationWindows {
     /// Windows of `window_px` (odd, at most 15) around pixels (column, row), which must be ordered
     /// by row; those without texture are left out.
-    pub fn new(reference: Patch, window_px: usize, pixels: &[(usize, usize)]) -> Self {
+    pub fn new(reference: StripPatch, window_px: usize, pixels: &[(usize, usize)]) -> Self {
         let half = (window_px / 2).min(MAX_HALF);
         let mut windows = Self {
             columns: ColumnSums::new(reference.stride),
@@ -83,7 +83,7 @@ impl Windows {
 
     /// `Cor` of every site with the same window of `warped`, -1 to 1, in the order of the sites; 0
     /// where `warped` has no texture.
-    pub fn correlate(&mut self, warped: &Patch, correlations: &mut Vec<f64>) {
+    pub fn correlate(&mut self, warped: &StripPatch, correlations: &mut Vec<f64>) {
         correlations.clear();
         self.powers.clear();
         self.columns.clear();
@@ -144,7 +144,8 @@ impl Site {
         self.scatter.sqrt() / self.count / UNITS
     }
 
-    /// `n Sab - Sa Sb` and `(n Saa - Sa^2) (n Sbb - Sb^2)`; 0 and 1 where the warped view has no texture.
+    /// `n Sab - Sa Sb` and `(n Saa - Sa^2) (n Sbb - Sb^2)`; 0 and 1 where the warped view has no
+    /// texture.
     fn moments(&self, [b, bb, ab]: [f64; 3]) -> [f64; 2] {
         let scatter = self.count * bb - b * b;
         if scatter <= MIN_VARIANCE * self.count * self.count {
@@ -188,8 +189,8 @@ impl ColumnSums {
         }
     }
 
-    /// `[Sb, Sbb, Sab]` over the columns that `mask` keeps of the sixteen from `column - 7` on. The sums
-    /// are whole numbers, so the order in which the lanes are added does not matter.
+    /// `[Sb, Sbb, Sab]` over the columns that `mask` keeps of the sixteen from `column - 7` on. The
+    /// sums are whole numbers, so the order in which the lanes are added does not matter.
     #[inline]
     fn window(&self, column: usize, mask: &[f32x8; 2]) -> [f64; 3] {
         let first = PADDING + column - MAX_HALF;
@@ -235,7 +236,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn patch(columns: usize, rows: usize, value: impl Fn(usize, usize) -> i32) -> Patch {
+    fn patch(columns: usize, rows: usize, value: impl Fn(usize, usize) -> i32) -> StripPatch {
         let stride = columns.next_multiple_of(8);
         let mut data = vec![0.0; stride * rows];
         for row in 0..rows {
@@ -243,7 +244,7 @@ mod tests {
                 data[row * stride + column] = value(column, row).clamp(-255, 255) as f32;
             }
         }
-        Patch {
+        StripPatch {
             columns,
             rows,
             stride,
@@ -252,7 +253,7 @@ mod tests {
     }
 
     /// The textbook formula: mean, deviation, product.
-    fn direct(a: &Patch, b: &Patch, column: usize, row: usize, half: usize) -> f64 {
+    fn direct(a: &StripPatch, b: &StripPatch, column: usize, row: usize, half: usize) -> f64 {
         let pixels: Vec<(f64, f64)> = (row.saturating_sub(half)..(row + half + 1).min(a.rows))
             .flat_map(|r| {
                 (column.saturating_sub(half)..(column + half + 1).min(a.columns))
@@ -292,7 +293,7 @@ mod tests {
             };
             let a = patch(columns, rows, |c, r| noise(c, r, 0));
             let b = patch(columns, rows, |c, r| (noise(c, r, 0) + noise(c, r, 17)) / 2);
-            let mut windows = Windows::new(a.clone(), 15, &all_pixels(columns, rows));
+            let mut windows = CorrelationWindows::new(a.clone(), 15, &all_pixels(columns, rows));
             let mut correlations = Vec::new();
             windows.correlate(&b, &mut correlations);
             prop_assert_eq!(correlations.len(), windows.sites.len());
@@ -310,7 +311,7 @@ mod tests {
         let a = patch(30, 20, |c, r| ((c * 5 + r * 11) % 23) as i32);
         let scaled = patch(30, 20, |c, r| ((c * 5 + r * 11) % 23) as i32 * 4 - 60);
         let inverted = patch(30, 20, |c, r| 50 - ((c * 5 + r * 11) % 23) as i32 * 2);
-        let mut windows = Windows::new(a, 15, &all_pixels(30, 20));
+        let mut windows = CorrelationWindows::new(a, 15, &all_pixels(30, 20));
         let mut correlations = Vec::new();
         windows.correlate(&scaled, &mut correlations);
         assert_eq!(correlations.len(), 600);
@@ -322,7 +323,7 @@ mod tests {
     #[test]
     fn windows_without_texture_are_left_out() {
         let a = patch(40, 10, |c, _| if c < 10 { (c % 3) as i32 } else { 7 });
-        let windows = Windows::new(a, 15, &[(4, 4), (30, 4)]);
+        let windows = CorrelationWindows::new(a, 15, &[(4, 4), (30, 4)]);
         assert_eq!(windows.sites.len(), 1);
         assert_eq!(windows.sites[0].column, 4);
     }

@@ -28,7 +28,7 @@ use crate::execution::{Known, map_shared, with_known};
 use crate::execution::{Listener, progress};
 use crate::export;
 use crate::export::export_all;
-use crate::facets::RoofEvidence;
+use crate::facets::FacetInput;
 use crate::linematch::{MatchTrace, match_lines};
 use crate::lines2d::{ImageSegment, SegmentTrace, detect_segments};
 use crate::lines3d::LineTrack;
@@ -286,7 +286,7 @@ impl Run {
                 let rectangles = r.rectangles.as_ref();
                 let rectangles =
                     rectangles.map_or_else(Vec::new, |found| proposed_planes(&found.trace));
-                let evidence = RoofEvidence {
+                let evidence = FacetInput {
                     segments,
                     lines,
                     half_planes,

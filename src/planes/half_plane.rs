@@ -40,7 +40,7 @@ pub struct HalfPlane {
 }
 
 impl HalfPlane {
-    /// Have views shown it? Otherwise it repeats the plane of a neighbour.
+    /// Was it found by the sweep? Otherwise its plane is propagated from a neighbour.
     pub(crate) fn is_swept(&self) -> bool {
         !self.views.is_empty()
     }

@@ -1,12 +1,12 @@
-//! Plane hypotheses ready to compete: a group, where it may reach, what the images say there, its lines.
+//! Plane hypotheses ready to compete: a group, its region, its photo-consistency and its lines.
 
 use nalgebra::Vector2;
 
-use super::grouping::Region;
+use super::grouping::PlanRegion;
 use super::grouping::{GroupingInput, PlaneGroup};
 use super::line_sides::{NEXT_TO, across, beside, crosses_surface};
 use super::plane_lines::{PlaneLine, lines_in_plane, rays_through_ends};
-use super::single_view::{Alone, seen_alone};
+use super::single_view::{SingleViewEvidence, single_view_evidence};
 use crate::execution::map_shared;
 use crate::geometry::{Segment3, bounds};
 use crate::lines2d::ImageSegment;
@@ -18,22 +18,22 @@ use crate::photoconsistency::{ConsistencyMap, consistency_map, least_correlation
 use crate::scene::Scene;
 
 /// A plane with its evidence.
-pub struct Hypothesis {
+pub struct PlaneHypothesis {
     /// Lines, half-planes and plane.
     pub group: PlaneGroup,
     /// The part of the plan that it may cover.
-    pub region: Region,
+    pub region: PlanRegion,
     /// Similarity of the views on the plane, over the region.
     pub map: ConsistencyMap,
-    /// What one view says over the region where it is alone.
-    pub alone: Alone,
+    /// Evidence from the only view of a position, over the region.
+    pub single_view: SingleViewEvidence,
     /// Lines found in the plane that may bound it.
     pub lines: Vec<PlaneLine>,
 }
 
-/// Compares the views (in `reduced`, whose pixels are about `step` wide) on every group's plane; planes of two lines that the images contradict beside their own lines
-/// are dropped.
-pub fn hypotheses(
+/// Compares the views (in `reduced`, whose pixels are about `step` wide) on every group's plane;
+/// planes of two lines that the images contradict beside their own lines are dropped.
+pub fn plane_hypotheses(
     scene: &Scene,
     reduced: &Scene,
     segments: &[Vec<ImageSegment>],
@@ -41,41 +41,44 @@ pub fn hypotheses(
     groups: Vec<PlaneGroup>,
     step: f64,
     params: &RoofParams,
-) -> Vec<Hypothesis> {
+) -> Vec<PlaneHypothesis> {
     let rays = rays_through_ends(scene, segments);
     let built = map_shared("planes", &groups, 0.2..0.6, |_, group| {
-        if group.is_repeated(input) && !borne_out(input, group, reduced, step, params) {
+        if group.is_propagated(input)
+            && !confirmed_beside_lines(input, group, reduced, step, params)
+        {
             return None;
         }
-        let region = Region::new(input, group, params);
+        let region = PlanRegion::new(input, group, params);
         let [min, max] = region.bounds();
         let map = consistency_map(reduced, &group.plane, &PlanGrid::covering(min, max, step));
         let proposed_by_lines = group.half_planes().is_empty() && group.rectangles.is_empty();
         if proposed_by_lines && !supported(input, group, &map, params) {
             return None;
         }
-        let alone = seen_alone(scene, &group.plane, &region, &map);
-        let ends_at = |edge: &Segment3| alone.ends_at(&map, edge);
+        let single_view = single_view_evidence(scene, &group.plane, &region, &map);
+        let ends_at = |edge: &Segment3| single_view.ends_at(&map, edge);
         let mut lines = lines_in_plane(scene, &rays, &group.plane, &region, ends_at);
         lines.retain(|l| !crosses_surface(&map, &l.segment));
-        Some((region, map, alone, lines))
+        Some((region, map, single_view, lines))
     });
     groups
         .into_iter()
         .zip(built)
         .filter_map(|(group, built)| {
-            built.map(|(region, map, alone, lines)| Hypothesis {
+            built.map(|(region, map, single_view, lines)| PlaneHypothesis {
                 group,
                 region,
                 map,
-                alone,
+                single_view,
                 lines,
             })
         })
         .collect()
 }
 
-/// Do the images, where they can tell, agree with the plane beside at least two of its lines?
+/// Where there is texture, are the views consistent with the plane beside at least two of its
+/// lines?
 fn supported(
     input: &GroupingInput,
     group: &PlaneGroup,
@@ -102,9 +105,9 @@ fn excess_and_weight(seen: &[(f32, f32)], params: &RoofParams) -> (f64, f64) {
     })
 }
 
-/// Do the images bear a repeated plane out beside its lines, as far as they can tell there? They must not be able to tell much, or the sweep would
-/// have found a half-plane.
-fn borne_out(
+/// Are the views consistent with a propagated plane beside its lines? Its texture must be weak, or
+/// the sweep would have found a half-plane.
+fn confirmed_beside_lines(
     input: &GroupingInput,
     group: &PlaneGroup,
     reduced: &Scene,
@@ -128,7 +131,7 @@ fn borne_out(
     excess > -SCATTER * weight && weight < WEAK * positions as f64
 }
 
-/// The plan beside a line as far as [`borne_out`] looks, with the half windows around.
+/// The plan beside a line that [`confirmed_beside_lines`] samples, with half a window around.
 fn grid_beside(line: &Segment3, side: Side, step: f64) -> PlanGrid {
     let ends = [line.p0.xy(), line.p1.xy()];
     let far = across(line, side) * (3.0 * NEXT_TO * step);
@@ -138,8 +141,9 @@ fn grid_beside(line: &Segment3, side: Side, step: f64) -> PlanGrid {
     PlanGrid::covering(low - half_window, high + half_window, step)
 }
 
-/// Mean texture weight below which a sweep may miss a half-plane. Measured: of the repeated planes of rendered scenes that became facets, false ones have
-/// 0.84 and more, 10 of 12 true ones less than 0.81; beside their lines the limit must be lower still.
+/// Mean texture weight below which a sweep may miss a half-plane. Measured: of the propagated
+/// planes of rendered scenes that became facets, false ones have 0.84 and more, 10 of 12 true ones
+/// less than 0.81; beside their lines the limit must be lower still.
 const WEAK: f64 = 0.65;
 /// Scatter of the mean correlation beside a line. Assumption: some ten independent windows.
 const SCATTER: f64 = 0.05;
@@ -149,7 +153,7 @@ mod tests {
     use super::super::grouping::Member;
     use super::super::grouping::line_neighbours;
     use super::super::grouping::propagated::half_plane;
-    use super::super::rendered_planes::{Surface, scene};
+    use super::super::rendered_planes::{TexturedPlane, scene};
     use super::*;
     use crate::ids::HalfPlaneId;
     use crate::ids::LineId;
@@ -158,17 +162,17 @@ mod tests {
     use nalgebra::Point3;
 
     #[test]
-    fn a_repeated_plane_is_borne_out_by_weak_texture_that_agrees_on_it() {
+    fn a_propagated_plane_is_confirmed_by_weak_texture_that_agrees_on_it() {
         let ridge = line(Point3::new(-5.0, 0.0, 8.0), Point3::new(5.0, 0.0, 8.0));
         let frame = ThetaFrame::new(&ridge.segment, Side::Left).expect("not vertical");
         let slope = |theta: f64| frame.plane(&ridge.segment, theta);
-        let roof = Surface {
+        let roof = TexturedPlane {
             plane: slope(-0.4),
             exists: |_, y| y > 0.0,
             texture: 0.3,
         };
         let mut scene = scene(&[roof]);
-        let mut borne_out_at = |theta: f64, noise: f64| {
+        let mut confirmed_at = |theta: f64, noise: f64| {
             scene.views.iter_mut().for_each(|view| view.noise = noise);
             let lines = [ridge.clone()];
             let half_planes = [half_plane(LineId(0), Side::Left, theta, slope(theta))];
@@ -187,10 +191,10 @@ mod tests {
                 }],
                 rectangles: Vec::new(),
             };
-            borne_out(&input, &group, &scene, 0.1, &RoofParams::default())
+            confirmed_beside_lines(&input, &group, &scene, 0.1, &RoofParams::default())
         };
-        assert!(borne_out_at(-0.4, 0.15), "drowned in noise, but there");
-        assert!(!borne_out_at(-0.4, 0.01), "the sweep would have found it");
-        assert!(!borne_out_at(0.6, 0.15), "the roof falls");
+        assert!(confirmed_at(-0.4, 0.15), "drowned in noise, but there");
+        assert!(!confirmed_at(-0.4, 0.01), "the sweep would have found it");
+        assert!(!confirmed_at(0.6, 0.15), "the roof falls");
     }
 }

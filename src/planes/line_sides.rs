@@ -6,14 +6,15 @@ use crate::geometry::Segment3;
 use crate::lines3d::Side;
 use crate::photoconsistency::{ConsistencyMap, PlanGrid};
 
-/// How far beside a line it is looked, cells: farther than half a window.
+/// Distance from a line at which its sides are sampled, cells: farther than half a window.
 pub const NEXT_TO: f64 = 8.0;
 /// Correlation and texture weight from which on a position clearly shows the plane's surface.
 pub const ON_SURFACE: f32 = 0.65;
 /// See [`ON_SURFACE`].
 pub const TEXTURED: f32 = 0.3;
 
-/// Does the plane's surface clearly go on at both sides of the line? Rows of tiles do that, borders do not.
+/// Does the plane's surface clearly continue on both sides of the line? Rows of tiles do that,
+/// borders do not.
 pub fn crosses_surface(map: &ConsistencyMap, line: &Segment3) -> bool {
     [Side::Left, Side::Right].into_iter().all(|side| {
         let seen = beside(map, line, side, NEXT_TO);

@@ -1,15 +1,16 @@
-//! New lines in a plane: image segments of several views that coincide when cast onto it.
+//! New lines in a plane: image segments of several views that coincide when projected onto it.
 //!
-//! An eave above moving ground, or a rake in weak contrast, is often missed by line matching although every
-//! view shows a segment there. Once a half-plane is known, casting each view's segments onto its plane is a
-//! test that needs no correlation: segments of true lines in the plane fall onto each other, those of anything
-//! above or below it are driven apart by parallax. (B99 5 asks to combine the single-line method with the
-//! grouping of coplanar lines; this is the cheaper direction of that combination, plane first.)
+//! An eave above moving ground, or a rake in weak contrast, is often missed by line matching
+//! although every view shows a segment there. Once a half-plane is known, casting each view's
+//! segments onto its plane is a test that needs no correlation: segments of true lines in the plane
+//! fall onto each other, those of anything above or below it are driven apart by parallax. (B99 5
+//! asks to combine the single-line method with the grouping of coplanar lines; this is the cheaper
+//! direction of that combination, plane first.)
 
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::grouping::Region;
+use super::grouping::PlanRegion;
 use crate::camera::Camera;
 use crate::geometry::{Plane, Segment3};
 use crate::ids::ViewId;
@@ -29,13 +30,14 @@ pub struct PlaneLine {
 
 /// Views that must show a line, ...
 const MIN_VIEWS: usize = 3;
-/// ... and where so few have the place in their image, ...
+/// ... and where no more than these have the place in their image, ...
 const FEW: usize = 3;
-/// ... those that must show it there. Measured on rendered scenes: of pairs of segments that meet by chance one in four lies on a roof's edge where six
-/// views could show it, one in two where three could.
+/// ... those that must show it there. Measured on rendered scenes: of pairs of segments that meet
+/// by chance one in four lies on a roof's edge where six views could show it, one in two where
+/// three could.
 const MIN_OF_FEW: usize = 2;
-/// Shortest line that one view shows where it is alone, metres. Assumption: shorter ones bound no facet.
-const LEAST_ALONE_M: f64 = 1.0;
+/// Shortest line from the only view of a place, metres. Assumption: shorter ones bound no facet.
+const LEAST_SINGLE_VIEW_M: f64 = 1.0;
 /// Segments cast onto the plane belong to one line within this many ground pixels, ...
 const SAME_LINE_PX: f64 = 1.5;
 /// ... and this sine of the angle.
@@ -43,13 +45,13 @@ const SAME_LINE_SINE: f64 = 0.06;
 
 /// A segment cast onto the plane, in plan.
 #[derive(Clone, Copy)]
-struct Cast {
+struct CastSegment {
     view: ViewId,
     a: Point2<f64>,
     b: Point2<f64>,
 }
 
-impl Cast {
+impl CastSegment {
     fn length(&self) -> f64 {
         (self.b - self.a).norm()
     }
@@ -68,13 +70,14 @@ pub fn rays_through_ends(scene: &Scene, segments: &[Vec<ImageSegment>]) -> EndRa
     scene.view_ids().zip(segments).map(of_view).collect()
 }
 
-/// The lines in `plane` over `region` that at least three views show, or two where no more than three have the place in their image, or the only one that
-/// has it where the surface `ends_at` such a line; `rays` are those through the ends of all segments.
+/// The lines in `plane` over `region` that at least three views show, or two where no more than
+/// three have the place in their image, or one view only, if the surface `ends_at` such a line;
+/// `rays` are those through the ends of all segments.
 pub fn lines_in_plane(
     scene: &Scene,
     rays: &EndRays,
     plane: &Plane,
-    region: &Region,
+    region: &PlanRegion,
     ends_at: impl Fn(&Segment3) -> bool,
 ) -> Vec<PlaneLine> {
     let [low, high] = region.bounds();
@@ -84,7 +87,7 @@ pub fn lines_in_plane(
         .iter()
         .map(|v| v.camera.ground_pixel(&plane.lift(middle.x, middle.y)))
         .fold(f64::INFINITY, f64::min);
-    let mut casts: Vec<Cast> = Vec::new();
+    let mut casts: Vec<CastSegment> = Vec::new();
     for (view, list) in scene.view_ids().zip(rays) {
         let center = scene.camera(view).center;
         let above = -plane.signed_distance(&center);
@@ -92,7 +95,7 @@ pub fn lines_in_plane(
             let cast = |ray: &Vector3<f64>| cast(&center, above, plane, ray);
             let (a, b) = (cast(p0)?, cast(p1)?);
             let inside = region.contains(&a) && region.contains(&b);
-            (inside && (b - a).norm() > 1e-6).then_some(Cast { view, a, b })
+            (inside && (b - a).norm() > 1e-6).then_some(CastSegment { view, a, b })
         }));
     }
     // Longest first: it is the best known direction.
@@ -115,10 +118,10 @@ pub fn lines_in_plane(
         sort_by(&mut views, Ord::cmp);
         views.dedup();
         if views.len() < MIN_OF_FEW {
-            let Cast { a, b, .. } = casts[i];
+            let CastSegment { a, b, .. } = casts[i];
             let line = Segment3::new(plane.lift(a.x, a.y), plane.lift(b.x, b.y));
-            let alone = || views_with(scene, &line.at(0.5)) == 1 && ends_at(&line);
-            if line.length() >= LEAST_ALONE_M && alone() {
+            let only_view_ends = || views_containing(scene, &line.at(0.5)) == 1 && ends_at(&line);
+            if line.length() >= LEAST_SINGLE_VIEW_M && only_view_ends() {
                 used[i] = true;
                 found.push(PlaneLine {
                     segment: line,
@@ -127,11 +130,11 @@ pub fn lines_in_plane(
             }
             continue;
         }
-        let shown: Vec<Cast> = members.iter().map(|&j| casts[j]).collect();
-        let line = common_line(&shown, |p| views_with(scene, &plane.lift(p.x, p.y)));
+        let shown: Vec<CastSegment> = members.iter().map(|&j| casts[j]).collect();
+        let line = common_line(&shown, |p| views_containing(scene, &plane.lift(p.x, p.y)));
         let few = |(a, b): &(Point2<f64>, Point2<f64>)| {
             let middle = nalgebra::center(a, b);
-            views_with(scene, &plane.lift(middle.x, middle.y)) <= FEW
+            views_containing(scene, &plane.lift(middle.x, middle.y)) <= FEW
         };
         if views.len() < MIN_VIEWS && !line.as_ref().is_some_and(few) {
             continue;
@@ -148,14 +151,15 @@ pub fn lines_in_plane(
 }
 
 /// How many views have a point in their image, with what is around it.
-fn views_with(scene: &Scene, point: &Point3<f64>) -> usize {
+fn views_containing(scene: &Scene, point: &Point3<f64>) -> usize {
     let has = |camera: &Camera| {
         (camera.project(point)).is_some_and(|p| camera.contains(&p, EDGE_MARGIN_PX))
     };
     scene.views.iter().filter(|v| has(&v.camera)).count()
 }
 
-/// Where a ray from a centre meets the plane, in plan; `above` is minus the centre's signed distance from it.
+/// Where a ray from a centre meets the plane, in plan; `above` is minus the centre's signed
+/// distance from it.
 fn cast(
     center: &Point3<f64>,
     above: f64,
@@ -167,7 +171,7 @@ fn cast(
 }
 
 /// Same direction (by contrast too), same line, overlapping.
-fn coincide(reference: &Cast, other: &Cast, tolerance: f64) -> bool {
+fn coincide(reference: &CastSegment, other: &CastSegment, tolerance: f64) -> bool {
     let d = (reference.b - reference.a) / reference.length();
     let e = (other.b - other.a) / other.length();
     if d.dot(&e) < 0.0 || d.perp(&e).abs() > SAME_LINE_SINE {
@@ -179,13 +183,13 @@ fn coincide(reference: &Cast, other: &Cast, tolerance: f64) -> bool {
     offset(&other.a) <= tolerance && offset(&other.b) <= tolerance && overlap > 0.3 * other.length()
 }
 
-/// Length-weighted mean line of the casts. It reaches as far as at least two views do, and as far as one where fewer than two have the place in their image;
-/// `views_at` counts those.
+/// Length-weighted mean line of the casts. It reaches as far as at least two views do, and as far
+/// as one where fewer than two have the place in their image; `views_at` counts those.
 fn common_line(
-    members: &[Cast],
+    members: &[CastSegment],
     views_at: impl Fn(&Point2<f64>) -> usize,
 ) -> Option<(Point2<f64>, Point2<f64>)> {
-    let weight: f64 = members.iter().map(Cast::length).sum();
+    let weight: f64 = members.iter().map(CastSegment::length).sum();
     let direction = members
         .iter()
         .fold(Vector2::zeros(), |s, c| s + (c.b - c.a));
@@ -230,7 +234,7 @@ mod tests {
     use nalgebra::Point3;
 
     /// A level plane at 6 m with the box of 10 m around the origin that it may cover.
-    fn plane_and_region() -> (Plane, Region) {
+    fn plane_and_region() -> (Plane, PlanRegion) {
         let plane =
             Plane::from_point_normal(&Point3::new(0.0, 0.0, 6.0), &Vector3::z()).expect("upright");
         let ridge = line(Point3::new(-9.0, 0.0, 6.0), Point3::new(9.0, 0.0, 6.0));
@@ -250,7 +254,8 @@ mod tests {
         views.map(of_view).collect()
     }
 
-    /// A line in the plane, and another a metre above it that no two views cast onto the same place.
+    /// A line in the plane, and another a metre above it that no two views cast onto the same
+    /// place.
     const IN_PLANE: [[f64; 3]; 2] = [[-4.0, 2.0, 6.0], [3.0, 2.5, 6.0]];
     const ABOVE: [[f64; 3]; 2] = [[-3.0, -4.0, 7.0], [2.0, 3.0, 7.0]];
 

@@ -9,7 +9,7 @@ use crate::raster::Gray;
 use crate::scene::{Scene, View};
 
 /// A plane and the part of it (in plan) that exists.
-pub(crate) struct Surface {
+pub(crate) struct TexturedPlane {
     pub plane: Plane,
     pub exists: fn(f64, f64) -> bool,
     /// Amplitude of the texture, 0 to 0.5.
@@ -17,7 +17,7 @@ pub(crate) struct Surface {
 }
 
 /// Four views, 250 x 250 px of 0.1 m, in two strips flown in opposite directions.
-pub(crate) fn scene(surfaces: &[Surface]) -> Scene {
+pub(crate) fn scene(surfaces: &[TexturedPlane]) -> Scene {
     let stations = [
         (-30.0, -12.0, 0.05),
         (28.0, -15.0, -0.1),
@@ -60,7 +60,7 @@ fn camera(x: f64, y: f64, kappa: f64) -> Camera {
     Camera::new(crop, r, centre, 250, 250)
 }
 
-fn render(camera: &Camera, surfaces: &[Surface]) -> Gray {
+fn render(camera: &Camera, surfaces: &[TexturedPlane]) -> Gray {
     Gray::from_fn(250, 250, |column, row| {
         let image = nalgebra::Point2::new(column as f64 + 0.5, row as f64 + 0.5);
         let ray = camera.ray(&image);

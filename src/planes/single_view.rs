@@ -1,14 +1,16 @@
-//! What one view says of a plane where no other sees it.
+//! Evidence for a plane from a single view, where no other sees it.
 //!
-//! At the margin of a block, and of the crops that photographs are delivered in, a roof goes on where one view is left. There is nothing to
-//! compare, but the plane is known, and so is what its surface looks like in this very view: as it does where the others bear the
-//! plane out. Where it looks the same it goes on, where it does not it has ended, and an edge of the view between the two is the
-//! plane's own (monoplotting: one image and a known surface). Where the surface looks like what lies around it, that it looks alike says nothing.
+//! At the margin of a block, or of a cropped photograph, a roof continues where only one view is
+//! left. There is nothing to correlate, but the plane is known, and so is the appearance of its
+//! surface in this view, from where several views are consistent with the plane. Where the
+//! appearance is the same the surface continues, where it differs the surface has ended, and an
+//! edge between the two bounds the plane (monoplotting: one image and a known surface). An
+//! appearance that the surroundings share is no evidence.
 
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 
-use super::grouping::Region;
+use super::grouping::PlanRegion;
 use super::line_sides::{ON_SURFACE, TEXTURED, places_beside};
 use crate::geometry::{Plane, Segment3};
 use crate::lines3d::Side;
@@ -20,72 +22,82 @@ use crate::photoconsistency::{PlanGrid, orthophoto};
 use crate::raster::Channel;
 use crate::scene::{Scene, View};
 
-/// Positions along each side of the window at which it is asked whether one view is alone there.
+/// Positions along each side of the window at which single-view coverage is sampled.
 const SAMPLES: usize = 24;
-/// Area that must show the surface to more views, square metres, before its looks are known. Assumption: some windows.
-const LEAST_KNOWN_M2: f64 = 2.0;
-/// Correlation below which a textured position is not on the plane. Assumption: what windows agree by chance.
+/// Least area seen consistently by several views from which the appearance is estimated, square
+/// metres. Assumption: some windows.
+const LEAST_REFERENCE_M2: f64 = 2.0;
+/// Correlation below which a textured position is not on the plane. Assumption: chance correlation.
 const OFF_SURFACE: f32 = 0.3;
-/// Squared Mahalanobis distance at which looks say as little for the surface as against it: three standard deviations.
-const UNLIKE: f64 = 9.0;
-/// Least standard deviation of the looks of a surface, grey values of 1: the light differs along it.
-const FLOOR: f64 = 0.015;
-/// How often looks that are not the surface's, those of skylights and chimneys, are left out.
+/// Squared Mahalanobis distance at which an appearance is neutral: three standard deviations.
+const GATE: f64 = 9.0;
+/// Least standard deviation of an appearance, in grey values of range 1: the light differs along a
+/// roof.
+const LEAST_DEVIATION: f64 = 0.015;
+/// Rounds of trimming the outliers, such as skylights and chimneys.
 const TRIMS: usize = 3;
-/// How clearly the looks must change across an edge, of one.
-const CLEARLY: f64 = 0.4;
+/// Least change of the evidence on either side of an edge, of one.
+const CLEAR_CHANGE: f64 = 0.4;
 
-/// For every position of a plane's window: does the surface go on there, as far as one view alone can tell?
+/// Single-view evidence that the surface continues, for every position of a plane's window.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Alone {
-    /// In steps of 1 / 127, row by row, 0 where it is not for one view to say; empty where that is everywhere.
-    says: Vec<i8>,
+pub struct SingleViewEvidence {
+    /// In steps of 1 / 127, row by row; 0 where not exactly one view sees the position, empty if
+    /// nowhere.
+    values: Vec<i8>,
 }
 
-impl Alone {
+impl SingleViewEvidence {
     /// The same everywhere.
     #[cfg(test)]
-    pub fn everywhere(cells: usize, says: i8) -> Self {
+    pub fn everywhere(cells: usize, value: i8) -> Self {
         Self {
-            says: vec![says; cells],
+            values: vec![value; cells],
         }
     }
 
-    /// What the only view says at a position of the window (row by row), from -1, it is another surface, to 1; 0 where it
-    /// has nothing to say, as where others see the position too.
-    pub fn says(&self, k: usize) -> f64 {
-        self.says.get(k).map_or(0.0, |s| f64::from(*s) / 127.0)
+    /// The evidence at a position of the window (row by row), from -1, another surface, to 1; 0
+    /// where not exactly one view sees it.
+    pub fn at(&self, k: usize) -> f64 {
+        self.values.get(k).map_or(0.0, |s| f64::from(*s) / 127.0)
     }
 
-    /// Does the surface end at an edge, for all that one view shows along it? It lies on one side of the edge, where more views may see
-    /// it, and not on the other.
+    /// Does the surface end at an edge: is it on one side, where several views may see it, and not
+    /// on the other?
     pub fn ends_at(&self, map: &ConsistencyMap, edge: &Segment3) -> bool {
         let [left, right] = [Side::Left, Side::Right].map(|side| {
             let places = places_beside(&map.grid, edge, side, HALF_WINDOW as f64 + 2.0);
             let count = places.clone().count().max(1) as f64;
-            places.map(|k| self.goes_on(map, k)).sum::<f64>() / count
+            places.map(|k| self.surface_at(map, k)).sum::<f64>() / count
         });
-        left.max(right) >= CLEARLY && left.min(right) <= -CLEARLY
+        left.max(right) >= CLEAR_CHANGE && left.min(right) <= -CLEAR_CHANGE
     }
 
-    /// What is known of the surface at a position, from -1, it is another one, to 1: by the only view, or by how several agree.
-    fn goes_on(&self, map: &ConsistencyMap, k: usize) -> f64 {
+    /// The evidence for the surface at a position, from -1, another surface, to 1, by one view or
+    /// by several.
+    fn surface_at(&self, map: &ConsistencyMap, k: usize) -> f64 {
         let textured = map.weight(k) >= TEXTURED;
         match map.correlation(k) {
             on if textured && on >= ON_SURFACE => 1.0,
             off if textured && off < OFF_SURFACE => -1.0,
-            _ => self.says(k),
+            _ => self.at(k),
         }
     }
 }
 
-/// Asks every view where it is the only one, by the looks of the surface where the others bear the plane out as well: `map` says where.
-pub fn seen_alone(scene: &Scene, plane: &Plane, region: &Region, map: &ConsistencyMap) -> Alone {
+/// The evidence of every view where it is the only one, by the surface's appearance in it where
+/// `map` shows that several views are consistent with the plane.
+pub fn single_view_evidence(
+    scene: &Scene,
+    plane: &Plane,
+    region: &PlanRegion,
+    map: &ConsistencyMap,
+) -> SingleViewEvidence {
     let grid = &map.grid;
-    let known = known_surface(region, map);
-    let least = LEAST_KNOWN_M2 / (grid.step * grid.step);
+    let known = reference_cells(region, map);
+    let least = LEAST_REFERENCE_M2 / (grid.step * grid.step);
     if (known.len() as f64) < least || !is_somewhere(scene, plane, region, grid) {
-        return Alone::default();
+        return SingleViewEvidence::default();
     }
     let look = |view: &View, channel| {
         let photo = orthophoto(view.channel(channel).0, &view.camera, plane, grid);
@@ -100,27 +112,27 @@ pub fn seen_alone(scene: &Scene, plane: &Plane, region: &Region, map: &Consisten
         seeing.next().is_none().then_some(first)
     };
     let by: Vec<Option<usize>> = (0..grid.width * grid.height).map(only).collect();
-    let mut says = vec![0; by.len()];
+    let mut values = vec![0; by.len()];
     for (v, (grey, view)) in grey.into_iter().zip(&scene.views).enumerate() {
-        let mut alone = (0..by.len()).filter(|&k| by[k] == Some(v)).peekable();
-        if alone.peek().is_none() {
+        let mut cells = (0..by.len()).filter(|&k| by[k] == Some(v)).peekable();
+        if cells.peek().is_none() {
             continue;
         }
-        let warmth = look(view, Channel::RedBlue);
-        let looks = Looks { grey, warmth };
-        let Some(surface) = Surface::known(&looks, &known, least, map) else {
+        let red_blue = look(view, Channel::Warmth);
+        let looks = ViewAppearance { grey, red_blue };
+        let Some(surface) = SurfaceAppearance::estimate(&looks, &known, least, map) else {
             continue;
         };
-        for k in alone {
-            let gain = looks.at(k).map_or(0.0, |look| surface.gain(&look));
-            says[k] = (gain * 127.0).round() as i8;
+        for k in cells {
+            let likeness = looks.at(k).map_or(0.0, |look| surface.likeness(&look));
+            values[k] = (likeness * 127.0).round() as i8;
         }
     }
-    Alone { says }
+    SingleViewEvidence { values }
 }
 
-/// Where several views bear the plane out, positions of the window.
-fn known_surface(region: &Region, map: &ConsistencyMap) -> Vec<usize> {
+/// Positions of the window where several views are consistent with the plane.
+fn reference_cells(region: &PlanRegion, map: &ConsistencyMap) -> Vec<usize> {
     let grid = &map.grid;
     let on = |k: &usize| {
         map.weight(*k) >= TEXTURED
@@ -130,8 +142,9 @@ fn known_surface(region: &Region, map: &ConsistencyMap) -> Vec<usize> {
     (0..grid.width * grid.height).filter(on).collect()
 }
 
-/// Is there a position of the region that exactly one view has in its image? Asked at some, for mostly there is none.
-fn is_somewhere(scene: &Scene, plane: &Plane, region: &Region, grid: &PlanGrid) -> bool {
+/// Is there a position of the region that exactly one view has in its image? Sampled, for mostly
+/// there is none.
+fn is_somewhere(scene: &Scene, plane: &Plane, region: &PlanRegion, grid: &PlanGrid) -> bool {
     let part = |i: usize, size: usize| (i * 2 + 1) * size / (2 * SAMPLES);
     let positions = (0..SAMPLES * SAMPLES).map(|k| {
         grid.center(
@@ -150,17 +163,18 @@ fn is_somewhere(scene: &Scene, plane: &Plane, region: &Region, grid: &PlanGrid) 
     })
 }
 
-/// What a view shows of a plane: grey value and warmth in the mean of the window around every position.
-struct Looks {
+/// Appearance of a plane in a view: mean grey value and red-blue difference of the window around
+/// every position.
+struct ViewAppearance {
     grey: Vec<f32>,
-    warmth: Vec<f32>,
+    red_blue: Vec<f32>,
 }
 
-impl Looks {
+impl ViewAppearance {
     /// `None` where the view does not have all of the window.
     fn at(&self, k: usize) -> Option<Vector2<f64>> {
-        let [grey, warmth] = [&self.grey, &self.warmth].map(|channel| f64::from(channel[k]));
-        (grey.is_finite() && warmth.is_finite()).then(|| Vector2::new(grey, warmth))
+        let [grey, red_blue] = [&self.grey, &self.red_blue].map(|channel| f64::from(channel[k]));
+        (grey.is_finite() && red_blue.is_finite()).then(|| Vector2::new(grey, red_blue))
     }
 }
 
@@ -189,36 +203,41 @@ fn window_means(photo: &[f32], grid: &PlanGrid) -> Vec<f32> {
     means
 }
 
-/// What a surface looks like in a view.
-struct Surface {
+/// Normal distribution of a surface's appearance in a view.
+struct SurfaceAppearance {
     mean: Vector2<f64>,
     information: Matrix2<f64>,
-    /// How much looking alike says, 0 to 1: nothing where what is not the surface looks like it.
-    telling: f64,
+    /// How distinctive the appearance is, 0 to 1: 0 where other surfaces share it.
+    distinctiveness: f64,
 }
 
-impl Surface {
-    /// From the `known` positions of it, of which the view must show `least`; `None` where that is too little to tell.
-    fn known(looks: &Looks, known: &[usize], least: f64, map: &ConsistencyMap) -> Option<Self> {
+impl SurfaceAppearance {
+    /// From positions `known` to be on it, of which the view must show `least`; `None` otherwise.
+    fn estimate(
+        looks: &ViewAppearance,
+        known: &[usize],
+        least: f64,
+        map: &ConsistencyMap,
+    ) -> Option<Self> {
         let known: Vec<Vector2<f64>> = known.iter().filter_map(|&k| looks.at(k)).collect();
         (known.len() as f64 >= least).then_some(())?;
-        let mut surface = Self::of_most(&known)?;
+        let mut surface = Self::robust(&known)?;
         for _ in 0..TRIMS {
-            let alike = known.iter().filter(|look| surface.gain(look) > 0.0);
-            surface = Self::of(alike)?;
+            let alike = known.iter().filter(|look| surface.likeness(look) > 0.0);
+            surface = Self::from_looks(alike)?;
         }
         let off = (0..map.grid.width * map.grid.height)
             .filter(|&k| map.weight(k) >= TEXTURED && map.correlation(k) < OFF_SURFACE)
             .filter_map(|k| looks.at(k));
         let (alike, all) = off.fold((0.0, 0.0), |(alike, all), look| {
-            (alike + surface.gain(&look).max(0.0), all + 1.0)
+            (alike + surface.likeness(&look).max(0.0), all + 1.0)
         });
-        surface.telling = 1.0 - alike / f64::max(all, 1.0);
+        surface.distinctiveness = 1.0 - alike / f64::max(all, 1.0);
         Some(surface)
     }
 
-    /// By the medians of the looks and of what they differ from these: half of them may be of something else.
-    fn of_most(looks: &[Vector2<f64>]) -> Option<Self> {
+    /// By median and median absolute deviation: up to half of the samples may be outliers.
+    fn robust(looks: &[Vector2<f64>]) -> Option<Self> {
         /// Standard deviation of a normal distribution, in medians of the absolute deviation.
         const OF_MEDIAN: f64 = 1.4826;
         let middle =
@@ -229,36 +248,37 @@ impl Surface {
             mean[i] = middle(&mut looks.iter().map(|look| look[i]))?;
             let off = middle(&mut looks.iter().map(|look| (look[i] - mean[i]).abs()))?;
             let deviation = OF_MEDIAN * off;
-            information[(i, i)] = 1.0 / (deviation * deviation + FLOOR * FLOOR);
+            information[(i, i)] = 1.0 / (deviation * deviation + LEAST_DEVIATION * LEAST_DEVIATION);
         }
         Some(Self {
             mean,
             information,
-            telling: 1.0,
+            distinctiveness: 1.0,
         })
     }
 
-    /// By mean and covariance of some looks.
-    fn of<'a>(looks: impl Iterator<Item = &'a Vector2<f64>> + Clone) -> Option<Self> {
+    /// By mean and covariance of some samples.
+    fn from_looks<'a>(looks: impl Iterator<Item = &'a Vector2<f64>> + Clone) -> Option<Self> {
         let count = looks.clone().count().max(1) as f64;
         let mean = looks.clone().sum::<Vector2<f64>>() / count;
         let scatter = looks.fold(Matrix2::zeros(), |s, look| {
             s + (look - mean) * (look - mean).transpose()
         });
-        let covariance = scatter / count + Matrix2::identity() * (FLOOR * FLOOR);
+        let covariance =
+            scatter / count + Matrix2::identity() * (LEAST_DEVIATION * LEAST_DEVIATION);
         Some(Self {
             mean,
             information: covariance.try_inverse()?,
-            telling: 1.0,
+            distinctiveness: 1.0,
         })
     }
 
-    fn gain(&self, look: &Vector2<f64>) -> f64 {
+    fn likeness(&self, look: &Vector2<f64>) -> f64 {
         let d = look - self.mean;
-        let gain = 1.0 - (d.transpose() * self.information * d).x / UNLIKE;
-        match gain > 0.0 {
-            true => gain * self.telling,
-            false => gain.max(-1.0),
+        let likeness = 1.0 - (d.transpose() * self.information * d).x / GATE;
+        match likeness > 0.0 {
+            true => likeness * self.distinctiveness,
+            false => likeness.max(-1.0),
         }
     }
 }
@@ -280,10 +300,10 @@ mod tests {
             .expect("upright")
     }
 
-    /// Two views of a level roof from -9 m to [`END`]; `around` is what they show beside it, and the second does not reach
-    /// beyond `reach` metres along x.
+    /// Two views of a level roof from -9 m to [`END`]; `around` is what they show beside it, and
+    /// the second does not reach beyond `reach` metres along x.
     fn scene(around: f32, reach: f64) -> Scene {
-        let surface = rendered_planes::Surface {
+        let surface = rendered_planes::TexturedPlane {
             plane: roof(),
             exists: |x, _| x > -9.0 && x < END,
             texture: 0.2,
@@ -311,19 +331,20 @@ mod tests {
         scene
     }
 
-    /// How the views agree on the roof, beside a ridge through its middle, and what is seen alone of it.
-    fn seen(scene: &Scene) -> (ConsistencyMap, Alone) {
+    /// How the views agree on the roof, beside a ridge through its middle, and what is seen alone
+    /// of it.
+    fn seen(scene: &Scene) -> (ConsistencyMap, SingleViewEvidence) {
         let ridge = line(Point3::new(-8.0, 0.0, 6.0), Point3::new(5.0, 0.0, 6.0));
         let region = super::super::grouping::region_beside(ridge, roof());
         let grid = PlanGrid::covering(Point2::new(-9.0, -5.0), Point2::new(9.0, 5.0), 0.1);
         let map = consistency_map(scene, &roof(), &grid);
-        let alone = seen_alone(scene, &roof(), &region, &map);
-        (map, alone)
+        let single_view = single_view_evidence(scene, &roof(), &region, &map);
+        (map, single_view)
     }
 
-    fn at((map, alone): &(ConsistencyMap, Alone), x: f64) -> f64 {
+    fn at((map, single_view): &(ConsistencyMap, SingleViewEvidence), x: f64) -> f64 {
         let (column, row) = map.grid.cell(&Point2::new(x, 1.0)).expect("inside");
-        alone.says(row * map.grid.width + column)
+        single_view.at(row * map.grid.width + column)
     }
 
     fn across(x: f64) -> Segment3 {
@@ -335,16 +356,16 @@ mod tests {
         let seen = seen(&scene(0.15, 2.0));
         assert_eq!(at(&seen, -3.0), 0.0, "two views see it");
         assert!(at(&seen, 4.0) > 0.5 && at(&seen, 7.5) < -0.9);
-        let (map, alone) = &seen;
-        assert!(alone.ends_at(map, &across(END)));
-        assert!(!alone.ends_at(map, &across(4.0)), "a row of tiles");
-        assert!(!alone.ends_at(map, &across(7.5)), "beyond the roof");
+        let (map, single_view) = &seen;
+        assert!(single_view.ends_at(map, &across(END)));
+        assert!(!single_view.ends_at(map, &across(4.0)), "a row of tiles");
+        assert!(!single_view.ends_at(map, &across(7.5)), "beyond the roof");
     }
 
     #[test]
     fn several_views_may_see_one_side_of_an_edge() {
         // The second view ends a window's width before the roof does.
-        let (map, alone) = seen(&scene(0.15, END));
+        let (map, single_view) = seen(&scene(0.15, END));
         let inside = (END - 0.7, 1.0);
         let (column, row) = map
             .grid
@@ -354,14 +375,14 @@ mod tests {
             map.weight(row * map.grid.width + column) > 0.0,
             "both see it"
         );
-        assert!(alone.ends_at(&map, &across(END)));
-        assert!(!alone.ends_at(&map, &across(3.0)), "a row of tiles");
+        assert!(single_view.ends_at(&map, &across(END)));
+        assert!(!single_view.ends_at(&map, &across(3.0)), "a row of tiles");
     }
 
     #[test]
-    fn where_two_views_reach_none_is_alone() {
+    fn where_two_views_reach_there_is_no_single_view_evidence() {
         let seen = seen(&scene(0.15, 11.0));
-        assert!(seen.1.says.is_empty());
+        assert!(seen.1.values.is_empty());
         assert_eq!(at(&seen, 4.0), 0.0);
     }
 

@@ -1,10 +1,10 @@
 //! The plan cut into cells by all border lines.
 //!
-//! Facets of one roof must share exact edges and vertices, may be concave, and must not overlap. All
-//! three follow when every facet is a union of cells of one common subdivision of the plan: the
-//! border lines cut each other, nearly coinciding crossings become one vertex (so that ridge, hips and
-//! valleys meet in a point), a constrained Delaunay triangulation fills the gaps, and triangles that no border
-//! separates make a cell.
+//! Facets of one roof must share exact edges and vertices, may be concave, and must not overlap.
+//! All three follow when every facet is a union of cells of one common subdivision of the plan: the
+//! border lines cut each other, nearly coinciding crossings become one vertex (so that ridge, hips
+//! and valleys meet in a point), a constrained Delaunay triangulation fills the gaps, and triangles
+//! that no border separates make a cell.
 
 use nalgebra::{Point2, Vector2};
 use spade::{ConstrainedDelaunayTriangulation, Triangulation};
@@ -163,7 +163,8 @@ impl Arrangement {
                     continue;
                 };
                 let column = |x: f64| (x - grid.origin.x) / grid.step - 0.5;
-                // A centre on the common side of two triangles must not fall between them by rounding.
+                // A centre on the common side of two triangles must not fall between them by
+                // rounding.
                 const SLACK: f64 = 1e-6;
                 let c0 = (column(x0) - SLACK).ceil().max(0.0);
                 let c1 = (column(x1) + SLACK).floor().min(grid.width as f64 - 1.0);
@@ -192,7 +193,7 @@ fn span(t: &[Point2<f64>; 3], y: f64) -> Option<(f64, f64)> {
 
 /// Vertices of the arrangement, snapped, and the pieces between them.
 fn split_at_crossings(borders: &[Border]) -> (Vec<Point2<f64>>, Vec<(usize, usize)>) {
-    let mut snapper = Snapper::default();
+    let mut snapper = VertexSnapper::default();
     for border in borders {
         snapper.vertex(border.a);
         snapper.vertex(border.b);
@@ -236,12 +237,12 @@ fn crossing(p: &Border, q: &Border) -> Option<Point2<f64>> {
 
 /// Collects vertices; a new one near an old one is the old one.
 #[derive(Default)]
-struct Snapper {
+struct VertexSnapper {
     points: Vec<Point2<f64>>,
     index: PlanIndex,
 }
 
-impl Snapper {
+impl VertexSnapper {
     fn vertex(&mut self, p: Point2<f64>) {
         let is_near = self
             .index

@@ -1,22 +1,22 @@
 //! What a border between two cells costs, by the planes on its two sides.
 //!
-//! The cost of an unsupported border is its length; reconstructed lines and intersections of planes make it
-//! cheap, so that outlines follow them (tau_real of B99 4.3 and the new lines of 4.2). Costs are worked out
-//! when they are asked for, from the heights of both planes at the border: a list of all pairs would grow with
-//! the square of the planes.
+//! The cost of an unsupported border is its length; reconstructed lines and intersections of planes
+//! make it cheap, so that outlines follow them (tau_real of B99 4.3 and the new lines of 4.2).
+//! Costs are worked out when they are asked for, from the heights of both planes at the border: a
+//! list of all pairs would grow with the square of the planes.
 
 use nalgebra::Point2;
 
 use super::arrangement::{Arrangement, CellEdge};
 use super::line_index::LineIndex;
-use crate::facets::labelling::Borders;
+use crate::facets::labelling::PairwiseCosts;
 use crate::geometry::Plane;
 use crate::params::RoofParams;
 
 /// The costs of all borders of an arrangement.
 pub struct BorderCosts {
     /// In the order of [`Arrangement::edges`].
-    borders: Vec<Border>,
+    borders: Vec<CellBorder>,
     /// By label.
     planes: Vec<Plane>,
 }
@@ -31,7 +31,7 @@ impl BorderCosts {
     ) -> Self {
         let border = |e: &CellEdge| {
             let ends = [e.a, e.b].map(|v| arrangement.vertices[v]);
-            Border {
+            CellBorder {
                 full: (ends[1] - ends[0]).norm() * params.border_cost_m,
                 heights: index.heights_along(&ends[0], &ends[1]),
                 ends,
@@ -44,11 +44,11 @@ impl BorderCosts {
     }
 
     /// Share of the full cost between two planes.
-    fn between(&self, border: &Border, a: &Plane, b: &Plane) -> f64 {
+    fn between(&self, border: &CellBorder, a: &Plane, b: &Plane) -> f64 {
         let near = |a: f64, b: f64| (a - b).abs() < MEETING;
         let heights = [a, b].map(|plane| border.ends.map(|p| plane.z_at(p.x, p.y)));
         let middles = heights.map(middle);
-        // Two hypotheses of one roof plane: a border between them says nothing.
+        // Two hypotheses of one roof plane: a border between them has no meaning.
         if near(middles[0], middles[1]) && a.normal.dot(&b.normal) > SAME_PLANE_COSINE {
             return DUPLICATE;
         }
@@ -62,7 +62,7 @@ impl BorderCosts {
     }
 }
 
-impl Borders for BorderCosts {
+impl PairwiseCosts for BorderCosts {
     fn cost(&self, edge: usize, left: u32, right: u32) -> f64 {
         let border = &self.borders[edge];
         let plane = |label: u32| self.planes.get(label as usize);
@@ -74,13 +74,13 @@ impl Borders for BorderCosts {
         share * border.full
     }
 
-    fn most(&self, edge: usize) -> f64 {
+    fn upper_bound(&self, edge: usize) -> f64 {
         DUPLICATE * self.borders[edge].full
     }
 }
 
 /// A border between two cells.
-struct Border {
+struct CellBorder {
     /// Cost when nothing supports the border.
     full: f64,
     /// Plan positions, metres.
@@ -89,7 +89,7 @@ struct Border {
     heights: Vec<f64>,
 }
 
-impl Border {
+impl CellBorder {
     /// Does a reconstructed line run along the border at a height?
     fn has_line_at(&self, z: f64) -> bool {
         self.heights.iter().any(|h| (h - z).abs() < LINE_HEIGHT)
@@ -129,14 +129,15 @@ mod tests {
     use crate::facets::labelling::NO_PLANE;
     use nalgebra::{Point3, Vector3};
 
-    /// A border of 2 m along y at x = 0, the planes with the given normals through a point of it, and at `lift` above it.
+    /// A border of 2 m along y at x = 0, the planes with the given normals through a point of it,
+    /// and at `lift` above it.
     fn costs(normals: [[f64; 3]; 2], lift: f64, line: bool) -> BorderCosts {
         let ends = [Point2::new(0.0, 0.0), Point2::new(0.0, 2.0)];
         let planes = [0.0, lift].into_iter().zip(normals).map(|(z, n)| {
             Plane::from_point_normal(&Point3::new(0.0, 0.0, 5.0 + z), &Vector3::from(n)).unwrap()
         });
         let heights = if line { vec![5.0] } else { Vec::new() };
-        let border = Border {
+        let border = CellBorder {
             full: 2.0,
             ends,
             heights,

@@ -1,15 +1,17 @@
-//! Border lines in plan: real lines, intersections of planes, closing lines (B99 4.2, 4.3, figures 19 to 22).
+//! Border lines in plan: real lines, intersections of planes, closing lines (B99 4.2, 4.3, figures
+//! 19 to 22).
 //!
 //! Four kinds of lines may bound a facet:
 //! * reconstructed 3D lines, whether they lie in the plane with another plane attached or not
 //!   (figure 21), extended at both ends, since detected ends are unreliable (figure 22);
 //! * lines found in a plane from segments of several views ([`crate::planes::plane_lines`]);
 //! * new lines in which two neighbouring planes meet (figure 19);
-//! * closing lines across the ends of a supporting line, and where the views cease to agree on a plane
-//!   ([`super::extent`]), and the level sides of the paper's convex hull, where nothing was detected.
+//! * closing lines across the ends of a supporting line, and where the views cease to agree on a
+//!   plane ([`super::extent`]), and the level sides of the paper's convex hull, where nothing was
+//!   detected.
 //!
-//! A real line that runs along an intersection is moved onto it, so that ridge, hip and valley are where
-//! their planes meet.
+//! A real line that runs along an intersection is moved onto it, so that ridge, hip and valley are
+//! where their planes meet.
 
 use nalgebra::{Point2, Vector2};
 
@@ -19,7 +21,7 @@ use crate::geometry::Segment3;
 use crate::lines3d::ThetaFrame;
 use crate::params::RoofParams;
 use crate::photoconsistency::ShiftableWindows;
-use crate::planes::{GroupingInput, Hypothesis, MARGIN, Member};
+use crate::planes::{GroupingInput, MARGIN, Member, PlaneHypothesis};
 use crate::sorting::sort_by;
 
 /// A line within this distance of an intersection, metres, and this angle is the same line.
@@ -29,7 +31,7 @@ const SAME_LINE_SINE: f64 = 0.09;
 /// All border lines of the scene, intersections first, none lying on another.
 pub fn border_lines(
     input: &GroupingInput,
-    hypotheses: &[Hypothesis],
+    hypotheses: &[PlaneHypothesis],
     bounding: &[Segment3],
     windows: &ShiftableWindows,
     params: &RoofParams,
@@ -74,8 +76,9 @@ pub fn border_lines(
     borders
 }
 
-/// The level sides of the planes' convex hulls (B99 4.3) that are long enough to be an edge of a facet, the longest first.
-fn hull_sides(hypotheses: &[Hypothesis], params: &RoofParams) -> Vec<Border> {
+/// The level sides of the planes' convex hulls (B99 4.3) that are long enough to be an edge of a
+/// facet, the longest first.
+fn hull_sides(hypotheses: &[PlaneHypothesis], params: &RoofParams) -> Vec<Border> {
     let sides = (hypotheses.iter()).flat_map(|h| h.region.level_sides(&h.group.plane));
     let borders = sides.map(|[a, b]| Border {
         kind: BorderKind::Closing,
@@ -90,7 +93,7 @@ fn hull_sides(hypotheses: &[Hypothesis], params: &RoofParams) -> Vec<Border> {
 }
 
 /// New lines by plane intersection (B99 4.2): where both planes' regions hold it.
-fn intersections(input: &GroupingInput, hypotheses: &[Hypothesis]) -> Vec<Border> {
+fn intersections(input: &GroupingInput, hypotheses: &[PlaneHypothesis]) -> Vec<Border> {
     let mut found = Vec::new();
     for (i, first) in hypotheses.iter().enumerate() {
         let [min, max] = first.region.bounds();
@@ -179,11 +182,11 @@ fn extended(kind: BorderKind, line: &Segment3, params: &RoofParams) -> Option<Bo
     })
 }
 
-/// The outermost lines of every group, as long as the whole group: an eave of which half was found goes on as far
-/// as the ridge does.
+/// The outermost lines of every group, as long as the whole group: an eave of which half was found
+/// goes on as far as the ridge does.
 fn outermost_lines(
     input: &GroupingInput,
-    hypotheses: &[Hypothesis],
+    hypotheses: &[PlaneHypothesis],
     params: &RoofParams,
 ) -> Vec<Border> {
     let mut found = Vec::new();
@@ -225,7 +228,7 @@ fn outermost_lines(
 /// Lines across both ends of a group's longest lines, on the side that the plane covers.
 fn closing_lines(
     input: &GroupingInput,
-    hypotheses: &[Hypothesis],
+    hypotheses: &[PlaneHypothesis],
     params: &RoofParams,
 ) -> Vec<Border> {
     let mut found = Vec::new();
@@ -259,7 +262,7 @@ fn closing_lines(
 }
 
 /// The sides of the rectangles: across the lines they are where crossing image lines end the plane.
-fn rectangle_sides(input: &GroupingInput, hypotheses: &[Hypothesis]) -> Vec<Border> {
+fn rectangle_sides(input: &GroupingInput, hypotheses: &[PlaneHypothesis]) -> Vec<Border> {
     let rectangles = hypotheses.iter().flat_map(|h| h.group.rectangles(input));
     let sides = rectangles.flat_map(|r| {
         r.sides().map(|[a, b]| Border {
@@ -274,7 +277,8 @@ fn rectangle_sides(input: &GroupingInput, hypotheses: &[Hypothesis]) -> Vec<Bord
 /// A facet has a few long sides; shorter lines in its plane are parts of them or of its texture.
 const CLOSED_LINES: usize = 3;
 
-/// Adds a border unless it lies on one that is there; one that runs along another is moved onto its line.
+/// Adds a border unless it lies on one that is there; one that runs along another is moved onto its
+/// line.
 fn add(borders: &mut Vec<Border>, mut border: Border) {
     for other in borders.iter() {
         let sine = {

@@ -1,18 +1,20 @@
-//! The real lines that may bound a facet (B99 4.3, figure 21): those over some plane, outside of any surface, and above the
-//! ground where they can be.
+//! The real lines that may bound a facet (B99 4.3, figure 21): those over some plane, outside of
+//! any surface, and above the ground where they can be.
 //!
-//! A line need not lie in a plane to bound it: a wall's foot, seen below an eave, may be all that was found of it (figure 21 b).
-//! Where the eave was found too, the foot is a second border beside it, and the strip between them, in the shade of the roof,
-//! often says nothing for or against a plane that reaches that far. There the eave is the border.
+//! A line need not lie in a plane to bound it: a wall's foot, seen below an eave, may be all that
+//! was found of it (figure 21 b). Where the eave was found too, the foot is a second border beside
+//! it, and the strip between them, in the shade of the roof, often says nothing for or against a
+//! plane that reaches that far. There the eave is the border.
 
 use crate::geometry::{Plane, Segment3, covered};
 use crate::lines3d::Line3d;
 use crate::params::RoofParams;
 use crate::planes::GroupingInput;
-use crate::planes::{Hypothesis, crosses_surface};
+use crate::planes::{PlaneHypothesis, crosses_surface};
 use crate::terrain::Ground;
 
-/// How far beside its eave, in plan, the foot of a wall may be, metres. Assumption: no overhang is wider.
+/// How far beside its eave, in plan, the foot of a wall may be, metres. Assumption: no overhang is
+/// wider.
 const OVERHANG: f64 = 1.0;
 /// Sine of the angle at which two lines run side by side.
 const PARALLEL_SINE: f64 = 0.15;
@@ -22,7 +24,7 @@ const MOST: f64 = 0.5;
 /// The lines that may bound a facet.
 pub fn bounding_lines(
     input: &GroupingInput,
-    hypotheses: &[Hypothesis],
+    hypotheses: &[PlaneHypothesis],
     ground: &Ground,
     params: &RoofParams,
 ) -> Vec<Segment3> {
@@ -33,11 +35,12 @@ pub fn bounding_lines(
         .collect();
     let bounds = crate::execution::map(input.lines, |_, line| {
         let (middle, segment) = (line.at(0.5).xy(), &line.segment);
-        let over: Vec<&Hypothesis> = (hypotheses.iter())
+        let over: Vec<&PlaneHypothesis> = (hypotheses.iter())
             .filter(|h| h.region.contains(&middle))
             .collect();
-        let inside =
-            |h: &&Hypothesis| lies_in(&h.group.plane, segment) && crosses_surface(&h.map, segment);
+        let inside = |h: &&PlaneHypothesis| {
+            lies_in(&h.group.plane, segment) && crosses_surface(&h.map, segment)
+        };
         let is_foot = || on_ground(line) && beside_others(segment, &above);
         !over.is_empty() && !over.iter().any(inside) && !is_foot()
     });

@@ -1,10 +1,11 @@
-//! How far the images bear a plane out: closing lines where it seems to end (B99 4.3).
+//! Extent of a plane by photo-consistency: closing lines where it seems to end (B99 4.3).
 //!
-//! B99 closes a facet by the convex hull of its lines when no line was found at one of its sides. A side whose
-//! edge is in no image strongly enough still shows: the views agree on the plane up to it and not beyond.
-//! Of all rectangles along the plane's longest line the one is sought over which they speak most for the plane,
-//! each position with what it will count for when planes compete ([`crate::facets::labelling::evidence`]); where it ends, a line may
-//! bound the facet. It earns nothing by itself, it only lets the facet end there.
+//! B99 closes a facet by the convex hull of its lines when no line was found at one of its sides. A
+//! side whose edge is in no image strongly enough still shows: the views agree on the plane up to
+//! it and not beyond. Of all rectangles along the plane's longest line the one with the largest sum
+//! of evidence is sought, each position with the evidence it has when planes compete
+//! ([`crate::facets::evidence`]); where it ends, a line may bound the facet. The line has no cost
+//! advantage, it only allows the facet to end there.
 
 use nalgebra::{Point2, Vector2};
 
@@ -12,21 +13,24 @@ use super::border::{Border, BorderKind};
 use crate::geometry::Segment3;
 use crate::params::RoofParams;
 use crate::photoconsistency::{ShiftableWindows, WINDOW};
-use crate::planes::{GroupingInput, Hypothesis};
+use crate::planes::{GroupingInput, PlaneHypothesis};
 
 /// Width of a strip, metres: about a pixel of aerial photographs.
 const STRIP_M: f64 = 0.1;
-/// How often the two spans of the rectangle are sought by turns. Assumption: a third time changes few.
+/// How often the two spans of the rectangle are sought by turns. Assumption: a third time changes
+/// few.
 const TURNS: usize = 2;
-/// Planes for which less speaks than such an area of perfect agreement would, square metres, have no end to speak of.
+/// Planes with less evidence than such an area of perfect agreement, square metres, get no closing
+/// lines.
 const LEAST_AGREEMENT_M2: f64 = 0.5;
 /// How far an end goes beyond the sides across it, metres, to meet their lines.
 const OVER_M: f64 = 0.5;
 
-/// Lines where planes with a half-plane seem to end, up to four for each: not where a real line says it.
+/// Lines where planes with a half-plane seem to end, up to four for each, unless a real line shows
+/// that end.
 pub fn extent_lines(
     input: &GroupingInput,
-    hypotheses: &[Hypothesis],
+    hypotheses: &[PlaneHypothesis],
     windows: &ShiftableWindows,
     params: &RoofParams,
 ) -> Vec<Border> {
@@ -38,10 +42,11 @@ pub fn extent_lines(
     .collect()
 }
 
-/// The sides, where no real line shows them, of the rectangle along the longest line in which the views agree on a plane.
+/// The sides, where no real line shows them, of the rectangle along the longest line in which the
+/// views agree on a plane.
 fn sides(
     input: &GroupingInput,
-    h: &Hypothesis,
+    h: &PlaneHypothesis,
     windows: &ShiftableWindows,
     params: &RoofParams,
 ) -> Option<Vec<Border>> {
@@ -84,8 +89,8 @@ fn sides(
     )
 }
 
-/// Is a real line the edge that a side was found by? It runs along most of the side, within half a window: as far beyond an edge
-/// every plane through it is as good as the next.
+/// Is a real line the edge that a side was found by? It runs along most of the side, within half a
+/// window: as far beyond an edge every plane through it is as good as the next.
 fn shows(line: &Segment3, [a, b]: &[Point2<f64>; 2], half_window: f64) -> bool {
     let Some(along) = (b - a).try_normalize(1e-6) else {
         return false;
@@ -98,17 +103,17 @@ fn shows(line: &Segment3, [a, b]: &[Point2<f64>; 2], half_window: f64) -> bool {
     beside && common >= 0.5 * length
 }
 
-/// What one position says.
+/// The evidence of one position.
 struct Vote {
     /// Where, along two axes, metres.
     at: [f64; 2],
-    /// How much for the plane, or against it: weight x (correlation - least correlation).
+    /// Weight x (correlation - least correlation): positive for the plane.
     gain: f64,
 }
 
 /// The votes of all positions in a plane's region, along `axes` from `start`.
 fn votes(
-    h: &Hypothesis,
+    h: &PlaneHypothesis,
     windows: &ShiftableWindows,
     start: &Point2<f64>,
     axes: [&Vector2<f64>; 2],
@@ -121,17 +126,17 @@ fn votes(
         .filter(|(_, p)| h.region.contains(p))
         .map(|(k, p)| {
             let at = [k % grid.width, k / grid.width];
-            let judgement = windows.judge(&h.map, at, params.min_correlation);
+            let observed = windows.evidence_at(&h.map, at, params.min_correlation);
             Vote {
                 at: axes.map(|axis| (p - start).dot(axis)),
-                gain: judgement.gain(),
+                gain: observed.gain(),
             }
         })
         .collect()
 }
 
-/// The rectangle with the largest sum of votes, as its spans along both axes: across first, beside a line from 0 to
-/// `length` along the other. `None` where the sum is below `least`.
+/// The rectangle with the largest sum of votes, as its spans along both axes: across first, beside
+/// a line from 0 to `length` along the other. `None` where the sum is below `least`.
 fn best_rectangle(votes: &[Vote], length: f64, least: f64) -> Option<[(f64, f64); 2]> {
     let mut spans = [(0.0, length), (0.0, 0.0)];
     let mut sum = 0.0;

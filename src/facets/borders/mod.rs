@@ -1,4 +1,14 @@
-//! facets::borders
+//! Border lines, the cells between them, and what a border costs (B99 4.2, 4.3).
+//!
+//! ```text
+//! border        a border line in plan, and where it comes from
+//! bounding      which real lines may bound a facet
+//! extent        closing lines where the views cease to agree on a plane
+//! border_lines  all border lines, with new lines by plane intersection (figures 19 to 22)
+//! arrangement   the plan cut into cells by the border lines
+//! line_index    which real lines run along a border
+//! border_cost   what a border between two planes costs
+//! ```
 
 mod arrangement;
 mod border;

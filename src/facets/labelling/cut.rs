@@ -1,14 +1,15 @@
 //! The best of all moves in which cells keep their plane or take a new one: a minimum cut.
 //!
-//! One expansion of [`super::expansion`]. Costs become integers, so that the cut is exact and the same on every machine.
+//! One expansion of [`super::expansion`]. Costs become integers, so that the cut is exact and the
+//! same on every machine.
 
 use super::flow::Flow;
 
 /// Capacities are integers, so that the cut is exact: a millionth of a square metre.
 const UNIT: f64 = 1e6;
 
-/// What moves must save to be made, in units. Between labels that cost the same, cells would go to and fro for what
-/// rounding makes of it.
+/// What moves must save to be made, in units. Between labels that cost the same, cells would
+/// oscillate with the rounding.
 const LEAST_SAVED: i64 = 1000;
 
 /// A minimum cut over binary moves: 0 keeps the label, 1 takes the new one.
@@ -45,7 +46,8 @@ impl Cut {
         self.arcs.push((i, j, j_moves + i_moves - stay));
     }
 
-    /// For each node: does it move? A tie moves, unless hardly anything is gained: a labelling must not go round in circles.
+    /// For each node: does it move? A tie moves, unless hardly anything is gained: a labelling must
+    /// not go round in circles.
     pub fn solve(self) -> Vec<bool> {
         let units = |c: f64| (c * UNIT).round() as i64;
         let costs = self.unaries.iter();
@@ -53,7 +55,7 @@ impl Cut {
         let arcs = self.arcs.iter().map(|&(i, j, c)| (i, j, units(c)));
         let arcs: Vec<_> = arcs.filter(|a| a.2 > 0).collect();
         let mut flow = Flow::new(surplus.collect(), &arcs);
-        // What no surplus can meet is what the moves save.
+        // The deficit that no surplus meets is what the moves save.
         if flow.run() < LEAST_SAVED {
             return vec![false; self.unaries.len()];
         }
@@ -66,7 +68,8 @@ mod tests {
     use super::*;
     use crate::testing::uniform;
 
-    /// Costs of keeping and moving, and per pair those of staying, of the second moving and of the first moving.
+    /// Costs of keeping and moving, and per pair those of staying, of the second moving and of the
+    /// first moving.
     type Pair = (usize, usize, [f64; 3]);
 
     fn cut(unaries: &[(f64, f64)], pairs: &[Pair]) -> Cut {

@@ -4,18 +4,20 @@
 pub const NO_PLANE: u32 = u32::MAX;
 
 /// What different labels on both sides of a border cost.
-pub trait Borders {
-    /// Cost of `left` and `right`, which differ, on the two cells of an edge, whichever is on which.
+pub trait PairwiseCosts {
+    /// Cost of `left` and `right`, which differ, on the two cells of an edge, whichever is on
+    /// which.
     fn cost(&self, edge: usize, left: u32, right: u32) -> f64;
 
     /// The most that any two labels can cost there.
-    fn most(&self, edge: usize) -> f64;
+    fn upper_bound(&self, edge: usize) -> f64;
 }
 
 /// The energy over cells and planes.
 #[derive(Clone, Debug)]
 pub struct Energy<B> {
-    /// Per cell: (plane, D) for the planes that may cover it, ascending by plane. "No plane" costs 0.
+    /// Per cell: (plane, D) for the planes that may cover it, ascending by plane. "No plane" costs
+    /// 0.
     pub unary: Vec<Vec<(u32, f64)>>,
     /// Pairs of neighbouring cells.
     pub edges: Vec<[usize; 2]>,
@@ -23,7 +25,7 @@ pub struct Energy<B> {
     pub borders: B,
 }
 
-impl<B: Borders> Energy<B> {
+impl<B: PairwiseCosts> Energy<B> {
     pub(super) fn border(&self, edge: usize, left: u32, right: u32) -> f64 {
         if left == right {
             return 0.0;

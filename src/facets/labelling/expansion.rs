@@ -1,14 +1,14 @@
 //! The labelling of least energy, by alpha-expansion (Boykov, Veksler, Zabih 2001).
 
 use super::cut::Cut;
-use super::energy::{Borders, Energy, NO_PLANE};
+use super::energy::{Energy, NO_PLANE, PairwiseCosts};
 
-/// A labelling on its way to the least energy. It remembers what was tried, so that after a small change only the planes
-/// around it are tried again.
+/// A labelling on its way to the least energy. It records which expansions were tried, so that
+/// after a small change only the planes around it are tried again.
 pub struct Labelling<B> {
     energy: Energy<B>,
     graph: CellGraph,
-    clock: Clock,
+    clock: ExpansionHistory,
     labels: Vec<u32>,
     /// What each cell's label costs there.
     costs: Vec<f64>,
@@ -16,13 +16,13 @@ pub struct Labelling<B> {
     nodes: Vec<Option<usize>>,
 }
 
-impl<B: Borders> Labelling<B> {
+impl<B: PairwiseCosts> Labelling<B> {
     /// No plane covers any cell; `planes` is the number of planes.
     pub fn new(energy: Energy<B>, planes: u32) -> Self {
         let cells = energy.unary.len();
         Self {
             graph: CellGraph::new(&energy, planes),
-            clock: Clock::new(cells, planes),
+            clock: ExpansionHistory::new(cells, planes),
             labels: vec![NO_PLANE; cells],
             costs: vec![0.0; cells],
             nodes: vec![None; cells],
@@ -42,8 +42,9 @@ impl<B: Borders> Labelling<B> {
         for _ in 0..ROUNDS {
             let start = self.clock.now;
             for plane in (0..planes).chain([NO_PLANE]) {
-                // Nothing changed where this plane may lie since it was last tried: it would fail again.
-                if self.clock.worth_trying(plane, &self.graph) {
+                // Nothing changed where this plane may lie since it was last tried: it would fail
+                // again.
+                if self.clock.may_improve(plane, &self.graph) {
                     let changed = self.expand(plane);
                     self.clock.tried(plane, &changed);
                 }
@@ -81,8 +82,9 @@ impl<B: Borders> Labelling<B> {
     fn expand(&mut self, alpha: u32) -> Vec<usize> {
         let (energy, graph, labels) = (&self.energy, &self.graph, &self.labels);
         let may_gain = |c: usize, change: f64| {
-            // Most cells of a plane's region are nothing like the plane and could not, whatever their neighbours do.
-            labels[c] != alpha && self.costs[c] - change + graph.most_by_borders[c] >= 0.0
+            // Most cells of a plane's region are nothing like the plane and could not, whatever
+            // their neighbours do.
+            labels[c] != alpha && self.costs[c] - change + graph.border_bound[c] >= 0.0
         };
         let movable: Vec<(usize, f64)> = (graph.cells_of(alpha).iter().copied())
             .filter(|&(c, change)| may_gain(c, change))
@@ -139,11 +141,11 @@ struct CellGraph {
     cells_of_no_plane: Vec<(usize, f64)>,
     edges_of_cell: Vec<Vec<usize>>,
     /// The most that a cell's borders can cost.
-    most_by_borders: Vec<f64>,
+    border_bound: Vec<f64>,
 }
 
 impl CellGraph {
-    fn new<B: Borders>(energy: &Energy<B>, planes: u32) -> Self {
+    fn new<B: PairwiseCosts>(energy: &Energy<B>, planes: u32) -> Self {
         let mut cells_of_plane = vec![Vec::new(); planes as usize];
         for (cell, candidates) in energy.unary.iter().enumerate() {
             for (plane, cost) in candidates {
@@ -174,8 +176,8 @@ impl CellGraph {
             surroundings_of_plane,
             all: (0..energy.unary.len()).collect(),
             cells_of_no_plane: (0..energy.unary.len()).map(|c| (c, 0.0)).collect(),
-            most_by_borders: (edges_of_cell.iter())
-                .map(|edges| edges.iter().map(|&e| energy.borders.most(e)).sum())
+            border_bound: (edges_of_cell.iter())
+                .map(|edges| edges.iter().map(|&e| energy.borders.upper_bound(e)).sum())
                 .collect(),
             edges_of_cell,
         }
@@ -204,13 +206,13 @@ impl CellGraph {
 }
 
 /// When each cell last changed its label and each plane was last tried, in tries.
-struct Clock {
+struct ExpansionHistory {
     now: u32,
     changed: Vec<u32>,
     tried: Vec<u32>,
 }
 
-impl Clock {
+impl ExpansionHistory {
     fn new(cells: usize, planes: u32) -> Self {
         Self {
             now: 1,
@@ -223,7 +225,7 @@ impl Clock {
         (plane as usize).min(self.tried.len() - 1)
     }
 
-    fn worth_trying(&self, plane: u32, graph: &CellGraph) -> bool {
+    fn may_improve(&self, plane: u32, graph: &CellGraph) -> bool {
         let last = self.tried[self.slot(plane)];
         graph
             .surroundings_of(plane)
@@ -238,7 +240,7 @@ impl Clock {
 
     fn tried(&mut self, plane: u32, changed: &[usize]) {
         self.changed(changed);
-        // The plane's own changes do not make it worth trying again.
+        // The plane's own changes are no reason to try it again.
         let slot = self.slot(plane);
         self.tried[slot] = self.now;
     }
@@ -259,7 +261,7 @@ mod tests {
 
     type Row = (f64, Vec<(u32, u32, f64)>);
 
-    impl Borders for Table {
+    impl PairwiseCosts for Table {
         fn cost(&self, edge: usize, left: u32, right: u32) -> f64 {
             let (unsupported, supported) = &self.0[edge];
             (supported.iter())
@@ -267,7 +269,7 @@ mod tests {
                 .map_or(*unsupported, |s| s.2)
         }
 
-        fn most(&self, edge: usize) -> f64 {
+        fn upper_bound(&self, edge: usize) -> f64 {
             let (unsupported, supported) = &self.0[edge];
             supported.iter().fold(*unsupported, |most, s| most.max(s.2))
         }
@@ -290,8 +292,8 @@ mod tests {
 
     #[test]
     fn an_undecided_cell_follows_the_cheaper_border() {
-        // Cells 0 - 1 - 2; plane 0 fits cell 0, plane 1 fits cell 2, cell 1 fits both equally; only the border
-        // between 1 and 2 is supported.
+        // Cells 0 - 1 - 2; plane 0 fits cell 0, plane 1 fits cell 2, cell 1 fits both equally; only
+        // the border between 1 and 2 is supported.
         let energy = row(
             vec![
                 vec![(0, -5.0), (1, 5.0)],
@@ -343,7 +345,7 @@ mod tests {
             labelling.exclude(excluded, &cells);
             labelling.minimise();
             let found = labelling.energy.of(&labelling.labels);
-            labelling.clock = Clock::new(12, 4);
+            labelling.clock = ExpansionHistory::new(12, 4);
             labelling.minimise();
             assert_eq!(labelling.energy.of(&labelling.labels), found, "seed {seed}");
         }

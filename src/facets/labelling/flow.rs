@@ -1,10 +1,12 @@
 //! The minimum cut behind a [`super::cut`], by a maximum flow.
 //!
-//! Nodes hold a surplus or a deficit and surpluses flow along arcs to deficits (Goldberg and Tarjan 1988: a node may keep
-//! what does not get on). Distances to the nearest deficit are taken anew in rounds, from the deficits outwards and
-//! no farther than the nearest surplus, because most deficits are met by their neighbours. Half of every arc is filled to begin
-//! with: where two cells of one label may move together, this cancels what each would pay without the other, and few
-//! deficits are left. A library's flow, which looked at every arc in every round, took six times as long.
+//! Nodes hold a surplus or a deficit and surpluses flow along arcs to deficits (Goldberg and Tarjan
+//! 1988: a node may keep what does not get on). Distances to the nearest deficit are taken anew in
+//! rounds, from the deficits outwards and no farther than the nearest surplus, because most
+//! deficits are met by their neighbours. Half of every arc is filled to begin with: where two cells
+//! of one label may move together, this cancels what each would pay without the other, and few
+//! deficits are left. A library's flow, which looked at every arc in every round, took six times as
+//! long.
 
 /// From, to, capacity in units.
 pub type Arc = (usize, usize, i64);
@@ -14,7 +16,7 @@ pub struct Flow {
     /// The arcs at node i, in either direction, are `arcs[starts[i]..starts[i + 1]]`.
     starts: Vec<u32>,
     arcs: Vec<HalfArc>,
-    /// What each node has to give; negative where it wants.
+    /// Surplus of each node; negative for a deficit.
     surplus: Vec<i64>,
 }
 
@@ -24,13 +26,14 @@ struct HalfArc {
     to: u32,
     /// The same arc as the other end sees it.
     twin: u32,
-    /// How much more can flow that way.
+    /// Residual capacity in that direction.
     left: i64,
 }
 
 /// No distance yet.
 const FAR: u32 = u32::MAX;
-/// Distances are taken so much farther than the nearest surplus. Of 0, 1, 2, 4, 8 and 16 the third took least time.
+/// Distances are taken so much farther than the nearest surplus. Of 0, 1, 2, 4, 8 and 16 the third
+/// took least time.
 const BEYOND: u32 = 2;
 
 impl Flow {
@@ -90,7 +93,8 @@ impl Flow {
         -(wanting.iter().map(|&i| self.surplus[i as usize])).sum::<i64>()
     }
 
-    /// Lists the nodes near those that want, by their distance against the flow; false when no surplus can reach any.
+    /// Lists the nodes near those that want, by their distance against the flow; false when no
+    /// surplus can reach any.
     fn approach(&self, wanting: &[u32], distance: &mut [u32], near: &mut Vec<u32>) -> bool {
         near.clear();
         near.extend(wanting);
@@ -134,8 +138,8 @@ impl Flow {
         self.surplus[node as usize] = surplus;
     }
 
-    /// The nodes that what is left of the surplus could still reach, once nothing flows any more: of all minimum cuts the
-    /// side of the surpluses that is smallest.
+    /// The nodes that what is left of the surplus could still reach, once nothing flows any more:
+    /// of all minimum cuts the side of the surpluses that is smallest.
     pub fn reached(&self) -> Vec<bool> {
         let mut reached: Vec<bool> = self.surplus.iter().map(|s| *s > 0).collect();
         let mut open: Vec<u32> = (0..reached.len() as u32)
@@ -163,7 +167,8 @@ mod tests {
     use super::*;
     use crate::testing::uniform;
 
-    /// What a choice of the wanting side costs: surpluses on it are lost, deficits off it are gained, arcs into it are torn.
+    /// What a choice of the wanting side costs: surpluses on it are lost, deficits off it are
+    /// gained, arcs into it are torn.
     fn gain(surplus: &[i64], arcs: &[Arc], side: u32) -> i64 {
         let on = |node: usize| side >> node & 1 == 1;
         let own: i64 = (surplus.iter().enumerate())

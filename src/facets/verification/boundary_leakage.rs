@@ -1,15 +1,16 @@
-//! What a facet covers beyond a line that bounds it (B99 4.3, figure 21 a).
+//! Boundary leakage: what a facet covers beyond a line that bounds it (B99 4.3, figure 21 a).
 //!
-//! Where two roofs stand close together one may reach over the gap to the other: its eave and the edge of its neighbour are both
-//! real lines, the gap is dark and narrow and says little, and the labelling pays for one border instead of two. Verified as a whole the
-//! facet is good. So what lies beyond a line that bounds it must be borne out by itself.
+//! Where two roofs stand close together one may reach over the gap to the other: its eave and the
+//! edge of its neighbour are both real lines, the gap is dark and narrow and gives little evidence,
+//! and the labelling pays for one border instead of two. As a whole the facet passes verification,
+//! so the part beyond a line that bounds it is tested by itself.
 
 use std::collections::BTreeMap;
 
 use nalgebra::{Point2, Point3};
 
-use super::displaced_plane::{PROMINENT, prominence};
-use super::interior::{Inside, seen_inside};
+use super::displaced_plane::{CLEAR_MARGIN, displaced_plane_margin};
+use super::interior::{InteriorWindows, visible_interior};
 use super::rejection::{FacetRejection, RejectedFacet};
 use crate::facets::borders::{Arrangement, lies_in};
 use crate::facets::competing_planes::CompetingPlanes;
@@ -22,18 +23,20 @@ use crate::photoconsistency::ConsistencyMap;
 use crate::photoconsistency::WINDOW;
 use crate::scene::Scene;
 
-/// Share of a part's length along the line that is on it, from which on the line parts it from the rest. Measured on rendered scenes: of the parts that
-/// are beyond the roof three quarters have 0.93 and more.
+/// Share of a part's length along the line that is on it, from which on the line parts it from the
+/// rest. Measured on rendered scenes: of the parts that are beyond the roof three quarters have
+/// 0.93 and more.
 const ALONG: f64 = 0.75;
-/// Smallest part that is looked at, square metres. Assumption: less is seen by few windows.
+/// Smallest part that is tested, square metres. Assumption: less holds too few windows.
 const LEAST_PART_M2: f64 = 0.5;
 
-/// Texture weight, summed over the windows inside a part, below which they say nothing of it: that of a row of windows from one beside the other to
-/// the next. Measured: parts that are beyond the roof have 13 and more, the corners of hips 3 and less.
+/// Texture weight, summed over the windows inside a part, below which they are no evidence: that of
+/// a row of windows from one to the next beside it. Measured: parts that are beyond the roof have
+/// 13 and more, the corners of hips 3 and less.
 const LEAST_WEIGHT: f64 = WINDOW as f64;
 
-/// The cells of a facet, itself verified, that lie beyond a line that bounds it and that the views do not bear out: of several such parts that
-/// which they speak against most.
+/// The cells of a verified facet that lie beyond a line that bounds it and that the views
+/// contradict: of several such parts the one contradicted most.
 pub(crate) fn boundary_leakage(
     competing: &CompetingPlanes,
     facet: &Facet,
@@ -50,7 +53,7 @@ pub(crate) fn boundary_leakage(
     let parts = in_plane.filter_map(|line| Some((line, part_beyond(facet, line)?)));
     let refused = parts.filter_map(|(line, part)| {
         let least = params.min_correlation;
-        let (short, reason) = chance_inside(&competing.scene, &part, map, &hidden, least)?;
+        let (short, reason) = leakage(&competing.scene, &part, map, &hidden, least)?;
         Some((short, line, part, reason))
     });
     let (_, line, part, reason) = refused.max_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -63,24 +66,28 @@ pub(crate) fn boundary_leakage(
     (!cells.is_empty() && cells.len() < outline.cells.len()).then_some((cells, refused))
 }
 
-/// By how much the views agree less than by chance inside a part of a facet that does not stand out either; `None` where the part is borne out. `map`
-/// says how all views agree on the plane, and `hidden` which of them do not see a point of it.
-fn chance_inside(
+/// By how much the views agree less than by chance inside a part of a facet that fails the
+/// displaced-plane test too; `None` for a good part. `map` is that of all views on the plane, and
+/// `hidden` tells which of them do not see a point of it.
+fn leakage(
     scene: &Scene,
     part: &Facet,
     map: &ConsistencyMap,
     hidden: &dyn Fn(ViewId, &Point3<f64>) -> bool,
     min_correlation: f64,
 ) -> Option<(f64, FacetRejection)> {
-    if !Inside::of(part, map).sums(min_correlation).is_doubtful() {
+    if !InteriorWindows::of(part, map)
+        .sums(min_correlation)
+        .is_doubtful()
+    {
         return None;
     }
     let step = map.grid.step;
-    let seen = seen_inside(scene, part, step, hidden, min_correlation);
+    let seen = visible_interior(scene, part, step, hidden, min_correlation);
     let short = -seen.beyond_chance();
     if short <= 0.0
         || seen.weight < LEAST_WEIGHT
-        || prominence(scene, part, step, 0.0, hidden) >= PROMINENT
+        || displaced_plane_margin(scene, part, step, 0.0, hidden) >= CLEAR_MARGIN
     {
         return None;
     }
@@ -140,7 +147,7 @@ fn cells_beyond(
 
 #[cfg(test)]
 mod tests {
-    use super::super::interior::map_inside;
+    use super::super::interior::interior_map;
     use super::*;
     use crate::synthetic::gable_scene;
     use crate::testing;
@@ -213,8 +220,8 @@ mod tests {
             testing::facet(&ring)
         };
         let short = |part: &Facet| {
-            let map = map_inside(&scene, part, 0.1, &|_, _| false);
-            chance_inside(&scene, part, &map, &|_, _| false, 0.45)
+            let map = interior_map(&scene, part, 0.1, &|_, _| false);
+            leakage(&scene, part, &map, &|_, _| false, 0.45)
         };
         assert!(short(&strip(2.0)).is_none());
         // The corner between the eave and the fall line holds few windows, or many.

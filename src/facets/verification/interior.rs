@@ -1,7 +1,9 @@
-//! What the inside of a facet shows: the windows of comparison that lie wholly in it (B99 4.3, verification).
+//! Photo-consistency inside a facet: the correlation windows that lie wholly in it (B99 4.3,
+//! verification).
 //!
-//! Along an edge every plane through it is as good as the next within half a window. A plane that bridges two roofs
-//! over shadow or a gap touches edges of both and is confirmed by them; only its inside can tell.
+//! Along an edge every plane through it is as good as the next within half a window. A plane that
+//! bridges two roofs over shadow or a gap touches edges of both and is confirmed by them; only its
+//! interior contradicts it.
 
 use nalgebra::{Point2, Point3};
 
@@ -16,7 +18,7 @@ use crate::raster::mark_inside;
 use crate::scene::Scene;
 
 /// The windows that lie wholly inside a facet.
-pub struct Inside<'m> {
+pub struct InteriorWindows<'m> {
     /// How the views agree on its plane.
     map: &'m ConsistencyMap,
     /// The middles of the windows, as cells of the map's grid.
@@ -25,9 +27,9 @@ pub struct Inside<'m> {
     share: f64,
 }
 
-/// What the windows inside a facet say about its plane.
+/// Sums over the windows inside a facet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Interior {
+pub struct InteriorSums {
     /// Number of windows.
     pub windows: usize,
     /// Sum of their texture weights.
@@ -42,8 +44,9 @@ pub struct Interior {
     pub least_overall: f64,
 }
 
-/// How the views that see a facet agree on its plane, over its own part of the plan; `hidden` says which do not.
-pub fn map_inside(
+/// Photo-consistency map of a facet's plane over its part of the plan; `hidden` tells which views
+/// do not see a point.
+pub fn interior_map(
     scene: &Scene,
     facet: &Facet,
     step: f64,
@@ -54,20 +57,20 @@ pub fn map_inside(
     consistency_map_behind(scene, &facet.plane, &grid, hidden)
 }
 
-/// What the inside of a facet shows to the views that nothing hides it from; `hidden` says which do not see a point, and `min_correlation` is what strong texture
-/// must reach.
-pub fn seen_inside(
+/// Sums over the interior of a facet for the views that see it; `hidden` tells which do not see a
+/// point, and `min_correlation` is what strong texture must reach.
+pub fn visible_interior(
     scene: &Scene,
     facet: &Facet,
     step: f64,
     hidden: &dyn Fn(ViewId, &Point3<f64>) -> bool,
     min_correlation: f64,
-) -> Interior {
-    let map = map_inside(scene, facet, step, hidden);
-    Inside::of(facet, &map).sums(min_correlation)
+) -> InteriorSums {
+    let map = interior_map(scene, facet, step, hidden);
+    InteriorWindows::of(facet, &map).sums(min_correlation)
 }
 
-impl<'m> Inside<'m> {
+impl<'m> InteriorWindows<'m> {
     /// The windows inside a facet, with the map of its plane.
     pub fn of(facet: &Facet, map: &'m ConsistencyMap) -> Self {
         let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
@@ -88,16 +91,16 @@ impl<'m> Inside<'m> {
         }
     }
 
-    /// Is a facet so narrow that most of it is next to its edges?
+    /// Is a facet so narrow that most of it is within half a window of its edges?
     pub fn is_narrow(&self) -> bool {
         self.share < LEAST_SHARE
     }
 
     /// Their sums; `min_correlation` is what strong texture must reach.
-    pub fn sums(&self, min_correlation: f64) -> Interior {
-        let mut interior = Interior {
+    pub fn sums(&self, min_correlation: f64) -> InteriorSums {
+        let mut interior = InteriorSums {
             windows: self.windows.len(),
-            ..Interior::default()
+            ..InteriorSums::default()
         };
         for &k in &self.windows {
             let weight = f64::from(self.map.weight(k));
@@ -119,9 +122,9 @@ impl<'m> Inside<'m> {
         windows.map(|k| grid.center(k % grid.width, k / grid.width))
     }
 
-    /// How much better the views agree on another plane in the same windows: the mean difference of the correlations, in
-    /// standard deviations of that mean. As many windows count as fit in side by side, since others share cells. Zero where
-    /// no window sees both planes.
+    /// How much better the views agree on another plane in the same windows: the mean difference of
+    /// the correlations, in standard deviations of that mean. As many windows count as fit in side
+    /// by side, since others share cells. Zero where no window sees both planes.
     pub fn advantage_of(&self, other: &ConsistencyMap) -> f64 {
         let (own, grid) = (self.map, &other.grid);
         let (dc, dr) = own.grid.offset_in(grid);
@@ -153,14 +156,14 @@ impl<'m> Inside<'m> {
     }
 }
 
-impl Interior {
+impl InteriorSums {
     /// Is there texture, and does it contradict the plane?
-    pub fn speaks_against(&self) -> bool {
+    pub fn contradicts(&self) -> bool {
         self.falls_short(self.correlation, self.least, TOLERANCE)
     }
 
-    /// The same where no pair of views is excused.
-    pub fn speaks_against_overall(&self) -> bool {
+    /// The same for all pairs of views.
+    pub fn contradicts_overall(&self) -> bool {
         self.falls_short(self.overall, self.least_overall, TOLERANCE_OVERALL)
     }
 
@@ -179,8 +182,8 @@ impl Interior {
         self.beyond_chance() >= CLEAR * self.weight
     }
 
-    /// By how much the correlations, that of the better half of the pairs and that of all, exceed together what they must, summed
-    /// over the windows.
+    /// By how much the correlations, that of the better half of the pairs and that of all, exceed
+    /// together what they must, summed over the windows.
     pub fn beyond_chance(&self) -> f64 {
         self.correlation - self.least + self.overall - self.least_overall
     }
@@ -195,19 +198,22 @@ impl Interior {
 const LEAST_VARIANCE: f64 = 1e-5;
 /// How exactly the least correlation is known. Assumption.
 const TOLERANCE: f64 = 0.02;
-/// By how much the views of a true roof may fall short where none is excused: metal shines in some of them and not in others. Measured: up
-/// to 0.11 on a roof of real-barns.
+/// By how much the mean of all pairs of views of a true roof may fall short: metal shines in some
+/// of them and not in others. Measured: up to 0.11 on a roof of real-barns.
 const TOLERANCE_OVERALL: f64 = 0.13;
-/// By how much all pairs may exceed what they must for the facet to be looked at again where nothing hides it. Assumption: what hides a facet from some views
-/// changes the mean of the pairs by less.
+/// Margin of the mean of all pairs below which the facet is tested again with the views that see
+/// it. Assumption: occlusion in some views changes the mean of the pairs by less.
 const DOUBT: f64 = 0.1;
-/// By how much the correlations of a roof, that of the better half of the pairs and that of all, exceed together what they must. Measured: by
-/// more on three quarters of the true facets of rendered scenes, by less on hedges.
+/// By how much the correlations of a roof, that of the better half of the pairs and that of all,
+/// exceed together what they must. Measured: by more on three quarters of the true facets of
+/// rendered scenes, by less on hedges.
 const CLEAR: f64 = 0.55;
-/// Mean texture weight from which on the inside of a facet has a say. Assumption: below it is mostly noise.
+/// Mean texture weight from which on the interior of a facet is evidence. Assumption: below it is
+/// mostly noise.
 const TEXTURED: f64 = 0.1;
 
-/// Share of a facet that windows inside it must reach. Assumption: triangles and trapezes have half or more.
+/// Share of a facet that windows inside it must reach. Assumption: triangles and trapezes have half
+/// or more.
 const LEAST_SHARE: f64 = 0.25;
 
 /// Which cells of a grid, row by row, lie inside the rings.
@@ -305,12 +311,12 @@ mod tests {
     }
 
     /// What the facet shows if its edges correlate, and its inside correlates by `inside`.
-    fn with_edges(inside: f32) -> Interior {
+    fn with_edges(inside: f32) -> InteriorSums {
         let map = map([0.0; 2], |p| {
             let from_edge = p.x.min(5.0 - p.x).min(p.y.min(3.0 - p.y));
             if from_edge > 0.5 { inside } else { 0.9 }
         });
-        Inside::new(&[facet()], &map).sums(0.45)
+        InteriorWindows::new(&[facet()], &map).sums(0.45)
     }
 
     /// Values between -1 and 1 that change from cell to cell.
@@ -321,8 +327,9 @@ mod tests {
     #[test]
     fn a_plane_that_the_views_agree_better_on_has_the_advantage() {
         let own = map([0.0; 2], |p| 0.5 + 0.1 * scatter(p));
-        let inside = Inside::new(&[facet()], &own);
-        // 800 windows of 11 by 11 cells are 6.6 side by side; the mean is 0.1, the standard deviation 0.14.
+        let inside = InteriorWindows::new(&[facet()], &own);
+        // 800 windows of 11 by 11 cells are 6.6 side by side; the mean is 0.1, the standard
+        // deviation 0.14.
         let better = map([3.0, -2.0], |p| 0.6 - 0.1 * scatter(p));
         let sigmas = inside.advantage_of(&better);
         assert!((1.5..3.5).contains(&sigmas), "{sigmas}");
@@ -335,14 +342,14 @@ mod tests {
     fn scatter_that_both_planes_share_does_not_count() {
         let common = |p: Point2<f64>| 0.3 * scatter(p);
         let own = map([0.0; 2], |p| 0.4 + common(p));
-        let inside = Inside::new(&[facet()], &own);
+        let inside = InteriorWindows::new(&[facet()], &own);
         assert!(inside.advantage_of(&map([0.0; 2], |p| 0.5 + common(p))) > 10.0);
     }
 
     #[test]
     fn planes_without_a_window_in_common_cannot_be_compared() {
         let own = map([0.0; 2], |_| 0.2);
-        let inside = Inside::new(&[facet()], &own);
+        let inside = InteriorWindows::new(&[facet()], &own);
         assert_eq!(inside.advantage_of(&map([90.0, 0.0], |_| 0.9)), 0.0);
         assert_eq!(inside.advantage_of(&map([-90.0, -60.0], |_| 0.9)), 0.0);
     }
@@ -350,8 +357,8 @@ mod tests {
     #[test]
     fn edges_do_not_speak_for_the_inside() {
         // Over the whole facet both would correlate by more than 0.5.
-        assert!(with_edges(0.2).speaks_against());
-        assert!(!with_edges(0.6).speaks_against());
+        assert!(with_edges(0.2).contradicts());
+        assert!(!with_edges(0.6).contradicts());
         assert_eq!(with_edges(0.6).windows, 40 * 20);
     }
 
@@ -362,7 +369,7 @@ mod tests {
             [
                 sums.is_doubtful(),
                 sums.is_by_chance(),
-                sums.speaks_against_overall(),
+                sums.contradicts_overall(),
             ]
         };
         // Strong texture must correlate by 0.40 in the mean of all pairs.

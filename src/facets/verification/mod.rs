@@ -1,7 +1,16 @@
-//! Verification (B99 4.3): what a facet must show to stay, and why others are withdrawn.
+//! Verification (B99 4.3): the tests that a facet must pass.
 //!
-//! "Intensity similarity over the complete image set" first counts as the better half of all pairs of views, since nobody
-//! knows yet what hides a plane; of what these let pass, the views that see a facet past the others are asked all.
+//! "Intensity similarity over the complete image set" first is that of the better half of all pairs
+//! of views, since occluders are not known yet; what these accept is tested again with all pairs of
+//! the views that see a facet past the others.
+//!
+//! ```text
+//! rejection         why facets are rejected
+//! interior          photo-consistency inside a facet, away from its edges
+//! displaced_plane   the facet against its own plane moved up and down
+//! vegetation        how green a facet is
+//! boundary_leakage  what a facet covers beyond a line that bounds it
+//! ```
 
 mod boundary_leakage;
 mod displaced_plane;
@@ -14,8 +23,8 @@ pub use rejection::{FacetRejection, RejectedFacet};
 
 use std::collections::BTreeSet;
 
-use self::displaced_plane::{prominence, stands_out};
-use self::interior::{Inside, Interior, seen_inside};
+use self::displaced_plane::{displaced_plane_margin, displaced_plane_test};
+use self::interior::{InteriorSums, InteriorWindows, visible_interior};
 use self::vegetation::{GREEN, excess_green};
 use super::borders::Arrangement;
 use super::competing_planes::CompetingPlanes;
@@ -28,26 +37,35 @@ use crate::planes::{ON_SURFACE, TEXTURED};
 use crate::scene::Scene;
 use crate::terrain::Ground;
 
-/// Height above the ground that no eave is below, metres. Assumption: with a few decimetres for the ground's own error.
+/// Height above the ground that no eave is below, metres. Assumption: with a few decimetres for the
+/// ground's own error.
 const LOWEST_EAVE: f64 = 1.0;
-/// Share of a facet that may lie on the ground for the rest to be a roof still: a corner drawn too far. Assumption: of a bank that rises to the
-/// height of an eave more lies lower than [`LOWEST_EAVE`].
+/// Share of a facet that may lie on the ground for the rest to be a roof still: a corner drawn too
+/// far. Assumption: of a bank that rises to the height of an eave more lies lower than
+/// [`LOWEST_EAVE`].
 const MOST_ON_GROUND: f64 = 0.15;
 /// Share of its outline on lines from which on a green facet is bounded as roofs are. Assumption.
 const MOST_REAL: f64 = 0.5;
-/// Cosine of the slope (26 degrees) below which a facet without a half-plane may be a roof that shines: the views of a metal roof of real-barns, at 22 degrees,
-/// agree by no more than chance.
+/// Cosine of the slope (26 degrees) below which a facet without a half-plane may be a roof that
+/// shines: the views of a metal roof of real-barns, at 22 degrees, agree by no more than chance.
 const FLAT_COSINE: f64 = 0.9;
-/// Share of its outline on lines from which on a facet is bounded by them all around. Measured: of the steep rendered facets without a half-plane that
-/// views agree on by chance at most, 25 of 26 false ones and 1 of 5 true ones have less.
+/// Share of its outline on lines from which on a facet is bounded by them all around. Measured: of
+/// the steep rendered facets without a half-plane that views agree on by chance at most, 25 of 26
+/// false ones and 1 of 5 true ones have less.
 const ALL_REAL: f64 = 0.85;
 /// Share of a facet that another plane must be able to cover to take its place. Assumption.
 const ALMOST_ALL: f64 = 0.9;
 /// Standard deviations by which the views must agree better on it. Assumption: as usual.
 const CLEARLY: f64 = 3.0;
 
-/// The excess green of a facet that is as green as plants and is no clear roof, by its outline or by its inside.
-fn vegetation(facet: &Facet, inside: &Inside, interior: &Interior, colours: &Scene) -> Option<f64> {
+/// The excess green of a facet that is as green as plants and is no clear roof, by its outline or
+/// by its inside.
+fn vegetation(
+    facet: &Facet,
+    inside: &InteriorWindows,
+    interior: &InteriorSums,
+    colours: &Scene,
+) -> Option<f64> {
     if facet.real_ratio >= MOST_REAL && interior.is_clear() {
         return None;
     }
@@ -84,14 +102,16 @@ fn is_placed_like_a_roof(
     Ok(())
 }
 
-/// Might a facet span a gap between an edge and a lower one? No half-plane says that it goes on beside its lines, it is steep, as flat roofs
-/// that shine are not, and part of its outline is no line.
+/// Might a facet span a gap between an edge and a lower one? No half-plane shows that it continues
+/// beside its lines, it is steep, as flat roofs that shine are not, and part of its outline is no
+/// line.
 fn may_bridge(facet: &Facet) -> bool {
     let is_flat = facet.plane.normal.z >= FLAT_COSINE;
     facet.half_planes.is_empty() && !is_flat && facet.real_ratio < ALL_REAL
 }
 
-/// The cells of a facet that come down to the ground, where these are few: without them it may be a roof.
+/// The cells of a facet that come down to the ground, where these are few: without them it may be a
+/// roof.
 pub(crate) fn tail_on_ground(
     plane: &Plane,
     cells: &[usize],
@@ -113,7 +133,8 @@ pub(crate) fn tail_on_ground(
     (few && !low.is_empty()).then(|| low.into_iter().collect())
 }
 
-/// Does the facet stay, between the other facets and over the ground? `colours` are the photographs as they were taken.
+/// Verifies a facet between the other facets and over the ground. `colours` are the photographs as
+/// they were taken.
 pub(crate) fn verify(
     competing: &CompetingPlanes,
     facet: &Facet,
@@ -125,7 +146,7 @@ pub(crate) fn verify(
 ) -> Result<(), FacetRejection> {
     is_placed_like_a_roof(facet, ground, params)?;
     let map = &competing.maps[outline.plane as usize];
-    let inside = Inside::of(facet, map);
+    let inside = InteriorWindows::of(facet, map);
     if inside.is_narrow() {
         return Err(FacetRejection::TooNarrow {
             window_m: WINDOW as f64 * map.grid.step,
@@ -134,9 +155,10 @@ pub(crate) fn verify(
     let interior = inside.sums(params.min_correlation);
     let agreed = is_agreed_on(competing, facet, outline, &interior, occluders, params);
     let hidden = competing.hidden_by(occluders);
-    let prominence =
-        |least_m: f64| prominence(&competing.scene, facet, map.grid.step, least_m, &hidden);
-    stands_out(agreed, facet, &interior, prominence)?;
+    let displaced_plane_margin = |least_m: f64| {
+        displaced_plane_margin(&competing.scene, facet, map.grid.step, least_m, &hidden)
+    };
+    displaced_plane_test(agreed, facet, &interior, displaced_plane_margin)?;
     if let Some(excess_green) = vegetation(facet, &inside, &interior, colours) {
         return Err(FacetRejection::Vegetation { excess_green });
     }
@@ -146,27 +168,27 @@ pub(crate) fn verify(
     Ok(())
 }
 
-/// Do the images agree inside a facet as much as they must, with what its outline shows?
+/// The similarity test: are the views consistent inside a facet, given the support of its outline?
 fn is_agreed_on(
     competing: &CompetingPlanes,
     facet: &Facet,
     outline: &Outline,
-    interior: &Interior,
+    interior: &InteriorSums,
     occluders: &Occluders,
     params: &RoofParams,
 ) -> Result<(), FacetRejection> {
-    if interior.speaks_against() {
+    if interior.contradicts() {
         return Err(FacetRejection::Dissimilar {
             similarity: interior.correlation / interior.weight,
         });
     }
-    // The better half of the pairs excuses the views in which something stands in front of the facet, and with them
-    // as many in which nothing does.
+    // The better half of the pairs leaves out occluded views, and with them as many that see the
+    // facet.
     let doubtful = may_bridge(facet) && interior.is_doubtful();
-    if doubtful || interior.speaks_against_overall() {
+    if doubtful || interior.contradicts_overall() {
         let step = competing.maps[outline.plane as usize].grid.step;
         let hidden = competing.hidden_by(occluders);
-        let seen = seen_inside(
+        let seen = visible_interior(
             &competing.scene,
             facet,
             step,
@@ -174,14 +196,14 @@ fn is_agreed_on(
             params.min_correlation,
         );
         let similarity = seen.overall / seen.weight;
-        if seen.speaks_against_overall() {
+        if seen.contradicts_overall() {
             return Err(FacetRejection::Contradicted { similarity });
         }
         if doubtful && seen.is_by_chance() {
             return Err(FacetRejection::Bridge { similarity });
         }
     }
-    // What little texture there is must not speak against the plane.
+    // What little texture there is must not contradict the plane.
     let (weight, least) = texture(competing, outline);
     let sloped_m2 = sloped_area(facet);
     if facet.similarity * weight < least && weight > 0.1 * sloped_m2 {
@@ -200,12 +222,13 @@ fn is_agreed_on(
     Ok(())
 }
 
-/// The plane that could lie over a facet and that the views agree on clearly better inside it. A level plane through
-/// the ridges of two roofs has more edges than the roof between them, and little else.
+/// Another plane that could cover a facet and that the views agree on clearly better inside it. A
+/// level plane through the ridges of two roofs has more edges than the roof between them, and
+/// little else.
 fn better_plane(
     competing: &CompetingPlanes,
     outline: &Outline,
-    inside: &Inside,
+    inside: &InteriorWindows,
 ) -> Option<(u32, f64)> {
     let area = |plane: u32| -> f64 {
         let evidence = (outline.cells.iter()).filter_map(|&c| competing.evidence.get(c, plane));
@@ -229,7 +252,7 @@ fn texture(competing: &CompetingPlanes, outline: &Outline) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::super::borders::{Border, BorderKind};
-    use super::interior::map_inside;
+    use super::interior::interior_map;
     use super::*;
     use crate::ids::{HalfPlaneId, ViewId};
     use crate::synthetic::gable_scene;
@@ -245,12 +268,13 @@ mod tests {
         (scene, facet)
     }
 
-    /// Do the better half of the pairs of views, and all of them, speak against a facet, where `hidden` views are not asked?
+    /// Do the better half of the pairs of views, and all of them, speak against a facet, where
+    /// `hidden` views are not asked?
     fn against(scene: &Scene, facet: &Facet, hidden: &[usize]) -> [bool; 2] {
         let hidden = |view: ViewId, _: &_| hidden.contains(&view.index());
-        let sums = seen_inside(scene, facet, 0.1, &hidden, MIN_CORRELATION);
+        let sums = visible_interior(scene, facet, 0.1, &hidden, MIN_CORRELATION);
         assert!(sums.weight > 100.0, "the texture is strong");
-        [sums.speaks_against(), sums.speaks_against_overall()]
+        [sums.contradicts(), sums.contradicts_overall()]
     }
 
     #[test]
@@ -303,8 +327,8 @@ mod tests {
                 real_ratio,
                 ..testing::facet(&ring.collect::<Vec<_>>())
             };
-            let map = map_inside(scene, &facet, 0.1, &|_, _| false);
-            let inside = Inside::of(&facet, &map);
+            let map = interior_map(scene, &facet, 0.1, &|_, _| false);
+            let inside = InteriorWindows::of(&facet, &map);
             vegetation(&facet, &inside, &inside.sums(MIN_CORRELATION), scene).is_some()
         };
         assert!(!of(&scene, 0.0, 0.2) && !of(&scene, 2.0, 0.9), "red tiles");
@@ -331,7 +355,8 @@ mod tests {
 
     #[test]
     fn a_roof_loses_the_tail_that_comes_down_to_the_ground_and_a_bank_all() {
-        // It falls from 9 m at x = 0 to 1 m at x = 8; above the ground at 2 m, its lowest eave is at x = 6.
+        // It falls from 9 m at x = 0 to 1 m at x = 8; above the ground at 2 m, its lowest eave is
+        // at x = 6.
         let slope =
             Plane::from_point_normal(&Point3::new(0.0, 0.0, 9.0), &Vector3::new(1.0, 0.0, 1.0));
         let slope = slope.expect("a normal");

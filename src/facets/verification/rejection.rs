@@ -37,18 +37,20 @@ pub enum FacetRejection {
         /// Mean correlation of all their pairs inside the outline.
         similarity: f64,
     },
-    /// Steep, without a half-plane, and the views that nothing hides it from agree inside it by chance at most: it spans from one edge to
-    /// a lower one across a gap.
+    /// Steep, without a half-plane, and the views that nothing hides it from agree inside it by
+    /// chance at most: it spans from one edge to a lower one across a gap.
     Bridge {
         /// Mean correlation of all their pairs inside the outline.
         similarity: f64,
     },
-    /// The views agree better inside the outline on the plane moved up or down, and the outline is not on lines on most sides.
+    /// The views agree better inside the outline on the plane moved up or down, and the outline is
+    /// not on lines on most sides.
     Displaced {
         /// How much better, in standard deviations.
         sigmas: f64,
     },
-    /// The part of a facet beyond a line that bounds it, on whose plane the views agree by chance at most there.
+    /// The part of a facet beyond a line that bounds it, on whose plane the views agree by chance
+    /// at most there.
     BeyondLine {
         /// Mean correlation of all their pairs inside that part.
         similarity: f64,
@@ -65,7 +67,8 @@ pub enum FacetRejection {
         /// How much better, in standard deviations.
         sigmas: f64,
     },
-    /// Too little of its outline lies on reconstructed lines, and the images do not clearly show it.
+    /// Too little of its outline lies on reconstructed lines, and the images do not clearly show
+    /// it.
     Unsupported {
         /// tau_real, 0 to 1.
         real_ratio: f64,

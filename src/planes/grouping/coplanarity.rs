@@ -66,9 +66,11 @@ pub fn all_lie_in(
     })
 }
 
-/// Least standard deviation of theta that is believed, radians: B99 4.4 reports 2 degrees on textured roofs.
+/// Least standard deviation of theta that is credible, radians: B99 4.4 reports 2 degrees on
+/// textured roofs.
 const MIN_SIGMA_THETA: f64 = 1.5 * std::f64::consts::PI / 180.0;
-/// Least standard deviation of a line that is believed, metres: edges are blurred, gutters have a width.
+/// Least standard deviation of a line that is credible, metres: edges are blurred, gutters have a
+/// width.
 const MIN_SIGMA_LINE: f64 = 0.03;
 /// Distance from the line at which a half-plane's angle enters the regression, metres.
 const ANGLE_ARM: f64 = 2.0;

@@ -62,7 +62,8 @@ pub fn extend(
                         < params.coplanar_angle_deg.to_radians()
             });
             // A line whose half-planes all rise elsewhere is still a border of this plane when it
-            // bounds it on the right side, which delineation decides: it lies in the plane (figure 21 a).
+            // bounds it on the right side, which delineation decides: it lies in the plane (figure
+            // 21 a).
             let before = group.clone();
             group.members.push(member(input, next, matching));
             match fit_plane(input, &group.members) {
@@ -132,9 +133,10 @@ fn are_neighbours(input: &GroupingInput, a: &PlaneGroup, b: &PlaneGroup) -> bool
     })
 }
 
-/// A line that lies in the plane without a half-plane has the plane on the side of the other members.
+/// A line that lies in the plane without a half-plane has the plane on the side of the other
+/// members.
 pub fn infer_sides(input: &GroupingInput, group: &mut PlaneGroup) {
-    /// Nearer than this to the line the others do not tell, metres.
+    /// Below this summed offset the side is left open, metres.
     const UNDECIDED: f64 = 0.5;
     let middle = |m: &Member| input.lines[m.line.index()].at(0.5);
     let middles: Vec<_> = group.members.iter().map(middle).collect();

@@ -1,13 +1,15 @@
-//! Planes of two lines (B99 4.2, 5): hipped roofs without texture have ridges, hips and eaves, but no half-plane.
+//! Planes of two lines (B99 4.2, 5): hipped roofs without texture have ridges, hips and eaves, but
+//! no half-plane.
 //!
-//! B99 5: "an efficient and robust approach would use both" half-planes and coplanar lines. Two neighbouring lines that span
-//! a plane propose it; what the images say beside them decides (`hypothesis`). Lines that are
-//! neighbours around a corner only are asked where the sweep found no half-plane between them.
+//! B99 5: "an efficient and robust approach would use both" half-planes and coplanar lines. Two
+//! neighbouring lines that span a plane propose it; the photo-consistency beside them decides
+//! ([`crate::planes::hypothesis`]). Lines that are neighbours around a corner only are paired where
+//! the sweep found no half-plane between them.
 
 use super::coplanarity::{all_lie_in, fit_plane, lies_in_plane};
 use super::growth::{extend, infer_sides};
 use super::plane_group::{GroupingInput, PlaneGroup, member};
-use super::region::Region;
+use super::region::PlanRegion;
 use crate::geometry::Plane;
 use crate::ids::HalfPlaneId;
 use crate::ids::LineId;
@@ -16,8 +18,9 @@ use crate::lines3d::Side;
 use crate::params::RoofParams;
 use crate::planes::half_plane::is_wall;
 
-/// Planes of two neighbouring coplanar lines that no half-plane explains (B99 5: "an efficient and robust approach
-/// would use both"): hipped roofs without texture have ridges and eaves, but no half-plane.
+/// Planes of two neighbouring coplanar lines that no half-plane explains (B99 5: "an efficient and
+/// robust approach would use both"): hipped roofs without texture have ridges and eaves, but no
+/// half-plane.
 pub fn add_line_pairs(
     input: &GroupingInput,
     by_line: &[Vec<HalfPlaneId>],
@@ -73,8 +76,9 @@ fn unexplained(
     !explained(first, second) && !explained(second, first)
 }
 
-/// A group without a half-plane with all lines in its plane that lie where it may reach: clutter on a roof or below it, which the
-/// plan does not tell apart, comes between lines that are neighbours on the roof.
+/// A group without a half-plane with all lines in its plane that lie where it may reach: clutter on
+/// a roof or below it, which the plan does not tell apart, comes between lines that are neighbours
+/// on the roof.
 pub fn with_lines_around(
     input: &GroupingInput,
     group: &PlaneGroup,
@@ -82,7 +86,7 @@ pub fn with_lines_around(
 ) -> PlaneGroup {
     let mut group = group.clone();
     loop {
-        let region = Region::new(input, &group, params);
+        let region = PlanRegion::new(input, &group, params);
         let inside = |line: &Line3d| {
             let seen = (0..5).filter(|i| region.contains(&line.at(f64::from(*i) / 4.0).xy()));
             seen.count() >= 3
@@ -143,8 +147,9 @@ mod tests {
     use crate::testing::line;
     use nalgebra::Point3;
 
-    /// The four hips of a roof of 14 m by 8 m and 4 m height whose ridge was not found. Hip 3 is a little too long and a line on the
-    /// ground lies below, so that the triangulation joins none of hip 2 to hip 0. The last is a batten in the plane of both.
+    /// The four hips of a roof of 14 m by 8 m and 4 m height whose ridge was not found. Hip 3 is a
+    /// little too long and a line on the ground lies below, so that the triangulation joins none of
+    /// hip 2 to hip 0. The last is a batten in the plane of both.
     fn hipped() -> Vec<Line3d> {
         let p = Point3::new;
         vec![

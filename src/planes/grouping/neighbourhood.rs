@@ -1,11 +1,13 @@
-//! Which lines are neighbours: a Delaunay triangulation constrained to the projected lines (B99 4.3).
+//! Which lines are neighbours: a Delaunay triangulation constrained to the projected lines (B99
+//! 4.3).
 //!
-//! "In grouping operations, thresholds on distances are avoided by using a topological neighbourhood
-//! between projected lines, defined by a Delaunay triangulation constrained to fit the line segments."
-//! The lines are projected onto the XY plane, which every view shares.
+//! "In grouping operations, thresholds on distances are avoided by using a topological
+//! neighbourhood between projected lines, defined by a Delaunay triangulation constrained to fit
+//! the line segments." The lines are projected onto the XY plane, which every view shares.
 //!
-//! Where several lines end at one corner, their ends differ by what ends are uncertain by, and it is chance which of them the
-//! triangulation joins to the lines across. Such neighbours around a corner are kept apart.
+//! Where several lines end at one corner, their ends differ by their uncertainty, and it is chance
+//! which of them the triangulation joins to the lines across. Such neighbours around a corner are
+//! kept apart.
 
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
@@ -15,7 +17,7 @@ use crate::sorting::sort_by;
 
 /// For each line its neighbours in ascending order, itself left out.
 #[derive(Clone, Debug, Default)]
-pub struct Neighbours {
+pub struct LineNeighbours {
     /// Those that the triangulation joins.
     pub direct: Vec<Vec<LineId>>,
     /// Those that it would join if its vertex at a corner belonged to every line that ends there.
@@ -23,11 +25,11 @@ pub struct Neighbours {
 }
 
 /// The topological neighbourhood of lines in plan.
-pub fn line_neighbours(lines: &[Line3d]) -> Neighbours {
+pub fn line_neighbours(lines: &[Line3d]) -> LineNeighbours {
     let mut cdt = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
     // Which lines run through each vertex of the triangulation.
     let mut owners: Vec<Vec<LineId>> = Vec::new();
-    let mut ends_at: Vec<End> = Vec::new();
+    let mut ends_at: Vec<LineEnd> = Vec::new();
     for (i, line) in lines.iter().enumerate() {
         let ends = [line.segment.p0, line.segment.p1].map(|p| cdt.insert(Point2::new(p.x, p.y)));
         let [Ok(from), Ok(to)] = ends else { continue };
@@ -35,7 +37,7 @@ pub fn line_neighbours(lines: &[Line3d]) -> Neighbours {
             continue;
         }
         let length = (line.segment.p1 - line.segment.p0).xy().norm();
-        ends_at.extend([from, to].map(|vertex| End {
+        ends_at.extend([from, to].map(|vertex| LineEnd {
             line: LineId::from_index(i),
             vertex: vertex.index(),
             length,
@@ -51,20 +53,21 @@ pub fn line_neighbours(lines: &[Line3d]) -> Neighbours {
     owners.resize(cdt.num_vertices(), Vec::new());
     let neighbours = joined(&cdt, &owners, lines.len());
     let positions: Vec<Point2<f64>> = cdt.vertices().map(|v| v.position()).collect();
-    for (vertex, line) in meeting(&ends_at, &positions) {
+    for (vertex, line) in lines_at_shared_corners(&ends_at, &positions) {
         owners[vertex].push(line);
     }
     let mut around_corners = joined(&cdt, &owners, lines.len());
     for (around, direct) in around_corners.iter_mut().zip(&neighbours) {
         around.retain(|l| direct.binary_search(l).is_err());
     }
-    Neighbours {
+    LineNeighbours {
         direct: neighbours,
         around_corners,
     }
 }
 
-/// Lines whose vertices an edge of the triangulation joins, or that share one: for each line, ascending, itself left out.
+/// Lines whose vertices an edge of the triangulation joins, or that share one: for each line,
+/// ascending, itself left out.
 fn joined(
     cdt: &ConstrainedDelaunayTriangulation<Point2<f64>>,
     owners: &[Vec<LineId>],
@@ -96,16 +99,17 @@ fn joined(
 }
 
 /// Where a line ends.
-struct End {
+struct LineEnd {
     line: LineId,
     vertex: usize,
     /// Of the line in plan, metres.
     length: f64,
 }
 
-/// Lines that end so near to a vertex at which another ends that the two are one corner. Which of them the
-/// triangulation joins to what lies around the corner is left to chance by the uncertainty of ends.
-fn meeting(ends: &[End], positions: &[Point2<f64>]) -> Vec<(usize, LineId)> {
+/// Lines that end so near to a vertex at which another ends that the two are one corner. Which of
+/// them the triangulation joins to what lies around the corner is left to chance by the uncertainty
+/// of ends.
+fn lines_at_shared_corners(ends: &[LineEnd], positions: &[Point2<f64>]) -> Vec<(usize, LineId)> {
     let mut order: Vec<usize> = (0..ends.len()).collect();
     let x = |i: usize| positions[ends[i].vertex].x;
     sort_by(&mut order, |&a, &b| x(a).total_cmp(&x(b)).then(a.cmp(&b)));
@@ -126,7 +130,8 @@ fn meeting(ends: &[End], positions: &[Point2<f64>]) -> Vec<(usize, LineId)> {
     found
 }
 
-/// Ends within this share of the shorter line are one corner. Assumption: ends are known to a tenth of the length.
+/// Ends within this share of the shorter line are one corner. Assumption: ends are known to a tenth
+/// of the length.
 const CORNER_SHARE: f64 = 0.1;
 
 #[cfg(test)]
@@ -173,8 +178,8 @@ mod tests {
 
     #[test]
     fn two_hips_are_neighbours_though_others_end_at_their_corners() {
-        // A hipped roof without its ridge. Hip 3 is a little too long and comes between the upper ends of 0 and 2; a line on the
-        // ground comes between the lower ones.
+        // A hipped roof without its ridge. Hip 3 is a little too long and comes between the upper
+        // ends of 0 and 2; a line on the ground comes between the lower ones.
         let lines = [
             line([0.0, 0.0], [4.0, 3.9]),
             line([0.0, 8.0], [4.0, 4.0]),

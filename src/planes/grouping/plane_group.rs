@@ -3,7 +3,7 @@
 use nalgebra::Point3;
 use serde::Serialize;
 
-use super::neighbourhood::Neighbours;
+use super::neighbourhood::LineNeighbours;
 use super::proposed_plane::ProposedPlane;
 use crate::geometry::Plane;
 use crate::ids::{HalfPlaneId, LineId};
@@ -29,7 +29,7 @@ pub struct PlaneGroup {
     pub plane: Plane,
     /// Members, the seed first.
     pub members: Vec<Member>,
-    /// Planes of the other method in this plane ([`proposed::ProposedPlane::index`]).
+    /// Planes of the other method in this plane ([`ProposedPlane::index`]).
     pub rectangles: Vec<u32>,
 }
 
@@ -65,15 +65,15 @@ impl PlaneGroup {
             .filter(|r| self.rectangles.contains(&r.index))
     }
 
-    /// Does it consist of half-planes that only repeat another plane?
-    pub fn is_repeated(&self, input: &GroupingInput) -> bool {
+    /// Are all its half-planes propagated from other planes?
+    pub fn is_propagated(&self, input: &GroupingInput) -> bool {
         let half_planes = self.half_planes();
         let swept = |h: &HalfPlaneId| input.half_planes[h.index()].is_swept();
         !half_planes.is_empty() && !half_planes.iter().any(swept)
     }
 
-    /// The same without the half-planes that no view has shown.
-    pub fn as_swept(&self, input: &GroupingInput) -> Self {
+    /// The same without the propagated half-planes.
+    pub fn without_propagated(&self, input: &GroupingInput) -> Self {
         let mut group = self.clone();
         for member in &mut group.members {
             let swept = |h: &HalfPlaneId| input.half_planes[h.index()].is_swept();
@@ -95,10 +95,10 @@ impl PlaneGroup {
 pub struct GroupingInput<'a> {
     /// 3D lines.
     pub lines: &'a [Line3d],
-    /// Accepted half-planes, and behind them those that repeat another plane ([`HalfPlane::is_swept`]).
+    /// Accepted half-planes, and behind them the propagated ones ([`HalfPlane::is_swept`]).
     pub half_planes: &'a [HalfPlane],
     /// Neighbours of each line.
-    pub neighbours: &'a Neighbours,
+    pub neighbours: &'a LineNeighbours,
     /// Planes that the other method proposes.
     pub rectangles: &'a [ProposedPlane],
 }

@@ -1,11 +1,13 @@
-//! Half-planes where the texture is too weak for a sweep: those that repeat a plane next to them.
+//! Half-planes where the texture is too weak for a sweep, propagated from a plane next to them.
 //!
-//! Of the strips of a saw-tooth roof all slope alike, and the sweep finds some. Beside a level line that runs along a
-//! neighbouring plane, a side without a half-plane is offered one parallel to that plane. The lines are then grouped as with any half-plane (B99 4.2);
-//! whether the images bear the plane out is asked of each (`hypothesis`).
+//! Of the strips of a saw-tooth roof all slope alike, and the sweep finds some. Beside a level line
+//! that runs along a neighbouring plane, a side without a half-plane is offered one parallel to
+//! that plane. The lines are then grouped as with any half-plane (B99 4.2); each is then tested by
+//! its photo-consistency ([`crate::planes::hypothesis`]).
 //!
-//! Tried without gain: planes of the same slope that fall the other way or around the corner, as of gables and hips, and strong
-//! texture. The sweep seldom misses those, and parapets and gaps take more of them than roofs do.
+//! Tried without gain: planes of the same slope that fall the other way or around the corner, as of
+//! gables and hips, and strong texture. The sweep seldom misses those, and parapets and gaps take
+//! more of them than roofs do.
 
 use super::growth::{by_strength, grow, infer_sides, merge_groups};
 use super::plane_group::{GroupingInput, PlaneGroup};
@@ -19,18 +21,21 @@ use crate::terrain::Ground;
 
 /// Length from which on a line is offered planes, metres. Assumption: of a roof, not of a dormer.
 const LEAST_LENGTH: f64 = 3.0;
-/// Sine of the least slope that can be repeated (6 degrees); level planes need no line that runs along them.
+/// Sine of the least slope that is propagated (6 degrees); level planes need no line that runs
+/// along them.
 const LEAST_SLOPE_SINE: f64 = 0.1;
-/// Sine of the angle (3 degrees) to the horizontal, and to the neighbour's level direction, below which a line runs along it.
+/// Sine of the angle (3 degrees) to the horizontal, and to the neighbour's level direction, below
+/// which a line runs along it.
 const ALONG_SINE: f64 = 0.055;
 /// Angle below which two planes through a line are one, radians (6 degrees).
 const SAME: f64 = 0.1;
-/// Standard deviation of the angle of a repeated half-plane, radians (3 degrees). Assumption: that of a swept one on weak texture.
+/// Standard deviation of the angle of a propagated half-plane, radians (3 degrees). Assumption:
+/// that of a swept one on weak texture.
 const SIGMA_THETA: f64 = 0.05;
 
-/// The half-planes that the sweep found, and behind them those that repeat the plane of a group next to their line. These have no
-/// views ([`HalfPlane::is_swept`]).
-pub fn with_repeated(
+/// The half-planes that the sweep found, and behind them those propagated from a group next to
+/// their line. These have no views ([`HalfPlane::is_swept`]).
+pub fn with_propagated(
     input: &GroupingInput,
     groups: &[PlaneGroup],
     ground: &Ground,
@@ -93,7 +98,7 @@ fn runs_along(direction: &nalgebra::Vector3<f64>, plane: &Plane) -> bool {
         && along < ALONG_SINE * down.norm()
 }
 
-/// One that no view has shown.
+/// A propagated half-plane: no view has shown it.
 pub fn half_plane(line: LineId, side: Side, theta: f64, plane: Plane) -> HalfPlane {
     HalfPlane {
         line,
@@ -109,8 +114,9 @@ pub fn half_plane(line: LineId, side: Side, theta: f64, plane: Plane) -> HalfPla
     }
 }
 
-/// Groups of the repeated half-planes, as of swept ones: strips next to each other stay apart, pieces of one line come together.
-pub fn group_repeated(input: &GroupingInput, params: &RoofParams) -> Vec<PlaneGroup> {
+/// Groups of the propagated half-planes, as of swept ones: strips next to each other stay apart,
+/// pieces of one line come together.
+pub fn group_propagated(input: &GroupingInput, params: &RoofParams) -> Vec<PlaneGroup> {
     let mut by_line = vec![Vec::new(); input.lines.len()];
     let mut free = vec![false; input.half_planes.len()];
     for (i, h) in input.half_planes.iter().enumerate() {
@@ -140,8 +146,9 @@ mod tests {
     use crate::testing::line;
     use nalgebra::Point3;
 
-    /// The ridges of a saw-tooth roof at 8 m, 4 m apart; the sweep has found that the first strip rises to its ridge by 1:2. The second ridge
-    /// was found in two pieces. The last line is a wall's foot.
+    /// The ridges of a saw-tooth roof at 8 m, 4 m apart; the sweep has found that the first strip
+    /// rises to its ridge by 1:2. The second ridge was found in two pieces. The last line is a
+    /// wall's foot.
     fn saw_tooth() -> (Vec<Line3d>, HalfPlane) {
         let ridge =
             |x0: f64, x1: f64, y: f64| line(Point3::new(x0, y, 8.0), Point3::new(x1, y, 8.0));
@@ -179,17 +186,18 @@ mod tests {
             rectangles: &[],
         };
         let groups = group_planes(&input, &params);
-        let half_planes = with_repeated(&input, &groups, &Ground::level(0.0), &params);
+        let half_planes = with_propagated(&input, &groups, &Ground::level(0.0), &params);
         assert_eq!(half_planes[0], swept[0]);
-        let repeated = &half_planes[1..];
-        assert!(repeated.iter().all(|h| !h.is_swept()));
-        // Neither at the foot nor again through the first ridge, and on both sides of the second, whose strip lies on one of them.
-        let lines_of: Vec<u32> = repeated.iter().map(|h| h.line.0).collect();
+        let propagated = &half_planes[1..];
+        assert!(propagated.iter().all(|h| !h.is_swept()));
+        // Neither at the foot nor again through the first ridge, and on both sides of the second,
+        // whose strip lies on one of them.
+        let lines_of: Vec<u32> = propagated.iter().map(|h| h.line.0).collect();
         assert_eq!(lines_of, [1, 1, 2, 2]);
         let fits = |h: &HalfPlane| h.plane.angle_to(&swept[0].plane) < 1e-9;
-        assert!(repeated.iter().all(fits), "parallel to it");
+        assert!(propagated.iter().all(fits), "parallel to it");
         assert!(
-            repeated
+            propagated
                 .iter()
                 .all(|h| (h.plane.z_at(5.0, 4.0) - 8.0).abs() < 1e-9)
         );
@@ -198,12 +206,17 @@ mod tests {
             half_planes: &half_planes,
             ..input
         };
-        let groups = group_repeated(&input, &params);
+        let groups = group_propagated(&input, &params);
         assert_eq!(groups.len(), 1, "both pieces of the ridge have one plane");
         assert_eq!(groups[0].lines(), [LineId(1), LineId(2)]);
-        assert!(groups[0].is_repeated(&input));
+        assert!(groups[0].is_propagated(&input));
         assert!((groups[0].plane.z_at(10.0, 2.0) - 7.0).abs() < 1e-6);
-        assert!(groups[0].as_swept(&input).half_planes().is_empty());
+        assert!(
+            groups[0]
+                .without_propagated(&input)
+                .half_planes()
+                .is_empty()
+        );
     }
 
     #[test]

@@ -1,17 +1,19 @@
 //! Planes that the other method proposes (W96 3.6), beside the groups of half-planes and lines.
 //!
-//! A rectangle in the plane of a group, over its place, joins it: the plane is then sought there too. Any other one is a group of
-//! its own, with the lines that lie in it. Which plane covers what is settled by one labelling.
+//! A rectangle in the plane of a group, over its place, joins it: the plane is then sought there
+//! too. Any other one is a group of its own, with the lines that lie in it. Which plane covers what
+//! is settled by one labelling.
 //!
-//! Tried without gain: that the contrast at a rectangle's sides, which W96 counts in its measure, counts where there is no texture to
-//! compare. Of a rendered suburb less of the roofs was then covered, not more: lawns and yards have sides with contrast, too.
+//! Tried without gain: that the contrast at a rectangle's sides, which W96 counts in its measure,
+//! counts where there is no texture to compare. Of a rendered suburb less of the roofs was then
+//! covered, not more: lawns and yards have sides with contrast, too.
 
 use nalgebra::Point2;
 
 use super::coplanarity::{fit_plane, lies_in_plane};
 use super::plane_group::{GroupingInput, Member, PlaneGroup, member};
 use super::proposed_plane::ProposedPlane;
-use super::region::Region;
+use super::region::PlanRegion;
 use crate::ids::LineId;
 use crate::lines3d::Line3d;
 use crate::lines3d::Side;
@@ -22,7 +24,8 @@ pub fn add_rectangles(input: &GroupingInput, groups: &mut Vec<PlaneGroup>, param
     for rectangle in input.rectangles {
         let middle = rectangle.middle().xy();
         let same = groups.iter_mut().find(|g| {
-            rectangle.lies_in(&g.plane, params) && Region::new(input, g, params).contains(&middle)
+            rectangle.lies_in(&g.plane, params)
+                && PlanRegion::new(input, g, params).contains(&middle)
         });
         match same {
             Some(group) => group.rectangles.push(rectangle.index),
@@ -31,14 +34,15 @@ pub fn add_rectangles(input: &GroupingInput, groups: &mut Vec<PlaneGroup>, param
     }
 }
 
-/// A rectangle as a group, with the lines in its plane, to which the plane is fitted where they span one.
+/// A rectangle as a group, with the lines in its plane, to which the plane is fitted where they
+/// span one.
 fn group_of(input: &GroupingInput, rectangle: &ProposedPlane, params: &RoofParams) -> PlaneGroup {
     let mut group = PlaneGroup {
         plane: rectangle.plane,
         members: Vec::new(),
         rectangles: vec![rectangle.index],
     };
-    let region = Region::new(input, &group, params);
+    let region = PlanRegion::new(input, &group, params);
     let ids = (0..input.lines.len()).map(LineId::from_index);
     let members = ids.filter_map(|id| {
         let line = &input.lines[id.index()];

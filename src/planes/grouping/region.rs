@@ -12,20 +12,23 @@ use crate::params::RoofParams;
 
 /// How far a region reaches behind its line, metres: more than the line's own uncertainty.
 pub(crate) const MARGIN: f64 = 0.5;
-/// Sine of the angle to the horizontal direction of a plane, in plan, below which a side is level (5 degrees).
+/// Sine of the angle to the horizontal direction of a plane, in plan, below which a side is level
+/// (5 degrees).
 const LEVEL: f64 = 0.09;
 /// Sine of the slope below which a plane has no such direction (5 degrees).
 const NEARLY_LEVEL: f64 = 0.087;
 
-/// The part of the plan that a group may cover: boxes beside its supporting lines, and their convex hull, which is B99's
-/// delineation (4.3): two short rakes of a long roof have all of it between them.
+/// The part of the plan that a group may cover: boxes beside its supporting lines, and their convex
+/// hull, which is B99's delineation (4.3): two short rakes of a long roof have all of it between
+/// them.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Region {
+pub struct PlanRegion {
     boxes: Vec<PlanBox>,
     hull: Vec<Point2<f64>>,
 }
 
-/// A rectangle beside a line: origin at the line's start, `along` its direction, `across` to the left.
+/// A rectangle beside a line: origin at the line's start, `along` its direction, `across` to the
+/// left.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct PlanBox {
     start: Point2<f64>,
@@ -58,7 +61,7 @@ impl PlanBox {
     }
 }
 
-impl Region {
+impl PlanRegion {
     /// The region of a group: `depth` away from each supporting line on the side of its half-plane
     /// (both sides for a line without one), a little beyond on the other side and over the ends.
     pub fn new(input: &GroupingInput, group: &PlaneGroup, params: &RoofParams) -> Self {
@@ -107,8 +110,8 @@ impl Region {
         }) || is_inside(&self.hull, p)
     }
 
-    /// The sides of the convex hull of the group's lines that are level in its `plane`, as eaves and ridges are. A plane that
-    /// is itself nearly level has none: there every side would be.
+    /// The sides of the convex hull of the group's lines that are level in its `plane`, as eaves
+    /// and ridges are. A plane that is itself nearly level has none: there every side would be.
     pub fn level_sides(&self, plane: &Plane) -> Vec<[Point2<f64>; 2]> {
         let down = plane.normal.xy();
         if down.norm() < NEARLY_LEVEL {
@@ -162,7 +165,7 @@ fn is_inside(ring: &[Point2<f64>], p: &Point2<f64>) -> bool {
 
 /// What a plane may cover to both sides of a line in it.
 #[cfg(test)]
-pub(crate) fn region_beside(line: crate::lines3d::Line3d, plane: Plane) -> Region {
+pub(crate) fn region_beside(line: crate::lines3d::Line3d, plane: Plane) -> PlanRegion {
     let member = |side| super::plane_group::Member {
         line: crate::ids::LineId(0),
         side: Some(side),
@@ -180,7 +183,7 @@ pub(crate) fn region_beside(line: crate::lines3d::Line3d, plane: Plane) -> Regio
         neighbours: &super::neighbourhood::line_neighbours(&lines),
         rectangles: &[],
     };
-    Region::new(&input, &group, &RoofParams::default())
+    PlanRegion::new(&input, &group, &RoofParams::default())
 }
 
 #[cfg(test)]
@@ -200,7 +203,7 @@ mod tests {
     }
 
     /// The region of its rakes, 4 m long and 20 m apart, each with the roof on its inner side.
-    fn between_rakes() -> Region {
+    fn between_rakes() -> PlanRegion {
         let rake = |x: f64| line(Point3::new(x, 0.0, 5.0), Point3::new(x, 4.0, 6.0));
         let lines = [rake(0.0), rake(20.0)];
         let input = GroupingInput {
@@ -219,7 +222,7 @@ mod tests {
             members: vec![member(0, Side::Right), member(1, Side::Left)],
             rectangles: Vec::new(),
         };
-        Region::new(&input, &group, &RoofParams::default())
+        PlanRegion::new(&input, &group, &RoofParams::default())
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! The maximum of a sampled `Sim(theta)`: position, curvature, uncertainty, acceptance (B99 figure 12).
+//! The maximum of a sampled `Sim(theta)`: position, curvature, uncertainty, acceptance (B99 figure
+//! 12).
 
 use super::trace::SweepRejection;
 use crate::params::Acceptance;
@@ -18,7 +19,8 @@ pub(crate) struct Parabola {
 }
 
 impl Parabola {
-    /// Least squares over the samples (theta, Sim) within `reach` of `at`; `None` for fewer than three.
+    /// Least squares over the samples (theta, Sim) within `reach` of `at`; `None` for fewer than
+    /// three.
     pub fn fit(samples: impl Iterator<Item = (f64, f64)>, at: f64, reach: f64) -> Option<Self> {
         let mut normal = nalgebra::Matrix3::zeros();
         let mut right = nalgebra::Vector3::zeros();
@@ -70,7 +72,7 @@ pub(crate) struct Peak {
 impl Peak {
     /// Accepts the maximum by the printed thresholds, by its posterior probability, or by both.
     pub fn accept(&self, probability: f64, params: &SweepParams) -> Result<(), SweepRejection> {
-        // What passes the thresholds but is no likelier than not is refused.
+        // What passes the thresholds but is no likelier than not is rejected.
         const LIKELY: f64 = 0.5;
         let at_least = |least: f64| match probability >= least {
             true => Ok(()),
@@ -106,11 +108,11 @@ impl Peak {
 /// Standard deviation of the maximum from the slopes of the single views' curves there, radians.
 ///
 /// The maximum of a mean of n curves is where their slopes cancel; it moves by the error of the
-/// mean slope over the curvature of the mean (the sandwich covariance of an M-estimator). Each slope
-/// has an error of its own view, which their scatter s shows, and one of the reference view, which all
-/// share and the scatter hides; the photographs being of one kind, it is taken to be as large:
-/// `sigma = s sqrt(1/n + 1) / |Sim''|`. A single view has no scatter; its maximum is then only
-/// known to lie within `reach`.
+/// mean slope over the curvature of the mean (the sandwich covariance of an M-estimator). Each
+/// slope has an error of its own view, which their scatter s shows, and one of the reference view,
+/// which all share and the scatter hides; the photographs being of one kind, it is taken to be as
+/// large: `sigma = s sqrt(1/n + 1) / |Sim''|`. A single view has no scatter; its maximum is then
+/// only known to lie within `reach`.
 pub(crate) fn sigma_of_maximum(slopes: &[f64], curvature: f64, reach: f64) -> f64 {
     if slopes.len() < 2 {
         return reach;
@@ -138,8 +140,8 @@ mod tests {
 
     #[test]
     fn the_scatter_of_the_slopes_gives_sigma() {
-        // Parabolas of equal curvature whose maxima scatter with the variance v: their mean has v / 4, the
-        // shared reference adds v.
+        // Parabolas of equal curvature whose maxima scatter with the variance v: their mean has v /
+        // 4, the shared reference adds v.
         let maxima = [0.1, 0.12, 0.14, 0.16];
         let slopes = maxima.map(|m: f64| 5.0 * (m - 0.13));
         let variance = maxima.iter().map(|m| (m - 0.13) * (m - 0.13)).sum::<f64>() / 3.0;

@@ -1,23 +1,23 @@
 //! The posterior over theta, and whether there is a plane at all.
 //!
-//! B99 5 asks for "a probabilistic framework" to "compute a posterior estimate for the plane angle and the
-//! likelihood that a plane is there"; this is ours.
+//! B99 5 asks for "a probabilistic framework" to "compute a posterior estimate for the plane angle
+//! and the likelihood that a plane is there"; this is ours.
 //!
-//! **One window.** A surface of texture variance `s^2`, seen in two views with noise of variance `n^2` in each,
-//! correlates by `rho = s^2 / (s^2 + n^2)` under the homography of its plane, with a scatter `tau`; windows of
-//! different surfaces correlate by chance, about 0 with a scatter `tau_0`. The evidence of a window with the
-//! correlation c is `ln N(c; rho, tau) - ln N(c; 0, tau_0)`: nothing where the texture drowns in noise (rho is 0 there),
-//! and a window that is not on the plane (a chimney, the next facet) takes back no more than
-//! [`LEAST_EVIDENCE`].
+//! **One window.** A surface of texture variance `s^2`, seen in two views with noise of variance
+//! `n^2` in each, correlates by `rho = s^2 / (s^2 + n^2)` under the homography of its plane, with a
+//! scatter `tau`; windows of different surfaces correlate by chance, about 0 with a scatter
+//! `tau_0`. The evidence of a window with the correlation c is `ln N(c; rho, tau) - ln N(c; 0,
+//! tau_0)`: nothing where the texture drowns in noise (rho is 0 there), and a window that is not on
+//! the plane (a chimney, the next facet) takes back no more than [`LEAST_EVIDENCE`].
 //!
-//! **One view.** Windows overlap, so their mean, weighted as in Sim(theta), counts for as many as lie side by
-//! side: `L_i`. A view may not see the plane at all, with the probability [`HIDDEN`]:
-//! `ln ((1 - HIDDEN) e^L_i + HIDDEN)`. The baseline enters by itself: the shorter it is, the more slowly the
-//! correlations, and so `L_i`, change with theta.
+//! **One view.** Windows overlap, so their mean, weighted as in Sim(theta), counts for as many as
+//! lie side by side: `L_i`. A view may not see the plane at all, with the probability [`OCCLUDED`]:
+//! `ln ((1 - OCCLUDED) e^L_i + OCCLUDED)`. The baseline enters by itself: the shorter it is, the
+//! more slowly the correlations, and so `L_i`, change with theta.
 //!
-//! **All views.** With as many angles and as many planes as none expected beforehand,
-//! `p(theta) = e^L(theta) / (integral of e^L + range of theta)`, L the sum over the views; its integral is
-//! the likelihood that a plane is there.
+//! **All views.** With as many angles and as many planes as none expected beforehand, `p(theta) =
+//! e^L(theta) / (integral of e^L + range of theta)`, L the sum over the views; its integral is the
+//! likelihood that a plane is there.
 
 use serde::{Deserialize, Serialize};
 use wide::f64x4;
@@ -43,8 +43,8 @@ pub(crate) struct WindowModel {
     log_ratio: f64,
 }
 
-/// Scatter of correlations by chance. Assumption: windows of 225 pixels hold about ten independent ones, since roofs are
-/// smooth and their tiles repeat.
+/// Scatter of correlations by chance. Assumption: windows of 225 pixels hold about ten independent
+/// ones, since roofs are smooth and their tiles repeat.
 const CHANCE_SCATTER: f64 = 0.3;
 /// Scatter of correlations on a true plane without noise: shading, sampling, relief. Assumption.
 const SCATTER: f64 = 0.15;
@@ -53,14 +53,16 @@ const LARGEST_RHO: f64 = 0.9;
 /// Least evidence of a window.
 const LEAST_EVIDENCE: f64 = -1.5;
 /// Probability that a view does not see the neighbourhood. Assumption: one of five.
-const HIDDEN: f64 = 0.2;
-/// The views share the reference and its noise, and neighbouring windows their texture: their evidence counts for
-/// less than that of as many independent ones. Calibrated: with a quarter, probabilities are about the shares of half-planes
-/// that lie on true surfaces of two rendered scenes; with a half, they were far too close to 1.
+const OCCLUDED: f64 = 0.2;
+/// The views share the reference and its noise, and neighbouring windows their texture: their
+/// evidence counts for less than that of as many independent ones. Calibrated: with a quarter,
+/// probabilities are about the shares of half-planes that lie on true surfaces of two rendered
+/// scenes; with a half, they were far too close to 1.
 const INDEPENDENT: f64 = 0.25;
 
 impl WindowModel {
-    /// For a window of standard deviation `contrast` in a view with noise of standard deviation `noise`.
+    /// For a window of standard deviation `contrast` in a view with noise of standard deviation
+    /// `noise`.
     pub fn new(contrast: f64, noise: f64) -> Self {
         let share = (noise * noise) / (contrast * contrast).max(1e-12);
         let rho = (1.0 - share).clamp(0.0, LARGEST_RHO);
@@ -97,8 +99,8 @@ impl FourModels {
         }
     }
 
-    /// Logarithm of how much likelier each correlation is on the plane than by chance. More than expected is as good as
-    /// expected.
+    /// Logarithm of how much likelier each correlation is on the plane than by chance. More than
+    /// expected is as good as expected.
     #[inline]
     pub fn evidence(&self, correlation: f64x4) -> f64x4 {
         let short = (self.rho - correlation).fast_max(f64x4::ZERO);
@@ -109,17 +111,19 @@ impl FourModels {
     }
 }
 
-/// Evidence of a view whose windows say `mean` on average and that shows `windows` of them side by side.
+/// Evidence of a view from the `mean` evidence of its windows and the number of `windows` that fit
+/// side by side.
 pub(crate) fn evidence_of_view(mean: f64, windows: f64) -> f64 {
     let sum = INDEPENDENT * windows * mean;
     if sum > 30.0 {
-        return sum + math::ln(1.0 - HIDDEN);
+        return sum + math::ln(1.0 - OCCLUDED);
     }
-    math::ln((1.0 - HIDDEN) * math::exp(sum) + HIDDEN)
+    math::ln((1.0 - OCCLUDED) * math::exp(sum) + OCCLUDED)
 }
 
 impl Posterior {
-    /// From the evidence of all views at the samples of theta (radians, ascending); between them it is linear.
+    /// From the evidence of all views at the samples of theta (radians, ascending); between them it
+    /// is linear.
     pub(crate) fn new(thetas: &[f64], evidence: &[f64]) -> Self {
         let [Some(first), Some(last)] = [thetas.first(), thetas.last()] else {
             return Self::default();
@@ -139,7 +143,8 @@ impl Posterior {
         }
     }
 
-    /// Probability that there is a plane within `reach` of `theta`, radians. `thetas` are the samples.
+    /// Probability that there is a plane within `reach` of `theta`, radians. `thetas` are the
+    /// samples.
     pub fn probability(&self, thetas: &[f64], theta: f64, reach: f64) -> f64 {
         let logs: Vec<f64> = (self.density.iter())
             .map(|d| math::ln(d.max(f64::MIN_POSITIVE)))
@@ -229,8 +234,8 @@ mod tests {
         let expected = bell / (bell + 2.4);
         assert!((posterior.plane - expected).abs() < 1e-3);
         // Nothing said: one half.
-        let silent = Posterior::new(&thetas, &vec![0.0; thetas.len()]);
-        assert!((silent.plane - 0.5).abs() < 1e-12);
+        let unsampled = Posterior::new(&thetas, &vec![0.0; thetas.len()]);
+        assert!((unsampled.plane - 0.5).abs() < 1e-12);
         assert_eq!(Posterior::new(&[], &[]).plane, 0.0);
     }
 
@@ -256,8 +261,8 @@ mod tests {
     #[test]
     fn a_hidden_view_costs_little() {
         let against = evidence_of_view(LEAST_EVIDENCE, 100.0);
-        assert!((against - math::ln(HIDDEN)).abs() < 1e-6);
-        assert!((evidence_of_view(2.0, 40.0) - (20.0 + math::ln(1.0 - HIDDEN))).abs() < 1e-9);
+        assert!((against - math::ln(OCCLUDED)).abs() < 1e-6);
+        assert!((evidence_of_view(2.0, 40.0) - (20.0 + math::ln(1.0 - OCCLUDED))).abs() < 1e-9);
         assert_eq!(evidence_of_view(0.0, 10.0), 0.0);
     }
 }

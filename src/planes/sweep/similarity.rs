@@ -2,11 +2,11 @@
 //!
 //! `Sim(theta) = sum over valid views i, integral over POI of w(x) Cor^2(x, H^i(theta) x)`,
 //!
-//! with `w(x)` inversely proportional to the distance of x from the projected line, and normalised so
-//! that Sim is in (0, 1): the weights of a view's points sum to one and the views are averaged.
+//! with `w(x)` inversely proportional to the distance of x from the projected line, and normalised
+//! so that Sim is in (0, 1): the weights of a view's points sum to one and the views are averaged.
 //!
-//! Deviation: a negative correlation counts as 0, not as its square, because an inverted pattern is no
-//! support. The margin beside the line keeps 1/distance finite.
+//! Deviation: a negative correlation counts as 0, not as its square, because an inverted pattern is
+//! no support. The margin beside the line keeps 1/distance finite.
 
 use nalgebra::Point2;
 use wide::f64x4;
@@ -20,12 +20,12 @@ use crate::ids::ViewId;
 use crate::lines3d::{Side, ThetaFrame};
 use crate::params::Acceptance;
 use crate::params::SweepParams;
-use crate::photoconsistency::Windows;
-use crate::photoconsistency::{Patch, Strip};
+use crate::photoconsistency::CorrelationWindows;
+use crate::photoconsistency::{LineSideStrip, StripPatch};
 use crate::raster::corners;
 use crate::scene::Scene;
 
-/// What one view says about one theta.
+/// Similarity and evidence of one view at one theta.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ViewScore {
     /// Weighted mean of `Cor^2` over the points of interest, 0 to 1; 0 where the view does not see
@@ -33,7 +33,8 @@ pub(crate) struct ViewScore {
     pub similarity: f64,
     /// Share of the points of interest with a high correlation, 0 to 1.
     pub high: f64,
-    /// Evidence for the plane, see [`super::posterior`]; 0 where the view does not see the half-plane.
+    /// Evidence for the plane, see [`super::posterior`]; 0 where the view does not see the
+    /// half-plane.
     pub evidence: f64,
 }
 
@@ -48,13 +49,13 @@ pub(crate) struct LineSide<'a> {
     pub reference: ViewId,
     /// The other views, in order.
     pub others: Vec<ViewId>,
-    strip: Strip,
-    windows: Windows,
+    strip: LineSideStrip,
+    windows: CorrelationWindows,
     /// Normalised weight of every site.
     weights: Vec<f64>,
     /// What is expected of the sites, four at a time.
-    expected: Vec<Expected>,
-    warped: Patch,
+    expected: Vec<ExpectedCorrelations>,
+    warped: StripPatch,
     /// One a site, then zeros to a multiple of four.
     correlations: Vec<f64>,
     /// Correlations computed so far.
@@ -65,7 +66,7 @@ pub(crate) struct LineSide<'a> {
 
 /// What is expected of four sites. Beyond the last site all of it is nothing.
 #[derive(Clone, Copy, Debug)]
-struct Expected {
+struct ExpectedCorrelations {
     /// One for each site.
     present: f64x4,
     /// Normalised weights.
@@ -91,13 +92,13 @@ impl<'a> LineSide<'a> {
         // Rows that no window reaches need not be warped.
         let last = pixels.iter().map(|p| p.1).max().unwrap_or(0);
         let strip = strip.truncated(last + params.window_px / 2 + 1);
-        let mut patch = Patch::default();
+        let mut patch = StripPatch::default();
         patch.warp(
             &scene.view(reference).gray,
             &strip,
             &strip.image_from_strip(),
         );
-        let windows = Windows::new(patch, params.window_px, &pixels);
+        let windows = CorrelationWindows::new(patch, params.window_px, &pixels);
         if windows.sites.len() < params.min_points {
             return Err(SweepRejection::NoPointsOfInterest);
         }
@@ -115,7 +116,7 @@ impl<'a> LineSide<'a> {
             .collect();
         let fours = models.chunks(4).zip(weights.chunks(4));
         let expected = fours
-            .map(|(models, weights)| Expected::new(models, weights, params))
+            .map(|(models, weights)| ExpectedCorrelations::new(models, weights, params))
             .collect();
         Ok(Self {
             scene,
@@ -128,7 +129,7 @@ impl<'a> LineSide<'a> {
             strip,
             windows,
             weights,
-            warped: Patch::default(),
+            warped: StripPatch::default(),
             correlations: Vec::new(),
             count: 0,
             pixels: 0,
@@ -150,10 +151,10 @@ impl<'a> LineSide<'a> {
             .collect()
     }
 
-    /// Weighted mean distance of the points of interest from the line, metres on the ground: the lever
-    /// with which theta is measured. (The least-squares lever `E[d^2] / E[d]` is too long: the
-    /// correlation of a far point is lost before it can pull; measured on lines displaced by a known
-    /// noise, it makes sigma a third too small.)
+    /// Weighted mean distance of the points of interest from the line, metres on the ground: the
+    /// lever with which theta is measured. (The least-squares lever `E[d^2] / E[d]` is too long:
+    /// the correlation of a far point is lost before it can pull; measured on lines displaced by a
+    /// known noise, it makes sigma a third too small.)
     pub fn lever_m(&self) -> f64 {
         let camera = self.scene.camera(self.reference);
         let sites = self.windows.sites.iter().zip(&self.weights);
@@ -161,7 +162,8 @@ impl<'a> LineSide<'a> {
         mean_px * camera.ground_pixel(&self.line.at(0.5))
     }
 
-    /// Does the reference view see the upper side of the half-plane? Elsewhere theta has no meaning.
+    /// Does the reference view see the upper side of the half-plane? Elsewhere theta has no
+    /// meaning.
     pub fn is_visible(&self, theta: f64) -> bool {
         self.sees(self.reference, theta)
     }
@@ -194,7 +196,8 @@ impl<'a> LineSide<'a> {
         self.reduce(|four| lanes(|lane| f64::from(u8::from(shows(4 * four + lane)))))
     }
 
-    /// Weighted mean over the sites that the view shows: `shown` is one for those among the i-th four.
+    /// Weighted mean over the sites that the view shows: `shown` is one for those among the i-th
+    /// four.
     fn reduce(&self, shown: impl Fn(usize) -> f64x4) -> ViewScore {
         let zero = f64x4::ZERO;
         let (mut weight, mut similarity, mut points) = (zero, zero, zero);
@@ -255,7 +258,7 @@ impl<'a> LineSide<'a> {
     }
 }
 
-impl Expected {
+impl ExpectedCorrelations {
     /// Of up to four sites.
     fn new(models: &[WindowModel], weights: &[f64], params: &SweepParams) -> Self {
         let lane = |i: usize| models.get(i).zip(weights.get(i));
@@ -283,8 +286,8 @@ fn lanes(value: impl Fn(usize) -> f64) -> f64x4 {
     f64x4::new(std::array::from_fn(value))
 }
 
-/// The correlation from which on a site counts as high: less than usual where noise keeps it down, unless the printed
-/// thresholds alone decide.
+/// The correlation from which on a site counts as high: less than usual where noise keeps it down,
+/// unless the printed thresholds alone decide.
 fn high_correlation(model: &WindowModel, params: &SweepParams) -> f64 {
     // Half-way between chance and a surface, about.
     const OF_EXPECTED: f64 = 0.75;
@@ -295,7 +298,7 @@ fn high_correlation(model: &WindowModel, params: &SweepParams) -> f64 {
 }
 
 /// A view, the strip in it and the strip's pixels (column, row) that are points of interest.
-type Neighbourhood = (ViewId, Strip, Vec<(usize, usize)>);
+type ReferenceNeighbourhood = (ViewId, LineSideStrip, Vec<(usize, usize)>);
 
 /// The view in which the neighbourhood holds the most points of interest, with its strip and their
 /// pixels, ordered by row. The first one wins a tie.
@@ -305,10 +308,10 @@ fn most_textured(
     line: &Segment3,
     frame: &ThetaFrame,
     params: &SweepParams,
-) -> Option<Neighbourhood> {
-    let mut best: Option<Neighbourhood> = None;
+) -> Option<ReferenceNeighbourhood> {
+    let mut best: Option<ReferenceNeighbourhood> = None;
     for id in scene.view_ids() {
-        let Some(strip) = Strip::new(scene.camera(id), line, frame, params) else {
+        let Some(strip) = LineSideStrip::new(scene.camera(id), line, frame, params) else {
             continue;
         };
         let [min, max] = strip.bounds();
@@ -332,12 +335,12 @@ fn most_textured(
 mod tests {
     use super::*;
     use crate::geometry::Plane;
-    use crate::planes::rendered_planes::{Surface, scene};
+    use crate::planes::rendered_planes::{TexturedPlane, scene};
     use nalgebra::{Point3, Vector3};
 
     #[test]
     fn weights_are_inverse_to_the_distance_and_sum_to_one() {
-        let ground = Surface {
+        let ground = TexturedPlane {
             plane: Plane::from_point_normal(&Point3::origin(), &Vector3::z()).unwrap(),
             exists: |_, _| true,
             texture: 0.3,

@@ -5,7 +5,7 @@
 
 use super::poi::PointsOfInterest;
 use super::similarity::LineSide;
-use super::theta_search::Search;
+use super::theta_search::ThetaSearch;
 use super::trace::{SideTrace, SimilarityCurve, SweepRejection, SweepTrace};
 use crate::execution::map_shared;
 use crate::geometry::Segment3;
@@ -16,7 +16,8 @@ use crate::planes::half_plane::HalfPlane;
 use crate::scene::Scene;
 use crate::terrain::Ground;
 
-/// Half-planes of both sides of every line above the ground, in the order of the lines, left before right.
+/// Half-planes of both sides of every line above the ground, in the order of the lines, left before
+/// right.
 pub fn sweep_half_planes(
     scene: &Scene,
     lines: &[Line3d],
@@ -31,7 +32,7 @@ pub fn sweep_half_planes(
         let mut counts = SweepTrace::default();
         let line = LineId::from_index(i);
         if ground.is_near(&lines[i].segment, params.min_height_m) {
-            counts.refuse(line, side, SweepRejection::OnGround);
+            counts.reject(line, side, SweepRejection::OnGround);
             return (None, counts);
         }
         let half_plane = sweep_side(scene, &points, line, &lines[i], side, params, &mut counts);
@@ -48,8 +49,8 @@ pub fn sweep_half_planes(
     (half_planes, trace)
 }
 
-/// The half-plane of one side of one line, if there is one. Appends to the trace. `points` are those of
-/// every view of the scene.
+/// The half-plane of one side of one line, if there is one. Appends to the trace. `points` are
+/// those of every view of the scene.
 pub fn sweep_side(
     scene: &Scene,
     points: &[PointsOfInterest],
@@ -61,7 +62,7 @@ pub fn sweep_side(
 ) -> Option<HalfPlane> {
     let mut curve = SimilarityCurve::default();
     let result = LineSide::new(scene, points, &line.segment, side, params).and_then(|line_side| {
-        let mut search = Search::new(line_side, params);
+        let mut search = ThetaSearch::new(line_side, params);
         let result = search.run();
         trace.correlations += search.line_side.count;
         trace.warped_pixels += search.line_side.pixels;
@@ -77,8 +78,8 @@ pub fn sweep_side(
     result.ok()
 }
 
-/// `Sim(theta)` of one line side at given angles (radians), in total and per view. `points` are those of
-/// every view of the scene ([`PointsOfInterest::detect_all`]).
+/// `Sim(theta)` of one line side at given angles (radians), in total and per view. `points` are
+/// those of every view of the scene ([`PointsOfInterest::detect_all`]).
 pub fn similarity_curve(
     scene: &Scene,
     points: &[PointsOfInterest],
@@ -88,7 +89,7 @@ pub fn similarity_curve(
     params: &SweepParams,
 ) -> Result<SimilarityCurve, SweepRejection> {
     let line_side = LineSide::new(scene, points, line, side, params)?;
-    let mut search = Search::new(line_side, params);
+    let mut search = ThetaSearch::new(line_side, params);
     for &theta in thetas {
         search.evaluate(theta);
     }
@@ -105,27 +106,32 @@ mod tests {
     use crate::geometry::Plane;
     use crate::ids::ViewId;
     use crate::lines3d::ThetaFrame;
-    use crate::planes::rendered_planes::{Surface, scene};
+    use crate::planes::rendered_planes::{TexturedPlane, scene};
     use crate::testing::line;
     use nalgebra::{Point3, Vector3};
 
-    /// A ridge along x at a height of 8 m: falls by 30 degrees to the left (north) and by 20 degrees to the
-    /// right (south).
+    /// A ridge along x at a height of 8 m: falls by 30 degrees to the left (north) and by 20
+    /// degrees to the right (south).
     fn ridge() -> Line3d {
         line(Point3::new(-5.0, 0.0, 8.0), Point3::new(5.0, 0.0, 8.0))
     }
 
-    fn slope(line: &Line3d, side: Side, theta_deg: f64, exists: fn(f64, f64) -> bool) -> Surface {
+    fn slope(
+        line: &Line3d,
+        side: Side,
+        theta_deg: f64,
+        exists: fn(f64, f64) -> bool,
+    ) -> TexturedPlane {
         let frame = ThetaFrame::new(&line.segment, side).unwrap();
-        Surface {
+        TexturedPlane {
             plane: frame.plane(&line.segment, f64::to_radians(theta_deg)),
             exists,
             texture: 0.3,
         }
     }
 
-    fn horizontal(z: f64) -> Surface {
-        Surface {
+    fn horizontal(z: f64) -> TexturedPlane {
+        TexturedPlane {
             plane: Plane::from_point_normal(&Point3::new(0.0, 0.0, z), &Vector3::z()).unwrap(),
             exists: |_, _| true,
             texture: 0.3,

@@ -1,11 +1,11 @@
 //! The search over theta (B99 4.1).
 //!
 //! "The algorithm used is recursive sub-division with a termination criterion of `Delta theta < 1`
-//! degree." A first pass samples the whole interval; the highest maxima are then halved down to the last
-//! step, and a parabola through the finest samples gives theta.
+//! degree." A first pass samples the whole interval; the highest maxima are then halved down to the
+//! last step, and a parabola through the finest samples gives theta.
 //!
-//! Valid views: whether a view is valid depends on theta, since an occluded view agrees with no plane or
-//! with a wrong one. The sum over the views valid at each theta selects the maximum; the
+//! Valid views: whether a view is valid depends on theta, since an occluded view agrees with no
+//! plane or with a wrong one. The sum over the views valid at each theta selects the maximum; the
 //! views valid there are then kept for the whole curve, so that Sim is continuous, and averaged.
 
 use super::peak::{Parabola, Peak, sigma_of_maximum};
@@ -19,29 +19,29 @@ use crate::planes::half_plane::HalfPlane;
 use crate::sorting::sort_by;
 
 /// All views at one angle.
-struct Sample {
+struct ThetaSample {
     theta: f64,
     /// One entry a view of [`LineSide::others`].
     scores: Vec<ViewScore>,
 }
 
 /// Samples of one line side, ordered by theta.
-pub(super) struct Search<'a> {
+pub(super) struct ThetaSearch<'a> {
     pub line_side: LineSide<'a>,
     params: &'a SweepParams,
-    samples: Vec<Sample>,
+    samples: Vec<ThetaSample>,
     /// The views that count, by position in [`LineSide::others`].
     pub valid: Vec<bool>,
 }
 
 /// An accepted maximum.
-pub(super) struct Found {
+pub(super) struct AcceptedPeak {
     peak: Peak,
     sigma_theta: f64,
     probability: f64,
 }
 
-impl<'a> Search<'a> {
+impl<'a> ThetaSearch<'a> {
     pub fn new(line_side: LineSide<'a>, params: &'a SweepParams) -> Self {
         let valid = vec![false; line_side.others.len()];
         Self {
@@ -53,7 +53,7 @@ impl<'a> Search<'a> {
     }
 
     /// First pass, subdivision, validity, acceptance.
-    pub fn run(&mut self) -> Result<Found, SweepRejection> {
+    pub fn run(&mut self) -> Result<AcceptedPeak, SweepRejection> {
         // Steps of nothing would never end.
         const LEAST_STEP_DEG: f64 = 0.05;
         let max_deg = self.params.max_theta_deg.clamp(0.0, 89.0);
@@ -84,7 +84,7 @@ impl<'a> Search<'a> {
         let scores = (0..self.line_side.others.len())
             .map(|i| self.line_side.score(self.line_side.others[i], theta))
             .collect();
-        self.samples.insert(place, Sample { theta, scores });
+        self.samples.insert(place, ThetaSample { theta, scores });
     }
 
     /// Halves the step around the highest sample near `theta` until it is below the last step.
@@ -163,14 +163,14 @@ impl<'a> Search<'a> {
     }
 
     /// `Sim` at a sample over the views that count.
-    fn similarity(&self, sample: &Sample) -> f64 {
+    fn similarity(&self, sample: &ThetaSample) -> f64 {
         let views = sample.scores.iter().zip(&self.valid).filter(|(_, v)| **v);
         let (count, sum) = views.fold((0.0, 0.0), |(n, sum), (s, _)| (n + 1.0, sum + s.similarity));
         if count > 0.0 { sum / count } else { 0.0 }
     }
 
     /// Fits the maximum near a sample and tests it.
-    fn accept(&self, best: usize, step: f64) -> Result<Found, SweepRejection> {
+    fn accept(&self, best: usize, step: f64) -> Result<AcceptedPeak, SweepRejection> {
         if best == 0 || best + 1 == self.samples.len() {
             return Err(SweepRejection::AtIntervalEnd);
         }
@@ -199,7 +199,7 @@ impl<'a> Search<'a> {
                 Parabola::fit(curve, peak.theta, reach).map(|p| p.slope)
             })
             .collect();
-        Ok(Found {
+        Ok(AcceptedPeak {
             peak,
             sigma_theta: sigma_of_maximum(&slopes, narrow.curvature, reach),
             probability,
@@ -213,7 +213,7 @@ impl<'a> Search<'a> {
     }
 
     fn posterior(&self, thetas: &[f64]) -> Posterior {
-        let sum = |s: &Sample| s.scores.iter().map(|v| v.evidence).sum();
+        let sum = |s: &ThetaSample| s.scores.iter().map(|v| v.evidence).sum();
         let evidence: Vec<f64> = self.samples.iter().map(sum).collect();
         Posterior::new(thetas, &evidence)
     }
@@ -245,8 +245,14 @@ impl<'a> Search<'a> {
     }
 }
 
-impl Found {
-    pub fn half_plane(&self, search: &Search, id: LineId, line: &Line3d, side: Side) -> HalfPlane {
+impl AcceptedPeak {
+    pub fn half_plane(
+        &self,
+        search: &ThetaSearch,
+        id: LineId,
+        line: &Line3d,
+        side: Side,
+    ) -> HalfPlane {
         let line_side = &search.line_side;
         let plane = line_side.frame.plane(&line.segment, self.peak.theta);
         // A line that lies above its plane by e tilts the plane that fits its neighbourhood by

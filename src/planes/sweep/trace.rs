@@ -1,5 +1,5 @@
-//! What the sweep leaves for the page: `Sim(theta)` in total and per view (B99 figures 12 and 14), the points
-//! of interest (figure 13b) and why a side has no half-plane.
+//! Trace of the sweep: `Sim(theta)` in total and per view (B99 figures 12 and 14), the points of
+//! interest (figure 13b) and why a side has no half-plane.
 
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
@@ -89,8 +89,8 @@ pub struct SweepTrace {
 }
 
 impl SweepTrace {
-    /// Notes a side that is not looked at.
-    pub(crate) fn refuse(&mut self, line: LineId, side: Side, reason: SweepRejection) {
+    /// Records a side that is not swept.
+    pub(crate) fn reject(&mut self, line: LineId, side: Side, reason: SweepRejection) {
         self.sides.push(SideTrace {
             line,
             side,

@@ -23,7 +23,7 @@ const LEVELS: f32 = 510.0;
 
 /// Rows and columns of a strip in the first view.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Strip {
+pub(crate) struct LineSideStrip {
     /// Start of the projected line, pixels.
     origin: Point2<f64>,
     /// Unit direction of the projected line.
@@ -38,7 +38,7 @@ pub(crate) struct Strip {
     pub rows: usize,
 }
 
-impl Strip {
+impl LineSideStrip {
     /// The strip of a line side in a view: as long as the projected line, as deep as `params` say.
     /// `None` when the line is not wholly in the view or too short there.
     pub fn new(
@@ -130,7 +130,7 @@ impl Strip {
 /// Grey values of a strip in whole units of 1/510, row by row; rows are padded with zeros to a
 /// multiple of eight.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Patch {
+pub(crate) struct StripPatch {
     /// Pixels along the line.
     pub columns: usize,
     /// Pixels away from the line.
@@ -141,10 +141,10 @@ pub(crate) struct Patch {
     pub data: Vec<f32>,
 }
 
-impl Patch {
-    /// Fills the patch with the bilinear values of `image` under `image_from_strip`, which must keep
-    /// the whole strip in front of the camera. Positions outside the image take its border.
-    pub fn warp(&mut self, image: &Gray, strip: &Strip, image_from_strip: &Matrix3<f64>) {
+impl StripPatch {
+    /// Fills the patch with the bilinear values of `image` under `image_from_strip`, which must
+    /// keep the whole strip in front of the camera. Positions outside the image take its border.
+    pub fn warp(&mut self, image: &Gray, strip: &LineSideStrip, image_from_strip: &Matrix3<f64>) {
         self.columns = strip.columns;
         self.rows = strip.rows;
         self.stride = strip.columns.next_multiple_of(8);
@@ -180,8 +180,8 @@ mod tests {
     use super::*;
     use nalgebra::{Point3, Vector3};
 
-    fn strip(columns: usize, rows: usize) -> Strip {
-        Strip {
+    fn strip(columns: usize, rows: usize) -> LineSideStrip {
+        LineSideStrip {
             origin: Point2::new(20.0, 30.0),
             along: Vector2::new(0.8, 0.6),
             across: Vector2::new(-0.6, 0.8),
@@ -211,7 +211,7 @@ mod tests {
         let strip = strip(29, 17);
         let h = Matrix3::new(0.9, 0.1, 3.0, -0.05, 1.1, -2.0, 1e-3, -2e-3, 1.2);
         let m = h * strip.image_from_strip();
-        let mut patch = Patch::default();
+        let mut patch = StripPatch::default();
         patch.warp(&image, &strip, &m);
         for row in 0..17 {
             for column in 0..29 {
@@ -229,7 +229,7 @@ mod tests {
     #[test]
     fn outside_the_image_the_border_is_repeated() {
         let image = Gray::from_fn(30, 30, |_, _| 1.0);
-        let mut patch = Patch::default();
+        let mut patch = StripPatch::default();
         let far = Matrix3::new(1.0, 0.0, -400.0, 0.0, 1.0, 900.0, 0.0, 0.0, 1.0);
         patch.warp(&image, &strip(12, 9), &far);
         assert!((0..9).all(|r| patch.row(r)[..12].iter().all(|&v| v == 255.0)));
@@ -242,7 +242,8 @@ mod tests {
         let line = Segment3::new(Point3::new(-4.0, 1.0, 8.0), Point3::new(5.0, 3.0, 8.0));
         for side in [Side::Left, Side::Right] {
             let frame = ThetaFrame::new(&line, side).unwrap();
-            let strip = Strip::new(&camera, &line, &frame, &SweepParams::default()).unwrap();
+            let strip =
+                LineSideStrip::new(&camera, &line, &frame, &SweepParams::default()).unwrap();
             let on_side = camera.project(&(line.at(0.5) + frame.outward)).unwrap();
             let other = camera.project(&(line.at(0.5) - frame.outward)).unwrap();
             assert!(strip.pixel_of(&on_side).is_some());
