@@ -426,7 +426,7 @@ mod tests {
         let one = ([0.6, 0.8], 1.0);
         assert!(near(step(&[one]), 0.6, 0.8));
         assert!(near(step(&[one, ([1.0, 0.0], 2.0)]), 2.0, -0.25));
-        // A second pair of slopes that hardly differ says nothing.
+        // A second pair of slopes that hardly differ determines nothing.
         assert!(near(
             step(&[([1.0, 0.0], 2.0), ([0.0, 0.04], 1.0)]),
             2.0,

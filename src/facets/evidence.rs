@@ -10,8 +10,7 @@ use crate::lines3d::ThetaFrame;
 use crate::math::larger;
 use crate::params::RoofParams;
 use crate::photoconsistency::{ConsistencyMap, PlanGrid, ShiftableWindows};
-use crate::planes::PlaneHypothesis;
-use crate::planes::{GroupingInput, PlaneGroup};
+use crate::planes::{GroupingInput, PlaneGroup, PlaneHypothesis};
 
 /// Photo-consistency of one plane in one cell.
 #[derive(Clone, Copy, Debug, Default)]
@@ -318,16 +317,10 @@ fn half_planes_of(
 mod tests {
     use super::*;
     use crate::facets::borders::{Border, BorderKind};
-    use crate::ids::HalfPlaneId;
-    use crate::ids::LineId;
-    use crate::ids::ViewId;
-    use crate::lines3d::Line3d;
-    use crate::lines3d::Side;
-    use crate::planes::HalfPlane;
-    use crate::planes::Member;
-    use crate::planes::PlanRegion;
-    use crate::planes::line_neighbours;
+    use crate::ids::{HalfPlaneId, LineId, ViewId};
+    use crate::lines3d::{Line3d, Side};
     use crate::planes::single_view::SingleViewEvidence;
+    use crate::planes::{HalfPlane, Member, PlanRegion, line_neighbours};
     use crate::testing::line;
     use nalgebra::{Point2, Point3, Vector3};
 
@@ -407,7 +400,7 @@ mod tests {
     }
 
     /// What the planes of a group with a half-plane and of one without cost over all cells, with a
-    /// `gain` for the half-plane, correlation and weight of the maps, and what one view says
+    /// `gain` for the half-plane, correlation and weight of the maps, and the single-view evidence
     /// everywhere.
     fn costs(gain: f64, correlation: i8, weight: u8, single_view: i8) -> [f64; 2] {
         let (lines, half_planes, group) = line_with_half_plane();

@@ -10,8 +10,7 @@ use nalgebra::{Point2, Point3, Vector3};
 use serde::Serialize;
 
 use super::roof_model::{Facet, RoofModel, Solid, SolidFace, Surface, WELD_M};
-use crate::ids::BuildingId;
-use crate::ids::FacetId;
+use crate::ids::{BuildingId, FacetId};
 use crate::sorting::sort_by;
 
 /// Faces of solids are planar within this distance, metres. Welding moves a corner by up to 1 mm in

@@ -4,10 +4,7 @@ use nalgebra::{Point2, Point3};
 use serde::Serialize;
 
 use crate::geometry::{Plane, bounds};
-use crate::ids::BuildingId;
-use crate::ids::FacetId;
-use crate::ids::HalfPlaneId;
-use crate::ids::LineId;
+use crate::ids::{BuildingId, FacetId, HalfPlaneId, LineId};
 
 /// Plan positions closer than this are one, metres. Ten times the step in which coordinates are
 /// written, so that no two corners of a solid become equal in a file.

@@ -1,8 +1,8 @@
 //! Photo-consistency: how well the views agree on a plane.
 //!
 //! Two measures, both of centred normalised cross-correlation. Beside a line the sweep correlates
-//! windows of one reference view with every other view under `H(theta)` (B99 4.1); over the plan all
-//! pairs of views are correlated on a plane at once (B99 4.3, verification).
+//! windows of one reference view with every other view under `H(theta)` (B99 4.1); over the plan
+//! all pairs of views are correlated on a plane at once (B99 4.3, verification).
 //!
 //! ```text
 //! line_side_strip       the neighbourhood of a line side, and how a view is warped into it

@@ -5,14 +5,15 @@
 //! by the plane under test, once; centred normalised cross-correlations of small windows over all
 //! pairs of views follow from running sums. Two deviations, both against failure on real roofs:
 //!
-//! * Occlusion: while planes compete nobody knows what hides them, so only the better half of the
+//! * Occlusion: while planes compete their occluders are unknown, so only the better half of the
 //!   pairs counts at each plan position: one or two occluded views do not reject a plane. Once
 //!   there are facets, all pairs of views that see one past the others count
 //!   ([`consistency_map_behind`]).
-//! * Weak texture: where the grey values vary no more than the noise, correlation says nothing for
-//!   or against; each position carries the weight `s^2 / (s^2 + n^2)` with s the standard deviation
-//!   within the window and n that of the noise. It is also about what the views of a true plane
-//!   correlate by beyond chance, so the threshold falls with it ([`least_correlation`]).
+//! * Weak texture: where the grey values vary no more than the noise, correlation is no evidence
+//!   for or against; each position carries the weight `s^2 / (s^2 + n^2)` with s the standard
+//!   deviation within the window and n that of the noise. It is also about what the views of a true
+//!   plane correlate by beyond chance, so the threshold falls with it
+//!   ([`super::consistency_map::least_correlation`]).
 
 use nalgebra::Point3;
 

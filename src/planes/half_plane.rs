@@ -3,8 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Plane;
-use crate::ids::LineId;
-use crate::ids::ViewId;
+use crate::ids::{LineId, ViewId};
 use crate::lines3d::Side;
 
 /// Is the plane too steep for a roof (75 degrees, the interval of B99 figure 15)?
@@ -14,7 +13,7 @@ pub(crate) fn is_wall(plane: &Plane) -> bool {
     plane.normal.z < STEEPEST
 }
 
-/// A half-plane attached to one side of a 3D line, with what Sim(theta) looked like.
+/// A half-plane attached to one side of a 3D line, with the shape of Sim(theta) there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HalfPlane {
     /// The line.

@@ -2,8 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::grouping::PlanRegion;
-use super::grouping::{GroupingInput, PlaneGroup};
+use super::grouping::{GroupingInput, PlanRegion, PlaneGroup};
 use super::line_sides::{NEXT_TO, across, beside, crosses_surface};
 use super::plane_lines::{PlaneLine, lines_in_plane, rays_through_ends};
 use super::single_view::{SingleViewEvidence, single_view_evidence};
@@ -12,9 +11,9 @@ use crate::geometry::{Segment3, bounds};
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Side;
 use crate::params::RoofParams;
-use crate::photoconsistency::PlanGrid;
-use crate::photoconsistency::WINDOW;
-use crate::photoconsistency::{ConsistencyMap, consistency_map, least_correlation};
+use crate::photoconsistency::{
+    ConsistencyMap, PlanGrid, WINDOW, consistency_map, least_correlation,
+};
 use crate::scene::Scene;
 
 /// A plane with its evidence.
@@ -150,13 +149,11 @@ const SCATTER: f64 = 0.05;
 
 #[cfg(test)]
 mod tests {
-    use super::super::grouping::Member;
-    use super::super::grouping::line_neighbours;
     use super::super::grouping::propagated::half_plane;
+    use super::super::grouping::{Member, line_neighbours};
     use super::super::rendered_planes::{TexturedPlane, scene};
     use super::*;
-    use crate::ids::HalfPlaneId;
-    use crate::ids::LineId;
+    use crate::ids::{HalfPlaneId, LineId};
     use crate::lines3d::ThetaFrame;
     use crate::testing::line;
     use nalgebra::Point3;

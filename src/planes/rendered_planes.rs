@@ -3,8 +3,7 @@
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
 use crate::camera::Camera;
-use crate::geometry::Plane;
-use crate::geometry::rotation_from_axis_angle;
+use crate::geometry::{Plane, rotation_from_axis_angle};
 use crate::raster::Gray;
 use crate::scene::{Scene, View};
 

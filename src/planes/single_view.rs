@@ -15,10 +15,9 @@ use super::line_sides::{ON_SURFACE, TEXTURED, places_beside};
 use crate::geometry::{Plane, Segment3};
 use crate::lines3d::Side;
 use crate::math::median;
-use crate::photoconsistency::ConsistencyMap;
-use crate::photoconsistency::WINDOW_CELLS;
-use crate::photoconsistency::{BoxSum, HALF_WINDOW, RowSum};
-use crate::photoconsistency::{PlanGrid, orthophoto};
+use crate::photoconsistency::{
+    BoxSum, ConsistencyMap, HALF_WINDOW, PlanGrid, RowSum, WINDOW_CELLS, orthophoto,
+};
 use crate::raster::Channel;
 use crate::scene::{Scene, View};
 
@@ -331,8 +330,8 @@ mod tests {
         scene
     }
 
-    /// How the views agree on the roof, beside a ridge through its middle, and what is seen alone
-    /// of it.
+    /// How the views agree on the roof, beside a ridge through its middle, and the single-view
+    /// evidence for it.
     fn seen(scene: &Scene) -> (ConsistencyMap, SingleViewEvidence) {
         let ridge = line(Point3::new(-8.0, 0.0, 6.0), Point3::new(5.0, 0.0, 6.0));
         let region = super::super::grouping::region_beside(ridge, roof());

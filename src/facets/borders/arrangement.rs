@@ -45,7 +45,7 @@ pub struct Arrangement {
 }
 
 /// Of the same vertices as everywhere in this crate, so that it is compiled once.
-type Triangles = ConstrainedDelaunayTriangulation<spade::Point2<f64>>;
+type PlanTriangulation = ConstrainedDelaunayTriangulation<spade::Point2<f64>>;
 
 /// Crossings nearer than this become one vertex, metres.
 const SNAP: f64 = 0.06;
@@ -54,7 +54,7 @@ impl Arrangement {
     /// Cuts the plan by the borders.
     pub fn new(borders: &[Border]) -> Self {
         let (points, edges) = split_at_crossings(borders);
-        let mut cdt = Triangles::new();
+        let mut cdt = PlanTriangulation::new();
         let handles: Vec<_> = (points.iter())
             .map(|p| cdt.insert(spade::Point2::new(p.x, p.y)))
             .collect();
@@ -68,7 +68,7 @@ impl Arrangement {
         Self::from_triangulation(&cdt)
     }
 
-    fn from_triangulation(cdt: &Triangles) -> Self {
+    fn from_triangulation(cdt: &PlanTriangulation) -> Self {
         let vertices: Vec<Point2<f64>> = (cdt.vertices().map(|v| v.position()))
             .map(|p| Point2::new(p.x, p.y))
             .collect();

@@ -2,7 +2,7 @@
 //!
 //! The cost of an unsupported border is its length; reconstructed lines and intersections of planes
 //! make it cheap, so that outlines follow them (tau_real of B99 4.3 and the new lines of 4.2).
-//! Costs are worked out when they are asked for, from the heights of both planes at the border: a
+//! Costs are computed on demand, from the heights of both planes at the border: a
 //! list of all pairs would grow with the square of the planes.
 
 use nalgebra::Point2;

@@ -9,8 +9,7 @@
 use crate::geometry::{Plane, Segment3, covered};
 use crate::lines3d::Line3d;
 use crate::params::RoofParams;
-use crate::planes::GroupingInput;
-use crate::planes::{PlaneHypothesis, crosses_surface};
+use crate::planes::{GroupingInput, PlaneHypothesis, crosses_surface};
 use crate::terrain::Ground;
 
 /// How far beside its eave, in plan, the foot of a wall may be, metres. Assumption: no overhang is

@@ -13,14 +13,14 @@ const UNIT: f64 = 1e6;
 const LEAST_SAVED: i64 = 1000;
 
 /// A minimum cut over binary moves: 0 keeps the label, 1 takes the new one.
-pub struct Cut {
+pub struct MinimumCut {
     /// (cost of keeping, cost of moving) per node.
     unaries: Vec<(f64, f64)>,
     /// (from, to, capacity): paid when `from` keeps and `to` moves.
     arcs: Vec<(usize, usize, f64)>,
 }
 
-impl Cut {
+impl MinimumCut {
     /// No costs yet.
     pub fn new(nodes: usize) -> Self {
         Self {
@@ -72,8 +72,8 @@ mod tests {
     /// first moving.
     type Pair = (usize, usize, [f64; 3]);
 
-    fn cut(unaries: &[(f64, f64)], pairs: &[Pair]) -> Cut {
-        let mut cut = Cut::new(unaries.len());
+    fn cut(unaries: &[(f64, f64)], pairs: &[Pair]) -> MinimumCut {
+        let mut cut = MinimumCut::new(unaries.len());
         for (n, (keep, change)) in unaries.iter().enumerate() {
             cut.unary(n, *keep, *change);
         }

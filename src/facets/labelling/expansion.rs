@@ -1,6 +1,6 @@
 //! The labelling of least energy, by alpha-expansion (Boykov, Veksler, Zabih 2001).
 
-use super::cut::Cut;
+use super::cut::MinimumCut;
 use super::energy::{Energy, NO_PLANE, PairwiseCosts};
 
 /// A labelling on its way to the least energy. It records which expansions were tried, so that
@@ -91,7 +91,7 @@ impl<B: PairwiseCosts> Labelling<B> {
             .collect();
         let nodes = &mut self.nodes;
         (movable.iter().enumerate()).for_each(|(n, &(c, _))| nodes[c] = Some(n));
-        let mut cut = Cut::new(movable.len());
+        let mut cut = MinimumCut::new(movable.len());
         for (n, &(c, change)) in movable.iter().enumerate() {
             cut.unary(n, self.costs[c], change);
             for &e in &graph.edges_of_cell[c] {

@@ -5,7 +5,7 @@
 //! rounds, from the deficits outwards and no farther than the nearest surplus, because most
 //! deficits are met by their neighbours. Half of every arc is filled to begin with: where two cells
 //! of one label may move together, this cancels what each would pay without the other, and few
-//! deficits are left. A library's flow, which looked at every arc in every round, took six times as
+//! deficits are left. A library's flow, which visited every arc in every round, took six times as
 //! long.
 
 /// From, to, capacity in units.

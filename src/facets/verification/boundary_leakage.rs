@@ -19,8 +19,7 @@ use crate::geometry::{Segment3, clip, covered, mean_point};
 use crate::ids::ViewId;
 use crate::model::{Facet, Occluders};
 use crate::params::RoofParams;
-use crate::photoconsistency::ConsistencyMap;
-use crate::photoconsistency::WINDOW;
+use crate::photoconsistency::{ConsistencyMap, WINDOW};
 use crate::scene::Scene;
 
 /// Share of a part's length along the line that is on it, from which on the line parts it from the

@@ -195,7 +195,7 @@ mod tests {
         for by in [-1.25, 1.25] {
             assert!(raised(&scene, by) < -3.0, "{by}");
         }
-        // Views of something else have nothing to say.
+        // Unrelated views give no margin.
         (scene.views.iter_mut().enumerate()).for_each(|(i, v)| v.gray.data.rotate_left(7919 * i));
         assert!(raised(&scene, 0.0) < 1.0);
         assert_eq!(

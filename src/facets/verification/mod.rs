@@ -268,8 +268,8 @@ mod tests {
         (scene, facet)
     }
 
-    /// Do the better half of the pairs of views, and all of them, speak against a facet, where
-    /// `hidden` views are not asked?
+    /// Do the better half of the pairs of views, and all of them, contradict a facet, without the
+    /// `hidden` views?
     fn against(scene: &Scene, facet: &Facet, hidden: &[usize]) -> [bool; 2] {
         let hidden = |view: ViewId, _: &_| hidden.contains(&view.index());
         let sums = visible_interior(scene, facet, 0.1, &hidden, MIN_CORRELATION);

@@ -12,7 +12,7 @@ pub enum FacetRejection {
         /// Sloped area, square metres.
         area_m2: f64,
     },
-    /// Windows fit into little of it, so that nothing but its edges speaks for it.
+    /// Windows fit into little of it, so that only its edges are evidence for it.
     TooNarrow {
         /// Side of the window, metres.
         window_m: f64,

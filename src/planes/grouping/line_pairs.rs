@@ -11,10 +11,8 @@ use super::growth::{extend, infer_sides};
 use super::plane_group::{GroupingInput, PlaneGroup, member};
 use super::region::PlanRegion;
 use crate::geometry::Plane;
-use crate::ids::HalfPlaneId;
-use crate::ids::LineId;
-use crate::lines3d::Line3d;
-use crate::lines3d::Side;
+use crate::ids::{HalfPlaneId, LineId};
+use crate::lines3d::{Line3d, Side};
 use crate::params::RoofParams;
 use crate::planes::half_plane::is_wall;
 

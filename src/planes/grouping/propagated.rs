@@ -4,16 +4,11 @@
 //! that runs along a neighbouring plane, a side without a half-plane is offered one parallel to
 //! that plane. The lines are then grouped as with any half-plane (B99 4.2); each is then tested by
 //! its photo-consistency ([`crate::planes::hypothesis`]).
-//!
-//! Tried without gain: planes of the same slope that fall the other way or around the corner, as of
-//! gables and hips, and strong texture. The sweep seldom misses those, and parapets and gaps take
-//! more of them than roofs do.
 
 use super::growth::{by_strength, grow, infer_sides, merge_groups};
 use super::plane_group::{GroupingInput, PlaneGroup};
 use crate::geometry::Plane;
-use crate::ids::HalfPlaneId;
-use crate::ids::LineId;
+use crate::ids::{HalfPlaneId, LineId};
 use crate::lines3d::{Side, ThetaFrame};
 use crate::params::RoofParams;
 use crate::planes::half_plane::{HalfPlane, is_wall};

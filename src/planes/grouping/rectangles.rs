@@ -3,10 +3,6 @@
 //! A rectangle in the plane of a group, over its place, joins it: the plane is then sought there
 //! too. Any other one is a group of its own, with the lines that lie in it. Which plane covers what
 //! is settled by one labelling.
-//!
-//! Tried without gain: that the contrast at a rectangle's sides, which W96 counts in its measure,
-//! counts where there is no texture to compare. Of a rendered suburb less of the roofs was then
-//! covered, not more: lawns and yards have sides with contrast, too.
 
 use nalgebra::Point2;
 
@@ -15,8 +11,7 @@ use super::plane_group::{GroupingInput, Member, PlaneGroup, member};
 use super::proposed_plane::ProposedPlane;
 use super::region::PlanRegion;
 use crate::ids::LineId;
-use crate::lines3d::Line3d;
-use crate::lines3d::Side;
+use crate::lines3d::{Line3d, Side};
 use crate::params::RoofParams;
 
 /// Adds the rectangles to the groups, those in the plane of a group to it.

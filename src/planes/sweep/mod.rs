@@ -1,8 +1,9 @@
 //! Half-planes by homography sweep (B99 4.1).
 //!
-//! A 3D line leaves one parameter of a plane through it open, the angle theta. Each side of the line
-//! is swept apart: the neighbourhood in the most textured view is compared with every other view
-//! under the homographies `H(theta)`, and a distinct maximum of `Sim(theta)` makes a half-plane.
+//! A 3D line leaves one parameter of a plane through it open, the angle theta. Each side of the
+//! line is swept apart: the neighbourhood in the most textured view is compared with every other
+//! view under the homographies `H(theta)`, and a distinct maximum of `Sim(theta)` makes a
+//! half-plane.
 //!
 //! ```text
 //! poi           points of interest of a view

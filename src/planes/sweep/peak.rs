@@ -2,12 +2,11 @@
 //! 12).
 
 use super::trace::SweepRejection;
-use crate::params::Acceptance;
-use crate::params::SweepParams;
+use crate::params::{Acceptance, SweepParams};
 
 /// A parabola `value + slope (theta - at) + curvature (theta - at)^2 / 2`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Parabola {
+pub(crate) struct SimilarityParabola {
     /// Where the coefficients hold, radians.
     pub at: f64,
     /// Sim there.
@@ -18,7 +17,7 @@ pub(crate) struct Parabola {
     pub curvature: f64,
 }
 
-impl Parabola {
+impl SimilarityParabola {
     /// Least squares over the samples (theta, Sim) within `reach` of `at`; `None` for fewer than
     /// three.
     pub fn fit(samples: impl Iterator<Item = (f64, f64)>, at: f64, reach: f64) -> Option<Self> {
@@ -131,11 +130,11 @@ mod tests {
     fn a_planted_parabola_is_recovered() {
         let sim = |t: f64| 0.7 - 6.0 * (t - 0.31) * (t - 0.31);
         let samples = [0.1, 0.2, 0.25, 0.3, 0.35, 0.4, 0.9].map(|t| (t, sim(t)));
-        let p = Parabola::fit(samples.into_iter(), 0.3, 0.12).unwrap();
+        let p = SimilarityParabola::fit(samples.into_iter(), 0.3, 0.12).unwrap();
         let (theta, value) = p.maximum().unwrap();
         assert!((theta - 0.31).abs() < 1e-9 && (value - 0.7).abs() < 1e-9);
         assert!((p.curvature + 12.0).abs() < 1e-6);
-        assert!(Parabola::fit(samples.into_iter(), 0.9, 0.1).is_none());
+        assert!(SimilarityParabola::fit(samples.into_iter(), 0.9, 0.1).is_none());
     }
 
     #[test]

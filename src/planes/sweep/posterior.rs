@@ -233,7 +233,7 @@ mod tests {
         let bell = math::exp(2.0) * 0.05 * (2.0 * std::f64::consts::PI).sqrt();
         let expected = bell / (bell + 2.4);
         assert!((posterior.plane - expected).abs() < 1e-3);
-        // Nothing said: one half.
+        // No evidence: one half.
         let unsampled = Posterior::new(&thetas, &vec![0.0; thetas.len()]);
         assert!((unsampled.plane - 0.5).abs() < 1e-12);
         assert_eq!(Posterior::new(&[], &[]).plane, 0.0);

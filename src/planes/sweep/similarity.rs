@@ -18,10 +18,8 @@ use crate::camera::homography_of_plane;
 use crate::geometry::Segment3;
 use crate::ids::ViewId;
 use crate::lines3d::{Side, ThetaFrame};
-use crate::params::Acceptance;
-use crate::params::SweepParams;
-use crate::photoconsistency::CorrelationWindows;
-use crate::photoconsistency::{LineSideStrip, StripPatch};
+use crate::params::{Acceptance, SweepParams};
+use crate::photoconsistency::{CorrelationWindows, LineSideStrip, StripPatch};
 use crate::raster::corners;
 use crate::scene::Scene;
 

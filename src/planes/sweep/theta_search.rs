@@ -8,7 +8,7 @@
 //! plane or with a wrong one. The sum over the views valid at each theta selects the maximum; the
 //! views valid there are then kept for the whole curve, so that Sim is continuous, and averaged.
 
-use super::peak::{Parabola, Peak, sigma_of_maximum};
+use super::peak::{Peak, SimilarityParabola, sigma_of_maximum};
 use super::posterior::Posterior;
 use super::similarity::{LineSide, ViewScore};
 use super::trace::{SimilarityCurve, SweepRejection, ViewCurve};
@@ -176,9 +176,10 @@ impl<'a> ThetaSearch<'a> {
         }
         let at = self.samples[best].theta;
         let curve = || self.samples.iter().map(|s| (s.theta, self.similarity(s)));
-        let wide = Parabola::fit(curve(), at, step).ok_or(SweepRejection::AtIntervalEnd)?;
+        let wide =
+            SimilarityParabola::fit(curve(), at, step).ok_or(SweepRejection::AtIntervalEnd)?;
         let reach = step * 0.5;
-        let narrow = Parabola::fit(curve(), at, reach).unwrap_or(wide);
+        let narrow = SimilarityParabola::fit(curve(), at, reach).unwrap_or(wide);
         let (theta, similarity) = narrow.maximum().ok_or(SweepRejection::FlatCurve)?;
         let lowest = curve().map(|(_, sim)| sim).fold(f64::INFINITY, f64::min);
         let peak = Peak {
@@ -196,7 +197,7 @@ impl<'a> ThetaSearch<'a> {
                     .samples
                     .iter()
                     .map(|s| (s.theta, s.scores[v].similarity));
-                Parabola::fit(curve, peak.theta, reach).map(|p| p.slope)
+                SimilarityParabola::fit(curve, peak.theta, reach).map(|p| p.slope)
             })
             .collect();
         Ok(AcceptedPeak {

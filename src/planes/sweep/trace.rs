@@ -5,8 +5,7 @@ use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 
 use super::posterior::Posterior;
-use crate::ids::LineId;
-use crate::ids::ViewId;
+use crate::ids::{LineId, ViewId};
 use crate::lines3d::Side;
 
 /// Why a line side has no half-plane.
