@@ -117,7 +117,7 @@ pub fn single_view_evidence(
         if cells.peek().is_none() {
             continue;
         }
-        let red_blue = look(view, Channel::Warmth);
+        let red_blue = look(view, Channel::RedBlue);
         let looks = ViewAppearance { grey, red_blue };
         let Some(surface) = SurfaceAppearance::estimate(&looks, &known, least, map) else {
             continue;
