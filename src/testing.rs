@@ -7,7 +7,8 @@ use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
 use crate::model::Facet;
 
-/// Evenly distributed from 0 to 1: a linear congruential generator (Numerical Recipes 7.1), its upper 24 bits.
+/// Evenly distributed from 0 to 1: a linear congruential generator (Numerical Recipes 7.1), its
+/// upper 24 bits.
 pub fn uniform(seed: u32) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {

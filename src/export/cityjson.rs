@@ -1,8 +1,8 @@
 //! CityJSON 2.0: one Building with an LoD 2.2 Solid per building of the model.
 //!
-//! Coordinates are those of the input's world frame, as whole numbers of 0.1 mm from the scene origin (coarser steps
-//! would bend planar roofs). The texture is the file [`ATLAS_FILE`] beside this one. The reference
-//! system is written where the input names one.
+//! Coordinates are those of the input's world frame, as whole numbers of 0.1 mm from the scene
+//! origin (coarser steps would bend planar roofs). The texture is the file [`ATLAS_FILE`] beside
+//! this one. The reference system is written where the input names one.
 
 use serde_json::{Map, Value, json};
 
@@ -140,7 +140,8 @@ fn semantic_surface(model: &RoofModel, surface: Surface) -> Value {
     }
 }
 
-/// Per ring `[texture, uv, uv, ...]`; CityJSON's texture coordinates have their origin at the lower left.
+/// Per ring `[texture, uv, uv, ...]`; CityJSON's texture coordinates have their origin at the lower
+/// left.
 fn texture_of_rings(texture: &FaceTexture, shared: &mut Shared) -> Vec<Vec<usize>> {
     let mut rings = Vec::new();
     for ring in &texture.uv {

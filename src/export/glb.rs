@@ -1,7 +1,8 @@
 //! glTF 2.0 in one binary file.
 //!
-//! Y is up: world (x, y, z) becomes (x, z, -y). Coordinates stay local, because f32 cannot hold a national grid; the
-//! scene origin, to be added before the axes are turned, is in `extras.origin` of the asset's scene.
+//! Y is up: world (x, y, z) becomes (x, z, -y). Coordinates stay local, because f32 cannot hold a
+//! national grid; the scene origin, to be added before the axes are turned, is in `extras.origin`
+//! of the asset's scene.
 //!
 //! ```text
 //! scene
@@ -124,7 +125,8 @@ impl File {
         self.root.extensions_used.push("KHR_materials_unlit".into());
     }
 
-    /// The node of a building, with a child for each facet, one for the walls and one for the ground.
+    /// The node of a building, with a child for each facet, one for the walls and one for the
+    /// ground.
     fn add_building(
         &mut self,
         id: usize,

@@ -1,7 +1,8 @@
 //! What the model was made from, as plain JSON: 3D lines, image segments, half-planes.
 //!
-//! World coordinates are those of the input (scene origin added), metres rounded to 0.1 mm; image positions are
-//! pixels rounded to 0.001, centre of the top-left pixel at (0.5, 0.5). Angles are degrees.
+//! World coordinates are those of the input (scene origin added), metres rounded to 0.1 mm; image
+//! positions are pixels rounded to 0.001, centre of the top-left pixel at (0.5, 0.5). Angles are
+//! degrees.
 
 use nalgebra::Point3;
 use serde_json::{Value, json};
@@ -14,8 +15,8 @@ use crate::lines3d::Line3d;
 use crate::planes::HalfPlane;
 use crate::scene::Scene;
 
-/// `lines.json`: 3D lines in the order of their ids, with the segment of each view that supports them. Ids of lines that the
-/// model refutes are left out.
+/// `lines.json`: 3D lines in the order of their ids, with the segment of each view that supports
+/// them. Ids of lines that the model refutes are left out.
 pub fn lines_json(scene: &Scene, lines: &[Line3d]) -> Vec<u8> {
     let point = |p: &Point3<f64>| (p + scene.origin).coords.map(|c| rounded(c, 4));
     let lines: Vec<Value> = Line3d::standing(lines)
@@ -58,8 +59,9 @@ pub fn segments_json(scene: &Scene, segments: &[Vec<ImageSegment>]) -> Vec<u8> {
     to_bytes(&json!({ "views": views }))
 }
 
-/// `halfplanes.json`: the half-planes with the peak of Sim(theta) that they were accepted for (B99 figure 12) and
-/// their plane `a x + b y + c z + d = 0` in the world frame of the input. Those at lines that the model refutes are left out.
+/// `halfplanes.json`: the half-planes with the peak of Sim(theta) that they were accepted for (B99
+/// figure 12) and their plane `a x + b y + c z + d = 0` in the world frame of the input. Those at
+/// lines that the model refutes are left out.
 pub fn half_planes_json(scene: &Scene, lines: &[Line3d], half_planes: &[HalfPlane]) -> Vec<u8> {
     let stands = |h: &HalfPlane| {
         lines

@@ -1,7 +1,7 @@
 //! The model as plain meshes: OBJ with its material, and PLY with the 3D lines as edges.
 //!
-//! Coordinates are those of the input's world frame, metres, Z up. A program that reads them into single precision
-//! should take off the scene origin first; both files state it in a comment.
+//! Coordinates are those of the input's world frame, metres, Z up. A program that reads them into
+//! single precision should take off the scene origin first; both files state it in a comment.
 
 use std::fmt::Write;
 

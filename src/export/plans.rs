@@ -1,9 +1,9 @@
 //! The model for drawing and mapping programs: DXF, footprints as GeoJSON, the 3D lines as CSV.
 //!
-//! Coordinates are those of the input's world frame, metres. GeoJSON (RFC 7946) wants longitude and latitude:
-//! footprints are in these where the frame's place on the Earth is known, else in the input's own coordinates, whose
-//! reference system is named in the older way (GeoJSON 2008, `crs`) where the input names it. DXF names it in a
-//! comment.
+//! Coordinates are those of the input's world frame, metres. GeoJSON (RFC 7946) wants longitude and
+//! latitude: footprints are in these where the frame's place on the Earth is known, else in the
+//! input's own coordinates, whose reference system is named in the older way (GeoJSON 2008, `crs`)
+//! where the input names it. DXF names it in a comment.
 
 use nalgebra::Point3;
 use serde_json::{Value, json};
@@ -15,8 +15,8 @@ use crate::lines3d::Line3d;
 use crate::model::{Building, RoofModel, Solid, Surface};
 use crate::scene::Scene;
 
-/// DXF of AutoCAD R12, which every program reads: 3DFACE on the layers ROOF, WALL and GROUND, LINE on
-/// LINE3D.
+/// DXF of AutoCAD R12, which every program reads: 3DFACE on the layers ROOF, WALL and GROUND, LINE
+/// on LINE3D.
 pub fn dxf(scene: &Scene, model: &RoofModel, lines: &[Line3d]) -> Vec<u8> {
     let mut text = String::new();
     if let Some(system) = scene.survey.describe() {
@@ -74,7 +74,8 @@ fn entity(text: &mut String, scene: &Scene, kind: &str, layer: &str, points: &[P
     }
 }
 
-/// The footprints of the buildings as GeoJSON polygons, with the heights of ground, eaves and ridge.
+/// The footprints of the buildings as GeoJSON polygons, with the heights of ground, eaves and
+/// ridge.
 pub fn footprints(scene: &Scene, model: &RoofModel) -> Vec<u8> {
     let features: Vec<Value> = (model.buildings.iter().enumerate())
         .flat_map(|(i, building)| building_footprints(scene, model, i, building))

@@ -1,15 +1,15 @@
 //! Triangles of a planar face, for formats that know no polygons.
 //!
-//! A constrained Delaunay triangulation keeps every corner, also those on straight edges; ear clipping drops
-//! them and leaves cracks where the neighbour keeps its own.
+//! A constrained Delaunay triangulation keeps every corner, also those on straight edges; ear
+//! clipping drops them and leaves cracks where the neighbour keeps its own.
 
 use nalgebra::{Point2, Vector3};
 use spade::{ConstrainedDelaunayTriangulation, Point2 as SpadePoint, Triangulation};
 
 use crate::model::{Solid, SolidFace};
 
-/// Triangles of a face, counter-clockwise seen from outside. Indices count the corners of all rings in order, so that
-/// texture coordinates per corner can be looked up.
+/// Triangles of a face, counter-clockwise seen from outside. Indices count the corners of all rings
+/// in order, so that texture coordinates per corner can be looked up.
 pub fn triangulate(solid: &Solid, face: &SolidFace) -> Vec<[u32; 3]> {
     let rings = flat_rings(solid, face);
     let mut cdt = ConstrainedDelaunayTriangulation::<SpadePoint<f64>>::new();

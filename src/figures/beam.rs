@@ -1,5 +1,6 @@
-//! The story of one segment in matching (B99 3.1 and 3.2, figures 1, 2 and 4): where its line can lie in the other
-//! views, which segments lie there, how they scored, and where third views should show the line.
+//! The story of one segment in matching (B99 3.1 and 3.2, figures 1, 2 and 4): where its line can
+//! lie in the other views, which segments lie there, how they scored, and where third views should
+//! show the line.
 
 use nalgebra::{Point2, Point3};
 use serde::Serialize;

@@ -1,4 +1,5 @@
-//! 3D lines as the segments alone show them (B99 3.3, figures 5 to 8): before fragments were merged and ends grown.
+//! 3D lines as the segments alone show them (B99 3.3, figures 5 to 8): before fragments were merged
+//! and ends grown.
 
 use crate::geometry::Segment3;
 use crate::lines2d::ImageSegment;
@@ -6,7 +7,8 @@ use crate::lines3d::{Line3d, ProjectedLine};
 use crate::scene::Scene;
 use crate::sorting::sort_by;
 
-/// The stretches of a 3D line that detected segments of at least two views cover, in their order along the line.
+/// The stretches of a 3D line that detected segments of at least two views cover, in their order
+/// along the line.
 pub fn detected_stretches(
     scene: &Scene,
     segments: &[Vec<ImageSegment>],
@@ -25,8 +27,8 @@ pub fn detected_stretches(
         .collect()
 }
 
-/// Where the segments of all supports lie along the line, metres: view by view, so that fragments of one view that overlap
-/// count once.
+/// Where the segments of all supports lie along the line, metres: view by view, so that fragments
+/// of one view that overlap count once.
 fn detected(scene: &Scene, segments: &[Vec<ImageSegment>], line: &Line3d) -> Vec<[f64; 2]> {
     let mut found = Vec::new();
     for support in &line.supports {

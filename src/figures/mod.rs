@@ -1,4 +1,5 @@
-//! What the live figures of the page show and no trace holds: it depends on where the reader points.
+//! What the live figures of the page show and no trace holds: it depends on where the reader
+//! points.
 //!
 //! ```text
 //! beam      a segment's epipolar beams, candidates and what became of them   B99 3.1, 3.2, figures 1 to 4

@@ -1,8 +1,10 @@
-//! Pointwise correspondence (B99 3.1, figure 3): the point x of a segment corresponds to `x' = l' x (F x)`, where the
-//! epipolar line of x meets the candidate line l'. What matching compares there are the windows about x and x'.
+//! Pointwise correspondence (B99 3.1, figure 3): the point x of a segment corresponds to `x' = l' x
+//! (F x)`, where the epipolar line of x meets the candidate line l'. What matching compares there
+//! are the windows about x and x'.
 //!
-//! Deviation: matching warps each side of the line by the best half-plane; here both windows are related by the horizontal
-//! plane through the point in space, which is enough to see whether they show the same thing.
+//! Deviation: matching warps each side of the line by the best half-plane; here both windows are
+//! related by the horizontal plane through the point in space, which is enough to see whether they
+//! show the same thing.
 
 use nalgebra::{Matrix3, Point2, Vector3};
 use serde::Serialize;
@@ -23,7 +25,8 @@ const WINDOW_PX: usize = 15;
 pub struct Correspondence {
     /// The point of the segment, pixels.
     pub x: Point2<f64>,
-    /// The epipolar line F x in the other view, scaled so that `l . (x, y, 1)` is a distance in pixels.
+    /// The epipolar line F x in the other view, scaled so that `l . (x, y, 1)` is a distance in
+    /// pixels.
     pub epipolar: Vector3<f64>,
     /// `x' = l' x (F x)`, pixels.
     pub other: Point2<f64>,
@@ -37,8 +40,8 @@ pub struct Correspondence {
     pub correlation: Option<f64>,
 }
 
-/// The correspondence at fraction `t` (0 start, 1 end) of segment `of` with segment `candidate` of another view. `None` where
-/// the two lines have no common point there.
+/// The correspondence at fraction `t` (0 start, 1 end) of segment `of` with segment `candidate` of
+/// another view. `None` where the two lines have no common point there.
 pub fn correspondence(
     scene: &Scene,
     segments: &[Vec<ImageSegment>],
@@ -96,7 +99,8 @@ fn level_plane(
     Plane::from_point_normal(&point, &Vector3::z())
 }
 
-/// The window about `x` as another view shows it under a homography; `None` where it is not all in the image.
+/// The window about `x` as another view shows it under a homography; `None` where it is not all in
+/// the image.
 fn window_at(gray: &Gray, h: &Homography, x: &Point2<f64>) -> Option<Vec<f32>> {
     let half = (WINDOW_PX / 2) as f64;
     (0..WINDOW_PX * WINDOW_PX)
@@ -161,7 +165,8 @@ mod tests {
             for other in [1, 3, 5] {
                 let found = correspondence(&scene, &segments, named(0), named(other), 0.4);
                 let Some(found) = found else { continue };
-                // The point of the edge that the first view sees at x is the one that the second sees at x'.
+                // The point of the edge that the first view sees at x is the one that the second
+                // sees at x'.
                 let x = Vector3::new(found.other.x, found.other.y, 1.0);
                 assert!(found.epipolar.dot(&x).abs() < 1e-6);
                 let line = segments[other as usize][0].segment.line();

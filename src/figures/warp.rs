@@ -1,5 +1,6 @@
-//! The half-plane's homography at work (B99 4.1, figures 10, 11 and 13): the neighbourhood of a line side in the reference view,
-//! and every other view warped onto it by H(theta). At the right theta all pictures are alike.
+//! The half-plane's homography at work (B99 4.1, figures 10, 11 and 13): the neighbourhood of a
+//! line side in the reference view, and every other view warped onto it by H(theta). At the right
+//! theta all pictures are alike.
 
 use nalgebra::{Matrix3, Point2, Vector3};
 use serde::Serialize;
@@ -48,11 +49,13 @@ pub struct WarpedView {
     pub similarity: Option<f64>,
     /// Does it count?
     pub valid: bool,
-    /// Where the picture lies in the view, pixels; `None` where a corner is not in front of the camera.
+    /// Where the picture lies in the view, pixels; `None` where a corner is not in front of the
+    /// camera.
     pub outline: Option<[Point2<f64>; 4]>,
 }
 
-/// The neighbourhood of one side of a line at an angle. `None` for a side that the sweep cannot compare at all.
+/// The neighbourhood of one side of a line at an angle. `None` for a side that the sweep cannot
+/// compare at all.
 pub fn warped_views(
     scene: &Scene,
     points: &[PointsOfInterest],

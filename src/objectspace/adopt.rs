@@ -1,10 +1,11 @@
 //! Cluster lines for the other method: those whose image lines its matched lines do not explain.
 //!
-//! A cluster takes its image lines away from all others (`clusters`), and so does a matched line, which is more accurate. What
-//! they leave of a cluster must still be seen in as many views, and cover as much of it there, as W96 3.5 asks of any line.
+//! A cluster takes its image lines away from all others (`clusters`), and so does a matched line,
+//! which is more accurate. What they leave of a cluster must still be seen in as many views, and
+//! cover as much of it there, as W96 3.5 asks of any line.
 //!
-//! Tried without gain: to measure the lines that stay again in all views, as borders of facets are. Edges that only regions show are
-//! weak, and what lies along one is often another.
+//! Tried without gain: to measure the lines that stay again in all views, as borders of facets are.
+//! Edges that only regions show are weak, and what lies along one is often another.
 
 use super::oris::RegionLine;
 use super::stages::{FoundLine, world_lines};
@@ -14,8 +15,8 @@ use crate::lines3d::{Line3d, LineOrigin, ProjectedLine};
 use crate::params::ClusterParams;
 use crate::scene::Scene;
 
-/// The cluster lines that the matched lines do not explain. They name no image lines: those of regions are not the segments of the
-/// other method.
+/// The cluster lines that the matched lines do not explain. They name no image lines: those of
+/// regions are not the segments of the other method.
 pub fn adopted_lines(
     scene: &Scene,
     regions: &[Vec<RegionLine>],
@@ -115,7 +116,8 @@ mod tests {
         (scene, regions, found)
     }
 
-    /// The places y of the adopted lines, where lines are matched from -4 m as far as `to_m` at y = -3 m.
+    /// The places y of the adopted lines, where lines are matched from -4 m as far as `to_m` at y =
+    /// -3 m.
     fn adopted(to_m: f64) -> Vec<f64> {
         let (scene, regions, found) = eaves();
         let mut matched = world_lines(&scene, &regions, &found[..1]);

@@ -1,11 +1,14 @@
-//! Main directions (W96 3.4, figures 4 and 5): two horizontal, perpendicular directions of a building.
+//! Main directions (W96 3.4, figures 4 and 5): two horizontal, perpendicular directions of a
+//! building.
 //!
-//! The interpretation plane of every image line is cut with the XY plane. For a horizontal line the cut is parallel to the line
-//! itself, from every view; for any other line it is some direction that differs from view to view. The azimuths of all
-//! cuts of all views fill one histogram, each weighted with the length and the contrast of its line, and two peaks that are
-//! perpendicular are located together: the sum of the histogram at an azimuth and a right angle further is largest.
+//! The interpretation plane of every image line is cut with the XY plane. For a horizontal line the
+//! cut is parallel to the line itself, from every view; for any other line it is some direction
+//! that differs from view to view. The azimuths of all cuts of all views fill one histogram, each
+//! weighted with the length and the contrast of its line, and two peaks that are perpendicular are
+//! located together: the sum of the histogram at an azimuth and a right angle further is largest.
 //!
-//! W96 assumes one building. A window may hold several orientations: peaks are taken in turn while they stand out.
+//! W96 assumes one building. A window may hold several orientations: peaks are taken in turn while
+//! they stand out.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -19,7 +22,8 @@ use crate::params::DirectionParams;
 /// A pair of perpendicular horizontal directions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MainDirections {
-    /// Azimuth of the first direction from the X axis towards Y, radians, 0 to pi/2; the other is a right angle further.
+    /// Azimuth of the first direction from the X axis towards Y, radians, 0 to pi/2; the other is a
+    /// right angle further.
     pub azimuth: f64,
     /// Share of the weight of all lines that points either way.
     pub share: f64,
@@ -94,7 +98,8 @@ fn directions_of(
     (found, trace)
 }
 
-/// Azimuth, 0 to pi, and weight of the cut of an interpretation plane with the XY plane; `None` for a horizontal plane.
+/// Azimuth, 0 to pi, and weight of the cut of an interpretation plane with the XY plane; `None` for
+/// a horizontal plane.
 fn azimuth(sight: &Sight) -> Option<[f64; 2]> {
     let n = sight.normal;
     (n.x * n.x + n.y * n.y > 1e-12).then(|| {

@@ -15,8 +15,9 @@ pub(crate) fn rig(views: usize) -> Scene {
     scene
 }
 
-/// The images of 3D lines in all views but the hidden ones, off by up to 0.3 px, and among them unrelated lines of the same
-/// direction as the first one, at random places: `outliers` is their share of all lines.
+/// The images of 3D lines in all views but the hidden ones, off by up to 0.3 px, and among them
+/// unrelated lines of the same direction as the first one, at random places: `outliers` is their
+/// share of all lines.
 pub(crate) fn planted_lines(
     scene: &Scene,
     truth: &[Segment3],

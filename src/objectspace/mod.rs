@@ -1,9 +1,10 @@
-//! The object-space method: Wiman, Axelsson 1996, "Finding 3D-structures in multiple aerial images using lines and regions"
-//! (W96).
+//! The object-space method: Wiman, Axelsson 1996, "Finding 3D-structures in multiple aerial images
+//! using lines and regions" (W96).
 //!
-//! Nothing is matched from image to image. Image lines of all views are accumulated in object space at once, three times:
-//! as azimuths, as places in a plane across a main direction, and as positions along a pair of parallel lines. The work
-//! therefore grows linearly with the number of images up to that point where pairs of image lines propose clusters.
+//! Nothing is matched from image to image. Image lines of all views are accumulated in object space
+//! at once, three times: as azimuths, as places in a plane across a main direction, and as
+//! positions along a pair of parallel lines. The work therefore grows linearly with the number of
+//! images up to that point where pairs of image lines propose clusters.
 //!
 //! ```text
 //! 3.3  oris        regions with straight shared boundaries, lines on them

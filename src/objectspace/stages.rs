@@ -220,7 +220,8 @@ fn search_planes(
     trace.candidates.extend(triangles);
 }
 
-/// Judges the pairs that were too weak again, where the solids hide them from some views; did any change?
+/// Judges the pairs that were too weak again, where the solids hide them from some views; did any
+/// change?
 fn search_behind(
     search: &PlaneSearch,
     axes: impl Fn([usize; 2]) -> Axes + Sync,
@@ -246,8 +247,9 @@ fn search_behind(
     trace.candidates.len() > before
 }
 
-/// All candidates, for the other method to weigh; those that this one chose come first. Which of them cover what is then decided
-/// together with all other planes, so that what excluded each other here may compete again.
+/// All candidates, for the other method to weigh; those that this one chose come first. Which of
+/// them cover what is then decided together with all other planes, so that what excluded each other
+/// here may compete again.
 pub fn proposed_planes(trace: &RectangleTrace) -> Vec<ProposedPlane> {
     let mut order: Vec<usize> = (0..trace.candidates.len()).collect();
     let chosen = |k: &usize| trace.chosen.binary_search(k).is_ok();

@@ -22,7 +22,8 @@ fn model(scene: &Scene) -> RoofModel {
     model
 }
 
-/// True facets whose plane a found facet has (to 2 degrees and 0.1 m), and found ones that have none.
+/// True facets whose plane a found facet has (to 2 degrees and 0.1 m), and found ones that have
+/// none.
 fn agreement(model: &RoofModel, truth: &SyntheticTruth) -> (usize, usize) {
     let agrees = |f: &Facet, (plane, ring): &(crate::geometry::Plane, Vec<Point3<f64>>)| {
         let middle = f

@@ -1,9 +1,10 @@
 //! Where buildings are: a window for each, with its main directions.
 //!
-//! W96 3.1 assumes that "one building at a time is analysed" and that its "approximate localisation ... is known". It may be
-//! given; otherwise the method itself finds it. Overlapping tiles, somewhat larger than a house, are analysed as if each held one building:
-//! main directions, clusters. 3D lines that stand above the ground are linked where they come near each other and run
-//! parallel or perpendicular; each connected group is a building, its box the window.
+//! W96 3.1 assumes that "one building at a time is analysed" and that its "approximate localisation
+//! ... is known". It may be given; otherwise the method itself finds it. Overlapping tiles,
+//! somewhat larger than a house, are analysed as if each held one building: main directions,
+//! clusters. 3D lines that stand above the ground are linked where they come near each other and
+//! run parallel or perpendicular; each connected group is a building, its box the window.
 
 use nalgebra::{Point2, Point3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -56,14 +57,17 @@ impl Window {
 pub struct WindowTrace {
     /// The histogram of each window.
     pub histograms: Vec<DirectionTrace>,
-    /// The 3D lines above the ground that the windows were drawn around, and the window of each; `None` for a line on its own.
+    /// The 3D lines above the ground that the windows were drawn around, and the window of each;
+    /// `None` for a line on its own.
     pub lines: Vec<(Segment3, Option<usize>)>,
 }
 
-/// Lines shorter than this, or alone, are no building, metres together. Assumption: less than the outline of a garage.
+/// Lines shorter than this, or alone, are no building, metres together. Assumption: less than the
+/// outline of a garage.
 const LEAST_LINES_M: f64 = 6.0;
 
-/// Windows at the given places (x0, y0, x1, y1, local frame), or around the buildings that the lines show.
+/// Windows at the given places (x0, y0, x1, y1, local frame), or around the buildings that the
+/// lines show.
 pub(crate) fn find_windows(
     scene: &Scene,
     sights: &[Sight],
@@ -185,7 +189,8 @@ fn tile_lines(
         .collect()
 }
 
-/// The group of each line: lines that come near each other in plan and are parallel or perpendicular.
+/// The group of each line: lines that come near each other in plan and are parallel or
+/// perpendicular.
 fn groups(lines: &[Segment3], link_m: f64) -> Vec<Option<usize>> {
     let mut parent: Vec<usize> = (0..lines.len()).collect();
     fn root(parent: &mut [usize], mut k: usize) -> usize {
@@ -306,7 +311,8 @@ mod tests {
 
     #[test]
     fn lines_of_one_house_are_one_group() {
-        // A rectangle, another one 8 m away, one turned by 30 degrees that touches the first, and a line alone.
+        // A rectangle, another one 8 m away, one turned by 30 degrees that touches the first, and a
+        // line alone.
         let mut lines = vec![
             line(0.0, 0.0, 9.0, 0.0),
             line(9.0, 0.2, 9.0, 6.0),

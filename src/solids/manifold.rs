@@ -1,10 +1,10 @@
 //! From faces to a closed oriented 2-manifold: twins, separated corners, merged walls.
 //!
 //! Four walls can meet in one vertical edge: roofs of heights high, low, high, low around a corner,
-//! or an outline that touches itself there. Such an edge is shared by two pairs of walls. Each pair that faces the
-//! same stretch of outside is joined, and the corners are doubled so that the two pairs only touch. Where a roof with
-//! a hole goes around both high parts the corners stay one that way; there the pairs around the same
-//! stretch of inside are joined instead.
+//! or an outline that touches itself there. Such an edge is shared by two pairs of walls. Each pair
+//! that faces the same stretch of outside is joined, and the corners are doubled so that the two
+//! pairs only touch. Where a roof with a hole goes around both high parts the corners stay one that
+//! way; there the pairs around the same stretch of inside are joined instead.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,8 +16,8 @@ use crate::math;
 use crate::model::WELD_M;
 use crate::sorting::sort_by;
 
-/// Corners within this distance of the straight line between their neighbours are left out where no other
-/// face needs them, metres: a tenth of the step in which coordinates are written.
+/// Corners within this distance of the straight line between their neighbours are left out where no
+/// other face needs them, metres: a tenth of the step in which coordinates are written.
 const STRAIGHT_M: f64 = 1e-5;
 
 /// Makes the shell a closed oriented 2-manifold. `None` when its faces do not close.
@@ -53,7 +53,8 @@ fn separate(shell: &Shell) -> Option<Shell> {
     }
 }
 
-/// The directed edges of all rings, each with its twin: the same edge, run the other way by the neighbour.
+/// The directed edges of all rings, each with its twin: the same edge, run the other way by the
+/// neighbour.
 struct HalfEdges {
     /// Start corner, next half-edge, face.
     start: Vec<u32>,
@@ -115,8 +116,9 @@ impl HalfEdges {
         edges.twin.iter().all(|&t| t != usize::MAX).then_some(edges)
     }
 
-    /// Joins the half-edges of one edge: those of walls that go up with those that go down. Outside is
-    /// counter-clockwise of a wall that goes up here, so its partner is the next wall in that turn; inside is clockwise.
+    /// Joins the half-edges of one edge: those of walls that go up with those that go down. Outside
+    /// is counter-clockwise of a wall that goes up here, so its partner is the next wall in that
+    /// turn; inside is clockwise.
     fn pair(&mut self, up: &[usize], down: &[usize], inwards: bool, shell: &Shell) {
         let mut free = down.to_vec();
         for &h in up {
@@ -216,7 +218,8 @@ impl HalfEdges {
     }
 }
 
-/// Joins walls that stand in one vertical plane and share a vertical edge (the two halves of a gable end).
+/// Joins walls that stand in one vertical plane and share a vertical edge (the two halves of a
+/// gable end).
 fn merge_walls(shell: Shell) -> Option<Shell> {
     let edges = HalfEdges::new(&shell, &BTreeSet::new())?;
     let mut group_of: Vec<usize> = (0..shell.faces.len()).collect();
@@ -317,7 +320,8 @@ fn drop_straight_corners(shell: &mut Shell) -> bool {
         }
         _ => false,
     };
-    // Neighbours in one pass would change each other's test: every other one waits for the next pass.
+    // Neighbours in one pass would change each other's test: every other one waits for the next
+    // pass.
     let mut dropped = vec![false; shell.corners.len()];
     for corner in 0..shell.corners.len() {
         dropped[corner] = straight(corner)

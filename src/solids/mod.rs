@@ -1,13 +1,13 @@
-//! Closed solids: facets that touch in plan, walls and ground (B99 figure 24: "the vertical walls are
-//! produced by extruding the roof's borders to the ground plane").
+//! Closed solids: facets that touch in plan, walls and ground (B99 figure 24: "the vertical walls
+//! are produced by extruding the roof's borders to the ground plane").
 //!
 //! ```text
 //! facets -> partition of the plan -> buildings (facets that share edges) -> shell -> solid
 //! ```
 //!
-//! B99 extrudes single borders; here the facets of a building and its walls make one closed polyhedron, so
-//! that a step between two roofs is one wall, and volumes can be taken.
-//! Facets that touch in a corner only are separate buildings.
+//! B99 extrudes single borders; here the facets of a building and its walls make one closed
+//! polyhedron, so that a step between two roofs is one wall, and volumes can be taken. Facets that
+//! touch in a corner only are separate buildings.
 
 mod manifold;
 mod partition;
@@ -25,8 +25,8 @@ use crate::ids::FacetId;
 use crate::model::{Building, Facet, RoofModel, Solid, SolidFace, Surface};
 use crate::sorting::{sort_by, sort_by_key};
 
-/// Least height of a wall above the ground, metres. Assumption: a roof that meets the ground means that the ground
-/// height is wrong, and a wall of this height still shows the outline.
+/// Least height of a wall above the ground, metres. Assumption: a roof that meets the ground means
+/// that the ground height is wrong, and a wall of this height still shows the outline.
 const MIN_WALL_M: f64 = 0.5;
 
 /// Why a facet, or a part of it, is not in any building.
@@ -73,9 +73,10 @@ impl SolidTrace {
 
 /// Groups facets into buildings and closes them with walls and ground.
 ///
-/// `ground_z` gives the height of the ground (metres, local frame) below the facets of one building; where
-/// it is not a number or not below the roof, the ground lies half a metre below the lowest eave.
-/// The facets of the result have their `building` set and the outlines of the common partition.
+/// `ground_z` gives the height of the ground (metres, local frame) below the facets of one
+/// building; where it is not a number or not below the roof, the ground lies half a metre below the
+/// lowest eave. The facets of the result have their `building` set and the outlines of the common
+/// partition.
 pub fn close_buildings(
     facets: &[Facet],
     ground_z: impl Fn(&[&Facet]) -> f64,
@@ -116,7 +117,8 @@ pub fn close_buildings(
     (model, trace)
 }
 
-/// A facet of which nothing is left and that nobody refused crossed itself: no facet goes without a reason.
+/// A facet of which nothing is left and that nobody refused crossed itself: no facet goes without a
+/// reason.
 fn report_vanished(facets: usize, trace: &mut SolidTrace) {
     for source in 0..facets {
         if !trace.sources.contains(&source) && !trace.rejected.iter().any(|r| r.0 == source) {
@@ -345,8 +347,8 @@ mod tests {
 
     #[test]
     fn a_ring_of_roofs_that_meets_itself_in_a_corner_is_a_manifold() {
-        // Seven of nine squares around an open middle; the two ends touch in a corner only, and heights
-        // high, low, high, low meet in the corner (4, 2).
+        // Seven of nine squares around an open middle; the two ends touch in a corner only, and
+        // heights high, low, high, low meet in the corner (4, 2).
         let squares = [(0, 0), (1, 0), (2, 0), (0, 1), (0, 2), (1, 2), (2, 1)];
         let facets: Vec<_> = squares
             .iter()
@@ -408,7 +410,8 @@ mod tests {
 
     #[test]
     fn an_outline_that_folds_over_loses_the_fold_only() {
-        // The last corner lies beyond the first side: a triangle of 4 x 4 / 2 and a fold, turned inside out.
+        // The last corner lies beyond the first side: a triangle of 4 x 4 / 2 and a fold, turned
+        // inside out.
         let folded = facet(
             &[&[(30.0, 0.0), (34.0, 0.0), (34.0, 4.0), (33.0, -1.0)]],
             5.0,

@@ -1,6 +1,7 @@
 //! The facets' outlines as one partition of the plan: shared vertices, shared edges, no overlap.
 //!
-//! 1. Where two facets overlap in plan, the lower one loses the overlap (seen from above it is hidden).
+//! 1. Where two facets overlap in plan, the lower one loses the overlap (seen from above it is
+//!    hidden).
 //! 2. Plan positions closer than [`WELD_M`] become one vertex.
 //! 3. Vertices that lie on another facet's edge are put into that edge (T-junctions).
 //! 4. Where two roofs cross in height along a shared edge, the crossing becomes a vertex.
@@ -22,11 +23,12 @@ use crate::model::WELD_M;
 use crate::plan_index::PlanIndex;
 use crate::sorting::sort_by;
 
-/// Parts of facets below this plan area are dropped, m^2. Assumption: a sliver of 10 cm x 10 cm is smaller than
-/// a pixel of any survey and only makes walls that nobody can see.
+/// Parts of facets below this plan area are dropped, m^2. Assumption: a sliver of 10 cm x 10 cm is
+/// smaller than a pixel of any survey and only makes walls that nobody can see.
 const MIN_AREA_M2: f64 = 0.01;
 
-/// Steepest facet, metres of height per metre of plan (84 degrees): steeper ones have no useful plan.
+/// Steepest facet, metres of height per metre of plan (84 degrees): steeper ones have no useful
+/// plan.
 const MAX_GRADIENT: f64 = 10.0;
 
 /// A facet in the partition.
@@ -62,7 +64,8 @@ pub struct Partition {
 impl Partition {
     /// Builds the partition; also gives the facets that had to go, with the reason.
     pub fn new(facets: &[Facet]) -> (Self, Vec<(usize, SolidRejection)>) {
-        /// Welding moves edges by up to [`WELD_M`], so that some cross again; cutting those twice is enough.
+        /// Welding moves edges by up to [`WELD_M`], so that some cross again; cutting those twice
+        /// is enough.
         const ROUNDS: usize = 3;
         let mut rejected = Vec::new();
         let mut parts = flat_parts(facets, &mut rejected);
@@ -147,8 +150,8 @@ impl Partition {
         self.facets[facet].plane.z_at(p.x, p.y)
     }
 
-    /// Heights at a vertex that differ by no more than this are the same, metres: what moving a plan
-    /// position by [`WELD_M`] changes between two of the facets that meet there.
+    /// Heights at a vertex that differ by no more than this are the same, metres: what moving a
+    /// plan position by [`WELD_M`] changes between two of the facets that meet there.
     pub fn height_tolerances(&self) -> Vec<f64> {
         let mut steepest = vec![0.0f64; self.positions.len()];
         for facet in &self.facets {
@@ -162,7 +165,8 @@ impl Partition {
 
     /// Puts vertices that lie on an edge into it.
     fn insert_t_junctions(&mut self) {
-        // An edge moves by up to WELD_M when a vertex is put in and may meet another one; rarely twice.
+        // An edge moves by up to WELD_M when a vertex is put in and may meet another one; rarely
+        // twice.
         for _ in 0..4 {
             let index = PlanIndex::new(self.positions.iter().map(|&p| [p; 2]));
             let mut changed = false;
@@ -210,7 +214,8 @@ impl Partition {
         });
     }
 
-    /// The facets whose edges are taken already or cross those of an earlier facet that is not one of them.
+    /// The facets whose edges are taken already or cross those of an earlier facet that is not one
+    /// of them.
     fn conflicting(&self) -> BTreeSet<usize> {
         let mut taken = BTreeSet::new();
         let (mut index_of_taken, mut taken_edges) = (PlanIndex::default(), Vec::new());
@@ -388,8 +393,9 @@ fn oriented(ring: &[Point3<f64>], counter_clockwise: bool) -> Vec<Point2<f64>> {
     plan
 }
 
-/// Rings that neither cross themselves nor each other, around what the given ones (outer rings counter-clockwise,
-/// holes clockwise) enclose: an outline that folds over at one corner loses the fold, not the facet.
+/// Rings that neither cross themselves nor each other, around what the given ones (outer rings
+/// counter-clockwise, holes clockwise) enclose: an outline that folds over at one corner loses the
+/// fold, not the facet.
 fn simple(rings: &[Vec<Point2<f64>>]) -> Vec<Vec<Point2<f64>>> {
     let shapes = overlay_filled(rings, &[], OverlayRule::Subject, FillRule::Positive);
     shapes.into_iter().flatten().collect()

@@ -2,7 +2,8 @@
 //!
 //! An edge runs with the region on its left, so outer rings come out counter-clockwise and holes
 //! clockwise. Where a region touches itself at a point, rings turn there so as to keep to the same
-//! stretch of outside: each hole and the outer ring then pass the point once and all rings stay simple.
+//! stretch of outside: each hole and the outer ring then pass the point once and all rings stay
+//! simple.
 
 use std::collections::BTreeMap;
 
@@ -10,8 +11,8 @@ use nalgebra::Point2;
 
 use crate::math;
 
-/// A connected region: the outer ring (counter-clockwise), then its holes (clockwise), as indices of
-/// plan vertices.
+/// A connected region: the outer ring (counter-clockwise), then its holes (clockwise), as indices
+/// of plan vertices.
 pub type Region = Vec<Vec<u32>>;
 
 /// The regions to the left of `edges`. Edges that occur in both directions cancel; edges that
@@ -60,7 +61,8 @@ fn trace_ring(
     let mut ring = vec![start];
     let first = open.get_mut(&start)?.pop()?;
     let (mut from, mut at) = (start, first);
-    // A ring ends on the edge that started it, not merely at its first vertex: the ring may pass there.
+    // A ring ends on the edge that started it, not merely at its first vertex: the ring may pass
+    // there.
     loop {
         let ends = open.get(&at).map_or(&[][..], Vec::as_slice);
         let back = angle(at, from, positions);

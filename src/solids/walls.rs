@@ -1,8 +1,9 @@
 //! The faces that close a building: roofs at their heights, walls between heights, the ground.
 //!
-//! At every plan vertex the heights of the facets that meet there, and the ground, are its *levels*. A
-//! corner of the solid is a level of a plan vertex. Every wall that ends on a plan vertex passes all levels
-//! between its foot and its top, so that no corner lies inside an edge (no T-junctions).
+//! At every plan vertex the heights of the facets that meet there, and the ground, are its
+//! *levels*. A corner of the solid is a level of a plan vertex. Every wall that ends on a plan
+//! vertex passes all levels between its foot and its top, so that no corner lies inside an edge (no
+//! T-junctions).
 
 use std::collections::BTreeMap;
 
@@ -156,7 +157,8 @@ impl Levels {
         let (top_a, top_b) = (self.top(facet, a), self.top(facet, b));
         let low = |v| other.map_or(self.foot(v), |other| self.top(other, v));
         let (low_a, low_b) = (low(a), low(b));
-        // Corners of one plan vertex are numbered upwards. Roofs that cross were split at the crossing.
+        // Corners of one plan vertex are numbered upwards. Roofs that cross were split at the
+        // crossing.
         let lower = low_a <= top_a && low_b <= top_b && (low_a, low_b) != (top_a, top_b);
         lower.then(|| {
             let mut ring: Vec<u32> = (low_b..=top_b).collect();

@@ -1,7 +1,7 @@
 //! Packing patches into one atlas, in shelves.
 //!
-//! Shelves of patches sorted by height use about 85 % of the area: with a few hundred patches a cleverer packer
-//! saves less than the smallest step of the atlas size.
+//! Shelves of patches sorted by height use about 85 % of the area: with a few hundred patches a
+//! cleverer packer saves less than the smallest step of the atlas size.
 
 use crate::sorting::sort_by_key;
 
@@ -19,8 +19,8 @@ pub struct Packing {
 /// Sides of the atlas are multiples of this: the blocks of a JPEG with halved colour resolution.
 const STEP: usize = 16;
 
-/// Packs patches of these sizes into the smallest atlas that is about square and no larger than `limit`
-/// on either side; `None` when they do not fit.
+/// Packs patches of these sizes into the smallest atlas that is about square and no larger than
+/// `limit` on either side; `None` when they do not fit.
 pub fn pack(sizes: &[(usize, usize)], limit: usize) -> Option<Packing> {
     let limit = limit / STEP * STEP;
     // In f64: the product may exceed 32 bits.

@@ -1,9 +1,9 @@
 //! Exposure: by how much brighter one photograph shows the model than the others.
 //!
-//! Faces beside each other often have their colours from different photographs. What two of them show of the same texels
-//! tells how their exposures differ; every photograph gets the factors that bring all of them together with as little
-//! change as possible. What a face looks like from different sides varies too, so each pair of views is
-//! compared by the median over all faces.
+//! Faces beside each other often have their colours from different photographs. What two of them
+//! show of the same texels tells how their exposures differ; every photograph gets the factors that
+//! bring all of them together with as little change as possible. What a face looks like from
+//! different sides varies too, so each pair of views is compared by the median over all faces.
 
 use super::paint::{MAX_GAIN, Seen, colours_in, views_of};
 use super::patch::{FacePlane, Patch};
@@ -14,20 +14,23 @@ use crate::math::ln;
 use crate::math::median;
 use crate::scene::Scene;
 
-/// Texels of a face that are compared, about. Assumption: the mean of a hundred is good to a percent.
+/// Texels of a face that are compared, about. Assumption: the mean of a hundred is good to a
+/// percent.
 const SAMPLES: f64 = 100.0;
 /// Grey value from which on a texel does not tell how bright it is.
 const SATURATED: f32 = 250.0;
 /// Fewest texels that two views must both show.
 const LEAST_COMMON: usize = 10;
-/// Fewest faces by which two views are compared. Assumption: half of them may look different from both.
+/// Fewest faces by which two views are compared. Assumption: half of them may look different from
+/// both.
 const LEAST_FACES: usize = 5;
 /// How much an unchanged exposure weighs against the comparison of two views. Assumption: little.
 const STEADY: f64 = 0.01;
 /// Sweeps over all views: each takes a hundredth off what the factors have in common.
 const SWEEPS: usize = 1000;
 
-/// The factors for red, green and blue of every view that bring dark colours together, 1 in the geometric mean.
+/// The factors for red, green and blue of every view that bring dark colours together, 1 in the
+/// geometric mean.
 pub fn exposures(scene: &Scene, faces: &[FacePlane], footprints: &[Footprints]) -> Vec<[f32; 3]> {
     let views = scene.views.len();
     let compared = crate::execution::map_part(faces, 0.2..0.3, |i, face| {
@@ -69,8 +72,8 @@ fn log_ratios(seen: &[(ViewId, Colours)]) -> Vec<([usize; 2], [f64; 3])> {
     ratios
 }
 
-/// By how much one view is brighter than another on the texels that both show: logarithms for red, green and blue. `None` where
-/// these are too few, black or saturated.
+/// By how much one view is brighter than another on the texels that both show: logarithms for red,
+/// green and blue. `None` where these are too few, black or saturated.
 fn log_ratio(a: &Colours, b: &Colours) -> Option<[f64; 3]> {
     let both = a.iter().zip(b).filter_map(|(x, y)| Some([(*x)?, (*y)?]));
     let (mut sums, mut count) = ([[0.0f64; 2]; 3], 0usize);
@@ -84,8 +87,9 @@ fn log_ratio(a: &Colours, b: &Colours) -> Option<[f64; 3]> {
     (count >= LEAST_COMMON && !black).then(|| sums.map(|[x, y]| ln(x / y)))
 }
 
-/// The logarithms of the factors that bring views together, given by how much (a logarithm) the row's view is brighter than
-/// the column's: least squares by Gauss and Seidel, one view after the other.
+/// The logarithms of the factors that bring views together, given by how much (a logarithm) the
+/// row's view is brighter than the column's: least squares by Gauss and Seidel, one view after the
+/// other.
 fn brought_together(brighter: &[Option<f64>], views: usize) -> Vec<f64> {
     let mut factors = vec![0.0; views];
     for _ in 0..SWEEPS {
@@ -108,7 +112,8 @@ fn brought_together(brighter: &[Option<f64>], views: usize) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// A face of 40 texels in views of these exposures; the first half of it is hidden from the last.
+    /// A face of 40 texels in views of these exposures; the first half of it is hidden from the
+    /// last.
     fn face(exposures: &[f32], colour: [f32; 3]) -> Vec<(ViewId, Colours)> {
         let of_view = |(v, exposure): (usize, &f32)| {
             let hidden = |k: usize| v + 1 == exposures.len() && k < 20;

@@ -1,10 +1,11 @@
-//! Textures for the faces of a model: the best view per face, packed into one atlas (B99 figures 23 and 24: "3D
-//! view with texture mapping").
+//! Textures for the faces of a model: the best view per face, packed into one atlas (B99 figures 23
+//! and 24: "3D view with texture mapping").
 //!
-//! Every face gets a rectified patch in its own plane, at about the resolution of the image that shows it best
-//! (resolution, viewing angle and visibility count in one number: the image pixels that show it). What
-//! other faces hide in that view comes from the next views, whose colours are levelled where they meet; what no view shows is filled
-//! smoothly. B99 does not say how textures are chosen; a patch per face keeps each independent of the cameras.
+//! Every face gets a rectified patch in its own plane, at about the resolution of the image that
+//! shows it best (resolution, viewing angle and visibility count in one number: the image pixels
+//! that show it). What other faces hide in that view comes from the next views, whose colours are
+//! levelled where they meet; what no view shows is filled smoothly. B99 does not say how textures
+//! are chosen; a patch per face keeps each independent of the cameras.
 //!
 //! ```text
 //! patch     the raster in the plane of a face
@@ -46,8 +47,8 @@ const NEUTRAL: [f32; 3] = [128.0; 3];
 /// The texture of one face of a solid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaceTexture {
-    /// The view that most of the texture comes from; `None` for a face that no view shows, which has the
-    /// mean colour of its kind.
+    /// The view that most of the texture comes from; `None` for a face that no view shows, which
+    /// has the mean colour of its kind.
     pub view: Option<ViewId>,
     /// Per ring of the face and per corner: (u, v) in the atlas, 0 to 1, origin at its top left.
     pub uv: Vec<Vec<[f32; 2]>>,
@@ -155,8 +156,8 @@ pub fn texture_model(
     (textured, trace)
 }
 
-/// The texel size for a face, metres: a pixel of the view that shows it with the most pixels. Faces in no
-/// image get a single texel.
+/// The texel size for a face, metres: a pixel of the view that shows it with the most pixels. Faces
+/// in no image get a single texel.
 fn texel_m(
     scene: &Scene,
     index: usize,
@@ -183,7 +184,8 @@ fn texel_m(
         })
 }
 
-/// Patches of the wanted texel sizes, or of larger ones until they fit into the atlas; and by how much larger.
+/// Patches of the wanted texel sizes, or of larger ones until they fit into the atlas; and by how
+/// much larger.
 fn lay_out(
     faces: &[FacePlane],
     texels: &[f64],

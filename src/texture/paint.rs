@@ -14,11 +14,12 @@ use crate::sorting::sort_by;
 /// Most samples along one side of a texel.
 const MAX_SUPERSAMPLING: usize = 4;
 
-/// Colours are balanced between views within this factor. Assumption: larger ratios come from different
-/// things in sight (a crane, a cloud's shadow), not from exposure.
+/// Colours are balanced between views within this factor. Assumption: larger ratios come from
+/// different things in sight (a crane, a cloud's shadow), not from exposure.
 pub const MAX_GAIN: f32 = 2.0;
 
-/// Most grey values by which colours are shifted at a seam. Assumption: larger differences are those of different things.
+/// Most grey values by which colours are shifted at a seam. Assumption: larger differences are
+/// those of different things.
 const MAX_SHIFT: f32 = 32.0;
 
 /// How well a view shows a face.
@@ -28,7 +29,8 @@ pub struct ViewOfFace {
     pub view: ViewId,
     /// Share of the face that lies in the image and that no other face hides, 0 to 1.
     pub visible: f64,
-    /// Image pixels that show a square metre of the face: resolution and viewing angle in one number.
+    /// Image pixels that show a square metre of the face: resolution and viewing angle in one
+    /// number.
     pub pixels_per_m2: f64,
 }
 
@@ -56,7 +58,8 @@ pub fn pixels_per_m2(plane: &FacePlane, camera: &Camera) -> f64 {
     jacobian.map_or(0.0, |j| j.determinant().abs())
 }
 
-/// Paints the patch of face number `face` from all views, each brightened by its factors `exposures`.
+/// Paints the patch of face number `face` from all views, each brightened by its factors
+/// `exposures`.
 pub fn paint(
     scene: &Scene,
     faces: &[FacePlane],
@@ -203,7 +206,8 @@ fn compose(
     (colours, known)
 }
 
-/// Brightens dark colours by a factor per channel, and light ones less, so that what is white in the photograph stays white.
+/// Brightens dark colours by a factor per channel, and light ones less, so that what is white in
+/// the photograph stays white.
 fn expose(shown: &mut [Option<[f32; 3]>], factor: [f32; 3]) {
     for colour in shown.iter_mut().flatten() {
         for (c, factor) in factor.iter().enumerate() {
@@ -219,8 +223,8 @@ fn brighten(shown: &mut [Option<[f32; 3]>], factor: [f32; 3]) {
     }
 }
 
-/// Shifts a view's colours so that no seam shows where they meet those already painted: by the difference of both where both
-/// are known, continued smoothly to where only the new ones are.
+/// Shifts a view's colours so that no seam shows where they meet those already painted: by the
+/// difference of both where both are known, continued smoothly to where only the new ones are.
 fn level(shown: &mut [Option<[f32; 3]>], colours: &[[f32; 3]], known: &[bool], width: usize) {
     let common: Vec<bool> = (shown.iter().zip(known))
         .map(|(new, known)| new.is_some() && *known)
@@ -312,8 +316,9 @@ fn bilinear(rgb: &image::RgbImage, p: &Point2<f64>) -> Option<[f32; 3]> {
 mod tests {
     use super::*;
 
-    /// A roof of 40 by 10 texels, brighter to the right, `offset` darker in a second view. The first shows the columns up to 20,
-    /// the second those from 12 on. Their painted colours, red, of the first row.
+    /// A roof of 40 by 10 texels, brighter to the right, `offset` darker in a second view. The
+    /// first shows the columns up to 20, the second those from 12 on. Their painted colours, red,
+    /// of the first row.
     fn levelled(offset: f32) -> Vec<f32> {
         let shade = |i: usize| 100.0 + (i % 40) as f32;
         let known: Vec<bool> = (0..400).map(|i| i % 40 < 20).collect();

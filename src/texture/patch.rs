@@ -9,7 +9,8 @@ use crate::raster::mark_inside;
 /// Most texels along a side; no atlas holds so many.
 const MAX_TEXELS: usize = 1 << 16;
 
-/// A face of a solid with a frame in its plane: `right` is horizontal, `up` climbs, seen from outside.
+/// A face of a solid with a frame in its plane: `right` is horizontal, `up` climbs, seen from
+/// outside.
 #[derive(Clone, Debug)]
 pub struct FacePlane {
     /// A corner, the origin of the frame.
@@ -86,8 +87,8 @@ impl FacePlane {
     }
 }
 
-/// The horizontal unit vector in a plane, to the right as seen from outside; for a horizontal plane the direction of
-/// the longest edge, so that the patch lies close around the face.
+/// The horizontal unit vector in a plane, to the right as seen from outside; for a horizontal plane
+/// the direction of the longest edge, so that the patch lies close around the face.
 fn horizontal_in(normal: &Vector3<f64>, ring: &[Point3<f64>]) -> Vector3<f64> {
     let across = Vector3::z().cross(normal);
     // Below about half a degree of slope the strike direction is noise.

@@ -1,7 +1,9 @@
-//! What hides a face from a view: the shadows that other faces cast onto its plane from the projection centre.
+//! What hides a face from a view: the shadows that other faces cast onto its plane from the
+//! projection centre.
 //!
-//! Exact in the plane of the face, unlike a depth buffer, which needs a tolerance where faces are seen at a
-//! grazing angle (a wall 10 degrees off the ray falls half a metre within a pixel of 8.5 cm).
+//! Exact in the plane of the face, unlike a depth buffer, which needs a tolerance where faces are
+//! seen at a grazing angle (a wall 10 degrees off the ray falls half a metre within a pixel of 8.5
+//! cm).
 
 use nalgebra::{Point2, Point3};
 
@@ -10,15 +12,15 @@ use crate::camera::Camera;
 use crate::geometry::clip;
 use crate::raster::mark_inside;
 
-/// Parts of a face closer to the plane than this cast no shadow, metres: neighbours start at a common edge
-/// and are planar within a few millimetres.
+/// Parts of a face closer to the plane than this cast no shadow, metres: neighbours start at a
+/// common edge and are planar within a few millimetres.
 const CLEARANCE_M: f64 = 0.02;
 
 /// Where faces lie in a view.
 #[derive(Clone, Debug)]
 pub struct Footprints {
-    /// Per face the box around its image (x0, y0, x1, y1), pixels; `None` where it looks away from the
-    /// camera or is not in front of it.
+    /// Per face the box around its image (x0, y0, x1, y1), pixels; `None` where it looks away from
+    /// the camera or is not in front of it.
     boxes: Vec<Option<[f64; 4]>>,
 }
 

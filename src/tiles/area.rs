@@ -1,6 +1,7 @@
 //! A large area, worked off tile by tile: the command line and the page both go this way.
 //!
-//! Only one tile is in memory at a time, beside what earlier ones found: its views are read anew from the files.
+//! Only one tile is in memory at a time, beside what earlier ones found: its views are read anew
+//! from the files.
 
 use std::sync::Arc;
 
@@ -86,8 +87,8 @@ impl Area {
         &self.told
     }
 
-    /// Works off the next tile; `None` when all are done. A tile that the views do not show is left out. `progress` hears
-    /// fractions of this tile's work.
+    /// Works off the next tile; `None` when all are done. A tile that the views do not show is left
+    /// out. `progress` hears fractions of this tile's work.
     pub fn step(&mut self, files: &[InputFile], progress: &Listener) -> Option<&TileReport> {
         let tile = *self.tiles.get(self.told.len())?;
         let options = LoadOptions {
@@ -113,8 +114,8 @@ impl Area {
         self.told.last()
     }
 
-    /// One model of all tiles, as files; the first refusal where no tile could be read. `seconds` of each tile go into
-    /// `report.json` and may be empty.
+    /// One model of all tiles, as files; the first refusal where no tile could be read. `seconds`
+    /// of each tile go into `report.json` and may be empty.
     pub fn finish(self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
         if let (true, Some(error)) = (self.parts.is_empty(), self.refused) {
             return Err(error);

@@ -20,7 +20,8 @@ use crate::scene::Scene;
 use crate::sorting::sort_by;
 use crate::texture::TexturedModel;
 
-/// Two buildings that share more of the smaller one's footprint are the same building, found in two tiles.
+/// Two buildings that share more of the smaller one's footprint are the same building, found in two
+/// tiles.
 const SAME_BUILDING: f64 = 0.2;
 
 /// What was found in a tile.
@@ -30,7 +31,8 @@ pub struct TilePart {
     pub tile: Tile,
     /// Origin of its local frame.
     pub origin: Vector3<f64>,
-    /// Of each of its views: the view of the whole scene, and column, row, width and height of its part, pixels.
+    /// Of each of its views: the view of the whole scene, and column, row, width and height of its
+    /// part, pixels.
     pub views: Vec<(ViewId, [f64; 4])>,
     /// Image segments of each of its views.
     pub segments: Vec<Vec<ImageSegment>>,
@@ -110,7 +112,8 @@ pub fn join(scene: Scene, parts: &[TilePart]) -> Joined {
     joined
 }
 
-/// For each part, the buildings to take: each building once, from the tile in whose core its middle lies deepest.
+/// For each part, the buildings to take: each building once, from the tile in whose core its middle
+/// lies deepest.
 fn choose(parts: &[TilePart]) -> Vec<Vec<usize>> {
     let mut candidates: Vec<(f64, usize, usize)> = Vec::new();
     for (p, part) in parts.iter().enumerate() {
@@ -150,8 +153,8 @@ fn are_same(a: (&Building, Vector3<f64>), b: (&Building, Vector3<f64>)) -> bool 
     shared.abs() > SAME_BUILDING * size(&a).min(size(&b))
 }
 
-/// The ground rings of a building in plan, in a frame whose origin lies `by` further; outer rings and holes run
-/// opposite ways.
+/// The ground rings of a building in plan, in a frame whose origin lies `by` further; outer rings
+/// and holes run opposite ways.
 fn footprint(building: &Building, by: &Vector3<f64>) -> Vec<Vec<[f64; 2]>> {
     let solid = &building.solid;
     let corner = |&i: &u32| {
@@ -353,7 +356,8 @@ mod tests {
     #[test]
     fn a_house_on_the_seam_is_taken_once() {
         let tiles = crate::tiles::plan_tiles([0.0, 0.0, 100.0, 50.0], 50.0).unwrap();
-        // One house in each core; one on the seam at x = 50, seen a little differently from both sides.
+        // One house in each core; one on the seam at x = 50, seen a little differently from both
+        // sides.
         let west = part(tiles[0], [0.0; 3], &[[20.0, 20.0], [49.9, 25.0]]);
         let east = part(tiles[1], [100.0, 0.0, 5.0], &[[50.2, 25.0], [80.0, 20.0]]);
         let scene = Scene {

@@ -7,9 +7,9 @@
 //! join         one model: each building once, ids renumbered, image positions of the whole images, one atlas
 //! ```
 //!
-//! A building is reconstructed whole in the tile that holds its middle, as long as it reaches less than [`MARGIN_M`]
-//! beyond the core; so there is no seam through a building. Buildings that touch each other and come from different
-//! tiles may overlap by the accuracy of their eaves.
+//! A building is reconstructed whole in the tile that holds its middle, as long as it reaches less
+//! than [`MARGIN_M`] beyond the core; so there is no seam through a building. Buildings that touch
+//! each other and come from different tiles may overlap by the accuracy of their eaves.
 
 mod area;
 mod join;
@@ -26,12 +26,12 @@ use crate::ids::BuildingId;
 use crate::ids::FacetId;
 use crate::model::{Building, RoofModel, Surface};
 
-/// Width of the margin around a core, metres. Assumption: a house and its neighbours' eaves, which take part in what
-/// its lines mean.
+/// Width of the margin around a core, metres. Assumption: a house and its neighbours' eaves, which
+/// take part in what its lines mean.
 pub const MARGIN_M: f64 = 30.0;
 
-/// Buildings whose middle lies this far beyond the core are kept until the tiles are joined, metres: the neighbour
-/// may see their middle on this side.
+/// Buildings whose middle lies this far beyond the core are kept until the tiles are joined,
+/// metres: the neighbour may see their middle on this side.
 const SLACK_M: f64 = 3.0;
 
 /// Most tiles of an area.

@@ -1,20 +1,26 @@
 //! Lines that the finished model refutes (B99 3.4: no mismatches).
 //!
-//! Matching knows no surfaces. An eave in one view and the foot of the wall in two others, or parallel edges of two
-//! buildings, may meet in a line inside a house or under the street, and nothing in the views tells. Once there are roofs and a
-//! ground, two things cannot be, and two are hard to believe:
+//! Matching knows no surfaces. An eave in one view and the foot of the wall in two others, or
+//! parallel edges of two buildings, may meet in a line inside a house or under the street, and
+//! nothing in the views tells. Once there are roofs and a ground, two things cannot be, and two are
+//! hard to believe:
 //!
-//! * a line that fewer than three of its views can see past the roofs, for it was never verified (B99 3.2);
-//! * a line that starts at the ground or above it and goes into it: it was matched with a wrong slope. What lies below the
-//!   ground as a whole stays, for there the ground is more likely to be wrong;
-//! * a line that three views show where six can see it: "a match has to be supported by a minimal number of views (here 4)". Matching
-//!   lets it pass if the three are very alike, for they may be all that no house stands before;
-//! * a line that lies on nothing, neither roof nor wall nor ground, unless the views are very sure of it: there are lines on
-//!   fences, cars and roofs that were missed, but of those that lie on nothing one in twenty is a mismatch, and of the others
-//!   one in eight hundred. It has to be borne out as much as three views are asked to bear out a line by themselves
-//!   (150 % of the threshold, B99 3.2), the more so the more views ought to show it and do not. A view bears it out by its
-//!   score as far as the fit believes its edge. Most lines of buildings are level, and of those that slope most lie on roofs:
-//!   one that slopes and lies on nothing is a mismatch seven times as often as a level one, and needs a fourth view.
+//! * a line that fewer than three of its views can see past the roofs, for it was never verified
+//!   (B99 3.2);
+//! * a line that starts at the ground or above it and goes into it: it was matched with a wrong
+//!   slope. What lies below the ground as a whole stays, for there the ground is more likely to be
+//!   wrong;
+//! * a line that three views show where six can see it: "a match has to be supported by a minimal
+//!   number of views (here 4)". Matching lets it pass if the three are very alike, for they may be
+//!   all that no house stands before;
+//! * a line that lies on nothing, neither roof nor wall nor ground, unless the views are very sure
+//!   of it: there are lines on fences, cars and roofs that were missed, but of those that lie on
+//!   nothing one in twenty is a mismatch, and of the others one in eight hundred. It has to be
+//!   borne out as much as three views are asked to bear out a line by themselves (150 % of the
+//!   threshold, B99 3.2), the more so the more views ought to show it and do not. A view bears it
+//!   out by its score as far as the fit believes its edge. Most lines of buildings are level, and
+//!   of those that slope most lie on roofs: one that slopes and lies on nothing is a mismatch seven
+//!   times as often as a level one, and needs a fourth view.
 
 use nalgebra::Point3;
 
@@ -41,18 +47,20 @@ const HIDDEN_SHARE: f64 = 0.5;
 const OVERHANG_M: f64 = 0.8;
 /// In places the ground lies this much lower or higher than its map says, metres. Assumption.
 const ROUGHNESS_M: f64 = 0.25;
-/// Standard deviations by which a line must go deeper than that, and by which a line that slopes is not level.
+/// Standard deviations by which a line must go deeper than that, and by which a line that slopes is
+/// not level.
 const SIGNIFICANT: f64 = 2.0;
-/// Least slope of a line (sine of 6 degrees): less is what the map of the ground may miss, and what gutters
-/// and flat roofs have.
+/// Least slope of a line (sine of 6 degrees): less is what the map of the ground may miss, and what
+/// gutters and flat roofs have.
 const LEAST_SLOPE: f64 = 0.1;
 /// Of a line that lies on surfaces this share does at least.
 const LEAST_SHARE: f64 = 0.8;
-/// How much a view that ought to show a line and does not takes from the scores of those that do. Assumption.
+/// How much a view that ought to show a line and does not takes from the scores of those that do.
+/// Assumption.
 const NOT_SHOWN: f64 = 0.1;
 
-/// The new lines of a finished model, and the lines that it refutes, by their ids: the given ones, and then the new ones. An edge that
-/// only refuted lines explain is sought again.
+/// The new lines of a finished model, and the lines that it refutes, by their ids: the given ones,
+/// and then the new ones. An edge that only refuted lines explain is sought again.
 pub fn judge_lines(
     scene: &Scene,
     lines: &[Line3d],
@@ -107,7 +115,8 @@ fn refuted_lines(
         .collect()
 }
 
-/// Does a line that was matched or clustered lie on nothing, and are the views not certain enough of it to be believed alone?
+/// Does a line that was matched or clustered lie on nothing, and are the views not certain enough
+/// of it to be believed alone?
 fn is_afloat(scene: &Scene, line: &Line3d, surfaces: &Surfaces, params: &Params) -> bool {
     let views = MIN_VIEWS + usize::from(slopes(line));
     let alone = views as f64 * params.matching.pair_score * params.matching.without_segment;
@@ -131,7 +140,8 @@ fn goes_underground(line: &Line3d, ground: &Ground) -> bool {
     slopes && start.min(end) < -tolerance && start.max(end) > -ROUGHNESS_M
 }
 
-/// Is the line hidden from all but two of its views, or from one of two? An intersection of planes needs none.
+/// Is the line hidden from all but two of its views, or from one of two? An intersection of planes
+/// needs none.
 fn is_hidden(scene: &Scene, line: &Line3d, occluders: &Occluders) -> bool {
     let sees = |support: &&LineSupport| sees(scene, line, support, occluders);
     line.supports.iter().filter(sees).count() < MIN_VIEWS.min(line.supports.len())
@@ -150,8 +160,8 @@ fn sees(scene: &Scene, line: &Line3d, support: &LineSupport, occluders: &Occlude
     }) > 1.0 - HIDDEN_SHARE
 }
 
-/// Do fewer views show a matched line than must where six can see it (B99 3.4)? The foot of a wall is hidden from the other strip: there
-/// three are all there are.
+/// Do fewer views show a matched line than must where six can see it (B99 3.4)? The foot of a wall
+/// is hidden from the other strip: there three are all there are.
 fn has_too_few_views(scene: &Scene, line: &Line3d, occluders: &Occluders, params: &Params) -> bool {
     let can_see = |view: &ViewId| can_see(scene, line, *view, occluders);
     line.origin == LineOrigin::Matched
@@ -159,8 +169,8 @@ fn has_too_few_views(scene: &Scene, line: &Line3d, occluders: &Occluders, params
         && scene.view_ids().filter(can_see).count() >= MANY_VIEWS
 }
 
-/// The sum of the scores of the views that show the edge, each as far as the line fits its edge, less what those take that ought
-/// to show it and do not.
+/// The sum of the scores of the views that show the edge, each as far as the line fits its edge,
+/// less what those take that ought to show it and do not.
 fn certainty(scene: &Scene, line: &Line3d, occluders: &Occluders, fitting: &Lines3dParams) -> f64 {
     let supports = line.supports.iter();
     let shown: Vec<(f64, &GuidedEdge)> = supports
@@ -236,7 +246,8 @@ mod tests {
         let lines = [
             line(&scene, below(0.0), 0..6),
             line(&scene, below(2.0), 0..6),
-            // High above the roof nothing hides it; an intersection of planes has no views to hide it from.
+            // High above the roof nothing hides it; an intersection of planes has no views to hide
+            // it from.
             line(&scene, below(-2.0), 0..4),
             Line3d {
                 origin: LineOrigin::Intersection,
@@ -290,7 +301,8 @@ mod tests {
         let prolonged = |by: f64| fate_of([ridge.at(0.0), ridge.at(1.0 + by)], 4, 0.3, 0.0);
         assert_eq!(prolonged(0.1), None);
         assert_eq!(prolonged(0.4), Some(Refutation::Afloat));
-        // Four of six views at 0.6 are 2.4, less a tenth for each of the two that do not show it; 2.25 are asked.
+        // Four of six views at 0.6 are 2.4, less a tenth for each of the two that do not show it;
+        // 2.25 are asked.
         assert_eq!(fate(2.0, 4, 0.6), Some(Refutation::Afloat));
         assert_eq!(fate(2.0, 4, 0.65), None);
         assert_eq!(fate(2.0, 6, 0.4), None);

@@ -1,7 +1,8 @@
 //! Lines that another line says better (B99 3.4).
 //!
-//! An eave that grey values show and colour too is matched twice. While roofs are sought both count, for they are two witnesses; in the result
-//! an edge is one line. Of two lines of which each lies on the other's edges, one that runs along the other stands for it.
+//! An eave that grey values show and colour too is matched twice. While roofs are sought both
+//! count, for they are two witnesses; in the result an edge is one line. Of two lines of which each
+//! lies on the other's edges, one that runs along the other stands for it.
 
 use std::cmp::Ordering;
 
@@ -15,7 +16,8 @@ const COVERED: f64 = 0.9;
 /// Cosine of the largest angle between two lines that are compared, 10 degrees.
 const PARALLEL: f64 = 0.984_807_753_012_208;
 
-/// The standing lines that better ones repeat. Edges within `gate_px` and three standard deviations of a line's image are on it.
+/// The standing lines that better ones repeat. Edges within `gate_px` and three standard deviations
+/// of a line's image are on it.
 pub fn repeated_lines(scene: &Scene, lines: &[Line3d], gate_px: f64) -> Vec<LineId> {
     let mut best_first: Vec<(LineId, &Line3d)> = Line3d::standing(lines)
         .filter(|(_, line)| !line.supports.is_empty())
@@ -130,7 +132,8 @@ mod tests {
         // A better one that is shorter does not say it all.
         let half = line(&scene, [0.0, 0.5], 5, 0.005, 0.0);
         assert_eq!(repeated(&whole, &half), []);
-        // 1.5 m above it are two pixels and more in every view, unless the line is as uncertain as that.
+        // 1.5 m above it are two pixels and more in every view, unless the line is as uncertain as
+        // that.
         assert_eq!(
             repeated(&whole, &line(&scene, [0.0, 1.0], 4, 0.01, 1.5)),
             []
@@ -138,7 +141,8 @@ mod tests {
         let uncertain = line(&scene, [0.0, 1.0], 5, 1.0, 1.5);
         let certain = line(&scene, [0.0, 1.0], 5, 0.9, 0.0);
         assert_eq!(repeated(&uncertain, &certain), [LineId(0)]);
-        // A line that is refuted repeats nothing, and one of no views, such as an intersection, is not compared.
+        // A line that is refuted repeats nothing, and one of no views, such as an intersection, is
+        // not compared.
         let refuted = Line3d {
             refuted: Some(crate::lines3d::Refutation::Hidden),
             ..whole.clone()

@@ -1,13 +1,14 @@
 //! New lines (B99 4.2, 4.3): the edges of the roof model that no matched line explains.
 //!
-//! "New lines are created when two neighbouring planes intersect in a consistent way": a ridge between two sides that the
-//! sun lights alike is seen in no image, yet the planes know where it is. Borders of facets are new lines too where most images
-//! that can see them, looked at again, show an edge there, three of them in the same way: matching lost those whose background changes
-//! from view to view, or that two strips see from either side. An eave along the flight line, which the views of one strip show but do
-//! not determine, is determined by the plane of its roof.
+//! "New lines are created when two neighbouring planes intersect in a consistent way": a ridge
+//! between two sides that the sun lights alike is seen in no image, yet the planes know where it
+//! is. Borders of facets are new lines too where most images that can see them, looked at again,
+//! show an edge there, three of them in the same way: matching lost those whose background changes
+//! from view to view, or that two strips see from either side. An eave along the flight line, which
+//! the views of one strip show but do not determine, is determined by the plane of its roof.
 //!
-//! Deviation: the paper makes new lines before delineation and takes what they bound; here labelling proposes borders
-//! itself, so new lines are what came of it.
+//! Deviation: the paper makes new lines before delineation and takes what they bound; here
+//! labelling proposes borders itself, so new lines are what came of it.
 
 use std::collections::BTreeMap;
 
@@ -27,8 +28,9 @@ use crate::params::Lines3dParams;
 use crate::params::MatchParams;
 use crate::scene::Scene;
 
-/// Least number of views that must show a border, and their least share of those that can see it. Measured on suburb,
-/// detached and campus-drone: with five or six views 4 of 18 that three showed were no edges, of those that more showed 2 of 212.
+/// Least number of views that must show a border, and their least share of those that can see it.
+/// Measured on suburb, detached and campus-drone: with five or six views 4 of 18 that three showed
+/// were no edges, of those that more showed 2 of 212.
 const MIN_VIEWS: usize = 3;
 const LEAST_SHARE: [usize; 2] = [2, 3];
 /// A matched line explains an edge from which it is no farther, ground pixels.
@@ -40,8 +42,8 @@ const SAME_EDGE_PX: f64 = 2.5;
 /// Facets whose heights differ by less at a common corner meet there, metres.
 const MEET_M: f64 = 0.02;
 
-/// The edges of the model, or the parts of them, that no line explains: measured again in all views, and intersections of
-/// planes also without.
+/// The edges of the model, or the parts of them, that no line explains: measured again in all
+/// views, and intersections of planes also without.
 pub fn new_lines(
     scene: &Scene,
     lines: &[Line3d],
@@ -94,8 +96,8 @@ struct Shown {
     edge: GuidedEdge,
 }
 
-/// Do enough views show an edge in the same way? Two strips may see two sides of an eave, but each of them sees one; where rows of
-/// texture line up by chance, any view shows any side.
+/// Do enough views show an edge in the same way? Two strips may see two sides of an eave, but each
+/// of them sees one; where rows of texture line up by chance, any view shows any side.
 fn is_alike(shown: &[Shown]) -> bool {
     let alike = |way: usize| shown.iter().filter(|s| s.ways[way]).count();
     (0..WAYS.len()).any(|way| alike(way) >= MIN_VIEWS)
@@ -132,7 +134,8 @@ impl Context<'_> {
         seeing.map(|c| c.ground_pixel(p)).min_by(f64::total_cmp)
     }
 
-    /// The parts of an edge, not shorter than a match must be, along which no line runs that stands.
+    /// The parts of an edge, not shorter than a match must be, along which no line runs that
+    /// stands.
     fn unexplained(&self, edge: &Segment3, pixel_m: f64) -> Vec<Segment3> {
         let least = self.matching.min_edgels as f64 * pixel_m;
         let beside: Vec<&Segment3> = Line3d::standing(self.lines)
@@ -176,8 +179,8 @@ impl Context<'_> {
         (share * seeing).div_ceil(of).max(MIN_VIEWS)
     }
 
-    /// The line through what the views show along the edge, by themselves or, where they do not determine it, in the planes of
-    /// the facets that it bounds; `None` where too few agree on one.
+    /// The line through what the views show along the edge, by themselves or, where they do not
+    /// determine it, in the planes of the facets that it bounds; `None` where too few agree on one.
     fn measured(&self, edge: &ModelEdge, part: &Segment3, pixel_m: f64) -> Option<Line3d> {
         let views = self.scene.view_ids();
         let shown: Vec<Shown> = views.filter_map(|v| self.measure(part, v)).collect();
@@ -283,7 +286,8 @@ impl Context<'_> {
         }
     }
 
-    /// The intersection of the two planes beside an edge, as certain as the lines in them and the angle between them let it be.
+    /// The intersection of the two planes beside an edge, as certain as the lines in them and the
+    /// angle between them let it be.
     fn intersection(&self, edge: &ModelEdge, part: &Segment3) -> Option<Line3d> {
         let [first, second] = edge.facets[..] else {
             return None;
@@ -321,8 +325,8 @@ fn distance(stretch: &Segment3, p: &Point3<f64>) -> f64 {
     (p - (stretch.p0 + stretch.direction() * t)).norm()
 }
 
-/// Sides of all facets: collinear ones in a row are one edge, what two facets share is listed once, and the feet of walls
-/// (a higher facet has the same side) are left out.
+/// Sides of all facets: collinear ones in a row are one edge, what two facets share is listed once,
+/// and the feet of walls (a higher facet has the same side) are left out.
 fn model_edges(facets: &[Facet]) -> Vec<ModelEdge> {
     let beyond = Beyond::new(facets);
     let mut edges = Vec::new();
@@ -563,7 +567,8 @@ mod tests {
             Point3::new(90.0, 90.0, 0.0),
             Point3::new(95.0, 90.0, 0.0),
         ));
-        // Half a decimetre. The ridge, two eaves and two hips run within 35 degrees of the strip, which leaves a decimetre.
+        // Half a decimetre. The ridge, two eaves and two hips run within 35 degrees of the strip,
+        // which leaves a decimetre.
         let fitting = Lines3dParams {
             max_sigma_px: 0.6,
             ..Lines3dParams::default()
@@ -630,7 +635,8 @@ mod tests {
             }
         };
         let edges = model_edges(&[flat(0.0, 4.0, 5.0), flat(4.0, 9.0, 8.0)]);
-        // Three sides of the lower roof, four of the higher one; where they touch, the higher one's alone.
+        // Three sides of the lower roof, four of the higher one; where they touch, the higher one's
+        // alone.
         assert_eq!(edges.len(), 7);
         let between = |e: &&ModelEdge| e.segment.p0.x == 4.0 && e.segment.p1.x == 4.0;
         let shared: Vec<&ModelEdge> = edges.iter().filter(between).collect();

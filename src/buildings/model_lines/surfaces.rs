@@ -6,9 +6,11 @@ use crate::lines3d::Line3d;
 use crate::model::{Facet, Occluders};
 use crate::terrain::Ground;
 
-/// A line lies on a surface that is no farther than this from it, metres, in plan and, besides its standard deviation, in height.
+/// A line lies on a surface that is no farther than this from it, metres, in plan and, besides its
+/// standard deviation, in height.
 const NEAR_M: f64 = 0.25;
-/// Distance of the places at which a stretch is looked at, metres, and their least and greatest number.
+/// Distance of the places at which a stretch is looked at, metres, and their least and greatest
+/// number.
 const STEP_M: f64 = 0.3;
 const PLACES: [usize; 2] = [5, 64];
 

@@ -24,8 +24,8 @@ pub struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// The new facets if they are sound and the views agree on them as well as before; otherwise why not, and which of
-    /// them are the cause.
+    /// The new facets if they are sound and the views agree on them as well as before; otherwise
+    /// why not, and which of them are the cause.
     pub fn accept(&self, new: Vec<Facet>) -> Result<Vec<Facet>, (RefineRefusal, Vec<usize>)> {
         let broken = self.broken(&new);
         if !broken.is_empty() {
@@ -47,7 +47,8 @@ impl Judge<'_> {
         Ok(new)
     }
 
-    /// The facets that keep the new ones from closing to one solid with nothing cut, dropped or folded; none when they do.
+    /// The facets that keep the new ones from closing to one solid with nothing cut, dropped or
+    /// folded; none when they do.
     fn broken(&self, new: &[Facet]) -> Vec<usize> {
         let finite = |f: &Facet| {
             f.outer
@@ -88,8 +89,9 @@ impl Judge<'_> {
         if named.is_empty() { all() } else { named }
     }
 
-    /// Per facet (weight, weight x mean correlation) of the views inside, before and after, and whether that fell by more than its error. Facets that
-    /// moved by less than a fraction of a pixel are not compared.
+    /// Per facet (weight, weight x mean correlation) of the views inside, before and after, and
+    /// whether that fell by more than its error. Facets that moved by less than a fraction of a
+    /// pixel are not compared.
     fn similarities(&self, new: &[Facet]) -> [Vec<[f64; 2]>; 3] {
         let compared = crate::execution::map(new, |i, n| {
             let o = self.old[i];

@@ -6,8 +6,9 @@
 //!         + sum (constraint / sigma)^2          meets, straights, adopted relations
 //! ```
 //!
-//! rho is Cauchy's, so that one view that shows a gutter or a shadow does not move the side. Derivatives are central
-//! differences: a term depends on a dozen unknowns at most, and there are a few thousand terms.
+//! rho is Cauchy's, so that one view that shows a gutter or a shadow does not move the side.
+//! Derivatives are central differences: a term depends on a dozen unknowns at most, and there are a
+//! few thousand terms.
 
 use nalgebra::{DVector, Point2};
 
@@ -19,7 +20,8 @@ use crate::math;
 use crate::params::RefineParams;
 use crate::scene::Scene;
 
-/// Standard deviation of what must hold exactly, metres: far below any measurement, and below welding.
+/// Standard deviation of what must hold exactly, metres: far below any measurement, and below
+/// welding.
 const EXACT_M: f64 = 2e-4;
 /// Step of the differences, metres and metres of height per metre.
 const STEP: f64 = 1e-4;
@@ -169,7 +171,8 @@ impl<'a> Problem<'a> {
         self.terms.iter().filter(sighting).count()
     }
 
-    /// The normal equations at a state, with robust weights; `None` where a side is behind a camera.
+    /// The normal equations at a state, with robust weights; `None` where a side is behind a
+    /// camera.
     fn normal<'p>(&self, state: &State, pattern: &'p Pattern) -> Option<Normal<'p>> {
         let mut normal = Normal {
             matrix: pattern.zeros(),
@@ -260,8 +263,8 @@ impl<'a> Problem<'a> {
         Some([sighting.segment.p0, sighting.segment.p1].map(|p| l.x * p.x + l.y * p.y + l.z))
     }
 
-    /// Root mean square distance (px) of the measured edges from their sides. Distances beyond `cap_px` count as
-    /// that much: these views show another edge.
+    /// Root mean square distance (px) of the measured edges from their sides. Distances beyond
+    /// `cap_px` count as that much: these views show another edge.
     pub fn error_px(&self, state: &State, cap_px: f64) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0f64);
         for term in &self.terms {

@@ -1,8 +1,9 @@
-//! Symmetric positive definite systems that are nearly empty: Cholesky within the envelope (George and Liu 1981).
+//! Symmetric positive definite systems that are nearly empty: Cholesky within the envelope (George
+//! and Liu 1981).
 //!
-//! A roof is a planar thing: a vertex meets few facets. Numbered from one end of the building to the other (reverse
-//! Cuthill-McKee), the normal matrix has its numbers near the diagonal, and so has its factor. A block of
-//! a thousand unknowns takes milliseconds instead of a second.
+//! A roof is a planar thing: a vertex meets few facets. Numbered from one end of the building to
+//! the other (reverse Cuthill-McKee), the normal matrix has its numbers near the diagonal, and so
+//! has its factor. A block of a thousand unknowns takes milliseconds instead of a second.
 
 use std::collections::VecDeque;
 
@@ -18,7 +19,8 @@ pub struct Pattern {
     start: Vec<usize>,
 }
 
-/// A symmetric matrix, lower rows from the first number that may differ from zero; or its Cholesky factor.
+/// A symmetric matrix, lower rows from the first number that may differ from zero; or its Cholesky
+/// factor.
 #[derive(Clone, Debug)]
 pub struct Envelope<'a> {
     pattern: &'a Pattern,
@@ -60,7 +62,8 @@ impl Pattern {
 }
 
 impl Envelope<'_> {
-    /// Adds to the element at two unknowns; both orders are one element, so a product is added once for each pair.
+    /// Adds to the element at two unknowns; both orders are one element, so a product is added once
+    /// for each pair.
     pub fn add(&mut self, u: usize, v: usize, value: f64) {
         let [i, j] = [u, v].map(|w| self.pattern.place[w]);
         let at = self.index(i.max(j), i.min(j));
@@ -156,7 +159,8 @@ fn neighbours(n: usize, groups: &[Vec<usize>]) -> Vec<Vec<usize>> {
     of
 }
 
-/// Place of every unknown: breadth first from an unknown at the edge, few neighbours first, and the whole reversed.
+/// Place of every unknown: breadth first from an unknown at the edge, few neighbours first, and the
+/// whole reversed.
 fn reverse_cuthill_mckee(neighbours: &[Vec<usize>]) -> Vec<usize> {
     let n = neighbours.len();
     let mut order = Vec::with_capacity(n);

@@ -1,18 +1,21 @@
-//! Regularisation and refinement of buildings: the wireframe is adjusted to the image edges of all views (B99 section 2:
-//! the partner in Leuven regularises the roofs and refines their corners by the reprojection error of the wireframe).
+//! Regularisation and refinement of buildings: the wireframe is adjusted to the image edges of all
+//! views (B99 section 2: the partner in Leuven regularises the roofs and refines their corners by
+//! the reprojection error of the wireframe).
 //!
 //! ```text
 //! building -> wireframe -> edges of its sides in every view -> adjustment (free)
 //!          -> relations that the covariance allows -> adjustment (with them) -> tests -> building
 //! ```
 //!
-//! Delineation puts borders where lines were found or where correlation ends; the first are averages of what
-//! matching kept, the second lie off by half a window. Here every side is measured again, in every view that sees it, and
-//! all of a building's sides, planes and corners move together.
+//! Delineation puts borders where lines were found or where correlation ends; the first are
+//! averages of what matching kept, the second lie off by half a window. Here every side is measured
+//! again, in every view that sees it, and all of a building's sides, planes and corners move
+//! together.
 //!
-//! A building is adjusted if the new shape has the smaller reprojection error, is a closed
-//! solid without a broken invariant, and the views agree inside its facets as well as before. Otherwise it keeps its planes; simpler
-//! outlines ([`outline`]) on them pass the last two tests by themselves.
+//! A building is adjusted if the new shape has the smaller reprojection error, is a closed solid
+//! without a broken invariant, and the views agree inside its facets as well as before. Otherwise
+//! it keeps its planes; simpler outlines ([`outline`]) on them pass the last two tests by
+//! themselves.
 
 mod accept;
 mod adjust;
@@ -102,8 +105,8 @@ pub struct RefineTrace {
     pub buildings: Vec<BuildingRefinement>,
 }
 
-/// Refines the facets of a closed model, building by building. The result has as many facets in the same order, to be
-/// closed again.
+/// Refines the facets of a closed model, building by building. The result has as many facets in the
+/// same order, to be closed again.
 pub fn refine_roofs(
     scene: &Scene,
     lines: &[Line3d],
@@ -173,8 +176,8 @@ struct Case<'a> {
 }
 
 impl Case<'_> {
-    /// The refined facets, or why there are none. Facets that spoil the result keep their outlines and are measured
-    /// near them only, and the others are tried again.
+    /// The refined facets, or why there are none. Facets that spoil the result keep their outlines
+    /// and are measured near them only, and the others are tried again.
     fn best(&self, report: &mut BuildingRefinement) -> Result<Vec<Facet>, RefineRefusal> {
         const ATTEMPTS: usize = 4;
         let (wireframe, state) = Wireframe::new(self.old);
@@ -204,7 +207,8 @@ impl Case<'_> {
         unreachable!("the last attempt returns")
     }
 
-    /// The facets, each with the simpler outline where the images show at least the same share of it, and all straightened.
+    /// The facets, each with the simpler outline where the images show at least the same share of
+    /// it, and all straightened.
     fn simplified(&self, wireframe: &Wireframe, state: &State) -> Vec<Facet> {
         let jog_m = self.params.jog_m;
         let facets = outline::simplified(self.old, jog_m);
@@ -239,7 +243,8 @@ impl Case<'_> {
         )
     }
 
-    /// The simpler outlines on the old planes, of as many facets as the images and the building allow; `None` where none is left.
+    /// The simpler outlines on the old planes, of as many facets as the images and the building
+    /// allow; `None` where none is left.
     fn unadjusted(&self, mut new: Vec<Facet>) -> Option<Vec<Facet>> {
         let is_new = |new: &[Facet], i: usize| new[i] != *self.old[i];
         while (0..new.len()).any(|i| is_new(&new, i)) {
@@ -266,7 +271,8 @@ impl Case<'_> {
         }
     }
 
-    /// The refined facets of a building, or why there are none and which facets are the cause. Those not `open` keep their outlines.
+    /// The refined facets of a building, or why there are none and which facets are the cause.
+    /// Those not `open` keep their outlines.
     fn refined(
         &self,
         simple: &[Facet],
@@ -337,8 +343,8 @@ fn regularised(
 /// Standard deviation of an adopted relation, metres: it holds.
 const HELD_M: f64 = 1e-3;
 
-/// What the facets' lines say about their planes: heights at the ends of the lines, with the lines' covariance; and heights
-/// around each facet, loosely, so that no plane is free.
+/// What the facets' lines say about their planes: heights at the ends of the lines, with the lines'
+/// covariance; and heights around each facet, loosely, so that no plane is free.
 fn height_terms(
     wireframe: &Wireframe,
     state: &State,
@@ -431,7 +437,8 @@ mod tests {
     #[test]
     fn an_eave_out_of_reach_of_a_guided_measurement_is_found() {
         let (scene, truth) = gable_scene(320);
-        // Both eaves half a metre out, in their planes, as where correlation windows straddle the edge.
+        // Both eaves half a metre out, in their planes, as where correlation windows straddle the
+        // edge.
         let lowest = (truth.facets.iter().flat_map(|f| &f.1)).fold(f64::MAX, |l, p| l.min(p.z));
         let ridge: Vec<Point3<f64>> = (truth.facets.iter().flat_map(|f| &f.1))
             .filter(|p| p.z > lowest + 1.0)

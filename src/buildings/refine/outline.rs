@@ -1,10 +1,12 @@
 //! Simpler outlines: short sides between long ones go where the images cannot tell them from noise.
 //!
-//! Delineation follows cells, and cells follow every line that was found: a gutter here, the eave there, a skylight or
-//! the shadow of a chimney at the border. Places nearer to each other than half a correlation window cannot be told apart by
-//! the agreement of the views, so a jog that short is no evidence of a corner. The outline without it is tried as well,
-//! and the images decide by the share of its sides that they show. Where corners lie to both sides of a straight way by less than half of
-//! that, the way is taken: eaves are straight, and what was found of one is a piece of gutter here and of fascia there.
+//! Delineation follows cells, and cells follow every line that was found: a gutter here, the eave
+//! there, a skylight or the shadow of a chimney at the border. Places nearer to each other than
+//! half a correlation window cannot be told apart by the agreement of the views, so a jog that
+//! short is no evidence of a corner. The outline without it is tried as well, and the images decide
+//! by the share of its sides that they show. Where corners lie to both sides of a straight way by
+//! less than half of that, the way is taken: eaves are straight, and what was found of one is a
+//! piece of gutter here and of fascia there.
 //!
 //! Only vertices of a single facet, with nothing beyond both of their sides, are touched.
 
@@ -20,7 +22,8 @@ const ALIGNED_SINE: f64 = 0.42;
 /// A corner that replaces a short side lies at most so many lengths of the jog away.
 const FARTHEST: f64 = 1.5;
 
-/// The facets with simpler outlines, each on its own plane; a facet without a short free side is as it was.
+/// The facets with simpler outlines, each on its own plane; a facet without a short free side is as
+/// it was.
 pub fn simplified(facets: &[&Facet], jog_m: f64) -> Vec<Facet> {
     let free = free_vertices(facets);
     let changed = |facet: &&Facet| {
@@ -112,8 +115,8 @@ fn without_jogs(mut ring: Vec<Corner>, jog_m: f64) -> Vec<Corner> {
     }
 }
 
-/// The facets without the free corners beside straight ways between two others, where they are no farther from them than
-/// `tolerance_m`.
+/// The facets without the free corners beside straight ways between two others, where they are no
+/// farther from them than `tolerance_m`.
 pub fn straightened(facets: &[Facet], tolerance_m: f64) -> Vec<Facet> {
     let free = free_vertices(&facets.iter().collect::<Vec<_>>());
     let straight = |facet: &Facet| {
@@ -130,7 +133,8 @@ pub fn straightened(facets: &[Facet], tolerance_m: f64) -> Vec<Facet> {
     facets.iter().map(straight).collect()
 }
 
-/// First corner and number of sides of the straight ways of a ring, the longest first; none have a side in common.
+/// First corner and number of sides of the straight ways of a ring, the longest first; none have a
+/// side in common.
 fn straight_ways(ring: &[Corner], tolerance_m: f64) -> Vec<(usize, usize)> {
     let n = ring.len();
     // Three corners stay.
@@ -155,7 +159,8 @@ fn straight_ways(ring: &[Corner], tolerance_m: f64) -> Vec<(usize, usize)> {
     ways
 }
 
-/// Do the corners between corner `i` and the one after some sides lie beside the way from one to the other, in order, and free?
+/// Do the corners between corner `i` and the one after some sides lie beside the way from one to
+/// the other, in order, and free?
 fn is_straight(ring: &[Corner], i: usize, sides: usize, tolerance_m: f64) -> bool {
     let at = |k: usize| &ring[(i + k) % ring.len()];
     let Some(along) = direction(at(0), at(sides)) else {
@@ -166,7 +171,8 @@ fn is_straight(ring: &[Corner], i: usize, sides: usize, tolerance_m: f64) -> boo
         && (0..sides).all(|k| offset(k).dot(&along) < offset(k + 1).dot(&along))
 }
 
-/// The ring without a corner between two neighbours that nearly touch: a wedge cut into the facet or standing out.
+/// The ring without a corner between two neighbours that nearly touch: a wedge cut into the facet
+/// or standing out.
 fn without_spike(ring: &[Corner], jog_m: f64) -> Option<Vec<Corner>> {
     let n = ring.len();
     let is_spike = |&i: &usize| {

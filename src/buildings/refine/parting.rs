@@ -1,9 +1,10 @@
 //! Gaps between facets that delineation has closed.
 //!
-//! An alley between two houses is hardly wider than a correlation window, dark, and without a border line at its far side: the
-//! lower roof goes on to the wall of the higher one. Rows of grey values along the wall, one for each distance from
-//! it, show where the views cease to agree on the roof's plane. The roof ends there when the energy of the labelling is less
-//! for it, with rows in the place of windows.
+//! An alley between two houses is hardly wider than a correlation window, dark, and without a
+//! border line at its far side: the lower roof goes on to the wall of the higher one. Rows of grey
+//! values along the wall, one for each distance from it, show where the views cease to agree on the
+//! roof's plane. The roof ends there when the energy of the labelling is less for it, with rows in
+//! the place of windows.
 
 use nalgebra::{Point2, Vector2};
 use serde::Serialize;
@@ -29,7 +30,8 @@ pub struct Parting {
     pub gain_m2: f64,
 }
 
-/// The facets of a closed model, those that end before a higher or lower neighbour cut back; to be closed again.
+/// The facets of a closed model, those that end before a higher or lower neighbour cut back; to be
+/// closed again.
 pub fn part_roofs(
     scene: &Scene,
     model: &RoofModel,
@@ -151,7 +153,8 @@ fn cuts(
 /// A corner of a ring that was cut back, and which one it was where it has stayed.
 type CutCorner = (Point2<f64>, Option<usize>);
 
-/// The outer ring of a facet with those of its sides moved back that can be, the most worthwhile first; and these.
+/// The outer ring of a facet with those of its sides moved back that can be, the most worthwhile
+/// first; and these.
 fn best_cuts<'c>(
     wireframe: &Wireframe,
     state: &State,
@@ -172,8 +175,8 @@ fn best_cuts<'c>(
     ring.map(|ring| (ring, taken))
 }
 
-/// The outer ring of a facet with some sides moved back. `None` when nothing moves, too little is left, or what is left is
-/// no facet.
+/// The outer ring of a facet with some sides moved back. `None` when nothing moves, too little is
+/// left, or what is left is no facet.
 fn cut_back(
     wireframe: &Wireframe,
     state: &State,
@@ -234,7 +237,8 @@ struct RingLine {
     corner: Option<usize>,
 }
 
-/// The corners between consecutive lines. Sides that would run backwards are left out: what they bounded is gone.
+/// The corners between consecutive lines. Sides that would run backwards are left out: what they
+/// bounded is gone.
 fn corners(
     mut lines: Vec<RingLine>,
     at: &impl Fn(usize) -> Point2<f64>,
@@ -245,7 +249,8 @@ fn corners(
         if m < 3 {
             return None;
         }
-        // The last corner of a line and the first of the next: one, but for lines that go on side by side.
+        // The last corner of a line and the first of the next: one, but for lines that go on side
+        // by side.
         let joint = |i: usize| -> [CutCorner; 2] {
             let (a, b) = (&lines[(i + m - 1) % m], &lines[i % m]);
             let one = |corner: CutCorner| [corner, corner];
@@ -301,7 +306,8 @@ mod tests {
 
     #[test]
     fn roofs_that_were_drawn_over_a_gap_are_cut_back() {
-        // Two gables in line, 3 m apart, both drawn up to a wall 1.2 m from the first; the second stands half a metre too high.
+        // Two gables in line, 3 m apart, both drawn up to a wall 1.2 m from the first; the second
+        // stands half a metre too high.
         let (scene, truth) = row_scene(320);
         let rings: Vec<&Vec<Point3<f64>>> = truth.facets.iter().map(|f| &f.1).collect();
         let drawn = |ring: usize, other: usize, share: f64, lift: f64| {

@@ -1,7 +1,9 @@
-//! What the views show across the side of a wireframe: rows of grey values along it, at steps from inside to outside.
+//! What the views show across the side of a wireframe: rows of grey values along it, at steps from
+//! inside to outside.
 //!
-//! On the roof the rows of all views agree; an edge of the roof stands still, and whatever lies on the ground or on a wall moves. How
-//! much that speaks for each step as the place of the side is put in the energy of the labelling.
+//! On the roof the rows of all views agree; an edge of the roof stands still, and whatever lies on
+//! the ground or on a wall moves. How much that speaks for each step as the place of the side is
+//! put in the energy of the labelling.
 
 use nalgebra::Vector2;
 
@@ -29,11 +31,13 @@ pub(crate) struct Gains {
     pub first: isize,
     /// For each step from there: the energy gained, square metres for the whole side.
     pub gain: Vec<f64>,
-    /// For each step from there: how clearly the views share an edge, 1 for the clearest, times the side's length.
+    /// For each step from there: how clearly the views share an edge, 1 for the clearest, times the
+    /// side's length.
     pub edge: Vec<f64>,
 }
 
-/// What one view shows across a side, at steps from inside to outside; the middle one is at the side.
+/// What one view shows across a side, at steps from inside to outside; the middle one is at the
+/// side.
 pub(crate) struct Profile {
     /// The view.
     pub view: ViewId,
@@ -45,7 +49,8 @@ pub(crate) struct Profile {
     pub differences: Vec<f64>,
 }
 
-/// What it is worth to end a facet at a step before its side, in the energy of the labelling, square metres.
+/// What it is worth to end a facet at a step before its side, in the energy of the labelling,
+/// square metres.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Worth {
     /// What is cut off does not agree, and a border there costs what it does.
@@ -123,7 +128,8 @@ impl Profiles {
         0.5 * self.pixel_m
     }
 
-    /// What one view shows within `compared` steps, where it sees `ends` steps; `None` where it sees too little of the side.
+    /// What one view shows within `compared` steps, where it sees `ends` steps; `None` where it
+    /// sees too little of the side.
     fn profile(
         &self,
         scene: &Scene,
@@ -185,10 +191,12 @@ impl Profiles {
         })
     }
 
-    /// What each step within `reach_m` is worth; `None` where too few views see the side, or none of them an edge.
+    /// What each step within `reach_m` is worth; `None` where too few views see the side, or none
+    /// of them an edge.
     ///
-    /// The energy of the labelling in one dimension: what the views agree on inside counts for the facet, a border
-    /// on an edge is cheap. Besides, the border that delineation chose is taken for known to `known_to_m`.
+    /// The energy of the labelling in one dimension: what the views agree on inside counts for the
+    /// facet, a border on an edge is cheap. Besides, the border that delineation chose is taken for
+    /// known to `known_to_m`.
     pub(crate) fn gains(
         &self,
         reach_m: f64,
@@ -225,8 +233,8 @@ impl Profiles {
         })
     }
 
-    /// For every step back from the side, what it is worth that the facet ends there instead. `None` where too few views see
-    /// it.
+    /// For every step back from the side, what it is worth that the facet ends there instead.
+    /// `None` where too few views see it.
     pub(crate) fn worth_of_ending(&self, params: &RefineParams) -> Option<Vec<Worth>> {
         (self.views.len() >= params.min_views).then_some(())?;
         let middle = self.middle();
@@ -252,8 +260,9 @@ impl Profiles {
         Some(worth)
     }
 
-    /// Mean correlation of the rows of all pairs of views at a step, less the correlation at which a plane is as good as none, and
-    /// weighted by texture: a row has no width, so unlike a window it does not reach over the edge.
+    /// Mean correlation of the rows of all pairs of views at a step, less the correlation at which
+    /// a plane is as good as none, and weighted by texture: a row has no width, so unlike a window
+    /// it does not reach over the edge.
     fn agreement(&self, k: usize, params: &RefineParams) -> f64 {
         let (mut sum, mut pairs) = (0.0, 0.0f64);
         for (i, a) in self.views.iter().enumerate() {
@@ -274,8 +283,8 @@ impl Profiles {
         (self.views[0].rows.len() - 1) / 2
     }
 
-    /// The difference that half of the views reach at a step, of either sign: the roof's side of an edge is the same in all
-    /// views, what lies behind it is not.
+    /// The difference that half of the views reach at a step, of either sign: the roof's side of an
+    /// edge is the same in all views, what lies behind it is not.
     fn shared(&self, k: usize) -> f64 {
         let mut strengths: Vec<f64> = self
             .views
@@ -323,7 +332,8 @@ mod tests {
     use super::*;
     use nalgebra::{Point3, Vector3};
 
-    /// Rows of two views with a standard deviation of `texture` that correlate by a quarter, at a noise of 0.01.
+    /// Rows of two views with a standard deviation of `texture` that correlate by a quarter, at a
+    /// noise of 0.01.
     fn two_views(texture: f64) -> Profiles {
         // Orthogonal patterns of unit variance.
         let pattern = |i: usize, period: usize| [1.0, -1.0][i / period % 2];

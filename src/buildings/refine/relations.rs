@@ -1,16 +1,17 @@
-//! Relations between the sides of a building, and whether the images allow them (B99 section 2: the partner in Leuven
-//! regularises roofs by parallel, perpendicular, horizontal and symmetric parts).
+//! Relations between the sides of a building, and whether the images allow them (B99 section 2: the
+//! partner in Leuven regularises roofs by parallel, perpendicular, horizontal and symmetric parts).
 //!
-//! A relation is a scalar function `c(x)` of the wireframe that is zero when it holds. With the free solution x and its
-//! covariance C, forcing it to zero raises the cost of the adjustment by
+//! A relation is a scalar function `c(x)` of the wireframe that is zero when it holds. With the
+//! free solution x and its covariance C, forcing it to zero raises the cost of the adjustment by
 //!
 //! ```text
 //! chi2 = c^2 / (J C J' + sigma^2),   J = dc/dx
 //! ```
 //!
-//! which is chi-square with one degree of freedom when the relation is true of the building to within sigma. It is adopted
-//! when chi2 is below a quantile, and then C and x are updated (one step of a Kalman filter), so that the next
-//! relation is tested against what has been adopted. A relation is proposed only where the sides are near it anyway.
+//! which is chi-square with one degree of freedom when the relation is true of the building to
+//! within sigma. It is adopted when chi2 is below a quantile, and then C and x are updated (one
+//! step of a Kalman filter), so that the next relation is tested against what has been adopted. A
+//! relation is proposed only where the sides are near it anyway.
 
 use nalgebra::DVector;
 use serde::Serialize;
@@ -66,7 +67,8 @@ pub struct TestedRelation {
     pub kind: RelationKind,
     /// Its sides in the free solution, metres.
     pub sides: Vec<Segment3>,
-    /// How far the free solution is from it, metres (at the end of the side; of height over 4 m for slopes).
+    /// How far the free solution is from it, metres (at the end of the side; of height over 4 m for
+    /// slopes).
     pub deviation_m: f64,
     /// By how much the cost would rise, standard deviations squared.
     pub chi2: f64,
@@ -223,7 +225,8 @@ fn equal_heights(
             .find(|&&r| (height(r) - height(i)).abs() < params.near_m)
         {
             Some(&r) => {
-                // Sides of one facet that are both horizontal have one height already, or the facet is level.
+                // Sides of one facet that are both horizontal have one height already, or the facet
+                // is level.
                 found.push(Relation::EqualHeight(r, i));
             }
             None => references.push(i),
@@ -251,8 +254,8 @@ fn slope_deg(s: &Segment3) -> f64 {
     math::atan2(d.z.abs(), d.xy().norm()).to_degrees()
 }
 
-/// Tests relations one after the other, those that fit best first within each kind's turn, and adopts those that the
-/// covariance of the free solution allows.
+/// Tests relations one after the other, those that fit best first within each kind's turn, and
+/// adopts those that the covariance of the free solution allows.
 pub fn adopt(
     w: &Wireframe,
     solution: &Solution,

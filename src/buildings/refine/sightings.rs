@@ -1,10 +1,11 @@
 //! The image edges that belong to the sides of a wireframe.
 //!
 //! The image of a side is where the model expects an edge. A side may lie off by more than a guided
-//! measurement reaches (a closing line where nothing was found, the correlation window that straddles a strong edge),
-//! so it is first moved in its facet's plane, and the rows of grey values along it are compared over the views: on the roof
-//! they agree, and an edge of the roof stands still, whatever lies on the ground or on a wall moves. From there `measure_edge` (the second look of line matching)
-//! measures in every view.
+//! measurement reaches (a closing line where nothing was found, the correlation window that
+//! straddles a strong edge), so it is first moved in its facet's plane, and the rows of grey values
+//! along it are compared over the views: on the roof they agree, and an edge of the roof stands
+//! still, whatever lies on the ground or on a wall moves. From there `measure_edge` (the second
+//! look of line matching) measures in every view.
 
 use nalgebra::{Matrix2, Point2};
 
@@ -33,8 +34,9 @@ pub struct Sighting {
     pub whitening: Matrix2<f64>,
 }
 
-/// Measures all sides in all views. Sides without a neighbour may move to another edge first where `search` allows it for their
-/// facet; those on one of the matched `lines` go less far for a stronger one, such as the edge of a shadow.
+/// Measures all sides in all views. Sides without a neighbour may move to another edge first where
+/// `search` allows it for their facet; those on one of the matched `lines` go less far for a
+/// stronger one, such as the edge of a shadow.
 pub fn sight_sides(
     scene: &Scene,
     occluders: &Occluders,
@@ -88,7 +90,8 @@ pub fn sight_sides(
 fn is_on_line(side: &Segment3, lines: &[Line3d]) -> bool {
     /// Sine of the angle below which they are parallel (4 degrees).
     const PARALLEL: f64 = 0.07;
-    /// Distance within which they are the same, metres in plan and in height. Assumption: delineation joins lines within 0.3 m.
+    /// Distance within which they are the same, metres in plan and in height. Assumption:
+    /// delineation joins lines within 0.3 m.
     const SAME: [f64; 2] = [0.15, 0.35];
     let beside = lines
         .iter()
@@ -105,8 +108,8 @@ pub(crate) fn pixel(scene: &Scene, wireframe: &Wireframe, state: &State) -> f64 
     pixels.fold(f64::INFINITY, f64::min)
 }
 
-/// Sides of some kinds, of different facets, that go on into each other, such as both halves of a gable's end: they are one edge.
-/// From one to the next it may be `gap_m` metres.
+/// Sides of some kinds, of different facets, that go on into each other, such as both halves of a
+/// gable's end: they are one edge. From one to the next it may be `gap_m` metres.
 pub(crate) fn aligned_runs(
     wireframe: &Wireframe,
     state: &State,
@@ -151,7 +154,8 @@ pub(crate) fn aligned_runs(
     runs
 }
 
-/// The best step from the side at which there is an edge, for one side or for several that are one edge.
+/// The best step from the side at which there is an edge, for one side or for several that are one
+/// edge.
 fn best_step(sides: &[&Gains]) -> Option<isize> {
     let first = sides.iter().map(|g| g.first).max()?;
     let end = sides
@@ -217,7 +221,8 @@ impl Profiles {
     }
 }
 
-/// Whitens (offset, angle) of an edge of `length` px with an error of `floor` px at both ends that its covariance does not know.
+/// Whitens (offset, angle) of an edge of `length` px with an error of `floor` px at both ends that
+/// its covariance does not know.
 fn whitening(covariance: &Matrix2<f64>, length: f64, floor: f64) -> Matrix2<f64> {
     let mut c = *covariance;
     c[(0, 0)] += floor * floor;
@@ -262,7 +267,8 @@ mod tests {
         assert_eq!(longest(0.5), Some(2));
     }
 
-    /// Darkens, until texture is hardly seen, what is seen of a plane within `depth_m` inside a line in it, and beyond.
+    /// Darkens, until texture is hardly seen, what is seen of a plane within `depth_m` inside a
+    /// line in it, and beyond.
     fn cast_shadow(
         scene: &mut Scene,
         plane: &Plane,

@@ -1,9 +1,11 @@
-//! The wireframe of one building: vertices in plan, facets as planes over them, and the sides to measure.
+//! The wireframe of one building: vertices in plan, facets as planes over them, and the sides to
+//! measure.
 //!
-//! A facet is `z = a (x - ox) + b (y - oy) + c`, a vertex a position in plan. Heights follow from the planes, so facets
-//! are planar whatever the numbers are, and a vertex that facets share stays shared. What must hold besides is written
-//! down as [`Meet`] (facets of one height at a vertex: ridge, hip and valley end there) and [`Straight`] (a
-//! vertex of one facet that lies inside a side of another).
+//! A facet is `z = a (x - ox) + b (y - oy) + c`, a vertex a position in plan. Heights follow from
+//! the planes, so facets are planar whatever the numbers are, and a vertex that facets share stays
+//! shared. What must hold besides is written down as [`Meet`] (facets of one height at a vertex:
+//! ridge, hip and valley end there) and [`Straight`] (a vertex of one facet that lies inside a side
+//! of another).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -175,8 +177,8 @@ impl Wireframe {
         ]
     }
 
-    /// Per facet the share of its sides without a neighbour, by length, that is among `seen`; all of it for a facet
-    /// without such sides.
+    /// Per facet the share of its sides without a neighbour, by length, that is among `seen`; all
+    /// of it for a facet without such sides.
     pub fn shown(&self, state: &State, seen: impl Iterator<Item = usize>) -> Vec<f64> {
         let mut is_seen = vec![false; self.sides.len()];
         seen.for_each(|i| is_seen[i] = true);
@@ -308,7 +310,8 @@ impl Wireframe {
         at
     }
 
-    /// What the edge from `u` to `v` of a facet is; `None` for a crease that is a side of the facet beyond.
+    /// What the edge from `u` to `v` of a facet is; `None` for a crease that is a side of the facet
+    /// beyond.
     fn kind(
         &self,
         state: &State,
@@ -356,7 +359,8 @@ mod tests {
         assert_eq!((wireframe.vertices, wireframe.faces.len()), (6, 2));
         let count = |kind| wireframe.sides.iter().filter(|s| s.kind == kind).count();
         assert_eq!((count(SideKind::Free), count(SideKind::Crease)), (6, 1));
-        // Both ends of the ridge hold two facets together; seen from above the gable's ends are straight.
+        // Both ends of the ridge hold two facets together; seen from above the gable's ends are
+        // straight.
         assert_eq!(wireframe.meets.len(), 2);
         assert_eq!(wireframe.straights, []);
         let back = wireframe.facets(&state, &facets_of(&facets));

@@ -1,11 +1,12 @@
 //! 3D lines of a main direction, by clustering in the plane across it (W96 3.5, figures 6 to 8).
 //!
-//! Seen along a main direction, a line of that direction is a point of the cluster plane (across, height), and the
-//! interpretation plane of an image line is a line in it. Where the lines of several images meet, there may be a 3D line. All
-//! images take part at once: two image lines only propose a place, every other one then votes.
+//! Seen along a main direction, a line of that direction is a point of the cluster plane (across,
+//! height), and the interpretation plane of an image line is a line in it. Where the lines of
+//! several images meet, there may be a 3D line. All images take part at once: two image lines only
+//! propose a place, every other one then votes.
 //!
-//! The description length selects (Axelsson's principle). Without a 3D line each image line is coded by a position of
-//! its own; a 3D line in the place of many costs its two coordinates once:
+//! The description length selects (Axelsson's principle). Without a 3D line each image line is
+//! coded by a position of its own; a 3D line in the place of many costs its two coordinates once:
 //!
 //! ```text
 //! gain = sum over views  c (B - r^2 / (2 s^2 ln 2)) e  -  miss (views that should see it and do not)  -  K
@@ -17,9 +18,10 @@
 //! K    line_bits
 //! ```
 //!
-//! The best cluster takes its image lines away from all others (contradictions), and so on while there is a gain. A view
-//! in which the line is hidden costs `miss_bits`; W96 demands all views. Endless lines are truncated where fewer than
-//! the least number of views support them; gaps up to `max_gap_m` are bridged (a chimney), longer ones part a line.
+//! The best cluster takes its image lines away from all others (contradictions), and so on while
+//! there is a gain. A view in which the line is hidden costs `miss_bits`; W96 demands all views.
+//! Endless lines are truncated where fewer than the least number of views support them; gaps up to
+//! `max_gap_m` are bridged (a chimney), longer ones part a line.
 
 mod cluster_plane;
 mod proposals;
@@ -59,7 +61,8 @@ pub struct ClusterLine {
 pub struct ClusterTrace {
     /// Azimuth of the direction, radians.
     pub azimuth: f64,
-    /// The image lines of this direction: view, and two points (across, height) of their line in the cluster plane, metres.
+    /// The image lines of this direction: view, and two points (across, height) of their line in
+    /// the cluster plane, metres.
     pub lines: Vec<(ViewId, [[f64; 2]; 2])>,
     /// Intersections proposed and, after those too near each other, looked at.
     pub proposals: [usize; 2],

@@ -16,8 +16,8 @@ pub(crate) struct Proposal {
 }
 
 impl Search<'_> {
-    /// Intersections of image lines of different views that may show the same stretch, one for each small cell; and
-    /// how many there were.
+    /// Intersections of image lines of different views that may show the same stretch, one for each
+    /// small cell; and how many there were.
     pub(crate) fn proposals(&self) -> (Vec<Proposal>, usize) {
         let mut cells: BTreeMap<[i64; 4], (f64, Proposal)> = BTreeMap::new();
         let mut count = 0;

@@ -3,7 +3,8 @@
 use super::integrals::CHANNELS;
 use crate::raster::{Gray, gaussian_blur};
 
-/// Grey values and the differences of red and blue from them (half of them, around 1/2), 0 to 1, sharp and blurred.
+/// Grey values and the differences of red and blue from them (half of them, around 1/2), 0 to 1,
+/// sharp and blurred.
 pub struct ColorImage {
     /// As photographed.
     pub sharp: [Gray; CHANNELS],
@@ -12,7 +13,8 @@ pub struct ColorImage {
 }
 
 impl ColorImage {
-    /// From grey values and colours of the same size; `smoothing_px` is the standard deviation of the blur.
+    /// From grey values and colours of the same size; `smoothing_px` is the standard deviation of
+    /// the blur.
     pub fn new(gray: &Gray, rgb: &image::RgbImage, smoothing_px: f64) -> Self {
         let difference = |band: usize| {
             let mut d = gray.clone();

@@ -6,8 +6,8 @@ use super::partition::Partition;
 /// Side of a cell, pixels. Assumption: about the length of a vector.
 const CELL_PX: i32 = 16;
 
-/// The vectors of every cell that their bounding boxes touch. Vectors that moved on are listed still: what counts is
-/// where they are now.
+/// The vectors of every cell that their bounding boxes touch. Vectors that moved on are listed
+/// still: what counts is where they are now.
 pub(crate) struct EdgeGrid {
     columns: i32,
     cells: Vec<Vec<u32>>,

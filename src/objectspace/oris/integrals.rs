@@ -1,8 +1,9 @@
 //! Sums of grey values over polygons, from running sums along the rows.
 //!
-//! A polygon on the pixel lattice holds the pixels whose centres lie inside. By Green's theorem its count,
-//! sum and sum of squares are sums of one term per side, each a walk over the rows that the side crosses; the
-//! terms are integers, so that a partition conserves every pixel exactly whatever its sides do.
+//! A polygon on the pixel lattice holds the pixels whose centres lie inside. By Green's theorem its
+//! count, sum and sum of squares are sums of one term per side, each a walk over the rows that the
+//! side crosses; the terms are integers, so that a partition conserves every pixel exactly whatever
+//! its sides do.
 
 use std::ops::{Add, Neg, Sub};
 
@@ -21,7 +22,8 @@ pub struct Lattice {
 /// Number of channels: grey, and two colour differences.
 pub const CHANNELS: usize = 3;
 
-/// Count, sums and sums of squares of the channels; the difference of two sets of pixels may be negative.
+/// Count, sums and sums of squares of the channels; the difference of two sets of pixels may be
+/// negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Moments {
     /// Number of pixels.
@@ -76,8 +78,8 @@ impl Sub for Moments {
     }
 }
 
-/// Running sums along every row of an image: sum and sum of squares of each channel. A row of 66 000 pixels still
-/// fits into 32 bits.
+/// Running sums along every row of an image: sum and sum of squares of each channel. A row of 66
+/// 000 pixels still fits into 32 bits.
 pub struct RowSums {
     stride: usize,
     before: Vec<[[u32; 2]; CHANNELS]>,
@@ -104,8 +106,9 @@ impl RowSums {
         Self { stride, before }
     }
 
-    /// The term of the side from `a` to `b`: the pixels to the left of it (smaller x) in every row that it crosses,
-    /// positive for a side that runs down. A closed polygon that runs clockwise on the screen sums up to its inside.
+    /// The term of the side from `a` to `b`: the pixels to the left of it (smaller x) in every row
+    /// that it crosses, positive for a side that runs down. A closed polygon that runs clockwise on
+    /// the screen sums up to its inside.
     pub fn side(&self, a: Lattice, b: Lattice) -> Moments {
         let (top, bottom, down) = if a.y <= b.y {
             (a, b, true)
@@ -117,8 +120,8 @@ impl RowSums {
         if dy == 0 {
             return m;
         }
-        // The first pixel centre (k + 1/2) not left of the side at the centre of a row, and by how many parts of 2 dy it lies to
-        // the right: one division for all rows (Bresenham).
+        // The first pixel centre (k + 1/2) not left of the side at the centre of a row, and by how
+        // many parts of 2 dy it lies to the right: one division for all rows (Bresenham).
         let mut k = i64::from(top.x) - (dy - dx).div_euclid(2 * dy);
         let mut right = (dy - dx).rem_euclid(2 * dy);
         let (step, rest) = (dx.div_euclid(dy), 2 * dx.rem_euclid(dy));

@@ -57,13 +57,15 @@ pub(crate) fn minimise(p: &mut Partition, params: &OrisParams) -> Moves {
         queue: BinaryHeap::new(),
         moves: Moves::default(),
     };
-    // Boundaries along pixels have many needless break points, which would make every merger look cheap: these go first.
+    // Boundaries along pixels have many needless break points, which would make every merger look
+    // cheap: these go first.
     descent.offer_all_nodes(p);
     descent.run(p);
     loop {
         descent.offer_all_nodes(p);
         descent.offer_all_pairs(p);
-        // Offers that came to gain by changes around them are found by looking at all of them again.
+        // Offers that came to gain by changes around them are found by looking at all of them
+        // again.
         let changed = descent.run(p);
         let moved = settle(p, &descent.code);
         descent.moves.moved += moved;
@@ -107,9 +109,10 @@ impl Ord for Offer {
     }
 }
 
-/// A boundary may move by this without cost, pixels: the pixels on an edge mix both regions, and the staircase of whole pixels
-/// along a slanted edge holds no information. (Without this, staircases between regions without noise stay:
-/// each step alone would cost more than its vector.) More rounds corners off.
+/// A boundary may move by this without cost, pixels: the pixels on an edge mix both regions, and
+/// the staircase of whole pixels along a slanted edge holds no information. (Without this,
+/// staircases between regions without noise stay: each step alone would cost more than its vector.)
+/// More rounds corners off.
 const MIXED_PX: f64 = 0.5;
 /// Gains below this are rounding, bits.
 pub(crate) const LEAST_GAIN: f64 = 1e-6;

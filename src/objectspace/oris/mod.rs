@@ -1,7 +1,8 @@
-//! ORIS, Object Related Image Segmentation (W96 3.3): an image becomes regions with straight, shared boundaries.
+//! ORIS, Object Related Image Segmentation (W96 3.3): an image becomes regions with straight,
+//! shared boundaries.
 //!
-//! An image is described by regions of constant grey level with Gaussian noise, and by vectors between them. The
-//! description length in bits is
+//! An image is described by regions of constant grey level with Gaussian noise, and by vectors
+//! between them. The description length in bits is
 //!
 //! ```text
 //! L = sum over regions   n/2 sum over channels w log2(max(s^2, s0^2)) + log2 n
@@ -12,29 +13,35 @@
 //! w    1 for grey, color_weight for the two colour differences
 //! ```
 //!
-//! The first term codes the grey values given mean and noise (without the part n/2 log2(2 pi e), which is the same for every
-//! partition), `log2 n` the two parameters of a region, each to its own precision 1/sqrt(n). A vector costs
-//! `c = vector_bits`: its end relative to its start. Boundaries are shared, so each vector counts once.
+//! The first term codes the grey values given mean and noise (without the part n/2 log2(2 pi e),
+//! which is the same for every partition), `log2 n` the two parameters of a region, each to its own
+//! precision 1/sqrt(n). A vector costs `c = vector_bits`: its end relative to its start. Boundaries
+//! are shared, so each vector counts once.
 //!
-//! W96 has panchromatic images. Colour is used where there is any, because a red roof in the shade and the lawn beside it are
-//! often of the same grey; photographs without colour have differences without variance, which say nothing.
+//! W96 has panchromatic images. Colour is used where there is any, because a red roof in the shade
+//! and the lawn beside it are often of the same grey; photographs without colour have differences
+//! without variance, which say nothing.
 //!
 //! From a fine partition (`watershed`) two moves are made, the one with the largest gain in L
 //! first, until none gains (`minimise`):
 //!
-//! * **drop a break point** of a boundary: the triangle that it spans changes sides. Only where no other node lies
-//!   in the triangle, so that boundaries never cross;
-//! * **merge two regions**: all vectors between them go. Junctions that are left with two vectors become break points.
+//! * **drop a break point** of a boundary: the triangle that it spans changes sides. Only where no
+//!   other node lies in the triangle, so that boundaries never cross;
+//! * **merge two regions**: all vectors between them go. Junctions that are left with two vectors
+//!   become break points.
 //!
-//! Between rounds a third move, which is not W96's, lets every node go to the lattice point nearby where L is least
-//! (`settle`). Without it blunt corners stay up to 2.5 px beside the true ones, which the straightening of a staircase took.
+//! Between rounds a third move, which is not W96's, lets every node go to the lattice point nearby
+//! where L is least (`settle`). Without it blunt corners stay up to 2.5 px beside the true ones,
+//! which the straightening of a staircase took.
 //!
-//! Gains stand in a priority queue and are computed again when their turn comes; what a move changes nearby is offered
-//! anew. Sums over regions and triangles come from running sums along rows (`integrals`), so that a move costs as much
-//! as its boundary is long, and the whole grows nearly linearly with the image.
+//! Gains stand in a priority queue and are computed again when their turn comes; what a move
+//! changes nearby is offered anew. Sums over regions and triangles come from running sums along
+//! rows (`integrals`), so that a move costs as much as its boundary is long, and the whole grows
+//! nearly linearly with the image.
 //!
-//! Lines for measuring are then taken from the vectors and moved to the crest of the gradient (`vectors`):
-//! break points stand on corners of pixels, which is as good as the regions need and not as good as the image is.
+//! Lines for measuring are then taken from the vectors and moved to the crest of the gradient
+//! (`vectors`): break points stand on corners of pixels, which is as good as the regions need and
+//! not as good as the image is.
 
 mod color;
 mod cracks;
@@ -79,7 +86,8 @@ pub struct Region {
 pub struct Vector {
     /// Start and end, pixels.
     pub ends: [[i32; 2]; 2],
-    /// The region to the left and to the right of its direction as seen on the screen; `None` beyond the image.
+    /// The region to the left and to the right of its direction as seen on the screen; `None`
+    /// beyond the image.
     pub sides: [Option<u32>; 2],
 }
 
@@ -208,7 +216,8 @@ mod tests {
     use super::*;
     use crate::raster::Gray;
 
-    /// A drawn partition: a house-like pentagon and a rectangle on a background, with noise of 10 grey levels.
+    /// A drawn partition: a house-like pentagon and a rectangle on a background, with noise of 10
+    /// grey levels.
     fn drawn(seed: u64) -> (Gray, Vec<Vec<[f64; 2]>>) {
         let shapes: Vec<(Vec<[f64; 2]>, f64)> = vec![
             (

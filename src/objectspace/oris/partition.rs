@@ -1,8 +1,8 @@
 //! A partition of the image into regions with straight, shared boundaries, and its two changes.
 //!
-//! The boundaries are a planar graph: nodes on lattice points, vectors between them, each with the region on
-//! either side. A node with two vectors is a break point, one with more a junction. Every vector belongs to both of its
-//! regions, so that neighbours can neither overlap nor part.
+//! The boundaries are a planar graph: nodes on lattice points, vectors between them, each with the
+//! region on either side. A node with two vectors is a break point, one with more a junction. Every
+//! vector belongs to both of its regions, so that neighbours can neither overlap nor part.
 
 use std::collections::BTreeMap;
 
@@ -138,7 +138,8 @@ impl Partition {
         p
     }
 
-    /// The two vectors and the outer nodes at a break point; `None` for a junction or where nothing is left.
+    /// The two vectors and the outer nodes at a break point; `None` for a junction or where nothing
+    /// is left.
     fn ends(&self, node: u32) -> Option<([u32; 2], [u32; 2])> {
         let &[e, f] = self.nodes[node as usize].edges() else {
             return None;
@@ -150,8 +151,8 @@ impl Partition {
         Some(([e, f], [far(e), far(f)]))
     }
 
-    /// What dropping this break point would do; `None` where the boundary would then touch or cross another, or where the
-    /// border of the image would move.
+    /// What dropping this break point would do; `None` where the boundary would then touch or cross
+    /// another, or where the border of the image would move.
     pub fn straightening(&self, node: u32) -> Option<Straightening> {
         let ([e, _], [a, c]) = self.ends(node)?;
         if a == c || self.joined(a, c) {
@@ -222,8 +223,9 @@ impl Partition {
         self.occupied.covers(at)
     }
 
-    /// May a node go to a place in the image without leaving the border of the image, and without its vectors passing over
-    /// another node? (Whether it meets another vector on its way is for [`super::edge_grid`] to say.)
+    /// May a node go to a place in the image without leaving the border of the image, and without
+    /// its vectors passing over another node? (Whether it meets another vector on its way is for
+    /// [`super::edge_grid`] to say.)
     pub fn may_move(&self, node: u32, to: Lattice) -> bool {
         let at = self.nodes[node as usize].at;
         if self.occupied.get(to) {
@@ -283,8 +285,8 @@ impl Partition {
         }
     }
 
-    /// Merges two neighbours by taking away all vectors between them. Returns the region that stays, the neighbours
-    /// whose boundary with it has grown, and the nodes that lost vectors.
+    /// Merges two neighbours by taking away all vectors between them. Returns the region that
+    /// stays, the neighbours whose boundary with it has grown, and the nodes that lost vectors.
     pub fn merge(&mut self, i: u32, j: u32) -> (u32, Vec<u32>, Vec<u32>) {
         let len = |r: u32| (self.regions[r as usize].edges.len(), u32::MAX - r);
         let (keep, gone) = if len(i) >= len(j) { (i, j) } else { (j, i) };

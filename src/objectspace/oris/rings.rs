@@ -51,8 +51,8 @@ fn chain(directed: &[[[i32; 2]; 2]]) -> Vec<Vec<[i32; 2]>> {
     rings
 }
 
-/// How far the path a - b - c turns to the right, radians: at a node where a region meets itself, the sharpest right turn
-/// keeps its parts apart.
+/// How far the path a - b - c turns to the right, radians: at a node where a region meets itself,
+/// the sharpest right turn keeps its parts apart.
 fn turn(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> f64 {
     let d = |p: [i32; 2], q: [i32; 2]| (f64::from(q[0] - p[0]), f64::from(q[1] - p[1]));
     let (u, v) = (d(a, b), d(b, c));

@@ -1,10 +1,10 @@
 //! Moving nodes to where the description is shortest.
 //!
-//! The two moves of ORIS only take vectors away: a break point that is left stands on a crack between two basins, and
-//! where the straightening of a staircase took the corner itself, on the crack beside it. This third move is not in
-//! W96's list, but its principle: among the lattice points nearby a node goes to the one with the shortest
-//! description. Nothing is added or taken away, so that only grey values speak. A vertex of two or more boundaries drags
-//! all of them.
+//! The two moves of ORIS only take vectors away: a break point that is left stands on a crack
+//! between two basins, and where the straightening of a staircase took the corner itself, on the
+//! crack beside it. This third move is not in W96's list, but its principle: among the lattice
+//! points nearby a node goes to the one with the shortest description. Nothing is added or taken
+//! away, so that only grey values speak. A vertex of two or more boundaries drags all of them.
 
 use std::collections::VecDeque;
 
@@ -14,10 +14,11 @@ use super::minimise::{CodeLength, LEAST_GAIN};
 use super::partition::{OUTSIDE, Partition};
 use crate::sorting::sort_by;
 
-/// All steps up to this are tried in either axis, pixels: boundaries run in any direction, and a node that slides along one needs
-/// steps in that direction. Assumption.
+/// All steps up to this are tried in either axis, pixels: boundaries run in any direction, and a
+/// node that slides along one needs steps in that direction. Assumption.
 const NEAR_PX: i32 = 2;
-/// ... and one longer step in each of eight directions, pixels, where single steps each lose what several gain. Assumption.
+/// ... and one longer step in each of eight directions, pixels, where single steps each lose what
+/// several gain. Assumption.
 const FAR_PX: i32 = 4;
 
 /// Moves nodes while any of these steps shortens the description; returns how many moves it took.
@@ -47,7 +48,8 @@ pub(crate) fn settle(p: &mut Partition, code: &CodeLength) -> usize {
 /// What a step gains, where it leads, and the pixels that each region wins by it.
 type Step = (f64, Lattice, Vec<(u32, Moments)>);
 
-/// The step with the largest gain, and the pixels that each region wins by it; `None` where none gains.
+/// The step with the largest gain, and the pixels that each region wins by it; `None` where none
+/// gains.
 fn best_step(
     p: &Partition,
     grid: &EdgeGrid,

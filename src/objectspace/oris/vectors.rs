@@ -1,8 +1,8 @@
 //! Image lines from the vectors of a segmentation, to a fraction of a pixel.
 //!
-//! Each vector is moved to the crest of the gradient across it: the place of the steepest ascent on profiles one pixel
-//! apart, and a line fitted to those places, far ones weighted down. W96 measures with the vectors themselves and
-//! finds their accuracy "rather poor".
+//! Each vector is moved to the crest of the gradient across it: the place of the steepest ascent on
+//! profiles one pixel apart, and a line fitted to those places, far ones weighted down. W96
+//! measures with the vectors themselves and finds their accuracy "rather poor".
 
 use nalgebra::{Matrix2, Point2, Vector2};
 use serde::{Deserialize, Serialize};
@@ -17,8 +17,8 @@ use crate::params::OrisParams;
 use crate::raster::Gray;
 use crate::sorting::sort_by;
 
-/// An image line on the boundary of two regions, directed by contrast: its right side is the brighter one (or the one of more
-/// red or blue, where colour shows it better).
+/// An image line on the boundary of two regions, directed by contrast: its right side is the
+/// brighter one (or the one of more red or blue, where colour shows it better).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RegionLine {
     /// The line with its accuracy.
@@ -62,15 +62,17 @@ pub fn region_lines(
     lines
 }
 
-/// Half the length of a profile across a vector, pixels: what rounding to pixels and straightening may displace.
+/// Half the length of a profile across a vector, pixels: what rounding to pixels and straightening
+/// may displace.
 const REACH_PX: f64 = 2.0;
 /// Step along a profile, pixels.
 const STEP_PX: f64 = 0.5;
-/// Distances from the line at which the grey values beside it are taken, pixels: outside the blur of the edge.
+/// Distances from the line at which the grey values beside it are taken, pixels: outside the blur
+/// of the edge.
 const BESIDE_PX: [f64; 3] = [1.8, 2.6, 3.4];
 
-/// The channel with the largest contrast across a vector. Grey counts twice: compression leaves colour at half the
-/// resolution.
+/// The channel with the largest contrast across a vector. Grey counts twice: compression leaves
+/// colour at half the resolution.
 fn clearest_channel(image: &ColorImage, vector: &Segment2) -> Option<usize> {
     let mut best = (0, 0.0);
     for (c, channel) in image.sharp.iter().enumerate() {
@@ -157,7 +159,8 @@ fn crest(smooth: &Gray, vector: &Segment2) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// A line through the crest, as long as the vector, and its root mean square residual; `None` with too few places.
+/// A line through the crest, as long as the vector, and its root mean square residual; `None` with
+/// too few places.
 fn fit(vector: &Segment2, crest: &[[f64; 2]]) -> Option<(Segment2, f64)> {
     if crest.len() < 4 {
         return None;

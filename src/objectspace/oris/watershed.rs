@@ -1,9 +1,9 @@
 //! The initial fine partition: the catchment basins of the gradient.
 //!
-//! Every local minimum of the gradient's magnitude starts a region, and the regions grow over the pixels in the order of
-//! their gradient until they meet: borders run along the crests of the gradient, where edges are.
-//! Assumption: W96 does not say how the fine partition is made. Single pixels as regions would be the finest, at
-//! fifteen times the cost and with the same edges.
+//! Every local minimum of the gradient's magnitude starts a region, and the regions grow over the
+//! pixels in the order of their gradient until they meet: borders run along the crests of the
+//! gradient, where edges are. Assumption: W96 does not say how the fine partition is made. Single
+//! pixels as regions would be the finest, at fifteen times the cost and with the same edges.
 
 use super::integrals::CHANNELS;
 use crate::raster::Gray;

@@ -1,9 +1,11 @@
-//! Where a plane between two parallel lines ends: clusters of crossing image lines (W96 3.6, figures 10 and 11).
+//! Where a plane between two parallel lines ends: clusters of crossing image lines (W96 3.6,
+//! figures 10 and 11).
 //!
-//! Every image line inside the projected window of a plane hypothesis is cut with the plane. If it lies in the plane at all, views
-//! agree on where it crosses the two parallel lines; the image lines of a false plane scatter. A crossing at right
-//! angles has one parameter, its position along the lines: the paper's rectangles. The slanted ones have two, and make
-//! parallelograms, trapezoids and the ends of hips.
+//! Every image line inside the projected window of a plane hypothesis is cut with the plane. If it
+//! lies in the plane at all, views agree on where it crosses the two parallel lines; the image
+//! lines of a false plane scatter. A crossing at right angles has one parameter, its position along
+//! the lines: the paper's rectangles. The slanted ones have two, and make parallelograms,
+//! trapezoids and the ends of hips.
 
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -28,7 +30,8 @@ pub(crate) struct Strip {
 }
 
 impl Strip {
-    /// Through the places (across, height) of two lines; `None` where they coincide or stand above each other.
+    /// Through the places (across, height) of two lines; `None` where they coincide or stand above
+    /// each other.
     pub fn new(axes: &Axes, first: [f64; 2], second: [f64; 2], range: [f64; 2]) -> Option<Self> {
         let (a, b) = (
             axes.point(0.0, first[0], first[1]),
@@ -63,7 +66,8 @@ impl Strip {
     }
 }
 
-/// An image line cut with the plane: where its line crosses the two lines, and the stretch across that it covers.
+/// An image line cut with the plane: where its line crosses the two lines, and the stretch across
+/// that it covers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Crossing {
     /// The view.
@@ -116,7 +120,8 @@ pub(crate) fn crossings(strip: &Strip, sights: &[Sight], params: &PlaneParams) -
         .collect()
 }
 
-/// The clusters of the crossings and, as further places where a plane may end, the ends of its two lines.
+/// The clusters of the crossings and, as further places where a plane may end, the ends of its two
+/// lines.
 pub(crate) fn ends(
     strip: &Strip,
     crossings: &[Crossing],
@@ -183,7 +188,8 @@ fn distinct(
     kept
 }
 
-/// How far the two positions of a crossing at right angles may be apart, metres: the direction of a short image line is uncertain.
+/// How far the two positions of a crossing at right angles may be apart, metres: the direction of a
+/// short image line is uncertain.
 fn square_tolerance(c: &Crossing, strip: &Strip, params: &PlaneParams) -> f64 {
     let length = c.across[1] - c.across[0];
     strip.width
@@ -191,7 +197,8 @@ fn square_tolerance(c: &Crossing, strip: &Strip, params: &PlaneParams) -> f64 {
             .min(0.35)
 }
 
-/// Moves a proposal to the weighted mean of the crossings near it (W96: "weighted by the 2D lengths of the lines").
+/// Moves a proposal to the weighted mean of the crossings near it (W96: "weighted by the 2D lengths
+/// of the lines").
 fn settle(
     strip: &Strip,
     crossings: &[Crossing],

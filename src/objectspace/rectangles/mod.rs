@@ -1,8 +1,8 @@
 //! Planes between parallel 3D lines (W96 3.6).
 //!
-//! Each pair of parallel lines defines a plane; the image lines that cross it tell where it ends ([`ends`]); and
-//! radiometry tells true planes from false ones. W96 sums geometric and radiometric criteria up in one measure without
-//! writing it down. Here
+//! Each pair of parallel lines defines a plane; the image lines that cross it tell where it ends
+//! ([`ends`]); and radiometry tells true planes from false ones. W96 sums geometric and radiometric
+//! criteria up in one measure without writing it down. Here
 //!
 //! ```text
 //! M = sum over the area of  weight (rise - least_rise)
@@ -10,18 +10,20 @@
 //!   - plane_cost - slant_cost (ends that are not at right angles)
 //! ```
 //!
-//! * the first sum is the paper's criterion that "the area ... inside the 3D plane should be radiometrically homogeneous
-//!   over all images": the views, warped to the plane, are compared by correlation (`halfplane::consistency`),
-//!   with little weight where there is no texture. They must agree better than on planes a little above and below, and the
-//!   rise is the median by how much they do: smooth surfaces correlate on any plane near them, so that a fixed level of correlation
-//!   lets many false planes through (of 910 candidates of the rendered scenes the difference tells true from false in 88 of 100
-//!   pairs, correlation alone in 80). The median, because what stands on a roof agrees above it;
-//! * the second is its geometry, and the contrast of its lines, since only lines with contrast are region boundaries:
-//!   support is the share of a side that image lines cover, mean over all views.
+//! * the first sum is the paper's criterion that "the area ... inside the 3D plane should be
+//!   radiometrically homogeneous over all images": the views, warped to the plane, are compared by
+//!   correlation (`halfplane::consistency`), with little weight where there is no texture. They
+//!   must agree better than on planes a little above and below, and the rise is the median by how
+//!   much they do: smooth surfaces correlate on any plane near them, so that a fixed level of
+//!   correlation lets many false planes through (of 910 candidates of the rendered scenes the
+//!   difference tells true from false in 88 of 100 pairs, correlation alone in 80). The median,
+//!   because what stands on a roof agrees above it;
+//! * the second is its geometry, and the contrast of its lines, since only lines with contrast are
+//!   region boundaries: support is the share of a side that image lines cover, mean over all views.
 //!
-//! Of the polygons between two lines those with the largest M are kept as candidates. A pair of lines may hold
-//! several, with gaps between them: U-shapes. A line with an end of a perpendicular, higher one makes a triangle: the end of a
-//! hip below its ridge.
+//! Of the polygons between two lines those with the largest M are kept as candidates. A pair of
+//! lines may hold several, with gaps between them: U-shapes. A line with an end of a perpendicular,
+//! higher one makes a triangle: the end of a hip below its ridge.
 
 mod ends;
 mod occluding_solids;

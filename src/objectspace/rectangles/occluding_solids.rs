@@ -1,9 +1,10 @@
 //! What hides a plane from a camera: the buildings below planes that were found already.
 //!
-//! W96 demands lines in all images and finds that "too restrictive, due to possible occlusion". A low annex beside a tall
-//! house is hidden from every second image, and its correlation is then that of the house's roof with its own. Planes of
-//! the first selection are therefore taken for solids down to the ground, and the planes beside them are judged again
-//! where these leave them visible.
+//! W96 demands lines in all images and finds that "too restrictive, due to possible occlusion". A
+//! low annex beside a tall house is hidden from every second image, and its correlation is then
+//! that of the house's roof with its own. Planes of the first selection are therefore taken for
+//! solids down to the ground, and the planes beside them are judged again where these leave them
+//! visible.
 
 use nalgebra::{Point2, Point3};
 
@@ -22,10 +23,12 @@ pub(crate) struct Solid {
 /// A ray enters a solid only below this depth, metres: roofs that touch do not hide each other.
 const LEAST_DEPTH_M: f64 = 0.15;
 
-/// Roofs stand above a plane from this height on, metres. Assumption: more than a plane beside a true one is away.
+/// Roofs stand above a plane from this height on, metres. Assumption: more than a plane beside a
+/// true one is away.
 const LEAST_HEIGHT_M: f64 = 1.0;
 
-/// Do solids stand in front of some of a polygon in some views, and leave all of it visible in two at least?
+/// Do solids stand in front of some of a polygon in some views, and leave all of it visible in two
+/// at least?
 pub(crate) fn partly_hidden(scene: &Scene, solids: &[Solid], ring: &[Point3<f64>]) -> bool {
     let middle = mean_point(ring);
     // Not the corners themselves, which may touch a neighbour.
@@ -111,7 +114,8 @@ mod tests {
     #[test]
     fn a_tower_hides_what_is_behind_it_and_low() {
         let camera = Point3::new(-100.0, 2.0, 100.0);
-        // The ray towards the camera rises by 45 degrees and crosses the far wall after x - 4 metres.
+        // The ray towards the camera rises by 45 degrees and crosses the far wall after x - 4
+        // metres.
         assert!(tower().hides(&Point3::new(6.0, 2.0, 3.0), &camera));
         assert!(!tower().hides(&Point3::new(6.0, 2.0, 8.5), &camera));
         assert!(!tower().hides(&Point3::new(-2.0, 2.0, 3.0), &camera));

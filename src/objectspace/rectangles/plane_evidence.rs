@@ -1,4 +1,5 @@
-//! What the images say about a plane: are they alike when warped to it, and more alike than on planes above and below?
+//! What the images say about a plane: are they alike when warped to it, and more alike than on
+//! planes above and below?
 
 use nalgebra::{Point2, Point3, Vector2};
 
@@ -41,15 +42,16 @@ pub(crate) struct OnPlane {
 /// The views on planes above and below.
 pub(crate) struct Beside([ConsistencyMap; 2]);
 
-/// Correlation of unrelated textures: only the better half of all pairs of views counts. No plane beside another one is taken to
-/// be worse, so that hopeless planes need not be compared with any.
+/// Correlation of unrelated textures: only the better half of all pairs of views counts. No plane
+/// beside another one is taken to be worse, so that hopeless planes need not be compared with any.
 pub(crate) const CHANCE: f64 = 0.45;
 
 /// Largest number of cells of a plane's grid.
 const MOST_CELLS: f64 = 60_000.0;
 
 impl<'a> Judge<'a> {
-    /// Compares the views on a plane where the rings are and no solid hides it; `None` without rings.
+    /// Compares the views on a plane where the rings are and no solid hides it; `None` without
+    /// rings.
     pub fn new(
         scene: &'a Scene,
         plane: &Plane,
@@ -87,7 +89,8 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// By how much the views agree better on the plane than above and below it inside a ring: the lower one of the medians.
+    /// By how much the views agree better on the plane than above and below it inside a ring: the
+    /// lower one of the medians.
     pub fn rise(&self, beside: &Beside, ring: &[Point3<f64>]) -> f64 {
         let cells = self.cells(ring);
         let medians = beside.0.each_ref().map(|map| {
@@ -101,8 +104,8 @@ impl<'a> Judge<'a> {
         medians[0].min(medians[1])
     }
 
-    /// The cells inside a ring without its border: windows that reach over it show its edge, which is in the right place for
-    /// many a false plane.
+    /// The cells inside a ring without its border: windows that reach over it show its edge, which
+    /// is in the right place for many a false plane.
     fn cells(&self, ring: &[Point3<f64>]) -> Vec<usize> {
         let grid = &self.grid;
         let core = shrunk(ring, REACH_CELLS * grid.step);
@@ -118,7 +121,8 @@ impl<'a> Judge<'a> {
         cells
     }
 
-    /// Compares the views above and below the plane, where they move by so many pixels against each other.
+    /// Compares the views above and below the plane, where they move by so many pixels against each
+    /// other.
     pub fn beside(&self, shift_px: f64) -> Beside {
         let rise = shift_px / self.parallax_px;
         let maps = [rise, -rise].map(|dz| {

@@ -1,8 +1,10 @@
-//! The best non-overlapping set of planes (W96 3.6: "secondly to select the best nonoverlapping planes").
+//! The best non-overlapping set of planes (W96 3.6: "secondly to select the best nonoverlapping
+//! planes").
 //!
-//! Candidates that overlap in plan exclude each other. The set with the largest sum of measures is found exactly where few
-//! candidates stand in each other's way, by branch and bound; larger tangles start from the greedy set and exchange one candidate for those
-//! that it excludes while the sum grows.
+//! Candidates that overlap in plan exclude each other. The set with the largest sum of measures is
+//! found exactly where few candidates stand in each other's way, by branch and bound; larger
+//! tangles start from the greedy set and exchange one candidate for those that it excludes while
+//! the sum grows.
 
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
@@ -12,8 +14,8 @@ use super::PlaneCandidate;
 use super::plane_evidence::area_2d;
 use crate::sorting::sort_by;
 
-/// Candidates that overlap by more than this share of the smaller one exclude each other. Assumption: what errors of their
-/// ends do at shared sides.
+/// Candidates that overlap by more than this share of the smaller one exclude each other.
+/// Assumption: what errors of their ends do at shared sides.
 const MOST_OVERLAP: f64 = 0.08;
 /// Most candidates in a tangle that is solved exactly.
 const EXACT: usize = 24;
@@ -45,7 +47,8 @@ pub(crate) fn best_set(candidates: &[PlaneCandidate]) -> Vec<usize> {
 
 /// Do two candidates cover the same ground?
 fn exclude(a: &PlaneCandidate, b: &PlaneCandidate) -> bool {
-    // As every other call in the project has it: another type would be compiled anew, 0.2 MB of wasm.
+    // As every other call in the project has it: another type would be compiled anew, 0.2 MB of
+    // wasm.
     let rings = |c: &PlaneCandidate| -> Vec<Vec<[f64; 2]>> {
         vec![c.ring.iter().map(|p| [p.x, p.y]).collect()]
     };
@@ -133,7 +136,8 @@ fn branch(
     branch(others, conflicts, weights, sum, chosen, best);
 }
 
-/// Greedy, then exchanges: one candidate for those that it excludes, or several for the one that excludes them.
+/// Greedy, then exchanges: one candidate for those that it excludes, or several for the one that
+/// excludes them.
 fn exchanged(tangle: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
     let mut order = tangle.to_vec();
     sort_by(&mut order, |&a, &b| {

@@ -1,4 +1,5 @@
-//! The outlines that a plane between two lines may have: quadrilaterals between two ends, and triangles.
+//! The outlines that a plane between two lines may have: quadrilaterals between two ends, and
+//! triangles.
 
 use nalgebra::Point3;
 
@@ -101,8 +102,8 @@ fn quadrilateral(
     })
 }
 
-/// The triangle over a line with its tip at `top` on the other border of the strip, between the best ends to either side.
-/// Both slants are fixed by the tip: no parameter of their own.
+/// The triangle over a line with its tip at `top` on the other border of the strip, between the
+/// best ends to either side. Both slants are fixed by the tip: no parameter of their own.
 pub(crate) fn triangle(
     strip: &Strip,
     base: &Along,
