@@ -1,4 +1,4 @@
-//! For tests: numbers by chance that are the same in every run, facets and lines.
+//! For tests: reproducible random numbers, facets and lines.
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
@@ -7,7 +7,7 @@ use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
 use crate::model::Facet;
 
-/// Evenly distributed from 0 to 1: a linear congruential generator (Numerical Recipes 7.1), its
+/// Uniformly distributed from 0 to 1: a linear congruential generator (Numerical Recipes 7.1), its
 /// upper 24 bits.
 pub fn uniform(seed: u32) -> impl FnMut() -> f64 {
     let mut state = seed;

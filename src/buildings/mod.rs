@@ -1,14 +1,22 @@
-//! The roof model in which all methods end: planar facets, buildings, solids down to the ground.
+//! From facets to buildings (B99 4.2, 4.3, figure 24; section 2 for refinement).
+//!
+//! ```text
+//! reconstruct  method "lines": facets -> closed buildings -> refinement -> roof model
+//! refine       adjusts the wireframe of each building to the image edges of all views
+//! model_lines  lines that the finished model contradicts, duplicates and new lines
+//! ```
+//!
+//! Invariant: every facet of the result belongs to one building whose solid is closed.
 
 mod model_lines;
 mod reconstruct;
 mod refine;
 
-pub use model_lines::judge_lines;
-pub use reconstruct::{RoofTrace, Unrefined, reconstruct_roofs};
+pub use model_lines::verify_lines;
+pub use reconstruct::{RoofTrace, UnrefinedFacets, reconstruct_roofs};
 #[cfg(test)]
 pub(crate) use refine::gable;
 pub use refine::{
-    BuildingRefinement, Parting, RefineRefusal, RefineTrace, RelationKind, SideKind,
-    TestedRelation, part_roofs, refine_roofs,
+    BuildingRefinement, RefineRejection, RefineTrace, RelationKind, RoofGap, SideKind,
+    TestedRelation, cut_back_at_gaps, refine_roofs,
 };

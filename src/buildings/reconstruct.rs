@@ -2,9 +2,8 @@
 
 use serde::Serialize;
 
-use super::refine::{Parting, RefineTrace, part_roofs, refine_roofs};
-use crate::facets::FacetInput;
-use crate::facets::{FacetTrace, reconstruct_facets};
+use super::refine::{RefineTrace, RoofGap, cut_back_at_gaps, refine_roofs};
+use crate::facets::{FacetTrace, FacetInput, reconstruct_facets};
 use crate::ids::LineId;
 use crate::lines3d::{Line3d, Refutation};
 use crate::model::{Facet, RoofModel};
@@ -12,31 +11,31 @@ use crate::params::RoofParams;
 use crate::scene::Scene;
 use crate::solids::{SolidTrace, close_buildings};
 
-/// What happened on the way from half-planes to buildings.
+/// The steps from half-planes to buildings.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct RoofTrace {
     /// Grouping, delineation and verification.
     pub facets: FacetTrace,
     /// Gaps between facets that delineation had closed.
-    pub partings: Vec<Parting>,
-    /// The facets that refinement was given.
-    pub unrefined: Unrefined,
+    pub partings: Vec<RoofGap>,
+    /// The facets before refinement.
+    pub unrefined: UnrefinedFacets,
     /// What was regularised and refined in each building.
     pub refinement: RefineTrace,
     /// Walls and ground.
     pub solids: SolidTrace,
     /// Lines that the model adds to the matched ones (B99 4.2, 4.3).
     pub new_lines: Vec<Line3d>,
-    /// Of the lines before and the new ones, counted on: those that the model refutes.
+    /// The lines that the model contradicts; ids count the matched lines and then the new ones.
     pub refuted_lines: Vec<(LineId, Refutation)>,
 }
 
 /// The facets before refinement, whose buildings are those of [`RefineTrace`].
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Unrefined {
-    /// Closed and parted, not refined.
+pub struct UnrefinedFacets {
+    /// Closed, cut back at gaps, and not refined.
     pub facets: Vec<Facet>,
-    /// For every facet of the model which of these it was.
+    /// For every facet of the model its index among these.
     pub sources: Vec<usize>,
 }
 
@@ -51,11 +50,11 @@ pub fn reconstruct_roofs(
     let below = |members: &[&Facet]| ground.below(members);
     // Refinement needs facets that share vertices, and moves them; so the solids are made again.
     let (delineated, solids) = close_buildings(&facets, below);
-    let (parted, partings) = part_roofs(scene, &delineated, &params.refine);
-    let (delineated, again) = close_buildings(&parted, below);
+    let (separated, gaps) = cut_back_at_gaps(scene, &delineated, &params.refine);
+    let (delineated, again) = close_buildings(&separated, below);
     let (refined, refinement) = refine_roofs(scene, lines, &delineated, &params.refine);
     let (model, closed) = close_buildings(&refined, below);
-    let unrefined = Unrefined {
+    let unrefined = UnrefinedFacets {
         facets: delineated.facets,
         sources: closed.sources.clone(),
     };
@@ -64,7 +63,7 @@ pub fn reconstruct_roofs(
         model,
         RoofTrace {
             facets: facet_trace,
-            partings,
+            partings: gaps,
             unrefined,
             refinement,
             solids,

@@ -6,8 +6,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::json::to_bytes;
-use super::{ATLAS_FILE, rounded};
+use super::format::{ATLAS_FILE, rounded, to_bytes};
 use crate::model::{Building, RoofModel, Surface};
 use crate::scene::Scene;
 use crate::texture::{FaceTexture, TexturedModel};
@@ -53,7 +52,7 @@ pub fn city_json(scene: &Scene, model: &RoofModel, textured: &TexturedModel) -> 
             let system = format!("https://www.opengis.net/def/crs/EPSG/0/{epsg}");
             metadata.insert("referenceSystem".into(), json!(system));
         }
-        // A local frame has no number; its place is told in words.
+        // A local frame has no number; its place is described in words.
         None => {
             let title = scene
                 .survey

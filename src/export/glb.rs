@@ -21,14 +21,14 @@ use gltf_json::validation::{Checked, USize64};
 use gltf_json::{self as gltf, Index};
 use serde_json::{Value, json};
 
-use super::triangulate;
+use super::triangulate::triangulate;
 use crate::model::{Building, RoofModel, SolidFace, Surface};
 use crate::scene::Scene;
 use crate::texture::{FaceTexture, TexturedModel};
 
 /// The model as a GLB file with the atlas, given as JPEG, inside.
 pub fn glb(scene: &Scene, model: &RoofModel, textured: &TexturedModel, atlas: &[u8]) -> Vec<u8> {
-    let mut file = File::default();
+    let mut file = GlbFile::default();
     let mut nodes = Vec::new();
     if !model.buildings.is_empty() {
         file.add_material(atlas);
@@ -41,21 +41,21 @@ pub fn glb(scene: &Scene, model: &RoofModel, textured: &TexturedModel, atlas: &[
 
 /// A glTF file in the making.
 #[derive(Default)]
-struct File {
+struct GlbFile {
     root: gltf::Root,
     bin: Vec<u8>,
 }
 
 /// Vertices and triangles of a mesh.
 #[derive(Default)]
-struct Triangles {
+struct MeshBuffers {
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
     uv: Vec<[f32; 2]>,
     indices: Vec<u32>,
 }
 
-impl Triangles {
+impl MeshBuffers {
     fn add(&mut self, building: &Building, face: &SolidFace, texture: &FaceTexture) {
         let solid = &building.solid;
         let first = self.positions.len() as u32;
@@ -75,7 +75,7 @@ impl Triangles {
     }
 }
 
-impl File {
+impl GlbFile {
     /// The only material: the atlas, unlit, since photographs hold the light already.
     fn add_material(&mut self, atlas: &[u8]) {
         let view = self.add_bytes(atlas, None);
@@ -137,14 +137,14 @@ impl File {
         let mut children = Vec::new();
         for (face, texture) in faces() {
             if let Surface::Roof(facet) = face.surface {
-                let mut triangles = Triangles::default();
+                let mut triangles = MeshBuffers::default();
                 triangles.add(building, face, texture);
                 let extras = json!({ "building": id, "facet": facet, "surface": "roof" });
                 children.extend(self.add_mesh(&format!("facet {}", facet.0), &extras, triangles));
             }
         }
         for (surface, name) in [(Surface::Wall, "wall"), (Surface::Ground, "ground")] {
-            let mut triangles = Triangles::default();
+            let mut triangles = MeshBuffers::default();
             for (face, texture) in faces().filter(|(face, _)| face.surface == surface) {
                 triangles.add(building, face, texture);
             }
@@ -165,12 +165,12 @@ impl File {
         &mut self,
         name: &str,
         extras: &Value,
-        triangles: Triangles,
+        triangles: MeshBuffers,
     ) -> Option<Index<gltf::Node>> {
         if triangles.indices.is_empty() {
             return None;
         }
-        let Triangles {
+        let MeshBuffers {
             positions,
             normals,
             uv,

@@ -7,7 +7,7 @@
 use nalgebra::Point3;
 use serde_json::{Value, json};
 
-use super::rounded;
+use super::format::{rounded, to_bytes};
 use crate::geometry::Segment2;
 use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;
@@ -99,9 +99,4 @@ fn name(scene: &Scene, view: ViewId) -> &str {
 
 fn segment(s: &Segment2) -> [f64; 4] {
     [s.p0.x, s.p0.y, s.p1.x, s.p1.y].map(|v| rounded(v, 3))
-}
-
-/// Compact JSON. Numbers that are not finite become `null`; keys are in a fixed order.
-pub(crate) fn to_bytes(value: &Value) -> Vec<u8> {
-    serde_json::to_vec(value).expect("a JSON value has string keys only")
 }

@@ -3,48 +3,41 @@
 //! Coordinates are those of the input's world frame, metres, Z up. A program that reads them into
 //! single precision should take off the scene origin first; both files state it in a comment.
 
-use std::fmt::Write;
-
 use nalgebra::Point3;
 
-use super::{ATLAS_FILE, rounded, triangulate};
+use super::format::{ATLAS_FILE, MATERIAL_FILE, push_line, world};
+use super::triangulate::triangulate;
 use crate::ids::LineId;
 use crate::lines3d::Line3d;
 use crate::model::{RoofModel, Surface};
 use crate::scene::Scene;
 use crate::texture::TexturedModel;
 
-/// Name of the material file beside the OBJ file.
-pub const MATERIAL_FILE: &str = "model.mtl";
-
-/// Decimals of a coordinate: 0.1 mm.
-const DECIMALS: u8 = 4;
-
 /// The textured model as OBJ: an object per building, a group per surface, triangles.
 pub fn obj(scene: &Scene, model: &RoofModel, textured: &TexturedModel) -> Vec<u8> {
     let mut text = comment("# ", scene);
-    line(&mut text, format_args!("mtllib {MATERIAL_FILE}"));
+    push_line(&mut text, format_args!("mtllib {MATERIAL_FILE}"));
     // OBJ counts from one, over the whole file.
     let (mut first_vertex, mut first_uv) = (1, 1);
     for (b, (building, textures)) in model.buildings.iter().zip(&textured.faces).enumerate() {
         let solid = &building.solid;
-        line(&mut text, format_args!("o building_{b}"));
+        push_line(&mut text, format_args!("o building_{b}"));
         for p in &solid.vertices {
             let [x, y, z] = world(scene, p);
-            line(&mut text, format_args!("v {x} {y} {z}"));
+            push_line(&mut text, format_args!("v {x} {y} {z}"));
         }
-        line(&mut text, format_args!("usemtl photographs"));
+        push_line(&mut text, format_args!("usemtl photographs"));
         for (face, texture) in solid.faces.iter().zip(textures) {
-            line(&mut text, format_args!("g {}", group(face.surface)));
+            push_line(&mut text, format_args!("g {}", group(face.surface)));
             for [u, v] in texture.uv.iter().flatten() {
                 // The atlas has its origin at the top, OBJ at the bottom.
-                line(&mut text, format_args!("vt {u} {}", 1.0 - v));
+                push_line(&mut text, format_args!("vt {u} {}", 1.0 - v));
             }
             let corners: Vec<u32> = face.rings.iter().flatten().copied().collect();
             for triangle in triangulate(solid, face) {
                 let [a, b, c] = triangle
                     .map(|i| format!("{}/{}", first_vertex + corners[i as usize], first_uv + i));
-                line(&mut text, format_args!("f {a} {b} {c}"));
+                push_line(&mut text, format_args!("f {a} {b} {c}"));
             }
             first_uv += corners.len() as u32;
         }
@@ -83,22 +76,22 @@ pub fn ply(scene: &Scene, model: &RoofModel, lines: &[Line3d]) -> Vec<u8> {
 
     let mut text = "ply\nformat ascii 1.0\n".to_owned();
     text.push_str(&comment("comment ", scene));
-    line(&mut text, format_args!("element vertex {}", vertices.len()));
+    push_line(&mut text, format_args!("element vertex {}", vertices.len()));
     text.push_str("property double x\nproperty double y\nproperty double z\n");
-    line(&mut text, format_args!("element face {}", triangles.len()));
+    push_line(&mut text, format_args!("element face {}", triangles.len()));
     text.push_str("property list uchar int vertex_indices\n");
-    line(&mut text, format_args!("element edge {edges}"));
+    push_line(&mut text, format_args!("element edge {edges}"));
     text.push_str("property int vertex1\nproperty int vertex2\nend_header\n");
     for p in &vertices {
         let [x, y, z] = world(scene, p);
-        line(&mut text, format_args!("{x} {y} {z}"));
+        push_line(&mut text, format_args!("{x} {y} {z}"));
     }
     for [a, b, c] in triangles {
-        line(&mut text, format_args!("3 {a} {b} {c}"));
+        push_line(&mut text, format_args!("3 {a} {b} {c}"));
     }
     for i in 0..edges {
         let a = first_end + 2 * i;
-        line(&mut text, format_args!("{a} {}", a + 1));
+        push_line(&mut text, format_args!("{a} {}", a + 1));
     }
     text.into_bytes()
 }
@@ -107,7 +100,7 @@ fn comment(start: &str, scene: &Scene) -> String {
     let [x, y, z] = world(scene, &Point3::origin());
     let mut text = format!("{start}metres, Z up; origin of the local frame {x} {y} {z}\n");
     if let Some(system) = scene.survey.describe() {
-        line(&mut text, format_args!("{start}coordinates: {system}"));
+        push_line(&mut text, format_args!("{start}coordinates: {system}"));
     }
     text
 }
@@ -118,17 +111,4 @@ fn group(surface: Surface) -> String {
         Surface::Wall => "wall".to_owned(),
         Surface::Ground => "ground".to_owned(),
     }
-}
-
-/// A point in the world frame of the input, rounded.
-pub(crate) fn world(scene: &Scene, p: &Point3<f64>) -> [f64; 3] {
-    (p + scene.origin)
-        .coords
-        .map(|v| rounded(v, DECIMALS))
-        .into()
-}
-
-/// Adds a line.
-pub(crate) fn line(text: &mut String, content: std::fmt::Arguments) {
-    writeln!(text, "{content}").expect("a String takes all that is written");
 }

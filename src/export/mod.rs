@@ -2,7 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `model.city.json` | CityJSON 2.0, world frame of the input; refers to the atlas by its file name |
+//! | `model.city.json` | CityJSON 2.0, world frame of the input; names the atlas file |
 //! | `model_atlas.jpg` | the texture atlas of `model.city.json` |
 //! | `model.glb` | glTF 2.0, Y up, near-origin coordinates, the atlas inside |
 //! | `model.obj`, `model.mtl` | triangles and the same atlas, world frame |
@@ -12,9 +12,12 @@
 //! | `lines.csv` | the 3D lines as a table |
 //! | `lines.json`, `segments.json`, `halfplanes.json` | what the model was made from |
 //!
+//! `format` holds what the writers share, `triangulate` the triangles of a face.
+//!
 //! Invariant: the same input gives the same bytes; nothing writes a date, a path or a random id.
 
 mod cityjson;
+mod format;
 mod glb;
 mod json;
 mod mesh;
@@ -22,9 +25,10 @@ mod plans;
 mod triangulate;
 
 pub use cityjson::city_json;
+pub use format::{ATLAS_FILE, MATERIAL_FILE};
 pub use glb::glb;
 pub use json::{half_planes_json, lines_json, segments_json};
-pub use mesh::{MATERIAL_FILE, mtl, obj, ply};
+pub use mesh::{mtl, obj, ply};
 pub use plans::{dxf, footprints, lines_csv};
 pub use triangulate::triangulate;
 
@@ -38,17 +42,14 @@ use crate::planes::HalfPlane;
 use crate::scene::Scene;
 use crate::texture::TexturedModel;
 
-/// Name of the atlas beside the CityJSON file.
-pub const ATLAS_FILE: &str = "model_atlas.jpg";
-
 /// Everything that is written out.
 #[derive(Clone, Copy, Debug)]
-pub struct Results<'a> {
+pub struct ExportInput<'a> {
     /// The views and the origin of the local frame.
     pub scene: &'a Scene,
     /// Image segments, per view.
     pub segments: &'a [Vec<ImageSegment>],
-    /// 3D lines, of which those that are refuted are left out.
+    /// 3D lines; contradicted ones are not written.
     pub lines: &'a [Line3d],
     /// Half-planes.
     pub half_planes: &'a [HalfPlane],
@@ -59,15 +60,15 @@ pub struct Results<'a> {
 }
 
 /// All files: name and bytes, in a fixed order.
-pub fn export_all(results: &Results, params: &TextureParams) -> Vec<(String, Vec<u8>)> {
-    let Results {
+pub fn export_all(input: &ExportInput, params: &TextureParams) -> Vec<(String, Vec<u8>)> {
+    let ExportInput {
         scene,
         segments,
         lines,
         half_planes,
         model,
         textured,
-    } = *results;
+    } = *input;
     let atlas = atlas_jpeg(textured, params.jpeg_quality);
     [
         ("model.city.json", city_json(scene, model, textured)),
@@ -97,12 +98,4 @@ pub fn atlas_jpeg(textured: &TexturedModel, quality: u8) -> Vec<u8> {
         .encode_image(&textured.atlas)
         .expect("writing to memory does not fail and an atlas is smaller than 65536 pixels");
     bytes
-}
-
-/// A number rounded to a few decimals: shorter in a file, and it hides what is not significant.
-fn rounded(value: f64, decimals: u8) -> f64 {
-    let scale = (0..decimals).fold(1.0, |scale, _| scale * 10.0);
-    let r = (value * scale).round() / scale;
-    // No "-0.0" in files.
-    if r == 0.0 { 0.0 } else { r }
 }

@@ -8,9 +8,8 @@
 use nalgebra::Point3;
 use serde_json::{Value, json};
 
-use super::json::to_bytes;
-use super::mesh::{line, world};
-use super::{rounded, triangulate};
+use super::format::{push_line, rounded, to_bytes, world};
+use super::triangulate::triangulate;
 use crate::lines3d::Line3d;
 use crate::model::{Building, RoofModel, Solid, Surface};
 use crate::scene::Scene;
@@ -20,14 +19,14 @@ use crate::scene::Scene;
 pub fn dxf(scene: &Scene, model: &RoofModel, lines: &[Line3d]) -> Vec<u8> {
     let mut text = String::new();
     if let Some(system) = scene.survey.describe() {
-        line(&mut text, format_args!("999\ncoordinates: {system}"));
+        push_line(&mut text, format_args!("999\ncoordinates: {system}"));
     }
     text.push_str("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n");
     // Layers with the colours red, yellow, grey and blue of the AutoCAD index.
     let layers = [("ROOF", 1), ("WALL", 2), ("GROUND", 8), ("LINE3D", 5)];
     text.push_str("0\nSECTION\n2\nTABLES\n0\nTABLE\n2\nLAYER\n70\n4\n");
     for (name, colour) in layers {
-        line(
+        push_line(
             &mut text,
             format_args!("0\nLAYER\n2\n{name}\n70\n0\n62\n{colour}\n6\nCONTINUOUS"),
         );
@@ -63,11 +62,11 @@ pub fn dxf(scene: &Scene, model: &RoofModel, lines: &[Line3d]) -> Vec<u8> {
 }
 
 fn entity(text: &mut String, scene: &Scene, kind: &str, layer: &str, points: &[Point3<f64>]) {
-    line(text, format_args!("0\n{kind}\n8\n{layer}"));
+    push_line(text, format_args!("0\n{kind}\n8\n{layer}"));
     for (i, p) in points.iter().enumerate() {
         let [x, y, z] = world(scene, p);
         // Group codes 10, 20, 30 for the first point, 11, 21, 31 for the second...
-        line(
+        push_line(
             text,
             format_args!("{}\n{x}\n{}\n{y}\n{}\n{z}", 10 + i, 20 + i, 30 + i),
         );
@@ -147,7 +146,7 @@ pub fn lines_csv(scene: &Scene, lines: &[Line3d]) -> Vec<u8> {
         let ([x0, y0, z0], [x1, y1, z1]) =
             (world(scene, &l.segment.p0), world(scene, &l.segment.p1));
         let (length, sigma) = (rounded(l.segment.length(), 4), rounded(l.sigma_m, 4));
-        line(
+        push_line(
             &mut text,
             format_args!(
                 "{id},{x0},{y0},{z0},{x1},{y1},{z1},{length},{sigma},{},{}",

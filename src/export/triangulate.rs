@@ -19,7 +19,7 @@ pub fn triangulate(solid: &Solid, face: &SolidFace) -> Vec<[u32; 3]> {
     for ring in &rings {
         let mut vertices = Vec::with_capacity(ring.len());
         for p in ring {
-            // Only numbers that are not finite are refused.
+            // Only numbers that are not finite are rejected.
             let Ok(vertex) = cdt.insert(SpadePoint::new(p.x, p.y)) else {
                 return Vec::new();
             };

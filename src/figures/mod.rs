@@ -1,21 +1,23 @@
-//! What the live figures of the page show and no trace holds: it depends on where the reader
+//! What the live figures of the page show and no trace holds, since it depends on where the reader
 //! points.
 //!
 //! ```text
-//! beam      a segment's epipolar beams, candidates and what became of them   B99 3.1, 3.2, figures 1 to 4
-//! point     pointwise correspondence x' = l' x (F x), and its two windows    B99 3.1, figure 3
-//! warp      the neighbourhood of a line side under H(theta), view by view    B99 4.1, figures 10, 11 and 13
-//! before    the parts of 3D lines that segments showed before growing        B99 3.3, figures 5 to 8
+//! segment_matching    a segment's epipolar beams, candidates and outcome      B99 3.1, 3.2, fig. 1-4
+//! correspondence      pointwise correspondence x' = l' x (F x), two windows   B99 3.1, fig. 3
+//! warp                a line side under H(theta), view by view                B99 4.1, fig. 10, 11, 13
+//! detected_stretches  parts of 3D lines that segments showed before growing   B99 3.3, fig. 5-8
 //! ```
 //!
 //! Invariant: nothing here feeds a stage. The stages' own functions are called wherever they exist.
 
-mod beam;
-mod before;
-mod point;
+mod correspondence;
+mod detected_stretches;
+mod segment_matching;
 mod warp;
 
-pub use beam::{Beam, Candidate, Prediction, SegmentStory, segment_story};
-pub use before::detected_stretches;
-pub use point::{Correspondence, correspondence};
+pub use correspondence::{Correspondence, correspondence};
+pub use detected_stretches::detected_stretches;
+pub use segment_matching::{
+    Beam, PairCandidate, ReprojectedLine, SegmentMatching, segment_matching,
+};
 pub use warp::{WarpedView, WarpedViews, warped_views};

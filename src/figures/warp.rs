@@ -69,7 +69,7 @@ pub fn warped_views(
     let frame = ThetaFrame::new(line, side)?;
     let plane = frame.plane(line, theta);
     let from = scene.camera(reference);
-    let picture = Picture::new(from, line, &frame, params)?;
+    let picture = WarpRaster::new(from, line, &frame, params)?;
     let mut warped = WarpedViews {
         theta,
         reference,
@@ -101,13 +101,13 @@ pub fn warped_views(
 }
 
 /// The raster of the neighbourhood: columns run along the projected line, rows away from it.
-struct Picture {
+struct WarpRaster {
     image_from_picture: Matrix3<f64>,
     columns: usize,
     rows: usize,
 }
 
-impl Picture {
+impl WarpRaster {
     fn new(
         camera: &Camera,
         line: &Segment3,

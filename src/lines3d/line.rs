@@ -34,7 +34,7 @@ impl LineOrigin {
     }
 }
 
-/// Why the finished model rejects a line ([`crate::buildings::judge_lines`]).
+/// Why the finished model rejects a line ([`crate::buildings::verify_lines`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Refutation {

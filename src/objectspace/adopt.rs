@@ -2,7 +2,7 @@
 //!
 //! A cluster takes its image lines away from all others (`clusters`), and so does a matched line,
 //! which is more accurate. What they leave of a cluster must still be seen in as many views, and
-//! cover as much of it there, as W96 3.5 asks of any line.
+//! cover as much of it there, as W96 3.5 requires of any line.
 //!
 //! Tried without gain: to measure the lines that stay again in all views, as borders of facets are.
 //! Edges that only regions show are weak, and what lies along one is often another.

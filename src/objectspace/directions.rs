@@ -13,10 +13,8 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::sight::Sight;
-use crate::math::atan2;
-use crate::math::exp;
-use crate::math::sin_cos;
+use super::image_lines::ImageLine;
+use crate::math::{atan2, exp, sin_cos};
 use crate::params::DirectionParams;
 
 /// A pair of perpendicular horizontal directions.
@@ -54,10 +52,10 @@ const FULL_CONTRAST: f64 = 0.1;
 
 /// The main directions of the lines, those of the largest weight first.
 pub fn main_directions(
-    sights: &[Sight],
+    image_lines: &[ImageLine],
     params: &DirectionParams,
 ) -> (Vec<MainDirections>, DirectionTrace) {
-    let cuts: Vec<[f64; 2]> = sights.iter().filter_map(azimuth).collect();
+    let cuts: Vec<[f64; 2]> = image_lines.iter().filter_map(azimuth).collect();
     directions_of(&cuts, params)
 }
 
@@ -100,11 +98,14 @@ fn directions_of(
 
 /// Azimuth, 0 to pi, and weight of the cut of an interpretation plane with the XY plane; `None` for
 /// a horizontal plane.
-fn azimuth(sight: &Sight) -> Option<[f64; 2]> {
-    let n = sight.normal;
+fn azimuth(image_line: &ImageLine) -> Option<[f64; 2]> {
+    let n = image_line.normal;
     (n.x * n.x + n.y * n.y > 1e-12).then(|| {
         let a = atan2(n.x, -n.y).rem_euclid(std::f64::consts::PI);
-        [a, sight.length_px * sight.contrast.min(FULL_CONTRAST)]
+        [
+            a,
+            image_line.length_px * image_line.contrast.min(FULL_CONTRAST),
+        ]
     })
 }
 

@@ -24,7 +24,7 @@ pub(crate) fn planted_lines(
     outliers: f64,
     hidden: &[usize],
 ) -> Vec<Vec<RegionLine>> {
-    let mut random = Random(99);
+    let mut random = Lcg64(99);
     let views = scene.views.iter().enumerate();
     views
         .map(|(k, view)| {
@@ -68,9 +68,9 @@ fn region_line(segment: Segment2) -> RegionLine {
     }
 }
 
-struct Random(u64);
+struct Lcg64(u64);
 
-impl Random {
+impl Lcg64 {
     /// A number from 0 to 1.
     fn next(&mut self) -> f64 {
         self.0 = self

@@ -3,23 +3,19 @@
 use nalgebra::{Matrix3, Point3};
 use serde::{Deserialize, Serialize};
 
-use super::clusters::Axes;
-use super::clusters::{ClusterLine, ClusterTrace, cluster_lines};
+use super::clusters::{ClusterAxes, ClusterLine, ClusterTrace, cluster_lines};
+use super::image_lines::{ImageLine, image_lines};
 use super::oris::{ColorImage, RegionLine, Segmentation, region_lines, segment_regions};
-use super::rectangles::Solid;
+use super::rectangles::OccludingSolid;
 use super::rectangles::best_set;
 use super::rectangles::{PlaneCandidate, PlaneRejection, PlaneSearch, PlaneTrace};
-use super::sight::{Sight, sights};
 use super::windows::{Window, WindowTrace, find_windows};
-use crate::execution::map_shared;
-use crate::execution::reached;
+use crate::execution::{map_shared, reached};
 use crate::geometry::{Segment2, Segment3};
-use crate::ids::BuildingId;
-use crate::ids::LineId;
+use crate::ids::{BuildingId, LineId};
 use crate::linematch::scene_heights;
 use crate::lines2d::ImageSegment;
-use crate::lines3d::Line3d;
-use crate::lines3d::{LineSupport, SupportKind};
+use crate::lines3d::{Line3d, LineSupport, SupportKind};
 use crate::model::{Facet, RoofModel};
 use crate::params::ObjectSpaceParams;
 use crate::planes::ProposedPlane;
@@ -62,7 +58,7 @@ pub fn find_directions(
         .iter()
         .map(|&[x0, y0, x1, y1]| [x0 - o.x, y0 - o.y, x1 - o.x, y1 - o.y]);
     let given: Vec<[f64; 4]> = given.collect();
-    find_windows(scene, &sights(scene, lines), z_range, &given, params)
+    find_windows(scene, &image_lines(scene, lines), z_range, &given, params)
 }
 
 /// The image lines in the form that the files and the other method have.
@@ -91,7 +87,7 @@ pub fn find_clusters(
     windows: &[Window],
     params: &ObjectSpaceParams,
 ) -> (Vec<FoundLine>, Vec<ClusterTrace>) {
-    let sights = sights(scene, lines);
+    let image_lines = image_lines(scene, lines);
     let tasks: Vec<(usize, [usize; 2])> = windows
         .iter()
         .enumerate()
@@ -101,10 +97,10 @@ pub fn find_clusters(
         .collect();
     let results = map_shared("clusters", &tasks, 0.0..1.0, |_, &(w, [pair, axis])| {
         let window = &windows[w];
-        let shown: Vec<usize> = (0..sights.len())
-            .filter(|&k| window.shows(&sights[k]))
+        let shown: Vec<usize> = (0..image_lines.len())
+            .filter(|&k| window.shows(&image_lines[k]))
             .collect();
-        let inside: Vec<Sight> = shown.iter().map(|&k| sights[k].clone()).collect();
+        let inside: Vec<ImageLine> = shown.iter().map(|&k| image_lines[k].clone()).collect();
         let direction = window.directions[pair].axes()[axis];
         let (mut lines, trace) = cluster_lines(
             scene,
@@ -151,21 +147,22 @@ pub fn find_rectangles(
     found: &[FoundLine],
     params: &ObjectSpaceParams,
 ) -> (RoofModel, RectangleTrace) {
-    let sights = sights(scene, lines);
+    let image_lines = image_lines(scene, lines);
     let segments: Vec<Segment3> = found.iter().map(|f| f.line.segment).collect();
     let z_range = windows.first().map(|w| w.z_range_m);
     let ground = Ground::of_segments(scene, &segments, z_range);
     let all: Vec<ClusterLine> = found.iter().map(|f| f.line.clone()).collect();
     let mut search = PlaneSearch {
         scene,
-        sights: &sights,
+        image_lines: &image_lines,
         lines: &all,
         ground: &ground,
         solids: &[],
         params: &params.planes,
     };
     let mut trace = RectangleTrace::default();
-    let axes = |&[w, d, axis]: &[usize; 3]| Axes::new(&windows[w].directions[d].axes()[axis]);
+    let axes =
+        |&[w, d, axis]: &[usize; 3]| ClusterAxes::new(&windows[w].directions[d].axes()[axis]);
     let searches: Vec<[usize; 3]> = (0..windows.len())
         .flat_map(|w| (0..windows[w].directions.len()).map(move |d| [w, d]))
         .flat_map(|[w, d]| [[w, d, 0], [w, d, 1]])
@@ -176,9 +173,11 @@ pub fn find_rectangles(
     }
     trace.chosen = best_set(&trace.candidates);
     let chosen = trace.chosen.iter().map(|&k| &trace.candidates[k]);
-    let solids: Vec<Solid> = chosen.map(|c| Solid::new(&c.plane, &c.ring)).collect();
+    let solids: Vec<OccludingSolid> = chosen
+        .map(|c| OccludingSolid::new(&c.plane, &c.ring))
+        .collect();
     search.solids = &solids;
-    if search_behind(
+    if search_occluded(
         &search,
         |lines| axes(&of_line(&found[lines[0]])),
         &mut trace,
@@ -203,7 +202,7 @@ fn of_line(line: &FoundLine) -> [usize; 3] {
 /// Quadrilaterals and triangles of one direction.
 fn search_planes(
     search: &PlaneSearch,
-    axes: &Axes,
+    axes: &ClusterAxes,
     found: &[FoundLine],
     of: [usize; 3],
     trace: &mut RectangleTrace,
@@ -220,11 +219,11 @@ fn search_planes(
     trace.candidates.extend(triangles);
 }
 
-/// Judges the pairs that were too weak again, where the solids hide them from some views; did any
-/// change?
-fn search_behind(
+/// Searches again the pairs that were too weak, where the solids hide them from some views; is
+/// there any new candidate?
+fn search_occluded(
     search: &PlaneSearch,
-    axes: impl Fn([usize; 2]) -> Axes + Sync,
+    axes: impl Fn([usize; 2]) -> ClusterAxes + Sync,
     trace: &mut RectangleTrace,
 ) -> bool {
     let weak: Vec<usize> = (0..trace.pairs.len())
@@ -235,7 +234,7 @@ fn search_behind(
     }
     let again = map_shared("behind", &weak, 0.8..1.0, |_, &k| {
         let lines = trace.pairs[k].lines;
-        search.again(&axes(lines), lines)
+        search.candidates_between(&axes(lines), lines)
     });
     let before = trace.candidates.len();
     for (k, candidates) in weak.into_iter().zip(again) {
@@ -247,7 +246,7 @@ fn search_behind(
     trace.candidates.len() > before
 }
 
-/// All candidates, for the other method to weigh; those that this one chose come first. Which of
+/// All candidates for the other method; those that this one chose come first. Which of
 /// them cover what is then decided together with all other planes, so that what excluded each other
 /// here may compete again.
 pub fn proposed_planes(trace: &RectangleTrace) -> Vec<ProposedPlane> {
@@ -289,17 +288,20 @@ fn facet(index: usize, candidate: &PlaneCandidate) -> Facet {
 
 /// The 3D lines in the form that the files and the other method have.
 pub fn world_lines(scene: &Scene, lines: &[Vec<RegionLine>], found: &[FoundLine]) -> Vec<Line3d> {
-    let sights = sights(scene, lines);
-    found.iter().map(|f| world_line(&sights, &f.line)).collect()
+    let image_lines = image_lines(scene, lines);
+    found
+        .iter()
+        .map(|f| world_line(&image_lines, &f.line))
+        .collect()
 }
 
-fn world_line(sights: &[Sight], line: &ClusterLine) -> Line3d {
+fn world_line(image_lines: &[ImageLine], line: &ClusterLine) -> Line3d {
     let variance = line.sigma_m * line.sigma_m;
     let supports = line.coverage.iter().map(|&(view, score)| {
         let own = || {
             line.supports
                 .iter()
-                .map(|&k| &sights[k])
+                .map(|&k| &image_lines[k])
                 .filter(move |s| s.view == view)
         };
         let camera = own().next().map(|s| s.camera);

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::clusters::{ClusterLine, cluster_lines};
 use super::directions::{DirectionTrace, MainDirections, main_directions};
-use super::sight::Sight;
+use super::image_lines::ImageLine;
 use crate::execution::map_shared;
 use crate::geometry::Segment3;
 use crate::math::atan2;
@@ -35,8 +35,8 @@ pub struct Window {
 
 impl Window {
     /// Could the image line show something in the window?
-    pub fn shows(&self, sight: &Sight) -> bool {
-        let ends = self.z_range_m.map(|z| sight.ends_at(z));
+    pub fn shows(&self, image_line: &ImageLine) -> bool {
+        let ends = self.z_range_m.map(|z| image_line.ends_at(z));
         let corners = || ends.iter().flatten();
         let bound = |start: f64, f: fn(f64, f64) -> f64| {
             (
@@ -70,7 +70,7 @@ const LEAST_LINES_M: f64 = 6.0;
 /// lines show.
 pub(crate) fn find_windows(
     scene: &Scene,
-    sights: &[Sight],
+    image_lines: &[ImageLine],
     z_range_m: [f64; 2],
     given: &[[f64; 4]],
     params: &ObjectSpaceParams,
@@ -81,13 +81,13 @@ pub(crate) fn find_windows(
         .map(|&[x0, y0, x1, y1]| window([Point2::new(x0, y0), Point2::new(x1, y1)], z_range_m))
         .collect();
     if given.is_empty() {
-        let raised = raised_lines(scene, sights, z_range_m, params);
+        let raised = raised_lines(scene, image_lines, z_range_m, params);
         let group = groups(&raised, params.windows.link_m);
         windows = windows_of(&raised, &group, z_range_m, params.windows.margin_m);
         trace.lines = raised.into_iter().zip(group).collect();
     }
     for w in &mut windows {
-        let inside: Vec<Sight> = sights.iter().filter(|s| w.shows(s)).cloned().collect();
+        let inside: Vec<ImageLine> = image_lines.iter().filter(|s| w.shows(s)).cloned().collect();
         let (found, histogram) = main_directions(&inside, &params.directions);
         if given.is_empty() {
             let known = w.directions[0].azimuth;
@@ -117,13 +117,13 @@ fn window([min, max]: [Point2<f64>; 2], z_range_m: [f64; 2]) -> Window {
 /// The 3D lines of all tiles that stand above the ground, longest first, each place once.
 fn raised_lines(
     scene: &Scene,
-    sights: &[Sight],
+    image_lines: &[ImageLine],
     z_range_m: [f64; 2],
     params: &ObjectSpaceParams,
 ) -> Vec<Segment3> {
-    let tiles = tiles(sights, z_range_m, params.windows.tile_m);
+    let tiles = tiles(image_lines, z_range_m, params.windows.tile_m);
     let per_tile = map_shared("tiles", &tiles, 0.2..1.0, |_, tile| {
-        tile_lines(scene, sights, tile, params)
+        tile_lines(scene, image_lines, tile, params)
     });
     let mut lines: Vec<Segment3> = per_tile.into_iter().flatten().map(|l| l.segment).collect();
     sort_by(&mut lines, |a, b| {
@@ -151,9 +151,9 @@ fn raised_lines(
 }
 
 /// Tiles that overlap by half and show any line.
-fn tiles(sights: &[Sight], z_range_m: [f64; 2], size: f64) -> Vec<Window> {
+fn tiles(image_lines: &[ImageLine], z_range_m: [f64; 2], size: f64) -> Vec<Window> {
     let z = 0.5 * (z_range_m[0] + z_range_m[1]);
-    let mut corners: Vec<[i64; 2]> = sights
+    let mut corners: Vec<[i64; 2]> = image_lines
         .iter()
         .flat_map(|s| {
             let p = nalgebra::center(&s.ends_at(z)[0], &s.ends_at(z)[1]);
@@ -174,11 +174,15 @@ fn tiles(sights: &[Sight], z_range_m: [f64; 2], size: f64) -> Vec<Window> {
 
 fn tile_lines(
     scene: &Scene,
-    sights: &[Sight],
+    image_lines: &[ImageLine],
     tile: &Window,
     params: &ObjectSpaceParams,
 ) -> Vec<ClusterLine> {
-    let inside: Vec<Sight> = sights.iter().filter(|s| tile.shows(s)).cloned().collect();
+    let inside: Vec<ImageLine> = image_lines
+        .iter()
+        .filter(|s| tile.shows(s))
+        .cloned()
+        .collect();
     let (directions, _) = main_directions(&inside, &params.directions);
     directions
         .iter()

@@ -23,7 +23,7 @@ pub use summary::StageSummary;
 
 use std::borrow::Cow;
 
-use crate::buildings::{RoofTrace, judge_lines, reconstruct_roofs};
+use crate::buildings::{RoofTrace, verify_lines, reconstruct_roofs};
 use crate::execution::{Known, map_shared, with_known};
 use crate::execution::{Listener, progress};
 use crate::export;
@@ -209,7 +209,7 @@ impl Run {
         let Some(outputs) = self.outputs() else {
             return Vec::new();
         };
-        let borrowed = export::Results {
+        let borrowed = export::ExportInput {
             scene: &self.scene,
             segments: &outputs.segments,
             lines: &outputs.lines,
@@ -295,7 +295,7 @@ impl Run {
                 };
                 let (model, mut trace) = reconstruct_roofs(scene, &evidence, &params.roof);
                 let (new_lines, refuted) =
-                    judge_lines(scene, lines, &model, evidence.ground, params);
+                    verify_lines(scene, lines, &model, evidence.ground, params);
                 (trace.new_lines, trace.refuted_lines) = (new_lines, refuted);
                 r.roof = Some((model, trace).into());
             }

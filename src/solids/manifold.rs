@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Point2, Point3};
 
 use super::rings::turn;
-use super::walls::{Face, FaceKind, Shell};
+use super::walls::{FaceKind, Shell, ShellFace};
 use crate::math;
 use crate::model::WELD_M;
 use crate::sorting::sort_by;
@@ -117,7 +117,7 @@ impl HalfEdges {
     }
 
     /// Joins the half-edges of one edge: those of walls that go up with those that go down. Outside
-    /// is counter-clockwise of a wall that goes up here, so its partner is the next wall in that
+    /// is counter-clockwise of a wall that goes up here, so its twin is the next wall in that
     /// turn; inside is clockwise.
     fn pair(&mut self, up: &[usize], down: &[usize], inwards: bool, shell: &Shell) {
         let mut free = down.to_vec();
@@ -136,9 +136,9 @@ impl HalfEdges {
                     angle(i).total_cmp(&angle(j))
                 })
                 .expect("as many down as up");
-            let partner = free.remove(nearest);
-            self.twin[h] = partner;
-            self.twin[partner] = h;
+            let twin = free.remove(nearest);
+            self.twin[h] = twin;
+            self.twin[twin] = h;
         }
     }
 
@@ -157,7 +157,8 @@ impl HalfEdges {
         math::atan2(d.y, d.x)
     }
 
-    /// Gives every fan of faces around a corner a corner of its own; also says which corner it was.
+    /// Gives every fan of faces around a corner a corner of its own; returns the original corner of
+    /// each too.
     fn separate_corners(&self, shell: &Shell) -> (Shell, Vec<u32>) {
         let mut corner_of = vec![u32::MAX; self.start.len()];
         let (mut out, mut original) = (Shell::default(), Vec::new());
@@ -183,7 +184,7 @@ impl HalfEdges {
                 rings.push(corner_of[h..h + ring.len()].to_vec());
                 h += ring.len();
             }
-            out.faces.push(Face {
+            out.faces.push(ShellFace {
                 kind: face.kind,
                 rings,
             });
@@ -253,7 +254,7 @@ fn merge_walls(shell: Shell) -> Option<Shell> {
             .ring_around(group, &group_of)
             .filter(|_| group.len() > 1)
         {
-            Some(ring) => merged.faces.push(Face {
+            Some(ring) => merged.faces.push(ShellFace {
                 kind: FaceKind::Wall,
                 rings: vec![ring],
             }),

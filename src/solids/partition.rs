@@ -15,16 +15,15 @@ use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;
 use nalgebra::{Point2, Point3, Vector2};
 
-use super::SolidRejection;
-use super::rings::{Region, doubled_area, regions_from_edges, ring_edges};
+use super::rejection::SolidRejection;
+use super::rings::{PlanRegion, doubled_area, regions_from_edges, ring_edges};
 use crate::geometry::{Plane, bounds};
-use crate::model::Facet;
-use crate::model::WELD_M;
+use crate::model::{Facet, WELD_M};
 use crate::plan_index::PlanIndex;
 use crate::sorting::sort_by;
 
 /// Parts of facets below this plan area are dropped, m^2. Assumption: a sliver of 10 cm x 10 cm is
-/// smaller than a pixel of any survey and only makes walls that nobody can see.
+/// smaller than a pixel of any survey and only makes walls that are not visible.
 const MIN_AREA_M2: f64 = 0.01;
 
 /// Steepest facet, metres of height per metre of plan (84 degrees): steeper ones have no useful
@@ -39,12 +38,12 @@ pub struct PlanFacet {
     /// Its plane.
     pub plane: Plane,
     /// Outer ring counter-clockwise, holes clockwise; indices of plan vertices.
-    pub region: Region,
+    pub region: PlanRegion,
 }
 
 impl PlanFacet {
     /// One facet for every region, otherwise like this one.
-    fn with_regions(&self, regions: Vec<Region>) -> impl Iterator<Item = Self> + '_ {
+    fn with_regions(&self, regions: Vec<PlanRegion>) -> impl Iterator<Item = Self> + '_ {
         regions.into_iter().map(|region| Self {
             region,
             ..self.clone()
@@ -54,14 +53,14 @@ impl PlanFacet {
 
 /// A partition of the plan into facets.
 #[derive(Clone, Debug, Default)]
-pub struct Partition {
+pub struct PlanPartition {
     /// Plan vertices, metres; no two closer than [`WELD_M`].
     pub positions: Vec<Point2<f64>>,
     /// The facets, in the order of the input.
     pub facets: Vec<PlanFacet>,
 }
 
-impl Partition {
+impl PlanPartition {
     /// Builds the partition; also gives the facets that had to go, with the reason.
     pub fn new(facets: &[Facet]) -> (Self, Vec<(usize, SolidRejection)>) {
         /// Welding moves edges by up to [`WELD_M`], so that some cross again; cutting those twice
@@ -96,7 +95,7 @@ impl Partition {
     }
 
     /// The parts' rings with positions closer than [`WELD_M`] made one.
-    fn welded(parts: &[Part], welder: &mut Welder) -> Self {
+    fn welded(parts: &[PlanPart], welder: &mut Welder) -> Self {
         let mut partition = Self::default();
         for part in parts {
             let edges: Vec<_> = part
@@ -122,10 +121,10 @@ impl Partition {
     }
 
     /// The facets as rings of positions that do not cross themselves.
-    fn parts(&self) -> Vec<Part> {
+    fn parts(&self) -> Vec<PlanPart> {
         let ring = |ring: &Vec<u32>| ring.iter().map(|&v| self.positions[v as usize]).collect();
         (self.facets.iter())
-            .map(|f| Part {
+            .map(|f| PlanPart {
                 source: f.source,
                 plane: f.plane,
                 rings: simple(&f.region.iter().map(ring).collect::<Vec<_>>()),
@@ -282,7 +281,7 @@ fn gradient(plane: &Plane) -> f64 {
 }
 
 /// Plan area of a region, m^2.
-fn region_area(region: &Region, positions: &[Point2<f64>]) -> f64 {
+fn region_area(region: &PlanRegion, positions: &[Point2<f64>]) -> f64 {
     region
         .iter()
         .map(|r| doubled_area(r, positions) / 2.0)
@@ -346,14 +345,14 @@ impl Welder {
 }
 
 /// A facet, or what is left of it, as rings of positions.
-struct Part {
+struct PlanPart {
     source: usize,
     plane: Plane,
     rings: Vec<Vec<Point2<f64>>>,
 }
 
 /// The facets as rings in plan, without those that have no plan.
-fn flat_parts(facets: &[Facet], rejected: &mut Vec<(usize, SolidRejection)>) -> Vec<Part> {
+fn flat_parts(facets: &[Facet], rejected: &mut Vec<(usize, SolidRejection)>) -> Vec<PlanPart> {
     let mut parts = Vec::new();
     for (source, facet) in facets.iter().enumerate() {
         let rings: Vec<Vec<Point2<f64>>> = [oriented(&facet.outer, true)]
@@ -373,7 +372,7 @@ fn flat_parts(facets: &[Facet], rejected: &mut Vec<(usize, SolidRejection)>) -> 
         } else if !upright {
             rejected.push((source, SolidRejection::TooSteep));
         } else {
-            parts.push(Part {
+            parts.push(PlanPart {
                 source,
                 plane: facet.plane,
                 rings: simple(&rings),
@@ -402,7 +401,7 @@ fn simple(rings: &[Vec<Point2<f64>>]) -> Vec<Vec<Point2<f64>>> {
 }
 
 /// Takes every overlap from the lower of the two facets.
-fn without_overlaps(mut parts: Vec<Part>) -> Vec<Part> {
+fn without_overlaps(mut parts: Vec<PlanPart>) -> Vec<PlanPart> {
     let mut i = 0;
     while i < parts.len() {
         let mut j = 0;
@@ -433,7 +432,7 @@ fn without_overlaps(mut parts: Vec<Part>) -> Vec<Part> {
 }
 
 /// Is `a` below `b` over their overlap? Equal heights: the later facet gives way.
-fn lower_over(a: &Part, b: &Part, overlap: &[Vec<Vec<Point2<f64>>>]) -> bool {
+fn lower_over(a: &PlanPart, b: &PlanPart, overlap: &[Vec<Vec<Point2<f64>>>]) -> bool {
     let corners = overlap.iter().flatten().flatten();
     corners
         .map(|p| a.plane.z_at(p.x, p.y) - b.plane.z_at(p.x, p.y))
@@ -442,7 +441,7 @@ fn lower_over(a: &Part, b: &Part, overlap: &[Vec<Vec<Point2<f64>>>]) -> bool {
 }
 
 /// Do the bounding boxes of two parts overlap?
-fn boxes_meet(a: &Part, b: &Part) -> bool {
+fn boxes_meet(a: &PlanPart, b: &PlanPart) -> bool {
     let [[la, ha], [lb, hb]] = [a, b].map(|part| bounds(part.rings.iter().flatten().copied()));
     la.x < hb.x && lb.x < ha.x && la.y < hb.y && lb.y < ha.y
 }

@@ -13,11 +13,11 @@ use crate::math;
 
 /// A connected region: the outer ring (counter-clockwise), then its holes (clockwise), as indices
 /// of plan vertices.
-pub type Region = Vec<Vec<u32>>;
+pub type PlanRegion = Vec<Vec<u32>>;
 
 /// The regions to the left of `edges`. Edges that occur in both directions cancel; edges that
 /// close no ring, and holes outside every region, are left out.
-pub fn regions_from_edges(edges: &[(u32, u32)], positions: &[Point2<f64>]) -> Vec<Region> {
+pub fn regions_from_edges(edges: &[(u32, u32)], positions: &[Point2<f64>]) -> Vec<PlanRegion> {
     let mut net: BTreeMap<(u32, u32), i32> = BTreeMap::new();
     for &(a, b) in edges {
         *net.entry((a, b)).or_default() += 1;
@@ -112,12 +112,12 @@ pub fn turn(from: f64, to: f64) -> f64 {
 }
 
 /// Puts every clockwise ring into the smallest counter-clockwise one around it.
-fn nest(rings: Vec<Vec<u32>>, positions: &[Point2<f64>]) -> Vec<Region> {
+fn nest(rings: Vec<Vec<u32>>, positions: &[Point2<f64>]) -> Vec<PlanRegion> {
     let (outers, holes): (Vec<_>, Vec<_>) = rings
         .into_iter()
         .filter(|ring| ring.len() >= 3)
         .partition(|ring| doubled_area(ring, positions) > 0.0);
-    let mut regions: Vec<Region> = outers.into_iter().map(|ring| vec![ring]).collect();
+    let mut regions: Vec<PlanRegion> = outers.into_iter().map(|ring| vec![ring]).collect();
     for hole in holes {
         // A hole may share vertices with its outer ring but no edge, so an edge's middle is inside.
         let (a, b) = (positions[hole[0] as usize], positions[hole[1] as usize]);

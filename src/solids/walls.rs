@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::Point3;
 
-use super::partition::Partition;
-use super::rings::{Region, regions_from_edges, ring_edges};
+use super::partition::PlanPartition;
+use super::rings::{PlanRegion, regions_from_edges, ring_edges};
 use crate::sorting::sort_by;
 
 /// Which face it is.
@@ -26,7 +26,7 @@ pub enum FaceKind {
 
 /// A face; rings of corners, counter-clockwise seen from outside the solid, holes clockwise.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Face {
+pub struct ShellFace {
     /// Which it is.
     pub kind: FaceKind,
     /// The outer ring, then holes.
@@ -41,12 +41,12 @@ pub struct Shell {
     /// The plan vertex below each corner.
     pub plan: Vec<u32>,
     /// Faces.
-    pub faces: Vec<Face>,
+    pub faces: Vec<ShellFace>,
 }
 
 /// All faces of the building that covers `facets` and stands on `ground_z` (below all its heights).
 pub fn shell_of(
-    partition: &Partition,
+    partition: &PlanPartition,
     facets: &[usize],
     left_of: &BTreeMap<(u32, u32), usize>,
     tolerances: &[f64],
@@ -56,7 +56,7 @@ pub fn shell_of(
     let mut faces = Vec::new();
     let mut outline = Vec::new();
     for &facet in facets {
-        let rings: Region = partition.facets[facet]
+        let rings: PlanRegion = partition.facets[facet]
             .region
             .iter()
             .map(|ring| ring.iter().map(|&v| levels.top(facet, v)).collect())
@@ -72,14 +72,14 @@ pub fn shell_of(
             }
             faces.extend(levels.wall(edge, facet, other));
         }
-        faces.push(Face {
+        faces.push(ShellFace {
             kind: FaceKind::Roof(facet),
             rings,
         });
     }
     for region in regions_from_edges(&outline, &partition.positions) {
         let foot = |ring: &Vec<u32>| ring.iter().rev().map(|&v| levels.foot(v)).collect();
-        faces.push(Face {
+        faces.push(ShellFace {
             kind: FaceKind::Ground,
             rings: region.iter().map(foot).collect(),
         });
@@ -100,7 +100,7 @@ struct Levels {
 }
 
 impl Levels {
-    fn new(partition: &Partition, facets: &[usize], tolerances: &[f64], ground_z: f64) -> Self {
+    fn new(partition: &PlanPartition, facets: &[usize], tolerances: &[f64], ground_z: f64) -> Self {
         let mut heights: BTreeMap<u32, Vec<(f64, usize)>> = BTreeMap::new();
         for &facet in facets {
             for &v in partition.facets[facet].region.iter().flatten() {
@@ -153,7 +153,7 @@ impl Levels {
 
     /// The wall below an edge of `facet`, down to the facet beyond or to the ground; `None` where
     /// that is not lower. Seen from outside the edge runs from left to right.
-    fn wall(&self, (a, b): (u32, u32), facet: usize, other: Option<usize>) -> Option<Face> {
+    fn wall(&self, (a, b): (u32, u32), facet: usize, other: Option<usize>) -> Option<ShellFace> {
         let (top_a, top_b) = (self.top(facet, a), self.top(facet, b));
         let low = |v| other.map_or(self.foot(v), |other| self.top(other, v));
         let (low_a, low_b) = (low(a), low(b));
@@ -163,7 +163,7 @@ impl Levels {
         lower.then(|| {
             let mut ring: Vec<u32> = (low_b..=top_b).collect();
             ring.extend((low_a..=top_a).rev());
-            Face {
+            ShellFace {
                 kind: FaceKind::Wall,
                 rings: vec![ring],
             }

@@ -1,23 +1,21 @@
 //! Exposure: by how much brighter one photograph shows the model than the others.
 //!
 //! Faces beside each other often have their colours from different photographs. What two of them
-//! show of the same texels tells how their exposures differ; every photograph gets the factors that
+//! show of the same texels shows how their exposures differ; every photograph gets the factors that
 //! bring all of them together with as little change as possible. What a face looks like from
 //! different sides varies too, so each pair of views is compared by the median over all faces.
 
-use super::paint::{MAX_GAIN, Seen, colours_in, views_of};
-use super::patch::{FacePlane, Patch};
-use super::shadow::Footprints;
+use super::occlusion::FaceImages;
+use super::paint::{FaceView, MAX_GAIN, colours_in, views_of};
+use super::patch::{FacePlane, TexturePatch};
 use crate::ids::ViewId;
-use crate::math::exp;
-use crate::math::ln;
-use crate::math::median;
+use crate::math::{exp, ln, median};
 use crate::scene::Scene;
 
 /// Texels of a face that are compared, about. Assumption: the mean of a hundred is good to a
 /// percent.
 const SAMPLES: f64 = 100.0;
-/// Grey value from which on a texel does not tell how bright it is.
+/// Grey value from which on a texel is taken as saturated.
 const SATURATED: f32 = 250.0;
 /// Fewest texels that two views must both show.
 const LEAST_COMMON: usize = 10;
@@ -25,20 +23,20 @@ const LEAST_COMMON: usize = 10;
 /// both.
 const LEAST_FACES: usize = 5;
 /// How much an unchanged exposure weighs against the comparison of two views. Assumption: little.
-const STEADY: f64 = 0.01;
+const UNCHANGED_WEIGHT: f64 = 0.01;
 /// Sweeps over all views: each takes a hundredth off what the factors have in common.
 const SWEEPS: usize = 1000;
 
-/// The factors for red, green and blue of every view that bring dark colours together, 1 in the
-/// geometric mean.
-pub fn exposures(scene: &Scene, faces: &[FacePlane], footprints: &[Footprints]) -> Vec<[f32; 3]> {
+/// The factors for red, green and blue of every view that balance dark colours, 1 in the geometric
+/// mean.
+pub fn exposures(scene: &Scene, faces: &[FacePlane], face_images: &[FaceImages]) -> Vec<[f32; 3]> {
     let views = scene.views.len();
     let compared = crate::execution::map_part(faces, 0.2..0.3, |i, face| {
         let [low, high] = face.bounds();
         let area = ((high.x - low.x) * (high.y - low.y)).max(1e-6);
-        let patch = Patch::new(face, (area / SAMPLES).sqrt());
-        let seen = views_of(scene, faces, i, &patch, footprints);
-        let colours = |s: &Seen| (s.0.view, colours_in(scene, face, &patch, s));
+        let patch = TexturePatch::new(face, (area / SAMPLES).sqrt());
+        let seen = views_of(scene, faces, i, &patch, face_images);
+        let colours = |s: &FaceView| (s.0.view, colours_in(scene, face, &patch, s));
         log_ratios(&seen.iter().map(colours).collect::<Vec<_>>())
     });
     let mut of_pair = vec![Vec::new(); views * views];
@@ -50,7 +48,7 @@ pub fn exposures(scene: &Scene, faces: &[FacePlane], footprints: &[Footprints]) 
             let mut ratios: Vec<f64> = of_faces.iter().map(|r| r[channel]).collect();
             (ratios.len() >= LEAST_FACES).then(|| median(&mut ratios))?
         };
-        brought_together(&of_pair.iter().map(ratio).collect::<Vec<_>>(), views)
+        balanced(&of_pair.iter().map(ratio).collect::<Vec<_>>(), views)
     });
     (0..views)
         .map(|v| [0, 1, 2].map(|c| (exp(factors[c][v]) as f32).clamp(1.0 / MAX_GAIN, MAX_GAIN)))
@@ -90,11 +88,11 @@ fn log_ratio(a: &Colours, b: &Colours) -> Option<[f64; 3]> {
 /// The logarithms of the factors that bring views together, given by how much (a logarithm) the
 /// row's view is brighter than the column's: least squares by Gauss and Seidel, one view after the
 /// other.
-fn brought_together(brighter: &[Option<f64>], views: usize) -> Vec<f64> {
+fn balanced(brighter: &[Option<f64>], views: usize) -> Vec<f64> {
     let mut factors = vec![0.0; views];
     for _ in 0..SWEEPS {
         for a in 0..views {
-            let (mut sum, mut weight) = (0.0, STEADY);
+            let (mut sum, mut weight) = (0.0, UNCHANGED_WEIGHT);
             for b in 0..views {
                 let from_a = brighter[a * views + b].map(|r| -r);
                 for ratio in [from_a, brighter[b * views + a]].into_iter().flatten() {
@@ -149,7 +147,7 @@ mod tests {
         let mut brighter = vec![None; 16];
         brighter[4] = Some(ln(exposures[1] / exposures[0]));
         brighter[4 * 2 + 1] = Some(ln(exposures[2] / exposures[1]));
-        let factors = brought_together(&brighter, 4);
+        let factors = balanced(&brighter, 4);
         let seen = [0, 1, 2].map(|v| exp(factors[v]) * exposures[v]);
         for shown in seen {
             assert!((shown / seen[0] - 1.0).abs() < 0.01, "{seen:?}");

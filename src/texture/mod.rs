@@ -8,19 +8,20 @@
 //! are chosen; a patch per face keeps each independent of the cameras.
 //!
 //! ```text
-//! patch     the raster in the plane of a face
-//! shadow    which texels other faces hide from a view
-//! exposure  how much brighter the views are than each other
-//! paint     the colours of a patch from all views
-//! raster    polygons into masks, smooth filling of gaps
-//! atlas     packing
+//! patch      the raster in the plane of a face
+//! occlusion  which texels other faces hide from a view
+//! paint      the colours of a patch from all views
+//! exposure   the brightness of the views relative to each other
+//! atlas      packing
 //! ```
+//!
+//! Invariant: every corner of every face has texture coordinates inside the atlas.
 
 mod atlas;
 mod exposure;
+mod occlusion;
 mod paint;
 mod patch;
-mod shadow;
 
 pub use paint::ViewOfFace;
 
@@ -28,11 +29,10 @@ use serde::Serialize;
 
 use self::atlas::{Packing, pack};
 use self::exposure::exposures;
-use self::paint::{Painted, paint, pixels_per_m2};
-use self::patch::{FacePlane, Patch};
-use self::shadow::Footprints;
-use crate::ids::BuildingId;
-use crate::ids::ViewId;
+use self::occlusion::FaceImages;
+use self::paint::{PaintedPatch, paint, pixels_per_m2};
+use self::patch::{FacePlane, TexturePatch};
+use crate::ids::{BuildingId, ViewId};
 use crate::model::{RoofModel, Surface};
 use crate::params::TextureParams;
 use crate::raster::fill_gaps;
@@ -107,18 +107,18 @@ pub fn texture_model(
             FacePlane::new(solid, &solid.faces[f])
         })
         .collect();
-    let footprints: Vec<Footprints> = scene
+    let face_images: Vec<FaceImages> = scene
         .views
         .iter()
-        .map(|v| Footprints::new(&faces, &v.camera))
+        .map(|v| FaceImages::new(&faces, &v.camera))
         .collect();
     let texels = crate::execution::map_part(&faces, 0.0..0.2, |i, face| {
-        texel_m(scene, i, face, &footprints, params)
+        texel_m(scene, i, face, &face_images, params)
     });
     let (patches, packing, coarsened) = lay_out(&faces, &texels, params);
-    let exposures = exposures(scene, &faces, &footprints);
+    let exposures = exposures(scene, &faces, &face_images);
     let mut painted = crate::execution::map_part(&patches, 0.3..0.9, |i, patch| {
-        paint(scene, &faces, i, patch, &footprints, &exposures)
+        paint(scene, &faces, i, patch, &face_images, &exposures)
     });
     let kinds: Vec<Surface> = keys
         .iter()
@@ -162,13 +162,13 @@ fn texel_m(
     scene: &Scene,
     index: usize,
     face: &FacePlane,
-    footprints: &[Footprints],
+    face_images: &[FaceImages],
     params: &TextureParams,
 ) -> f64 {
     let middle = face.middle();
     let shown = scene
         .view_ids()
-        .filter(|v| footprints[v.index()].shows(index, scene.camera(*v)));
+        .filter(|v| face_images[v.index()].shows(index, scene.camera(*v)));
     shown
         .map(|view| {
             let camera = scene.camera(view);
@@ -190,14 +190,14 @@ fn lay_out(
     faces: &[FacePlane],
     texels: &[f64],
     params: &TextureParams,
-) -> (Vec<Patch>, Packing, f64) {
+) -> (Vec<TexturePatch>, Packing, f64) {
     let border = 2 * params.padding_px as usize;
     let mut coarsened = 1.0;
     loop {
-        let patches: Vec<Patch> = faces
+        let patches: Vec<TexturePatch> = faces
             .iter()
             .zip(texels)
-            .map(|(f, t)| Patch::new(f, t * coarsened))
+            .map(|(f, t)| TexturePatch::new(f, t * coarsened))
             .collect();
         let sizes: Vec<_> = patches
             .iter()
@@ -216,7 +216,7 @@ fn lay_out(
 }
 
 /// Gives faces that no view shows the mean colour of the faces of their kind, or of all.
-fn colour_unseen(painted: &mut [Painted], kinds: &[Surface]) {
+fn colour_unseen(painted: &mut [PaintedPatch], kinds: &[Surface]) {
     let mean = |keep: &dyn Fn(&Surface) -> bool| {
         let mut sum = [0.0f64; 4];
         for (p, _) in painted.iter().zip(kinds).filter(|(_, kind)| keep(kind)) {
@@ -247,8 +247,8 @@ fn colour_unseen(painted: &mut [Painted], kinds: &[Surface]) {
 
 /// Draws the patches with their border of smoothly continued colours.
 fn draw(
-    patches: &[Patch],
-    painted: &[Painted],
+    patches: &[TexturePatch],
+    painted: &[PaintedPatch],
     packing: &Packing,
     padding: usize,
 ) -> image::RgbImage {
@@ -279,7 +279,7 @@ fn draw(
 /// Texture coordinates of the corners of a face.
 fn coordinates(
     face: &FacePlane,
-    patch: &Patch,
+    patch: &TexturePatch,
     place: (usize, usize),
     packing: &Packing,
     padding: usize,

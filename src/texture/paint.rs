@@ -3,8 +3,8 @@
 use nalgebra::{Matrix2, Matrix3x2, Point2};
 use serde::Serialize;
 
-use super::patch::{FacePlane, Patch};
-use super::shadow::{Footprints, shadow_on};
+use super::occlusion::{FaceImages, occluded_texels};
+use super::patch::{FacePlane, TexturePatch};
 use crate::camera::Camera;
 use crate::ids::ViewId;
 use crate::raster::fill_gaps;
@@ -35,7 +35,7 @@ pub struct ViewOfFace {
 }
 
 /// A painted patch.
-pub struct Painted {
+pub struct PaintedPatch {
     /// `width * height` colours, 0 to 255; meaningless where no texel is known.
     pub colours: Vec<[f32; 3]>,
     /// Texels inside the face that some view shows.
@@ -64,18 +64,18 @@ pub fn paint(
     scene: &Scene,
     faces: &[FacePlane],
     face: usize,
-    patch: &Patch,
-    footprints: &[Footprints],
+    patch: &TexturePatch,
+    face_images: &[FaceImages],
     exposures: &[[f32; 3]],
-) -> Painted {
-    let seen = views_of(scene, faces, face, patch, footprints);
+) -> PaintedPatch {
+    let seen = views_of(scene, faces, face, patch, face_images);
     let total = texels_inside(&patch.inside(&faces[face].flat));
     let (colours, known) = compose(scene, &faces[face], patch, &seen, exposures);
     let share = |mask: &[bool]| mask.iter().filter(|&&k| k).count() as f64 / total;
     let first = seen.first().map_or(0.0, |(v, _)| v.visible);
     let (filled, unseen) = (share(&known) - first, 1.0 - share(&known));
     let views = seen.into_iter().map(|(v, _)| v).collect();
-    Painted {
+    PaintedPatch {
         colours,
         known,
         views,
@@ -85,26 +85,26 @@ pub fn paint(
 }
 
 /// A view of a face, and which texels of its patch it shows.
-pub type Seen = (ViewOfFace, Vec<bool>);
+pub type FaceView = (ViewOfFace, Vec<bool>);
 
 /// The views that show some of a face, the one that shows most pixels of it first.
 pub fn views_of(
     scene: &Scene,
     faces: &[FacePlane],
     face: usize,
-    patch: &Patch,
-    footprints: &[Footprints],
-) -> Vec<Seen> {
+    patch: &TexturePatch,
+    face_images: &[FaceImages],
+) -> Vec<FaceView> {
     let plane = &faces[face];
     let inside = patch.inside(&plane.flat);
     let total = texels_inside(&inside);
-    let mut seen: Vec<Seen> = Vec::new();
+    let mut seen: Vec<FaceView> = Vec::new();
     for view in scene.view_ids() {
-        let (camera, footprints) = (scene.camera(view), &footprints[view.index()]);
-        if !footprints.shows(face, camera) {
+        let (camera, face_images) = (scene.camera(view), &face_images[view.index()]);
+        if !face_images.shows(face, camera) {
             continue;
         }
-        let hidden = shadow_on(face, patch, faces, footprints, &camera.center);
+        let hidden = occluded_texels(face, patch, faces, face_images, &camera.center);
         let mask = visible_texels(&inside, &hidden, plane, patch, camera);
         let visible = mask.iter().filter(|&&v| v).count() as f64 / total;
         if visible > 0.0 {
@@ -129,9 +129,9 @@ fn texels_inside(inside: &[bool]) -> f64 {
     inside.iter().filter(|&&i| i).count().max(1) as f64
 }
 
-impl Painted {
+impl PaintedPatch {
     /// Extends the colours smoothly over the texels that no view shows and those beside the face.
-    pub fn fill(&mut self, patch: &Patch) {
+    pub fn fill(&mut self, patch: &TexturePatch) {
         fill_gaps(&mut self.colours, &self.known, patch.width, patch.height);
     }
 }
@@ -141,7 +141,7 @@ fn visible_texels(
     inside: &[bool],
     hidden: &[bool],
     plane: &FacePlane,
-    patch: &Patch,
+    patch: &TexturePatch,
     camera: &Camera,
 ) -> Vec<bool> {
     let mut visible = vec![false; inside.len()];
@@ -163,8 +163,8 @@ fn visible_texels(
 pub fn colours_in(
     scene: &Scene,
     plane: &FacePlane,
-    patch: &Patch,
-    (of_face, mask): &Seen,
+    patch: &TexturePatch,
+    (of_face, mask): &FaceView,
 ) -> Vec<Option<[f32; 3]>> {
     let view = scene.view(of_face.view);
     let texel_px = patch.texel_m * of_face.pixels_per_m2.sqrt();
@@ -179,8 +179,8 @@ pub fn colours_in(
 fn compose(
     scene: &Scene,
     plane: &FacePlane,
-    patch: &Patch,
-    seen: &[Seen],
+    patch: &TexturePatch,
+    seen: &[FaceView],
     exposures: &[[f32; 3]],
 ) -> (Vec<[f32; 3]>, Vec<bool>) {
     let count = patch.width * patch.height;
@@ -270,7 +270,7 @@ fn texel(
     rgb: &image::RgbImage,
     camera: &Camera,
     plane: &FacePlane,
-    patch: &Patch,
+    patch: &TexturePatch,
     index: usize,
     samples: usize,
 ) -> [f32; 3] {

@@ -106,7 +106,7 @@ fn horizontal_in(normal: &Vector3<f64>, ring: &[Point3<f64>]) -> Vector3<f64> {
 
 /// The raster of a face: texel (column, row) covers a square of `texel_m` in the plane.
 #[derive(Clone, Debug)]
-pub struct Patch {
+pub struct TexturePatch {
     /// Side of a texel, metres.
     pub texel_m: f64,
     /// Texels in a row.
@@ -117,7 +117,7 @@ pub struct Patch {
     pub corner: Point2<f64>,
 }
 
-impl Patch {
+impl TexturePatch {
     /// The smallest raster of this texel size around a face.
     pub fn new(plane: &FacePlane, texel_m: f64) -> Self {
         let [low, high] = plane.bounds();

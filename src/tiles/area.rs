@@ -8,8 +8,8 @@ use std::sync::Arc;
 use serde::Serialize;
 use serde_json::json;
 
-use super::join::TilePart;
-use super::{Tile, join, plan_tiles};
+use super::join::{TilePart, join};
+use super::tile::{Tile, plan_tiles};
 use crate::error::{Error, Result};
 use crate::execution::Listener;
 use crate::ids::ViewId;
@@ -29,11 +29,11 @@ pub struct Area {
     params: Params,
     tiles: Vec<Tile>,
     parts: Vec<TilePart>,
-    told: Vec<TileReport>,
-    refused: Option<Error>,
+    reports: Vec<TileReport>,
+    first_error: Option<Error>,
 }
 
-/// What became of a tile.
+/// The outcome of a tile.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TileReport {
     /// The part of the area that it is responsible for: x0, y0, x1, y1, metres.
@@ -50,18 +50,18 @@ impl Area {
         params: &Params,
         tile_m: f64,
     ) -> Result<Self> {
-        let refusal = |problem: &str, advice: &str| Error::Scene {
+        let error_of = |problem: &str, advice: &str| Error::Scene {
             problem: problem.to_owned(),
             advice: advice.to_owned(),
         };
         let area = options.roi.ok_or_else(|| {
-            refusal(
+            error_of(
                 "tiles need to know the area",
                 "give the region of interest (--roi x0,y0,x1,y1)",
             )
         })?;
         if options.apply_fix {
-            return Err(refusal(
+            return Err(error_of(
                 "tiles take the orientation as it is",
                 "correct it first (without tiles, --apply-fix names the mistake)",
             ));
@@ -72,8 +72,8 @@ impl Area {
             options: options.clone(),
             params: params.clone(),
             parts: Vec::new(),
-            told: Vec::new(),
-            refused: None,
+            reports: Vec::new(),
+            first_error: None,
         })
     }
 
@@ -82,15 +82,15 @@ impl Area {
         &self.tiles
     }
 
-    /// What became of the tiles that are done.
+    /// The reports of the tiles that are done.
     pub fn reports(&self) -> &[TileReport] {
-        &self.told
+        &self.reports
     }
 
     /// Works off the next tile; `None` when all are done. A tile that the views do not show is left
     /// out. `progress` hears fractions of this tile's work.
     pub fn step(&mut self, files: &[InputFile], progress: &Listener) -> Option<&TileReport> {
-        let tile = *self.tiles.get(self.told.len())?;
+        let tile = *self.tiles.get(self.reports.len())?;
         let options = LoadOptions {
             roi: Some(tile.region),
             ..self.options.clone()
@@ -104,20 +104,20 @@ impl Area {
             }
             Err(error) => {
                 let outcome = error.to_string();
-                self.refused.get_or_insert(error);
+                self.first_error.get_or_insert(error);
                 outcome
             }
         };
         progress(1.0);
         let core = tile.core;
-        self.told.push(TileReport { core, outcome });
-        self.told.last()
+        self.reports.push(TileReport { core, outcome });
+        self.reports.last()
     }
 
-    /// One model of all tiles, as files; the first refusal where no tile could be read. `seconds`
+    /// One model of all tiles, as files; the first error where no tile could be read. `seconds`
     /// of each tile go into `report.json` and may be empty.
     pub fn finish(self, seconds: &[f64]) -> Result<Vec<(String, Vec<u8>)>> {
-        if let (true, Some(error)) = (self.parts.is_empty(), self.refused) {
+        if let (true, Some(error)) = (self.parts.is_empty(), self.first_error) {
             return Err(error);
         }
         let joined = join(self.whole, &self.parts);
@@ -128,7 +128,7 @@ impl Area {
             "coordinates": joined.scene.survey.describe(),
             "buildings": joined.model.buildings.len(),
             "facets": joined.model.facets.len(),
-            "tiles": self.told,
+            "tiles": self.reports,
             "seconds": seconds,
             "warnings": joined.scene.warnings,
             "params": self.params,
@@ -153,8 +153,8 @@ fn part(
         .collect();
     for (i, &stage) in stages.iter().enumerate() {
         let (done, all) = (i as f64, stages.len() as f64);
-        let heard = Listener::clone(progress);
-        let listener: Listener = Arc::new(move |fraction| heard((done + fraction) / all));
+        let of_tile = Listener::clone(progress);
+        let listener: Listener = Arc::new(move |fraction| of_tile((done + fraction) / all));
         run.step(stage, &listener);
     }
     let (scene, results) = (run.scene(), run.results());

@@ -5,12 +5,11 @@ use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;
 use nalgebra::{Point3, Vector2, Vector3};
 
-use super::{Tile, append, middle, moved, moved_plane};
-use crate::export::{Results, export_all};
+use super::model_parts::{append, middle, moved, moved_plane};
+use super::tile::Tile;
+use crate::export::{ExportInput, export_all};
 use crate::geometry::Segment2;
-use crate::ids::HalfPlaneId;
-use crate::ids::LineId;
-use crate::ids::ViewId;
+use crate::ids::{HalfPlaneId, LineId, ViewId};
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
 use crate::model::{Building, RoofModel, Surface};
@@ -75,7 +74,7 @@ impl Joined {
             textured,
         } = self;
         export_all(
-            &Results {
+            &ExportInput {
                 scene,
                 segments,
                 lines,
@@ -319,7 +318,7 @@ mod tests {
     use crate::model::check_invariants;
     use crate::scene::Survey;
     use crate::texture::FaceTexture;
-    use crate::tiles::tests::house;
+    use crate::tiles::fixture::house;
 
     fn part(tile: Tile, origin: [f64; 3], houses: &[[f64; 2]]) -> TilePart {
         let origin = Vector3::from(origin);

@@ -8,8 +8,8 @@ use wasm_bindgen::prelude::*;
 
 use super::convert::{end_points_px, named_error, to_js};
 use super::session::Session;
-use crate::buildings::{Parting, RefineTrace, Unrefined};
-use crate::figures::{correspondence, detected_stretches, segment_story, warped_views};
+use crate::buildings::{RefineTrace, RoofGap, UnrefinedFacets};
+use crate::figures::{correspondence, detected_stretches, segment_matching, warped_views};
 use crate::ids::SegmentId;
 use crate::ids::ViewId;
 use crate::linematch::{MatchTrace, SegmentRef, StepCount};
@@ -85,8 +85,8 @@ struct SideRecord {
 /// What became of the buildings after delineation.
 #[derive(Serialize)]
 struct Refined<'a> {
-    partings: &'a [Parting],
-    before: &'a Unrefined,
+    partings: &'a [RoofGap],
+    before: &'a UnrefinedFacets,
     trace: &'a RefineTrace,
 }
 
@@ -134,7 +134,7 @@ impl Session {
             return Ok(JsValue::NULL);
         };
         let of = named(view, segment);
-        to_js(&segment_story(
+        to_js(&segment_matching(
             run.scene(),
             &segments.value,
             &matches.trace,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use ridgeline::camera::Camera;
-use ridgeline::export::{Results, export_all};
+use ridgeline::export::{ExportInput, export_all};
 use ridgeline::geometry::{Plane, Segment2, Segment3};
 use ridgeline::ids::{BuildingId, LineId, SegmentId, ViewId};
 use ridgeline::lines2d::ImageSegment;
@@ -153,7 +153,7 @@ pub fn files_with(
 ) -> BTreeMap<String, Vec<u8>> {
     let params = TextureParams::default();
     let (textured, _) = texture_model(scene, model, &params);
-    let results = Results {
+    let results = ExportInput {
         scene,
         segments: &segments,
         lines: &lines,

@@ -1,14 +1,15 @@
-//! Lines that another line says better (B99 3.4).
+//! Lines that show the same edge as a better one (B99 3.4).
 //!
-//! An eave that grey values show and colour too is matched twice. While roofs are sought both
-//! count, for they are two witnesses; in the result an edge is one line. Of two lines of which each
-//! lies on the other's edges, one that runs along the other stands for it.
+//! An eave that is visible in grey values and in colour is matched twice. Both lines take part in
+//! the search for roofs as two observations; in the result an edge is one line. Two lines are
+//! duplicates if each reprojects onto the edges of the other, and the better one runs along the
+//! other.
 
 use std::cmp::Ordering;
 
 use crate::ids::LineId;
 use crate::lines2d::GuidedEdge;
-use crate::lines3d::{Line3d, ProjectedLine, ReprojectionGate};
+use crate::lines3d::{ReprojectionGate, Line3d, ProjectedLine};
 use crate::scene::Scene;
 
 /// Least share of a line along which a better one runs.
@@ -16,35 +17,35 @@ const COVERED: f64 = 0.9;
 /// Cosine of the largest angle between two lines that are compared, 10 degrees.
 const PARALLEL: f64 = 0.984_807_753_012_208;
 
-/// The standing lines that better ones repeat. Edges within `gate_px` and three standard deviations
-/// of a line's image are on it.
-pub fn repeated_lines(scene: &Scene, lines: &[Line3d], gate_px: f64) -> Vec<LineId> {
+/// The standing lines that duplicate better ones. Edges within `gate_px` and three standard
+/// deviations of a line's image are on it.
+pub fn duplicate_lines(scene: &Scene, lines: &[Line3d], gate_px: f64) -> Vec<LineId> {
     let mut best_first: Vec<(LineId, &Line3d)> = Line3d::standing(lines)
         .filter(|(_, line)| !line.supports.is_empty())
         .collect();
     crate::sorting::sort_by(&mut best_first, |a, b| {
-        by_worth(a.1, b.1).then(a.0.cmp(&b.0))
+        by_views_then_sigma(a.1, b.1).then(a.0.cmp(&b.0))
     });
     let mut kept: Vec<&Line3d> = Vec::new();
-    let mut repeated = Vec::new();
+    let mut duplicates = Vec::new();
     for (id, line) in best_first {
-        let says_it = |better: &&Line3d| {
+        let is_duplicate_of = |better: &&Line3d| {
             runs_along(better, line)
-                && lies_on(scene, better, line, gate_px)
-                && lies_on(scene, line, better, gate_px)
+                && reprojects_onto(scene, better, line, gate_px)
+                && reprojects_onto(scene, line, better, gate_px)
         };
-        if kept.iter().any(says_it) {
-            repeated.push(id);
+        if kept.iter().any(is_duplicate_of) {
+            duplicates.push(id);
         } else {
             kept.push(line);
         }
     }
-    repeated.sort_unstable();
-    repeated
+    duplicates.sort_unstable();
+    duplicates
 }
 
 /// The line of more views first, then the more certain one.
-fn by_worth(a: &Line3d, b: &Line3d) -> Ordering {
+fn by_views_then_sigma(a: &Line3d, b: &Line3d) -> Ordering {
     let views = b.supports.len().cmp(&a.supports.len());
     views.then(a.sigma_m.total_cmp(&b.sigma_m))
 }
@@ -56,7 +57,7 @@ fn runs_along(line: &Line3d, part: &Line3d) -> bool {
 }
 
 /// Does the image of a line lie on the edges of another, in two of three views that show one?
-fn lies_on(scene: &Scene, line: &Line3d, onto: &Line3d, gate_px: f64) -> bool {
+fn reprojects_onto(scene: &Scene, line: &Line3d, onto: &Line3d, gate_px: f64) -> bool {
     let gate = ReprojectionGate {
         width_px: gate_px,
         max_sigma_px: f64::INFINITY,
@@ -78,8 +79,8 @@ mod tests {
     use super::*;
     use crate::geometry::{Segment2, Segment3};
     use crate::ids::ViewId;
-    use crate::lines2d::SegmentKind;
     use crate::lines3d::planted;
+    use crate::lines2d::SegmentKind;
     use crate::lines3d::{LineSupport, SupportKind};
     use crate::testing;
 
@@ -118,38 +119,38 @@ mod tests {
     #[test]
     fn of_two_lines_on_an_edge_the_better_one_that_runs_along_the_other_stays() {
         let scene = planted::scene_without_photographs();
-        let repeated = |a: &Line3d, b: &Line3d| {
+        let duplicates = |a: &Line3d, b: &Line3d| {
             let lines = [a.clone(), b.clone()];
-            repeated_lines(&scene, &lines, 1.0)
+            duplicate_lines(&scene, &lines, 1.0)
         };
         let whole = line(&scene, [0.0, 1.0], 5, 0.01, 0.0);
         let seen_by_four = line(&scene, [0.05, 1.0], 4, 0.01, 0.0);
         let vague = line(&scene, [0.0, 1.0], 5, 0.02, 0.0);
         for worse in [&seen_by_four, &vague] {
-            assert_eq!(repeated(&whole, worse), [LineId(1)]);
-            assert_eq!(repeated(worse, &whole), [LineId(0)]);
+            assert_eq!(duplicates(&whole, worse), [LineId(1)]);
+            assert_eq!(duplicates(worse, &whole), [LineId(0)]);
         }
-        // A better one that is shorter does not say it all.
+        // A better one that is shorter does not replace it.
         let half = line(&scene, [0.0, 0.5], 5, 0.005, 0.0);
-        assert_eq!(repeated(&whole, &half), []);
+        assert_eq!(duplicates(&whole, &half), []);
         // 1.5 m above it are two pixels and more in every view, unless the line is as uncertain as
         // that.
         assert_eq!(
-            repeated(&whole, &line(&scene, [0.0, 1.0], 4, 0.01, 1.5)),
+            duplicates(&whole, &line(&scene, [0.0, 1.0], 4, 0.01, 1.5)),
             []
         );
         let uncertain = line(&scene, [0.0, 1.0], 5, 1.0, 1.5);
         let certain = line(&scene, [0.0, 1.0], 5, 0.9, 0.0);
-        assert_eq!(repeated(&uncertain, &certain), [LineId(0)]);
-        // A line that is refuted repeats nothing, and one of no views, such as an intersection, is
+        assert_eq!(duplicates(&uncertain, &certain), [LineId(0)]);
+        // A contradicted line has no duplicates, and one of no views, such as an intersection, is
         // not compared.
-        let refuted = Line3d {
+        let contradicted = Line3d {
             refuted: Some(crate::lines3d::Refutation::Hidden),
             ..whole.clone()
         };
-        assert_eq!(repeated(&refuted, &vague), []);
+        assert_eq!(duplicates(&contradicted, &vague), []);
         assert_eq!(
-            repeated(&whole, &line(&scene, [0.0, 1.0], 0, 0.01, 0.0)),
+            duplicates(&whole, &line(&scene, [0.0, 1.0], 0, 0.01, 0.0)),
             []
         );
     }

@@ -1,46 +1,40 @@
 //! New lines (B99 4.2, 4.3): the edges of the roof model that no matched line explains.
 //!
-//! "New lines are created when two neighbouring planes intersect in a consistent way": a ridge
-//! between two sides that the sun lights alike is seen in no image, yet the planes know where it
-//! is. Borders of facets are new lines too where most images that can see them, looked at again,
-//! show an edge there, three of them in the same way: matching lost those whose background changes
-//! from view to view, or that two strips see from either side. An eave along the flight line, which
-//! the views of one strip show but do not determine, is determined by the plane of its roof.
+//! "New lines are created when two neighbouring planes intersect in a consistent way": no image
+//! shows a ridge between two equally lit sides, but the two planes determine it. Borders of facets
+//! are new lines too if most of the images that can see them show an edge there when measured
+//! again, three of them with the same polarity. Matching misses edges whose background changes from
+//! view to view, or which two strips see from either side. An eave along the flight line, which the
+//! views of one strip show but do not determine, is determined by the plane of its roof.
 //!
 //! Deviation: the paper makes new lines before delineation and takes what they bound; here
-//! labelling proposes borders itself, so new lines are what came of it.
-
-use std::collections::BTreeMap;
+//! labelling proposes the borders itself, and new lines follow from its result.
 
 use nalgebra::{Matrix3, Point3};
 
+use super::model_edges::{ModelEdge, model_edges};
 use crate::geometry::{Segment2, Segment3};
-use crate::ids::FacetId;
-use crate::ids::ViewId;
-use crate::lines2d::SegmentKind;
-use crate::lines2d::{GuidedEdge, measure_edge};
+use crate::ids::{FacetId, LineId, ViewId};
+use crate::lines2d::{GuidedEdge, SegmentKind, measure_edge};
 use crate::lines3d::{
-    Line3d, LineFit, LineOrigin, Observation, PlaneConstraint, ProjectedLine, fit_line_on,
+    PlaneConstraint, Line3d, LineFit, LineOrigin, LineSupport, Observation, ProjectedLine, SupportKind,
+    fit_line_on,
 };
-use crate::lines3d::{LineSupport, SupportKind};
 use crate::model::{Facet, Occluders, RoofModel};
-use crate::params::Lines3dParams;
-use crate::params::MatchParams;
+use crate::params::{Lines3dParams, MatchParams};
 use crate::scene::Scene;
 
 /// Least number of views that must show a border, and their least share of those that can see it.
 /// Measured on suburb, detached and campus-drone: with five or six views 4 of 18 that three showed
 /// were no edges, of those that more showed 2 of 212.
 const MIN_VIEWS: usize = 3;
-const LEAST_SHARE: [usize; 2] = [2, 3];
+const MIN_VIEW_SHARE: [usize; 2] = [2, 3];
 /// A matched line explains an edge from which it is no farther, ground pixels.
 const EXPLAINED_PX: f64 = 2.5;
 /// ... to which it is parallel: cosine of 3 degrees.
 const PARALLEL: f64 = 0.998_629_534_754_573_9;
 /// A measured line farther from the edge of the model is another one, ground pixels.
 const SAME_EDGE_PX: f64 = 2.5;
-/// Facets whose heights differ by less at a common corner meet there, metres.
-const MEET_M: f64 = 0.02;
 
 /// The edges of the model, or the parts of them, that no line explains: measured again in all
 /// views, and intersections of planes also without.
@@ -51,7 +45,7 @@ pub fn new_lines(
     matching: &MatchParams,
     fitting: &Lines3dParams,
 ) -> Vec<Line3d> {
-    let context = Context {
+    let search = NewLineSearch {
         scene,
         lines,
         model,
@@ -60,28 +54,12 @@ pub fn new_lines(
         occluders: Occluders::new(&model.facets),
     };
     let edges = model_edges(&model.facets);
-    let found = crate::execution::map(&edges, |_, edge| context.new_lines_of(edge));
+    let found = crate::execution::map(&edges, |_, edge| search.new_lines_of(edge));
     found.into_iter().flatten().collect()
 }
 
-/// A straight edge of the model.
-struct ModelEdge {
-    segment: Segment3,
-    /// The facet on its left, and the one that it meets on the right.
-    facets: Vec<FacetId>,
-}
-
-impl ModelEdge {
-    fn origin(&self) -> LineOrigin {
-        match self.facets.len() {
-            2 => LineOrigin::Intersection,
-            _ => LineOrigin::Border,
-        }
-    }
-}
-
-/// How a view may show an edge: the kind of step, and whether it is bright on the other side.
-const WAYS: [(SegmentKind, bool); 4] = [
+/// The polarities of an edge in a view: the channel, and whether the contrast is reversed.
+const EDGE_POLARITIES: [(SegmentKind, bool); 4] = [
     (SegmentKind::Edge, false),
     (SegmentKind::Edge, true),
     (SegmentKind::Color, false),
@@ -89,21 +67,26 @@ const WAYS: [(SegmentKind, bool); 4] = [
 ];
 
 /// An edge that a view shows.
-struct Shown {
-    /// In which of [`WAYS`].
-    ways: [bool; WAYS.len()],
-    /// In that which has most of it.
+struct EdgeInView {
+    /// Which of [`EDGE_POLARITIES`] the view shows.
+    polarities: [bool; EDGE_POLARITIES.len()],
+    /// The edge in the polarity that shows most of it.
     edge: GuidedEdge,
 }
 
-/// Do enough views show an edge in the same way? Two strips may see two sides of an eave, but each
-/// of them sees one; where rows of texture line up by chance, any view shows any side.
-fn is_alike(shown: &[Shown]) -> bool {
-    let alike = |way: usize| shown.iter().filter(|s| s.ways[way]).count();
-    (0..WAYS.len()).any(|way| alike(way) >= MIN_VIEWS)
+/// Do enough views show an edge with the same polarity? Two strips may see the two sides of an
+/// eave, each strip one; chance alignments of texture have any polarity in any view.
+fn agree_in_polarity(edges_in_views: &[EdgeInView]) -> bool {
+    let alike = |polarity: usize| {
+        edges_in_views
+            .iter()
+            .filter(|s| s.polarities[polarity])
+            .count()
+    };
+    (0..EDGE_POLARITIES.len()).any(|polarity| alike(polarity) >= MIN_VIEWS)
 }
 
-struct Context<'a> {
+struct NewLineSearch<'a> {
     scene: &'a Scene,
     lines: &'a [Line3d],
     model: &'a RoofModel,
@@ -112,7 +95,7 @@ struct Context<'a> {
     occluders: Occluders<'a>,
 }
 
-impl Context<'_> {
+impl NewLineSearch<'_> {
     fn new_lines_of(&self, edge: &ModelEdge) -> Vec<Line3d> {
         let Some(pixel_m) = self.ground_pixel(&edge.segment.at(0.5)) else {
             return Vec::new();
@@ -134,8 +117,7 @@ impl Context<'_> {
         seeing.map(|c| c.ground_pixel(p)).min_by(f64::total_cmp)
     }
 
-    /// The parts of an edge, not shorter than a match must be, along which no line runs that
-    /// stands.
+    /// The parts of an edge, not shorter than a match must be, along which no standing line runs.
     fn unexplained(&self, edge: &Segment3, pixel_m: f64) -> Vec<Segment3> {
         let least = self.matching.min_edgels as f64 * pixel_m;
         let beside: Vec<&Segment3> = Line3d::standing(self.lines)
@@ -165,7 +147,7 @@ impl Context<'_> {
     }
 
     /// How many views must show the edge.
-    fn least_views(&self, part: &Segment3) -> usize {
+    fn required_views(&self, part: &Segment3) -> usize {
         let middle = part.at(0.5);
         let sees = |view: &ViewId| {
             let camera = self.scene.camera(*view);
@@ -175,25 +157,24 @@ impl Context<'_> {
             inside && !self.occluders.hide(&middle, &camera.center)
         };
         let seeing = self.scene.view_ids().filter(sees).count();
-        let [share, of] = LEAST_SHARE;
+        let [share, of] = MIN_VIEW_SHARE;
         (share * seeing).div_ceil(of).max(MIN_VIEWS)
     }
 
-    /// The line through what the views show along the edge, by themselves or, where they do not
-    /// determine it, in the planes of the facets that it bounds; `None` where too few agree on one.
+    /// The line fitted to the edges in the views or, where these do not determine it, to them and
+    /// the planes of the facets that it bounds; `None` where too few views agree on one.
     fn measured(&self, edge: &ModelEdge, part: &Segment3, pixel_m: f64) -> Option<Line3d> {
         let views = self.scene.view_ids();
-        let shown: Vec<Shown> = views.filter_map(|v| self.measure(part, v)).collect();
-        (self.few_views() || is_alike(&shown)).then_some(())?;
-        let edges: Vec<GuidedEdge> = shown.into_iter().map(|s| s.edge).collect();
-        let least = self.least_views(part);
-        let fit =
-            |carriers: &[PlaneConstraint]| self.fit(edges.clone(), least, carriers, part, pixel_m);
+        let edges_in_views: Vec<EdgeInView> = views.filter_map(|v| self.measure(part, v)).collect();
+        (self.needs_every_view() || agree_in_polarity(&edges_in_views)).then_some(())?;
+        let edges: Vec<GuidedEdge> = edges_in_views.into_iter().map(|s| s.edge).collect();
+        let least = self.required_views(part);
+        let fit = |carriers: &[PlaneConstraint]| self.fit(edges.clone(), least, carriers, part, pixel_m);
         fit(&[]).or_else(|| fit(&self.carriers(edge)?))
     }
 
-    /// Is every view needed, however it shows an edge?
-    fn few_views(&self) -> bool {
+    /// Are there so few views that each is needed, whatever its polarity?
+    fn needs_every_view(&self) -> bool {
         self.scene.views.len() <= self.matching.min_views
     }
 
@@ -232,9 +213,9 @@ impl Context<'_> {
         };
         let sigma_m = fit.sigma_at(0.0).max(fit.sigma_at(1.0));
         let moved = distance(&fit.line, &part.p0).max(distance(&fit.line, &part.p1));
-        let is_it =
+        let is_same_edge =
             moved <= SAME_EDGE_PX * pixel_m && sigma_m <= self.fitting.max_sigma_px * pixel_m;
-        is_it.then(|| self.line(&fit, part, sigma_m, &edges))
+        is_same_edge.then(|| self.line(&fit, part, sigma_m, &edges))
     }
 
     fn observations(&self, edges: &[GuidedEdge]) -> Vec<Observation<'_>> {
@@ -242,24 +223,27 @@ impl Context<'_> {
         edges.iter().map(observe).collect()
     }
 
-    /// What a view shows along the image of `part`.
-    fn measure(&self, part: &Segment3, view: ViewId) -> Option<Shown> {
+    /// The edge of a view along the image of `part`.
+    fn measure(&self, part: &Segment3, view: ViewId) -> Option<EdgeInView> {
         let seen = self.scene.view(view);
         let image = ProjectedLine::new(&seen.camera, part)?;
         let expected = Segment2::new(image.at(0.0)?, image.at(part.length())?);
         let core = [0.0, expected.length()];
-        let mut ways = [false; WAYS.len()];
+        let mut polarities = [false; EDGE_POLARITIES.len()];
         let mut most: Option<GuidedEdge> = None;
-        for (way, (kind, against)) in ways.iter_mut().zip(WAYS) {
+        for (polarity, (kind, against)) in polarities.iter_mut().zip(EDGE_POLARITIES) {
             let channel = seen.channel(kind.channel());
             let found = measure_edge(view, channel, kind, &expected, core, against);
-            *way = found.is_some();
+            *polarity = found.is_some();
             let pieces = |edge: &Option<GuidedEdge>| edge.as_ref().map_or(0, |e| e.pieces.len());
             if pieces(&found) > pieces(&most) {
                 most = found;
             }
         }
-        Some(Shown { ways, edge: most? })
+        Some(EdgeInView {
+            polarities,
+            edge: most?,
+        })
     }
 
     fn line(&self, fit: &LineFit, part: &Segment3, sigma_m: f64, edges: &[GuidedEdge]) -> Line3d {
@@ -286,8 +270,8 @@ impl Context<'_> {
         }
     }
 
-    /// The intersection of the two planes beside an edge, as certain as the lines in them and the
-    /// angle between them let it be.
+    /// The intersection of the two planes beside an edge, with a standard deviation propagated from
+    /// the lines in them and the angle between them.
     fn intersection(&self, edge: &ModelEdge, part: &Segment3) -> Option<Line3d> {
         let [first, second] = edge.facets[..] else {
             return None;
@@ -312,7 +296,7 @@ impl Context<'_> {
 
     /// Median standard deviation of the lines in a facet, metres.
     fn typical_sigma(&self, facet: &Facet) -> Option<f64> {
-        let of_line = |l: &crate::ids::LineId| self.lines.get(l.index()).map(|l| l.sigma_m);
+        let of_line = |l: &LineId| self.lines.get(l.index()).map(|l| l.sigma_m);
         let mut sigmas: Vec<f64> = facet.lines.iter().filter_map(of_line).collect();
         crate::math::median(&mut sigmas)
     }
@@ -325,116 +309,10 @@ fn distance(stretch: &Segment3, p: &Point3<f64>) -> f64 {
     (p - (stretch.p0 + stretch.direction() * t)).norm()
 }
 
-/// Sides of all facets: collinear ones in a row are one edge, what two facets share is listed once,
-/// and the feet of walls (a higher facet has the same side) are left out.
-fn model_edges(facets: &[Facet]) -> Vec<ModelEdge> {
-    let beyond = Beyond::new(facets);
-    let mut edges = Vec::new();
-    for (f, facet) in facets.iter().enumerate() {
-        let id = FacetId::from_index(f);
-        for ring in [&facet.outer].into_iter().chain(&facet.holes) {
-            for (side, beyond) in straight_sides(ring, |a, b| beyond.of(id, a, b)) {
-                let facets = match beyond {
-                    Neighbour::None | Neighbour::Lower => vec![id],
-                    Neighbour::Meets(other) if id < other => vec![id, other],
-                    Neighbour::Meets(_) | Neighbour::Higher => continue,
-                };
-                edges.push(ModelEdge {
-                    segment: side,
-                    facets,
-                });
-            }
-        }
-    }
-    edges
-}
-
-/// What lies on the right of a side.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Neighbour {
-    None,
-    Lower,
-    Higher,
-    Meets(FacetId),
-}
-
-/// The sides of a ring with what is beyond them, collinear ones with the same neighbour joined.
-fn straight_sides(
-    ring: &[Point3<f64>],
-    beyond: impl Fn(&Point3<f64>, &Point3<f64>) -> Neighbour,
-) -> Vec<(Segment3, Neighbour)> {
-    let n = ring.len();
-    let sides: Vec<(Segment3, Neighbour)> = (0..n)
-        .map(|i| (&ring[i], &ring[(i + 1) % n]))
-        .filter(|(a, b)| (*b - *a).norm() > 1e-6)
-        .map(|(a, b)| (Segment3::new(*a, *b), beyond(a, b)))
-        .collect();
-    let goes_on = |a: &(Segment3, Neighbour), b: &(Segment3, Neighbour)| {
-        a.1 == b.1 && a.0.direction().dot(&b.0.direction()) > 1.0 - 1e-6
-    };
-    // From a corner on, so that no side is cut where the ring happens to begin.
-    let count = sides.len();
-    let corner = (0..count).find(|&i| !goes_on(&sides[(i + count - 1) % count.max(1)], &sides[i]));
-    let mut joined: Vec<(Segment3, Neighbour)> = Vec::new();
-    for k in 0..count {
-        let side = sides[(corner.unwrap_or(0) + k) % count];
-        match joined.last_mut() {
-            Some(last) if goes_on(last, &side) => last.0 = Segment3::new(last.0.p0, side.0.p1),
-            _ => joined.push(side),
-        }
-    }
-    joined
-}
-
-/// Bits of two plan positions: facets of one building share corners exactly.
-type Side = [u64; 4];
-
-/// Which facets have a side, and at which heights.
-struct Beyond {
-    sides: BTreeMap<Side, Vec<(FacetId, [f64; 2])>>,
-}
-
-impl Beyond {
-    fn new(facets: &[Facet]) -> Self {
-        let mut sides: BTreeMap<Side, Vec<(FacetId, [f64; 2])>> = BTreeMap::new();
-        for (f, facet) in facets.iter().enumerate() {
-            for ring in [&facet.outer].into_iter().chain(&facet.holes) {
-                for (i, a) in ring.iter().enumerate() {
-                    let b = &ring[(i + 1) % ring.len()];
-                    let owner = (FacetId::from_index(f), [a.z, b.z]);
-                    sides.entry(key(a, b)).or_default().push(owner);
-                }
-            }
-        }
-        Self { sides }
-    }
-
-    /// What is on the other side of a side of `facet`.
-    fn of(&self, facet: FacetId, a: &Point3<f64>, b: &Point3<f64>) -> Neighbour {
-        let reversed = self.sides.get(&key(b, a)).into_iter().flatten();
-        let Some((other, [zb, za])) = reversed.copied().find(|(f, _)| *f != facet) else {
-            return Neighbour::None;
-        };
-        let (da, db) = (za - a.z, zb - b.z);
-        if da.abs() < MEET_M && db.abs() < MEET_M {
-            Neighbour::Meets(other)
-        } else if da + db > 0.0 {
-            Neighbour::Higher
-        } else {
-            Neighbour::Lower
-        }
-    }
-}
-
-fn key(a: &Point3<f64>, b: &Point3<f64>) -> Side {
-    [a.x, a.y, b.x, b.y].map(f64::to_bits)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::ids::BuildingId;
-    use crate::ids::LineId;
     use crate::lines3d::Refutation;
     use crate::synthetic::{SyntheticTruth, hip_scene};
     use nalgebra::{Matrix2, Point2};
@@ -516,10 +394,10 @@ mod tests {
     }
 
     #[test]
-    fn three_views_must_show_a_border_in_the_same_way() {
-        let shown = |ways: &[&[usize]]| {
-            let view = |(view, ways): (usize, &&[usize])| Shown {
-                ways: [0, 1, 2, 3].map(|way| ways.contains(&way)),
+    fn three_views_must_show_a_border_with_the_same_polarity() {
+        let edges_in_views = |polarities: &[&[usize]]| {
+            let view = |(view, polarities): (usize, &&[usize])| EdgeInView {
+                polarities: [0, 1, 2, 3].map(|polarity| polarities.contains(&polarity)),
                 edge: GuidedEdge {
                     view: ViewId(view as u32),
                     kind: SegmentKind::Edge,
@@ -528,14 +406,14 @@ mod tests {
                     pieces: Vec::new(),
                 },
             };
-            is_alike(&ways.iter().enumerate().map(view).collect::<Vec<_>>())
+            agree_in_polarity(&polarities.iter().enumerate().map(view).collect::<Vec<_>>())
         };
-        assert!(shown(&[&[0], &[0], &[0], &[1]]));
+        assert!(edges_in_views(&[&[0], &[0], &[0], &[1]]));
         assert!(
-            !shown(&[&[0], &[0], &[1], &[1], &[2], &[3]]),
+            !edges_in_views(&[&[0], &[0], &[1], &[1], &[2], &[3]]),
             "any side in any view"
         );
-        assert!(shown(&[&[0, 2], &[1, 2], &[2]]), "in colour");
+        assert!(edges_in_views(&[&[0, 2], &[1, 2], &[2]]), "in colour");
     }
 
     #[test]
@@ -545,7 +423,7 @@ mod tests {
             view.gray.data.fill(0.5);
             view.red_blue = None;
         }
-        // A line far away, to which the facets owe their certainty.
+        // A line far away, to which the facets owe their image_evidence.
         let far = known(Segment3::new(
             Point3::new(90.0, 90.0, 0.0),
             Point3::new(95.0, 90.0, 0.0),
@@ -613,39 +491,5 @@ mod tests {
         };
         assert_eq!([0, 2].map(borders), [truth.edges.len(); 2]);
         assert_eq!(borders(3), 0, "three of six");
-    }
-
-    #[test]
-    fn of_two_roofs_side_by_side_the_higher_one_has_the_edge() {
-        let flat = |x0: f64, x1: f64, z: f64| {
-            let corners = [(x0, 0.0), (x1, 0.0), (x1, 6.0), (x0, 6.0)];
-            Facet {
-                building: BuildingId(0),
-                plane: crate::geometry::Plane {
-                    normal: nalgebra::Vector3::z(),
-                    d: -z,
-                },
-                outer: corners.map(|(x, y)| Point3::new(x, y, z)).to_vec(),
-                holes: Vec::new(),
-                similarity: 1.0,
-                real_ratio: 1.0,
-                lines: Vec::new(),
-                half_planes: Vec::new(),
-                rectangles: Vec::new(),
-            }
-        };
-        let edges = model_edges(&[flat(0.0, 4.0, 5.0), flat(4.0, 9.0, 8.0)]);
-        // Three sides of the lower roof, four of the higher one; where they touch, the higher one's
-        // alone.
-        assert_eq!(edges.len(), 7);
-        let between = |e: &&ModelEdge| e.segment.p0.x == 4.0 && e.segment.p1.x == 4.0;
-        let shared: Vec<&ModelEdge> = edges.iter().filter(between).collect();
-        assert_eq!(shared.len(), 1);
-        assert_eq!(shared[0].facets, [FacetId(1)]);
-        // At one height they meet, and the edge is listed once with both.
-        let edges = model_edges(&[flat(0.0, 4.0, 5.0), flat(4.0, 9.0, 5.0)]);
-        let shared: Vec<&ModelEdge> = edges.iter().filter(between).collect();
-        assert_eq!(shared.len(), 1);
-        assert_eq!(shared[0].facets, [FacetId(0), FacetId(1)]);
     }
 }

@@ -1,4 +1,4 @@
-//! The surfaces of the finished model, and what of a line lies on them.
+//! The surfaces of the finished model, and the share of a line that lies on them.
 
 use nalgebra::{Point2, Point3, Vector2};
 
@@ -9,8 +9,7 @@ use crate::terrain::Ground;
 /// A line lies on a surface that is no farther than this from it, metres, in plan and, besides its
 /// standard deviation, in height.
 const NEAR_M: f64 = 0.25;
-/// Distance of the places at which a stretch is looked at, metres, and their least and greatest
-/// number.
+/// Spacing of the samples along a stretch, metres, and their least and greatest number.
 const STEP_M: f64 = 0.3;
 const PLACES: [usize; 2] = [5, 64];
 
@@ -22,7 +21,7 @@ pub struct Surfaces<'a> {
 }
 
 impl<'a> Surfaces<'a> {
-    /// Those of a model.
+    /// The surfaces of a model.
     pub fn new(facets: &'a [Facet], ground: &'a Ground) -> Self {
         Self {
             roofs: Occluders::new(facets),
@@ -40,7 +39,7 @@ impl<'a> Surfaces<'a> {
             (0.0, NEAR_M),
             (0.0, -NEAR_M),
         ];
-        share(line, [0.0, 1.0], |p| {
+        share_where(line, [0.0, 1.0], |p| {
             // Walls fill what is between the highest and the lowest surface.
             let tops = beside.map(|(x, y)| self.top_at(&(p.xy() + Vector2::new(x, y))));
             let [low, high] = [f64::min, f64::max].map(|f| tops.into_iter().fold(tops[0], f));
@@ -55,13 +54,17 @@ impl<'a> Surfaces<'a> {
     }
 }
 
-/// The share of a stretch of a line, between two places from 0 to 1, that is as asked.
-pub fn share(line: &Line3d, [from, to]: [f64; 2], is: impl Fn(&Point3<f64>) -> bool) -> f64 {
+/// The share of a stretch of a line, between two fractions of its length, where a condition holds.
+pub fn share_where(
+    line: &Line3d,
+    [from, to]: [f64; 2],
+    condition: impl Fn(&Point3<f64>) -> bool,
+) -> f64 {
     let metres = (to - from).abs() * line.segment.length();
     let count = ((metres / STEP_M) as usize).clamp(PLACES[0], PLACES[1]);
     let place = |i: usize| line.at(from + (to - from) * (i as f64 + 0.5) / count as f64);
-    let such = (0..count).filter(|&i| is(&place(i))).count();
-    such as f64 / count as f64
+    let fulfilled = (0..count).filter(|&i| condition(&place(i))).count();
+    fulfilled as f64 / count as f64
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The least-squares adjustment of a wireframe (Levenberg-Marquardt).
 //!
 //! ```text
-//! cost(x) = sum rho(|W (offset, angle)|^2)      sightings: measured edge against the image of its side
+//! cost(x) = sum rho(|W (offset, angle)|^2)      measured edges against the images of their sides
 //!         + sum ((x - x0) / sigma)^2            prior: the solution that delineation left
 //!         + sum (constraint / sigma)^2          meets, straights, adopted relations
 //! ```
@@ -12,10 +12,11 @@
 
 use nalgebra::{DVector, Point2};
 
+use super::edge_observations::EdgeObservation;
 use super::envelope::{Envelope, Pattern};
 use super::relations::Relation;
-use super::sightings::Sighting;
-use super::wireframe::{Meet, State, Straight, Wireframe};
+use super::wireframe::{Meet, Straight, Wireframe, WireframeState};
+use crate::geometry::Segment2;
 use crate::math;
 use crate::params::RefineParams;
 use crate::scene::Scene;
@@ -34,7 +35,7 @@ const MAX_ITERATIONS: usize = 20;
 #[derive(Clone, Debug)]
 pub enum Term {
     /// A measured edge: two residuals, robust.
-    Sighting(Sighting),
+    Edge(EdgeObservation),
     /// The present position of a vertex: two residuals.
     Position {
         /// The vertex.
@@ -64,7 +65,7 @@ pub enum Term {
 }
 
 /// A least-squares problem.
-pub struct Problem<'a> {
+pub struct AdjustmentProblem<'a> {
     /// The views.
     pub scene: &'a Scene,
     /// The wireframe.
@@ -78,7 +79,7 @@ pub struct Problem<'a> {
 /// A solved problem.
 pub struct Solution<'p> {
     /// The adjusted state.
-    pub state: State,
+    pub state: WireframeState,
     /// Cholesky factor of the normal matrix.
     factor: Envelope<'p>,
     /// By how much the residuals scatter more than they should.
@@ -92,19 +93,19 @@ impl Solution<'_> {
     }
 }
 
-struct Normal<'p> {
+struct NormalEquations<'p> {
     matrix: Envelope<'p>,
     gradient: DVector<f64>,
     cost: f64,
 }
 
-impl<'a> Problem<'a> {
+impl<'a> AdjustmentProblem<'a> {
     /// Sightings, the prior of vertices, and what must hold; heights are added by the caller.
     pub fn new(
         scene: &'a Scene,
         wireframe: &'a Wireframe,
-        state: &State,
-        sightings: Vec<Sighting>,
+        state: &WireframeState,
+        observations: Vec<EdgeObservation>,
         params: &RefineParams,
     ) -> Self {
         let positions = (0..wireframe.vertices).map(|vertex| Term::Position {
@@ -112,7 +113,7 @@ impl<'a> Problem<'a> {
             at: wireframe.position(state, vertex),
             sigma_m: params.vertex_sigma_m,
         });
-        let terms = (sightings.into_iter().map(Term::Sighting))
+        let terms = (observations.into_iter().map(Term::Edge))
             .chain(positions)
             .chain(wireframe.meets.iter().map(|m| Term::Meet(*m)))
             .chain(wireframe.straights.iter().map(|s| Term::Straight(*s)))
@@ -132,7 +133,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Solves from a state; `None` when the normal equations are singular.
-    pub fn solve<'p>(&self, start: &State, pattern: &'p Pattern) -> Option<Solution<'p>> {
+    pub fn solve<'p>(&self, start: &WireframeState, pattern: &'p Pattern) -> Option<Solution<'p>> {
         let mut state = start.clone();
         let mut normal = self.normal(&state, pattern)?;
         let mut damping = 1e-6;
@@ -155,7 +156,7 @@ impl<'a> Problem<'a> {
             }
         }
         // Residuals that scatter more than they should make the solution less certain.
-        let redundancy = (2 * self.sightings()) as f64;
+        let redundancy = (2 * self.observations()) as f64;
         let scatter = ((normal.cost + SCATTER_PRIOR) / (redundancy + SCATTER_PRIOR)).max(1.0);
         let factor = normal.matrix.cholesky()?;
         Some(Solution {
@@ -166,15 +167,19 @@ impl<'a> Problem<'a> {
     }
 
     /// Number of measured edges.
-    pub fn sightings(&self) -> usize {
-        let sighting = |t: &&Term| matches!(t, Term::Sighting(_));
-        self.terms.iter().filter(sighting).count()
+    pub fn observations(&self) -> usize {
+        let observation = |t: &&Term| matches!(t, Term::Edge(_));
+        self.terms.iter().filter(observation).count()
     }
 
     /// The normal equations at a state, with robust weights; `None` where a side is behind a
     /// camera.
-    fn normal<'p>(&self, state: &State, pattern: &'p Pattern) -> Option<Normal<'p>> {
-        let mut normal = Normal {
+    fn normal<'p>(
+        &self,
+        state: &WireframeState,
+        pattern: &'p Pattern,
+    ) -> Option<NormalEquations<'p>> {
+        let mut normal = NormalEquations {
             matrix: pattern.zeros(),
             gradient: DVector::zeros(state.len()),
             cost: 0.0,
@@ -184,7 +189,7 @@ impl<'a> Problem<'a> {
             let [r0, r1] = self.residual(term, state)?;
             let square = r0 * r0 + r1 * r1;
             let k2 = self.loss * self.loss;
-            let weight = if matches!(term, Term::Sighting(_)) {
+            let weight = if matches!(term, Term::Edge(_)) {
                 normal.cost += k2 * math::ln(1.0 + square / k2);
                 1.0 / (1.0 + square / k2)
             } else {
@@ -214,10 +219,10 @@ impl<'a> Problem<'a> {
     }
 
     /// Weighted residuals of a term; the second is 0 where there is one only.
-    fn residual(&self, term: &Term, state: &State) -> Option<[f64; 2]> {
+    fn residual(&self, term: &Term, state: &WireframeState) -> Option<[f64; 2]> {
         let w = self.wireframe;
         Some(match term {
-            Term::Sighting(s) => {
+            Term::Edge(s) => {
                 let [e0, e1] = self.distances(s, state)?;
                 let r = s.whitening
                     * nalgebra::Vector2::new(0.5 * (e0 + e1), (e1 - e0) / s.segment.length());
@@ -253,22 +258,25 @@ impl<'a> Problem<'a> {
     }
 
     /// Signed distances (px) of a measured edge's ends from the image of its side.
-    pub fn distances(&self, sighting: &Sighting, state: &State) -> Option<[f64; 2]> {
-        let side = &self.wireframe.sides[sighting.side];
+    pub fn distances(
+        &self,
+        observation: &EdgeObservation,
+        state: &WireframeState,
+    ) -> Option<[f64; 2]> {
+        let side = &self.wireframe.sides[observation.side];
         let line = self.wireframe.segment(state, side);
-        let camera = self.scene.camera(sighting.view);
-        let image =
-            crate::geometry::Segment2::new(camera.project(&line.p0)?, camera.project(&line.p1)?);
+        let camera = self.scene.camera(observation.view);
+        let image = Segment2::new(camera.project(&line.p0)?, camera.project(&line.p1)?);
         let l = image.line();
-        Some([sighting.segment.p0, sighting.segment.p1].map(|p| l.x * p.x + l.y * p.y + l.z))
+        Some([observation.segment.p0, observation.segment.p1].map(|p| l.x * p.x + l.y * p.y + l.z))
     }
 
     /// Root mean square distance (px) of the measured edges from their sides. Distances beyond
     /// `cap_px` count as that much: these views show another edge.
-    pub fn error_px(&self, state: &State, cap_px: f64) -> f64 {
+    pub fn error_px(&self, state: &WireframeState, cap_px: f64) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0f64);
         for term in &self.terms {
-            let Term::Sighting(s) = term else { continue };
+            let Term::Edge(s) = term else { continue };
             for e in self.distances(s, state).unwrap_or([cap_px; 2]) {
                 let e = e.abs().min(cap_px);
                 sum += e * e;
@@ -283,7 +291,7 @@ impl<'a> Problem<'a> {
         let vertex = |v: usize| [2 * v, 2 * v + 1];
         let plane = |f: usize| [0, 1, 2].map(|k| w.plane_at(f) + k);
         match term {
-            Term::Sighting(s) => w.unknowns(&w.sides[s.side]),
+            Term::Edge(s) => w.unknowns(&w.sides[s.side]),
             Term::Position { vertex: v, .. } => vertex(*v).to_vec(),
             Term::Height { face, .. } => plane(*face).to_vec(),
             Term::Meet(m) => {

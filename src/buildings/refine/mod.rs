@@ -3,81 +3,66 @@
 //! the reprojection error of the wireframe).
 //!
 //! ```text
-//! building -> wireframe -> edges of its sides in every view -> adjustment (free)
-//!          -> relations that the covariance allows -> adjustment (with them) -> tests -> building
+//! gaps               facets cut back where delineation closed a gap to a wall
+//! outline            simpler outlines: short sides between long ones go
+//! wireframe          vertices, planes and sides of a building
+//! profiles           rows of grey values along a side, from inside to outside
+//! edge_observations  sides -> image edges in every view
+//! envelope           sparse Cholesky factorisation
+//! relations          parallel, perpendicular, horizontal, symmetric: proposals
+//! adjust             least squares of a wireframe, first without relations
+//! relation_tests     relations that the covariance allows, for the second adjustment
+//! acceptance         tests of the adjusted building
+//! rejection          why a building is not adjusted
 //! ```
 //!
-//! Delineation puts borders where lines were found or where correlation ends; the first are
-//! averages of what matching kept, the second lie off by half a window. Here every side is measured
-//! again, in every view that sees it, and all of a building's sides, planes and corners move
+//! Delineation puts borders where lines were found or where correlation ends. The first are
+//! averages of what matching kept, the second are off by half a window. Here every side is measured
+//! again, in every view that sees it, and all sides, planes and corners of a building move
 //! together.
 //!
-//! A building is adjusted if the new shape has the smaller reprojection error, is a closed solid
-//! without a broken invariant, and the views agree inside its facets as well as before. Otherwise
-//! it keeps its planes; simpler outlines ([`outline`]) on them pass the last two tests by
-//! themselves.
+//! Invariant: an adjusted building has the smaller reprojection error, is a closed solid without a
+//! broken invariant, and its views agree inside the facets as well as before. Otherwise it keeps
+//! its planes; simpler outlines ([`outline`]) on them have to pass the last two tests as well.
+//! Invariant: the result has as many facets as the model, in the same order.
 
-mod accept;
+mod acceptance;
 mod adjust;
+mod edge_observations;
 mod envelope;
 #[cfg(test)]
 pub(super) mod fixture;
+mod gaps;
 mod outline;
-mod parting;
 mod profiles;
+mod rejection;
+mod relation_tests;
 mod relations;
-mod sightings;
 mod wireframe;
 
 #[cfg(test)]
 pub(crate) use fixture::gable;
-pub use parting::{Parting, part_roofs};
-pub use relations::{RelationKind, TestedRelation};
+pub use gaps::{RoofGap, cut_back_at_gaps};
+pub use rejection::RefineRejection;
+pub use relation_tests::TestedRelation;
+pub use relations::RelationKind;
 pub use wireframe::SideKind;
 
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use self::accept::Judge;
-use self::adjust::{Problem, Solution, Term};
-use self::sightings::{Sighting, sight_sides};
-use self::wireframe::{State, Wireframe};
+use self::acceptance::AcceptanceTest;
+use self::adjust::{AdjustmentProblem, Solution, Term};
+use self::edge_observations::{EdgeObservation, measure_sides};
+use self::relation_tests::adopt_relations;
+use self::wireframe::{Wireframe, WireframeState};
 use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
 use crate::model::{Building, Facet, Occluders, RoofModel};
 use crate::params::RefineParams;
 use crate::scene::Scene;
 
-/// Why a building is not adjusted.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case", tag = "reason")]
-pub enum RefineRefusal {
-    /// More unknowns than are adjusted at once.
-    TooLarge {
-        /// Number of unknowns.
-        unknowns: usize,
-    },
-    /// Too few of its sides show in the images.
-    FewSightings {
-        /// Measured edges.
-        sightings: usize,
-    },
-    /// The adjustment has no solution.
-    Singular,
-    /// The reprojection error does not fall.
-    NoGain,
-    /// The new outlines fold, cross, or do not close.
-    Broken,
-    /// The views agree less inside the new facets.
-    Dissimilar {
-        /// Mean correlation inside the facets before.
-        before: f64,
-        /// ... and after.
-        after: f64,
-    },
-}
-
-/// What happened to one building.
+/// The refinement of one building.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BuildingRefinement {
     /// The building.
@@ -94,11 +79,11 @@ pub struct BuildingRefinement {
     pub largest_move_m: f64,
     /// Relations that were tested.
     pub relations: Vec<TestedRelation>,
-    /// Why nothing of it was taken over but simpler outlines; `None` when it was.
-    pub refused: Option<RefineRefusal>,
+    /// Why the adjustment was rejected and at most outlines are simpler; `None` when it was not.
+    pub refused: Option<RefineRejection>,
 }
 
-/// What happened to every building.
+/// The refinement of every building.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RefineTrace {
     /// In the order of the model's buildings.
@@ -123,7 +108,7 @@ pub fn refine_roofs(
         let old: Vec<&Facet> = (building.facets.iter())
             .map(|f| &model.facets[f.index()])
             .collect();
-        let case = Case {
+        let refiner = BuildingRefiner {
             scene,
             lines,
             occluders: &occluders,
@@ -132,7 +117,7 @@ pub fn refine_roofs(
             params,
         };
         let mut report = BuildingRefinement::of(BuildingId::from_index(i));
-        let new = case.best(&mut report);
+        let new = refiner.refine(&mut report);
         (new, report)
     });
     for (building, (new, mut report)) in model.buildings.iter().zip(refined) {
@@ -150,7 +135,7 @@ pub fn refine_roofs(
 }
 
 impl BuildingRefinement {
-    /// Nothing done yet.
+    /// Before any step.
     fn of(building: BuildingId) -> Self {
         Self {
             building,
@@ -165,8 +150,8 @@ impl BuildingRefinement {
     }
 }
 
-/// A building to refine.
-struct Case<'a> {
+/// Refines one building.
+struct BuildingRefiner<'a> {
     scene: &'a Scene,
     lines: &'a [Line3d],
     occluders: &'a Occluders<'a>,
@@ -175,41 +160,41 @@ struct Case<'a> {
     params: &'a RefineParams,
 }
 
-impl Case<'_> {
-    /// The refined facets, or why there are none. Facets that spoil the result keep their outlines
-    /// and are measured near them only, and the others are tried again.
-    fn best(&self, report: &mut BuildingRefinement) -> Result<Vec<Facet>, RefineRefusal> {
+impl BuildingRefiner<'_> {
+    /// The refined facets, or why there are none. Facets that make the result unacceptable keep
+    /// their outlines and a small search range, and the others are adjusted again.
+    fn refine(&self, report: &mut BuildingRefinement) -> Result<Vec<Facet>, RefineRejection> {
         const ATTEMPTS: usize = 4;
         let (wireframe, state) = Wireframe::new(self.old);
         report.sides = wireframe.sides.len();
         if wireframe.size() > self.params.max_unknowns {
             let unknowns = wireframe.size();
-            return Err(RefineRefusal::TooLarge { unknowns });
+            return Err(RefineRejection::TooLarge { unknowns });
         }
         let simple = self.simplified(&wireframe, &state);
         let mut open = vec![true; self.old.len()];
         for attempt in 1.. {
-            let (refusal, spoilers) = match self.refined(&simple, &open, report) {
+            let (rejection, offending) = match self.refined(&simple, &open, report) {
                 Ok(new) => return Ok(new),
                 Err(why) => why,
             };
-            let hopeless = spoilers.iter().all(|&f| !open[f]);
-            if attempt == ATTEMPTS || hopeless {
-                report.refused = Some(refusal);
-                return self.unadjusted(simple).ok_or(refusal);
+            let exhausted = offending.iter().all(|&f| !open[f]);
+            if attempt == ATTEMPTS || exhausted {
+                report.refused = Some(rejection);
+                return self.simplified_only(simple).ok_or(rejection);
             }
-            // The last time all stay near.
+            // In the last attempt no side may move far.
             if attempt + 1 == ATTEMPTS {
                 open.fill(false);
             }
-            spoilers.into_iter().for_each(|f| open[f] = false);
+            offending.into_iter().for_each(|f| open[f] = false);
         }
         unreachable!("the last attempt returns")
     }
 
     /// The facets, each with the simpler outline where the images show at least the same share of
     /// it, and all straightened.
-    fn simplified(&self, wireframe: &Wireframe, state: &State) -> Vec<Facet> {
+    fn simplified(&self, wireframe: &Wireframe, state: &WireframeState) -> Vec<Facet> {
         let jog_m = self.params.jog_m;
         let facets = outline::simplified(self.old, jog_m);
         if facets.iter().eq(self.old.iter().copied()) {
@@ -217,9 +202,9 @@ impl Case<'_> {
         }
         let simple: Vec<&Facet> = facets.iter().collect();
         let far = vec![true; facets.len()];
-        let shown = |w: &Wireframe, state: &State| {
-            let sightings = self.sightings(w, state, &far);
-            w.shown(state, sightings.iter().map(|s| s.side))
+        let shown = |w: &Wireframe, state: &WireframeState| {
+            let observations = self.edge_observations(w, state, &far);
+            w.shown(state, observations.iter().map(|s| s.side))
         };
         let (simple_wireframe, simple_state) = Wireframe::new(&simple);
         let before = shown(wireframe, state);
@@ -236,34 +221,39 @@ impl Case<'_> {
         outline::straightened(&chosen, 0.5 * jog_m)
     }
 
-    fn sightings(&self, wireframe: &Wireframe, state: &State, search: &[bool]) -> Vec<Sighting> {
+    fn edge_observations(
+        &self,
+        wireframe: &Wireframe,
+        state: &WireframeState,
+        search: &[bool],
+    ) -> Vec<EdgeObservation> {
         let (scene, occluders, params) = (self.scene, self.occluders, self.params);
-        sight_sides(
+        measure_sides(
             scene, occluders, wireframe, state, search, self.lines, params,
         )
     }
 
     /// The simpler outlines on the old planes, of as many facets as the images and the building
     /// allow; `None` where none is left.
-    fn unadjusted(&self, mut new: Vec<Facet>) -> Option<Vec<Facet>> {
+    fn simplified_only(&self, mut new: Vec<Facet>) -> Option<Vec<Facet>> {
         let is_new = |new: &[Facet], i: usize| new[i] != *self.old[i];
         while (0..new.len()).any(|i| is_new(&new, i)) {
-            let Err((_, mut spoilers)) = self.judge().accept(new.clone()) else {
+            let Err((_, mut offending)) = self.acceptance_test().accept(new.clone()) else {
                 return Some(new);
             };
-            spoilers.retain(|&i| is_new(&new, i));
-            if spoilers.is_empty() {
+            offending.retain(|&i| is_new(&new, i));
+            if offending.is_empty() {
                 return None;
             }
-            for i in spoilers {
+            for i in offending {
                 new[i] = self.old[i].clone();
             }
         }
         None
     }
 
-    fn judge(&self) -> Judge<'_> {
-        Judge {
+    fn acceptance_test(&self) -> AcceptanceTest<'_> {
+        AcceptanceTest {
             scene: self.scene,
             old: self.old,
             ground_z: self.building.ground_z,
@@ -278,31 +268,33 @@ impl Case<'_> {
         simple: &[Facet],
         open: &[bool],
         report: &mut BuildingRefinement,
-    ) -> Result<Vec<Facet>, (RefineRefusal, Vec<usize>)> {
+    ) -> Result<Vec<Facet>, (RefineRejection, Vec<usize>)> {
         let params = self.params;
-        let give_up = |why| (why, Vec::new());
+        let rejected = |why| (why, Vec::new());
         let from: Vec<&Facet> = (0..open.len())
             .map(|i| if open[i] { &simple[i] } else { self.old[i] })
             .collect();
         let (wireframe, start) = Wireframe::new(&from);
         report.sides = wireframe.sides.len();
         let heights = height_terms(&wireframe, &start, &from, self.lines, params);
-        let problem = |state: &State, far: &[bool]| {
-            let sightings = self.sightings(&wireframe, state, far);
-            let mut problem = Problem::new(self.scene, &wireframe, &start, sightings, params);
+        let problem = |state: &WireframeState, far: &[bool]| {
+            let observations = self.edge_observations(&wireframe, state, far);
+            let mut problem =
+                AdjustmentProblem::new(self.scene, &wireframe, &start, observations, params);
             problem.terms.extend(heights.iter().cloned());
             problem
         };
-        // First to the edges that the views share near the sides, then measured again from there.
-        let singular = || give_up(RefineRefusal::Singular);
+        // First to the edges that stand out within the search range, then measured again from
+        // there.
+        let singular = || rejected(RefineRejection::Singular);
         let far = problem(&start, open);
         let pattern = far.pattern();
         let near = far.solve(&start, &pattern).ok_or_else(singular)?;
         let mut problem = problem(&near.state, &vec![false; open.len()]);
-        report.sightings = problem.sightings();
+        report.sightings = problem.observations();
         if report.sightings < params.min_sightings {
             let sightings = report.sightings;
-            return Err(give_up(RefineRefusal::FewSightings { sightings }));
+            return Err(rejected(RefineRejection::FewSightings { sightings }));
         }
         let pattern = problem.pattern();
         let free = problem.solve(&near.state, &pattern).ok_or_else(singular)?;
@@ -316,38 +308,41 @@ impl Case<'_> {
         report.largest_move_m = moves.fold(0.0, f64::max);
         // NaN fails the comparison.
         if report.error_after_px < report.error_before_px {
-            self.judge().accept(wireframe.facets(&regular, &from))
+            self.acceptance_test()
+                .accept(wireframe.facets(&regular, &from))
         } else {
-            Err(give_up(RefineRefusal::NoGain))
+            Err(rejected(RefineRejection::NoGain))
         }
     }
 }
 
 /// Solves once more with the relations that the free solution allows.
 fn regularised(
-    problem: &mut Problem,
+    problem: &mut AdjustmentProblem,
     free: &Solution,
     params: &RefineParams,
     tested: &mut Vec<TestedRelation>,
-) -> Option<State> {
+) -> Option<WireframeState> {
     let proposed = relations::propose(problem.wireframe, &free.state, params);
-    let (adopted, tests) = relations::adopt(problem.wireframe, free, &proposed, params);
+    let (adopted, tests) = adopt_relations(problem.wireframe, free, &proposed, params);
     *tested = tests;
-    let terms = adopted.into_iter().map(|r| Term::Relation(r, HELD_M));
+    let terms = adopted
+        .into_iter()
+        .map(|r| Term::Relation(r, ADOPTED_SIGMA_M));
     problem.terms.extend(terms);
     // Relations join unknowns that no image edge does.
     let solution = problem.solve(&free.state, &problem.pattern())?.state;
     Some(solution)
 }
 
-/// Standard deviation of an adopted relation, metres: it holds.
-const HELD_M: f64 = 1e-3;
+/// Standard deviation of an adopted relation, metres: small enough to make it hold.
+const ADOPTED_SIGMA_M: f64 = 1e-3;
 
-/// What the facets' lines say about their planes: heights at the ends of the lines, with the lines'
-/// covariance; and heights around each facet, loosely, so that no plane is free.
+/// Observations of the planes: heights at the ends of the facets' lines, with the covariance of the
+/// lines, and loose heights around each facet, so that no plane is undetermined.
 fn height_terms(
     wireframe: &Wireframe,
-    state: &State,
+    state: &WireframeState,
     facets: &[&Facet],
     lines: &[Line3d],
     params: &RefineParams,
@@ -466,13 +461,13 @@ mod tests {
     }
 
     #[test]
-    fn relations_are_adopted_where_true_and_refused_where_the_images_contradict() {
+    fn relations_are_adopted_where_true_and_rejected_where_the_images_contradict() {
         use RelationKind::{Horizontal, Parallel, Perpendicular, Symmetric};
         let (scene, truth) = gable_scene(320);
         let (refined, report) = refine(&scene, &changed(&truth, displaced));
         assert!(tested(&report, Perpendicular, true) > 0, "{report:#?}");
         assert!(report.relations.iter().all(|r| r.adopted), "{report:#?}");
-        // What was adopted holds: the ridge is level and both facets have one slope.
+        // The adopted relations hold: the ridge is level and both facets have one slope.
         let [f, g] = [0, 1].map(|i| refined.facets[i].plane.normal);
         assert!((f.z - g.z).abs() < 1e-3 && f.cross(&g).normalize().z.abs() < 1e-3);
 
@@ -497,7 +492,10 @@ mod tests {
         let (facets, trace) = refine_roofs(&scene, &[], &model, &RefineParams::default());
         assert_eq!(facets, model.facets);
         let refused = trace.buildings[0].refused;
-        assert_eq!(refused, Some(RefineRefusal::FewSightings { sightings: 0 }));
+        assert_eq!(
+            refused,
+            Some(RefineRejection::FewSightings { sightings: 0 })
+        );
     }
 
     #[test]

@@ -1,8 +1,9 @@
-//! Simpler outlines: short sides between long ones go where the images cannot tell them from noise.
+//! Simpler outlines: short sides between long ones go where they are below the resolution of the
+//! images.
 //!
 //! Delineation follows cells, and cells follow every line that was found: a gutter here, the eave
 //! there, a skylight or the shadow of a chimney at the border. Places nearer to each other than
-//! half a correlation window cannot be told apart by the agreement of the views, so a jog that
+//! half a correlation window cannot be separated by the agreement of the views, so a jog that
 //! short is no evidence of a corner. The outline without it is tried as well, and the images decide
 //! by the share of its sides that they show. Where corners lie to both sides of a straight way by
 //! less than half of that, the way is taken: eaves are straight, and what was found of one is a

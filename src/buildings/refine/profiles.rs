@@ -1,13 +1,13 @@
-//! What the views show across the side of a wireframe: rows of grey values along it, at steps from
-//! inside to outside.
+//! Profiles across the sides of a wireframe: rows of grey values along a side, at steps from inside
+//! to outside.
 //!
-//! On the roof the rows of all views agree; an edge of the roof stands still, and whatever lies on
-//! the ground or on a wall moves. How much that speaks for each step as the place of the side is
-//! put in the energy of the labelling.
+//! On the roof the rows of all views agree; an edge of the roof is at the same step in all views,
+//! and whatever lies on the ground or on a wall is displaced. The gain of each step as the place of
+//! the side is an energy in the terms of the labelling.
 
 use nalgebra::Vector2;
 
-use super::wireframe::{Side, State, Wireframe};
+use super::wireframe::{Wireframe, WireframeSide, WireframeState};
 use crate::geometry::Segment3;
 use crate::ids::ViewId;
 use crate::math;
@@ -20,13 +20,13 @@ use crate::scene::Scene;
 const BASE: usize = 2;
 /// Most places along a side at which the profile is sampled.
 const MAX_SAMPLES: usize = 96;
-/// Share of a side at either end that is not looked at: corners are where other edges begin.
+/// Share of a side that is left out at either end, because other edges begin at corners.
 pub(crate) const END_SHARE: f64 = 0.06;
 /// Least share of a side that a view must see.
 const MIN_SEEN: f64 = 0.5;
 
-/// What it is worth that a side lies at each step of its profile.
-pub(crate) struct Gains {
+/// Energy gained by moving a side to each step of its profile.
+pub(crate) struct ShiftGains {
     /// First step that is allowed, from the side.
     pub first: isize,
     /// For each step from there: the energy gained, square metres for the whole side.
@@ -36,9 +36,9 @@ pub(crate) struct Gains {
     pub edge: Vec<f64>,
 }
 
-/// What one view shows across a side, at steps from inside to outside; the middle one is at the
-/// side.
-pub(crate) struct Profile {
+/// The profile of one view across a side, at steps from inside to outside; the middle step is the
+/// side itself.
+pub(crate) struct SideProfile {
     /// The view.
     pub view: ViewId,
     /// Standard deviation of the noise of a grey value.
@@ -49,18 +49,17 @@ pub(crate) struct Profile {
     pub differences: Vec<f64>,
 }
 
-/// What it is worth to end a facet at a step before its side, in the energy of the labelling,
-/// square metres.
+/// Energy of the labelling gained by ending a facet at a step before its side, square metres.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Worth {
-    /// What is cut off does not agree, and a border there costs what it does.
-    pub ending: f64,
-    /// What agrees in the rest, as far as the profile reaches.
-    pub inside: f64,
+pub(crate) struct CutBackGain {
+    /// Gain: the views do not agree on what is cut off, less the cost of the border there.
+    pub energy_m2: f64,
+    /// Agreement of the views on what remains, as far as the profile reaches.
+    pub remaining_m2: f64,
 }
 
-/// What the views show across a side.
-pub(crate) struct Profiles {
+/// The profiles of all views across a side.
+pub(crate) struct SideProfiles {
     /// The side.
     pub segment: Segment3,
     /// Change in space for a metre of plan across the side, outwards, in the facet's plane.
@@ -68,15 +67,15 @@ pub(crate) struct Profiles {
     /// Size of a pixel on the side, metres.
     pixel_m: f64,
     /// The views that see enough of it.
-    pub views: Vec<Profile>,
+    pub views: Vec<SideProfile>,
     /// Places along the side.
     samples: usize,
 }
 
-/// How far to both sides of a side it is looked at, metres.
+/// How far a profile reaches to either side, metres.
 #[derive(Clone, Copy)]
 pub(crate) struct Extent {
-    /// A view must see a place as far as this, or it does not see the place at all.
+    /// A view counts for a place only if it sees as far as this.
     pub seen_m: f64,
     /// Grey values are compared as far as this.
     pub compared_m: f64,
@@ -84,14 +83,14 @@ pub(crate) struct Extent {
     pub pixel_m: f64,
 }
 
-impl Profiles {
-    /// Profiles on both sides; `None` for a side that is too short.
+impl SideProfiles {
+    /// SideProfiles on both sides; `None` for a side that is too short.
     pub(crate) fn new(
         scene: &Scene,
         occluders: &Occluders,
         wireframe: &Wireframe,
-        state: &State,
-        side: &Side,
+        state: &WireframeState,
+        side: &WireframeSide,
         extent: Extent,
         params: &RefineParams,
     ) -> Option<Self> {
@@ -136,7 +135,7 @@ impl Profiles {
         occluders: &Occluders,
         view: ViewId,
         [ends, compared]: [usize; 2],
-    ) -> Option<Profile> {
+    ) -> Option<SideProfile> {
         let (camera, gray) = (scene.camera(view), &scene.view(view).gray);
         // Homogeneous image coordinates are linear across the side.
         let to_image = camera.k * camera.r;
@@ -183,7 +182,7 @@ impl Profiles {
         let means: Vec<f64> = rows.iter().map(|row| mean(row)).collect();
         let difference =
             |k: usize| means[(k + BASE).min(count - 1)] - means[k.saturating_sub(BASE)];
-        Some(Profile {
+        Some(SideProfile {
             view,
             noise: scene.view(view).noise,
             differences: (0..count).map(difference).collect(),
@@ -191,18 +190,18 @@ impl Profiles {
         })
     }
 
-    /// What each step within `reach_m` is worth; `None` where too few views see the side, or none
-    /// of them an edge.
+    /// Energy gained by moving the side to each step within `reach_m`; `None` where too few views
+    /// see the side, or no edge stands out.
     ///
     /// The energy of the labelling in one dimension: what the views agree on inside counts for the
-    /// facet, a border on an edge is cheap. Besides, the border that delineation chose is taken for
-    /// known to `known_to_m`.
-    pub(crate) fn gains(
+    /// facet, a border on an edge is cheap. The border that delineation chose is a prior with the
+    /// standard deviation `known_to_m`.
+    pub(crate) fn shift_gains(
         &self,
         reach_m: f64,
         known_to_m: f64,
         params: &RefineParams,
-    ) -> Option<Gains> {
+    ) -> Option<ShiftGains> {
         (self.views.len() >= params.min_views).then_some(())?;
         let middle = self.middle();
         let steps = ((reach_m / self.step_m()) as usize + 1).min(middle - 1);
@@ -226,16 +225,16 @@ impl Profiles {
             let moved = (k as f64 - middle as f64) * self.step_m() / known_to_m;
             inside + params.edge_gain_m * (edge[k - first] - moved * moved * length)
         });
-        Some(Gains {
+        Some(ShiftGains {
             first: -(steps as isize),
             gain: gain.collect(),
             edge,
         })
     }
 
-    /// For every step back from the side, what it is worth that the facet ends there instead.
-    /// `None` where too few views see it.
-    pub(crate) fn worth_of_ending(&self, params: &RefineParams) -> Option<Vec<Worth>> {
+    /// Energy gained by ending the facet at each step back from the side; `None` where too few
+    /// views see the side.
+    pub(crate) fn cut_back_gains(&self, params: &RefineParams) -> Option<Vec<CutBackGain>> {
         (self.views.len() >= params.min_views).then_some(())?;
         let middle = self.middle();
         let shared: Vec<f64> = (0..=middle).map(|k| self.shared(k)).collect();
@@ -247,17 +246,17 @@ impl Profiles {
             .collect();
         let mut inside: f64 = agreement.iter().sum();
         let mut strip = 0.0;
-        let mut worth = Vec::with_capacity(middle);
+        let mut gains = Vec::with_capacity(middle);
         for k in (0..middle).rev() {
             strip += agreement[k];
             inside -= agreement[k];
             let edge = params.edge_gain_m * shared[k] / strongest;
-            worth.push(Worth {
-                ending: length * (edge - params.border_cost_m - strip),
-                inside: length * inside,
+            gains.push(CutBackGain {
+                energy_m2: length * (edge - params.border_cost_m - strip),
+                remaining_m2: length * inside,
             });
         }
-        Some(worth)
+        Some(gains)
     }
 
     /// Mean correlation of the rows of all pairs of views at a step, less the correlation at which
@@ -334,7 +333,7 @@ mod tests {
 
     /// Rows of two views with a standard deviation of `texture` that correlate by a quarter, at a
     /// noise of 0.01.
-    fn two_views(texture: f64) -> Profiles {
+    fn two_views(texture: f64) -> SideProfiles {
         // Orthogonal patterns of unit variance.
         let pattern = |i: usize, period: usize| [1.0, -1.0][i / period % 2];
         let row = |own: f64| -> Vec<f32> {
@@ -348,13 +347,13 @@ mod tests {
             row(own),
             (0..64).map(|i| (0.5 + texture * other(i)) as f32).collect(),
         ];
-        let profile = |(i, row): (usize, Vec<f32>)| Profile {
+        let profile = |(i, row): (usize, Vec<f32>)| SideProfile {
             view: ViewId(i as u32),
             noise: 0.01,
             rows: vec![row],
             differences: vec![0.0],
         };
-        Profiles {
+        SideProfiles {
             segment: Segment3::new(Point3::origin(), Point3::new(6.4, 0.0, 0.0)),
             outward: Vector3::y(),
             pixel_m: 0.1,

@@ -1,30 +1,17 @@
-//! Relations between the sides of a building, and whether the images allow them (B99 section 2: the
-//! partner in Leuven regularises roofs by parallel, perpendicular, horizontal and symmetric parts).
+//! Relations between the sides of a building (B99 section 2: the partner in Leuven regularises
+//! roofs by parallel, perpendicular, horizontal and symmetric parts).
 //!
-//! A relation is a scalar function `c(x)` of the wireframe that is zero when it holds. With the
-//! free solution x and its covariance C, forcing it to zero raises the cost of the adjustment by
-//!
-//! ```text
-//! chi2 = c^2 / (J C J' + sigma^2),   J = dc/dx
-//! ```
-//!
-//! which is chi-square with one degree of freedom when the relation is true of the building to
-//! within sigma. It is adopted when chi2 is below a quantile, and then C and x are updated (one
-//! step of a Kalman filter), so that the next relation is tested against what has been adopted. A
-//! relation is proposed only where the sides are near it anyway.
+//! A relation is a scalar function `c(x)` of the wireframe that is zero when it holds. It is
+//! proposed only where the sides nearly fulfil it; [`super::relation_tests`] decides which are
+//! adopted.
 
-use nalgebra::DVector;
 use serde::Serialize;
 
-use super::adjust::Solution;
-use super::wireframe::{Side, SideKind, State, Wireframe};
+use super::wireframe::{SideKind, Wireframe, WireframeSide, WireframeState};
 use crate::geometry::Segment3;
 use crate::math;
 use crate::params::RefineParams;
 use crate::sorting::sort_by;
-
-/// Step of the differences.
-const STEP: f64 = 1e-4;
 
 /// What is supposed of one or two sides; numbers are indices of sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,25 +47,9 @@ pub enum RelationKind {
     Symmetric,
 }
 
-/// A relation that was tested.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TestedRelation {
-    /// What it says.
-    pub kind: RelationKind,
-    /// Its sides in the free solution, metres.
-    pub sides: Vec<Segment3>,
-    /// How far the free solution is from it, metres (at the end of the side; of height over 4 m for
-    /// slopes).
-    pub deviation_m: f64,
-    /// By how much the cost would rise, standard deviations squared.
-    pub chi2: f64,
-    /// Was it adopted?
-    pub adopted: bool,
-}
-
 impl Relation {
     /// How far the state is from it, metres.
-    pub fn value(&self, w: &Wireframe, state: &State) -> f64 {
+    pub fn value(&self, w: &Wireframe, state: &WireframeState) -> f64 {
         let segment = |i: usize| w.segment(state, &w.sides[i]);
         let plan = |i: usize| segment(i).p1.xy() - segment(i).p0.xy();
         let middle = |i: usize| segment(i).at(0.5).z;
@@ -119,7 +90,7 @@ impl Relation {
         unknowns
     }
 
-    fn kind(&self) -> RelationKind {
+    pub fn kind(&self) -> RelationKind {
         match self {
             Self::Horizontal(_) => RelationKind::Horizontal,
             Self::Parallel(..) => RelationKind::Parallel,
@@ -129,7 +100,7 @@ impl Relation {
         }
     }
 
-    fn sides(&self) -> Vec<usize> {
+    pub fn sides(&self) -> Vec<usize> {
         match *self {
             Self::Horizontal(i) | Self::Symmetric(i) => vec![i],
             Self::Parallel(i, j) | Self::Perpendicular(i, j) | Self::EqualHeight(i, j) => {
@@ -140,7 +111,7 @@ impl Relation {
 }
 
 /// The relations that a state is near to.
-pub fn propose(w: &Wireframe, state: &State, params: &RefineParams) -> Vec<Relation> {
+pub fn propose(w: &Wireframe, state: &WireframeState, params: &RefineParams) -> Vec<Relation> {
     let longest_first = longest_first(w, state, params);
     let horizontal: Vec<usize> = longest_first
         .iter()
@@ -161,7 +132,7 @@ pub fn propose(w: &Wireframe, state: &State, params: &RefineParams) -> Vec<Relat
 }
 
 /// Sides long enough to have a direction, the longest first.
-fn longest_first(w: &Wireframe, state: &State, params: &RefineParams) -> Vec<usize> {
+fn longest_first(w: &Wireframe, state: &WireframeState, params: &RefineParams) -> Vec<usize> {
     let length = |i: usize| w.segment(state, &w.sides[i]).length();
     let mut sides: Vec<usize> = (0..w.sides.len())
         .filter(|&i| w.sides[i].kind != SideKind::Foot && length(i) >= params.min_relation_m)
@@ -175,7 +146,7 @@ fn longest_first(w: &Wireframe, state: &State, params: &RefineParams) -> Vec<usi
 /// Every side against the longest one before it that it is nearly parallel or perpendicular to.
 fn directions(
     w: &Wireframe,
-    state: &State,
+    state: &WireframeState,
     sides: &[usize],
     params: &RefineParams,
 ) -> Vec<Relation> {
@@ -209,7 +180,7 @@ fn directions(
 /// Horizontal eaves against the longest one before them of nearly their height.
 fn equal_heights(
     w: &Wireframe,
-    state: &State,
+    state: &WireframeState,
     horizontal: &[usize],
     params: &RefineParams,
 ) -> Vec<Relation> {
@@ -236,7 +207,12 @@ fn equal_heights(
 }
 
 /// Do the facets beside a ridge fall away from it, equally but for `near_deg`?
-fn is_symmetric_ridge(w: &Wireframe, state: &State, side: &Side, params: &RefineParams) -> bool {
+fn is_symmetric_ridge(
+    w: &Wireframe,
+    state: &WireframeState,
+    side: &WireframeSide,
+    params: &RefineParams,
+) -> bool {
     let Some(beyond) = side.beyond else {
         return false;
     };
@@ -252,60 +228,4 @@ fn is_symmetric_ridge(w: &Wireframe, state: &State, side: &Side, params: &Refine
 fn slope_deg(s: &Segment3) -> f64 {
     let d = s.direction();
     math::atan2(d.z.abs(), d.xy().norm()).to_degrees()
-}
-
-/// Tests relations one after the other, those that fit best first within each kind's turn, and
-/// adopts those that the covariance of the free solution allows.
-pub fn adopt(
-    w: &Wireframe,
-    solution: &Solution,
-    proposed: &[Relation],
-    params: &RefineParams,
-) -> (Vec<Relation>, Vec<TestedRelation>) {
-    let free = &solution.state;
-    let mut state = free.clone();
-    // What the relations adopted so far take from the covariance: spread spread' / variance each.
-    let mut taken: Vec<(DVector<f64>, f64)> = Vec::new();
-    let (mut adopted, mut tested) = (Vec::new(), Vec::new());
-    for relation in proposed {
-        let gradient = gradient(relation, w, &state);
-        let mut spread = solution.spread(&gradient);
-        for (earlier, variance) in &taken {
-            spread -= earlier * (earlier.dot(&gradient) / variance);
-        }
-        let variance = gradient.dot(&spread) + params.relation_sigma_m * params.relation_sigma_m;
-        let value = relation.value(w, &state);
-        let chi2 = value * value / variance;
-        let accept = chi2 <= params.relation_chi2;
-        tested.push(TestedRelation {
-            kind: relation.kind(),
-            sides: relation
-                .sides()
-                .iter()
-                .map(|&i| w.segment(free, &w.sides[i]))
-                .collect(),
-            deviation_m: value,
-            chi2,
-            adopted: accept,
-        });
-        if accept {
-            state -= &spread * (value / variance);
-            taken.push((spread, variance));
-            adopted.push(*relation);
-        }
-    }
-    (adopted, tested)
-}
-
-fn gradient(relation: &Relation, w: &Wireframe, state: &State) -> DVector<f64> {
-    let mut gradient = DVector::zeros(state.len());
-    let mut at = state.clone();
-    for u in relation.unknowns(w) {
-        at[u] = state[u] + STEP;
-        let above = relation.value(w, &at);
-        at[u] = state[u] - STEP;
-        gradient[u] = (above - relation.value(w, &at)) / (2.0 * STEP);
-        at[u] = state[u];
-    }
-    gradient
 }

@@ -36,7 +36,7 @@ pub enum SideKind {
 
 /// A straight side of a facet.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Side {
+pub struct WireframeSide {
     /// What lies beyond.
     pub kind: SideKind,
     /// The facet on its left.
@@ -65,7 +65,7 @@ pub struct Straight {
     pub between: [usize; 2],
 }
 
-/// The wireframe of one building. Positions and planes are in a [`State`] of its own.
+/// The wireframe of one building. Positions and planes are in a [`WireframeState`] of its own.
 #[derive(Clone, Debug)]
 pub struct Wireframe {
     /// Where plane coefficients count from, plan, metres.
@@ -75,7 +75,7 @@ pub struct Wireframe {
     /// Per facet its rings, the outer one first, as vertices.
     pub faces: Vec<Vec<Vec<usize>>>,
     /// What to measure.
-    pub sides: Vec<Side>,
+    pub sides: Vec<WireframeSide>,
     /// What must stay joined.
     pub meets: Vec<Meet>,
     /// What must stay straight.
@@ -83,11 +83,11 @@ pub struct Wireframe {
 }
 
 /// Numbers of a wireframe: x, y of every vertex, then a, b, c of every facet.
-pub type State = DVector<f64>;
+pub type WireframeState = DVector<f64>;
 
 impl Wireframe {
     /// The wireframe of facets whose outlines share vertices, and its present state.
-    pub fn new(facets: &[&Facet]) -> (Self, State) {
+    pub fn new(facets: &[&Facet]) -> (Self, WireframeState) {
         let mut index: BTreeMap<[u64; 2], usize> = BTreeMap::new();
         let mut positions: Vec<Point2<f64>> = Vec::new();
         let mut vertex = |p: &Point3<f64>| {
@@ -116,7 +116,7 @@ impl Wireframe {
             meets: Vec::new(),
             straights: Vec::new(),
         };
-        let mut state = State::zeros(wireframe.size());
+        let mut state = WireframeState::zeros(wireframe.size());
         for (v, p) in positions.iter().enumerate() {
             (state[2 * v], state[2 * v + 1]) = (p.x, p.y);
         }
@@ -140,30 +140,30 @@ impl Wireframe {
     }
 
     /// Plan position of a vertex.
-    pub fn position(&self, state: &State, vertex: usize) -> Point2<f64> {
+    pub fn position(&self, state: &WireframeState, vertex: usize) -> Point2<f64> {
         Point2::new(state[2 * vertex], state[2 * vertex + 1])
     }
 
     /// Height of a facet at a plan position.
-    pub fn height(&self, state: &State, face: usize, p: &Point2<f64>) -> f64 {
+    pub fn height(&self, state: &WireframeState, face: usize, p: &Point2<f64>) -> f64 {
         let (at, d) = (self.plane_at(face), p - self.origin);
         state[at] * d.x + state[at + 1] * d.y + state[at + 2]
     }
 
     /// A vertex on a facet.
-    pub fn corner(&self, state: &State, face: usize, vertex: usize) -> Point3<f64> {
+    pub fn corner(&self, state: &WireframeState, face: usize, vertex: usize) -> Point3<f64> {
         let p = self.position(state, vertex);
         Point3::new(p.x, p.y, self.height(state, face, &p))
     }
 
     /// A side in space.
-    pub fn segment(&self, state: &State, side: &Side) -> Segment3 {
+    pub fn segment(&self, state: &WireframeState, side: &WireframeSide) -> Segment3 {
         let [p0, p1] = side.ends.map(|v| self.corner(state, side.face, v));
         Segment3::new(p0, p1)
     }
 
     /// The unknowns that a side depends on.
-    pub fn unknowns(&self, side: &Side) -> Vec<usize> {
+    pub fn unknowns(&self, side: &WireframeSide) -> Vec<usize> {
         let [u, v] = side.ends;
         let plane = self.plane_at(side.face);
         vec![
@@ -179,7 +179,7 @@ impl Wireframe {
 
     /// Per facet the share of its sides without a neighbour, by length, that is among `seen`; all
     /// of it for a facet without such sides.
-    pub fn shown(&self, state: &State, seen: impl Iterator<Item = usize>) -> Vec<f64> {
+    pub fn shown(&self, state: &WireframeState, seen: impl Iterator<Item = usize>) -> Vec<f64> {
         let mut is_seen = vec![false; self.sides.len()];
         seen.for_each(|i| is_seen[i] = true);
         let mut lengths = vec![[0.0f64; 2]; self.faces.len()];
@@ -195,7 +195,7 @@ impl Wireframe {
     }
 
     /// The plane of a facet.
-    pub fn plane(&self, state: &State, face: usize) -> Plane {
+    pub fn plane(&self, state: &WireframeState, face: usize) -> Plane {
         let at = self.plane_at(face);
         let normal = nalgebra::Vector3::new(-state[at], -state[at + 1], 1.0);
         let through = Point3::new(self.origin.x, self.origin.y, state[at + 2]);
@@ -203,7 +203,7 @@ impl Wireframe {
     }
 
     /// The facets in another state.
-    pub fn facets(&self, state: &State, facets: &[&Facet]) -> Vec<Facet> {
+    pub fn facets(&self, state: &WireframeState, facets: &[&Facet]) -> Vec<Facet> {
         let changed = |(face, facet): (usize, &&Facet)| {
             let plane = self.plane(state, face);
             let lift = |ring: &Vec<usize>| -> Vec<Point3<f64>> {
@@ -224,7 +224,7 @@ impl Wireframe {
     }
 
     /// Finds sides, meets and straights.
-    fn connect(&mut self, state: &State) {
+    fn connect(&mut self, state: &WireframeState) {
         let left_of = self.left_of();
         let mut straights = BTreeSet::new();
         let mut meets = BTreeSet::new();
@@ -253,7 +253,7 @@ impl Wireframe {
                     };
                     let ends = [ring[start], ring[starts[(k + 1) % starts.len()]]];
                     if ends[0] != ends[1] {
-                        sides.push(Side {
+                        sides.push(WireframeSide {
                             kind,
                             face,
                             beyond,
@@ -314,7 +314,7 @@ impl Wireframe {
     /// beyond.
     fn kind(
         &self,
-        state: &State,
+        state: &WireframeState,
         left_of: &BTreeMap<(usize, usize), usize>,
         face: usize,
         u: usize,
@@ -338,7 +338,7 @@ impl Wireframe {
         Some((kind, None))
     }
 
-    fn is_straight(&self, state: &State, before: usize, at: usize, after: usize) -> bool {
+    fn is_straight(&self, state: &WireframeState, before: usize, at: usize, after: usize) -> bool {
         let [p, q, r] = [before, at, after].map(|v| self.position(state, v));
         let along = r - p;
         let length = along.norm();

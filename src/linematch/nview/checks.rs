@@ -32,7 +32,7 @@ impl MatchContext<'_> {
     ///
     /// Where four of six views are required (B99 3.4), three pass if their mean score is that of a
     /// pair without a third view: the finished model knows how many views can see the line, and
-    /// then requires the fourth ([`crate::buildings::judge_lines`]).
+    /// then requires the fourth ([`crate::buildings::verify_lines`]).
     pub(super) fn check_line(
         &self,
         fit: LineFit,

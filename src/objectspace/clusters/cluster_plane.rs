@@ -2,19 +2,19 @@
 
 use nalgebra::{Matrix2, Point3, Vector2, Vector3};
 
-use crate::objectspace::sight::Sight;
+use crate::objectspace::image_lines::ImageLine;
 use crate::params::ClusterParams;
 
-/// Axes of a cluster plane: along the main direction, across it and up.
+/// ClusterAxes of a cluster plane: along the main direction, across it and up.
 #[derive(Clone, Copy, Debug)]
-pub struct Axes {
+pub struct ClusterAxes {
     /// Along.
     pub u: Vector3<f64>,
     /// Across, horizontal.
     pub v: Vector3<f64>,
 }
 
-impl Axes {
+impl ClusterAxes {
     /// For a horizontal unit direction.
     pub fn new(direction: &Vector3<f64>) -> Self {
         Self {
@@ -32,7 +32,7 @@ impl Axes {
 /// An image line in the cluster plane: `normal . (v, z) = offset`.
 pub(crate) struct PlaneRay {
     /// Index of the image line.
-    pub sight: usize,
+    pub image_line: usize,
     pub normal: Vector2<f64>,
     pub offset: f64,
     /// Does its direction by contrast agree with the main direction?
@@ -45,33 +45,33 @@ impl PlaneRay {
     /// `None` for an image line of another direction.
     pub fn new(
         k: usize,
-        sight: &Sight,
-        axes: &Axes,
+        image_line: &ImageLine,
+        axes: &ClusterAxes,
         z_range: [f64; 2],
         params: &ClusterParams,
     ) -> Option<Self> {
         let z = 0.5 * (z_range[0] + z_range[1]);
-        let [a, b] = sight.ends_at(z);
+        let [a, b] = image_line.ends_at(z);
         let middle = nalgebra::center(&a, &b);
-        let along = sight.image_direction(&middle, &axes.u)?;
-        let d = sight.segment.direction();
+        let along = image_line.image_direction(&middle, &axes.u)?;
+        let d = image_line.segment.direction();
         let cross = (along.x * d.y - along.y * d.x).abs();
         let tolerance = params
             .angle_deg
             .to_radians()
-            .max(params.end_px / sight.length_px);
+            .max(params.end_px / image_line.length_px);
         (cross <= tolerance).then_some(())?;
-        let n = sight.normal;
+        let n = image_line.normal;
         let normal = Vector2::new(n.dot(&axes.v), n.z);
         let size = normal.norm();
         let offset =
-            n.dot(&sight.camera.center.coords) - n.dot(&axes.u) * axes.u.dot(&middle.coords);
+            n.dot(&image_line.camera.center.coords) - n.dot(&axes.u) * axes.u.dot(&middle.coords);
         (size > 0.1).then(|| Self {
-            sight: k,
+            image_line: k,
             normal: normal / size,
             offset: offset / size,
             forward: along.dot(&d) > 0.0,
-            scale: 1.0 / sight.camera.ground_pixel(&middle),
+            scale: 1.0 / image_line.camera.ground_pixel(&middle),
         })
     }
 

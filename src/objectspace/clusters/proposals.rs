@@ -3,23 +3,14 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use nalgebra::Vector2;
-
-use super::Search;
 use super::cluster_plane::PlaneRay;
+use super::search::{ClusterProposal, ClusterSearch};
 
-/// A place in the cluster plane and the stretch that two image lines propose.
-pub(crate) struct Proposal {
-    pub at: Vector2<f64>,
-    pub stretch: [f64; 2],
-    pub forward: bool,
-}
-
-impl Search<'_> {
+impl ClusterSearch<'_> {
     /// Intersections of image lines of different views that may show the same stretch, one for each
     /// small cell; and how many there were.
-    pub(crate) fn proposals(&self) -> (Vec<Proposal>, usize) {
-        let mut cells: BTreeMap<[i64; 4], (f64, Proposal)> = BTreeMap::new();
+    pub(crate) fn proposals(&self) -> (Vec<ClusterProposal>, usize) {
+        let mut cells: BTreeMap<[i64; 4], (f64, ClusterProposal)> = BTreeMap::new();
         let mut count = 0;
         for (i, a) in self.rays.iter().enumerate() {
             for b in &self.rays[i + 1..] {
@@ -50,8 +41,11 @@ impl Search<'_> {
         (cells.into_values().map(|(_, p)| p).collect(), count)
     }
 
-    fn propose(&self, a: &PlaneRay, b: &PlaneRay) -> Option<(f64, Proposal)> {
-        let (s, t) = (&self.sights[a.sight], &self.sights[b.sight]);
+    fn propose(&self, a: &PlaneRay, b: &PlaneRay) -> Option<(f64, ClusterProposal)> {
+        let (s, t) = (
+            &self.image_lines[a.image_line],
+            &self.image_lines[b.image_line],
+        );
         if s.view == t.view || a.forward != b.forward {
             return None;
         }
@@ -61,12 +55,15 @@ impl Search<'_> {
         let alike =
             (0..2).any(|k| (s.sides[k] - t.sides[k]).abs() <= self.params.max_grey_difference);
         alike.then_some(())?;
-        let (p, q) = (self.stretch(a.sight, at.y), self.stretch(b.sight, at.y));
+        let (p, q) = (
+            self.stretch(a.image_line, at.y),
+            self.stretch(b.image_line, at.y),
+        );
         let stretch = [p[0].max(q[0]), p[1].min(q[1])];
         let shared = stretch[1] - stretch[0];
         let shorter = (p[1] - p[0]).min(q[1] - q[0]);
         let forward = a.forward;
-        let proposal = Proposal {
+        let proposal = ClusterProposal {
             at,
             stretch,
             forward,

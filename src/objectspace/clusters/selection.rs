@@ -1,24 +1,25 @@
 //! Contradictions removed: each image line supports one 3D line.
 
+use super::cluster_line::{ClusterLine, ClusterTrace};
 use super::cluster_plane::overlap;
-use super::{Candidate, ClusterLine, ClusterTrace, Search};
+use super::search::{ClusterCandidate, ClusterSearch};
 use crate::geometry::Segment3;
 use crate::sorting::sort_by;
 
-/// Most refused clusters kept for the plot.
-const MOST_REFUSED: usize = 200;
+/// Most rejected clusters kept for the plot.
+const MAX_REJECTED_SHOWN: usize = 200;
 
-impl Search<'_> {
+impl ClusterSearch<'_> {
     /// Takes the best candidate, removes its image lines from the others, and so on.
     pub(crate) fn select(
         &self,
-        candidates: &mut Vec<Candidate>,
+        candidates: &mut Vec<ClusterCandidate>,
         trace: &mut ClusterTrace,
     ) -> Vec<ClusterLine> {
         let mut taken: Vec<Vec<[f64; 2]>> = vec![Vec::new(); self.rays.len()];
         let mut selected = Vec::new();
         candidates.retain(|c| c.gain > 0.0);
-        let order = |a: &Candidate, b: &Candidate| {
+        let order = |a: &ClusterCandidate, b: &ClusterCandidate| {
             b.gain
                 .total_cmp(&a.gain)
                 .then(a.at.x.total_cmp(&b.at.x))
@@ -26,7 +27,8 @@ impl Search<'_> {
         };
         sort_by(candidates, order);
         // Candidates from many proposals are the same cluster again.
-        let mut queue: std::collections::VecDeque<Candidate> = std::mem::take(candidates).into();
+        let mut queue: std::collections::VecDeque<ClusterCandidate> =
+            std::mem::take(candidates).into();
         while let Some(best) = queue.pop_front() {
             let free: Vec<_> = best
                 .members
@@ -48,7 +50,7 @@ impl Search<'_> {
                         let k = queue.partition_point(|other| order(other, &c).is_lt());
                         queue.insert(k, c);
                     }
-                    None if trace.refused.len() < MOST_REFUSED => {
+                    None if trace.refused.len() < MAX_REJECTED_SHOWN => {
                         trace.refused.push((place, best.gain))
                     }
                     None => {}
@@ -64,7 +66,7 @@ impl Search<'_> {
         selected
     }
 
-    fn line(&self, c: &Candidate) -> ClusterLine {
+    fn line(&self, c: &ClusterCandidate) -> ClusterLine {
         let n = c.members.len().max(1) as f64;
         let mean: f64 = c.members.iter().map(|m| m.2).sum::<f64>() / n;
         let scale = self.rays[c.members[0].0].scale;
@@ -73,7 +75,11 @@ impl Search<'_> {
                 self.axes.point(c.stretch[0], c.at.x, c.at.y),
                 self.axes.point(c.stretch[1], c.at.x, c.at.y),
             ),
-            supports: c.members.iter().map(|m| self.rays[m.0].sight).collect(),
+            supports: c
+                .members
+                .iter()
+                .map(|m| self.rays[m.0].image_line)
+                .collect(),
             gain_bits: c.gain,
             coverage: c.coverage.clone(),
             // Rays across each other by some 20 degrees.

@@ -1,11 +1,52 @@
-//! The first boundaries: along the cracks between pixels of different labels.
+//! The partition of a label image: boundaries along the cracks between pixels of different labels.
 
-use super::integrals::Lattice;
-use super::partition::{Edge, Node, OUTSIDE, Partition};
+use super::integrals::{Lattice, RowSums};
+use super::occupied::Occupied;
+use super::partition::{Edge, ImagePartition, Node, OUTSIDE, PartitionRegion};
 
-impl Partition {
+impl ImagePartition {
+    /// The partition of a label image: vectors along the cracks between pixels of different labels.
+    pub fn from_labels(
+        labels: &[u32],
+        count: usize,
+        width: usize,
+        height: usize,
+        sums: RowSums,
+    ) -> Self {
+        let mut p = Self {
+            nodes: Vec::new(),
+            edges: Vec::new(),
+            regions: vec![PartitionRegion::default(); count + 1],
+            sums,
+            occupied: Occupied::new(width + 1, height + 1),
+        };
+        p.trace_cracks(&Cracks {
+            labels,
+            width,
+            height,
+        });
+        for e in 0..p.edges.len() {
+            let Edge { nodes, sides, .. } = p.edges[e];
+            let term = p
+                .sums
+                .side(p.nodes[nodes[0] as usize].at, p.nodes[nodes[1] as usize].at);
+            for (k, own) in sides.into_iter().enumerate() {
+                let region = &mut p.regions[own as usize];
+                region.moments = if k == 1 {
+                    region.moments + term
+                } else {
+                    region.moments - term
+                };
+                region.edges.push(e as u32);
+                *region.shared.entry(sides[1 - k]).or_default() += 1;
+            }
+        }
+        p.regions.iter_mut().skip(1).for_each(|r| r.alive = true);
+        p
+    }
+
     /// Adds nodes and vectors along all cracks.
-    pub(crate) fn trace_cracks(&mut self, cracks: &Cracks) {
+    fn trace_cracks(&mut self, cracks: &Cracks) {
         let (w, h) = (cracks.width, cracks.height);
         let mut ids = vec![u32::MAX; (w + 1) * (h + 1)];
         for y in 0..=h {
@@ -64,10 +105,10 @@ impl Partition {
 }
 
 /// The cracks between the pixels of a label image.
-pub(crate) struct Cracks<'a> {
-    pub labels: &'a [u32],
-    pub width: usize,
-    pub height: usize,
+struct Cracks<'a> {
+    labels: &'a [u32],
+    width: usize,
+    height: usize,
 }
 
 impl Cracks<'_> {

@@ -25,14 +25,14 @@ pub const CHANNELS: usize = 3;
 /// Count, sums and sums of squares of the channels; the difference of two sets of pixels may be
 /// negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Moments {
+pub struct RegionMoments {
     /// Number of pixels.
     pub count: i64,
     sum: [i64; CHANNELS],
     squares: [i64; CHANNELS],
 }
 
-impl Moments {
+impl RegionMoments {
     /// Mean of a channel, 0 to 255.
     pub fn mean(&self, channel: usize) -> f64 {
         self.sum[channel] as f64 / self.count.max(1) as f64
@@ -48,7 +48,7 @@ impl Moments {
     }
 }
 
-impl Add for Moments {
+impl Add for RegionMoments {
     type Output = Self;
     fn add(mut self, other: Self) -> Self {
         self.count += other.count;
@@ -60,7 +60,7 @@ impl Add for Moments {
     }
 }
 
-impl Neg for Moments {
+impl Neg for RegionMoments {
     type Output = Self;
     fn neg(self) -> Self {
         Self {
@@ -71,7 +71,7 @@ impl Neg for Moments {
     }
 }
 
-impl Sub for Moments {
+impl Sub for RegionMoments {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         self + -other
@@ -109,14 +109,14 @@ impl RowSums {
     /// The term of the side from `a` to `b`: the pixels to the left of it (smaller x) in every row
     /// that it crosses, positive for a side that runs down. A closed polygon that runs clockwise on
     /// the screen sums up to its inside.
-    pub fn side(&self, a: Lattice, b: Lattice) -> Moments {
+    pub fn side(&self, a: Lattice, b: Lattice) -> RegionMoments {
         let (top, bottom, down) = if a.y <= b.y {
             (a, b, true)
         } else {
             (b, a, false)
         };
         let (dx, dy) = (i64::from(bottom.x - top.x), i64::from(bottom.y - top.y));
-        let mut m = Moments::default();
+        let mut m = RegionMoments::default();
         if dy == 0 {
             return m;
         }

@@ -3,41 +3,11 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::integrals::{CHANNELS, Moments};
-use super::partition::{OUTSIDE, Partition};
+use super::code_length::{CodeLength, LEAST_GAIN};
+use super::integrals::RegionMoments;
+use super::partition::{ImagePartition, OUTSIDE};
 use super::settle::settle;
-use crate::math::larger;
-use crate::math::log2;
 use crate::params::OrisParams;
-
-/// The code length, bits; see [`super`].
-#[derive(Clone, Copy)]
-pub(crate) struct CodeLength {
-    vector_bits: f64,
-    pixels_per_sample: f64,
-    least_variance: f64,
-    weights: [f64; CHANNELS],
-}
-
-impl CodeLength {
-    pub fn new(params: &OrisParams) -> Self {
-        Self {
-            vector_bits: params.vector_bits,
-            pixels_per_sample: params.pixels_per_sample,
-            least_variance: params.least_sigma * params.least_sigma,
-            weights: [1.0, params.color_weight, params.color_weight],
-        }
-    }
-
-    /// Bits of a region: its grey values given mean and noise, and these two parameters.
-    pub fn region(&self, m: &Moments) -> f64 {
-        let samples = m.count as f64 / self.pixels_per_sample;
-        let spread: f64 = (0..CHANNELS)
-            .map(|c| self.weights[c] * log2(larger(m.variance(c), self.least_variance)))
-            .sum();
-        0.5 * samples * spread + log2(larger(samples, 1.0))
-    }
-}
 
 /// Moves made, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -51,7 +21,7 @@ pub struct Moves {
 }
 
 /// Makes moves in the order of their gain until none gains.
-pub(crate) fn minimise(p: &mut Partition, params: &OrisParams) -> Moves {
+pub(crate) fn minimise(p: &mut ImagePartition, params: &OrisParams) -> Moves {
     let mut descent = Descent {
         code: CodeLength::new(params),
         queue: BinaryHeap::new(),
@@ -114,9 +84,6 @@ impl Ord for Offer {
 /// staircases between regions without noise stay: each step alone would cost more than its vector.)
 /// More rounds corners off.
 const MIXED_PX: f64 = 0.5;
-/// Gains below this are rounding, bits.
-pub(crate) const LEAST_GAIN: f64 = 1e-6;
-
 struct Descent {
     code: CodeLength,
     queue: BinaryHeap<Offer>,
@@ -125,7 +92,7 @@ struct Descent {
 
 impl Descent {
     /// Works the queue off; did anything change?
-    fn run(&mut self, p: &mut Partition) -> bool {
+    fn run(&mut self, p: &mut ImagePartition) -> bool {
         let before = self.moves;
         while let Some(offer) = self.queue.pop() {
             let Some(gain) = self.gain(p, offer.what).filter(|&g| g > LEAST_GAIN) else {
@@ -141,7 +108,7 @@ impl Descent {
         before != self.moves
     }
 
-    fn make(&mut self, p: &mut Partition, what: Move) {
+    fn make(&mut self, p: &mut ImagePartition, what: Move) {
         match what {
             Move::Drop(node) => {
                 let straightening = p.straightening(node).expect("its gain was computed");
@@ -163,19 +130,19 @@ impl Descent {
         }
     }
 
-    fn offer(&mut self, p: &Partition, what: Move) {
+    fn offer(&mut self, p: &ImagePartition, what: Move) {
         if let Some(gain) = self.gain(p, what).filter(|&g| g > LEAST_GAIN) {
             self.queue.push(Offer { gain, what });
         }
     }
 
-    fn offer_all_nodes(&mut self, p: &Partition) {
+    fn offer_all_nodes(&mut self, p: &ImagePartition) {
         for node in 0..p.nodes.len() {
             self.offer(p, Move::Drop(node as u32));
         }
     }
 
-    fn offer_all_pairs(&mut self, p: &Partition) {
+    fn offer_all_pairs(&mut self, p: &ImagePartition) {
         for (i, region) in p.regions.iter().enumerate().skip(1) {
             for &j in region.shared.keys().filter(|&&j| j as usize > i) {
                 self.offer(p, Move::Merge(i as u32, j));
@@ -184,16 +151,16 @@ impl Descent {
     }
 
     /// By how much a move shortens the description, bits; `None` where it cannot be made.
-    fn gain(&self, p: &Partition, what: Move) -> Option<f64> {
+    fn gain(&self, p: &ImagePartition, what: Move) -> Option<f64> {
         match what {
             Move::Drop(node) => self.drop_gain(p, node),
             Move::Merge(i, j) => self.merge_gain(p, i, j),
         }
     }
 
-    fn drop_gain(&self, p: &Partition, node: u32) -> Option<f64> {
+    fn drop_gain(&self, p: &ImagePartition, node: u32) -> Option<f64> {
         let s = p.straightening(node)?;
-        if s.moved == Moments::default() {
+        if s.moved == RegionMoments::default() {
             return Some(self.code.vector_bits);
         }
         if s.sides.contains(&OUTSIDE) {
@@ -213,7 +180,7 @@ impl Descent {
         Some(self.code.vector_bits - change)
     }
 
-    fn merge_gain(&self, p: &Partition, i: u32, j: u32) -> Option<f64> {
+    fn merge_gain(&self, p: &ImagePartition, i: u32, j: u32) -> Option<f64> {
         let (a, b) = (&p.regions[i as usize], &p.regions[j as usize]);
         if !a.alive || !b.alive || i == OUTSIDE {
             return None;

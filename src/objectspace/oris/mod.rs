@@ -40,9 +40,25 @@
 //! nearly linearly with the image.
 //!
 //! Lines for measuring are then taken from the vectors and moved to the crest of the gradient
-//! (`vectors`): break points stand on corners of pixels, which is as good as the regions need and
-//! not as good as the image is.
+//! (`region_lines`): break points stand on corners of pixels, which is as good as the regions need
+//! and not as good as the image is.
+//!
+//! ```text
+//! color         the channels: grey and two colour differences
+//! watershed     initial fine partition
+//! integrals     sums over polygons from running sums along rows
+//! partition     the planar graph of boundaries and its changes (`occupied`, `edge_grid`)
+//! cracks        the partition of a label image
+//! code_length   the description length
+//! minimise      the two moves by a priority queue
+//! settle        the third move
+//! segmentation  the result: regions and vectors (`rings`)
+//! region_lines  image lines on the vectors, to a fraction of a pixel
+//! ```
+//!
+//! Invariant: every pixel belongs to one region, and boundaries do not cross.
 
+mod code_length;
 mod color;
 mod cracks;
 mod edge_grid;
@@ -50,95 +66,21 @@ mod integrals;
 mod minimise;
 mod occupied;
 mod partition;
+mod region_lines;
 mod rings;
+mod segmentation;
 mod settle;
-mod vectors;
 mod watershed;
 
 pub use color::ColorImage;
 pub use integrals::Lattice;
 pub use minimise::Moves;
-pub use vectors::{RegionLine, region_lines};
-
-use serde::{Deserialize, Serialize};
+pub use region_lines::{RegionLine, region_lines};
+pub use segmentation::{ImageRegion, Segmentation, Vector};
 
 use self::integrals::RowSums;
-use self::partition::{OUTSIDE, Partition};
+use self::partition::{ImagePartition, OUTSIDE};
 use crate::params::OrisParams;
-
-/// A region of constant grey level.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Region {
-    /// Number of pixels.
-    pub area_px: u32,
-    /// Length of all its boundaries, pixels.
-    pub perimeter_px: f64,
-    /// Mean grey value, 0 to 255.
-    pub mean: f64,
-    /// Variance of the grey values.
-    pub variance: f64,
-    /// Boundaries, clockwise on the screen around the outside, the other way round holes; pixels.
-    pub rings: Vec<Vec<[i32; 2]>>,
-}
-
-/// A straight piece of a boundary.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Vector {
-    /// Start and end, pixels.
-    pub ends: [[i32; 2]; 2],
-    /// The region to the left and to the right of its direction as seen on the screen; `None`
-    /// beyond the image.
-    pub sides: [Option<u32>; 2],
-}
-
-impl Vector {
-    /// Length in pixels.
-    pub fn length_px(&self) -> f64 {
-        let [a, b] = self.ends;
-        let (dx, dy) = (f64::from(b[0] - a[0]), f64::from(b[1] - a[1]));
-        (dx * dx + dy * dy).sqrt()
-    }
-}
-
-/// The segmentation of an image.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Segmentation {
-    /// The regions.
-    pub regions: Vec<Region>,
-    /// The vectors of all boundaries.
-    pub vectors: Vec<Vector>,
-    /// Regions of the initial fine partition.
-    pub initial_regions: usize,
-    /// Moves made.
-    pub moves: Moves,
-}
-
-impl Segmentation {
-    /// The regions that share a boundary with a region, ascending.
-    pub fn neighbours(&self, region: u32) -> Vec<u32> {
-        let mut found: Vec<u32> = self
-            .boundary(region)
-            .flat_map(|v| self.vectors[v].sides)
-            .flatten()
-            .filter(|&r| r != region)
-            .collect();
-        found.sort_unstable();
-        found.dedup();
-        found
-    }
-
-    /// The vectors around a region, by index.
-    pub fn boundary(&self, region: u32) -> impl Iterator<Item = usize> {
-        (0..self.vectors.len()).filter(move |&v| self.vectors[v].sides.contains(&Some(region)))
-    }
-
-    /// The regions on either side of a vector.
-    pub fn beside(&self, vector: usize) -> [Option<&Region>; 2] {
-        self.vectors[vector]
-            .sides
-            .map(|side| side.map(|r| &self.regions[r as usize]))
-    }
-}
 
 /// Segments an image. Empty for an image without pixels.
 pub fn segment_regions(image: &ColorImage, params: &OrisParams) -> Segmentation {
@@ -148,7 +90,7 @@ pub fn segment_regions(image: &ColorImage, params: &OrisParams) -> Segmentation 
     }
     let (labels, count) = watershed::watershed(&image.smooth);
     let sums = RowSums::new(&image.sharp);
-    let mut partition = Partition::from_labels(&labels, count, width, height, sums);
+    let mut partition = ImagePartition::from_labels(&labels, count, width, height, sums);
     let moves = minimise::minimise(&mut partition, params);
     Segmentation {
         initial_regions: count,
@@ -158,7 +100,7 @@ pub fn segment_regions(image: &ColorImage, params: &OrisParams) -> Segmentation 
 }
 
 /// Renumbers what is left of the partition.
-fn describe(p: &Partition) -> Segmentation {
+fn describe(p: &ImagePartition) -> Segmentation {
     let mut ids = vec![None; p.regions.len()];
     let mut next = 0;
     for (k, region) in p.regions.iter().enumerate() {
@@ -180,12 +122,12 @@ fn describe(p: &Partition) -> Segmentation {
             sides: e.sides.map(|r| ids[r as usize]),
         })
         .collect();
-    let mut regions: Vec<Region> = p
+    let mut regions: Vec<ImageRegion> = p
         .regions
         .iter()
         .zip(&ids)
         .filter(|(_, id)| id.is_some())
-        .map(|(r, _)| Region {
+        .map(|(r, _)| ImageRegion {
             area_px: r.moments.count as u32,
             perimeter_px: 0.0,
             mean: r.moments.mean(0),

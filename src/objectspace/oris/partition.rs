@@ -6,8 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use super::cracks::Cracks;
-use super::integrals::{Lattice, Moments, RowSums};
+use super::integrals::{Lattice, RegionMoments, RowSums};
 use super::occupied::Occupied;
 
 /// Beyond the border of the image.
@@ -66,13 +65,13 @@ impl Node {
 
 /// A region while the partition changes.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Region {
-    pub moments: Moments,
+pub(crate) struct PartitionRegion {
+    pub moments: RegionMoments,
     pub alive: bool,
     /// Number of vectors shared with each neighbour.
     pub shared: BTreeMap<u32, u32>,
     /// Vectors that were beside this region at some time.
-    edges: Vec<u32>,
+    pub(super) edges: Vec<u32>,
 }
 
 /// What dropping a break point would do.
@@ -81,7 +80,7 @@ pub(crate) struct Straightening {
     /// The regions to the left and to the right of the path a - node - c.
     pub sides: [u32; 2],
     /// The pixels that would go from the right region to the left one.
-    pub moved: Moments,
+    pub moved: RegionMoments,
     /// How far the boundary moves, pixels.
     pub height_px: f64,
     /// Is one of the two vectors as short as a pixel?
@@ -89,55 +88,15 @@ pub(crate) struct Straightening {
 }
 
 /// The partition.
-pub(crate) struct Partition {
+pub(crate) struct ImagePartition {
     pub nodes: Vec<Node>,
     pub edges: Vec<Edge>,
-    pub regions: Vec<Region>,
-    sums: RowSums,
+    pub regions: Vec<PartitionRegion>,
+    pub(super) sums: RowSums,
     pub(crate) occupied: Occupied,
 }
 
-impl Partition {
-    /// The partition of a label image: vectors along the cracks between pixels of different labels.
-    pub fn from_labels(
-        labels: &[u32],
-        count: usize,
-        width: usize,
-        height: usize,
-        sums: RowSums,
-    ) -> Self {
-        let mut p = Self {
-            nodes: Vec::new(),
-            edges: Vec::new(),
-            regions: vec![Region::default(); count + 1],
-            sums,
-            occupied: Occupied::new(width + 1, height + 1),
-        };
-        p.trace_cracks(&Cracks {
-            labels,
-            width,
-            height,
-        });
-        for e in 0..p.edges.len() {
-            let Edge { nodes, sides, .. } = p.edges[e];
-            let term = p
-                .sums
-                .side(p.nodes[nodes[0] as usize].at, p.nodes[nodes[1] as usize].at);
-            for (k, own) in sides.into_iter().enumerate() {
-                let region = &mut p.regions[own as usize];
-                region.moments = if k == 1 {
-                    region.moments + term
-                } else {
-                    region.moments - term
-                };
-                region.edges.push(e as u32);
-                *region.shared.entry(sides[1 - k]).or_default() += 1;
-            }
-        }
-        p.regions.iter_mut().skip(1).for_each(|r| r.alive = true);
-        p
-    }
-
+impl ImagePartition {
     /// The two vectors and the outer nodes at a break point; `None` for a junction or where nothing
     /// is left.
     fn ends(&self, node: u32) -> Option<([u32; 2], [u32; 2])> {
@@ -242,9 +201,9 @@ impl Partition {
     }
 
     /// The pixels that each region would win if a node went to a place.
-    pub fn shift(&self, node: u32, to: Lattice) -> Vec<(u32, Moments)> {
+    pub fn shift(&self, node: u32, to: Lattice) -> Vec<(u32, RegionMoments)> {
         let at = self.nodes[node as usize].at;
-        let mut won: Vec<(u32, Moments)> = Vec::with_capacity(4);
+        let mut won: Vec<(u32, RegionMoments)> = Vec::with_capacity(4);
         for &e in self.nodes[node as usize].edges() {
             let Edge { nodes, sides, .. } = self.edges[e as usize];
             let starts = nodes[0] == node;
@@ -263,7 +222,7 @@ impl Partition {
     }
 
     /// Moves a node; `won` is its [`Self::shift`].
-    pub fn move_node(&mut self, node: u32, to: Lattice, won: &[(u32, Moments)]) {
+    pub fn move_node(&mut self, node: u32, to: Lattice, won: &[(u32, RegionMoments)]) {
         let at = std::mem::replace(&mut self.nodes[node as usize].at, to);
         self.occupied.set(at, false);
         self.occupied.set(to, true);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::Vector;
+use super::segmentation::Vector;
 
 /// The rings of every region: vectors chained head to tail with the region to their right.
 pub(crate) fn rings(vectors: &[Vector], regions: usize) -> Vec<Vec<Vec<[i32; 2]>>> {

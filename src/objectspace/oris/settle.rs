@@ -4,14 +4,14 @@
 //! between two basins, and where the straightening of a staircase took the corner itself, on the
 //! crack beside it. This third move is not in W96's list, but its principle: among the lattice
 //! points nearby a node goes to the one with the shortest description. Nothing is added or taken
-//! away, so that only grey values speak. A vertex of two or more boundaries drags all of them.
+//! away, so that only grey values count. A vertex of two or more boundaries drags all of them.
 
 use std::collections::VecDeque;
 
+use super::code_length::{CodeLength, LEAST_GAIN};
 use super::edge_grid::EdgeGrid;
-use super::integrals::{Lattice, Moments};
-use super::minimise::{CodeLength, LEAST_GAIN};
-use super::partition::{OUTSIDE, Partition};
+use super::integrals::{Lattice, RegionMoments};
+use super::partition::{ImagePartition, OUTSIDE};
 use crate::sorting::sort_by;
 
 /// All steps up to this are tried in either axis, pixels: boundaries run in any direction, and a
@@ -22,7 +22,7 @@ const NEAR_PX: i32 = 2;
 const FAR_PX: i32 = 4;
 
 /// Moves nodes while any of these steps shortens the description; returns how many moves it took.
-pub(crate) fn settle(p: &mut Partition, code: &CodeLength) -> usize {
+pub(crate) fn settle(p: &mut ImagePartition, code: &CodeLength) -> usize {
     let mut grid = EdgeGrid::new(p);
     let movable = |n: &u32| p.nodes[*n as usize].edges().len() > 1;
     let mut queue: VecDeque<u32> = (0..p.nodes.len() as u32).filter(movable).collect();
@@ -46,16 +46,16 @@ pub(crate) fn settle(p: &mut Partition, code: &CodeLength) -> usize {
 }
 
 /// What a step gains, where it leads, and the pixels that each region wins by it.
-type Step = (f64, Lattice, Vec<(u32, Moments)>);
+type Step = (f64, Lattice, Vec<(u32, RegionMoments)>);
 
 /// The step with the largest gain, and the pixels that each region wins by it; `None` where none
 /// gains.
 fn best_step(
-    p: &Partition,
+    p: &ImagePartition,
     grid: &EdgeGrid,
     code: &CodeLength,
     node: u32,
-) -> Option<(Lattice, Vec<(u32, Moments)>)> {
+) -> Option<(Lattice, Vec<(u32, RegionMoments)>)> {
     let at = p.nodes[node as usize].at;
     let mut steps: Vec<Step> = Vec::new();
     for (dx, dy) in offsets() {
@@ -71,7 +71,7 @@ fn best_step(
             }
         }
     }
-    // Steps that gain are few: whether they are free is asked of these only.
+    // Few steps gain, so only these are tested for crossings.
     sort_by(&mut steps, |a, b| b.0.total_cmp(&a.0));
     let free = |to: Lattice| p.may_move(node, to) && !grid.crossed(p, node, to);
     let best = steps.into_iter().find(|s| free(s.1));
@@ -85,7 +85,7 @@ fn offsets() -> impl Iterator<Item = (i32, i32)> {
 }
 
 /// By how many bits the regions get shorter; minus infinity where one would lose all its pixels.
-fn gain(p: &Partition, code: &CodeLength, shift: &[(u32, Moments)]) -> f64 {
+fn gain(p: &ImagePartition, code: &CodeLength, shift: &[(u32, RegionMoments)]) -> f64 {
     let mut gain = 0.0;
     for (region, won) in shift.iter().filter(|s| s.0 != OUTSIDE) {
         let old = p.regions[*region as usize].moments;

@@ -7,64 +7,15 @@
 //! the lines: the paper's rectangles. The slanted ones have two, and make parallelograms,
 //! trapezoids and the ends of hips.
 
-use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::{Plane, covered};
+use super::strip::PlaneStrip;
+use crate::geometry::covered;
 use crate::ids::ViewId;
-use crate::objectspace::clusters::{Axes, overlap};
-use crate::objectspace::sight::Sight;
+use crate::objectspace::clusters::overlap;
+use crate::objectspace::image_lines::ImageLine;
 use crate::params::PlaneParams;
 use crate::sorting::sort_by;
-
-/// A plane between two parallel lines: u along them, w from the first to the second.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Strip {
-    pub origin: Point3<f64>,
-    pub u: Vector3<f64>,
-    pub w: Vector3<f64>,
-    pub width: f64,
-    /// Range along the lines that they and the margin leave.
-    pub range: [f64; 2],
-    pub plane: Plane,
-}
-
-impl Strip {
-    /// Through the places (across, height) of two lines; `None` where they coincide or stand above
-    /// each other.
-    pub fn new(axes: &Axes, first: [f64; 2], second: [f64; 2], range: [f64; 2]) -> Option<Self> {
-        let (a, b) = (
-            axes.point(0.0, first[0], first[1]),
-            axes.point(0.0, second[0], second[1]),
-        );
-        let width = (b - a).norm();
-        (width > 1e-6).then_some(())?;
-        let w = (b - a) / width;
-        let plane = Plane::from_point_normal(&a, &axes.u.cross(&w))?.upwards();
-        (plane.normal.z > 1e-3).then_some(Self {
-            origin: a,
-            u: axes.u,
-            w,
-            width,
-            range,
-            plane,
-        })
-    }
-
-    /// The world point at (u, w).
-    pub fn point(&self, u: f64, w: f64) -> Point3<f64> {
-        self.origin + self.u * u + self.w * w
-    }
-
-    /// (u, w) of the point in which a ray meets the plane.
-    fn cut(&self, center: &Point3<f64>, ray: &Vector3<f64>) -> Option<[f64; 2]> {
-        let t = -self.plane.signed_distance(center) / self.plane.normal.dot(ray);
-        (t > 0.0).then(|| {
-            let d = center + ray * t - self.origin;
-            [d.dot(&self.u), d.dot(&self.w)]
-        })
-    }
-}
 
 /// An image line cut with the plane: where its line crosses the two lines, and the stretch across
 /// that it covers.
@@ -82,7 +33,7 @@ pub struct Crossing {
 
 /// A cluster of crossings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct End {
+pub struct PlaneEnd {
     /// Positions along the first and the second line, metres.
     pub at: [f64; 2],
     /// Share of the width covered, mean over the views that see it.
@@ -90,7 +41,11 @@ pub struct End {
 }
 
 /// The image lines inside the window of a strip that cross it.
-pub(crate) fn crossings(strip: &Strip, sights: &[Sight], params: &PlaneParams) -> Vec<Crossing> {
+pub(crate) fn crossings(
+    strip: &PlaneStrip,
+    image_lines: &[ImageLine],
+    params: &PlaneParams,
+) -> Vec<Crossing> {
     let m = params.margin_m;
     let inside = |p: &[f64; 2]| {
         p[0] >= strip.range[0] - m
@@ -98,7 +53,7 @@ pub(crate) fn crossings(strip: &Strip, sights: &[Sight], params: &PlaneParams) -
             && p[1] >= -m
             && p[1] <= strip.width + m
     };
-    sights
+    image_lines
         .iter()
         .filter_map(|s| {
             let [p, q] = s.rays.map(|ray| strip.cut(&s.camera.center, &ray));
@@ -123,12 +78,12 @@ pub(crate) fn crossings(strip: &Strip, sights: &[Sight], params: &PlaneParams) -
 /// The clusters of the crossings and, as further places where a plane may end, the ends of its two
 /// lines.
 pub(crate) fn ends(
-    strip: &Strip,
+    strip: &PlaneStrip,
     crossings: &[Crossing],
     line_ends: &[f64],
     views: usize,
     params: &PlaneParams,
-) -> Vec<End> {
+) -> Vec<PlaneEnd> {
     let mut proposals: Vec<[f64; 2]> = Vec::new();
     let square = |c: &Crossing| (c.at[1] - c.at[0]).abs() <= square_tolerance(c, strip, params);
     for c in crossings {
@@ -146,12 +101,12 @@ pub(crate) fn ends(
 
 /// The clusters of the slanted crossings and of further proposals.
 pub(crate) fn slanted_ends(
-    strip: &Strip,
+    strip: &PlaneStrip,
     crossings: &[Crossing],
     starts: &[[f64; 2]],
     views: usize,
     params: &PlaneParams,
-) -> Vec<End> {
+) -> Vec<PlaneEnd> {
     let proposals = crossings
         .iter()
         .map(|c| c.at)
@@ -162,13 +117,13 @@ pub(crate) fn slanted_ends(
 
 /// Settles the proposals and keeps the best, each place once.
 fn distinct(
-    strip: &Strip,
+    strip: &PlaneStrip,
     crossings: &[Crossing],
     proposals: Vec<[f64; 2]>,
     views: usize,
     params: &PlaneParams,
-) -> Vec<End> {
-    let mut found: Vec<End> = proposals
+) -> Vec<PlaneEnd> {
+    let mut found: Vec<PlaneEnd> = proposals
         .into_iter()
         .map(|p| settle(strip, crossings, p, views, params))
         .collect();
@@ -178,9 +133,9 @@ fn distinct(
             .then(a.at[0].total_cmp(&b.at[0]))
             .then(a.at[1].total_cmp(&b.at[1]))
     });
-    let mut kept: Vec<End> = Vec::new();
+    let mut kept: Vec<PlaneEnd> = Vec::new();
     for end in found {
-        let same = |k: &End| (0..2).all(|i| (k.at[i] - end.at[i]).abs() < params.position_m);
+        let same = |k: &PlaneEnd| (0..2).all(|i| (k.at[i] - end.at[i]).abs() < params.position_m);
         if !kept.iter().any(same) && kept.len() < params.max_ends {
             kept.push(end);
         }
@@ -190,7 +145,7 @@ fn distinct(
 
 /// How far the two positions of a crossing at right angles may be apart, metres: the direction of a
 /// short image line is uncertain.
-fn square_tolerance(c: &Crossing, strip: &Strip, params: &PlaneParams) -> f64 {
+fn square_tolerance(c: &Crossing, strip: &PlaneStrip, params: &PlaneParams) -> f64 {
     let length = c.across[1] - c.across[0];
     strip.width
         * (params.angle_deg.to_radians() + params.position_m / length.max(params.position_m))
@@ -200,12 +155,12 @@ fn square_tolerance(c: &Crossing, strip: &Strip, params: &PlaneParams) -> f64 {
 /// Moves a proposal to the weighted mean of the crossings near it (W96: "weighted by the 2D lengths
 /// of the lines").
 fn settle(
-    strip: &Strip,
+    strip: &PlaneStrip,
     crossings: &[Crossing],
     start: [f64; 2],
     views: usize,
     params: &PlaneParams,
-) -> End {
+) -> PlaneEnd {
     let square = start[0] == start[1];
     let mut at = start;
     let mut near: Vec<&Crossing> = Vec::new();
@@ -231,14 +186,14 @@ fn settle(
             covered(own.map(|c| c.across), within) / strip.width
         })
         .sum();
-    End {
+    PlaneEnd {
         at,
         support: support / views.max(1) as f64,
     }
 }
 
 /// Does the stretch of the crossing lie on the line between two positions?
-fn lies_on(c: &Crossing, at: [f64; 2], strip: &Strip, params: &PlaneParams) -> bool {
+fn lies_on(c: &Crossing, at: [f64; 2], strip: &PlaneStrip, params: &PlaneParams) -> bool {
     c.across.iter().all(|w| {
         let f = w / strip.width;
         let own = c.at[0] + (c.at[1] - c.at[0]) * f;
@@ -247,7 +202,7 @@ fn lies_on(c: &Crossing, at: [f64; 2], strip: &Strip, params: &PlaneParams) -> b
     })
 }
 
-fn mean_position(strip: &Strip, near: &[&Crossing]) -> [f64; 2] {
+fn mean_position(strip: &PlaneStrip, near: &[&Crossing]) -> [f64; 2] {
     let (mut sum, mut weights) = (0.0, 0.0);
     for c in near {
         let length = c.across[1] - c.across[0];
@@ -259,7 +214,7 @@ fn mean_position(strip: &Strip, near: &[&Crossing]) -> [f64; 2] {
 }
 
 /// A line by least squares through the ends of the stretches.
-fn mean_line(strip: &Strip, near: &[&Crossing]) -> Option<[f64; 2]> {
+fn mean_line(strip: &PlaneStrip, near: &[&Crossing]) -> Option<[f64; 2]> {
     let (mut n, mut sw, mut su, mut sww, mut swu) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for c in near {
         let weight = c.across[1] - c.across[0];
@@ -305,13 +260,15 @@ pub(crate) fn side_support(
 mod tests {
     use super::*;
     use crate::geometry::Segment3;
+    use crate::objectspace::clusters::ClusterAxes;
     use crate::objectspace::fixture::{planted_lines, rig};
-    use crate::objectspace::sight::sights;
+    use crate::objectspace::image_lines::image_lines;
+    use nalgebra::Vector3;
 
     /// A roof plane that rises along Y from an eave at y = 0, z = 3 to a ridge at y = 4, z = 6.
-    fn strip() -> Strip {
-        Strip::new(
-            &Axes::new(&Vector3::x()),
+    fn strip() -> PlaneStrip {
+        PlaneStrip::new(
+            &ClusterAxes::new(&Vector3::x()),
             [0.0, 3.0],
             [4.0, 6.0],
             [-8.0, 8.0],
@@ -319,7 +276,7 @@ mod tests {
         .unwrap()
     }
 
-    fn found(uv: &[[f64; 2]]) -> Vec<End> {
+    fn found(uv: &[[f64; 2]]) -> Vec<PlaneEnd> {
         let (scene, strip) = (rig(6), strip());
         let truth: Vec<Segment3> = uv
             .iter()
@@ -327,7 +284,7 @@ mod tests {
             .collect();
         let lines = planted_lines(&scene, &truth, 0.3, &[2]);
         let params = PlaneParams::default();
-        let crossings = crossings(&strip, &sights(&scene, &lines), &params);
+        let crossings = crossings(&strip, &image_lines(&scene, &lines), &params);
         ends(&strip, &crossings, &[], 6, &params)
     }
 
@@ -369,7 +326,7 @@ mod tests {
         )];
         let lines = planted_lines(&scene, &truth, 0.0, &[]);
         let params = PlaneParams::default();
-        let crossings = crossings(&strip, &sights(&scene, &lines), &params);
+        let crossings = crossings(&strip, &image_lines(&scene, &lines), &params);
         let best = ends(&strip, &crossings, &[], 6, &params);
         assert!(best.first().is_none_or(|e| e.support < 0.6), "{best:?}");
     }

@@ -1,8 +1,8 @@
 //! Planes between parallel 3D lines (W96 3.6).
 //!
-//! Each pair of parallel lines defines a plane; the image lines that cross it tell where it ends
-//! ([`ends`]); and radiometry tells true planes from false ones. W96 sums geometric and radiometric
-//! criteria up in one measure without writing it down. Here
+//! Each pair of parallel lines defines a plane; the image lines that cross it show where it ends
+//! ([`ends`]); and radiometry separates true planes from false ones. W96 sums geometric and
+//! radiometric criteria up in one measure without writing it down. Here
 //!
 //! ```text
 //! M = sum over the area of  weight (rise - least_rise)
@@ -12,11 +12,11 @@
 //!
 //! * the first sum is the paper's criterion that "the area ... inside the 3D plane should be
 //!   radiometrically homogeneous over all images": the views, warped to the plane, are compared by
-//!   correlation (`halfplane::consistency`), with little weight where there is no texture. They
+//!   correlation (`photoconsistency`), with little weight where there is no texture. They
 //!   must agree better than on planes a little above and below, and the rise is the median by how
 //!   much they do: smooth surfaces correlate on any plane near them, so that a fixed level of
 //!   correlation lets many false planes through (of 910 candidates of the rendered scenes the
-//!   difference tells true from false in 88 of 100 pairs, correlation alone in 80). The median,
+//!   difference separates true from false in 88 of 100 pairs, correlation alone in 80). The median,
 //!   because what stands on a roof agrees above it;
 //! * the second is its geometry, and the contrast of its lines, since only lines with contrast are
 //!   region boundaries: support is the share of a side that image lines cover, mean over all views.
@@ -24,89 +24,56 @@
 //! Of the polygons between two lines those with the largest M are kept as candidates. A pair of
 //! lines may hold several, with gaps between them: U-shapes. A line with an end of a perpendicular,
 //! higher one makes a triangle: the end of a hip below its ridge.
+//!
+//! ```text
+//! strip             the plane between two parallel lines
+//! ends              where crossing image lines end it
+//! shapes            quadrilaterals and triangles between ends
+//! occluding_solids  buildings below planes found already, which hide others
+//! plane_evidence    agreement of the views on the plane and on displaced planes
+//! candidate         plane candidates and rejections
+//! selection         the best non-overlapping set
+//! ```
+//!
+//! Invariant: the chosen candidates do not overlap in plan but for the errors of their ends.
 
+mod candidate;
 mod ends;
 mod occluding_solids;
 mod plane_evidence;
 mod selection;
 mod shapes;
+mod strip;
 
-pub use ends::{Crossing, End};
-pub(crate) use occluding_solids::Solid;
+pub use candidate::{PlaneCandidate, PlaneRejection, PlaneTrace};
+pub use ends::{Crossing, PlaneEnd};
+pub(crate) use occluding_solids::OccludingSolid;
 pub(crate) use selection::best_set;
 
 use nalgebra::Point3;
-use serde::{Deserialize, Serialize};
 
-use self::ends::{Strip, crossings, ends, slanted_ends};
+use self::ends::{crossings, ends, slanted_ends};
 use self::occluding_solids::partly_hidden;
-use self::plane_evidence::{CHANCE, Judge, OnPlane, area_2d};
-use self::shapes::{Along, Shape, quadrilaterals, triangle};
-use super::clusters::ClusterLine;
-use super::clusters::{Axes, overlap};
-use super::sight::Sight;
-use crate::execution::SILENT;
-use crate::execution::map_shared;
+use self::plane_evidence::{CHANCE, PlaneAgreement, PlaneConsistency, area_2d};
+use self::shapes::{StripLine, StripPolygon, quadrilaterals, triangle};
+use self::strip::PlaneStrip;
+use super::clusters::{ClusterAxes, ClusterLine, overlap};
+use super::image_lines::ImageLine;
+use crate::execution::{SILENT, map_shared};
 use crate::geometry::Plane;
 use crate::params::PlaneParams;
 use crate::scene::Scene;
 use crate::sorting::sort_by;
 use crate::terrain::Ground;
 
-/// A polygon in a plane, with the evidence for it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PlaneCandidate {
-    /// The plane.
-    pub plane: Plane,
-    /// Corners, metres, counter-clockwise seen from above.
-    pub ring: Vec<Point3<f64>>,
-    /// The two lines (one for a triangle), as indices into the clusters of the window.
-    pub lines: Vec<usize>,
-    /// Share of the outline that image lines cover, mean over the views.
-    pub support: f64,
-    /// Mean correlation of the views inside, weighted by texture.
-    pub correlation: f64,
-    /// By how much it exceeds the correlation on planes above and below it, median.
-    pub rise: f64,
-    /// The measure M, square metres.
-    pub measure: f64,
-}
-
-/// Why a plane hypothesis gave no candidate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum PlaneRejection {
-    /// Too steep, too narrow or too wide, or its lines stand beside each other.
-    Shape,
-    /// Not higher above the ground than a car.
-    NearGround,
-    /// Crossing lines make no two ends.
-    NoEnds,
-    /// The measure of its best polygon is not positive.
-    Weak,
-}
-
-/// A pair of lines and what became of it (figure 11).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PlaneTrace {
-    /// The two lines.
-    pub lines: [usize; 2],
-    /// Why there is no candidate; `None` when there is.
-    pub rejection: Option<PlaneRejection>,
-    /// The image lines that cross the plane.
-    pub crossings: Vec<Crossing>,
-    /// Their clusters.
-    pub ends: Vec<End>,
-}
-
 /// What the search for planes works on: one window, one pair of main directions.
 pub(crate) struct PlaneSearch<'a> {
     pub scene: &'a Scene,
-    pub sights: &'a [Sight<'a>],
+    pub image_lines: &'a [ImageLine<'a>],
     pub lines: &'a [ClusterLine],
     pub ground: &'a Ground,
-    /// What was found before and may hide what is sought now.
-    pub solids: &'a [Solid],
+    /// Buildings below planes found before, which may hide other planes.
+    pub solids: &'a [OccludingSolid],
     pub params: &'a PlaneParams,
 }
 
@@ -114,10 +81,10 @@ impl PlaneSearch<'_> {
     /// All candidates between pairs of lines that run along `axes.u`, given by index.
     pub fn candidates(
         &self,
-        axes: &Axes,
+        axes: &ClusterAxes,
         members: &[usize],
     ) -> (Vec<PlaneCandidate>, Vec<PlaneTrace>) {
-        let along: Vec<Along> = members
+        let along: Vec<StripLine> = members
             .iter()
             .map(|&k| self.along(axes, &self.lines[k]))
             .collect();
@@ -140,8 +107,8 @@ impl PlaneSearch<'_> {
         (candidates, traces)
     }
 
-    /// Candidates of a pair of lines again, now that solids are known.
-    pub fn again(&self, axes: &Axes, lines: [usize; 2]) -> Vec<PlaneCandidate> {
+    /// Candidates of a pair of lines that the known solids hide in part.
+    pub fn candidates_between(&self, axes: &ClusterAxes, lines: [usize; 2]) -> Vec<PlaneCandidate> {
         let [a, b] = lines.map(|k| self.along(axes, &self.lines[k]));
         let (mut candidates, _) = self.pair(axes, [&a, &b]);
         candidates.iter_mut().for_each(|c| c.lines = lines.into());
@@ -151,7 +118,7 @@ impl PlaneSearch<'_> {
     /// Triangles below the ends of higher lines, `apexes`, on the lines that run along `axes.u`.
     pub fn triangles(
         &self,
-        axes: &Axes,
+        axes: &ClusterAxes,
         members: &[usize],
         apexes: &[Point3<f64>],
     ) -> Vec<PlaneCandidate> {
@@ -167,17 +134,22 @@ impl PlaneSearch<'_> {
         found.into_iter().flatten().collect()
     }
 
-    fn triangle(&self, axes: &Axes, base: &Along, apex: &Point3<f64>) -> Option<PlaneCandidate> {
+    fn triangle(
+        &self,
+        axes: &ClusterAxes,
+        base: &StripLine,
+        apex: &Point3<f64>,
+    ) -> Option<PlaneCandidate> {
         let top = axes.u.dot(&apex.coords);
         let inside = base.range[0] < top && top < base.range[1] && apex.z > base.place[1] + 0.3;
         inside.then_some(())?;
-        let tip = Along {
+        let tip = StripLine {
             range: base.range,
             place: [axes.v.dot(&apex.coords), apex.z],
             stretches: Vec::new(),
         };
         let strip = self.strip(axes, [base, &tip]).ok()?;
-        let crossings = crossings(&strip, self.sights, self.params);
+        let crossings = crossings(&strip, self.image_lines, self.params);
         let views = self.scene.views.len();
         let starts = base.range.map(|u| [u, top]);
         let ends = slanted_ends(&strip, &crossings, &starts, views, self.params);
@@ -185,22 +157,22 @@ impl PlaneSearch<'_> {
         self.measured(&strip, vec![shape]).pop()
     }
 
-    fn along(&self, axes: &Axes, line: &ClusterLine) -> Along {
+    fn along(&self, axes: &ClusterAxes, line: &ClusterLine) -> StripLine {
         let [a, b] = [line.segment.p0, line.segment.p1].map(|p| axes.u.dot(&p.coords));
         let z = line.segment.p0.z;
         let stretch = |&k: &usize| {
-            let sight = &self.sights[k];
-            let [p, q] = sight.ends_at(z).map(|p| axes.u.dot(&p.coords));
-            (sight.view, [p.min(q), p.max(q)])
+            let image_line = &self.image_lines[k];
+            let [p, q] = image_line.ends_at(z).map(|p| axes.u.dot(&p.coords));
+            (image_line.view, [p.min(q), p.max(q)])
         };
-        Along {
+        StripLine {
             range: [a.min(b), a.max(b)],
             place: [axes.v.dot(&line.segment.p0.coords), z],
             stretches: line.supports.iter().map(stretch).collect(),
         }
     }
 
-    fn pair(&self, axes: &Axes, pair: [&Along; 2]) -> (Vec<PlaneCandidate>, PlaneTrace) {
+    fn pair(&self, axes: &ClusterAxes, pair: [&StripLine; 2]) -> (Vec<PlaneCandidate>, PlaneTrace) {
         let mut trace = PlaneTrace {
             lines: [0; 2],
             rejection: None,
@@ -214,7 +186,7 @@ impl PlaneSearch<'_> {
                 return (Vec::new(), trace);
             }
         };
-        trace.crossings = crossings(&strip, self.sights, self.params);
+        trace.crossings = crossings(&strip, self.image_lines, self.params);
         let line_ends: Vec<f64> = pair.iter().flat_map(|a| a.range).collect();
         trace.ends = ends(
             &strip,
@@ -241,11 +213,15 @@ impl PlaneSearch<'_> {
         (found, trace)
     }
 
-    fn strip(&self, axes: &Axes, [a, b]: [&Along; 2]) -> Result<Strip, PlaneRejection> {
+    fn strip(
+        &self,
+        axes: &ClusterAxes,
+        [a, b]: [&StripLine; 2],
+    ) -> Result<PlaneStrip, PlaneRejection> {
         let p = self.params;
         let range = [a.range[0].min(b.range[0]), a.range[1].max(b.range[1])];
         let shorter = (a.range[1] - a.range[0]).min(b.range[1] - b.range[0]);
-        let strip = Strip::new(axes, a.place, b.place, range).ok_or(PlaneRejection::Shape)?;
+        let strip = PlaneStrip::new(axes, a.place, b.place, range).ok_or(PlaneRejection::Shape)?;
         let steepest = crate::math::cos(p.max_slope_deg.to_radians());
         let shaped = strip.plane.normal.z >= steepest
             && (p.min_width_m..=p.max_width_m).contains(&strip.width)
@@ -263,21 +239,21 @@ impl PlaneSearch<'_> {
     }
 
     /// The best shapes of a strip by the measure, those with a positive one.
-    fn measured(&self, strip: &Strip, mut shapes: Vec<Shape>) -> Vec<PlaneCandidate> {
+    fn measured(&self, strip: &PlaneStrip, mut shapes: Vec<StripPolygon>) -> Vec<PlaneCandidate> {
         let plane = &strip.plane;
         let in_front = self.solids.iter().filter(|s| s.stands_above(plane));
-        let solids: Vec<Solid> = in_front.cloned().collect();
+        let solids: Vec<OccludingSolid> = in_front.cloned().collect();
         if !self.solids.is_empty() {
             shapes.retain(|s| partly_hidden(self.scene, &solids, &s.ring(strip)));
         }
         let rings: Vec<Vec<Point3<f64>>> = shapes.iter().map(|s| s.ring(strip)).collect();
-        let Some(judge) = Judge::new(self.scene, plane, &rings, &solids) else {
+        let Some(consistency) = PlaneConsistency::new(self.scene, plane, &rings, &solids) else {
             return Vec::new();
         };
-        let promising: Vec<(Shape, Vec<Point3<f64>>, OnPlane)> = shapes
+        let promising: Vec<(StripPolygon, Vec<Point3<f64>>, PlaneAgreement)> = shapes
             .into_iter()
             .zip(rings)
-            .map(|(shape, ring)| (judge.on_plane(&ring), shape, ring))
+            .map(|(shape, ring)| (consistency.agreement(&ring), shape, ring))
             .filter(|(on, shape, ring)| {
                 self.measure(plane, ring, shape, on, on.median - CHANCE)
                     .is_some()
@@ -287,11 +263,11 @@ impl PlaneSearch<'_> {
         if promising.is_empty() {
             return Vec::new();
         }
-        let beside = judge.beside(self.params.beside_px);
+        let displaced = consistency.displaced(self.params.beside_px);
         let mut found: Vec<PlaneCandidate> = promising
             .into_iter()
             .filter_map(|(shape, ring, on)| {
-                let rise = judge.rise(&beside, &ring);
+                let rise = consistency.rise(&displaced, &ring);
                 let measure = self.measure(plane, &ring, &shape, &on, rise)?;
                 Some(PlaneCandidate {
                     plane: *plane,
@@ -314,8 +290,8 @@ impl PlaneSearch<'_> {
         &self,
         plane: &Plane,
         ring: &[Point3<f64>],
-        shape: &Shape,
-        on: &OnPlane,
+        shape: &StripPolygon,
+        on: &PlaneAgreement,
         rise: f64,
     ) -> Option<f64> {
         let p = self.params;

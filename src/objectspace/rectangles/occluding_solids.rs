@@ -3,7 +3,7 @@
 //! W96 demands lines in all images and finds that "too restrictive, due to possible occlusion". A
 //! low annex beside a tall house is hidden from every second image, and its correlation is then
 //! that of the house's roof with its own. Planes of the first selection are therefore taken for
-//! solids down to the ground, and the planes beside them are judged again where these leave them
+//! solids down to the ground, and the planes beside them are measured again where these leave them
 //! visible.
 
 use nalgebra::{Point2, Point3};
@@ -14,7 +14,7 @@ use crate::scene::Scene;
 
 /// A solid below a convex roof plane.
 #[derive(Clone, Debug)]
-pub(crate) struct Solid {
+pub(crate) struct OccludingSolid {
     /// Outline in plan, counter-clockwise.
     ring: Vec<Point2<f64>>,
     plane: Plane,
@@ -29,7 +29,11 @@ const LEAST_HEIGHT_M: f64 = 1.0;
 
 /// Do solids stand in front of some of a polygon in some views, and leave all of it visible in two
 /// at least?
-pub(crate) fn partly_hidden(scene: &Scene, solids: &[Solid], ring: &[Point3<f64>]) -> bool {
+pub(crate) fn partly_hidden(
+    scene: &Scene,
+    solids: &[OccludingSolid],
+    ring: &[Point3<f64>],
+) -> bool {
     let middle = mean_point(ring);
     // Not the corners themselves, which may touch a neighbour.
     let inside = ring.iter().map(|p| p + (middle - p) * 0.2).chain([middle]);
@@ -43,7 +47,7 @@ pub(crate) fn partly_hidden(scene: &Scene, solids: &[Solid], ring: &[Point3<f64>
     counts.iter().any(|&n| n > 0) && counts.iter().all(|&n| n + 2 <= scene.views.len())
 }
 
-impl Solid {
+impl OccludingSolid {
     /// Below a ring that runs counter-clockwise seen from above.
     pub fn new(plane: &Plane, ring: &[Point3<f64>]) -> Self {
         Self {
@@ -104,11 +108,11 @@ mod tests {
     use nalgebra::Vector3;
 
     /// A flat roof of 4 m by 4 m, 10 m high.
-    fn tower() -> Solid {
+    fn tower() -> OccludingSolid {
         let ring =
             [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]].map(|[x, y]| Point3::new(x, y, 10.0));
         let plane = Plane::from_point_normal(&ring[0], &Vector3::z()).unwrap();
-        Solid::new(&plane, &ring)
+        OccludingSolid::new(&plane, &ring)
     }
 
     #[test]

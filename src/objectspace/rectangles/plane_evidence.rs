@@ -1,9 +1,9 @@
-//! What the images say about a plane: are they alike when warped to it, and more alike than on
-//! planes above and below?
+//! The evidence of the images for a plane: how well they agree when warped to it, and how much
+//! better than on planes displaced up and down.
 
 use nalgebra::{Point2, Point3, Vector2};
 
-use super::occluding_solids::Solid;
+use super::occluding_solids::OccludingSolid;
 use crate::geometry::Plane;
 use crate::photoconsistency::{ConsistencyMap, PlanGrid, consistency_map, consistency_map_behind};
 use crate::scene::Scene;
@@ -19,9 +19,9 @@ pub(crate) fn area_2d(ring: &[Point3<f64>]) -> f64 {
 }
 
 /// Compares the views on one plane and on planes beside it.
-pub(crate) struct Judge<'a> {
+pub(crate) struct PlaneConsistency<'a> {
     scene: &'a Scene,
-    solids: &'a [Solid],
+    solids: &'a [OccludingSolid],
     plane: Plane,
     grid: PlanGrid,
     /// How far a metre of height moves the images against each other, pixels.
@@ -29,9 +29,9 @@ pub(crate) struct Judge<'a> {
     map: ConsistencyMap,
 }
 
-/// What the views say about a polygon in the plane.
-pub(crate) struct OnPlane {
-    /// How much its texture can tell, 0 to 1.
+/// Agreement of the views inside a polygon in the plane.
+pub(crate) struct PlaneAgreement {
+    /// Weight of its texture, 0 to 1.
     pub weight: f64,
     /// Correlation of the views, weighted by texture.
     pub correlation: f64,
@@ -39,8 +39,8 @@ pub(crate) struct OnPlane {
     pub median: f64,
 }
 
-/// The views on planes above and below.
-pub(crate) struct Beside([ConsistencyMap; 2]);
+/// The comparison of the views on planes above and below.
+pub(crate) struct DisplacedMaps([ConsistencyMap; 2]);
 
 /// Correlation of unrelated textures: only the better half of all pairs of views counts. No plane
 /// beside another one is taken to be worse, so that hopeless planes need not be compared with any.
@@ -49,14 +49,14 @@ pub(crate) const CHANCE: f64 = 0.45;
 /// Largest number of cells of a plane's grid.
 const MOST_CELLS: f64 = 60_000.0;
 
-impl<'a> Judge<'a> {
+impl<'a> PlaneConsistency<'a> {
     /// Compares the views on a plane where the rings are and no solid hides it; `None` without
     /// rings.
     pub fn new(
         scene: &'a Scene,
         plane: &Plane,
         rings: &[Vec<Point3<f64>>],
-        solids: &'a [Solid],
+        solids: &'a [OccludingSolid],
     ) -> Option<Self> {
         let first = rings.iter().flatten().next()?;
         let grid = grid_over(scene, rings, first)?;
@@ -71,10 +71,10 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// Looks inside a convex ring that runs counter-clockwise.
-    pub fn on_plane(&self, ring: &[Point3<f64>]) -> OnPlane {
+    /// The agreement inside a convex ring that runs counter-clockwise.
+    pub fn agreement(&self, ring: &[Point3<f64>]) -> PlaneAgreement {
         let (mut cells, mut weights, mut sum) = (0u32, 0.0, 0.0);
-        let mut spread = Spread::default();
+        let mut spread = WeightedHistogram::default();
         for k in self.cells(ring) {
             let (weight, c) = (self.map.common_weight(k), self.map.correlation(k));
             cells += 1;
@@ -82,7 +82,7 @@ impl<'a> Judge<'a> {
             sum += f64::from(weight) * f64::from(c);
             spread.add(c, weight);
         }
-        OnPlane {
+        PlaneAgreement {
             weight: weights / f64::from(cells.max(1)),
             correlation: if weights > 0.0 { sum / weights } else { 0.0 },
             median: spread.median(),
@@ -91,10 +91,10 @@ impl<'a> Judge<'a> {
 
     /// By how much the views agree better on the plane than above and below it inside a ring: the
     /// lower one of the medians.
-    pub fn rise(&self, beside: &Beside, ring: &[Point3<f64>]) -> f64 {
+    pub fn rise(&self, displaced: &DisplacedMaps, ring: &[Point3<f64>]) -> f64 {
         let cells = self.cells(ring);
-        let medians = beside.0.each_ref().map(|map| {
-            let mut spread = Spread::default();
+        let medians = displaced.0.each_ref().map(|map| {
+            let mut spread = WeightedHistogram::default();
             for &k in &cells {
                 let other = map.correlation(k).max(CHANCE as f32);
                 spread.add(self.map.correlation(k) - other, self.map.common_weight(k));
@@ -123,7 +123,7 @@ impl<'a> Judge<'a> {
 
     /// Compares the views above and below the plane, where they move by so many pixels against each
     /// other.
-    pub fn beside(&self, shift_px: f64) -> Beside {
+    pub fn displaced(&self, shift_px: f64) -> DisplacedMaps {
         let rise = shift_px / self.parallax_px;
         let maps = [rise, -rise].map(|dz| {
             let lifted = Plane {
@@ -132,16 +132,16 @@ impl<'a> Judge<'a> {
             };
             compare(self.scene, &lifted, &self.grid, self.solids)
         });
-        Beside(maps)
+        DisplacedMaps(maps)
     }
 }
 
 /// A weighted histogram of values from -2 to 2.
-struct Spread {
+struct WeightedHistogram {
     weights: [f64; Self::BINS],
 }
 
-impl Default for Spread {
+impl Default for WeightedHistogram {
     fn default() -> Self {
         Self {
             weights: [0.0; Self::BINS],
@@ -149,7 +149,7 @@ impl Default for Spread {
     }
 }
 
-impl Spread {
+impl WeightedHistogram {
     const BINS: usize = 512;
     /// Bins per unit.
     const FINENESS: f32 = 128.0;
@@ -171,7 +171,12 @@ impl Spread {
     }
 }
 
-fn compare(scene: &Scene, plane: &Plane, grid: &PlanGrid, solids: &[Solid]) -> ConsistencyMap {
+fn compare(
+    scene: &Scene,
+    plane: &Plane,
+    grid: &PlanGrid,
+    solids: &[OccludingSolid],
+) -> ConsistencyMap {
     if solids.is_empty() {
         return consistency_map(scene, plane, grid);
     }
@@ -269,7 +274,7 @@ mod tests {
 
     #[test]
     fn the_median_is_not_moved_by_a_minority() {
-        let mut spread = Spread::default();
+        let mut spread = WeightedHistogram::default();
         (0..60).for_each(|_| spread.add(0.25, 0.5));
         (0..28).for_each(|_| spread.add(-0.9, 1.0));
         assert!((spread.median() - 0.25).abs() < 0.01);

@@ -3,21 +3,21 @@
 //!
 //! Candidates that overlap in plan exclude each other. The set with the largest sum of measures is
 //! found exactly where few candidates stand in each other's way, by branch and bound; larger
-//! tangles start from the greedy set and exchange one candidate for those that it excludes while
-//! the sum grows.
+//! conflict_groups start from the greedy set and exchange one candidate for those that it excludes
+//! while the sum grows.
 
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;
 
-use super::PlaneCandidate;
+use super::candidate::PlaneCandidate;
 use super::plane_evidence::area_2d;
 use crate::sorting::sort_by;
 
 /// Candidates that overlap by more than this share of the smaller one exclude each other.
 /// Assumption: what errors of their ends do at shared sides.
 const MOST_OVERLAP: f64 = 0.08;
-/// Most candidates in a tangle that is solved exactly.
+/// Most candidates in a conflict_group that is solved exactly.
 const EXACT: usize = 24;
 
 /// Indices of the chosen candidates, ascending.
@@ -34,11 +34,11 @@ pub(crate) fn best_set(candidates: &[PlaneCandidate]) -> Vec<usize> {
     }
     let weights: Vec<f64> = candidates.iter().map(|c| c.measure).collect();
     let mut chosen = Vec::new();
-    for tangle in tangles(&conflicts) {
-        if tangle.len() <= EXACT {
-            chosen.extend(exact(&tangle, &conflicts, &weights));
+    for conflict_group in conflict_groups(&conflicts) {
+        if conflict_group.len() <= EXACT {
+            chosen.extend(exact(&conflict_group, &conflicts, &weights));
         } else {
-            chosen.extend(exchanged(&tangle, &conflicts, &weights));
+            chosen.extend(exchanged(&conflict_group, &conflicts, &weights));
         }
     }
     chosen.sort_unstable();
@@ -67,7 +67,7 @@ fn ring_area(ring: &[[f64; 2]]) -> f64 {
 }
 
 /// Connected groups of conflicts.
-fn tangles(conflicts: &[Vec<usize>]) -> Vec<Vec<usize>> {
+fn conflict_groups(conflicts: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut seen = vec![false; conflicts.len()];
     let mut groups = Vec::new();
     for first in 0..conflicts.len() {
@@ -89,9 +89,9 @@ fn tangles(conflicts: &[Vec<usize>]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// Branch and bound over a tangle, the heaviest first.
-fn exact(tangle: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
-    let mut order = tangle.to_vec();
+/// Branch and bound over a conflict_group, the heaviest first.
+fn exact(conflict_group: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
+    let mut order = conflict_group.to_vec();
     sort_by(&mut order, |&a, &b| {
         weights[b].total_cmp(&weights[a]).then(a.cmp(&b))
     });
@@ -138,8 +138,8 @@ fn branch(
 
 /// Greedy, then exchanges: one candidate for those that it excludes, or several for the one that
 /// excludes them.
-fn exchanged(tangle: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
-    let mut order = tangle.to_vec();
+fn exchanged(conflict_group: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
+    let mut order = conflict_group.to_vec();
     sort_by(&mut order, |&a, &b| {
         weights[b].total_cmp(&weights[a]).then(a.cmp(&b))
     });
@@ -194,7 +194,7 @@ mod tests {
         let conflicts = vec![vec![1, 2], vec![0], vec![0], vec![]];
         let weights = [5.0, 3.0, 4.0, 1.0];
         for solve in [exact, exchanged] {
-            let mut chosen: Vec<usize> = tangles(&conflicts)
+            let mut chosen: Vec<usize> = conflict_groups(&conflicts)
                 .iter()
                 .flat_map(|t| solve(t, &conflicts, &weights))
                 .collect();

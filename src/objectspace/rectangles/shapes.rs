@@ -3,13 +3,14 @@
 
 use nalgebra::Point3;
 
-use super::ends::{End, Strip, side_support};
+use super::ends::{PlaneEnd, side_support};
 use super::plane_evidence::area_2d;
+use super::strip::PlaneStrip;
 use crate::ids::ViewId;
 use crate::params::PlaneParams;
 
 /// A line in the frame of its direction.
-pub(crate) struct Along {
+pub(crate) struct StripLine {
     pub range: [f64; 2],
     /// (across, height).
     pub place: [f64; 2],
@@ -18,7 +19,7 @@ pub(crate) struct Along {
 }
 
 /// A polygon in a strip.
-pub(crate) struct Shape {
+pub(crate) struct StripPolygon {
     /// (u, w) of the corners.
     corners: Vec<[f64; 2]>,
     /// Length of the outline, metres.
@@ -29,7 +30,7 @@ pub(crate) struct Shape {
     pub slants: usize,
 }
 
-impl Shape {
+impl StripPolygon {
     /// With sides of given (length, support); `None` where too little of them is seen.
     fn new(corners: Vec<[f64; 2]>, sides: &[[f64; 2]], params: &PlaneParams) -> Option<Self> {
         let length: f64 = sides.iter().map(|s| s[0]).sum();
@@ -43,7 +44,7 @@ impl Shape {
     }
 
     /// Its corners in the world, counter-clockwise seen from above.
-    pub fn ring(&self, strip: &Strip) -> Vec<Point3<f64>> {
+    pub fn ring(&self, strip: &PlaneStrip) -> Vec<Point3<f64>> {
         let point = |c: &[f64; 2]| strip.point(c[0], c[1]);
         let mut ring: Vec<_> = self.corners.iter().map(point).collect();
         if area_2d(&ring) < 0.0 {
@@ -55,12 +56,12 @@ impl Shape {
 
 /// Quadrilaterals between two ends whose outline is supported well enough.
 pub(crate) fn quadrilaterals(
-    strip: &Strip,
-    lines: [&Along; 2],
-    ends: &[End],
+    strip: &PlaneStrip,
+    lines: [&StripLine; 2],
+    ends: &[PlaneEnd],
     views: usize,
     params: &PlaneParams,
-) -> Vec<Shape> {
+) -> Vec<StripPolygon> {
     let pairs = ends
         .iter()
         .flat_map(|left| ends.iter().map(move |right| [left, right]));
@@ -70,12 +71,12 @@ pub(crate) fn quadrilaterals(
 }
 
 fn quadrilateral(
-    strip: &Strip,
-    [a, b]: [&Along; 2],
-    [left, right]: [&End; 2],
+    strip: &PlaneStrip,
+    [a, b]: [&StripLine; 2],
+    [left, right]: [&PlaneEnd; 2],
     views: usize,
     params: &PlaneParams,
-) -> Option<Shape> {
+) -> Option<StripPolygon> {
     let [p, q] = [0, 1].map(|k| [left.at[k], right.at[k]]);
     let lengths = [p[1] - p[0], q[1] - q[0]];
     // Shorter ones are for triangles.
@@ -96,26 +97,26 @@ fn quadrilateral(
         [q[0], strip.width],
     ];
     let slants = [left, right].iter().filter(|e| e.at[0] != e.at[1]).count();
-    Some(Shape {
+    Some(StripPolygon {
         slants,
-        ..Shape::new(corners, &sides, params)?
+        ..StripPolygon::new(corners, &sides, params)?
     })
 }
 
 /// The triangle over a line with its tip at `top` on the other border of the strip, between the
 /// best ends to either side. Both slants are fixed by the tip: no parameter of their own.
 pub(crate) fn triangle(
-    strip: &Strip,
-    base: &Along,
+    strip: &PlaneStrip,
+    base: &StripLine,
     top: f64,
-    ends: &[End],
+    ends: &[PlaneEnd],
     views: usize,
     params: &PlaneParams,
-) -> Option<Shape> {
+) -> Option<StripPolygon> {
     // The tip is at least so far from either end of the base.
     const INSIDE_M: f64 = 0.5;
     let best = |side: f64| {
-        let to_tip = |e: &&End| {
+        let to_tip = |e: &&PlaneEnd| {
             (e.at[1] - top).abs() <= 2.0 * params.position_m && side * (e.at[0] - top) > INSIDE_M
         };
         let on_side = ends.iter().filter(to_tip);
@@ -123,17 +124,17 @@ pub(crate) fn triangle(
     };
     let (left, right) = (best(-1.0)?, best(1.0)?);
     let bottom = [left.at[0], right.at[0]];
-    let slant = |e: &End| {
+    let slant = |e: &PlaneEnd| {
         let at = [e.at[0], top];
-        [slant_m(&End { at, ..*e }, strip), e.support]
+        [slant_m(&PlaneEnd { at, ..*e }, strip), e.support]
     };
     let below = side_support(&base.stretches, bottom, views);
     let sides = [[bottom[1] - bottom[0], below], slant(left), slant(right)];
     let corners = vec![[bottom[0], 0.0], [bottom[1], 0.0], [top, strip.width]];
-    Shape::new(corners, &sides, params)
+    StripPolygon::new(corners, &sides, params)
 }
 
 /// Length of an end across the strip, metres.
-fn slant_m(end: &End, strip: &Strip) -> f64 {
+fn slant_m(end: &PlaneEnd, strip: &PlaneStrip) -> f64 {
     crate::math::hypot(strip.width, end.at[1] - end.at[0])
 }

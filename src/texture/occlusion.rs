@@ -7,7 +7,7 @@
 
 use nalgebra::{Point2, Point3};
 
-use super::patch::{FacePlane, Patch};
+use super::patch::{FacePlane, TexturePatch};
 use crate::camera::Camera;
 use crate::geometry::clip;
 use crate::raster::mark_inside;
@@ -16,18 +16,18 @@ use crate::raster::mark_inside;
 /// common edge and are planar within a few millimetres.
 const CLEARANCE_M: f64 = 0.02;
 
-/// Where faces lie in a view.
+/// The bounding boxes of the images of all faces in a view.
 #[derive(Clone, Debug)]
-pub struct Footprints {
+pub struct FaceImages {
     /// Per face the box around its image (x0, y0, x1, y1), pixels; `None` where it looks away from
     /// the camera or is not in front of it.
     boxes: Vec<Option<[f64; 4]>>,
 }
 
-impl Footprints {
+impl FaceImages {
     /// The images of all faces that look towards the camera.
     pub fn new(faces: &[FacePlane], camera: &Camera) -> Self {
-        let footprint = |face: &FacePlane| {
+        let face_image = |face: &FacePlane| {
             if face.height(&camera.center) <= CLEARANCE_M {
                 return None;
             }
@@ -38,7 +38,7 @@ impl Footprints {
             })
         };
         Self {
-            boxes: faces.iter().map(footprint).collect(),
+            boxes: faces.iter().map(face_image).collect(),
         }
     }
 
@@ -58,18 +58,18 @@ impl Footprints {
 }
 
 /// The texels of a face's patch that other faces hide from a projection centre.
-pub fn shadow_on(
+pub fn occluded_texels(
     face: usize,
-    patch: &Patch,
+    patch: &TexturePatch,
     faces: &[FacePlane],
-    footprints: &Footprints,
+    face_images: &FaceImages,
     center: &Point3<f64>,
 ) -> Vec<bool> {
     let mut mask = vec![false; patch.width * patch.height];
     let plane = &faces[face];
     // Towards the centre the projection goes to infinity: stop just below its height.
     let ceiling = 0.999 * plane.height(center);
-    for other in footprints.around(face) {
+    for other in face_images.around(face) {
         let shadow: Vec<Vec<Point2<f64>>> = faces[other]
             .rings
             .iter()

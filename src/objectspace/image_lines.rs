@@ -1,17 +1,16 @@
-//! What object space asks of an image line again and again, computed once.
+//! Image lines with their equations, rays and interpretation planes, computed once.
 
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use super::oris::RegionLine;
 use crate::camera::{Camera, plane_of_image_line};
 use crate::geometry::Segment2;
-use crate::ids::SegmentId;
-use crate::ids::ViewId;
+use crate::ids::{SegmentId, ViewId};
 use crate::scene::Scene;
 
 /// An image line with its rays and its interpretation plane.
 #[derive(Clone, Debug)]
-pub struct Sight<'a> {
+pub struct ImageLine<'a> {
     /// The view.
     pub view: ViewId,
     /// Index among the lines of the view.
@@ -34,7 +33,7 @@ pub struct Sight<'a> {
     pub sides: [f64; 2],
 }
 
-impl Sight<'_> {
+impl ImageLine<'_> {
     /// The points of the rays through the ends at a height.
     pub fn ends_at(&self, z: f64) -> [Point3<f64>; 2] {
         self.rays
@@ -60,7 +59,7 @@ impl Sight<'_> {
 }
 
 /// The lines of all views.
-pub fn sights<'a>(scene: &'a Scene, lines: &[Vec<RegionLine>]) -> Vec<Sight<'a>> {
+pub fn image_lines<'a>(scene: &'a Scene, lines: &[Vec<RegionLine>]) -> Vec<ImageLine<'a>> {
     let of_view = |view: ViewId| {
         let camera = scene.camera(view);
         lines[view.index()]
@@ -74,7 +73,7 @@ pub fn sights<'a>(scene: &'a Scene, lines: &[Vec<RegionLine>]) -> Vec<Sight<'a>>
                 // Rays that do not go down never meet the ground.
                 let down = rays.iter().all(|r| r.z < -0.05);
                 down.then_some(())?;
-                Some(Sight {
+                Some(ImageLine {
                     view,
                     line: SegmentId::from_index(k),
                     camera,

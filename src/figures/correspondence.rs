@@ -9,7 +9,7 @@
 use nalgebra::{Matrix3, Point2, Vector3};
 use serde::Serialize;
 
-use super::beam::segment_of;
+use super::segment_matching::segment_of;
 use crate::camera::{Camera, Homography, fundamental, homography_of_plane, plane_of_image_line};
 use crate::geometry::{Plane, Segment2};
 use crate::linematch::SegmentRef;
@@ -92,9 +92,10 @@ fn level_plane(
     second: &Camera,
     other: &Segment2,
 ) -> Option<Plane> {
-    let sight = plane_of_image_line(second, &other.line())?;
+    let interpretation_plane = plane_of_image_line(second, &other.line())?;
     let ray = first.ray(x);
-    let depth = -sight.signed_distance(&first.center) / sight.normal.dot(&ray);
+    let depth = -interpretation_plane.signed_distance(&first.center)
+        / interpretation_plane.normal.dot(&ray);
     let point = (depth.is_finite() && depth > 0.0).then(|| first.center + ray * depth)?;
     Plane::from_point_normal(&point, &Vector3::z())
 }
@@ -142,7 +143,7 @@ mod tests {
     #[test]
     fn points_of_a_planted_edge_correspond() {
         let (scene, truth) = gable_scene(320);
-        // The flat ground through the edge is not the roof: correlation is only asked to exist.
+        // The flat ground through the edge is not the roof: the test only requires a correlation.
         for edge in &truth.edges {
             let segments: Vec<Vec<ImageSegment>> = scene
                 .views

@@ -7,12 +7,11 @@
 use nalgebra::{Matrix2, Point2, Vector2};
 use serde::{Deserialize, Serialize};
 
-use super::Segmentation;
 use super::color::ColorImage;
+use super::segmentation::Segmentation;
 use crate::geometry::Segment2;
 use crate::lines2d::{ImageSegment, SegmentKind};
-use crate::math::hypot;
-use crate::math::median;
+use crate::math::{hypot, median};
 use crate::params::OrisParams;
 use crate::raster::Gray;
 use crate::sorting::sort_by;

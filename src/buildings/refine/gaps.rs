@@ -1,46 +1,45 @@
 //! Gaps between facets that delineation has closed.
 //!
 //! An alley between two houses is hardly wider than a correlation window, dark, and without a
-//! border line at its far side: the lower roof goes on to the wall of the higher one. Rows of grey
-//! values along the wall, one for each distance from it, show where the views cease to agree on the
-//! roof's plane. The roof ends there when the energy of the labelling is less for it, with rows in
-//! the place of windows.
+//! border line at its far side, so that the lower roof is delineated up to the wall of the higher
+//! one. Rows of grey values along the wall, one for each distance from it, show where the views
+//! cease to agree on the roof's plane. The roof is cut back to there when this lowers the energy of
+//! the labelling, with rows in the place of windows.
 
 use nalgebra::{Point2, Vector2};
 use serde::Serialize;
 
-use super::profiles::{Extent, Profiles, Worth};
-use super::sightings::{aligned_runs, pixel};
-use super::wireframe::{SideKind, State, Wireframe};
+use super::edge_observations::{aligned_runs, pixel};
+use super::profiles::{CutBackGain, Extent, SideProfiles};
+use super::wireframe::{SideKind, Wireframe, WireframeState};
 use crate::geometry::Segment3;
-use crate::model::is_simple;
-use crate::model::{Facet, Occluders, RoofModel};
+use crate::model::{Facet, Occluders, RoofModel, is_simple};
 use crate::params::RefineParams;
 use crate::scene::Scene;
 use crate::sorting::sort_by;
 
-/// A facet that ends before the neighbour at which it was thought to end.
+/// A facet that ends before the neighbour up to which it was delineated.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Parting {
-    /// Where it was thought to end, metres.
+pub struct RoofGap {
+    /// Its delineated side, metres.
     pub side: Segment3,
     /// Width of the gap in plan, metres.
     pub width_m: f64,
-    /// What it gains in the energy of the labelling, square metres.
+    /// Energy of the labelling gained by the cut, square metres.
     pub gain_m2: f64,
 }
 
-/// The facets of a closed model, those that end before a higher or lower neighbour cut back; to be
-/// closed again.
-pub fn part_roofs(
+/// The facets of a closed model, cut back where they end before a higher or lower neighbour; the
+/// result has to be closed again.
+pub fn cut_back_at_gaps(
     scene: &Scene,
     model: &RoofModel,
     params: &RefineParams,
-) -> (Vec<Facet>, Vec<Parting>) {
+) -> (Vec<Facet>, Vec<RoofGap>) {
     let mut facets = model.facets.clone();
-    let mut partings = Vec::new();
+    let mut gaps = Vec::new();
     if !params.refine {
-        return (facets, partings);
+        return (facets, gaps);
     }
     let occluders = Occluders::new(&model.facets);
     for building in &model.buildings {
@@ -50,11 +49,11 @@ pub fn part_roofs(
             .map(|f| &model.facets[f.index()])
             .collect();
         let (wireframe, state) = Wireframe::new(&members);
-        let cuts = cuts(scene, &occluders, &wireframe, &state, params);
+        let cut_backs = cut_backs(scene, &occluders, &wireframe, &state, params);
         for (face, id) in building.facets.iter().enumerate() {
-            let of_face = |cut: &&Cut| wireframe.sides[cut.side].face == face;
-            let of_facet = cuts.iter().filter(of_face).collect();
-            let Some((ring, own)) = best_cuts(&wireframe, &state, face, of_facet) else {
+            let of_face = |cut: &&CutBack| wireframe.sides[cut.side].face == face;
+            let of_facet = cut_backs.iter().filter(of_face).collect();
+            let Some((ring, own)) = apply_cut_backs(&wireframe, &state, face, of_facet) else {
                 continue;
             };
             let facet = &mut facets[id.index()];
@@ -65,107 +64,106 @@ pub fn part_roofs(
                     old.map_or_else(|| plane.lift(p.x, p.y), |i| members[face].outer[i])
                 })
                 .collect();
-            partings.extend(own.into_iter().map(|cut| Parting {
+            gaps.extend(own.into_iter().map(|cut| RoofGap {
                 side: wireframe.segment(&state, &wireframe.sides[cut.side]),
                 width_m: cut.width_m,
                 gain_m2: cut.gain_m2,
             }));
         }
     }
-    (facets, partings)
+    (facets, gaps)
 }
 
-/// A side at another facet.
-struct WallSide {
+/// Gains of cutting a facet back from a side where it meets a wall.
+struct WallSideGains {
     /// By steps back from the side.
-    worth: Vec<Worth>,
+    gain: Vec<CutBackGain>,
     step_m: f64,
     length_m: f64,
 }
 
 /// A side that moves back.
-struct Cut {
+struct CutBack {
     side: usize,
     width_m: f64,
     gain_m2: f64,
 }
 
-/// The sides at other facets that are better farther back, those of one line together.
-fn cuts(
+/// The sides at walls whose cut lowers the energy; collinear sides are decided together.
+fn cut_backs(
     scene: &Scene,
     occluders: &Occluders,
     wireframe: &Wireframe,
-    state: &State,
+    state: &WireframeState,
     params: &RefineParams,
-) -> Vec<Cut> {
+) -> Vec<CutBack> {
     let at_wall = |kind| matches!(kind, SideKind::Step | SideKind::Foot);
     let pixel_m = pixel(scene, wireframe, state);
-    let worths = crate::execution::map(&wireframe.sides, |_, side| {
+    let side_gains = crate::execution::map(&wireframe.sides, |_, side| {
         let extent = Extent {
             seen_m: params.part_m,
             compared_m: params.part_m,
             pixel_m,
         };
         at_wall(side.kind).then_some(())?;
-        let profiles = Profiles::new(scene, occluders, wireframe, state, side, extent, params)?;
-        Some(WallSide {
-            worth: profiles.worth_of_ending(params)?,
+        let profiles = SideProfiles::new(scene, occluders, wireframe, state, side, extent, params)?;
+        Some(WallSideGains {
+            gain: profiles.cut_back_gains(params)?,
             step_m: profiles.step_m(),
             length_m: wireframe.segment(state, side).length(),
         })
     });
-    let mut cuts = Vec::new();
+    let mut cut_backs = Vec::new();
     for run in aligned_runs(wireframe, state, params.jog_m, at_wall) {
-        let known: Vec<_> = (run.iter())
-            .filter_map(|&i| Some((i, worths[i].as_ref()?)))
+        let measured: Vec<_> = (run.iter())
+            .filter_map(|&i| Some((i, side_gains[i].as_ref()?)))
             .collect();
-        let Some(steps) = known.iter().map(|(_, w)| w.worth.len()).min() else {
+        let Some(steps) = measured.iter().map(|(_, w)| w.gain.len()).min() else {
             continue;
         };
         // Steps back from the side.
-        let sum = |of: fn(&Worth) -> f64, back: usize| -> f64 {
-            known.iter().map(|(_, w)| of(&w.worth[back])).sum()
+        let sum = |of: fn(&CutBackGain) -> f64, back: usize| -> f64 {
+            measured.iter().map(|(_, w)| of(&w.gain[back])).sum()
         };
-        let worth = |back: usize| sum(|w| w.ending, back);
-        let step_m = known[0].1.step_m;
-        let length_m: f64 = known.iter().map(|(_, w)| w.length_m).sum();
+        let gain = |back: usize| sum(|w| w.energy_m2, back);
+        let step_m = measured[0].1.step_m;
+        let length_m: f64 = measured.iter().map(|(_, w)| w.length_m).sum();
         let first = (params.least_part_m / step_m).ceil() as usize;
-        let best = (first..steps).max_by(|&i, &j| worth(i).total_cmp(&worth(j)).then(j.cmp(&i)));
-        // The views must agree on what is left: otherwise they tell nothing about this plane.
+        let best = (first..steps).max_by(|&i, &j| gain(i).total_cmp(&gain(j)).then(j.cmp(&i)));
+        // Without agreement on what remains the views say nothing about this plane.
         let least = params.part_gain_m * length_m;
         let clear = |&b: &usize| {
             let given_up_m2 = (b + 1) as f64 * step_m * length_m;
-            worth(b) > least.max(params.part_gain_share * given_up_m2)
-                && sum(|w| w.inside, b) > least
+            gain(b) > least.max(params.part_gain_share * given_up_m2)
+                && sum(|w| w.remaining_m2, b) > least
         };
         let Some(back) = best.filter(clear) else {
             continue;
         };
-        cuts.extend(known.iter().map(|&(side, _)| Cut {
+        cut_backs.extend(measured.iter().map(|&(side, _)| CutBack {
             side,
             width_m: (back + 1) as f64 * step_m,
-            gain_m2: worth(back),
+            gain_m2: gain(back),
         }));
     }
-    cuts
+    cut_backs
 }
 
 /// A corner of a ring that was cut back, and which one it was where it has stayed.
-type CutCorner = (Point2<f64>, Option<usize>);
+type CutBackCorner = (Point2<f64>, Option<usize>);
 
-/// The outer ring of a facet with those of its sides moved back that can be, the most worthwhile
-/// first; and these.
-fn best_cuts<'c>(
+/// The outer ring of a facet after its feasible cuts, the largest gain first; and these cuts.
+fn apply_cut_backs<'c>(
     wireframe: &Wireframe,
-    state: &State,
+    state: &WireframeState,
     face: usize,
-    mut cuts: Vec<&'c Cut>,
-) -> Option<(Vec<CutCorner>, Vec<&'c Cut>)> {
-    sort_by(&mut cuts, |a, b| {
+    mut cut_backs: Vec<&'c CutBack>,
+) -> Option<(Vec<CutBackCorner>, Vec<&'c CutBack>)> {
+    sort_by(&mut cut_backs, |a, b| {
         b.gain_m2.total_cmp(&a.gain_m2).then(a.side.cmp(&b.side))
     });
     let (mut ring, mut taken) = (None, Vec::new());
-    for cut in cuts {
+    for cut in cut_backs {
         taken.push(cut);
         match cut_back(wireframe, state, face, &taken) {
             Some(smaller) => ring = Some(smaller),
@@ -179,14 +177,14 @@ fn best_cuts<'c>(
 /// left, or what is left is no facet.
 fn cut_back(
     wireframe: &Wireframe,
-    state: &State,
+    state: &WireframeState,
     face: usize,
-    cuts: &[&Cut],
-) -> Option<Vec<CutCorner>> {
+    cut_backs: &[&CutBack],
+) -> Option<Vec<CutBackCorner>> {
     let ring = &wireframe.faces[face][0];
     let n = ring.len();
     let mut offsets = vec![0.0; n];
-    for cut in cuts {
+    for cut in cut_backs {
         let [first, last] = wireframe.sides[cut.side].ends;
         let mut i = ring.iter().position(|&v| v == first)?;
         while ring[i] != last {
@@ -243,7 +241,7 @@ fn corners(
     mut lines: Vec<RingLine>,
     at: &impl Fn(usize) -> Point2<f64>,
     n: usize,
-) -> Option<Vec<CutCorner>> {
+) -> Option<Vec<CutBackCorner>> {
     loop {
         let m = lines.len();
         if m < 3 {
@@ -251,9 +249,9 @@ fn corners(
         }
         // The last corner of a line and the first of the next: one, but for lines that go on side
         // by side.
-        let joint = |i: usize| -> [CutCorner; 2] {
+        let joint = |i: usize| -> [CutBackCorner; 2] {
             let (a, b) = (&lines[(i + m - 1) % m], &lines[i % m]);
-            let one = |corner: CutCorner| [corner, corner];
+            let one = |corner: CutBackCorner| [corner, corner];
             if let (Some(i), Some(j)) = (a.corner, b.corner)
                 && (i + 1) % n == j
             {
@@ -267,14 +265,14 @@ fn corners(
             let foot = a.through + a.along * (b.through - a.through).dot(&a.along);
             [(foot, None), (b.through, None)]
         };
-        let joints: Vec<[CutCorner; 2]> = (0..m).map(joint).collect();
+        let joints: Vec<[CutBackCorner; 2]> = (0..m).map(joint).collect();
         let backwards =
             |&i: &usize| (joints[(i + 1) % m][0].0 - joints[i][1].0).dot(&lines[i].along) < 0.0;
         if let Some(i) = (0..m).find(backwards) {
             lines.remove(i);
             continue;
         }
-        let mut ring: Vec<CutCorner> = Vec::with_capacity(m + 2);
+        let mut ring: Vec<CutBackCorner> = Vec::with_capacity(m + 2);
         for corner in joints.into_iter().flatten() {
             if ring
                 .last()
@@ -326,11 +324,11 @@ mod tests {
         ];
         let (model, _) = close_buildings(&facets, |_| truth.ground_z);
         assert_eq!(model.buildings.len(), 1);
-        let (parted, partings) = part_roofs(&scene, &model, &RefineParams::default());
-        let first: Vec<f64> = (partings.iter().map(|p| p.width_m))
+        let (parted, gaps) = cut_back_at_gaps(&scene, &model, &RefineParams::default());
+        let first: Vec<f64> = (gaps.iter().map(|p| p.width_m))
             .filter(|w| (w - 1.2).abs() < 0.2)
             .collect();
-        assert_eq!(first.len(), 2, "{partings:?}");
+        assert_eq!(first.len(), 2, "{gaps:?}");
         // The first house is back where it was: the cut goes into the roof, not beyond the wall.
         let corners: Vec<&Point3<f64>> = parted.iter().flat_map(|f| &f.outer).collect();
         for p in rings[0].iter().chain(rings[1]) {

@@ -9,12 +9,11 @@
 
 use nalgebra::{Matrix2, Point2};
 
-use super::profiles::{END_SHARE, Extent, Gains, Profile, Profiles, strongest_near};
-use super::wireframe::{Side, SideKind, State, Wireframe};
+use super::profiles::{END_SHARE, Extent, ShiftGains, SideProfile, SideProfiles, strongest_near};
+use super::wireframe::{SideKind, Wireframe, WireframeSide, WireframeState};
 use crate::geometry::{Segment2, Segment3, covered};
 use crate::ids::ViewId;
-use crate::lines2d::SegmentKind;
-use crate::lines2d::measure_edge;
+use crate::lines2d::{SegmentKind, measure_edge};
 use crate::lines3d::Line3d;
 use crate::model::Occluders;
 use crate::params::RefineParams;
@@ -23,7 +22,7 @@ use crate::scene::Scene;
 
 /// An edge measured in a view for a side.
 #[derive(Clone, Debug)]
-pub struct Sighting {
+pub struct EdgeObservation {
     /// Index of the side.
     pub side: usize,
     /// The view.
@@ -37,17 +36,17 @@ pub struct Sighting {
 /// Measures all sides in all views. Sides without a neighbour may move to another edge first where
 /// `search` allows it for their facet; those on one of the matched `lines` go less far for a
 /// stronger one, such as the edge of a shadow.
-pub fn sight_sides(
+pub fn measure_sides(
     scene: &Scene,
     occluders: &Occluders,
     wireframe: &Wireframe,
-    state: &State,
+    state: &WireframeState,
     search: &[bool],
     lines: &[Line3d],
     params: &RefineParams,
-) -> Vec<Sighting> {
+) -> Vec<EdgeObservation> {
     let pixel_m = pixel(scene, wireframe, state);
-    let reach_of = |side: &Side| match search[side.face] && side.kind != SideKind::Crease {
+    let reach_of = |side: &WireframeSide| match search[side.face] && side.kind != SideKind::Crease {
         true => params.search_m,
         false => params.reach_px * pixel_m,
     };
@@ -58,7 +57,7 @@ pub fn sight_sides(
             compared_m: reach_of(side),
             pixel_m,
         };
-        Profiles::new(scene, occluders, wireframe, state, side, extent, params)
+        SideProfiles::new(scene, occluders, wireframe, state, side, extent, params)
     });
     let gains = crate::execution::map(&profiles, |i, profiles| {
         let (profiles, side) = (profiles.as_ref()?, &wireframe.sides[i]);
@@ -66,12 +65,12 @@ pub fn sight_sides(
             true => params.matched_m,
             false => params.search_m,
         };
-        profiles.gains(reach_of(side), known_to_m, params)
+        profiles.shift_gains(reach_of(side), known_to_m, params)
     });
     let runs = aligned_runs(wireframe, state, 0.0, |kind| kind == SideKind::Free);
-    let of_side = |i: usize, profiles: &Option<Profiles>| {
+    let of_side = |i: usize, profiles: &Option<SideProfiles>| {
         let run = runs.iter().find(|run| run.contains(&i));
-        let together: Vec<&Gains> = match run {
+        let together: Vec<&ShiftGains> = match run {
             Some(run) => run.iter().filter_map(|&j| gains[j].as_ref()).collect(),
             None => gains[i].iter().collect(),
         };
@@ -102,7 +101,7 @@ fn is_on_line(side: &Segment3, lines: &[Line3d]) -> bool {
 }
 
 /// Size of a pixel on the building, metres.
-pub(crate) fn pixel(scene: &Scene, wireframe: &Wireframe, state: &State) -> f64 {
+pub(crate) fn pixel(scene: &Scene, wireframe: &Wireframe, state: &WireframeState) -> f64 {
     let middle = wireframe.corner(state, 0, 0);
     let pixels = scene.views.iter().map(|v| v.camera.ground_pixel(&middle));
     pixels.fold(f64::INFINITY, f64::min)
@@ -112,13 +111,13 @@ pub(crate) fn pixel(scene: &Scene, wireframe: &Wireframe, state: &State) -> f64 
 /// gable's end: they are one edge. From one to the next it may be `gap_m` metres.
 pub(crate) fn aligned_runs(
     wireframe: &Wireframe,
-    state: &State,
+    state: &WireframeState,
     gap_m: f64,
     of_kind: impl Fn(SideKind) -> bool,
 ) -> Vec<Vec<usize>> {
     /// Sine of the angle below which sides are aligned (4 degrees).
     const ALIGNED: f64 = 0.07;
-    let direction = |side: &Side| {
+    let direction = |side: &WireframeSide| {
         let s = wireframe.segment(state, side);
         (s.p1.xy() - s.p0.xy()).normalize()
     };
@@ -156,13 +155,13 @@ pub(crate) fn aligned_runs(
 
 /// The best step from the side at which there is an edge, for one side or for several that are one
 /// edge.
-fn best_step(sides: &[&Gains]) -> Option<isize> {
+fn best_step(sides: &[&ShiftGains]) -> Option<isize> {
     let first = sides.iter().map(|g| g.first).max()?;
     let end = sides
         .iter()
         .map(|g| g.first + g.gain.len() as isize)
         .min()?;
-    let sum = |of: fn(&Gains) -> &Vec<f64>, k: isize| -> f64 {
+    let sum = |of: fn(&ShiftGains) -> &Vec<f64>, k: isize| -> f64 {
         sides.iter().map(|g| of(g)[(k - g.first) as usize]).sum()
     };
     let edge = |k: isize| sum(|g| &g.edge, k);
@@ -174,7 +173,7 @@ fn best_step(sides: &[&Gains]) -> Option<isize> {
         })
 }
 
-impl Profiles {
+impl SideProfiles {
     /// The edge in every view that shows it, sought around the side moved by `step` steps.
     fn measure(
         &self,
@@ -182,11 +181,11 @@ impl Profiles {
         side: usize,
         step: isize,
         params: &RefineParams,
-    ) -> Vec<Sighting> {
+    ) -> Vec<EdgeObservation> {
         let offset = step as f64 * self.step_m();
         let place = (self.middle() as isize + step) as usize;
         let moved = |t: f64| self.segment.at(t) + self.outward * offset;
-        let of_view = |profile: &Profile| {
+        let of_view = |profile: &SideProfile| {
             let view = profile.view;
             let rising = strongest_near(&profile.differences, place) > 0.0;
             let camera = scene.camera(view);
@@ -209,14 +208,14 @@ impl Profiles {
                 core,
                 false,
             )?;
-            Some(Sighting {
+            Some(EdgeObservation {
                 side,
                 view,
                 segment: edge.segment,
                 whitening: whitening(&edge.covariance, edge.segment.length(), params.floor_px),
             })
         };
-        let found: Vec<Sighting> = self.views.iter().filter_map(of_view).collect();
+        let found: Vec<EdgeObservation> = self.views.iter().filter_map(of_view).collect();
         if found.len() < 2 { Vec::new() } else { found }
     }
 }
@@ -242,8 +241,7 @@ mod tests {
     use crate::math;
     use crate::model::Facet;
     use crate::synthetic::gable_scene;
-    use crate::testing;
-    use crate::testing::facet;
+    use crate::testing::{self, facet};
 
     #[test]
     fn a_wall_goes_on_behind_a_jog() {
@@ -295,7 +293,7 @@ mod tests {
         let (mut scene, truth) = gable_scene(320);
         let facets: Vec<Facet> = truth.facets.iter().map(|(_, ring)| facet(ring)).collect();
         let (wireframe, state) = Wireframe::new(&facets_of(&facets));
-        let eave = |side: &&Side| {
+        let eave = |side: &&WireframeSide| {
             let s = wireframe.segment(&state, side);
             side.kind == SideKind::Free && (s.p0.z - s.p1.z).abs() < 0.01
         };
@@ -313,7 +311,7 @@ mod tests {
         let off_by = |lines: &[Line3d]| {
             let params = RefineParams::default();
             let search = [true, true];
-            let found = sight_sides(
+            let found = measure_sides(
                 &scene, &occluders, &wireframe, &state, &search, lines, &params,
             );
             let offsets = found.iter().filter(|s| s.side == index).map(|s| {

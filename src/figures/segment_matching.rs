@@ -1,4 +1,4 @@
-//! The story of one segment in matching (B99 3.1 and 3.2, figures 1, 2 and 4): where its line can
+//! One segment in matching (B99 3.1 and 3.2, figures 1, 2 and 4): where its line can
 //! lie in the other views, which segments lie there, how they scored, and where third views should
 //! show the line.
 
@@ -7,21 +7,20 @@ use serde::Serialize;
 
 use crate::camera::{Camera, plane_of_image_line};
 use crate::geometry::Segment2;
-use crate::ids::SegmentId;
-use crate::ids::ViewId;
+use crate::ids::{SegmentId, ViewId};
 use crate::linematch::{MatchTrace, PairTrace, SegmentOutcome, SegmentRef, epipolar_beam};
 use crate::lines2d::ImageSegment;
 use crate::scene::Scene;
 
-/// A segment's way through matching.
+/// The pair candidates of a segment and their outcome.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SegmentStory {
-    /// What became of it; `None` before matching.
+pub struct SegmentMatching {
+    /// Its outcome; `None` before matching.
     pub outcome: Option<SegmentOutcome>,
     /// Its beams in the other views.
     pub beams: Vec<Beam>,
     /// Segments of other views that it was paired with, the best score first.
-    pub candidates: Vec<Candidate>,
+    pub candidates: Vec<PairCandidate>,
 }
 
 /// The epipolar beam of a segment in another view.
@@ -35,7 +34,7 @@ pub struct Beam {
 
 /// A pair hypothesis as its first segment sees it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Candidate {
+pub struct PairCandidate {
     /// The other view.
     pub view: ViewId,
     /// The segment in it.
@@ -45,12 +44,12 @@ pub struct Candidate {
     /// The match that the pair became.
     pub line: Option<u32>,
     /// Where the line of the pair lies in third views, and which segments verify it there.
-    pub predictions: Vec<Prediction>,
+    pub predictions: Vec<ReprojectedLine>,
 }
 
 /// The line of a pair in a third view.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Prediction {
+pub struct ReprojectedLine {
     /// The third view.
     pub view: ViewId,
     /// The reprojected line, as long as the first segment, pixels.
@@ -61,20 +60,20 @@ pub struct Prediction {
     pub distance_px: Option<f64>,
 }
 
-/// The story of segment `of`. Without a height range in the trace there are no beams.
-pub fn segment_story(
+/// The matching of segment `of`. Without a height range in the trace there are no beams.
+pub fn segment_matching(
     scene: &Scene,
     segments: &[Vec<ImageSegment>],
     trace: &MatchTrace,
     of: SegmentRef,
-) -> Option<SegmentStory> {
+) -> Option<SegmentMatching> {
     let segment = &segment_of(segments, of)?.segment;
     let outcome = trace.outcomes.get(of.view.index());
     let candidates = trace
         .pairs
         .iter()
         .filter_map(|pair| candidate(scene, segments, pair, of));
-    Some(SegmentStory {
+    Some(SegmentMatching {
         outcome: outcome.and_then(|o| o.get(of.segment.index()).copied()),
         beams: trace.z_range_m.map_or(Vec::new(), |z_range| {
             beams(scene, segment, of.view, z_range)
@@ -107,7 +106,7 @@ fn candidate(
     segments: &[Vec<ImageSegment>],
     pair: &PairTrace,
     of: SegmentRef,
-) -> Option<Candidate> {
+) -> Option<PairCandidate> {
     let other = match of {
         _ if pair.a == of => pair.b,
         _ if pair.b == of => pair.a,
@@ -121,7 +120,7 @@ fn candidate(
         .view_ids()
         .filter(third)
         .filter_map(|view| prediction(scene.camera(view), segments, pair, view, &ends));
-    Some(Candidate {
+    Some(PairCandidate {
         view: other.view,
         segment: other.segment,
         score: pair.score,
@@ -154,7 +153,7 @@ fn prediction(
     pair: &PairTrace,
     view: ViewId,
     ends: &[Point3<f64>; 2],
-) -> Option<Prediction> {
+) -> Option<ReprojectedLine> {
     let segment = Segment2::new(camera.project(&ends[0])?, camera.project(&ends[1])?);
     let line = segment.line();
     let distance = |of: SegmentRef| {
@@ -167,7 +166,7 @@ fn prediction(
         .filter_map(|v| Some((v.segment.segment, distance(v.segment)?)))
         .min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
     let shows = camera.contains(&segment.p0, 0.0) || camera.contains(&segment.p1, 0.0);
-    (shows || nearest.is_some()).then_some(Prediction {
+    (shows || nearest.is_some()).then_some(ReprojectedLine {
         view,
         segment,
         verified: nearest.map(|n| n.0),
@@ -179,9 +178,7 @@ fn prediction(
 mod tests {
     use super::*;
     use crate::lines2d::detect_segments;
-    use crate::params::Lines3dParams;
-    use crate::params::MatchParams;
-    use crate::params::SegmentParams;
+    use crate::params::{Lines3dParams, MatchParams, SegmentParams};
     use crate::synthetic::gable_scene;
 
     fn inputs() -> (Scene, Vec<Vec<ImageSegment>>, MatchTrace) {
@@ -206,13 +203,13 @@ mod tests {
             .find(|p| p.line.is_some() && p.verified.len() >= 2)
             .expect("a gable has lines");
         for of in [pair.a, pair.b] {
-            let story = segment_story(&scene, &segments, &trace, of).unwrap();
+            let matching = segment_matching(&scene, &segments, &trace, of).unwrap();
             assert!(matches!(
-                story.outcome,
+                matching.outcome,
                 Some(SegmentOutcome::Matched { .. })
             ));
-            assert_eq!(story.beams.len(), scene.views.len() - 1);
-            let candidate = story.candidates.iter().find(|c| c.line == pair.line);
+            assert_eq!(matching.beams.len(), scene.views.len() - 1);
+            let candidate = matching.candidates.iter().find(|c| c.line == pair.line);
             let verified = || {
                 candidate
                     .unwrap()
@@ -230,12 +227,12 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_segment_has_no_story() {
+    fn an_unknown_segment_has_no_matching() {
         let (scene, _) = gable_scene(64);
         let of = SegmentRef {
             view: ViewId(9),
             segment: SegmentId(0),
         };
-        assert!(segment_story(&scene, &[], &MatchTrace::default(), of).is_none());
+        assert!(segment_matching(&scene, &[], &MatchTrace::default(), of).is_none());
     }
 }

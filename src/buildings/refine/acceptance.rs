@@ -1,18 +1,18 @@
-//! Whether a refined building may replace the old one.
+//! Whether a refined building may replace the old one: it has to close to a solid without a broken
+//! invariant, and the views have to agree inside its facets as well as before.
 
 use nalgebra::Point2;
 
-use super::RefineRefusal;
+use super::rejection::RefineRejection;
 use crate::ids::FacetId;
-use crate::model::inside;
-use crate::model::{Facet, Violation, check_invariants};
+use crate::model::{Facet, Violation, check_invariants, inside};
 use crate::params::RefineParams;
 use crate::photoconsistency::{PlanGrid, consistency_map};
 use crate::scene::Scene;
 use crate::solids::close_buildings;
 
-/// What a refined building is measured against.
-pub struct Judge<'a> {
+/// The facets that a refined building would replace, and what is needed to compare both.
+pub struct AcceptanceTest<'a> {
     /// The views.
     pub scene: &'a Scene,
     /// The facets before.
@@ -23,13 +23,13 @@ pub struct Judge<'a> {
     pub params: &'a RefineParams,
 }
 
-impl Judge<'_> {
+impl AcceptanceTest<'_> {
     /// The new facets if they are sound and the views agree on them as well as before; otherwise
     /// why not, and which of them are the cause.
-    pub fn accept(&self, new: Vec<Facet>) -> Result<Vec<Facet>, (RefineRefusal, Vec<usize>)> {
+    pub fn accept(&self, new: Vec<Facet>) -> Result<Vec<Facet>, (RefineRejection, Vec<usize>)> {
         let broken = self.broken(&new);
         if !broken.is_empty() {
-            return Err((RefineRefusal::Broken, broken));
+            return Err((RefineRejection::Broken, broken));
         }
         let [before, after, worse] = self.similarities(&new);
         let mean = |sums: &[[f64; 2]]| {
@@ -40,9 +40,9 @@ impl Judge<'_> {
         let (b, a) = (mean(&before), mean(&after));
         if a < b - self.params.similarity_loss {
             let lost = |i: &usize| worse[*i][0] > 0.0;
-            let spoilers = (0..new.len()).filter(lost).collect();
+            let offending = (0..new.len()).filter(lost).collect();
             let (before, after) = (b, a);
-            return Err((RefineRefusal::Dissimilar { before, after }, spoilers));
+            return Err((RefineRejection::Dissimilar { before, after }, offending));
         }
         Ok(new)
     }
@@ -65,11 +65,11 @@ impl Judge<'_> {
             closed[source] += plan_area(facet);
         }
         // A facet that overlaps its neighbour or itself is cut; one that doubles is another one.
-        let spoils = |&i: &usize| {
+        let is_cut = |&i: &usize| {
             let (area, old) = (plan_area(&new[i]), plan_area(self.old[i]));
             (closed[i] - area).abs() > 0.01 || area < 0.5 * old || area > 2.0 * old
         };
-        let cut: Vec<usize> = (0..new.len()).filter(spoils).collect();
+        let cut: Vec<usize> = (0..new.len()).filter(is_cut).collect();
         if !cut.is_empty() {
             return cut;
         }

@@ -1,0 +1,74 @@
+//! Parts of roof models: some buildings of one, appended to another, in another frame.
+
+use nalgebra::{Point2, Vector3};
+
+use crate::geometry::Plane;
+use crate::ids::{BuildingId, FacetId};
+use crate::model::{Building, RoofModel, Surface};
+
+/// The middle of a building's box in plan.
+pub(super) fn middle(building: &Building) -> Point2<f64> {
+    let mut low = [f64::INFINITY; 2];
+    let mut high = [f64::NEG_INFINITY; 2];
+    for p in &building.solid.vertices {
+        low = [low[0].min(p.x), low[1].min(p.y)];
+        high = [high[0].max(p.x), high[1].max(p.y)];
+    }
+    Point2::new(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]))
+}
+
+/// Some buildings of a model, with their facets; ids follow the new order.
+pub(super) fn subset(model: &RoofModel, buildings: &[usize]) -> RoofModel {
+    let mut found = RoofModel::default();
+    for &b in buildings {
+        append(&mut found, model, b);
+    }
+    found
+}
+
+/// Appends a building with its facets.
+pub(super) fn append(to: &mut RoofModel, from: &RoofModel, building: usize) {
+    let mut copy = from.buildings[building].clone();
+    let id = BuildingId::from_index(to.buildings.len());
+    let old = std::mem::take(&mut copy.facets);
+    for facet in &old {
+        copy.facets.push(FacetId::from_index(to.facets.len()));
+        let mut facet = from.facets[facet.index()].clone();
+        facet.building = id;
+        to.facets.push(facet);
+    }
+    for face in &mut copy.solid.faces {
+        if let Surface::Roof(facet) = &mut face.surface {
+            let place = old
+                .iter()
+                .position(|f| f == facet)
+                .expect("a solid's roofs are facets of its building");
+            *facet = copy.facets[place];
+        }
+    }
+    to.buildings.push(copy);
+}
+
+/// Moves a model to a frame whose origin lies `by` further.
+pub(super) fn moved(mut model: RoofModel, by: &Vector3<f64>) -> RoofModel {
+    for facet in &mut model.facets {
+        facet
+            .outer
+            .iter_mut()
+            .chain(facet.holes.iter_mut().flatten())
+            .for_each(|p| *p -= by);
+        facet.plane = moved_plane(&facet.plane, by);
+    }
+    for building in &mut model.buildings {
+        building.solid.vertices.iter_mut().for_each(|p| *p -= by);
+        building.ground_z -= by.z;
+    }
+    model
+}
+
+pub(super) fn moved_plane(plane: &Plane, by: &Vector3<f64>) -> Plane {
+    Plane {
+        normal: plane.normal,
+        d: plane.d + plane.normal.dot(by),
+    }
+}
