@@ -5,55 +5,63 @@ use serde::Serialize;
 /// How well images and orientation agree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Agreement {
-    /// Points that were found again, on any line.
+    /// Points that were matched, on the epipolar line or beside it.
     pub points: usize,
-    /// Of these, the share found on the epipolar line, less what chance puts there: about 0 for a wrong orientation, 1
-    /// for a perfect one; the lower end of its confidence interval.
+    /// Of these, the share matched on the epipolar line, rescaled so that chance gives about 0 and
+    /// a perfect orientation 1; the lower end of its confidence interval.
     pub score: f64,
 }
 
-/// An assumption that was tried on the images.
+/// A hypothesis about an error in the orientation that was tested on the images.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Trial {
-    /// The assumption.
-    pub words: String,
-    /// How well the images agree with it.
+pub struct TestedHypothesis {
+    /// The hypothesis in words.
+    #[serde(rename = "words")]
+    pub hypothesis: String,
+    /// How well the images agree without that error.
     pub agreement: Agreement,
-    /// Was it tried on all pairs of views, or on a few of them for a first impression?
+    /// Was it tested on all pairs of views, or on a few of them for a first ranking?
     pub all_pairs: bool,
 }
 
-/// What the images say of their orientation, in one word.
+/// How the images agree with their orientation, in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Finding {
     /// Images and orientation agree.
     Sound,
-    /// The images show too little to tell.
+    /// Too little of the images can be matched.
     Unknown,
-    /// They do not agree; without one mistake they would.
+    /// They do not agree; without one error they would.
     Explained,
-    /// They agree, but for half a pixel.
+    /// They agree, except for half a pixel.
     Offset,
     /// Some views agree with no other one.
-    Odd,
-    /// They do not agree, and no usual mistake explains it.
+    #[serde(rename = "odd")]
+    OutlierViews,
+    /// They do not agree, and no usual error explains it.
     Unexplained,
 }
 
-/// What was assumed about the orientation, and how well the images agree with it.
+/// The report of the orientation check: agreement as stated, the error found, and the hypotheses
+/// tested.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AgreementReport {
     /// The finding.
     pub finding: Finding,
     /// Agreement as the orientation is stated.
     pub stated: Agreement,
-    /// Agreement without the mistake, where one was found.
-    pub cured: Option<Agreement>,
-    /// Mean offset across the epipolar lines, pixels, as stated and without the mistake, where that is the finding.
+    /// Agreement without the error, where one was found.
+    #[serde(rename = "cured")]
+    pub corrected: Option<Agreement>,
+    /// Mean offset across the epipolar lines, pixels, as stated and without the error, where that
+    /// is the finding.
     pub offsets_px: Option<[f64; 2]>,
-    /// The mistake that loading can undo, in words.
-    pub mistake: Option<String>,
-    /// What was tried, the best first; those tried on all pairs before the others.
-    pub trials: Vec<Trial>,
+    /// The error that loading can correct, in words.
+    #[serde(rename = "mistake")]
+    pub error: Option<String>,
+    /// The hypotheses that were tested, the best first; those tested on all pairs before the
+    /// others.
+    #[serde(rename = "trials")]
+    pub tested: Vec<TestedHypothesis>,
 }

@@ -1,20 +1,20 @@
-//! Why an input was refused: which file, which line, what was expected, what to do.
+//! Why an input is refused: which file, which line, what was expected, what to do.
 
 use crate::agreement::AgreementReport;
 
 /// A refusal. Every message names the file and says what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// A line of a text file is not what the format wants.
+    /// A line of a text file does not follow the format.
     #[error("{}, line {line}: {}; expected {expected}", one_line(.file), one_line(.problem))]
     Line {
         /// File name.
         file: String,
         /// Line number, from 1.
         line: usize,
-        /// What stands there.
+        /// What the line says.
         problem: String,
-        /// What should stand there.
+        /// What it should say.
         expected: String,
     },
     /// A file as a whole cannot be used.
@@ -35,14 +35,14 @@ pub enum Error {
         /// What to do.
         advice: String,
     },
-    /// The images speak against their orientation.
+    /// The images contradict their orientation.
     #[error("{}; {}", one_line(.problem), one_line(.advice))]
     Contradiction {
         /// What is wrong.
         problem: String,
         /// What to do.
         advice: String,
-        /// What the images were asked, and what they answered.
+        /// The report of the orientation check.
         report: Box<AgreementReport>,
     },
 }
@@ -59,7 +59,8 @@ impl Error {
     }
 }
 
-/// Names and contents of files may hold anything: control characters become blanks, and long texts are shortened.
+/// Names and contents of files may hold anything: control characters become blanks, long texts are
+/// shortened.
 fn one_line(text: &str) -> String {
     const MOST: usize = 600;
     let mut line: String = (text.chars().take(MOST))

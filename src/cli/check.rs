@@ -1,4 +1,4 @@
-//! `ridgeline check`: what the images say about their orientation, without a reconstruction.
+//! `ridgeline check`: the orientation check without a reconstruction.
 
 use std::path::Path;
 
@@ -9,12 +9,15 @@ use ridgeline::pipeline::load_adjusted;
 use ridgeline::scene::Scene;
 use serde_json::{Value, json};
 
-use super::{CheckArgs, Failure, reconstruct};
+use super::args::CheckArgs;
+use super::failure::Failure;
+use super::input;
 
-/// Loads the scene and prints what the orientation doctor found; a scene that is refused is a failure as anywhere.
+/// Loads the scene and prints what the orientation check found; a scene that is refused is a
+/// failure as anywhere.
 pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
-    let params = reconstruct::read_params(&args.input)?;
-    let opened = reconstruct::open(&args.input, params, Path::new(""))?;
+    let params = input::read_params(&args.input)?;
+    let opened = input::open(&args.input, params, Path::new(""))?;
     let outcome = load_adjusted(&opened.files, &opened.options, &opened.params);
     if args.json {
         let json = match &outcome {
@@ -25,12 +28,13 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
     } else if let Ok(scene) = &outcome {
         print!("{}", words(scene));
     }
-    outcome.map_err(|error| reconstruct::refusal(&error, &opened.seen))?;
+    outcome.map_err(|error| input::refusal(&error, &opened.seen))?;
     eprintln!("{}", opened.seen);
     Ok(())
 }
 
-/// The findings, and the cameras as they are used: an orientation file of its own (docs/formats.md, K, R, C).
+/// The findings, and the cameras as they are used: an orientation file of its own (docs/formats.md,
+/// K, R, C).
 fn of_scene(scene: &Scene) -> Value {
     let views = scene.views.iter().enumerate().map(|(i, view)| {
         let camera = &view.camera;
@@ -47,7 +51,7 @@ fn of_scene(scene: &Scene) -> Value {
         })
     });
     json!({
-        "doctor": scene.survey.doctor,
+        "doctor": scene.survey.agreement,
         "origin": scene.origin.as_slice(),
         "views": views.collect::<Vec<_>>(),
         "warnings": scene.warnings,
@@ -62,9 +66,13 @@ fn of_refusal(error: &Error) -> Value {
     json!({ "doctor": report, "refusal": error.to_string() })
 }
 
-/// A few lines for a person.
+/// The findings as text.
 fn words(scene: &Scene) -> String {
-    let mut text = scene.survey.doctor.as_ref().map_or_else(String::new, found);
+    let mut text = scene
+        .survey
+        .agreement
+        .as_ref()
+        .map_or_else(String::new, found);
     if !scene.survey.shifts.is_empty() {
         text += "view                       shift x, y (px)   sigma   residual before, after (px)   places\n";
     }
@@ -86,8 +94,8 @@ fn found(report: &AgreementReport) -> String {
         Finding::Sound => "images and orientation agree",
         Finding::Unknown => "the images show too little to tell",
         Finding::Explained => "images and orientation do not agree, and the mistake is known",
-        Finding::Offset => "images and orientation agree, but for half a pixel",
-        Finding::Odd => "some views agree with no other one",
+        Finding::Offset => "images and orientation agree, except for half a pixel",
+        Finding::OutlierViews => "some views agree with no other one",
         Finding::Unexplained => {
             "images and orientation do not agree, and no usual mistake explains it"
         }

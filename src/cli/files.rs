@@ -6,12 +6,15 @@ use std::path::Path;
 
 use ridgeline::orientation::InputFile;
 
-use super::Failure;
-use super::walk::{self, Seen};
+use super::failure::Failure;
+use super::walk::{self, FolderContents};
 
-/// The files of a scene, sorted by path, and what was seen among them. The folder of the results is not a part of the
-/// scene, wherever it lies.
-pub(super) fn read_scene(folder: &Path, results: &Path) -> Result<(Vec<InputFile>, Seen), Failure> {
+/// The files of a scene, sorted by path, and a count of them. The folder of the results is not part
+/// of the scene, wherever it lies.
+pub(super) fn read_scene(
+    folder: &Path,
+    results: &Path,
+) -> Result<(Vec<InputFile>, FolderContents), Failure> {
     let (mut files, seen) = if folder.is_file() && is_archive(folder) {
         walk::open_archive(folder)?
     } else if folder.is_dir() {
@@ -26,8 +29,8 @@ pub(super) fn read_scene(folder: &Path, results: &Path) -> Result<(Vec<InputFile
     Ok((files, seen))
 }
 
-/// Writes the files under temporary names first, so that a full disk or an interruption leaves no half
-/// a model behind under its final name.
+/// Writes the files under temporary names first, so that a full disk or an interruption leaves no
+/// half a model behind under its final name.
 pub(super) fn write_all(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Failure> {
     let failure = |name: &str, e: io::Error| {
         Failure::Output(format!(
@@ -46,14 +49,14 @@ pub(super) fn write_all(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<()
         Ok(())
     };
     write().inspect_err(|_| {
-        // Those that are there: what cannot be removed either was never written.
+        // What cannot be removed was never written.
         for (name, _) in files {
             let _ = fs::remove_file(temporary(name));
         }
     })
 }
 
-/// Can a file of this name be written? Asked before hours of work.
+/// Can a file of this name be written? Checked before hours of work.
 pub(super) fn check_writable(path: &Path) -> Result<(), Failure> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
     if path.is_dir() || folder.is_some_and(|folder| !folder.is_dir()) {

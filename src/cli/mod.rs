@@ -1,132 +1,34 @@
-//! Arguments and exit codes of the command line.
+//! The command line.
+//!
+//! ```text
+//! args, failure   arguments; why a command stopped
+//! walk, files     the files of a folder or archive; writing results
+//! input           a scene's files, options and parameters
+//! check           the orientation check alone
+//! tiles, table    a region tile by tile; the summary of a run
+//! reconstruct     the whole reconstruction
+//! ```
 //!
 //! Exit codes: 0 done, 1 the outputs could not be written, 2 the input or the arguments are bad.
-#![allow(clippy::print_stdout, clippy::print_stderr)] // The one place that talks to a terminal.
+#![allow(clippy::print_stdout, clippy::print_stderr)] // The only place that writes to a terminal.
 
+mod args;
 mod check;
+mod failure;
 mod files;
+mod input;
 mod reconstruct;
 mod table;
 mod tiles;
 mod walk;
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::Parser;
 use ridgeline::params::Params;
 
-/// Three or more calibrated aerial photographs in, textured 3D roof models out.
-#[derive(Parser)]
-#[command(name = "ridgeline", version)]
-struct Cli {
-    #[command(subcommand)]
-    command: Command,
-}
-
-#[derive(Subcommand)]
-enum Command {
-    /// Reconstruct the roofs that the photographs in a folder show.
-    Reconstruct(Box<ReconstructArgs>),
-    /// Ask the images whether they agree with their orientation, and tell how far each view is off.
-    Check(Box<CheckArgs>),
-    /// Print all parameters with their defaults, as JSON for --params.
-    Params,
-}
-
-/// What is read, and how.
-#[derive(Args)]
-struct InputArgs {
-    /// Folder or .zip archive with images and orientation files, anywhere in it.
-    scene: PathBuf,
-    /// Which orientation to take where the folder holds several: a part of its path.
-    #[arg(long, value_name = "PATH")]
-    orientation: Option<String>,
-    /// Use only these views (image names, separated by commas).
-    #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
-    views: Option<Vec<String>>,
-    /// Reconstruct only this part of the ground plan, metres in the frame of the orientation.
-    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_roi, allow_hyphen_values = true)]
-    roi: Option<[f64; 4]>,
-    /// Reference system of the orientation's world, as EPSG:25832; it is named in the results.
-    #[arg(long, value_name = "EPSG:N", value_parser = parse_crs)]
-    crs: Option<u32>,
-    /// Undo the mistake in the orientation that the images give away, instead of refusing the scene.
-    #[arg(long)]
-    apply_fix: bool,
-    /// Adjust views that are turned or moved against the others by up to a few pixels.
-    #[arg(long)]
-    adjust: bool,
-    /// Refuse what needs more memory than this, megabytes.
-    #[arg(long, value_name = "MB")]
-    memory: Option<u32>,
-    /// JSON file with parameters; what it leaves out keeps its default.
-    #[arg(long, value_name = "FILE")]
-    params: Option<PathBuf>,
-    /// Height of the ground, metres in the frame of the orientation; estimated if not given.
-    #[arg(long, value_name = "H", value_parser = parse_finite, allow_hyphen_values = true)]
-    ground_z: Option<f64>,
-    /// Number of threads; by default one per core. It never changes the result.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-}
-
-/// The arguments of `check`.
-#[derive(Args)]
-struct CheckArgs {
-    #[command(flatten)]
-    input: InputArgs,
-    /// Print everything as JSON.
-    #[arg(long)]
-    json: bool,
-}
-
-/// The arguments of `reconstruct`.
-#[derive(Args)]
-struct ReconstructArgs {
-    #[command(flatten)]
-    input: InputArgs,
-    /// Folder for the results; made if missing.
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
-    /// How roofs are found; by default as the parameters say: lines.
-    #[arg(long, value_enum)]
-    method: Option<Method>,
-    /// Reconstruct the region in overlapping tiles of about this size, metres, one after the other, into one model.
-    #[arg(long, value_name = "M", value_parser = parse_finite, conflicts_with = "project")]
-    tile: Option<f64>,
-    /// Write a project file too: images, orientation, parameters and results in one .zip, which SCENE takes.
-    #[arg(long, value_name = "FILE.zip")]
-    project: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Method {
-    /// Lines matched over the views, and half-planes at them (Baillard et al. 1999).
-    Lines,
-    /// Regions, and planes between parallel lines in object space (Wiman and Axelsson 1996).
-    Rectangles,
-    /// Both: their lines and planes compete for one model. Regions take most of its time.
-    Combined,
-}
-
-impl From<Method> for ridgeline::params::Method {
-    fn from(method: Method) -> Self {
-        match method {
-            Method::Lines => Self::Lines,
-            Method::Rectangles => Self::Rectangles,
-            Method::Combined => Self::Combined,
-        }
-    }
-}
-
-/// Why a command stopped.
-enum Failure {
-    /// The user's input: exit code 2.
-    Input(String),
-    /// The machine: exit code 1.
-    Output(String),
-}
+use self::args::{Cli, Command};
+use self::failure::Failure;
 
 /// Runs the command that the arguments name.
 pub fn main() -> ExitCode {
@@ -153,50 +55,4 @@ fn print_params() -> Result<(), Failure> {
         .expect("parameters hold only numbers and names");
     println!("{json}");
     Ok(())
-}
-
-fn parse_finite(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err(format!("'{text}' is not a number in metres")),
-    }
-}
-
-fn parse_crs(text: &str) -> Result<u32, String> {
-    ridgeline::orientation::epsg_of(text)
-        .ok_or_else(|| format!("'{text}' is not a number of EPSG, as EPSG:25832"))
-}
-
-fn parse_roi(text: &str) -> Result<[f64; 4], String> {
-    let numbers: Vec<f64> = text
-        .split(',')
-        .map(parse_finite)
-        .collect::<Result<_, _>>()?;
-    match numbers[..] {
-        [x0, y0, x1, y1] if x0 < x1 && y0 < y1 => Ok([x0, y0, x1, y1]),
-        [_, _, _, _] => Err("x0 must be less than x1, and y0 less than y1".into()),
-        _ => Err(format!(
-            "{} numbers; expected four: x0,y0,x1,y1",
-            numbers.len()
-        )),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use clap::CommandFactory;
-
-    #[test]
-    fn the_arguments_are_consistent() {
-        Cli::command().debug_assert();
-    }
-
-    #[test]
-    fn a_region_is_four_ordered_numbers() {
-        assert_eq!(parse_roi("-1,2,3.5,4"), Ok([-1.0, 2.0, 3.5, 4.0]));
-        for bad in ["1,2,3", "3,2,1,4", "1,2,nan,4", "1,2,inf,4", "", "a,b,c,d"] {
-            assert!(parse_roi(bad).is_err(), "{bad}");
-        }
-    }
 }

@@ -1,18 +1,18 @@
 //! `ridgeline reconstruct`: folder in, folder out.
 
 use std::fs;
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::execution::progress::Listener;
-use ridgeline::orientation::InputFile;
-use ridgeline::params::Params;
 use ridgeline::pipeline::{Run, Stage, load_adjusted};
-use ridgeline::scene_loader::{LoadOptions, Project, inspect_files, open_project};
+use ridgeline::scene_loader::{Project, inspect_files};
 
-use super::{Failure, InputArgs, ReconstructArgs, files, table, tiles};
+use super::args::ReconstructArgs;
+use super::failure::Failure;
+use super::input::{OpenedScene, open, read_params, refusal};
+use super::{files, table, tiles};
 
 /// Steps of the progress bar per stage.
 const BAR_STEPS: f64 = 100.0;
@@ -25,7 +25,7 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
         .as_deref()
         .map_or(Ok(()), files::check_writable)?;
     let start = Instant::now();
-    let Opened {
+    let OpenedScene {
         files: input,
         options,
         mut params,
@@ -67,80 +67,6 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A scene's files and what is wanted of them.
-pub(super) struct Opened {
-    pub files: Vec<InputFile>,
-    pub options: LoadOptions,
-    pub params: Params,
-    /// What the files are, in a sentence.
-    pub seen: String,
-}
-
-/// A refusal of a scene, with what was seen of it.
-pub(super) fn refusal(error: &ridgeline::Error, seen: &str) -> Failure {
-    Failure::Input(format!("{error}\n{seen}"))
-}
-
-/// Reads the files. What the arguments leave out is as in the project, where one is opened.
-pub(super) fn open(
-    args: &InputArgs,
-    params: Option<Params>,
-    results: &Path,
-) -> Result<Opened, Failure> {
-    set_threads(args);
-    let (files, seen) = files::read_scene(&args.scene, results)?;
-    for notice in seen.notices() {
-        eprintln!("warning: {notice}");
-    }
-    let seen = format!("{} holds {seen}", args.scene.display());
-    let (files, project) = open_project(files).map_err(|e| refusal(&e, &seen))?;
-    let project = project.unwrap_or_default();
-    let stated = project.options;
-    let options = LoadOptions {
-        orientation: args
-            .orientation
-            .as_deref()
-            .map(|path| below(&args.scene, path))
-            .or(stated.orientation),
-        views: args.views.clone().or(stated.views),
-        roi: args.roi.or(stated.roi),
-        ground_z: args.ground_z.or(stated.ground_z),
-        epsg: args.crs.or(stated.epsg),
-        memory_mb: args.memory.or(stated.memory_mb),
-        apply_fix: args.apply_fix || stated.apply_fix,
-        adjust: args.adjust || stated.adjust,
-    };
-    Ok(Opened {
-        files,
-        options,
-        params: params.unwrap_or(project.params),
-        seen,
-    })
-}
-
-/// A path as it stands in the scene's folder, also where the whole path was given.
-fn below(scene: &Path, path: &str) -> String {
-    let inner = Path::new(path).strip_prefix(scene);
-    inner.map_or_else(
-        |_| path.to_owned(),
-        |inner| inner.to_string_lossy().into_owned(),
-    )
-}
-
-/// The parameters of `--params`.
-pub(super) fn read_params(args: &InputArgs) -> Result<Option<Params>, Failure> {
-    let Some(path) = &args.params else {
-        return Ok(None);
-    };
-    let bad = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
-    let text = fs::read_to_string(path).map_err(|e| bad(format!("cannot read: {e}")))?;
-    ridgeline::plain_json::read(&text).map(Some).map_err(|e| {
-        bad(format!(
-            "{e}; `ridgeline params` prints all parameters with their defaults"
-        ))
-    })
-}
-
 fn make_folder(args: &ReconstructArgs) -> Result<(), Failure> {
     fs::create_dir_all(&args.out).map_err(|e| {
         Failure::Input(format!(
@@ -150,16 +76,8 @@ fn make_folder(args: &ReconstructArgs) -> Result<(), Failure> {
     })
 }
 
-fn set_threads(args: &InputArgs) {
-    if let Some(threads) = args.threads {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.into())
-            .build_global()
-            .expect("the pool is set once, before its first use");
-    }
-}
-
-/// Runs the stages under a progress bar (which indicatif hides away from a terminal); seconds each.
+/// Runs the stages under a progress bar (which indicatif hides where there is no terminal); seconds
+/// each.
 fn run_stages(run: &mut Run) -> Vec<(Stage, f64)> {
     let stages = run.stages();
     let bar = ProgressBar::new(stages.len() as u64 * BAR_STEPS as u64);
@@ -178,17 +96,4 @@ fn run_stages(run: &mut Run) -> Vec<(Stage, f64)> {
     }
     bar.finish_and_clear();
     seconds
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_whole_path_counts_from_the_scene() {
-        let scene = Path::new("data/scene");
-        assert_eq!(below(scene, "data/scene/a/cameras.json"), "a/cameras.json");
-        assert_eq!(below(scene, "cameras.json"), "cameras.json");
-        assert_eq!(below(scene, "data/scenery/a.json"), "data/scenery/a.json");
-    }
 }

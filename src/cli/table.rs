@@ -1,4 +1,4 @@
-//! The summary that a person reads after a run.
+//! The summary that is printed after a run.
 
 use std::fmt::Write;
 use std::path::Path;

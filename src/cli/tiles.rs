@@ -9,8 +9,9 @@ use ridgeline::params::Params;
 use ridgeline::scene_loader::LoadOptions;
 use ridgeline::tiles::Area;
 
-use super::reconstruct::refusal;
-use super::{Failure, files};
+use super::failure::Failure;
+use super::files;
+use super::input::refusal;
 
 /// Reconstructs the region of interest in tiles of about `tile_m` metres and writes the results.
 pub(super) fn reconstruct_tiles(

@@ -1,4 +1,4 @@
-//! The files below a scene's folder, through links too, and what was seen on the way.
+//! The files below a scene's folder, symbolic links followed, and a count of what the folder holds.
 
 use std::collections::{BTreeMap, HashSet, VecDeque};
 use std::fmt;
@@ -9,41 +9,42 @@ use std::path::{Path, PathBuf};
 use ridgeline::orientation::InputFile;
 use ridgeline::scene_loader::unpack;
 
-use super::Failure;
+use super::failure::Failure;
 
-/// What may be an image.
+/// Extensions of images.
 const IMAGE_EXTENSIONS: [&str; 5] = ["jpg", "jpeg", "png", "tif", "tiff"];
 
-/// What may hold an orientation; the readers look at the content.
+/// Extensions of orientation files; the readers go by the content.
 const ORIENTATION_EXTENSIONS: [&str; 13] = [
     "txt", "p", "json", "geojson", "xml", "out", "nvm", "camera", "bin", "xyz", "prj", "ori", "zip",
 ];
 
-/// Largest orientation file that is read, bytes: COLMAP writes some hundred bytes for every tie point.
+/// Largest orientation file that is read, bytes: COLMAP writes some hundred bytes for every tie
+/// point.
 const MAX_ORIENTATION_BYTES: u64 = 1 << 30;
 
-/// Links that one notice names; the others are counted.
+/// Most links that one notice names; the others are counted.
 const MOST_NAMED: usize = 5;
 
-/// What a folder or an archive held.
+/// What a folder or an archive holds.
 #[derive(Default)]
-pub(super) struct Seen {
-    /// Files by kind: those that were read.
+pub(super) struct FolderContents {
+    /// Files that were read, by kind.
     read: BTreeMap<String, usize>,
-    /// And those that no reader takes.
+    /// Files that no reader takes, by kind.
     unread: BTreeMap<String, usize>,
     broken: Vec<String>,
-    circles: Vec<String>,
-    repeated: Vec<String>,
+    cycles: Vec<String>,
+    duplicates: Vec<String>,
 }
 
-impl Seen {
-    /// One sentence for each sort of link that was not followed.
+impl FolderContents {
+    /// One sentence for each kind of link that was not followed.
     pub(super) fn notices(&self) -> Vec<String> {
         let sorts = [
             (&self.broken, "links that lead nowhere, left out"),
-            (&self.circles, "links to folders around them, not followed"),
-            (&self.repeated, "links to what is read already, left out"),
+            (&self.cycles, "links to folders around them, not followed"),
+            (&self.duplicates, "links to what is read already, left out"),
         ];
         let sentence = |(links, what): (&Vec<String>, &str)| {
             let named = links[..links.len().min(MOST_NAMED)].join(", ");
@@ -59,7 +60,7 @@ impl Seen {
 }
 
 /// As "12 JPEG, 2 text; not read: 1 PDF".
-impl fmt::Display for Seen {
+impl fmt::Display for FolderContents {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let listed = |counts: &BTreeMap<String, usize>| {
             let mut counts: Vec<_> = counts.iter().collect();
@@ -81,13 +82,17 @@ impl fmt::Display for Seen {
     }
 }
 
-/// All files below `folder` that may belong to a scene, in no order; paths are relative to the folder and have forward
-/// slashes. Each folder is read once, under its own path rather than a link's. `results` is no part of the scene.
-pub(super) fn walk(folder: &Path, results: &Path) -> Result<(Vec<InputFile>, Seen), Failure> {
-    let mut walk = Walk {
+/// All files below `folder` that may belong to a scene, in no order; paths are relative to the
+/// folder and have forward slashes. Each folder is read once, under its own path rather than a
+/// link's. The folder `results` is left out.
+pub(super) fn walk(
+    folder: &Path,
+    results: &Path,
+) -> Result<(Vec<InputFile>, FolderContents), Failure> {
+    let mut walk = FolderWalk {
         // An empty path (no results are written) is none.
         results: fs::canonicalize(results).ok(),
-        ..Walk::default()
+        ..FolderWalk::default()
     };
     walk.folder(folder, "", &real_path(folder)?)?;
     while let Some(link) = walk.links.pop_front() {
@@ -97,32 +102,32 @@ pub(super) fn walk(folder: &Path, results: &Path) -> Result<(Vec<InputFile>, See
 }
 
 /// The files of an archive that is the whole scene.
-pub(super) fn open_archive(path: &Path) -> Result<(Vec<InputFile>, Seen), Failure> {
-    let mut walk = Walk::default();
+pub(super) fn open_archive(path: &Path) -> Result<(Vec<InputFile>, FolderContents), Failure> {
+    let mut walk = FolderWalk::default();
     walk.add(path, "scene.zip")?;
     Ok((walk.files, walk.seen))
 }
 
-/// A link that waits until all that stands in the scene itself has been read.
-struct Link {
+/// A link that is followed after everything in the scene's own folders has been read.
+struct PendingLink {
     path: PathBuf,
     relative: String,
-    /// The folder that it stands in, free of links.
+    /// The folder that contains it, as a path without links.
     parent: PathBuf,
 }
 
 #[derive(Default)]
-struct Walk {
+struct FolderWalk {
     results: Option<PathBuf>,
-    /// Folders and files that were reached, free of links.
+    /// Folders and files that were reached, as paths without links.
     reached: HashSet<PathBuf>,
-    links: VecDeque<Link>,
+    links: VecDeque<PendingLink>,
     files: Vec<InputFile>,
-    seen: Seen,
+    seen: FolderContents,
 }
 
-impl Walk {
-    /// `real` is the folder's path free of links.
+impl FolderWalk {
+    /// Reads a folder; `real` is its path without links.
     fn folder(&mut self, folder: &Path, prefix: &str, real: &Path) -> Result<(), Failure> {
         self.reached.insert(real.to_owned());
         let entries = fs::read_dir(folder).map_err(|e| unreadable(folder, e))?;
@@ -138,7 +143,7 @@ impl Walk {
             let relative = format!("{prefix}{shown}");
             let kind = entry.file_type().map_err(|e| unreadable(&path, e))?;
             if kind.is_symlink() {
-                self.links.push_back(Link {
+                self.links.push_back(PendingLink {
                     path,
                     relative,
                     parent: real.to_owned(),
@@ -157,13 +162,13 @@ impl Walk {
             return Ok(());
         }
         if self.reached.contains(real) {
-            self.seen.repeated.push(relative.to_owned());
+            self.seen.duplicates.push(relative.to_owned());
             return Ok(());
         }
         self.folder(path, &format!("{relative}/"), real)
     }
 
-    fn follow(&mut self, link: &Link) -> Result<(), Failure> {
+    fn follow(&mut self, link: &PendingLink) -> Result<(), Failure> {
         let named = || {
             let target = fs::read_link(&link.path).unwrap_or_default();
             format!("{} -> {}", link.relative, target.display())
@@ -173,7 +178,7 @@ impl Walk {
             Err(e) if e.kind() == io::ErrorKind::PermissionDenied => {
                 return Err(unreadable(&link.path, e));
             }
-            // Nothing is there, or links that lead to each other.
+            // The target is missing, or the links lead to each other.
             Err(_) => {
                 self.seen.broken.push(named());
                 return Ok(());
@@ -182,19 +187,20 @@ impl Walk {
         let kind = fs::metadata(&target).map_err(|e| unreadable(&link.path, e))?;
         if kind.is_dir() {
             if link.parent.starts_with(&target) {
-                self.seen.circles.push(named());
+                self.seen.cycles.push(named());
                 return Ok(());
             }
             if self.reached.contains(&target) {
-                self.seen.repeated.push(named());
+                self.seen.duplicates.push(named());
                 return Ok(());
             }
             return self.enter(&link.path, &link.relative, &target);
         }
-        // A link of another name gives the file that name; one of the same name would only make it ambiguous.
+        // A link of another name gives the file that name; one of the same name would only make it
+        // ambiguous.
         let same_name = link.path.file_name() == target.file_name();
         if same_name && self.reached.contains(&target) {
-            self.seen.repeated.push(named());
+            self.seen.duplicates.push(named());
         } else if kind.is_file() {
             self.file(&link.path, &link.relative, target)?;
         }
@@ -234,7 +240,7 @@ fn extension(path: &Path) -> Option<String> {
     path.extension().map(|e| e.to_string_lossy().to_lowercase())
 }
 
-/// By extension and size: a folder may hold point clouds and other large things.
+/// By extension and size: a folder may hold point clouds and other large files.
 fn is_wanted(path: &Path) -> bool {
     let Some(extension) = extension(path) else {
         return false;
@@ -244,7 +250,7 @@ fn is_wanted(path: &Path) -> bool {
         || (ORIENTATION_EXTENSIONS.contains(&&*extension) && small())
 }
 
-/// What a person calls a file of this name.
+/// The usual name of a kind of file.
 fn kind_of(path: &str) -> String {
     match extension(Path::new(path)).as_deref() {
         Some("jpg" | "jpeg") => "JPEG".into(),
@@ -280,7 +286,7 @@ mod tests {
     }
 
     /// Each file that is read with its content, as "path = content", sorted; and what was seen.
-    fn walked(top: &tempfile::TempDir) -> (Vec<String>, Seen) {
+    fn walked(top: &tempfile::TempDir) -> (Vec<String>, FolderContents) {
         let results = top.path().join("scene/results");
         let (files, seen) = walk(&top.path().join("scene"), &results)
             .unwrap_or_else(|_| panic!("the folder can be read"));
@@ -327,9 +333,9 @@ mod tests {
         );
         let (files, seen) = walked(&top);
         assert_eq!(files, ["a.jpg = scene/a.jpg", "x/b.jpg = data/x/b.jpg"]);
-        let circles = ["again -> .", "up -> ..", "x/above -> ../../data"];
-        assert_eq!(seen.circles, circles);
-        assert_eq!(seen.repeated, ["x/back -> ../../scene"]);
+        let cycles = ["again -> .", "up -> ..", "x/above -> ../../data"];
+        assert_eq!(seen.cycles, cycles);
+        assert_eq!(seen.duplicates, ["x/back -> ../../scene"]);
     }
 
     #[test]
@@ -353,8 +359,8 @@ mod tests {
             "z/d.jpg = scene/z/d.jpg",
         ];
         assert_eq!(files, expected);
-        let repeated = ["a -> z", "c.jpg -> z/c.jpg", "second -> ../data/x"];
-        assert_eq!(seen.repeated, repeated);
+        let duplicates = ["a -> z", "c.jpg -> z/c.jpg", "second -> ../data/x"];
+        assert_eq!(seen.duplicates, duplicates);
     }
 
     #[test]
@@ -393,9 +399,9 @@ mod tests {
             "2 JPEG, 1 P; not read: 1 PDF, 1 without extension"
         );
         assert_eq!(walked(&planted(&[], &[])).1.to_string(), "no files");
-        let seen = Seen {
-            repeated: (0..7).map(|i| i.to_string()).collect(),
-            ..Seen::default()
+        let seen = FolderContents {
+            duplicates: (0..7).map(|i| i.to_string()).collect(),
+            ..FolderContents::default()
         };
         let notice = "links to what is read already, left out: 0, 1, 2, 3, 4 and 2 more";
         assert_eq!(seen.notices(), [notice]);

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Rotation3};
 
 use crate::math;
 
-/// Units of angles, in the order in which a tie is decided.
+/// Units of angles; of equally good ones the first is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AngleUnit {
     /// 360 to a turn.
@@ -28,7 +28,7 @@ impl AngleUnit {
         }
     }
 
-    /// What people call it.
+    /// Its usual name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Degrees => "degrees",

@@ -1,12 +1,11 @@
-//! What a file is, by its content.
+//! What kind of file it is, by its content.
 //!
-//! Names decide only where content does not: a damaged `cameras.txt` or `x.P` should be refused with its
-//! line, not be passed over in silence.
+//! Names decide only where the content does not: a damaged `cameras.txt` or `x.P` should be refused
+//! with its line, not be ignored silently.
 
 use serde::Serialize;
 
-use super::formats::patb;
-use super::formats::{Line, data_lines};
+use super::formats::{TextLine, data_lines, patb};
 use super::input_file::InputFile;
 
 /// What an input file is.
@@ -80,7 +79,7 @@ pub enum FileKind {
 }
 
 impl FileKind {
-    /// What people call it.
+    /// Its name in messages.
     pub fn describe(self) -> &'static str {
         match self {
             Self::Image => "image",
@@ -119,10 +118,10 @@ impl FileKind {
     }
 }
 
-/// How much of a file is looked at: enough for the longest comment header.
+/// How much of a file is inspected: enough for the longest comment header.
 const HEAD_BYTES: usize = 64 * 1024;
 
-/// Data lines that are looked at: a list may begin with a damaged one.
+/// Data lines that are inspected: a list may begin with a damaged one.
 const HEAD_LINES: usize = 6;
 
 /// Recognises a file.
@@ -177,8 +176,8 @@ fn by_content(text: &str) -> Option<FileKind> {
     {
         return Some(FileKind::PhotogrammetricCamera);
     }
-    let lines: Vec<Line> = data_lines("", text).take(HEAD_LINES).collect();
-    let fields: Vec<Vec<&str>> = lines.iter().map(Line::fields).collect();
+    let lines: Vec<TextLine> = data_lines("", text).take(HEAD_LINES).collect();
+    let fields: Vec<Vec<&str>> = lines.iter().map(TextLine::fields).collect();
     if fields.len() == HEAD_LINES
         && fields
             .iter()
@@ -204,7 +203,7 @@ fn by_content(text: &str) -> Option<FileKind> {
     of_lines.or(patb::is_patb(text).then_some(FileKind::Patb))
 }
 
-/// The kind that one line of a list gives away.
+/// The kind that one line of a list shows.
 fn by_fields(f: &[&str]) -> Option<FileKind> {
     let numbers = |range: std::ops::Range<usize>| f[range].iter().all(|f| is_number(f));
     if f.len() >= 5 && is_number(f[0]) && is_model(f[1]) && numbers(2..4) {
@@ -241,7 +240,7 @@ fn by_tags(head: &str) -> Option<FileKind> {
     }
 }
 
-/// The kind of a JSON file, by its keys wherever they stand.
+/// The kind of a JSON file, by its keys anywhere in it.
 fn by_keys(text: &str) -> FileKind {
     let has = |keys: &[&str]| keys.iter().all(|key| text.contains(&format!("\"{key}\"")));
     if has(&["cameras", "shots", "projection_type"]) {

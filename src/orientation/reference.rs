@@ -1,8 +1,8 @@
-//! The coordinate reference system that files name: EPSG's number.
+//! The coordinate reference system that files name, as its EPSG code.
 
-use super::Format;
+use super::format::Format;
 
-/// EPSG's number in what the file of a format says about its world; `None` where it says nothing.
+/// EPSG code of the reference system that a file of this format states, if any.
 pub(crate) fn stated(format: Format, text: &str) -> Option<u32> {
     let part = match format {
         Format::Inpho => {
@@ -18,8 +18,9 @@ pub(crate) fn stated(format: Format, text: &str) -> Option<u32> {
     epsg_of(part)
 }
 
-/// EPSG's number of a system written as well-known text, as "EPSG:25832", or as the number alone. The last number is
-/// that of the whole; those before belong to its parts (ellipsoid, datum, units).
+/// EPSG code of a system written as well-known text, as "EPSG:25832", or as the number alone. The
+/// last code is that of the whole system; those before belong to its parts (ellipsoid, datum,
+/// units).
 pub fn epsg_of(text: &str) -> Option<u32> {
     if let Ok(number) = text.trim().parse::<u32>() {
         return is_plausible(number).then_some(number);

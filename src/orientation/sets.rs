@@ -1,14 +1,15 @@
 //! Which files together orient images, and the reader of each format.
 
 use super::detect::FileKind;
+use super::format::Format;
 use super::formats::{
     bundles, colmap, colmap_binary, inpho, json, matrices, micmac, patb, photogrammetric,
+    projection, xml,
 };
-use super::formats::{projection, xml};
 use super::geodesy::Anchor;
+use super::image_orientation::Orientation;
 use super::input_file::InputFile;
 use super::reference;
-use super::{Format, Orientation};
 use crate::error::Result;
 use crate::sorting::sort_by;
 
@@ -19,12 +20,13 @@ pub struct OrientationSet {
     pub format: Format,
     /// Folder of the files, without a final slash; empty for the top.
     pub folder: String,
-    /// Indices of the files among the inputs, in the order that the reader wants.
+    /// Indices of the files among the inputs, in the order in which the reader takes them.
     pub files: Vec<usize>,
 }
 
 impl OrientationSet {
-    /// The paths of its files, for messages and for choosing between sets: the folder when there are many.
+    /// The paths of its files, for messages and for choosing between sets: the folder when there
+    /// are many.
     pub fn label(&self, inputs: &[InputFile]) -> String {
         let what = match self.format {
             Format::Strecha => ".camera",
@@ -43,12 +45,12 @@ impl OrientationSet {
         }
     }
 
-    /// EPSG's number of the reference system that the files name.
+    /// EPSG code of the reference system that the files name.
     pub fn reference(&self, inputs: &[InputFile]) -> Option<u32> {
         reference::stated(self.format, &inputs[self.files[0]].text())
     }
 
-    /// Zero of the local frame, where the files name it.
+    /// Geodetic position of the local frame's origin, where the files state it.
     pub fn anchor(&self, inputs: &[InputFile]) -> Option<Anchor> {
         let text = (self.format == Format::OpenSfm).then(|| inputs[self.files[0]].text())?;
         json::opensfm_anchor(&text)
@@ -135,10 +137,10 @@ pub fn orientation_sets(
         ),
         (Format::Bundler, FileKind::Bundler, FileKind::BundlerList),
     ] {
-        pairs(inputs, kinds, pair, &mut sets, &mut incomplete);
+        add_pairs(inputs, kinds, pair, &mut sets, &mut incomplete);
     }
     for (i, kind) in kinds.iter().enumerate() {
-        if let Some(format) = alone(*kind) {
+        if let Some(format) = single_file_format(*kind) {
             sets.push(OrientationSet {
                 format,
                 folder: inputs[i].folder().to_owned(),
@@ -160,7 +162,7 @@ pub fn orientation_sets(
             Format::Pmatrix => FileKind::Offset,
             Format::Shots => FileKind::OpenSfmCameras,
             Format::Micmac => {
-                // Which of them belongs to an image stands in its file.
+                // Each orientation file names its calibration.
                 let lenses = (0..inputs.len()).filter(|&i| kinds[i] == FileKind::MicmacCalibration);
                 set.files.extend(lenses);
                 continue;
@@ -183,8 +185,8 @@ pub fn orientation_sets(
     (sets, incomplete)
 }
 
-/// The format of a file that is an orientation by itself.
-fn alone(kind: FileKind) -> Option<Format> {
+/// The format of a file that is a complete orientation.
+fn single_file_format(kind: FileKind) -> Option<Format> {
     Some(match kind {
         FileKind::Metashape => Format::Metashape,
         FileKind::Blocks => Format::Blocks,
@@ -201,8 +203,8 @@ fn alone(kind: FileKind) -> Option<Format> {
     })
 }
 
-/// Joins two kinds of files of one folder; a lone partner in another folder is taken as well.
-fn pairs(
+/// Joins two kinds of files of one folder; a single second file in another folder is taken as well.
+fn add_pairs(
     inputs: &[InputFile],
     kinds: &[FileKind],
     (format, first, second): (Format, FileKind, FileKind),

@@ -1,85 +1,89 @@
-//! How far each view is shifted against the others: a small bundle adjustment over the places found again.
+//! How far each view is shifted against the others: a small bundle adjustment over matched points.
 //!
-//! Places that one interest point has in several views make a track, whose world point X and whose views' shifts s
-//! are sought:
+//! The matches of one interest point in several views make a track, whose world point X and whose
+//! views' shifts s are sought:
 //!
 //! ```text
 //! sum over tracks and views  rho(x - (P X + s)) / sigma^2  ->  min
 //! ```
 //!
-//! Shifts of several pixels are found in the reduced images first. Over a crop of a frame a small error of omega, phi or of the projection centre is a shift of the image; turns and
-//! changes of scale within the image are not sought. World points are eliminated track by track (Schur complement);
-//! rho is Huber's.
+//! Shifts of several pixels are found in the reduced images first. Over a crop of a frame a small
+//! error of omega, phi or of the projection centre is a shift of the image; rotations and changes
+//! of scale within the image are not sought. World points are eliminated track by track (Schur
+//! complement); rho is Huber's.
 //!
-//! Shifts of all views that only move or bend the world are invisible, or nearly so: adjusting all views at once gave
-//! shifts of three pixels on sound photographs (real-barns), which fitted hardly better. Therefore views are freed one
-//! by one, the one first that helps most, as long as it helps much; most views stay where they are.
+//! Shifts of all views that only move or bend the world are (nearly) unobservable: adjusting all
+//! views at once gave shifts of three pixels on correctly oriented photographs, with hardly smaller
+//! residuals. Therefore views are freed one by one, the one first that reduces the cost most, as
+//! long as the reduction is large; most views stay fixed.
 
 use nalgebra::{Point2, Vector2};
 
-use super::fine::{Place as Pair, Places};
-use super::network::{Network, Scale};
-use super::{Clinic, epipolar, mean_axis};
+use super::epipolar::best_match;
+use super::epipolar_check::{EpipolarCheck, mean_axis};
+use super::shift_adjustment::{ResidualScale, ShiftAdjustment};
+use super::subpixel::PointMatch;
 use crate::camera::Camera;
 use crate::execution::parallel;
 use crate::scene::ViewShift;
 
-/// Places in the images as they are. Assumption: 0.2 px is what correlation of 9 x 9 windows reaches on roofs and ground.
-const FINE: Scale = Scale {
+/// Matches in the images at full resolution. Assumption: 0.2 px is what correlation of 9 x 9
+/// windows reaches on roofs and ground.
+const FULL_RESOLUTION: ResidualScale = ResidualScale {
     sigma_px: 0.2,
     huber_px: 0.4,
     gross_px: 3.0,
 };
 
-/// Places in the reduced images are whole pixels of theirs.
-fn coarse_scale(factor: usize) -> Scale {
+/// Matches in the reduced images are known to whole pixels there.
+fn coarse_scale(factor: usize) -> ResidualScale {
     let reduced_px = factor as f64;
-    Scale {
+    ResidualScale {
         sigma_px: 0.5 * reduced_px,
         huber_px: 0.7 * reduced_px,
         gross_px: COARSE_SHIFT as f64 * reduced_px,
     }
 }
 
-/// Farthest line on which the coarse search believes a place, pixels of the reduced images.
+/// Farthest line on which the coarse search accepts a match, pixels of the reduced images.
 const COARSE_SHIFT: i32 = 4;
 
-/// What the coarse search finds below this, the fine one finds better, pixels.
-const LEAST_COARSE_PX: f64 = 1.5;
+/// Smaller shifts are left to the search at full resolution, pixels.
+const MIN_COARSE_PX: f64 = 1.5;
 
-/// Larger shifts are no small errors, pixels.
-const MOST_PX: f64 = 20.0;
+/// Larger shifts are gross errors, which this adjustment does not model, pixels.
+const MAX_SHIFT_PX: f64 = 20.0;
 
 impl ViewShift {
-    /// Is there a shift that is worth a word: seen beyond doubt, and no more than small?
+    /// Is the shift significant, and still small?
     pub fn is_significant(&self) -> bool {
         let [x, y] = self.shift_px;
         let length = (x * x + y * y).sqrt();
-        length > LEAST_SHIFT_PX.max(SIGNIFICANT_SIGMAS * self.sigma_px)
-            && length < MOST_PX
+        length > MIN_SHIFT_PX.max(SIGNIFICANT_SIGMAS * self.sigma_px)
+            && length < MAX_SHIFT_PX
             && self.after_px < self.before_px
     }
 }
 
 /// Least shift that matters: lines are found to about a tenth of a pixel.
-const LEAST_SHIFT_PX: f64 = 0.15;
+const MIN_SHIFT_PX: f64 = 0.15;
 
-/// A shift is believed from so many standard deviations on.
+/// Least significant shift, standard deviations.
 const SIGNIFICANT_SIGMAS: f64 = 4.0;
 
-/// The shifts of all views; `None` where too little is found again. `coarse` are the shifts with which the places were
-/// looked for.
+/// The shifts of all views; `None` where too little is matched. `coarse` are the shifts with which
+/// the matches were searched.
 pub(crate) fn shifts(
-    clinic: &Clinic,
-    places: &[Places],
+    check: &EpipolarCheck,
+    matches: &[Vec<PointMatch>],
     stated: &[Camera],
     coarse: &[Vector2<f64>],
 ) -> Option<Vec<ViewShift>> {
     let cameras = shifted(stated, coarse);
-    let network = Network::new(clinic, places, &cameras, FINE)?;
-    let best = network.free_views();
-    let before = network.residuals(&coarse.iter().map(|s| -s).collect::<Vec<_>>());
-    let after = network.residuals(&best.shifts);
+    let adjustment = ShiftAdjustment::new(check, matches, &cameras, FULL_RESOLUTION)?;
+    let best = adjustment.free_views();
+    let before = adjustment.residuals(&coarse.iter().map(|s| -s).collect::<Vec<_>>());
+    let after = adjustment.residuals(&best.shifts);
     let of_view = |i: usize| {
         let (mut before, mut after) = (before[i].clone(), after[i].clone());
         let places = after.len();
@@ -87,7 +91,7 @@ pub(crate) fn shifts(
             shift_px: (coarse[i] + best.shifts[i]).into(),
             sigma_px: match coarse[i] == Vector2::zeros() {
                 true => best.sigmas[i],
-                false => best.sigmas[i].max(FINE.sigma_px),
+                false => best.sigmas[i].max(FULL_RESOLUTION.sigma_px),
             },
             before_px: crate::math::median(&mut before).unwrap_or(0.0),
             after_px: crate::math::median(&mut after).unwrap_or(0.0),
@@ -97,40 +101,42 @@ pub(crate) fn shifts(
     Some((0..stated.len()).map(of_view).collect())
 }
 
-/// Shifts of several pixels, from places in the reduced images; zero where the fine search finds them itself.
-pub(crate) fn coarse_shifts(clinic: &Clinic, cameras: &[Camera]) -> Vec<Vector2<f64>> {
+/// Shifts of several pixels, from matches in the reduced images; zero where the search at full
+/// resolution finds them.
+pub(crate) fn coarse_shifts(check: &EpipolarCheck, cameras: &[Camera]) -> Vec<Vector2<f64>> {
     let none = || vec![Vector2::zeros(); cameras.len()];
-    let factor = *clinic.factors.iter().max().unwrap_or(&1);
+    let factor = *check.factors.iter().max().unwrap_or(&1);
     if factor < 2 {
         return none();
     }
-    let places = coarse_places(clinic, cameras);
-    let Some(network) = Network::new(clinic, &places, cameras, coarse_scale(factor)) else {
+    let matches = coarse_matches(check, cameras);
+    let Some(adjustment) = ShiftAdjustment::new(check, &matches, cameras, coarse_scale(factor))
+    else {
         return none();
     };
-    let matters = |s: Vector2<f64>| (s.norm() > LEAST_COARSE_PX).then_some(s);
-    let found = network.free_views().shifts;
+    let matters = |s: Vector2<f64>| (s.norm() > MIN_COARSE_PX).then_some(s);
+    let found = adjustment.free_views().shifts;
     found
         .into_iter()
         .map(|s| matters(s).unwrap_or_default())
         .collect()
 }
 
-/// Places as the reduced images show them.
-fn coarse_places(clinic: &Clinic, cameras: &[Camera]) -> Vec<Places> {
-    let (reduced, axis) = (clinic.reduced(cameras), mean_axis(cameras));
-    parallel::map(&clinic.pairs, |_, &(i, j)| {
-        let scale = [i, j].map(|v| clinic.factors[v] as f64);
-        let found = |(point, x): (usize, &Point2<f64>)| {
-            let place = epipolar::best_place(&reduced[i], &reduced[j], &axis, x)?;
-            (place.shift.abs() <= COARSE_SHIFT).then(|| Pair {
+/// Matches in the reduced images, in pixels of the full images.
+fn coarse_matches(check: &EpipolarCheck, cameras: &[Camera]) -> Vec<Vec<PointMatch>> {
+    let (reduced, axis) = (check.reduced(cameras), mean_axis(cameras));
+    parallel::map(&check.pairs, |_, &(i, j)| {
+        let scale = [i, j].map(|v| check.factors[v] as f64);
+        let matched = |(point, x): (usize, &Point2<f64>)| {
+            let found = best_match(&reduced[i], &reduced[j], &axis, x)?;
+            (found.shift.abs() <= COARSE_SHIFT).then(|| PointMatch {
                 point,
                 first: x * scale[0],
-                second: place.at * scale[1],
+                second: found.at * scale[1],
             })
         };
-        let points = clinic.points[i].iter().enumerate();
-        points.filter_map(found).collect()
+        let points = check.points[i].iter().enumerate();
+        points.filter_map(matched).collect()
     })
 }
 

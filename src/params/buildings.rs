@@ -1,57 +1,65 @@
-//! Tunables of buildings: refinement (B99 2) and textures.
+//! Parameters of buildings: refinement (B99 2) and textures.
 
 use serde::Serialize;
 
 use crate::readable;
 
 readable! {
-/// B99 section 2 (the partner in Leuven): regularisation, and refinement by the reprojection error of the wireframe. The paper gives
-/// no numbers.
+/// B99 section 2 (the contribution of Leuven): regularisation, and refinement by the reprojection
+/// error of the wireframe. The paper gives no numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RefineParams {
     /// Refine at all?
     pub refine: bool,
-    /// A side without a neighbour is sought again within this distance in its facet's plane, metres. Assumption: half a
-    /// correlation window of the coarsest images, where delineation ends a facet without a line.
+    /// A side without a neighbour is sought again within this distance in its facet's plane,
+    /// metres. Assumption: half a correlation window of the coarsest images, where delineation ends
+    /// a facet without a line.
     pub search_m: f64,
-    /// How well the place of a side is known that lies on a matched line, metres: the twin of an edge at a gutter may be as far. Assumption.
+    /// Uncertainty of a side that lies on a matched line, metres: a parallel edge, as at a gutter,
+    /// may be that far away. Assumption.
     pub matched_m: f64,
     /// Ridges, hips and valleys are sought within this distance, px. Assumption: planes fix them.
     pub reach_px: f64,
     /// Shortest side that is measured, px. B99 3.2: the least length of segments is 15.
     pub min_side_px: f64,
-    /// Least number of views that see a side. Assumption: in two, anything stands still.
+    /// Least number of views that see a side. Assumption: two views cannot be verified by a third.
     pub min_views: usize,
-    /// Least step across a side in a profile of one pixel, grey range 1; it falls with the root of the profiles.
-    /// Assumption: four standard deviations of noise.
+    /// Least step across a side in a profile of one pixel, grey range 1; it falls with the root of
+    /// the profiles. Assumption: four standard deviations of noise.
     pub least_contrast: f64,
-    /// What a border on the strongest edge earns, square metres for a metre. Assumption: what it saves in the labelling.
+    /// Gain of a border on the strongest edge, square metres for a metre. Assumption: its gain in
+    /// the labelling.
     pub edge_gain_m: f64,
     /// Correlation at which a plane is as good as no plane. Assumption: as in the labelling.
     pub min_correlation: f64,
-    /// Sides shorter than this between longer ones are tried without, metres. Assumption: half a correlation window; what is nearer
-    /// cannot be told apart.
+    /// The outline is also tested without sides shorter than this between longer ones, metres.
+    /// Assumption: half a correlation window; what is nearer cannot be resolved.
     pub jog_m: f64,
-    /// Error of both ends of a measured edge that its scatter does not know, px. Assumption: fascias and gutters.
+    /// Error of both ends of a measured edge beyond its scatter, px. Assumption:
+    /// fascias and gutters.
     pub floor_px: f64,
     /// Scale of the robust loss, standard deviations. Assumption.
     pub loss_sigmas: f64,
     /// Standard deviation of a corner in plan before it is measured, metres. Assumption.
     pub vertex_sigma_m: f64,
-    /// Standard deviation of the heights of a facet at its corners, besides what its lines say, metres. Assumption.
+    /// Standard deviation of the heights of a facet at its corners, besides that of its lines,
+    /// metres. Assumption.
     pub height_sigma_m: f64,
-    /// Error of heights at a facet's lines that their covariance does not know, metres. Assumption: a third of the distance within
-    /// which lines count as coplanar.
+    /// Error of heights at a facet's lines beyond their covariance, metres. Assumption:
+    /// a third of the distance within which lines count as coplanar.
     pub height_floor_m: f64,
-    /// Shortest side that takes part in relations, metres. Assumption: it has a direction.
+    /// Shortest side that takes part in relations, metres. Assumption: shorter ones have no certain
+    /// direction.
     pub min_relation_m: f64,
     /// Relations are proposed for sides and slopes within this angle of them, degrees. Assumption.
     pub near_deg: f64,
     /// ... and for eaves within this height of each other, metres. Assumption.
     pub near_m: f64,
-    /// How exactly real buildings keep to relations, metres. Assumption: what carpenters and masons do.
+    /// How exactly real buildings keep to relations, metres. Assumption: tolerances of
+    /// construction.
     pub relation_sigma_m: f64,
-    /// Largest chi-square (one degree of freedom) at which a relation is adopted. Assumption: refuses one true one in a hundred.
+    /// Largest chi-square (one degree of freedom) at which a relation is adopted. Assumption:
+    /// rejects one true relation in a hundred.
     pub relation_chi2: f64,
     /// Distances beyond this count as this in the reprojection error, px.
     pub cap_px: f64,
@@ -59,18 +67,19 @@ pub struct RefineParams {
     pub min_sightings: usize,
     /// Most unknowns of a building; larger ones keep their shape. Assumption: seconds of one core.
     pub max_unknowns: usize,
-    /// A facet that ends at another one higher or lower is looked at over this distance from there: it may end earlier, and what
-    /// lies between is the ground, metres. Assumption: the width of an alley.
+    /// A facet that ends at a higher or lower one is tested over this distance from there: it may
+    /// end earlier, with ground between them, metres. Assumption: the width of an alley.
     pub part_m: f64,
-    /// ... but not over less than this, metres. Assumption: overhangs and gutters.
+    /// ... but over no less than this, metres. Assumption: overhangs and gutters.
     pub least_part_m: f64,
-    /// Least gain for ending it earlier, square metres for a metre of side. Assumption: the error of a correlation (0.05) over a
-    /// metre.
+    /// Least gain for ending it earlier, square metres for a metre of side. Assumption: the error
+    /// of a correlation (0.05) over a metre.
     pub part_gain_m: f64,
-    /// ... and for a square metre that is given up. Assumption: twice the error of a correlation; shadow at the foot of a wall
-    /// costs a roof hardly that.
+    /// ... and for a square metre that is given up. Assumption: twice the error of a correlation;
+    /// shadow at the foot of a wall costs a roof hardly that.
     pub part_gain_share: f64,
-    /// What a border costs that no edge supports, square metres for a metre. Assumption: as in the labelling.
+    /// What a border costs that no edge supports, square metres for a metre. Assumption: as in the
+    /// labelling.
     pub border_cost_m: f64,
     /// How much the mean correlation inside the facets may fall. Assumption: its error.
     pub similarity_loss: f64,
@@ -122,8 +131,8 @@ pub struct TextureParams {
     /// Side of a texel in pixels of the view that shows a face best. Assumption: 1, finer ones hold
     /// no more detail.
     pub texel_px: f64,
-    /// Border around each patch, px, against bleeding. Assumption: 4, so that patches stay apart down to the
-    /// second mipmap level.
+    /// Border around each patch, px, against bleeding. Assumption: 4, so that patches stay apart
+    /// down to the second mipmap level.
     pub padding_px: u32,
     /// Quality of the atlas as JPEG, 1 to 100. Assumption: 90, where its blocks cannot be seen.
     pub jpeg_quality: u8,

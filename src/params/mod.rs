@@ -1,6 +1,6 @@
-//! All tunables, one struct a stage, with the papers' values as defaults.
+//! All parameters, one struct for each stage, with the papers' values as defaults.
 //!
-//! Each field quotes its section; where the paper is silent it says "Assumption:" and why.
+//! Each field quotes its section; where the paper gives no value, "Assumption:" gives the reason.
 
 mod buildings;
 mod lines;

@@ -1,4 +1,4 @@
-//! Tunables of the object-space method (W96 3).
+//! Parameters of the object-space method (W96 3).
 
 use serde::Serialize;
 
@@ -41,33 +41,39 @@ pub struct PlaneParams {
     pub angle_deg: f64,
     /// Crossings within this along the lines are one end, metres. Assumption.
     pub position_m: f64,
-    /// Most ends of a pair of lines that are tried. W96: two. Assumption.
+    /// Most ends of a pair of lines that are tested. W96: two. Assumption.
     pub max_ends: usize,
     /// Most candidates kept of a pair of lines. Assumption.
     pub max_candidates: usize,
-    /// Least share of an outline that image lines cover, mean over the views, for it to be looked at. Assumption.
+    /// Least share of an outline that image lines cover, mean over the views, for it to be looked
+    /// at. Assumption.
     pub min_support: f64,
-    /// Support at which a side speaks neither for nor against a plane. Assumption.
+    /// Support at which a side counts neither for nor against a plane. Assumption.
     pub least_support: f64,
-    /// Least correlation of the views on a plane. Assumption: unrelated textures reach 0.45, since only the better half of all pairs of
-    /// views counts.
+    /// Least correlation of the views on a plane. Assumption: unrelated textures reach 0.45, since
+    /// only the better half of all pairs of views counts.
     pub least_correlation: f64,
-    /// Planes that fall behind those beside them by more are refused whatever their sides say. Assumption: twice the error of
-    /// the comparison on weak texture.
+    /// Planes whose correlation is lower than that of the planes beside them by more are rejected
+    /// whatever their sides. Assumption: twice the error of the comparison on weak texture.
     pub min_rise: f64,
-    /// By how much the views agree better on a plane than beside it where an area speaks neither for nor against. Assumption: the
-    /// error of the comparison on weak texture, so that the sides decide there.
+    /// By how much the views agree better on a plane than beside it where an area counts neither
+    /// for nor against. Assumption: the error of the comparison on weak texture, so that the sides
+    /// decide there.
     pub least_rise: f64,
-    /// A plane is compared with those above and below it at a distance that moves the images against each other by this, px.
-    /// Assumption: more than the error of a true plane, less than the windows.
+    /// A plane is compared with those above and below it at a distance that moves the images
+    /// against each other by this, px. Assumption: more than the error of a true plane, less than
+    /// the windows.
     pub beside_px: f64,
-    /// What a metre of side weighs against a square metre of area, metres. Assumption.
+    /// Weight of a metre of side against a square metre of area, metres. Assumption.
     pub side_weight_m: f64,
-    /// What a plane costs, square metres. Assumption: two planes must explain more than one by this.
+    /// What a plane costs, square metres. Assumption: two planes must explain more than one by
+    /// this.
     pub plane_cost_m2: f64,
-    /// What an end costs that is not at right angles, square metres. Assumption: it has a parameter more.
+    /// What an end costs that is not at right angles, square metres. Assumption: it has a parameter
+    /// more.
     pub slant_cost_m2: f64,
-    /// Least measure, square metres. W96 accepts any best plane, and proposes "thresholding the measure". Assumption.
+    /// Least measure, square metres. W96 accepts any best plane, and proposes "thresholding the
+    /// measure". Assumption.
     pub min_measure_m2: f64,
     /// Smallest plane, square metres. Assumption.
     pub min_area_m2: f64,
@@ -106,14 +112,17 @@ readable! {
 /// W96 3.1: where buildings are. The paper assumes it known.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WindowParams {
-    /// Buildings' boxes x0, y0, x1, y1, metres in the frame of the orientation; found where there are none.
+    /// Buildings' boxes x0, y0, x1, y1, metres in the frame of the orientation; found where there
+    /// are none.
     pub given_m: Vec<[f64; 4]>,
-    /// Heights between which lines are sought, metres in the frame of the orientation; estimated where `None`.
+    /// Heights between which lines are sought, metres in the frame of the orientation; estimated
+    /// where `None`.
     pub z_range_m: Option<[f64; 2]>,
-    /// Side of the tiles in which buildings are sought, metres. Assumption: a house with what stands around it.
+    /// Side of the tiles in which buildings are sought, metres. Assumption: a house with its
+    /// surroundings.
     pub tile_m: f64,
-    /// Lines of a building are linked over this distance in plan, metres. Assumption: the depth of a facet; closer than
-    /// most houses stand.
+    /// Lines of a building are linked over this distance in plan, metres. Assumption: the depth of
+    /// a facet; closer than most houses stand.
     pub link_m: f64,
     /// The window reaches beyond the lines by this, metres. Assumption: lines that were not found.
     pub margin_m: f64,
@@ -136,9 +145,11 @@ readable! {
 /// W96 3.4: main directions.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DirectionParams {
-    /// Most pairs of directions in a window. W96 has one. Assumption: a few, for neighbours that stand askew.
+    /// Most pairs of directions in a window. W96 has one. Assumption: a few, for neighbouring
+    /// buildings at other angles.
     pub max_pairs: usize,
-    /// Least share of the weight of all lines that follows a pair. Assumption: chance gives 4 of 90 degrees, 5 %.
+    /// Least share of the weight of all lines that follows a pair. Assumption: chance gives 4 of 90
+    /// degrees, 5 %.
     pub min_share: f64,
     /// A line within this of a direction follows it, degrees. Assumption.
     pub tolerance_deg: f64,
@@ -166,21 +177,25 @@ pub struct ClusterParams {
     pub angle_deg: f64,
     /// ... or within what this displacement of an end does to its direction, px. Assumption.
     pub end_px: f64,
-    /// Image lines within this distance support a 3D line, px. Assumption: three standard deviations.
+    /// Image lines within this distance support a 3D line, px. Assumption: three standard
+    /// deviations.
     pub gate_px: f64,
     /// Standard deviation of an image line, px. Assumption: the precision of region boundaries.
     pub sigma_px: f64,
     /// Intersections nearer than this are one, metres. Assumption.
     pub cell_m: f64,
-    /// Largest difference of the grey values on one side at least, grey range 1. Assumption; W96 4 proposes to use radiometry here.
+    /// Largest difference of the grey values on one side at least, grey range 1. Assumption; W96 4
+    /// proposes to use radiometry here.
     pub max_grey_difference: f64,
-    /// Least number of views. W96 3.5: all views, "too restrictive, due to possible occlusion". Assumption: three.
+    /// Least number of views. W96 3.5: all views, "too restrictive, due to possible occlusion".
+    /// Assumption: three.
     pub min_views: usize,
     /// A view that covers less of a line does not count. Assumption.
     pub min_coverage: f64,
     /// What an image line costs on its own, bits. Assumption: one of 64 positions.
     pub position_bits: f64,
-    /// What a 3D line costs, bits. Assumption: one of 16 x 16 places beside those that others leave.
+    /// What a 3D line costs, bits. Assumption: one of 16 x 16 places beside those that others
+    /// leave.
     pub line_bits: f64,
     /// What it costs that a view misses a line, bits. Assumption.
     pub miss_bits: f64,
@@ -215,22 +230,27 @@ readable! {
 /// W96 3.3: region segmentation. W96 gives no numbers ("Wiman 1995").
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OrisParams {
-    /// Standard deviation of the blur before gradients are taken, px. Assumption: 0.8, as for edgels.
+    /// Standard deviation of the blur before gradients are taken, px. Assumption: 0.8, as for
+    /// edgels.
     pub smoothing_px: f64,
-    /// What a vector costs, bits. Assumption: its end is one of 64 x 64 positions relative to its start.
+    /// What a vector costs, bits. Assumption: its end is one of 64 x 64 positions relative to its
+    /// start.
     pub vector_bits: f64,
-    /// Pixels that make one independent grey value. Assumption: resampling and compression tie neighbours together.
+    /// Pixels that make one independent grey value. Assumption: resampling and compression
+    /// correlate neighbours.
     pub pixels_per_sample: f64,
-    /// Weight of each of the two colour differences beside grey. Assumption: they are smoother, and JPEG stores them at half the
-    /// resolution.
+    /// Weight of each of the two colour differences beside grey. Assumption: they are smoother, and
+    /// JPEG stores them at half the resolution.
     pub color_weight: f64,
-    /// Least standard deviation of the grey values of a region, grey levels of 255. Assumption: sensor and JPEG.
+    /// Least standard deviation of the grey values of a region, grey levels of 255. Assumption:
+    /// sensor and JPEG.
     pub least_sigma: f64,
     /// Shortest vector that is measured as a line, px. Assumption: half of B99's shortest segment.
     pub min_line_px: f64,
     /// Least contrast of a line, grey range 1. Assumption: three grey levels of 255.
     pub min_contrast: f64,
-    /// Largest root mean square distance of the gradient's crest from the line, px; otherwise the vector itself is taken. Assumption.
+    /// Largest root mean square distance of the gradient's crest from the line, px; otherwise the
+    /// vector itself is taken. Assumption.
     pub max_rms_px: f64,
 }
 }

@@ -1,4 +1,4 @@
-//! Tunables from half-planes to facets (B99 4).
+//! Parameters from half-planes to facets (B99 4).
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -12,12 +12,14 @@ readable! {
 /// B99 4.1: half-planes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SweepParams {
-    /// Lines lower than this above the ground are not swept, metres. Assumption: lower than any eave.
+    /// Lines lower than this above the ground are not swept, metres. Assumption: lower than any
+    /// eave.
     pub min_height_m: f64,
     /// Largest |theta|, degrees. B99 figure 15: "over the interval [-75; +75]".
     pub max_theta_deg: f64,
-    /// First step of the subdivision, degrees. Assumption: a point at the far end of the neighbourhood
-    /// moves by 2 to 4 px in a step, about the width of a correlation peak; near points move less.
+    /// First step of the subdivision, degrees. Assumption: a point at the far end of the
+    /// neighbourhood moves by 2 to 4 px in a step, about the width of a correlation peak; near
+    /// points move less.
     pub first_step_deg: f64,
     /// The subdivision ends below this step, degrees. B99 4.1: "a termination criterion of
     /// `Delta theta < 1`" degree.
@@ -27,34 +29,36 @@ pub struct SweepParams {
     pub max_peaks: usize,
     /// Side of the correlation window, px, odd, at most 15. B99 3.2: "15 x 15".
     pub window_px: usize,
-    /// Depth of the neighbourhood away from the line, px. Assumption: the weight 1/distance leaves little to
-    /// points beyond.
+    /// Depth of the neighbourhood away from the line, px. Assumption: the weight 1/distance leaves
+    /// little to points beyond.
     pub depth_px: f64,
     /// Depth of the neighbourhood, metres on the ground. Assumption: facets are rarely deeper.
     pub depth_m: f64,
-    /// Strip beside the line that is not used, px. Assumption: the line's own blur and position error.
+    /// Strip beside the line that is not used, px. Assumption: the line's own blur and position
+    /// error.
     pub margin_px: f64,
     /// Shortest projected line, px. Assumption: a window is not wider than the line is long.
     pub min_length_px: f64,
     /// Blur before the edge detector, standard deviation in px. Assumption: the least that keeps
     /// single-pixel noise from becoming edges.
     pub poi_blur_px: f64,
-    /// Least gradient of an edge that gives points of interest, grey range per px. B99 4.1: "a very low
-    /// threshold on gradient". Assumption: one grey level of 256 per pixel, three times the noise
-    /// that a good photograph leaves after the blur.
+    /// Least gradient of an edge that gives points of interest, grey range per px. B99 4.1: "a very
+    /// low threshold on gradient". Assumption: one grey level of 256 per pixel, three times the
+    /// noise that a good photograph leaves after the blur.
     pub poi_min_gradient: f64,
     /// Every how many edgels there is a point of interest. B99 4.1: "regularly sampled".
     pub poi_spacing_px: usize,
     /// Least number of points of interest. Assumption: as many as the edgels that verify a line
     /// match for planes (B99 4.1: "only 10").
     pub min_points: usize,
-    /// A correlation from here on is high. Assumption: the threshold for edgels of a line match (B99 3.2).
+    /// Least correlation that counts as high. Assumption: the threshold for edgels of a line match
+    /// (B99 3.2).
     pub high_correlation: f64,
     /// Least share of points of interest with a high correlation in a valid view. B99 4.1: "at
     /// least a threshold number"; Assumption: a share, because the number of points varies widely.
     pub min_high_share: f64,
-    /// Least number of valid views besides the reference. Assumption: a single pair has nothing to
-    /// confirm it.
+    /// Least number of valid views besides the reference. Assumption: a single pair is not
+    /// confirmed by any other.
     pub min_valid_views: usize,
     /// Least peak. B99 figure 12: `Sim(theta_max) >= 0.4`.
     pub min_similarity: f64,
@@ -62,18 +66,18 @@ pub struct SweepParams {
     pub min_curvature: f64,
     /// Least amplitude. B99 figure 12: `Sim(theta_max) - Sim(theta_min) >= 0.2`.
     pub min_amplitude: f64,
-    /// What accepts a maximum.
+    /// The criterion that accepts a maximum.
     pub acceptance: Acceptance,
-    /// Least posterior probability of a plane at the maximum, where that decides. Assumption: measured, one in twenty of
-    /// these is wrong then, which grouping bears.
+    /// Least posterior probability of a plane at the maximum, where that decides. Assumption: by
+    /// measurement one in twenty is wrong then, which grouping tolerates.
     pub min_probability: f64,
-    /// Share of a printed threshold from which on failing it is ambiguous. Assumption: half; Sim is a squared correlation,
-    /// and noise as strong as three quarters of the texture halves it.
+    /// Share of a printed threshold from which on failing it is ambiguous. Assumption: half; Sim is
+    /// a squared correlation, and noise as strong as three quarters of the texture halves it.
     pub ambiguous_share: f64,
 }
 }
 
-/// What accepts a maximum of Sim(theta) as a half-plane.
+/// The criterion that accepts a maximum of Sim(theta) as a half-plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Acceptance {
@@ -127,31 +131,36 @@ readable! {
 /// B99 4.2, 4.3: from half-planes to facets.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RoofParams {
-    /// Half-planes within this angle, degrees, may share a plane. B99 4.4: theta is known to 2 degrees
-    /// on textured faces and to 5 on weak ones; two of them may differ by somewhat more than either.
+    /// Half-planes within this angle, degrees, may share a plane. B99 4.4: theta is known to 2
+    /// degrees on textured faces and to 5 on weak ones; two of them may differ by somewhat more
+    /// than either.
     pub coplanar_angle_deg: f64,
-    /// Least distance within which a line counts as lying in a plane, metres. Assumption: eaves have
-    /// gutters and ridges have caps of about this size.
+    /// Least distance within which a line counts as lying in a plane, metres. Assumption: eaves
+    /// have gutters and ridges have caps of about this size.
     pub coplanar_distance_m: f64,
     /// A facet may reach at least this far from its supporting line, metres. Assumption.
     pub min_facet_depth_m: f64,
     /// ... and at most this far, metres. Assumption: larger facets have lines on both sides.
     pub max_facet_depth_m: f64,
-    /// Lines are extended by at least this much at both ends to meet others, metres (B99 figure 22). Assumption.
+    /// Lines are extended by at least this much at both ends to meet others, metres (B99 figure
+    /// 22). Assumption.
     pub extension_m: f64,
-    /// Correlation at which a plane is as good as no plane. Assumption: half-way between what true planes and
-    /// chance reach; B99 accepts half-planes from `Sim = 0.4` on.
+    /// Correlation at which a plane is as good as no plane. Assumption: half-way between what true
+    /// planes and chance reach; B99 accepts half-planes from `Sim = 0.4` on.
     pub min_correlation: f64,
-    /// What a metre of facet border costs that no line supports, in square metres of mismatch. Assumption.
+    /// Cost of a metre of facet border that no line supports, in square metres of mismatch.
+    /// Assumption.
     pub border_cost_m: f64,
-    /// What a metre of half-plane earns any plane beside it over no plane, in square metres of match. Assumption.
+    /// Gain of a metre of half-plane for any plane beside it over no plane, in square metres of
+    /// match. Assumption.
     pub half_plane_gain_m: f64,
     /// Facets smaller than this are not reported, square metres. Assumption.
     pub min_area_m2: f64,
-    /// Least share of a facet's outline that lies on reconstructed lines (tau_real, B99 4.3). Assumption.
+    /// Least share of a facet's outline that lies on reconstructed lines (tau_real, B99 4.3).
+    /// Assumption.
     pub min_real_ratio: f64,
-    /// Facets whose middle is lower than this above the ground are not roofs, metres. Assumption: higher than
-    /// cars, lower than garages.
+    /// Facets whose middle is lower than this above the ground are not roofs, metres. Assumption:
+    /// higher than cars, lower than garages.
     pub min_height_m: f64,
     /// Regularisation and refinement of the buildings.
     pub refine: RefineParams,
@@ -159,7 +168,8 @@ pub struct RoofParams {
 }
 
 impl RoofParams {
-    /// A line lower than this above the ground is no eave, metres: an eave may be lower than the middle of its roof.
+    /// A line lower than this above the ground is no eave, metres: an eave may be lower than the
+    /// middle of its roof.
     pub fn lowest_eave_m(&self) -> f64 {
         0.7 * self.min_height_m
     }

@@ -13,7 +13,7 @@ use crate::raster::{Channel, Gray, RedBlueDifference, estimate_noise};
 /// One photograph with its orientation.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// The image's file name without its folder: how messages and outputs call the view.
+    /// The image's file name without its folder, which messages and outputs use.
     pub name: String,
     /// The camera, an exact pinhole (distortion is removed on loading).
     pub camera: Camera,
@@ -23,7 +23,7 @@ pub struct View {
     pub rgb: image::RgbImage,
     /// Standard deviation of the noise of one pixel of `gray`.
     pub noise: f64,
-    /// The red_blue of the colours, of the camera's size; `None` for a photograph without colour.
+    /// Red less blue, of the camera's size; `None` for a photograph without colour.
     pub red_blue: Option<RedBlueDifference>,
 }
 
@@ -41,8 +41,8 @@ impl View {
         }
     }
 
-    /// A channel of the view, and the standard deviation of the noise of one of its pixels. Grey values stand for a
-    /// red_blue that is not there.
+    /// A channel of the view, and the standard deviation of the noise of one of its pixels. Grey
+    /// values replace a missing red-blue difference.
     pub fn channel(&self, channel: Channel) -> (&Gray, f64) {
         match (&self.red_blue, channel) {
             (Some(red_blue), Channel::RedBlue) => (&red_blue.image, red_blue.noise),
@@ -51,7 +51,7 @@ impl View {
     }
 }
 
-/// Oriented views and what is known about the ground.
+/// Oriented views, the ground and the reference system.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// The views, sorted by name.
@@ -60,7 +60,7 @@ pub struct Scene {
     pub origin: Vector3<f64>,
     /// Height of the ground in the local frame, metres, when the user gave it.
     pub ground_z: Option<f64>,
-    /// What the readers had to say (duplicate orientation, ignored files, ...).
+    /// Warnings of the readers (duplicate orientation, ignored files, ...).
     pub warnings: Vec<String>,
     /// Reference system and quality of the orientation.
     pub survey: Survey,
@@ -77,7 +77,8 @@ impl Scene {
         &self.views[id.index()].camera
     }
 
-    /// The same scene with the grey images reduced by a whole factor (mean of each block); without colours.
+    /// The same scene with the grey images reduced by a whole factor (mean of each block); without
+    /// colours.
     pub fn reduced(&self, factor: usize) -> Scene {
         let scale = 1.0 / factor as f64;
         let views = self.views.iter().map(|v| {

@@ -1,27 +1,28 @@
-//! What is known of a scene beyond its cameras: the reference system, and how good the orientation is.
+//! Reference system of a scene, and the quality of its orientation.
 
 use serde::{Deserialize, Serialize};
 
 use crate::agreement::AgreementReport;
 use crate::orientation::Anchor;
 
-/// What the files and the images say about the world and about the orientation, beyond the cameras.
+/// Reference system and quality of the orientation, as far as files and images show it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Survey {
-    /// EPSG's number of the world's reference system, where it is known.
+    /// EPSG code of the world's reference system, where it is known.
     pub epsg: Option<u32>,
-    /// Where on the Earth the world's zero lies, for a world of x east, y north, z up.
+    /// Geodetic position of the world's origin, for a world of x east, y north, z up.
     pub anchor: Option<Anchor>,
-    /// How far each view is shifted against the others, where the images show enough to tell.
+    /// How far each view is shifted against the others, where enough is matched.
     pub shifts: Vec<ViewShift>,
-    /// How each view was adjusted to its matched lines; empty where nobody asked for it.
+    /// How each view was adjusted to its matched lines; empty where that was not asked for.
     pub adjustments: Vec<ViewAdjustment>,
-    /// How well the images agree with the orientation that is used; `None` where nobody asked them.
-    pub doctor: Option<AgreementReport>,
+    /// How well the images agree with the orientation that is used; `None` where it was not
+    /// checked.
+    pub agreement: Option<AgreementReport>,
 }
 
 impl Survey {
-    /// What the coordinates of the results are, in words; `None` where the files do not say.
+    /// The coordinate system of the results in words; `None` where the files do not state it.
     pub fn describe(&self) -> Option<String> {
         let of_anchor = |a: &Anchor| {
             let Anchor {
@@ -45,24 +46,25 @@ pub struct ViewShift {
     pub shift_px: [f64; 2],
     /// Its standard deviation, pixels; 0 for views that were not shifted.
     pub sigma_px: f64,
-    /// Median distance of the view's places from where the world points project, as stated, pixels.
+    /// Median distance of the view's matches from the projected world points, as stated, pixels.
     pub before_px: f64,
-    /// The same with the shifts.
+    /// The same with the shifts applied.
     pub after_px: f64,
-    /// Number of places.
+    /// Number of matches.
     pub places: usize,
 }
 
-/// What the adjustment found of a view.
+/// How the adjustment changed a view.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ViewAdjustment {
-    /// Mean motion of the images of its lines, pixels, x right, y down; 0 for views that stay where they are.
+    /// Mean motion of the images of its lines, pixels, x right, y down; 0 for views that stay where
+    /// they are.
     pub motion_px: [f64; 2],
     /// Its root mean square, pixels.
     pub rms_motion_px: f64,
-    /// Angle of the turn, degrees.
+    /// Angle of the rotation, degrees.
     pub turn_deg: f64,
-    /// Length of the move, metres.
+    /// Distance that the projection centre moved, metres.
     pub move_m: f64,
     /// Median distance of its edges from the images of their lines as stated, pixels.
     pub before_px: f64,

@@ -1,4 +1,4 @@
-//! Archives: a `.zip` stands for the files in it.
+//! Archives: a `.zip` is replaced by the files in it.
 
 use std::io::{Cursor, Read};
 
@@ -18,8 +18,8 @@ const MOST_BYTES: u64 = if cfg!(target_arch = "wasm32") {
 /// Files in one archive at most.
 const MOST_FILES: usize = 20_000;
 
-/// The files of an archive, below its own path without ".zip"; any other file is handed back as it is. Hidden files and
-/// what begins with "__MACOSX" are left out.
+/// The files of an archive, below its own path without ".zip"; any other file is handed back as it
+/// is. Hidden files and what begins with "__MACOSX" are left out.
 pub fn unpack(file: InputFile) -> Result<Vec<InputFile>> {
     if !file.bytes.starts_with(b"PK\x03\x04") {
         return Ok(vec![file]);

@@ -16,11 +16,11 @@ pub struct LoadOptions {
     pub roi: Option<[f64; 4]>,
     /// Height of the ground, metres, world frame of the input.
     pub ground_z: Option<f64>,
-    /// EPSG's number of the reference system of the world; what the files say when absent.
+    /// EPSG code of the world's reference system; the files' own when absent.
     pub epsg: Option<u32>,
     /// Memory that may be taken, megabytes; 1500 in the browser and 32768 elsewhere when absent.
     pub memory_mb: Option<u32>,
-    /// Undo the mistake in the orientation that the images give away, instead of refusing the scene.
+    /// Correct the error in the orientation that the images reveal, instead of refusing the scene.
     pub apply_fix: bool,
     /// Correct shifts of a few pixels between the views.
     pub adjust: bool,

@@ -1,11 +1,11 @@
-//! What was recognised, for a table that the user reads before anything is computed.
+//! What was recognised among the files, as a table for the user before anything is computed.
 
 use serde::Serialize;
 
+use super::candidate::OrientationCandidate;
 use super::input::LoadOptions;
 use super::plan::Plan;
-use crate::orientation::FileKind;
-use crate::orientation::InputFile;
+use crate::orientation::{FileKind, InputFile};
 
 /// Everything that is known about a set of files without decoding an image.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -17,7 +17,7 @@ pub struct Inspection {
     /// The orientation that a run would take: format and files.
     pub orientation: Option<String>,
     /// All orientations among the files, the preferred one first.
-    pub orientations: Vec<OrientationReport>,
+    pub orientations: Vec<OrientationCandidate>,
     /// Number of views that a run would use.
     pub views: usize,
     /// Memory that a run takes at its peak, about, megabytes; 0 where there are no views.
@@ -26,7 +26,8 @@ pub struct Inspection {
     pub warnings: Vec<String>,
     /// Why a run would refuse these files; empty when it would not.
     pub errors: Vec<String>,
-    /// Do only the places of the cameras speak against them? Then loading looks at the images, and says more.
+    /// Do only the positions of the cameras give reason to refuse them? Then loading checks the
+    /// images, and reports more.
     pub is_implausible: bool,
 }
 
@@ -41,15 +42,6 @@ pub struct FileReport {
     pub description: &'static str,
 }
 
-/// One of the orientations that a scene may be given.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct OrientationReport {
-    /// Its format and files, in words.
-    pub label: String,
-    /// What [`LoadOptions::orientation`] chooses it by.
-    pub path: String,
-}
-
 /// An image and its orientation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ImageReport {
@@ -59,7 +51,7 @@ pub struct ImageReport {
     pub name: String,
     /// Width and height in pixels; `None` when the header cannot be read.
     pub size: Option<(u32, u32)>,
-    /// Where its orientation stands; `None` when it has none.
+    /// File and line of its orientation; `None` when it has none.
     pub orientation: Option<String>,
 }
 

@@ -1,7 +1,6 @@
 //! How images and orientations find each other by name, and how messages list names.
 
-use crate::orientation::Orientation;
-use crate::orientation::{base_name, stem};
+use crate::orientation::{Orientation, base_name, stem};
 
 /// How well a name in an orientation file fits an image's; less is better, `None` is not at all.
 pub(crate) fn match_rank(oriented: &str, image: &str) -> Option<u8> {

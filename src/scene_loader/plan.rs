@@ -1,18 +1,21 @@
-//! Which image goes with which orientation, and everything that speaks against it.
+//! The plan of a scene: one orientation chosen, images and orientations assigned by name, all
+//! refusals collected.
 
 use nalgebra::Vector3;
 
-use super::checks;
+use super::camera_checks;
+use super::candidate::OrientationCandidate;
 use super::input::LoadOptions;
-use super::inspect::OrientationReport;
+use super::memory;
 use super::names::{best_match, listed, match_rank};
-use super::region;
-use crate::camera::{Camera, Distortion};
+use super::planned_view::{PlannedImage, PlannedView};
+use super::region::RegionOfInterest;
+use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::orientation::{
-    Crop, FileKind, Orientation, OrientationSet, detect, epsg_of, orientation_sets, to_metric_frame,
+    FileKind, InputFile, Orientation, OrientationSet, detect, epsg_of, orientation_sets, stem,
+    to_metric_frame,
 };
-use crate::orientation::{InputFile, stem};
 use crate::raster::{ImageHeader, image_header};
 use crate::scene::Survey;
 use crate::sorting::{sort_by, sort_by_key};
@@ -26,64 +29,25 @@ pub(crate) struct Plan {
     /// The orientation that was taken.
     pub orientation: Option<String>,
     /// All of them, the preferred one first.
-    pub candidates: Vec<OrientationReport>,
+    pub candidates: Vec<OrientationCandidate>,
     /// The views: images with an orientation, in the order of `images`.
     pub views: Vec<PlannedView>,
     /// Added to local coordinates it gives the world of the input.
     pub origin: Vector3<f64>,
-    /// Reference system and place on the Earth.
+    /// Reference system and geodetic anchor.
     pub survey: Survey,
     /// Bytes that loading takes at its peak, the files included.
     pub peak_bytes: u64,
     pub warnings: Vec<String>,
     /// Refusals, the one to report first in front.
     pub errors: Vec<Error>,
-    /// Does nothing but the cameras' places speak against the scene? Then the images may tell why.
+    /// Do only the positions of the cameras give reason to refuse the scene? Then the images may
+    /// show why.
     pub is_implausible: bool,
 }
 
-/// An image and the orientation found for it.
-pub(crate) struct PlannedImage {
-    pub file: usize,
-    pub header: Option<ImageHeader>,
-    pub orientation: Option<Orientation>,
-}
-
-/// A view before its pixels are decoded.
-pub(crate) struct PlannedView {
-    pub file: usize,
-    /// Camera of the whole image, local frame.
-    pub whole: Camera,
-    pub distortion: Option<Distortion>,
-    /// The rotation angles as the file states them, and the place of the image in its frame.
-    pub angles: Option<[f64; 3]>,
-    pub crop: Option<Crop>,
-    /// Column, row, width, height of the part that is used; the whole image when absent.
-    pub part: Option<[u32; 4]>,
-}
-
-impl PlannedView {
-    /// Number of pixels of the part that is used.
-    pub(crate) fn pixels(&self) -> u64 {
-        let [_, _, width, height] =
-            self.part
-                .unwrap_or([0, 0, self.whole.width, self.whole.height]);
-        u64::from(width) * u64::from(height)
-    }
-
-    /// The camera of the part that is used.
-    pub(crate) fn camera(&self) -> Camera {
-        let mut camera = self.whole.clone();
-        if let Some([column, row, width, height]) = self.part {
-            camera.k = super::moved(&camera.k, [column, row]);
-            (camera.width, camera.height) = (width, height);
-        }
-        camera
-    }
-}
-
 impl Plan {
-    /// Plans a scene; what stands against it is collected in `errors`.
+    /// Plans a scene; reasons to refuse it are collected in `errors`.
     pub(crate) fn new(files: &[InputFile], options: &LoadOptions) -> Self {
         let mut plan = Self {
             kinds: files.iter().map(detect).collect(),
@@ -183,7 +147,7 @@ impl Plan {
         }
     }
 
-    /// Reads the best candidate, or the one asked for.
+    /// Reads the preferred candidate, or the one that the options choose.
     fn choose_orientation(
         &mut self,
         files: &[InputFile],
@@ -193,7 +157,7 @@ impl Plan {
         self.warn_of_json(files);
         self.candidates = sets
             .iter()
-            .map(|set| OrientationReport {
+            .map(|set| OrientationCandidate {
                 label: format!("{}: {}", set.format.name(), set.label(files)),
                 path: files[set.files[0]].path.clone(),
             })
@@ -251,7 +215,7 @@ impl Plan {
 
     /// The reference system that a file of its own names.
     fn stated_reference(&self, files: &[InputFile]) -> Option<u32> {
-        // Photographs are not looked at as text.
+        // Photographs are not searched as text.
         (self.kinds.iter().zip(files))
             .filter(|(kind, _)| **kind == FileKind::ReferenceSystem)
             .find_map(|(_, file)| epsg_of(&file.text()))
@@ -333,7 +297,7 @@ impl Plan {
             self.views = views;
             return;
         }
-        self.origin = checks::scene_origin(views.iter().map(|v| &v.whole));
+        self.origin = camera_checks::scene_origin(views.iter().map(|v| &v.whole));
         for view in &mut views {
             view.whole.center -= self.origin;
         }
@@ -342,28 +306,29 @@ impl Plan {
             .iter()
             .map(|v| (&*files[v.file].path, &v.whole))
             .collect();
-        let found = checks::check_cameras(&named, ground_z);
+        let found = camera_checks::check_cameras(&named, ground_z);
         self.is_implausible = self.errors.is_empty() && !found.errors.is_empty();
         self.errors.extend(found.errors);
         self.warnings.extend(found.warnings);
-        // A mistaken orientation shows the region elsewhere: then it is cut after the correction.
+        // A wrong orientation projects the region elsewhere: then it is cut after the correction.
         let cut_now = !options.apply_fix;
         if let (Some(roi), Some(heights), true) = (options.roi, found.heights, cut_now) {
-            let roi = region::Region::new(roi, &self.origin, heights);
+            let roi = RegionOfInterest::new(roi, &self.origin, heights);
             match roi.and_then(|roi| roi.cut(files, &mut views)) {
                 Ok(warnings) => self.warnings.extend(warnings),
                 Err(error) => self.errors.push(error),
             }
         }
-        self.peak_bytes = checks::peak_bytes(files, &views);
-        let too_large = checks::check_memory(self.peak_bytes, &views, options.memory_mb);
+        self.peak_bytes = memory::peak_bytes(files, &views);
+        let too_large = memory::check_memory(self.peak_bytes, &views, options.memory_mb);
         self.is_implausible &= too_large.is_none();
         self.errors.extend(too_large);
         self.views = views;
     }
 }
 
-/// The camera of a whole image in the world of its orientation file, after the checks that need no other view.
+/// The camera of a whole image in the world of its orientation file, after the checks that need no
+/// other view.
 fn planned_view(
     path: &str,
     file: usize,
@@ -397,7 +362,7 @@ fn planned_view(
         width,
         height,
     };
-    if let Some(problem) = checks::numeric_problem(&camera) {
+    if let Some(problem) = camera_checks::numeric_problem(&camera) {
         return Err(refuse(
             format!(
                 "its orientation ({}) is impossible: {problem}",

@@ -1,13 +1,13 @@
 //! Project files: a zip that holds everything of a run, and opens again to the same state.
 //!
 //! ```text
-//! project.json      version, wishes and parameters
+//! project.json      version, options and parameters
 //! input/...         images and orientation files, at their own paths
 //! results/...       what was written
 //! ```
 //!
-//! Results are for people and other programs; opening reads the input and reconstructs again, since the same input and
-//! parameters give the same bytes.
+//! Results are for users and other programs; opening reads the input and reconstructs again, since
+//! the same input and parameters give the same bytes.
 
 use std::io::{Cursor, Write};
 
@@ -17,13 +17,12 @@ use zip::write::{SimpleFileOptions, ZipWriter};
 
 use super::input::LoadOptions;
 use crate::error::{Error, Result};
-use crate::orientation::InputFile;
-use crate::orientation::{FileKind, detect};
+use crate::orientation::{FileKind, InputFile, detect};
 use crate::params::Params;
 use crate::plain_json;
 use crate::readable;
 
-/// Name of the file that makes an archive a project.
+/// Name of the file by which an archive is a project.
 const PROJECT_FILE: &str = "project.json";
 
 /// Folders of a project.
@@ -31,7 +30,7 @@ const INPUT: &str = "input/";
 const RESULTS: &str = "results/";
 
 readable! {
-/// What a run was asked for.
+/// Options and parameters of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Project {
     /// Version of the program that wrote it.
@@ -53,10 +52,11 @@ impl Project {
         }
     }
 
-    /// The project as a zip file: the same content gives the same bytes. Files that are not used are left out.
+    /// The project as a zip file: the same content gives the same bytes. Files that are not used
+    /// are left out.
     pub fn pack(&self, files: &[InputFile], results: &[(String, Vec<u8>)]) -> Result<Vec<u8>> {
         let json =
-            serde_json::to_vec_pretty(self).expect("wishes and parameters have string keys only");
+            serde_json::to_vec_pretty(self).expect("options and parameters have string keys only");
         let used = files.iter().filter(|f| detect(f) != FileKind::Ignored);
         let inputs = used.map(|f| (format!("{INPUT}{}", f.path), &f.bytes[..]));
         let results = results
@@ -87,8 +87,8 @@ impl Project {
     }
 }
 
-/// If the files are those of a project, its input files at their own paths and what it asks for; else the files as
-/// they are.
+/// If the files are those of a project, its input files at their own paths and the project; else
+/// the files as they are.
 pub fn open_project(files: Vec<InputFile>) -> Result<(Vec<InputFile>, Option<Project>)> {
     let is_project =
         |f: &&InputFile| f.name() == PROJECT_FILE && f.text().contains("\"ridgeline\"");

@@ -1,36 +1,38 @@
 //! The part of each image that may show the region of interest.
 //!
-//! The region is a rectangle in plan; how high its ground and its roofs are is known only roughly, so the
-//! part is the bounding box of the region at the lowest and at the highest possible height, and a margin.
+//! The region is a rectangle in plan; how high its ground and its roofs are is known only roughly,
+//! so the part is the bounding box of the region at the lowest and at the highest possible height,
+//! and a margin.
 
 use nalgebra::{Point2, Point3, Vector3};
 
-use super::checks;
+use super::camera_checks;
 use super::names::listed;
-use super::plan::PlannedView;
+use super::planned_view::{PlannedView, offset_calibration};
 use crate::camera::{Camera, Distortion};
 use crate::error::{Error, Result};
 use crate::orientation::InputFile;
 use crate::raster::{Gray, Photograph};
 use crate::scene::Scene;
 
-/// Buildings rise above the ground by no more than this, metres. Assumption: roofs of houses and halls.
+/// Buildings rise above the ground by no more than this, metres. Assumption: roofs of houses and
+/// halls.
 const TALLEST_M: f64 = 60.0;
 
-/// Pixels around the box, so that filters and windows at its border find their neighbours.
+/// Margin around the box, pixels, so that filters and windows at its border are complete.
 const MARGIN_PX: f64 = 40.0;
 
-/// Smallest part worth keeping, pixels along a side.
+/// Smallest part that is kept, pixels along a side.
 const SMALLEST_PX: u32 = 64;
 
 /// A box in the local frame.
 #[derive(Debug)]
-pub(crate) struct Region {
+pub(crate) struct RegionOfInterest {
     low: Point3<f64>,
     high: Point3<f64>,
 }
 
-impl Region {
+impl RegionOfInterest {
     /// From x0, y0, x1, y1 in the world of the input and the range of the ground's height.
     pub(crate) fn new(roi: [f64; 4], origin: &Vector3<f64>, heights: [f64; 2]) -> Result<Self> {
         let [x0, y0, x1, y1] = roi;
@@ -74,7 +76,8 @@ impl Region {
         })
     }
 
-    /// Column, row, width, height of the part of a view that may show the region; `None` where it shows nothing of it.
+    /// Column, row, width, height of the part of a view that may show the region; `None` where it
+    /// shows nothing of it.
     fn part(&self, camera: &Camera) -> Option<[u32; 4]> {
         if !self.is_seen_by(camera) {
             return None;
@@ -95,8 +98,8 @@ impl Region {
         Some([column, row, width, height])
     }
 
-    /// Does some place of the region on the ground lie in the image? The box of the projected corners alone says yes
-    /// for tilted views that see nothing of it.
+    /// Does some ground point of the region lie in the image? The box of the projected corners
+    /// alone also contains parts of tilted views that see nothing of it.
     fn is_seen_by(&self, camera: &Camera) -> bool {
         const STEPS: u32 = 8;
         let t = |i: u32| f64::from(i) / f64::from(STEPS);
@@ -125,8 +128,8 @@ impl Region {
         shown || heights.iter().any(shows)
     }
 
-    /// Points of the image whose box holds the region and its buildings: the corners, and where edges pass behind
-    /// the camera.
+    /// Points of the image whose box holds the region and its buildings: the corners, and where
+    /// edges pass behind the camera.
     fn outline(&self, camera: &Camera) -> Vec<Point2<f64>> {
         const NEAR_M: f64 = 1.0;
         let corner = |i: usize| {
@@ -159,7 +162,7 @@ impl Region {
         points.iter().filter_map(|p| camera.project(p)).collect()
     }
 
-    /// Where the views look instead.
+    /// The refusal, with the area that the views see instead.
     fn unseen(&self, count: usize, cameras: &[Camera]) -> Error {
         let z = 0.5 * (self.low.z + self.high.z);
         let mut low = [f64::INFINITY; 2];
@@ -171,7 +174,7 @@ impl Region {
                 .into_iter()
                 .filter_map(at)
             {
-                // Near the horizon an image sees anything.
+                // Near the horizon the footprint of an image is unbounded.
                 if (p - camera.center).norm() < 10.0 * (camera.center.z - z).abs() {
                     low = [low[0].min(p.x), low[1].min(p.y)];
                     high = [high[0].max(p.x), high[1].max(p.y)];
@@ -201,10 +204,10 @@ impl Region {
 pub(crate) fn cut_scene(scene: &mut Scene, roi: [f64; 4]) -> Result<()> {
     let cameras: Vec<Camera> = scene.views.iter().map(|v| v.camera.clone()).collect();
     let named: Vec<(&str, &Camera)> = scene.views.iter().map(|v| (&*v.name, &v.camera)).collect();
-    let Some(heights) = checks::check_cameras(&named, scene.ground_z).heights else {
+    let Some(heights) = camera_checks::check_cameras(&named, scene.ground_z).heights else {
         return Ok(());
     };
-    let region = Region::new(roi, &scene.origin, heights)?;
+    let region = RegionOfInterest::new(roi, &scene.origin, heights)?;
     scene.views.retain_mut(|view| {
         let Some(part) = region.part(&view.camera) else {
             return false;
@@ -215,7 +218,7 @@ pub(crate) fn cut_scene(scene: &mut Scene, roi: [f64; 4]) -> Result<()> {
         };
         let Photograph { rgb, gray } = photograph.crop(part);
         (view.rgb, view.gray) = (rgb, gray);
-        view.camera.k = super::moved(&view.camera.k, [part[0], part[1]]);
+        view.camera.k = offset_calibration(&view.camera.k, [part[0], part[1]]);
         (view.camera.width, view.camera.height) = (part[2], part[3]);
         true
     });
@@ -225,7 +228,8 @@ pub(crate) fn cut_scene(scene: &mut Scene, roi: [f64; 4]) -> Result<()> {
     }
 }
 
-/// The part of the photograph that a part of the pinhole is made of, and the part itself: column, row, width, height.
+/// The part of the photograph that a part of the pinhole is made of, and the part itself: column,
+/// row, width, height.
 pub(crate) fn source_of(part: [u32; 4], whole: &Camera, lens: &Distortion) -> [u32; 4] {
     const STEPS: u32 = 16;
     let [column, row, width, height] = part.map(f64::from);
@@ -243,7 +247,7 @@ pub(crate) fn source_of(part: [u32; 4], whole: &Camera, lens: &Distortion) -> [u
         low = [0, 1].map(|a| low[a].min(p[a]));
         high = [0, 1].map(|a| high[a].max(p[a]));
     }
-    // Between the samples, and for the neighbours of the border.
+    // For positions between the samples, and for interpolation at the border.
     const SLACK_PX: f64 = 4.0;
     let side = |low: f64, high: f64, size: u32| {
         let from = (low - SLACK_PX).floor().clamp(0.0, f64::from(size)) as u32;

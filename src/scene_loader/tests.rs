@@ -2,8 +2,10 @@
 
 use nalgebra::Point2;
 
-use super::*;
+use super::{LoadOptions, inspect_files, load_scene};
 use crate::camera::Distortion;
+use crate::orientation::InputFile;
+use crate::scene::{Scene, View};
 use crate::synthetic::{gable_scene, to_colmap, to_files, to_photogrammetric, to_projection};
 
 fn inputs(files: Vec<(String, Vec<u8>)>) -> Vec<InputFile> {
@@ -304,8 +306,8 @@ fn a_region_of_interest_cuts_images_and_keeps_projections() {
     );
 }
 
-/// The photograph that a lens takes where the pinhole takes `ideal`: found by iteration, the other way
-/// round than the loader.
+/// The photograph that a lens takes where the pinhole takes `ideal`: found by iteration, the other
+/// way round than the loader.
 fn distorted(view: &View, lens: &Distortion) -> image::RgbImage {
     let k = &view.camera.k;
     image::RgbImage::from_fn(view.camera.width, view.camera.height, |column, row| {

@@ -3,51 +3,51 @@
 use nalgebra::{Point3, Vector3};
 
 use super::SyntheticTruth;
-use super::render::Face;
-use super::texture::Paint;
+use super::render::RenderedFace;
+use super::texture::SurfaceTexture;
 use crate::geometry::Segment3;
 use crate::math;
 use crate::sorting::sort_by;
 
-/// A house on its ground, ready to render, and what should be found of it.
-pub(crate) struct Building {
-    pub faces: Vec<Face>,
+/// A house on its ground, ready to render, and what a reconstruction should find.
+pub(crate) struct SyntheticBuilding {
+    pub faces: Vec<RenderedFace>,
     pub truth: SyntheticTruth,
 }
 
-/// Where a house stands.
+/// Position of a house.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct Placement {
     center: [f64; 2],
     /// Azimuth of the main wing, degrees.
     azimuth_deg: f64,
     eave_z: f64,
 }
 
-/// Parallel to no baseline.
-const HOME: Place = Place {
+/// At the origin, parallel to no baseline.
+const HOME: Placement = Placement {
     center: [0.0, 0.0],
     azimuth_deg: 26.0,
     eave_z: EAVE_Z,
 };
 
-/// Height of the ground, metres: not zero, so that nobody assumes it.
+/// Height of the ground, metres: not zero, so that no code may assume it.
 const GROUND_Z: f64 = 1.5;
 const EAVE_Z: f64 = 6.0;
-/// How far the roof stands out over the walls, metres.
+/// How far the roof projects beyond the walls, metres.
 const OVERHANG: f64 = 0.6;
 /// Tangent of the roof slope (about 37 degrees).
 const SLOPE: f64 = 0.75;
 
 /// Gable roof of 14 m by 9 m in plan.
-pub(crate) fn gable() -> Building {
+pub(crate) fn gable() -> SyntheticBuilding {
     gable_at(HOME, [7.0, 4.5], 0.0, 1)
 }
 
 /// Two gable roofs in line, 3 m apart: planes with a gap.
-pub(crate) fn row() -> Building {
-    let beside = |u: f64| Place {
-        center: turned(HOME.azimuth_deg, [u, 0.0]),
+pub(crate) fn row() -> SyntheticBuilding {
+    let beside = |u: f64| Placement {
+        center: rotated(HOME.azimuth_deg, [u, 0.0]),
         ..HOME
     };
     let half = [3.5, 4.0];
@@ -58,8 +58,8 @@ pub(crate) fn row() -> Building {
 }
 
 /// Two gable roofs whose azimuths differ by 37 degrees.
-pub(crate) fn askew() -> Building {
-    let place = |center, azimuth_deg| Place {
+pub(crate) fn askew() -> SyntheticBuilding {
+    let place = |center, azimuth_deg| Placement {
         center,
         azimuth_deg,
         ..HOME
@@ -71,19 +71,19 @@ pub(crate) fn askew() -> Building {
 }
 
 /// A gable roof whose ends are not square: parallelograms.
-pub(crate) fn sheared() -> Building {
+pub(crate) fn sheared() -> SyntheticBuilding {
     gable_at(HOME, [6.0, 4.5], 0.4, 1)
 }
 
 /// A gable roof whose ends are 3 degrees off square.
-pub(crate) fn skewed() -> Building {
+pub(crate) fn skewed() -> SyntheticBuilding {
     gable_at(HOME, [6.0, 4.5], 0.0524, 1)
 }
 
 /// A low gable roof close to a tower, which hides some of it from one strip.
-pub(crate) fn tower_and_annex() -> Building {
-    let beside = |v: f64, eave_z| Place {
-        center: turned(0.0, [0.0, v]),
+pub(crate) fn tower_and_annex() -> SyntheticBuilding {
+    let beside = |v: f64, eave_z| Placement {
+        center: rotated(0.0, [0.0, v]),
         azimuth_deg: 0.0,
         eave_z,
     };
@@ -94,7 +94,7 @@ pub(crate) fn tower_and_annex() -> Building {
 }
 
 /// Hip roof of 14 m by 9 m in plan.
-pub(crate) fn hip() -> Building {
+pub(crate) fn hip() -> SyntheticBuilding {
     let (a, b) = (7.0, 4.5);
     let ridge = EAVE_Z + SLOPE * b;
     let corners = [
@@ -105,19 +105,20 @@ pub(crate) fn hip() -> Building {
         [a - b, 0.0, ridge],
         [-a + b, 0.0, ridge],
     ];
-    let facets: [(&[usize], Paint); 4] = [
-        (&[0, 1, 4, 5], paint([0.62, 0.33, 0.25], 0.15, 1)),
-        (&[2, 3, 5, 4], paint([0.55, 0.34, 0.28], 0.22, 2)),
-        (&[1, 2, 4], paint([0.60, 0.36, 0.25], 0.20, 3)),
-        (&[3, 0, 5], paint([0.52, 0.30, 0.26], 0.18, 4)),
+    let facets: [(&[usize], SurfaceTexture); 4] = [
+        (&[0, 1, 4, 5], surface([0.62, 0.33, 0.25], 0.15, 1)),
+        (&[2, 3, 5, 4], surface([0.55, 0.34, 0.28], 0.22, 2)),
+        (&[1, 2, 4], surface([0.60, 0.36, 0.25], 0.20, 3)),
+        (&[3, 0, 5], surface([0.52, 0.30, 0.26], 0.18, 4)),
     ];
     let (x, y) = (a - OVERHANG, b - OVERHANG);
     let footprint = [[-x, -y], [x, -y], [x, y], [-x, y]].map(|p| (p, false));
     build(HOME, &corners, &facets, &footprint, ridge)
 }
 
-/// Gable roof of given half length and half width; its ends are shifted along the eaves by `shear` for every metre across.
-fn gable_at(place: Place, [a, b]: [f64; 2], shear: f64, seed: u32) -> Building {
+/// Gable roof of given half length and half width; its ends are shifted along the eaves by `shear`
+/// for every metre across.
+fn gable_at(place: Placement, [a, b]: [f64; 2], shear: f64, seed: u32) -> SyntheticBuilding {
     let (eave, ridge) = (place.eave_z, place.eave_z + SLOPE * b);
     let at = |x: f64, y: f64| [x + shear * y, y];
     let raised = |x: f64, y: f64, z: f64| [x + shear * y, y, z];
@@ -129,9 +130,9 @@ fn gable_at(place: Place, [a, b]: [f64; 2], shear: f64, seed: u32) -> Building {
         raised(a, b, eave),
         raised(-a, b, eave),
     ];
-    let facets: [(&[usize], Paint); 2] = [
-        (&[0, 1, 2, 3], paint([0.62, 0.33, 0.25], 0.10, seed)),
-        (&[3, 2, 4, 5], paint([0.55, 0.34, 0.28], 0.22, seed + 1)),
+    let facets: [(&[usize], SurfaceTexture); 2] = [
+        (&[0, 1, 2, 3], surface([0.62, 0.33, 0.25], 0.10, seed)),
+        (&[3, 2, 4, 5], surface([0.55, 0.34, 0.28], 0.22, seed + 1)),
     ];
     let (x, y) = (a - OVERHANG, b - OVERHANG);
     let footprint = [
@@ -144,7 +145,7 @@ fn gable_at(place: Place, [a, b]: [f64; 2], shear: f64, seed: u32) -> Building {
 }
 
 /// Both houses on one ground.
-fn join(mut a: Building, b: Building) -> Building {
+fn join(mut a: SyntheticBuilding, b: SyntheticBuilding) -> SyntheticBuilding {
     // The first face of either is the ground.
     a.faces.extend(b.faces.into_iter().skip(1));
     a.truth.edges.extend(b.truth.edges);
@@ -154,7 +155,7 @@ fn join(mut a: Building, b: Building) -> Building {
 
 /// Main wing of 15 m by 8 m with a hipped west and a gabled east end; side wing of 6 m width to the
 /// north with a gable. Equal slopes and eaves, so that its ridge is lower and meets the main slope.
-pub(crate) fn l_shape() -> Building {
+pub(crate) fn l_shape() -> SyntheticBuilding {
     let (a, b, c, w, n) = (7.5, 4.0, 2.5, 3.0, 9.0);
     let (ridge, side_ridge) = (EAVE_Z + SLOPE * b, EAVE_Z + SLOPE * w);
     // The main wing lies south of the origin, so that the whole house is centred.
@@ -173,12 +174,12 @@ pub(crate) fn l_shape() -> Building {
         [c, south(n), side_ridge],
         [c - w, south(n), EAVE_Z],
     ];
-    let facets: [(&[usize], Paint); 5] = [
-        (&[0, 1, 2, 3], paint([0.46, 0.42, 0.40], 0.18, 3)),
-        (&[3, 2, 4, 5, 6, 7, 8], paint([0.47, 0.40, 0.38], 0.14, 4)),
-        (&[8, 0, 3], paint([0.45, 0.41, 0.41], 0.06, 5)),
-        (&[5, 9, 10, 6], paint([0.58, 0.36, 0.30], 0.10, 6)),
-        (&[6, 10, 11, 7], paint([0.56, 0.37, 0.31], 0.20, 7)),
+    let facets: [(&[usize], SurfaceTexture); 5] = [
+        (&[0, 1, 2, 3], surface([0.46, 0.42, 0.40], 0.18, 3)),
+        (&[3, 2, 4, 5, 6, 7, 8], surface([0.47, 0.40, 0.38], 0.14, 4)),
+        (&[8, 0, 3], surface([0.45, 0.41, 0.41], 0.06, 5)),
+        (&[5, 9, 10, 6], surface([0.58, 0.36, 0.30], 0.10, 6)),
+        (&[6, 10, 11, 7], surface([0.56, 0.37, 0.31], 0.20, 7)),
     ];
     let o = OVERHANG;
     let footprint = [
@@ -194,8 +195,8 @@ pub(crate) fn l_shape() -> Building {
     build(HOME, &corners, &facets, &footprint, ridge)
 }
 
-fn paint(rgb: [f64; 3], contrast: f64, seed: u32) -> Paint {
-    Paint {
+fn surface(rgb: [f64; 3], contrast: f64, seed: u32) -> SurfaceTexture {
+    SurfaceTexture {
         rgb,
         contrast,
         seed,
@@ -205,19 +206,19 @@ fn paint(rgb: [f64; 3], contrast: f64, seed: u32) -> Paint {
 /// Faces and truth from roof corners (before turning by the azimuth), facets over them, and a
 /// footprint whose flagged sides end in a gable.
 fn build(
-    place: Place,
+    place: Placement,
     corners: &[[f64; 3]],
-    facets: &[(&[usize], Paint)],
+    facets: &[(&[usize], SurfaceTexture)],
     footprint: &[([f64; 2], bool)],
     ridge: f64,
-) -> Building {
+) -> SyntheticBuilding {
     let corners: Vec<Point3<f64>> = corners.iter().map(|&p| place.world(p)).collect();
     let mut faces = vec![ground()];
     faces.extend(walls(place, footprint, ridge));
     let first_roof = faces.len();
-    faces.extend(facets.iter().map(|(ring, paint)| {
+    faces.extend(facets.iter().map(|(ring, surface)| {
         let ring: Vec<Point3<f64>> = ring.iter().map(|&i| corners[i]).collect();
-        Face::new(&ring, *paint)
+        RenderedFace::new(&ring, *surface)
     }));
     let truth = SyntheticTruth {
         edges: edges(&corners, facets),
@@ -227,24 +228,25 @@ fn build(
             .collect(),
         ground_z: GROUND_Z,
     };
-    Building { faces, truth }
+    SyntheticBuilding { faces, truth }
 }
 
-impl Place {
+impl Placement {
     /// A point of the house in the world.
     fn world(&self, [x, y, z]: [f64; 3]) -> Point3<f64> {
-        let [x, y] = turned(self.azimuth_deg, [x, y]);
+        let [x, y] = rotated(self.azimuth_deg, [x, y]);
         Point3::new(self.center[0] + x, self.center[1] + y, z)
     }
 }
 
-fn turned(azimuth_deg: f64, [x, y]: [f64; 2]) -> [f64; 2] {
+/// Rotated by an azimuth.
+fn rotated(azimuth_deg: f64, [x, y]: [f64; 2]) -> [f64; 2] {
     let (s, c) = math::sin_cos(azimuth_deg.to_radians());
     [c * x - s * y, s * x + c * y]
 }
 
 /// The sides of all facets, each once.
-fn edges(corners: &[Point3<f64>], facets: &[(&[usize], Paint)]) -> Vec<Segment3> {
+fn edges(corners: &[Point3<f64>], facets: &[(&[usize], SurfaceTexture)]) -> Vec<Segment3> {
     let mut sides: Vec<[usize; 2]> = facets
         .iter()
         .flat_map(|(ring, _)| {
@@ -264,7 +266,7 @@ fn edges(corners: &[Point3<f64>], facets: &[(&[usize], Paint)]) -> Vec<Segment3>
 
 /// Vertical faces over the sides of a counter-clockwise footprint, up to the underside of the roof.
 /// Equal slopes make the roof equally high over all footprint corners.
-fn walls(place: Place, footprint: &[([f64; 2], bool)], ridge: f64) -> Vec<Face> {
+fn walls(place: Placement, footprint: &[([f64; 2], bool)], ridge: f64) -> Vec<RenderedFace> {
     let top = place.eave_z + SLOPE * OVERHANG;
     (0..footprint.len())
         .map(|i| {
@@ -281,15 +283,15 @@ fn walls(place: Place, footprint: &[([f64; 2], bool)], ridge: f64) -> Vec<Face> 
                 ring.push(place.world([0.5 * (px + qx), 0.5 * (py + qy), apex]));
             }
             ring.push(place.world([px, py, top]));
-            Face::new(&ring, paint([0.78, 0.75, 0.66], 0.05, 20 + i as u32))
+            RenderedFace::new(&ring, surface([0.78, 0.75, 0.66], 0.05, 20 + i as u32))
         })
         .collect()
 }
 
 /// A lawn, larger than any crop.
-fn ground() -> Face {
+fn ground() -> RenderedFace {
     let r = 200.0;
     let corner = |x, y| Point3::origin() + Vector3::new(x, y, GROUND_Z);
     let ring = [corner(-r, -r), corner(r, -r), corner(r, r), corner(-r, r)];
-    Face::new(&ring, paint([0.30, 0.40, 0.24], 0.25, 40))
+    RenderedFace::new(&ring, surface([0.30, 0.40, 0.24], 0.25, 40))
 }

@@ -78,10 +78,10 @@ pub fn to_projection(scene: &Scene) -> Vec<(String, Vec<u8>)> {
         .collect()
 }
 
-/// The orientation as a photogrammetric list: the views must be crops, at whole pixels, of frames of
-/// one focal length.
+/// The orientation as a photogrammetric list: the views must be crops, at whole pixels, of frames
+/// of one focal length.
 pub fn to_photogrammetric(scene: &Scene) -> Vec<(String, Vec<u8>)> {
-    // An 11500 x 9000 frame of 12 micrometres; the crops tell where its corner lies.
+    // An 11500 x 9000 frame of 12 micrometres; the crops state the position of its corner.
     let (pixel_mm, width, height) = (0.012, 11500.0, 9000.0);
     let first = &scene.views[0].camera.k;
     let fraction = |v: f64| v - v.floor();

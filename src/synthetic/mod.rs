@@ -1,16 +1,19 @@
-//! Small scenes with a known answer, rendered in a moment, for tests natively and in wasm.
+//! Small scenes with known ground truth, rendered quickly, for tests natively and in wasm.
 //!
-//! A building of textured planar faces stands at the local origin on flat ground; six crops of
+//! A building of textured planar faces lies at the local origin on flat ground; six crops of
 //! large frames look down on it from two strips flown in opposite directions, with the numbers
 //! of B99's flights (about 1300 m above ground, ground pixel 8.5 cm, principal point far outside
-//! the crop). Nothing is random but a hash of integers, so that every target renders the same bytes.
+//! the crop).
 //!
 //! ```text
-//! building      faces of the houses, and the truth
 //! texture       value noise on a face
 //! render        rays through nine samples of every pixel
+//! building      faces of the houses, and the truth
 //! files         the scene as image and orientation files
 //! ```
+//!
+//! Invariant: nothing is random but a hash of integers, so that every target renders the same
+//! bytes.
 
 mod building;
 mod files;
@@ -39,14 +42,14 @@ pub struct SyntheticTruth {
 }
 
 /// A rectangular house with a gable roof; six views of `size` x `size` pixels. The house fills a
-/// crop of 320 pixels well.
+/// crop of 320 pixels.
 pub fn gable_scene(size: u32) -> (Scene, SyntheticTruth) {
     scene_of(&building::gable(), size)
 }
 
 /// An L-shaped house: a wing with one hipped and one gabled end, and a gabled side wing of the same
-/// slope, so that a hip, a valley and a facet that is not convex occur; six views of `size` x `size`
-/// pixels. The house fills a crop of 320 pixels.
+/// slope, so that a hip, a valley and a facet that is not convex occur; six views of `size` x
+/// `size` pixels. The house fills a crop of 320 pixels.
 pub fn l_scene(size: u32) -> (Scene, SyntheticTruth) {
     scene_of(&building::l_shape(), size)
 }
@@ -66,7 +69,8 @@ pub fn sheared_scene(size: u32) -> (Scene, SyntheticTruth) {
     scene_of(&building::sheared(), size)
 }
 
-/// A gable roof whose ends are 3 degrees off square: too much for a carpenter, too little to be seen at a glance.
+/// A gable roof whose ends are 3 degrees off square: more than a building's tolerance, and hardly
+/// visible.
 pub fn skewed_scene(size: u32) -> (Scene, SyntheticTruth) {
     scene_of(&building::skewed(), size)
 }
@@ -81,7 +85,7 @@ pub fn hip_scene(size: u32) -> (Scene, SyntheticTruth) {
     scene_of(&building::hip(), size)
 }
 
-fn scene_of(building: &building::Building, size: u32) -> (Scene, SyntheticTruth) {
+fn scene_of(building: &building::SyntheticBuilding, size: u32) -> (Scene, SyntheticTruth) {
     let cameras = strip_cameras(size);
     let views = crate::execution::map(&cameras, |_, (name, camera)| {
         let rgb = render::render(&building.faces, camera);

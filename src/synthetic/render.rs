@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Point2, Point3, Vector2, Vector3};
 
-use super::texture::Paint;
+use super::texture::SurfaceTexture;
 use crate::camera::Camera;
 use crate::geometry::Plane;
 
@@ -14,24 +14,24 @@ const SAMPLES: u32 = 3;
 
 /// A textured planar polygon.
 #[derive(Clone, Debug)]
-pub(crate) struct Face {
-    /// Its plane; the normal points to the side that light falls on.
+pub(crate) struct RenderedFace {
+    /// Its plane; the normal points to the lit side.
     pub plane: Plane,
     /// Corners in the frame (u, v) of the face, metres; any simple polygon.
     pub ring: Vec<Point2<f64>>,
     /// Corners in the world.
     pub corners: Vec<Point3<f64>>,
-    /// Axes of the frame, whose zero is the first corner.
+    /// Axes of the frame, whose origin is the first corner.
     pub axes: [Vector3<f64>; 2],
     /// Colour and texture.
-    pub paint: Paint,
+    pub surface: SurfaceTexture,
 }
 
-impl Face {
-    /// The polygon through these corners, counter-clockwise seen from where light falls on it.
-    pub(crate) fn new(corners: &[Point3<f64>], paint: Paint) -> Self {
+impl RenderedFace {
+    /// The polygon through these corners, counter-clockwise seen from its lit side.
+    pub(crate) fn new(corners: &[Point3<f64>], surface: SurfaceTexture) -> Self {
         let u = (corners[1] - corners[0]).normalize();
-        // Newell's sum is right for polygons that are not convex as well.
+        // Newell's sum holds for polygons that are not convex as well.
         let normal = (0..corners.len()).fold(Vector3::zeros(), |sum, i| {
             let (p, q) = (corners[i], corners[(i + 1) % corners.len()]);
             sum + p.coords.cross(&q.coords)
@@ -47,7 +47,7 @@ impl Face {
             ring,
             corners: corners.to_vec(),
             axes,
-            paint,
+            surface,
         }
     }
 
@@ -74,19 +74,23 @@ fn in_frame(axes: &[Vector3<f64>; 2], d: &Vector3<f64>) -> Point2<f64> {
     Point2::new(axes[0].dot(d), axes[1].dot(d))
 }
 
-/// The picture that a camera takes of the faces; black where a ray meets none.
-pub(crate) fn render(faces: &[Face], camera: &Camera) -> image::RgbImage {
-    let visible: Vec<Visible> = faces.iter().map(|f| Visible::new(f, camera)).collect();
+/// The image of the faces that a camera takes; black where a ray meets none.
+pub(crate) fn render(faces: &[RenderedFace], camera: &Camera) -> image::RgbImage {
+    let visible: Vec<ProjectedFace> = faces
+        .iter()
+        .map(|f| ProjectedFace::new(f, camera))
+        .collect();
     let world_from_image = camera.r.transpose() * camera.k_inverse();
     image::RgbImage::from_fn(camera.width, camera.height, |x, y| {
-        let candidates: Vec<&Visible> = visible.iter().filter(|f| f.near_pixel(x, y)).collect();
+        let candidates: Vec<&ProjectedFace> =
+            visible.iter().filter(|f| f.near_pixel(x, y)).collect();
         image::Rgb(pixel(&candidates, camera, &world_from_image, x, y))
     })
 }
 
 /// Mean over the samples of one pixel.
 fn pixel(
-    candidates: &[&Visible],
+    candidates: &[&ProjectedFace],
     camera: &Camera,
     world_from_image: &Matrix3<f64>,
     x: u32,
@@ -105,7 +109,7 @@ fn pixel(
 }
 
 /// Colour of the first face that a ray meets.
-fn nearest(candidates: &[&Visible], center: &Point3<f64>, ray: &Vector3<f64>) -> [f64; 3] {
+fn nearest(candidates: &[&ProjectedFace], center: &Point3<f64>, ray: &Vector3<f64>) -> [f64; 3] {
     let mut nearest = f64::INFINITY;
     let mut colour = [0.0; 3];
     for visible in candidates {
@@ -117,15 +121,15 @@ fn nearest(candidates: &[&Visible], center: &Point3<f64>, ray: &Vector3<f64>) ->
         let uv = in_frame(&visible.face.axes, &d);
         if visible.face.contains(&uv) {
             nearest = t;
-            colour = visible.face.paint.colour(uv.x, uv.y, visible.light);
+            colour = visible.face.surface.colour(uv.x, uv.y, visible.light);
         }
     }
     colour
 }
 
 /// A face as one camera sees it.
-struct Visible<'a> {
-    face: &'a Face,
+struct ProjectedFace<'a> {
+    face: &'a RenderedFace,
     light: f64,
     /// Signed distance of the projection centre from the plane, metres.
     height: f64,
@@ -133,8 +137,8 @@ struct Visible<'a> {
     bounds: [Vector2<f64>; 2],
 }
 
-impl<'a> Visible<'a> {
-    fn new(face: &'a Face, camera: &Camera) -> Self {
+impl<'a> ProjectedFace<'a> {
+    fn new(face: &'a RenderedFace, camera: &Camera) -> Self {
         let infinite = Vector2::repeat(f64::INFINITY);
         let mut bounds = [infinite, -infinite];
         for corner in &face.corners {

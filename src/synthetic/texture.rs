@@ -1,8 +1,8 @@
 //! Value noise: a smooth texture from a hash of lattice points, the same on every target.
 
-/// How a face is painted.
+/// Colour and texture of a face.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Paint {
+pub(crate) struct SurfaceTexture {
     /// Colour without texture and light, 0 to 1.
     pub rgb: [f64; 3],
     /// Amplitude of the texture, relative to the colour: 0.04 is weak, 0.25 strong.
@@ -11,7 +11,7 @@ pub(crate) struct Paint {
     pub seed: u32,
 }
 
-impl Paint {
+impl SurfaceTexture {
     /// Colour at a position on the face, metres, under light from 0 to 1.
     pub(crate) fn colour(&self, u: f64, v: f64, light: f64) -> [f64; 3] {
         let factor = light * (1.0 + self.contrast * noise(u, v, self.seed));

@@ -10,7 +10,6 @@ use super::convert::{from_js, input_error, named_error, row_major, to_js};
 use crate::execution::Known;
 use crate::execution::Listener;
 use crate::orientation::InputFile;
-use crate::orientation_check;
 use crate::params::{Method, Params};
 use crate::pipeline::{PackedView, Run, Stage, load_adjusted};
 use crate::plain_json::{Problem, Readable, read_fields};
@@ -205,7 +204,7 @@ impl Session {
             views: views.collect(),
             origin: scene.origin.into(),
             warnings: scene.warnings.clone(),
-            doctor: scene.survey.doctor.clone(),
+            doctor: scene.survey.agreement.clone(),
         });
         self.run = Some(Run::new(scene, self.params.clone()));
         info

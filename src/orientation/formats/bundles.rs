@@ -2,18 +2,19 @@
 //!
 //! Both know one focal length and no principal point: it lies at the centre of the image.
 //!
-//! * Bundler: R and t are `cam_from_world` of a camera that looks down its -z axis with y up: p = -P / P.z; the lens takes
-//!   p to f (1 + k1 |p|^2 + k2 |p|^4) p. Cameras with f = 0 were not oriented. An extra file of
-//!   principal points (`image cx cy width height`) is taken where it stands beside.
-//! * NVM: quaternion (w x y z) of `cam_from_world`, y down, and the projection centre; its k leads from measured to
-//!   ideal coordinates, so the series of the inverse is used.
+//! * Bundler: R and t are `cam_from_world` of a camera that looks down its -z axis with y up: p =
+//!   -P / P.z; the lens takes p to f (1 + k1 |p|^2 + k2 |p|^4) p. Cameras with f = 0 were not
+//!   oriented. An extra file of principal points (`image cx cy width height`) is read where it is
+//!   there.
+//! * NVM: quaternion (w x y z) of `cam_from_world`, y down, and the projection centre; its k leads
+//!   from measured to ideal coordinates, so the series of the inverse is used.
 
 use nalgebra::{Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 
-use super::text::{Line, data_lines};
+use super::text::{TextLine, data_lines};
 use crate::camera::Distortion;
 use crate::error::{Error, Result};
-use crate::orientation::{Orientation, pinhole};
+use crate::orientation::image_orientation::{Orientation, pinhole};
 
 /// Reads Bundler's cameras; `list` names their images, `points` their principal points.
 pub(crate) fn read_bundler(
@@ -63,7 +64,7 @@ pub(crate) fn read_bundler(
 pub(crate) fn read_nvm(path: &str, text: &str) -> Result<Vec<Orientation>> {
     let mut lines = data_lines(path, text).skip_while(|l| l.text.starts_with("NVM_V3"));
     let count = header(path, lines.next())?;
-    let camera = |line: Line| {
+    let camera = |line: TextLine| {
         let fields = line.fields();
         if fields.len() < 10 {
             return Err(line.error(
@@ -105,17 +106,17 @@ pub(crate) fn read_nvm(path: &str, text: &str) -> Result<Vec<Orientation>> {
     Ok(found)
 }
 
-/// The number of cameras, which stands first in a line.
-fn header(path: &str, line: Option<Line>) -> Result<usize> {
+/// The number of cameras, the first field of a line.
+fn header(path: &str, line: Option<TextLine>) -> Result<usize> {
     let line = line.ok_or_else(|| too_short(path))?;
     let count = line.whole(line.fields()[0], "the number of cameras")?;
     Ok(count as usize)
 }
 
-/// The five lines of a camera: f k1 k2, three rows of R, t; and where they stand.
+/// The five lines of a camera: f k1 k2, three rows of R, t; and their line.
 fn rows<'a>(
     path: &str,
-    lines: &mut impl Iterator<Item = Line<'a>>,
+    lines: &mut impl Iterator<Item = TextLine<'a>>,
 ) -> Result<(String, [[f64; 3]; 5])> {
     let mut rows = [[0.0; 3]; 5];
     let mut source = String::new();

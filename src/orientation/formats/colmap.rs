@@ -1,18 +1,18 @@
 //! COLMAP's text model: `cameras.txt` and `images.txt`.
 //!
-//! Quaternion (w x y z) and t are `cam_from_world`, so C = -R^T t; the corner of the image is (0, 0),
-//! which is our convention. Each image takes two lines, of which the second (its points) may be empty;
-//! files from other programs leave it out, so a line with a name in the tenth place is an image
-//! wherever it stands.
+//! Quaternion (w x y z) and t are `cam_from_world`, so C = -R^T t; the corner of the image is (0,
+//! 0), which is our convention. Each image takes two lines, of which the second (its points) may be
+//! empty; files from other programs leave it out, so every line with a name in its tenth field is
+//! an image.
 
 use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 
-use super::text::{Line, data_lines, lines, quoted};
+use super::text::{TextLine, data_lines, lines, quoted};
 use crate::camera::Distortion;
 use crate::error::{Error, Result};
-use crate::orientation::Orientation;
+use crate::orientation::image_orientation::Orientation;
 
 /// Reads the orientations of a model from (path, text) of both files.
 pub(crate) fn read(cameras: (&str, &str), images: (&str, &str)) -> Result<Vec<Orientation>> {
@@ -41,13 +41,13 @@ pub(crate) fn read(cameras: (&str, &str), images: (&str, &str)) -> Result<Vec<Or
 }
 
 /// Interior orientation of one camera.
-struct Lens {
+struct ColmapCamera {
     size: (u32, u32),
     k: Matrix3<f64>,
     distortion: Option<Distortion>,
 }
 
-fn read_cameras(file: &str, text: &str) -> Result<BTreeMap<u32, Lens>> {
+fn read_cameras(file: &str, text: &str) -> Result<BTreeMap<u32, ColmapCamera>> {
     let mut lenses = BTreeMap::new();
     for line in data_lines(file, text) {
         let fields = line.fields();
@@ -63,7 +63,7 @@ fn read_cameras(file: &str, text: &str) -> Result<BTreeMap<u32, Lens>> {
             line.whole(fields[3], "the height")?,
         );
         let (k, distortion) = read_model(&line, fields[1], &fields[4..])?;
-        let lens = Lens {
+        let lens = ColmapCamera {
             size,
             k,
             distortion,
@@ -77,7 +77,7 @@ fn read_cameras(file: &str, text: &str) -> Result<BTreeMap<u32, Lens>> {
 
 /// Calibration and distortion from a camera model and its parameters.
 fn read_model(
-    line: &Line,
+    line: &TextLine,
     model: &str,
     fields: &[&str],
 ) -> Result<(Matrix3<f64>, Option<Distortion>)> {
@@ -127,12 +127,16 @@ fn distortion(c: &[f64]) -> Option<Distortion> {
 }
 
 /// Ten fields or more, of which the tenth is a name: a line of points holds numbers only.
-fn is_image_line(line: &Line) -> bool {
+fn is_image_line(line: &TextLine) -> bool {
     let mut fields = line.text.split_whitespace();
     fields.nth(9).is_some_and(|f| f.parse::<f64>().is_err())
 }
 
-fn read_image(line: &Line, lenses: &BTreeMap<u32, Lens>, cameras: &str) -> Result<Orientation> {
+fn read_image(
+    line: &TextLine,
+    lenses: &BTreeMap<u32, ColmapCamera>,
+    cameras: &str,
+) -> Result<Orientation> {
     let fields = line.fields();
     if fields.len() < 10 {
         return Err(line.error(

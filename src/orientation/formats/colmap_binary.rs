@@ -1,4 +1,5 @@
-//! COLMAP's binary model, `cameras.bin` and `images.bin` (little-endian), as the text that says the same.
+//! COLMAP's binary model, `cameras.bin` and `images.bin` (little-endian), as the text that says the
+//! same.
 //!
 //! The text reader then checks it, whatever the bytes were; its lines are the records.
 
@@ -23,7 +24,7 @@ const MODELS: [(&str, usize); 11] = [
 
 /// `cameras.bin` as `cameras.txt`.
 pub(crate) fn cameras_text(path: &str, bytes: &[u8]) -> Result<String> {
-    let mut bytes = Bytes { path, rest: bytes };
+    let mut bytes = ByteReader { path, rest: bytes };
     let mut text = String::new();
     for _ in 0..bytes.u64()? {
         let (id, model) = (bytes.u32()?, bytes.u32()?);
@@ -42,7 +43,7 @@ pub(crate) fn cameras_text(path: &str, bytes: &[u8]) -> Result<String> {
 
 /// `images.bin` as `images.txt`, without the image points.
 pub(crate) fn images_text(path: &str, bytes: &[u8]) -> Result<String> {
-    let mut bytes = Bytes { path, rest: bytes };
+    let mut bytes = ByteReader { path, rest: bytes };
     let mut text = String::new();
     for _ in 0..bytes.u64()? {
         write!(text, "{}", bytes.u32()?).expect("a String takes all");
@@ -59,12 +60,12 @@ pub(crate) fn images_text(path: &str, bytes: &[u8]) -> Result<String> {
     Ok(text)
 }
 
-struct Bytes<'a> {
+struct ByteReader<'a> {
     path: &'a str,
     rest: &'a [u8],
 }
 
-impl<'a> Bytes<'a> {
+impl<'a> ByteReader<'a> {
     fn take<const N: usize>(&mut self) -> Result<[u8; N]> {
         let Some((first, rest)) = self.rest.split_first_chunk::<N>() else {
             return Err(self.error("it ends in the middle of a record"));

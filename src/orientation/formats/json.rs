@@ -1,10 +1,12 @@
 //! Orientations in JSON: OpenSfM's reconstruction, nerfstudio's transforms, and lists of K, R, C.
 //!
-//! * OpenSfM: axis-angle and translation are `cam_from_world`; image coordinates are divided by the longer side and
-//!   counted from the centre of the image.
-//! * ODM's shots: the same rotation, but the translation is the projection centre in the projected frame.
-//! * nerfstudio: `transform_matrix` is `world_from_cam` with y up and z backwards (OpenGL); `applied_transform`
-//!   turned the world before and is undone. Intrinsics stand once or per frame.
+//! * OpenSfM: axis-angle and translation are `cam_from_world`; image coordinates are divided by the
+//!   longer side and counted from the centre of the image.
+//! * ODM's shots: the same rotation, but the translation is the projection centre in the projected
+//!   frame.
+//! * nerfstudio: `transform_matrix` is `world_from_cam` with y up and z backwards (OpenGL);
+//!   `applied_transform` rotated the world before and is inverted. Intrinsics are stated once or
+//!   per frame.
 //! * K, R, C: our own conventions; `origin` is added to C.
 
 use std::collections::BTreeMap;
@@ -17,7 +19,7 @@ use crate::camera::Distortion;
 use crate::error::{Error, Result};
 use crate::geometry::rotation_from_axis_angle;
 use crate::orientation::geodesy::Anchor;
-use crate::orientation::{Orientation, pinhole};
+use crate::orientation::image_orientation::{Orientation, pinhole};
 
 /// Reads the first (largest) reconstruction of OpenSfM's `reconstruction.json`.
 pub(crate) fn read_opensfm(path: &str, text: &str) -> Result<Vec<Orientation>> {
@@ -26,7 +28,7 @@ pub(crate) fn read_opensfm(path: &str, text: &str) -> Result<Vec<Orientation>> {
     let Some(model) = largest else {
         return Err(refuse(path, "it holds no reconstruction"));
     };
-    let shot = |(name, shot): (&String, &Shot)| {
+    let shot = |(name, shot): (&String, &OpenSfmShot)| {
         let camera = model.cameras.get(&shot.camera).ok_or_else(|| {
             refuse(
                 path,
@@ -66,7 +68,7 @@ pub(crate) fn opensfm_anchor(text: &str) -> Option<Anchor> {
     }
     let models: Vec<Anchored> = serde_json::from_str(text).ok()?;
     let lla = &models.first()?.reference_lla;
-    // A zero stands where the images have no positions.
+    // It is zero where the images have no positions.
     let is_known = (lla.latitude, lla.longitude) != (0.0, 0.0) && lla.latitude.abs() <= 90.0;
     is_known.then_some(Anchor {
         lon_deg: lla.longitude,
@@ -75,13 +77,14 @@ pub(crate) fn opensfm_anchor(text: &str) -> Option<Anchor> {
     })
 }
 
-/// Reads ODM's `shots.geojson`; `cameras` is `cameras.json`, without which the lens counts as free of distortion.
+/// Reads ODM's `shots.geojson`; `cameras` is `cameras.json`, without which the lens counts as free
+/// of distortion.
 pub(crate) fn read_shots(
     (path, text): (&str, &str),
     cameras: Option<(&str, &str)>,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Orientation>> {
-    let shots: Shots = parse(path, text)?;
+    let shots: OdmShots = parse(path, text)?;
     let cameras: BTreeMap<String, OpenSfmCamera> = match cameras {
         Some((path, text)) => parse(path, text)?,
         None => {
@@ -91,7 +94,7 @@ pub(crate) fn read_shots(
             BTreeMap::new()
         }
     };
-    let shot = |feature: ShotFeature| {
+    let shot = |feature: OdmShot| {
         let shot = feature.properties;
         let known = shot.camera.as_ref().and_then(|name| cameras.get(name));
         let camera = known
@@ -133,14 +136,14 @@ pub(crate) fn read_krc(path: &str, text: &str) -> Result<Vec<Orientation>> {
 
 /// Reads nerfstudio's `transforms.json`.
 pub(crate) fn read_nerfstudio(path: &str, text: &str) -> Result<Vec<Orientation>> {
-    let file: Transforms = parse(path, text)?;
+    let file: NerfstudioTransforms = parse(path, text)?;
     let undo = match &file.applied_transform {
         None => Matrix4::identity(),
         Some(rows) => homogeneous(rows)
             .try_inverse()
             .ok_or_else(|| refuse(path, "applied_transform is singular"))?,
     };
-    let frame = |frame: &Frame| {
+    let frame = |frame: &NerfstudioFrame| {
         let lens = frame.lens.or(&file.lens);
         let pose = undo * homogeneous(&frame.transform_matrix);
         let turned = pose.fixed_view::<3, 3>(0, 0).into_owned();
@@ -160,28 +163,28 @@ pub(crate) fn read_nerfstudio(path: &str, text: &str) -> Result<Vec<Orientation>
 #[derive(Deserialize)]
 struct OpenSfm {
     cameras: BTreeMap<String, OpenSfmCamera>,
-    shots: BTreeMap<String, Shot>,
+    shots: BTreeMap<String, OpenSfmShot>,
 }
 
 #[derive(Deserialize)]
-struct Shot {
+struct OpenSfmShot {
     rotation: [f64; 3],
     translation: [f64; 3],
     camera: String,
 }
 
 #[derive(Deserialize)]
-struct Shots {
-    features: Vec<ShotFeature>,
+struct OdmShots {
+    features: Vec<OdmShot>,
 }
 
 #[derive(Deserialize)]
-struct ShotFeature {
-    properties: ShotProperties,
+struct OdmShot {
+    properties: OdmShotProperties,
 }
 
 #[derive(Deserialize)]
-struct ShotProperties {
+struct OdmShotProperties {
     filename: String,
     camera: Option<String>,
     focal: f64,
@@ -217,7 +220,7 @@ struct OpenSfmCamera {
 
 impl OpenSfmCamera {
     /// The camera of a shot about which nothing more is known.
-    fn simple(shot: &ShotProperties) -> Self {
+    fn simple(shot: &OdmShotProperties) -> Self {
         Self {
             projection_type: "perspective".to_owned(),
             width: shot.width,
@@ -290,23 +293,23 @@ struct KrcView {
 }
 
 #[derive(Deserialize)]
-struct Transforms {
+struct NerfstudioTransforms {
     #[serde(flatten)]
-    lens: Lens,
+    lens: NerfstudioCamera,
     applied_transform: Option<Vec<[f64; 4]>>,
-    frames: Vec<Frame>,
+    frames: Vec<NerfstudioFrame>,
 }
 
 #[derive(Deserialize)]
-struct Frame {
+struct NerfstudioFrame {
     file_path: String,
     transform_matrix: Vec<[f64; 4]>,
     #[serde(flatten)]
-    lens: Lens,
+    lens: NerfstudioCamera,
 }
 
 #[derive(Clone, Deserialize)]
-struct Lens {
+struct NerfstudioCamera {
     camera_model: Option<String>,
     camera_angle_x: Option<f64>,
     fl_x: Option<f64>,
@@ -322,8 +325,8 @@ struct Lens {
     p2: Option<f64>,
 }
 
-impl Lens {
-    /// What a frame leaves out stands once for all frames.
+impl NerfstudioCamera {
+    /// What a frame leaves out is stated once for all frames.
     fn or(&self, all: &Self) -> Self {
         Self {
             camera_model: self

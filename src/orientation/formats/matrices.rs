@@ -1,24 +1,24 @@
 //! Small text files of matrices: Pix4D's two, Middlebury's `_par.txt` and Strecha's `.camera`.
 //!
-//! * Pix4D `_calibrated_camera_parameters.txt`: per image name, size, K, radial (3), tangential (2), t, R with
-//!   X' = R (X - t).
-//! * Pix4D `_pmatrix.txt`: name and the 12 numbers of P of the undistorted image; the numbers of `_offset.xyz` beside it
-//!   are added to the world.
+//! * Pix4D `_calibrated_camera_parameters.txt`: per image name, size, K, radial (3), tangential
+//!   (2), t, R with X' = R (X - t).
+//! * Pix4D `_pmatrix.txt`: name and the 12 numbers of P of the undistorted image; the numbers of
+//!   `_offset.xyz` beside it are added to the world.
 //! * Middlebury: name, K, R, t of P = K [R, t]; the centre of the top-left pixel is (0, 0).
 //! * Strecha: one file `NAME.camera` an image: K, a line of zeros, R (`world_from_cam`), C, size.
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::projection::decompose;
-use super::text::{Line, data_lines};
+use super::text::{TextLine, data_lines};
 use crate::camera::Distortion;
 use crate::error::{Error, Result};
-use crate::orientation::{Orientation, pinhole};
+use crate::orientation::image_orientation::{Orientation, pinhole};
 
 /// Reads Pix4D's calibrated camera parameters.
 pub(crate) fn read_pix4d(path: &str, text: &str) -> Result<Vec<Orientation>> {
-    // Eight lines say what follows, in words.
-    let is_image = |line: &Line| {
+    // Eight lines of header describe the content.
+    let is_image = |line: &TextLine| {
         let f = line.fields();
         f.len() == 3
             && f[0].parse::<f64>().is_err()
@@ -60,7 +60,7 @@ pub(crate) fn read_pmatrix(
         Some((path, text)) => numbers::<3>(path, data_lines(path, text).next())?,
         None => [0.0; 3],
     };
-    let one = |line: Line| {
+    let one = |line: TextLine| {
         let fields = line.fields();
         if fields.len() != 13 {
             return Err(line.error(format!("{} fields", fields.len()), "NAME and 12 numbers"));
@@ -84,7 +84,7 @@ pub(crate) fn read_pmatrix(
 
 /// Reads Middlebury's parameters.
 pub(crate) fn read_middlebury(path: &str, text: &str) -> Result<Vec<Orientation>> {
-    let one = |line: Line| {
+    let one = |line: TextLine| {
         let fields = line.fields();
         if fields.len() != 22 {
             return Err(line.error(
@@ -110,7 +110,7 @@ pub(crate) fn read_middlebury(path: &str, text: &str) -> Result<Vec<Orientation>
     data_lines(path, text).skip(1).map(one).collect()
 }
 
-/// Reads one of Strecha's cameras; the image is the one called like the file.
+/// Reads one of Strecha's cameras; the image has the name of the file.
 pub(crate) fn read_strecha(path: &str, text: &str) -> Result<Orientation> {
     let mut lines = data_lines(path, text);
     let k = matrix(path, &mut lines)?;
@@ -132,7 +132,7 @@ pub(crate) fn read_strecha(path: &str, text: &str) -> Result<Orientation> {
     })
 }
 
-fn matrix<'a>(path: &str, lines: &mut impl Iterator<Item = Line<'a>>) -> Result<Matrix3<f64>> {
+fn matrix<'a>(path: &str, lines: &mut impl Iterator<Item = TextLine<'a>>) -> Result<Matrix3<f64>> {
     let mut m = Matrix3::zeros();
     for i in 0..3 {
         let row = numbers::<3>(path, lines.next())?;
@@ -141,8 +141,8 @@ fn matrix<'a>(path: &str, lines: &mut impl Iterator<Item = Line<'a>>) -> Result<
     Ok(m)
 }
 
-/// The numbers of a line, which must be so many.
-fn numbers<const N: usize>(path: &str, line: Option<Line>) -> Result<[f64; N]> {
+/// Exactly N numbers of a line.
+fn numbers<const N: usize>(path: &str, line: Option<TextLine>) -> Result<[f64; N]> {
     let line = line.ok_or_else(|| Error::File {
         file: path.to_owned(),
         problem: "it ends in the middle of a camera".to_owned(),

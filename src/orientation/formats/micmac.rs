@@ -1,20 +1,23 @@
-//! MicMac's `Orientation-IMAGE.xml`, one an image; the interior orientation stands in it or in a file that it names.
+//! MicMac's `Orientation-IMAGE.xml`, one an image; the interior orientation is in it or in a file
+//! that it names.
 //!
-//! * `CodageMatr` leads from the camera (x right, y down, z forward) to the world; `Centre` is the projection centre.
-//! * F and PP are pixels. Assumption: counted from the corner of the image, since MicMac's first guess of PP is half
-//!   the size.
-//! * The polynomial about `CDist` leads from measured to ideal coordinates (`eConvApero_DistM2C`), in pixels. Ours
-//!   goes the other way: a polynomial about the same centre is fitted to the inverse.
+//! * `CodageMatr` leads from the camera (x right, y down, z forward) to the world; `Centre` is the
+//!   projection centre.
+//! * F and PP are pixels. Assumption: counted from the corner of the image, since MicMac's first
+//!   guess of PP is half the size.
+//! * The polynomial about `CDist` leads from measured to ideal coordinates (`eConvApero_DistM2C`),
+//!   in pixels. Ours goes the other way: a polynomial about the same centre is fitted to the
+//!   inverse.
 
 use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 use roxmltree::Node;
 
-use super::xml::{Reader, child, parse, text_of};
+use super::xml::{XmlReader, child, parse, text_of};
 use crate::camera::Distortion;
 use crate::error::Result;
-use crate::orientation::{Orientation, pinhole};
+use crate::orientation::image_orientation::{Orientation, pinhole};
 
 /// Reads orientations and interior orientations, (path, text) each, in any order.
 pub(crate) fn read<T: AsRef<str>>(files: &[(&str, T)]) -> Result<Vec<Orientation>> {
@@ -25,7 +28,10 @@ pub(crate) fn read<T: AsRef<str>>(files: &[(&str, T)]) -> Result<Vec<Orientation
             .descendants()
             .find(|n| n.has_tag_name("CalibrationInternConique"))
         {
-            lenses.insert(base_name(path), Lens::read(&Reader { path }, node)?);
+            lenses.insert(
+                base_name(path),
+                MicmacCamera::read(&XmlReader { path }, node)?,
+            );
         }
     }
     let mut found = Vec::new();
@@ -52,10 +58,10 @@ fn orientation(
     path: &str,
     image: &str,
     text: &str,
-    lenses: &BTreeMap<&str, Lens>,
+    lenses: &BTreeMap<&str, MicmacCamera>,
 ) -> Result<Orientation> {
     let document = parse(path, text)?;
-    let file = Reader { path };
+    let file = XmlReader { path };
     let find = |name: &str| document.descendants().find(|n| n.has_tag_name(name));
     let missing = |name: &str| file.error(document.root_element(), &format!("<{name}> is missing"));
     let exterior = find("Externe").ok_or_else(|| missing("Externe"))?;
@@ -69,7 +75,7 @@ fn orientation(
     }
     let world_from_cam = Matrix3::from_row_slice(&rows);
     let own = match find("Interne") {
-        Some(node) => Some(Lens::read(&file, node)?),
+        Some(node) => Some(MicmacCamera::read(&file, node)?),
         None => None,
     };
     let named = find("FileInterne")
@@ -96,14 +102,14 @@ fn orientation(
     })
 }
 
-struct Lens {
+struct MicmacCamera {
     k: Matrix3<f64>,
     distortion: Option<Distortion>,
     size: (u32, u32),
 }
 
-impl Lens {
-    fn read(file: &Reader, node: Node) -> Result<Self> {
+impl MicmacCamera {
+    fn read(file: &XmlReader, node: Node) -> Result<Self> {
         let numbers = |name: &str| {
             let found = child(node, name)
                 .ok_or_else(|| file.error(node, &format!("<{name}> is missing")))?;
@@ -127,7 +133,7 @@ impl Lens {
 }
 
 /// The lens, ideal to measured, of the radial polynomial, measured to ideal.
-fn distortion(file: &Reader, model: Node, lens: &Lens) -> Result<Option<Distortion>> {
+fn distortion(file: &XmlReader, model: Node, lens: &MicmacCamera) -> Result<Option<Distortion>> {
     let other = |n: &Node| {
         n.is_element() && !["ModRad", "ModPhgrStd", "ModNoDist"].contains(&n.tag_name().name())
     };
@@ -173,12 +179,13 @@ fn distortion(file: &Reader, model: Node, lens: &Lens) -> Result<Option<Distorti
     })
 }
 
-/// The radial polynomial (ideal to measured) about `middle` that undoes a map from measured to ideal pixels, by
-/// least squares over the image; `None` where it misses by more than a twentieth of a pixel.
+/// The radial polynomial (ideal to measured) about `middle` that undoes a map from measured to
+/// ideal pixels, by least squares over the image; `None` where it misses by more than a twentieth
+/// of a pixel.
 fn fit(
     ideal: impl Fn(&Point2<f64>) -> Point2<f64>,
     middle: Point2<f64>,
-    lens: &Lens,
+    lens: &MicmacCamera,
 ) -> Option<Distortion> {
     const STEPS: u32 = 16;
     const WORST_PX: f64 = 0.05;
@@ -188,7 +195,7 @@ fn fit(
     let places = (0..=STEPS)
         .flat_map(|i| (0..=STEPS).map(move |j| Point2::new(t(i) * width, t(j) * height)));
     let pairs: Vec<(Point2<f64>, Point2<f64>)> = places.map(|p| (ideal(&p), p)).collect();
-    // In units of the farthest place, so that no power is lost.
+    // Scaled by the farthest point, so that high powers keep their precision.
     let far = (pairs.iter().map(|(from, _)| (from - middle).norm())).fold(0.0, f64::max);
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for (from, to) in &pairs {
@@ -201,7 +208,7 @@ fn fit(
         }
     }
     let c = normal.cholesky()?.solve(&right);
-    // From the farthest place to the focal length as the unit.
+    // From the farthest point to the focal length as the unit.
     let unit2 = (f / far) * (f / far);
     let center = (middle - pp) / f;
     let found = Distortion {
@@ -230,7 +237,8 @@ mod tests {
         let text = "<C><PP>1000 750</PP><F>2000</F><SzIm>2000 1500</SzIm><CalibDistortion><ModRad><CDist>1008 744</CDist>\
                     <CoeffDist>-1e-8</CoeffDist><CoeffDist>2e-15</CoeffDist></ModRad></CalibDistortion></C>";
         let document = parse("c.xml", text).unwrap();
-        let lens = Lens::read(&Reader { path: "c.xml" }, document.root_element()).unwrap();
+        let lens =
+            MicmacCamera::read(&XmlReader { path: "c.xml" }, document.root_element()).unwrap();
         let distortion = lens.distortion.unwrap();
         for measured in [[20.0, 30.0], [1900.0, 700.0], [1200.0, 1400.0]] {
             let d = [measured[0] - 1008.0, measured[1] - 744.0];

@@ -6,16 +6,16 @@
 //! 4F16.12             a23 a31 a32 a33
 //! ```
 //!
-//! The matrix is Rx(omega) Ry(phi) Rz(kappa), from the image (x right, y up) to the world. The interior orientation
-//! stands in the camera file of the photogrammetric list. Files that were edited separate by blanks: these are
-//! taken where the columns hold no numbers.
+//! The matrix is Rx(omega) Ry(phi) Rz(kappa), from the image (x right, y up) to the world. The
+//! interior orientation is in the camera file of the photogrammetric list. Files that were
+//! edited separate by blanks: these are taken where the columns hold no numbers.
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
-use super::photogrammetric::{Frame, read_frame};
-use super::text::{Line, raw_lines};
+use super::photogrammetric::{CameraFrame, read_frame};
+use super::text::{TextLine, raw_lines};
 use crate::error::{Error, Result};
-use crate::orientation::{Orientation, pinhole};
+use crate::orientation::image_orientation::{Orientation, pinhole};
 
 /// Columns of a field.
 const WIDTH: usize = 16;
@@ -27,7 +27,7 @@ pub(crate) fn read(
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Orientation>> {
     let frame = read_frame(camera.0, camera.1, warnings)?;
-    let lines: Vec<Line> = raw_lines(exterior.0, exterior.1)
+    let lines: Vec<TextLine> = raw_lines(exterior.0, exterior.1)
         .filter(|l| !l.is_empty())
         .collect();
     let photos = lines.chunks(3).map(|records| match records {
@@ -43,7 +43,7 @@ pub(crate) fn read(
 
 /// Are these the first lines of such a file?
 pub(crate) fn is_patb(text: &str) -> bool {
-    let lines: Vec<Line> = raw_lines("", text)
+    let lines: Vec<TextLine> = raw_lines("", text)
         .filter(|l| !l.is_empty())
         .take(3)
         .collect();
@@ -53,7 +53,12 @@ pub(crate) fn is_patb(text: &str) -> bool {
     center(first).is_ok() && elements::<5>(second).is_ok() && elements::<4>(third).is_ok()
 }
 
-fn photo(frame: &Frame, first: &Line, second: &Line, third: &Line) -> Result<Orientation> {
+fn photo(
+    frame: &CameraFrame,
+    first: &TextLine,
+    second: &TextLine,
+    third: &TextLine,
+) -> Result<Orientation> {
     let (image, center) = center(first)?;
     let (a, b) = (elements::<5>(second)?, elements::<4>(third)?);
     let elements: Vec<f64> = a.into_iter().chain(b).collect();
@@ -69,7 +74,7 @@ fn photo(frame: &Frame, first: &Line, second: &Line, third: &Line) -> Result<Ori
 }
 
 /// Photo and projection centre.
-fn center(line: &Line) -> Result<(String, Point3<f64>)> {
+fn center(line: &TextLine) -> Result<(String, Point3<f64>)> {
     let fields = match columns(line, &[0, 2, 3, 4]).filter(|f| f[1..].iter().all(|f| is_number(f)))
     {
         Some(fields) => fields,
@@ -77,7 +82,7 @@ fn center(line: &Line) -> Result<(String, Point3<f64>)> {
     };
     let xyz = match fields.len() {
         4 => &fields[1..],
-        // The focal length may stand between.
+        // The focal length may come between.
         5 => &fields[2..],
         n => {
             return Err(line.error(
@@ -91,7 +96,7 @@ fn center(line: &Line) -> Result<(String, Point3<f64>)> {
 }
 
 /// N elements of the matrix.
-fn elements<const N: usize>(line: &Line) -> Result<[f64; N]> {
+fn elements<const N: usize>(line: &TextLine) -> Result<[f64; N]> {
     let all: Vec<usize> = (0..N).collect();
     let fields = match columns(line, &all).filter(|f| f.iter().all(|f| is_number(f))) {
         Some(fields) => fields,
@@ -109,7 +114,7 @@ fn elements<const N: usize>(line: &Line) -> Result<[f64; N]> {
 }
 
 /// The fields in these columns; `None` where the line ends before them.
-fn columns<'a>(line: &Line<'a>, places: &[usize]) -> Option<Vec<&'a str>> {
+fn columns<'a>(line: &TextLine<'a>, places: &[usize]) -> Option<Vec<&'a str>> {
     let field = |&i: &usize| {
         let end = ((i + 1) * WIDTH).min(line.text.len());
         line.text.get(i * WIDTH..end).map(str::trim)

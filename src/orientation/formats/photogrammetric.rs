@@ -1,18 +1,19 @@
 //! Photogrammetric lists: a camera file with keys and values, and `image X0 Y0 Z0 omega phi kappa`.
 //!
-//! Image coordinates are in mm from the centre of the frame, x right, y up. Views are crops of the frame:
-//! `crop NAME column row width height`; without a crop line the view is the whole frame. The rotation
-//! is that of [`rotation_from_omega_phi_kappa`]. No key marks the unit of the angles: a comment that names
-//! it decides; otherwise the unit is taken under which the views look at the same place.
+//! Image coordinates are in mm from the centre of the frame, x right, y up. Views are crops of the
+//! frame: `crop NAME column row width height`; without a crop line the view is the whole frame. The
+//! rotation is that of [`rotation_from_omega_phi_kappa`]. No key marks the unit of the angles: a
+//! comment that names it decides; otherwise the unit is taken under which the views look at the
+//! same point.
 
 use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
-use super::text::{Line, data_lines, quoted};
+use super::text::{TextLine, data_lines, quoted};
 use crate::error::{Error, Result};
 use crate::orientation::angles::{AngleUnit, rotation_from_omega_phi_kappa};
-use crate::orientation::{Crop, Orientation};
+use crate::orientation::image_orientation::{Crop, Orientation};
 
 /// Reads the orientations from (path, text) of both files.
 pub(crate) fn read(
@@ -24,7 +25,7 @@ pub(crate) fn read(
     let mut lines = data_lines(exterior.0, exterior.1).peekable();
     // Some programs (Pix4D) name the columns first.
     lines.next_if(is_heading);
-    let poses: Vec<Pose> = lines.map(|line| read_pose(&line)).collect::<Result<_>>()?;
+    let poses: Vec<ListedPose> = lines.map(|line| read_pose(&line)).collect::<Result<_>>()?;
     if poses.is_empty() {
         return Err(Error::File {
             file: exterior.0.to_owned(),
@@ -49,27 +50,28 @@ pub(crate) fn read(
         .collect())
 }
 
-/// Part of the frame that a view shows, pixels.
+/// FramePart of the frame that a view shows, pixels.
 #[derive(Clone, Copy)]
-pub(crate) struct Part {
+pub(crate) struct FramePart {
     column: f64,
     row: f64,
     pub size: (u32, u32),
 }
 
 /// Interior orientation of the full frame.
-pub(crate) struct Frame {
+pub(crate) struct CameraFrame {
     /// Principal distance in pixels along x and y.
     focal_px: [f64; 2],
     /// Principal point in the frame, pixels.
     principal_px: [f64; 2],
-    whole: Part,
-    crops: BTreeMap<String, Part>,
+    whole: FramePart,
+    crops: BTreeMap<String, FramePart>,
 }
 
-impl Frame {
-    /// The part that an image shows: its name in the camera file may have another extension, or none.
-    pub(crate) fn part_of(&self, image: &str) -> &Part {
+impl CameraFrame {
+    /// The part that an image shows: its name in the camera file may have another extension, or
+    /// none.
+    pub(crate) fn part_of(&self, image: &str) -> &FramePart {
         let stem = |name: &str| {
             name.rsplit_once('.')
                 .map_or(name, |(stem, _)| stem)
@@ -88,14 +90,14 @@ impl Frame {
     }
 
     /// Calibration of a part, pixels.
-    pub(crate) fn k(&self, part: &Part) -> Matrix3<f64> {
+    pub(crate) fn k(&self, part: &FramePart) -> Matrix3<f64> {
         let ([fx, fy], [cx, cy]) = (self.focal_px, self.principal_px);
         let (cx, cy) = (cx - part.column, cy - part.row);
         Matrix3::new(fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0)
     }
 
     /// Where a part lies in the frame.
-    pub(crate) fn crop(&self, part: &Part) -> Crop {
+    pub(crate) fn crop(&self, part: &FramePart) -> Crop {
         Crop {
             column: part.column,
             row: part.row,
@@ -104,7 +106,7 @@ impl Frame {
     }
 }
 
-/// The keys of a camera file that stand once, with the number of values that they may have.
+/// The keys of a camera file that occur once, with the number of values that they may have.
 const KEYS: [(&str, std::ops::RangeInclusive<usize>); 4] = [
     ("principal_distance_mm", 1..=1),
     ("principal_point_mm", 2..=2),
@@ -112,8 +114,12 @@ const KEYS: [(&str, std::ops::RangeInclusive<usize>); 4] = [
     ("image_size_px", 2..=2),
 ];
 
-pub(crate) fn read_frame(file: &str, text: &str, warnings: &mut Vec<String>) -> Result<Frame> {
-    let mut values: [Option<(Line, Vec<f64>)>; 4] = [const { None }; 4];
+pub(crate) fn read_frame(
+    file: &str,
+    text: &str,
+    warnings: &mut Vec<String>,
+) -> Result<CameraFrame> {
+    let mut values: [Option<(TextLine, Vec<f64>)>; 4] = [const { None }; 4];
     let mut crops = BTreeMap::new();
     for line in data_lines(file, text) {
         let fields = line.fields();
@@ -149,13 +155,13 @@ pub(crate) fn read_frame(file: &str, text: &str, warnings: &mut Vec<String>) -> 
     let pixel = [pixel.1[0], *pixel.1.last().expect("one value or two")];
     let (width, height) = (size.1[0], size.1[1]);
     let whole = (whole_px(&size.0, width)?, whole_px(&size.0, height)?);
-    Ok(Frame {
+    Ok(CameraFrame {
         focal_px: [distance.1[0] / pixel[0], distance.1[0] / pixel[1]],
         principal_px: [
             width / 2.0 + point[0] / pixel[0],
             height / 2.0 - point[1] / pixel[1],
         ],
-        whole: Part {
+        whole: FramePart {
             column: 0.0,
             row: 0.0,
             size: whole,
@@ -165,7 +171,7 @@ pub(crate) fn read_frame(file: &str, text: &str, warnings: &mut Vec<String>) -> 
 }
 
 fn read_values(
-    line: &Line,
+    line: &TextLine,
     fields: &[&str],
     count: &std::ops::RangeInclusive<usize>,
 ) -> Result<Vec<f64>> {
@@ -182,7 +188,7 @@ fn read_values(
     line.numbers(&fields[1..], fields[0])
 }
 
-fn whole_px(line: &Line, value: f64) -> Result<u32> {
+fn whole_px(line: &TextLine, value: f64) -> Result<u32> {
     if value.fract() == 0.0 && (1.0..=4e9).contains(&value) {
         Ok(value as u32)
     } else {
@@ -190,14 +196,14 @@ fn whole_px(line: &Line, value: f64) -> Result<u32> {
     }
 }
 
-fn read_crop(line: &Line, fields: &[&str]) -> Result<(String, Part)> {
+fn read_crop(line: &TextLine, fields: &[&str]) -> Result<(String, FramePart)> {
     if fields.len() != 6 {
         return Err(line.error(
             format!("{} fields", fields.len()),
             "crop NAME column row width height",
         ));
     }
-    let crop = Part {
+    let crop = FramePart {
         column: line.number(fields[2], "the column")?,
         row: line.number(fields[3], "the row")?,
         size: (
@@ -208,8 +214,8 @@ fn read_crop(line: &Line, fields: &[&str]) -> Result<(String, Part)> {
     Ok((fields[1].to_owned(), crop))
 }
 
-/// Does a line hold words where numbers should stand?
-fn is_heading(line: &Line) -> bool {
+/// Does a line hold words where numbers are expected?
+fn is_heading(line: &TextLine) -> bool {
     let fields = line.fields();
     fields.len() > 1
         && fields[1..]
@@ -218,14 +224,14 @@ fn is_heading(line: &Line) -> bool {
 }
 
 /// One line of the exterior list; angles in the file's unit.
-struct Pose {
+struct ListedPose {
     image: String,
     source: String,
     center: Point3<f64>,
     angles: [f64; 3],
 }
 
-fn read_pose(line: &Line) -> Result<Pose> {
+fn read_pose(line: &TextLine) -> Result<ListedPose> {
     let fields = line.fields();
     if fields.len() != 7 {
         return Err(line.error(
@@ -235,7 +241,7 @@ fn read_pose(line: &Line) -> Result<Pose> {
     }
     let center = line.numbers(&fields[1..4], "a coordinate")?;
     let angles = line.numbers(&fields[4..7], "an angle")?;
-    Ok(Pose {
+    Ok(ListedPose {
         image: fields[0].to_owned(),
         source: format!("{}, line {}", line.file, line.number),
         center: Point3::new(center[0], center[1], center[2]),
@@ -243,8 +249,8 @@ fn read_pose(line: &Line) -> Result<Pose> {
     })
 }
 
-impl Pose {
-    fn orientation(&self, frame: &Frame, unit: AngleUnit) -> Orientation {
+impl ListedPose {
+    fn orientation(&self, frame: &CameraFrame, unit: AngleUnit) -> Orientation {
         let part = frame.part_of(&self.image);
         let [omega, phi, kappa] = self.angles.map(|a| a * unit.radians());
         Orientation {
@@ -275,9 +281,9 @@ fn stated_unit(text: &str) -> Option<AngleUnit> {
         })
 }
 
-/// The unit under which the rays through the image centres pass nearest to a common point in front of the
-/// cameras, relative to its distance.
-fn guess_unit(frame: &Frame, poses: &[Pose]) -> AngleUnit {
+/// The unit under which the rays through the image centres pass nearest to a common point in front
+/// of the cameras, relative to its distance.
+fn guess_unit(frame: &CameraFrame, poses: &[ListedPose]) -> AngleUnit {
     let mut best = (f64::INFINITY, AngleUnit::Degrees);
     for unit in AngleUnit::ALL {
         let orientations: Vec<_> = poses.iter().map(|p| p.orientation(frame, unit)).collect();
@@ -289,8 +295,8 @@ fn guess_unit(frame: &Frame, poses: &[Pose]) -> AngleUnit {
     best.1
 }
 
-/// Root mean square angle (radians, small-angle) between the central rays and the directions to the point
-/// nearest to all of them; infinite when the point lies behind a camera.
+/// Root mean square angle (radians, small-angle) between the central rays and the directions to the
+/// point nearest to all of them; infinite when the point lies behind a camera.
 fn spread_of_rays(orientations: &[Orientation]) -> f64 {
     let mean = orientations
         .iter()

@@ -1,16 +1,16 @@
 //! VGG's projection matrices: one file `NAME.P` an image, three lines of four numbers.
 //!
-//! The centre of the top-left pixel is (0, 0), so both coordinates grow by half a pixel here. The matrix
-//! is known up to scale and sign: with P = K [R | -R C] = [M | m] the sign with det(M) > 0 is the
-//! one that a rotation and a K with positive diagonal have.
+//! The centre of the top-left pixel is (0, 0), so both coordinates grow by half a pixel here. The
+//! matrix is known up to scale and sign: with P = K [R | -R C] = [M | m] the sign with det(M) > 0
+//! is the one that a rotation and a K with positive diagonal have.
 
 use nalgebra::{Matrix3, Point3, RowVector3, Vector3};
 
 use super::text::data_lines;
 use crate::error::{Error, Result};
-use crate::orientation::Orientation;
+use crate::orientation::image_orientation::Orientation;
 
-/// Reads a matrix; the image is the one called like the file.
+/// Reads a matrix; the image has the name of the file.
 pub(crate) fn read(path: &str, text: &str) -> Result<Orientation> {
     let mut rows: Vec<Vec<f64>> = Vec::new();
     for line in data_lines(path, text) {
@@ -56,8 +56,8 @@ fn stem(path: &str) -> &str {
     name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }
 
-/// `[M | m] ~ K [R | -R C]` with K upper triangular of positive diagonal and `K[(2, 2)] = 1`: Gram-Schmidt
-/// on the rows of M from the last to the first. `None` for a singular M.
+/// `[M | m] ~ K [R | -R C]` with K upper triangular of positive diagonal and `K[(2, 2)] = 1`:
+/// Gram-Schmidt on the rows of M from the last to the first. `None` for a singular M.
 pub(crate) fn decompose(
     m: &Matrix3<f64>,
     column: &Vector3<f64>,

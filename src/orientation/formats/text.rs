@@ -1,10 +1,10 @@
-//! Lines of a text file that remember where they stand, so that every refusal can say it.
+//! Lines of a text file with their position, so that every error can name it.
 
 use crate::error::{Error, Result};
 
-/// A line with its place.
+/// A line with its position.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Line<'a> {
+pub(crate) struct TextLine<'a> {
     pub file: &'a str,
     /// From 1.
     pub number: usize,
@@ -12,7 +12,7 @@ pub(crate) struct Line<'a> {
     pub text: &'a str,
 }
 
-impl<'a> Line<'a> {
+impl<'a> TextLine<'a> {
     /// Blank-separated fields.
     pub(crate) fn fields(&self) -> Vec<&'a str> {
         self.text.split_whitespace().collect()
@@ -60,11 +60,11 @@ impl<'a> Line<'a> {
 }
 
 /// All lines of a file, empty ones and comments included.
-pub(crate) fn lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Line<'a>> {
+pub(crate) fn lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = TextLine<'a>> {
     text.trim_start_matches('\u{feff}')
         .lines()
         .enumerate()
-        .map(move |(i, line)| Line {
+        .map(move |(i, line)| TextLine {
             file,
             number: i + 1,
             text: line.trim(),
@@ -72,11 +72,11 @@ pub(crate) fn lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Li
 }
 
 /// Lines as they are, for files whose columns count.
-pub(crate) fn raw_lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Line<'a>> {
+pub(crate) fn raw_lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = TextLine<'a>> {
     text.trim_start_matches('\u{feff}')
         .lines()
         .enumerate()
-        .map(move |(i, line)| Line {
+        .map(move |(i, line)| TextLine {
             file,
             number: i + 1,
             text: line.trim_end(),
@@ -84,7 +84,7 @@ pub(crate) fn raw_lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item 
 }
 
 /// Lines that hold data: neither empty nor a comment.
-pub(crate) fn data_lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = Line<'a>> {
+pub(crate) fn data_lines<'a>(file: &'a str, text: &'a str) -> impl Iterator<Item = TextLine<'a>> {
     lines(file, text).filter(|line| !line.is_empty())
 }
 

@@ -1,10 +1,12 @@
 //! Orientations in XML: Metashape's `cameras.xml` and ContextCapture's BlocksExchange.
 //!
-//! * Metashape: 4 x 4 per camera, camera (y down, z forward) to chunk; the chunk's rotation, translation and scale
-//!   lead to the world. cx, cy count from the middle of the image; p1 and p2 are exchanged against ours.
-//! * BlocksExchange: rotation world to camera (`XRightYDown` unless `CameraOrientation` says `XRightYUp`) and
-//!   centre; the principal point counts from the centre of the top-left pixel; the focal length is in
-//!   pixels, or in the unit of `SensorSize`, which belongs to the longer side. P1, P2 as Metashape's.
+//! * Metashape: 4 x 4 per camera, camera (y down, z forward) to chunk; the chunk's rotation,
+//!   translation and scale lead to the world. cx, cy count from the middle of the image; p1 and p2
+//!   are exchanged against ours.
+//! * BlocksExchange: rotation world to camera (`XRightYDown` unless `CameraOrientation` says
+//!   `XRightYUp`) and centre; the principal point counts from the centre of the top-left pixel; the
+//!   focal length is in pixels, or in the unit of `SensorSize`, which belongs to the longer side.
+//!   P1, P2 as Metashape's.
 
 use std::collections::BTreeMap;
 
@@ -13,12 +15,12 @@ use roxmltree::{Document, Node};
 
 use crate::camera::Distortion;
 use crate::error::{Error, Result};
-use crate::orientation::{Orientation, pinhole};
+use crate::orientation::image_orientation::{Orientation, pinhole};
 
 /// Reads Metashape's cameras.
 pub(crate) fn read_metashape(path: &str, text: &str) -> Result<Vec<Orientation>> {
     let document = parse(path, text)?;
-    let file = Reader { path };
+    let file = XmlReader { path };
     let mut found = Vec::new();
     for chunk in document.descendants().filter(|n| n.has_tag_name("chunk")) {
         let sensors = file.sensors(chunk)?;
@@ -58,7 +60,7 @@ pub(crate) fn read_metashape(path: &str, text: &str) -> Result<Vec<Orientation>>
 /// Reads a block of ContextCapture.
 pub(crate) fn read_blocks(path: &str, text: &str) -> Result<Vec<Orientation>> {
     let document = parse(path, text)?;
-    let file = Reader { path };
+    let file = XmlReader { path };
     let mut found = Vec::new();
     for group in document
         .descendants()
@@ -99,19 +101,19 @@ pub(crate) fn read_blocks(path: &str, text: &str) -> Result<Vec<Orientation>> {
     Ok(found)
 }
 
-struct Lens {
+struct Sensor {
     k: Matrix3<f64>,
     distortion: Option<Distortion>,
     size: (u32, u32),
 }
 
 /// Reads elements of one file; refusals name it and the line.
-pub(crate) struct Reader<'a> {
+pub(crate) struct XmlReader<'a> {
     pub path: &'a str,
 }
 
-impl Reader<'_> {
-    fn sensors(&self, chunk: Node) -> Result<BTreeMap<String, Lens>> {
+impl XmlReader<'_> {
+    fn sensors(&self, chunk: Node) -> Result<BTreeMap<String, Sensor>> {
         let mut lenses = BTreeMap::new();
         for sensor in chunk.descendants().filter(|n| n.has_tag_name("sensor")) {
             let calibrations = || sensor.children().filter(|n| n.has_tag_name("calibration"));
@@ -138,7 +140,7 @@ impl Reader<'_> {
             let (cx, cy) = (or_zero("cx")?, or_zero("cy")?);
             let (b1, b2) = (or_zero("b1")?, or_zero("b2")?);
             let (w, h) = (f64::from(size.0), f64::from(size.1));
-            let lens = Lens {
+            let lens = Sensor {
                 k: Matrix3::new(
                     f + b1,
                     b2,
@@ -183,7 +185,7 @@ impl Reader<'_> {
         Ok(m)
     }
 
-    fn photogroup(&self, group: Node) -> Result<Lens> {
+    fn photogroup(&self, group: Node) -> Result<Sensor> {
         let dimensions = child(group, "ImageDimensions")
             .ok_or_else(|| self.error(group, "ImageDimensions are missing"))?;
         let size = (
@@ -206,7 +208,7 @@ impl Reader<'_> {
             Some(lens) => self.number(lens, name),
             None => Ok(0.0),
         };
-        Ok(Lens {
+        Ok(Sensor {
             k: Matrix3::new(f, 0.0, cx, 0.0, f, cy, 0.0, 0.0, 1.0),
             distortion: Distortion::brown(
                 [or_zero("K1")?, or_zero("K2")?, or_zero("K3")?],

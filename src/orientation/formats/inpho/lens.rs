@@ -1,24 +1,26 @@
-//! Lens distortion as INPHO states it.
+//! InphoLens distortion as INPHO states it.
 //!
-//! `$RADIAL_COEFFS` (k0, k1, ...) and `$DECENTRE_COEFFS` (p1, p2) of `$DISTORTION_TYPE : Polynomial`, or a table of radius and
-//! distortion (a key of DISTORTION with rows of two numbers).
+//! `$RADIAL_COEFFS` (k0, k1, ...) and `$DECENTRE_COEFFS` (p1, p2) of `$DISTORTION_TYPE :
+//! Polynomial`, or a table of radius and distortion (a key of DISTORTION with rows of two numbers).
 //!
 //! ```text
-//! measured - ideal = (x, y) (k0 + k1 r^2 + k2 r^4 + ...) + (p1 (r^2 + 2 x^2) + 2 p2 x y, p2 (r^2 + 2 y^2) + 2 p1 x y)
+//! measured - ideal = (x, y) (k0 + k1 r^2 + k2 r^4 + ...)
+//!                    + (p1 (r^2 + 2 x^2) + 2 p2 x y, p2 (r^2 + 2 y^2) + 2 p1 x y)
 //! ```
 //!
-//! Assumption: x, y and r are the measured place in mm from the principal point, as is usual in photogrammetry, and the
-//! distortion is positive outwards, as on calibration certificates. A table's distortion is in mm, or in micrometres where mm would
-//! be more than a twentieth of the radius. If the images are free of distortion already, the doctor will see it.
+//! Assumption: x, y and r are the measured position in mm from the principal point, as is usual in
+//! photogrammetry, and the distortion is positive outwards, as on calibration certificates. A
+//! table's distortion is in mm, or in micrometres where mm would be more than a twentieth of the
+//! radius. If the images are free of distortion already, the orientation check will show it.
 
 use nalgebra::Vector2;
 
-use super::Block;
+use super::block::ProjectBlock;
 use crate::error::Result;
 
-/// Measured against ideal places, mm.
+/// The distortion: measured minus ideal position, mm.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Lens {
+pub(crate) enum InphoLens {
     None,
     /// Radial k0, k1, ..., and p1, p2.
     Polynomial(Vec<f64>, [f64; 2]),
@@ -26,8 +28,8 @@ pub(crate) enum Lens {
     Table(Vec<[f64; 2]>),
 }
 
-impl Lens {
-    pub fn read(camera: &Block) -> Result<Self> {
+impl InphoLens {
+    pub fn read(camera: &ProjectBlock) -> Result<Self> {
         if camera.values.contains_key("RADIAL_COEFFS") {
             let radial = camera.all_numbers("RADIAL_COEFFS")?;
             let decentre = camera.all_numbers("DECENTRE_COEFFS")?;
@@ -61,7 +63,7 @@ impl Lens {
         }
     }
 
-    /// Radii at which the lens is known or may be asked, mm, up to the farthest corner.
+    /// Radii at which the distortion is known or sampled, mm, up to the farthest corner.
     pub fn radii(&self, farthest_mm: f64) -> Vec<f64> {
         const STEPS: i32 = 24;
         match self {
@@ -74,7 +76,7 @@ impl Lens {
         }
     }
 
-    /// The ideal place of a measured one, mm from the principal point.
+    /// The ideal position of a measured one, mm from the principal point.
     pub fn ideal(&self, measured: &Vector2<f64>) -> Vector2<f64> {
         let (x, y, r2) = (measured.x, measured.y, measured.norm_squared());
         match self {
@@ -87,7 +89,7 @@ impl Lens {
                 );
                 measured * (1.0 - g) - aside
             }
-            // Asked at the radii of the rows only.
+            // Only used at the radii of the rows.
             Self::Table(rows) => {
                 let radius = r2.sqrt();
                 let gap = |row: &[f64; 2]| (row[0] - radius).abs();

@@ -1,32 +1,35 @@
-//! INPHO's project file (`.prj`): keys `$KEY : value`, whose further values stand on the lines below.
+//! INPHO's project file (`.prj`): keys `$KEY : value`, whose further values follow on the lines
+//! below.
 //!
-//! * `$CCD_INTERIOR_ORIENTATION` leads from millimetres in the image plane (x right, y up) to pixels: an affine map
-//!   that flips y, and turns the image where the sensor is mounted turned. `$PIXEL_REFERENCE` says which point of the
-//!   first pixel is (0, 0).
-//! * `$EXT_ORI`: focal length, X, Y, Z, and the matrix Rx(omega) Ry(phi) Rz(kappa), from the image to the world.
+//! * `$CCD_INTERIOR_ORIENTATION` leads from millimetres in the image plane (x right, y up) to
+//!   pixels: an affine map that flips y, and turns the image where the sensor is mounted turned.
+//!   `$PIXEL_REFERENCE` states which point of the first pixel is (0, 0).
+//! * `$EXT_ORI`: focal length, X, Y, Z, and the matrix Rx(omega) Ry(phi) Rz(kappa), from the image
+//!   to the world.
 //! * The distortion: `lens`.
 //!
-//! `$CAMERA_MOUNT_ROTATION` belongs to the angles of the flight, not to the matrix, and is not read.
+//! `$CAMERA_MOUNT_ROTATION` belongs to the angles of the flight, not to the matrix, and is not
+//! read.
 
+mod block;
 mod lens;
-
-use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3};
 
-use self::lens::Lens;
-use super::lens::fit;
+use self::block::{ProjectBlock, numbers, project_blocks};
+use self::lens::InphoLens;
+use super::brown_fit::fit;
 use super::projection::decompose;
-use super::text::{Line, data_lines};
+use super::text::TextLine;
 use crate::camera::Distortion;
 use crate::error::Result;
 use crate::math;
-use crate::orientation::{Orientation, pinhole};
+use crate::orientation::image_orientation::{Orientation, pinhole};
 
 /// Reads the photos of a project.
 pub(crate) fn read(path: &str, text: &str, warnings: &mut Vec<String>) -> Result<Vec<Orientation>> {
-    let blocks = blocks(path, text);
-    let cameras: Vec<&Block> = blocks.iter().filter(|b| b.is_camera).collect();
+    let blocks = project_blocks(path, text);
+    let cameras: Vec<&ProjectBlock> = blocks.iter().filter(|b| b.is_camera).collect();
     let (mut found, mut distorts) = (Vec::new(), false);
     for photo in blocks.iter().filter(|b| !b.is_camera) {
         // Photos without it were not oriented.
@@ -41,8 +44,8 @@ pub(crate) fn read(path: &str, text: &str, warnings: &mut Vec<String>) -> Result
             let problem = format!("its camera {} is missing", id.unwrap_or("(without name)"));
             return Err(photo.start.error(problem, "a $CAMERA block of this $ID"));
         };
-        let interior = Interior::read(camera)?;
-        distorts |= interior.lens != Lens::None;
+        let interior = InteriorOrientation::read(camera)?;
+        distorts |= interior.lens != InphoLens::None;
         found.push(orientation(photo, exterior, &interior)?);
     }
     if distorts {
@@ -53,112 +56,18 @@ pub(crate) fn read(path: &str, text: &str, warnings: &mut Vec<String>) -> Result
     Ok(found)
 }
 
-/// `$PHOTO` or `$CAMERA`, with the values of its keys: the rest of the line and those below.
-struct Block<'a> {
-    is_camera: bool,
-    start: Line<'a>,
-    values: BTreeMap<&'a str, Vec<Line<'a>>>,
-}
-
-fn blocks<'a>(path: &'a str, text: &'a str) -> Vec<Block<'a>> {
-    let mut blocks: Vec<Block> = Vec::new();
-    let (mut inside, mut key) = (false, None);
-    for line in data_lines(path, text) {
-        let Some(named) = line.text.strip_prefix('$') else {
-            if let (true, Some(key), Some(block)) = (inside, key, blocks.last_mut()) {
-                block.values.entry(key).or_default().push(line);
-            }
-            continue;
-        };
-        let (name, value) = named.split_once(':').unwrap_or((named, ""));
-        let name = name.split_whitespace().next().unwrap_or_default();
-        key = None;
-        match name {
-            "PHOTO" | "CAMERA" | "CAMERA_DEFINITION" => {
-                inside = true;
-                blocks.push(Block {
-                    is_camera: name != "PHOTO",
-                    start: line,
-                    values: BTreeMap::new(),
-                });
-            }
-            "PROJECT" | "CONTROL_POINTS" | "STRIP" | "STATION" | "MULTIHEADSYSTEM" => {
-                inside = false
-            }
-            _ => {
-                let Some(block) = blocks.last_mut().filter(|_| inside) else {
-                    continue;
-                };
-                // Nested blocks repeat keys ($ID): the first one counts.
-                if !block.values.contains_key(name) {
-                    let text = value.trim();
-                    block.values.insert(name, vec![Line { text, ..line }]);
-                    key = Some(name);
-                }
-            }
-        }
-    }
-    blocks
-}
-
-impl Block<'_> {
-    /// The value beside a key.
-    fn word(&self, key: &str) -> Option<&str> {
-        let text = self.values.get(key)?.first()?.text;
-        (!text.is_empty()).then_some(text)
-    }
-
-    /// All numbers of a key and below it; none where it is missing.
-    fn all_numbers(&self, key: &str) -> Result<Vec<f64>> {
-        let mut values = Vec::new();
-        for line in self.values.get(key).map_or(&[][..], |lines| lines) {
-            values.extend(line.numbers(&line.fields(), "a number")?);
-        }
-        Ok(values)
-    }
-
-    /// The numbers of a key.
-    fn numbers<const N: usize>(&self, key: &str) -> Result<[f64; N]> {
-        let lines = self.values.get(key);
-        let lines = lines.ok_or_else(|| {
-            self.start
-                .error(format!("${key} is missing"), format!("a line ${key} :"))
-        })?;
-        numbers(lines, key)
-    }
-}
-
-/// Exactly so many numbers on lines that follow each other; the first line may hold a date.
-fn numbers<const N: usize>(lines: &[Line], key: &str) -> Result<[f64; N]> {
-    let mut values = Vec::new();
-    for (i, line) in lines.iter().enumerate() {
-        // Behind $EXT_ORI stands the time of its adjustment.
-        if i == 0 && key == "EXT_ORI" {
-            continue;
-        }
-        values.extend(line.numbers(&line.fields(), "a number")?);
-    }
-    let count = values.len();
-    values.try_into().map_err(|_| {
-        lines[0].error(
-            format!("${key} has {count} numbers"),
-            format!("{N} numbers"),
-        )
-    })
-}
-
-/// Interior orientation: pixel = A (mm, y up) + c, first pixel's centre at (0.5, 0.5).
-struct Interior {
+/// InteriorOrientation orientation: pixel = A (mm, y up) + c, first pixel's centre at (0.5, 0.5).
+struct InteriorOrientation {
     pixel_from_mm: Matrix2<f64>,
     pixel_of_zero: Vector2<f64>,
     principal_mm: Vector2<f64>,
     focal_mm: f64,
     size: (u32, u32),
-    lens: Lens,
+    lens: InphoLens,
 }
 
-impl Interior {
-    fn read(camera: &Block) -> Result<Self> {
+impl InteriorOrientation {
+    fn read(camera: &ProjectBlock) -> Result<Self> {
         let [a, b, c, d, e, f] = camera.numbers("CCD_INTERIOR_ORIENTATION")?;
         let side = |key: &str| -> Result<u32> {
             let [value] = camera.numbers::<1>(key)?;
@@ -183,11 +92,11 @@ impl Interior {
             principal_mm: Vector2::from(principal),
             focal_mm: camera.numbers::<1>("FOCAL_LENGTH")?[0],
             size: (side("CCD_COLUMNS")?, side("CCD_ROWS")?),
-            lens: Lens::read(camera)?,
+            lens: InphoLens::read(camera)?,
         })
     }
 
-    /// Pairs of (ideal, measured) places, pixels.
+    /// Pairs of (ideal, measured) positions, pixels.
     fn lens_pairs(&self) -> Option<Vec<(Vector2<f64>, Vector2<f64>)>> {
         const DIRECTIONS: i32 = 16;
         let mm_from_pixel = self.pixel_from_mm.try_inverse()?;
@@ -229,7 +138,11 @@ impl Interior {
     }
 }
 
-fn orientation(photo: &Block, exterior: &[Line], interior: &Interior) -> Result<Orientation> {
+fn orientation(
+    photo: &ProjectBlock,
+    exterior: &[TextLine],
+    interior: &InteriorOrientation,
+) -> Result<Orientation> {
     let n = numbers::<13>(exterior, "EXT_ORI")?;
     let world_from_image = Matrix3::from_row_slice(&n[4..]);
     let m = interior.pixel_from_direction() * world_from_image.transpose();
@@ -257,17 +170,17 @@ fn orientation(photo: &Block, exterior: &[Line], interior: &Interior) -> Result<
     })
 }
 
-/// The calibration and the distortion that stand for the lens of the file.
+/// Calibration and distortion (Brown) of the lens in the file.
 fn with_lens(
-    photo: &Block,
+    photo: &ProjectBlock,
     mut k: Matrix3<f64>,
-    interior: &Interior,
+    interior: &InteriorOrientation,
 ) -> Result<(Matrix3<f64>, Option<Distortion>)> {
     // Tables are rounded to a micrometre or a tenth of it.
     let allowed_px = match interior.lens {
-        Lens::None => return Ok((k, None)),
-        Lens::Polynomial(..) => 0.05,
-        Lens::Table(_) => 0.5,
+        InphoLens::None => return Ok((k, None)),
+        InphoLens::Polynomial(..) => 0.05,
+        InphoLens::Table(_) => 0.5,
     };
     let refusal = || {
         let problem =
@@ -325,7 +238,7 @@ mod tests {
         );
     }
 
-    /// A camera of 100 mm and 5 micrometres, whose image is turned where `turned` says so.
+    /// A camera of 100 mm and 5 micrometres, whose image is rotated if `turned`.
     fn with(lens: &str, turned: bool) -> Result<Orientation> {
         let interior = match turned {
             true => "0 -200 3000\n -200 0 2000",
@@ -338,7 +251,7 @@ mod tests {
         Ok(read("a.prj", &text, &mut Vec::new())?.remove(0))
     }
 
-    /// Where the camera puts the ray that is ideally at this place of the image plane, mm.
+    /// Image position of the ray whose ideal position in the image plane is this, mm.
     fn pixel(found: &Orientation, ideal_mm: Vector2<f64>) -> Vector2<f64> {
         let ray = found.r * Vector3::new(ideal_mm.x, ideal_mm.y, -50.0);
         let seen = found

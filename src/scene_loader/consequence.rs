@@ -1,27 +1,28 @@
-//! The doctor's diagnosis in the words of a refusal or a warning.
+//! What follows from the finding of the orientation check: a refusal or a warning, in words.
 
 use super::names::listed;
 use crate::error::{Error, Result};
-use crate::orientation_check::{Diagnosis, Examination, Patient};
+use crate::orientation_check::{CheckFinding, CheckedView, OrientationCheck};
 
-/// A warning, or the refusal of the scene. `refusal` is what the places of the cameras alone gave reason to say.
-pub(crate) fn verdict(
-    examination: &Examination,
-    patients: &[Patient],
+/// A warning, or the refusal of the scene. `refusal` is the one that the positions of the cameras
+/// alone gave reason for.
+pub(crate) fn warning_or_refusal(
+    check: &OrientationCheck,
+    views: &[CheckedView],
     refusal: Option<Error>,
 ) -> Result<Option<String>> {
-    let diagnosis = &examination.diagnosis;
+    let finding = &check.finding;
     let contradiction = |problem, advice: &str| Error::Contradiction {
         problem,
         advice: advice.to_owned(),
-        report: Box::new(examination.report()),
+        report: Box::new(check.report()),
     };
-    if let Diagnosis::Explained {
+    if let CheckFinding::Explained {
         before,
         after,
         words,
         ..
-    } = diagnosis
+    } = finding
     {
         return Err(contradiction(
             format!(
@@ -32,8 +33,8 @@ pub(crate) fn verdict(
         ));
     }
     if let Some(refusal) = refusal {
-        return Err(match (diagnosis, refusal) {
-            (Diagnosis::Sound(agreement) | Diagnosis::Offset { agreement, .. }, refusal) => {
+        return Err(match (finding, refusal) {
+            (CheckFinding::Sound(agreement) | CheckFinding::Offset { agreement, .. }, refusal) => {
                 contradiction(
                     format!(
                         "{} (but the images agree with one another to {:.2}, so it is the world that is turned or \
@@ -48,25 +49,25 @@ pub(crate) fn verdict(
             (_, refusal) => refusal,
         });
     }
-    Ok(match diagnosis {
-        Diagnosis::Offset {
+    Ok(match finding {
+        CheckFinding::Offset {
             offsets_px: [before, after],
             words,
             ..
         } => Some(format!(
             "the images are offset against their orientation by {before:.2} px in the mean, and by {after:.2} px if {words}"
         )),
-        Diagnosis::Odd(_, odd) => Some(format!(
+        CheckFinding::OutlierViews(_, outliers) => Some(format!(
             "views that agree with none of the others, although those agree: {} (check their orientation, or \
              leave them out)",
-            listed(odd.iter().map(|&i| patients[i].name))
+            listed(outliers.iter().map(|&i| views[i].name))
         )),
-        Diagnosis::Unexplained(agreement) => Some(format!(
+        CheckFinding::Unexplained(agreement) => Some(format!(
             "the images hardly agree with their orientation (to {:.2}, where 0 is chance and 1 perfect), and no usual \
              mistake explains it: check that they belong together",
             agreement.score
         )),
-        Diagnosis::Sound(_) | Diagnosis::Unknown(_) | Diagnosis::Explained { .. } => None,
+        CheckFinding::Sound(_) | CheckFinding::Unknown(_) | CheckFinding::Explained { .. } => None,
     })
 }
 

@@ -1,21 +1,22 @@
-//! The usual suspects: mistakes that turn a sound orientation into a wrong one, and how to undo them.
+//! The usual errors of orientation files: wrong units, conventions and assignments, and the cameras
+//! without them.
 
 use std::fmt;
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
-use super::Patient;
+use super::view::CheckedView;
 use crate::camera::Camera;
 use crate::math;
 use crate::orientation::{
     AngleUnit, Crop, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa,
 };
 
-/// A mistake that the orientation may suffer from.
+/// An error that the orientation may contain.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Suspect {
+pub enum ErrorHypothesis {
     /// The angles are stated in another unit, another order, or turn in another sequence.
-    Angles(AngleUnit, AngleOrder, Sequence),
+    AngleConvention(AngleUnit, AngleOrder, RotationSequence),
     /// Angles of another unit went into the matrices: all are too large by this factor.
     AnglesScaled(f64),
     /// The rotation matrix is that from the camera to the world.
@@ -32,18 +33,18 @@ pub enum Suspect {
     CropFromBottom,
     /// Column and row of the crops are exchanged.
     CropExchanged,
-    /// The crop is taken off the principal point once too often.
+    /// The crop offset is subtracted from the principal point twice.
     CropTwice,
     /// The images are assigned in reverse order.
-    Reversed,
-    /// The images are assigned to the neighbour so many places on.
-    Cycled(usize),
+    ReversedOrder,
+    /// Each image must take the orientation of the one this many positions later.
+    CyclicOrder(usize),
     /// These two views have each other's orientation.
-    Swapped(usize, usize),
+    SwappedViews(usize, usize),
     /// The focal length must be multiplied by this factor: it was in other units than pixels.
-    Focal(f64),
+    FocalLengthUnit(f64),
     /// The pixel origin is half a pixel off; this must be added to the principal point.
-    HalfPixel(f64),
+    HalfPixelOrigin(f64),
 }
 
 /// The order in which a list holds the angles.
@@ -59,26 +60,27 @@ pub enum AngleOrder {
 
 /// The sequence in which the angles turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sequence {
+pub enum RotationSequence {
     /// Rx(omega) Ry(phi) Rz(kappa).
     OmegaFirst,
     /// Rz(kappa) Ry(phi) Rx(omega).
     KappaFirst,
 }
 
-/// Among more views than these, exchanged ones are told by the agreement of the others: pairs of views are many.
-const MOST_SWAPPED: usize = 8;
+/// Among more views, exchanged ones are found by the agreement of the others: pairs of views are
+/// too many to test.
+const MAX_SWAPPED_VIEWS: usize = 8;
 
-impl Suspect {
-    /// Every suspect that these views may suffer from.
-    pub(crate) fn lineup(patients: &[Patient]) -> Vec<Self> {
+impl ErrorHypothesis {
+    /// All hypotheses that these views allow.
+    pub(crate) fn all_of(views: &[CheckedView]) -> Vec<Self> {
         let mut all = Vec::new();
-        if patients.iter().all(|p| p.angles.is_some()) {
+        if views.iter().all(|p| p.angles.is_some()) {
             for unit in AngleUnit::ALL {
                 for order in AngleOrder::ALL {
                     all.extend(
-                        [Sequence::OmegaFirst, Sequence::KappaFirst]
-                            .map(|sequence| Self::Angles(unit, order, sequence)),
+                        [RotationSequence::OmegaFirst, RotationSequence::KappaFirst]
+                            .map(|sequence| Self::AngleConvention(unit, order, sequence)),
                     );
                 }
             }
@@ -91,28 +93,30 @@ impl Suspect {
             Self::CameraYUp,
             Self::PrincipalPointFromBottom,
             Self::PrincipalPointInMiddle,
-            Self::Reversed,
+            Self::ReversedOrder,
         ]);
-        if patients.iter().all(|p| p.crop.is_some()) {
+        if views.iter().all(|p| p.crop.is_some()) {
             all.extend([Self::CropFromBottom, Self::CropExchanged, Self::CropTwice]);
         }
-        let count = patients.len();
-        all.extend((1..count).map(Self::Cycled));
-        if count <= MOST_SWAPPED {
-            all.extend((0..count).flat_map(|a| (a + 1..count).map(move |b| Self::Swapped(a, b))));
+        let count = views.len();
+        all.extend((1..count).map(Self::CyclicOrder));
+        if count <= MAX_SWAPPED_VIEWS {
+            all.extend(
+                (0..count).flat_map(|a| (a + 1..count).map(move |b| Self::SwappedViews(a, b))),
+            );
         }
         all
     }
 
-    /// The cameras without this mistake; `None` where it cannot be.
-    pub fn treated(self, patients: &[Patient]) -> Option<Vec<Camera>> {
-        let count = patients.len();
+    /// The cameras without this error; `None` where the views do not allow it.
+    pub fn corrected_cameras(self, views: &[CheckedView]) -> Option<Vec<Camera>> {
+        let count = views.len();
         let of_view = |i: usize| -> Option<Camera> {
-            let patient = &patients[i];
+            let view = &views[i];
             match self {
-                Self::Reversed => adopted(patient, &patients[count - 1 - i]),
-                Self::Cycled(n) => adopted(patient, &patients[(i + n) % count]),
-                Self::Swapped(a, b) => {
+                Self::ReversedOrder => with_orientation_of(view, &views[count - 1 - i]),
+                Self::CyclicOrder(n) => with_orientation_of(view, &views[(i + n) % count]),
+                Self::SwappedViews(a, b) => {
                     let from = if i == a {
                         b
                     } else if i == b {
@@ -120,26 +124,26 @@ impl Suspect {
                     } else {
                         i
                     };
-                    adopted(patient, &patients[from])
+                    with_orientation_of(view, &views[from])
                 }
-                _ => self.treat_one(patient),
+                _ => self.corrected_camera(view),
             }
         };
         (0..count).map(of_view).collect()
     }
 
-    fn treat_one(self, patient: &Patient) -> Option<Camera> {
-        let mut camera = patient.camera.clone();
+    fn corrected_camera(self, view: &CheckedView) -> Option<Camera> {
+        let mut camera = view.camera.clone();
         let (width, height) = (f64::from(camera.width), f64::from(camera.height));
         match self {
-            Self::Angles(unit, order, sequence) => {
-                let angles = order.sorted(patient.angles?).map(|a| a * unit.radians());
+            Self::AngleConvention(unit, order, sequence) => {
+                let angles = order.sorted(view.angles?).map(|a| a * unit.radians());
                 camera.r = sequence.rotation(angles);
             }
             Self::AnglesScaled(factor) => {
                 let [omega, phi, kappa] = omega_phi_kappa_from_rotation(&camera.r);
-                // Lists count kappa from 0 to a full turn, or to half a turn both ways: the nearer to the
-                // factor's own range is unknown, but the former is what differs.
+                // Lists count kappa from 0 to a full turn, or to half a turn both ways: the nearer
+                // to the factor's own range is unknown, but the former is what differs.
                 let full = std::f64::consts::TAU;
                 let kappa = if kappa < 0.0 && factor < 1.0 {
                     kappa + full
@@ -152,10 +156,10 @@ impl Suspect {
             Self::Transposed => camera.r = camera.r.transpose(),
             Self::InversePose => {
                 // The file's t was taken for -R C; it is C itself.
-                let world = camera.center + patient.origin;
+                let world = camera.center + view.origin;
                 let t = -(camera.r * world.coords);
                 camera.r = camera.r.transpose();
-                camera.center = Point3::from(t - patient.origin);
+                camera.center = Point3::from(t - view.origin);
             }
             Self::CameraYUp => {
                 camera.r = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)) * camera.r;
@@ -165,40 +169,42 @@ impl Suspect {
                 (camera.k[(0, 2)], camera.k[(1, 2)]) = (width / 2.0, height / 2.0);
             }
             Self::CropFromBottom => {
-                let crop = patient.crop?;
+                let crop = view.crop?;
                 camera.k[(1, 2)] += crop.row - (crop.frame[1] - crop.row - height);
             }
             Self::CropExchanged => {
-                let crop = patient.crop?;
+                let crop = view.crop?;
                 camera.k[(0, 2)] += crop.column - crop.row;
                 camera.k[(1, 2)] += crop.row - crop.column;
             }
             Self::CropTwice => {
-                let Crop { column, row, .. } = patient.crop?;
+                let Crop { column, row, .. } = view.crop?;
                 camera.k[(0, 2)] += column;
                 camera.k[(1, 2)] += row;
             }
-            Self::Focal(factor) => {
+            Self::FocalLengthUnit(factor) => {
                 camera.k[(0, 0)] *= factor;
                 camera.k[(1, 1)] *= factor;
             }
-            Self::HalfPixel(step) => {
+            Self::HalfPixelOrigin(step) => {
                 camera.k[(0, 2)] += step;
                 camera.k[(1, 2)] += step;
             }
-            Self::Reversed | Self::Cycled(_) | Self::Swapped(..) => {}
+            Self::ReversedOrder | Self::CyclicOrder(_) | Self::SwappedViews(..) => {}
         }
         Some(camera)
     }
 
-    /// The suspicion as a clause, with the files' words.
-    pub(crate) fn describe(self, patients: &[Patient]) -> String {
-        let name = |i: usize| patients[i].name.to_owned();
+    /// The hypothesis as a clause, in the words of the files.
+    pub(crate) fn describe(self, views: &[CheckedView]) -> String {
+        let name = |i: usize| views[i].name.to_owned();
         match self {
-            Self::Angles(unit, order, sequence) => {
+            Self::AngleConvention(unit, order, sequence) => {
                 let turn = match sequence {
-                    Sequence::OmegaFirst => "",
-                    Sequence::KappaFirst => ", turned in the sequence Rz(kappa) Ry(phi) Rx(omega)",
+                    RotationSequence::OmegaFirst => "",
+                    RotationSequence::KappaFirst => {
+                        ", turned in the sequence Rz(kappa) Ry(phi) Rx(omega)"
+                    }
                 };
                 format!("the angles are {order} in {}{turn}", unit.name())
             }
@@ -224,24 +230,24 @@ impl Suspect {
             }
             Self::CropExchanged => "column and row of the crop offsets are exchanged".to_owned(),
             Self::CropTwice => "the crop offsets are applied twice".to_owned(),
-            Self::Reversed => {
+            Self::ReversedOrder => {
                 "the images are in reverse order against their orientations".to_owned()
             }
-            Self::Cycled(n) => format!(
+            Self::CyclicOrder(n) => format!(
                 "the images are displaced against their orientations by {n}: {} has that of {}",
                 name(0),
                 name(n)
             ),
-            Self::Swapped(a, b) => {
+            Self::SwappedViews(a, b) => {
                 format!("{} and {} have each other's orientation", name(a), name(b))
             }
-            Self::Focal(f) => format!(
+            Self::FocalLengthUnit(f) => format!(
                 "the focal length {:.2} is not in pixels: {:.1} px fits, {:.4} px a unit",
-                patients[0].camera.k[(0, 0)],
-                patients[0].camera.k[(0, 0)] * f,
+                views[0].camera.k[(0, 0)],
+                views[0].camera.k[(0, 0)] * f,
                 f
             ),
-            Self::HalfPixel(step) => format!(
+            Self::HalfPixelOrigin(step) => format!(
                 "the pixel origin is half a pixel off: add {step:+.1} px to the principal point (the centre \
                  of the top-left pixel is {})",
                 if step > 0.0 {
@@ -254,9 +260,9 @@ impl Suspect {
     }
 }
 
-/// The size of one's own image with another's orientation, where the images are alike.
-fn adopted(own: &Patient, other: &Patient) -> Option<Camera> {
-    let size = |p: &Patient| (p.camera.width, p.camera.height);
+/// The camera of another view, where both images have the same size.
+fn with_orientation_of(own: &CheckedView, other: &CheckedView) -> Option<Camera> {
+    let size = |p: &CheckedView| (p.camera.width, p.camera.height);
     (size(own) == size(other)).then(|| other.camera.clone())
 }
 
@@ -287,7 +293,7 @@ impl fmt::Display for AngleOrder {
     }
 }
 
-impl Sequence {
+impl RotationSequence {
     fn rotation(self, [omega, phi, kappa]: [f64; 3]) -> Matrix3<f64> {
         match self {
             Self::OmegaFirst => rotation_from_omega_phi_kappa(omega, phi, kappa).into_inner(),

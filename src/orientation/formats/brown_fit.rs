@@ -1,23 +1,23 @@
-//! Brown's distortion for a lens that a file describes the other way round, from measured to ideal places.
+//! Brown's distortion for a lens whose file states the inverse, from measured to ideal points.
 //!
-//! The coefficients (ideal to measured, [`Distortion`]) and a change of the focal length are found by least squares
-//! over pairs of places; all of them are linear.
+//! The coefficients (ideal to measured, [`Distortion`]) and a change of the focal length are found
+//! by least squares over pairs of points; all of them are linear.
 
 use nalgebra::{Matrix6, Point2, Vector6};
 
 use crate::camera::Distortion;
 
-/// A lens, and by what its focal length is to be multiplied.
-pub(crate) struct Fitted {
+/// A distortion, and the factor of its focal length.
+pub(crate) struct FittedLens {
     pub distortion: Distortion,
     pub focal_factor: f64,
-    /// Largest distance between a measured place and where the lens puts the ideal one, in focal lengths.
+    /// Largest distance between a measured point and the distorted ideal one, in focal lengths.
     pub worst: f64,
 }
 
-/// Fits a lens about the principal point to pairs (ideal, measured), principal point subtracted and divided by the focal
-/// length. `None` where they determine none.
-pub(crate) fn fit(pairs: &[(Point2<f64>, Point2<f64>)]) -> Option<Fitted> {
+/// Fits a lens about the principal point to pairs (ideal, measured), principal point subtracted and
+/// divided by the focal length. `None` where they determine none.
+pub(crate) fn fit(pairs: &[(Point2<f64>, Point2<f64>)]) -> Option<FittedLens> {
     let far = pairs
         .iter()
         .map(|(p, _)| p.coords.norm())
@@ -25,7 +25,7 @@ pub(crate) fn fit(pairs: &[(Point2<f64>, Point2<f64>)]) -> Option<Fitted> {
     if !(far > 0.0 && far.is_finite()) {
         return None;
     }
-    // In units of the farthest place, so that no power is lost.
+    // Scaled by the farthest point, so that high powers keep their precision.
     let (mut normal, mut right) = (Matrix6::zeros(), Vector6::zeros());
     for (ideal, measured) in pairs {
         let (d, change) = (ideal.coords / far, (measured - ideal) / far);
@@ -49,14 +49,14 @@ pub(crate) fn fit(pairs: &[(Point2<f64>, Point2<f64>)]) -> Option<Fitted> {
     let miss = |(ideal, measured): &(Point2<f64>, Point2<f64>)| {
         (distortion.distort(ideal).coords * focal_factor - measured.coords).norm()
     };
-    Some(Fitted {
+    Some(FittedLens {
         worst: pairs.iter().map(miss).fold(0.0, f64::max),
         distortion,
         focal_factor,
     })
 }
 
-/// What one unit of (scale, k1, k2, k3, p1, p2) does to x and to y.
+/// Derivatives of x and y with respect to (scale, k1, k2, k3, p1, p2).
 fn basis(x: f64, y: f64) -> [Vector6<f64>; 2] {
     let r2 = x * x + y * y;
     let row =

@@ -1,17 +1,18 @@
-//! Points of a reduced image that can be recognised elsewhere: where the grey values change in two directions.
+//! Interest points of a reduced image: corners, where the grey values change in two directions.
 
 use nalgebra::Point2;
 
 use crate::raster::Gray;
 
-/// Cells along the longer side of the image; each gives its best point, so that points lie all over it.
+/// Cells along the longer side of the image; each gives its best point, so that points are spread
+/// over it.
 const CELLS: usize = 9;
 
 /// Half the window of the structure tensor, pixels.
 const REACH: usize = 2;
 
-/// Least change of the grey value per pixel in the weaker direction (0 to 1). Assumption: above the noise of
-/// eight-bit images.
+/// Least change of the grey value per pixel in the weaker direction (0 to 1). Assumption: above the
+/// noise of eight-bit images.
 const LEAST_CHANGE: f32 = 0.008;
 
 /// The points, pixels of the reduced image, at least `margin` from its border.

@@ -1,4 +1,4 @@
-//! Orientations broken in the usual ways: the doctor names the mistake, and leaves sound scenes alone.
+//! Orientations with the usual errors: the check names the error, and leaves correct scenes alone.
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used)]
 
@@ -254,19 +254,19 @@ fn a_refusal_says_what_was_tried() {
         panic!("{what}: {refusal}");
     };
     assert_eq!(report.finding, Finding::Explained);
-    let best = &report.trials[0];
-    assert!(best.words.contains(name) && best.all_pairs, "{best:?}");
-    assert_eq!(Some(best.agreement), report.cured);
+    let best = &report.tested[0];
+    assert!(best.hypothesis.contains(name) && best.all_pairs, "{best:?}");
+    assert_eq!(Some(best.agreement), report.corrected);
     assert!(best.agreement.score > report.stated.score);
-    assert!(report.trials.len() > 4);
+    assert!(report.tested.len() > 4);
 
     let sound = load(&scene, to_colmap(&scene))
         .unwrap()
         .survey
-        .doctor
+        .agreement
         .unwrap();
     assert_eq!(sound.finding, Finding::Sound);
-    assert!(sound.trials.is_empty() && sound.mistake.is_none());
+    assert!(sound.tested.is_empty() && sound.error.is_none());
 }
 
 #[test]
@@ -313,7 +313,8 @@ fn images_without_texture_say_nothing() {
     assert_eq!(words(&scene, to_colmap(&scene)), "");
 }
 
-/// Largest distance between the places where the cameras of two scenes put points of the roof, pixels.
+/// Largest distance between the places where the cameras of two scenes put points of the roof,
+/// pixels.
 fn difference_px(found: &Scene, planted: &Scene, corners: &[nalgebra::Point3<f64>]) -> f64 {
     let views = found.views.iter().zip(&planted.views);
     let distances = views.flat_map(|(a, b)| {
@@ -343,7 +344,8 @@ fn what_is_named_is_corrected_when_asked_for() {
             Ok(found) => {
                 let words = found.warnings.join("; ");
                 let error = difference_px(&found, &scene, &corners);
-                // A focal length is found to a percent: 600 pixels of principal point away it moves by some.
+                // A focal length is found to a percent: 600 pixels of principal point away it moves
+                // by some.
                 let bound = if what.contains("millimetres") {
                     20.0
                 } else {
@@ -421,7 +423,8 @@ fn a_shifted_view_is_measured_and_shifted_back() {
 /// A small error of a view, in words, and the camera with it.
 type SmallError = (&'static str, fn(&mut ridgeline::camera::Camera));
 
-/// A turn of 0.005 degrees about the camera's own x axis (1.4 px), a move of 0.1 m, a shift of 1.5 px: what images of 320 pixels allow.
+/// A turn of 0.005 degrees about the camera's own x axis (1.4 px), a move of 0.1 m, a shift of 1.5
+/// px: what images of 320 pixels allow.
 const SMALL_ERRORS: [SmallError; 3] = [
     ("turned", |c| {
         let (s, cos) = ridgeline::math::sin_cos(0.005_f64.to_radians());

@@ -1,33 +1,31 @@
 //! Can these cameras have taken photographs of one place on the ground?
 //!
-//! What is refused: numbers that are no camera, cameras that look up, cameras below the ground, fewer
-//! than three views of any one place, more pixels than memory. Whether the pixels agree with the cameras
-//! is not asked here.
+//! Refused are numbers that are no camera, cameras that look up, cameras below the ground, and
+//! fewer than three views of any one place. Whether the pixels agree with the cameras is left to
+//! the orientation check.
 
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
 use super::names::listed;
-use super::plan::PlannedView;
 use crate::camera::Camera;
 use crate::error::Error;
 use crate::geometry::mean_point;
-use crate::orientation::InputFile;
-use crate::raster::decoding_bytes;
 use crate::sorting::sort_by;
 
-/// What the cameras together gave reason to say.
+/// What the cameras give reason to refuse or to warn of.
 #[derive(Default)]
-pub(crate) struct Findings {
+pub(crate) struct CameraChecks {
     pub errors: Vec<Error>,
     pub warnings: Vec<String>,
-    /// Least and greatest height of the ground at which three views see the same place, local frame.
+    /// Least and greatest height of the ground at which three views see the same place, local
+    /// frame.
     pub heights: Option<[f64; 2]>,
 }
 
 /// Coordinates beyond this (metres) are map coordinates, of which an origin is taken off.
 const LARGE_M: f64 = 10_000.0;
 
-/// Grid of the origin, metres: whole hundreds are easy to add in one's head.
+/// Grid of the origin, metres: whole hundreds are easy to add.
 const ORIGIN_GRID_M: f64 = 100.0;
 
 /// The scene origin: the mean projection centre in plan, rounded to whole hundreds of metres, when
@@ -59,8 +57,8 @@ pub(crate) fn numeric_problem(camera: &Camera) -> Option<&'static str> {
 }
 
 /// Checks of each camera in its world and of all together. `ground_z` in the local frame.
-pub(crate) fn check_cameras(cameras: &[(&str, &Camera)], ground_z: Option<f64>) -> Findings {
-    let mut found = Findings::default();
+pub(crate) fn check_cameras(cameras: &[(&str, &Camera)], ground_z: Option<f64>) -> CameraChecks {
+    let mut found = CameraChecks::default();
     for (name, camera) in cameras {
         found.errors.extend(placement_error(name, camera, ground_z));
     }
@@ -70,7 +68,7 @@ pub(crate) fn check_cameras(cameras: &[(&str, &Camera)], ground_z: Option<f64>) 
     found
 }
 
-/// Does the camera stand above the ground and look down?
+/// Is the camera above the ground, looking down?
 fn placement_error(name: &str, camera: &Camera, ground_z: Option<f64>) -> Option<Error> {
     let refuse = |problem: String, advice: &str| {
         Some(Error::File {
@@ -103,8 +101,8 @@ fn placement_error(name: &str, camera: &Camera, ground_z: Option<f64>) -> Option
     None
 }
 
-/// Refuses views that no three of which see the same place; warns of single ones.
-fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut Findings) {
+/// Refuses views of which no three see the same place; warns of single ones.
+fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut CameraChecks) {
     let cameras_only: Vec<&Camera> = cameras.iter().map(|(_, c)| *c).collect();
     let heights = ground_z.map_or_else(|| candidate_heights(&cameras_only), |z| vec![z]);
     let mut most_seen = vec![1; cameras.len()];
@@ -144,8 +142,8 @@ fn check_overlap(cameras: &[(&str, &Camera)], ground_z: Option<f64>, found: &mut
 /// Samples along each side of an image for the overlap.
 const GRID: u32 = 4;
 
-/// For each view, the greatest number of views (itself included; counted up to three, which is all that
-/// matters) that see one of its sample points on the ground at height `z`.
+/// For each view, the greatest number of views (itself included; counted up to three, which is all
+/// that matters) that see one of its sample points on the ground at height `z`.
 fn views_together(cameras: &[&Camera], z: f64) -> Vec<usize> {
     cameras
         .iter()
@@ -174,11 +172,12 @@ fn samples(camera: &Camera) -> impl Iterator<Item = Point2<f64>> {
     })
 }
 
-/// Heights at which the ground may lie: where rays of pairs of views pass each other, thinned out, and a
-/// series of depths below the lowest camera for views whose axes are parallel.
+/// Heights at which the ground may lie: where rays of pairs of views pass each other, thinned out,
+/// and a series of depths below the lowest camera for views whose axes are parallel.
 fn candidate_heights(cameras: &[&Camera]) -> Vec<f64> {
     const MOST: usize = 60;
-    // Neighbours in the list and far ones: every offset that is a power of two keeps large blocks quick.
+    // Neighbours in the list and far ones: every offset that is a power of two keeps large blocks
+    // quick.
     let offsets = [1usize, 2, 3, 4, 8, 16, 32, 64];
     let mut crossings: Vec<f64> = (0..cameras.len())
         .flat_map(|i| offsets.iter().map(move |o| (i, i + o)))
@@ -201,7 +200,8 @@ fn candidate_heights(cameras: &[&Camera]) -> Vec<f64> {
     heights
 }
 
-/// Heights at which the middle ray of `a` passes nearest to rays of `b`, where that is in front of both.
+/// Heights at which the middle ray of `a` passes nearest to rays of `b`, where that is in front of
+/// both.
 fn pair_heights(a: &Camera, b: &Camera) -> Vec<f64> {
     let middle = |c: &Camera| Point2::new(f64::from(c.width) / 2.0, f64::from(c.height) / 2.0);
     let ray = a.ray(&middle(a));
@@ -220,56 +220,4 @@ fn pair_heights(a: &Camera, b: &Camera) -> Vec<f64> {
         (s > 0.0 && t > 0.0).then(|| 0.5 * ((a.center + ray * s).z + (b.center + other * t).z))
     });
     heights.collect()
-}
-
-/// Bytes that one pixel of a view takes at the peak: colours and grey values (7), and what the stages make of them.
-/// Measured over whole runs: 35 (a farmhouse) to 90 (a suburb, barns); the matches of lines and the cells of roofs
-/// take most.
-const BYTES_PER_PIXEL: u64 = 90;
-
-/// Bytes that everything else takes.
-const BASE_BYTES: u64 = 20 << 20;
-
-/// Memory for a scene where nothing else is said, bytes. Assumption: browsers on small machines give a page no more
-/// than 1.5 GB.
-const MEMORY_BYTES: u64 = if cfg!(target_arch = "wasm32") {
-    3 << 29
-} else {
-    32 << 30
-};
-
-/// Peak memory of a run with these views, bytes, the files included.
-pub(crate) fn peak_bytes(files: &[InputFile], views: &[PlannedView]) -> u64 {
-    let read: u64 = files.iter().map(|f| f.bytes.len() as u64).sum();
-    let kept: u64 = views.iter().map(|v| v.pixels() * BYTES_PER_PIXEL).sum();
-    let decoding = views.iter().map(|v| {
-        let whole = [v.whole.width, v.whole.height];
-        let chunk = decoding_bytes(&files[v.file].bytes, whole);
-        // Without its lens a view is a second image of the same size.
-        let lens = v.distortion.map_or(0, |_| v.pixels() * (3 + 4));
-        chunk + lens
-    });
-    // Views are decoded at the same time when there is room, one by one otherwise.
-    BASE_BYTES + read + kept + decoding.max().unwrap_or(0)
-}
-
-/// Refuses more pixels than memory.
-pub(crate) fn check_memory(
-    peak_bytes: u64,
-    views: &[PlannedView],
-    limit_mb: Option<u32>,
-) -> Option<Error> {
-    let limit = limit_mb.map_or(MEMORY_BYTES, |mb| u64::from(mb) << 20);
-    let pixels: u64 = views.iter().map(PlannedView::pixels).sum();
-    let mb = |bytes: u64| bytes >> 20;
-    (peak_bytes > limit).then(|| Error::Scene {
-        problem: format!(
-            "{} views of together {} megapixels need about {} MB of memory, more than {} MB",
-            views.len(),
-            pixels / 1_000_000,
-            mb(peak_bytes),
-            mb(limit)
-        ),
-        advice: "choose a region of interest (with the height of the ground it is cut closer) or fewer views".to_owned(),
-    })
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Break the orientation of every scene in the usual ways, and see what the orientation doctor calls it.
+"""Put the usual errors into the orientation of every scene, and see what the orientation check calls them.
 
-    python3 tests/doctor_table.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
+    python3 tests/orientation_errors.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...]
 
 FOLDER holds one folder per scene with images/ and cameras.json (K, R, C). Prints the table of docs/formats.md:
 a row for each mistake, a column for each scene; the first row is the sound scene, which must be left alone. A list of angles
@@ -142,7 +142,7 @@ def main():
             cells = []
             for name in names:
                 try:
-                    said, score, star = examine_any(args, name, broken, pathlib.Path(folder))
+                    said, score, star = check_any(args, name, broken, pathlib.Path(folder))
                 except ChangesNothing:
                     cells.append('-')
                     continue
@@ -150,26 +150,26 @@ def main():
                 tried[name] += word is not None
                 named[name] += good and word is not None
                 was_harmed |= word is None and not good
-                verdict = ('named' if word else 'left alone') if good else f'**{said[:60] or "nothing said"}**'
-                cells.append(f'{verdict}{star} ({score})')
+                cell = ('named' if word else 'left alone') if good else f'**{said[:60] or "nothing said"}**'
+                cells.append(f'{cell}{star} ({score})')
             print(f'| {what} | ' + ' | '.join(cells) + ' |', flush=True)
     print('| named | ' + ' | '.join(f'{named[name]} of {tried[name]}' for name in names) + ' |')
     return 1 if was_harmed or any(named[name] < tried[name] - 1 for name in names) else 0
 
 
-def examine_any(args, name, broken, folder):
-    """As `examine`, of a scene as it is or else with images that are alike; a star tells the latter."""
+def check_any(args, name, broken, folder):
+    """As `check`, of a scene as it is or else with images that are alike; a star tells the latter."""
     try:
-        return *examine(args.binary, args.scenes / name, broken), ''
+        return *check(args.binary, args.scenes / name, broken), ''
     except NotExpressible:
         copy = folder / name
         if not copy.exists():
             alike(args.scenes / name, copy)
-        return *examine(args.binary, copy, broken), '*'
+        return *check(args.binary, copy, broken), '*'
 
 
-def examine(binary, scene, broken):
-    """What the doctor says about the orientation, and the agreement as it is stated and without the mistake."""
+def check(binary, scene, broken):
+    """What the check says about the orientation, and the agreement as it is stated and without the mistake."""
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         broken(scene, work)
@@ -178,11 +178,11 @@ def examine(binary, scene, broken):
         if done.returncode not in (0, 2):
             return f'failed: {done.stderr}', '-'
         found = json.loads(done.stdout)
-        doctor = found['doctor'] or {}
-        scores = [doctor.get('stated'), doctor.get('cured')]
+        report = found['doctor'] or {}
+        scores = [report.get('stated'), report.get('cured')]
         score = ' → '.join(f"{s['score']:.2f}" for s in scores if s)
-        if doctor.get('offsets_px'):
-            score = ' → '.join(f'{x:.2f} px' for x in doctor['offsets_px'])
+        if report.get('offsets_px'):
+            score = ' → '.join(f'{x:.2f} px' for x in report['offsets_px'])
         said = found.get('refusal') or '; '.join(w for w in found['warnings'] if 'ignored' not in w)
         return said, score or '-'
 

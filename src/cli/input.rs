@@ -1,0 +1,108 @@
+//! A scene as the arguments name it: its files, options and parameters.
+
+use std::fs;
+use std::path::Path;
+
+use ridgeline::orientation::InputFile;
+use ridgeline::params::Params;
+use ridgeline::scene_loader::{LoadOptions, open_project};
+
+use super::args::InputArgs;
+use super::failure::Failure;
+use super::files;
+
+/// A scene's files, options and parameters.
+pub(super) struct OpenedScene {
+    pub files: Vec<InputFile>,
+    pub options: LoadOptions,
+    pub params: Params,
+    /// Kinds and numbers of the files, in a sentence.
+    pub seen: String,
+}
+
+/// A refusal of a scene, with a count of its files.
+pub(super) fn refusal(error: &ridgeline::Error, seen: &str) -> Failure {
+    Failure::Input(format!("{error}\n{seen}"))
+}
+
+/// Reads the files. What the arguments leave out is as in the project, where one is opened.
+pub(super) fn open(
+    args: &InputArgs,
+    params: Option<Params>,
+    results: &Path,
+) -> Result<OpenedScene, Failure> {
+    set_threads(args);
+    let (files, seen) = files::read_scene(&args.scene, results)?;
+    for notice in seen.notices() {
+        eprintln!("warning: {notice}");
+    }
+    let seen = format!("{} holds {seen}", args.scene.display());
+    let (files, project) = open_project(files).map_err(|e| refusal(&e, &seen))?;
+    let project = project.unwrap_or_default();
+    let stated = project.options;
+    let options = LoadOptions {
+        orientation: args
+            .orientation
+            .as_deref()
+            .map(|path| below(&args.scene, path))
+            .or(stated.orientation),
+        views: args.views.clone().or(stated.views),
+        roi: args.roi.or(stated.roi),
+        ground_z: args.ground_z.or(stated.ground_z),
+        epsg: args.crs.or(stated.epsg),
+        memory_mb: args.memory.or(stated.memory_mb),
+        apply_fix: args.apply_fix || stated.apply_fix,
+        adjust: args.adjust || stated.adjust,
+    };
+    Ok(OpenedScene {
+        files,
+        options,
+        params: params.unwrap_or(project.params),
+        seen,
+    })
+}
+
+/// A path relative to the scene's folder, also where the whole path was given.
+fn below(scene: &Path, path: &str) -> String {
+    let inner = Path::new(path).strip_prefix(scene);
+    inner.map_or_else(
+        |_| path.to_owned(),
+        |inner| inner.to_string_lossy().into_owned(),
+    )
+}
+
+/// The parameters of `--params`.
+pub(super) fn read_params(args: &InputArgs) -> Result<Option<Params>, Failure> {
+    let Some(path) = &args.params else {
+        return Ok(None);
+    };
+    let bad = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
+    let text = fs::read_to_string(path).map_err(|e| bad(format!("cannot read: {e}")))?;
+    ridgeline::plain_json::read(&text).map(Some).map_err(|e| {
+        bad(format!(
+            "{e}; `ridgeline params` prints all parameters with their defaults"
+        ))
+    })
+}
+
+fn set_threads(args: &InputArgs) {
+    if let Some(threads) = args.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.into())
+            .build_global()
+            .expect("the pool is set once, before its first use");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_whole_path_counts_from_the_scene() {
+        let scene = Path::new("data/scene");
+        assert_eq!(below(scene, "data/scene/a/cameras.json"), "a/cameras.json");
+        assert_eq!(below(scene, "cameras.json"), "cameras.json");
+        assert_eq!(below(scene, "data/scenery/a.json"), "data/scenery/a.json");
+    }
+}

@@ -1,0 +1,24 @@
+//! A view as the orientation check sees it: its image, and what the files state about it.
+
+use nalgebra::Vector3;
+
+use crate::camera::Camera;
+use crate::orientation::Crop;
+use crate::raster::Gray;
+
+/// A view whose orientation is checked.
+#[derive(Clone, Debug)]
+pub struct CheckedView<'a> {
+    /// Name of the view.
+    pub name: &'a str,
+    /// Camera of the image, local frame.
+    pub camera: Camera,
+    /// Grey values.
+    pub gray: &'a Gray,
+    /// Scene origin, which is subtracted in the local frame.
+    pub origin: Vector3<f64>,
+    /// The rotation angles as the file states them.
+    pub angles: Option<[f64; 3]>,
+    /// The part of the frame that the image shows, where the file states it.
+    pub crop: Option<Crop>,
+}

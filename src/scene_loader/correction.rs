@@ -1,0 +1,137 @@
+//! The orientation check of a scene, and corrections of its cameras where the user asked for them.
+
+use nalgebra::Vector3;
+
+use super::camera_checks;
+use super::consequence::warning_or_refusal;
+use super::input::LoadOptions;
+use super::names::listed;
+use crate::agreement::AgreementReport;
+use crate::camera::Camera;
+use crate::error::{Error, Result};
+use crate::orientation_check::{CheckFinding, CheckedView, OrientationCheck, check_orientation};
+use crate::scene::ViewShift;
+
+/// Cameras as they are to be used, what was found and what was corrected.
+pub(crate) struct CheckedCameras {
+    pub cameras: Vec<Camera>,
+    /// To be added to the origin of the scene: corrected cameras may lie elsewhere.
+    pub origin_change: Vector3<f64>,
+    pub shifts: Vec<ViewShift>,
+    pub report: AgreementReport,
+    pub warnings: Vec<String>,
+}
+
+/// Checks the orientation of views and corrects it where the options ask for it. `refusal` is the
+/// one that the positions of the cameras alone gave reason for.
+pub(crate) fn check_and_correct(
+    mut views: Vec<CheckedView>,
+    refusal: Option<Error>,
+    options: &LoadOptions,
+) -> Result<CheckedCameras> {
+    let mut warnings = Vec::new();
+    let mut origin_change = Vector3::zeros();
+    let mut check = check_orientation(&views);
+    if options.apply_fix
+        && let Some(correction) = correction(&check.finding, &views)
+    {
+        warnings.push(correction.words);
+        origin_change = camera_checks::scene_origin(correction.cameras.iter());
+        for (view, mut camera) in views.iter_mut().zip(correction.cameras) {
+            camera.center -= origin_change;
+            view.camera = camera;
+            view.origin += origin_change;
+        }
+        let ground_z = options.ground_z.map(|z| z - views[0].origin.z);
+        let named: Vec<(&str, &Camera)> = views.iter().map(|v| (v.name, &v.camera)).collect();
+        if let Some(error) = camera_checks::check_cameras(&named, ground_z)
+            .errors
+            .into_iter()
+            .next()
+        {
+            return Err(error);
+        }
+        check = check_orientation(&views);
+        warnings.extend(warning_or_refusal(&check, &views, None)?);
+    } else {
+        warnings.extend(warning_or_refusal(&check, &views, refusal)?);
+    }
+    let mut cameras: Vec<Camera> = views.iter().map(|v| v.camera.clone()).collect();
+    warnings.extend(correct_shifts(&check, &views, &mut cameras, options.adjust));
+    Ok(CheckedCameras {
+        cameras,
+        origin_change,
+        report: check.report(),
+        shifts: check.shifts,
+        warnings,
+    })
+}
+
+struct Correction {
+    cameras: Vec<Camera>,
+    words: String,
+}
+
+/// The cameras without the error that the check identified.
+fn correction(finding: &CheckFinding, views: &[CheckedView]) -> Option<Correction> {
+    let (hypothesis, words) = match finding {
+        CheckFinding::Explained {
+            before,
+            after,
+            hypothesis,
+            words,
+        } => (
+            hypothesis,
+            format!(
+                "the orientation was corrected: {words} (agreement with the images {:.2}, before {:.2})",
+                after.score, before.score
+            ),
+        ),
+        CheckFinding::Offset {
+            hypothesis,
+            offsets_px: [before, after],
+            words,
+            ..
+        } => (
+            hypothesis,
+            format!(
+                "the orientation was corrected: {words} (mean offset {after:.2} px, before {before:.2} px)"
+            ),
+        ),
+        _ => return None,
+    };
+    Some(Correction {
+        cameras: hypothesis.corrected_cameras(views)?,
+        words,
+    })
+}
+
+/// Corrects the cameras of shifted views, or only names these views.
+fn correct_shifts(
+    check: &OrientationCheck,
+    views: &[CheckedView],
+    cameras: &mut [Camera],
+    adjust: bool,
+) -> Option<String> {
+    // Half a pixel in all views is an error of its own, which has been named.
+    if matches!(check.finding, CheckFinding::Offset { .. }) {
+        return None;
+    }
+    let mut names = Vec::new();
+    for ((shift, view), camera) in check.shifts.iter().zip(views).zip(cameras) {
+        let [x, y] = shift.shift_px;
+        if shift.is_significant() {
+            names.push(format!("{} by ({x:+.2}, {y:+.2}) px", view.name));
+            if adjust {
+                camera.k[(0, 2)] += x;
+                camera.k[(1, 2)] += y;
+            }
+        }
+    }
+    let done = if adjust {
+        "were shifted back"
+    } else {
+        "are shifted against the others (--adjust shifts them back)"
+    };
+    (!names.is_empty()).then(|| format!("views that {done}: {}", listed(names.iter())))
+}

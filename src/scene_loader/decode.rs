@@ -1,0 +1,61 @@
+//! Decoding views: the part of each image that is used, without its distortion.
+
+use super::planned_view::{PlannedView, offset_calibration};
+use super::region;
+use crate::camera::undistort;
+use crate::error::{Error, Result};
+use crate::orientation::InputFile;
+use crate::raster::{load_image, load_window};
+use crate::scene::View;
+
+/// Decodes all views, at the same time where that does not take much more memory.
+pub(crate) fn decode_all(files: &[InputFile], planned: &[PlannedView]) -> Result<Vec<View>> {
+    const MOST_PIXELS: u64 = 100_000_000;
+    let whole = |v: &PlannedView| u64::from(v.whole.width) * u64::from(v.whole.height);
+    if planned.iter().map(whole).sum::<u64>() <= MOST_PIXELS {
+        let views = crate::execution::map(planned, |_, view| decode(&files[view.file], view));
+        views.into_iter().collect()
+    } else {
+        planned
+            .iter()
+            .map(|view| decode(&files[view.file], view))
+            .collect()
+    }
+}
+
+/// Decodes the part of a view that is used, and removes its distortion.
+fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
+    let whole = &planned.whole;
+    let all = [0, 0, whole.width, whole.height];
+    let part = planned.part.unwrap_or(all);
+    let source = match &planned.distortion {
+        Some(lens) => region::source_of(part, whole, lens),
+        None => part,
+    };
+    let mut photograph = match source == all {
+        true => load_image(&file.path, &file.bytes)?,
+        false => load_window(&file.path, &file.bytes, source)?,
+    };
+    if photograph.rgb.dimensions() != (source[2], source[3]) {
+        return Err(Error::File {
+            file: file.path.clone(),
+            problem: "its header and its content have different sizes".to_owned(),
+            advice: "export it again".to_owned(),
+        });
+    }
+    let [column, row, width, height] = part;
+    if let Some(lens) = &planned.distortion {
+        let k = offset_calibration(&whole.k, [source[0], source[1]]);
+        photograph = undistort(&photograph, &k, lens);
+    }
+    if source != part {
+        photograph = photograph.crop([column - source[0], row - source[1], width, height]);
+    }
+    let name = file.name().to_owned();
+    Ok(View::new(
+        name,
+        planned.camera(),
+        photograph.gray,
+        photograph.rgb,
+    ))
+}

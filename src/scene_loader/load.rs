@@ -1,0 +1,92 @@
+//! Loading a scene: plan, decoding, orientation check, corrections.
+
+use nalgebra::Vector3;
+
+use super::correction::check_and_correct;
+use super::decode::decode_all;
+use super::input::LoadOptions;
+use super::plan::Plan;
+use super::planned_view::PlannedView;
+use super::region;
+use crate::error::Result;
+use crate::orientation::InputFile;
+use crate::orientation_check::CheckedView;
+use crate::raster::Gray;
+use crate::scene::{Scene, Survey, View};
+
+/// Reads a scene. The first refusal is returned; [`inspect_files`] lists them all.
+pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
+    let plan = Plan::new(files, options);
+    let refusal = plan.errors.into_iter().next();
+    if let Some(error) = refusal.clone().filter(|_| !plan.is_implausible) {
+        return Err(error);
+    }
+    let mut views = decode_all(files, &plan.views)?;
+    let checked: Vec<CheckedView> = (plan.views.iter().zip(&views))
+        .map(|(planned, view)| checked_view(planned, view, plan.origin))
+        .collect();
+    let checked = check_and_correct(checked, refusal, options)?;
+    for (view, camera) in views.iter_mut().zip(checked.cameras) {
+        view.camera = camera;
+    }
+    let mut scene = Scene {
+        views,
+        origin: plan.origin + checked.origin_change,
+        ground_z: options
+            .ground_z
+            .map(|z| z - plan.origin.z - checked.origin_change.z),
+        warnings: plan.warnings.into_iter().chain(checked.warnings).collect(),
+        survey: Survey {
+            shifts: checked.shifts,
+            agreement: Some(checked.report),
+            ..plan.survey
+        },
+    };
+    if let (Some(roi), true) = (options.roi, options.apply_fix) {
+        region::cut_scene(&mut scene, roi)?;
+    }
+    Ok(scene)
+}
+
+/// The views as whole images, without their pixels: names, cameras and reference system. Region of
+/// interest and memory limit are ignored.
+pub fn whole_views(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
+    let options = LoadOptions {
+        roi: None,
+        memory_mb: Some(u32::MAX),
+        ..options.clone()
+    };
+    let plan = Plan::new(files, &options);
+    if let Some(error) = plan.errors.into_iter().next() {
+        return Err(error);
+    }
+    let view = |planned: &PlannedView| {
+        let name = files[planned.file].name().to_owned();
+        let none = (Gray::new(0, 0), image::RgbImage::new(0, 0));
+        View::new(name, planned.whole.clone(), none.0, none.1)
+    };
+    Ok(Scene {
+        views: plan.views.iter().map(view).collect(),
+        origin: plan.origin,
+        ground_z: options.ground_z.map(|z| z - plan.origin.z),
+        warnings: plan.warnings,
+        survey: plan.survey,
+    })
+}
+
+/// What the orientation check needs of a view.
+fn checked_view<'a>(
+    planned: &PlannedView,
+    view: &'a View,
+    origin: Vector3<f64>,
+) -> CheckedView<'a> {
+    CheckedView {
+        name: &view.name,
+        camera: view.camera.clone(),
+        gray: &view.gray,
+        origin,
+        angles: planned.angles,
+        // The crop that the file states is that of the whole image.
+        crop: planned.crop.filter(|_| planned.part.is_none()),
+    }
+}

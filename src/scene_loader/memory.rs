@@ -1,0 +1,58 @@
+//! How much memory a run takes, and whether that is allowed.
+
+use super::planned_view::PlannedView;
+use crate::error::Error;
+use crate::orientation::InputFile;
+use crate::raster::decoding_bytes;
+
+/// Bytes that one pixel of a view takes at the peak: colours and grey values (7), and what the
+/// stages make of them. Measured over whole runs: 35 (a farmhouse) to 90 (a suburb, barns); the
+/// matches of lines and the cells of roofs take most.
+const BYTES_PER_PIXEL: u64 = 90;
+
+/// Bytes that everything else takes.
+const BASE_BYTES: u64 = 20 << 20;
+
+/// Memory for a scene where no limit is given, bytes. Assumption: browsers on small machines
+/// give a page no more than 1.5 GB.
+const MEMORY_BYTES: u64 = if cfg!(target_arch = "wasm32") {
+    3 << 29
+} else {
+    32 << 30
+};
+
+/// Peak memory of a run with these views, bytes, the files included.
+pub(crate) fn peak_bytes(files: &[InputFile], views: &[PlannedView]) -> u64 {
+    let read: u64 = files.iter().map(|f| f.bytes.len() as u64).sum();
+    let kept: u64 = views.iter().map(|v| v.pixels() * BYTES_PER_PIXEL).sum();
+    let decoding = views.iter().map(|v| {
+        let whole = [v.whole.width, v.whole.height];
+        let chunk = decoding_bytes(&files[v.file].bytes, whole);
+        // Without its lens a view is a second image of the same size.
+        let lens = v.distortion.map_or(0, |_| v.pixels() * (3 + 4));
+        chunk + lens
+    });
+    // Views are decoded at the same time when there is room, one by one otherwise.
+    BASE_BYTES + read + kept + decoding.max().unwrap_or(0)
+}
+
+/// Refuses more pixels than memory.
+pub(crate) fn check_memory(
+    peak_bytes: u64,
+    views: &[PlannedView],
+    limit_mb: Option<u32>,
+) -> Option<Error> {
+    let limit = limit_mb.map_or(MEMORY_BYTES, |mb| u64::from(mb) << 20);
+    let pixels: u64 = views.iter().map(PlannedView::pixels).sum();
+    let mb = |bytes: u64| bytes >> 20;
+    (peak_bytes > limit).then(|| Error::Scene {
+        problem: format!(
+            "{} views of together {} megapixels need about {} MB of memory, more than {} MB",
+            views.len(),
+            pixels / 1_000_000,
+            mb(peak_bytes),
+            mb(limit)
+        ),
+        advice: "choose a region of interest (with the height of the ground it is cut closer) or fewer views".to_owned(),
+    })
+}
