@@ -4,6 +4,7 @@ use serde::Serialize;
 
 /// How well images and orientation agree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Agreement {
     /// Points that were matched, on the epipolar line or beside it.
     pub points: usize,
@@ -14,6 +15,7 @@ pub struct Agreement {
 
 /// A hypothesis about an error in the orientation that was tested on the images.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct TestedHypothesis {
     /// The hypothesis in words.
     #[serde(rename = "words")]
@@ -26,6 +28,7 @@ pub struct TestedHypothesis {
 
 /// How the images agree with their orientation, in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "snake_case")]
 pub enum Finding {
     /// Images and orientation agree.
@@ -46,6 +49,7 @@ pub enum Finding {
 /// The report of the orientation check: agreement as stated, the error found, and the hypotheses
 /// tested.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct AgreementReport {
     /// The finding.
     pub finding: Finding,

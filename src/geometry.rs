@@ -40,6 +40,7 @@ pub fn clip(ring: &[Point3<f64>], side: impl Fn(&Point3<f64>) -> f64) -> Vec<Poi
 /// A finite, directed segment in an image, in pixels (x right, y down, centre of the top-left
 /// pixel at (0.5, 0.5)).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Segment2 {
     /// Start, pixels.
     pub p0: Point2<f64>,
@@ -104,6 +105,7 @@ impl Segment2 {
 
 /// A finite, directed segment in the world, in metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Segment3 {
     /// Start, metres.
     pub p0: Point3<f64>,
@@ -192,6 +194,7 @@ pub struct PlanOverlap {
 
 /// An oriented plane `normal . X + d = 0`; roof planes have `normal.z > 0`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Plane {
     /// Unit normal.
     pub normal: Vector3<f64>,

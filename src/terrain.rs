@@ -9,6 +9,7 @@
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
+use crate::execution::{Sharded, sharded_map};
 use crate::geometry::{Plane, Segment3};
 use crate::lines3d::Line3d;
 use crate::model::Facet;
@@ -74,29 +75,33 @@ impl Ground {
 
     /// Sweeps the scene between the heights that its 3D lines span; the given height when there is
     /// one.
-    pub fn estimate(scene: &Scene, lines: &[Line3d]) -> Self {
+    pub fn estimate(scene: &Scene, lines: &[Line3d]) -> Sharded<Self> {
         let segments: Vec<Segment3> = lines.iter().map(|l| l.segment).collect();
         Self::of_segments(scene, &segments, None)
     }
 
     /// The same from 3D lines without their accuracy, swept between two heights where they are
     /// known: the lines may all be those of a roof.
-    pub fn of_segments(scene: &Scene, lines: &[Segment3], z_range: Option<[f64; 2]>) -> Self {
+    pub fn of_segments(
+        scene: &Scene,
+        lines: &[Segment3],
+        z_range: Option<[f64; 2]>,
+    ) -> Sharded<Self> {
         if let Some(z) = scene.ground_z {
-            return Self::level(z);
+            return Ok(Self::level(z));
         }
         let mut ends: Vec<Point3<f64>> = lines.iter().flat_map(|l| [l.p0, l.p1]).collect();
         if ends.is_empty() {
-            return Self::level(0.0);
+            return Ok(Self::level(0.0));
         }
         sort_by(&mut ends, |a, b| a.z.total_cmp(&b.z));
         // A few wrong lines may lie far off.
         let share = |f: f64| ends[(f * (ends.len() - 1) as f64) as usize].z;
         let around_lines = [share(0.02) - 2.0, share(0.98) + 1.0];
         let [low, high] = z_range.unwrap_or(around_lines);
-        let samples = sweep(scene, &ends, low, high);
+        let samples = sweep(scene, &ends, low, high)?;
         let elsewhere = low_height(samples.iter().map(|s| s.z)).unwrap_or_else(|| share(0.1));
-        Self::from_samples(&samples, elsewhere)
+        Ok(Self::from_samples(&samples, elsewhere))
     }
 
     fn from_samples(samples: &[Point3<f64>], elsewhere: f64) -> Self {
@@ -273,11 +278,11 @@ fn low_height(heights: impl Iterator<Item = f64>) -> Option<f64> {
     Some(heights[start + sharing[start] / 2])
 }
 
-fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3<f64>> {
+fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Sharded<Vec<Point3<f64>>> {
     let reduced = scene.reduced(REDUCE);
     let middle = ends[ends.len() / 2];
     let Some(view) = reduced.views.first() else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
     let step = view.camera.ground_pixel(&middle);
     let bound = |f: fn(f64, f64) -> f64, start: f64| {
@@ -293,22 +298,19 @@ fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3
     let grid = PlanGrid::covering(min, max, step);
     // Bounds the memory of a window that a wrong line has stretched.
     if grid.width * grid.height > 4_000_000 {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let levels = (((high - low) / 0.5).ceil() as usize).clamp(2, MAX_LEVELS);
     let heights: Vec<f64> = (0..levels)
         .map(|i| low + (high - low) * i as f64 / (levels - 1) as f64)
         .collect();
-    let maps = crate::execution::map_shared("ground", &heights, 0.0..0.1, |_, &z| {
+    let maps = sharded_map("ground", &heights, 0.0..0.1, |_, &z| {
         let plane = Plane {
             normal: Vector3::z(),
             d: -z,
         };
         consistency_map(&reduced, &plane, &grid)
-    });
-    if maps.is_empty() {
-        return Vec::new();
-    }
+    })?;
     let mut samples = Vec::new();
     for row in 0..grid.height {
         for column in 0..grid.width {
@@ -333,7 +335,7 @@ fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Vec<Point3
             }
         }
     }
-    samples
+    Ok(samples)
 }
 
 /// Where the parabola through a correlation and those a level below and above it has its top, in

@@ -38,18 +38,20 @@ const helping = others.length > 0 ? `${Math.ceil(Math.max(...others))} MB` : "-"
 console.log(`| ${basename(scene)} | ${method} | ${stated} MB | ${Math.ceil(most)} MB | ${helping} |`);
 process.exit(most <= stated ? 0 : 1);
 
-// As the page does it (www/src/app/crew.ts).
+// As the page does it (www/src/core/workerPool.ts).
 function runStages() {
     const { session } = engine;
     const { views } = session.load(options);
     const stages = session.chosenStages();
     for (const [done, stage] of stages.entries()) {
-        const maps = helpers.length > 0 ? session.sharedMaps(stage) : [];
+        const maps = helpers.length > 0 ? session.shardMaps(stage) : [];
         if (maps.length > 0) prepareHelpers(stage, views.length, stages.slice(0, done));
         for (const [step, map] of maps.entries()) {
-            const shares = workers.map((worker, index) => worker.session.share(stage, map, index, workers.length, () => {}));
-            const learners = step + 1 < maps.length ? workers : [engine];
-            for (const { session } of learners) session.learn(map, shares);
+            const shards = workers.map(({ session }, index) =>
+                session.runShard(stage, map, index, workers.length, () => {}),
+            );
+            const merging = step + 1 < maps.length ? workers : [engine];
+            for (const { session } of merging) session.mergeShards(map, shards);
         }
         session.runStage(stage, () => {});
     }
@@ -57,7 +59,7 @@ function runStages() {
 }
 
 function prepareHelpers(stage, views, earlier) {
-    const colours = engine.session.sharesColours(stage);
+    const colours = engine.session.shardsReadColours(stage);
     if (given.colours === null || (colours && !given.colours)) {
         for (let view = 0; view < views; view += 1) {
             for (const { session } of helpers) session.takeView(view, views, engine.session.packView(view, colours));

@@ -9,7 +9,7 @@ use common::golden;
 use common::scenes::{SIZE_PX, scenes};
 use nalgebra::{Point2, Point3};
 use ridgeline::execution::progress::silent;
-use ridgeline::execution::shard::{Known, Task};
+use ridgeline::execution::shard::MergedShards;
 use ridgeline::geometry::{Plane, Segment3};
 use ridgeline::lines3d::{Line3d, LineOrigin};
 use ridgeline::model::{Facet, check_invariants};
@@ -60,7 +60,7 @@ fn the_planted_house_is_found() {
         "{covered:.1} m of {total:.1} m of the edges"
     );
 
-    let model = &results.roof.as_ref().unwrap().value;
+    let model = &results.facets.as_ref().unwrap().value;
     assert_eq!(check_invariants(model), vec![]);
     assert_eq!(model.buildings.len(), 1);
     assert!((model.buildings[0].ground_z - truth.ground_z).abs() < 0.5);
@@ -81,7 +81,7 @@ fn the_planted_house_is_found() {
         assert!(true_plane, "{:?} is no plane of the house", facet.plane);
     }
 
-    let textured = &results.textured.as_ref().unwrap().value;
+    let textured = &results.model.as_ref().unwrap().value;
     let faces: usize = model.buildings.iter().map(|b| b.solid.faces.len()).sum();
     assert_eq!(textured.faces.iter().map(Vec::len).sum::<usize>(), faces);
 }
@@ -204,8 +204,8 @@ fn one_thread_gives_the_bytes_of_many() {
     assert_eq!(files_with(1), files_with(5));
 }
 
-/// A run shared by several instances, as the page's workers do it.
-fn shared(method: Method, of: usize) -> Run {
+/// A run that several instances divide between them, as the page's workers do it.
+fn divided(method: Method, of: usize) -> Run {
     let (scene, _) = l_scene(SIZE_PX);
     let params = Params {
         method,
@@ -221,21 +221,20 @@ fn shared(method: Method, of: usize) -> Run {
     let mut others: Vec<Run> = (1..of)
         .map(|_| Run::of_packed(packed(), params.clone()))
         .collect();
-    for &stage in Stage::of(method) {
-        let mut known = Known::default();
-        for map in stage.shared_maps() {
+    for stage in Stage::of(method) {
+        let mut merged = MergedShards::default();
+        for map in stage.shard_maps() {
             let runs = std::iter::once(&mut first).chain(&mut others);
-            let shares = runs.enumerate().map(|(index, run)| {
-                let map = map.to_string();
-                run.share(stage, Task { map, index, of }, known.clone(), &silent())
+            let shards = runs.enumerate().map(|(index, run)| {
+                run.run_shard(stage, map, [index, of], merged.clone(), &silent())
             });
-            for share in shares.collect::<Vec<_>>() {
+            for shard in shards.collect::<Vec<_>>() {
                 // Longer than a list of no calls: the map of this name was reached.
-                assert!(share.len() > 1, "{map} of {}", stage.name());
-                assert!(known.add(map, &share));
+                assert!(shard.len() > 1, "{map} of {}", stage.name());
+                assert!(merged.merge(map, &shard));
             }
         }
-        first.step_with(stage, known, &silent());
+        first.step_merged(stage, merged, &silent());
         let found = first.hand_over(stage);
         for run in others.iter_mut().filter(|_| !found.is_empty()) {
             assert!(run.take_over(stage, &found));
@@ -245,7 +244,7 @@ fn shared(method: Method, of: usize) -> Run {
 }
 
 #[test]
-fn instances_that_share_a_run_give_the_bytes_of_one() {
+fn instances_that_divide_a_run_give_the_bytes_of_one() {
     for (method, _) in METHODS {
         let (scene, _) = l_scene(SIZE_PX);
         let mut alone = Run::new(
@@ -257,7 +256,7 @@ fn instances_that_share_a_run_give_the_bytes_of_one() {
         );
         alone.run_all();
         for of in [2, 3] {
-            assert!(shared(method, of).files(&[]) == alone.files(&[]));
+            assert!(divided(method, of).files(&[]) == alone.files(&[]));
         }
     }
 }
@@ -296,7 +295,7 @@ fn both_methods_find_one_model() {
     let mut run = Run::new(scene, params);
     run.run_all();
     let results = run.results();
-    let model = results.model().unwrap();
+    let model = results.roof_model().unwrap();
     assert_eq!(check_invariants(model), vec![]);
     assert_eq!(model.buildings.len(), 1);
     let found = truth.facets.iter();
@@ -308,7 +307,7 @@ fn both_methods_find_one_model() {
     let adopted = |l: &Line3d| l.origin == LineOrigin::Clustered;
     assert!(lines.is_sorted_by_key(adopted) && !adopted(&lines[0]));
     let rectangles = &results.rectangles.as_ref().unwrap().trace.candidates;
-    let groups = &results.roof.as_ref().unwrap().trace.facets.groups;
+    let groups = &results.facets.as_ref().unwrap().trace.facets.groups;
     let of_both = groups.iter().filter(|g| !g.rectangles.is_empty());
     assert!(
         of_both.clone().count() > 0,
@@ -382,7 +381,15 @@ fn images_without_structure_give_an_empty_model_and_say_so() {
     }
     let mut run = Run::new(scene, Params::default());
     run.run_all();
-    assert!(run.results().roof.as_ref().unwrap().value.facets.is_empty());
+    assert!(
+        run.results()
+            .facets
+            .as_ref()
+            .unwrap()
+            .value
+            .facets
+            .is_empty()
+    );
     assert_eq!(run.summaries()[0].warnings.len(), 6, "one for each view");
     assert!(!run.files(&[]).is_empty());
 }

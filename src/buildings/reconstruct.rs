@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::refine::{RefineTrace, RoofGap, cut_back_at_gaps, refine_roofs};
-use crate::facets::{FacetTrace, FacetInput, reconstruct_facets};
+use crate::execution::Sharded;
+use crate::facets::{FacetInput, FacetTrace, reconstruct_facets};
 use crate::ids::LineId;
 use crate::lines3d::{Line3d, Refutation};
 use crate::model::{Facet, RoofModel};
@@ -32,6 +33,7 @@ pub struct RoofTrace {
 
 /// The facets before refinement, whose buildings are those of [`RefineTrace`].
 #[derive(Clone, Debug, Default, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct UnrefinedFacets {
     /// Closed, cut back at gaps, and not refined.
     pub facets: Vec<Facet>,
@@ -44,9 +46,9 @@ pub fn reconstruct_roofs(
     scene: &Scene,
     evidence: &FacetInput,
     params: &RoofParams,
-) -> (RoofModel, RoofTrace) {
+) -> Sharded<(RoofModel, RoofTrace)> {
     let FacetInput { lines, ground, .. } = *evidence;
-    let (facets, facet_trace) = reconstruct_facets(scene, evidence, params);
+    let (facets, facet_trace) = reconstruct_facets(scene, evidence, params)?;
     let below = |members: &[&Facet]| ground.below(members);
     // Refinement needs facets that share vertices, and moves them; so the solids are made again.
     let (delineated, solids) = close_buildings(&facets, below);
@@ -59,16 +61,14 @@ pub fn reconstruct_roofs(
         sources: closed.sources.clone(),
     };
     let solids = solids.then(again).then(closed);
-    (
-        model,
-        RoofTrace {
-            facets: facet_trace,
-            partings: gaps,
-            unrefined,
-            refinement,
-            solids,
-            new_lines: Vec::new(),
-            refuted_lines: Vec::new(),
-        },
-    )
+    let trace = RoofTrace {
+        facets: facet_trace,
+        partings: gaps,
+        unrefined,
+        refinement,
+        solids,
+        new_lines: Vec::new(),
+        refuted_lines: Vec::new(),
+    };
+    Ok((model, trace))
 }

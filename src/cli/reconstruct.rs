@@ -84,7 +84,7 @@ fn run_stages(run: &mut Run) -> Vec<(Stage, f64)> {
     let style = ProgressStyle::with_template("{msg:12} {bar:40} {elapsed}");
     bar.set_style(style.expect("the template is well formed"));
     let mut seconds = Vec::new();
-    for (i, &stage) in stages.iter().enumerate() {
+    for (i, stage) in stages.into_iter().enumerate() {
         bar.set_message(stage.name());
         let start = Instant::now();
         let shown = bar.clone();

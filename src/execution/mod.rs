@@ -1,4 +1,4 @@
-//! execution
+//! How work is carried out: in parallel, with progress, divided over instances of the core.
 
 pub mod parallel;
 pub mod progress;
@@ -6,4 +6,4 @@ pub mod shard;
 
 pub(crate) use parallel::{SILENT, map, map_part};
 pub(crate) use progress::{Listener, reached, silent};
-pub(crate) use shard::{Known, Task, map_shared, share, with_known};
+pub(crate) use shard::{MergedShards, ShardTask, Sharded, run_merged, run_shard, sharded_map};

@@ -1,22 +1,23 @@
 //! Maps that several instances of the core do together, without shared memory.
 //!
 //! In the browser each worker has an instance of its own with the same scene, parameters and earlier results. A
-//! map whose items are worth dealing out is written as [`map_shared`]. For each such map of a stage
+//! map whose items are worth dividing is written as [`sharded_map`]. For each such map of a stage
 //!
 //! ```text
-//! share    every instance of n runs the stage with a Task: at the map it does the items that are dealt to it (one
-//!          of every n), keeps them as bytes, and the map returns nothing; what the stage makes of nothing is thrown away
-//! run      one instance is given the bytes of all (Known), runs the stage, and takes the items from them
+//! run_shard   every instance of n runs the stage up to that map with a ShardTask, does one of every n items
+//!             there, keeps them as bytes, and leaves the stage
+//! run_merged  one instance is given the bytes of all (MergedShards), runs the stage, and takes the items from them
 //! ```
 //!
 //! An item's value does not depend on who computes it and `postcard` keeps every bit of a float, so that the result
-//! is that of one instance alone. Where nobody deals, [`map_shared`] is `parallel::map_part`.
+//! is that of one instance alone. Without a task and without shards [`sharded_map`] is `parallel::map_part`.
 //!
-//! A stage must therefore take no results for few results, quickly; and a map of the same name may be called several
-//! times in a stage only if the later calls do not depend on the earlier ones.
+//! Invariant: a stage never goes on with a part of a map. An instance that does its shard has no result to hand
+//! on: it gets [`ShardDone`], which the stage passes up with `?`. Several calls of one map in a stage, none of
+//! which depends on another, are all made before the first `?`.
 //!
-//! Rejected: stages in pieces (plan, shard, merge) as functions of their own. Every stage with such a map would be three functions
-//! and a type for what passes between them, and four of these stages have several maps.
+//! Rejected: stages in pieces (plan, shard, merge) as functions of their own. Every stage with such a map would be
+//! three functions and a type for what passes between them, and four of these stages have several maps.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -29,36 +30,51 @@ use serde::{Deserialize, Serialize};
 use super::parallel;
 use super::progress;
 
+/// What a stage with sharded maps returns: its result, or that this instance was to do a shard only.
+pub type Sharded<R> = Result<R, ShardDone>;
+
+/// The instance has done its shard of the map that it was run for; nobody needs the rest of the stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShardDone(());
+
 /// Which items of which map an instance does.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Task {
-    /// The name of the map.
-    pub map: String,
-    /// Which instance this is ...
-    pub index: usize,
-    /// ... of how many.
-    pub of: usize,
+pub struct ShardTask {
+    map: &'static str,
+    /// The maps of the stage behind it: a stage that comes to one of them did not call the map of the task.
+    later: &'static [&'static str],
+    index: usize,
+    of: usize,
 }
 
-/// The results of shared maps: for each map the bytes of all instances, in their order.
+impl ShardTask {
+    /// The task of instance `index` of so many at one of the maps of a stage, which are in the order in which
+    /// they are called; `None` where the stage has no such map, or there are not so many instances.
+    pub fn new(maps: &'static [&'static str], map: &str, index: usize, of: usize) -> Option<Self> {
+        let step = maps.iter().position(|one| *one == map)?;
+        (index < of).then(|| Self {
+            map: maps[step],
+            later: &maps[step + 1..],
+            index,
+            of,
+        })
+    }
+}
+
+/// The results of sharded maps: for each map the bytes of all instances, in their order.
 #[derive(Clone, Debug, Default)]
-pub struct Known {
-    maps: BTreeMap<String, Vec<Arc<Vec<Call>>>>,
+pub struct MergedShards {
+    maps: BTreeMap<String, Vec<Arc<Vec<CallShard>>>>,
 }
 
-impl Known {
-    /// Adds what the next instance, counted from zero, found for a map. False where these are no such bytes.
-    pub fn add(&mut self, map: &str, share: &[u8]) -> bool {
-        let calls: Option<Vec<Call>> = postcard::from_bytes(share).ok();
-        let is_share = calls.is_some();
+impl MergedShards {
+    /// Adds the shard of the next instance, counted from zero, of a map. False where these are no such bytes.
+    pub fn merge(&mut self, map: &str, shard: &[u8]) -> bool {
+        let calls: Option<Vec<CallShard>> = postcard::from_bytes(shard).ok();
+        let is_shard = calls.is_some();
         let instances = self.maps.entry(map.to_owned()).or_default();
         instances.extend(calls.map(Arc::new));
-        is_share
-    }
-
-    /// Nothing is known?
-    pub fn is_empty(&self) -> bool {
-        self.maps.is_empty()
+        is_shard
     }
 
     /// The results of one call of a map in the order of its items; `None` unless they are all there.
@@ -72,14 +88,14 @@ impl Known {
         let mut parts: Vec<std::vec::IntoIter<R>> = parts.collect::<Option<_>>()?;
         let of = parts.len();
         (0..items)
-            .map(|i| parts.get_mut(dealt_to(i, of))?.next())
+            .map(|i| parts.get_mut(instance_of(i, of))?.next())
             .collect()
     }
 }
 
-/// Which of the instances does an item. They are dealt to and fro, so that where two kinds of items take turns (the two
-/// sides of lines) nobody gets one kind only.
-fn dealt_to(item: usize, of: usize) -> usize {
+/// Which of the instances does an item. They run to and fro over the items, so that where two kinds of items take
+/// turns (the two sides of lines) nobody gets one kind only.
+fn instance_of(item: usize, of: usize) -> usize {
     let of = of.max(1);
     let place = item % of;
     match (item / of).is_multiple_of(2) {
@@ -90,114 +106,126 @@ fn dealt_to(item: usize, of: usize) -> usize {
 
 /// One call of a map, as one instance did it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Call {
+struct CallShard {
     /// Number of items of the whole call: a check that the instances agree.
     items: usize,
     /// The results of this instance's items.
     results: Vec<u8>,
 }
 
-/// What the shared maps on this thread are to do.
+/// What the sharded maps on this thread are to do.
 #[derive(Default)]
-struct Dealing {
-    known: Known,
-    task: Option<Task>,
+struct Sharding {
+    merged: MergedShards,
+    task: Option<ShardTask>,
     /// How often each map was called.
     called: BTreeMap<String, usize>,
-    done: Vec<Call>,
+    done: Vec<CallShard>,
 }
 
 thread_local! {
-    static DEALING: RefCell<Option<Dealing>> = const { RefCell::new(None) };
+    static SHARDING: RefCell<Option<Sharding>> = const { RefCell::new(None) };
 }
 
-/// Runs `work` on this thread, whose shared maps take what is known.
-pub fn with_known<R>(known: Known, work: impl FnOnce() -> R) -> R {
-    dealt(known, None, work).0
+/// Runs a stage on this thread, whose maps take the merged results where there are any.
+pub fn run_merged<R>(merged: MergedShards, stage: impl FnOnce() -> Sharded<R>) -> R {
+    let sharding = Sharding {
+        merged,
+        ..Sharding::default()
+    };
+    let (result, _) = sharded(sharding, stage);
+    result.expect("a map ends a stage only where there is a task")
 }
 
-/// Runs `work` on this thread for the share of one map in it, with what is known of the maps before. What `work`
-/// returns is worth nothing.
-pub fn share(task: Task, known: Known, work: impl FnOnce()) -> Vec<u8> {
-    let done = dealt(known, Some(task), work).1;
+/// Runs a stage on this thread up to the map of the task, with the merged results of the maps before it; the shard
+/// of the task. No calls are in it where the stage does not come to that map.
+pub fn run_shard<R>(
+    task: ShardTask,
+    merged: MergedShards,
+    stage: impl FnOnce() -> Sharded<R>,
+) -> Vec<u8> {
+    let sharding = Sharding {
+        merged,
+        task: Some(task),
+        ..Sharding::default()
+    };
+    let (_, done) = sharded(sharding, stage);
     postcard::to_stdvec(&done).expect("bytes can be written to memory")
 }
 
-fn dealt<R>(known: Known, task: Option<Task>, work: impl FnOnce() -> R) -> (R, Vec<Call>) {
-    let dealing = Dealing {
-        known,
-        task,
-        ..Dealing::default()
-    };
-    let before = DEALING.replace(Some(dealing));
-    let result = work();
-    let dealing = DEALING.replace(before);
-    (result, dealing.map(|d| d.done).unwrap_or_default())
+fn sharded<R>(sharding: Sharding, stage: impl FnOnce() -> R) -> (R, Vec<CallShard>) {
+    let before = SHARDING.replace(Some(sharding));
+    let result = stage();
+    let sharding = SHARDING.replace(before);
+    (result, sharding.map(|s| s.done).unwrap_or_default())
 }
 
-/// `parallel::map_part` that instances may share; `name` is the map's own in its stage. No shared maps inside `f`.
-pub fn map_shared<T: Sync, R: Send + Serialize + DeserializeOwned>(
+/// `parallel::map_part` that instances may divide; `name` is the map's own in its stage. No sharded maps inside `f`.
+pub fn sharded_map<T: Sync, R: Send + Serialize + DeserializeOwned>(
     name: &str,
     items: &[T],
     part: Range<f64>,
     f: impl Fn(usize, &T) -> R + Sync,
-) -> Vec<R> {
-    match turn(name, items.len()) {
-        Turn::Alone => parallel::map_part(items, part, f),
-        Turn::Known(results) => {
+) -> Sharded<Vec<R>> {
+    match role(name, items.len()) {
+        Role::Whole => Ok(parallel::map_part(items, part, f)),
+        Role::Merged(results) => {
             if !part.is_empty() {
                 progress::reached(part.end);
             }
-            results
+            Ok(results)
         }
-        Turn::Skipped => Vec::new(),
-        Turn::Share(mine) => {
-            let results = parallel::map_part(&mine, part, |_, &i| f(i, &items[i]));
-            hand_in(items.len(), &results);
-            Vec::new()
+        Role::Shard(own) => {
+            let results = parallel::map_part(&own, part, |_, &i| f(i, &items[i]));
+            keep(items.len(), &results);
+            Err(ShardDone(()))
         }
+        Role::Behind => Err(ShardDone(())),
     }
 }
 
-/// Whose turn it is at a call of a map.
-enum Turn<R> {
-    /// Nobody shares it.
-    Alone,
-    /// Everybody has done it.
-    Known(Vec<R>),
-    /// This instance does these items.
-    Share(Vec<usize>),
-    /// Its results would be thrown away.
-    Skipped,
+/// What an instance is to do at a call of a map.
+enum Role<R> {
+    /// All items.
+    Whole,
+    /// Nothing: all instances together have done it.
+    Merged(Vec<R>),
+    /// These items.
+    Shard(Vec<usize>),
+    /// Nothing: the map lies behind that of the task.
+    Behind,
 }
 
-fn turn<R: DeserializeOwned>(name: &str, items: usize) -> Turn<R> {
-    DEALING.with_borrow_mut(|dealing| {
-        let Some(dealing) = dealing else {
-            return Turn::Alone;
+fn role<R: DeserializeOwned>(name: &str, items: usize) -> Role<R> {
+    SHARDING.with_borrow_mut(|sharding| {
+        let Some(sharding) = sharding else {
+            return Role::Whole;
         };
-        let call = dealing.called.entry(name.to_owned()).or_default();
-        let this = *call;
-        *call += 1;
-        if let Some(task) = dealing.task.as_ref().filter(|task| task.map == name) {
-            let mine = |i: &usize| dealt_to(*i, task.of) == task.index;
-            return Turn::Share((0..items).filter(mine).collect());
+        let calls = sharding.called.entry(name.to_owned()).or_default();
+        let call = *calls;
+        *calls += 1;
+        if let Some(task) = &sharding.task {
+            if task.map == name {
+                let own = |i: &usize| instance_of(*i, task.of) == task.index;
+                return Role::Shard((0..items).filter(own).collect());
+            }
+            if task.later.contains(&name) {
+                return Role::Behind;
+            }
         }
-        match dealing.known.results(name, this, items) {
-            Some(results) => Turn::Known(results),
-            // Behind the map of the task nothing matters any more.
-            None if dealing.task.is_some() => Turn::Skipped,
-            None => Turn::Alone,
+        match sharding.merged.results(name, call, items) {
+            Some(results) => Role::Merged(results),
+            None => Role::Whole,
         }
     })
 }
 
 /// Keeps what this instance found.
-fn hand_in<R: Serialize>(items: usize, results: &[R]) {
+fn keep<R: Serialize>(items: usize, results: &[R]) {
     let results = postcard::to_stdvec(results).expect("results can be written to memory");
-    DEALING.with_borrow_mut(|dealing| {
-        if let Some(dealing) = dealing {
-            dealing.done.push(Call { items, results });
+    SHARDING.with_borrow_mut(|sharding| {
+        if let Some(sharding) = sharding {
+            sharding.done.push(CallShard { items, results });
         }
     });
 }
@@ -208,55 +236,77 @@ mod tests {
 
     use super::*;
 
-    /// Two maps, the second of which works on what the first found.
-    fn stage(counted: &AtomicUsize) -> Vec<f64> {
+    const MAPS: &[&str] = &["halves", "roots"];
+
+    /// Two maps, the second of which is called twice and works on what the first found. An empty list of items
+    /// would be out of bounds.
+    fn stage(counted: &AtomicUsize) -> Sharded<Vec<f64>> {
         let count = |x: f64| {
             counted.fetch_add(1, Ordering::Relaxed);
             x
         };
         let items: Vec<u32> = (0..11).collect();
-        let halves = map_shared("halves", &items, 0.0..0.5, |i, n| {
+        let halves = sharded_map("halves", &items, 0.0..0.5, |i, n| {
             count(f64::from(*n) / 3.0 + i as f64)
-        });
-        map_shared("roots", &halves, 0.5..1.0, |_, x| count(x.sqrt()))
+        })?;
+        let (first, others) = (&halves[..4], &halves[4..]);
+        let first = sharded_map("roots", first, 0.5..0.7, |_, x| count(x.sqrt()));
+        let others = sharded_map("roots", others, 0.7..1.0, |_, x| count(x.sqrt()));
+        Ok([first?, others?].concat())
     }
 
-    fn shared(of: usize) -> (Vec<f64>, usize) {
-        let mut known = Known::default();
-        for map in ["halves", "roots"] {
-            let task = |index| Task {
-                map: map.to_owned(),
-                index,
-                of,
-            };
+    fn divided(of: usize) -> (Vec<f64>, usize) {
+        let mut merged = MergedShards::default();
+        for map in MAPS {
             let counted = AtomicUsize::new(0);
-            let shares: Vec<Vec<u8>> = (0..of)
-                .map(|k| share(task(k), known.clone(), || drop(stage(&counted))))
+            let shards: Vec<Vec<u8>> = (0..of)
+                .map(|k| ShardTask::new(MAPS, map, k, of).unwrap())
+                .map(|task| run_shard(task, merged.clone(), || stage(&counted)))
                 .collect();
             // Nobody does another map than this one.
             assert_eq!(counted.into_inner(), 11);
-            assert!(shares.iter().all(|bytes| known.add(map, bytes)));
+            assert!(shards.iter().all(|bytes| merged.merge(map, bytes)));
         }
         let counted = AtomicUsize::new(0);
-        let result = with_known(known, || stage(&counted));
+        let result = run_merged(merged, || stage(&counted));
         (result, counted.into_inner())
     }
 
     #[test]
-    fn shares_of_many_make_the_result_of_one() {
+    fn shards_of_many_make_the_result_of_one() {
         let counted = AtomicUsize::new(0);
-        let alone = stage(&counted);
+        let whole = stage(&counted).unwrap();
         assert_eq!(counted.into_inner(), 22);
         for of in [1, 2, 3, 20] {
-            assert_eq!(shared(of), (alone.clone(), 0), "{of} instances");
+            assert_eq!(divided(of), (whole.clone(), 0), "{of} instances");
         }
+    }
+
+    #[test]
+    fn a_stage_ends_at_its_shard_or_where_it_has_passed_the_map() {
+        let task = |map| ShardTask::new(&["heights", "halves", "roots"], map, 0, 2).unwrap();
+        let mut went_on = false;
+        let mut run = |task| {
+            let counted = AtomicUsize::new(0);
+            run_shard(task, MergedShards::default(), || {
+                let result = stage(&counted);
+                went_on |= result.is_ok();
+                result
+            });
+            counted.into_inner()
+        };
+        assert_eq!(run(task("halves")), 6);
+        assert_eq!(run(task("heights")), 0, "a map that this run does not need");
+        assert!(!went_on);
+        assert_eq!(ShardTask::new(MAPS, "thirds", 0, 1), None);
+        assert_eq!(ShardTask::new(MAPS, "roots", 1, 1), None);
     }
 
     #[test]
     fn everybody_gets_items_of_both_kinds() {
         for of in 1..5 {
             let mut dealt = vec![[0; 2]; of];
-            (0..8 * of).for_each(|i| dealt[dealt_to(i, of)][i % 2] += 1);
+            (0..8 * of).for_each(|i| dealt[instance_of(i, of)][i % 2] += 1);
             let is_fair = |[a, b]: &[i32; 2]| a + b == 8 && (of > 2 || a == b);
             assert!(dealt.iter().all(is_fair), "{of} {dealt:?}");
         }
@@ -264,20 +314,15 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_computed() {
-        let mut known = Known::default();
-        assert!(!known.add("halves", &[255; 3]));
-        let foreign = share(
-            Task {
-                map: "halves".to_owned(),
-                index: 0,
-                of: 1,
-            },
-            Known::default(),
-            || drop(map_shared("halves", &[1.0, 2.0], 0.0..1.0, |_, x| *x)),
-        );
-        assert!(known.add("halves", &foreign));
+        let mut merged = MergedShards::default();
+        assert!(!merged.merge("halves", &[255; 3]));
+        let task = ShardTask::new(MAPS, "halves", 0, 1).unwrap();
+        let foreign = run_shard(task, MergedShards::default(), || {
+            sharded_map("halves", &[1.0, 2.0], 0.0..1.0, |_, x| *x)
+        });
+        assert!(merged.merge("halves", &foreign));
         let counted = AtomicUsize::new(0);
-        with_known(known, || stage(&counted));
+        run_merged(merged, || stage(&counted));
         assert_eq!(counted.into_inner(), 22);
     }
 }

@@ -20,6 +20,7 @@ use super::labelling::Labelling;
 use super::verification::{
     FacetRejection, RejectedFacet, boundary_leakage, tail_on_ground, verify,
 };
+use crate::execution::{Sharded, sharded_map};
 use crate::geometry::{Plane, bounds};
 use crate::lines3d::Line3d;
 use crate::model::{Facet, Occluders};
@@ -34,6 +35,7 @@ use crate::terrain::Ground;
 
 /// What grouping, delineation and verification did.
 #[derive(Clone, Debug, Default, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct FacetTrace {
     /// Groups of coplanar lines and half-planes.
     pub groups: Vec<PlaneGroup>,
@@ -53,7 +55,7 @@ pub fn reconstruct_facets(
     scene: &Scene,
     evidence: &FacetInput,
     params: &RoofParams,
-) -> (Vec<Facet>, FacetTrace) {
+) -> Sharded<(Vec<Facet>, FacetTrace)> {
     let FacetInput {
         segments,
         lines,
@@ -82,13 +84,11 @@ pub fn reconstruct_facets(
         .map(|g| PlanRegion::new(&input, g, params))
         .collect();
     let Some(grid) = plan_window(scene, lines, &regions) else {
-        return (
-            Vec::new(),
-            FacetTrace {
-                groups,
-                ..FacetTrace::default()
-            },
-        );
+        let trace = FacetTrace {
+            groups,
+            ..FacetTrace::default()
+        };
+        return Ok((Vec::new(), trace));
     };
     let fine = scene
         .views
@@ -96,8 +96,10 @@ pub fn reconstruct_facets(
         .map(|v| v.camera.ground_pixel(&lines[0].at(0.5)))
         .fold(f64::INFINITY, f64::min);
     let reduced = scene.reduced(((grid.step / fine) as usize).max(1));
+    // Both compare the views on planes, independently of each other: one map.
     let ground_map = ground_map(&reduced, ground, &grid);
     let hypotheses = plane_hypotheses(scene, &reduced, segments, &input, groups, grid.step, params);
+    let (ground_map, hypotheses) = (ground_map?, hypotheses?);
     let windows = ShiftableWindows::new(lines.iter().map(|l| l.segment), &grid);
     let bounding = bounding_lines(&input, &hypotheses, ground, params);
     let borders = border_lines(&input, &hypotheses, &bounding, &windows, params);
@@ -137,16 +139,14 @@ pub fn reconstruct_facets(
     };
     let (facets, rejected) = solve(&mut labelling, &competing, &groups, ground, scene, params);
     let cells = competing.arrangement.cells;
-    (
-        facets,
-        FacetTrace {
-            groups,
-            plane_lines,
-            borders,
-            cells,
-            rejected,
-        },
-    )
+    let trace = FacetTrace {
+        groups,
+        plane_lines,
+        borders,
+        cells,
+        rejected,
+    };
+    Ok((facets, trace))
 }
 
 /// Are all lines of the group lower than any eave?
@@ -179,24 +179,24 @@ fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[PlanRegion]) -> Optio
 
 /// Similarity of the views on the ground. Its height is only known to a few decimetres: at every
 /// position the views may agree at the height that it has there or a step beside it.
-fn ground_map(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Option<ConsistencyMap> {
+fn ground_map(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Sharded<Option<ConsistencyMap>> {
     const STEP: f64 = 0.3;
     let plane = ground.plane();
     let [lowest, highest] = ground.rises().map(|rise| (rise / STEP).round() as i32);
     let levels: Vec<i32> = (lowest - 1..=highest + 1).collect();
-    let maps = crate::execution::map_shared("planes", &levels, 0.1..0.2, |_, level| {
+    let maps = sharded_map("planes", &levels, 0.1..0.2, |_, level| {
         let raised = Plane {
             d: plane.d - STEP * f64::from(*level) * plane.normal.z,
             ..plane
         };
         consistency_map(scene, &raised, grid)
-    });
-    ConsistencyMap::best_of(&maps, |column, row| {
+    })?;
+    Ok(ConsistencyMap::best_of(&maps, |column, row| {
         let at = grid.center(column, row);
         let rise = ground.z_at(&at) - plane.z_at(at.x, at.y);
         let below = ((rise / STEP).round() as i32 - lowest).clamp(0, highest - lowest) as usize;
         below..below + 3
-    })
+    }))
 }
 
 /// Finest cell, metres. Assumption: what a roof's border lines can be told apart by; sharper images
@@ -358,7 +358,9 @@ mod tests {
             ground: &Ground::level(0.0),
             rectangles,
         };
-        reconstruct_facets(&scene, &evidence, &RoofParams::default()).0
+        reconstruct_facets(&scene, &evidence, &RoofParams::default())
+            .unwrap()
+            .0
     }
 
     #[test]

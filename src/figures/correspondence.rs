@@ -22,6 +22,7 @@ const WINDOW_PX: usize = 15;
 
 /// A point of a segment and the point of the candidate that corresponds to it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Correspondence {
     /// The point of the segment, pixels.
     pub x: Point2<f64>,

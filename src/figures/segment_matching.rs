@@ -14,6 +14,7 @@ use crate::scene::Scene;
 
 /// The pair candidates of a segment and their outcome.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct SegmentMatching {
     /// Its outcome; `None` before matching.
     pub outcome: Option<SegmentOutcome>,
@@ -25,6 +26,7 @@ pub struct SegmentMatching {
 
 /// The epipolar beam of a segment in another view.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Beam {
     /// The other view.
     pub view: ViewId,
@@ -34,6 +36,7 @@ pub struct Beam {
 
 /// A pair hypothesis as its first segment sees it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct PairCandidate {
     /// The other view.
     pub view: ViewId,
@@ -49,6 +52,7 @@ pub struct PairCandidate {
 
 /// The line of a pair in a third view.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct ReprojectedLine {
     /// The third view.
     pub view: ViewId,
@@ -190,7 +194,8 @@ mod tests {
             .map(|v| detect_segments(&v.gray, None, &params).0)
             .collect();
         let (fitting, matching) = (Lines3dParams::default(), MatchParams::default());
-        let (_, trace) = crate::linematch::match_lines(&scene, &segments, &matching, &fitting);
+        let (_, trace) =
+            crate::linematch::match_lines(&scene, &segments, &matching, &fitting).unwrap();
         (scene, segments, trace)
     }
 

@@ -18,6 +18,7 @@ const BEYOND_PX: f64 = 4.0;
 
 /// All views warped into the reference view.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct WarpedViews {
     /// Angle, radians.
     pub theta: f64,
@@ -42,6 +43,7 @@ pub struct WarpedViews {
 
 /// One view's picture.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct WarpedView {
     /// The view.
     pub view: ViewId,

@@ -10,8 +10,8 @@ use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3};
 
 use super::segment_geometry::PreparedSegments;
 use crate::camera::{Camera, fundamental, homography_of_plane};
-use crate::execution::map_shared;
 use crate::execution::parallel;
+use crate::execution::{Sharded, sharded_map};
 use crate::geometry::Plane;
 use crate::ids::ViewId;
 use crate::raster::{Gray, gaussian_blur};
@@ -46,13 +46,17 @@ pub struct HeightRange {
 }
 
 /// Estimates the range; `None` when too few points agree.
-pub fn height_range(scene: &Scene, prepared: &PreparedSegments) -> Option<HeightRange> {
+pub fn height_range(scene: &Scene, prepared: &PreparedSegments) -> Sharded<Option<HeightRange>> {
     let blurred: Vec<Gray> = parallel::map(&scene.views, |_, v| gaussian_blur(&v.gray, 1.0));
     let points = interest_points(scene, prepared);
-    let found = map_shared("heights", &points, 0.0..0.2, |_, (view, x)| {
+    let found = sharded_map("heights", &points, 0.0..0.2, |_, (view, x)| {
         sweep(scene, &blurred, *view, x)
-    });
-    let mut heights: Vec<f64> = found.into_iter().flatten().collect();
+    })?;
+    Ok(range_of(scene, found.into_iter().flatten().collect()))
+}
+
+/// The range in which heights lie that others confirm.
+fn range_of(scene: &Scene, mut heights: Vec<f64>) -> Option<HeightRange> {
     sort_by(&mut heights, f64::total_cmp);
     let neighbours = |z: f64| {
         let from = heights.partition_point(|h| *h < z - NEIGHBOUR_M);

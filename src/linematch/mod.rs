@@ -52,6 +52,7 @@ use self::pass::Pass;
 use self::segment_geometry::{Compatibility, PreparedSegments};
 use self::selection::Selection;
 use self::triples::TripleBundle;
+use crate::execution::Sharded;
 use crate::lines2d::ImageSegment;
 use crate::lines3d::LineTrack;
 use crate::params::{Lines3dParams, MatchParams};
@@ -65,12 +66,12 @@ pub fn match_lines(
     segments: &[Vec<ImageSegment>],
     params: &MatchParams,
     fitting: &Lines3dParams,
-) -> (Vec<LineTrack>, MatchTrace) {
+) -> Sharded<(Vec<LineTrack>, MatchTrace)> {
     let mut trace = MatchTrace::default();
     let prepared = PreparedSegments::new(scene, segments);
     let estimated = match params.z_range_m {
         Some(z) => Some(z),
-        None => height::height_range(scene, &prepared).map(|range| {
+        None => height::height_range(scene, &prepared)?.map(|range| {
             trace.heights_m = range.heights;
             range.z
         }),
@@ -101,7 +102,7 @@ pub fn match_lines(
         compatibility,
     };
     let mut search = MatchSearch::new(segments);
-    search.run(&scope, &context, Pass::First);
+    search.run(&scope, &context, Pass::First)?;
     // With few views each of them is needed, however it shows a line.
     let few = scene.views.len() <= params.min_views;
     if few && !search.selection.lines.is_empty() {
@@ -119,7 +120,7 @@ pub fn match_lines(
                 ..context
             },
             Pass::Second,
-        );
+        )?;
     }
     let MatchSearch {
         pairs,
@@ -129,7 +130,7 @@ pub fn match_lines(
     join::join_lines(&context, &mut selection);
     trace.record(segments, &pairs, &bundles, &selection);
     let tracks = selection.lines.into_iter().map(LineTrack::from).collect();
-    (tracks, trace)
+    Ok((tracks, trace))
 }
 
 /// All hypotheses and their outcomes.
@@ -149,11 +150,11 @@ impl MatchSearch {
     }
 
     /// Matches the segments that no line owns yet.
-    fn run(&mut self, scope: &PairScope, context: &MatchContext, pass: Pass) {
+    fn run(&mut self, scope: &PairScope, context: &MatchContext, pass: Pass) -> Sharded<()> {
         let taken = |s| self.selection.owner(s).is_some();
-        let pairs = pairs::match_pairs(scope, taken, pass);
-        let bundles = triples::verify_pairs(scope, &pairs, pass);
-        selection::winner_takes_all(context, &pairs, &bundles, pass, &mut self.selection);
+        let pairs = pairs::match_pairs(scope, taken, pass)?;
+        let bundles = triples::verify_pairs(scope, &pairs, pass)?;
+        selection::winner_takes_all(context, &pairs, &bundles, pass, &mut self.selection)?;
         let before = self.pairs.pairs.len();
         self.bundles
             .extend(bundles.into_iter().map(|bundle| TripleBundle {
@@ -161,13 +162,14 @@ impl MatchSearch {
                 ..bundle
             }));
         self.pairs.append(pairs);
+        Ok(())
     }
 }
 
 /// The range of heights in which the lines of a scene lie, metres: estimated from the segments of
 /// all views, or as wide as the cameras allow.
-pub fn scene_heights(scene: &Scene, segments: &[Vec<ImageSegment>]) -> [f64; 2] {
+pub fn scene_heights(scene: &Scene, segments: &[Vec<ImageSegment>]) -> Sharded<[f64; 2]> {
     let prepared = PreparedSegments::new(scene, segments);
-    height::height_range(scene, &prepared)
-        .map_or_else(|| height::any_height(scene), |range| range.z)
+    let range = height::height_range(scene, &prepared)?;
+    Ok(range.map_or_else(|| height::any_height(scene), |range| range.z))
 }

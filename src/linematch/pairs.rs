@@ -17,7 +17,7 @@ use super::segment_geometry::{
     Compatibility, PreparedSegments, SegmentGeometry, SegmentRef, epipolar_beam, ray_in_plane,
 };
 use crate::camera::{Camera, Homography, homography_of_plane};
-use crate::execution::map_shared;
+use crate::execution::{Sharded, sharded_map};
 use crate::geometry::{Plane, Segment3};
 use crate::ids::ViewId;
 use crate::lines3d::{Side, ThetaFrame};
@@ -79,18 +79,18 @@ pub fn match_pairs(
     scope: &PairScope,
     taken: impl Fn(SegmentRef) -> bool + Sync,
     pass: Pass,
-) -> SegmentPairs {
+) -> Sharded<SegmentPairs> {
     let free: Vec<SegmentRef> = (scope.scene.view_ids())
         .flat_map(|view| scope.prepared.of_view(view))
         .map(|(name, _)| name)
         .filter(|name| !taken(*name))
         .collect();
-    let found = map_shared(
+    let found = sharded_map(
         pass.map_name("pairs"),
         &free,
         pass.progress_part(0.2..0.5),
         |_, name| scope.pairs_of(*name, &taken),
-    );
+    )?;
     let mut searches: Vec<Vec<PairSearch>> = (scope.prepared.views.iter())
         .map(|v| vec![PairSearch::default(); v.segments.len()])
         .collect();
@@ -106,7 +106,7 @@ pub fn match_pairs(
             pairs.push(pair);
         }
     }
-    SegmentPairs { pairs, searches }
+    Ok(SegmentPairs { pairs, searches })
 }
 
 impl SegmentPairs {
@@ -393,7 +393,7 @@ mod tests {
             params: &params,
             compatibility,
         };
-        match_pairs(&scope, |_| false, Pass::Second)
+        match_pairs(&scope, |_| false, Pass::Second).unwrap()
     }
 
     const COMPATIBLE: Compatibility = Compatibility {
@@ -449,7 +449,9 @@ mod tests {
                 params: &params,
                 compatibility: COMPATIBLE,
             };
-            match_pairs(&scope, |_| false, Pass::Second).score(name(0), name(other))
+            match_pairs(&scope, |_| false, Pass::Second)
+                .unwrap()
+                .score(name(0), name(other))
         };
         let params = MatchParams::default();
         // Within a strip, and in strips flown in opposite directions.

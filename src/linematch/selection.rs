@@ -14,7 +14,7 @@ use super::pairs::{SegmentPair, SegmentPairs};
 use super::pass::Pass;
 use super::segment_geometry::SegmentRef;
 use super::triples::TripleBundle;
-use crate::execution::{SILENT, map_shared, reached};
+use crate::execution::{SILENT, Sharded, reached, sharded_map};
 use crate::lines2d::ImageSegment;
 
 /// The outcome of a bundle.
@@ -45,11 +45,11 @@ pub fn winner_takes_all(
     bundles: &[TripleBundle],
     pass: Pass,
     selection: &mut Selection,
-) {
+) -> Sharded<()> {
     let mut outcomes = vec![BundleOutcome::Rejected(MatchRejection::NoFit); bundles.len()];
-    let weighed = map_shared(pass.map_name("bundles"), bundles, SILENT, |_, b| {
+    let weighed = sharded_map(pass.map_name("bundles"), bundles, SILENT, |_, b| {
         evidence(context, &pairs.pairs[b.pair], b)
-    });
+    })?;
     let mut queue: BinaryHeap<QueuedBundle> = (weighed.into_iter().enumerate())
         .map(|(bundle, evidence)| QueuedBundle { evidence, bundle })
         .collect();
@@ -91,6 +91,7 @@ pub fn winner_takes_all(
         }
     }
     selection.outcomes.extend(outcomes);
+    Ok(())
 }
 
 /// Evidence for the line of a bundle: its length in the first view times the sum over the views of
@@ -204,7 +205,8 @@ mod tests {
                 bundles,
                 Pass::Second,
                 &mut selection,
-            );
+            )
+            .unwrap();
             selection
         }
 
@@ -342,8 +344,8 @@ mod tests {
             params: &roof.params,
             compatibility: COMPATIBLE,
         };
-        let pairs = match_pairs(&scope, |_| false, Pass::Second);
-        let bundles = verify_pairs(&scope, &pairs, Pass::Second);
+        let pairs = match_pairs(&scope, |_| false, Pass::Second).unwrap();
+        let bundles = verify_pairs(&scope, &pairs, Pass::Second).unwrap();
         assert!(bundles.len() > 20);
         let expected = roof.select(&pairs, &bundles, roof.nothing_taken());
         assert_eq!(expected.lines.len(), 4);

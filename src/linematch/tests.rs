@@ -12,7 +12,8 @@ fn matched() -> (Scene, Vec<LineTrack>, MatchTrace) {
         &segments,
         &MatchParams::default(),
         &Lines3dParams::default(),
-    );
+    )
+    .unwrap();
     (scene, matches, trace)
 }
 
@@ -73,7 +74,7 @@ fn an_edge_missing_in_one_view_is_verified_by_correlation() {
     let mut segments = planted::segments(&scene);
     segments[3].remove(2);
     let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
-    let (matches, _) = match_lines(&scene, &segments, &params, &fitting);
+    let (matches, _) = match_lines(&scene, &segments, &params, &fitting).unwrap();
     let edge = matches
         .iter()
         .find(|m| m.supports[0].segments.contains(&SegmentId(2)))
@@ -100,7 +101,7 @@ fn where_views_are_few_they_may_show_a_line_in_different_channels() {
             min_views,
             ..params
         };
-        let (matches, trace) = match_lines(&scene, &segments, &params, &fitting);
+        let (matches, trace) = match_lines(&scene, &segments, &params, &fitting).unwrap();
         let own = |m: &&LineTrack| m.supports[0].segments.contains(&SegmentId(1));
         let outcomes = trace.outcomes.iter().map(|view| view[1]);
         let all = outcomes.filter(|o| matches!(o, SegmentOutcome::Matched { .. }));
@@ -133,7 +134,7 @@ fn lines_of_a_bar(kinds: [SegmentKind; 5]) -> Vec<Line3d> {
     };
     let segments: Vec<_> = kinds.into_iter().enumerate().map(image).collect();
     let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
-    let (matches, _) = match_lines(&scene, &segments, &params, &fitting);
+    let (matches, _) = match_lines(&scene, &segments, &params, &fitting).unwrap();
     reconstruct_lines(&scene, &matches, &fitting).0
 }
 
@@ -169,7 +170,7 @@ fn two_views_give_no_match() {
     scene.views.truncate(2);
     segments.truncate(2);
     let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
-    let (matches, trace) = match_lines(&scene, &segments, &params, &fitting);
+    let (matches, trace) = match_lines(&scene, &segments, &params, &fitting).unwrap();
     assert!(matches.is_empty());
     assert_eq!(trace.outcomes[0].len(), segments[0].len());
 }
@@ -179,7 +180,17 @@ fn no_views_and_no_segments_are_no_error() {
     let mut scene = planted::scene();
     let (params, fitting) = (MatchParams::default(), Lines3dParams::default());
     let none = vec![Vec::new(); 5];
-    assert!(match_lines(&scene, &none, &params, &fitting).0.is_empty());
+    assert!(
+        match_lines(&scene, &none, &params, &fitting)
+            .unwrap()
+            .0
+            .is_empty()
+    );
     scene.views.clear();
-    assert!(match_lines(&scene, &[], &params, &fitting).0.is_empty());
+    assert!(
+        match_lines(&scene, &[], &params, &fitting)
+            .unwrap()
+            .0
+            .is_empty()
+    );
 }

@@ -17,6 +17,7 @@ const MAX_PAIRS_PER_SEGMENT: usize = 12;
 
 /// The outcome of one segment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(tag = "fate", rename_all = "snake_case")]
 pub enum SegmentOutcome {
     /// It belongs to a line track.
@@ -65,6 +66,7 @@ pub struct PairTrace {
 
 /// Counts and lengths of one step (the rows of B99's results).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct StepCount {
     /// Number of segments or supports.
     pub number: usize,

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use super::pairs::{PairScope, SegmentPair, SegmentPairs};
 use super::pass::Pass;
 use super::segment_geometry::{PreparedSegments, SegmentGeometry, SegmentRef};
-use crate::execution::map_shared;
+use crate::execution::{Sharded, sharded_map};
 use crate::geometry::Segment2;
 use crate::ids::ViewId;
 use crate::lines3d::ProjectedLine;
@@ -52,11 +52,15 @@ impl TripleBundle {
 }
 
 /// Verifies every pair above the threshold in all other views.
-pub fn verify_pairs(scope: &PairScope, pairs: &SegmentPairs, pass: Pass) -> Vec<TripleBundle> {
+pub fn verify_pairs(
+    scope: &PairScope,
+    pairs: &SegmentPairs,
+    pass: Pass,
+) -> Sharded<Vec<TripleBundle>> {
     let strong: Vec<usize> = (0..pairs.pairs.len())
         .filter(|&i| pairs.pairs[i].score >= scope.params.pair_score)
         .collect();
-    map_shared(
+    sharded_map(
         pass.map_name("triples"),
         &strong,
         pass.progress_part(0.5..0.6),
@@ -237,7 +241,7 @@ mod tests {
                 kind: true,
             },
         };
-        let pairs = match_pairs(&scope, |_| false, Pass::Second);
+        let pairs = match_pairs(&scope, |_| false, Pass::Second).unwrap();
         let of_edge = |p: &&SegmentPair| p.a == name(0, 0) && p.b == name(1, 0);
         let pair = pairs.pairs.iter().find(of_edge).expect("the pair");
         let found = verify_in_view(&scope, &pairs, pair, ViewId(3));

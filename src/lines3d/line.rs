@@ -9,6 +9,7 @@ use crate::ids::LineId;
 
 /// How a 3D line was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "lowercase")]
 pub enum LineOrigin {
     /// From image segments that belong together (B99 3, W96 3.5).
@@ -36,6 +37,7 @@ impl LineOrigin {
 
 /// Why the finished model rejects a line ([`crate::buildings::verify_lines`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "snake_case")]
 pub enum Refutation {
     /// Roofs occlude it in all but two of its views.

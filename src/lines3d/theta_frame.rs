@@ -7,6 +7,7 @@ use crate::geometry::{Plane, Segment3};
 
 /// A side of a directed 3D line, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "lowercase")]
 pub enum Side {
     /// To the left of the direction from `p0` to `p1`.

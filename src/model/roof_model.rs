@@ -15,6 +15,7 @@ pub const WELD_M: f64 = 1e-3;
 /// Invariants: every ring is simple; the outer one runs counter-clockwise seen from above, holes
 /// clockwise; all corners lie in the plane within 1e-6 m; `plane.normal.z > 0`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Facet {
     /// The building that it covers.
     pub building: BuildingId,

@@ -19,6 +19,7 @@ use crate::params::DirectionParams;
 
 /// A pair of perpendicular horizontal directions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct MainDirections {
     /// Azimuth of the first direction from the X axis towards Y, radians, 0 to pi/2; the other is a
     /// right angle further.
@@ -37,6 +38,7 @@ impl MainDirections {
 
 /// The histogram and what was read from it (figure 5).
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct DirectionTrace {
     /// Weight of the azimuths 0 to 180 degrees, in bins of `bin_deg`, smoothed.
     pub histogram: Vec<f64>,

@@ -10,7 +10,7 @@ use super::rectangles::OccludingSolid;
 use super::rectangles::best_set;
 use super::rectangles::{PlaneCandidate, PlaneRejection, PlaneSearch, PlaneTrace};
 use super::windows::{Window, WindowTrace, find_windows};
-use crate::execution::{map_shared, reached};
+use crate::execution::{Sharded, reached, sharded_map};
 use crate::geometry::{Segment2, Segment3};
 use crate::ids::{BuildingId, LineId};
 use crate::linematch::scene_heights;
@@ -28,16 +28,16 @@ use crate::terrain::Ground;
 pub fn find_regions(
     scene: &Scene,
     params: &ObjectSpaceParams,
-) -> (Vec<Vec<RegionLine>>, Vec<Segmentation>) {
-    let per_view = map_shared("views", &scene.views, 0.0..1.0, |_, view| {
+) -> Sharded<(Vec<Vec<RegionLine>>, Vec<Segmentation>)> {
+    let per_view = sharded_map("views", &scene.views, 0.0..1.0, |_, view| {
         let image = ColorImage::new(&view.gray, &view.rgb, params.oris.smoothing_px);
         let segmentation = segment_regions(&image, &params.oris);
         (
             region_lines(&image, &segmentation, &params.oris),
             segmentation,
         )
-    });
-    per_view.into_iter().unzip()
+    })?;
+    Ok(per_view.into_iter().unzip())
 }
 
 /// Windows around buildings with their main directions (W96 3.4).
@@ -45,12 +45,15 @@ pub fn find_directions(
     scene: &Scene,
     lines: &[Vec<RegionLine>],
     params: &ObjectSpaceParams,
-) -> (Vec<Window>, WindowTrace) {
+) -> Sharded<(Vec<Window>, WindowTrace)> {
     let z_range = params
         .windows
         .z_range_m
         .map(|z| z.map(|z| z - scene.origin.z));
-    let z_range = z_range.unwrap_or_else(|| scene_heights(scene, &image_segments(lines)));
+    let z_range = match z_range {
+        Some(z_range) => z_range,
+        None => scene_heights(scene, &image_segments(lines))?,
+    };
     let o = scene.origin;
     let given = params
         .windows
@@ -86,7 +89,7 @@ pub fn find_clusters(
     lines: &[Vec<RegionLine>],
     windows: &[Window],
     params: &ObjectSpaceParams,
-) -> (Vec<FoundLine>, Vec<ClusterTrace>) {
+) -> Sharded<(Vec<FoundLine>, Vec<ClusterTrace>)> {
     let image_lines = image_lines(scene, lines);
     let tasks: Vec<(usize, [usize; 2])> = windows
         .iter()
@@ -95,7 +98,7 @@ pub fn find_clusters(
             (0..window.directions.len()).flat_map(move |d| [(w, [d, 0]), (w, [d, 1])])
         })
         .collect();
-    let results = map_shared("clusters", &tasks, 0.0..1.0, |_, &(w, [pair, axis])| {
+    let results = sharded_map("clusters", &tasks, 0.0..1.0, |_, &(w, [pair, axis])| {
         let window = &windows[w];
         let shown: Vec<usize> = (0..image_lines.len())
             .filter(|&k| window.shows(&image_lines[k]))
@@ -113,7 +116,7 @@ pub fn find_clusters(
             line.supports.iter_mut().for_each(|k| *k = shown[*k]);
         }
         (lines, trace)
-    });
+    })?;
     let (mut found, mut traces) = (Vec::new(), Vec::new());
     for ((window, direction), (lines, trace)) in tasks.into_iter().zip(results) {
         found.extend(lines.into_iter().map(|line| FoundLine {
@@ -123,11 +126,12 @@ pub fn find_clusters(
         }));
         traces.push(trace);
     }
-    (found, traces)
+    Ok((found, traces))
 }
 
 /// What the search for planes did.
 #[derive(Clone, Debug, Default, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct RectangleTrace {
     /// Every pair of parallel lines.
     pub pairs: Vec<PlaneTrace>,
@@ -146,11 +150,11 @@ pub fn find_rectangles(
     windows: &[Window],
     found: &[FoundLine],
     params: &ObjectSpaceParams,
-) -> (RoofModel, RectangleTrace) {
+) -> Sharded<(RoofModel, RectangleTrace)> {
     let image_lines = image_lines(scene, lines);
     let segments: Vec<Segment3> = found.iter().map(|f| f.line.segment).collect();
     let z_range = windows.first().map(|w| w.z_range_m);
-    let ground = Ground::of_segments(scene, &segments, z_range);
+    let ground = Ground::of_segments(scene, &segments, z_range)?;
     let all: Vec<ClusterLine> = found.iter().map(|f| f.line.clone()).collect();
     let mut search = PlaneSearch {
         scene,
@@ -167,9 +171,16 @@ pub fn find_rectangles(
         .flat_map(|w| (0..windows[w].directions.len()).map(move |d| [w, d]))
         .flat_map(|[w, d]| [[w, d, 0], [w, d, 1]])
         .collect();
-    for (done, of) in searches.iter().enumerate() {
-        search_planes(&search, &axes(of), found, *of, &mut trace);
+    // No search depends on another: they are all made before the first is looked at.
+    let searched = searches.iter().enumerate().map(|(done, of)| {
+        let planes = search_planes(&search, &axes(of), found, *of);
         reached(0.1 + 0.7 * (done + 1) as f64 / searches.len() as f64);
+        planes
+    });
+    for planes in searched.collect::<Vec<_>>() {
+        let (candidates, pairs) = planes?;
+        trace.candidates.extend(candidates);
+        trace.pairs.extend(pairs);
     }
     trace.chosen = best_set(&trace.candidates);
     let chosen = trace.chosen.iter().map(|&k| &trace.candidates[k]);
@@ -181,7 +192,7 @@ pub fn find_rectangles(
         &search,
         |lines| axes(&of_line(&found[lines[0]])),
         &mut trace,
-    ) {
+    )? {
         trace.chosen = best_set(&trace.candidates);
     }
     let facets: Vec<Facet> = trace
@@ -191,7 +202,7 @@ pub fn find_rectangles(
         .collect();
     let (model, solids) = close_buildings(&facets, |members| ground.below(members));
     trace.solids = solids;
-    (model, trace)
+    Ok((model, trace))
 }
 
 /// Window, pair of directions and direction of a line.
@@ -205,18 +216,17 @@ fn search_planes(
     axes: &ClusterAxes,
     found: &[FoundLine],
     of: [usize; 3],
-    trace: &mut RectangleTrace,
-) {
+) -> Sharded<(Vec<PlaneCandidate>, Vec<PlaneTrace>)> {
     let [w, d, axis] = of;
     let lines_of = |of: [usize; 3]| (0..found.len()).filter(move |&k| of_line(&found[k]) == of);
     let members: Vec<usize> = lines_of(of).collect();
-    let (candidates, pairs) = search.candidates(axes, &members);
-    trace.candidates.extend(candidates);
-    trace.pairs.extend(pairs);
+    let quadrilaterals = search.candidates(axes, &members);
     let across = lines_of([w, d, 1 - axis]).map(|k| &found[k].line.segment);
     let apexes: Vec<Point3<f64>> = across.flat_map(|s| [s.p0, s.p1]).collect();
     let triangles = search.triangles(axes, &members, &apexes);
-    trace.candidates.extend(triangles);
+    let (mut candidates, pairs) = quadrilaterals?;
+    candidates.extend(triangles?);
+    Ok((candidates, pairs))
 }
 
 /// Searches again the pairs that were too weak, where the solids hide them from some views; is
@@ -225,17 +235,17 @@ fn search_occluded(
     search: &PlaneSearch,
     axes: impl Fn([usize; 2]) -> ClusterAxes + Sync,
     trace: &mut RectangleTrace,
-) -> bool {
+) -> Sharded<bool> {
     let weak: Vec<usize> = (0..trace.pairs.len())
         .filter(|&k| trace.pairs[k].rejection == Some(PlaneRejection::Weak))
         .collect();
     if search.solids.is_empty() {
-        return false;
+        return Ok(false);
     }
-    let again = map_shared("behind", &weak, 0.8..1.0, |_, &k| {
+    let again = sharded_map("behind", &weak, 0.8..1.0, |_, &k| {
         let lines = trace.pairs[k].lines;
         search.candidates_between(&axes(lines), lines)
-    });
+    })?;
     let before = trace.candidates.len();
     for (k, candidates) in weak.into_iter().zip(again) {
         if !candidates.is_empty() {
@@ -243,7 +253,7 @@ fn search_occluded(
         }
         trace.candidates.extend(candidates);
     }
-    trace.candidates.len() > before
+    Ok(trace.candidates.len() > before)
 }
 
 /// All candidates for the other method; those that this one chose come first. Which of

@@ -14,10 +14,10 @@ use crate::synthetic::{
 
 fn model(scene: &Scene) -> RoofModel {
     let params = ObjectSpaceParams::default();
-    let (lines, _) = find_regions(scene, &params);
-    let (windows, _) = find_directions(scene, &lines, &params);
-    let (found, _) = find_clusters(scene, &lines, &windows, &params);
-    let (model, _) = find_rectangles(scene, &lines, &windows, &found, &params);
+    let (lines, _) = find_regions(scene, &params).unwrap();
+    let (windows, _) = find_directions(scene, &lines, &params).unwrap();
+    let (found, _) = find_clusters(scene, &lines, &windows, &params).unwrap();
+    let (model, _) = find_rectangles(scene, &lines, &windows, &found, &params).unwrap();
     assert_eq!(check_invariants(&model), []);
     model
 }
@@ -126,9 +126,9 @@ fn the_best_plane_is_refused_where_the_images_do_not_agree() {
     params.windows.z_range_m = Some([0.0, 12.0]);
     scene.ground_z = Some(truth.ground_z);
     let facets = |scene: &Scene| {
-        let (windows, _) = find_directions(scene, &lines, &params);
-        let (found, _) = find_clusters(scene, &lines, &windows, &params);
-        let (model, trace) = find_rectangles(scene, &lines, &windows, &found, &params);
+        let (windows, _) = find_directions(scene, &lines, &params).unwrap();
+        let (found, _) = find_clusters(scene, &lines, &windows, &params).unwrap();
+        let (model, trace) = find_rectangles(scene, &lines, &windows, &found, &params).unwrap();
         let weak = |p: &&PlaneTrace| p.rejection == Some(PlaneRejection::Weak);
         (model.facets.len(), trace.pairs.iter().filter(weak).count())
     };
@@ -147,8 +147,8 @@ fn the_best_plane_is_refused_where_the_images_do_not_agree() {
 fn windows_are_found_around_each_house() {
     let (scene, truth) = askew_scene(400);
     let params = ObjectSpaceParams::default();
-    let (lines, _) = find_regions(&scene, &params);
-    let (windows, _) = find_directions(&scene, &lines, &params);
+    let (lines, _) = find_regions(&scene, &params).unwrap();
+    let (windows, _) = find_directions(&scene, &lines, &params).unwrap();
     for (_, ring) in &truth.facets {
         let holds = |w: &&Window| {
             ring.iter()

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::clusters::{ClusterLine, cluster_lines};
 use super::directions::{DirectionTrace, MainDirections, main_directions};
 use super::image_lines::ImageLine;
-use crate::execution::map_shared;
+use crate::execution::{Sharded, sharded_map};
 use crate::geometry::Segment3;
 use crate::math::atan2;
 use crate::params::ObjectSpaceParams;
@@ -22,6 +22,7 @@ use crate::terrain::Ground;
 
 /// A part of the ground plan that is analysed on its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Window {
     /// Least x and y, metres, local frame.
     pub min: Point2<f64>,
@@ -54,6 +55,7 @@ impl Window {
 
 /// How the windows and their directions were found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct WindowTrace {
     /// The histogram of each window.
     pub histograms: Vec<DirectionTrace>,
@@ -74,14 +76,14 @@ pub(crate) fn find_windows(
     z_range_m: [f64; 2],
     given: &[[f64; 4]],
     params: &ObjectSpaceParams,
-) -> (Vec<Window>, WindowTrace) {
+) -> Sharded<(Vec<Window>, WindowTrace)> {
     let mut trace = WindowTrace::default();
     let mut windows: Vec<Window> = given
         .iter()
         .map(|&[x0, y0, x1, y1]| window([Point2::new(x0, y0), Point2::new(x1, y1)], z_range_m))
         .collect();
     if given.is_empty() {
-        let raised = raised_lines(scene, image_lines, z_range_m, params);
+        let raised = raised_lines(scene, image_lines, z_range_m, params)?;
         let group = groups(&raised, params.windows.link_m);
         windows = windows_of(&raised, &group, z_range_m, params.windows.margin_m);
         trace.lines = raised.into_iter().zip(group).collect();
@@ -102,7 +104,7 @@ pub(crate) fn find_windows(
         }
         trace.histograms.push(histogram);
     }
-    (windows, trace)
+    Ok((windows, trace))
 }
 
 fn window([min, max]: [Point2<f64>; 2], z_range_m: [f64; 2]) -> Window {
@@ -120,11 +122,11 @@ fn raised_lines(
     image_lines: &[ImageLine],
     z_range_m: [f64; 2],
     params: &ObjectSpaceParams,
-) -> Vec<Segment3> {
+) -> Sharded<Vec<Segment3>> {
     let tiles = tiles(image_lines, z_range_m, params.windows.tile_m);
-    let per_tile = map_shared("tiles", &tiles, 0.2..1.0, |_, tile| {
+    let per_tile = sharded_map("tiles", &tiles, 0.2..1.0, |_, tile| {
         tile_lines(scene, image_lines, tile, params)
-    });
+    })?;
     let mut lines: Vec<Segment3> = per_tile.into_iter().flatten().map(|l| l.segment).collect();
     sort_by(&mut lines, |a, b| {
         let key = |s: &Segment3| (s.p0.x, s.p0.y);
@@ -144,10 +146,10 @@ fn raised_lines(
             kept.push(line);
         }
     }
-    let ground = Ground::of_segments(scene, &kept, Some(z_range_m));
+    let ground = Ground::of_segments(scene, &kept, Some(z_range_m))?;
     let height = |s: &Segment3| s.p0.z - ground.z_at(&s.at(0.5).xy());
     kept.retain(|s| height(s) >= 0.7 * params.planes.min_height_m);
-    kept
+    Ok(kept)
 }
 
 /// Tiles that overlap by half and show any line.

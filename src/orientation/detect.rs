@@ -10,6 +10,7 @@ use super::input_file::InputFile;
 
 /// What an input file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum FileKind {
     /// JPEG, PNG or TIFF.

@@ -8,6 +8,7 @@ readable! {
 /// B99 section 2 (the contribution of Leuven): regularisation, and refinement by the reprojection
 /// error of the wireframe. The paper gives no numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct RefineParams {
     /// Refine at all?
     pub refine: bool,
@@ -125,6 +126,7 @@ impl Default for RefineParams {
 readable! {
 /// Texture atlas.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct TextureParams {
     /// Largest side of the atlas, px. Assumption: what every WebGL 2 device can hold.
     pub max_atlas_px: u32,

@@ -7,6 +7,7 @@ use crate::readable;
 readable! {
 /// B99 3.2: segments.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct SegmentParams {
     /// The edgels that segments are made of.
     pub edgels: EdgelParams,
@@ -88,6 +89,7 @@ readable! {
 /// B99 3.2: edgels. Thresholds are multiples of the local standard deviation of a gradient
 /// component.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct EdgelParams {
     /// Standard deviation of the smoothing Gaussian, px. Assumption: more displaces edges that are
     /// 2 px apart, as an eave and its gutter are. Of 0.7, 0.8, 1.0 and 1.2 the first two covered
@@ -116,6 +118,7 @@ readable! {
 /// Edges between colours of about the same grey value. Thresholds are those of [`EdgelParams`], on
 /// the difference of red and blue.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct ColorParams {
     /// Detect them at all? B99 has grey photographs; where there is colour, an eighth to a fifth
     /// of the roof edges of rendered scenes shows in it alone.
@@ -138,6 +141,7 @@ impl Default for ColorParams {
 readable! {
 /// B99 5: bars. Thresholds are multiples of the local scale of the second derivative.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct BarParams {
     /// Detect bars at all? Assumption: no. Nearly all of them run beside edges that are matched
     /// already (docs/results.md, "Bars"); they are for photographs on which a ridge or a gutter is
@@ -168,6 +172,7 @@ impl Default for BarParams {
 readable! {
 /// B99 3.1 - 3.4: matching.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct MatchParams {
     /// Side of the correlation window, px. B99 3.2: "15 x 15".
     pub window_px: usize,
@@ -247,6 +252,7 @@ impl Default for MatchParams {
 readable! {
 /// B99 3.2, figure 4: 3D lines.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Lines3dParams {
     /// Error of a segment's ends beyond its own covariance, px: calibration,
     /// compression, edges that are not quite straight. Assumption.

@@ -21,6 +21,7 @@ use crate::readable;
 readable! {
 /// The parameters of a whole run. Missing fields of a JSON file take their defaults.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Params {
     /// Which of the methods finds the roofs.
     pub method: Method,
@@ -43,6 +44,7 @@ pub struct Params {
 
 /// How roofs are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
     /// Lines matched over the views, and half-planes at them (B99).
@@ -58,5 +60,15 @@ impl Readable for Method {
     fn read_from(&mut self, value: &Value) -> Result<(), Problem> {
         *self = read_name(value)?;
         Ok(())
+    }
+}
+impl Method {
+    /// The name in files, on the command line and on the page.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lines => "lines",
+            Self::Rectangles => "rectangles",
+            Self::Combined => "combined",
+        }
     }
 }

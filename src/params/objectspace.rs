@@ -7,6 +7,7 @@ use crate::readable;
 readable! {
 /// W96: the object-space method.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct ObjectSpaceParams {
     /// Regions and their lines.
     pub oris: OrisParams,
@@ -24,6 +25,7 @@ pub struct ObjectSpaceParams {
 readable! {
 /// W96 3.6: planes between parallel lines.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct PlaneParams {
     /// By how much the window of a plane is enlarged, metres. W96 3.6: "appr. 0.5 m".
     pub margin_m: f64,
@@ -111,6 +113,7 @@ impl Default for PlaneParams {
 readable! {
 /// W96 3.1: where buildings are. The paper assumes it known.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct WindowParams {
     /// Buildings' boxes x0, y0, x1, y1, metres in the frame of the orientation; found where there
     /// are none.
@@ -144,6 +147,7 @@ impl Default for WindowParams {
 readable! {
 /// W96 3.4: main directions.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct DirectionParams {
     /// Most pairs of directions in a window. W96 has one. Assumption: a few, for neighbouring
     /// buildings at other angles.
@@ -172,6 +176,7 @@ impl Default for DirectionParams {
 readable! {
 /// W96 3.5: clusters of lines.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct ClusterParams {
     /// An image line within this of a main direction belongs to it, degrees. Assumption.
     pub angle_deg: f64,
@@ -229,6 +234,7 @@ impl Default for ClusterParams {
 readable! {
 /// W96 3.3: region segmentation. W96 gives no numbers ("Wiman 1995").
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct OrisParams {
     /// Standard deviation of the blur before gradients are taken, px. Assumption: 0.8, as for
     /// edgels.

@@ -11,6 +11,7 @@ use super::RefineParams;
 readable! {
 /// B99 4.1: half-planes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct SweepParams {
     /// Lines lower than this above the ground are not swept, metres. Assumption: lower than any
     /// eave.
@@ -79,6 +80,7 @@ pub struct SweepParams {
 
 /// The criterion that accepts a maximum of Sim(theta) as a half-plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "lowercase")]
 pub enum Acceptance {
     /// The three thresholds of B99 figure 12.
@@ -130,6 +132,7 @@ impl Default for SweepParams {
 readable! {
 /// B99 4.2, 4.3: from half-planes to facets.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct RoofParams {
     /// Half-planes within this angle, degrees, may share a plane. B99 4.4: theta is known to 2
     /// degrees on textured faces and to 5 on weak ones; two of them may differ by somewhat more

@@ -1,8 +1,7 @@
 //! The orientation of a scene adjusted to the lines that its own images show: the stages up to the lines, then
 //! [`crate::adjustment`], and all of it once more, because better cameras find more lines.
 
-use super::stage::Stage;
-use super::{Run, before};
+use super::{Run, Stage};
 use crate::adjustment::adjust_views;
 use crate::error::Result;
 use crate::execution::silent;
@@ -34,8 +33,8 @@ pub fn adjust_orientation(scene: Scene, params: &Params) -> Scene {
     let mut total: Vec<ViewAdjustment> = Vec::new();
     for _ in 0..ROUNDS {
         run.step(Stage::Lines, &silent());
-        let lines = before(&run.results.lines);
-        let (cameras, found) = adjust_views(&run.scene, lines, &run.params.lines3d);
+        let lines = run.results.lines.as_ref().expect("the stage has run");
+        let (cameras, found) = adjust_views(&run.scene, &lines.value, &run.params.lines3d);
         let ends = found.iter().all(|view| view.rms_motion_px == 0.0);
         total = match total.is_empty() {
             true => found,

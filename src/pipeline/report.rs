@@ -4,11 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::Run;
-use super::stage::Stage;
+use super::stages::Stage;
 use super::summary::StageSummary;
 use crate::params::Params;
-use crate::scene::{ViewAdjustment, ViewShift};
+use crate::scene::{Scene, ViewAdjustment, ViewShift};
 
 /// The content of `report.json`.
 #[derive(Serialize)]
@@ -41,29 +40,29 @@ struct ReportView<'a> {
 }
 
 /// The bytes of `report.json`; `seconds` may be empty.
-pub(crate) fn report(run: &Run, seconds: &[(Stage, f64)]) -> Vec<u8> {
-    let views = run
-        .scene
-        .views
-        .iter()
-        .enumerate()
-        .map(|(i, view)| ReportView {
-            view: &view.name,
-            width: view.camera.width,
-            height: view.camera.height,
-            orientation: run.scene.survey.shifts.get(i),
-            adjustment: run.scene.survey.adjustments.get(i),
-        });
+pub(crate) fn report(
+    scene: &Scene,
+    params: &Params,
+    stages: &[StageSummary],
+    seconds: &[(Stage, f64)],
+) -> Vec<u8> {
+    let views = scene.views.iter().enumerate().map(|(i, view)| ReportView {
+        view: &view.name,
+        width: view.camera.width,
+        height: view.camera.height,
+        orientation: scene.survey.shifts.get(i),
+        adjustment: scene.survey.adjustments.get(i),
+    });
     let mut by_stage = BTreeMap::new();
     by_stage.extend(seconds.iter().map(|(stage, s)| (stage.name(), *s)));
     let report = Report {
         version: env!("CARGO_PKG_VERSION"),
         views: views.collect(),
-        origin: run.scene.origin.into(),
-        coordinates: run.scene.survey.describe(),
-        stages: &run.summaries,
-        warnings: &run.scene.warnings,
-        params: &run.params,
+        origin: scene.origin.into(),
+        coordinates: scene.survey.describe(),
+        stages,
+        warnings: &scene.warnings,
+        params,
         seconds: by_stage,
     };
     let mut bytes =

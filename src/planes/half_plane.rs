@@ -15,6 +15,7 @@ pub(crate) fn is_wall(plane: &Plane) -> bool {
 
 /// A half-plane attached to one side of a 3D line, with the shape of Sim(theta) there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct HalfPlane {
     /// The line.
     pub line: LineId,

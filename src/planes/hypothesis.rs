@@ -6,7 +6,7 @@ use super::grouping::{GroupingInput, PlanRegion, PlaneGroup};
 use super::line_sides::{NEXT_TO, across, beside, crosses_surface};
 use super::plane_lines::{PlaneLine, lines_in_plane, rays_through_ends};
 use super::single_view::{SingleViewEvidence, single_view_evidence};
-use crate::execution::map_shared;
+use crate::execution::{Sharded, sharded_map};
 use crate::geometry::{Segment3, bounds};
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Side;
@@ -40,9 +40,9 @@ pub fn plane_hypotheses(
     groups: Vec<PlaneGroup>,
     step: f64,
     params: &RoofParams,
-) -> Vec<PlaneHypothesis> {
+) -> Sharded<Vec<PlaneHypothesis>> {
     let rays = rays_through_ends(scene, segments);
-    let built = map_shared("planes", &groups, 0.2..0.6, |_, group| {
+    let built = sharded_map("planes", &groups, 0.2..0.6, |_, group| {
         if group.is_propagated(input)
             && !confirmed_beside_lines(input, group, reduced, step, params)
         {
@@ -60,8 +60,8 @@ pub fn plane_hypotheses(
         let mut lines = lines_in_plane(scene, &rays, &group.plane, &region, ends_at);
         lines.retain(|l| !crosses_surface(&map, &l.segment));
         Some((region, map, single_view, lines))
-    });
-    groups
+    })?;
+    let hypotheses = groups
         .into_iter()
         .zip(built)
         .filter_map(|(group, built)| {
@@ -73,7 +73,8 @@ pub fn plane_hypotheses(
                 lines,
             })
         })
-        .collect()
+        .collect();
+    Ok(hypotheses)
 }
 
 /// Where there is texture, are the views consistent with the plane beside at least two of its

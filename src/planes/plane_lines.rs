@@ -21,6 +21,7 @@ use crate::sorting::sort_by;
 
 /// A line in a plane that several views show.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct PlaneLine {
     /// End points in the plane, metres.
     pub segment: Segment3,

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 /// What of a pixel is compared between images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "lowercase")]
 pub enum Channel {
     /// Its grey value.

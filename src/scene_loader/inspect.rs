@@ -9,6 +9,7 @@ use crate::orientation::{FileKind, InputFile};
 
 /// Everything that is known about a set of files without decoding an image.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Inspection {
     /// One entry a file, in the order given.
     pub files: Vec<FileReport>,
@@ -33,6 +34,7 @@ pub struct Inspection {
 
 /// What a file is.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct FileReport {
     /// Its path.
     pub path: String,
@@ -44,6 +46,7 @@ pub struct FileReport {
 
 /// An image and its orientation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct ImageReport {
     /// Path of the file.
     pub path: String,

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::correction::check_and_correct;
+use super::checks::check_and_correct;
 use super::decode::decode_all;
 use super::input::LoadOptions;
 use super::plan::Plan;

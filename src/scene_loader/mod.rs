@@ -6,13 +6,11 @@
 //! input              what the caller asks for beyond the files
 //! plan               one orientation chosen, images assigned to it by name; all refusals
 //! candidate, names   what the plan chooses from and assigns by; planned_view: its views
-//! camera_checks      do the cameras look down, at the same place, from above the ground
+//! checks             the cameras by themselves and against the images; corrections
 //! region             part of each image that shows the region of interest
 //! memory             memory that a run takes
 //! inspect            the plan as a table
 //! decode             views: of large frames the parts only, distortion removed
-//! correction         orientation check, and corrections where the options ask for them
-//! consequence        its finding as a refusal or a warning
 //! load               all of it
 //! ```
 //!
@@ -21,10 +19,8 @@
 //! never disagrees with a run.
 
 mod archive;
-mod camera_checks;
 mod candidate;
-mod consequence;
-mod correction;
+mod checks;
 mod decode;
 mod input;
 mod inspect;

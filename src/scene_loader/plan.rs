@@ -3,8 +3,8 @@
 
 use nalgebra::Vector3;
 
-use super::camera_checks;
 use super::candidate::OrientationCandidate;
+use super::checks::camera_checks;
 use super::input::LoadOptions;
 use super::memory;
 use super::names::{best_match, listed, match_rank};

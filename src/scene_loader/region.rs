@@ -6,7 +6,7 @@
 
 use nalgebra::{Point2, Point3, Vector3};
 
-use super::camera_checks;
+use super::checks::camera_checks;
 use super::names::listed;
 use super::planned_view::{PlannedView, offset_calibration};
 use crate::camera::{Camera, Distortion};

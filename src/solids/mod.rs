@@ -40,6 +40,7 @@ const MIN_WALL_M: f64 = 0.5;
 
 /// What became of the facets.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct SolidTrace {
     /// For every facet of the model the input facet that it is (a part of).
     pub sources: Vec<usize>,

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 /// Why a facet, or a part of it, is not in any building.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "snake_case")]
 pub enum SolidRejection {
     /// Fewer than three corners, or coordinates that are not numbers.

@@ -2,9 +2,9 @@
 
 use nalgebra::{Point3, Vector3};
 
-use super::SyntheticTruth;
 use super::render::RenderedFace;
 use super::texture::SurfaceTexture;
+use super::truth::SyntheticTruth;
 use crate::geometry::Segment3;
 use crate::math;
 use crate::sorting::sort_by;

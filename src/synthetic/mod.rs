@@ -9,6 +9,7 @@
 //! texture       value noise on a face
 //! render        rays through nine samples of every pixel
 //! building      faces of the houses, and the truth
+//! truth         what a reconstruction should find
 //! files         the scene as image and orientation files
 //! ```
 //!
@@ -19,27 +20,16 @@ mod building;
 mod files;
 mod render;
 mod texture;
+mod truth;
 
 pub use files::{to_colmap, to_files, to_photogrammetric, to_projection};
+pub use truth::SyntheticTruth;
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use crate::camera::Camera;
-use crate::geometry::{Plane, Segment3};
 use crate::orientation::rotation_from_omega_phi_kappa;
 use crate::scene::{Scene, View};
-
-/// What a reconstruction of a synthetic scene should find. Local frame, metres.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SyntheticTruth {
-    /// Ridges, hips, valleys, eaves and rakes, each once.
-    pub edges: Vec<Segment3>,
-    /// The roof facets with their overhangs: plane with its normal upwards, and outer ring,
-    /// counter-clockwise seen from above.
-    pub facets: Vec<(Plane, Vec<Point3<f64>>)>,
-    /// Height of the ground.
-    pub ground_z: f64,
-}
 
 /// A rectangular house with a gable roof; six views of `size` x `size` pixels. The house fills a
 /// crop of 320 pixels.

@@ -35,6 +35,7 @@ pub struct Area {
 
 /// The outcome of a tile.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct TileReport {
     /// The part of the area that it is responsible for: x0, y0, x1, y1, metres.
     pub core: [f64; 4],
@@ -148,7 +149,7 @@ fn part(
     progress: &Listener,
 ) -> TilePart {
     let mut run = Run::new(scene, params.clone());
-    let stages: Vec<Stage> = (run.stages().iter().copied())
+    let stages: Vec<Stage> = (run.stages().into_iter())
         .filter(|&stage| stage != Stage::Model)
         .collect();
     for (i, &stage) in stages.iter().enumerate() {
@@ -158,7 +159,7 @@ fn part(
         run.step(stage, &listener);
     }
     let (scene, results) = (run.scene(), run.results());
-    let all = results.model().expect("the stages have run");
+    let all = results.roof_model().expect("the stages have run");
     let model = tile.keep(all, &scene.origin);
     let (textured, _) = texture_model(scene, &model, &params.texture);
     let found = "the stages have run";

@@ -22,7 +22,7 @@ use crate::pipeline::Run;
 use crate::planes::{PointsOfInterest, SweepRejection};
 
 /// A 3D line without its geometry, which `lines` gives.
-#[derive(Serialize)]
+#[derive(Serialize, tsify::Tsify)]
 struct LineRecord<'a> {
     origin: LineOrigin,
     /// Why the model leaves it out.
@@ -34,7 +34,7 @@ struct LineRecord<'a> {
 }
 
 /// The evidence for a line in one view.
-#[derive(Serialize)]
+#[derive(Serialize, tsify::Tsify)]
 struct SupportRecord<'a> {
     view: ViewId,
     segments: &'a [SegmentId],
@@ -43,7 +43,7 @@ struct SupportRecord<'a> {
 }
 
 /// What matching did, in numbers.
-#[derive(Serialize)]
+#[derive(Serialize, tsify::Tsify)]
 struct MatchRecord<'a> {
     z_range_m: Option<[f64; 2]>,
     view_pairs: &'a [(ViewId, ViewId)],
@@ -75,7 +75,7 @@ impl<'a> From<&'a MatchTrace> for MatchRecord<'a> {
 }
 
 /// One side of a 3D line in the sweep.
-#[derive(Serialize)]
+#[derive(Serialize, tsify::Tsify)]
 struct SideRecord {
     line: usize,
     side: Side,
@@ -83,8 +83,8 @@ struct SideRecord {
 }
 
 /// What became of the buildings after delineation.
-#[derive(Serialize)]
-struct Refined<'a> {
+#[derive(Serialize, tsify::Tsify)]
+struct Refinement<'a> {
     partings: &'a [RoofGap],
     before: &'a UnrefinedFacets,
     trace: &'a RefineTrace,
@@ -93,7 +93,7 @@ struct Refined<'a> {
 /// A picture and what it shows.
 #[wasm_bindgen(getter_with_clone)]
 pub struct Picture {
-    /// What it shows, as a plain object.
+    /// What it shows: `WarpedViews`.
     pub about: JsValue,
     /// `4 * width * height` bytes, RGBA row by row.
     pub rgba: js_sys::Uint8ClampedArray,
@@ -120,14 +120,15 @@ impl Session {
     }
 
     /// Method "lines": what matching did, in numbers; `null` before that stage.
+    #[wasm_bindgen(unchecked_return_type = "MatchRecord | null")]
     pub fn matching(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().matches.as_ref();
         to_js(&found.map(|m| MatchRecord::from(&m.trace)))
     }
 
     /// Method "lines": a segment's beams, candidates and fate (B99 figures 1, 2 and 4); `null` before matching.
-    #[wasm_bindgen(js_name = segmentStory)]
-    pub fn segment_story(&self, view: u32, segment: u32) -> Result<JsValue, JsValue> {
+    #[wasm_bindgen(js_name = segmentStory, unchecked_return_type = "SegmentMatching | null")]
+    pub fn segment_matching(&self, view: u32, segment: u32) -> Result<JsValue, JsValue> {
         let run = self.loaded()?;
         let (Some(segments), Some(matches)) = (&run.results().segments, &run.results().matches)
         else {
@@ -144,6 +145,7 @@ impl Session {
 
     /// Method "lines": the point at fraction `t` of a segment and the point of a candidate that corresponds to it (B99
     /// figure 3); `null` where there is none.
+    #[wasm_bindgen(unchecked_return_type = "Correspondence | null")]
     pub fn correspondence(
         &self,
         view: u32,
@@ -161,7 +163,7 @@ impl Session {
     }
 
     /// How certain each 3D line is and what supports it, in the order of `lines`.
-    #[wasm_bindgen(js_name = lineRecords)]
+    #[wasm_bindgen(js_name = lineRecords, unchecked_return_type = "LineRecord[]")]
     pub fn line_records(&self) -> Result<JsValue, JsValue> {
         let lines = lines_of(self.loaded()?);
         let records: Vec<LineRecord> = lines.iter().map(line_record).collect();
@@ -185,6 +187,7 @@ impl Session {
     }
 
     /// Method "lines": every side of every 3D line, and why it has no half-plane.
+    #[wasm_bindgen(unchecked_return_type = "SideRecord[]")]
     pub fn sides(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().half_planes.as_ref();
         let sides = found.map_or(&[][..], |h| &h.trace.sides);
@@ -200,6 +203,7 @@ impl Session {
     }
 
     /// Method "lines": Sim(theta) of one side of a 3D line (B99 figures 12 to 14); `null` before the sweep.
+    #[wasm_bindgen(unchecked_return_type = "SideTrace | null")]
     pub fn side(&self, line: usize, left: bool) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().half_planes.as_ref();
         let side = side_of(left);
@@ -240,16 +244,18 @@ impl Session {
 
     /// Method "lines": groups, lines found in planes, border lines and withdrawn facets (B99 figures 17 to 23); `null` before
     /// that stage.
+    #[wasm_bindgen(unchecked_return_type = "FacetTrace | null")]
     pub fn grouping(&self) -> Result<JsValue, JsValue> {
-        let found = self.loaded()?.results().roof.as_ref();
+        let found = self.loaded()?.results().facets.as_ref();
         to_js(&found.map(|r| &r.trace.facets))
     }
 
     /// Method "lines": the buildings before refinement, what their images said, the relations that were tested, and the gaps
     /// that were opened (B99 2); `null` before that stage.
+    #[wasm_bindgen(unchecked_return_type = "Refinement | null")]
     pub fn refinement(&self) -> Result<JsValue, JsValue> {
-        let found = self.loaded()?.results().roof.as_ref();
-        to_js(&found.map(|r| Refined {
+        let found = self.loaded()?.results().facets.as_ref();
+        to_js(&found.map(|r| Refinement {
             partings: &r.trace.partings,
             before: &r.trace.unrefined,
             trace: &r.trace.refinement,

@@ -11,8 +11,8 @@ use crate::lines3d::SupportKind;
 use crate::objectspace::{Window, WindowTrace};
 
 /// What `directions` returns.
-#[derive(Serialize)]
-struct Found<'a> {
+#[derive(Serialize, tsify::Tsify)]
+struct Directions<'a> {
     windows: &'a [Window],
     trace: &'a WindowTrace,
 }
@@ -66,41 +66,46 @@ impl Session {
     }
 
     /// The accepted half-planes, as an array of objects.
-    #[wasm_bindgen(js_name = halfPlanes)]
+    #[wasm_bindgen(js_name = halfPlanes, unchecked_return_type = "HalfPlane[]")]
     pub fn half_planes(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().half_planes.as_ref();
         to_js(&found.map_or(&[][..], |h| &h.value))
     }
 
     /// The roof facets, as an array of objects.
+    #[wasm_bindgen(unchecked_return_type = "Facet[]")]
     pub fn facets(&self) -> Result<JsValue, JsValue> {
-        let model = self.loaded()?.results().model();
+        let model = self.loaded()?.results().roof_model();
         to_js(&model.map_or(&[][..], |m| &m.facets))
     }
 
     /// Method "rectangles": the segmentation of a view, `{regions, vectors, initial_regions, moves}`; `null` before
     /// that stage.
+    #[wasm_bindgen(unchecked_return_type = "Segmentation | null")]
     pub fn regions(&self, view: usize) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().regions.as_ref();
         to_js(&found.and_then(|r| r.trace.get(view)))
     }
 
     /// Method "rectangles": the windows with their main directions and how they were found, `{windows, trace}`.
+    #[wasm_bindgen(unchecked_return_type = "Directions | null")]
     pub fn directions(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().directions.as_ref();
-        to_js(&found.map(|d| Found {
+        to_js(&found.map(|d| Directions {
             windows: &d.value,
             trace: &d.trace,
         }))
     }
 
     /// Method "rectangles": the cluster planes, one for each window and direction (figures 7 and 8).
+    #[wasm_bindgen(unchecked_return_type = "ClusterTrace[] | null")]
     pub fn clusters(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().clusters.as_ref();
         to_js(&found.map(|c| &c.trace))
     }
 
     /// Method "rectangles": pairs of lines, candidates and the choice (figures 11 and 12).
+    #[wasm_bindgen(unchecked_return_type = "RectangleTrace | null")]
     pub fn rectangles(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().rectangles.as_ref();
         to_js(&found.map(|r| &r.trace))
@@ -137,7 +142,7 @@ impl Session {
     }
 
     /// The bytes of one of these files.
-    #[wasm_bindgen(js_name = exportFile)]
+    #[wasm_bindgen(js_name = exportFile, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
     pub fn export_file(&mut self, name: &str) -> Result<Vec<u8>, JsValue> {
         let outputs = self.outputs()?;
         let found = outputs.iter().find(|(n, _)| n == name);

@@ -7,10 +7,9 @@ use serde::Serialize;
 use wasm_bindgen::prelude::*;
 
 use super::convert::{from_js, input_error, named_error, row_major, to_js};
-use crate::execution::Known;
-use crate::execution::Listener;
+use crate::execution::{Listener, MergedShards};
 use crate::orientation::InputFile;
-use crate::params::{Method, Params};
+use crate::params::Params;
 use crate::pipeline::{PackedView, Run, Stage, load_adjusted};
 use crate::plain_json::{Problem, Readable, read_fields};
 use crate::planes::PointsOfInterest;
@@ -31,8 +30,8 @@ pub struct Session {
     pub(crate) packed: Vec<PackedView>,
     /// A large area that is worked off in tiles.
     pub(crate) area: Option<Area>,
-    /// What the sessions that share this run found of the next stage.
-    pub(crate) known: Known,
+    /// What the sessions that divide this run between them found of the next stage.
+    pub(crate) merged: MergedShards,
     /// Written on first request after the last stage.
     pub(crate) outputs: Option<Vec<(String, Vec<u8>)>>,
     /// Points of interest, found on first request for a figure.
@@ -40,15 +39,30 @@ pub struct Session {
 }
 
 /// What `load` may be told; see [`LoadOptions`].
-#[derive(Default, Serialize)]
+#[derive(Default, Serialize, tsify::Tsify)]
 #[serde(rename_all = "camelCase")]
+#[tsify(rename = "LoadOptions")]
 struct JsLoadOptions {
+    /// Path (or folder) of the orientation to take.
+    #[tsify(optional)]
     orientation: Option<String>,
+    /// Names of the images to use; all when absent.
+    #[tsify(optional)]
     views: Option<Vec<String>>,
+    /// x0, y0, x1, y1, metres, in the frame of the orientation.
+    #[tsify(optional)]
     roi: Option<[f64; 4]>,
+    /// Height of the ground, metres, in the frame of the orientation.
+    #[tsify(optional)]
     ground_z: Option<f64>,
+    /// EPSG's number of the world's reference system.
+    #[tsify(optional)]
     epsg: Option<u32>,
+    /// Undo the mistake in the orientation that the images give away.
+    #[tsify(optional)]
     apply_fix: bool,
+    /// Adjust views that are turned or moved against the others by up to a few pixels.
+    #[tsify(optional)]
     adjust: bool,
 }
 
@@ -68,14 +82,16 @@ impl Readable for JsLoadOptions {
 }
 
 /// What `openedProject` returns.
-#[derive(Serialize)]
+#[derive(Serialize, tsify::Tsify)]
 struct OpenedProject<'a> {
+    /// Null stands for what it leaves open.
+    #[tsify(type = "{ [K in keyof LoadOptions]-?: LoadOptions[K] | null }")]
     options: JsLoadOptions,
     params: &'a Params,
 }
 
 /// What `load` returns.
-#[derive(Serialize)]
+#[derive(Serialize, tsify::Tsify)]
 struct SceneInfo {
     views: Vec<ViewInfo>,
     origin: [f64; 3],
@@ -84,7 +100,7 @@ struct SceneInfo {
 }
 
 /// A view of the scene; its centre in metres, local frame, and its 3 x 4 matrix from there to pixels, row by row.
-#[derive(Serialize)]
+#[derive(Serialize, tsify::Tsify)]
 struct ViewInfo {
     name: String,
     width: u32,
@@ -102,14 +118,6 @@ impl Session {
         Self::default()
     }
 
-    /// The names of the stages of method "lines", in order.
-    pub fn stages() -> Vec<String> {
-        Stage::of(Method::Lines)
-            .iter()
-            .map(|s| s.name().to_owned())
-            .collect()
-    }
-
     /// The names of the stages of the method that the parameters choose, in order.
     #[wasm_bindgen(js_name = chosenStages)]
     pub fn chosen_stages(&self) -> Vec<String> {
@@ -120,7 +128,7 @@ impl Session {
     }
 
     /// The parameters with their defaults, as a plain object.
-    #[wasm_bindgen(js_name = defaultParams)]
+    #[wasm_bindgen(js_name = defaultParams, unchecked_return_type = "Params")]
     pub fn default_params() -> Result<JsValue, JsValue> {
         to_js(&Params::default())
     }
@@ -145,7 +153,7 @@ impl Session {
     }
 
     /// The wishes and parameters of the project among the added files, `{options, params}`; null where there is none.
-    #[wasm_bindgen(js_name = openedProject)]
+    #[wasm_bindgen(js_name = openedProject, unchecked_return_type = "OpenedProject | null")]
     pub fn opened_project(&self) -> Result<JsValue, JsValue> {
         to_js(&self.project.as_ref().map(|project| OpenedProject {
             options: JsLoadOptions::from(&project.options),
@@ -154,8 +162,11 @@ impl Session {
     }
 
     /// The files, the options of `load`, the parameters and the results so far as a project file (.zip).
-    #[wasm_bindgen(js_name = exportProject)]
-    pub fn export_project(&self, options: JsValue) -> Result<Vec<u8>, JsValue> {
+    #[wasm_bindgen(js_name = exportProject, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
+    pub fn export_project(
+        &self,
+        #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
+    ) -> Result<Vec<u8>, JsValue> {
         let project = Project::new(load_options(&options)?, self.params.clone());
         let of_run = || self.run.as_ref().map(|run| run.files(&[]));
         let results = self.outputs.clone().or_else(of_run).unwrap_or_default();
@@ -169,7 +180,7 @@ impl Session {
     pub fn clear_files(&mut self) {
         self.files.clear();
         self.packed.clear();
-        self.known = Known::default();
+        self.merged = MergedShards::default();
         self.project = None;
         self.area = None;
         self.run = None;
@@ -179,13 +190,21 @@ impl Session {
 
     /// What the files are: their kinds, sizes, orientation status, and warnings; under the options of
     /// `load`.
-    pub fn inspect(&self, options: JsValue) -> Result<JsValue, JsValue> {
+    #[wasm_bindgen(unchecked_return_type = "Inspection")]
+    pub fn inspect(
+        &self,
+        #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
+    ) -> Result<JsValue, JsValue> {
         to_js(&inspect_files(&self.files, &load_options(&options)?))
     }
 
     /// Makes a scene of the files: `{orientation?, views?, roi?, groundZ?}` in, `{views, origin,
     /// warnings}` out.
-    pub fn load(&mut self, options: JsValue) -> Result<JsValue, JsValue> {
+    #[wasm_bindgen(unchecked_return_type = "SceneInfo")]
+    pub fn load(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
+    ) -> Result<JsValue, JsValue> {
         let options = load_options(&options)?;
         self.area = None;
         self.run = None;
@@ -212,7 +231,10 @@ impl Session {
 
     /// Sets the parameters (what is missing takes its default) and drops the results that they change.
     #[wasm_bindgen(js_name = setParams)]
-    pub fn set_params(&mut self, params: JsValue) -> Result<(), JsValue> {
+    pub fn set_params(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Params")] params: JsValue,
+    ) -> Result<(), JsValue> {
         self.params = from_js(&params, "parameters")?;
         self.outputs = None;
         self.points = None;
@@ -222,14 +244,18 @@ impl Session {
         Ok(())
     }
 
-    /// Runs a stage (after those before it that are missing), with what was learnt of its maps; `{stage, counts, warnings}`.
-    #[wasm_bindgen(js_name = runStage)]
-    pub fn run_stage(&mut self, name: &str, on_progress: &Function) -> Result<JsValue, JsValue> {
+    /// Runs a stage (after those before it that are missing), with the merged shards of its maps; `{stage, counts, warnings}`.
+    #[wasm_bindgen(js_name = runStage, unchecked_return_type = "StageSummary")]
+    pub fn run_stage(
+        &mut self,
+        name: &str,
+        #[wasm_bindgen(unchecked_param_type = "(fraction: number) => void")] on_progress: &Function,
+    ) -> Result<JsValue, JsValue> {
         let stage = stage_of(name)?;
         self.outputs = None;
-        let known = std::mem::take(&mut self.known);
+        let merged = std::mem::take(&mut self.merged);
         let run = self.loaded_mut()?;
-        to_js(&run.step_with(stage, known, &listener_of(on_progress)))
+        to_js(&run.step_merged(stage, merged, &listener_of(on_progress)))
     }
 
     pub(crate) fn loaded(&self) -> Result<&Run, JsValue> {

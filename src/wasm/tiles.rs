@@ -11,8 +11,12 @@ use crate::tiles::Area;
 impl Session {
     /// Divides the region of interest of the options of `load` into tiles of about `tile_m` metres: their cores, x0, y0, x1, y1
     /// each. Results of an earlier run are dropped.
-    #[wasm_bindgen(js_name = planTiles)]
-    pub fn plan_tiles(&mut self, options: JsValue, tile_m: f64) -> Result<JsValue, JsValue> {
+    #[wasm_bindgen(js_name = planTiles, unchecked_return_type = "[x0: number, y0: number, x1: number, y1: number][]")]
+    pub fn plan_tiles(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
+        tile_m: f64,
+    ) -> Result<JsValue, JsValue> {
         self.run = None;
         self.outputs = None;
         self.points = None;
@@ -23,8 +27,11 @@ impl Session {
     }
 
     /// Works off the next tile: `{core, outcome}`; null when all are done.
-    #[wasm_bindgen(js_name = runTile)]
-    pub fn run_tile(&mut self, on_progress: &Function) -> Result<JsValue, JsValue> {
+    #[wasm_bindgen(js_name = runTile, unchecked_return_type = "TileReport | null")]
+    pub fn run_tile(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "(fraction: number) => void")] on_progress: &Function,
+    ) -> Result<JsValue, JsValue> {
         let area = self.area.as_mut().ok_or_else(not_planned)?;
         to_js(&area.step(&self.files, &listener_of(on_progress)))
     }

@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 
 use crate::ids::LineId;
 use crate::lines2d::GuidedEdge;
-use crate::lines3d::{ReprojectionGate, Line3d, ProjectedLine};
+use crate::lines3d::{Line3d, ProjectedLine, ReprojectionGate};
 use crate::scene::Scene;
 
 /// Least share of a line along which a better one runs.
@@ -79,8 +79,8 @@ mod tests {
     use super::*;
     use crate::geometry::{Segment2, Segment3};
     use crate::ids::ViewId;
-    use crate::lines3d::planted;
     use crate::lines2d::SegmentKind;
+    use crate::lines3d::planted;
     use crate::lines3d::{LineSupport, SupportKind};
     use crate::testing;
 

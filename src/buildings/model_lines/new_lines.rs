@@ -17,8 +17,8 @@ use crate::geometry::{Segment2, Segment3};
 use crate::ids::{FacetId, LineId, ViewId};
 use crate::lines2d::{GuidedEdge, SegmentKind, measure_edge};
 use crate::lines3d::{
-    PlaneConstraint, Line3d, LineFit, LineOrigin, LineSupport, Observation, ProjectedLine, SupportKind,
-    fit_line_on,
+    Line3d, LineFit, LineOrigin, LineSupport, Observation, PlaneConstraint, ProjectedLine,
+    SupportKind, fit_line_on,
 };
 use crate::model::{Facet, Occluders, RoofModel};
 use crate::params::{Lines3dParams, MatchParams};
@@ -169,7 +169,8 @@ impl NewLineSearch<'_> {
         (self.needs_every_view() || agree_in_polarity(&edges_in_views)).then_some(())?;
         let edges: Vec<GuidedEdge> = edges_in_views.into_iter().map(|s| s.edge).collect();
         let least = self.required_views(part);
-        let fit = |carriers: &[PlaneConstraint]| self.fit(edges.clone(), least, carriers, part, pixel_m);
+        let fit =
+            |carriers: &[PlaneConstraint]| self.fit(edges.clone(), least, carriers, part, pixel_m);
         fit(&[]).or_else(|| fit(&self.carriers(edge)?))
     }
 

@@ -20,6 +20,7 @@ use crate::sorting::sort_by;
 
 /// A facet that ends before the neighbour up to which it was delineated.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct RoofGap {
     /// Its delineated side, metres.
     pub side: Segment3,

@@ -64,6 +64,7 @@ use crate::scene::Scene;
 
 /// The refinement of one building.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct BuildingRefinement {
     /// The building.
     pub building: BuildingId,
@@ -85,6 +86,7 @@ pub struct BuildingRefinement {
 
 /// The refinement of every building.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct RefineTrace {
     /// In the order of the model's buildings.
     pub buildings: Vec<BuildingRefinement>,

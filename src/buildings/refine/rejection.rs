@@ -4,6 +4,7 @@ use serde::Serialize;
 
 /// Why a building is not adjusted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "snake_case", tag = "reason")]
 pub enum RefineRejection {
     /// More unknowns than are adjusted at once.

@@ -25,6 +25,7 @@ const STEP: f64 = 1e-4;
 
 /// A relation that was tested.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct TestedRelation {
     /// Its kind.
     pub kind: RelationKind,

@@ -33,6 +33,7 @@ const LEVER_M: f64 = 4.0;
 
 /// The kinds of relations, for the trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "snake_case")]
 pub enum RelationKind {
     /// A side is horizontal.

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 /// Where a border line comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "lowercase")]
 pub enum BorderKind {
     /// A reconstructed 3D line.
@@ -21,6 +22,7 @@ pub enum BorderKind {
 
 /// A border line in plan, metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Border {
     /// Where it comes from.
     pub kind: BorderKind,

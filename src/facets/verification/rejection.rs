@@ -5,6 +5,7 @@ use serde::Serialize;
 
 /// Why a facet was rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "snake_case")]
 pub enum FacetRejection {
     /// Smaller than the least area.
@@ -77,6 +78,7 @@ pub enum FacetRejection {
 
 /// A rejected facet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct RejectedFacet {
     /// Index of the group whose plane it has.
     pub group: u32,

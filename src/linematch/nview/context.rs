@@ -15,6 +15,7 @@ pub(super) const MIN_MEASURED: usize = 3;
 
 /// Why a hypothesis was rejected whose segments no other line took.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "snake_case")]
 pub enum MatchRejection {
     /// No line fits the segments.

@@ -22,6 +22,7 @@ pub struct ClusterLine {
 
 /// The plot of a cluster plane (figures 7 and 8).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct ClusterTrace {
     /// Azimuth of the direction, radians.
     pub azimuth: f64,

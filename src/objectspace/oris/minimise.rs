@@ -11,6 +11,7 @@ use crate::params::OrisParams;
 
 /// Moves made, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Moves {
     /// Break points dropped.
     pub dropped: usize,

@@ -6,6 +6,7 @@ use super::minimise::Moves;
 
 /// A region of constant grey level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct ImageRegion {
     /// Number of pixels.
     pub area_px: u32,
@@ -21,6 +22,7 @@ pub struct ImageRegion {
 
 /// A straight piece of a boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Vector {
     /// Start and end, pixels.
     pub ends: [[i32; 2]; 2],
@@ -40,6 +42,7 @@ impl Vector {
 
 /// The segmentation of an image.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Segmentation {
     /// The regions.
     pub regions: Vec<ImageRegion>,

@@ -8,6 +8,7 @@ use crate::geometry::Plane;
 
 /// A polygon in a plane, with the evidence for it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct PlaneCandidate {
     /// The plane.
     pub plane: Plane,
@@ -27,6 +28,7 @@ pub struct PlaneCandidate {
 
 /// Why a plane hypothesis gave no candidate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "snake_case")]
 pub enum PlaneRejection {
     /// Too steep, too narrow or too wide, or its lines stand beside each other.
@@ -41,6 +43,7 @@ pub enum PlaneRejection {
 
 /// A pair of lines and its outcome (figure 11).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct PlaneTrace {
     /// The two lines.
     pub lines: [usize; 2],

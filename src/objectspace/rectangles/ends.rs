@@ -20,6 +20,7 @@ use crate::sorting::sort_by;
 /// An image line cut with the plane: where its line crosses the two lines, and the stretch across
 /// that it covers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Crossing {
     /// The view.
     pub view: ViewId,
@@ -33,6 +34,7 @@ pub struct Crossing {
 
 /// A cluster of crossings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct PlaneEnd {
     /// Positions along the first and the second line, metres.
     pub at: [f64; 2],

@@ -59,7 +59,7 @@ use self::shapes::{StripLine, StripPolygon, quadrilaterals, triangle};
 use self::strip::PlaneStrip;
 use super::clusters::{ClusterAxes, ClusterLine, overlap};
 use super::image_lines::ImageLine;
-use crate::execution::{SILENT, map_shared};
+use crate::execution::{SILENT, Sharded, sharded_map};
 use crate::geometry::Plane;
 use crate::params::PlaneParams;
 use crate::scene::Scene;
@@ -83,7 +83,7 @@ impl PlaneSearch<'_> {
         &self,
         axes: &ClusterAxes,
         members: &[usize],
-    ) -> (Vec<PlaneCandidate>, Vec<PlaneTrace>) {
+    ) -> Sharded<(Vec<PlaneCandidate>, Vec<PlaneTrace>)> {
         let along: Vec<StripLine> = members
             .iter()
             .map(|&k| self.along(axes, &self.lines[k]))
@@ -91,20 +91,20 @@ impl PlaneSearch<'_> {
         let pairs: Vec<[usize; 2]> = (0..members.len())
             .flat_map(|i| (i + 1..members.len()).map(move |j| [i, j]))
             .collect();
-        let results = map_shared("planes", &pairs, SILENT, |_, &[i, j]| {
+        let results = sharded_map("planes", &pairs, SILENT, |_, &[i, j]| {
             let (mut candidates, mut trace) = self.pair(axes, [&along[i], &along[j]]);
             trace.lines = [members[i], members[j]];
             candidates
                 .iter_mut()
                 .for_each(|c| c.lines = trace.lines.into());
             (candidates, trace)
-        });
+        })?;
         let (mut candidates, mut traces) = (Vec::new(), Vec::new());
         for (found, trace) in results {
             candidates.extend(found);
             traces.push(trace);
         }
-        (candidates, traces)
+        Ok((candidates, traces))
     }
 
     /// Candidates of a pair of lines that the known solids hide in part.
@@ -121,8 +121,8 @@ impl PlaneSearch<'_> {
         axes: &ClusterAxes,
         members: &[usize],
         apexes: &[Point3<f64>],
-    ) -> Vec<PlaneCandidate> {
-        let found = map_shared("planes", members, SILENT, |_, &k| {
+    ) -> Sharded<Vec<PlaneCandidate>> {
+        let found = sharded_map("planes", members, SILENT, |_, &k| {
             let base = self.along(axes, &self.lines[k]);
             let mut found: Vec<PlaneCandidate> = apexes
                 .iter()
@@ -130,8 +130,8 @@ impl PlaneSearch<'_> {
                 .collect();
             found.iter_mut().for_each(|c| c.lines = vec![k]);
             found
-        });
-        found.into_iter().flatten().collect()
+        })?;
+        Ok(found.into_iter().flatten().collect())
     }
 
     fn triangle(

@@ -13,6 +13,7 @@ use crate::sorting::sort_by;
 
 /// A line that belongs to a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Member {
     /// The line.
     pub line: LineId,
@@ -24,6 +25,7 @@ pub struct Member {
 
 /// Lines and half-planes that share a plane.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct PlaneGroup {
     /// The plane, by regression to all members.
     pub plane: Plane,

@@ -26,6 +26,7 @@ use crate::math;
 
 /// What is known of theta.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Posterior {
     /// Density at the samples of theta, per radian; its integral is `plane`.
     pub density: Vec<f64>,

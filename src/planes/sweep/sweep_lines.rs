@@ -7,7 +7,7 @@ use super::poi::PointsOfInterest;
 use super::similarity::LineSide;
 use super::theta_search::ThetaSearch;
 use super::trace::{SideTrace, SimilarityCurve, SweepRejection, SweepTrace};
-use crate::execution::map_shared;
+use crate::execution::{Sharded, sharded_map};
 use crate::geometry::Segment3;
 use crate::ids::LineId;
 use crate::lines3d::{Line3d, Side};
@@ -23,12 +23,12 @@ pub fn sweep_half_planes(
     lines: &[Line3d],
     ground: &Ground,
     params: &SweepParams,
-) -> (Vec<HalfPlane>, SweepTrace) {
+) -> Sharded<(Vec<HalfPlane>, SweepTrace)> {
     let points = PointsOfInterest::detect_all(scene, params);
     let sides: Vec<(usize, Side)> = (0..lines.len())
         .flat_map(|i| [(i, Side::Left), (i, Side::Right)])
         .collect();
-    let swept = map_shared("sides", &sides, 0.05..1.0, |_, &(i, side)| {
+    let swept = sharded_map("sides", &sides, 0.05..1.0, |_, &(i, side)| {
         let mut counts = SweepTrace::default();
         let line = LineId::from_index(i);
         if ground.is_near(&lines[i].segment, params.min_height_m) {
@@ -37,7 +37,7 @@ pub fn sweep_half_planes(
         }
         let half_plane = sweep_side(scene, &points, line, &lines[i], side, params, &mut counts);
         (half_plane, counts)
-    });
+    })?;
     let mut trace = SweepTrace::default();
     let mut half_planes = Vec::new();
     for (half_plane, counts) in swept {
@@ -46,7 +46,7 @@ pub fn sweep_half_planes(
         trace.correlations += counts.correlations;
         trace.warped_pixels += counts.warped_pixels;
     }
-    (half_planes, trace)
+    Ok((half_planes, trace))
 }
 
 /// The half-plane of one side of one line, if there is one. Appends to the trace. `points` are
@@ -178,7 +178,8 @@ mod tests {
             &[ridge(), reversed],
             &Ground::level(0.0),
             &SweepParams::default(),
-        );
+        )
+        .unwrap();
         assert_eq!(found.len(), 4);
         for (line, side, planted) in [
             (0, Side::Left, -30.0),
@@ -205,7 +206,7 @@ mod tests {
                 min_height_m,
                 ..SweepParams::default()
             };
-            sweep_half_planes(&gable(), &[ridge()], &Ground::level(ground), &params)
+            sweep_half_planes(&gable(), &[ridge()], &Ground::level(ground), &params).unwrap()
         };
         // The ridge is 8 m high.
         let (found, trace) = sweep(7.0, 1.4);
@@ -226,7 +227,8 @@ mod tests {
             slope(&hip, Side::Right, -40.0, |x, y| y <= 0.6 * x),
         ]);
         let (found, _) =
-            sweep_half_planes(&scene, &[hip], &Ground::level(0.0), &SweepParams::default());
+            sweep_half_planes(&scene, &[hip], &Ground::level(0.0), &SweepParams::default())
+                .unwrap();
         assert!((theta_deg(&found, 0, Side::Left) - 25.0).abs() < 2.0);
         assert!((theta_deg(&found, 0, Side::Right) + 40.0).abs() < 2.0);
     }
@@ -240,7 +242,8 @@ mod tests {
             &[ridge()],
             &Ground::level(0.0),
             &SweepParams::default(),
-        );
+        )
+        .unwrap();
         assert_eq!(found.len(), 1);
         assert!((theta_deg(&found, 0, Side::Left) - 15.0).abs() < 2.0);
         assert!(trace.sides[1].rejection.is_some());
@@ -257,7 +260,8 @@ mod tests {
             &[ridge()],
             &Ground::level(0.0),
             &SweepParams::default(),
-        );
+        )
+        .unwrap();
         for (h, side) in found.iter().zip(&trace.sides) {
             assert_ne!(side.curve.reference, Some(ViewId(1)));
             assert!(!h.views.contains(&ViewId(1)));
@@ -344,7 +348,8 @@ mod tests {
             &[up, short, outside, ridge()],
             &Ground::level(0.0),
             &SweepParams::default(),
-        );
+        )
+        .unwrap();
         assert!(found.is_empty());
         let reasons: Vec<_> = trace.sides.iter().map(|s| s.rejection.unwrap()).collect();
         use SweepRejection::{NoFrame, NoPointsOfInterest, TooShort};

@@ -10,6 +10,7 @@ use crate::lines3d::Side;
 
 /// Why a line side has no half-plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "snake_case")]
 pub enum SweepRejection {
     /// The line lies on the ground.
@@ -36,6 +37,7 @@ pub enum SweepRejection {
 
 /// `Sim(theta)` of one view alone (B99 figure 14).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct ViewCurve {
     /// The view that is compared with the reference.
     pub view: ViewId,
@@ -48,6 +50,7 @@ pub struct ViewCurve {
 
 /// `Sim(theta)` of a line side (B99 figure 12).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct SimilarityCurve {
     /// The first view of the homographies.
     pub reference: Option<ViewId>,
@@ -65,6 +68,7 @@ pub struct SimilarityCurve {
 
 /// One side of one line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct SideTrace {
     /// The line.
     pub line: LineId,

@@ -3,27 +3,19 @@
  * then opens it again and replays its inputs.
  */
 import wasmUrl from "../pkg/ridgeline_bg.wasm?url";
-import type {
-  Args,
-  CallName,
-  FailureKind,
-  Queries,
-  QueryName,
-  Reply,
-  Request,
-  Result,
-} from "../shared/messages";
-import type { OrientationCheckReport } from "../shared/results";
+import type { Args, CallName, Result } from "../shared/calls";
+import type { FailureKind, Reply, Request } from "../shared/messages";
+import type { AgreementReport } from "../shared/records";
 
 /** A call that the worker rejected, or that was cut short. */
 export class EngineError extends Error {
   readonly kind: FailureKind | "cancelled";
-  readonly orientationCheck: OrientationCheckReport | null;
+  readonly orientationCheck: AgreementReport | null;
 
   constructor(
     message: string,
     kind: FailureKind | "cancelled",
-    orientationCheck: OrientationCheckReport | null = null,
+    orientationCheck: AgreementReport | null = null,
   ) {
     super(message);
     this.kind = kind;
@@ -35,6 +27,9 @@ interface Pending {
   resolve: (value: never) => void;
   reject: (error: EngineError) => void;
 }
+
+/** A request as it is made, before it is sent. */
+type Unnumbered<R> = R extends unknown ? Omit<R, "id"> : never;
 
 export class Engine {
   #worker: Worker | undefined;
@@ -52,22 +47,30 @@ export class Engine {
   }
 
   /** Starts a worker and compiles the core. */
-  open(): Promise<Result<"open">> {
+  open(): Promise<void> {
     this.#worker = new Worker(new URL("../worker/main.ts", import.meta.url), { type: "module" });
     this.#worker.onmessage = (event: MessageEvent<Reply>) => this.#receive(event.data);
     this.#worker.onerror = (event) => {
       event.preventDefault();
       this.close(new EngineError(event.message || "The worker could not be started.", "crash"));
     };
-    return this.call("open", { wasmUrl: new URL(wasmUrl, document.baseURI).href });
+    return this.#send({ type: "open", wasmUrl: new URL(wasmUrl, document.baseURI).href }, []);
+  }
+
+  call<K extends CallName>(name: K, ...args: Args<K>): Promise<Result<K>> {
+    return this.callMoving([], name, ...args);
   }
 
   /** What `transfer` names moves to the worker instead of being copied. */
-  call<K extends CallName>(
-    type: K,
-    args: Args<K>,
-    transfer: readonly Transferable[] = [],
+  callMoving<K extends CallName>(
+    transfer: readonly Transferable[],
+    name: K,
+    ...args: Args<K>
   ): Promise<Result<K>> {
+    return this.#send({ type: "call", name, args }, transfer);
+  }
+
+  #send<T>(request: Unnumbered<Request>, transfer: readonly Transferable[]): Promise<T> {
     const worker = this.#worker;
     if (worker === undefined) {
       return Promise.reject(new EngineError("No worker is running.", "cancelled"));
@@ -76,13 +79,8 @@ export class Engine {
     const id = this.#lastId;
     return new Promise((resolve, reject) => {
       this.#pending.set(id, { resolve, reject });
-      worker.postMessage({ type, id, args } as Request, [...transfer]);
+      worker.postMessage({ ...request, id }, [...transfer]);
     });
-  }
-
-  /** Asks something about the results. */
-  async ask<K extends QueryName>(query: K, ...of: Queries[K]["args"]): Promise<Queries[K]["result"]> {
-    return (await this.call("ask", { query, of })) as Queries[K]["result"];
   }
 
   /** Ends the worker at once, whatever it is doing; every open call fails with `reason`. */

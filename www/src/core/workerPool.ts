@@ -4,8 +4,8 @@
  * the stage with the merged shards. The core sees to it that these are the bytes that one worker
  * would find. Without others, or where one fails, the engine runs by itself.
  */
-import type { Bytes } from "../shared/messages";
-import type { Params } from "../shared/results";
+import type { Bytes } from "../shared/calls";
+import type { ParamTree } from "../shared/paramTree";
 import { Engine, EngineError } from "./engine";
 
 /** A worker, and what it holds of the run. */
@@ -21,7 +21,7 @@ interface Wanted {
   /** The stages before it, whose results its maps may need. */
   earlier: readonly string[];
   views: number;
-  params: Params;
+  params: ParamTree;
   /** How many workers, with the engine. */
   workers: number;
 }
@@ -41,13 +41,13 @@ export class WorkerPool {
 
   /** Computes the maps of a stage in shards; false where that failed and the engine is to run by itself. */
   async runShards(wanted: Wanted): Promise<boolean> {
-    const { maps, withColours } = await this.#engine.call("sharedMaps", { stage: wanted.stage });
+    const maps = await this.#engine.call("shardMaps", wanted.stage);
     if (wanted.workers < 2 || maps.length === 0) {
       return true;
     }
     try {
       await this.#resize(wanted.workers - 1);
-      await this.#giveViews(wanted.views, withColours);
+      await this.#giveViews(wanted.views, await this.#engine.call("shardsReadColours", wanted.stage));
       await this.#giveResults(wanted);
       await this.#doMaps(wanted.stage, maps);
       return true;
@@ -106,9 +106,9 @@ export class WorkerPool {
     const wanted = withColours ? "colour" : "grey";
     const lacking = this.#pooled.filter(({ views }) => views !== "colour" && views !== wanted);
     for (let view = 0; view < count && lacking.length > 0; view += 1) {
-      const packed = await this.#engine.call("packView", { view, withColours });
+      const packed = await this.#engine.call("packView", view, withColours);
       await giveAll(workersOf(lacking), [packed], (worker, transfer) =>
-        worker.call("takeView", { view, of: count, packed }, transfer),
+        worker.callMoving(transfer, "takeView", view, count, packed),
       );
     }
     for (const one of lacking) {
@@ -119,14 +119,14 @@ export class WorkerPool {
 
   /** Parameters first: they drop the results that they change, which the engine then has run again. */
   async #giveResults({ earlier, params }: Wanted): Promise<void> {
-    await Promise.all(this.#pooled.map(({ worker }) => worker.call("setParams", { params })));
+    await Promise.all(this.#pooled.map(({ worker }) => worker.call("setParams", params)));
     for (const stage of earlier) {
       const run = this.#runs.get(stage) ?? 0;
       const lacking = this.#pooled.filter(({ taken }) => taken.get(stage) !== run);
-      const found = lacking.length > 0 ? await this.#engine.call("handOver", { stage }) : new Uint8Array();
+      const found = lacking.length > 0 ? await this.#engine.call("handOver", stage) : new Uint8Array();
       if (found.length > 0) {
         await giveAll(workersOf(lacking), [found], (worker, transfer) =>
-          worker.call("takeOver", { stage, found }, transfer),
+          worker.callMoving(transfer, "takeOver", stage, found),
         );
       }
       for (const { taken } of lacking) {
@@ -141,12 +141,12 @@ export class WorkerPool {
     const of = workers.length;
     for (const [step, map] of maps.entries()) {
       const shards: Bytes[] = await Promise.all(
-        workers.map((worker, index) => worker.call("computeShard", { stage, map, index, of })),
+        workers.map((worker, index) => worker.call("runShard", stage, map, index, of)),
       );
       // After the last map only the engine goes on.
       const merging = step + 1 < maps.length ? workers : [this.#engine];
       await giveAll(merging, shards, (worker, transfer) =>
-        worker.call("mergeShards", { map, shards }, transfer),
+        worker.callMoving(transfer, "mergeShards", map, shards),
       );
     }
     this.#fractions = [];

@@ -1,5 +1,5 @@
 /** The thing that was picked, by its index in the results; anywhere it is picked, it lights up everywhere. */
-import type { SideName } from "./traces";
+import type { Side } from "./records";
 
 export type Selection =
   | { kind: "segment"; view: number; index: number }
@@ -7,7 +7,7 @@ export type Selection =
   | { kind: "rejectedSegment"; view: number; index: number }
   | { kind: "line"; index: number }
   /** A side of a 3D line, whether it has a half-plane or not. */
-  | { kind: "side"; line: number; side: SideName }
+  | { kind: "side"; line: number; side: Side }
   | { kind: "halfplane"; index: number }
   | { kind: "group"; index: number }
   | { kind: "facet"; index: number }

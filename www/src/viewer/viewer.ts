@@ -16,7 +16,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { ThemeColours } from "../shared/palette";
-import type { ViewInfo } from "../shared/results";
+import type { ViewInfo } from "../shared/records";
 import type { Selection } from "../shared/selection";
 import { buildGrid } from "./layers/grid";
 import { gpuFinished } from "./scene/gpuFence";

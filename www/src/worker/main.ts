@@ -1,20 +1,21 @@
 /** The worker: one wasm instance with one Session. Requests are answered one after the other. */
 /// <reference lib="webworker" />
 import init, { Session } from "../pkg/ridgeline.js";
+import type { WorkerCalls } from "../shared/calls";
 import type { Failure, Reply, Request } from "../shared/messages";
-import type { OrientationCheckReport, Params } from "../shared/results";
-import { type Answer, type Core, type CoreSession, dispatch } from "./dispatch";
+import type { AgreementReport } from "../shared/records";
+import { type Answer, answer, type CoreSession, workerCalls } from "./calls";
 
 declare const self: DedicatedWorkerGlobalScope;
 
-let core: Core | undefined;
+let core: { session: CoreSession; own: WorkerCalls } | undefined;
 let queue: Promise<void> = Promise.resolve();
 
 self.onmessage = (event: MessageEvent<Request>) => {
-  queue = queue.then(() => answer(event.data));
+  queue = queue.then(() => reply(event.data));
 };
 
-async function answer(request: Request): Promise<void> {
+async function reply(request: Request): Promise<void> {
   try {
     const { result, transfer } = await perform(request);
     post({ type: "done", id: request.id, result }, transfer);
@@ -25,18 +26,16 @@ async function answer(request: Request): Promise<void> {
 
 async function perform(request: Request): Promise<Answer> {
   if (request.type === "open") {
-    await init({ module_or_path: request.args.wasmUrl });
-    core = {
-      session: new Session() as unknown as CoreSession,
-      stages: Session.stages() as string[],
-      defaults: Session.defaultParams() as Params,
-    };
-    return { result: { stages: core.stages, defaults: core.defaults }, transfer: [] };
+    await init({ module_or_path: request.wasmUrl });
+    const session = new Session();
+    const onProgress = (stage: string, fraction: number) => post({ type: "progress", stage, fraction });
+    core = { session, own: workerCalls(session, () => Session.defaultParams(), onProgress) };
+    return { result: undefined, transfer: [] };
   }
   if (core === undefined) {
     throw new Error("The reconstruction core is not ready. Reload the page.");
   }
-  return dispatch(core, request, (stage, fraction) => post({ type: "progress", stage, fraction }));
+  return answer(core.session, core.own, request.name, request.args);
 }
 
 function failureOf(error: unknown): Failure {
@@ -45,7 +44,7 @@ function failureOf(error: unknown): Failure {
     return { message, kind: "crash", orientationCheck: null };
   }
   if (error instanceof Error) {
-    const { doctor: orientationCheck = null } = error as Error & { doctor?: OrientationCheckReport };
+    const { doctor: orientationCheck = null } = error as Error & { doctor?: AgreementReport };
     return {
       message: error.message,
       kind: error.name === "InputError" ? "input" : "internal",

@@ -1,5 +1,5 @@
 /** The smallest GLB that shows facets: one mesh each, unlit grey, with the extras that the viewer reads. */
-import type { Facet, Vec3 } from "../../src/shared/results";
+import type { Facet, Vec3 } from "../../src/shared/records";
 
 const GLB_MAGIC = 0x46546c67;
 const CHUNK_JSON = 0x4e4f534a;

@@ -4,24 +4,29 @@
  * part of a build.
  */
 
-import type { Facet, HalfPlane, Params, SceneInfo, TileReport, ViewImage } from "../../src/shared/results";
+import { stagesOf } from "../../src/app/session/stageCatalogue";
+import type { WarpedPicture } from "../../src/shared/calls";
+import type { ParamTree } from "../../src/shared/paramTree";
 import type {
   Correspondence,
-  Grouping,
+  Facet,
+  FacetTrace,
+  HalfPlane,
   LineRecord,
   MatchRecord,
+  Params,
   Refinement,
+  SceneInfo,
   SegmentStory,
   SideRecord,
   SideTrace,
-  WarpedPicture,
-} from "../../src/shared/traces";
-import type { CoreSession } from "../../src/worker/dispatch";
+  TileReport,
+} from "../../src/shared/records";
+import type { CoreSession } from "../../src/worker/calls";
 import { glbOf } from "./glb";
 
 const SIZE_PX = 400;
 const PX_PER_M = 20;
-const STAGES = ["segments", "matches", "lines", "halfplanes", "facets", "model"];
 
 type P = [number, number, number];
 /** A gable of 12 m by 8 m: eaves at 5 m, ridge at 8 m. */
@@ -48,7 +53,17 @@ const NORTH = { normal: [0, 0.6, 0.8] as P, d: -6.4 };
 const corner = (i: number) => CORNERS[i] as P;
 
 function facet(indices: number[], plane: typeof SOUTH): Facet {
-  return { outer: indices.map(corner), holes: [], plane, building: 0, similarity: 0.8, real_ratio: 1 };
+  return {
+    outer: indices.map(corner),
+    holes: [],
+    plane,
+    building: 0,
+    similarity: 0.8,
+    real_ratio: 1,
+    lines: [],
+    half_planes: [],
+    rectangles: [],
+  };
 }
 
 export const FACETS: Facet[] = [facet([0, 1, 5, 4], SOUTH), facet([2, 3, 4, 5], NORTH)];
@@ -62,6 +77,7 @@ const HALF_PLANES: HalfPlane[] = [
   ...one,
   side: one.side as "left" | "right",
   similarity: 0.7,
+  sigma_theta: 0.01,
   curvature: 9,
   amplitude: 0.5,
   probability: 0.99,
@@ -71,12 +87,8 @@ const HALF_PLANES: HalfPlane[] = [
 export class Session implements CoreSession {
   #files: string[] = [];
 
-  static stages(): string[] {
-    return STAGES;
-  }
-
   static defaultParams(): Params {
-    return {
+    const params: ParamTree = {
       segments: { min_length_px: 15 },
       matching: { window_px: 15 },
       lines3d: {},
@@ -84,6 +96,7 @@ export class Session implements CoreSession {
       roof: {},
       texture: { max_atlas_px: 4096 },
     };
+    return params as unknown as Params;
   }
 
   addFile(path: string): void {
@@ -102,7 +115,7 @@ export class Session implements CoreSession {
       orientation: "planted",
     }));
     return {
-      files: this.#files.map((path) => ({ path, kind: "image", description: "a file" })),
+      files: this.#files.map((path) => ({ path, kind: "image" as const, description: "a file" })),
       images,
       orientation: "planted",
       orientations: [{ label: "planted", path: "planted" }],
@@ -161,7 +174,7 @@ export class Session implements CoreSession {
     return FACETS;
   }
 
-  image(): ViewImage {
+  image() {
     const rgba = new Uint8ClampedArray(4 * SIZE_PX * SIZE_PX);
     for (let i = 0; i < SIZE_PX * SIZE_PX; i += 1) {
       const shade = 90 + 60 * Math.sin((i % SIZE_PX) / 23) * Math.cos(i / SIZE_PX / 31);
@@ -170,11 +183,11 @@ export class Session implements CoreSession {
     return { width: SIZE_PX, height: SIZE_PX, rgba };
   }
 
-  sharedMaps(stage: string): string[] {
+  shardMaps(stage: string): string[] {
     return stage === "segments" ? ["views"] : [];
   }
 
-  sharesColours(): boolean {
+  shardsReadColours(): boolean {
     return false;
   }
 
@@ -190,7 +203,7 @@ export class Session implements CoreSession {
 
   takeOver(): void {}
 
-  share(
+  runShard(
     _stage: string,
     _map: string,
     index: number,
@@ -201,10 +214,10 @@ export class Session implements CoreSession {
     return new Uint8Array([index, of]);
   }
 
-  learn(): void {}
+  mergeShards(): void {}
 
   chosenStages(): string[] {
-    return STAGES;
+    return stagesOf("lines");
   }
 
   rejectedSegments(): Float32Array {
@@ -348,12 +361,12 @@ export class Session implements CoreSession {
     };
   }
 
-  grouping(): Grouping {
+  grouping(): FacetTrace {
     const members = (lines: number[]) => lines.map((line) => ({ line, side: null, half_plane: null }));
     return {
       groups: [
-        { plane: SOUTH, members: members([0, 2, 3, 5]) },
-        { plane: NORTH, members: members([1, 2, 4, 6]) },
+        { plane: SOUTH, members: members([0, 2, 3, 5]), rectangles: [] },
+        { plane: NORTH, members: members([1, 2, 4, 6]), rectangles: [] },
       ],
       plane_lines: [],
       borders: EDGES.map(([a, b]) => {

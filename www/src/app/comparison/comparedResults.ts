@@ -1,6 +1,7 @@
 /** What is told of a result where two are compared. */
 import { computed } from "@preact/signals";
-import type { Facet, Params } from "../../shared/results";
+import type { ParamTree } from "../../shared/paramTree";
+import type { Facet } from "../../shared/records";
 import { slopedArea } from "../parts/facetArea";
 import { fieldText, paramName, paramSections } from "../settings/parameterForm";
 import type { KeptResult } from "../state/keptResult";
@@ -20,7 +21,7 @@ const presentParams = computed(() => mainResults.value.madeWith ?? params.value)
 export const presentTitle = computed(() => titleOf(presentParams.value));
 
 /** The method, and which parameter is not the default; of several, how many. */
-function titleOf(values: Params): string {
+function titleOf(values: ParamTree): string {
   const name = METHOD_TITLES[methodOf(values)];
   const changed = paramSections(defaults.value, values).flatMap(({ fields }) =>
     fields.filter((field) => field.changed),
@@ -65,7 +66,7 @@ export function comparedRows(kept: KeptResult): ComparedRow[] {
 }
 
 /** The parameters of a method that are not the same; of different methods, the titles say enough. */
-function parameterRows(before: Params, after: Params): ComparedRow[] {
+function parameterRows(before: ParamTree, after: ParamTree): ComparedRow[] {
   if (methodOf(before) !== methodOf(after)) {
     return [];
   }

@@ -1,10 +1,10 @@
 /** W96 3.5: the plane across a main direction, its image lines and its clusters (figures 7 and 8). */
 
 import "./figures.css";
+import { LINE_STRIDE } from "../../shared/flatArrays";
 import { category } from "../../shared/palette";
-import { LINE_STRIDE } from "../../shared/results";
+import type { ClusterTrace, Vec2 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import type { ClusterTrace, Vec2 } from "../../shared/traces";
 import { axesOf, Chart, Fit, type Frame, pathOf, type Scale } from "../parts/charts";
 import { degreesOf, grouped } from "../parts/numberText";
 import { results } from "../state/results";

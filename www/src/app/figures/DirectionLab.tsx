@@ -1,7 +1,7 @@
 /** W96 3.4: the histogram of azimuths (figures 4 and 5), and which direction an image line follows. */
 import "./figures.css";
 import { category } from "../../shared/palette";
-import type { MainDirections } from "../../shared/traces";
+import type { MainDirections } from "../../shared/records";
 import { axesOf, Chart, Fit, type Frame, pathOf } from "../parts/charts";
 import { degreesOf } from "../parts/numberText";
 import { results } from "../state/results";

@@ -1,8 +1,7 @@
 /** B99 figure 9: accuracy against the number of views; figures 17 to 23: groups and border lines in plan. */
 import "./figures.css";
 import { category } from "../../shared/palette";
-import type { Vec3 } from "../../shared/results";
-import type { Grouping, LineRecord, Vec2 } from "../../shared/traces";
+import type { FacetTrace, LineRecord, Vec2, Vec3 } from "../../shared/records";
 import { Filmstrip } from "../images/Filmstrip";
 import { axesOf, Chart, dotsOf, Fit, type Frame, pathOf, type Scale } from "../parts/charts";
 import { facetRejectionWords } from "../parts/reasonText";
@@ -208,7 +207,7 @@ function Plan({
   outlines,
 }: {
   frame: Frame;
-  grouping: Grouping;
+  grouping: FacetTrace;
   outlines: readonly (readonly Vec3[])[];
 }) {
   const points: Vec2[] = [

@@ -1,7 +1,7 @@
 /** W96 3.6: the window of a plane between parallel lines, and the histogram of positions (figures 10 and 11). */
 import "./figures.css";
 import { category } from "../../shared/palette";
-import type { PlaneTrace } from "../../shared/traces";
+import type { PlaneTrace } from "../../shared/records";
 import { Filmstrip } from "../images/Filmstrip";
 import { axesOf, Chart, Fit, type Frame, histogramOf, type Scale } from "../parts/charts";
 import { PAIR_WORDS } from "../parts/reasonText";

@@ -1,6 +1,6 @@
 /** B99 2: what refinement made of a building, and the relations that were tested there, each by its chi-square. */
 import "./figures.css";
-import type { BuildingRefinement, TestedRelation } from "../../shared/traces";
+import type { BuildingRefinement, TestedRelation } from "../../shared/records";
 import { Filmstrip } from "../images/Filmstrip";
 import { axesOf, Chart, Fit, type Frame } from "../parts/charts";
 import { RELATION_WORDS, refinementWords } from "../parts/reasonText";

@@ -1,8 +1,9 @@
 /** B99 figures 10 to 14: the half-plane turned by hand, the views warped onto it, and Sim(theta). */
 import "./figures.css";
 import { useEffect, useRef } from "preact/hooks";
+import type { WarpedPicture } from "../../shared/calls";
 import { category } from "../../shared/palette";
-import type { SideTrace, WarpedPicture } from "../../shared/traces";
+import type { SideTrace } from "../../shared/records";
 import { axesOf, Chart, Fit, type Frame, pathOf } from "../parts/charts";
 import { REJECTION_WORDS } from "../parts/reasonText";
 import { bestTheta, sideOf, turnTo } from "../selection/selectionQueries";

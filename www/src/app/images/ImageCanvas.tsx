@@ -1,8 +1,8 @@
 /** One view, to zoom (wheel, + and -), pan (drag, arrows), fit (0) and pick (click). */
 import { useEffect, useRef, useState } from "preact/hooks";
-import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_STRIDE } from "../../shared/results";
+import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_STRIDE } from "../../shared/flatArrays";
+import type { Vec2 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import type { Vec2 } from "../../shared/traces";
 import { textScale } from "../state/textScale";
 import { drawView, type Overlay } from "./drawing";
 import type { Mark } from "./selectionMarks";

@@ -1,8 +1,9 @@
 /** Draws one view's image and overlay on a canvas. It computes nothing but where things lie on the screen. */
+
+import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_KINDS, SUPPORT_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
-import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_KINDS, SUPPORT_STRIDE } from "../../shared/results";
+import type { Vec2 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import type { Vec2 } from "../../shared/traces";
 import { textScale } from "../state/textScale";
 import type { Mark } from "./selectionMarks";
 import type { Viewport } from "./viewport";

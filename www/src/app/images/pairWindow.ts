@@ -1,6 +1,5 @@
 /** The window of a pair of parallel lines in space, and the image lines inside it (W96 figures 10 and 11). */
-import type { Vec3 } from "../../shared/results";
-import type { PlaneTrace } from "../../shared/traces";
+import type { PlaneTrace, Vec3 } from "../../shared/records";
 import { lineEnds } from "../selection/selectionShapes";
 
 export interface PlaneWindow {

@@ -2,10 +2,11 @@
  * What a selection looks like in an image: polylines in pixels. Things in space are projected with the view's own
  * matrix, as the viewer's graphics card does; everything else is drawn as the core gave it.
  */
+
+import { REJECTED_STRIDE, SEGMENT_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
-import { REJECTED_STRIDE, SEGMENT_STRIDE, type Vec3, type ViewInfo } from "../../shared/results";
+import type { Vec2, Vec3, ViewInfo } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import type { Vec2 } from "../../shared/traces";
 import { type Shape, shapesOf } from "../selection/selectionShapes";
 import { type Results, results } from "../state/results";
 import { scene } from "../state/scene";

@@ -1,5 +1,6 @@
 /** What was rejected, in numbers: lines of edgels (B99 3.2), facets (B99 4.3) and clusters (W96 3.5). */
-import { REJECTED_STRIDE, type Vec3 } from "../../shared/results";
+import { REJECTED_STRIDE } from "../../shared/flatArrays";
+import type { Vec3 } from "../../shared/records";
 import { degreesOf } from "../parts/numberText";
 import { facetRejectionWords } from "../parts/reasonText";
 import { results } from "../state/results";

@@ -1,6 +1,7 @@
 /** What the inspector says of the picked thing: its numbers, what made it and what it made. */
 
-import { type Facet, LINE_STRIDE, SEGMENT_STRIDE, type Vec3 } from "../../shared/results";
+import { LINE_STRIDE, SEGMENT_STRIDE } from "../../shared/flatArrays";
+import type { Facet, Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { slopedArea } from "../parts/facetArea";
 import { grouped } from "../parts/numberText";

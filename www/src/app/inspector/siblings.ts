@@ -1,5 +1,5 @@
 /** The items of a kind in their order, so that all can be gone through without a pointer. */
-import { LINE_STRIDE, REJECTED_STRIDE, SEGMENT_STRIDE } from "../../shared/results";
+import { LINE_STRIDE, REJECTED_STRIDE, SEGMENT_STRIDE } from "../../shared/flatArrays";
 import type { Selection } from "../../shared/selection";
 import { formatSelection } from "../settings/addressLink";
 import type { Tab } from "../state/methods";

@@ -1,5 +1,5 @@
 /** Areas of facets, for tables. */
-import type { Facet, Vec3 } from "../../shared/results";
+import type { Facet, Vec3 } from "../../shared/records";
 
 /** Sloped area, square metres: that of the plan over the cosine of the slope. */
 export function slopedArea({ outer, holes, plane }: Pick<Facet, "outer" | "holes" | "plane">): number {

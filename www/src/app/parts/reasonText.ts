@@ -1,11 +1,11 @@
 /** The core's reasons in words. */
 import type {
   BuildingRefinement,
-  Contradiction,
   LineOrigin,
+  Refutation,
   SegmentOutcome,
   TestedRelation,
-} from "../../shared/traces";
+} from "../../shared/records";
 
 /** Why a side of a line has no half-plane (B99 4.1). */
 export const REJECTION_WORDS: Record<string, string> = {
@@ -61,7 +61,7 @@ export const ORIGIN_WORDS: Record<LineOrigin, string> = {
 };
 
 /** Why the model contradicts a 3D line, which the files then leave out. */
-export const CONTRADICTION_WORDS: Record<Contradiction, string> = {
+export const CONTRADICTION_WORDS: Record<Refutation, string> = {
   hidden: "roofs hide it from all but two of its views",
   underground: "it goes into the ground",
   afloat: "it lies on no surface, and too few views are certain of it",

@@ -1,14 +1,14 @@
 /** The orientation check: how well the images agree, what else was tried, and the remedy. */
 
 import "./project.css";
-import type { Agreement, OrientationCheckReport } from "../../shared/results";
+import type { Agreement, AgreementReport } from "../../shared/records";
 import { grouped } from "../parts/numberText";
 import { setRunOptions } from "./projectActions";
 
 /** Trials beyond these explain nothing. */
 const MOST_TRIALS = 10;
 
-export function OrientationCheck({ report }: { report: OrientationCheckReport }) {
+export function OrientationCheck({ report }: { report: AgreementReport }) {
   const { stated, cured, offsets_px: offsets, mistake, trials } = report;
   return (
     <div class="orientation-check" data-testid="orientation-check" data-finding={report.finding}>

@@ -1,7 +1,7 @@
 /** The project: where files are dropped, and what each of them was recognised as. */
 import "./project.css";
 import { useEffect, useRef, useState } from "preact/hooks";
-import type { ImageReport } from "../../shared/results";
+import type { ImageReport } from "../../shared/records";
 import { notify } from "../state/notices";
 import { files, inspection, projectName, runOptions } from "../state/project";
 import { peakMb, scene } from "../state/scene";

@@ -1,5 +1,5 @@
 /** Files from a drop, a folder or a picker, with their paths, hidden files left out. */
-import type { InputFile } from "../../shared/messages";
+import type { InputFile } from "../../shared/calls";
 
 /** Everything that was dropped, folders walked through. Must be called before the event's handler returns. */
 export function droppedFiles(transfer: DataTransfer): Promise<InputFile[]> {

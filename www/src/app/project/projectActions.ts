@@ -1,6 +1,8 @@
 /** What a person can do with the project: files, the demo scene, and what is asked for beyond the files. */
 import { batch } from "@preact/signals";
-import type { InputFile } from "../../shared/messages";
+import type { InputFile } from "../../shared/calls";
+import { asTree } from "../../shared/paramTree";
+import type { StageName } from "../../shared/stages";
 import { saveFile } from "../parts/saveFile";
 import { failureNotice } from "../session/failureNotice";
 import {
@@ -60,14 +62,14 @@ export async function addFiles(added: InputFile[], name?: string): Promise<void>
 
 /** Takes up what a project file among the added ones asks for. */
 async function adoptProject(): Promise<void> {
-  const opened = await engine.call("openedProject", {});
+  const opened = await engine.call("openedProject");
   if (opened === null || inspection.value === null) {
     return;
   }
   const wishes = wishesOf(opened.options, inspection.value);
   batch(() => {
     replaceRunOptions(wishes);
-    replaceParams(paramsOf(defaults.value, changedParams(defaults.value, opened.params)));
+    replaceParams(paramsOf(defaults.value, changedParams(defaults.value, asTree(opened.params))));
     setInspection(null);
   });
   await listStages();
@@ -78,9 +80,9 @@ async function adoptProject(): Promise<void> {
 export async function saveProject(): Promise<void> {
   await guarded("Writing the project", async () => {
     await ensureInspected();
-    await engine.call("setParams", { params: params.value });
+    await engine.call("setParams", params.value);
     const options = loadOptions(runOptions.value, inspection.value);
-    const bytes = await engine.call("exportProject", { options });
+    const bytes = await engine.call("exportProject", options);
     saveFile("ridgeline-project.zip", new Blob([bytes], { type: "application/zip" }));
   });
 }
@@ -154,7 +156,7 @@ export async function restoreProject(kept: StoredProject): Promise<void> {
  * Fetches the demo scene from this site and drops it in as if it were the user's; then runs it up to a stage: the last
  * one unless another is named, none for null.
  */
-export async function openDemo(target?: string | null): Promise<void> {
+export async function openDemo(target?: StageName | null): Promise<void> {
   const fetched = await guarded("Fetching the demo scene", fetchDemo);
   if (fetched === undefined) {
     return;
@@ -213,7 +215,7 @@ async function loadProject(what: string, adopt?: () => Promise<void>): Promise<v
       // A large area may be too much to load at once: where something stands against the whole, the plan of the tiles says
       // whether it does against them.
       const options = loadOptions(runOptions.value, inspection.value);
-      await (problems.length === 0 || engine.call("planTiles", { options, tileM }));
+      await (problems.length === 0 || engine.call("planTiles", options, tileM));
       return;
     }
     if (problems.length === 0 || !isFinal) {

@@ -1,7 +1,7 @@
 /** The project kept in this browser (IndexedDB) over reloads: files, options and parameters; results are computed again. */
 import { effect, type ReadonlySignal, signal } from "@preact/signals";
-import type { InputFile } from "../../shared/messages";
-import type { Params } from "../../shared/results";
+import type { InputFile } from "../../shared/calls";
+import type { ParamTree } from "../../shared/paramTree";
 import { defaults, params } from "../state/parameters";
 import { files, isDemo, projectName, type RunOptions, runOptions } from "../state/project";
 
@@ -10,7 +10,7 @@ export interface StoredProject {
   isDemo: boolean;
   files: InputFile[];
   options: RunOptions;
-  params: Params;
+  params: ParamTree;
 }
 
 const DATABASE = "ridgeline";

@@ -1,6 +1,6 @@
 /** What follows from a selection: the figures ask the core about the thing that was picked. */
 import { effect } from "@preact/signals";
-import type { SideName, SideTrace } from "../../shared/traces";
+import type { Side, SideTrace } from "../../shared/records";
 import { ask } from "../session/session";
 import { results, shownResultSet } from "../state/results";
 import { beginDetail, changeDetail, NO_DETAIL, selectionDetail } from "../state/selectionDetail";
@@ -75,7 +75,7 @@ export async function turnTo(theta: number, isByHand = true): Promise<void> {
 }
 
 /** The side of a line that a selection means: a line's better half-plane, or its left side. */
-export function sideOf(picked: typeof selection.value): { line: number; side: SideName } | null {
+export function sideOf(picked: typeof selection.value): { line: number; side: Side } | null {
   const halfPlanes = results.peek().halfPlanes;
   switch (picked?.kind) {
     case "side":
@@ -104,7 +104,7 @@ async function askAboutSegment(view: number, segment: number): Promise<void> {
   }
 }
 
-async function askAboutSide(line: number, side: SideName): Promise<void> {
+async function askAboutSide(line: number, side: Side): Promise<void> {
   if (results.peek().halfPlanes === null) {
     beginDetail();
     return;

@@ -1,8 +1,8 @@
 /** What a selection is in space: polylines in the local frame, which light up in every image and in the 3D view. */
 
-import { type HalfPlane, LINE_STRIDE, type Vec3 } from "../../shared/results";
+import { LINE_STRIDE } from "../../shared/flatArrays";
+import type { HalfPlane, Segment3, Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import type { Segment3 } from "../../shared/traces";
 import { fanCorners } from "../../viewer/layers/fans";
 import { outlinesOf } from "../../viewer/layers/refinement";
 import { results } from "../state/results";

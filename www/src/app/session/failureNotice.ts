@@ -1,6 +1,6 @@
 /** Failures in words. The core's messages end with what to do about them, after a semicolon. */
 import type { FailureKind } from "../../shared/messages";
-import type { OrientationCheckReport } from "../../shared/results";
+import type { AgreementReport } from "../../shared/records";
 import type { Notice } from "../state/notices";
 
 const TITLES: Record<FailureKind, string> = {
@@ -18,7 +18,7 @@ const ADVICE: Record<Exclude<FailureKind, "input">, string> = {
 export function failureNotice(
   message: string,
   kind: FailureKind,
-  orientationCheck: OrientationCheckReport | null = null,
+  orientationCheck: AgreementReport | null = null,
 ): Omit<Notice, "id"> {
   const { text, advice } = splitAdvice(message);
   const known = kind === "input" ? advice : (advice ?? ADVICE[kind]);

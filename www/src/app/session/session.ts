@@ -2,18 +2,19 @@
 
 import { Engine, EngineError } from "../../core/engine";
 import { WorkerPool } from "../../core/workerPool";
-import type { Queries, QueryName } from "../../shared/messages";
-import type { SceneInfo } from "../../shared/results";
+import type { Args, CallName, Result } from "../../shared/calls";
+import type { SceneInfo } from "../../shared/records";
 import { linkedParams } from "../settings/addressLink";
 import { loadOptions } from "../settings/loadOptions";
 import { paramsOf } from "../settings/parameterForm";
 import { beginActivity, endActivity, isBusy } from "../state/activity";
 import { notify } from "../state/notices";
-import { params, replaceParams, setDefaults } from "../state/parameters";
+import { method, params, replaceParams, setDefaults } from "../state/parameters";
 import { files, inspection, runOptions, setInspection } from "../state/project";
 import { images, setImages, setPeakMb, setScene } from "../state/scene";
 import { replaceStages, runningStage, setFreshStages, stages, updateStage } from "../state/stages";
 import { failureNotice } from "./failureNotice";
+import { stagesOf } from "./stageCatalogue";
 
 /** Whether the present worker holds the project's files, has the scene loaded, and was asked about them as they are wanted now. */
 const held = { files: false, scene: false, inspection: false };
@@ -34,15 +35,12 @@ export async function start(): Promise<void> {
 }
 
 /** Asks the core about its results; null while it has none, or is at work on others. */
-export async function ask<K extends QueryName>(
-  query: K,
-  ...of: Queries[K]["args"]
-): Promise<Queries[K]["result"] | null> {
+export async function ask<K extends CallName>(call: K, ...of: Args<K>): Promise<Result<K> | null> {
   if (!held.scene || runningStage.peek() !== null) {
     return null;
   }
   try {
-    return await engine.ask(query, ...of);
+    return await engine.call(call, ...of);
   } catch (error) {
     await report(error);
     return null;
@@ -79,27 +77,28 @@ async function openEngine(): Promise<void> {
   if (engine.isOpen) {
     return;
   }
-  const core = await engine.open();
-  setDefaults(core.defaults);
+  await engine.open();
+  const defaults = await engine.call("defaultParams");
+  setDefaults(defaults);
   if (stages.value.length === 0) {
     // With what has been chosen while the core was compiled.
-    replaceParams(paramsOf(core.defaults, { ...linkedParams(), ...params.value }));
+    replaceParams(paramsOf(defaults, { ...linkedParams(), ...params.value }));
     await listStages();
   }
 }
 
-/** Asks the core for the stages of the chosen method. */
+/** Gives the core the parameters, and shows the stages of the chosen method. */
 export async function listStages(): Promise<void> {
   await openEngine();
-  await engine.call("setParams", { params: params.value });
-  replaceStages(await engine.ask("chosenStages"));
+  await engine.call("setParams", params.value);
+  replaceStages(stagesOf(method.value));
 }
 
 /** Gives the worker the project's files, where it does not hold them yet. */
 export async function ensureInspected(): Promise<void> {
   await openEngine();
   if (!held.files) {
-    await engine.call("setFiles", { files: files.value });
+    await engine.call("setFiles", files.value);
     held.files = true;
     // What is shown of the same files stays, and with it what a person is typing there.
     held.inspection = false;
@@ -107,7 +106,7 @@ export async function ensureInspected(): Promise<void> {
   if (inspection.value === null || !held.inspection) {
     // Of all images, also of those that are left out.
     const options = loadOptions({ ...runOptions.value, leftOut: [] }, null);
-    setInspection(await engine.call("inspect", { options }));
+    setInspection(await engine.call("inspect", options));
     held.inspection = true;
   }
 }
@@ -117,8 +116,8 @@ export async function ensureScene(): Promise<void> {
   await ensureInspected();
   if (!held.scene) {
     const options = loadOptions(runOptions.value, inspection.value);
-    setPeakMb((await engine.call("inspect", { options })).peak_mb);
-    const loaded = await engine.call("load", { options });
+    setPeakMb((await engine.call("inspect", options)).peak_mb);
+    const loaded = await engine.call("load", options);
     held.scene = true;
     workerPool.forgetViews();
     setScene(loaded);
@@ -126,13 +125,13 @@ export async function ensureScene(): Promise<void> {
       setImages(await fetchImages(loaded));
     }
   }
-  await engine.call("setParams", { params: params.value });
+  await engine.call("setParams", params.value);
 }
 
 async function fetchImages(loaded: SceneInfo): Promise<ImageBitmap[]> {
   const bitmaps: ImageBitmap[] = [];
   for (let view = 0; view < loaded.views.length; view += 1) {
-    bitmaps.push(await engine.call("image", { view }));
+    bitmaps.push(await engine.call("image", view));
   }
   return bitmaps;
 }

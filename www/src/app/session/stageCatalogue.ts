@@ -1,61 +1,38 @@
-/** The stages as the page names them. The core gives their order; this gives them words. */
-import type { Tab } from "../state/methods";
+/** The stages as the page names them, and what depends on which parameter: all from the core's own table. */
+import { type Method, STAGES, type StageName } from "../../shared/stages";
 
 interface StageWords {
   title: string;
   section: string;
-  /** The tab that shows its result. */
-  tab: Tab;
 }
 
-const WORDS: Record<string, StageWords> = {
-  segments: { title: "Segments", section: "B99 3.2", tab: "segments" },
-  matches: { title: "Matches", section: "B99 3.1–3.4", tab: "matches" },
-  lines: { title: "3D lines", section: "B99 3.2, fig. 4", tab: "lines" },
-  halfplanes: { title: "Half-planes", section: "B99 4.1", tab: "halfplanes" },
-  facets: { title: "Facets", section: "B99 4.2, 4.3", tab: "facets" },
-  regions: { title: "Regions", section: "W96 3.3", tab: "regions" },
-  directions: { title: "Directions", section: "W96 3.4", tab: "directions" },
-  clusters: { title: "Clusters", section: "W96 3.5", tab: "clusters" },
-  rectangles: { title: "Rectangles", section: "W96 3.6", tab: "rectangles" },
-  model: { title: "Model", section: "walls, texture, files", tab: "model" },
-};
+type Stage = (typeof STAGES)[number];
+const BY_NAME = new Map<string, Stage>(STAGES.map((stage) => [stage.name, stage]));
 
-/** The words for a stage; one that the page does not know is shown by its own name. */
-export function stageWords(name: string): StageWords {
-  return WORDS[name] ?? { title: name, section: "", tab: "model" };
+/** The stages of a method, in their order. */
+export function stagesOf(method: Method): StageName[] {
+  const has = ({ methods }: Stage) => (methods as readonly Method[]).includes(method);
+  return STAGES.filter(has).map(({ name }) => name);
 }
 
-/**
- * The stage whose result a parameter changes first, by the longest path that fits: as `Run::set_params` has it.
- * Windows are found with clusters and the ground, too.
- */
-const STAGE_OF: Record<string, string> = {
-  segments: "segments",
-  matching: "matches",
-  // Matching fits 3D lines too, to tell which segments agree.
-  lines3d: "matches",
-  sweep: "halfplanes",
-  roof: "facets",
-  "objectspace.oris": "regions",
-  "objectspace.windows": "directions",
-  "objectspace.directions": "directions",
-  "objectspace.clusters": "directions",
-  "objectspace.planes": "rectangles",
-  "objectspace.planes.min_height_m": "directions",
-  texture: "model",
-};
+/** The words for a stage. */
+export function stageWords(name: StageName): StageWords {
+  return BY_NAME.get(name) as Stage;
+}
 
-/** The first stage that a change of the parameter at `path` makes outdated; an unknown one outdates everything. */
-export function firstStageOf(path: string, stageNames: readonly string[]): number {
-  const parts = path.split(".");
-  for (let count = parts.length; count > 0; count -= 1) {
-    const stage = STAGE_OF[parts.slice(0, count).join(".")];
-    if (stage !== undefined) {
-      const index = stageNames.indexOf(stage);
-      // A stage of the other method: nothing here depends on it.
-      return index < 0 ? stageNames.length : index;
-    }
+/** The first stage that a change of the parameter at `path` makes outdated; one that none reads outdates everything. */
+export function firstStageOf(path: string, stageNames: readonly StageName[]): number {
+  const isRead = ({ reads }: Stage) => reads.some((read) => isWithin(path, read) || isWithin(read, path));
+  const readers = new Set<string>(STAGES.filter(isRead).map(({ name }) => name));
+  if (readers.size === 0) {
+    return 0;
   }
-  return 0;
+  const first = stageNames.findIndex((name) => readers.has(name));
+  // Stages of the other method: nothing here depends on them.
+  return first < 0 ? stageNames.length : first;
+}
+
+/** Is a parameter, or a group of them, the group at `path` or a part of it? */
+function isWithin(parameter: string, path: string): boolean {
+  return `${parameter}.`.startsWith(`${path}.`);
 }

@@ -1,7 +1,8 @@
 /** Running stages, and what makes their results out of date. */
 import { batch } from "@preact/signals";
 import { EngineError } from "../../core/engine";
-import type { Params, ParamValue } from "../../shared/results";
+import type { ParamTree, ParamValue } from "../../shared/paramTree";
+import type { StageName } from "../../shared/stages";
 import { saveFile } from "../parts/saveFile";
 import { withParam } from "../settings/parameterForm";
 import { endAllActivity } from "../state/activity";
@@ -37,13 +38,13 @@ import { fetchResults } from "./stageResults";
 import { runTiles } from "./tiledRun";
 
 /** Runs every stage up to `target` that the worker has not run with the present parameters. */
-export async function runTo(target: string): Promise<void> {
+export async function runTo(target: StageName): Promise<void> {
   await guarded("", async () => {
     await ensureScene();
     const names = stages.value.map(({ name }) => name);
     const end = names.indexOf(target);
     for (let i = freshStages.value; i <= end; i += 1) {
-      await runStage(names[i] as string);
+      await runStage(names[i] as StageName);
       setFreshStages(i + 1);
     }
   });
@@ -91,14 +92,14 @@ export async function setMethod(next: Method): Promise<void> {
   }
   stopWorker();
   batch(() => {
-    replaceParams({ ...params.value, method: next as unknown as Params[string] });
+    replaceParams({ ...params.value, method: next as unknown as ParamTree[string] });
     clearResults();
   });
   await guarded("", listStages);
 }
 
 export function resetParams(): void {
-  const chosen = method.value as unknown as Params[string];
+  const chosen = method.value as unknown as ParamTree[string];
   replaceParams({ ...structuredClone(defaults.value), method: chosen });
   outdateStages(0);
 }
@@ -106,27 +107,27 @@ export function resetParams(): void {
 /** Saves one output file through the browser. */
 export async function download(name: string): Promise<void> {
   await guarded(`Writing ${name}`, async () => {
-    const bytes = await engine.call("exportFile", { name });
+    const bytes = await engine.call("exportFile", name);
     saveFile(name, new Blob([bytes], { type: mediaType(name) }));
   });
 }
 
-async function runStage(name: string): Promise<void> {
+async function runStage(name: StageName): Promise<void> {
   const started = performance.now();
   updateStage(name, { status: "running", fraction: 0, warnings: [] });
   announce(`${stageWords(name).title} running`);
   try {
     await runShards(name);
-    const summary = await engine.call("run", { stage: name });
+    const summary = await engine.call("runStage", name);
     workerPool.hasRun(name);
     const found = await fetchResults(name);
     const seconds = (performance.now() - started) / 1000;
-    const names = await engine.call("exportNames", {});
+    const names = await engine.call("exportNames");
     batch(() => {
-      addResults(stageWords(name).tab, found);
+      addResults(name, found);
       setExportNames(names);
       select(null);
-      showTab(stageWords(name).tab);
+      showTab(name);
       updateStage(name, { ...summary, status: "done", fraction: 1, seconds });
     });
     announce(`${stageWords(name).title} done in ${seconds.toFixed(1)} s`);
@@ -138,7 +139,7 @@ async function runStage(name: string): Promise<void> {
 }
 
 /** Has the worker pool compute its shards of a stage. */
-async function runShards(stage: string): Promise<void> {
+async function runShards(stage: StageName): Promise<void> {
   const names = stages.value.map(({ name }) => name);
   const isMerged = await workerPool.runShards({
     stage,

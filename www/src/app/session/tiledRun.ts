@@ -1,7 +1,7 @@
 /** A large area, tile by tile in the worker, and one model of all of them. */
 import { batch } from "@preact/signals";
 import { EngineError } from "../../core/engine";
-import type { TileReport } from "../../shared/results";
+import type { TileReport } from "../../shared/records";
 import { loadOptions } from "../settings/loadOptions";
 import { announce } from "../state/notices";
 import { params } from "../state/parameters";
@@ -10,7 +10,6 @@ import { NO_RESULTS, setExportNames, setResults } from "../state/results";
 import { updateStage } from "../state/stages";
 import { showTab } from "../state/viewState";
 import { engine, ensureInspected, outdateScene } from "./session";
-import { stageWords } from "./stageCatalogue";
 
 /** The progress of the whole area is shown at the last stage: only the model spans the tiles. */
 const STAGE = "model";
@@ -18,7 +17,7 @@ const STAGE = "model";
 /** Works off the region of interest in tiles of about this size, metres. */
 export async function runTiles(tileM: number): Promise<void> {
   await ensureInspected();
-  await engine.call("setParams", { params: params.value });
+  await engine.call("setParams", params.value);
   const started = performance.now();
   // The worker drops the scene: a tile needs the memory.
   outdateScene();
@@ -29,13 +28,13 @@ export async function runTiles(tileM: number): Promise<void> {
   });
   try {
     const reports = await runEach(tileM);
-    await engine.call("joinTiles", {});
-    const glb = await engine.call("exportFile", { name: "model.glb" });
-    const names = await engine.call("exportNames", {});
+    await engine.call("joinTiles");
+    const glb = await engine.call("exportFile", "model.glb");
+    const names = await engine.call("exportNames");
     batch(() => {
       setResults({ ...NO_RESULTS, glb });
       setExportNames(names);
-      showTab(stageWords(STAGE).tab);
+      showTab(STAGE);
       updateStage(STAGE, {
         status: "done",
         fraction: 1,
@@ -56,11 +55,11 @@ export async function runTiles(tileM: number): Promise<void> {
 
 async function runEach(tileM: number): Promise<TileReport[]> {
   const options = loadOptions(runOptions.value, inspection.value);
-  const tiles = await engine.call("planTiles", { options, tileM });
+  const tiles = await engine.call("planTiles", options, tileM);
   const reports: TileReport[] = [];
   for (const index of tiles.keys()) {
     announce(`Tile ${index + 1} of ${tiles.length}`);
-    const report = await engine.call("runTile", { stage: STAGE, index, of: tiles.length });
+    const report = await engine.call("runTile", STAGE, index, tiles.length);
     if (report !== null) {
       reports.push(report);
     }

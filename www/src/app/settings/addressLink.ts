@@ -3,7 +3,7 @@
  * files stay where they are), method, tab, view, selection and changed parameters.
  */
 import { effect } from "@preact/signals";
-import type { ParamValue } from "../../shared/results";
+import type { ParamValue } from "../../shared/paramTree";
 import type { Selection } from "../../shared/selection";
 import { methodNamed, TABS, type Tab } from "../state/methods";
 import { defaults, method, params } from "../state/parameters";

@@ -1,5 +1,5 @@
 /** What a person asks for beyond the files, as text in fields and as the core takes it. */
-import type { Inspection, LoadOptions, OpenedProject } from "../../shared/results";
+import type { Inspection, LoadOptions, OpenedProject } from "../../shared/records";
 import type { RunOptions } from "../state/project";
 
 /** The core's options; the views are named only where some are left out. */

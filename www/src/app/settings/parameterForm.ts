@@ -1,5 +1,5 @@
 /** The form of the parameters, made from whatever defaults the core gives: nothing is retyped here. */
-import type { ParamGroup, Params, ParamValue } from "../../shared/results";
+import type { ParamGroup, ParamTree, ParamValue } from "../../shared/paramTree";
 
 export interface ParamField {
   key: string;
@@ -57,7 +57,7 @@ const GROUPS_OF_METHOD: Record<string, readonly string[]> = {
 };
 
 /** One section a group, groups inside groups apart, in the core's order; only what the method reads. */
-export function paramSections(defaults: Params, values: Params): ParamSection[] {
+export function paramSections(defaults: ParamTree, values: ParamTree): ParamSection[] {
   const groups = GROUPS_OF_METHOD[String(values["method"] ?? "lines")];
   return Object.entries(defaults)
     .filter(([name, fallback]) => isGroup(fallback) && (groups?.includes(name) ?? true))
@@ -91,7 +91,7 @@ function innerTitle(path: string): string {
 }
 
 /** The parameters with another value at a path of names. */
-export function withParam(values: Params, path: string, value: ParamValue): Params {
+export function withParam(values: ParamTree, path: string, value: ParamValue): ParamTree {
   const [first, ...rest] = path.split(".") as [string, ...string[]];
   const set = (group: ParamValue | undefined, names: readonly string[]): ParamValue => {
     const [name, ...deeper] = names;
@@ -111,7 +111,7 @@ export function paramName(path: string): string {
 }
 
 /** What differs from the defaults, by path: what a link carries. */
-export function changedParams(defaults: Params, values: Params): Record<string, ParamValue> {
+export function changedParams(defaults: ParamTree, values: ParamTree): Record<string, ParamValue> {
   const changed: Record<string, ParamValue> = {};
   const walk = (path: string, fallback: ParamValue, value: ParamValue) => {
     if (isGroup(fallback) && isGroup(value)) {
@@ -127,7 +127,7 @@ export function changedParams(defaults: Params, values: Params): Record<string, 
 }
 
 /** The defaults with what a link carries; paths that the core does not know are left out. */
-export function paramsOf(defaults: Params, changed: Record<string, ParamValue>): Params {
+export function paramsOf(defaults: ParamTree, changed: Record<string, ParamValue>): ParamTree {
   let values = structuredClone(defaults);
   for (const [path, value] of Object.entries(changed)) {
     const known = path

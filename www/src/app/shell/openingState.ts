@@ -4,26 +4,24 @@ import type { Selection } from "../../shared/selection";
 import { openDemo, restoreProject } from "../project/projectActions";
 import { readStoredProject } from "../project/storedProject";
 import { lineEnds } from "../selection/selectionShapes";
-import { stageWords } from "../session/stageCatalogue";
 import { runTo } from "../session/stageRuns";
 import { opened } from "../settings/addressLink";
-import { TABS, type Tab } from "../state/methods";
+import { stageOfTab, TABS, type Tab } from "../state/methods";
 import { method } from "../state/parameters";
 import { results } from "../state/results";
 import { scene } from "../state/scene";
-import { stages } from "../state/stages";
 import { select, shownView, showTab, showView } from "../state/viewState";
 import { goTo } from "../tour/lessons";
 
 export async function restoreOpeningState(): Promise<void> {
   if (opened.scene === "demo") {
-    await openDemo(opened.tab === null ? null : stageOfTab());
+    await openDemo(opened.tab === null ? null : stageOfTab(opened.tab));
   } else {
     const kept = await readStoredProject();
     if (kept !== null && kept.files.length > 0) {
       await restoreProject(kept);
       if (opened.tab !== null && opened.tab !== "images") {
-        await runTo(stageOfTab() ?? "");
+        await runTo(stageOfTab(opened.tab) ?? "model");
       }
     }
   }
@@ -50,10 +48,4 @@ export async function restoreOpeningState(): Promise<void> {
 function isNewLine(picked: Selection | null): boolean {
   const { lines, facets } = results.value;
   return picked?.kind === "line" && lines !== null && facets === null && lineEnds(picked.index).length === 0;
-}
-
-/** The stage whose result the linked tab shows; none for the images. */
-function stageOfTab(): string | null {
-  const wanted = opened.tab === "groups" || opened.tab === "refinement" ? "facets" : opened.tab;
-  return stages.value.find(({ name }) => stageWords(name).tab === wanted)?.name ?? null;
 }

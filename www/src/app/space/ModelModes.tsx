@@ -1,7 +1,7 @@
 /** How the model looks in the 3D view, and what its colours mean. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import { METHOD_COLOURS } from "../../shared/palette";
-import type { Facet } from "../../shared/results";
+import type { Facet } from "../../shared/records";
 import type { ModelMode } from "../../viewer/layers/model";
 import { keptResult } from "../state/keptResult";
 import type { Method } from "../state/methods";

@@ -3,7 +3,7 @@ import "./space.css";
 import { computed, signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { THEME_COLOURS } from "../../shared/palette";
-import type { Vec3 } from "../../shared/results";
+import type { Vec3 } from "../../shared/records";
 import { GRID_STEP_M } from "../../viewer/layers/grid";
 import { warmupLayers } from "../../viewer/layers/shaderWarmup";
 import { enlargement } from "../../viewer/layers/uncertainty";

@@ -1,7 +1,8 @@
 /** The layers of the 3D view, from the results: each is built anew when what it shows has changed, in a task of its own. */
 import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import { Vector3 } from "three";
-import { type Facet, LINE_STRIDE, type Vec3 } from "../../shared/results";
+import { LINE_STRIDE } from "../../shared/flatArrays";
+import type { Facet, Vec3 } from "../../shared/records";
 import { buildCameras } from "../../viewer/layers/cameras";
 import { buildFacets } from "../../viewer/layers/facets";
 import { buildFans, buildTurning } from "../../viewer/layers/fans";

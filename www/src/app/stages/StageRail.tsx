@@ -1,6 +1,7 @@
 /** The stages in order: run, cancel, progress, time and counts. */
 
 import "./stages.css";
+import type { StageName } from "../../shared/stages";
 import { KeepResult } from "../comparison/Comparison";
 import { grouped } from "../parts/numberText";
 import { stageWords } from "../session/stageCatalogue";
@@ -89,7 +90,7 @@ function StageCard({ stage, position }: { stage: StageState; position: number })
         class="link"
         title={words.section}
         onClick={() => {
-          showTab(words.tab);
+          showTab(stage.name);
         }}
       >
         {words.title}
@@ -146,7 +147,7 @@ function mainCount({ name, counts }: StageState): string {
   return what === undefined || count === undefined ? "" : `${grouped(count)} ${what.replaceAll("_", " ")}`;
 }
 
-const MAIN_COUNTS: Record<string, string> = {
+const MAIN_COUNTS: Partial<Record<StageName, string>> = {
   segments: "segments",
   halfplanes: "half-planes",
   regions: "regions",

@@ -1,6 +1,7 @@
 /** A result that was kept, to compare others with it. */
 import { type ReadonlySignal, signal } from "@preact/signals";
-import type { Facet, Params } from "../../shared/results";
+import type { ParamTree } from "../../shared/paramTree";
+import type { Facet } from "../../shared/records";
 import type { Method } from "./methods";
 import type { Results } from "./results";
 
@@ -12,7 +13,7 @@ export interface KeptResult {
   glb: Results["glb"];
   lines: number;
   seconds: number;
-  params: Params;
+  params: ParamTree;
 }
 
 const kept = signal<KeptResult | null>(null);

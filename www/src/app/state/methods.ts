@@ -1,24 +1,44 @@
 /** The methods, and the stage views of each. */
-import type { Params } from "../../shared/results";
 
-const LINE_TABS = ["segments", "matches", "lines", "halfplanes", "groups", "facets", "refinement"] as const;
-/** Tabs about the stages of method "rectangles". */
-export const REGION_TABS = ["regions", "directions", "clusters", "rectangles"] as const;
+import type { ParamTree } from "../../shared/paramTree";
+import { METHODS, type Method, STAGES, type StageName } from "../../shared/stages";
+
+export type { Method };
+
+/** Views beside those of the stages: the photographs, and what the facets were made of. */
+export type Tab = StageName | "images" | "groups" | "refinement";
+
+/** The views of a stage, in their order; one of its own name where it has no others. */
+const TABS_OF_STAGE: Partial<Record<StageName, readonly Tab[]>> = {
+  facets: ["groups", "facets", "refinement"],
+};
 
 /** The stage views of each method. */
-export const TABS = {
-  lines: ["images", ...LINE_TABS, "model"],
-  rectangles: ["images", ...REGION_TABS, "model"],
-  combined: ["images", ...REGION_TABS, ...LINE_TABS, "model"],
-} as const;
-export type Method = keyof typeof TABS;
-export type Tab = (typeof TABS)[Method][number];
+export const TABS: Readonly<Record<Method, readonly Tab[]>> = {
+  lines: ["images", ...tabsOf("lines")],
+  rectangles: ["images", ...tabsOf("rectangles")],
+  combined: ["images", ...tabsOf("combined")],
+};
 
-export function methodOf(values: Params): Method {
+/** Tabs about the stages of method "rectangles" alone. */
+export const REGION_TABS: readonly Tab[] = tabsOf("rectangles").filter((tab) => !TABS.lines.includes(tab));
+
+function tabsOf(method: Method): Tab[] {
+  const stages = STAGES.filter(({ methods }) => (methods as readonly Method[]).includes(method));
+  return stages.flatMap(({ name }) => TABS_OF_STAGE[name] ?? [name]);
+}
+
+/** The stage whose result a view shows; null where it needs none. */
+export function stageOfTab(tab: Tab): StageName | null {
+  const shows = ({ name }: { name: StageName }) => (TABS_OF_STAGE[name] ?? [name]).includes(tab);
+  return STAGES.find(shows)?.name ?? null;
+}
+
+export function methodOf(values: ParamTree): Method {
   return methodNamed(values["method"]) ?? "lines";
 }
 
 /** The method of this name; null where there is none. */
 export function methodNamed(name: unknown): Method | null {
-  return (Object.keys(TABS) as Method[]).find((one) => one === name) ?? null;
+  return METHODS.find((one) => one === name) ?? null;
 }

@@ -1,6 +1,6 @@
 /** What the person is told of, in notices and, for screen readers, in an announcement. */
 import { type ReadonlySignal, signal } from "@preact/signals";
-import type { OrientationCheckReport } from "../../shared/results";
+import type { AgreementReport } from "../../shared/records";
 
 export interface Notice {
   id: number;
@@ -10,7 +10,7 @@ export interface Notice {
   /** What to do about it. */
   advice?: string;
   /** What the images say of the orientation. */
-  orientationCheck?: OrientationCheckReport;
+  orientationCheck?: AgreementReport;
   /** Something that can be done about it. */
   action?: { name: string; run: () => void };
 }

@@ -1,7 +1,7 @@
 /** The project: its files, what they were recognised as, and what is asked for beyond them. */
 import { batch, type ReadonlySignal, signal } from "@preact/signals";
-import type { InputFile } from "../../shared/messages";
-import type { Inspection } from "../../shared/results";
+import type { InputFile } from "../../shared/calls";
+import type { Inspection } from "../../shared/records";
 
 /** What the person asked for beyond the files; images are left out by their path. */
 export interface RunOptions {

@@ -1,7 +1,19 @@
 /** What the stages have found. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
-import type { Facet, HalfPlane, Params } from "../../shared/results";
-import type * as traces from "../../shared/traces";
+import type { ParamTree } from "../../shared/paramTree";
+import type {
+  ClusterTrace,
+  Directions,
+  Facet,
+  FacetTrace,
+  HalfPlane,
+  LineRecord,
+  MatchRecord,
+  RectangleTrace,
+  Refinement,
+  Segmentation,
+  SideRecord,
+} from "../../shared/records";
 import { REGION_TABS, type Tab } from "./methods";
 import { method } from "./parameters";
 import { tab } from "./viewState";
@@ -14,19 +26,19 @@ export interface Results {
   halfPlanes: HalfPlane[] | null;
   facets: Facet[] | null;
   /** The parameters that the facets were found with. */
-  madeWith: Params | null;
+  madeWith: ParamTree | null;
   glb: Uint8Array<ArrayBuffer> | null;
   rejected: Float32Array[];
-  matching: traces.MatchRecord | null;
-  records: traces.LineRecord[];
+  matching: MatchRecord | null;
+  records: LineRecord[];
   stretches: Float64Array | null;
-  sides: traces.SideRecord[];
-  grouping: traces.Grouping | null;
-  refinement: traces.Refinement | null;
-  regions: traces.Segmentation[];
-  directions: traces.Directions | null;
-  clusters: traces.ClusterTrace[] | null;
-  rectangles: traces.RectangleTrace | null;
+  sides: SideRecord[];
+  grouping: FacetTrace | null;
+  refinement: Refinement | null;
+  regions: Segmentation[];
+  directions: Directions | null;
+  clusters: ClusterTrace[] | null;
+  rectangles: RectangleTrace | null;
 }
 
 export const NO_RESULTS: Results = {
@@ -80,6 +92,5 @@ export function setExportNames(names: string[]): void {
 }
 
 function resultSetOf(name: Tab): ResultSet {
-  const names: readonly Tab[] = REGION_TABS;
-  return method.value === "combined" && names.includes(name) ? "regions" : "main";
+  return method.value === "combined" && REGION_TABS.includes(name) ? "regions" : "main";
 }

@@ -1,6 +1,6 @@
 /** The loaded scene: its views, their images, and the memory that they take. */
 import { batch, type ReadonlySignal, signal } from "@preact/signals";
-import type { SceneInfo } from "../../shared/results";
+import type { SceneInfo } from "../../shared/records";
 
 const loaded = signal<SceneInfo | null>(null);
 const bitmaps = signal<ImageBitmap[]>([]);

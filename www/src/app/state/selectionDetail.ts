@@ -1,24 +1,25 @@
 /** What the figures show of the selection beyond the results. */
 import { type ReadonlySignal, signal } from "@preact/signals";
-import type * as traces from "../../shared/traces";
+import type { WarpedPicture } from "../../shared/calls";
+import type { Correspondence, SegmentStory, SideTrace } from "../../shared/records";
 
 /** What the figures show of the selected segment or side, and what the core answered about it. */
 export interface SelectionDetail {
   /** The story of the selected segment. */
-  story: traces.SegmentStory | null;
+  story: SegmentStory | null;
   /** The candidate that is compared with it, by its place in the story. */
   candidate: number;
   /** Where on the segment the point is, 0 to 1. */
   at: number;
   /** Whether the reader moved it. */
   isMoved: boolean;
-  correspondence: traces.Correspondence | null;
+  correspondence: Correspondence | null;
   /** The side of the selected line or half-plane, its Sim(theta), and the angle that is tried, radians. */
-  side: traces.SideTrace | null;
+  side: SideTrace | null;
   theta: number;
   /** Whether the reader turned it. */
   isTurned: boolean;
-  warped: traces.WarpedPicture | null;
+  warped: WarpedPicture | null;
 }
 
 export const NO_DETAIL: SelectionDetail = {

@@ -1,10 +1,11 @@
 /** The stages of the chosen method: how far each is, and how many are up to date. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
+import type { StageName } from "../../shared/stages";
 
 export type StageStatus = "waiting" | "running" | "done" | "outdated" | "failed";
 
 export interface StageState {
-  name: string;
+  name: StageName;
   status: StageStatus;
   /** 0 to 1 while running. */
   fraction: number;
@@ -22,7 +23,7 @@ export const freshStages: ReadonlySignal<number> = fresh;
 export const runningStage = computed(() => stages.value.find((stage) => stage.status === "running") ?? null);
 
 /** The stages of another method begin anew; the same ones stay as they are. */
-export function replaceStages(names: readonly string[]): void {
+export function replaceStages(names: readonly StageName[]): void {
   if (names.join() !== all.value.map(({ name }) => name).join()) {
     all.value = names.map(freshStage);
   }
@@ -57,6 +58,6 @@ export function setFreshStages(count: number): void {
   fresh.value = count;
 }
 
-function freshStage(name: string): StageState {
+function freshStage(name: StageName): StageState {
   return { name, status: "waiting", fraction: 0, seconds: null, counts: {}, warnings: [] };
 }

@@ -1,6 +1,6 @@
 /** The guided tour: eight steps through B99 and one through W96, in the views themselves, on the demo scene. */
 import { effect } from "@preact/signals";
-import { isRejected } from "../../shared/traces";
+import { isRejected } from "../../shared/records";
 import { openDemo } from "../project/projectActions";
 import { bestTheta, turnTo } from "../selection/selectionQueries";
 import { runAll, setMethod } from "../session/stageRuns";

@@ -14,7 +14,7 @@ import {
   Vector3,
 } from "three";
 import { PALETTE } from "../../shared/palette";
-import type { ViewInfo } from "../../shared/results";
+import type { ViewInfo } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { zUpGroup } from "../scene/frame";
 import { BOTH_SIDES, disposeObject, type Layer } from "../scene/layer";

@@ -12,7 +12,7 @@ import {
   Vector3,
 } from "three";
 import { PALETTE } from "../../shared/palette";
-import type { Facet, Vec3 } from "../../shared/results";
+import type { Facet, Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { zUpGroup } from "../scene/frame";
 import { BOTH_SIDES, disposeObject, type Layer } from "../scene/layer";

@@ -8,10 +8,10 @@ import {
   MeshBasicMaterial,
   Vector3,
 } from "three";
+import { LINE_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
-import { type HalfPlane, LINE_STRIDE, type Vec3 } from "../../shared/results";
+import { type HalfPlane, isRejected, type Side, type SideRecord, type Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import { isRejected, type SideName, type SideRecord } from "../../shared/traces";
 import { zUpGroup } from "../scene/frame";
 import { BOTH_SIDES, disposeObject, type Layer, rgb } from "../scene/layer";
 
@@ -67,7 +67,7 @@ export function buildFans(
 }
 
 /** The half-plane that is being turned by hand: one fan at `theta` (radians) about the line from `p0` to `p1`. */
-export function buildTurning(ends: readonly [Vec3, Vec3], side: SideName, theta: number): Layer {
+export function buildTurning(ends: readonly [Vec3, Vec3], side: Side, theta: number): Layer {
   const object = zUpGroup();
   const [p0, p1] = ends.map((end) => new Vector3(...end)) as [Vector3, Vector3];
   const direction = p1.clone().sub(p0);

@@ -1,7 +1,7 @@
 /** Groups of coplanar half-planes: their lines in the group's colour, and the lines found in their planes (B99 figures 17 to 20). */
 import { category, PALETTE } from "../../shared/palette";
+import type { FacetTrace } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import type { Grouping } from "../../shared/traces";
 import { zUpGroup } from "../scene/frame";
 import { disposeObject, type Layer } from "../scene/layer";
 import { SelectedObject } from "../scene/selectedObject";
@@ -13,7 +13,7 @@ const SELECTED_PX = 5;
 const DIMMED = 0.3;
 
 /** @param lines p0 and p1 of each 3D line, local frame, metres */
-export function buildGroups(grouping: Grouping, lines: Float64Array): Layer {
+export function buildGroups(grouping: FacetTrace, lines: Float64Array): Layer {
   const object = zUpGroup();
   // A line of several groups takes the colour of the largest.
   const order = grouping.groups

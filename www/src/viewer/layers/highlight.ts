@@ -1,6 +1,6 @@
 /** The selected thing over whatever the view shows: it is seen in every tab, whether its own layer is there or not. */
 import { PALETTE } from "../../shared/palette";
-import type { Vec3 } from "../../shared/results";
+import type { Vec3 } from "../../shared/records";
 import { zUpGroup } from "../scene/frame";
 import { disposeObject, type Layer } from "../scene/layer";
 import { sidesOf, strokes } from "../scene/strokes";

@@ -1,9 +1,9 @@
 /** 3D lines, matched and new, as lines of constant width on the screen. */
 import type { LineSegments2 } from "three/addons/lines/LineSegments2.js";
+import { LINE_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
-import { LINE_STRIDE } from "../../shared/results";
+import type { LineOrigin, LineRecord } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import type { LineOrigin, LineRecord } from "../../shared/traces";
 import { zUpGroup } from "../scene/frame";
 import { disposeObject, type Layer } from "../scene/layer";
 import { SelectedObject } from "../scene/selectedObject";

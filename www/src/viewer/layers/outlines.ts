@@ -1,6 +1,6 @@
 /** The facets of a model that was kept for comparison: their outlines only, over whatever is shown. */
 import { PALETTE } from "../../shared/palette";
-import type { Facet } from "../../shared/results";
+import type { Facet } from "../../shared/records";
 import { zUpGroup } from "../scene/frame";
 import { disposeObject, type Layer, unpicked } from "../scene/layer";
 import { sidesOf, strokes } from "../scene/strokes";

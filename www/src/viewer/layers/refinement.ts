@@ -4,9 +4,8 @@
  */
 import { Group } from "three";
 import { PALETTE } from "../../shared/palette";
-import type { Vec3 } from "../../shared/results";
+import type { Refinement, Segment3, Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import type { Refinement, Segment3 } from "../../shared/traces";
 import { zUpGroup } from "../scene/frame";
 import { disposeObject, type Layer } from "../scene/layer";
 import { SelectedObject } from "../scene/selectedObject";

@@ -4,8 +4,7 @@
  */
 import { Mesh, MeshBasicMaterial, type Object3D, Sphere, SphereGeometry, Texture, Vector3 } from "three";
 import { PALETTE } from "../../shared/palette";
-import type { Facet, HalfPlane } from "../../shared/results";
-import type { Grouping, LineRecord, SideRecord } from "../../shared/traces";
+import type { Facet, FacetTrace, HalfPlane, LineRecord, SideRecord } from "../../shared/records";
 import { disposeObject, type Layer, unpicked } from "../scene/layer";
 import { buildFacets } from "./facets";
 import { buildFans } from "./fans";
@@ -18,7 +17,7 @@ import { buildOutlines } from "./outlines";
 
 const LINES = Float64Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0);
 const PLANE = { normal: [0, 0, 1], d: 0 } as const;
-const NO_COVARIANCE = [0, 0, 0, 0, 0, 0] as const;
+const NO_COVARIANCE: LineRecord["covariance"][number] = [0, 0, 0, 0, 0, 0];
 const SEEN: LineRecord = {
   origin: "matched",
   refuted: null,
@@ -32,6 +31,7 @@ const HALF_PLANE: HalfPlane = {
   line: 0,
   side: "left",
   theta: 0,
+  sigma_theta: 0,
   similarity: 1,
   curvature: 1,
   amplitude: 1,
@@ -50,9 +50,13 @@ const FACET: Facet = {
   ],
   holes: [],
   similarity: 1,
+  real_ratio: 1,
+  lines: [],
+  half_planes: [],
+  rectangles: [],
 };
-const GROUPING: Grouping = {
-  groups: [{ plane: PLANE, members: [{ line: 0, side: null, half_plane: null }] }],
+const GROUPING: FacetTrace = {
+  groups: [{ plane: PLANE, members: [{ line: 0, side: null, half_plane: null }], rectangles: [] }],
   plane_lines: [{ segment: { p0: [0, 0, 0], p1: [1, 0, 0] }, views: [] }],
   borders: [],
   cells: 0,

@@ -1,6 +1,7 @@
 /** 3D lines as the segments alone give them, for comparison with the merged and grown ones (B99 figures 5 to 8). */
+
+import { STRETCH_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
-import { STRETCH_STRIDE } from "../../shared/results";
 import { zUpGroup } from "../scene/frame";
 import { disposeObject, type Layer } from "../scene/layer";
 import { strokes } from "../scene/strokes";

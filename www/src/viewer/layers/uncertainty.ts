@@ -3,13 +3,16 @@
  * the legend states.
  */
 import { BufferAttribute, BufferGeometry, Mesh, MeshBasicMaterial, Vector3 } from "three";
+import { LINE_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
-import { LINE_STRIDE } from "../../shared/results";
+import type { LineRecord } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
-import type { Covariance, LineRecord } from "../../shared/traces";
 import { zUpGroup } from "../scene/frame";
 import { BOTH_SIDES, disposeObject, type Layer } from "../scene/layer";
 import { SelectedObject } from "../scene/selectedObject";
+
+/** xx, xy, xz, yy, yz, zz of a symmetric matrix, m². */
+export type Covariance = LineRecord["covariance"][number];
 
 /** Corners of an ellipse. */
 const CORNERS = 16;

@@ -1,6 +1,7 @@
 /** Spheres around what is shown, in the viewer's frame. */
 import { Box3, type Object3D, Sphere, Vector3 } from "three";
-import { type Facet, LINE_STRIDE, type Vec3 } from "../../shared/results";
+import { LINE_STRIDE } from "../../shared/flatArrays";
+import type { Facet, Vec3 } from "../../shared/records";
 import { yUp } from "./frame";
 
 /** This share of the coordinates at either end is left out, so that one stray line does not set the scale. */

@@ -3,7 +3,7 @@
  * as in the exported GLB, so that both coincide.
  */
 import { Group, Vector3 } from "three";
-import type { Vec3 } from "../../shared/results";
+import type { Vec3 } from "../../shared/records";
 
 /** A group whose children are in the local frame. */
 export function zUpGroup(): Group {

@@ -3,7 +3,7 @@
  * have their principal point far outside the image, which no field of view can state.
  */
 import { Matrix4 } from "three";
-import type { ViewInfo } from "../../shared/results";
+import type { ViewInfo } from "../../shared/records";
 
 /** The part of the canvas that the photograph fills, keeping its shape: shares of width and height. */
 export function fitShares(view: { width: number; height: number }, canvasAspect: number): [number, number] {

@@ -2,7 +2,8 @@
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
-import { LINE_STRIDE, type Vec3 } from "../../shared/results";
+import { LINE_STRIDE } from "../../shared/flatArrays";
+import type { Vec3 } from "../../shared/records";
 import { rgb } from "./layer";
 
 /**

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { failureNotice, splitAdvice } from "../../../src/app/session/failureNotice";
 import { withNotice } from "../../../src/app/state/notices";
-import type { OrientationCheckReport } from "../../../src/shared/results";
+import type { AgreementReport } from "../../../src/shared/records";
 
 describe("splitAdvice", () => {
   it("separates what is wrong from what to do", () => {
@@ -24,7 +24,7 @@ describe("failureNotice", () => {
 });
 
 describe("the orientation check", () => {
-  const report: OrientationCheckReport = {
+  const report: AgreementReport = {
     finding: "explained",
     stated: { points: 900, score: 0.04 },
     cured: { points: 910, score: 0.61 },

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { loadOptions, parseHeight, parseRegion } from "../../../src/app/settings/loadOptions";
 import { NO_OPTIONS } from "../../../src/app/state/project";
-import type { Inspection } from "../../../src/shared/results";
+import type { Inspection } from "../../../src/shared/records";
 
 const image = (path: string) => ({ path, name: path.replace("in/", ""), size: null, orientation: null });
 const inspection = { images: ["in/a.jpg", "in/b.jpg", "in/c.jpg"].map(image) } as unknown as Inspection;

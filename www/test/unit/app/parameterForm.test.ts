@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { firstStageOf } from "../../../src/app/session/stageCatalogue";
+import { firstStageOf, stagesOf } from "../../../src/app/session/stageCatalogue";
 import {
   changedParams,
   type ParamField,
@@ -8,7 +8,7 @@ import {
   parseField,
   withParam,
 } from "../../../src/app/settings/parameterForm";
-import type { Params } from "../../../src/shared/results";
+import type { ParamTree } from "../../../src/shared/paramTree";
 
 const DEFAULTS = {
   segments: { min_length_px: 15, area_m2: 2, closed: true },
@@ -31,7 +31,7 @@ describe("paramSections", () => {
   });
 
   it("makes no section of a single value", () => {
-    const withMethod: Params = JSON.parse(JSON.stringify({ method: "lines", ...DEFAULTS }));
+    const withMethod: ParamTree = JSON.parse(JSON.stringify({ method: "lines", ...DEFAULTS }));
     expect(paramSections(withMethod, withMethod).map(({ path }) => path)).toEqual(["segments", "sweep"]);
   });
 
@@ -59,7 +59,7 @@ describe("paramSections", () => {
 });
 
 describe("groups inside groups", () => {
-  const nested: Params = JSON.parse(
+  const nested: ParamTree = JSON.parse(
     '{"segments": {"min_length_px": 15, "edgels": {"low": 2}}, "objectspace": {"oris": {"noise": 4}}, "method": "lines"}',
   );
 
@@ -68,9 +68,9 @@ describe("groups inside groups", () => {
       ["segments", "Segments"],
       ["segments.edgels", "Segments: edgels"],
     ]);
-    const other = { ...nested, method: "rectangles" as unknown as Params[string] };
+    const other = { ...nested, method: "rectangles" as unknown as ParamTree[string] };
     expect(paramSections(nested, other).map(({ path }) => path)).toEqual(["objectspace.oris"]);
-    const both = { ...nested, method: "combined" as unknown as Params[string] };
+    const both = { ...nested, method: "combined" as unknown as ParamTree[string] };
     expect(paramSections(nested, both)).toHaveLength(3);
   });
 
@@ -110,7 +110,7 @@ describe("parseField", () => {
 });
 
 describe("firstStageOf", () => {
-  const stages = ["segments", "matches", "lines", "halfplanes", "facets", "model"];
+  const stages = stagesOf("lines");
 
   it("finds the stage that a group changes first", () => {
     expect(firstStageOf("sweep", stages)).toBe(3);
@@ -118,7 +118,7 @@ describe("firstStageOf", () => {
   });
 
   it("tells parameters of one group apart, and leaves the other method alone", () => {
-    const rectangles = ["regions", "directions", "clusters", "rectangles", "model"];
+    const rectangles = stagesOf("rectangles");
     expect(firstStageOf("objectspace.planes.min_measure_m2", rectangles)).toBe(3);
     expect(firstStageOf("objectspace.planes.min_height_m", rectangles)).toBe(1);
     expect(firstStageOf("sweep.min_similarity", rectangles)).toBe(5);

@@ -3,7 +3,7 @@ import type { Engine } from "../../../src/core/engine";
 import type { WorkerPool } from "../../../src/core/workerPool";
 
 /** Every call of every worker, in their order: worker, call, arguments, what moves along. */
-let calls: [number, string, Record<string, unknown>, readonly Transferable[]][] = [];
+let calls: [number, string, readonly unknown[], readonly Transferable[]][] = [];
 /** The worker whose shards fail. */
 let broken = -1;
 let why = "crash";
@@ -26,16 +26,23 @@ class FakeEngine {
     this.isOpen = false;
   }
 
-  async call(
-    type: string,
-    args: Record<string, unknown>,
-    transfer: readonly Transferable[] = [],
+  call(name: string, ...args: readonly unknown[]): Promise<unknown> {
+    return this.callMoving([], name, ...args);
+  }
+
+  async callMoving(
+    transfer: readonly Transferable[],
+    name: string,
+    ...args: readonly unknown[]
   ): Promise<unknown> {
-    calls.push([this.number, type, args, transfer]);
-    if (type === "sharedMaps") {
-      return { maps: ["heights", "pairs"], withColours: false };
+    calls.push([this.number, name, args, transfer]);
+    if (name === "shardMaps") {
+      return ["heights", "pairs"];
     }
-    if (type === "computeShard") {
+    if (name === "shardsReadColours") {
+      return false;
+    }
+    if (name === "runShard") {
       if (this.number === broken) {
         throw new EngineError("stopped", why);
       }
@@ -80,9 +87,7 @@ describe("worker pool", () => {
   it("gives a shard of every map to all workers and merges the shards by their index", async () => {
     const pool = await poolOf();
     expect(await pool.runShards(wanted)).toBe(true);
-    expect(
-      of("computeShard").map(([worker, , { map, index, of: all }]) => [worker, map, index, all]),
-    ).toEqual([
+    expect(of("runShard").map(([worker, , [, map, index, all]]) => [worker, map, index, all])).toEqual([
       [0, "heights", 0, 3],
       [1, "heights", 1, 3],
       [2, "heights", 2, 3],
@@ -91,13 +96,13 @@ describe("worker pool", () => {
       [2, "pairs", 2, 3],
     ]);
     const merged = of("mergeShards");
-    expect(merged.map(([worker, , { map }]) => [worker, map])).toEqual([
+    expect(merged.map(([worker, , [map]]) => [worker, map])).toEqual([
       [0, "heights"],
       [1, "heights"],
       [2, "heights"],
       [0, "pairs"],
     ]);
-    expect(merged[0]?.[2]["shards"]).toEqual([1, 2, 3].map((n) => new Uint8Array([n])));
+    expect(merged[0]?.[2][1]).toEqual([1, 2, 3].map((n) => new Uint8Array([n])));
     expect(fractions.at(2)).toBeCloseTo(0.5);
   });
 
@@ -151,6 +156,6 @@ describe("worker pool", () => {
     expect(await pool.runShards(wanted)).toBe(false);
     calls = [];
     expect(await pool.runShards({ ...wanted, workers: 1 })).toBe(true);
-    expect(of("computeShard")).toEqual([]);
+    expect(of("runShard")).toEqual([]);
   });
 });

@@ -2,7 +2,7 @@ import type { Intersection } from "three";
 import type { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { expect, it } from "vitest";
 import { PALETTE } from "../../../src/shared/palette";
-import type { LineOrigin, LineRecord } from "../../../src/shared/traces";
+import type { LineOrigin, LineRecord } from "../../../src/shared/records";
 import { buildLines, colourOf, ORIGIN_COLOURS } from "../../../src/viewer/layers/lines";
 import { sidesOf } from "../../../src/viewer/scene/strokes";
 

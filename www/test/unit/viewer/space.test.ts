@@ -1,7 +1,7 @@
 import { type Intersection, type LineSegments, Vector3, Vector4 } from "three";
 import { describe, expect, it } from "vitest";
 import { project } from "../../../src/app/images/selectionMarks";
-import type { Vec3, ViewInfo } from "../../../src/shared/results";
+import type { Vec3, ViewInfo } from "../../../src/shared/records";
 import { buildFans, buildTurning, fanCorners } from "../../../src/viewer/layers/fans";
 import { yUp } from "../../../src/viewer/scene/frame";
 import { clipFromViewer, fitShares } from "../../../src/viewer/scene/photoProjection";
@@ -106,6 +106,7 @@ describe("buildTurning", () => {
         line: 0,
         side,
         theta,
+        sigma_theta: 0.01,
         similarity: 1,
         curvature: 9,
         amplitude: 1,

@@ -1,7 +1,12 @@
 import { Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import type { Covariance, LineRecord } from "../../../src/shared/traces";
-import { buildUncertainty, ellipse, enlargement } from "../../../src/viewer/layers/uncertainty";
+import type { LineRecord } from "../../../src/shared/records";
+import {
+  buildUncertainty,
+  type Covariance,
+  ellipse,
+  enlargement,
+} from "../../../src/viewer/layers/uncertainty";
 
 const U = new Vector3(1, 0, 0);
 const V = new Vector3(0, 0, 1);

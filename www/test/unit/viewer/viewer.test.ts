@@ -1,6 +1,6 @@
 import { Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import type { HalfPlane } from "../../../src/shared/results";
+import type { HalfPlane } from "../../../src/shared/records";
 import { groundCorners } from "../../../src/viewer/layers/cameras";
 import { normalTint } from "../../../src/viewer/layers/facets";
 import { fanCorners } from "../../../src/viewer/layers/fans";
@@ -25,6 +25,7 @@ describe("fanCorners", () => {
     line: 0,
     side,
     theta: 0,
+    sigma_theta: 0.01,
     similarity: 1,
     curvature: 9,
     amplitude: 1,
@@ -56,7 +57,13 @@ describe("groundCorners", () => {
     // Focal length 100 px, 200 x 100 px, 50 m above the ground, x east, y south.
     const projection = [100, 0, -100, 5000, 0, -100, -50, 2500, 0, 0, -1, 50];
     const centre = new Vector3(0, 0, 50);
-    const view = { name: "a", width: 200, height: 100, center: [0, 0, 50] as const, projection };
+    const view = {
+      name: "a",
+      width: 200,
+      height: 100,
+      center: [0, 0, 50] as [number, number, number],
+      projection,
+    };
     const corners = groundCorners(view, centre, 0);
     expect(corners?.map(({ x, y, z }) => [x, y, z].map((v) => Math.round(v * 1e6) / 1e6 + 0))).toEqual([
       [-50, 25, 0],
@@ -68,7 +75,13 @@ describe("groundCorners", () => {
 
   it("has no answer for rays that never reach that height", () => {
     const projection = [100, 0, -100, 5000, 0, -100, -50, 2500, 0, 0, -1, 50];
-    const view = { name: "a", width: 200, height: 100, center: [0, 0, 50] as const, projection };
+    const view = {
+      name: "a",
+      width: 200,
+      height: 100,
+      center: [0, 0, 50] as [number, number, number],
+      projection,
+    };
     expect(groundCorners(view, new Vector3(0, 0, 50), 80)).toBeNull();
   });
 });

@@ -6,10 +6,10 @@
 
 use nalgebra::{Matrix3, Point2, Point3, Vector3};
 
-use super::names::listed;
 use crate::camera::Camera;
 use crate::error::Error;
 use crate::geometry::mean_point;
+use crate::scene_loader::names::listed;
 use crate::sorting::sort_by;
 
 /// What the cameras give reason to refuse or to warn of.

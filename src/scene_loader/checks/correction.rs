@@ -4,13 +4,13 @@ use nalgebra::Vector3;
 
 use super::camera_checks;
 use super::consequence::warning_or_refusal;
-use super::input::LoadOptions;
-use super::names::listed;
 use crate::agreement::AgreementReport;
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::orientation_check::{CheckFinding, CheckedView, OrientationCheck, check_orientation};
 use crate::scene::ViewShift;
+use crate::scene_loader::input::LoadOptions;
+use crate::scene_loader::names::listed;
 
 /// Cameras as they are to be used, what was found and what was corrected.
 pub(crate) struct CheckedCameras {

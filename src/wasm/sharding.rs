@@ -1,4 +1,4 @@
-//! One run over several workers: each has a session with the same scene, and does its share of a stage's maps
+//! One run over several workers: each has a session with the same scene, and does its shard of a stage's maps
 //! ([`crate::execution::shard`]). The page carries the bytes between them.
 
 use js_sys::{Function, Uint8Array};
@@ -6,26 +6,26 @@ use wasm_bindgen::prelude::*;
 
 use super::convert::named_error;
 use super::session::{Session, listener_of, stage_of};
-use crate::execution::{Known, Task};
+use crate::execution::MergedShards;
 use crate::pipeline::{PackedView, Run};
 
 #[wasm_bindgen]
 impl Session {
-    /// The maps of a stage that sessions may share, in their order.
-    #[wasm_bindgen(js_name = sharedMaps)]
-    pub fn shared_maps(&self, stage: &str) -> Result<Vec<String>, JsValue> {
-        let maps = stage_of(stage)?.shared_maps();
+    /// The maps of a stage that sessions may divide between them, in their order.
+    #[wasm_bindgen(js_name = shardMaps)]
+    pub fn shard_maps(&self, stage: &str) -> Result<Vec<String>, JsValue> {
+        let maps = stage_of(stage)?.shard_maps();
         Ok(maps.iter().map(|&map| map.to_owned()).collect())
     }
 
-    /// Does sharing this stage need the views' colours?
-    #[wasm_bindgen(js_name = sharesColours)]
-    pub fn shares_colours(&self, stage: &str) -> Result<bool, JsValue> {
-        Ok(stage_of(stage)?.shares_colours())
+    /// Do these maps read the views' colours?
+    #[wasm_bindgen(js_name = shardsReadColours)]
+    pub fn shards_read_colours(&self, stage: &str) -> Result<bool, JsValue> {
+        Ok(stage_of(stage)?.shards_read_colours())
     }
 
     /// A view of the loaded scene, for `takeView` of another session.
-    #[wasm_bindgen(js_name = packView)]
+    #[wasm_bindgen(js_name = packView, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
     pub fn pack_view(&self, view: usize, with_colours: bool) -> Result<Vec<u8>, JsValue> {
         PackedView::new(self.loaded()?.scene(), view, with_colours)
             .map(|packed| packed.to_bytes())
@@ -47,8 +47,8 @@ impl Session {
         Ok(())
     }
 
-    /// What a stage found, as far as sharing later stages needs it; empty otherwise.
-    #[wasm_bindgen(js_name = handOver)]
+    /// What a stage found, as far as sharded maps of later stages read it; empty otherwise.
+    #[wasm_bindgen(js_name = handOver, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
     pub fn hand_over(&self, stage: &str) -> Result<Vec<u8>, JsValue> {
         Ok(self.loaded()?.hand_over(stage_of(stage)?))
     }
@@ -63,35 +63,32 @@ impl Session {
         }
     }
 
-    /// Does the items of a map of a stage that are dealt to instance `index` of so many; their results, for `learn` of all sessions.
-    pub fn share(
+    /// The shard of session `index` of so many of a map of a stage, for `mergeShards` of all sessions.
+    #[wasm_bindgen(js_name = runShard, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
+    pub fn run_shard(
         &mut self,
         stage: &str,
         map: &str,
         index: usize,
         of: usize,
-        on_progress: &Function,
+        #[wasm_bindgen(unchecked_param_type = "(fraction: number) => void")] on_progress: &Function,
     ) -> Result<Vec<u8>, JsValue> {
         let stage = stage_of(stage)?;
-        if stage.shared_maps().first() == Some(&map) {
-            self.known = Known::default();
+        if stage.shard_maps().first() == Some(&map) {
+            self.merged = MergedShards::default();
         }
-        let task = Task {
-            map: map.to_owned(),
-            index,
-            of,
-        };
-        let known = self.known.clone();
+        let merged = self.merged.clone();
         self.outputs = None;
         let run = self.loaded_mut()?;
-        Ok(run.share(stage, task, known, &listener_of(on_progress)))
+        Ok(run.run_shard(stage, map, [index, of], merged, &listener_of(on_progress)))
     }
 
-    /// Takes the shares of all sessions of a map, in the order of their index.
-    pub fn learn(&mut self, map: &str, shares: Vec<Uint8Array>) -> Result<(), JsValue> {
-        for share in shares {
-            if !self.known.add(map, &share.to_vec()) {
-                return Err(foreign("a share of a map"));
+    /// Takes the shards of a map from all sessions, in the order of their index.
+    #[wasm_bindgen(js_name = mergeShards)]
+    pub fn merge_shards(&mut self, map: &str, shards: Vec<Uint8Array>) -> Result<(), JsValue> {
+        for shard in shards {
+            if !self.merged.merge(map, &shard.to_vec()) {
+                return Err(foreign("a shard of a map"));
             }
         }
         Ok(())

@@ -1,8 +1,8 @@
 //! What follows from the finding of the orientation check: a refusal or a warning, in words.
 
-use super::names::listed;
 use crate::error::{Error, Result};
 use crate::orientation_check::{CheckFinding, CheckedView, OrientationCheck};
+use crate::scene_loader::names::listed;
 
 /// A warning, or the refusal of the scene. `refusal` is the one that the positions of the cameras
 /// alone gave reason for.

@@ -1,0 +1,48 @@
+//! 3D lines by clustering (W96 3.5).
+
+use super::{Findings, Outcome, Results, Stage, StageDefinition};
+use super::{is_any, required, to_bytes, untraced, warn_if};
+use crate::execution::Sharded;
+use crate::objectspace::{ClusterTrace, FoundLine, find_clusters};
+use crate::params::Params;
+use crate::scene::Scene;
+
+/// 3D lines; a trace for each window and direction.
+pub type Found = Outcome<Vec<FoundLine>, Vec<ClusterTrace>>;
+
+pub(super) struct Clusters;
+
+impl StageDefinition for Clusters {
+    type Found = Found;
+
+    const NAME: &'static str = "clusters";
+    const TITLE: &'static str = "Clusters";
+    const SECTION: &'static str = "W96 3.5";
+    const READS: &'static [&'static str] = &["objectspace.clusters"];
+    const NEEDS: &'static [Stage] = &[Stage::Regions, Stage::Directions];
+    const SHARD_MAPS: &'static [&'static str] = &["clusters"];
+
+    fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
+        let lines = &required(&before.regions).value;
+        let windows = &required(&before.directions).value;
+        Ok(find_clusters(scene, lines, windows, &params.objectspace)?.into())
+    }
+
+    fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
+        let none = "no 3D line was found; check that the orientation belongs to these images and \
+                    that the views overlap";
+        let is_empty = found.value.is_empty();
+        Findings {
+            counts: vec![("lines", found.value.len())],
+            warnings: warn_if(is_empty && is_any(&before.directions), none),
+        }
+    }
+
+    fn pack(found: &Found) -> Vec<u8> {
+        to_bytes(&found.value)
+    }
+
+    fn unpack(bytes: &[u8]) -> Option<Found> {
+        untraced(bytes)
+    }
+}

@@ -1,0 +1,64 @@
+//! Roof facets and the closed buildings below them (B99 4.2, 4.3), and which lines these contradict.
+
+use super::{Findings, Outcome, Results, Stage, StageDefinition};
+use super::{required, warn_if};
+use crate::buildings::{RoofTrace, reconstruct_roofs, verify_lines};
+use crate::execution::Sharded;
+use crate::facets::FacetInput;
+use crate::model::RoofModel;
+use crate::objectspace::proposed_planes;
+use crate::params::Params;
+use crate::scene::Scene;
+
+/// Facets and buildings.
+pub type Found = Outcome<RoofModel, RoofTrace>;
+
+pub(super) struct Facets;
+
+impl StageDefinition for Facets {
+    type Found = Found;
+
+    const NAME: &'static str = "facets";
+    const TITLE: &'static str = "Facets";
+    const SECTION: &'static str = "B99 4.2, 4.3";
+    const READS: &'static [&'static str] = &["roof"];
+    const NEEDS: &'static [Stage] = &[
+        Stage::Segments,
+        Stage::Lines,
+        Stage::HalfPlanes,
+        Stage::Rectangles,
+    ];
+    const SHARD_MAPS: &'static [&'static str] = &["planes"];
+
+    fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
+        let half_planes = required(&before.half_planes);
+        let rectangles = before.rectangles.as_ref();
+        let rectangles = rectangles.map_or_else(Vec::new, |found| proposed_planes(&found.trace));
+        let evidence = FacetInput {
+            segments: &required(&before.segments).value,
+            lines: &required(&before.lines).value,
+            half_planes: &half_planes.value,
+            ground: &half_planes.ground,
+            rectangles: &rectangles,
+        };
+        let (model, mut trace) = reconstruct_roofs(scene, &evidence, &params.roof)?;
+        (trace.new_lines, trace.refuted_lines) =
+            verify_lines(scene, evidence.lines, &model, evidence.ground, params);
+        Ok((model, trace).into())
+    }
+
+    fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
+        let facets = &found.value.facets;
+        let none = "no roof facet was found: the model is empty";
+        let half_planes = before.half_planes.as_ref();
+        let has_half_planes = half_planes.is_some_and(|found| !found.value.is_empty());
+        Findings {
+            counts: vec![
+                ("facets", facets.len()),
+                ("buildings", found.value.buildings.len()),
+                ("refuted lines", found.trace.refuted_lines.len()),
+            ],
+            warnings: warn_if(facets.is_empty() && has_half_planes, none),
+        }
+    }
+}

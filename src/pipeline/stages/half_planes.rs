@@ -1,0 +1,71 @@
+//! The ground, and half-planes at the 3D lines (B99 4.1).
+
+use super::{Findings, Results, Stage, StageDefinition};
+use super::{from_bytes, is_any, required, to_bytes, warn_if};
+use crate::execution::Sharded;
+use crate::params::Params;
+use crate::planes::{HalfPlane, SweepTrace, sweep_half_planes};
+use crate::scene::Scene;
+use crate::terrain::Ground;
+
+/// Half-planes, and the ground above which they were sought.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// Half-planes.
+    pub value: Vec<HalfPlane>,
+    /// The ground.
+    pub ground: Ground,
+    /// What became of every side of every line.
+    pub trace: SweepTrace,
+}
+
+pub(super) struct HalfPlanes;
+
+impl StageDefinition for HalfPlanes {
+    type Found = Found;
+
+    const NAME: &'static str = "halfplanes";
+    const TITLE: &'static str = "Half-planes";
+    const SECTION: &'static str = "B99 4.1";
+    const READS: &'static [&'static str] = &["sweep"];
+    const NEEDS: &'static [Stage] = &[Stage::Lines];
+    const SHARD_MAPS: &'static [&'static str] = &["ground", "sides"];
+
+    fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
+        let lines = &required(&before.lines).value;
+        let ground = Ground::estimate(scene, lines)?;
+        let (value, trace) = sweep_half_planes(scene, lines, &ground, &params.sweep)?;
+        Ok(Found {
+            value,
+            ground,
+            trace,
+        })
+    }
+
+    fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
+        let correlations = usize::try_from(found.trace.correlations).unwrap_or(usize::MAX);
+        let none = "no half-plane was accepted; the surfaces may have too little texture: try a \
+                    lower sweep.min_similarity";
+        let is_empty = found.value.is_empty();
+        Findings {
+            counts: vec![
+                ("half-planes", found.value.len()),
+                ("correlations", correlations),
+            ],
+            warnings: warn_if(is_empty && is_any(&before.lines), none),
+        }
+    }
+
+    fn pack(found: &Found) -> Vec<u8> {
+        to_bytes(&(&found.value, &found.ground))
+    }
+
+    fn unpack(bytes: &[u8]) -> Option<Found> {
+        let (value, ground) = from_bytes(bytes)?;
+        Some(Found {
+            value,
+            ground,
+            trace: SweepTrace::default(),
+        })
+    }
+}

@@ -1,0 +1,279 @@
+//! The stages of a reconstruction: one file each, in one table.
+//!
+//! To add a stage: write its file after the pattern of any other (what it finds, then the `impl` of
+//! [`StageDefinition`] with its name, the stages it needs, the parameters it reads, its sharded maps, how it runs and
+//! how it is summarised); add `mod` and a line at its place in the table below; run `make golden`, which
+//! writes the table that the page reads. On the page, what it is to fetch and show is in `www/src/app/stages`.
+//! Everything else follows from the table: the order, the methods, what is out of date after a change of parameters,
+//! what workers are given, the reports.
+//!
+//! Invariant: no file of a stage knows another one; they meet in [`Results`].
+
+mod clusters;
+mod directions;
+mod facets;
+mod half_planes;
+mod lines;
+mod matches;
+mod model;
+#[cfg(test)]
+mod page_table;
+mod rectangles;
+mod regions;
+mod segments;
+
+use serde::de::DeserializeOwned;
+use serde::{Serialize, Serializer};
+
+use crate::execution::Sharded;
+use crate::params::Method;
+use crate::params::Params;
+use crate::scene::Scene;
+
+/// Makes the enumeration of the stages, the type of their results and the rows of the table.
+macro_rules! stage_table {
+    ($($(#[$doc:meta])* $stage:ident in $file:ident: $methods:expr,)*) => {
+        /// The stages of all methods, in their order.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Stage {
+            $($(#[$doc])* $stage,)*
+        }
+
+        impl Stage {
+            /// All stages of all methods, in their order.
+            pub const ALL: &'static [Self] = &[$(Self::$stage,)*];
+        }
+
+        /// The results of the stages; `None` for what has not run.
+        #[derive(Clone, Debug, Default)]
+        pub struct Results {
+            $($(#[$doc])* pub $file: Option<$file::Found>,)*
+        }
+
+        impl Stage {
+            pub(super) fn row(self) -> &'static Row {
+                match self {
+                    $(Self::$stage => {
+                        use $file::$stage as Definition;
+                        &Row {
+                            name: Definition::NAME,
+                            title: Definition::TITLE,
+                            section: Definition::SECTION,
+                            methods: $methods,
+                            reads: Definition::READS,
+                            needs: Definition::NEEDS,
+                            shard_maps: Definition::SHARD_MAPS,
+                            shards_read_colours: Definition::SHARDS_READ_COLOURS,
+                            run: |scene, params, results| {
+                                results.$file = Some(Definition::run(scene, params, results)?);
+                                Ok(())
+                            },
+                            summary: |scene, results| match &results.$file {
+                                Some(found) => Definition::summary(scene, found, results),
+                                None => Findings::default(),
+                            },
+                            is_found: |results| results.$file.is_some(),
+                            discard: |results| results.$file = None,
+                            pack: |results| results.$file.as_ref().map(Definition::pack),
+                            unpack: |results, bytes| {
+                                results.$file = Definition::unpack(bytes);
+                                results.$file.is_some()
+                            },
+                        }
+                    })*
+                }
+            }
+        }
+    };
+}
+const RECTANGLES: &[Method] = &[Method::Rectangles, Method::Combined];
+const LINES: &[Method] = &[Method::Lines, Method::Combined];
+const ALL: &[Method] = &[Method::Lines, Method::Rectangles, Method::Combined];
+
+// The order of the stages, the file of each, and the methods that it belongs to.
+stage_table! {
+    /// Regions with straight boundaries in every view, and the lines on these (W96 3.3).
+    Regions in regions: RECTANGLES,
+    /// Windows and their main directions (W96 3.4).
+    Directions in directions: RECTANGLES,
+    /// 3D lines by clustering (W96 3.5).
+    Clusters in clusters: RECTANGLES,
+    /// Planes between parallel lines and the closed buildings below them (W96 3.6).
+    Rectangles in rectangles: RECTANGLES,
+    /// Straight image segments in every view (B99 3.2).
+    Segments in segments: LINES,
+    /// Segments matched over the views (B99 3.1 - 3.4).
+    Matches in matches: LINES,
+    /// 3D lines (B99 3.2).
+    Lines in lines: LINES,
+    /// The ground, and half-planes at the 3D lines (B99 4.1).
+    HalfPlanes in half_planes: LINES,
+    /// Roof facets and the closed buildings below them (B99 4.2, 4.3).
+    Facets in facets: LINES,
+    /// The textured model.
+    Model in model: ALL,
+}
+
+/// What a stage found, and how.
+#[derive(Clone, Debug)]
+pub struct Outcome<V, T> {
+    /// The result.
+    pub value: V,
+    /// How it came about, and why other things were rejected.
+    pub trace: T,
+}
+
+impl<V, T> From<(V, T)> for Outcome<V, T> {
+    fn from((value, trace): (V, T)) -> Self {
+        Self { value, trace }
+    }
+}
+
+/// Everything that is particular to one stage.
+pub(super) trait StageDefinition {
+    /// What it finds.
+    type Found;
+
+    /// The name in messages, reports, files and the session: one lower-case word.
+    const NAME: &'static str;
+    /// The name that the page shows.
+    const TITLE: &'static str;
+    /// Where the papers describe it; what it makes, where they do not.
+    const SECTION: &'static str;
+    /// The parameters that it reads, as paths of names; they may be groups.
+    const READS: &'static [&'static str];
+    /// The stages whose results it takes in, as far as the method has them.
+    const NEEDS: &'static [Stage];
+    /// Its sharded maps, in the order in which they are called.
+    const SHARD_MAPS: &'static [&'static str] = &[];
+    /// Do its sharded maps read the colours of the views, or grey values only?
+    const SHARDS_READ_COLOURS: bool = false;
+
+    /// Runs it on the results of the stages before.
+    fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Self::Found>;
+
+    /// What it counted, and what the user should know.
+    fn summary(scene: &Scene, found: &Self::Found, before: &Results) -> Findings;
+
+    /// The part of its result that sharded maps of later stages read; nothing where there are none.
+    fn pack(_: &Self::Found) -> Vec<u8> {
+        Vec::new()
+    }
+
+    /// The result with that part alone; `None` where the bytes are not that.
+    fn unpack(_: &[u8]) -> Option<Self::Found> {
+        None
+    }
+}
+
+/// What a stage has to say of its result.
+#[derive(Default)]
+pub(super) struct Findings {
+    /// Counts by name; the most important first.
+    pub counts: Vec<(&'static str, usize)>,
+    /// What the user should know; each says what to do.
+    pub warnings: Vec<String>,
+}
+
+/// The definition of a stage as a row of the table.
+pub(super) struct Row {
+    name: &'static str,
+    title: &'static str,
+    section: &'static str,
+    methods: &'static [Method],
+    reads: &'static [&'static str],
+    needs: &'static [Stage],
+    shard_maps: &'static [&'static str],
+    shards_read_colours: bool,
+    pub run: fn(&Scene, &Params, &mut Results) -> Sharded<()>,
+    pub summary: fn(&Scene, &Results) -> Findings,
+    pub is_found: fn(&Results) -> bool,
+    pub discard: fn(&mut Results),
+    pub pack: fn(&Results) -> Option<Vec<u8>>,
+    pub unpack: fn(&mut Results, &[u8]) -> bool,
+}
+
+impl Stage {
+    /// The stages of a method, in their order.
+    pub fn of(method: Method) -> Vec<Self> {
+        let has = |stage: &Self| stage.row().methods.contains(&method);
+        Self::ALL.iter().copied().filter(has).collect()
+    }
+
+    /// The name in messages, reports and the session: one lower-case word.
+    pub fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// The name that a person reads.
+    pub fn title(self) -> &'static str {
+        self.row().title
+    }
+
+    /// Where the papers describe it; what it makes, where they do not.
+    pub fn section(self) -> &'static str {
+        self.row().section
+    }
+
+    /// The stage of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|stage| stage.name() == name)
+    }
+
+    /// Its maps that instances of the core may divide between them, in the order in which they are called.
+    pub fn shard_maps(self) -> &'static [&'static str] {
+        self.row().shard_maps
+    }
+
+    /// Do these maps read the colours of the views, or grey values only?
+    pub fn shards_read_colours(self) -> bool {
+        self.row().shards_read_colours
+    }
+
+    /// The parameters that it reads, as paths of names.
+    pub(super) fn reads(self) -> &'static [&'static str] {
+        self.row().reads
+    }
+
+    /// The stages of the method whose results it takes in.
+    pub(super) fn needs(self, method: Method) -> impl Iterator<Item = Self> {
+        let needs = self.row().needs.iter().copied();
+        needs.filter(move |stage| stage.row().methods.contains(&method))
+    }
+}
+
+impl Serialize for Stage {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+/// The result of a stage before.
+fn required<F>(found: &Option<F>) -> &F {
+    found.as_ref().expect("stages run in their order")
+}
+
+/// Did the stage before find anything? Where it did not, it has warned already.
+fn is_any<V, T>(outcome: &Option<Outcome<Vec<V>, T>>) -> bool {
+    outcome.as_ref().is_some_and(|o| !o.value.is_empty())
+}
+
+fn warn_if(condition: bool, warning: &str) -> Vec<String> {
+    condition.then(|| warning.to_owned()).into_iter().collect()
+}
+
+fn to_bytes<V: Serialize>(value: &V) -> Vec<u8> {
+    postcard::to_stdvec(value).expect("results can be written to memory")
+}
+
+fn from_bytes<V: DeserializeOwned>(bytes: &[u8]) -> Option<V> {
+    postcard::from_bytes(bytes).ok()
+}
+
+/// A result from its bytes, without its trace.
+fn untraced<V: DeserializeOwned, T: Default>(bytes: &[u8]) -> Option<Outcome<V, T>> {
+    from_bytes(bytes).map(|value| Outcome {
+        value,
+        trace: T::default(),
+    })
+}

@@ -1,0 +1,61 @@
+//! Planes between parallel lines and the closed buildings below them (W96 3.6).
+
+use super::{Findings, Outcome, Results, Stage, StageDefinition};
+use super::{from_bytes, is_any, required, to_bytes, warn_if};
+use crate::execution::Sharded;
+use crate::model::RoofModel;
+use crate::objectspace::{RectangleTrace, find_rectangles};
+use crate::params::Params;
+use crate::scene::Scene;
+
+/// Planes and buildings.
+pub type Found = Outcome<RoofModel, RectangleTrace>;
+
+pub(super) struct Rectangles;
+
+impl StageDefinition for Rectangles {
+    type Found = Found;
+
+    const NAME: &'static str = "rectangles";
+    const TITLE: &'static str = "Rectangles";
+    const SECTION: &'static str = "W96 3.6";
+    const READS: &'static [&'static str] = &["objectspace.planes"];
+    const NEEDS: &'static [Stage] = &[Stage::Regions, Stage::Directions, Stage::Clusters];
+    const SHARD_MAPS: &'static [&'static str] = &["ground", "planes", "behind"];
+
+    fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
+        let lines = &required(&before.regions).value;
+        let windows = &required(&before.directions).value;
+        let clusters = &required(&before.clusters).value;
+        Ok(find_rectangles(scene, lines, windows, clusters, &params.objectspace)?.into())
+    }
+
+    fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
+        let none = "no plane between parallel lines was accepted: the model is empty";
+        let is_empty = found.value.facets.is_empty();
+        Findings {
+            counts: vec![
+                ("facets", found.value.facets.len()),
+                ("buildings", found.value.buildings.len()),
+                ("candidates", found.trace.candidates.len()),
+                ("pairs of lines", found.trace.pairs.len()),
+            ],
+            warnings: warn_if(is_empty && is_any(&before.clusters), none),
+        }
+    }
+
+    /// What facets are made of: the planes, not the buildings.
+    fn pack(found: &Found) -> Vec<u8> {
+        to_bytes(&(&found.trace.candidates, &found.trace.chosen))
+    }
+
+    fn unpack(bytes: &[u8]) -> Option<Found> {
+        let (candidates, chosen) = from_bytes(bytes)?;
+        let trace = RectangleTrace {
+            candidates,
+            chosen,
+            ..RectangleTrace::default()
+        };
+        Some((RoofModel::default(), trace).into())
+    }
+}

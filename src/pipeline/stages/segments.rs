@@ -1,0 +1,58 @@
+//! Straight image segments in every view (B99 3.2).
+
+use super::{Findings, Outcome, Results, Stage, StageDefinition, to_bytes, untraced};
+use crate::execution::{Sharded, sharded_map};
+use crate::lines2d::{ImageSegment, SegmentTrace, detect_segments};
+use crate::params::Params;
+use crate::scene::Scene;
+
+/// Segments of each view, in the order of the views.
+pub type Found = Outcome<Vec<Vec<ImageSegment>>, Vec<SegmentTrace>>;
+
+pub(super) struct Segments;
+
+impl StageDefinition for Segments {
+    type Found = Found;
+
+    const NAME: &'static str = "segments";
+    const TITLE: &'static str = "Segments";
+    const SECTION: &'static str = "B99 3.2";
+    const READS: &'static [&'static str] = &["segments"];
+    const NEEDS: &'static [Stage] = &[];
+    const SHARD_MAPS: &'static [&'static str] = &["views"];
+    const SHARDS_READ_COLOURS: bool = true;
+
+    fn run(scene: &Scene, params: &Params, _: &Results) -> Sharded<Found> {
+        let per_view = sharded_map("views", &scene.views, 0.0..1.0, |_, view| {
+            detect_segments(&view.gray, view.red_blue.as_ref(), &params.segments)
+        })?;
+        let (value, trace) = per_view.into_iter().unzip();
+        Ok(Outcome { value, trace })
+    }
+
+    fn summary(scene: &Scene, found: &Found, _: &Results) -> Findings {
+        let views = scene.views.iter().zip(&found.value);
+        let empty = views.filter(|(_, segments)| segments.is_empty());
+        let warnings = empty.map(|(view, _)| {
+            format!(
+                "{}: no straight edge found; leave this view out, or lower segments.edgels.high",
+                view.name
+            )
+        });
+        Findings {
+            counts: vec![
+                ("views", scene.views.len()),
+                ("segments", found.value.iter().map(Vec::len).sum()),
+            ],
+            warnings: warnings.collect(),
+        }
+    }
+
+    fn pack(found: &Found) -> Vec<u8> {
+        to_bytes(&found.value)
+    }
+
+    fn unpack(bytes: &[u8]) -> Option<Found> {
+        untraced(bytes)
+    }
+}

@@ -1,0 +1,46 @@
+/**
+ * Every call that the worker answers: a method of the core's `Session`, by its name, arguments and result as the build
+ * declares them, or one of `WorkerCalls`, which stand before the session's. A new method of the session can be
+ * called from the page as it is.
+ *
+ * Rejected: Comlink. A call in flight has to fail when its worker is terminated, failures carry a kind and a report, and
+ * calls must not overtake each other; around all of that, a proxy of its own is what the library would save.
+ */
+import type { Session } from "../pkg/ridgeline.js";
+import type { ParamTree } from "./paramTree";
+import type { StageSummary, TileReport, WarpedViews } from "./records";
+
+/** A file of the project. The page keeps the handle, so that a new worker can be given it again. */
+export interface InputFile {
+  path: string;
+  blob: Blob;
+}
+
+export type Bytes = Uint8Array<ArrayBuffer>;
+
+/** Pictures one below the other, and what they show. */
+export interface WarpedPicture {
+  about: WarpedViews;
+  rgba: Uint8ClampedArray<ArrayBuffer>;
+}
+
+/** The calls that are not the session's own methods: they read files, report progress or make pictures. */
+export interface WorkerCalls {
+  setFiles(files: readonly InputFile[]): Promise<void>;
+  defaultParams(): ParamTree;
+  setParams(params: ParamTree): void;
+  image(view: number): Promise<ImageBitmap>;
+  warped(line: number, left: boolean, theta: number): WarpedPicture | null;
+  runStage(stage: string): StageSummary;
+  runShard(stage: string, map: string, index: number, of: number): Bytes;
+  /** The next tile, which is the `index`-th of `of`, with its progress as that of `stage`; null when all are done. */
+  runTile(stage: string, index: number, of: number): TileReport | null;
+}
+
+/** What only the worker does to its session. */
+type Inner = "free" | "addFile" | "clearFiles" | typeof Symbol.dispose;
+
+export type Calls = Omit<Session, keyof WorkerCalls | Inner> & WorkerCalls;
+export type CallName = keyof Calls;
+export type Args<K extends CallName> = Parameters<Calls[K]>;
+export type Result<K extends CallName> = Awaited<ReturnType<Calls[K]>>;

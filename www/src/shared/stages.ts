@@ -1,0 +1,79 @@
+/** The stages and methods of the core. Written by `make golden` from src/pipeline/stages. */
+
+export const METHODS = ["lines", "rectangles", "combined"] as const;
+export type Method = (typeof METHODS)[number];
+
+/** In their order; each with the methods that have it, and the parameters that it reads. */
+export const STAGES = [
+  {
+    name: "regions",
+    title: "Regions",
+    section: "W96 3.3",
+    methods: ["rectangles", "combined"],
+    reads: ["objectspace.oris"],
+  },
+  {
+    name: "directions",
+    title: "Directions",
+    section: "W96 3.4",
+    methods: ["rectangles", "combined"],
+    reads: ["objectspace.windows", "objectspace.directions", "objectspace.clusters", "objectspace.planes.min_height_m"],
+  },
+  {
+    name: "clusters",
+    title: "Clusters",
+    section: "W96 3.5",
+    methods: ["rectangles", "combined"],
+    reads: ["objectspace.clusters"],
+  },
+  {
+    name: "rectangles",
+    title: "Rectangles",
+    section: "W96 3.6",
+    methods: ["rectangles", "combined"],
+    reads: ["objectspace.planes"],
+  },
+  {
+    name: "segments",
+    title: "Segments",
+    section: "B99 3.2",
+    methods: ["lines", "combined"],
+    reads: ["segments"],
+  },
+  {
+    name: "matches",
+    title: "Matches",
+    section: "B99 3.1–3.4",
+    methods: ["lines", "combined"],
+    reads: ["matching", "lines3d"],
+  },
+  {
+    name: "lines",
+    title: "3D lines",
+    section: "B99 3.2, fig. 4",
+    methods: ["lines", "combined"],
+    reads: ["lines3d"],
+  },
+  {
+    name: "halfplanes",
+    title: "Half-planes",
+    section: "B99 4.1",
+    methods: ["lines", "combined"],
+    reads: ["sweep"],
+  },
+  {
+    name: "facets",
+    title: "Facets",
+    section: "B99 4.2, 4.3",
+    methods: ["lines", "combined"],
+    reads: ["roof"],
+  },
+  {
+    name: "model",
+    title: "Model",
+    section: "walls, texture, files",
+    methods: ["lines", "rectangles", "combined"],
+    reads: ["texture"],
+  },
+] as const;
+export type StageName = (typeof STAGES)[number]["name"];
