@@ -3,8 +3,8 @@
 //! Three or more calibrated aerial photographs in, textured 3D roof models out.
 //!
 //! Implements B99 (Baillard, Schmid, Zisserman, Fitzgibbon 1999, "Automatic line matching and 3D
-//! reconstruction of buildings from multiple views") and W96 (Wiman, Axelsson 1996, "Finding 3D-structures in multiple aerial
-//! images using lines and regions").
+//! reconstruction of buildings from multiple views") and W96 (Wiman, Axelsson 1996, "Finding
+//! 3D-structures in multiple aerial images using lines and regions").
 //!
 //! ```text
 //! images + orientation files

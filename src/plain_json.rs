@@ -1,8 +1,9 @@
 //! Parameters and wishes from JSON text.
 //!
-//! What is missing keeps its default, what is unknown is refused, and what is wrong is named by the way to it
-//! (`sweep.window_px`). A struct lists its fields ([`readable!`](crate::readable)), and one function fills them. Derived with serde, every field of every
-//! struct has a reader of its own: 90 kB of wasm for the parameters.
+//! What is missing keeps its default, what is unknown is refused, and what is wrong is named by the
+//! way to it (`sweep.window_px`). A struct lists its fields ([`readable!`](crate::readable)), and
+//! one function fills them. Derived with serde, every field of every struct has a reader of its
+//! own: 90 kB of wasm for the parameters.
 
 use std::fmt;
 

@@ -1,8 +1,9 @@
 //! Stable sorting, compiled once.
 //!
-//! The standard library's sorts are compiled anew for every type and every order, about 7 kB of wasm each; with some
-//! hundred of them they were a fifth of the page's download. Here the order of the indices is sorted, by one sort for
-//! all. That costs an indirect call a comparison: not for the innermost loops.
+//! The standard library's sorts are compiled anew for every type and every order, about 7 kB of
+//! wasm each; with some hundred of them they were a fifth of the page's download. Here the order of
+//! the indices is sorted, by one sort for all. That costs an indirect call a comparison: not for
+//! the innermost loops.
 
 use std::cmp::Ordering;
 

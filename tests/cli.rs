@@ -1,4 +1,5 @@
-//! The command line as a user meets it: files out for a good scene, exit code 2 and a sentence for a bad one.
+//! The command line as a user meets it: files out for a good scene, exit code 2 and a sentence for
+//! a bad one.
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used)]
 

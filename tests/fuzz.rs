@@ -1,9 +1,10 @@
 //! Fuzzing of everything that reads foreign bytes: `make fuzz` for long, `make test` for a moment.
 //!
-//! Each reader is a target: it takes its fixtures, damages them at random and reads them. Whatever the bytes are, the answer is a
-//! value or a readable refusal, within time and memory. `RIDGELINE_FUZZ_SECONDS` says how long each target runs,
-//! `RIDGELINE_FUZZ_SEED` where it starts. What breaks is written to `target/fuzz-finds` and belongs into
-//! `tests/fixtures/finds`, which is read again in every run.
+//! Each reader is a target: it takes its fixtures, damages them at random and reads them. Whatever
+//! the bytes are, the answer is a value or a readable refusal, within time and memory.
+//! `RIDGELINE_FUZZ_SECONDS` says how long each target runs, `RIDGELINE_FUZZ_SEED` where it starts.
+//! What breaks is written to `target/fuzz-finds` and belongs into `tests/fixtures/finds`, which is
+//! read again in every run.
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::disallowed_methods)]
 
@@ -317,7 +318,8 @@ fn archives_and_projects_survive_anything() {
     );
 }
 
-/// The image of the fixtures in a file of this format, with 8 bits, 16 where the format can, and grey.
+/// The image of the fixtures in a file of this format, with 8 bits, 16 where the format can, and
+/// grey.
 fn encoded(format: ImageFormat) -> Vec<Vec<InputFile>> {
     let rgb = image::load_from_memory(&files_of("images")[0].bytes).unwrap();
     let kinds = [

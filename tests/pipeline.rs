@@ -1,5 +1,6 @@
 //! The whole pipeline on the synthetic L-shaped house: what it finds is the planted truth, what it
-//! finds in other scenes is as the goldens say and the same whatever the number of threads, and it keeps no result that is out of date.
+//! finds in other scenes is as the goldens say and the same whatever the number of threads, and it
+//! keeps no result that is out of date.
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used)]
 
@@ -302,7 +303,8 @@ fn both_methods_find_one_model() {
     let found = found.filter(|(plane, outer)| is_found(plane, outer, &model.facets));
     assert!(found.count() * 5 >= truth.facets.len() * 4);
 
-    // Matched lines keep their ids; adopted ones follow, and no other method's parts are in the files.
+    // Matched lines keep their ids; adopted ones follow, and no other method's parts are in the
+    // files.
     let lines = &results.lines.as_ref().unwrap().value;
     let adopted = |l: &Line3d| l.origin == LineOrigin::Clustered;
     assert!(lines.is_sorted_by_key(adopted) && !adopted(&lines[0]));
@@ -348,7 +350,8 @@ fn new_parameters_of_one_method_keep_what_the_other_found_before() {
     assert!(run.has(Stage::Segments), "nothing here reads this");
 }
 
-/// Grey values say nothing here: detection, pairs, third views and the second look at the edges have to look at the colour.
+/// Grey values say nothing here: detection, pairs, third views and the second look at the edges
+/// have to look at the colour.
 #[test]
 fn the_lines_of_a_house_that_shows_in_colour_alone_are_found() {
     let (mut scene, truth) = l_scene(SIZE_PX);

@@ -1,8 +1,8 @@
 //! The readers against the small files in `tests/fixtures`, and against damaged ones.
 //!
-//! The fixtures are the gable house of `ridgeline::synthetic` at 48 x 48 pixels in every orientation format
-//! (`tests/fixtures/make.py` writes most of them); the photogrammetric list is in map coordinates. All must put the
-//! truth at the same pixels.
+//! The fixtures are the gable house of `ridgeline::synthetic` at 48 x 48 pixels in every
+//! orientation format (`tests/fixtures/make.py` writes most of them); the photogrammetric list is
+//! in map coordinates. All must put the truth at the same pixels.
 
 #![allow(clippy::print_stdout)]
 

@@ -1,5 +1,5 @@
-//! The page's session in Node: the whole pipeline on a synthetic scene finds what it finds natively (`tests/identical.mjs`
-//! compares the bytes), and bad input is refused in words.
+//! The page's session in Node: the whole pipeline on a synthetic scene finds what it finds natively
+//! (`tests/identical.mjs` compares the bytes), and bad input is refused in words.
 //!
 //! `wasm-pack test --node --release -- --test wasm`
 #![cfg(target_arch = "wasm32")]

@@ -1,23 +1,28 @@
 //! Maps that several instances of the core do together, without shared memory.
 //!
-//! In the browser each worker has an instance of its own with the same scene, parameters and earlier results. A
-//! map whose items are worth dividing is written as [`sharded_map`]. For each such map of a stage
+//! In the browser each worker has an instance of its own with the same scene, parameters and
+//! earlier results. A map whose items are worth dividing is written as [`sharded_map`]. For each
+//! such map of a stage
 //!
 //! ```text
-//! run_shard   every instance of n runs the stage up to that map with a ShardTask, does one of every n items
+//! run_shard   each of n instances runs the stage up to that map with a ShardTask, does every
+//!             n-th item
 //!             there, keeps them as bytes, and leaves the stage
-//! run_merged  one instance is given the bytes of all (MergedShards), runs the stage, and takes the items from them
+//! run_merged  one instance is given the bytes of all (MergedShards), runs the stage, and takes
+//!             the items from them
 //! ```
 //!
-//! An item's value does not depend on who computes it and `postcard` keeps every bit of a float, so that the result
-//! is that of one instance alone. Without a task and without shards [`sharded_map`] is `parallel::map_part`.
+//! An item's value does not depend on who computes it and `postcard` keeps every bit of a float, so
+//! that the result is that of one instance alone. Without a task and without shards [`sharded_map`]
+//! is `parallel::map_part`.
 //!
-//! Invariant: a stage never goes on with a part of a map. An instance that does its shard has no result to hand
-//! on: it gets [`ShardDone`], which the stage passes up with `?`. Several calls of one map in a stage, none of
-//! which depends on another, are all made before the first `?`.
+//! Invariant: a stage never goes on with a part of a map. An instance that does its shard has no
+//! result to hand on: it gets [`ShardDone`], which the stage passes up with `?`. Several calls of
+//! one map in a stage, none of which depends on another, are all made before the first `?`.
 //!
-//! Rejected: stages in pieces (plan, shard, merge) as functions of their own. Every stage with such a map would be
-//! three functions and a type for what passes between them, and four of these stages have several maps.
+//! Rejected: stages in pieces (plan, shard, merge) as functions of their own. Every stage with such
+//! a map would be three functions and a type for what passes between them, and four of these stages
+//! have several maps.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -30,10 +35,12 @@ use serde::{Deserialize, Serialize};
 use super::parallel;
 use super::progress;
 
-/// What a stage with sharded maps returns: its result, or that this instance was to do a shard only.
+/// What a stage with sharded maps returns: its result, or that this instance was to do a shard
+/// only.
 pub type Sharded<R> = Result<R, ShardDone>;
 
-/// The instance has done its shard of the map that it was run for; nobody needs the rest of the stage.
+/// The instance has done its shard of the map that it was run for; nobody needs the rest of the
+/// stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShardDone(());
 
@@ -41,15 +48,17 @@ pub struct ShardDone(());
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShardTask {
     map: &'static str,
-    /// The maps of the stage behind it: a stage that comes to one of them did not call the map of the task.
+    /// The maps of the stage behind it: a stage that comes to one of them did not call the map of
+    /// the task.
     later: &'static [&'static str],
     index: usize,
     of: usize,
 }
 
 impl ShardTask {
-    /// The task of instance `index` of so many at one of the maps of a stage, which are in the order in which
-    /// they are called; `None` where the stage has no such map, or there are not so many instances.
+    /// The task of instance `index` of so many at one of the maps of a stage, which are in the
+    /// order in which they are called; `None` where the stage has no such map, or there are not so
+    /// many instances.
     pub fn new(maps: &'static [&'static str], map: &str, index: usize, of: usize) -> Option<Self> {
         let step = maps.iter().position(|one| *one == map)?;
         (index < of).then(|| Self {
@@ -68,7 +77,8 @@ pub struct MergedShards {
 }
 
 impl MergedShards {
-    /// Adds the shard of the next instance, counted from zero, of a map. False where these are no such bytes.
+    /// Adds the shard of the next instance, counted from zero, of a map. False where these are no
+    /// such bytes.
     pub fn merge(&mut self, map: &str, shard: &[u8]) -> bool {
         let calls: Option<Vec<CallShard>> = postcard::from_bytes(shard).ok();
         let is_shard = calls.is_some();
@@ -77,7 +87,8 @@ impl MergedShards {
         is_shard
     }
 
-    /// The results of one call of a map in the order of its items; `None` unless they are all there.
+    /// The results of one call of a map in the order of its items; `None` unless they are all
+    /// there.
     fn results<R: DeserializeOwned>(&self, map: &str, call: usize, items: usize) -> Option<Vec<R>> {
         let instances = self.maps.get(map)?;
         let parts = instances.iter().map(|calls| {
@@ -93,8 +104,8 @@ impl MergedShards {
     }
 }
 
-/// Which of the instances does an item. They run to and fro over the items, so that where two kinds of items take
-/// turns (the two sides of lines) nobody gets one kind only.
+/// Which of the instances does an item. They run to and fro over the items, so that where two kinds
+/// of items take turns (the two sides of lines) nobody gets one kind only.
 fn instance_of(item: usize, of: usize) -> usize {
     let of = of.max(1);
     let place = item % of;
@@ -137,8 +148,8 @@ pub fn run_merged<R>(merged: MergedShards, stage: impl FnOnce() -> Sharded<R>) -
     result.expect("a map ends a stage only where there is a task")
 }
 
-/// Runs a stage on this thread up to the map of the task, with the merged results of the maps before it; the shard
-/// of the task. No calls are in it where the stage does not come to that map.
+/// Runs a stage on this thread up to the map of the task, with the merged results of the maps
+/// before it; the shard of the task. No calls are in it where the stage does not come to that map.
 pub fn run_shard<R>(
     task: ShardTask,
     merged: MergedShards,
@@ -160,7 +171,8 @@ fn sharded<R>(sharding: Sharding, stage: impl FnOnce() -> R) -> (R, Vec<CallShar
     (result, sharding.map(|s| s.done).unwrap_or_default())
 }
 
-/// `parallel::map_part` that instances may divide; `name` is the map's own in its stage. No sharded maps inside `f`.
+/// `parallel::map_part` that instances may divide; `name` is the map's own in its stage. No sharded
+/// maps inside `f`.
 pub fn sharded_map<T: Sync, R: Send + Serialize + DeserializeOwned>(
     name: &str,
     items: &[T],
@@ -238,8 +250,8 @@ mod tests {
 
     const MAPS: &[&str] = &["halves", "roots"];
 
-    /// Two maps, the second of which is called twice and works on what the first found. An empty list of items
-    /// would be out of bounds.
+    /// Two maps, the second of which is called twice and works on what the first found. An empty
+    /// list of items would be out of bounds.
     fn stage(counted: &AtomicUsize) -> Sharded<Vec<f64>> {
         let count = |x: f64| {
             counted.fetch_add(1, Ordering::Relaxed);

@@ -4,7 +4,7 @@
 //! ```text
 //! segment_matching    a segment's epipolar beams, candidates and outcome      B99 3.1, 3.2, fig. 1-4
 //! correspondence      pointwise correspondence x' = l' x (F x), two windows   B99 3.1, fig. 3
-//! warp                a line side under H(theta), view by view                B99 4.1, fig. 10, 11, 13
+//! warp          a line side under H(theta), view by view                B99 4.1, fig. 10, 11, 13
 //! detected_stretches  parts of 3D lines that segments showed before growing   B99 3.3, fig. 5-8
 //! ```
 //!

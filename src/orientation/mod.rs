@@ -16,7 +16,7 @@
 //! | format | files | conventions that are converted here |
 //! |---|---|---|
 //! | COLMAP text, binary | `cameras` + `images` | none: these are the conventions of this program |
-//! | photogrammetric list | camera + exterior | omega, phi, kappa; mm from the centre, y up; crops |
+//! | photogrammetric list | camera + exterior | omega, phi, kappa; mm from the centre, y up |
 //! | INPHO, PAT-B | text | see `inpho`, `patb` |
 //! | Metashape, BlocksExchange | XML | see `xml` |
 //! | MicMac | XML | see `micmac` |
@@ -30,9 +30,8 @@
 //! taken: COLMAP states distortion and image size, the list states the size, a bare matrix neither.
 //!
 //! Invariant: a reader takes any bytes and returns an orientation or a readable error; it holds no
-//! more memory than a small multiple of its input.
-//! Invariant: every reader returns cameras with x right, y down, z forward, `cam_from_world`, and
-//! (0.5, 0.5) at the centre of the top-left pixel.
+//! more memory than a small multiple of its input. Invariant: every reader returns cameras with x
+//! right, y down, z forward, `cam_from_world`, and (0.5, 0.5) at the centre of the top-left pixel.
 
 mod angles;
 pub(crate) mod detect;

@@ -1,5 +1,6 @@
-//! The orientation of a scene adjusted to the lines that its own images show: the stages up to the lines, then
-//! [`crate::adjustment`], and all of it once more, because better cameras find more lines.
+//! The orientation of a scene adjusted to the lines that its own images show: the stages up to the
+//! lines, then [`crate::adjustment`], and all of it once more, because better cameras find more
+//! lines.
 
 use super::{Run, Stage};
 use crate::adjustment::adjust_views;
@@ -22,7 +23,8 @@ pub fn load_adjusted(files: &[InputFile], options: &LoadOptions, params: &Params
     })
 }
 
-/// The scene with its cameras adjusted; a warning names the views that were. Sound orientations stay as they are.
+/// The scene with its cameras adjusted; a warning names the views that were. Sound orientations
+/// stay as they are.
 pub fn adjust_orientation(scene: Scene, params: &Params) -> Scene {
     // Whatever finds the roofs: it is lines that tell how the views lie.
     let params = Params {

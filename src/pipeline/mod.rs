@@ -7,8 +7,9 @@
 //! both: Scene -> those of W96, then those of B99, which take in its lines and planes
 //! ```
 //!
-//! `stages` has a file for each of them, and how to add one; `sharding` is what passes between instances that divide a
-//! stage; `report` and `summary` are what people read; `adjustment` runs the first stages for the cameras' sake.
+//! `stages` has a file for each of them, and how to add one; `sharding` is what passes between
+//! instances that divide a stage; `report` and `summary` are what people read; `adjustment` runs
+//! the first stages for the cameras' sake.
 //!
 //! Invariant: no geometry here. Invariant: a result in a [`Run`] always belongs to the current
 //! parameters and to the current results before it; what is out of date is dropped, never shown.
@@ -48,8 +49,8 @@ impl Results {
         lines.or(self.rectangles.as_ref().map(|r| &r.value))
     }
 
-    /// The 3D lines of B99, by their ids (matched ones, then those adopted of W96), and then the new lines of the model, which
-    /// says of each whether it stands.
+    /// The 3D lines of B99, by their ids (matched ones, then those adopted of W96), and then the
+    /// new lines of the model, which says of each whether it stands.
     pub fn all_lines(&self) -> Option<Vec<Line3d>> {
         let mut lines = self.lines.as_ref()?.value.clone();
         let trace = &self.facets.as_ref()?.trace;
@@ -125,13 +126,14 @@ impl Run {
         }
     }
 
-    /// Runs one stage, after those before it that have not run yet, and drops the results of those behind
-    /// it. `progress` hears fractions of this stage's work from 0 to 1.
+    /// Runs one stage, after those before it that have not run yet, and drops the results of those
+    /// behind it. `progress` hears fractions of this stage's work from 0 to 1.
     pub fn step(&mut self, stage: Stage, progress: &Listener) -> StageSummary {
         self.step_merged(stage, MergedShards::default(), progress)
     }
 
-    /// [`Self::step`], where instances have divided the stage's maps ([`Stage::shard_maps`]) between them.
+    /// [`Self::step`], where instances have divided the stage's maps ([`Stage::shard_maps`])
+    /// between them.
     pub fn step_merged(
         &mut self,
         stage: Stage,
@@ -164,9 +166,9 @@ impl Run {
         self.summaries.iter().any(|summary| summary.stage == stage)
     }
 
-    /// The files of a finished run, as (name, bytes): what the command line writes and the page offers.
-    /// `seconds` per stage go into `report.json`, in a part of their own, since they alone differ from
-    /// run to run. Empty before the last stage has run.
+    /// The files of a finished run, as (name, bytes): what the command line writes and the page
+    /// offers. `seconds` per stage go into `report.json`, in a part of their own, since they alone
+    /// differ from run to run. Empty before the last stage has run.
     pub fn files(&self, seconds: &[(Stage, f64)]) -> Vec<(String, Vec<u8>)> {
         let Some(outputs) = self.outputs() else {
             return Vec::new();

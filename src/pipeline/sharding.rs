@@ -1,5 +1,6 @@
-//! What passes between the instances that divide a run between them: views of the scene, results of earlier stages,
-//! and the shards of a stage's maps. See [`crate::execution::shard`] for the order of things.
+//! What passes between the instances that divide a run between them: views of the scene, results of
+//! earlier stages, and the shards of a stage's maps. See [`crate::execution::shard`] for the order
+//! of things.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -78,7 +79,8 @@ impl Run {
         Self::new(scene, params)
     }
 
-    /// What a stage found, as far as sharded maps of later stages read it; empty where none do, or it has not run.
+    /// What a stage found, as far as sharded maps of later stages read it; empty where none do, or
+    /// it has not run.
     pub fn hand_over(&self, stage: Stage) -> Vec<u8> {
         let packed = || (stage.row().pack)(&self.results);
         let is_read = self.stages().into_iter().any(|later| {
@@ -88,14 +90,15 @@ impl Run {
         is_read.then(packed).flatten().unwrap_or_default()
     }
 
-    /// Takes what a stage found in another instance, without its trace. False where the bytes are not that.
+    /// Takes what a stage found in another instance, without its trace. False where the bytes are
+    /// not that.
     pub fn take_over(&mut self, stage: Stage, bytes: &[u8]) -> bool {
         (stage.row().unpack)(&mut self.results, bytes)
     }
 
-    /// The shard of instance `index` of so many of a map of a stage, with the merged results of the maps before it;
-    /// the results of the stage itself and of later ones are dropped. Empty where there is no such map or instance, or
-    /// an earlier stage is missing.
+    /// The shard of instance `index` of so many of a map of a stage, with the merged results of the
+    /// maps before it; the results of the stage itself and of later ones are dropped. Empty where
+    /// there is no such map or instance, or an earlier stage is missing.
     pub fn run_shard(
         &mut self,
         stage: Stage,

@@ -11,9 +11,9 @@ use crate::lines3d::Line3d;
 use crate::plain_json;
 use crate::plain_json::Readable;
 
-/// A JavaScript `Error` with the refusal's message, called "InputError": the page shows it as advice, and
-/// anything else as a fault of the program. Its `code` is the kind of refusal, its `doctor` the doctor's report where the
-/// images speak against the orientation.
+/// A JavaScript `Error` with the refusal's message, called "InputError": the page shows it as
+/// advice, and anything else as a fault of the program. Its `code` is the kind of refusal, its
+/// `doctor` the doctor's report where the images speak against the orientation.
 pub(crate) fn input_error(error: &Error) -> JsValue {
     let thrown = named_error("InputError", &error.to_string());
     let set = |name: &str, value: &JsValue| Reflect::set(&thrown, &name.into(), value);
@@ -40,8 +40,8 @@ pub(crate) fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
     js_sys::JSON::parse(&text)
 }
 
-/// A Rust value from a plain JavaScript object; `what` names it in the message. By way of JSON, so that the
-/// page's parameters are read, and misspelt names refused, exactly as the command line's.
+/// A Rust value from a plain JavaScript object; `what` names it in the message. By way of JSON, so
+/// that the page's parameters are read, and misspelt names refused, exactly as the command line's.
 pub(crate) fn from_js<T: Readable + Default>(value: &JsValue, what: &str) -> Result<T, JsValue> {
     let text = if value.is_undefined() {
         "null".to_owned()

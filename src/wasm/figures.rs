@@ -1,4 +1,5 @@
-//! What the page's live figures ask of a project: traces, and [`crate::figures`] where the reader points.
+//! What the page's live figures ask of a project: traces, and [`crate::figures`] where the reader
+//! points.
 
 use std::borrow::Cow;
 
@@ -101,8 +102,8 @@ pub struct Picture {
 
 #[wasm_bindgen]
 impl Session {
-    /// The lines of edgels that are no segments of a view: x0, y0, x1, y1 in pixels, and why (0 curved, 1 not
-    /// significant, 2 beside an edge) each.
+    /// The lines of edgels that are no segments of a view: x0, y0, x1, y1 in pixels, and why (0
+    /// curved, 1 not significant, 2 beside an edge) each.
     #[wasm_bindgen(js_name = rejectedSegments)]
     pub fn rejected_segments(&self, view: usize) -> Result<Float32Array, JsValue> {
         let found = self.loaded()?.results().segments.as_ref();
@@ -126,7 +127,8 @@ impl Session {
         to_js(&found.map(|m| MatchRecord::from(&m.trace)))
     }
 
-    /// Method "lines": a segment's beams, candidates and fate (B99 figures 1, 2 and 4); `null` before matching.
+    /// Method "lines": a segment's beams, candidates and fate (B99 figures 1, 2 and 4); `null`
+    /// before matching.
     #[wasm_bindgen(js_name = segmentStory, unchecked_return_type = "SegmentMatching | null")]
     pub fn segment_matching(&self, view: u32, segment: u32) -> Result<JsValue, JsValue> {
         let run = self.loaded()?;
@@ -143,8 +145,8 @@ impl Session {
         ))
     }
 
-    /// Method "lines": the point at fraction `t` of a segment and the point of a candidate that corresponds to it (B99
-    /// figure 3); `null` where there is none.
+    /// Method "lines": the point at fraction `t` of a segment and the point of a candidate that
+    /// corresponds to it (B99 figure 3); `null` where there is none.
     #[wasm_bindgen(unchecked_return_type = "Correspondence | null")]
     pub fn correspondence(
         &self,
@@ -170,8 +172,8 @@ impl Session {
         to_js(&records)
     }
 
-    /// The parts of the 3D lines that segments showed before merging and growing: index of the line, then both end
-    /// points in metres, local frame (B99 figures 5 to 8).
+    /// The parts of the 3D lines that segments showed before merging and growing: index of the
+    /// line, then both end points in metres, local frame (B99 figures 5 to 8).
     #[wasm_bindgen(js_name = detectedStretches)]
     pub fn detected_stretches(&self) -> Result<Float64Array, JsValue> {
         let run = self.loaded()?;
@@ -202,7 +204,8 @@ impl Session {
         to_js(&records)
     }
 
-    /// Method "lines": Sim(theta) of one side of a 3D line (B99 figures 12 to 14); `null` before the sweep.
+    /// Method "lines": Sim(theta) of one side of a 3D line (B99 figures 12 to 14); `null` before
+    /// the sweep.
     #[wasm_bindgen(unchecked_return_type = "SideTrace | null")]
     pub fn side(&self, line: usize, left: bool) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().half_planes.as_ref();
@@ -215,8 +218,8 @@ impl Session {
         )
     }
 
-    /// Method "lines": all views warped by H(theta) onto one side of a 3D line (B99 figures 10 and 11); `undefined` where
-    /// nothing can be compared.
+    /// Method "lines": all views warped by H(theta) onto one side of a 3D line (B99 figures 10 and
+    /// 11); `undefined` where nothing can be compared.
     pub fn warped(
         &mut self,
         line: usize,
@@ -242,16 +245,16 @@ impl Session {
             .transpose()
     }
 
-    /// Method "lines": groups, lines found in planes, border lines and withdrawn facets (B99 figures 17 to 23); `null` before
-    /// that stage.
+    /// Method "lines": groups, lines found in planes, border lines and withdrawn facets (B99
+    /// figures 17 to 23); `null` before that stage.
     #[wasm_bindgen(unchecked_return_type = "FacetTrace | null")]
     pub fn grouping(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().facets.as_ref();
         to_js(&found.map(|r| &r.trace.facets))
     }
 
-    /// Method "lines": the buildings before refinement, what their images said, the relations that were tested, and the gaps
-    /// that were opened (B99 2); `null` before that stage.
+    /// Method "lines": the buildings before refinement, what their images said, the relations that
+    /// were tested, and the gaps that were opened (B99 2); `null` before that stage.
     #[wasm_bindgen(unchecked_return_type = "Refinement | null")]
     pub fn refinement(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().facets.as_ref();
@@ -301,7 +304,8 @@ pub(crate) fn segments_of(run: &Run) -> Cow<'_, [Vec<ImageSegment>]> {
     }
 }
 
-/// The 3D lines of the method (where both run, those of regions until there are more), with the new lines of the model once there is one.
+/// The 3D lines of the method (where both run, those of regions until there are more), with the new
+/// lines of the model once there is one.
 pub(crate) fn lines_of(run: &Run) -> Cow<'_, [Line3d]> {
     let r = run.results();
     match (&r.lines, &r.regions, &r.clusters) {

@@ -37,8 +37,8 @@ impl Session {
         Ok(segment_array(segments.iter().map(|s| &s.segment)))
     }
 
-    /// The supports of the 3D lines (before that stage, of the matches) in a view: x0, y0, x1, y1 in pixels,
-    /// kind (0 matched, 1 merged, 2 grown) and index of the line each.
+    /// The supports of the 3D lines (before that stage, of the matches) in a view: x0, y0, x1, y1
+    /// in pixels, kind (0 matched, 1 merged, 2 grown) and index of the line each.
     #[wasm_bindgen(js_name = matchedSegments)]
     pub fn matched_segments(&self, view: usize) -> Result<Float32Array, JsValue> {
         let run = self.loaded()?;
@@ -79,15 +79,16 @@ impl Session {
         to_js(&model.map_or(&[][..], |m| &m.facets))
     }
 
-    /// Method "rectangles": the segmentation of a view, `{regions, vectors, initial_regions, moves}`; `null` before
-    /// that stage.
+    /// Method "rectangles": the segmentation of a view, `{regions, vectors, initial_regions,
+    /// moves}`; `null` before that stage.
     #[wasm_bindgen(unchecked_return_type = "Segmentation | null")]
     pub fn regions(&self, view: usize) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().regions.as_ref();
         to_js(&found.and_then(|r| r.trace.get(view)))
     }
 
-    /// Method "rectangles": the windows with their main directions and how they were found, `{windows, trace}`.
+    /// Method "rectangles": the windows with their main directions and how they were found,
+    /// `{windows, trace}`.
     #[wasm_bindgen(unchecked_return_type = "Directions | null")]
     pub fn directions(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().directions.as_ref();
@@ -97,7 +98,8 @@ impl Session {
         }))
     }
 
-    /// Method "rectangles": the cluster planes, one for each window and direction (figures 7 and 8).
+    /// Method "rectangles": the cluster planes, one for each window and direction (figures 7 and
+    /// 8).
     #[wasm_bindgen(unchecked_return_type = "ClusterTrace[] | null")]
     pub fn clusters(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().clusters.as_ref();

@@ -99,7 +99,8 @@ struct SceneInfo {
     doctor: Option<crate::agreement::AgreementReport>,
 }
 
-/// A view of the scene; its centre in metres, local frame, and its 3 x 4 matrix from there to pixels, row by row.
+/// A view of the scene; its centre in metres, local frame, and its 3 x 4 matrix from there to
+/// pixels, row by row.
 #[derive(Serialize, tsify::Tsify)]
 struct ViewInfo {
     name: String,
@@ -133,7 +134,8 @@ impl Session {
         to_js(&Params::default())
     }
 
-    /// Adds an image or orientation file, or an archive of them; a file of the same path is replaced.
+    /// Adds an image or orientation file, or an archive of them; a file of the same path is
+    /// replaced.
     #[wasm_bindgen(js_name = addFile)]
     pub fn add_file(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), JsValue> {
         let opened = unpack(InputFile::new(path, bytes)).and_then(open_project);
@@ -152,7 +154,8 @@ impl Session {
         Ok(())
     }
 
-    /// The wishes and parameters of the project among the added files, `{options, params}`; null where there is none.
+    /// The wishes and parameters of the project among the added files, `{options, params}`; null
+    /// where there is none.
     #[wasm_bindgen(js_name = openedProject, unchecked_return_type = "OpenedProject | null")]
     pub fn opened_project(&self) -> Result<JsValue, JsValue> {
         to_js(&self.project.as_ref().map(|project| OpenedProject {
@@ -161,7 +164,8 @@ impl Session {
         }))
     }
 
-    /// The files, the options of `load`, the parameters and the results so far as a project file (.zip).
+    /// The files, the options of `load`, the parameters and the results so far as a project file
+    /// (.zip).
     #[wasm_bindgen(js_name = exportProject, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
     pub fn export_project(
         &self,
@@ -188,8 +192,8 @@ impl Session {
         self.points = None;
     }
 
-    /// What the files are: their kinds, sizes, orientation status, and warnings; under the options of
-    /// `load`.
+    /// What the files are: their kinds, sizes, orientation status, and warnings; under the options
+    /// of `load`.
     #[wasm_bindgen(unchecked_return_type = "Inspection")]
     pub fn inspect(
         &self,
@@ -229,7 +233,8 @@ impl Session {
         info
     }
 
-    /// Sets the parameters (what is missing takes its default) and drops the results that they change.
+    /// Sets the parameters (what is missing takes its default) and drops the results that they
+    /// change.
     #[wasm_bindgen(js_name = setParams)]
     pub fn set_params(
         &mut self,
@@ -244,7 +249,8 @@ impl Session {
         Ok(())
     }
 
-    /// Runs a stage (after those before it that are missing), with the merged shards of its maps; `{stage, counts, warnings}`.
+    /// Runs a stage (after those before it that are missing), with the merged shards of its maps;
+    /// `{stage, counts, warnings}`.
     #[wasm_bindgen(js_name = runStage, unchecked_return_type = "StageSummary")]
     pub fn run_stage(
         &mut self,

@@ -1,5 +1,5 @@
-//! One run over several workers: each has a session with the same scene, and does its shard of a stage's maps
-//! ([`crate::execution::shard`]). The page carries the bytes between them.
+//! One run over several workers: each has a session with the same scene, and does its shard of a
+//! stage's maps ([`crate::execution::shard`]). The page carries the bytes between them.
 
 use js_sys::{Function, Uint8Array};
 use wasm_bindgen::prelude::*;
@@ -32,7 +32,8 @@ impl Session {
             .ok_or_else(|| named_error("RangeError", &format!("there is no view {view}")))
     }
 
-    /// Takes a view that another session packed, one after the other; with the last of them the scene is made.
+    /// Takes a view that another session packed, one after the other; with the last of them the
+    /// scene is made.
     #[wasm_bindgen(js_name = takeView)]
     pub fn take_view(&mut self, view: usize, of: usize, packed: Vec<u8>) -> Result<(), JsValue> {
         if view == 0 {
@@ -63,7 +64,8 @@ impl Session {
         }
     }
 
-    /// The shard of session `index` of so many of a map of a stage, for `mergeShards` of all sessions.
+    /// The shard of session `index` of so many of a map of a stage, for `mergeShards` of all
+    /// sessions.
     #[wasm_bindgen(js_name = runShard, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
     pub fn run_shard(
         &mut self,

@@ -9,8 +9,8 @@ use crate::tiles::Area;
 
 #[wasm_bindgen]
 impl Session {
-    /// Divides the region of interest of the options of `load` into tiles of about `tile_m` metres: their cores, x0, y0, x1, y1
-    /// each. Results of an earlier run are dropped.
+    /// Divides the region of interest of the options of `load` into tiles of about `tile_m` metres:
+    /// their cores, x0, y0, x1, y1 each. Results of an earlier run are dropped.
     #[wasm_bindgen(js_name = planTiles, unchecked_return_type = "[x0: number, y0: number, x1: number, y1: number][]")]
     pub fn plan_tiles(
         &mut self,

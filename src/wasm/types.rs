@@ -1,5 +1,6 @@
-//! TypeScript's names for what other crates declare, and for the ids. All other types of what crosses to the page are
-//! derived where they are declared (`tsify`), and stand with them in the package's `.d.ts`.
+//! TypeScript's names for what other crates declare, and for the ids. All other types of what
+//! crosses to the page are derived where they are declared (`tsify`), and stand with them in the
+//! package's `.d.ts`.
 
 use wasm_bindgen::prelude::*;
 

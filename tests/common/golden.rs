@@ -1,7 +1,8 @@
-//! What a run found, as a small text that a reader of a diff understands, and the comparison of two such texts
-//! within tolerances.
+//! What a run found, as a small text that a reader of a diff understands, and the comparison of two
+//! such texts within tolerances.
 //!
-//! The text is made of the files that every run writes, report.json and model.city.json, natively and in wasm.
+//! The text is made of the files that every run writes, report.json and model.city.json, natively
+//! and in wasm.
 
 use std::fmt::Write as _;
 
@@ -70,7 +71,8 @@ pub fn section_of<'a>(golden: &'a str, method: &str) -> &'a str {
     &rest[..end]
 }
 
-/// What differs by more than the tolerances, a sentence each; numbers are told with what they measure.
+/// What differs by more than the tolerances, a sentence each; numbers are told with what they
+/// measure.
 pub fn differences(expected: &str, found: &str) -> Vec<String> {
     let lines = |text: &'_ str| -> Vec<String> { text.trim().lines().map(Into::into).collect() };
     let (expected, found) = (lines(expected), lines(found));
@@ -174,7 +176,8 @@ fn buildings(city: &Value, text: &mut String) {
     }
 }
 
-/// Orders points in plan along a direction in which those of a house, which is symmetric, hardly tie.
+/// Orders points in plan along a direction in which those of a house, which is symmetric, hardly
+/// tie.
 fn place(p: &Point3<f64>) -> f64 {
     p.x + 0.618 * p.y
 }
@@ -201,7 +204,8 @@ impl RoofFacet {
                 (0..ring.len()).min_by(|&i, &j| place(&ring[i]).total_cmp(&place(&ring[j])));
             ring.rotate_left(first.expect("a ring has corners"));
         }
-        // Fans around one corner: signed, so that holes and what is not convex count as they should.
+        // Fans around one corner: signed, so that holes and what is not convex count as they
+        // should.
         let (mut area, mut moment) = (Vector3::zeros(), Vector3::zeros());
         let mut weight = 0.0;
         for ring in &rings {
@@ -251,7 +255,8 @@ fn centimetres(metres: f64) -> String {
     format!("{:.2}", (metres * 100.0).round() / 100.0 + 0.0)
 }
 
-/// Sorted: whether a map of serde_json keeps the order of the file depends on what else is compiled.
+/// Sorted: whether a map of serde_json keeps the order of the file depends on what else is
+/// compiled.
 fn by_name(value: &Value) -> Vec<(&String, &Value)> {
     let mut members: Vec<_> = value.as_object().expect("an object").iter().collect();
     members.sort_by_key(|&(name, _)| name);

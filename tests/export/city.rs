@@ -102,7 +102,8 @@ fn a_known_reference_system_is_written() {
     }
     dxf::Drawing::load(&mut &files["model.dxf"][..]).unwrap();
 
-    // A local frame on the Earth: footprints in longitude and latitude, within a metre of its zero here.
+    // A local frame on the Earth: footprints in longitude and latitude, within a metre of its zero
+    // here.
     scene.survey.epsg = None;
     scene.origin = Vector3::zeros();
     scene.survey.anchor = Some(ridgeline::orientation::Anchor {

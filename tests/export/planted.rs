@@ -95,7 +95,8 @@ pub fn planted_models() -> Vec<(&'static str, RoofModel, f64)> {
         0.1,
         0.0,
     )];
-    // Prism: footprint times the mean height. L: both wings have the mean height 5.75 m, but for the corner.
+    // Prism: footprint times the mean height. L: both wings have the mean height 5.75 m, but for
+    // the corner.
     let pyramid_quarter = 3.0 * 3.0 * 1.5 / 3.0;
     let l_volume = (16.0 * 6.0 + 6.0 * 6.0) * 5.75
         - 2.0 * (pyramid_quarter - 9.0 * 0.75)
@@ -115,7 +116,8 @@ pub fn planted_models() -> Vec<(&'static str, RoofModel, f64)> {
     .into()
 }
 
-/// Looks straight down from 100 m; red grows to the east and green to the north by one grey value per 10 cm.
+/// Looks straight down from 100 m; red grows to the east and green to the north by one grey value
+/// per 10 cm.
 pub fn map_view(name: &str, x: f64, y: f64) -> View {
     let (size, focal) = (400u32, 1000.0);
     let k = Matrix3::new(focal, 0.0, 200.0, 0.0, focal, 200.0, 0.0, 0.0, 1.0);

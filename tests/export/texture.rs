@@ -42,7 +42,8 @@ fn colours_come_back_where_they_were_painted() {
             let x = (inwards[0] * f64::from(atlas.width())) as u32;
             let y = (inwards[1] * f64::from(atlas.height())) as u32;
             let (colour, p) = (atlas.get_pixel(x, y), corner.coords * 0.9 + mean * 0.1);
-            // The gradient lies in the plane of the roof; below it a wall shows what the ray passes there.
+            // The gradient lies in the plane of the roof; below it a wall shows what the ray passes
+            // there.
             let camera = &scene.view(textured.faces[0][i].view.unwrap()).camera;
             let seen = camera
                 .at_height(&camera.project(&p.into()).unwrap(), 6.0)
@@ -85,7 +86,8 @@ fn what_a_higher_roof_hides_is_taken_from_another_view() {
         let is_low = |f: usize| model.buildings[0].solid.faces[f].surface == low;
         trace.faces.into_iter().find(|t| is_low(t.face)).unwrap()
     };
-    // From (-10, 3, 100) the ray over the step falls by 4 m within 4 * 15 / 92 m of the 4 m wide roof.
+    // From (-10, 3, 100) the ray over the step falls by 4 m within 4 * 15 / 92 m of the 4 m wide
+    // roof.
     let hidden = 15.0 / 92.0;
     let alone = low_roof(vec![map_view("west.jpg", -10.0, 3.0)]);
     assert!((alone.unseen - hidden).abs() < 0.01, "{}", alone.unseen);

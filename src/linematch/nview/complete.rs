@@ -19,8 +19,8 @@ const ROUNDS: usize = 2;
 /// four and two where edges were measured again.
 const MIN_EVIDENCE: usize = 6;
 
-/// The same in a scene of three views, where two with segments suffice: there are fewer chances to be
-/// wrong and no fourth view to replace a missed segment.
+/// The same in a scene of three views, where two with segments suffice: there are fewer chances to
+/// be wrong and no fourth view to replace a missed segment.
 const MIN_EVIDENCE_OF_THREE: usize = 5;
 
 /// Distance from a line, in gates, within which segments belong to it and start no other line.

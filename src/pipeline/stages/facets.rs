@@ -1,4 +1,5 @@
-//! Roof facets and the closed buildings below them (B99 4.2, 4.3), and which lines these contradict.
+//! Roof facets and the closed buildings below them (B99 4.2, 4.3), and which lines these
+//! contradict.
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{required, warn_if};

@@ -1,11 +1,12 @@
 //! The stages of a reconstruction: one file each, in one table.
 //!
 //! To add a stage: write its file after the pattern of any other (what it finds, then the `impl` of
-//! [`StageDefinition`] with its name, the stages it needs, the parameters it reads, its sharded maps, how it runs and
-//! how it is summarised); add `mod` and a line at its place in the table below; run `make golden`, which
-//! writes the table that the page reads. On the page, what it is to fetch and show is in `www/src/app/stages`.
-//! Everything else follows from the table: the order, the methods, what is out of date after a change of parameters,
-//! what workers are given, the reports.
+//! [`StageDefinition`] with its name, the stages it needs, the parameters it reads, its sharded
+//! maps, how it runs and how it is summarised); add `mod` and a line at its place in the table
+//! below; run `make golden`, which writes the table that the page reads. On the page, what it is to
+//! fetch and show is in `www/src/app/stages`. Everything else follows from the table: the order,
+//! the methods, what is out of date after a change of parameters, what workers are given, the
+//! reports.
 //!
 //! Invariant: no file of a stage knows another one; they meet in [`Results`].
 
@@ -220,7 +221,8 @@ impl Stage {
         Self::ALL.iter().copied().find(|stage| stage.name() == name)
     }
 
-    /// Its maps that instances of the core may divide between them, in the order in which they are called.
+    /// Its maps that instances of the core may divide between them, in the order in which they are
+    /// called.
     pub fn shard_maps(self) -> &'static [&'static str] {
         self.row().shard_maps
     }

@@ -1,4 +1,5 @@
-//! The table of the stages as the page reads it: a file of TypeScript that is checked in and kept current.
+//! The table of the stages as the page reads it: a file of TypeScript that is checked in and kept
+//! current.
 
 use std::fmt::Debug;
 
