@@ -6,8 +6,7 @@
 //!
 //! ```text
 //! run_shard   each of n instances runs the stage up to that map with a ShardTask, does every
-//!             n-th item
-//!             there, keeps them as bytes, and leaves the stage
+//!             n-th item there, keeps them as bytes, and leaves the stage
 //! run_merged  one instance is given the bytes of all (MergedShards), runs the stage, and takes
 //!             the items from them
 //! ```

@@ -2,10 +2,10 @@
 //! points.
 //!
 //! ```text
-//! segment_matching    a segment's epipolar beams, candidates and outcome      B99 3.1, 3.2, fig. 1-4
-//! correspondence      pointwise correspondence x' = l' x (F x), two windows   B99 3.1, fig. 3
-//! warp          a line side under H(theta), view by view                B99 4.1, fig. 10, 11, 13
-//! detected_stretches  parts of 3D lines that segments showed before growing   B99 3.3, fig. 5-8
+//! segment_matching    epipolar beams, candidates and outcome of a segment   B99 3.1, 3.2
+//! correspondence      correspondence x' = l' x (F x), two windows           B99 3.1
+//! warp                a line side under H(theta), view by view              B99 4.1
+//! detected_stretches  parts of 3D lines that segments showed before growing B99 3.3
 //! ```
 //!
 //! Invariant: nothing here feeds a stage. The stages' own functions are called wherever they exist.
