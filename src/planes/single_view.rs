@@ -35,7 +35,7 @@ const GATE: f64 = 9.0;
 const LEAST_DEVIATION: f64 = 0.015;
 /// Rounds of trimming the outliers, such as skylights and chimneys.
 const TRIMS: usize = 3;
-/// Least change of the evidence on either side of an edge, of one.
+/// Least evidence for the surface on one side of an edge, and against it on the other, of one.
 const CLEAR_CHANGE: f64 = 0.4;
 
 /// Single-view evidence that the surface continues, for every position of a plane's window.
@@ -95,15 +95,15 @@ pub fn single_view_evidence(
     let grid = &map.grid;
     let known = reference_cells(region, map);
     let least = LEAST_REFERENCE_M2 / (grid.step * grid.step);
-    if (known.len() as f64) < least || !is_somewhere(scene, plane, region, grid) {
+    if (known.len() as f64) < least || !is_seen_once_somewhere(scene, plane, region, grid) {
         return SingleViewEvidence::default();
     }
-    let look = |view: &View, channel| {
+    let mean_appearance = |view: &View, channel| {
         let photo = orthophoto(view.channel(channel).0, &view.camera, plane, grid);
         window_means(&photo, grid)
     };
     let grey: Vec<Vec<f32>> = (scene.views.iter())
-        .map(|view| look(view, Channel::Grey))
+        .map(|view| mean_appearance(view, Channel::Grey))
         .collect();
     let only = |k: usize| {
         let mut seeing = (0..grey.len()).filter(|&v| grey[v][k].is_finite());
@@ -117,13 +117,15 @@ pub fn single_view_evidence(
         if cells.peek().is_none() {
             continue;
         }
-        let red_blue = look(view, Channel::RedBlue);
-        let looks = ViewAppearance { grey, red_blue };
-        let Some(surface) = SurfaceAppearance::estimate(&looks, &known, least, map) else {
+        let red_blue = mean_appearance(view, Channel::RedBlue);
+        let appearances = ViewAppearance { grey, red_blue };
+        let Some(surface) = SurfaceAppearance::estimate(&appearances, &known, least, map) else {
             continue;
         };
         for k in cells {
-            let likeness = looks.at(k).map_or(0.0, |look| surface.likeness(&look));
+            let likeness = appearances
+                .at(k)
+                .map_or(0.0, |appearance| surface.likeness(&appearance));
             values[k] = (likeness * 127.0).round() as i8;
         }
     }
@@ -143,7 +145,12 @@ fn reference_cells(region: &PlanRegion, map: &ConsistencyMap) -> Vec<usize> {
 
 /// Is there a position of the region that exactly one view has in its image? Sampled, for mostly
 /// there is none.
-fn is_somewhere(scene: &Scene, plane: &Plane, region: &PlanRegion, grid: &PlanGrid) -> bool {
+fn is_seen_once_somewhere(
+    scene: &Scene,
+    plane: &Plane,
+    region: &PlanRegion,
+    grid: &PlanGrid,
+) -> bool {
     let part = |i: usize, size: usize| (i * 2 + 1) * size / (2 * SAMPLES);
     let positions = (0..SAMPLES * SAMPLES).map(|k| {
         grid.center(
@@ -213,30 +220,32 @@ struct SurfaceAppearance {
 impl SurfaceAppearance {
     /// From positions `known` to be on it, of which the view must show `least`; `None` otherwise.
     fn estimate(
-        looks: &ViewAppearance,
+        appearances: &ViewAppearance,
         known: &[usize],
         least: f64,
         map: &ConsistencyMap,
     ) -> Option<Self> {
-        let known: Vec<Vector2<f64>> = known.iter().filter_map(|&k| looks.at(k)).collect();
+        let known: Vec<Vector2<f64>> = known.iter().filter_map(|&k| appearances.at(k)).collect();
         (known.len() as f64 >= least).then_some(())?;
         let mut surface = Self::robust(&known)?;
         for _ in 0..TRIMS {
-            let alike = known.iter().filter(|look| surface.likeness(look) > 0.0);
-            surface = Self::from_looks(alike)?;
+            let alike = known
+                .iter()
+                .filter(|appearance| surface.likeness(appearance) > 0.0);
+            surface = Self::from_samples(alike)?;
         }
         let off = (0..map.grid.width * map.grid.height)
             .filter(|&k| map.weight(k) >= TEXTURED && map.correlation(k) < OFF_SURFACE)
-            .filter_map(|k| looks.at(k));
-        let (alike, all) = off.fold((0.0, 0.0), |(alike, all), look| {
-            (alike + surface.likeness(&look).max(0.0), all + 1.0)
+            .filter_map(|k| appearances.at(k));
+        let (alike, all) = off.fold((0.0, 0.0), |(alike, all), appearance| {
+            (alike + surface.likeness(&appearance).max(0.0), all + 1.0)
         });
         surface.distinctiveness = 1.0 - alike / f64::max(all, 1.0);
         Some(surface)
     }
 
     /// By median and median absolute deviation: up to half of the samples may be outliers.
-    fn robust(looks: &[Vector2<f64>]) -> Option<Self> {
+    fn robust(appearances: &[Vector2<f64>]) -> Option<Self> {
         /// Standard deviation of a normal distribution, in medians of the absolute deviation.
         const OF_MEDIAN: f64 = 1.4826;
         let middle =
@@ -244,8 +253,12 @@ impl SurfaceAppearance {
         let mut mean = Vector2::zeros();
         let mut information = Matrix2::zeros();
         for i in 0..2 {
-            mean[i] = middle(&mut looks.iter().map(|look| look[i]))?;
-            let off = middle(&mut looks.iter().map(|look| (look[i] - mean[i]).abs()))?;
+            mean[i] = middle(&mut appearances.iter().map(|appearance| appearance[i]))?;
+            let off = middle(
+                &mut appearances
+                    .iter()
+                    .map(|appearance| (appearance[i] - mean[i]).abs()),
+            )?;
             let deviation = OF_MEDIAN * off;
             information[(i, i)] = 1.0 / (deviation * deviation + LEAST_DEVIATION * LEAST_DEVIATION);
         }
@@ -257,11 +270,13 @@ impl SurfaceAppearance {
     }
 
     /// By mean and covariance of some samples.
-    fn from_looks<'a>(looks: impl Iterator<Item = &'a Vector2<f64>> + Clone) -> Option<Self> {
-        let count = looks.clone().count().max(1) as f64;
-        let mean = looks.clone().sum::<Vector2<f64>>() / count;
-        let scatter = looks.fold(Matrix2::zeros(), |s, look| {
-            s + (look - mean) * (look - mean).transpose()
+    fn from_samples<'a>(
+        appearances: impl Iterator<Item = &'a Vector2<f64>> + Clone,
+    ) -> Option<Self> {
+        let count = appearances.clone().count().max(1) as f64;
+        let mean = appearances.clone().sum::<Vector2<f64>>() / count;
+        let scatter = appearances.fold(Matrix2::zeros(), |s, appearance| {
+            s + (appearance - mean) * (appearance - mean).transpose()
         });
         let covariance =
             scatter / count + Matrix2::identity() * (LEAST_DEVIATION * LEAST_DEVIATION);
@@ -272,8 +287,8 @@ impl SurfaceAppearance {
         })
     }
 
-    fn likeness(&self, look: &Vector2<f64>) -> f64 {
-        let d = look - self.mean;
+    fn likeness(&self, appearance: &Vector2<f64>) -> f64 {
+        let d = appearance - self.mean;
         let likeness = 1.0 - (d.transpose() * self.information * d).x / GATE;
         match likeness > 0.0 {
             true => likeness * self.distinctiveness,
@@ -351,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn a_roof_goes_on_in_the_only_view_as_far_as_it_looks_the_same() {
+    fn a_roof_goes_on_in_the_only_view_as_far_as_its_appearance_does() {
         let seen = seen(&scene(0.15, 2.0));
         assert_eq!(at(&seen, -3.0), 0.0, "two views see it");
         assert!(at(&seen, 4.0) > 0.5 && at(&seen, 7.5) < -0.9);
@@ -386,7 +401,7 @@ mod tests {
     }
 
     #[test]
-    fn looks_that_are_not_known_say_nothing() {
+    fn an_appearance_that_is_not_known_is_no_evidence() {
         // Two views share no more than a metre of the roof.
         let seen = seen(&scene(0.15, -8.0));
         assert_eq!(at(&seen, 4.0), 0.0);
