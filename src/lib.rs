@@ -2,27 +2,65 @@
 //!
 //! Three or more calibrated aerial photographs in, textured 3D roof models out.
 //!
+//! ```
+//! use ridgeline::synthetic::{gable_scene, to_files};
+//! use ridgeline::{InputFile, LoadOptions, Params, Run, load_scene};
+//!
+//! // Photographs of a drawn house with their orientation, as files in memory.
+//! let (drawn, truth) = gable_scene(160);
+//! let files = to_files(&drawn).into_iter();
+//! let files: Vec<InputFile> = files.map(|(path, bytes)| InputFile::new(&path, bytes)).collect();
+//!
+//! let scene = load_scene(&files, &LoadOptions::default())?;
+//! let mut run = Run::new(scene, Params::default());
+//! run.run_all();
+//!
+//! // CityJSON, glTF, lines and more, by name; and the model itself.
+//! assert!(run.files(&[]).iter().any(|(name, _)| name == "model.city.json"));
+//! let model = run.results().roof_model().expect("all stages have run");
+//! assert_eq!(model.facets.len(), truth.facets.len());
+//! # Ok::<(), ridgeline::Error>(())
+//! ```
+//!
+//! A stage is run by itself with [`Run::step`]; its result and its trace stand in [`Results`]:
+//!
+//! ```
+//! use ridgeline::synthetic::gable_scene;
+//! use ridgeline::{Params, Run, Stage, silent};
+//!
+//! let mut run = Run::new(gable_scene(160).0, Params::default());
+//! run.step(Stage::Segments, &silent());
+//! let segments = run.results().segments.as_ref().expect("the stage has run");
+//! println!("{} segments in the first view", segments.value[0].len());
+//! ```
+//!
 //! Implements B99 (Baillard, Schmid, Zisserman, Fitzgibbon 1999, "Automatic line matching and 3D
 //! reconstruction of buildings from multiple views") and W96 (Wiman, Axelsson 1996, "Finding
 //! 3D-structures in multiple aerial images using lines and regions").
 //!
 //! ```text
 //! images + orientation files
-//!    -> orientation, camera     Scene { views, ground }
-//!    -> lines2d                 edgels, chains, segments (per view)         B99 3.2
-//!    -> linematch               pairs, triples, N views                     B99 3.1 - 3.4
-//!    -> lines3d                 3D lines with covariance                    B99 3.2, figure 4
-//!    -> halfplane               points of interest, Sim(theta), half-planes B99 4.1
-//!    -> roof                    grouping, delineation, verification, walls  B99 4.2, 4.3
+//!    -> orientation, camera, scene_loader   Scene { views, ground }
+//!    -> lines2d                  edgels, chains, segments (per view)          B99 3.2
+//!    -> linematch                pairs, triples, tracks over N views          B99 3.1 - 3.4
+//!    -> lines3d                  3D lines with covariance                     B99 3.2, figure 4
+//!    -> terrain                  the ground
+//!    -> planes                   Sim(theta), half-planes, plane hypotheses    B99 4.1, 4.2
+//!    -> facets                   borders, labelling, verification             B99 4.3
 //!    or, from the images to the roofs in one go
-//!    -> objectspace             regions, main directions, clusters, planes  W96 3.3 - 3.6
-//!    or both for one model: lines and planes of objectspace compete in lines3d and roof
-//!    -> texture                 best view per face, atlas
-//!    -> export                  CityJSON, GLB, JSON
+//!    -> objectspace              regions, directions, clusters, rectangles    W96 3.3 - 3.6
+//!    or both for one model: lines and planes of objectspace compete with the others
+//!    -> buildings, solids        refined wireframes, walls, closed solids
+//!    -> texture                  best view per face, atlas
+//!    -> export                   CityJSON, glTF, OBJ, lines
 //! ```
 //!
-//! Each stage is one function from typed input to `(value, Trace)`; the Trace holds what a teacher
-//! would draw. [`pipeline`] alone orders the stages.
+//! Each stage is one function from typed input to `(value, trace)`; the trace holds what a figure
+//! of it shows, and why each hypothesis was rejected. [`pipeline`] alone orders the stages.
+//!
+//! Invariant: no file system, no terminal and no clock here; files are bytes with names.
+//! Invariant: the same input and parameters give the same bytes, natively and in wasm, on one
+//! worker or many.
 
 pub mod adjustment;
 pub mod agreement;
@@ -64,3 +102,9 @@ pub mod tiles;
 pub mod wasm;
 
 pub use crate::error::{Error, Result};
+pub use crate::execution::progress::{Listener, silent};
+pub use crate::orientation::InputFile;
+pub use crate::params::{Method, Params};
+pub use crate::pipeline::{Results, Run, Stage, StageSummary};
+pub use crate::scene::{Scene, View};
+pub use crate::scene_loader::{LoadOptions, inspect_files, load_scene};

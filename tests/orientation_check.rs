@@ -468,7 +468,7 @@ fn small_errors_of_a_view_are_found_and_the_model_comes_back() {
         assert!(found.warnings[0].contains("s2_01"), "{:?}", found.warnings);
         let mut run = Run::new(found, Params::default());
         run.run_all();
-        let model = run.results().model().unwrap();
+        let model = run.results().roof_model().unwrap();
         assert_eq!((what, model.buildings.len()), (what, 1));
         assert!(
             model.facets.len() >= 4,
