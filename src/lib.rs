@@ -62,11 +62,13 @@
 //! Invariant: the same input and parameters give the same bytes, natively and in wasm, on one
 //! worker or many.
 
-pub mod adjustment;
+#![warn(unreachable_pub)]
+
+mod adjustment;
 pub mod agreement;
 pub mod buildings;
 pub mod camera;
-pub mod error;
+mod error;
 pub mod execution;
 pub mod export;
 pub mod facets;
@@ -76,22 +78,22 @@ pub mod ids;
 pub mod linematch;
 pub mod lines2d;
 pub mod lines3d;
-pub mod math;
+mod math;
 pub mod model;
 pub mod objectspace;
 pub mod orientation;
 pub mod orientation_check;
 pub mod params;
-pub mod photoconsistency;
+mod photoconsistency;
 pub mod pipeline;
-pub mod plain_json;
-pub mod plan_index;
+mod plain_json;
+mod plan_index;
 pub mod planes;
 pub mod raster;
 pub mod scene;
 pub mod scene_loader;
 pub mod solids;
-pub mod sorting;
+mod sorting;
 pub mod synthetic;
 pub mod terrain;
 #[cfg(test)]

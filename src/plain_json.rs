@@ -1,7 +1,7 @@
 //! Parameters and wishes from JSON text.
 //!
 //! What is missing keeps its default, what is unknown is refused, and what is wrong is named by the
-//! way to it (`sweep.window_px`). A struct lists its fields ([`readable!`](crate::readable)), and
+//! way to it (`sweep.window_px`). A struct lists its fields ([`readable!`]), and
 //! one function fills them. Derived with serde, every field of every struct has a reader of its
 //! own: 90 kB of wasm for the parameters.
 
@@ -11,14 +11,14 @@ use serde::de::{DeserializeOwned, value};
 use serde_json::Value;
 
 /// What can be read in place.
-pub trait Readable {
+pub(crate) trait Readable {
     /// Takes over what the value says.
     fn read_from(&mut self, value: &Value) -> Result<(), Problem>;
 }
 
 /// What is wrong with the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Problem {
+pub(crate) struct Problem {
     /// The line, from 1, where it is no JSON.
     pub line: Option<usize>,
     /// Keys that lead to what is wrong, outermost first, with points between them.
@@ -27,7 +27,6 @@ pub struct Problem {
 }
 
 /// Declares structs of which every field can be read, and is not written down again.
-#[macro_export]
 macro_rules! readable {
     ($($(#[$meta:meta])* pub struct $name:ident { $($(#[$of_field:meta])* pub $field:ident: $type:ty,)* })*) => {$(
         $(#[$meta])*
@@ -40,9 +39,10 @@ macro_rules! readable {
         }
     )*};
 }
+pub(crate) use readable;
 
 /// Reads a value from text.
-pub fn read<T: Readable + Default>(text: &str) -> Result<T, Problem> {
+pub(crate) fn read<T: Readable + Default>(text: &str) -> Result<T, Problem> {
     let value: Value = serde_json::from_str(text).map_err(|e| Problem {
         line: Some(e.line().max(1)),
         at: String::new(),
@@ -52,7 +52,10 @@ pub fn read<T: Readable + Default>(text: &str) -> Result<T, Problem> {
 }
 
 /// Reads the fields of an object.
-pub fn read_fields(value: &Value, fields: &mut [(&str, &mut dyn Readable)]) -> Result<(), Problem> {
+pub(crate) fn read_fields(
+    value: &Value,
+    fields: &mut [(&str, &mut dyn Readable)],
+) -> Result<(), Problem> {
     let Value::Object(object) = value else {
         return Err(expected("an object", value));
     };
@@ -70,7 +73,7 @@ pub fn read_fields(value: &Value, fields: &mut [(&str, &mut dyn Readable)]) -> R
 }
 
 /// Reads one of the names of an enum.
-pub fn read_name<T: DeserializeOwned>(value: &Value) -> Result<T, Problem> {
+pub(crate) fn read_name<T: DeserializeOwned>(value: &Value) -> Result<T, Problem> {
     let Value::String(name) = value else {
         return Err(expected("a name", value));
     };

@@ -10,7 +10,7 @@ use rstar::{AABB, Envelope, RTree, RTreeObject};
 
 /// Numbered boxes.
 #[derive(Default)]
-pub struct PlanIndex {
+pub(crate) struct PlanIndex {
     boxes: Vec<Numbered>,
     /// The tree of the first boxes; the others were inserted later.
     tree: RTree<Numbered>,
@@ -23,14 +23,14 @@ const MAX_OUTSIDE: usize = 32;
 
 impl PlanIndex {
     /// Indexes the boxes between two corners, numbered in their order.
-    pub fn new(boxes: impl Iterator<Item = [Point2<f64>; 2]>) -> Self {
+    pub(crate) fn new(boxes: impl Iterator<Item = [Point2<f64>; 2]>) -> Self {
         let boxes: Vec<_> = (boxes.enumerate().map(|(i, b)| numbered(b, i as u32))).collect();
         let tree = RTree::bulk_load(boxes.clone());
         Self { boxes, tree }
     }
 
     /// Adds a box under a number.
-    pub fn insert(&mut self, corners: [Point2<f64>; 2], number: u32) {
+    pub(crate) fn insert(&mut self, corners: [Point2<f64>; 2], number: u32) {
         self.boxes.push(numbered(corners, number));
         let grown = self.tree.size();
         if self.boxes.len() > grown + grown / 8 + MAX_OUTSIDE {
@@ -39,7 +39,7 @@ impl PlanIndex {
     }
 
     /// The numbers of the boxes that touch the box widened by `margin` on all sides, in no order.
-    pub fn touching(
+    pub(crate) fn touching(
         &self,
         [a, b]: [Point2<f64>; 2],
         margin: f64,

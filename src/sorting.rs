@@ -8,7 +8,7 @@
 use std::cmp::Ordering;
 
 /// As the slice's own `sort_by`.
-pub fn sort_by<T>(items: &mut [T], mut compare: impl FnMut(&T, &T) -> Ordering) {
+pub(crate) fn sort_by<T>(items: &mut [T], mut compare: impl FnMut(&T, &T) -> Ordering) {
     let view: &[T] = items;
     let mut order: Vec<u32> = (0..view.len() as u32).collect();
     sort_indices(&mut order, &mut |a, b| {
@@ -18,7 +18,7 @@ pub fn sort_by<T>(items: &mut [T], mut compare: impl FnMut(&T, &T) -> Ordering) 
 }
 
 /// As the slice's own `sort_by_key`.
-pub fn sort_by_key<T, K: Ord>(items: &mut [T], mut key: impl FnMut(&T) -> K) {
+pub(crate) fn sort_by_key<T, K: Ord>(items: &mut [T], mut key: impl FnMut(&T) -> K) {
     sort_by(items, |a, b| key(a).cmp(&key(b)));
 }
 

@@ -9,7 +9,7 @@ use crate::model::Facet;
 
 /// Uniformly distributed from 0 to 1: a linear congruential generator (Numerical Recipes 7.1), its
 /// upper 24 bits.
-pub fn uniform(seed: u32) -> impl FnMut() -> f64 {
+pub(crate) fn uniform(seed: u32) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -18,7 +18,7 @@ pub fn uniform(seed: u32) -> impl FnMut() -> f64 {
 }
 
 /// A facet over a ring of corners that lie in one plane.
-pub fn facet(ring: &[Point3<f64>]) -> Facet {
+pub(crate) fn facet(ring: &[Point3<f64>]) -> Facet {
     let normal = (0..ring.len()).fold(Vector3::zeros(), |sum, i| {
         let (p, q) = (ring[i] - ring[0], ring[(i + 1) % ring.len()] - ring[0]);
         sum + p.cross(&q)
@@ -37,7 +37,7 @@ pub fn facet(ring: &[Point3<f64>]) -> Facet {
 }
 
 /// A line in space of which nothing else is known.
-pub fn line(p0: Point3<f64>, p1: Point3<f64>) -> Line3d {
+pub(crate) fn line(p0: Point3<f64>, p1: Point3<f64>) -> Line3d {
     Line3d {
         origin: Default::default(),
         segment: Segment3::new(p0, p1),

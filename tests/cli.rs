@@ -240,7 +240,7 @@ fn the_printed_parameters_are_accepted() {
         .output()
         .unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
-    let params: ridgeline::params::Params = ridgeline::plain_json::read(&text).unwrap();
+    let params: ridgeline::Params = ridgeline::Params::from_json(&text).unwrap();
     assert_eq!(params, ridgeline::params::Params::default());
 }
 

@@ -233,7 +233,7 @@ fn two_exchanged_views_are_named_among_few_and_small_ones() {
 fn a_view_that_agrees_with_none_is_named_where_the_others_agree() {
     let scene = some_views(&gable_scene(320).0, &[0, 1, 2, 3]);
     let turned = colmap(&scene, |s| {
-        let (sine, cosine) = ridgeline::math::sin_cos(0.1_f64.to_radians());
+        let (sine, cosine) = libm::sincos(0.1_f64.to_radians());
         let camera = &mut s.views[2].camera;
         camera.r = Matrix3::new(1.0, 0.0, 0.0, 0.0, cosine, -sine, 0.0, sine, cosine) * camera.r;
     });
@@ -427,7 +427,7 @@ type SmallError = (&'static str, fn(&mut ridgeline::camera::Camera));
 /// px: what images of 320 pixels allow.
 const SMALL_ERRORS: [SmallError; 3] = [
     ("turned", |c| {
-        let (s, cos) = ridgeline::math::sin_cos(0.005_f64.to_radians());
+        let (s, cos) = libm::sincos(0.005_f64.to_radians());
         c.r = Matrix3::new(1.0, 0.0, 0.0, 0.0, cos, -s, 0.0, s, cos) * c.r;
     }),
     ("moved", |c| c.center.x += 0.1),

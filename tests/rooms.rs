@@ -1,5 +1,6 @@
 //! The house: rooms are floors, and what stands above uses what stands below, never the other way
 //! round. No files of a room use each other in a circle either, no file is long, no folder crowded.
+#![cfg(not(target_arch = "wasm32"))]
 
 mod source_tree;
 

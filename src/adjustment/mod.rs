@@ -41,7 +41,7 @@ const FEWEST_EDGES: usize = 12;
 
 /// Adjusts the cameras of a scene to its matched lines. Returns the cameras and one record for
 /// each view; where no view stands out the cameras are those of the scene.
-pub fn adjust_views(
+pub(crate) fn adjust_views(
     scene: &Scene,
     lines: &[Line3d],
     params: &Lines3dParams,

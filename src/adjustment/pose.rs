@@ -7,7 +7,7 @@ use crate::geometry::rotation_from_axis_angle;
 
 /// A change of a camera's pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PoseChange {
+pub(super) struct PoseChange {
     /// Turn about the projection centre: axis times angle, radians, world frame.
     pub turn: Vector3<f64>,
     /// Move of the projection centre, metres.
@@ -16,7 +16,7 @@ pub struct PoseChange {
 
 impl PoseChange {
     /// The camera turned and moved.
-    pub fn apply(&self, camera: &Camera) -> Camera {
+    pub(super) fn apply(&self, camera: &Camera) -> Camera {
         Camera {
             r: camera.r * rotation_from_axis_angle(&self.turn).inverse().matrix(),
             center: camera.center + self.shift_m,

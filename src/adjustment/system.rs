@@ -64,7 +64,7 @@ pub(crate) struct AdjustmentState {
 }
 
 impl<'a> BundleAdjustment<'a> {
-    pub fn new(lines: &[Line3d], views: usize, params: &'a Lines3dParams) -> Self {
+    pub(super) fn new(lines: &[Line3d], views: usize, params: &'a Lines3dParams) -> Self {
         let track = |line: &Line3d| {
             let edges: Vec<_> = (line.supports.iter())
                 .filter_map(|s| s.edge.clone())
@@ -80,7 +80,7 @@ impl<'a> BundleAdjustment<'a> {
     }
 
     /// Number of edges of a view.
-    pub fn edges(&self, view: usize) -> usize {
+    pub(super) fn edges(&self, view: usize) -> usize {
         self.edges_of(view).count()
     }
 
@@ -91,13 +91,13 @@ impl<'a> BundleAdjustment<'a> {
     }
 
     /// The lines that fit these cameras, nothing being free.
-    pub fn state(&self, cameras: &[Camera]) -> AdjustmentState {
+    pub(super) fn state(&self, cameras: &[Camera]) -> AdjustmentState {
         let changes = vec![PoseChange::default(); self.views];
         self.fitted(cameras, Vec::new(), changes, None)
     }
 
     /// The same with one more view free.
-    pub fn freeing(
+    pub(super) fn freeing(
         &self,
         view: usize,
         from: &AdjustmentState,
@@ -252,7 +252,7 @@ impl<'a> BundleAdjustment<'a> {
     }
 
     /// Shifts of the images of the lines in a view by its changed pose, pixels.
-    pub fn motions(
+    pub(super) fn motions(
         &self,
         view: usize,
         stated: &[Camera],
@@ -267,7 +267,12 @@ impl<'a> BundleAdjustment<'a> {
     }
 
     /// Distances of the middles of a view's edges from the images of their lines, pixels.
-    pub fn distances(&self, view: usize, cameras: &[Camera], state: &AdjustmentState) -> Vec<f64> {
+    pub(super) fn distances(
+        &self,
+        view: usize,
+        cameras: &[Camera],
+        state: &AdjustmentState,
+    ) -> Vec<f64> {
         let distance = |(i, edge): (usize, &GuidedEdge)| {
             let image = ProjectedLine::new(&cameras[view], &state.lines[i]?)?;
             Some(image.distance(&edge.segment.midpoint()).abs())

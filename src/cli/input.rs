@@ -78,7 +78,7 @@ pub(super) fn read_params(args: &InputArgs) -> Result<Option<Params>, Failure> {
     };
     let bad = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
     let text = fs::read_to_string(path).map_err(|e| bad(format!("cannot read: {e}")))?;
-    ridgeline::plain_json::read(&text).map(Some).map_err(|e| {
+    Params::from_json(&text).map(Some).map_err(|e| {
         bad(format!(
             "{e}; `ridgeline params` prints all parameters with their defaults"
         ))

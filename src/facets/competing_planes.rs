@@ -13,7 +13,7 @@ use crate::planes::PlaneGroup;
 use crate::scene::Scene;
 
 /// The planes that compete for the plan, and what facets on them are verified by.
-pub struct CompetingPlanes {
+pub(super) struct CompetingPlanes {
     pub evidence: PlaneEvidence,
     pub arrangement: Arrangement,
     pub planes: Vec<Plane>,
@@ -29,7 +29,7 @@ pub struct CompetingPlanes {
 
 impl CompetingPlanes {
     /// The facet over an outline; its `building` is still unset (0).
-    pub fn facet(
+    pub(super) fn facet(
         &self,
         outline: &Outline,
         delineation: &Delineation,
@@ -98,7 +98,7 @@ impl CompetingPlanes {
     }
 
     /// The views from which other facets hide a point.
-    pub fn hidden_by<'s>(
+    pub(super) fn hidden_by<'s>(
         &'s self,
         occluders: &'s Occluders,
     ) -> impl Fn(ViewId, &Point3<f64>) -> bool + 's {

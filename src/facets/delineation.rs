@@ -16,7 +16,7 @@ use crate::sorting::sort_by;
 
 /// A facet in plan, before it is lifted onto its plane.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Outline {
+pub(super) struct Outline {
     /// The plane's index.
     pub plane: u32,
     /// Outer ring, counter-clockwise vertex indices.
@@ -29,7 +29,7 @@ pub struct Outline {
 
 /// Facets in plan and the plan positions that their vertex indices refer to.
 #[derive(Clone, Debug, Default)]
-pub struct Delineation {
+pub(super) struct Delineation {
     /// Vertices, metres.
     pub vertices: Vec<Point2<f64>>,
     /// One outline a facet.
@@ -40,7 +40,11 @@ pub struct Delineation {
 const STRAIGHT: f64 = 0.12;
 
 /// The outlines of all facets of a labelling.
-pub fn delineate(arrangement: &Arrangement, labels: &[u32], planes: &[Plane]) -> Delineation {
+pub(super) fn delineate(
+    arrangement: &Arrangement,
+    labels: &[u32],
+    planes: &[Plane],
+) -> Delineation {
     let component = arrangement.components(labels);
     let borders = border_edges(arrangement, labels, &component);
     let keep = corner_vertices(arrangement, &borders);
@@ -240,7 +244,7 @@ fn nest(
 }
 
 /// Signed area of a ring, positive counter-clockwise, square metres.
-pub fn signed_area(ring: &[usize], vertices: &[Point2<f64>]) -> f64 {
+pub(super) fn signed_area(ring: &[usize], vertices: &[Point2<f64>]) -> f64 {
     let origin = ring.first().map_or(Point2::origin(), |&v| vertices[v]);
     let next = ring.iter().cycle().skip(1);
     0.5 * ring

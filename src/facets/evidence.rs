@@ -14,7 +14,7 @@ use crate::planes::{GroupingInput, PlaneGroup, PlaneHypothesis};
 
 /// Photo-consistency of one plane in one cell.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct CellEvidence {
+pub(super) struct CellEvidence {
     /// Plan area seen with the plane's region over it, square metres.
     pub area: f64,
     /// Sum of texture weight over the area.
@@ -50,7 +50,7 @@ impl CellEvidence {
 }
 
 /// The evidence for every plane in every cell that it may cover.
-pub struct PlaneEvidence {
+pub(super) struct PlaneEvidence {
     /// Per cell: (plane, evidence), ascending by plane.
     cells: Vec<Vec<(u32, CellEvidence)>>,
     /// Per cell: what the ground costs a roof, from the sum of weight x (correlation - least
@@ -61,7 +61,7 @@ pub struct PlaneEvidence {
 impl PlaneEvidence {
     /// Sums each hypothesis' consistency map over the cells; `ground` are the maps of the ground
     /// plane at a few heights, over `grid`.
-    pub fn collect(
+    pub(super) fn collect(
         input: &GroupingInput,
         hypotheses: &[PlaneHypothesis],
         arrangement: &Arrangement,
@@ -100,7 +100,7 @@ impl PlaneEvidence {
     }
 
     /// The evidence for a plane in a cell; `None` where the plane may not cover it.
-    pub fn get(&self, cell: usize, plane: u32) -> Option<&CellEvidence> {
+    pub(super) fn get(&self, cell: usize, plane: u32) -> Option<&CellEvidence> {
         self.cells[cell]
             .binary_search_by_key(&plane, |e| e.0)
             .ok()
@@ -108,7 +108,7 @@ impl PlaneEvidence {
     }
 
     /// The energy that labelling minimises.
-    pub fn energy(
+    pub(super) fn energy(
         &self,
         arrangement: &Arrangement,
         planes: &[Plane],

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use super::borders::Arrangement;
 
 /// Labels in which no facet, and no hole within facets, has less than `min_area_m2` of plan area.
-pub fn without_islands(
+pub(super) fn without_islands(
     arrangement: &Arrangement,
     mut labels: Vec<u32>,
     min_area_m2: f64,

@@ -38,7 +38,7 @@ const NEIGHBOUR_M: f64 = 2.0;
 const MARGIN_M: f64 = 2.0;
 
 /// The range of heights, and the heights that it is derived from.
-pub struct HeightRange {
+pub(super) struct HeightRange {
     /// Lowest and highest, metres.
     pub z: [f64; 2],
     /// Heights found at the ends of segments, sorted, metres.
@@ -46,7 +46,10 @@ pub struct HeightRange {
 }
 
 /// Estimates the range; `None` when too few points agree.
-pub fn height_range(scene: &Scene, prepared: &PreparedSegments) -> Sharded<Option<HeightRange>> {
+pub(super) fn height_range(
+    scene: &Scene,
+    prepared: &PreparedSegments,
+) -> Sharded<Option<HeightRange>> {
     let blurred: Vec<Gray> = parallel::map(&scene.views, |_, v| gaussian_blur(&v.gray, 1.0));
     let points = interest_points(scene, prepared);
     let found = sharded_map("heights", &points, 0.0..0.2, |_, (view, x)| {
@@ -82,7 +85,7 @@ fn range_of(scene: &Scene, mut heights: Vec<f64>) -> Option<HeightRange> {
 
 /// A range without evidence: from well below the ground, or from where the lowest camera would see
 /// it at one in ten thousand, to half way up to the lowest camera.
-pub fn any_height(scene: &Scene) -> [f64; 2] {
+pub(super) fn any_height(scene: &Scene) -> [f64; 2] {
     let lowest = scene.views.iter().map(|v| v.camera.center.z);
     let camera = lowest.fold(f64::INFINITY, f64::min);
     let ground = scene.ground_z.unwrap_or_else(|| {

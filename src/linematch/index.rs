@@ -12,7 +12,7 @@ use crate::sorting::sort_by;
 const CELL_PX: f64 = 16.0;
 
 /// Which segments pass through which cell of one image.
-pub struct SegmentIndex {
+pub(super) struct SegmentIndex {
     columns: usize,
     rows: usize,
     /// `starts[cell]..starts[cell + 1]` of `segments` are those of a cell.
@@ -22,7 +22,7 @@ pub struct SegmentIndex {
 
 impl SegmentIndex {
     /// Indexes segments of an image of the given size.
-    pub fn new(width: u32, height: u32, segments: impl Iterator<Item = Segment2>) -> Self {
+    pub(super) fn new(width: u32, height: u32, segments: impl Iterator<Item = Segment2>) -> Self {
         let columns = (f64::from(width) / CELL_PX) as usize + 1;
         let rows = (f64::from(height) / CELL_PX) as usize + 1;
         let mut entries: Vec<(u32, u32)> = Vec::new();
@@ -53,7 +53,7 @@ impl SegmentIndex {
 
     /// Segments that may pass within `margin_px` of a quadrilateral (corners in order around it),
     /// by rising index. It may name a few more, never fewer.
-    pub fn near_quad(&self, quad: &[Point2<f64>; 4], margin_px: f64) -> Vec<u32> {
+    pub(super) fn near_quad(&self, quad: &[Point2<f64>; 4], margin_px: f64) -> Vec<u32> {
         // Half a cell's diagonal, plus what a sampled segment may cut off a cell's corner.
         let reach = margin_px + CELL_PX * 0.71 + CELL_PX * 0.25;
         let bound = |f: fn(f64, f64) -> f64, axis: usize| {
@@ -88,7 +88,7 @@ impl SegmentIndex {
     }
 
     /// Segments that may pass within `margin_px` of a segment.
-    pub fn near_segment(&self, s: &Segment2, margin_px: f64) -> Vec<u32> {
+    pub(super) fn near_segment(&self, s: &Segment2, margin_px: f64) -> Vec<u32> {
         self.near_quad(&[s.p0, s.p1, s.p1, s.p0], margin_px)
     }
 }

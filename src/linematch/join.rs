@@ -23,7 +23,7 @@ const PARALLEL: f64 = 0.984_807_753_012_208;
 const COVERED: f64 = 0.9;
 
 /// Joins the lines that are images of one edge.
-pub fn join_lines(context: &MatchContext, selection: &mut Selection) {
+pub(super) fn join_lines(context: &MatchContext, selection: &mut Selection) {
     let mut lines: Vec<Option<CompletedLine>> = selection.lines.drain(..).map(Some).collect();
     // The line that each one has become part of.
     let mut joined: Vec<usize> = (0..lines.len()).collect();

@@ -22,7 +22,7 @@ use crate::raster::Gray;
 
 /// Rows of sample positions along a line of the reference view.
 #[derive(Clone, Copy, Debug)]
-pub struct StripFrame {
+pub(super) struct StripFrame {
     /// The first edgel, pixels.
     origin: Point2<f64>,
     /// Unit direction along the line; edgels are one pixel apart.
@@ -37,7 +37,7 @@ pub struct StripFrame {
 
 impl StripFrame {
     /// The frame of a segment with windows of `window_px`.
-    pub fn new(segment: &Segment2, window_px: usize) -> Self {
+    pub(super) fn new(segment: &Segment2, window_px: usize) -> Self {
         Self {
             origin: segment.p0,
             along: segment.direction(),
@@ -48,7 +48,7 @@ impl StripFrame {
     }
 
     /// The part of the frame from edgel `first` on, `edgels` long.
-    pub fn part(&self, first: usize, edgels: usize) -> Self {
+    pub(super) fn part(&self, first: usize, edgels: usize) -> Self {
         Self {
             origin: self.origin + self.along * first as f64,
             edgels,
@@ -57,7 +57,7 @@ impl StripFrame {
     }
 
     /// Image position of an edgel in the reference view.
-    pub fn edgel(&self, i: usize) -> Point2<f64> {
+    pub(super) fn edgel(&self, i: usize) -> Point2<f64> {
         self.origin + self.along * i as f64
     }
 
@@ -72,7 +72,7 @@ impl StripFrame {
 
 /// Grey values of a strip, stored by column so that eight rows are processed at once. The rows
 /// reach half a window past the first and last edgel.
-pub struct LineStrip {
+pub(super) struct LineStrip {
     half: usize,
     /// Length of a column: the number of rows, made a multiple of eight.
     stride: usize,
@@ -83,7 +83,7 @@ pub struct LineStrip {
 
 /// Which side of the line, in the reference view's image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StripSide {
+pub(super) enum StripSide {
     /// Against the across direction: left as seen on the screen.
     Left,
     /// Along the across direction: right as seen on the screen, bright for a segment directed by
@@ -93,7 +93,7 @@ pub enum StripSide {
 
 impl StripSide {
     /// Both sides, in the order of score pairs.
-    pub const BOTH: [StripSide; 2] = [StripSide::Left, StripSide::Right];
+    pub(super) const BOTH: [StripSide; 2] = [StripSide::Left, StripSide::Right];
 
     /// The columns of a side: its half of the window and one pixel beyond the line, which makes the
     /// edge profile part of both.
@@ -107,7 +107,7 @@ impl StripSide {
 
 impl LineStrip {
     /// Samples the strip in the reference view itself.
-    pub fn reference(gray: &Gray, frame: &StripFrame) -> Self {
+    pub(super) fn reference(gray: &Gray, frame: &StripFrame) -> Self {
         let identity = Homography(nalgebra::Matrix3::identity());
         let all = 0..frame.width();
         Self::sample(gray, &identity, frame, all)
@@ -115,7 +115,7 @@ impl LineStrip {
 
     /// Samples one side of the strip in another view, warped by the homography of a plane from the
     /// reference view.
-    pub fn warped(gray: &Gray, h: &Homography, frame: &StripFrame, side: StripSide) -> Self {
+    pub(super) fn warped(gray: &Gray, h: &Homography, frame: &StripFrame, side: StripSide) -> Self {
         Self::sample(gray, h, frame, side.columns(frame.half))
     }
 
@@ -176,7 +176,7 @@ impl LineStrip {
     }
 
     /// The part of the strip that belongs to [`StripFrame::part`].
-    pub fn part(&self, first: usize, edgels: usize) -> Self {
+    pub(super) fn part(&self, first: usize, edgels: usize) -> Self {
         let rows = first..first + edgels + 2 * self.half;
         let stride = rows.len().next_multiple_of(8);
         let mut values = Vec::with_capacity(self.values.len() / self.stride * stride);
@@ -280,7 +280,7 @@ impl Sums {
 
 /// Correlation of one side of two strips of the same frame at each edgel; NaN where the window
 /// lacks more than a quarter of its rows.
-pub fn correlate(a: &LineStrip, b: &LineStrip, side: StripSide, noise: f64) -> Vec<f32> {
+pub(super) fn correlate(a: &LineStrip, b: &LineStrip, side: StripSide, noise: f64) -> Vec<f32> {
     let columns = side.columns(a.half);
     let window = 2 * a.half + 1;
     let mut rows: Vec<Sums> = Vec::with_capacity(a.stride);

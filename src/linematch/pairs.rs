@@ -27,7 +27,7 @@ use crate::scene::Scene;
 
 /// Two segments that may be images of one line.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct SegmentPair {
+pub(crate) struct SegmentPair {
     /// Segment of the view with the lower index.
     pub a: SegmentRef,
     /// Segment of the other view.
@@ -42,7 +42,7 @@ pub struct SegmentPair {
 
 /// The outcome of the pair search for one segment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PairSearch {
+pub(crate) struct PairSearch {
     /// Candidates in beams that passed the geometric tests.
     pub candidates: u32,
     /// Best score among them.
@@ -51,7 +51,7 @@ pub struct PairSearch {
 
 /// All pair hypotheses that any later step uses: those above `pair_score * with_segment`.
 #[derive(Default)]
-pub struct SegmentPairs {
+pub(crate) struct SegmentPairs {
     /// The pairs of one pass, sorted by (a, b).
     pub pairs: Vec<SegmentPair>,
     /// For each view and segment, the outcome of its search in both directions.
@@ -59,7 +59,7 @@ pub struct SegmentPairs {
 }
 
 /// The input of a search for pairs.
-pub struct PairScope<'a> {
+pub(super) struct PairScope<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// Its segments.
@@ -75,7 +75,7 @@ pub struct PairScope<'a> {
 }
 
 /// Matches every segment that is not taken yet with those of its partner views.
-pub fn match_pairs(
+pub(super) fn match_pairs(
     scope: &PairScope,
     taken: impl Fn(SegmentRef) -> bool + Sync,
     pass: Pass,
@@ -111,7 +111,7 @@ pub fn match_pairs(
 
 impl SegmentPairs {
     /// Adds those of a further pass.
-    pub fn append(&mut self, more: Self) {
+    pub(crate) fn append(&mut self, more: Self) {
         self.pairs.extend(more.pairs);
         self.searches.resize(more.searches.len(), Vec::new());
         for (view, searches) in self.searches.iter_mut().zip(more.searches) {
@@ -311,7 +311,7 @@ fn side_correlation(
 
 /// One side of a line's strip in the second view, warped by the half-plane at `theta_deg`. `None`
 /// for a line without such a plane.
-pub fn side_strip(
+pub(super) fn side_strip(
     scene: &Scene,
     [first, second]: [ViewId; 2],
     channel: Channel,

@@ -21,7 +21,7 @@ pub struct SegmentRef {
 
 /// The properties in which all segments of a line must agree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Compatibility {
+pub(super) struct Compatibility {
     /// The bright side, for steps.
     pub contrast: bool,
     /// The kind. Without this condition a step is still no bar, which runs beside the line's edges.
@@ -30,18 +30,18 @@ pub struct Compatibility {
 
 impl Compatibility {
     /// May segments of these kinds show one line?
-    pub fn allows(self, a: SegmentKind, b: SegmentKind) -> bool {
+    pub(super) fn allows(self, a: SegmentKind, b: SegmentKind) -> bool {
         a == b || (!self.kind && a.is_step() == b.is_step())
     }
 
     /// Must a segment of this kind run the same way as the others?
-    pub fn is_directed(self, kind: SegmentKind) -> bool {
+    pub(super) fn is_directed(self, kind: SegmentKind) -> bool {
         self.contrast && kind.is_step()
     }
 }
 
 /// A segment with its rays and its interpretation plane.
-pub struct SegmentGeometry {
+pub(super) struct SegmentGeometry {
     /// The segment, directed by contrast.
     pub segment: Segment2,
     /// Step or bar, and in which channel.
@@ -75,7 +75,7 @@ impl SegmentGeometry {
 }
 
 /// The segments of one view, ready for matching.
-pub struct PreparedView {
+pub(super) struct PreparedView {
     /// One for each detected segment; `None` for one without length.
     pub segments: Vec<Option<SegmentGeometry>>,
     /// The same by place.
@@ -84,7 +84,7 @@ pub struct PreparedView {
 
 impl PreparedView {
     /// Prepares the segments of one view.
-    pub fn new(camera: &Camera, detected: &[ImageSegment]) -> Self {
+    pub(super) fn new(camera: &Camera, detected: &[ImageSegment]) -> Self {
         Self {
             segments: detected
                 .iter()
@@ -100,14 +100,14 @@ impl PreparedView {
 }
 
 /// All views' segments, ready for matching.
-pub struct PreparedSegments {
+pub(super) struct PreparedSegments {
     /// One for each view.
     pub views: Vec<PreparedView>,
 }
 
 impl PreparedSegments {
     /// Prepares the segments of all views.
-    pub fn new(scene: &Scene, segments: &[Vec<ImageSegment>]) -> Self {
+    pub(super) fn new(scene: &Scene, segments: &[Vec<ImageSegment>]) -> Self {
         let views = scene
             .views
             .iter()
@@ -118,13 +118,13 @@ impl PreparedSegments {
     }
 
     /// The segment of this name; `None` for one without length.
-    pub fn get(&self, name: SegmentRef) -> Option<&SegmentGeometry> {
+    pub(super) fn get(&self, name: SegmentRef) -> Option<&SegmentGeometry> {
         self.views[name.view.index()].segments[name.segment.index()].as_ref()
     }
 
     /// The most frequent kind of a line's segments, on a tie the first in [`SegmentKind::ALL`];
     /// `None` without segments.
-    pub fn kind(&self, segments: &[SegmentRef]) -> Option<SegmentKind> {
+    pub(super) fn kind(&self, segments: &[SegmentRef]) -> Option<SegmentKind> {
         let shown = |kind: &SegmentKind| {
             let own = segments.iter().filter_map(|s| self.get(*s));
             own.filter(|geometry| geometry.kind == *kind).count()
@@ -134,7 +134,10 @@ impl PreparedSegments {
     }
 
     /// The names of all segments of a view that can be matched.
-    pub fn of_view(&self, view: ViewId) -> impl Iterator<Item = (SegmentRef, &SegmentGeometry)> {
+    pub(super) fn of_view(
+        &self,
+        view: ViewId,
+    ) -> impl Iterator<Item = (SegmentRef, &SegmentGeometry)> {
         let segments = self.views[view.index()].segments.iter().enumerate();
         segments.filter_map(move |(i, geometry)| {
             let segment = SegmentId::from_index(i);
@@ -164,7 +167,7 @@ pub fn epipolar_beam(
 
 /// Where the ray through an image point meets the interpretation plane of a segment in another
 /// view: the point of the 3D line that both see. `None` where the ray runs along the plane.
-pub fn ray_in_plane(
+pub(super) fn ray_in_plane(
     center: &Point3<f64>,
     ray: &Vector3<f64>,
     plane: &Plane,

@@ -19,7 +19,7 @@ use crate::lines2d::ImageSegment;
 
 /// The outcome of a bundle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum BundleOutcome {
+pub(crate) enum BundleOutcome {
     /// It became this line.
     Accepted(usize),
     /// Its segments belong to this line.
@@ -29,7 +29,7 @@ pub enum BundleOutcome {
 }
 
 /// The lines, and the outcome of each bundle.
-pub struct Selection {
+pub(crate) struct Selection {
     /// Accepted lines, the best first.
     pub lines: Vec<CompletedLine>,
     /// One for each bundle.
@@ -39,7 +39,7 @@ pub struct Selection {
 }
 
 /// Takes bundles by falling evidence; `selection` holds what an earlier pass has taken.
-pub fn winner_takes_all(
+pub(super) fn winner_takes_all(
     context: &MatchContext,
     pairs: &SegmentPairs,
     bundles: &[TripleBundle],
@@ -115,7 +115,7 @@ fn evidence(context: &MatchContext, pair: &SegmentPair, bundle: &TripleBundle) -
 
 impl Selection {
     /// The selection without lines, for these segments (one list a view).
-    pub fn empty(segments: &[Vec<ImageSegment>]) -> Self {
+    pub(crate) fn empty(segments: &[Vec<ImageSegment>]) -> Self {
         Self {
             lines: Vec::new(),
             outcomes: Vec::new(),
@@ -124,7 +124,7 @@ impl Selection {
     }
 
     /// The line that owns a segment.
-    pub fn owner(&self, s: SegmentRef) -> Option<usize> {
+    pub(crate) fn owner(&self, s: SegmentRef) -> Option<usize> {
         self.owners[s.view.index()][s.segment.index()]
     }
 
@@ -136,7 +136,7 @@ impl Selection {
     }
 
     /// Gives the segments of a line to its number.
-    pub fn own(&mut self, line: &CompletedLine, index: usize) {
+    pub(crate) fn own(&mut self, line: &CompletedLine, index: usize) {
         for support in &line.supports {
             for segment in &support.segments {
                 self.owners[support.view.index()][segment.index()] = Some(index);

@@ -9,7 +9,7 @@ use crate::scene::Scene;
 
 /// The flat roof with the inputs of its matching; the first segments of each view are numbered as
 /// its edges.
-pub struct PlantedRoof {
+pub(super) struct PlantedRoof {
     /// Its views.
     pub scene: Scene,
     /// [`planted::segments`].
@@ -24,7 +24,7 @@ pub struct PlantedRoof {
 
 impl PlantedRoof {
     /// That of [`planted::scene`].
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         let scene = planted::scene();
         let segments = planted::segments(&scene);
         Self {
@@ -37,7 +37,7 @@ impl PlantedRoof {
     }
 
     /// The context of a first pass.
-    pub fn context(&self) -> MatchContext<'_> {
+    pub(super) fn context(&self) -> MatchContext<'_> {
         let params = (&self.params, &self.fitting);
         MatchContext::of_planted(&self.scene, &self.segments, &self.prepared, params)
     }

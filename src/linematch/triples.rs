@@ -36,7 +36,7 @@ pub struct Verification {
 
 /// A pair with the segments of all third views that verify it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct TripleBundle {
+pub(crate) struct TripleBundle {
     /// Index into [`SegmentPairs::pairs`].
     pub pair: usize,
     /// By view and segment; several in one view are fragments of one line.
@@ -45,14 +45,14 @@ pub struct TripleBundle {
 
 impl TripleBundle {
     /// The verifications of each third view.
-    pub fn views(&self) -> impl Iterator<Item = &[Verification]> {
+    pub(crate) fn views(&self) -> impl Iterator<Item = &[Verification]> {
         self.verified
             .chunk_by(|a, b| a.segment.view == b.segment.view)
     }
 }
 
 /// Verifies every pair above the threshold in all other views.
-pub fn verify_pairs(
+pub(super) fn verify_pairs(
     scope: &PairScope,
     pairs: &SegmentPairs,
     pass: Pass,
@@ -119,7 +119,7 @@ fn verify_in_view(
 
 impl SegmentPairs {
     /// Score of two segments of different views in either order; zero when they are no pair.
-    pub fn score(&self, s: SegmentRef, t: SegmentRef) -> f64 {
+    pub(crate) fn score(&self, s: SegmentRef, t: SegmentRef) -> f64 {
         let key = (s.min(t), s.max(t));
         self.pairs
             .binary_search_by(|p| (p.a, p.b).cmp(&key))

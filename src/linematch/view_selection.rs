@@ -16,7 +16,7 @@ const MIN_OVERLAP: f64 = 0.1;
 /// Pairs (lower, higher) of views that see the same ground at the middle of the height range. A
 /// view with more candidates than `max_partners` keeps the nearest ones, equally many in every
 /// direction: pairs along the strip alone would leave lines along the flight undetermined.
-pub fn select_view_pairs(
+pub(super) fn select_view_pairs(
     scene: &Scene,
     z_range: [f64; 2],
     params: &MatchParams,

@@ -15,7 +15,7 @@ use crate::params::SegmentParams;
 
 /// The edgels of a line in order along it, and the line.
 #[derive(Clone, Debug)]
-pub struct GrownLine {
+pub(super) struct GrownLine {
     /// Indices into the edgels.
     pub edgels: Vec<u32>,
     /// Their positions, px.
@@ -26,7 +26,7 @@ pub struct GrownLine {
 
 impl GrownLine {
     /// A line through these edgels.
-    pub fn new(all: &[Edgel], edgels: Vec<u32>) -> Self {
+    pub(super) fn new(all: &[Edgel], edgels: Vec<u32>) -> Self {
         let points: Vec<_> = edgels.iter().map(|&i| all[i as usize].position).collect();
         let line = RegressionLine::new(&points);
         Self {
@@ -37,7 +37,7 @@ impl GrownLine {
     }
 
     /// The stretch of the line from its first to its last edgel.
-    pub fn extent(&self) -> Segment2 {
+    pub(super) fn extent(&self) -> Segment2 {
         let along = self.points.iter().map(|p| self.line.along(p));
         let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| {
             (l.min(t), h.max(t))
@@ -54,7 +54,7 @@ impl GrownLine {
 }
 
 /// The line of a seed, grown where that keeps it tight and as it is elsewhere.
-pub fn grow_tight(
+pub(super) fn grow_tight(
     all: &[Edgel],
     raster: &Raster,
     seed: &[u32],

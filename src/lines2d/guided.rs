@@ -22,7 +22,7 @@ use crate::raster::Gray;
 use crate::sorting::sort_by;
 
 /// Shortest piece whose profile is averaged, px.
-pub const PIECE_PX: f64 = 5.0;
+pub(crate) const PIECE_PX: f64 = 5.0;
 /// Distance from the prediction up to which an edge is sought, px. Assumption: half the least
 /// distance of two edges that a detector with a smoothing of one pixel keeps apart.
 const REACH_PX: f64 = 1.5;

@@ -7,7 +7,7 @@ use super::trace::{RejectedSegment, SegmentRejection, SegmentTrace};
 use crate::geometry::Segment2;
 
 /// Adds the candidates that no segment runs along; the others are recorded as rejected.
-pub fn add_without_overlap(
+pub(super) fn add_without_overlap(
     segments: &mut Vec<ImageSegment>,
     candidates: Vec<ImageSegment>,
     clear_px: f64,

@@ -29,7 +29,7 @@ const PIXEL_NOISE: f64 = 4.5;
 /// more than `sigmas` standard deviations of its steepest place, because unblended edgels are less
 /// noisy after smoothing. Returns the covariance of (offset in px, angle in rad) that the noise
 /// adds at the middle of the line.
-pub fn refine(
+pub(super) fn refine(
     line: &mut GrownLine,
     all: &[Edgel],
     image: &Gray,

@@ -14,7 +14,7 @@ const MIN_EDGELS: usize = 4;
 
 /// An orthogonal regression line through points in order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RegressionLine {
+pub(super) struct RegressionLine {
     /// Mean of the points, px.
     pub centroid: Point2<f64>,
     /// Unit direction, from the first point to the last.
@@ -29,29 +29,29 @@ pub struct RegressionLine {
 
 impl RegressionLine {
     /// Fits a line to at least two distinct points.
-    pub fn new(points: &[Point2<f64>]) -> Self {
+    pub(super) fn new(points: &[Point2<f64>]) -> Self {
         let mut moments = PointMoments::about(points[0]);
         points.iter().for_each(|p| moments.add(p));
         moments.line(&(points[points.len() - 1] - points[0]))
     }
 
     /// Unit normal (-dy, dx).
-    pub fn normal(&self) -> Vector2<f64> {
+    pub(super) fn normal(&self) -> Vector2<f64> {
         Vector2::new(-self.direction.y, self.direction.x)
     }
 
     /// Position along the line from the centroid, px.
-    pub fn along(&self, point: &Point2<f64>) -> f64 {
+    pub(super) fn along(&self, point: &Point2<f64>) -> f64 {
         self.direction.dot(&(point - self.centroid))
     }
 
     /// Signed distance from the line, px.
-    pub fn across(&self, point: &Point2<f64>) -> f64 {
+    pub(super) fn across(&self, point: &Point2<f64>) -> f64 {
         self.normal().dot(&(point - self.centroid))
     }
 
     /// Whether the line fits within the tight threshold.
-    pub fn is_tight(&self, points: &[Point2<f64>], params: &SegmentParams) -> bool {
+    pub(super) fn is_tight(&self, points: &[Point2<f64>], params: &SegmentParams) -> bool {
         self.rms <= params.max_rms_px
             && points
                 .iter()
@@ -61,7 +61,7 @@ impl RegressionLine {
     /// Covariance of (offset along the normal in px, angle in rad) at the position `along` the
     /// line. `correlated` consecutive edgels count as one; `floor_px` is the least standard
     /// deviation of an edgel.
-    pub fn covariance(&self, along: f64, correlated: f64, floor_px: f64) -> Matrix2<f64> {
+    pub(super) fn covariance(&self, along: f64, correlated: f64, floor_px: f64) -> Matrix2<f64> {
         // Two parameters are taken out of the independent errors.
         let independent = (self.count as f64 / correlated - 2.0).max(1.0);
         let scale = (independent + 2.0) / independent;
@@ -82,7 +82,7 @@ impl RegressionLine {
     /// Smoothing alone makes neighbours alike: white noise after a Gaussian of standard deviation
     /// s is correlated as exp(-d^2 / 4 s^2), so that it is 2 sqrt(pi) s at least. Tiles, planks
     /// and shadows reach farther.
-    pub fn correlated_edgels(&self, points: &[Point2<f64>], smoothing_px: f64) -> f64 {
+    pub(super) fn correlated_edgels(&self, points: &[Point2<f64>], smoothing_px: f64) -> f64 {
         let least = (2.0 * std::f64::consts::PI.sqrt() * smoothing_px).max(1.0);
         let across: Vec<f64> = points.iter().map(|p| self.across(p)).collect();
         let power: f64 = across.iter().map(|d| d * d).sum();
@@ -99,7 +99,7 @@ impl RegressionLine {
     }
 
     /// Curvature of the best parabola (1/px) and its standard deviation.
-    pub fn curvature(&self, points: &[Point2<f64>]) -> (f64, f64) {
+    pub(super) fn curvature(&self, points: &[Point2<f64>]) -> (f64, f64) {
         // Orthogonal polynomial of degree 2 on the positions along the line: t^2 - b t - m.
         let n = points.len() as f64;
         let m = self.spread / n;
@@ -123,7 +123,7 @@ fn cubed(t: f64) -> f64 {
 
 /// Sums over points from which their line follows, to which points can be added one by one.
 #[derive(Clone, Copy, Debug)]
-pub struct PointMoments {
+pub(super) struct PointMoments {
     /// What the sums are about, near the points: sums about the image's corner would lose digits.
     origin: Point2<f64>,
     count: usize,
@@ -135,7 +135,7 @@ pub struct PointMoments {
 
 impl PointMoments {
     /// Of no points yet.
-    pub fn about(origin: Point2<f64>) -> Self {
+    pub(super) fn about(origin: Point2<f64>) -> Self {
         Self {
             origin,
             count: 0,
@@ -147,7 +147,7 @@ impl PointMoments {
     }
 
     /// Adds a point.
-    pub fn add(&mut self, point: &Point2<f64>) {
+    pub(super) fn add(&mut self, point: &Point2<f64>) {
         let d = point - self.origin;
         self.count += 1;
         self.sum += d;
@@ -157,7 +157,7 @@ impl PointMoments {
     }
 
     /// The orthogonal regression line, in the sense of `chord`.
-    pub fn line(&self, chord: &Vector2<f64>) -> RegressionLine {
+    pub(super) fn line(&self, chord: &Vector2<f64>) -> RegressionLine {
         let n = self.count as f64;
         let mean = self.sum / n;
         let xx = self.xx - n * mean.x * mean.x;
@@ -189,7 +189,7 @@ impl PointMoments {
 
 /// A stretch of a chain (`points[from..to]`) with its line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StraightPiece {
+pub(super) struct StraightPiece {
     /// First point.
     pub from: usize,
     /// One past the last point.
@@ -199,7 +199,7 @@ pub struct StraightPiece {
 }
 
 /// The straight pieces of one smooth run `points[from..to]`, in order.
-pub fn straight_pieces(
+pub(super) fn straight_pieces(
     points: &[Point2<f64>],
     from: usize,
     to: usize,

@@ -7,7 +7,7 @@
 //! long weak ridge is kept and a short strong streak of foliage is not.
 
 /// Expected number of lines by chance among `tests` of them.
-pub struct FalseAlarms {
+pub(super) struct FalseAlarms {
     ln_tests: f64,
     /// ln k! for k = 0, 1, ..., computed as needed.
     ln_factorials: Vec<f64>,
@@ -15,7 +15,7 @@ pub struct FalseAlarms {
 
 impl FalseAlarms {
     /// Among this many lines.
-    pub fn new(tests: usize) -> Self {
+    pub(super) fn new(tests: usize) -> Self {
         Self {
             ln_tests: crate::math::ln(tests.max(1) as f64),
             ln_factorials: vec![0.0],
@@ -23,7 +23,7 @@ impl FalseAlarms {
     }
 
     /// Natural logarithm of the number of false alarms: `tests * P(Gamma(n) >= sum)`.
-    pub fn ln(&mut self, n: f64, sum: f64) -> f64 {
+    pub(super) fn ln(&mut self, n: f64, sum: f64) -> f64 {
         self.ln_tests + self.ln_gamma_tail(n, sum)
     }
 

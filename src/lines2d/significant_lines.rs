@@ -16,7 +16,7 @@ use crate::sorting::sort_by_key;
 
 /// The lines of some edgels, those of the longest pieces first. `high` is the least strength of
 /// the strongest edgel of a chain, in local noise units.
-pub fn significant_lines(
+pub(super) fn significant_lines(
     edgels: &[Edgel],
     local: &LocalStrengths,
     high: f64,

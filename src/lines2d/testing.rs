@@ -13,12 +13,12 @@ const DARK: f64 = 0.35;
 
 /// An edge of the given contrast through the centre of an image, blurred as grey values. `angle`
 /// is that of its normal, to the brighter side (0: right, pi/2: down).
-pub fn step_edge(width: usize, height: usize, angle: f64, contrast: f64) -> Gray {
+pub(super) fn step_edge(width: usize, height: usize, angle: f64, contrast: f64) -> Gray {
     blurred_edge(width, height, angle, |share| DARK + contrast * share)
 }
 
 /// The same edge as a camera takes it: its light is blurred, and stored as sRGB.
-pub fn lit_edge(width: usize, height: usize, angle: f64, contrast: f64) -> Gray {
+pub(super) fn lit_edge(width: usize, height: usize, angle: f64, contrast: f64) -> Gray {
     // All values lie above the linear part of the coding.
     let light = |v: f64| math::exp(2.4 * math::ln((v + 0.055) / 1.055));
     let stored = |l: f64| 1.055 * math::exp(math::ln(l) / 2.4) - 0.055;
@@ -40,7 +40,7 @@ fn blurred_edge(width: usize, height: usize, angle: f64, value: impl Fn(f64) -> 
 }
 
 /// Signed distance of a point from the edge of [`step_edge`], px, positive on the brighter side.
-pub fn distance_to_edge(gray: &Gray, angle: f64, point: &Point2<f64>) -> f64 {
+pub(super) fn distance_to_edge(gray: &Gray, angle: f64, point: &Point2<f64>) -> f64 {
     let (s, c) = crate::math::sin_cos(angle);
     // A little off the middle of the image: no symmetry that hides a shift.
     let centre = Point2::new(
@@ -52,7 +52,7 @@ pub fn distance_to_edge(gray: &Gray, angle: f64, point: &Point2<f64>) -> f64 {
 
 /// Adds white noise of standard deviation `sigma` (nearly normal: the sum of twelve uniform
 /// numbers).
-pub fn add_noise(gray: &mut Gray, sigma: f64, seed: u64) {
+pub(super) fn add_noise(gray: &mut Gray, sigma: f64, seed: u64) {
     let mut random = Xorshift(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) + 1);
     for value in &mut gray.data {
         let sum: f64 = (0..12).map(|_| random.uniform()).sum();
@@ -61,7 +61,7 @@ pub fn add_noise(gray: &mut Gray, sigma: f64, seed: u64) {
 }
 
 /// An edgel with a gradient of length one in noise of one half.
-pub fn edgel(x: f64, y: f64, gradient: (f32, f32)) -> Edgel {
+pub(super) fn edgel(x: f64, y: f64, gradient: (f32, f32)) -> Edgel {
     Edgel {
         position: Point2::new(x, y),
         gradient: Vector2::new(gradient.0, gradient.1),

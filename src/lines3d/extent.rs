@@ -10,7 +10,11 @@ use crate::sorting::sort_by;
 ///
 /// One view is enough, because the images of the others may end before; which places a support
 /// reaches, growing has decided. `None` without supports, or where one does not see the line.
-pub fn extent_of(scene: &Scene, line: &Segment3, supports: &[LineSupport]) -> Option<(f64, f64)> {
+pub(super) fn extent_of(
+    scene: &Scene,
+    line: &Segment3,
+    supports: &[LineSupport],
+) -> Option<(f64, f64)> {
     let mut union = (f64::INFINITY, f64::NEG_INFINITY);
     for support in supports {
         let image = ProjectedLine::new(scene.camera(support.view), line)?;
@@ -23,7 +27,7 @@ pub fn extent_of(scene: &Scene, line: &Segment3, supports: &[LineSupport]) -> Op
 }
 
 /// First and last place where two intervals overlap, from their starts (+1) and ends (-1).
-pub fn doubly_covered(mut ends: Vec<(f64, i32)>) -> Option<(f64, f64)> {
+pub(crate) fn doubly_covered(mut ends: Vec<(f64, i32)>) -> Option<(f64, f64)> {
     // At the same place an interval starts before another ends.
     sort_by(&mut ends, |a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
     let (mut covered, mut first, mut last) = (0, None, None);

@@ -77,7 +77,7 @@ pub(crate) struct WhitenedObservation {
 }
 
 impl WhitenedObservation {
-    pub fn new(o: &Observation, params: &Lines3dParams) -> Self {
+    pub(crate) fn new(o: &Observation, params: &Lines3dParams) -> Self {
         let length = o.segment.length().max(1.0);
         let floor = params.position_floor_px;
         let mut c = o.covariance;
@@ -98,7 +98,7 @@ impl WhitenedObservation {
     }
 
     /// Whitened (offset, angle) and its 4 x 2 transposed Jacobian; `None` behind the camera.
-    pub fn residual(
+    pub(crate) fn residual(
         &self,
         line: &Segment3,
         across: &[Vector3<f64>; 2],

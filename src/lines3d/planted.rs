@@ -10,7 +10,7 @@ use crate::raster::Gray;
 use crate::scene::{Scene, View};
 
 /// Height of the roof, metres; the ground is at zero.
-pub const ROOF_Z: f64 = 6.0;
+pub(crate) const ROOF_Z: f64 = 6.0;
 /// Half the roof in x and y, metres.
 const HALF: [f64; 2] = [7.0, 5.0];
 /// Half the width of the bar and half its length, metres.
@@ -130,18 +130,18 @@ const POSITIONS: [(f64, f64, f64); 5] = [
 ];
 
 /// The flat roof.
-pub fn scene() -> Scene {
+pub(crate) fn scene() -> Scene {
     scene_of(&POSITIONS, |camera| render(camera, Cover::Flat))
 }
 
 /// The same with a darker roof and on it a bright bar, [`bar`].
-pub fn scene_with_bar() -> Scene {
+pub(crate) fn scene_with_bar() -> Scene {
     scene_of(&POSITIONS, |camera| render(camera, Cover::Bar))
 }
 
 /// A gable roof with baselines three times as long: views 0 and 1 of one strip, 2 of another one
 /// flown in the opposite direction.
-pub fn gable() -> Scene {
+pub(crate) fn gable() -> Scene {
     let places = [
         (-120.0, -20.0, 0.0),
         (120.0, 20.0, 0.01),
@@ -151,23 +151,23 @@ pub fn gable() -> Scene {
 }
 
 /// The views of [`scene`] with black photographs.
-pub fn scene_without_photographs() -> Scene {
+pub(crate) fn scene_without_photographs() -> Scene {
     views_from(&POSITIONS)
 }
 
 /// Black photographs from these positions.
-pub fn views_from(places: &[(f64, f64, f64)]) -> Scene {
+pub(crate) fn views_from(places: &[(f64, f64, f64)]) -> Scene {
     scene_of(places, |_| Gray::new(SIZE as usize, SIZE as usize))
 }
 
 /// The bar's middle.
-pub fn bar() -> Segment3 {
+pub(crate) fn bar() -> Segment3 {
     let [start, end] = [-BAR_END, BAR_END].map(|y| Point3::new(0.0, y, ROOF_Z));
     Segment3::new(start, end)
 }
 
 /// The ridge of the gable, the brighter slope to its right as seen from above.
-pub fn ridge() -> Segment3 {
+pub(crate) fn ridge() -> Segment3 {
     let [start, end] = [-HALF[1], HALF[1]].map(|y| Point3::new(0.0, y, ROOF_Z));
     Segment3::new(start, end)
 }
@@ -192,14 +192,14 @@ fn scene_of(places: &[(f64, f64, f64)], photograph: impl Fn(&Camera) -> Gray) ->
 }
 
 /// The four edges of the roof, the roof to their right as seen from above.
-pub fn edges() -> [Segment3; 4] {
+pub(crate) fn edges() -> [Segment3; 4] {
     let [x, y] = HALF;
     let corners = [(-x, -y), (-x, y), (x, y), (x, -y)].map(|(x, y)| Point3::new(x, y, ROOF_Z));
     [0, 1, 2, 3].map(|i| Segment3::new(corners[i], corners[(i + 1) % 4]))
 }
 
 /// A detected segment, a twentieth of a pixel off.
-pub fn detected(segment: Segment2, index: usize) -> ImageSegment {
+pub(crate) fn detected(segment: Segment2, index: usize) -> ImageSegment {
     let off = segment.normal() * if index.is_multiple_of(2) { 0.05 } else { -0.05 };
     let segment = Segment2::new(segment.p0 + off, segment.p1 + off);
     let length = segment.length();
@@ -213,7 +213,7 @@ pub fn detected(segment: Segment2, index: usize) -> ImageSegment {
 }
 
 /// The part `from` to `to` of an edge in a view.
-pub fn part_of(scene: &Scene, view: usize, edge: usize, from: f64, to: f64) -> Segment2 {
+pub(crate) fn part_of(scene: &Scene, view: usize, edge: usize, from: f64, to: f64) -> Segment2 {
     let camera = &scene.views[view].camera;
     let at = |t| camera.project(&edges()[edge].at(t)).unwrap();
     Segment2::new(at(from), at(to))
@@ -221,7 +221,7 @@ pub fn part_of(scene: &Scene, view: usize, edge: usize, from: f64, to: f64) -> S
 
 /// The segments of a detector: each view's four edges in order, then distractors. In view 1 edge 0
 /// is broken in two, in view 2 it lacks its last third.
-pub fn segments(scene: &Scene) -> Vec<Vec<ImageSegment>> {
+pub(crate) fn segments(scene: &Scene) -> Vec<Vec<ImageSegment>> {
     (0..scene.views.len())
         .map(|view| {
             let mut found = Vec::new();

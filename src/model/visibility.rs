@@ -92,7 +92,7 @@ impl<'a> Occluders<'a> {
 }
 
 /// Is a plan position inside a ring (even-odd rule)?
-pub fn inside(ring: &[Point3<f64>], p: &Point2<f64>) -> bool {
+pub(crate) fn inside(ring: &[Point3<f64>], p: &Point2<f64>) -> bool {
     let next = ring.iter().cycle().skip(1);
     ring.iter().zip(next).fold(false, |odd, (a, b)| {
         let crosses =

@@ -59,7 +59,7 @@ impl ImageLine<'_> {
 }
 
 /// The lines of all views.
-pub fn image_lines<'a>(scene: &'a Scene, lines: &[Vec<RegionLine>]) -> Vec<ImageLine<'a>> {
+pub(super) fn image_lines<'a>(scene: &'a Scene, lines: &[Vec<RegionLine>]) -> Vec<ImageLine<'a>> {
     let of_view = |view: ViewId| {
         let camera = scene.camera(view);
         lines[view.index()]

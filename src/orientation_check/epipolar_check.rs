@@ -41,7 +41,7 @@ pub(crate) struct EpipolarCheck {
 }
 
 impl EpipolarCheck {
-    pub fn new(views: &[CheckedView]) -> Self {
+    pub(super) fn new(views: &[CheckedView]) -> Self {
         let factor = |v: &CheckedView| {
             let longest = v.camera.width.max(v.camera.height);
             ((longest + REDUCED_PX / 2) / REDUCED_PX).max(1) as usize
@@ -62,12 +62,12 @@ impl EpipolarCheck {
     }
 
     /// Agreement of the images under these cameras.
-    pub fn agreement(&self, cameras: &[Camera]) -> Agreement {
+    pub(super) fn agreement(&self, cameras: &[Camera]) -> Agreement {
         total_agreement(&self.counts(cameras, &self.pairs))
     }
 
     /// What is matched in each pair of views.
-    pub fn counts(&self, cameras: &[Camera], pairs: &[(usize, usize)]) -> Vec<MatchCount> {
+    pub(super) fn counts(&self, cameras: &[Camera], pairs: &[(usize, usize)]) -> Vec<MatchCount> {
         let reduced = self.reduced(cameras);
         let axis = mean_axis(cameras);
         parallel::map(pairs, |_, &(i, j)| {
@@ -81,7 +81,7 @@ impl EpipolarCheck {
     }
 
     /// The reduced images with these cameras.
-    pub fn reduced(&self, cameras: &[Camera]) -> Vec<ReducedView<'_>> {
+    pub(super) fn reduced(&self, cameras: &[Camera]) -> Vec<ReducedView<'_>> {
         (cameras.iter().zip(&self.grays))
             .zip(&self.factors)
             .map(|((camera, gray), &factor)| ReducedView {
@@ -92,7 +92,7 @@ impl EpipolarCheck {
     }
 
     /// Views that agree with no other one, although those agree among themselves.
-    pub fn outlier_views(&self, counts: &[MatchCount]) -> Vec<usize> {
+    pub(super) fn outlier_views(&self, counts: &[MatchCount]) -> Vec<usize> {
         let of_pairs = |is_meant: &dyn Fn(usize, usize) -> bool| {
             let pairs = self.pairs.iter().zip(counts);
             let meant = pairs.filter(|((i, j), _)| is_meant(*i, *j));

@@ -22,7 +22,7 @@ pub(crate) struct HypothesisSearch {
 impl HypothesisSearch {
     /// Searches the hypothesis under which the views agree best. `outliers` are views that agree
     /// with no other one, `stated` is the agreement under the cameras as stated.
-    pub fn run(
+    pub(super) fn run(
         check: &EpipolarCheck,
         views: &[CheckedView],
         outliers: &[usize],

@@ -50,7 +50,7 @@ pub(crate) struct ShiftAdjustment<'a> {
 impl<'a> ShiftAdjustment<'a> {
     /// One track for each interest point, its own position first; points whose rays do not meet are
     /// left out. `None` where the redundancy is too small.
-    pub fn new(
+    pub(super) fn new(
         check: &EpipolarCheck,
         matches: &[Vec<PointMatch>],
         cameras: &'a [Camera],
@@ -82,7 +82,7 @@ impl<'a> ShiftAdjustment<'a> {
 
     /// Frees views one by one, as long as each reduces the cost by much: free views are the
     /// exception.
-    pub fn free_views(&self) -> ShiftSolution {
+    pub(super) fn free_views(&self) -> ShiftSolution {
         let mut best = ShiftSolution::none(self);
         let before = self.residuals(&best.shifts);
         while 2 * (best.free.len() + 1) <= self.cameras.len() {
@@ -99,7 +99,7 @@ impl<'a> ShiftAdjustment<'a> {
     }
 
     /// Lengths of the residuals of each view under these shifts, pixels.
-    pub fn residuals(&self, shifts: &[Vector2<f64>]) -> Vec<Vec<f64>> {
+    pub(super) fn residuals(&self, shifts: &[Vector2<f64>]) -> Vec<Vec<f64>> {
         let mut lengths = vec![Vec::new(); self.cameras.len()];
         for track in &self.tracks {
             let Some(world) = self.triangulate(track, shifts) else {

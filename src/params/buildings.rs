@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::readable;
+use crate::plain_json::readable;
 
 readable! {
 /// B99 section 2 (the contribution of Leuven): regularisation, and refinement by the reprojection

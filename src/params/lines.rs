@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::readable;
+use crate::plain_json::readable;
 
 readable! {
 /// B99 3.2: segments.

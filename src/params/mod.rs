@@ -15,8 +15,8 @@ pub use self::planes::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::plain_json::readable;
 use crate::plain_json::{Problem, Readable, read_name};
-use crate::readable;
 
 readable! {
 /// The parameters of a whole run. Missing fields of a JSON file take their defaults.
@@ -62,6 +62,16 @@ impl Readable for Method {
         Ok(())
     }
 }
+impl Params {
+    /// From JSON; what it leaves out is as by default.
+    ///
+    /// # Errors
+    /// The name of what is no parameter, or has no such value.
+    pub fn from_json(text: &str) -> Result<Self, impl std::error::Error + use<>> {
+        crate::plain_json::read(text)
+    }
+}
+
 impl Method {
     /// The name in files, on the command line and on the page.
     pub fn name(self) -> &'static str {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::readable;
+use crate::plain_json::readable;
 
 readable! {
 /// W96: the object-space method.

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::plain_json::readable;
 use crate::plain_json::{Problem, Readable, read_name};
-use crate::readable;
 
 use super::RefineParams;
 

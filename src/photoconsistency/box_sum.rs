@@ -7,18 +7,18 @@ use super::plan_grid::PlanGrid;
 
 /// Half the window side in cells: 11 x 11, a little smaller than the paper's 15 x 15, since its
 /// windows lie along lines and these must not reach far over the borders of small facets.
-pub const HALF_WINDOW: usize = 5;
+pub(crate) const HALF_WINDOW: usize = 5;
 /// Side of a window, cells.
-pub const WINDOW: usize = 2 * HALF_WINDOW + 1;
+pub(crate) const WINDOW: usize = 2 * HALF_WINDOW + 1;
 /// Cells of a window.
-pub const WINDOW_CELLS: f32 = (WINDOW * WINDOW) as f32;
+pub(crate) const WINDOW_CELLS: f32 = (WINDOW * WINDOW) as f32;
 
 /// Rows of a window, and the one that leaves it.
 const KEPT_ROWS: usize = 2 * HALF_WINDOW + 2;
 
 /// Sum over the window around every cell, along rows and then along columns; windows that stick out
 /// of the grid are cut off.
-pub struct BoxSum {
+pub(crate) struct BoxSum {
     width: usize,
     height: usize,
     /// Sums along the last rows that entered, row y at y modulo [`KEPT_ROWS`].
@@ -33,7 +33,7 @@ pub struct BoxSum {
 
 impl BoxSum {
     /// Above the first row.
-    pub fn new(grid: &PlanGrid) -> Self {
+    pub(crate) fn new(grid: &PlanGrid) -> Self {
         Self {
             width: grid.width,
             height: grid.height,
@@ -45,7 +45,7 @@ impl BoxSum {
     }
 
     /// The sums around the cells of the next row; `fill` writes the values of a row of the grid.
-    pub fn next_row(
+    pub(crate) fn next_row(
         &mut self,
         line: &mut RowSum,
         mut fill: impl FnMut(usize, &mut [f32]),
@@ -73,7 +73,7 @@ impl BoxSum {
 
 /// Sums of 11 neighbours in a row, by doubling: 2, 4, 8, 8 + 2 + 1. No sum waits for the one before
 /// it, so the compiler adds many at once.
-pub struct RowSum {
+pub(crate) struct RowSum {
     padded: Vec<f32>,
     two: Vec<f32>,
     four: Vec<f32>,
@@ -81,7 +81,7 @@ pub struct RowSum {
 
 impl RowSum {
     /// For rows of `width` cells.
-    pub fn new(width: usize) -> Self {
+    pub(crate) fn new(width: usize) -> Self {
         let n = width + 2 * HALF_WINDOW;
         Self {
             padded: vec![0.0; n],

@@ -11,7 +11,7 @@ pub(crate) const MAX_VIEWS: usize = 6;
 
 /// How well the views agree on a plane, at every cell of a plan grid.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct ConsistencyMap {
+pub(crate) struct ConsistencyMap {
     /// The window of the plan.
     pub grid: PlanGrid,
     /// Correlation in steps of 1 / 127. A scene has hundreds of maps: a byte a value keeps them
@@ -28,7 +28,7 @@ pub struct ConsistencyMap {
 impl ConsistencyMap {
     /// Mean of the better half of the pairwise correlations at cell `k` (row by row), -1 to 1; 0
     /// where the weight is 0.
-    pub fn correlation(&self, k: usize) -> f32 {
+    pub(crate) fn correlation(&self, k: usize) -> f32 {
         f32::from(self.correlation[k]) / 127.0
     }
 
@@ -55,18 +55,18 @@ impl ConsistencyMap {
 
     /// Mean of all pairwise correlations, whatever stands in front of the cell in some of the
     /// views.
-    pub fn overall(&self, k: usize) -> f32 {
+    pub(crate) fn overall(&self, k: usize) -> f32 {
         f32::from(self.overall[k]) / 127.0
     }
 
     /// Texture weight of the window at cell `k`, 0 to 1; 0 where fewer than two views see the
     /// window.
-    pub fn weight(&self, k: usize) -> f32 {
+    pub(crate) fn weight(&self, k: usize) -> f32 {
         f32::from(self.weight[k]) / 255.0
     }
 
     /// The same from the median of the views, which an occluder in some of them does not change.
-    pub fn common_weight(&self, k: usize) -> f32 {
+    pub(crate) fn common_weight(&self, k: usize) -> f32 {
         f32::from(self.common_weight[k]) / 255.0
     }
 }
@@ -80,12 +80,12 @@ const CHANCE_OVERALL: f64 = 0.2;
 
 /// Correlation at which a plane is as good as no plane, for a texture `weight`: `textured` where
 /// the texture is strong, chance where there is none.
-pub fn least_correlation(weight: f64, textured: f64) -> f64 {
+pub(crate) fn least_correlation(weight: f64, textured: f64) -> f64 {
     CHANCE + (textured - CHANCE) * weight
 }
 
 /// The same for [`ConsistencyMap::overall`].
-pub fn least_overall(weight: f64, textured: f64) -> f64 {
+pub(crate) fn least_overall(weight: f64, textured: f64) -> f64 {
     CHANCE_OVERALL + (textured - CHANCE_OVERALL) * weight
 }
 

@@ -41,7 +41,7 @@ pub(crate) struct LineSideStrip {
 impl LineSideStrip {
     /// The strip of a line side in a view: as long as the projected line, as deep as `params` say.
     /// `None` when the line is not wholly in the view or too short there.
-    pub fn new(
+    pub(crate) fn new(
         camera: &Camera,
         line: &Segment3,
         frame: &ThetaFrame,
@@ -78,7 +78,7 @@ impl LineSideStrip {
     }
 
     /// `image_from_strip`: pixel (column, row) has its centre at (column + 0.5, row + 0.5).
-    pub fn image_from_strip(&self) -> Matrix3<f64> {
+    pub(crate) fn image_from_strip(&self) -> Matrix3<f64> {
         let start = self.origin + self.across * self.margin_px;
         Matrix3::new(
             self.along.x,
@@ -94,7 +94,7 @@ impl LineSideStrip {
     }
 
     /// Column and row of the pixel that holds an image point; `None` outside the strip.
-    pub fn pixel_of(&self, image: &Point2<f64>) -> Option<(usize, usize)> {
+    pub(crate) fn pixel_of(&self, image: &Point2<f64>) -> Option<(usize, usize)> {
         let offset = image - self.origin;
         let (u, v) = (
             offset.dot(&self.along),
@@ -105,12 +105,12 @@ impl LineSideStrip {
     }
 
     /// Distance in pixels of a row's centre from the line.
-    pub fn distance_px(&self, row: usize) -> f64 {
+    pub(crate) fn distance_px(&self, row: usize) -> f64 {
         self.margin_px + row as f64 + 0.5
     }
 
     /// Bounding box in the image: least and greatest coordinates.
-    pub fn bounds(&self) -> [Point2<f64>; 2] {
+    pub(crate) fn bounds(&self) -> [Point2<f64>; 2] {
         let corners = corners(
             &self.image_from_strip(),
             [0.0, 0.0],
@@ -121,7 +121,7 @@ impl LineSideStrip {
     }
 
     /// The same strip without the rows from `rows` on.
-    pub fn truncated(mut self, rows: usize) -> Self {
+    pub(crate) fn truncated(mut self, rows: usize) -> Self {
         self.rows = self.rows.min(rows);
         self
     }
@@ -144,7 +144,12 @@ pub(crate) struct StripPatch {
 impl StripPatch {
     /// Fills the patch with the bilinear values of `image` under `image_from_strip`, which must
     /// keep the whole strip in front of the camera. Positions outside the image take its border.
-    pub fn warp(&mut self, image: &Gray, strip: &LineSideStrip, image_from_strip: &Matrix3<f64>) {
+    pub(crate) fn warp(
+        &mut self,
+        image: &Gray,
+        strip: &LineSideStrip,
+        image_from_strip: &Matrix3<f64>,
+    ) {
         self.columns = strip.columns;
         self.rows = strip.rows;
         self.stride = strip.columns.next_multiple_of(8);
@@ -161,7 +166,7 @@ impl StripPatch {
     }
 
     /// One row with its padding.
-    pub fn row(&self, row: usize) -> &[f32] {
+    pub(crate) fn row(&self, row: usize) -> &[f32] {
         &self.data[row * self.stride..(row + 1) * self.stride]
     }
 }

@@ -28,10 +28,10 @@ mod shiftable_windows;
 mod windows;
 
 pub(crate) use box_sum::{BoxSum, HALF_WINDOW, RowSum, WINDOW, WINDOW_CELLS};
-pub use consistency_map::ConsistencyMap;
+pub(crate) use consistency_map::ConsistencyMap;
 pub(crate) use consistency_map::{least_correlation, least_overall};
 pub(crate) use line_side_strip::{LineSideStrip, StripPatch};
-pub use plan_grid::{PlanGrid, image_from_plan, orthophoto};
-pub use plane_consistency::{consistency_map, consistency_map_behind};
+pub(crate) use plan_grid::{PlanGrid, orthophoto};
+pub(crate) use plane_consistency::{consistency_map, consistency_map_behind};
 pub(crate) use shiftable_windows::ShiftableWindows;
 pub(crate) use windows::CorrelationWindows;

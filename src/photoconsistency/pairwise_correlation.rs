@@ -14,7 +14,7 @@ use crate::math::larger;
 /// Compares orthophotos on `grid` (row by row, NaN where a view does not reach), at most
 /// [`MAX_VIEWS`]; `residual_variance` is the variance by which the grey values of the views differ
 /// at random.
-pub fn correlate_views(
+pub(super) fn correlate_views(
     photos: impl Iterator<Item = Vec<f32>>,
     residual_variance: f32,
     grid: &PlanGrid,

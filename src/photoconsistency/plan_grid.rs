@@ -10,7 +10,7 @@ use crate::raster::{Gray, Outside, Warp};
 /// A window of plan positions; the centre of cell (column, row) is `origin + (column + 0.5, row +
 /// 0.5) step`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PlanGrid {
+pub(crate) struct PlanGrid {
     /// Least x and y, metres.
     pub origin: Point2<f64>,
     /// Cell size, metres.
@@ -24,7 +24,7 @@ pub struct PlanGrid {
 impl PlanGrid {
     /// The grid that covers a box, aligned to multiples of `step` so that windows of one scene
     /// share cells.
-    pub fn covering(min: Point2<f64>, max: Point2<f64>, step: f64) -> Self {
+    pub(crate) fn covering(min: Point2<f64>, max: Point2<f64>, step: f64) -> Self {
         let (c0, r0) = ((min.x / step).floor(), (min.y / step).floor());
         let (c1, r1) = ((max.x / step).ceil(), (max.y / step).ceil());
         Self {
@@ -36,12 +36,12 @@ impl PlanGrid {
     }
 
     /// Centre of a cell, metres.
-    pub fn center(&self, column: usize, row: usize) -> Point2<f64> {
+    pub(crate) fn center(&self, column: usize, row: usize) -> Point2<f64> {
         self.origin + nalgebra::Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * self.step
     }
 
     /// The cell that holds a plan position, when it is inside.
-    pub fn cell(&self, p: &Point2<f64>) -> Option<(usize, usize)> {
+    pub(crate) fn cell(&self, p: &Point2<f64>) -> Option<(usize, usize)> {
         let (c, r) = (
             (p.x - self.origin.x) / self.step,
             (p.y - self.origin.y) / self.step,
@@ -51,7 +51,7 @@ impl PlanGrid {
     }
 
     /// Column and row of this window's first cell in `larger`, which has the same step.
-    pub fn offset_in(&self, larger: &PlanGrid) -> (isize, isize) {
+    pub(crate) fn offset_in(&self, larger: &PlanGrid) -> (isize, isize) {
         let d = (self.origin - larger.origin) / self.step;
         (d.x.round() as isize, d.y.round() as isize)
     }
@@ -60,7 +60,7 @@ impl PlanGrid {
 /// The map from plan positions (x, y, 1) on a plane to the image of a camera: 3 x 3.
 ///
 /// A point of the plane is (x, y, z(x, y)) with z linear, so its image is a homography of (x, y).
-pub fn image_from_plan(camera: &Camera, plane: &Plane) -> Matrix3<f64> {
+pub(crate) fn image_from_plan(camera: &Camera, plane: &Plane) -> Matrix3<f64> {
     let p = camera.projection_matrix();
     let n = plane.normal;
     let lift = nalgebra::Matrix4x3::new(
@@ -83,7 +83,7 @@ pub fn image_from_plan(camera: &Camera, plane: &Plane) -> Matrix3<f64> {
 /// The image seen from straight above under the hypothesis that the surface is `plane`: grey values
 /// on the grid, NaN where the image does not reach, or everywhere when the plane rises to the
 /// camera within the grid.
-pub fn orthophoto(gray: &Gray, camera: &Camera, plane: &Plane, grid: &PlanGrid) -> Vec<f32> {
+pub(crate) fn orthophoto(gray: &Gray, camera: &Camera, plane: &Plane, grid: &PlanGrid) -> Vec<f32> {
     let plan_from_grid = Matrix3::new(
         grid.step,
         0.0,

@@ -30,7 +30,7 @@ use crate::scene::Scene;
 const RESIDUAL_NOISE: f64 = 1.25;
 
 /// Compares all views on `plane` over `grid`.
-pub fn consistency_map(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> ConsistencyMap {
+pub(crate) fn consistency_map(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> ConsistencyMap {
     let views = views_of_plane(scene, plane, grid);
     let photo = |&v: &ViewId| orthophoto(&scene.view(v).gray, scene.camera(v), plane, grid);
     correlate_views(
@@ -42,7 +42,7 @@ pub fn consistency_map(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> Consist
 
 /// The same with known occluders: `hidden` tells whether a point of the plane is occluded in a
 /// view.
-pub fn consistency_map_behind(
+pub(crate) fn consistency_map_behind(
     scene: &Scene,
     plane: &Plane,
     grid: &PlanGrid,

@@ -24,7 +24,7 @@ const EDGE_SHARE: f64 = 0.6;
 const STAYS: u8 = (HALF_WINDOW * WINDOW + HALF_WINDOW) as u8;
 
 /// For every cell of a plan grid the nearest window that holds it and no line.
-pub struct ShiftableWindows {
+pub(crate) struct ShiftableWindows {
     grid: PlanGrid,
     /// Row by row: `(dy + 5) * 11 + dx + 5` for a window whose middle is dx columns and dy rows
     /// away.
@@ -33,7 +33,7 @@ pub struct ShiftableWindows {
 
 /// Correlation and texture weight of the window that supports a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WindowEvidence {
+pub(crate) struct WindowEvidence {
     /// Texture weight, 0 to 1; 0 where fewer than two views see it.
     pub weight: f64,
     /// How well the views agree, -1 to 1.
@@ -53,14 +53,14 @@ impl WindowEvidence {
     }
 
     /// Its evidence for the plane; negative against it.
-    pub fn gain(&self) -> f64 {
+    pub(crate) fn gain(&self) -> f64 {
         self.weight * (self.correlation - self.least)
     }
 }
 
 impl ShiftableWindows {
     /// The windows of `grid` beside the lines, in plan.
-    pub fn new(lines: impl IntoIterator<Item = Segment3>, grid: &PlanGrid) -> Self {
+    pub(crate) fn new(lines: impl IntoIterator<Item = Segment3>, grid: &PlanGrid) -> Self {
         let on_line = cells_on(lines, grid);
         let mut windows = Self {
             grid: *grid,
@@ -72,7 +72,7 @@ impl ShiftableWindows {
     }
 
     /// The window evidence at a cell of `map`; `min_correlation` is what strong texture must reach.
-    pub fn evidence_at(
+    pub(crate) fn evidence_at(
         &self,
         map: &ConsistencyMap,
         [column, row]: [usize; 2],

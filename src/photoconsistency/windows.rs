@@ -65,7 +65,7 @@ const MAX_HALF: usize = 7;
 impl CorrelationWindows {
     /// Windows of `window_px` (odd, at most 15) around pixels (column, row), which must be ordered
     /// by row; those without texture are left out.
-    pub fn new(reference: StripPatch, window_px: usize, pixels: &[(usize, usize)]) -> Self {
+    pub(crate) fn new(reference: StripPatch, window_px: usize, pixels: &[(usize, usize)]) -> Self {
         let half = (window_px / 2).min(MAX_HALF);
         let mut windows = Self {
             columns: ColumnSums::new(reference.stride),
@@ -83,7 +83,7 @@ impl CorrelationWindows {
 
     /// `Cor` of every site with the same window of `warped`, -1 to 1, in the order of the sites; 0
     /// where `warped` has no texture.
-    pub fn correlate(&mut self, warped: &StripPatch, correlations: &mut Vec<f64>) {
+    pub(crate) fn correlate(&mut self, warped: &StripPatch, correlations: &mut Vec<f64>) {
         correlations.clear();
         self.powers.clear();
         self.columns.clear();
@@ -140,7 +140,7 @@ impl CorrelationWindows {
 
 impl Site {
     /// Standard deviation of the window in the reference, grey values 0 to 1.
-    pub fn contrast(&self) -> f64 {
+    pub(crate) fn contrast(&self) -> f64 {
         self.scatter.sqrt() / self.count / UNITS
     }
 

@@ -17,7 +17,7 @@ use crate::photoconsistency::{
 use crate::scene::Scene;
 
 /// A plane with its evidence.
-pub struct PlaneHypothesis {
+pub(crate) struct PlaneHypothesis {
     /// Lines, half-planes and plane.
     pub group: PlaneGroup,
     /// The part of the plan that it may cover.
@@ -32,7 +32,7 @@ pub struct PlaneHypothesis {
 
 /// Compares the views (in `reduced`, whose pixels are about `step` wide) on every group's plane;
 /// planes of two lines that the images contradict beside their own lines are dropped.
-pub fn plane_hypotheses(
+pub(crate) fn plane_hypotheses(
     scene: &Scene,
     reduced: &Scene,
     segments: &[Vec<ImageSegment>],

@@ -7,15 +7,15 @@ use crate::lines3d::Side;
 use crate::photoconsistency::{ConsistencyMap, PlanGrid};
 
 /// Distance from a line at which its sides are sampled, cells: farther than half a window.
-pub const NEXT_TO: f64 = 8.0;
+pub(super) const NEXT_TO: f64 = 8.0;
 /// Correlation and texture weight from which on a position clearly shows the plane's surface.
-pub const ON_SURFACE: f32 = 0.65;
+pub(crate) const ON_SURFACE: f32 = 0.65;
 /// See [`ON_SURFACE`].
-pub const TEXTURED: f32 = 0.3;
+pub(crate) const TEXTURED: f32 = 0.3;
 
 /// Does the plane's surface clearly continue on both sides of the line? Rows of tiles do that,
 /// borders do not.
-pub fn crosses_surface(map: &ConsistencyMap, line: &Segment3) -> bool {
+pub(crate) fn crosses_surface(map: &ConsistencyMap, line: &Segment3) -> bool {
     [Side::Left, Side::Right].into_iter().all(|side| {
         let seen = beside(map, line, side, NEXT_TO);
         let on = seen
@@ -27,7 +27,7 @@ pub fn crosses_surface(map: &ConsistencyMap, line: &Segment3) -> bool {
 }
 
 /// Horizontal unit vector across a line to a side.
-pub fn across(line: &Segment3, side: Side) -> Vector2<f64> {
+pub(super) fn across(line: &Segment3, side: Side) -> Vector2<f64> {
     let d = line.direction().xy().normalize();
     match side {
         Side::Left => Vector2::new(-d.y, d.x),
@@ -36,14 +36,19 @@ pub fn across(line: &Segment3, side: Side) -> Vector2<f64> {
 }
 
 /// Correlation and weight at positions beside a line, some cells away from it.
-pub fn beside(map: &ConsistencyMap, line: &Segment3, side: Side, cells: f64) -> Vec<(f32, f32)> {
+pub(super) fn beside(
+    map: &ConsistencyMap,
+    line: &Segment3,
+    side: Side,
+    cells: f64,
+) -> Vec<(f32, f32)> {
     places_beside(&map.grid, line, side, cells)
         .map(|k| (map.correlation(k), map.weight(k)))
         .collect()
 }
 
 /// Positions of a grid (row by row) beside a line, some cells away from it.
-pub fn places_beside(
+pub(super) fn places_beside(
     grid: &PlanGrid,
     line: &Segment3,
     side: Side,

@@ -59,10 +59,10 @@ impl CastSegment {
 }
 
 /// Rays through the ends of every view's segments.
-pub type EndRays = Vec<Vec<[Vector3<f64>; 2]>>;
+pub(crate) type EndRays = Vec<Vec<[Vector3<f64>; 2]>>;
 
 /// The rays through the ends of the segments, which every plane is cut by.
-pub fn rays_through_ends(scene: &Scene, segments: &[Vec<ImageSegment>]) -> EndRays {
+pub(crate) fn rays_through_ends(scene: &Scene, segments: &[Vec<ImageSegment>]) -> EndRays {
     let of_view = |(view, list): (ViewId, &Vec<ImageSegment>)| {
         let camera = scene.camera(view);
         let rays = |s: &ImageSegment| [&s.segment.p0, &s.segment.p1].map(|p| camera.ray(p));
@@ -74,7 +74,7 @@ pub fn rays_through_ends(scene: &Scene, segments: &[Vec<ImageSegment>]) -> EndRa
 /// The lines in `plane` over `region` that at least three views show, or two where no more than
 /// three have the place in their image, or one view only, if the surface `ends_at` such a line;
 /// `rays` are those through the ends of all segments.
-pub fn lines_in_plane(
+pub(crate) fn lines_in_plane(
     scene: &Scene,
     rays: &EndRays,
     plane: &Plane,

@@ -40,7 +40,7 @@ const CLEAR_CHANGE: f64 = 0.4;
 
 /// Single-view evidence that the surface continues, for every position of a plane's window.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct SingleViewEvidence {
+pub(crate) struct SingleViewEvidence {
     /// In steps of 1 / 127, row by row; 0 where not exactly one view sees the position, empty if
     /// nowhere.
     values: Vec<i8>,
@@ -49,7 +49,7 @@ pub struct SingleViewEvidence {
 impl SingleViewEvidence {
     /// The same everywhere.
     #[cfg(test)]
-    pub fn everywhere(cells: usize, value: i8) -> Self {
+    pub(crate) fn everywhere(cells: usize, value: i8) -> Self {
         Self {
             values: vec![value; cells],
         }
@@ -57,13 +57,13 @@ impl SingleViewEvidence {
 
     /// The evidence at a position of the window (row by row), from -1, another surface, to 1; 0
     /// where not exactly one view sees it.
-    pub fn at(&self, k: usize) -> f64 {
+    pub(crate) fn at(&self, k: usize) -> f64 {
         self.values.get(k).map_or(0.0, |s| f64::from(*s) / 127.0)
     }
 
     /// Does the surface end at an edge: is it on one side, where several views may see it, and not
     /// on the other?
-    pub fn ends_at(&self, map: &ConsistencyMap, edge: &Segment3) -> bool {
+    pub(crate) fn ends_at(&self, map: &ConsistencyMap, edge: &Segment3) -> bool {
         let [left, right] = [Side::Left, Side::Right].map(|side| {
             let places = places_beside(&map.grid, edge, side, HALF_WINDOW as f64 + 2.0);
             let count = places.clone().count().max(1) as f64;
@@ -86,7 +86,7 @@ impl SingleViewEvidence {
 
 /// The evidence of every view where it is the only one, by the surface's appearance in it where
 /// `map` shows that several views are consistent with the plane.
-pub fn single_view_evidence(
+pub(crate) fn single_view_evidence(
     scene: &Scene,
     plane: &Plane,
     region: &PlanRegion,

@@ -5,7 +5,12 @@ use nalgebra::Point2;
 
 /// Sets the pixels of a mask (`width * height`) whose centres lie inside the rings (even-odd).
 /// Positions are in pixels, y down, pixel (0, 0) has its centre at (0.5, 0.5).
-pub fn mark_inside(rings: &[Vec<Point2<f64>>], width: usize, height: usize, mask: &mut [bool]) {
+pub(crate) fn mark_inside(
+    rings: &[Vec<Point2<f64>>],
+    width: usize,
+    height: usize,
+    mask: &mut [bool],
+) {
     let ys = rings.iter().flatten().map(|p| p.y);
     let (low, high) = ys.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
     let first = (low - 0.5).ceil().max(0.0) as usize;
@@ -35,7 +40,7 @@ pub fn mark_inside(rings: &[Vec<Point2<f64>>], width: usize, height: usize, mask
 
 /// Fills the pixels that are not `known` with smooth colours from the known ones around them
 /// (push-pull pyramid, Gortler et al. 1996). Without any known pixel nothing changes.
-pub fn fill_gaps(colours: &mut [[f32; 3]], known: &[bool], width: usize, height: usize) {
+pub(crate) fn fill_gaps(colours: &mut [[f32; 3]], known: &[bool], width: usize, height: usize) {
     if known.iter().all(|&k| k) || !known.contains(&true) {
         return;
     }

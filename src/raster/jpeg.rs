@@ -11,7 +11,7 @@ use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
 /// A JPEG whose header has been read.
-pub struct Jpeg {
+pub(super) struct Jpeg {
     decoder: JpegDecoder<ZCursor<Vec<u8>>>,
     width: u32,
     height: u32,
@@ -20,7 +20,7 @@ pub struct Jpeg {
 
 impl Jpeg {
     /// Reads the header.
-    pub fn new(bytes: &[u8]) -> ImageResult<Self> {
+    pub(super) fn new(bytes: &[u8]) -> ImageResult<Self> {
         let options = DecoderOptions::default()
             .set_strict_mode(false)
             .set_max_width(usize::MAX)

@@ -25,7 +25,7 @@ pub(crate) enum Values {
 
 impl Samples {
     /// From what a decoder wrote; `None` for floating-point values.
-    pub fn from_bytes(
+    pub(super) fn from_bytes(
         (width, height): (u32, u32),
         color: ColorType,
         bytes: Vec<u8>,
@@ -49,7 +49,7 @@ impl Samples {
     }
 
     /// The window at column, row of this width and height; it must lie inside.
-    pub fn crop(&self, window: PixelWindow) -> Self {
+    pub(super) fn crop(&self, window: PixelWindow) -> Self {
         let [_, _, width, height] = window;
         let (across, channels) = (self.width as usize, self.channels);
         let values = match &self.values {
@@ -65,7 +65,7 @@ impl Samples {
     }
 
     /// The brightest value, of whichever colour, of samples of 16 bits; 0 for others.
-    pub fn brightest(&self) -> u16 {
+    pub(super) fn brightest(&self) -> u16 {
         match &self.values {
             Values::Eight(_) => 0,
             Values::Sixteen(values) => brightest(values, self.channels),
@@ -73,7 +73,7 @@ impl Samples {
     }
 
     /// Colours and grey values; `brightest` is that of the whole image, where it has 16 bits.
-    pub fn photograph(self, brightest: u16) -> Photograph {
+    pub(super) fn photograph(self, brightest: u16) -> Photograph {
         let (width, height, channels) = (self.width, self.height, self.channels);
         match self.values {
             Values::Eight(values) => {

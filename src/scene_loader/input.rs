@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::readable;
+use crate::plain_json::readable;
 
 readable! {
 /// What the user asks for beyond the files.

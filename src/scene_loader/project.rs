@@ -20,7 +20,7 @@ use crate::error::{Error, Result};
 use crate::orientation::{FileKind, InputFile, detect};
 use crate::params::Params;
 use crate::plain_json;
-use crate::readable;
+use crate::plain_json::readable;
 
 /// Name of the file by which an archive is a project.
 const PROJECT_FILE: &str = "project.json";

@@ -21,7 +21,7 @@ use crate::sorting::sort_by;
 const STRAIGHT_M: f64 = 1e-5;
 
 /// Makes the shell a closed oriented 2-manifold. `None` when its faces do not close.
-pub fn close_shell(shell: &Shell) -> Option<Shell> {
+pub(super) fn close_shell(shell: &Shell) -> Option<Shell> {
     let mut closed = merge_walls(separate(shell)?)?;
     while drop_straight_corners(&mut closed) {}
     drop_unused_corners(&mut closed);

@@ -32,7 +32,7 @@ const MAX_GRADIENT: f64 = 10.0;
 
 /// A facet in the partition.
 #[derive(Clone, Debug)]
-pub struct PlanFacet {
+pub(super) struct PlanFacet {
     /// Which input facet it is (a part of).
     pub source: usize,
     /// Its plane.
@@ -53,7 +53,7 @@ impl PlanFacet {
 
 /// A partition of the plan into facets.
 #[derive(Clone, Debug, Default)]
-pub struct PlanPartition {
+pub(super) struct PlanPartition {
     /// Plan vertices, metres; no two closer than [`WELD_M`].
     pub positions: Vec<Point2<f64>>,
     /// The facets, in the order of the input.
@@ -62,7 +62,7 @@ pub struct PlanPartition {
 
 impl PlanPartition {
     /// Builds the partition; also gives the facets that had to go, with the reason.
-    pub fn new(facets: &[Facet]) -> (Self, Vec<(usize, SolidRejection)>) {
+    pub(super) fn new(facets: &[Facet]) -> (Self, Vec<(usize, SolidRejection)>) {
         /// Welding moves edges by up to [`WELD_M`], so that some cross again; cutting those twice
         /// is enough.
         const ROUNDS: usize = 3;
@@ -133,7 +133,7 @@ impl PlanPartition {
     }
 
     /// For every directed edge the facet on its left.
-    pub fn facet_left_of(&self) -> BTreeMap<(u32, u32), usize> {
+    pub(super) fn facet_left_of(&self) -> BTreeMap<(u32, u32), usize> {
         let mut left_of = BTreeMap::new();
         for (i, facet) in self.facets.iter().enumerate() {
             let edges = facet.region.iter().flat_map(|r| ring_edges(r));
@@ -144,14 +144,14 @@ impl PlanPartition {
     }
 
     /// Height of a facet at a plan vertex, metres.
-    pub fn height(&self, facet: usize, vertex: u32) -> f64 {
+    pub(super) fn height(&self, facet: usize, vertex: u32) -> f64 {
         let p = self.positions[vertex as usize];
         self.facets[facet].plane.z_at(p.x, p.y)
     }
 
     /// Heights at a vertex that differ by no more than this are the same, metres: what moving a
     /// plan position by [`WELD_M`] changes between two of the facets that meet there.
-    pub fn height_tolerances(&self) -> Vec<f64> {
+    pub(super) fn height_tolerances(&self) -> Vec<f64> {
         let mut steepest = vec![0.0f64; self.positions.len()];
         for facet in &self.facets {
             let gradient = gradient(&facet.plane);

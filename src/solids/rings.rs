@@ -13,11 +13,14 @@ use crate::math;
 
 /// A connected region: the outer ring (counter-clockwise), then its holes (clockwise), as indices
 /// of plan vertices.
-pub type PlanRegion = Vec<Vec<u32>>;
+pub(super) type PlanRegion = Vec<Vec<u32>>;
 
 /// The regions to the left of `edges`. Edges that occur in both directions cancel; edges that
 /// close no ring, and holes outside every region, are left out.
-pub fn regions_from_edges(edges: &[(u32, u32)], positions: &[Point2<f64>]) -> Vec<PlanRegion> {
+pub(super) fn regions_from_edges(
+    edges: &[(u32, u32)],
+    positions: &[Point2<f64>],
+) -> Vec<PlanRegion> {
     let mut net: BTreeMap<(u32, u32), i32> = BTreeMap::new();
     for &(a, b) in edges {
         *net.entry((a, b)).or_default() += 1;
@@ -38,7 +41,7 @@ pub fn regions_from_edges(edges: &[(u32, u32)], positions: &[Point2<f64>]) -> Ve
 }
 
 /// Twice the signed area of a ring, m^2: positive when it runs counter-clockwise.
-pub fn doubled_area(ring: &[u32], positions: &[Point2<f64>]) -> f64 {
+pub(super) fn doubled_area(ring: &[u32], positions: &[Point2<f64>]) -> f64 {
     let at = |i: usize| positions[ring[i % ring.len()] as usize];
     let origin = at(0);
     (1..ring.len()).fold(0.0, |sum, i| {
@@ -48,7 +51,7 @@ pub fn doubled_area(ring: &[u32], positions: &[Point2<f64>]) -> f64 {
 }
 
 /// The directed edges of a closed ring.
-pub fn ring_edges(ring: &[u32]) -> impl Iterator<Item = (u32, u32)> + '_ {
+pub(super) fn ring_edges(ring: &[u32]) -> impl Iterator<Item = (u32, u32)> + '_ {
     (0..ring.len()).map(|i| (ring[i], ring[(i + 1) % ring.len()]))
 }
 
@@ -102,7 +105,7 @@ fn angle(a: u32, b: u32, positions: &[Point2<f64>]) -> f64 {
 }
 
 /// Counter-clockwise turn from one azimuth to another, in (0, 2 pi].
-pub fn turn(from: f64, to: f64) -> f64 {
+pub(super) fn turn(from: f64, to: f64) -> f64 {
     let t = to - from;
     if t > 0.0 {
         t

@@ -15,7 +15,7 @@ use crate::sorting::sort_by;
 
 /// Which face it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FaceKind {
+pub(super) enum FaceKind {
     /// The roof over this facet of the partition.
     Roof(usize),
     /// Vertical.
@@ -26,7 +26,7 @@ pub enum FaceKind {
 
 /// A face; rings of corners, counter-clockwise seen from outside the solid, holes clockwise.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ShellFace {
+pub(super) struct ShellFace {
     /// Which it is.
     pub kind: FaceKind,
     /// The outer ring, then holes.
@@ -35,7 +35,7 @@ pub struct ShellFace {
 
 /// The faces around a building before its topology is sorted out.
 #[derive(Clone, Debug, Default)]
-pub struct Shell {
+pub(super) struct Shell {
     /// Corners, metres.
     pub corners: Vec<Point3<f64>>,
     /// The plan vertex below each corner.
@@ -45,7 +45,7 @@ pub struct Shell {
 }
 
 /// All faces of the building that covers `facets` and stands on `ground_z` (below all its heights).
-pub fn shell_of(
+pub(super) fn shell_of(
     partition: &PlanPartition,
     facets: &[usize],
     left_of: &BTreeMap<(u32, u32), usize>,

@@ -7,7 +7,7 @@ use crate::sorting::sort_by_key;
 
 /// Where patches lie in the atlas.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Packing {
+pub(super) struct Packing {
     /// Width of the atlas, pixels.
     pub width: usize,
     /// Height of the atlas, pixels.
@@ -21,7 +21,7 @@ const STEP: usize = 16;
 
 /// Packs patches of these sizes into the smallest atlas that is about square and no larger than
 /// `limit` on either side; `None` when they do not fit.
-pub fn pack(sizes: &[(usize, usize)], limit: usize) -> Option<Packing> {
+pub(super) fn pack(sizes: &[(usize, usize)], limit: usize) -> Option<Packing> {
     let limit = limit / STEP * STEP;
     // In f64: the product may exceed 32 bits.
     let area: f64 = sizes.iter().map(|&(w, h)| w as f64 * h as f64).sum();

@@ -29,7 +29,11 @@ const SWEEPS: usize = 1000;
 
 /// The factors for red, green and blue of every view that balance dark colours, 1 in the geometric
 /// mean.
-pub fn exposures(scene: &Scene, faces: &[FacePlane], face_images: &[FaceImages]) -> Vec<[f32; 3]> {
+pub(super) fn exposures(
+    scene: &Scene,
+    faces: &[FacePlane],
+    face_images: &[FaceImages],
+) -> Vec<[f32; 3]> {
     let views = scene.views.len();
     let compared = crate::execution::map_part(faces, 0.2..0.3, |i, face| {
         let [low, high] = face.bounds();

@@ -18,7 +18,7 @@ const CLEARANCE_M: f64 = 0.02;
 
 /// The bounding boxes of the images of all faces in a view.
 #[derive(Clone, Debug)]
-pub struct FaceImages {
+pub(super) struct FaceImages {
     /// Per face the box around its image (x0, y0, x1, y1), pixels; `None` where it looks away from
     /// the camera or is not in front of it.
     boxes: Vec<Option<[f64; 4]>>,
@@ -26,7 +26,7 @@ pub struct FaceImages {
 
 impl FaceImages {
     /// The images of all faces that look towards the camera.
-    pub fn new(faces: &[FacePlane], camera: &Camera) -> Self {
+    pub(super) fn new(faces: &[FacePlane], camera: &Camera) -> Self {
         let face_image = |face: &FacePlane| {
             if face.height(&camera.center) <= CLEARANCE_M {
                 return None;
@@ -43,7 +43,7 @@ impl FaceImages {
     }
 
     /// Could the image of `face` show in an image of this size?
-    pub fn shows(&self, face: usize, camera: &Camera) -> bool {
+    pub(super) fn shows(&self, face: usize, camera: &Camera) -> bool {
         let frame = [0.0, 0.0, f64::from(camera.width), f64::from(camera.height)];
         self.boxes[face].is_some_and(|b| meet(&b, &frame))
     }
@@ -58,7 +58,7 @@ impl FaceImages {
 }
 
 /// The texels of a face's patch that other faces hide from a projection centre.
-pub fn occluded_texels(
+pub(super) fn occluded_texels(
     face: usize,
     patch: &TexturePatch,
     faces: &[FacePlane],

@@ -16,7 +16,7 @@ const MAX_SUPERSAMPLING: usize = 4;
 
 /// Colours are balanced between views within this factor. Assumption: larger ratios come from
 /// different things in sight (a crane, a cloud's shadow), not from exposure.
-pub const MAX_GAIN: f32 = 2.0;
+pub(super) const MAX_GAIN: f32 = 2.0;
 
 /// Most grey values by which colours are shifted at a seam. Assumption: larger differences are
 /// those of different things.
@@ -35,7 +35,7 @@ pub struct ViewOfFace {
 }
 
 /// A painted patch.
-pub struct PaintedPatch {
+pub(super) struct PaintedPatch {
     /// `width * height` colours, 0 to 255; meaningless where no texel is known.
     pub colours: Vec<[f32; 3]>,
     /// Texels inside the face that some view shows.
@@ -49,7 +49,7 @@ pub struct PaintedPatch {
 }
 
 /// Pixels of a view that show a square metre of the face around its middle; zero from behind.
-pub fn pixels_per_m2(plane: &FacePlane, camera: &Camera) -> f64 {
+pub(super) fn pixels_per_m2(plane: &FacePlane, camera: &Camera) -> f64 {
     if plane.height(&camera.center) <= 0.0 {
         return 0.0;
     }
@@ -60,7 +60,7 @@ pub fn pixels_per_m2(plane: &FacePlane, camera: &Camera) -> f64 {
 
 /// Paints the patch of face number `face` from all views, each brightened by its factors
 /// `exposures`.
-pub fn paint(
+pub(super) fn paint(
     scene: &Scene,
     faces: &[FacePlane],
     face: usize,
@@ -85,10 +85,10 @@ pub fn paint(
 }
 
 /// A view of a face, and which texels of its patch it shows.
-pub type FaceView = (ViewOfFace, Vec<bool>);
+pub(super) type FaceView = (ViewOfFace, Vec<bool>);
 
 /// The views that show some of a face, the one that shows most pixels of it first.
-pub fn views_of(
+pub(super) fn views_of(
     scene: &Scene,
     faces: &[FacePlane],
     face: usize,
@@ -131,7 +131,7 @@ fn texels_inside(inside: &[bool]) -> f64 {
 
 impl PaintedPatch {
     /// Extends the colours smoothly over the texels that no view shows and those beside the face.
-    pub fn fill(&mut self, patch: &TexturePatch) {
+    pub(super) fn fill(&mut self, patch: &TexturePatch) {
         fill_gaps(&mut self.colours, &self.known, patch.width, patch.height);
     }
 }
@@ -160,7 +160,7 @@ fn visible_texels(
 }
 
 /// The colours of a face in a view, where it shows them.
-pub fn colours_in(
+pub(super) fn colours_in(
     scene: &Scene,
     plane: &FacePlane,
     patch: &TexturePatch,

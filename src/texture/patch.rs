@@ -12,7 +12,7 @@ const MAX_TEXELS: usize = 1 << 16;
 /// A face of a solid with a frame in its plane: `right` is horizontal, `up` climbs, seen from
 /// outside.
 #[derive(Clone, Debug)]
-pub struct FacePlane {
+pub(super) struct FacePlane {
     /// A corner, the origin of the frame.
     pub origin: Point3<f64>,
     /// Unit vector along the rows of the patch.
@@ -29,7 +29,7 @@ pub struct FacePlane {
 
 impl FacePlane {
     /// The frame of a face.
-    pub fn new(solid: &Solid, face: &SolidFace) -> Self {
+    pub(super) fn new(solid: &Solid, face: &SolidFace) -> Self {
         let rings: Vec<Vec<_>> = face
             .rings
             .iter()
@@ -59,29 +59,29 @@ impl FacePlane {
     }
 
     /// Signed distance from the face's plane, metres, positive outside.
-    pub fn height(&self, point: &Point3<f64>) -> f64 {
+    pub(super) fn height(&self, point: &Point3<f64>) -> f64 {
         self.normal.dot(&(point - self.origin))
     }
 
     /// The world point at a position of the frame.
-    pub fn lift(&self, p: &Point2<f64>) -> Point3<f64> {
+    pub(super) fn lift(&self, p: &Point2<f64>) -> Point3<f64> {
         self.origin + self.right * p.x + self.up * p.y
     }
 
     /// The position in the frame of the central projection of `point` from `center` onto the plane.
-    pub fn cast(&self, center: &Point3<f64>, point: &Point3<f64>) -> Point2<f64> {
+    pub(super) fn cast(&self, center: &Point3<f64>, point: &Point3<f64>) -> Point2<f64> {
         let (from, to) = (self.height(center), self.height(point));
         let hit = center + (point - center) * (from / (from - to)) - self.origin;
         Point2::new(hit.dot(&self.right), hit.dot(&self.up))
     }
 
     /// Lower left and upper right corner of the box around the face, in the frame.
-    pub fn bounds(&self) -> [Point2<f64>; 2] {
+    pub(super) fn bounds(&self) -> [Point2<f64>; 2] {
         bounds(self.flat.iter().flatten().copied())
     }
 
     /// The middle of the box, in the world.
-    pub fn middle(&self) -> Point3<f64> {
+    pub(super) fn middle(&self) -> Point3<f64> {
         let [low, high] = self.bounds();
         self.lift(&nalgebra::center(&low, &high))
     }
@@ -106,7 +106,7 @@ fn horizontal_in(normal: &Vector3<f64>, ring: &[Point3<f64>]) -> Vector3<f64> {
 
 /// The raster of a face: texel (column, row) covers a square of `texel_m` in the plane.
 #[derive(Clone, Debug)]
-pub struct TexturePatch {
+pub(super) struct TexturePatch {
     /// Side of a texel, metres.
     pub texel_m: f64,
     /// Texels in a row.
@@ -119,7 +119,7 @@ pub struct TexturePatch {
 
 impl TexturePatch {
     /// The smallest raster of this texel size around a face.
-    pub fn new(plane: &FacePlane, texel_m: f64) -> Self {
+    pub(super) fn new(plane: &FacePlane, texel_m: f64) -> Self {
         let [low, high] = plane.bounds();
         // The tolerance keeps 3.0000001 texels from becoming four.
         let count = |extent: f64| ((extent / texel_m - 1e-6).ceil() as usize).clamp(1, MAX_TEXELS);
@@ -132,7 +132,7 @@ impl TexturePatch {
     }
 
     /// Position of a point of the frame in texels from the upper left corner, y down.
-    pub fn texel_of(&self, p: &Point2<f64>) -> Point2<f64> {
+    pub(super) fn texel_of(&self, p: &Point2<f64>) -> Point2<f64> {
         Point2::new(
             (p.x - self.corner.x) / self.texel_m,
             (self.corner.y - p.y) / self.texel_m,
@@ -140,7 +140,7 @@ impl TexturePatch {
     }
 
     /// The point of the frame at a position in texels.
-    pub fn point_of(&self, x: f64, y: f64) -> Point2<f64> {
+    pub(super) fn point_of(&self, x: f64, y: f64) -> Point2<f64> {
         Point2::new(
             self.corner.x + x * self.texel_m,
             self.corner.y - y * self.texel_m,
@@ -148,7 +148,7 @@ impl TexturePatch {
     }
 
     /// Which texels have their centre inside the rings (even-odd), given in the frame of the face.
-    pub fn inside(&self, rings: &[Vec<Point2<f64>>]) -> Vec<bool> {
+    pub(super) fn inside(&self, rings: &[Vec<Point2<f64>>]) -> Vec<bool> {
         let mut mask = vec![false; self.width * self.height];
         let rings: Vec<Vec<_>> = rings
             .iter()

@@ -52,7 +52,7 @@ const MIN_SURFACE_SHARE: f64 = 0.8;
 const MISSING_VIEW_PENALTY: f64 = 0.1;
 
 /// The lines that roofs and ground contradict, and why.
-pub fn contradicted_lines(
+pub(super) fn contradicted_lines(
     scene: &Scene,
     lines: &[Line3d],
     facets: &[Facet],

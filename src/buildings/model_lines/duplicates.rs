@@ -19,7 +19,7 @@ const PARALLEL: f64 = 0.984_807_753_012_208;
 
 /// The standing lines that duplicate better ones. Edges within `gate_px` and three standard
 /// deviations of a line's image are on it.
-pub fn duplicate_lines(scene: &Scene, lines: &[Line3d], gate_px: f64) -> Vec<LineId> {
+pub(super) fn duplicate_lines(scene: &Scene, lines: &[Line3d], gate_px: f64) -> Vec<LineId> {
     let mut best_first: Vec<(LineId, &Line3d)> = Line3d::standing(lines)
         .filter(|(_, line)| !line.supports.is_empty())
         .collect();

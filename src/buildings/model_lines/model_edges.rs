@@ -13,7 +13,7 @@ use crate::model::Facet;
 const MEET_M: f64 = 0.02;
 
 /// A straight edge of the model.
-pub struct ModelEdge {
+pub(super) struct ModelEdge {
     /// The edge, with the facet on its left.
     pub segment: Segment3,
     /// The facet on its left, and the one that it meets on the right.
@@ -22,7 +22,7 @@ pub struct ModelEdge {
 
 impl ModelEdge {
     /// How a line on this edge came about.
-    pub fn origin(&self) -> LineOrigin {
+    pub(super) fn origin(&self) -> LineOrigin {
         match self.facets.len() {
             2 => LineOrigin::Intersection,
             _ => LineOrigin::Border,
@@ -32,7 +32,7 @@ impl ModelEdge {
 
 /// The edges of all facets: consecutive collinear sides are one edge, a side that two facets share
 /// is listed once, and the feet of walls (a higher facet has the same side) are left out.
-pub fn model_edges(facets: &[Facet]) -> Vec<ModelEdge> {
+pub(super) fn model_edges(facets: &[Facet]) -> Vec<ModelEdge> {
     let at_edges = FacetsAtEdges::new(facets);
     let mut edges = Vec::new();
     for (f, facet) in facets.iter().enumerate() {

@@ -38,7 +38,7 @@ const SAME_EDGE_PX: f64 = 2.5;
 
 /// The edges of the model, or the parts of them, that no line explains: measured again in all
 /// views, and intersections of planes also without.
-pub fn new_lines(
+pub(super) fn new_lines(
     scene: &Scene,
     lines: &[Line3d],
     model: &RoofModel,

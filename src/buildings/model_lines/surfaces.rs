@@ -14,7 +14,7 @@ const STEP_M: f64 = 0.3;
 const PLACES: [usize; 2] = [5, 64];
 
 /// Roofs, the walls below them and the ground.
-pub struct Surfaces<'a> {
+pub(super) struct Surfaces<'a> {
     /// The roofs.
     pub roofs: Occluders<'a>,
     ground: &'a Ground,
@@ -22,7 +22,7 @@ pub struct Surfaces<'a> {
 
 impl<'a> Surfaces<'a> {
     /// The surfaces of a model.
-    pub fn new(facets: &'a [Facet], ground: &'a Ground) -> Self {
+    pub(super) fn new(facets: &'a [Facet], ground: &'a Ground) -> Self {
         Self {
             roofs: Occluders::new(facets),
             ground,
@@ -30,7 +30,7 @@ impl<'a> Surfaces<'a> {
     }
 
     /// The share of a line that lies on roofs, walls or the ground.
-    pub fn share_of(&self, line: &Line3d) -> f64 {
+    pub(super) fn share_of(&self, line: &Line3d) -> f64 {
         let tolerance = NEAR_M + line.sigma_m;
         let beside = [
             (0.0, 0.0),
@@ -55,7 +55,7 @@ impl<'a> Surfaces<'a> {
 }
 
 /// The share of a stretch of a line, between two fractions of its length, where a condition holds.
-pub fn share_where(
+pub(super) fn share_where(
     line: &Line3d,
     [from, to]: [f64; 2],
     condition: impl Fn(&Point3<f64>) -> bool,

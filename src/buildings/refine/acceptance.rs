@@ -12,7 +12,7 @@ use crate::scene::Scene;
 use crate::solids::close_buildings;
 
 /// The facets that a refined building would replace, and what is needed to compare both.
-pub struct AcceptanceTest<'a> {
+pub(super) struct AcceptanceTest<'a> {
     /// The views.
     pub scene: &'a Scene,
     /// The facets before.
@@ -26,7 +26,10 @@ pub struct AcceptanceTest<'a> {
 impl AcceptanceTest<'_> {
     /// The new facets if they are sound and the views agree on them as well as before; otherwise
     /// why not, and which of them are the cause.
-    pub fn accept(&self, new: Vec<Facet>) -> Result<Vec<Facet>, (RefineRejection, Vec<usize>)> {
+    pub(super) fn accept(
+        &self,
+        new: Vec<Facet>,
+    ) -> Result<Vec<Facet>, (RefineRejection, Vec<usize>)> {
         let broken = self.broken(&new);
         if !broken.is_empty() {
             return Err((RefineRejection::Broken, broken));

@@ -33,7 +33,7 @@ const MAX_ITERATIONS: usize = 20;
 
 /// One summand of the cost.
 #[derive(Clone, Debug)]
-pub enum Term {
+pub(super) enum Term {
     /// A measured edge: two residuals, robust.
     Edge(EdgeObservation),
     /// The present position of a vertex: two residuals.
@@ -65,7 +65,7 @@ pub enum Term {
 }
 
 /// A least-squares problem.
-pub struct AdjustmentProblem<'a> {
+pub(super) struct AdjustmentProblem<'a> {
     /// The views.
     pub scene: &'a Scene,
     /// The wireframe.
@@ -77,7 +77,7 @@ pub struct AdjustmentProblem<'a> {
 }
 
 /// A solved problem.
-pub struct Solution<'p> {
+pub(super) struct Solution<'p> {
     /// The adjusted state.
     pub state: WireframeState,
     /// Cholesky factor of the normal matrix.
@@ -88,7 +88,7 @@ pub struct Solution<'p> {
 
 impl Solution<'_> {
     /// The covariance of the state times a vector.
-    pub fn spread(&self, gradient: &DVector<f64>) -> DVector<f64> {
+    pub(super) fn spread(&self, gradient: &DVector<f64>) -> DVector<f64> {
         self.factor.solve(gradient) * self.scatter
     }
 }
@@ -101,7 +101,7 @@ struct NormalEquations<'p> {
 
 impl<'a> AdjustmentProblem<'a> {
     /// Sightings, the prior of vertices, and what must hold; heights are added by the caller.
-    pub fn new(
+    pub(super) fn new(
         scene: &'a Scene,
         wireframe: &'a Wireframe,
         state: &WireframeState,
@@ -127,13 +127,17 @@ impl<'a> AdjustmentProblem<'a> {
     }
 
     /// Which unknowns meet in a term.
-    pub fn pattern(&self) -> Pattern {
+    pub(super) fn pattern(&self) -> Pattern {
         let groups: Vec<Vec<usize>> = self.terms.iter().map(|t| self.unknowns(t)).collect();
         Pattern::new(self.wireframe.size(), &groups)
     }
 
     /// Solves from a state; `None` when the normal equations are singular.
-    pub fn solve<'p>(&self, start: &WireframeState, pattern: &'p Pattern) -> Option<Solution<'p>> {
+    pub(super) fn solve<'p>(
+        &self,
+        start: &WireframeState,
+        pattern: &'p Pattern,
+    ) -> Option<Solution<'p>> {
         let mut state = start.clone();
         let mut normal = self.normal(&state, pattern)?;
         let mut damping = 1e-6;
@@ -167,7 +171,7 @@ impl<'a> AdjustmentProblem<'a> {
     }
 
     /// Number of measured edges.
-    pub fn observations(&self) -> usize {
+    pub(super) fn observations(&self) -> usize {
         let observation = |t: &&Term| matches!(t, Term::Edge(_));
         self.terms.iter().filter(observation).count()
     }
@@ -258,7 +262,7 @@ impl<'a> AdjustmentProblem<'a> {
     }
 
     /// Signed distances (px) of a measured edge's ends from the image of its side.
-    pub fn distances(
+    pub(super) fn distances(
         &self,
         observation: &EdgeObservation,
         state: &WireframeState,
@@ -273,7 +277,7 @@ impl<'a> AdjustmentProblem<'a> {
 
     /// Root mean square distance (px) of the measured edges from their sides. Distances beyond
     /// `cap_px` count as that much: these views show another edge.
-    pub fn error_px(&self, state: &WireframeState, cap_px: f64) -> f64 {
+    pub(super) fn error_px(&self, state: &WireframeState, cap_px: f64) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0f64);
         for term in &self.terms {
             let Term::Edge(s) = term else { continue };
@@ -308,4 +312,4 @@ impl<'a> AdjustmentProblem<'a> {
 }
 
 /// The most unknowns of a term: a relation between two sides of two facets.
-pub const MAX_UNKNOWNS: usize = 14;
+pub(super) const MAX_UNKNOWNS: usize = 14;

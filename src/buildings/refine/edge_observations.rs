@@ -22,7 +22,7 @@ use crate::scene::Scene;
 
 /// An edge measured in a view for a side.
 #[derive(Clone, Debug)]
-pub struct EdgeObservation {
+pub(super) struct EdgeObservation {
     /// Index of the side.
     pub side: usize,
     /// The view.
@@ -36,7 +36,7 @@ pub struct EdgeObservation {
 /// Measures all sides in all views. Sides without a neighbour may move to another edge first where
 /// `search` allows it for their facet; those on one of the matched `lines` go less far for a
 /// stronger one, such as the edge of a shadow.
-pub fn measure_sides(
+pub(super) fn measure_sides(
     scene: &Scene,
     occluders: &Occluders,
     wireframe: &Wireframe,

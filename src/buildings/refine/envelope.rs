@@ -13,7 +13,7 @@ use crate::sorting::sort_by_key;
 
 /// Places of the unknowns in the order of elimination, and where each row of the matrix begins.
 #[derive(Clone, Debug)]
-pub struct Pattern {
+pub(super) struct Pattern {
     place: Vec<usize>,
     first: Vec<usize>,
     start: Vec<usize>,
@@ -22,14 +22,14 @@ pub struct Pattern {
 /// A symmetric matrix, lower rows from the first number that may differ from zero; or its Cholesky
 /// factor.
 #[derive(Clone, Debug)]
-pub struct Envelope<'a> {
+pub(super) struct Envelope<'a> {
     pattern: &'a Pattern,
     values: Vec<f64>,
 }
 
 impl Pattern {
     /// For `n` unknowns, of which those in one of the `groups` meet in the matrix.
-    pub fn new(n: usize, groups: &[Vec<usize>]) -> Self {
+    pub(super) fn new(n: usize, groups: &[Vec<usize>]) -> Self {
         let place = reverse_cuthill_mckee(&neighbours(n, groups));
         let mut first: Vec<usize> = (0..n).collect();
         for group in groups {
@@ -53,7 +53,7 @@ impl Pattern {
     }
 
     /// The zero matrix of this pattern.
-    pub fn zeros(&self) -> Envelope<'_> {
+    pub(super) fn zeros(&self) -> Envelope<'_> {
         Envelope {
             pattern: self,
             values: vec![0.0; self.start[self.first.len()]],
@@ -64,14 +64,14 @@ impl Pattern {
 impl Envelope<'_> {
     /// Adds to the element at two unknowns; both orders are one element, so a product is added once
     /// for each pair.
-    pub fn add(&mut self, u: usize, v: usize, value: f64) {
+    pub(super) fn add(&mut self, u: usize, v: usize, value: f64) {
         let [i, j] = [u, v].map(|w| self.pattern.place[w]);
         let at = self.index(i.max(j), i.min(j));
         self.values[at] += value;
     }
 
     /// The same matrix with its diagonal multiplied.
-    pub fn damped(&self, factor: f64) -> Self {
+    pub(super) fn damped(&self, factor: f64) -> Self {
         let mut damped = self.clone();
         for i in 0..self.pattern.first.len() {
             let at = self.index(i, i);
@@ -81,7 +81,7 @@ impl Envelope<'_> {
     }
 
     /// Its Cholesky factor; `None` when it is not positive definite.
-    pub fn cholesky(mut self) -> Option<Self> {
+    pub(super) fn cholesky(mut self) -> Option<Self> {
         let pattern = self.pattern;
         for i in 0..pattern.first.len() {
             let (done, rest) = self.values.split_at_mut(pattern.start[i]);
@@ -114,7 +114,7 @@ impl Envelope<'_> {
     }
 
     /// Solves with this factor.
-    pub fn solve(&self, rhs: &DVector<f64>) -> DVector<f64> {
+    pub(super) fn solve(&self, rhs: &DVector<f64>) -> DVector<f64> {
         let pattern = self.pattern;
         let n = pattern.first.len();
         let mut x = vec![0.0; n];

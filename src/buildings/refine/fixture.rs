@@ -3,10 +3,10 @@
 use nalgebra::Point3;
 
 use crate::model::Facet;
-pub use crate::testing::facet;
+pub(crate) use crate::testing::facet;
 
 /// A gable roof, 12 m long in x and 8 m wide: eaves at 6 m, ridge at 9 m, above y = 0.
-pub fn gable() -> Vec<Facet> {
+pub(crate) fn gable() -> Vec<Facet> {
     let ring = |corners: [[f64; 3]; 4]| facet(&corners.map(Point3::from));
     vec![
         ring([
@@ -25,6 +25,6 @@ pub fn gable() -> Vec<Facet> {
 }
 
 /// References to all facets.
-pub fn facets_of(facets: &[Facet]) -> Vec<&Facet> {
+pub(crate) fn facets_of(facets: &[Facet]) -> Vec<&Facet> {
     facets.iter().collect()
 }

@@ -25,7 +25,7 @@ const FARTHEST: f64 = 1.5;
 
 /// The facets with simpler outlines, each on its own plane; a facet without a short free side is as
 /// it was.
-pub fn simplified(facets: &[&Facet], jog_m: f64) -> Vec<Facet> {
+pub(super) fn simplified(facets: &[&Facet], jog_m: f64) -> Vec<Facet> {
     let free = free_vertices(facets);
     let changed = |facet: &&Facet| {
         let mut facet = (*facet).clone();
@@ -118,7 +118,7 @@ fn without_jogs(mut ring: Vec<Corner>, jog_m: f64) -> Vec<Corner> {
 
 /// The facets without the free corners beside straight ways between two others, where they are no
 /// farther from them than `tolerance_m`.
-pub fn straightened(facets: &[Facet], tolerance_m: f64) -> Vec<Facet> {
+pub(super) fn straightened(facets: &[Facet], tolerance_m: f64) -> Vec<Facet> {
     let free = free_vertices(&facets.iter().collect::<Vec<_>>());
     let straight = |facet: &Facet| {
         let ring: Vec<Corner> = facet.outer.iter().map(|p| Corner::new(p, &free)).collect();

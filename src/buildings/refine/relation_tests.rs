@@ -42,7 +42,7 @@ pub struct TestedRelation {
 
 /// Tests relations one after the other, those that fit best first within each kind's turn, and
 /// adopts those that the covariance of the free solution allows.
-pub fn adopt_relations(
+pub(super) fn adopt_relations(
     w: &Wireframe,
     solution: &Solution,
     proposed: &[Relation],

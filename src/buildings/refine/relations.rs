@@ -15,7 +15,7 @@ use crate::sorting::sort_by;
 
 /// What is supposed of one or two sides; numbers are indices of sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Relation {
+pub(super) enum Relation {
     /// The ends of a side are of one height. Metres.
     Horizontal(usize),
     /// Two sides run parallel in plan: offset of the end of the second, metres.
@@ -50,7 +50,7 @@ pub enum RelationKind {
 
 impl Relation {
     /// How far the state is from it, metres.
-    pub fn value(&self, w: &Wireframe, state: &WireframeState) -> f64 {
+    pub(super) fn value(&self, w: &Wireframe, state: &WireframeState) -> f64 {
         let segment = |i: usize| w.segment(state, &w.sides[i]);
         let plan = |i: usize| segment(i).p1.xy() - segment(i).p0.xy();
         let middle = |i: usize| segment(i).at(0.5).z;
@@ -72,7 +72,7 @@ impl Relation {
     }
 
     /// The unknowns that it depends on.
-    pub fn unknowns(&self, w: &Wireframe) -> Vec<usize> {
+    pub(super) fn unknowns(&self, w: &Wireframe) -> Vec<usize> {
         let mut unknowns = match *self {
             Self::Horizontal(i) => w.unknowns(&w.sides[i]),
             Self::Parallel(i, j) | Self::Perpendicular(i, j) | Self::EqualHeight(i, j) => {
@@ -91,7 +91,7 @@ impl Relation {
         unknowns
     }
 
-    pub fn kind(&self) -> RelationKind {
+    pub(super) fn kind(&self) -> RelationKind {
         match self {
             Self::Horizontal(_) => RelationKind::Horizontal,
             Self::Parallel(..) => RelationKind::Parallel,
@@ -101,7 +101,7 @@ impl Relation {
         }
     }
 
-    pub fn sides(&self) -> Vec<usize> {
+    pub(super) fn sides(&self) -> Vec<usize> {
         match *self {
             Self::Horizontal(i) | Self::Symmetric(i) => vec![i],
             Self::Parallel(i, j) | Self::Perpendicular(i, j) | Self::EqualHeight(i, j) => {
@@ -112,7 +112,11 @@ impl Relation {
 }
 
 /// The relations that a state is near to.
-pub fn propose(w: &Wireframe, state: &WireframeState, params: &RefineParams) -> Vec<Relation> {
+pub(super) fn propose(
+    w: &Wireframe,
+    state: &WireframeState,
+    params: &RefineParams,
+) -> Vec<Relation> {
     let longest_first = longest_first(w, state, params);
     let horizontal: Vec<usize> = longest_first
         .iter()

@@ -36,7 +36,7 @@ pub enum SideKind {
 
 /// A straight side of a facet.
 #[derive(Clone, Debug, PartialEq)]
-pub struct WireframeSide {
+pub(super) struct WireframeSide {
     /// What lies beyond.
     pub kind: SideKind,
     /// The facet on its left.
@@ -49,7 +49,7 @@ pub struct WireframeSide {
 
 /// Two facets that have one height at a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Meet {
+pub(super) struct Meet {
     /// The vertex.
     pub vertex: usize,
     /// The facets.
@@ -58,7 +58,7 @@ pub struct Meet {
 
 /// A vertex on the straight line between two others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Straight {
+pub(super) struct Straight {
     /// The vertex.
     pub vertex: usize,
     /// Its neighbours in the ring.
@@ -67,7 +67,7 @@ pub struct Straight {
 
 /// The wireframe of one building. Positions and planes are in a [`WireframeState`] of its own.
 #[derive(Clone, Debug)]
-pub struct Wireframe {
+pub(super) struct Wireframe {
     /// Where plane coefficients count from, plan, metres.
     pub origin: Point2<f64>,
     /// Number of vertices.
@@ -83,11 +83,11 @@ pub struct Wireframe {
 }
 
 /// Numbers of a wireframe: x, y of every vertex, then a, b, c of every facet.
-pub type WireframeState = DVector<f64>;
+pub(super) type WireframeState = DVector<f64>;
 
 impl Wireframe {
     /// The wireframe of facets whose outlines share vertices, and its present state.
-    pub fn new(facets: &[&Facet]) -> (Self, WireframeState) {
+    pub(super) fn new(facets: &[&Facet]) -> (Self, WireframeState) {
         let mut index: BTreeMap<[u64; 2], usize> = BTreeMap::new();
         let mut positions: Vec<Point2<f64>> = Vec::new();
         let mut vertex = |p: &Point3<f64>| {
@@ -130,40 +130,40 @@ impl Wireframe {
     }
 
     /// Number of unknowns.
-    pub fn size(&self) -> usize {
+    pub(super) fn size(&self) -> usize {
         2 * self.vertices + 3 * self.faces.len()
     }
 
     /// Place of the first coefficient of a facet.
-    pub fn plane_at(&self, face: usize) -> usize {
+    pub(super) fn plane_at(&self, face: usize) -> usize {
         2 * self.vertices + 3 * face
     }
 
     /// Plan position of a vertex.
-    pub fn position(&self, state: &WireframeState, vertex: usize) -> Point2<f64> {
+    pub(super) fn position(&self, state: &WireframeState, vertex: usize) -> Point2<f64> {
         Point2::new(state[2 * vertex], state[2 * vertex + 1])
     }
 
     /// Height of a facet at a plan position.
-    pub fn height(&self, state: &WireframeState, face: usize, p: &Point2<f64>) -> f64 {
+    pub(super) fn height(&self, state: &WireframeState, face: usize, p: &Point2<f64>) -> f64 {
         let (at, d) = (self.plane_at(face), p - self.origin);
         state[at] * d.x + state[at + 1] * d.y + state[at + 2]
     }
 
     /// A vertex on a facet.
-    pub fn corner(&self, state: &WireframeState, face: usize, vertex: usize) -> Point3<f64> {
+    pub(super) fn corner(&self, state: &WireframeState, face: usize, vertex: usize) -> Point3<f64> {
         let p = self.position(state, vertex);
         Point3::new(p.x, p.y, self.height(state, face, &p))
     }
 
     /// A side in space.
-    pub fn segment(&self, state: &WireframeState, side: &WireframeSide) -> Segment3 {
+    pub(super) fn segment(&self, state: &WireframeState, side: &WireframeSide) -> Segment3 {
         let [p0, p1] = side.ends.map(|v| self.corner(state, side.face, v));
         Segment3::new(p0, p1)
     }
 
     /// The unknowns that a side depends on.
-    pub fn unknowns(&self, side: &WireframeSide) -> Vec<usize> {
+    pub(super) fn unknowns(&self, side: &WireframeSide) -> Vec<usize> {
         let [u, v] = side.ends;
         let plane = self.plane_at(side.face);
         vec![
@@ -179,7 +179,11 @@ impl Wireframe {
 
     /// Per facet the share of its sides without a neighbour, by length, that is among `seen`; all
     /// of it for a facet without such sides.
-    pub fn shown(&self, state: &WireframeState, seen: impl Iterator<Item = usize>) -> Vec<f64> {
+    pub(super) fn shown(
+        &self,
+        state: &WireframeState,
+        seen: impl Iterator<Item = usize>,
+    ) -> Vec<f64> {
         let mut is_seen = vec![false; self.sides.len()];
         seen.for_each(|i| is_seen[i] = true);
         let mut lengths = vec![[0.0f64; 2]; self.faces.len()];
@@ -195,7 +199,7 @@ impl Wireframe {
     }
 
     /// The plane of a facet.
-    pub fn plane(&self, state: &WireframeState, face: usize) -> Plane {
+    pub(super) fn plane(&self, state: &WireframeState, face: usize) -> Plane {
         let at = self.plane_at(face);
         let normal = nalgebra::Vector3::new(-state[at], -state[at + 1], 1.0);
         let through = Point3::new(self.origin.x, self.origin.y, state[at + 2]);
@@ -203,7 +207,7 @@ impl Wireframe {
     }
 
     /// The facets in another state.
-    pub fn facets(&self, state: &WireframeState, facets: &[&Facet]) -> Vec<Facet> {
+    pub(super) fn facets(&self, state: &WireframeState, facets: &[&Facet]) -> Vec<Facet> {
         let changed = |(face, facet): (usize, &&Facet)| {
             let plane = self.plane(state, face);
             let lift = |ring: &Vec<usize>| -> Vec<Point3<f64>> {

@@ -16,7 +16,7 @@ use crate::sorting::sort_by;
 
 /// A border between two cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CellEdge {
+pub(crate) struct CellEdge {
     /// The cell to the left of `a` -> `b`.
     pub left: usize,
     /// The cell to the right.
@@ -29,7 +29,7 @@ pub struct CellEdge {
 
 /// Cells, vertices and edges of the subdivision.
 #[derive(Clone, Debug, Default)]
-pub struct Arrangement {
+pub(crate) struct Arrangement {
     /// Plan positions, metres.
     pub vertices: Vec<Point2<f64>>,
     /// Triangles as counter-clockwise vertex indices, with the cell that each belongs to.
@@ -52,7 +52,7 @@ const SNAP: f64 = 0.06;
 
 impl Arrangement {
     /// Cuts the plan by the borders.
-    pub fn new(borders: &[Border]) -> Self {
+    pub(crate) fn new(borders: &[Border]) -> Self {
         let (points, edges) = split_at_crossings(borders);
         let mut cdt = PlanTriangulation::new();
         let handles: Vec<_> = (points.iter())
@@ -135,7 +135,7 @@ impl Arrangement {
     }
 
     /// For each cell the lowest of the connected cells that have its label.
-    pub fn components(&self, labels: &[u32]) -> Vec<usize> {
+    pub(crate) fn components(&self, labels: &[u32]) -> Vec<usize> {
         let mut sets = DisjointSets::new(self.cells);
         for e in &self.edges {
             if labels[e.left] == labels[e.right] {
@@ -146,7 +146,7 @@ impl Arrangement {
     }
 
     /// The cell under the centre of each grid cell; `u32::MAX` outside all triangles.
-    pub fn raster(&self, grid: &PlanGrid) -> Vec<u32> {
+    pub(crate) fn raster(&self, grid: &PlanGrid) -> Vec<u32> {
         let mut out = vec![u32::MAX; grid.width * grid.height];
         for &(corners, cell) in &self.triangles {
             let t = corners.map(|v| self.vertices[v]);

@@ -14,7 +14,7 @@ use crate::geometry::Plane;
 use crate::params::RoofParams;
 
 /// The costs of all borders of an arrangement.
-pub struct BorderCosts {
+pub(crate) struct BorderCosts {
     /// In the order of [`Arrangement::edges`].
     borders: Vec<CellBorder>,
     /// By label.
@@ -23,7 +23,7 @@ pub struct BorderCosts {
 
 impl BorderCosts {
     /// Prepares the borders; `index` holds the reconstructed lines.
-    pub fn new(
+    pub(crate) fn new(
         arrangement: &Arrangement,
         planes: &[Plane],
         index: &LineIndex,
@@ -121,7 +121,7 @@ const STEP: f64 = 1.5;
 /// Planes meet when their heights differ by less, metres.
 const MEETING: f64 = 0.25;
 /// A line lies in a plane's border when their heights differ by less, metres.
-pub const LINE_HEIGHT: f64 = 0.35;
+pub(crate) const LINE_HEIGHT: f64 = 0.35;
 
 #[cfg(test)]
 mod tests {

@@ -29,7 +29,7 @@ const SAME_LINE: f64 = 0.3;
 const SAME_LINE_SINE: f64 = 0.09;
 
 /// All border lines of the scene, intersections first, none lying on another.
-pub fn border_lines(
+pub(crate) fn border_lines(
     input: &GroupingInput,
     hypotheses: &[PlaneHypothesis],
     bounding: &[Segment3],

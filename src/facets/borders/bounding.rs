@@ -21,7 +21,7 @@ const PARALLEL_SINE: f64 = 0.15;
 const MOST: f64 = 0.5;
 
 /// The lines that may bound a facet.
-pub fn bounding_lines(
+pub(crate) fn bounding_lines(
     input: &GroupingInput,
     hypotheses: &[PlaneHypothesis],
     ground: &Ground,
@@ -50,7 +50,7 @@ pub fn bounding_lines(
 }
 
 /// Does a line lie in a plane?
-pub fn lies_in(plane: &Plane, line: &Segment3) -> bool {
+pub(crate) fn lies_in(plane: &Plane, line: &Segment3) -> bool {
     const NEAR: f64 = 0.2;
     plane.signed_distance(&line.p0).abs() < NEAR && plane.signed_distance(&line.p1).abs() < NEAR
 }

@@ -28,7 +28,7 @@ const OVER_M: f64 = 0.5;
 
 /// Lines where planes with a half-plane seem to end, up to four for each, unless a real line shows
 /// that end.
-pub fn extent_lines(
+pub(super) fn extent_lines(
     input: &GroupingInput,
     hypotheses: &[PlaneHypothesis],
     windows: &ShiftableWindows,

@@ -7,7 +7,7 @@ use crate::plan_index::PlanIndex;
 use crate::sorting::sort_by;
 
 /// 3D lines by plan position.
-pub struct LineIndex {
+pub(crate) struct LineIndex {
     lines: Vec<Segment3>,
     index: PlanIndex,
 }
@@ -18,13 +18,13 @@ const LINE_SINE: f64 = 0.12;
 
 impl LineIndex {
     /// Indexes the lines.
-    pub fn new(lines: Vec<Segment3>) -> Self {
+    pub(crate) fn new(lines: Vec<Segment3>) -> Self {
         let index = PlanIndex::new(lines.iter().map(|l| [l.p0.xy(), l.p1.xy()]));
         Self { lines, index }
     }
 
     /// Heights of the lines that run along a -> b at its middle, ascending.
-    pub fn heights_along(&self, a: &Point2<f64>, b: &Point2<f64>) -> Vec<f64> {
+    pub(crate) fn heights_along(&self, a: &Point2<f64>, b: &Point2<f64>) -> Vec<f64> {
         let middle = Point2::from((a.coords + b.coords) * 0.5);
         let d = (b - a) / (b - a).norm().max(1e-12);
         let mut heights: Vec<f64> = self

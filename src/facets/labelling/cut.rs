@@ -13,7 +13,7 @@ const UNIT: f64 = 1e6;
 const LEAST_SAVED: i64 = 1000;
 
 /// A minimum cut over binary moves: 0 keeps the label, 1 takes the new one.
-pub struct MinimumCut {
+pub(super) struct MinimumCut {
     /// (cost of keeping, cost of moving) per node.
     unaries: Vec<(f64, f64)>,
     /// (from, to, capacity): paid when `from` keeps and `to` moves.
@@ -22,7 +22,7 @@ pub struct MinimumCut {
 
 impl MinimumCut {
     /// No costs yet.
-    pub fn new(nodes: usize) -> Self {
+    pub(super) fn new(nodes: usize) -> Self {
         Self {
             unaries: vec![(0.0, 0.0); nodes],
             arcs: Vec::new(),
@@ -30,13 +30,13 @@ impl MinimumCut {
     }
 
     /// Costs of one node by itself.
-    pub fn unary(&mut self, node: usize, keep: f64, change: f64) {
+    pub(super) fn unary(&mut self, node: usize, keep: f64, change: f64) {
         self.unaries[node].0 += keep;
         self.unaries[node].1 += change;
     }
 
     /// Costs of (keep, keep), (keep, move), (move, keep); (move, move) is 0.
-    pub fn pair(&mut self, i: usize, j: usize, stay: f64, j_moves: f64, i_moves: f64) {
+    pub(super) fn pair(&mut self, i: usize, j: usize, stay: f64, j_moves: f64, i_moves: f64) {
         // stay = A, j_moves = B, i_moves = C, D = 0. Submodular when A <= B + C; a border
         // that is cheap twice is made as dear as needed.
         let stay = stay.min(j_moves + i_moves);
@@ -48,7 +48,7 @@ impl MinimumCut {
 
     /// For each node: does it move? A tie moves, unless hardly anything is gained: a labelling must
     /// not go round in circles.
-    pub fn solve(self) -> Vec<bool> {
+    pub(super) fn solve(self) -> Vec<bool> {
         let units = |c: f64| (c * UNIT).round() as i64;
         let costs = self.unaries.iter();
         let surplus = costs.map(|(keep, change)| units(*change) - units(*keep));

@@ -1,10 +1,10 @@
 //! The energy of a labelling: what planes cost in cells, and what their borders cost.
 
 /// No plane covers the cell.
-pub const NO_PLANE: u32 = u32::MAX;
+pub(crate) const NO_PLANE: u32 = u32::MAX;
 
 /// What different labels on both sides of a border cost.
-pub trait PairwiseCosts {
+pub(crate) trait PairwiseCosts {
     /// Cost of `left` and `right`, which differ, on the two cells of an edge, whichever is on
     /// which.
     fn cost(&self, edge: usize, left: u32, right: u32) -> f64;
@@ -15,7 +15,7 @@ pub trait PairwiseCosts {
 
 /// The energy over cells and planes.
 #[derive(Clone, Debug)]
-pub struct Energy<B> {
+pub(crate) struct Energy<B> {
     /// Per cell: (plane, D) for the planes that may cover it, ascending by plane. "No plane" costs
     /// 0.
     pub unary: Vec<Vec<(u32, f64)>>,

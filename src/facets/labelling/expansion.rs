@@ -5,7 +5,7 @@ use super::energy::{Energy, NO_PLANE, PairwiseCosts};
 
 /// A labelling on its way to the least energy. It records which expansions were tried, so that
 /// after a small change only the planes around it are tried again.
-pub struct Labelling<B> {
+pub(crate) struct Labelling<B> {
     energy: Energy<B>,
     graph: CellGraph,
     clock: ExpansionHistory,
@@ -18,7 +18,7 @@ pub struct Labelling<B> {
 
 impl<B: PairwiseCosts> Labelling<B> {
     /// No plane covers any cell; `planes` is the number of planes.
-    pub fn new(energy: Energy<B>, planes: u32) -> Self {
+    pub(crate) fn new(energy: Energy<B>, planes: u32) -> Self {
         let cells = energy.unary.len();
         Self {
             graph: CellGraph::new(&energy, planes),
@@ -31,12 +31,12 @@ impl<B: PairwiseCosts> Labelling<B> {
     }
 
     /// The plane of each cell, or [`NO_PLANE`].
-    pub fn labels(&self) -> &[u32] {
+    pub(crate) fn labels(&self) -> &[u32] {
         &self.labels
     }
 
     /// Goes on until no single expansion improves.
-    pub fn minimise(&mut self) {
+    pub(crate) fn minimise(&mut self) {
         const ROUNDS: usize = 8;
         let planes = self.graph.cells_of_plane.len() as u32;
         for _ in 0..ROUNDS {
@@ -56,7 +56,7 @@ impl<B: PairwiseCosts> Labelling<B> {
     }
 
     /// Sets the labels to others.
-    pub fn relabel(&mut self, labels: Vec<u32>) {
+    pub(crate) fn relabel(&mut self, labels: Vec<u32>) {
         let differs = |c: &usize| labels[*c] != self.labels[*c];
         let changed: Vec<usize> = (0..labels.len()).filter(differs).collect();
         self.clock.changed(&changed);
@@ -68,7 +68,7 @@ impl<B: PairwiseCosts> Labelling<B> {
     }
 
     /// The plane may no longer cover the cells; no plane does for now.
-    pub fn exclude(&mut self, plane: u32, cells: &[usize]) {
+    pub(crate) fn exclude(&mut self, plane: u32, cells: &[usize]) {
         for &cell in cells {
             self.energy.unary[cell].retain(|u| u.0 != plane);
             self.graph.block(cell, plane);

@@ -9,10 +9,10 @@
 //! long.
 
 /// From, to, capacity in units.
-pub type Arc = (usize, usize, i64);
+pub(super) type Arc = (usize, usize, i64);
 
 /// A flow on its way to the greatest.
-pub struct Flow {
+pub(super) struct Flow {
     /// The arcs at node i, in either direction, are `arcs[starts[i]..starts[i + 1]]`.
     starts: Vec<u32>,
     arcs: Vec<HalfArc>,
@@ -38,7 +38,7 @@ const BEYOND: u32 = 2;
 
 impl Flow {
     /// Half of every arc is filled.
-    pub fn new(mut surplus: Vec<i64>, arcs: &[Arc]) -> Self {
+    pub(super) fn new(mut surplus: Vec<i64>, arcs: &[Arc]) -> Self {
         let mut starts = vec![0u32; surplus.len() + 1];
         for node in arcs.iter().flat_map(|a| [a.0, a.1]) {
             starts[node + 1] += 1;
@@ -76,7 +76,7 @@ impl Flow {
     }
 
     /// Lets everything flow that can; returns the deficit that is left.
-    pub fn run(&mut self) -> i64 {
+    pub(super) fn run(&mut self) -> i64 {
         let mut wanting: Vec<u32> = (0..self.surplus.len() as u32)
             .filter(|&i| self.surplus[i as usize] < 0)
             .collect();
@@ -140,7 +140,7 @@ impl Flow {
 
     /// The nodes that what is left of the surplus could still reach, once nothing flows any more:
     /// of all minimum cuts the side of the surpluses that is smallest.
-    pub fn reached(&self) -> Vec<bool> {
+    pub(super) fn reached(&self) -> Vec<bool> {
         let mut reached: Vec<bool> = self.surplus.iter().map(|s| *s > 0).collect();
         let mut open: Vec<u32> = (0..reached.len() as u32)
             .filter(|&i| reached[i as usize])

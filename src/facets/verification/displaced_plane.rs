@@ -20,7 +20,7 @@ use crate::scene::Scene;
 /// Margin over the displaced planes, in standard deviations, that confirms a facet which falls
 /// short of a threshold. Measured on rendered scenes: true facets that do have 1.1 and more, false
 /// ones less than 0.5.
-pub const CLEAR_MARGIN: f64 = 1.0;
+pub(super) const CLEAR_MARGIN: f64 = 1.0;
 /// Share of its outline on lines from which on a facet is bounded by them on three sides of four: a
 /// level roof beside a higher wall, which shades it and hides it from half of the views, stands out
 /// little.
@@ -42,7 +42,7 @@ const LEAST_SLOPE: f64 = 0.1;
 /// Accepts a facet that passed the similarity test (`agreed`) and its margin over planes displaced
 /// by at least so many metres, in standard deviations. A facet that failed is accepted for a clear
 /// margin, one that passed is rejected where a displaced plane is better.
-pub fn displaced_plane_test(
+pub(super) fn displaced_plane_test(
     agreed: Result<(), FacetRejection>,
     facet: &Facet,
     interior: &InteriorSums,
@@ -82,7 +82,7 @@ fn least_margin(facet: &Facet, interior: &InteriorSums) -> f64 {
 /// Margin of the facet's plane over the best of some displaced ones, inside the facet, in standard
 /// deviations. The planes are moved by `least_m` metres or more. `scene` has pixels about `step`
 /// (metres) wide, `hidden` tells which views do not see a point of the facet. Zero without windows.
-pub fn displaced_plane_margin(
+pub(super) fn displaced_plane_margin(
     scene: &Scene,
     facet: &Facet,
     step: f64,

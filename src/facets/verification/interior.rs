@@ -18,7 +18,7 @@ use crate::raster::mark_inside;
 use crate::scene::Scene;
 
 /// The windows that lie wholly inside a facet.
-pub struct InteriorWindows<'m> {
+pub(super) struct InteriorWindows<'m> {
     /// How the views agree on its plane.
     map: &'m ConsistencyMap,
     /// The middles of the windows, as cells of the map's grid.
@@ -29,7 +29,7 @@ pub struct InteriorWindows<'m> {
 
 /// Sums over the windows inside a facet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct InteriorSums {
+pub(super) struct InteriorSums {
     /// Number of windows.
     pub windows: usize,
     /// Sum of their texture weights.
@@ -46,7 +46,7 @@ pub struct InteriorSums {
 
 /// Photo-consistency map of a facet's plane over its part of the plan; `hidden` tells which views
 /// do not see a point.
-pub fn interior_map(
+pub(super) fn interior_map(
     scene: &Scene,
     facet: &Facet,
     step: f64,
@@ -59,7 +59,7 @@ pub fn interior_map(
 
 /// Sums over the interior of a facet for the views that see it; `hidden` tells which do not see a
 /// point, and `min_correlation` is what strong texture must reach.
-pub fn visible_interior(
+pub(super) fn visible_interior(
     scene: &Scene,
     facet: &Facet,
     step: f64,
@@ -72,7 +72,7 @@ pub fn visible_interior(
 
 impl<'m> InteriorWindows<'m> {
     /// The windows inside a facet, with the map of its plane.
-    pub fn of(facet: &Facet, map: &'m ConsistencyMap) -> Self {
+    pub(super) fn of(facet: &Facet, map: &'m ConsistencyMap) -> Self {
         let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
         let rings = std::iter::once(&facet.outer).chain(&facet.holes);
         let rings: Vec<Vec<Point2<f64>>> = rings.map(in_plan).collect();
@@ -92,12 +92,12 @@ impl<'m> InteriorWindows<'m> {
     }
 
     /// Is a facet so narrow that most of it is within half a window of its edges?
-    pub fn is_narrow(&self) -> bool {
+    pub(super) fn is_narrow(&self) -> bool {
         self.share < LEAST_SHARE
     }
 
     /// Their sums; `min_correlation` is what strong texture must reach.
-    pub fn sums(&self, min_correlation: f64) -> InteriorSums {
+    pub(super) fn sums(&self, min_correlation: f64) -> InteriorSums {
         let mut interior = InteriorSums {
             windows: self.windows.len(),
             ..InteriorSums::default()
@@ -114,7 +114,7 @@ impl<'m> InteriorWindows<'m> {
     }
 
     /// Some of the windows' middles, in plan, spread over the facet.
-    pub fn places(&self) -> impl Iterator<Item = Point2<f64>> {
+    pub(super) fn places(&self) -> impl Iterator<Item = Point2<f64>> {
         const MOST: usize = 500;
         let grid = &self.map.grid;
         let every = self.windows.len().div_ceil(MOST).max(1);
@@ -125,7 +125,7 @@ impl<'m> InteriorWindows<'m> {
     /// How much better the views agree on another plane in the same windows: the mean difference of
     /// the correlations, in standard deviations of that mean. As many windows count as fit in side
     /// by side, since others share cells. Zero where no window sees both planes.
-    pub fn advantage_of(&self, other: &ConsistencyMap) -> f64 {
+    pub(super) fn advantage_of(&self, other: &ConsistencyMap) -> f64 {
         let (own, grid) = (self.map, &other.grid);
         let (dc, dr) = own.grid.offset_in(grid);
         let (mut weights, mut squares, mut sum, mut sum_squares) = (0.0, 0.0, 0.0, 0.0);
@@ -158,33 +158,33 @@ impl<'m> InteriorWindows<'m> {
 
 impl InteriorSums {
     /// Is there texture, and does it contradict the plane?
-    pub fn contradicts(&self) -> bool {
+    pub(super) fn contradicts(&self) -> bool {
         self.falls_short(self.correlation, self.least, TOLERANCE)
     }
 
     /// The same for all pairs of views.
-    pub fn contradicts_overall(&self) -> bool {
+    pub(super) fn contradicts_overall(&self) -> bool {
         self.falls_short(self.overall, self.least_overall, TOLERANCE_OVERALL)
     }
 
     /// Do all pairs of views agree on the plane by little more than chance?
-    pub fn is_doubtful(&self) -> bool {
+    pub(super) fn is_doubtful(&self) -> bool {
         self.falls_short(self.overall, self.least_overall, -DOUBT)
     }
 
     /// Do they by no more than chance?
-    pub fn is_by_chance(&self) -> bool {
+    pub(super) fn is_by_chance(&self) -> bool {
         self.falls_short(self.overall, self.least_overall, 0.0)
     }
 
     /// Do the views agree on the plane as clearly as on most roofs?
-    pub fn is_clear(&self) -> bool {
+    pub(super) fn is_clear(&self) -> bool {
         self.beyond_chance() >= CLEAR * self.weight
     }
 
     /// By how much the correlations, that of the better half of the pairs and that of all, exceed
     /// together what they must, summed over the windows.
-    pub fn beyond_chance(&self) -> f64 {
+    pub(super) fn beyond_chance(&self) -> f64 {
         self.correlation - self.least + self.overall - self.least_overall
     }
 

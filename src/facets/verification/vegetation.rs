@@ -12,11 +12,11 @@ use crate::scene::{Scene, View};
 
 /// Excess green from which on a facet may be vegetation. Measured: hedges of real-barns 0.10 to
 /// 0.13, the greenest rendered roofs (metal) 0.07, tiles and bitumen below 0.
-pub const GREEN: f64 = 0.09;
+pub(super) const GREEN: f64 = 0.09;
 
 /// Excess green at some points: of each view that sees them in the mean, and of the views the
 /// median. 0 where no view does.
-pub fn excess_green(scene: &Scene, points: &[Point3<f64>]) -> f64 {
+pub(super) fn excess_green(scene: &Scene, points: &[Point3<f64>]) -> f64 {
     let mut of_views: Vec<f64> = (scene.views.iter())
         .filter_map(|view| of_view(view, points))
         .collect();

@@ -21,7 +21,7 @@ const SAME_EDGE_PX: f64 = 0.3;
 impl MatchContext<'_> {
     /// The edge of a view along the line: of the kind of the line's segments or, without one, of
     /// the other kind, if a segment of that kind lies there.
-    pub fn measure(
+    pub(crate) fn measure(
         &self,
         line: &Segment3,
         segments: &[SegmentRef],
@@ -116,7 +116,7 @@ impl MatchContext<'_> {
     /// The segments of all views on the projection of the line, or beyond its ends by no more than
     /// the largest gap, within `reach` times the gate. In each view they are of the kind of its
     /// measured edge, or else of the line.
-    pub fn adopt(
+    pub(crate) fn adopt(
         &self,
         line: &Segment3,
         known: &[SegmentRef],

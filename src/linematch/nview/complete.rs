@@ -27,7 +27,7 @@ const MIN_EVIDENCE_OF_THREE: usize = 5;
 const OWN: f64 = 1.5;
 
 /// Completes a hypothesis from some of its segments; `taken` names those of other lines.
-pub fn complete_line(
+pub(crate) fn complete_line(
     context: &MatchContext,
     start: &Segment3,
     seeds: &[SegmentRef],

@@ -60,7 +60,7 @@ impl From<CompletedLine> for LineTrack {
 }
 
 /// The input of a completion.
-pub struct MatchContext<'a> {
+pub(crate) struct MatchContext<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// The detected segments.
@@ -78,12 +78,12 @@ pub struct MatchContext<'a> {
 }
 
 /// The predicate of the segments that belong to other lines.
-pub type IsTaken<'a> = &'a dyn Fn(SegmentRef) -> bool;
+pub(crate) type IsTaken<'a> = &'a dyn Fn(SegmentRef) -> bool;
 
 #[cfg(test)]
 impl<'a> MatchContext<'a> {
     /// That of a first pass over a planted scene.
-    pub fn of_planted(
+    pub(crate) fn of_planted(
         scene: &'a Scene,
         segments: &'a [Vec<ImageSegment>],
         prepared: &'a PreparedSegments,

@@ -22,7 +22,7 @@ const BASE_PX: f64 = 1.0;
 
 /// The stretch between the located ends of the edge. One that is too short to have an inside stays
 /// as it is.
-pub fn located_ends(
+pub(super) fn located_ends(
     scene: &Scene,
     profile: &LineProfile,
     (start, end): (usize, usize),

@@ -50,7 +50,7 @@ impl MatchContext<'_> {
 
     /// How far each segment agrees with the line that fits those that agree best, 0 to 1: 1/2 at a
     /// standard deviation. `None` where nothing fits.
-    pub fn agreement(&self, start: &Segment3, segments: &[SegmentRef]) -> Option<Vec<f64>> {
+    pub(crate) fn agreement(&self, start: &Segment3, segments: &[SegmentRef]) -> Option<Vec<f64>> {
         let (fit, kept) = self.fit_consistent(start, segments).ok()?;
         let agrees = |s: &SegmentRef| {
             let i = kept.iter().position(|k| k == s)?;

@@ -19,7 +19,10 @@ const CLOSED_GAP_PX: usize = 1;
 const GAP_SHARE: f64 = 0.8;
 
 /// The supported stretch: first and last edgel of the profile. `None` where too few views agree.
-pub fn supported_stretch(profile: &LineProfile, params: &MatchParams) -> Option<(usize, usize)> {
+pub(super) fn supported_stretch(
+    profile: &LineProfile,
+    params: &MatchParams,
+) -> Option<(usize, usize)> {
     let n = profile.t.len();
     let needed = needed_views(profile.measured());
     let detections: Vec<usize> = (0..n).map(|e| profile.detections(e)).collect();

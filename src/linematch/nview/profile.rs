@@ -15,10 +15,10 @@ use crate::raster::Channel;
 use crate::scene::Scene;
 
 /// Least distance of an edgel from the border of the image so that its edge can be seen, px.
-pub const EDGE_MARGIN_PX: f64 = 4.0;
+pub(crate) const EDGE_MARGIN_PX: f64 = 4.0;
 
 /// The evidence of one view along the line.
-pub struct ViewProfile {
+pub(super) struct ViewProfile {
     /// The view.
     pub view: ViewId,
     /// The line in it.
@@ -40,7 +40,7 @@ pub struct ViewProfile {
 
 impl ViewProfile {
     /// Is there an edge in this view?
-    pub fn measured(&self) -> bool {
+    pub(super) fn measured(&self) -> bool {
         self.edge.is_some()
     }
 
@@ -55,7 +55,7 @@ impl ViewProfile {
 }
 
 /// The evidence of all views along the line.
-pub struct LineProfile {
+pub(super) struct LineProfile {
     /// Metres along the line of each edgel; edgels are a pixel apart in the reference view.
     pub t: Vec<f64>,
     /// Index in `views` of the reference view: of those with segments the one most like the others.
@@ -66,7 +66,7 @@ pub struct LineProfile {
 
 impl LineProfile {
     /// Samples the evidence along `line`, as far as its segments reach.
-    pub fn new(
+    pub(super) fn new(
         scene: &Scene,
         prepared: &PreparedSegments,
         line: &Segment3,
@@ -122,23 +122,23 @@ impl LineProfile {
     }
 
     /// Number of views with an edge.
-    pub fn measured(&self) -> usize {
+    pub(super) fn measured(&self) -> usize {
         with_segments(&self.views).count()
     }
 
     /// Number of views with the edge at an edgel.
-    pub fn detections(&self, edgel: usize) -> usize {
+    pub(super) fn detections(&self, edgel: usize) -> usize {
         self.views.iter().filter(|v| v.detected[edgel]).count()
     }
 
     /// Number of views with an edge whose image reaches an edgel.
-    pub fn reaching(&self, edgel: usize) -> usize {
+    pub(super) fn reaching(&self, edgel: usize) -> usize {
         let reaches = |v: &&ViewProfile| v.measured() && v.inside[edgel];
         self.views.iter().filter(reaches).count()
     }
 
     /// Number of views whose neighbourhoods agree at an edgel, the reference included.
-    pub fn agreeing(&self, edgel: usize, params: &MatchParams) -> usize {
+    pub(super) fn agreeing(&self, edgel: usize, params: &MatchParams) -> usize {
         let agrees = |v: &&ViewProfile| f64::from(v.correlation[edgel]) >= params.edgel_correlation;
         self.views.iter().filter(agrees).count()
     }

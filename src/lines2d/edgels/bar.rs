@@ -27,7 +27,7 @@ const REACH_PX: f32 = 0.6;
 
 /// Bars with normals near one of the axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fan {
+pub(crate) enum Fan {
     /// Normals to the right.
     Right,
     /// Normals downwards.
@@ -36,7 +36,7 @@ pub enum Fan {
 
 impl Fan {
     /// Whether a line with this normal belongs here; every normal belongs to exactly one fan.
-    pub fn contains(self, normal: &Vector2<f64>) -> bool {
+    pub(crate) fn contains(self, normal: &Vector2<f64>) -> bool {
         (normal.x.abs() >= normal.y.abs()) == (self == Self::Right)
     }
 
@@ -52,7 +52,7 @@ impl Fan {
 
 /// A point of a bar.
 #[derive(Clone, Copy, Debug)]
-pub struct BarPoint {
+pub(crate) struct BarPoint {
     /// Position, px, inside the pixel that found it.
     position: Point2<f64>,
     /// Unit normal, of either sign.
@@ -64,7 +64,7 @@ pub struct BarPoint {
 }
 
 /// Second derivatives of a smoothed image.
-pub struct Hessian {
+pub(crate) struct Hessian {
     width: usize,
     height: usize,
     /// Size of the eigenvalue that is largest in size, grey values per px^2, row by row.
@@ -73,7 +73,7 @@ pub struct Hessian {
 
 impl Hessian {
     /// Differentiates a smoothed image twice; zero on the border pixels.
-    pub fn new(smooth: &Gray) -> Self {
+    pub(crate) fn new(smooth: &Gray) -> Self {
         let (w, h) = (smooth.width, smooth.height);
         let mut strength = vec![0.0; w * h];
         if w >= 3 {
@@ -94,7 +94,7 @@ impl Hessian {
     }
 
     /// Statistics of the strength.
-    pub fn statistics(&self) -> LocalStrengths {
+    pub(crate) fn statistics(&self) -> LocalStrengths {
         LocalStrengths::new(&self.strength, self.width, self.height)
     }
 }
@@ -116,7 +116,7 @@ fn strength_row(smooth: &[f32], w: usize, y: usize, out: &mut [f32]) {
 }
 
 /// The points of bars stronger than `low` times the local noise, row by row; at most one a pixel.
-pub fn bar_points(
+pub(crate) fn bar_points(
     smooth: &Gray,
     hessian: &Hessian,
     local: &LocalStrengths,
@@ -180,7 +180,7 @@ fn bar_point(smooth: &Gray, x: usize, y: usize, noise: f32) -> Option<BarPoint> 
 
 /// The points of bright or dark bars in one fan as edgels: their gradient is the normal times the
 /// size of the second derivative.
-pub fn fan_edgels(points: &[BarPoint], bright: bool, fan: Fan) -> Vec<Edgel> {
+pub(crate) fn fan_edgels(points: &[BarPoint], bright: bool, fan: Fan) -> Vec<Edgel> {
     let of_kind = points.iter().filter(|p| (p.second < 0.0) == bright);
     of_kind
         .filter_map(|p| {

@@ -52,7 +52,7 @@ pub fn detect_edgels(gray: &Gray, smoothing_px: f64, least: f32) -> Vec<Edgel> {
 
 /// Gradient of a smoothed image; zero on the border pixels. Only its length is stored, because the
 /// components are needed at few pixels.
-pub struct Gradient<'a> {
+pub(crate) struct Gradient<'a> {
     smooth: &'a Gray,
     /// Length of the gradient, grey values per px, row by row.
     pub strength: Vec<f32>,
@@ -60,7 +60,7 @@ pub struct Gradient<'a> {
 
 impl<'a> Gradient<'a> {
     /// Differentiates a smoothed image.
-    pub fn new(smooth: &'a Gray) -> Self {
+    pub(crate) fn new(smooth: &'a Gray) -> Self {
         let (w, h) = (smooth.width, smooth.height);
         let mut strength = vec![0.0; w * h];
         if w >= 3 {
@@ -77,7 +77,7 @@ impl<'a> Gradient<'a> {
     }
 
     /// Statistics of the strength.
-    pub fn statistics(&self) -> LocalStrengths {
+    pub(crate) fn statistics(&self) -> LocalStrengths {
         LocalStrengths::new(&self.strength, self.smooth.width, self.smooth.height)
     }
 
@@ -101,7 +101,7 @@ fn strength_row(smooth: &[f32], w: usize, y: usize, out: &mut [f32]) {
 
 /// Non-maximum suppression: the edgels stronger than `low` times the local noise, which
 /// `noise_row` writes for a row.
-pub fn suppress(
+pub(crate) fn suppress(
     gradient: &Gradient,
     noise_row: &dyn Fn(usize, &mut [f32]),
     low: f64,

@@ -21,7 +21,7 @@ pub struct Chain {
 }
 
 /// No edgel.
-pub const NONE: u32 = u32::MAX;
+pub(crate) const NONE: u32 = u32::MAX;
 
 /// Links edgels (one a pixel at most, as [`super::canny::detect_edgels`] gives them) into chains
 /// of two and more; chains without any edgel of at least `high` times its noise are dropped.
@@ -31,7 +31,7 @@ pub fn link_chains(edgels: &[Edgel], high: f64) -> Vec<Chain> {
 }
 
 /// [`link_chains`] on an existing raster of the edgels.
-pub fn link_on(edgels: &[Edgel], raster: &Raster, high: f64) -> Vec<Chain> {
+pub(crate) fn link_on(edgels: &[Edgel], raster: &Raster, high: f64) -> Vec<Chain> {
     let (next, previous) = choose(edgels, raster);
     let mutual = |i: u32| {
         let j = next[i as usize];
@@ -159,7 +159,7 @@ impl Choice {
 const MARGIN: usize = 2;
 
 /// Which edgel a pixel holds ([`NONE`] elsewhere).
-pub struct Raster {
+pub(crate) struct Raster {
     width: usize,
     height: usize,
     index: Vec<u32>,
@@ -170,7 +170,7 @@ pub struct Raster {
 
 impl Raster {
     /// The raster of edgels that have a pixel each.
-    pub fn new(edgels: &[Edgel]) -> Self {
+    pub(crate) fn new(edgels: &[Edgel]) -> Self {
         let (mut columns, mut rows) = (0, 0);
         for (x, y) in edgels.iter().map(Edgel::pixel) {
             columns = columns.max(x + 1);
@@ -196,7 +196,7 @@ impl Raster {
     }
 
     /// The edgel of a pixel; none outside.
-    pub fn at(&self, x: isize, y: isize) -> u32 {
+    pub(crate) fn at(&self, x: isize, y: isize) -> u32 {
         let (x, y) = (x + MARGIN as isize, y + MARGIN as isize);
         if x < 0 || y < 0 || x >= self.width as isize || y >= self.height as isize {
             return NONE;

@@ -23,7 +23,7 @@ const MIN_NOISE: f32 = 0.25 / 255.0 / 3.464_101_6;
 const RAYLEIGH_MEDIAN: f32 = 1.177_41;
 
 /// Statistics of a strength (of the gradient, of the second derivative) on a grid of blocks.
-pub struct LocalStrengths {
+pub(crate) struct LocalStrengths {
     columns: usize,
     rows: usize,
     noise: Vec<f32>,
@@ -32,7 +32,7 @@ pub struct LocalStrengths {
 
 impl LocalStrengths {
     /// The statistics of a raster of strengths, row by row.
-    pub fn new(strength: &[f32], width: usize, height: usize) -> Self {
+    pub(crate) fn new(strength: &[f32], width: usize, height: usize) -> Self {
         let columns = width.div_ceil(BLOCK_PX).max(1);
         let rows = height.div_ceil(BLOCK_PX).max(1);
         let counts = pool(&histograms(strength, width, columns, rows), columns, rows);
@@ -47,7 +47,7 @@ impl LocalStrengths {
     /// Scale of the gradients around each pixel of row `y`: the standard deviation of a component,
     /// grey values per px, were they all noise. Bilinear between block centres, so that thresholds
     /// have no steps at block borders.
-    pub fn noise_row(&self, y: usize, row: &mut [f32]) {
+    pub(crate) fn noise_row(&self, y: usize, row: &mut [f32]) {
         let (above, f) = interval(y, self.rows);
         let below = (above + 1).min(self.rows - 1);
         let line = |row: usize| &self.noise[row * self.columns..(row + 1) * self.columns];
@@ -68,7 +68,7 @@ impl LocalStrengths {
     }
 
     /// `-ln H(strength)` around a pixel: 0 for a common strength, large for a rare one.
-    pub fn surprisal(&self, x: usize, y: usize, strength: f32) -> f32 {
+    pub(crate) fn surprisal(&self, x: usize, y: usize, strength: f32) -> f32 {
         let column = (x / BLOCK_PX).min(self.columns - 1);
         let row = (y / BLOCK_PX).min(self.rows - 1);
         self.surprisal[row * self.columns + column][bin(strength)]

@@ -10,7 +10,7 @@ use crate::lines2d::regression::RegressionLine;
 use crate::params::SegmentParams;
 
 /// Positions in the chain at which the tangent breaks, ascending, never the first or the last.
-pub fn tangent_breaks(points: &[Point2<f64>], params: &SegmentParams) -> Vec<usize> {
+pub(crate) fn tangent_breaks(points: &[Point2<f64>], params: &SegmentParams) -> Vec<usize> {
     let arm = params.worm_arm_edgels;
     if points.len() < 2 * arm + 1 {
         return Vec::new();

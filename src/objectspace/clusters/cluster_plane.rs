@@ -7,7 +7,7 @@ use crate::params::ClusterParams;
 
 /// ClusterAxes of a cluster plane: along the main direction, across it and up.
 #[derive(Clone, Copy, Debug)]
-pub struct ClusterAxes {
+pub(crate) struct ClusterAxes {
     /// Along.
     pub u: Vector3<f64>,
     /// Across, horizontal.
@@ -16,7 +16,7 @@ pub struct ClusterAxes {
 
 impl ClusterAxes {
     /// For a horizontal unit direction.
-    pub fn new(direction: &Vector3<f64>) -> Self {
+    pub(crate) fn new(direction: &Vector3<f64>) -> Self {
         Self {
             u: *direction,
             v: Vector3::z().cross(direction),
@@ -24,7 +24,7 @@ impl ClusterAxes {
     }
 
     /// The world point at (u, v, z).
-    pub fn point(&self, u: f64, v: f64, z: f64) -> Point3<f64> {
+    pub(crate) fn point(&self, u: f64, v: f64, z: f64) -> Point3<f64> {
         Point3::from(self.u * u + self.v * v + Vector3::z() * z)
     }
 }
@@ -43,7 +43,7 @@ pub(crate) struct PlaneRay {
 
 impl PlaneRay {
     /// `None` for an image line of another direction.
-    pub fn new(
+    pub(super) fn new(
         k: usize,
         image_line: &ImageLine,
         axes: &ClusterAxes,
@@ -76,7 +76,7 @@ impl PlaneRay {
     }
 
     /// Where two of them cross, (across, height).
-    pub fn meet(&self, other: &Self) -> Option<Vector2<f64>> {
+    pub(super) fn meet(&self, other: &Self) -> Option<Vector2<f64>> {
         let m = Matrix2::new(self.normal.x, self.normal.y, other.normal.x, other.normal.y);
         // Rays nearer than 3 degrees leave the height open.
         (m.determinant().abs() > 0.05).then_some(())?;
@@ -84,7 +84,7 @@ impl PlaneRay {
     }
 
     /// Its points at two heights.
-    pub fn drawn(&self, z_range: [f64; 2]) -> [[f64; 2]; 2] {
+    pub(super) fn drawn(&self, z_range: [f64; 2]) -> [[f64; 2]; 2] {
         z_range.map(|z| [(self.offset - self.normal.y * z) / self.normal.x, z])
     }
 }

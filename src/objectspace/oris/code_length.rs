@@ -18,7 +18,7 @@ pub(crate) struct CodeLength {
 }
 
 impl CodeLength {
-    pub fn new(params: &OrisParams) -> Self {
+    pub(super) fn new(params: &OrisParams) -> Self {
         Self {
             vector_bits: params.vector_bits,
             pixels_per_sample: params.pixels_per_sample,
@@ -28,7 +28,7 @@ impl CodeLength {
     }
 
     /// Bits of a region: its grey values given mean and noise, and these two parameters.
-    pub fn region(&self, m: &RegionMoments) -> f64 {
+    pub(super) fn region(&self, m: &RegionMoments) -> f64 {
         let samples = m.count as f64 / self.pixels_per_sample;
         let spread: f64 = (0..CHANNELS)
             .map(|c| self.weights[c] * log2(larger(m.variance(c), self.least_variance)))

@@ -6,7 +6,7 @@ use super::partition::{Edge, ImagePartition, Node, OUTSIDE, PartitionRegion};
 
 impl ImagePartition {
     /// The partition of a label image: vectors along the cracks between pixels of different labels.
-    pub fn from_labels(
+    pub(super) fn from_labels(
         labels: &[u32],
         count: usize,
         width: usize,

@@ -15,7 +15,7 @@ pub(crate) struct EdgeGrid {
 
 impl EdgeGrid {
     /// All vectors of a partition.
-    pub fn new(p: &ImagePartition) -> Self {
+    pub(super) fn new(p: &ImagePartition) -> Self {
         let far = |f: fn(&Lattice) -> i32| p.nodes.iter().map(|n| f(&n.at)).max().unwrap_or(0);
         let (columns, rows) = (far(|a| a.x) / CELL_PX + 1, far(|a| a.y) / CELL_PX + 1);
         let mut grid = Self {
@@ -31,14 +31,14 @@ impl EdgeGrid {
     }
 
     /// Lists the vectors at a node where they are now.
-    pub fn add_around(&mut self, p: &ImagePartition, node: u32) {
+    pub(super) fn add_around(&mut self, p: &ImagePartition, node: u32) {
         for &e in p.nodes[node as usize].edges() {
             self.add(p, e);
         }
     }
 
     /// Would a node on its way meet a vector that does not end at it?
-    pub fn crossed(&self, p: &ImagePartition, node: u32, to: Lattice) -> bool {
+    pub(super) fn crossed(&self, p: &ImagePartition, node: u32, to: Lattice) -> bool {
         let from = p.nodes[node as usize].at;
         self.cells_of(from, to).any(|cell| {
             self.cells[cell].iter().any(|&e| {

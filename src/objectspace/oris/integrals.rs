@@ -20,12 +20,12 @@ pub struct Lattice {
 }
 
 /// Number of channels: grey, and two colour differences.
-pub const CHANNELS: usize = 3;
+pub(super) const CHANNELS: usize = 3;
 
 /// Count, sums and sums of squares of the channels; the difference of two sets of pixels may be
 /// negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RegionMoments {
+pub(super) struct RegionMoments {
     /// Number of pixels.
     pub count: i64,
     sum: [i64; CHANNELS],
@@ -34,12 +34,12 @@ pub struct RegionMoments {
 
 impl RegionMoments {
     /// Mean of a channel, 0 to 255.
-    pub fn mean(&self, channel: usize) -> f64 {
+    pub(super) fn mean(&self, channel: usize) -> f64 {
         self.sum[channel] as f64 / self.count.max(1) as f64
     }
 
     /// Variance of a channel, levels of 255 squared.
-    pub fn variance(&self, channel: usize) -> f64 {
+    pub(super) fn variance(&self, channel: usize) -> f64 {
         let mean = self.mean(channel);
         larger(
             self.squares[channel] as f64 / self.count.max(1) as f64 - mean * mean,
@@ -80,14 +80,14 @@ impl Sub for RegionMoments {
 
 /// Running sums along every row of an image: sum and sum of squares of each channel. A row of 66
 /// 000 pixels still fits into 32 bits.
-pub struct RowSums {
+pub(super) struct RowSums {
     stride: usize,
     before: Vec<[[u32; 2]; CHANNELS]>,
 }
 
 impl RowSums {
     /// The sums of an image in three channels of the same size, values 0 to 1.
-    pub fn new(channels: &[Gray; CHANNELS]) -> Self {
+    pub(super) fn new(channels: &[Gray; CHANNELS]) -> Self {
         let (width, height) = (channels[0].width, channels[0].height);
         let stride = width + 1;
         let mut before = Vec::with_capacity(stride * height);
@@ -109,7 +109,7 @@ impl RowSums {
     /// The term of the side from `a` to `b`: the pixels to the left of it (smaller x) in every row
     /// that it crosses, positive for a side that runs down. A closed polygon that runs clockwise on
     /// the screen sums up to its inside.
-    pub fn side(&self, a: Lattice, b: Lattice) -> RegionMoments {
+    pub(super) fn side(&self, a: Lattice, b: Lattice) -> RegionMoments {
         let (top, bottom, down) = if a.y <= b.y {
             (a, b, true)
         } else {

@@ -10,7 +10,7 @@ pub(crate) struct Occupied {
 }
 
 impl Occupied {
-    pub fn new(width: usize, height: usize) -> Self {
+    pub(super) fn new(width: usize, height: usize) -> Self {
         let words_per_row = width.div_ceil(64);
         Self {
             width,
@@ -19,24 +19,24 @@ impl Occupied {
         }
     }
 
-    pub fn covers(&self, at: Lattice) -> bool {
+    pub(super) fn covers(&self, at: Lattice) -> bool {
         let height = self.words.len() / self.words_per_row;
         (0..self.width as i32).contains(&at.x) && (0..height as i32).contains(&at.y)
     }
 
-    pub fn get(&self, at: Lattice) -> bool {
+    pub(super) fn get(&self, at: Lattice) -> bool {
         let word = self.words[at.y as usize * self.words_per_row + at.x as usize / 64];
         word >> (at.x as usize % 64) & 1 == 1
     }
 
-    pub fn set(&mut self, at: Lattice, value: bool) {
+    pub(super) fn set(&mut self, at: Lattice, value: bool) {
         let word = &mut self.words[at.y as usize * self.words_per_row + at.x as usize / 64];
         let bit = 1u64 << (at.x as usize % 64);
         if value { *word |= bit } else { *word &= !bit }
     }
 
     /// Is there a node in the closed triangle besides its corners?
-    pub fn within(&self, corners: [Lattice; 3]) -> bool {
+    pub(super) fn within(&self, corners: [Lattice; 3]) -> bool {
         let [a, b, c] = corners;
         let (top, bottom) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
         (top..=bottom).any(|y| {

@@ -32,7 +32,7 @@ pub(crate) struct Node {
 
 impl Node {
     /// Without vectors.
-    pub fn new(at: Lattice) -> Self {
+    pub(super) fn new(at: Lattice) -> Self {
         Self {
             at,
             edges: [0; 4],
@@ -41,7 +41,7 @@ impl Node {
     }
 
     /// The vectors that end here.
-    pub fn edges(&self) -> &[u32] {
+    pub(super) fn edges(&self) -> &[u32] {
         &self.edges[..usize::from(self.degree)]
     }
 
@@ -112,7 +112,7 @@ impl ImagePartition {
 
     /// What dropping this break point would do; `None` where the boundary would then touch or cross
     /// another, or where the border of the image would move.
-    pub fn straightening(&self, node: u32) -> Option<Straightening> {
+    pub(super) fn straightening(&self, node: u32) -> Option<Straightening> {
         let ([e, _], [a, c]) = self.ends(node)?;
         if a == c || self.joined(a, c) {
             return None;
@@ -151,7 +151,7 @@ impl ImagePartition {
     }
 
     /// Drops a break point; returns the two nodes that are joined now.
-    pub fn drop_node(&mut self, node: u32, what: &Straightening) -> [u32; 2] {
+    pub(super) fn drop_node(&mut self, node: u32, what: &Straightening) -> [u32; 2] {
         let ([e, f], [a, c]) = self.ends(node).expect("only break points are dropped");
         let at = self.nodes[node as usize].at;
         self.occupied.set(at, false);
@@ -170,7 +170,7 @@ impl ImagePartition {
     }
 
     /// The nodes at the far ends of the vectors of a node.
-    pub fn around(&self, node: u32) -> impl Iterator<Item = u32> {
+    pub(super) fn around(&self, node: u32) -> impl Iterator<Item = u32> {
         self.nodes[node as usize].edges().iter().map(move |&e| {
             let [a, b] = self.edges[e as usize].nodes;
             if a == node { b } else { a }
@@ -178,14 +178,14 @@ impl ImagePartition {
     }
 
     /// Is this a lattice point of the image?
-    pub fn covers(&self, at: Lattice) -> bool {
+    pub(super) fn covers(&self, at: Lattice) -> bool {
         self.occupied.covers(at)
     }
 
     /// May a node go to a place in the image without leaving the border of the image, and without
     /// its vectors passing over another node? (Whether it meets another vector on its way is for
     /// [`super::edge_grid`] to say.)
-    pub fn may_move(&self, node: u32, to: Lattice) -> bool {
+    pub(super) fn may_move(&self, node: u32, to: Lattice) -> bool {
         let at = self.nodes[node as usize].at;
         if self.occupied.get(to) {
             return false;
@@ -201,7 +201,7 @@ impl ImagePartition {
     }
 
     /// The pixels that each region would win if a node went to a place.
-    pub fn shift(&self, node: u32, to: Lattice) -> Vec<(u32, RegionMoments)> {
+    pub(super) fn shift(&self, node: u32, to: Lattice) -> Vec<(u32, RegionMoments)> {
         let at = self.nodes[node as usize].at;
         let mut won: Vec<(u32, RegionMoments)> = Vec::with_capacity(4);
         for &e in self.nodes[node as usize].edges() {
@@ -222,7 +222,7 @@ impl ImagePartition {
     }
 
     /// Moves a node; `won` is its [`Self::shift`].
-    pub fn move_node(&mut self, node: u32, to: Lattice, won: &[(u32, RegionMoments)]) {
+    pub(super) fn move_node(&mut self, node: u32, to: Lattice, won: &[(u32, RegionMoments)]) {
         let at = std::mem::replace(&mut self.nodes[node as usize].at, to);
         self.occupied.set(at, false);
         self.occupied.set(to, true);
@@ -246,7 +246,7 @@ impl ImagePartition {
 
     /// Merges two neighbours by taking away all vectors between them. Returns the region that
     /// stays, the neighbours whose boundary with it has grown, and the nodes that lost vectors.
-    pub fn merge(&mut self, i: u32, j: u32) -> (u32, Vec<u32>, Vec<u32>) {
+    pub(super) fn merge(&mut self, i: u32, j: u32) -> (u32, Vec<u32>, Vec<u32>) {
         let len = |r: u32| (self.regions[r as usize].edges.len(), u32::MAX - r);
         let (keep, gone) = if len(i) >= len(j) { (i, j) } else { (j, i) };
         let old = std::mem::take(&mut self.regions[gone as usize]);

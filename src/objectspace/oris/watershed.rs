@@ -9,7 +9,7 @@ use super::integrals::CHANNELS;
 use crate::raster::Gray;
 
 /// Labels of the pixels of a blurred image, row by row, counted from 0, and the number of regions.
-pub fn watershed(smooth: &[Gray; CHANNELS]) -> (Vec<u32>, usize) {
+pub(super) fn watershed(smooth: &[Gray; CHANNELS]) -> (Vec<u32>, usize) {
     let level = gradient_levels(smooth);
     let (w, h) = (smooth[0].width, smooth[0].height);
     let (mut labels, count) = minima(&level, w, h);

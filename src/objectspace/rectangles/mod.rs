@@ -79,7 +79,7 @@ pub(crate) struct PlaneSearch<'a> {
 
 impl PlaneSearch<'_> {
     /// All candidates between pairs of lines that run along `axes.u`, given by index.
-    pub fn candidates(
+    pub(super) fn candidates(
         &self,
         axes: &ClusterAxes,
         members: &[usize],
@@ -108,7 +108,11 @@ impl PlaneSearch<'_> {
     }
 
     /// Candidates of a pair of lines that the known solids hide in part.
-    pub fn candidates_between(&self, axes: &ClusterAxes, lines: [usize; 2]) -> Vec<PlaneCandidate> {
+    pub(super) fn candidates_between(
+        &self,
+        axes: &ClusterAxes,
+        lines: [usize; 2],
+    ) -> Vec<PlaneCandidate> {
         let [a, b] = lines.map(|k| self.along(axes, &self.lines[k]));
         let (mut candidates, _) = self.pair(axes, [&a, &b]);
         candidates.iter_mut().for_each(|c| c.lines = lines.into());
@@ -116,7 +120,7 @@ impl PlaneSearch<'_> {
     }
 
     /// Triangles below the ends of higher lines, `apexes`, on the lines that run along `axes.u`.
-    pub fn triangles(
+    pub(super) fn triangles(
         &self,
         axes: &ClusterAxes,
         members: &[usize],

@@ -49,7 +49,7 @@ pub(crate) fn partly_hidden(
 
 impl OccludingSolid {
     /// Below a ring that runs counter-clockwise seen from above.
-    pub fn new(plane: &Plane, ring: &[Point3<f64>]) -> Self {
+    pub(crate) fn new(plane: &Plane, ring: &[Point3<f64>]) -> Self {
         Self {
             ring: ring.iter().map(|p| p.xy()).collect(),
             plane: *plane,
@@ -57,13 +57,13 @@ impl OccludingSolid {
     }
 
     /// Does its roof stand well above a plane? Others hide none of it.
-    pub fn stands_above(&self, plane: &Plane) -> bool {
+    pub(crate) fn stands_above(&self, plane: &Plane) -> bool {
         let m = mean_point(&self.ring);
         self.plane.lift(m.x, m.y).z - plane.lift(m.x, m.y).z > LEAST_HEIGHT_M
     }
 
     /// Does it stand between a point and a camera above?
-    pub fn hides(&self, point: &Point3<f64>, center: &Point3<f64>) -> bool {
+    pub(crate) fn hides(&self, point: &Point3<f64>, center: &Point3<f64>) -> bool {
         let Some(range) = self.crossed(&point.xy(), &center.xy()) else {
             return false;
         };

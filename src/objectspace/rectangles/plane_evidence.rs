@@ -52,7 +52,7 @@ const MOST_CELLS: f64 = 60_000.0;
 impl<'a> PlaneConsistency<'a> {
     /// Compares the views on a plane where the rings are and no solid hides it; `None` without
     /// rings.
-    pub fn new(
+    pub(super) fn new(
         scene: &'a Scene,
         plane: &Plane,
         rings: &[Vec<Point3<f64>>],
@@ -72,7 +72,7 @@ impl<'a> PlaneConsistency<'a> {
     }
 
     /// The agreement inside a convex ring that runs counter-clockwise.
-    pub fn agreement(&self, ring: &[Point3<f64>]) -> PlaneAgreement {
+    pub(super) fn agreement(&self, ring: &[Point3<f64>]) -> PlaneAgreement {
         let (mut cells, mut weights, mut sum) = (0u32, 0.0, 0.0);
         let mut spread = WeightedHistogram::default();
         for k in self.cells(ring) {
@@ -91,7 +91,7 @@ impl<'a> PlaneConsistency<'a> {
 
     /// By how much the views agree better on the plane than above and below it inside a ring: the
     /// lower one of the medians.
-    pub fn rise(&self, displaced: &DisplacedMaps, ring: &[Point3<f64>]) -> f64 {
+    pub(super) fn rise(&self, displaced: &DisplacedMaps, ring: &[Point3<f64>]) -> f64 {
         let cells = self.cells(ring);
         let medians = displaced.0.each_ref().map(|map| {
             let mut spread = WeightedHistogram::default();
@@ -123,7 +123,7 @@ impl<'a> PlaneConsistency<'a> {
 
     /// Compares the views above and below the plane, where they move by so many pixels against each
     /// other.
-    pub fn displaced(&self, shift_px: f64) -> DisplacedMaps {
+    pub(super) fn displaced(&self, shift_px: f64) -> DisplacedMaps {
         let rise = shift_px / self.parallax_px;
         let maps = [rise, -rise].map(|dz| {
             let lifted = Plane {

@@ -44,7 +44,7 @@ impl StripPolygon {
     }
 
     /// Its corners in the world, counter-clockwise seen from above.
-    pub fn ring(&self, strip: &PlaneStrip) -> Vec<Point3<f64>> {
+    pub(super) fn ring(&self, strip: &PlaneStrip) -> Vec<Point3<f64>> {
         let point = |c: &[f64; 2]| strip.point(c[0], c[1]);
         let mut ring: Vec<_> = self.corners.iter().map(point).collect();
         if area_2d(&ring) < 0.0 {

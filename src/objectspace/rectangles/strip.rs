@@ -20,7 +20,7 @@ pub(crate) struct PlaneStrip {
 impl PlaneStrip {
     /// Through the places (across, height) of two lines; `None` where they coincide or stand above
     /// each other.
-    pub fn new(
+    pub(super) fn new(
         axes: &ClusterAxes,
         first: [f64; 2],
         second: [f64; 2],
@@ -45,12 +45,12 @@ impl PlaneStrip {
     }
 
     /// The world point at (u, w).
-    pub fn point(&self, u: f64, w: f64) -> Point3<f64> {
+    pub(super) fn point(&self, u: f64, w: f64) -> Point3<f64> {
         self.origin + self.u * u + self.w * w
     }
 
     /// (u, w) of the point in which a ray meets the plane.
-    pub fn cut(&self, center: &Point3<f64>, ray: &Vector3<f64>) -> Option<[f64; 2]> {
+    pub(super) fn cut(&self, center: &Point3<f64>, ray: &Vector3<f64>) -> Option<[f64; 2]> {
         let t = -self.plane.signed_distance(center) / self.plane.normal.dot(ray);
         (t > 0.0).then(|| {
             let d = center + ray * t - self.origin;

@@ -8,7 +8,7 @@ use crate::params::Params;
 use crate::scene::Scene;
 
 /// 3D lines; a trace for each window and direction.
-pub type Found = Outcome<Vec<FoundLine>, Vec<ClusterTrace>>;
+pub(super) type Found = Outcome<Vec<FoundLine>, Vec<ClusterTrace>>;
 
 pub(super) struct Clusters;
 

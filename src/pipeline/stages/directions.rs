@@ -8,7 +8,7 @@ use crate::params::Params;
 use crate::scene::Scene;
 
 /// Windows with their main directions.
-pub type Found = Outcome<Vec<Window>, WindowTrace>;
+pub(super) type Found = Outcome<Vec<Window>, WindowTrace>;
 
 pub(super) struct Directions;
 

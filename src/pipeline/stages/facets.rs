@@ -12,7 +12,7 @@ use crate::params::Params;
 use crate::scene::Scene;
 
 /// Facets and buildings.
-pub type Found = Outcome<RoofModel, RoofTrace>;
+pub(super) type Found = Outcome<RoofModel, RoofTrace>;
 
 pub(super) struct Facets;
 

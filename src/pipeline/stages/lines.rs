@@ -9,7 +9,7 @@ use crate::params::Params;
 use crate::scene::Scene;
 
 /// 3D lines: those of matches, then those adopted from clusters.
-pub type Found = Outcome<Vec<Line3d>, LineTrace>;
+pub(super) type Found = Outcome<Vec<Line3d>, LineTrace>;
 
 pub(super) struct Lines;
 

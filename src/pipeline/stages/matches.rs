@@ -9,7 +9,7 @@ use crate::params::Params;
 use crate::scene::Scene;
 
 /// Matches.
-pub type Found = Outcome<Vec<LineTrack>, MatchTrace>;
+pub(super) type Found = Outcome<Vec<LineTrack>, MatchTrace>;
 
 pub(super) struct Matches;
 

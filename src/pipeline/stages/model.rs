@@ -7,7 +7,7 @@ use crate::scene::Scene;
 use crate::texture::{TextureTrace, TexturedModel, texture_model};
 
 /// Textures of the model.
-pub type Found = Outcome<TexturedModel, TextureTrace>;
+pub(super) type Found = Outcome<TexturedModel, TextureTrace>;
 
 pub(super) struct Model;
 

@@ -9,7 +9,7 @@ use crate::params::Params;
 use crate::scene::Scene;
 
 /// Planes and buildings.
-pub type Found = Outcome<RoofModel, RectangleTrace>;
+pub(super) type Found = Outcome<RoofModel, RectangleTrace>;
 
 pub(super) struct Rectangles;
 

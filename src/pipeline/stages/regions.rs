@@ -7,7 +7,7 @@ use crate::params::Params;
 use crate::scene::Scene;
 
 /// Lines on the boundaries of the regions of each view, in the order of the views.
-pub type Found = Outcome<Vec<Vec<RegionLine>>, Vec<Segmentation>>;
+pub(super) type Found = Outcome<Vec<Vec<RegionLine>>, Vec<Segmentation>>;
 
 pub(super) struct Regions;
 

@@ -7,7 +7,7 @@ use crate::params::Params;
 use crate::scene::Scene;
 
 /// Segments of each view, in the order of the views.
-pub type Found = Outcome<Vec<Vec<ImageSegment>>, Vec<SegmentTrace>>;
+pub(super) type Found = Outcome<Vec<Vec<ImageSegment>>, Vec<SegmentTrace>>;
 
 pub(super) struct Segments;
 

@@ -11,7 +11,7 @@ use crate::math::smaller;
 use crate::params::RoofParams;
 
 /// Does the line lie in the group's plane as far as the group's plane is known there?
-pub fn lies_in_plane(
+pub(super) fn lies_in_plane(
     input: &GroupingInput,
     group: &PlaneGroup,
     line: LineId,
@@ -47,7 +47,7 @@ pub fn lies_in_plane(
 }
 
 /// After the regression every member must still lie in the plane.
-pub fn all_lie_in(
+pub(super) fn all_lie_in(
     input: &GroupingInput,
     plane: &Plane,
     members: &[Member],
@@ -76,7 +76,7 @@ const MIN_SIGMA_LINE: f64 = 0.03;
 const ANGLE_ARM: f64 = 2.0;
 
 /// Orthogonal regression to samples of all lines and to the half-planes' angles (figure 17).
-pub fn fit_plane(input: &GroupingInput, members: &[Member]) -> Option<Plane> {
+pub(super) fn fit_plane(input: &GroupingInput, members: &[Member]) -> Option<Plane> {
     let mut points = Vec::new();
     for member in members {
         let line = &input.lines[member.line.index()];

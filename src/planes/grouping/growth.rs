@@ -8,7 +8,7 @@ use crate::params::RoofParams;
 use crate::sorting::sort_by;
 
 /// Half-planes, the most reliable first: similarity times the length of the line.
-pub fn by_strength(input: &GroupingInput) -> Vec<HalfPlaneId> {
+pub(super) fn by_strength(input: &GroupingInput) -> Vec<HalfPlaneId> {
     let strength = |id: &HalfPlaneId| {
         let h = &input.half_planes[id.index()];
         h.similarity * input.lines[h.line.index()].segment.length()
@@ -23,7 +23,7 @@ pub fn by_strength(input: &GroupingInput) -> Vec<HalfPlaneId> {
 }
 
 /// The group that grows from a half-plane over those that are still free.
-pub fn grow(
+pub(super) fn grow(
     input: &GroupingInput,
     by_line: &[Vec<HalfPlaneId>],
     seed: HalfPlaneId,
@@ -42,7 +42,7 @@ pub fn grow(
 }
 
 /// Adds neighbouring lines and half-planes that lie in the group's plane until there are no more.
-pub fn extend(
+pub(super) fn extend(
     input: &GroupingInput,
     by_line: &[Vec<HalfPlaneId>],
     group: &mut PlaneGroup,
@@ -81,7 +81,7 @@ pub fn extend(
 }
 
 /// Neighbouring groups of one plane become one.
-pub fn merge_groups(
+pub(super) fn merge_groups(
     input: &GroupingInput,
     groups: Vec<PlaneGroup>,
     params: &RoofParams,
@@ -135,7 +135,7 @@ fn are_neighbours(input: &GroupingInput, a: &PlaneGroup, b: &PlaneGroup) -> bool
 
 /// A line that lies in the plane without a half-plane has the plane on the side of the other
 /// members.
-pub fn infer_sides(input: &GroupingInput, group: &mut PlaneGroup) {
+pub(super) fn infer_sides(input: &GroupingInput, group: &mut PlaneGroup) {
     /// Below this summed offset the side is left open, metres.
     const UNDECIDED: f64 = 0.5;
     let middle = |m: &Member| input.lines[m.line.index()].at(0.5);

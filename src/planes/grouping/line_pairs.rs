@@ -19,7 +19,7 @@ use crate::planes::half_plane::is_wall;
 /// Planes of two neighbouring coplanar lines that no half-plane explains (B99 5: "an efficient and
 /// robust approach would use both"): hipped roofs without texture have ridges and eaves, but no
 /// half-plane.
-pub fn add_line_pairs(
+pub(super) fn add_line_pairs(
     input: &GroupingInput,
     by_line: &[Vec<HalfPlaneId>],
     groups: &mut Vec<PlaneGroup>,
@@ -77,7 +77,7 @@ fn unexplained(
 /// A group without a half-plane with all lines in its plane that lie where it may reach: clutter on
 /// a roof or below it, which the plan does not tell apart, comes between lines that are neighbours
 /// on the roof.
-pub fn with_lines_around(
+pub(super) fn with_lines_around(
     input: &GroupingInput,
     group: &PlaneGroup,
     params: &RoofParams,

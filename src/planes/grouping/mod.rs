@@ -49,7 +49,7 @@ use crate::ids::HalfPlaneId;
 use crate::params::RoofParams;
 
 /// Groups all half-planes; every half-plane ends in exactly one group.
-pub fn group_planes(input: &GroupingInput, params: &RoofParams) -> Vec<PlaneGroup> {
+pub(crate) fn group_planes(input: &GroupingInput, params: &RoofParams) -> Vec<PlaneGroup> {
     let by_line = half_planes_by_line(input);
     let mut free = vec![true; input.half_planes.len()];
     let mut groups = Vec::new();

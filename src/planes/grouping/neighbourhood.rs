@@ -25,7 +25,7 @@ pub struct LineNeighbours {
 }
 
 /// The topological neighbourhood of lines in plan.
-pub fn line_neighbours(lines: &[Line3d]) -> LineNeighbours {
+pub(crate) fn line_neighbours(lines: &[Line3d]) -> LineNeighbours {
     let mut cdt = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
     // Which lines run through each vertex of the triangulation.
     let mut owners: Vec<Vec<LineId>> = Vec::new();

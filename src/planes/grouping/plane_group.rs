@@ -106,7 +106,11 @@ pub struct GroupingInput<'a> {
 }
 
 /// A line as a member of a group, with its half-plane.
-pub fn member(input: &GroupingInput, line: LineId, half_plane: Option<HalfPlaneId>) -> Member {
+pub(super) fn member(
+    input: &GroupingInput,
+    line: LineId,
+    half_plane: Option<HalfPlaneId>,
+) -> Member {
     Member {
         line,
         side: half_plane.map(|h| input.half_planes[h.index()].side),

@@ -30,7 +30,7 @@ const SIGMA_THETA: f64 = 0.05;
 
 /// The half-planes that the sweep found, and behind them those propagated from a group next to
 /// their line. These have no views ([`HalfPlane::is_swept`]).
-pub fn with_propagated(
+pub(crate) fn with_propagated(
     input: &GroupingInput,
     groups: &[PlaneGroup],
     ground: &Ground,
@@ -94,7 +94,7 @@ fn runs_along(direction: &nalgebra::Vector3<f64>, plane: &Plane) -> bool {
 }
 
 /// A propagated half-plane: no view has shown it.
-pub fn half_plane(line: LineId, side: Side, theta: f64, plane: Plane) -> HalfPlane {
+pub(crate) fn half_plane(line: LineId, side: Side, theta: f64, plane: Plane) -> HalfPlane {
     HalfPlane {
         line,
         side,
@@ -111,7 +111,7 @@ pub fn half_plane(line: LineId, side: Side, theta: f64, plane: Plane) -> HalfPla
 
 /// Groups of the propagated half-planes, as of swept ones: strips next to each other stay apart,
 /// pieces of one line come together.
-pub fn group_propagated(input: &GroupingInput, params: &RoofParams) -> Vec<PlaneGroup> {
+pub(crate) fn group_propagated(input: &GroupingInput, params: &RoofParams) -> Vec<PlaneGroup> {
     let mut by_line = vec![Vec::new(); input.lines.len()];
     let mut free = vec![false; input.half_planes.len()];
     for (i, h) in input.half_planes.iter().enumerate() {

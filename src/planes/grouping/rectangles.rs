@@ -15,7 +15,11 @@ use crate::lines3d::{Line3d, Side};
 use crate::params::RoofParams;
 
 /// Adds the rectangles to the groups, those in the plane of a group to it.
-pub fn add_rectangles(input: &GroupingInput, groups: &mut Vec<PlaneGroup>, params: &RoofParams) {
+pub(crate) fn add_rectangles(
+    input: &GroupingInput,
+    groups: &mut Vec<PlaneGroup>,
+    params: &RoofParams,
+) {
     for rectangle in input.rectangles {
         let middle = rectangle.middle().xy();
         let same = groups.iter_mut().find(|g| {

@@ -22,7 +22,7 @@ const NEARLY_LEVEL: f64 = 0.087;
 /// hull, which is B99's delineation (4.3): two short rakes of a long roof have all of it between
 /// them.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct PlanRegion {
+pub(crate) struct PlanRegion {
     boxes: Vec<PlanBox>,
     hull: Vec<Point2<f64>>,
 }
@@ -64,7 +64,7 @@ impl PlanBox {
 impl PlanRegion {
     /// The region of a group: `depth` away from each supporting line on the side of its half-plane
     /// (both sides for a line without one), a little beyond on the other side and over the ends.
-    pub fn new(input: &GroupingInput, group: &PlaneGroup, params: &RoofParams) -> Self {
+    pub(crate) fn new(input: &GroupingInput, group: &PlaneGroup, params: &RoofParams) -> Self {
         let boxes = group
             .members
             .iter()
@@ -102,7 +102,7 @@ impl PlanRegion {
     }
 
     /// Does the region hold a plan position?
-    pub fn contains(&self, p: &Point2<f64>) -> bool {
+    pub(crate) fn contains(&self, p: &Point2<f64>) -> bool {
         self.boxes.iter().any(|b| {
             let d = p - b.start;
             let (t, u) = (d.dot(&b.along), b.along.x * d.y - b.along.y * d.x);
@@ -112,7 +112,7 @@ impl PlanRegion {
 
     /// The sides of the convex hull of the group's lines that are level in its `plane`, as eaves
     /// and ridges are. A plane that is itself nearly level has none: there every side would be.
-    pub fn level_sides(&self, plane: &Plane) -> Vec<[Point2<f64>; 2]> {
+    pub(crate) fn level_sides(&self, plane: &Plane) -> Vec<[Point2<f64>; 2]> {
         let down = plane.normal.xy();
         if down.norm() < NEARLY_LEVEL {
             return Vec::new();
@@ -126,7 +126,7 @@ impl PlanRegion {
     }
 
     /// Least and largest x and y, metres.
-    pub fn bounds(&self) -> [Point2<f64>; 2] {
+    pub(crate) fn bounds(&self) -> [Point2<f64>; 2] {
         bounds(self.boxes.iter().flat_map(|b| {
             let across = Vector2::new(-b.along.y, b.along.x);
             let corner = move |t: f64, u: f64| b.start + b.along * t + across * u;

@@ -20,7 +20,11 @@ pub(crate) struct SimilarityParabola {
 impl SimilarityParabola {
     /// Least squares over the samples (theta, Sim) within `reach` of `at`; `None` for fewer than
     /// three.
-    pub fn fit(samples: impl Iterator<Item = (f64, f64)>, at: f64, reach: f64) -> Option<Self> {
+    pub(super) fn fit(
+        samples: impl Iterator<Item = (f64, f64)>,
+        at: f64,
+        reach: f64,
+    ) -> Option<Self> {
         let mut normal = nalgebra::Matrix3::zeros();
         let mut right = nalgebra::Vector3::zeros();
         let mut count = 0;
@@ -47,7 +51,7 @@ impl SimilarityParabola {
     }
 
     /// Position and height of the maximum; `None` when the parabola opens upwards.
-    pub fn maximum(&self) -> Option<(f64, f64)> {
+    pub(super) fn maximum(&self) -> Option<(f64, f64)> {
         (self.curvature < 0.0).then(|| {
             let step = -self.slope / self.curvature;
             (self.at + step, self.value + 0.5 * self.slope * step)
@@ -70,7 +74,11 @@ pub(crate) struct Peak {
 
 impl Peak {
     /// Accepts the maximum by the printed thresholds, by its posterior probability, or by both.
-    pub fn accept(&self, probability: f64, params: &SweepParams) -> Result<(), SweepRejection> {
+    pub(super) fn accept(
+        &self,
+        probability: f64,
+        params: &SweepParams,
+    ) -> Result<(), SweepRejection> {
         // What passes the thresholds but is no likelier than not is rejected.
         const LIKELY: f64 = 0.5;
         let at_least = |least: f64| match probability >= least {

@@ -64,7 +64,7 @@ const INDEPENDENT: f64 = 0.25;
 impl WindowModel {
     /// For a window of standard deviation `contrast` in a view with noise of standard deviation
     /// `noise`.
-    pub fn new(contrast: f64, noise: f64) -> Self {
+    pub(super) fn new(contrast: f64, noise: f64) -> Self {
         let share = (noise * noise) / (contrast * contrast).max(1e-12);
         let rho = (1.0 - share).clamp(0.0, LARGEST_RHO);
         let by_chance = (1.0 - rho * rho) * CHANCE_SCATTER;
@@ -77,7 +77,7 @@ impl WindowModel {
     }
 
     /// Correlation that a window on the plane is expected to have.
-    pub fn rho(&self) -> f64 {
+    pub(super) fn rho(&self) -> f64 {
         self.rho
     }
 }
@@ -92,7 +92,7 @@ pub(crate) struct FourModels {
 
 impl FourModels {
     /// Side by side.
-    pub fn new(models: [WindowModel; 4]) -> Self {
+    pub(super) fn new(models: [WindowModel; 4]) -> Self {
         Self {
             rho: f64x4::new(models.map(|m| m.rho)),
             precision: f64x4::new(models.map(|m| m.precision)),
@@ -103,7 +103,7 @@ impl FourModels {
     /// Logarithm of how much likelier each correlation is on the plane than by chance. More than
     /// expected is as good as expected.
     #[inline]
-    pub fn evidence(&self, correlation: f64x4) -> f64x4 {
+    pub(super) fn evidence(&self, correlation: f64x4) -> f64x4 {
         let short = (self.rho - correlation).fast_max(f64x4::ZERO);
         let chance = correlation.fast_min(self.rho) * f64x4::splat(1.0 / CHANCE_SCATTER);
         let ratio =

@@ -77,7 +77,7 @@ struct ExpectedCorrelations {
 
 impl<'a> LineSide<'a> {
     /// Chooses the reference view and its points of interest.
-    pub fn new(
+    pub(super) fn new(
         scene: &'a Scene,
         points: &[PointsOfInterest],
         line: &Segment3,
@@ -135,7 +135,7 @@ impl<'a> LineSide<'a> {
     }
 
     /// Positions of the points of interest in the reference view, pixels.
-    pub fn points(&self) -> Vec<Point2<f64>> {
+    pub(super) fn points(&self) -> Vec<Point2<f64>> {
         let m = self.strip.image_from_strip();
         let at = |v: usize| v as f64 + 0.5;
         self.windows
@@ -153,7 +153,7 @@ impl<'a> LineSide<'a> {
     /// lever with which theta is measured. (The least-squares lever `E[d^2] / E[d]` is too long:
     /// the correlation of a far point is lost before it can pull; measured on lines displaced by a
     /// known noise, it makes sigma a third too small.)
-    pub fn lever_m(&self) -> f64 {
+    pub(super) fn lever_m(&self) -> f64 {
         let camera = self.scene.camera(self.reference);
         let sites = self.windows.sites.iter().zip(&self.weights);
         let mean_px: f64 = sites.map(|(s, w)| w * self.strip.distance_px(s.row)).sum();
@@ -162,12 +162,12 @@ impl<'a> LineSide<'a> {
 
     /// Does the reference view see the upper side of the half-plane? Elsewhere theta has no
     /// meaning.
-    pub fn is_visible(&self, theta: f64) -> bool {
+    pub(super) fn is_visible(&self, theta: f64) -> bool {
         self.sees(self.reference, theta)
     }
 
     /// Compares the reference with one view under `H(theta)`.
-    pub fn score(&mut self, view: ViewId, theta: f64) -> ViewScore {
+    pub(super) fn score(&mut self, view: ViewId, theta: f64) -> ViewScore {
         let scene = self.scene;
         if !self.sees(view, theta) {
             return ViewScore::default();

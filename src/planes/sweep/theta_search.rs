@@ -42,7 +42,7 @@ pub(super) struct AcceptedPeak {
 }
 
 impl<'a> ThetaSearch<'a> {
-    pub fn new(line_side: LineSide<'a>, params: &'a SweepParams) -> Self {
+    pub(super) fn new(line_side: LineSide<'a>, params: &'a SweepParams) -> Self {
         let valid = vec![false; line_side.others.len()];
         Self {
             line_side,
@@ -53,7 +53,7 @@ impl<'a> ThetaSearch<'a> {
     }
 
     /// First pass, subdivision, validity, acceptance.
-    pub fn run(&mut self) -> Result<AcceptedPeak, SweepRejection> {
+    pub(super) fn run(&mut self) -> Result<AcceptedPeak, SweepRejection> {
         // Steps of nothing would never end.
         const LEAST_STEP_DEG: f64 = 0.05;
         let max_deg = self.params.max_theta_deg.clamp(0.0, 89.0);
@@ -75,7 +75,7 @@ impl<'a> ThetaSearch<'a> {
     }
 
     /// Samples all views at an angle, unless the reference view cannot see the half-plane there.
-    pub fn evaluate(&mut self, theta: f64) {
+    pub(super) fn evaluate(&mut self, theta: f64) {
         let place = self.samples.partition_point(|s| s.theta < theta);
         let known = self.samples.get(place).is_some_and(|s| s.theta == theta);
         if known || !self.line_side.is_visible(theta) {
@@ -128,7 +128,7 @@ impl<'a> ThetaSearch<'a> {
     }
 
     /// The sample with the largest sum over its valid views; `None` when none has enough of them.
-    pub fn best(&self) -> Option<usize> {
+    pub(super) fn best(&self) -> Option<usize> {
         let mut best: Option<(usize, f64)> = None;
         for i in 0..self.samples.len() {
             let sum = self.valid_sum(i);
@@ -140,7 +140,7 @@ impl<'a> ThetaSearch<'a> {
     }
 
     /// Which views are valid at a sample: enough of their correlations are high.
-    pub fn valid_at(&self, sample: usize) -> Vec<bool> {
+    pub(super) fn valid_at(&self, sample: usize) -> Vec<bool> {
         let scores = &self.samples[sample].scores;
         scores
             .iter()
@@ -219,7 +219,7 @@ impl<'a> ThetaSearch<'a> {
         Posterior::new(thetas, &evidence)
     }
 
-    pub fn curve(&self) -> SimilarityCurve {
+    pub(super) fn curve(&self) -> SimilarityCurve {
         let views = self
             .line_side
             .others
@@ -247,7 +247,7 @@ impl<'a> ThetaSearch<'a> {
 }
 
 impl AcceptedPeak {
-    pub fn half_plane(
+    pub(super) fn half_plane(
         &self,
         search: &ThetaSearch,
         id: LineId,

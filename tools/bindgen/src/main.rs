@@ -18,6 +18,7 @@ fn main() -> Result<()> {
         [file, folder, name] => Bindgen::new()
             .input_path(file)
             .web(true)?
+            .typescript(true)
             .out_name(name)
             // They say nothing to a browser.
             .remove_name_section(true)

@@ -10,7 +10,8 @@ interface Scope {
 }
 const scope = self as unknown as Scope;
 
-const core = init().then(() => new Session());
+const wasm = new URL("../pkg/ridgeline_bg.wasm", import.meta.url);
+const core = init({ module_or_path: wasm }).then(() => new Session());
 
 scope.onmessage = async (event) => {
   answer(await core, event.data, (reply) => scope.postMessage(reply));

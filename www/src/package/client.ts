@@ -1,5 +1,7 @@
 /** The caller's side of the package: one worker, one reconstruction at a time, progress and cancel. */
-import type { Facet, LoadOptions, Params, SceneInfo, StageSummary } from "../shared/results.js";
+import type { Facet, LoadOptions, Params, SceneInfo, StageSummary } from "../pkg/ridgeline.js";
+
+export type { Facet, LoadOptions, Params, SceneInfo, StageSummary };
 
 /** A file of a scene: photographs and their orientation, in any format that ridgeline reads. */
 export interface SceneFile {
@@ -19,7 +21,7 @@ export interface Progress {
 
 export interface ReconstructOptions {
   /** Which of the files to use, and how. */
-  load?: LoadOptions;
+  load?: Partial<LoadOptions>;
   /** Parameters that differ from the defaults, for example `{ method: "combined" }`. */
   params?: PartialParams;
   onProgress?: (progress: Progress) => void;
@@ -27,8 +29,14 @@ export interface ReconstructOptions {
   signal?: AbortSignal;
 }
 
-/** Any part of the parameters; `Session.defaultParams()` of the wasm module has them all. */
-export type PartialParams = { method?: string } & { [K in keyof Params]?: unknown };
+/** Any part of the parameters; what is left out is as in `Session.defaultParams()` of the wasm module. */
+export type PartialParams = {
+  [K in keyof Params]?: Params[K] extends object ? PartialGroup<Params[K]> : Params[K];
+};
+
+type PartialGroup<T> = {
+  [K in keyof T]?: T[K] extends readonly unknown[] ? T[K] : T[K] extends object ? PartialGroup<T[K]> : T[K];
+};
 
 export interface Reconstruction {
   scene: SceneInfo;
@@ -56,7 +64,7 @@ export class InputError extends Error {
 /** What is asked of the worker. */
 export interface Request {
   files: { path: string; bytes: Uint8Array }[];
-  load: LoadOptions;
+  load: Partial<LoadOptions>;
   params: PartialParams;
 }
 

@@ -1,6 +1,5 @@
 /** The worker's side of the package: parse, run every stage, export. No state between requests. */
-import type { Session } from "../pkg/ridgeline.js";
-import type { Facet, SceneInfo, StageSummary } from "../shared/results.js";
+import type { LoadOptions, Params, Session } from "../pkg/ridgeline.js";
 import type { Progress, Reconstruction, Reply, Request } from "./client.js";
 
 /** Progress is told in steps of a hundredth at least: stages report much more often. */
@@ -26,18 +25,19 @@ function reconstruct(session: Session, request: Request, post: (reply: Reply) =>
   };
   session.clearFiles();
   for (const { path, bytes } of request.files) session.addFile(path, bytes);
-  session.setParams(request.params);
+  // The core fills in what is left out.
+  session.setParams(request.params as Params);
   report("load", 0);
-  const scene = session.load(request.load) as SceneInfo;
+  const scene = session.load(request.load as LoadOptions);
   report("load", 1);
-  const stages = (session.chosenStages() as string[]).map(
-    (stage) => session.runStage(stage, (fraction: number) => report(stage, fraction)) as StageSummary,
-  );
-  const names = session.exportNames() as string[];
+  const stages = session
+    .chosenStages()
+    .map((stage) => session.runStage(stage, (fraction: number) => report(stage, fraction)));
+  const names = session.exportNames();
   return {
     scene,
     stages,
-    facets: session.facets() as Facet[],
+    facets: session.facets(),
     files: new Map(names.map((name) => [name, session.exportFile(name)])),
   };
 }

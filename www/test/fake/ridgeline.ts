@@ -17,7 +17,7 @@ import type {
   Params,
   Refinement,
   SceneInfo,
-  SegmentStory,
+  SegmentMatching,
   SideRecord,
   SideTrace,
   TileReport,
@@ -240,7 +240,7 @@ export class Session implements CoreSession {
     };
   }
 
-  segmentStory(view: number, segment: number): SegmentStory {
+  segmentStory(view: number, segment: number): SegmentMatching {
     const other = view === 0 ? 1 : 0;
     const [a, b] = EDGES[segment] ?? EDGES[0];
     const ends = [pixel(corner(a)), pixel(corner(b))] as const;

@@ -56,13 +56,13 @@ pub(crate) fn project_blocks<'a>(path: &'a str, text: &'a str) -> Vec<ProjectBlo
 
 impl ProjectBlock<'_> {
     /// The value beside a key.
-    pub fn word(&self, key: &str) -> Option<&str> {
+    pub(super) fn word(&self, key: &str) -> Option<&str> {
         let text = self.values.get(key)?.first()?.text;
         (!text.is_empty()).then_some(text)
     }
 
     /// All numbers of a key and below it; none where it is missing.
-    pub fn all_numbers(&self, key: &str) -> Result<Vec<f64>> {
+    pub(super) fn all_numbers(&self, key: &str) -> Result<Vec<f64>> {
         let mut values = Vec::new();
         for line in self.values.get(key).map_or(&[][..], |lines| lines) {
             values.extend(line.numbers(&line.fields(), "a number")?);
@@ -71,7 +71,7 @@ impl ProjectBlock<'_> {
     }
 
     /// The numbers of a key.
-    pub fn numbers<const N: usize>(&self, key: &str) -> Result<[f64; N]> {
+    pub(super) fn numbers<const N: usize>(&self, key: &str) -> Result<[f64; N]> {
         let lines = self.values.get(key);
         let lines = lines.ok_or_else(|| {
             self.start

@@ -29,7 +29,7 @@ pub(crate) enum InphoLens {
 }
 
 impl InphoLens {
-    pub fn read(camera: &ProjectBlock) -> Result<Self> {
+    pub(super) fn read(camera: &ProjectBlock) -> Result<Self> {
         if camera.values.contains_key("RADIAL_COEFFS") {
             let radial = camera.all_numbers("RADIAL_COEFFS")?;
             let decentre = camera.all_numbers("DECENTRE_COEFFS")?;
@@ -64,7 +64,7 @@ impl InphoLens {
     }
 
     /// Radii at which the distortion is known or sampled, mm, up to the farthest corner.
-    pub fn radii(&self, farthest_mm: f64) -> Vec<f64> {
+    pub(super) fn radii(&self, farthest_mm: f64) -> Vec<f64> {
         const STEPS: i32 = 24;
         match self {
             Self::None => Vec::new(),
@@ -77,7 +77,7 @@ impl InphoLens {
     }
 
     /// The ideal position of a measured one, mm from the principal point.
-    pub fn ideal(&self, measured: &Vector2<f64>) -> Vector2<f64> {
+    pub(super) fn ideal(&self, measured: &Vector2<f64>) -> Vector2<f64> {
         let (x, y, r2) = (measured.x, measured.y, measured.norm_squared());
         match self {
             Self::None => *measured,

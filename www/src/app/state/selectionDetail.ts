@@ -1,12 +1,12 @@
 /** What the figures show of the selection beyond the results. */
 import { type ReadonlySignal, signal } from "@preact/signals";
 import type { WarpedPicture } from "../../shared/calls";
-import type { Correspondence, SegmentStory, SideTrace } from "../../shared/records";
+import type { Correspondence, SegmentMatching, SideTrace } from "../../shared/records";
 
 /** What the figures show of the selected segment or side, and what the core answered about it. */
 export interface SelectionDetail {
   /** The story of the selected segment. */
-  story: SegmentStory | null;
+  story: SegmentMatching | null;
   /** The candidate that is compared with it, by its place in the story. */
   candidate: number;
   /** Where on the segment the point is, 0 to 1. */
