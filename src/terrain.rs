@@ -1,7 +1,7 @@
 //! Height of the ground from the images: a sweep of horizontal planes.
 //!
 //! Every view, reduced four times, is compared with the others on horizontal planes at steps of
-//! height (the measure that verifies facets, [`crate::photoconsistency`]). Each position takes the
+//! height (the measure that verifies facets, `photoconsistency`). Each position takes the
 //! height at which the views agree best; the ground near a building is the lowest height that many
 //! positions around it share, since roofs and trees only rise above it and wrong matches share
 //! none. What is matched at about the height of the plane through those then settles the height.

@@ -21,7 +21,7 @@ pub struct HalfPlane {
     pub line: LineId,
     /// Which side of it.
     pub side: Side,
-    /// Angle of the maximum, radians, see [`ThetaFrame`].
+    /// Angle of the maximum, radians, see [`ThetaFrame`](crate::lines3d::ThetaFrame).
     pub theta: f64,
     /// Standard deviation of theta, radians.
     pub sigma_theta: f64,
