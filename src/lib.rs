@@ -7,7 +7,7 @@
 //! use ridgeline::{InputFile, LoadOptions, Params, Run, load_scene};
 //!
 //! // Photographs of a drawn house with their orientation, as files in memory.
-//! let (drawn, truth) = gable_scene(160);
+//! let (drawn, truth) = gable_scene(320);
 //! let files = to_files(&drawn).into_iter();
 //! let files: Vec<InputFile> = files.map(|(path, bytes)| InputFile::new(&path, bytes)).collect();
 //!
@@ -28,7 +28,7 @@
 //! use ridgeline::synthetic::gable_scene;
 //! use ridgeline::{Params, Run, Stage, silent};
 //!
-//! let mut run = Run::new(gable_scene(160).0, Params::default());
+//! let mut run = Run::new(gable_scene(320).0, Params::default());
 //! run.step(Stage::Segments, &silent());
 //! let segments = run.results().segments.as_ref().expect("the stage has run");
 //! println!("{} segments in the first view", segments.value[0].len());

@@ -8,8 +8,8 @@ use crate::geometry::{Plane, Segment3};
 use crate::sorting::sort_by;
 
 /// The line nearest to all interpretation planes in the least-squares sense: direction across all
-/// their normals, position by least squares. A start for [`fit_line`](super::fit_line); its end points are those of
-/// the longest observation. `None` when the planes do not fix a line.
+/// their normals, position by least squares. A start for [`fit_line`](super::fit_line); its end
+/// points are those of the longest observation. `None` when the planes do not fix a line.
 pub fn line_of_planes(observations: &[Observation]) -> Option<Segment3> {
     let planes: Vec<_> = observations
         .iter()

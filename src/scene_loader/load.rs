@@ -14,7 +14,8 @@ use crate::orientation_check::CheckedView;
 use crate::raster::Gray;
 use crate::scene::{Scene, Survey, View};
 
-/// Reads a scene. The first refusal is returned; [`inspect_files`](super::inspect_files) lists them all.
+/// Reads a scene. The first refusal is returned; [`inspect_files`](super::inspect_files) lists them
+/// all.
 pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
     let plan = Plan::new(files, options);
     let refusal = plan.errors.into_iter().next();
