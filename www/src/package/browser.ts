@@ -9,6 +9,10 @@ export function createWorker(): RidgelineWorker {
     const worker = new Worker(new URL("./browserWorker.js", import.meta.url), { type: "module" });
     worker.onmessage = (event: MessageEvent<Reply>) => onReply(event.data);
     worker.onerror = (event) => onFailure(new Error(event.message || "The worker could not be started."));
-    return { post: (request) => worker.postMessage(request), terminate: () => worker.terminate() };
+    return {
+      post: (request) => worker.postMessage(request),
+      rest: () => {},
+      terminate: () => worker.terminate(),
+    };
   });
 }

@@ -77,6 +77,8 @@ export type Reply =
 /** A worker of the browser or of Node. */
 export interface Port {
   post(request: Request): void;
+  /** Nothing is asked of it any more: it need not keep the program running. */
+  rest(): void;
   terminate(): void;
 }
 
@@ -134,6 +136,7 @@ export function clientOf(spawn: Spawn): RidgelineWorker {
       return await promise;
     } finally {
       listener = null;
+      port?.rest();
       signal?.removeEventListener("abort", cancel);
     }
   };

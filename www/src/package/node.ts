@@ -19,6 +19,7 @@ export function createWorker(): RidgelineWorker {
         worker.ref();
         worker.postMessage(request);
       },
+      rest: () => worker.unref(),
       terminate: () => void worker.terminate(),
     };
   });
