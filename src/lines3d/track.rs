@@ -9,6 +9,7 @@ use crate::lines2d::GuidedEdge;
 
 /// How the support of a line in one view was found (the page colours it so).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "lowercase")]
 pub enum SupportKind {
     /// A detected segment, matched.

@@ -1,7 +1,7 @@
 // The npm package: compiles src/package, puts the wasm core beside it and packs both.
 // Prints the tarball's path. The core is the one in src/pkg (make build for the smallest).
 import { execFileSync } from "node:child_process";
-import { cpSync, readFileSync, rmSync } from "node:fs";
+import { cpSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -19,6 +19,9 @@ execFileSync(join(www, "node_modules/.bin/tsc"), ["-p", join(www, "tsconfig.pack
 });
 cpSync(join(www, "src/pkg"), join(folder, "dist/pkg"), { recursive: true });
 rmSync(join(folder, "dist/pkg/.gitignore"), { force: true });
+// The class of the core can be disposed of: projects for older targets do not know the name.
+const types = join(folder, "dist/pkg/ridgeline.d.ts");
+writeFileSync(types, `/// <reference lib="esnext.disposable" />\n${readFileSync(types, "utf8")}`);
 for (const licence of ["LICENSE-MIT", "LICENSE-APACHE"])
   cpSync(join(www, "..", licence), join(folder, licence));
 const packed = execFileSync("npm", ["pack", "--json", "--silent"], { cwd: folder, encoding: "utf8" });

@@ -9,7 +9,8 @@ export * from "./client.js";
 /** A worker thread with its own core. */
 export function createWorker(): RidgelineWorker {
   return clientOf((onReply, onFailure) => {
-    const worker = new Worker(new URL("./nodeWorker.js", import.meta.url));
+    // Flags of the program (--input-type, --inspect ...) are not meant for the worker.
+    const worker = new Worker(new URL("./nodeWorker.js", import.meta.url), { execArgv: [] });
     worker.on("message", (reply: Reply) => onReply(reply));
     worker.on("error", onFailure);
     // A worker without work does not keep the program running.
