@@ -20,7 +20,9 @@ const fresh = signal(0);
 export const stages: ReadonlySignal<StageState[]> = all;
 /** How many stages, from the first, the worker has run with the present files and parameters. */
 export const freshStages: ReadonlySignal<number> = fresh;
-export const runningStage = computed(() => stages.value.find((stage) => stage.status === "running")?.name ?? null);
+export const runningStage = computed(
+  () => stages.value.find((stage) => stage.status === "running")?.name ?? null,
+);
 
 /** The stages of another method begin anew; the same ones stay as they are. */
 export function replaceStages(names: readonly StageName[]): void {
