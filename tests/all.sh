@@ -7,7 +7,7 @@ set -uo pipefail
 cd "$(dirname "$0")/.."
 logs=target/test-logs
 mkdir -p "$logs"
-passed=0 failed=0 broken=()
+passed=0 failed=0 broken=() times=()
 
 # The sum of the numbers that a pattern (with \1) finds in a log.
 sum() { sed -E $'s/\e\\[[0-9;]*m//g' "$2" | sed -nE "s/$1/\1/p" | awk '{ s += $1 } END { print s + 0 }'; }
@@ -17,7 +17,9 @@ step() {
     local name=$1 kind=$2 log="$logs/$1.log" good=0 bad=0 status=0
     shift 2
     printf '\n== %s: %s\n' "$name" "$*"
+    local start=$SECONDS
     "$@" 2>&1 | tee "$log" || status=1
+    times+=("$name $((SECONDS - start)) s")
     case $kind in
         cargo)
             good=$(sum '^test result: [^0-9]*([0-9]+) passed.*' "$log")
@@ -57,6 +59,8 @@ if [ "${1:-all}" = all ]; then
     step page playwright www test:e2e
 fi
 
+printf '\nTimes:'
+printf ' %s;' "${times[@]}"
 printf '\n'
 ((failed == 0)) || printf 'Failed in: %s (logs in %s)\n' "${broken[*]}" "$logs"
 printf '%d passed, %d failed\n' "$passed" "$failed"
