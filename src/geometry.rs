@@ -3,8 +3,6 @@
 use nalgebra::{Matrix3, Point, Point2, Point3, Rotation3, SVector, Unit, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::sorting::sort_by;
-
 /// Least and largest coordinates of points. Without any, the least are larger than the largest.
 pub fn bounds<const D: usize>(
     points: impl IntoIterator<Item = Point<f64, D>>,
@@ -229,9 +227,7 @@ impl Plane {
         });
         let eigen = scatter.symmetric_eigen();
         let mut order = [0, 1, 2];
-        sort_by(&mut order, |&a, &b| {
-            eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b])
-        });
+        order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
         // Collinear points leave the second axis without extent: no plane.
         if eigen.eigenvalues[order[1]] <= 1e-9 * eigen.eigenvalues[order[2]] {
             return None;
@@ -304,7 +300,7 @@ pub fn covered(stretches: impl Iterator<Item = [f64; 2]>, within: [f64; 2]) -> f
         .map(|s| [s[0].max(within[0]), s[1].min(within[1])])
         .filter(|s| s[1] > s[0])
         .collect();
-    sort_by(&mut inside, |a, b| a[0].total_cmp(&b[0]));
+    inside.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let (mut sum, mut end) = (0.0, f64::NEG_INFINITY);
     for [a, b] in inside {
         sum += (b - a.max(end)).max(0.0);

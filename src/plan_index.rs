@@ -92,7 +92,7 @@ mod tests {
                 all.push([p, p]);
             }
             let mut found: Vec<u32> = index.touching(question, f64::from(margin)).collect();
-            crate::sorting::sort_by(&mut found, Ord::cmp);
+            found.sort();
             let expected: Vec<u32> = (0..all.len() as u32)
                 .filter(|&i| touch(all[i as usize], question, f64::from(margin)))
                 .collect();

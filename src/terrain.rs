@@ -15,7 +15,6 @@ use crate::lines3d::Line3d;
 use crate::model::Facet;
 use crate::photoconsistency::{PlanGrid, consistency_map};
 use crate::scene::Scene;
-use crate::sorting::sort_by;
 
 /// Ground heights, metres, local frame, on a coarse grid over the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -94,7 +93,7 @@ impl Ground {
         if ends.is_empty() {
             return Ok(Self::level(0.0));
         }
-        sort_by(&mut ends, |a, b| a.z.total_cmp(&b.z));
+        ends.sort_by(|a, b| a.z.total_cmp(&b.z));
         // A few wrong lines may lie far off.
         let share = |f: f64| ends[(f * (ends.len() - 1) as f64) as usize].z;
         let around_lines = [share(0.02) - 2.0, share(0.98) + 1.0];
@@ -224,7 +223,7 @@ fn common_plane(blocks: &[Point3<f64>]) -> Option<Plane> {
         blocks.iter().filter(near).map(|p| (*p, 1.0)).collect()
     };
     let mut heights: Vec<f64> = blocks.iter().map(|p| p.z).collect();
-    sort_by(&mut heights, f64::total_cmp);
+    heights.sort_by(f64::total_cmp);
     let at_share = |i: usize| heights.get(i * heights.len() / STARTS);
     let starts = (0..STARTS).filter_map(at_share).map(|z| level_plane(*z));
     let found: Vec<(Plane, usize)> = starts
@@ -259,7 +258,7 @@ fn low_height(heights: impl Iterator<Item = f64>) -> Option<f64> {
     if heights.len() < MIN_SAMPLES {
         return None;
     }
-    sort_by(&mut heights, f64::total_cmp);
+    heights.sort_by(f64::total_cmp);
     // From each height on, how many share it.
     let mut end = 0;
     let sharing: Vec<usize> = (heights.iter().enumerate())

@@ -12,7 +12,6 @@ use nalgebra::{Matrix2, Point2, Vector2};
 use super::borders::Arrangement;
 use super::labelling::NO_PLANE;
 use crate::geometry::Plane;
-use crate::sorting::sort_by;
 
 /// A facet in plan, before it is lifted onto its plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -273,7 +272,7 @@ fn corner_vertices(arrangement: &Arrangement, borders: &[BorderEdge]) -> Vec<boo
         links.entry(e.b).or_default().push(e.a);
     }
     for ends in links.values_mut() {
-        sort_by(ends, Ord::cmp);
+        ends.sort();
         ends.dedup();
     }
     let mut keep = vec![false; arrangement.vertices.len()];
@@ -395,7 +394,7 @@ fn common_point(p: &Point2<f64>, list: &[u32], planes: &[Plane]) -> Option<Point
         .map(|&i| &planes[i as usize])
         .map(|q| (q.z_at(p.x, p.y), q))
         .collect();
-    sort_by(&mut at, |a, b| a.0.total_cmp(&b.0));
+    at.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Differences of neighbouring heights within a cluster: slope difference . step = - height
     // difference.
     let rows: Vec<(Vector2<f64>, f64)> = at

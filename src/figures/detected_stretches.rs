@@ -5,7 +5,6 @@ use crate::geometry::Segment3;
 use crate::lines2d::ImageSegment;
 use crate::lines3d::{Line3d, ProjectedLine};
 use crate::scene::Scene;
-use crate::sorting::sort_by;
 
 /// The stretches of a 3D line that detected segments of at least two views cover, in their order
 /// along the line.
@@ -50,9 +49,7 @@ fn detected(scene: &Scene, segments: &[Vec<ImageSegment>], line: &Line3d) -> Vec
 
 /// The union of intervals.
 fn united(mut intervals: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    sort_by(&mut intervals, |a, b| {
-        a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
-    });
+    intervals.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let mut out: Vec<[f64; 2]> = Vec::new();
     for interval in intervals {
         match out.last_mut() {
@@ -70,7 +67,7 @@ fn covered_twice(intervals: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
         .flat_map(|&[from, to]| [(from, 1), (to, -1)])
         .collect();
     // At the same place an interval starts before another ends.
-    sort_by(&mut ends, |a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
     let (mut depth, mut start, mut out) = (0, 0.0, Vec::new());
     for (t, change) in ends {
         if change > 0 && depth == 1 {

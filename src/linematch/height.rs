@@ -16,7 +16,6 @@ use crate::geometry::Plane;
 use crate::ids::ViewId;
 use crate::raster::{Gray, gaussian_blur};
 use crate::scene::Scene;
-use crate::sorting::sort_by;
 
 /// Number of segments whose ends are swept, over all views.
 const SEGMENTS: usize = 360;
@@ -60,7 +59,7 @@ pub(super) fn height_range(
 
 /// The range in which heights lie that others confirm.
 fn range_of(scene: &Scene, mut heights: Vec<f64>) -> Option<HeightRange> {
-    sort_by(&mut heights, f64::total_cmp);
+    heights.sort_by(f64::total_cmp);
     let neighbours = |z: f64| {
         let from = heights.partition_point(|h| *h < z - NEIGHBOUR_M);
         heights.partition_point(|h| *h <= z + NEIGHBOUR_M) - from - 1
@@ -105,9 +104,7 @@ fn interest_points(scene: &Scene, prepared: &PreparedSegments) -> Vec<(ViewId, P
     let mut points = Vec::new();
     for view in scene.view_ids() {
         let mut segments: Vec<_> = prepared.of_view(view).collect();
-        sort_by(&mut segments, |(a, s), (b, t)| {
-            t.length_px.total_cmp(&s.length_px).then(a.cmp(b))
-        });
+        segments.sort_by(|(a, s), (b, t)| t.length_px.total_cmp(&s.length_px).then(a.cmp(b)));
         for (_, s) in segments.iter().take(each) {
             points.push((view, s.segment.p0));
             points.push((view, s.segment.p1));
@@ -134,9 +131,7 @@ fn sweep(scene: &Scene, images: &[Gray], view: ViewId, x: &Point2<f64>) -> Optio
     let mut maxima: Vec<usize> = (1..along.len().saturating_sub(1))
         .filter(|&i| along[i] >= CANDIDATE && along[i] >= along[i - 1] && along[i] > along[i + 1])
         .collect();
-    sort_by(&mut maxima, |&a, &b| {
-        along[b].total_cmp(&along[a]).then(a.cmp(&b))
-    });
+    maxima.sort_by(|&a, &b| along[b].total_cmp(&along[a]).then(a.cmp(&b)));
     maxima.truncate(12);
 
     // A step in the nearest view may be several pixels in the others, so that depths around each
@@ -160,7 +155,7 @@ fn sweep(scene: &Scene, images: &[Gray], view: ViewId, x: &Point2<f64>) -> Optio
             .max_by(|a, b| a.0.total_cmp(&b.0))
     };
     let mut confirmed: Vec<(f64, f64)> = maxima.iter().filter_map(|&i| confirm(i)).collect();
-    sort_by(&mut confirmed, |a, b| b.0.total_cmp(&a.0));
+    confirmed.sort_by(|a, b| b.0.total_cmp(&a.0));
     let (best, depth) = *confirmed.first()?;
     let second = confirmed.get(1).map_or(0.0, |c| c.0);
     (best >= ACCEPTED && best - second >= UNIQUE).then(|| (camera.center + camera.ray(x) * depth).z)
@@ -171,9 +166,7 @@ fn nearest_views(scene: &Scene, view: ViewId) -> Vec<ViewId> {
     let center = scene.camera(view).center;
     let distance = |v: &ViewId| (scene.camera(*v).center - center).norm();
     let mut others: Vec<ViewId> = scene.view_ids().filter(|v| *v != view).collect();
-    sort_by(&mut others, |a, b| {
-        distance(a).total_cmp(&distance(b)).then(a.cmp(b))
-    });
+    others.sort_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
     others
 }
 

@@ -5,7 +5,6 @@ use nalgebra::Point2;
 
 use crate::geometry::Segment2;
 use crate::math::smaller;
-use crate::sorting::sort_by;
 
 /// Side of a cell, pixels. Assumption: about half the length of a typical segment, so that a
 /// segment lies in few cells and a cell holds few segments.
@@ -34,7 +33,7 @@ impl SegmentIndex {
                 entries.push((cell as u32, id as u32));
             }
         }
-        sort_by(&mut entries, Ord::cmp);
+        entries.sort();
         entries.dedup();
         let mut starts = vec![0u32; columns * rows + 1];
         for (cell, _) in &entries {

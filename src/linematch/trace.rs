@@ -10,7 +10,6 @@ use super::triples::{TripleBundle, Verification};
 use crate::ids::ViewId;
 use crate::lines2d::ImageSegment;
 use crate::lines3d::SupportKind;
-use crate::sorting::sort_by;
 
 /// Most pairs kept in the trace, the best of each segment first.
 const MAX_PAIRS_PER_SEGMENT: usize = 12;
@@ -185,7 +184,7 @@ fn outcomes(
         .collect();
     // Weak pairs first, so that the best one decides.
     let mut order: Vec<usize> = (0..bundles.len()).collect();
-    sort_by(&mut order, |&i, &j| {
+    order.sort_by(|&i, &j| {
         let score = |b: usize| pairs.pairs[bundles[b].pair].score;
         score(i).total_cmp(&score(j)).then(j.cmp(&i))
     });
@@ -218,7 +217,7 @@ fn best_pairs(
     selection: &Selection,
 ) -> Vec<PairTrace> {
     let mut order: Vec<usize> = (0..bundles.len()).collect();
-    sort_by(&mut order, |&i, &j| {
+    order.sort_by(|&i, &j| {
         let score = |b: usize| pairs.pairs[bundles[b].pair].score;
         score(j).total_cmp(&score(i)).then(i.cmp(&j))
     });

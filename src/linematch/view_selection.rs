@@ -6,7 +6,6 @@ use crate::ids::ViewId;
 use crate::math;
 use crate::params::MatchParams;
 use crate::scene::Scene;
-use crate::sorting::{sort_by, sort_by_key};
 
 /// Points of a grid over a view, each way, whose visibility in another view measures the overlap.
 const GRID: usize = 5;
@@ -30,15 +29,13 @@ pub(super) fn select_view_pairs(
             .view_ids()
             .filter(|v| *v != view && overlap(scene, view, *v, z) >= MIN_OVERLAP)
             .collect();
-        sort_by(&mut others, |a, b| {
-            distance(a).total_cmp(&distance(b)).then(a.cmp(b))
-        });
+        others.sort_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
         let others = in_all_directions(others, params.max_partners, |v| {
             scene.camera(*v).center.xy() - center.xy()
         });
         pairs.extend(others.into_iter().map(|v| (view.min(v), view.max(v))));
     }
-    sort_by(&mut pairs, Ord::cmp);
+    pairs.sort();
     pairs.dedup();
     pairs
 }
@@ -69,7 +66,7 @@ fn in_all_directions(
             (*met, v)
         })
         .collect();
-    sort_by_key(&mut ranked, |(rank, _)| *rank);
+    ranked.sort_by_key(|(rank, _)| *rank);
     ranked.truncate(count);
     ranked.into_iter().map(|(_, v)| v).collect()
 }

@@ -19,7 +19,6 @@ use super::segment::SegmentKind;
 use crate::geometry::Segment2;
 use crate::ids::ViewId;
 use crate::raster::Gray;
-use crate::sorting::sort_by;
 
 /// Shortest piece whose profile is averaged, px.
 pub(crate) const PIECE_PX: f64 = 5.0;
@@ -231,7 +230,7 @@ impl OffsetLine {
             .collect();
         (points.len() >= MIN_PIECES).then_some(())?;
         let mut offsets: Vec<f64> = points.iter().map(|p| p.1).collect();
-        sort_by(&mut offsets, f64::total_cmp);
+        offsets.sort_by(f64::total_cmp);
         let mut line = Self {
             middle: 0.0,
             offset: offsets[offsets.len() / 2],

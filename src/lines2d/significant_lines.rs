@@ -12,7 +12,6 @@ use super::significance::FalseAlarms;
 use super::trace::{RejectedSegment, SegmentRejection, SegmentTrace};
 use crate::geometry::Segment2;
 use crate::params::SegmentParams;
-use crate::sorting::sort_by_key;
 
 /// The lines of some edgels, those of the longest pieces first. `high` is the least strength of
 /// the strongest edgel of a chain, in local noise units.
@@ -30,7 +29,7 @@ pub(super) fn significant_lines(
         .flat_map(|chain| seeds_of(chain, edgels, params, trace))
         .collect();
     // The longest predict best and come first; the stable sort keeps the order of the chains.
-    sort_by_key(&mut seeds, |seed| std::cmp::Reverse(seed.len()));
+    seeds.sort_by_key(|seed| std::cmp::Reverse(seed.len()));
     trace.edgels += edgels.len();
     trace.chains += chains.len();
     trace.seeds += seeds.len();

@@ -4,7 +4,6 @@ use super::projection::ProjectedLine;
 use super::track::LineSupport;
 use crate::geometry::Segment3;
 use crate::scene::Scene;
-use crate::sorting::sort_by;
 
 /// The outermost places along the line that a view supports, metres from its start.
 ///
@@ -29,7 +28,7 @@ pub(super) fn extent_of(
 /// First and last place where two intervals overlap, from their starts (+1) and ends (-1).
 pub(crate) fn doubly_covered(mut ends: Vec<(f64, i32)>) -> Option<(f64, f64)> {
     // At the same place an interval starts before another ends.
-    sort_by(&mut ends, |a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
     let (mut covered, mut first, mut last) = (0, None, None);
     for (t, change) in ends {
         covered += change;

@@ -5,7 +5,6 @@ use nalgebra::{Matrix3, Point2, Point3, Vector3};
 use super::observation::Observation;
 use crate::camera::{Camera, plane_of_image_line};
 use crate::geometry::{Plane, Segment3};
-use crate::sorting::sort_by;
 
 /// The line nearest to all interpretation planes in the least-squares sense: direction across all
 /// their normals, position by least squares. A start for [`fit_line`](super::fit_line); its end
@@ -26,9 +25,7 @@ pub fn line_of_planes(observations: &[Observation]) -> Option<Segment3> {
     });
     let eigen = scatter.symmetric_eigen();
     let mut order = [0, 1, 2];
-    sort_by(&mut order, |&a, &b| {
-        eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b])
-    });
+    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
     // Planes that are nearly one plane (all within about 0.1 degree) fix no line.
     if eigen.eigenvalues[order[1]] < 3e-6 * eigen.eigenvalues[order[2]] {
         return None;

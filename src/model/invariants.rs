@@ -11,7 +11,6 @@ use serde::Serialize;
 
 use super::roof_model::{Facet, RoofModel, Solid, SolidFace, Surface, WELD_M};
 use crate::ids::{BuildingId, FacetId};
-use crate::sorting::sort_by;
 
 /// Faces of solids are planar within this distance, metres. Welding moves a corner by up to 1 mm in
 /// plan, and two steep roofs that meet there are welded in height by a few millimetres; writers of
@@ -242,9 +241,9 @@ fn check_building(id: BuildingId, model: &RoofModel, found: &mut Vec<Violation>)
             .is_some_and(|facet| facet.building == id)
     });
     let mut own = building.facets.clone();
-    sort_by(&mut own, Ord::cmp);
+    own.sort();
     own.dedup();
-    sort_by(&mut roofs, Ord::cmp);
+    roofs.sort();
     if !known || own != roofs {
         found.push(Violation::Membership { building: id });
     }

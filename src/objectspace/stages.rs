@@ -21,7 +21,6 @@ use crate::params::ObjectSpaceParams;
 use crate::planes::ProposedPlane;
 use crate::scene::Scene;
 use crate::solids::{SolidTrace, close_buildings};
-use crate::sorting::sort_by;
 use crate::terrain::Ground;
 
 /// Regions of every view and the lines on their boundaries (W96 3.3).
@@ -262,7 +261,7 @@ fn search_occluded(
 pub fn proposed_planes(trace: &RectangleTrace) -> Vec<ProposedPlane> {
     let mut order: Vec<usize> = (0..trace.candidates.len()).collect();
     let chosen = |k: &usize| trace.chosen.binary_search(k).is_ok();
-    sort_by(&mut order, |a, b| {
+    order.sort_by(|a, b| {
         let measure = |k: &usize| trace.candidates[*k].measure;
         let chosen_first = chosen(b).cmp(&chosen(a));
         chosen_first.then(measure(b).total_cmp(&measure(a)))

@@ -17,7 +17,6 @@ use crate::geometry::Segment3;
 use crate::math::atan2;
 use crate::params::ObjectSpaceParams;
 use crate::scene::Scene;
-use crate::sorting::sort_by;
 use crate::terrain::Ground;
 
 /// A part of the ground plan that is analysed on its own.
@@ -128,7 +127,7 @@ fn raised_lines(
         tile_lines(scene, image_lines, tile, params)
     })?;
     let mut lines: Vec<Segment3> = per_tile.into_iter().flatten().map(|l| l.segment).collect();
-    sort_by(&mut lines, |a, b| {
+    lines.sort_by(|a, b| {
         let key = |s: &Segment3| (s.p0.x, s.p0.y);
         b.length()
             .total_cmp(&a.length())
@@ -163,7 +162,7 @@ fn tiles(image_lines: &[ImageLine], z_range_m: [f64; 2], size: f64) -> Vec<Windo
             [[c, r], [c - 1, r], [c, r - 1], [c - 1, r - 1]]
         })
         .collect();
-    sort_by(&mut corners, Ord::cmp);
+    corners.sort();
     corners.dedup();
     corners
         .into_iter()

@@ -356,7 +356,7 @@ mod tests {
             ranking.rank(&mut columns);
             for lane in 0..8 {
                 let mut sorted: Vec<f32> = (0..n).map(|i| value(i, lane)).collect();
-                crate::sorting::sort_by(&mut sorted, |a, b| b.total_cmp(a));
+                sorted.sort_by(|a, b| b.total_cmp(a));
                 for (place, value) in sorted[..ranking.ranked].iter().enumerate() {
                     assert_eq!(columns[place].to_array()[lane], *value, "{n} columns");
                 }

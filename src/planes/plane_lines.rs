@@ -17,7 +17,6 @@ use crate::ids::ViewId;
 use crate::linematch::EDGE_MARGIN_PX;
 use crate::lines2d::ImageSegment;
 use crate::scene::Scene;
-use crate::sorting::sort_by;
 
 /// A line in a plane that several views show.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -100,7 +99,7 @@ pub(crate) fn lines_in_plane(
         }));
     }
     // Longest first: it is the best known direction.
-    sort_by(&mut casts, |p, q| {
+    casts.sort_by(|p, q| {
         q.length()
             .total_cmp(&p.length())
             .then(p.view.cmp(&q.view))
@@ -116,7 +115,7 @@ pub(crate) fn lines_in_plane(
             .filter(|&j| !used[j] && coincide(&casts[i], &casts[j], SAME_LINE_PX * pixel))
             .collect();
         let mut views: Vec<ViewId> = members.iter().map(|&j| casts[j].view).collect();
-        sort_by(&mut views, Ord::cmp);
+        views.sort();
         views.dedup();
         if views.len() < MIN_OF_FEW {
             let CastSegment { a, b, .. } = casts[i];
@@ -203,7 +202,7 @@ fn common_line(
         ends.push(((c.a.coords - mean).dot(&direction), c.view, 1));
         ends.push(((c.b.coords - mean).dot(&direction), c.view, -1));
     }
-    sort_by(&mut ends, |p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
+    ends.sort_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
     let outermost = [ends.first()?.0, ends.last()?.0];
     // Open stretches per view, to count views rather than segments.
     let mut open: std::collections::BTreeMap<ViewId, i32> = std::collections::BTreeMap::new();

@@ -14,7 +14,6 @@ use super::rings::turn;
 use super::walls::{FaceKind, Shell, ShellFace};
 use crate::math;
 use crate::model::WELD_M;
-use crate::sorting::sort_by;
 
 /// Corners within this distance of the straight line between their neighbours are left out where no
 /// other face needs them, metres: a tenth of the step in which coordinates are written.
@@ -213,7 +212,7 @@ impl HalfEdges {
             }
         }
         let mut seen = ring.clone();
-        sort_by(&mut seen, Ord::cmp);
+        seen.sort();
         seen.dedup();
         (ring.len() == border.len() && seen.len() == ring.len()).then_some(ring)
     }

@@ -32,7 +32,6 @@ use self::rings::ring_edges;
 use self::walls::{FaceKind, Shell, shell_of};
 use crate::ids::{BuildingId, FacetId};
 use crate::model::{Building, Facet, RoofModel, Solid, SolidFace, Surface};
-use crate::sorting::{sort_by, sort_by_key};
 
 /// Least height of a wall above the ground, metres. Assumption: a roof that meets the ground means
 /// that the ground height is wrong, and a wall of this height still shows the outline.
@@ -56,7 +55,7 @@ impl SolidTrace {
         let source = |facet: usize| self.sources[facet];
         let later = again.rejected.iter().map(|&(f, why)| (source(f), why));
         let mut rejected: Vec<_> = self.rejected.iter().copied().chain(later).collect();
-        sort_by_key(&mut rejected, |(source, _)| *source);
+        rejected.sort_by_key(|(source, _)| *source);
         Self {
             sources: again.sources.iter().map(|&f| source(f)).collect(),
             rejected,
@@ -107,7 +106,7 @@ pub fn close_buildings(
         add_building(&mut model, members, &group, shell, ground);
     }
     report_vanished(facets.len(), &mut trace);
-    sort_by_key(&mut trace.rejected, |(source, _)| *source);
+    trace.rejected.sort_by_key(|(source, _)| *source);
     (model, trace)
 }
 
@@ -144,7 +143,7 @@ fn connected(partition: &PlanPartition) -> Vec<Vec<usize>> {
             }
             next += 1;
         }
-        sort_by(&mut group, Ord::cmp);
+        group.sort();
         groups.push(group);
     }
     groups

@@ -20,7 +20,6 @@ use super::rings::{PlanRegion, doubled_area, regions_from_edges, ring_edges};
 use crate::geometry::{Plane, bounds};
 use crate::model::{Facet, WELD_M};
 use crate::plan_index::PlanIndex;
-use crate::sorting::sort_by;
 
 /// Parts of facets below this plan area are dropped, m^2. Assumption: a sliver of 10 cm x 10 cm is
 /// smaller than a pixel of any survey and only makes walls that are not visible.
@@ -313,7 +312,7 @@ fn vertices_on_edge(a: u32, b: u32, positions: &[Point2<f64>], index: &PlanIndex
             on_edge.then_some((along, v))
         })
         .collect();
-    sort_by(&mut stops, |s, t| s.0.total_cmp(&t.0).then(s.1.cmp(&t.1)));
+    stops.sort_by(|s, t| s.0.total_cmp(&t.0).then(s.1.cmp(&t.1)));
     stops.into_iter().map(|(_, v)| v).collect()
 }
 

@@ -11,7 +11,6 @@ use nalgebra::Point3;
 
 use super::partition::PlanPartition;
 use super::rings::{PlanRegion, regions_from_edges, ring_edges};
-use crate::sorting::sort_by;
 
 /// Which face it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,9 +116,7 @@ impl Levels {
             of_facet: BTreeMap::new(),
         };
         for (v, mut at_vertex) in heights {
-            sort_by(&mut at_vertex, |a, b| {
-                a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
-            });
+            at_vertex.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let p = partition.positions[v as usize];
             let foot = levels.push(v, Point3::new(p.x, p.y, ground_z));
             levels.first.insert(v, foot);

@@ -7,7 +7,6 @@ use super::texture::SurfaceTexture;
 use super::truth::SyntheticTruth;
 use crate::geometry::Segment3;
 use crate::math;
-use crate::sorting::sort_by;
 
 /// A house on its ground, ready to render, and what a reconstruction should find.
 pub(crate) struct SyntheticBuilding {
@@ -256,7 +255,7 @@ fn edges(corners: &[Point3<f64>], facets: &[(&[usize], SurfaceTexture)]) -> Vec<
             })
         })
         .collect();
-    sort_by(&mut sides, Ord::cmp);
+    sides.sort();
     sides.dedup();
     sides
         .into_iter()

@@ -9,7 +9,6 @@ use crate::camera::Camera;
 use crate::ids::ViewId;
 use crate::raster::fill_gaps;
 use crate::scene::Scene;
-use crate::sorting::sort_by;
 
 /// Most samples along one side of a texel.
 const MAX_SUPERSAMPLING: usize = 4;
@@ -118,7 +117,7 @@ pub(super) fn views_of(
         }
     }
     // A stable sort: equal views stay in order.
-    sort_by(&mut seen, |(a, _), (b, _)| {
+    seen.sort_by(|(a, _), (b, _)| {
         (b.visible * b.pixels_per_m2).total_cmp(&(a.visible * a.pixels_per_m2))
     });
     seen

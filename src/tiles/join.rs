@@ -16,7 +16,6 @@ use crate::model::{Building, RoofModel, Surface};
 use crate::params::TextureParams;
 use crate::planes::HalfPlane;
 use crate::scene::Scene;
-use crate::sorting::sort_by;
 use crate::texture::TexturedModel;
 
 /// Two buildings that share more of the smaller one's footprint are the same building, found in two
@@ -121,9 +120,7 @@ fn choose(parts: &[TilePart]) -> Vec<Vec<usize>> {
             candidates.push((depth, p, b));
         }
     }
-    sort_by(&mut candidates, |a, b| {
-        b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2)))
-    });
+    candidates.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let mut taken: Vec<(usize, usize)> = Vec::new();
     for (_, p, b) in candidates {
         let building = |(p, b): (usize, usize)| (&parts[p].model.buildings[b], parts[p].origin);

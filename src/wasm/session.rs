@@ -14,7 +14,6 @@ use crate::pipeline::{PackedView, Run, Stage, load_adjusted};
 use crate::plain_json::{Problem, Readable, read_fields};
 use crate::planes::PointsOfInterest;
 use crate::scene_loader::{LoadOptions, Project, inspect_files, open_project, unpack};
-use crate::sorting::sort_by;
 use crate::tiles::Area;
 
 /// Files, parameters and the reconstruction made of them.
@@ -150,7 +149,7 @@ impl Session {
             self.files.retain(|file| file.path != added.path);
             self.files.push(added);
         }
-        sort_by(&mut self.files, |a, b| a.path.cmp(&b.path));
+        self.files.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(())
     }
 

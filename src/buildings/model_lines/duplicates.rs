@@ -23,9 +23,7 @@ pub(super) fn duplicate_lines(scene: &Scene, lines: &[Line3d], gate_px: f64) -> 
     let mut best_first: Vec<(LineId, &Line3d)> = Line3d::standing(lines)
         .filter(|(_, line)| !line.supports.is_empty())
         .collect();
-    crate::sorting::sort_by(&mut best_first, |a, b| {
-        by_views_then_sigma(a.1, b.1).then(a.0.cmp(&b.0))
-    });
+    best_first.sort_by(|a, b| by_views_then_sigma(a.1, b.1).then(a.0.cmp(&b.0)));
     let mut kept: Vec<&Line3d> = Vec::new();
     let mut duplicates = Vec::new();
     for (id, line) in best_first {

@@ -9,8 +9,6 @@ use std::collections::VecDeque;
 
 use nalgebra::DVector;
 
-use crate::sorting::sort_by_key;
-
 /// Places of the unknowns in the order of elimination, and where each row of the matrix begins.
 #[derive(Clone, Debug)]
 pub(super) struct Pattern {
@@ -191,7 +189,7 @@ fn breadth_first(neighbours: &[Vec<usize>], first: usize, seen: &mut [bool]) -> 
             .copied()
             .filter(|&v| !seen[v])
             .collect();
-        sort_by_key(&mut next, |&v| (neighbours[v].len(), v));
+        next.sort_by_key(|&v| (neighbours[v].len(), v));
         for v in next {
             seen[v] = true;
             queue.push_back(v);

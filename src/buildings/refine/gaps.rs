@@ -16,7 +16,6 @@ use crate::geometry::Segment3;
 use crate::model::{Facet, Occluders, RoofModel, is_simple};
 use crate::params::RefineParams;
 use crate::scene::Scene;
-use crate::sorting::sort_by;
 
 /// A facet that ends before the neighbour up to which it was delineated.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -160,9 +159,7 @@ fn apply_cut_backs<'c>(
     face: usize,
     mut cut_backs: Vec<&'c CutBack>,
 ) -> Option<(Vec<CutBackCorner>, Vec<&'c CutBack>)> {
-    sort_by(&mut cut_backs, |a, b| {
-        b.gain_m2.total_cmp(&a.gain_m2).then(a.side.cmp(&b.side))
-    });
+    cut_backs.sort_by(|a, b| b.gain_m2.total_cmp(&a.gain_m2).then(a.side.cmp(&b.side)));
     let (mut ring, mut taken) = (None, Vec::new());
     for cut in cut_backs {
         taken.push(cut);

@@ -16,7 +16,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Point2, Point3, Vector2};
 
 use crate::model::Facet;
-use crate::sorting::sort_by;
 
 /// Sides at less than this angle run on into each other, sine (25 degrees).
 const ALIGNED_SINE: f64 = 0.42;
@@ -104,9 +103,7 @@ fn without_jogs(mut ring: Vec<Corner>, jog_m: f64) -> Vec<Corner> {
         let mut short: Vec<usize> = (0..n)
             .filter(|&i| length(i) < jog_m && ring[i].free && ring[(i + 1) % n].free)
             .collect();
-        sort_by(&mut short, |&i, &j| {
-            length(i).total_cmp(&length(j)).then(i.cmp(&j))
-        });
+        short.sort_by(|&i, &j| length(i).total_cmp(&length(j)).then(i.cmp(&j)));
         let shorter = (short.iter().find_map(|&i| without_side(&ring, i, jog_m)))
             .or_else(|| without_spike(&ring, jog_m));
         let Some(shorter) = shorter else {
@@ -144,9 +141,7 @@ fn straight_ways(ring: &[Corner], tolerance_m: f64) -> Vec<(usize, usize)> {
         .filter(|&(i, sides)| is_straight(ring, i, sides, tolerance_m))
         .collect();
     let length = |&(i, sides): &(usize, usize)| (ring[(i + sides) % n].at - ring[i].at).norm();
-    sort_by(&mut ways, |a, b| {
-        length(b).total_cmp(&length(a)).then(a.cmp(b))
-    });
+    ways.sort_by(|a, b| length(b).total_cmp(&length(a)).then(a.cmp(b)));
     let (mut taken, mut left) = (vec![false; n], n);
     ways.retain(|&(i, sides)| {
         let way = || (i..i + sides).map(|side| side % n);

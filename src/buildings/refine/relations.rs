@@ -11,7 +11,6 @@ use super::wireframe::{SideKind, Wireframe, WireframeSide, WireframeState};
 use crate::geometry::Segment3;
 use crate::math;
 use crate::params::RefineParams;
-use crate::sorting::sort_by;
 
 /// What is supposed of one or two sides; numbers are indices of sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,9 +141,7 @@ fn longest_first(w: &Wireframe, state: &WireframeState, params: &RefineParams) -
     let mut sides: Vec<usize> = (0..w.sides.len())
         .filter(|&i| w.sides[i].kind != SideKind::Foot && length(i) >= params.min_relation_m)
         .collect();
-    sort_by(&mut sides, |&i, &j| {
-        length(j).total_cmp(&length(i)).then(i.cmp(&j))
-    });
+    sides.sort_by(|&i, &j| length(j).total_cmp(&length(i)).then(i.cmp(&j)));
     sides
 }
 

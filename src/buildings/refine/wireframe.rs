@@ -13,7 +13,6 @@ use nalgebra::{DVector, Point2, Point3, Vector2};
 
 use crate::geometry::{Plane, Segment3};
 use crate::model::Facet;
-use crate::sorting::sort_by;
 
 /// Heights that differ by less are one, metres: what welding leaves.
 const SAME_HEIGHT_M: f64 = 0.02;
@@ -273,7 +272,7 @@ impl Wireframe {
                 .iter()
                 .map(|&f| (self.height(state, f, &p), f))
                 .collect();
-            sort_by(&mut heights, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            heights.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let joined = heights
                 .windows(2)
                 .filter(|w| w[1].0 - w[0].0 < SAME_HEIGHT_M);

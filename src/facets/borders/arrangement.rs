@@ -12,7 +12,6 @@ use spade::{ConstrainedDelaunayTriangulation, Triangulation};
 use super::border::Border;
 use crate::photoconsistency::PlanGrid;
 use crate::plan_index::PlanIndex;
-use crate::sorting::sort_by;
 
 /// A border between two cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -210,7 +209,7 @@ fn split_at_crossings(borders: &[Border]) -> (Vec<Point2<f64>>, Vec<(usize, usiz
         let on = snapper.along(border);
         pieces.extend(on.windows(2).map(|w| (w[0].min(w[1]), w[0].max(w[1]))));
     }
-    sort_by(&mut pieces, Ord::cmp);
+    pieces.sort();
     pieces.dedup();
     (snapper.points, pieces)
 }
@@ -269,7 +268,7 @@ impl VertexSnapper {
                 (d.perp(&r).abs() <= SNAP && t >= -SNAP && t <= length + SNAP).then_some((t, v))
             })
             .collect();
-        sort_by(&mut on, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        on.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         on.into_iter().map(|(_, v)| v).collect()
     }
 }
@@ -342,7 +341,7 @@ mod tests {
                 height: 80,
             };
             let mut seen: Vec<u32> = a.raster(&grid);
-            sort_by(&mut seen, Ord::cmp);
+            seen.sort();
             seen.dedup();
             seen.iter().map(|&c| a.areas[c as usize]).collect()
         };

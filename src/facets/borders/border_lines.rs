@@ -22,7 +22,6 @@ use crate::lines3d::ThetaFrame;
 use crate::params::RoofParams;
 use crate::photoconsistency::ShiftableWindows;
 use crate::planes::{GroupingInput, MARGIN, Member, PlaneHypothesis};
-use crate::sorting::sort_by;
 
 /// A line within this distance of an intersection, metres, and this angle is the same line.
 const SAME_LINE: f64 = 0.3;
@@ -53,7 +52,7 @@ pub(crate) fn border_lines(
             .iter()
             .filter_map(|l| extended(kind, l, params))
             .collect();
-        sort_by(&mut real, |a, b| b.length().total_cmp(&a.length()));
+        real.sort_by(|a, b| b.length().total_cmp(&a.length()));
         for border in real {
             add(&mut borders, border);
         }
@@ -88,7 +87,7 @@ fn hull_sides(hypotheses: &[PlaneHypothesis], params: &RoofParams) -> Vec<Border
     let mut long: Vec<Border> = borders
         .filter(|b| b.length() >= params.min_facet_depth_m)
         .collect();
-    sort_by(&mut long, |a, b| b.length().total_cmp(&a.length()));
+    long.sort_by(|a, b| b.length().total_cmp(&a.length()));
     long
 }
 
@@ -221,7 +220,7 @@ fn outermost_lines(
             });
         }
     }
-    sort_by(&mut found, |a, b| b.length().total_cmp(&a.length()));
+    found.sort_by(|a, b| b.length().total_cmp(&a.length()));
     found
 }
 
@@ -238,9 +237,7 @@ fn closing_lines(
             .iter()
             .map(|m| (input.lines[m.line.index()].segment.length(), m))
             .collect();
-        sort_by(&mut members, |a, b| {
-            b.0.total_cmp(&a.0).then(a.1.line.cmp(&b.1.line))
-        });
+        members.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.line.cmp(&b.1.line)));
         for (length, member) in members.into_iter().take(CLOSED_LINES) {
             let Some(side) = member.side else { continue };
             let line = &input.lines[member.line.index()].segment;

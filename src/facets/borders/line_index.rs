@@ -4,7 +4,6 @@ use nalgebra::Point2;
 
 use crate::geometry::Segment3;
 use crate::plan_index::PlanIndex;
-use crate::sorting::sort_by;
 
 /// 3D lines by plan position.
 pub(crate) struct LineIndex {
@@ -47,7 +46,7 @@ impl LineIndex {
                     .then(|| line.at(t.clamp(0.0, 1.0)).z)
             })
             .collect();
-        sort_by(&mut heights, f64::total_cmp);
+        heights.sort_by(f64::total_cmp);
         heights
     }
 }

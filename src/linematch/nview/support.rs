@@ -7,7 +7,6 @@ use crate::ids::ViewId;
 use crate::linematch::line_strip::EdgelScore;
 use crate::lines3d::{LineSupport, SupportKind};
 use crate::params::MatchParams;
-use crate::sorting::sort_by_key;
 
 /// Length beyond the detected segments from which on a stretch counts as grown, px: more than a
 /// piece of a measured edge.
@@ -72,7 +71,7 @@ impl MatchContext<'_> {
         let mean = supports.iter().map(|s| s.score).sum::<f64>() / supports.len().max(1) as f64;
         let reference = &profile.views[profile.reference];
         supports.extend(self.support(profile, reference, stretch, Some(mean)));
-        sort_by_key(&mut supports, |s| s.view);
+        supports.sort_by_key(|s| s.view);
         supports
     }
 

@@ -9,7 +9,6 @@ use nalgebra::Vector2;
 use serde::Serialize;
 
 use super::canny::Edgel;
-use crate::sorting::sort_by_key;
 
 /// Edgels in order, the brighter side to the right as seen on the screen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -58,7 +57,7 @@ pub(crate) fn link_on(edgels: &[Edgel], raster: &Raster, high: f64) -> Vec<Chain
             }
         }
     }
-    sort_by_key(&mut chains, |chain| chain.edgels[0]);
+    chains.sort_by_key(|chain| chain.edgels[0]);
     chains
 }
 

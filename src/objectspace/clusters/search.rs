@@ -9,7 +9,6 @@ use crate::ids::ViewId;
 use crate::objectspace::image_lines::ImageLine;
 use crate::params::ClusterParams;
 use crate::scene::Scene;
-use crate::sorting::sort_by;
 
 /// A place in the cluster plane and the stretch that two image lines propose.
 pub(crate) struct ClusterProposal {
@@ -139,9 +138,7 @@ impl ClusterSearch<'_> {
             events.push((s[0], true, view));
             events.push((s[1], false, view));
         }
-        sort_by(&mut events, |a, b| {
-            a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)).then(a.2.cmp(&b.2))
-        });
+        events.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)).then(a.2.cmp(&b.2)));
         let mut open = vec![0u32; self.scene.views.len()];
         let (mut views, mut start) = (0, 0.0);
         let mut runs: Vec<[f64; 2]> = Vec::new();

@@ -4,7 +4,6 @@ use super::cluster_line::{ClusterLine, ClusterTrace};
 use super::cluster_plane::overlap;
 use super::search::{ClusterCandidate, ClusterSearch};
 use crate::geometry::Segment3;
-use crate::sorting::sort_by;
 
 /// Most rejected clusters kept for the plot.
 const MAX_REJECTED_SHOWN: usize = 200;
@@ -25,7 +24,7 @@ impl ClusterSearch<'_> {
                 .then(a.at.x.total_cmp(&b.at.x))
                 .then(a.at.y.total_cmp(&b.at.y))
         };
-        sort_by(candidates, order);
+        candidates.sort_by(order);
         // Candidates from many proposals are the same cluster again.
         let mut queue: std::collections::VecDeque<ClusterCandidate> =
             std::mem::take(candidates).into();

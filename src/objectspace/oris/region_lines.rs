@@ -14,7 +14,6 @@ use crate::lines2d::{ImageSegment, SegmentKind};
 use crate::math::{hypot, median};
 use crate::params::OrisParams;
 use crate::raster::Gray;
-use crate::sorting::sort_by;
 
 /// An image line on the boundary of two regions, directed by contrast: its right side is the
 /// brighter one (or the one of more red or blue, where colour shows it better).
@@ -52,7 +51,7 @@ pub fn region_lines(
             Some(found)
         })
         .collect();
-    sort_by(&mut lines, |a, b| {
+    lines.sort_by(|a, b| {
         let length = |l: &RegionLine| l.line.segment.length();
         length(b)
             .total_cmp(&length(a))

@@ -12,7 +12,6 @@ use super::code_length::{CodeLength, LEAST_GAIN};
 use super::edge_grid::EdgeGrid;
 use super::integrals::{Lattice, RegionMoments};
 use super::partition::{ImagePartition, OUTSIDE};
-use crate::sorting::sort_by;
 
 /// All steps up to this are tried in either axis, pixels: boundaries run in any direction, and a
 /// node that slides along one needs steps in that direction. Assumption.
@@ -72,7 +71,7 @@ fn best_step(
         }
     }
     // Few steps gain, so only these are tested for crossings.
-    sort_by(&mut steps, |a, b| b.0.total_cmp(&a.0));
+    steps.sort_by(|a, b| b.0.total_cmp(&a.0));
     let free = |to: Lattice| p.may_move(node, to) && !grid.crossed(p, node, to);
     let best = steps.into_iter().find(|s| free(s.1));
     best.map(|(_, to, shift)| (to, shift))

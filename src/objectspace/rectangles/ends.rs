@@ -15,7 +15,6 @@ use crate::ids::ViewId;
 use crate::objectspace::clusters::overlap;
 use crate::objectspace::image_lines::ImageLine;
 use crate::params::PlaneParams;
-use crate::sorting::sort_by;
 
 /// An image line cut with the plane: where its line crosses the two lines, and the stretch across
 /// that it covers.
@@ -129,7 +128,7 @@ fn distinct(
         .into_iter()
         .map(|p| settle(strip, crossings, p, views, params))
         .collect();
-    sort_by(&mut found, |a, b| {
+    found.sort_by(|a, b| {
         b.support
             .total_cmp(&a.support)
             .then(a.at[0].total_cmp(&b.at[0]))

@@ -63,7 +63,6 @@ use crate::execution::{SILENT, Sharded, sharded_map};
 use crate::geometry::Plane;
 use crate::params::PlaneParams;
 use crate::scene::Scene;
-use crate::sorting::sort_by;
 use crate::terrain::Ground;
 
 /// What the search for planes works on: one window, one pair of main directions.
@@ -284,7 +283,7 @@ impl PlaneSearch<'_> {
                 })
             })
             .collect();
-        sort_by(&mut found, |a, b| b.measure.total_cmp(&a.measure));
+        found.sort_by(|a, b| b.measure.total_cmp(&a.measure));
         found.truncate(self.params.max_candidates);
         found
     }

@@ -12,7 +12,6 @@ use i_overlay::float::single::SingleFloatOverlay;
 
 use super::candidate::PlaneCandidate;
 use super::plane_evidence::area_2d;
-use crate::sorting::sort_by;
 
 /// Candidates that overlap by more than this share of the smaller one exclude each other.
 /// Assumption: what errors of their ends do at shared sides.
@@ -92,9 +91,7 @@ fn conflict_groups(conflicts: &[Vec<usize>]) -> Vec<Vec<usize>> {
 /// Branch and bound over a conflict_group, the heaviest first.
 fn exact(conflict_group: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
     let mut order = conflict_group.to_vec();
-    sort_by(&mut order, |&a, &b| {
-        weights[b].total_cmp(&weights[a]).then(a.cmp(&b))
-    });
+    order.sort_by(|&a, &b| weights[b].total_cmp(&weights[a]).then(a.cmp(&b)));
     let mut best = (0.0, Vec::new());
     branch(&order, conflicts, weights, 0.0, &mut Vec::new(), &mut best);
     best.1
@@ -140,9 +137,7 @@ fn branch(
 /// excludes them.
 fn exchanged(conflict_group: &[usize], conflicts: &[Vec<usize>], weights: &[f64]) -> Vec<usize> {
     let mut order = conflict_group.to_vec();
-    sort_by(&mut order, |&a, &b| {
-        weights[b].total_cmp(&weights[a]).then(a.cmp(&b))
-    });
+    order.sort_by(|&a, &b| weights[b].total_cmp(&weights[a]).then(a.cmp(&b)));
     let mut inside = vec![false; conflicts.len()];
     // Each exchange raises the sum, so this ends.
     loop {

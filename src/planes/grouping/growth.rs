@@ -5,7 +5,6 @@ use super::plane_group::{GroupingInput, Member, PlaneGroup, member};
 use crate::ids::{HalfPlaneId, LineId};
 use crate::lines3d::Side;
 use crate::params::RoofParams;
-use crate::sorting::sort_by;
 
 /// Half-planes, the most reliable first: similarity times the length of the line.
 pub(super) fn by_strength(input: &GroupingInput) -> Vec<HalfPlaneId> {
@@ -16,9 +15,7 @@ pub(super) fn by_strength(input: &GroupingInput) -> Vec<HalfPlaneId> {
     let mut ids: Vec<HalfPlaneId> = (0..input.half_planes.len())
         .map(HalfPlaneId::from_index)
         .collect();
-    sort_by(&mut ids, |a, b| {
-        strength(b).total_cmp(&strength(a)).then(a.cmp(b))
-    });
+    ids.sort_by(|a, b| strength(b).total_cmp(&strength(a)).then(a.cmp(b)));
     ids
 }
 

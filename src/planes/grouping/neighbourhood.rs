@@ -13,7 +13,6 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use crate::ids::LineId;
 use crate::lines3d::Line3d;
-use crate::sorting::sort_by;
 
 /// For each line its neighbours in ascending order, itself left out.
 #[derive(Clone, Debug, Default)]
@@ -92,7 +91,7 @@ fn joined(
         link(shared, shared);
     }
     for list in &mut neighbours {
-        sort_by(list, Ord::cmp);
+        list.sort();
         list.dedup();
     }
     neighbours
@@ -112,7 +111,7 @@ struct LineEnd {
 fn lines_at_shared_corners(ends: &[LineEnd], positions: &[Point2<f64>]) -> Vec<(usize, LineId)> {
     let mut order: Vec<usize> = (0..ends.len()).collect();
     let x = |i: usize| positions[ends[i].vertex].x;
-    sort_by(&mut order, |&a, &b| x(a).total_cmp(&x(b)).then(a.cmp(&b)));
+    order.sort_by(|&a, &b| x(a).total_cmp(&x(b)).then(a.cmp(&b)));
     let longest = ends.iter().map(|e| e.length).fold(0.0, f64::max);
     let mut found = Vec::new();
     for (k, &i) in order.iter().enumerate() {

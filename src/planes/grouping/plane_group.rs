@@ -9,7 +9,6 @@ use crate::geometry::Plane;
 use crate::ids::{HalfPlaneId, LineId};
 use crate::lines3d::{Line3d, Side};
 use crate::planes::half_plane::HalfPlane;
-use crate::sorting::sort_by;
 
 /// A line that belongs to a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -44,7 +43,7 @@ impl PlaneGroup {
     /// The distinct lines, ascending.
     pub fn lines(&self) -> Vec<LineId> {
         let mut lines: Vec<LineId> = self.members.iter().map(|m| m.line).collect();
-        sort_by(&mut lines, Ord::cmp);
+        lines.sort();
         lines.dedup();
         lines
     }
@@ -87,7 +86,7 @@ impl PlaneGroup {
     /// The half-planes, ascending.
     pub fn half_planes(&self) -> Vec<HalfPlaneId> {
         let mut ids: Vec<HalfPlaneId> = self.members.iter().filter_map(|m| m.half_plane).collect();
-        sort_by(&mut ids, Ord::cmp);
+        ids.sort();
         ids
     }
 }

@@ -239,7 +239,7 @@ mod tests {
         let mut heights: Vec<[f64; 2]> = (region.level_sides(&shed()).iter())
             .map(|side| side.map(|p| p.y))
             .collect();
-        crate::sorting::sort_by(&mut heights, |a, b| a[0].total_cmp(&b[0]));
+        heights.sort_by(|a, b| a[0].total_cmp(&b[0]));
         assert_eq!(heights, [[0.0, 0.0], [4.0, 4.0]]);
         let flat = Plane {
             normal: nalgebra::Vector3::z(),

@@ -16,7 +16,6 @@ use crate::ids::LineId;
 use crate::lines3d::{Line3d, Side};
 use crate::params::SweepParams;
 use crate::planes::half_plane::HalfPlane;
-use crate::sorting::sort_by;
 
 /// All views at one angle.
 struct ThetaSample {
@@ -117,9 +116,7 @@ impl<'a> ThetaSearch<'a> {
                     && (i + 1 == sums.len() || sums[i] >= sums[i + 1])
             })
             .collect();
-        sort_by(&mut maxima, |&a, &b| {
-            sums[b].total_cmp(&sums[a]).then(a.cmp(&b))
-        });
+        maxima.sort_by(|&a, &b| sums[b].total_cmp(&sums[a]).then(a.cmp(&b)));
         let highest = maxima.first().map_or(0.0, |&i| sums[i]);
         maxima.truncate(self.params.max_peaks);
         // Half a step from its top, a peak still has half its height.
