@@ -1,13 +1,11 @@
 //! Parameters of buildings: refinement (B99 2) and textures.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use crate::plain_json::readable;
-
-readable! {
 /// B99 section 2 (the contribution of Leuven): regularisation, and refinement by the reprojection
 /// error of the wireframe. The paper gives no numbers.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct RefineParams {
     /// Refine at all?
@@ -85,7 +83,6 @@ pub struct RefineParams {
     /// How much the mean correlation inside the facets may fall. Assumption: its error.
     pub similarity_loss: f64,
 }
-}
 
 impl Default for RefineParams {
     fn default() -> Self {
@@ -123,9 +120,9 @@ impl Default for RefineParams {
     }
 }
 
-readable! {
 /// Texture atlas.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct TextureParams {
     /// Largest side of the atlas, px. Assumption: what every WebGL 2 device can hold.
@@ -138,7 +135,6 @@ pub struct TextureParams {
     pub padding_px: u32,
     /// Quality of the atlas as JPEG, 1 to 100. Assumption: 90, where its blocks cannot be seen.
     pub jpeg_quality: u8,
-}
 }
 
 impl Default for TextureParams {

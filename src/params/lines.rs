@@ -1,12 +1,10 @@
 //! Parameters from edges to 3D lines (B99 3).
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use crate::plain_json::readable;
-
-readable! {
 /// B99 3.2: segments.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct SegmentParams {
     /// The edgels that segments are made of.
@@ -59,7 +57,6 @@ pub struct SegmentParams {
     /// segments lie within one standard deviation of the true edge.
     pub edge_floor_px: f64,
 }
-}
 
 impl Default for SegmentParams {
     fn default() -> Self {
@@ -85,10 +82,10 @@ impl Default for SegmentParams {
     }
 }
 
-readable! {
 /// B99 3.2: edgels. Thresholds are multiples of the local standard deviation of a gradient
 /// component.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct EdgelParams {
     /// Standard deviation of the smoothing Gaussian, px. Assumption: more displaces edges that are
@@ -102,7 +99,6 @@ pub struct EdgelParams {
     /// alone exceeds 2.5 at one pixel in twenty.
     pub high: f64,
 }
-}
 
 impl Default for EdgelParams {
     fn default() -> Self {
@@ -114,10 +110,10 @@ impl Default for EdgelParams {
     }
 }
 
-readable! {
 /// Edges between colours of about the same grey value. Thresholds are those of [`EdgelParams`], on
 /// the difference of red and blue.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct ColorParams {
     /// Detect them at all? B99 has grey photographs; where there is colour, an eighth to a fifth
@@ -126,7 +122,6 @@ pub struct ColorParams {
     /// A colour edge is rejected that has a segment in grey values this near along half of it, px.
     /// Assumption: compression leaves colour at half the resolution.
     pub clear_px: f64,
-}
 }
 
 impl Default for ColorParams {
@@ -138,9 +133,9 @@ impl Default for ColorParams {
     }
 }
 
-readable! {
 /// B99 5: bars. Thresholds are multiples of the local scale of the second derivative.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct BarParams {
     /// Detect bars at all? Assumption: no. Nearly all of them run beside edges that are matched
@@ -156,7 +151,6 @@ pub struct BarParams {
     /// one beside an edge.
     pub clear_px: f64,
 }
-}
 
 impl Default for BarParams {
     fn default() -> Self {
@@ -169,9 +163,9 @@ impl Default for BarParams {
     }
 }
 
-readable! {
 /// B99 3.1 - 3.4: matching.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct MatchParams {
     /// Side of the correlation window, px. B99 3.2: "15 x 15".
@@ -224,7 +218,6 @@ pub struct MatchParams {
     /// Heights between which lines are sought, metres in the scene's frame; estimated where `None`.
     pub z_range_m: Option<[f64; 2]>,
 }
-}
 
 impl Default for MatchParams {
     fn default() -> Self {
@@ -249,9 +242,9 @@ impl Default for MatchParams {
     }
 }
 
-readable! {
 /// B99 3.2, figure 4: 3D lines.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Lines3dParams {
     /// Error of a segment's ends beyond its own covariance, px: calibration,
@@ -271,7 +264,6 @@ pub struct Lines3dParams {
     /// Largest standard deviation of a line across itself, ground pixels; of a long line up to
     /// twice as much ([`Self::largest_sigma_px`]). Assumption.
     pub max_sigma_px: f64,
-}
 }
 
 impl Lines3dParams {

@@ -13,14 +13,10 @@ pub use self::objectspace::*;
 pub use self::planes::*;
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
-use crate::plain_json::readable;
-use crate::plain_json::{Problem, Readable, read_name};
-
-readable! {
 /// The parameters of a whole run. Missing fields of a JSON file take their defaults.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Params {
     /// Which of the methods finds the roofs.
@@ -40,7 +36,6 @@ pub struct Params {
     /// Texture atlas.
     pub texture: TextureParams,
 }
-}
 
 /// How roofs are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -56,19 +51,13 @@ pub enum Method {
     Combined,
 }
 
-impl Readable for Method {
-    fn read_from(&mut self, value: &Value) -> Result<(), Problem> {
-        *self = read_name(value)?;
-        Ok(())
-    }
-}
 impl Params {
     /// From JSON; what it leaves out is as by default.
     ///
     /// # Errors
     /// The name of what is no parameter, or has no such value.
     pub fn from_json(text: &str) -> Result<Self, impl std::error::Error + use<>> {
-        crate::plain_json::read(text)
+        crate::json::read(text)
     }
 }
 

@@ -1,12 +1,10 @@
 //! Parameters of the object-space method (W96 3).
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use crate::plain_json::readable;
-
-readable! {
 /// W96: the object-space method.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct ObjectSpaceParams {
     /// Regions and their lines.
@@ -20,11 +18,10 @@ pub struct ObjectSpaceParams {
     /// Planes.
     pub planes: PlaneParams,
 }
-}
 
-readable! {
 /// W96 3.6: planes between parallel lines.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct PlaneParams {
     /// By how much the window of a plane is enlarged, metres. W96 3.6: "appr. 0.5 m".
@@ -80,7 +77,6 @@ pub struct PlaneParams {
     /// Smallest plane, square metres. Assumption.
     pub min_area_m2: f64,
 }
-}
 
 impl Default for PlaneParams {
     fn default() -> Self {
@@ -110,9 +106,9 @@ impl Default for PlaneParams {
     }
 }
 
-readable! {
 /// W96 3.1: where buildings are. The paper assumes it known.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct WindowParams {
     /// Buildings' boxes x0, y0, x1, y1, metres in the frame of the orientation; found where there
@@ -130,7 +126,6 @@ pub struct WindowParams {
     /// The window reaches beyond the lines by this, metres. Assumption: lines that were not found.
     pub margin_m: f64,
 }
-}
 
 impl Default for WindowParams {
     fn default() -> Self {
@@ -144,9 +139,9 @@ impl Default for WindowParams {
     }
 }
 
-readable! {
 /// W96 3.4: main directions.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct DirectionParams {
     /// Most pairs of directions in a window. W96 has one. Assumption: a few, for neighbouring
@@ -160,7 +155,6 @@ pub struct DirectionParams {
     /// Pairs are at least so far apart, degrees. Assumption.
     pub apart_deg: f64,
 }
-}
 
 impl Default for DirectionParams {
     fn default() -> Self {
@@ -173,9 +167,9 @@ impl Default for DirectionParams {
     }
 }
 
-readable! {
 /// W96 3.5: clusters of lines.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct ClusterParams {
     /// An image line within this of a main direction belongs to it, degrees. Assumption.
@@ -209,7 +203,6 @@ pub struct ClusterParams {
     /// Shortest line, metres. Assumption.
     pub min_length_m: f64,
 }
-}
 
 impl Default for ClusterParams {
     fn default() -> Self {
@@ -231,9 +224,9 @@ impl Default for ClusterParams {
     }
 }
 
-readable! {
 /// W96 3.3: region segmentation. W96 gives no numbers ("Wiman 1995").
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct OrisParams {
     /// Standard deviation of the blur before gradients are taken, px. Assumption: 0.8, as for
@@ -258,7 +251,6 @@ pub struct OrisParams {
     /// Largest root mean square distance of the gradient's crest from the line, px; otherwise the
     /// vector itself is taken. Assumption.
     pub max_rms_px: f64,
-}
 }
 
 impl Default for OrisParams {

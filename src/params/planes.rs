@@ -1,16 +1,12 @@
 //! Parameters from half-planes to facets (B99 4).
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
-
-use crate::plain_json::readable;
-use crate::plain_json::{Problem, Readable, read_name};
 
 use super::RefineParams;
 
-readable! {
 /// B99 4.1: half-planes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct SweepParams {
     /// Lines lower than this above the ground are not swept, metres. Assumption: lower than any
@@ -76,7 +72,6 @@ pub struct SweepParams {
     /// a squared correlation, and noise as strong as three quarters of the texture halves it.
     pub ambiguous_share: f64,
 }
-}
 
 /// The criterion that accepts a maximum of Sim(theta) as a half-plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -90,13 +85,6 @@ pub enum Acceptance {
     /// The thresholds and, where one of them is nearly reached, the posterior.
     #[default]
     Both,
-}
-
-impl Readable for Acceptance {
-    fn read_from(&mut self, value: &Value) -> Result<(), Problem> {
-        *self = read_name(value)?;
-        Ok(())
-    }
 }
 
 impl Default for SweepParams {
@@ -129,9 +117,9 @@ impl Default for SweepParams {
     }
 }
 
-readable! {
 /// B99 4.2, 4.3: from half-planes to facets.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct RoofParams {
     /// Half-planes within this angle, degrees, may share a plane. B99 4.4: theta is known to 2
@@ -167,7 +155,6 @@ pub struct RoofParams {
     pub min_height_m: f64,
     /// Regularisation and refinement of the buildings.
     pub refine: RefineParams,
-}
 }
 
 impl RoofParams {

@@ -1,12 +1,10 @@
 //! What the caller asks for beyond the files.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use crate::plain_json::readable;
-
-readable! {
 /// What the user asks for beyond the files.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct LoadOptions {
     /// Part of the path of the orientation to take, where there are several.
     pub orientation: Option<String>,
@@ -24,5 +22,4 @@ pub struct LoadOptions {
     pub apply_fix: bool,
     /// Correct shifts of a few pixels between the views.
     pub adjust: bool,
-}
 }

@@ -11,7 +11,7 @@
 
 use std::io::{Cursor, Write};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use zip::CompressionMethod;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
@@ -19,8 +19,6 @@ use super::input::LoadOptions;
 use crate::error::{Error, Result};
 use crate::orientation::{FileKind, InputFile, detect};
 use crate::params::Params;
-use crate::plain_json;
-use crate::plain_json::readable;
 
 /// Name of the file by which an archive is a project.
 const PROJECT_FILE: &str = "project.json";
@@ -29,9 +27,9 @@ const PROJECT_FILE: &str = "project.json";
 const INPUT: &str = "input/";
 const RESULTS: &str = "results/";
 
-readable! {
 /// Options and parameters of a run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Project {
     /// Version of the program that wrote it.
     pub ridgeline: String,
@@ -39,7 +37,6 @@ pub struct Project {
     pub options: LoadOptions,
     /// Parameters of the stages.
     pub params: Params,
-}
 }
 
 impl Project {
@@ -95,9 +92,9 @@ pub fn open_project(files: Vec<InputFile>) -> Result<(Vec<InputFile>, Option<Pro
     let Some(file) = files.iter().find(is_project) else {
         return Ok((files, None));
     };
-    let project: Project = plain_json::read(&file.text()).map_err(|e| Error::Line {
+    let project: Project = crate::json::read(&file.text()).map_err(|e| Error::Line {
         file: file.path.clone(),
-        line: e.line.unwrap_or(1),
+        line: e.line().unwrap_or(1),
         problem: e
             .to_string()
             .replace("; ", ", ")

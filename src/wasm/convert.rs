@@ -3,13 +3,12 @@
 use js_sys::{Float32Array, Float64Array, Reflect};
 use nalgebra::Matrix3x4;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use wasm_bindgen::{JsError, JsValue};
 
 use crate::error::Error;
 use crate::geometry::Segment2;
 use crate::lines3d::Line3d;
-use crate::plain_json;
-use crate::plain_json::Readable;
 
 /// A JavaScript `Error` with the refusal's message, called "InputError": the page shows it as
 /// advice, and anything else as a fault of the program. Its `code` is the kind of refusal, its
@@ -42,13 +41,13 @@ pub(crate) fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
 
 /// A Rust value from a plain JavaScript object; `what` names it in the message. By way of JSON, so
 /// that the page's parameters are read, and misspelt names refused, exactly as the command line's.
-pub(crate) fn from_js<T: Readable + Default>(value: &JsValue, what: &str) -> Result<T, JsValue> {
+pub(crate) fn from_js<T: DeserializeOwned>(value: &JsValue, what: &str) -> Result<T, JsValue> {
     let text = if value.is_undefined() {
         "null".to_owned()
     } else {
         String::from(js_sys::JSON::stringify(value)?)
     };
-    plain_json::read(&text).map_err(|e| named_error("InputError", &format!("{what}: {e}")))
+    crate::json::read(&text).map_err(|e| named_error("InputError", &format!("{what}: {e}")))
 }
 
 /// (x0, y0, x1, y1) per segment, pixels.

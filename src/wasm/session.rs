@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use js_sys::Function;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
 use super::convert::{from_js, input_error, named_error, row_major, to_js};
@@ -11,7 +11,6 @@ use crate::execution::{Listener, MergedShards};
 use crate::orientation::InputFile;
 use crate::params::Params;
 use crate::pipeline::{PackedView, Run, Stage, load_adjusted};
-use crate::plain_json::{Problem, Readable, read_fields};
 use crate::planes::PointsOfInterest;
 use crate::scene_loader::{LoadOptions, Project, inspect_files, open_project, unpack};
 use crate::tiles::Area;
@@ -38,8 +37,8 @@ pub struct Session {
 }
 
 /// What `load` may be told; see [`LoadOptions`].
-#[derive(Default, Serialize, tsify::Tsify)]
-#[serde(rename_all = "camelCase")]
+#[derive(Default, Deserialize, Serialize, tsify::Tsify)]
+#[serde(rename_all = "camelCase", default, deny_unknown_fields)]
 #[tsify(rename = "LoadOptions")]
 struct JsLoadOptions {
     /// Path (or folder) of the orientation to take.
@@ -63,21 +62,6 @@ struct JsLoadOptions {
     /// Adjust views that are turned or moved against the others by up to a few pixels.
     #[tsify(optional)]
     adjust: bool,
-}
-
-impl Readable for JsLoadOptions {
-    fn read_from(&mut self, value: &serde_json::Value) -> Result<(), Problem> {
-        let fields: &mut [(&str, &mut dyn Readable)] = &mut [
-            ("orientation", &mut self.orientation),
-            ("views", &mut self.views),
-            ("roi", &mut self.roi),
-            ("groundZ", &mut self.ground_z),
-            ("epsg", &mut self.epsg),
-            ("applyFix", &mut self.apply_fix),
-            ("adjust", &mut self.adjust),
-        ];
-        read_fields(value, fields)
-    }
 }
 
 /// What `openedProject` returns.

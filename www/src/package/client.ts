@@ -21,22 +21,13 @@ export interface Progress {
 
 export interface ReconstructOptions {
   /** Which of the files to use, and how. */
-  load?: Partial<LoadOptions>;
-  /** Parameters that differ from the defaults, for example `{ method: "combined" }`. */
-  params?: PartialParams;
+  load?: LoadOptions;
+  /** Parameters that differ from `Session.defaultParams()` of the wasm module, for example `{ method: "combined" }`. */
+  params?: Params;
   onProgress?: (progress: Progress) => void;
   /** Cancels the reconstruction: its promise is rejected with the signal's reason. */
   signal?: AbortSignal;
 }
-
-/** Any part of the parameters; what is left out is as in `Session.defaultParams()` of the wasm module. */
-export type PartialParams = {
-  [K in keyof Params]?: Params[K] extends object ? PartialGroup<Params[K]> : Params[K];
-};
-
-type PartialGroup<T> = {
-  [K in keyof T]?: T[K] extends readonly unknown[] ? T[K] : T[K] extends object ? PartialGroup<T[K]> : T[K];
-};
 
 export interface Reconstruction {
   scene: SceneInfo;
@@ -64,8 +55,8 @@ export class InputError extends Error {
 /** What is asked of the worker. */
 export interface Request {
   files: { path: string; bytes: Uint8Array }[];
-  load: Partial<LoadOptions>;
-  params: PartialParams;
+  load: LoadOptions;
+  params: Params;
 }
 
 /** What the worker answers; the last reply to a request is "done" or "failed". */

@@ -1,5 +1,5 @@
 /** The worker's side of the package: parse, run every stage, export. No state between requests. */
-import type { LoadOptions, Params, Session } from "../pkg/ridgeline.js";
+import type { Session } from "../pkg/ridgeline.js";
 import type { Progress, Reconstruction, Reply, Request } from "./client.js";
 
 /** Progress is told in steps of a hundredth at least: stages report much more often. */
@@ -26,9 +26,9 @@ function reconstruct(session: Session, request: Request, post: (reply: Reply) =>
   session.clearFiles();
   for (const { path, bytes } of request.files) session.addFile(path, bytes);
   // The core fills in what is left out.
-  session.setParams(request.params as Params);
+  session.setParams(request.params);
   report("load", 0);
-  const scene = session.load(request.load as LoadOptions);
+  const scene = session.load(request.load);
   report("load", 1);
   const stages = session
     .chosenStages()
