@@ -44,6 +44,6 @@ pub(crate) fn line(p0: Point3<f64>, p1: Point3<f64>) -> Line3d {
         sigma_m: 0.01,
         covariance: [Matrix3::zeros(); 2],
         supports: Vec::new(),
-        refuted: None,
+        contradiction: None,
     }
 }

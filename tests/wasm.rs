@@ -95,7 +95,7 @@ fn the_figures_answer(session: &mut Session, half_plane: &JsValue) {
     if let Some(segment) = segments.get(0).as_f64() {
         let story = session.segment_matching(view, segment as u32).unwrap();
         assert_eq!(
-            member(&member(&story, "outcome"), "fate"),
+            member(&member(&story, "outcome"), "kind"),
             JsValue::from("matched")
         );
         assert_eq!(Array::from(&member(&story, "beams")).length(), 5);
@@ -137,7 +137,9 @@ fn the_figures_answer(session: &mut Session, half_plane: &JsValue) {
         .map(|l| l["origin"].as_str().unwrap().into())
         .collect();
     // The files leave out what the model refutes.
-    let standing = records.iter().filter(|r| member(r, "refuted").is_null());
+    let standing = records
+        .iter()
+        .filter(|r| member(r, "contradiction").is_null());
     let shown: Vec<JsValue> = standing.map(|r| member(&r, "origin")).collect();
     assert_eq!(shown, origins);
     assert!(shown.len() > 15);

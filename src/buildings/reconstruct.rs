@@ -6,7 +6,7 @@ use super::refine::{RefineTrace, RoofGap, cut_back_at_gaps, refine_roofs};
 use crate::execution::Sharded;
 use crate::facets::{FacetInput, FacetTrace, reconstruct_facets};
 use crate::ids::LineId;
-use crate::lines3d::{Line3d, Refutation};
+use crate::lines3d::{Line3d, LineContradiction};
 use crate::model::{Facet, RoofModel};
 use crate::params::RoofParams;
 use crate::scene::Scene;
@@ -18,7 +18,7 @@ pub struct RoofTrace {
     /// Grouping, delineation and verification.
     pub facets: FacetTrace,
     /// Gaps between facets that delineation had closed.
-    pub partings: Vec<RoofGap>,
+    pub gaps: Vec<RoofGap>,
     /// The facets before refinement.
     pub unrefined: UnrefinedFacets,
     /// What was regularised and refined in each building.
@@ -28,7 +28,7 @@ pub struct RoofTrace {
     /// Lines that the model adds to the matched ones (B99 4.2, 4.3).
     pub new_lines: Vec<Line3d>,
     /// The lines that the model contradicts; ids count the matched lines and then the new ones.
-    pub refuted_lines: Vec<(LineId, Refutation)>,
+    pub contradicted_lines: Vec<(LineId, LineContradiction)>,
 }
 
 /// The facets before refinement, whose buildings are those of [`RefineTrace`].
@@ -63,12 +63,12 @@ pub fn reconstruct_roofs(
     let solids = solids.then(again).then(closed);
     let trace = RoofTrace {
         facets: facet_trace,
-        partings: gaps,
+        gaps,
         unrefined,
         refinement,
         solids,
         new_lines: Vec::new(),
-        refuted_lines: Vec::new(),
+        contradicted_lines: Vec::new(),
     };
     Ok((model, trace))
 }

@@ -66,7 +66,7 @@ pub fn half_planes_json(scene: &Scene, lines: &[Line3d], half_planes: &[HalfPlan
     let stands = |h: &HalfPlane| {
         lines
             .get(h.line.index())
-            .is_none_or(|l| l.refuted.is_none())
+            .is_none_or(|l| l.contradiction.is_none())
     };
     let half_planes: Vec<Value> = half_planes
         .iter()

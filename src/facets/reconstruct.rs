@@ -261,7 +261,7 @@ fn solve(
         for ((outline, facet), result) in delineation.outlines.iter().zip(found).zip(results) {
             let result = match result {
                 // In the last round nothing would take the facet's place either.
-                Err(FacetRejection::Outdone { .. }) if round == ROUNDS => Ok(None),
+                Err(FacetRejection::Dominated { .. }) if round == ROUNDS => Ok(None),
                 result => result,
             };
             let reason = match result {

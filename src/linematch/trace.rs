@@ -17,7 +17,7 @@ const MAX_PAIRS_PER_SEGMENT: usize = 12;
 /// The outcome of one segment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
-#[serde(tag = "fate", rename_all = "snake_case")]
+#[serde(tag = "kind", rename_all = "snake_case")]
 pub enum SegmentOutcome {
     /// It belongs to a line track.
     Matched {

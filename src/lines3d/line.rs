@@ -39,17 +39,17 @@ impl LineOrigin {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "snake_case")]
-pub enum Refutation {
+pub enum LineContradiction {
     /// Roofs occlude it in all but two of its views.
     Hidden,
     /// One end lies in the ground, the other does not.
     Underground,
     /// It lies on no surface, and its views alone do not determine it well enough.
-    Afloat,
+    OffSurface,
     /// Three views support it where six can see it.
     TooFewViews,
     /// A duplicate of a line that more views support or that is more certain.
-    Repeated,
+    Duplicate,
 }
 
 /// A reconstructed 3D line.
@@ -67,7 +67,7 @@ pub struct Line3d {
     /// The views that support it.
     pub supports: Vec<LineSupport>,
     /// Why the finished model contradicts it; no file contains such a line.
-    pub refuted: Option<Refutation>,
+    pub contradiction: Option<LineContradiction>,
 }
 
 impl Line3d {
@@ -75,7 +75,7 @@ impl Line3d {
     pub fn standing(lines: &[Self]) -> impl Iterator<Item = (LineId, &Self)> + Clone {
         let numbered = lines.iter().enumerate();
         numbered
-            .filter(|(_, line)| line.refuted.is_none())
+            .filter(|(_, line)| line.contradiction.is_none())
             .map(|(i, line)| (LineId::from_index(i), line))
     }
 

@@ -30,7 +30,7 @@ mod track;
 
 pub(crate) use extent::doubly_covered;
 pub use fit::{LineFit, conditioning, fit_line, fit_line_on};
-pub use line::{Line3d, LineOrigin, Refutation};
+pub use line::{Line3d, LineContradiction, LineOrigin};
 pub use observation::{Observation, PlaneConstraint};
 pub(crate) use observation::{WhitenedObservation, line_frame};
 pub use plane_intersection::line_of_planes;

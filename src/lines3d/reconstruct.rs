@@ -15,7 +15,7 @@ use crate::scene::Scene;
 
 /// The outcome of one line track.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(tag = "fate", rename_all = "snake_case")]
+#[serde(tag = "kind", rename_all = "snake_case")]
 pub enum LineOutcome {
     /// It is a 3D line.
     Reconstructed {
@@ -108,7 +108,7 @@ fn reconstruct(
         sigma_m: stated.sigma_at(f0).max(stated.sigma_at(f1)),
         covariance: [f0, f1].map(|f| stated.covariance_at(f)),
         supports: track.supports.clone(),
-        refuted: None,
+        contradiction: None,
     };
     Ok((line, (squares / (2.0 * fit.residuals.len() as f64)).sqrt()))
 }

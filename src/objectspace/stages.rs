@@ -331,6 +331,6 @@ fn world_line(image_lines: &[ImageLine], line: &ClusterLine) -> Line3d {
         sigma_m: line.sigma_m,
         covariance: [Matrix3::identity() * variance; 2],
         supports: supports.collect(),
-        refuted: None,
+        contradiction: None,
     }
 }

@@ -63,7 +63,8 @@ pub struct RefineParams {
     /// Distances beyond this count as this in the reprojection error, px.
     pub cap_px: f64,
     /// Least number of measured edges in a building. Assumption: two sides in three views.
-    pub min_sightings: usize,
+    #[serde(alias = "min_sightings")]
+    pub min_observations: usize,
     /// Most unknowns of a building; larger ones keep their shape. Assumption: seconds of one core.
     pub max_unknowns: usize,
     /// A facet that ends at a higher or lower one is tested over this distance from there: it may
@@ -108,7 +109,7 @@ impl Default for RefineParams {
             relation_sigma_m: 0.02,
             relation_chi2: 6.63,
             cap_px: 5.0,
-            min_sightings: 6,
+            min_observations: 6,
             max_unknowns: 6000,
             part_m: 3.0,
             least_part_m: 0.4,

@@ -55,8 +55,8 @@ impl Results {
         let mut lines = self.lines.as_ref()?.value.clone();
         let trace = &self.facets.as_ref()?.trace;
         lines.extend_from_slice(&trace.new_lines);
-        for (line, why) in &trace.refuted_lines {
-            lines[line.index()].refuted = Some(*why);
+        for (line, why) in &trace.contradicted_lines {
+            lines[line.index()].contradiction = Some(*why);
         }
         Some(lines)
     }

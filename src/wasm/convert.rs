@@ -12,7 +12,7 @@ use crate::lines3d::Line3d;
 
 /// A JavaScript `Error` with the refusal's message, called "InputError": the page shows it as
 /// advice, and anything else as a fault of the program. Its `code` is the kind of refusal, its
-/// `doctor` the doctor's report where the images speak against the orientation.
+/// `agreement` the report where the images speak against the orientation.
 pub(crate) fn input_error(error: &Error) -> JsValue {
     let thrown = named_error("InputError", &error.to_string());
     let set = |name: &str, value: &JsValue| Reflect::set(&thrown, &name.into(), value);
@@ -22,7 +22,7 @@ pub(crate) fn input_error(error: &Error) -> JsValue {
     };
     // A plain object takes every property.
     let _ = set("code", &error.code().into());
-    let _ = set("doctor", &report.unwrap_or(JsValue::NULL));
+    let _ = set("agreement", &report.unwrap_or(JsValue::NULL));
     thrown
 }
 

@@ -17,7 +17,7 @@ use crate::linematch::{MatchTrace, SegmentRef, StepCount};
 use crate::lines2d::{ImageSegment, SegmentRejection};
 use crate::lines3d::Side;
 use crate::lines3d::SupportKind;
-use crate::lines3d::{Line3d, LineOrigin, Refutation};
+use crate::lines3d::{Line3d, LineContradiction, LineOrigin};
 use crate::objectspace::{image_segments, world_lines};
 use crate::pipeline::Run;
 use crate::planes::{PointsOfInterest, SweepRejection};
@@ -27,7 +27,7 @@ use crate::planes::{PointsOfInterest, SweepRejection};
 struct LineRecord<'a> {
     origin: LineOrigin,
     /// Why the model leaves it out.
-    refuted: Option<Refutation>,
+    contradiction: Option<LineContradiction>,
     sigma_m: f64,
     /// Of the start and of the end point, m^2: xx, xy, xz, yy, yz, zz.
     covariance: [[f64; 6]; 2],
@@ -86,7 +86,7 @@ struct SideRecord {
 /// What became of the buildings after delineation.
 #[derive(Serialize, tsify::Tsify)]
 struct Refinement<'a> {
-    partings: &'a [RoofGap],
+    gaps: &'a [RoofGap],
     before: &'a UnrefinedFacets,
     trace: &'a RefineTrace,
 }
@@ -259,7 +259,7 @@ impl Session {
     pub fn refinement(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().facets.as_ref();
         to_js(&found.map(|r| Refinement {
-            partings: &r.trace.partings,
+            gaps: &r.trace.gaps,
             before: &r.trace.unrefined,
             trace: &r.trace.refinement,
         }))
@@ -285,7 +285,7 @@ fn line_record(line: &Line3d) -> LineRecord<'_> {
     });
     LineRecord {
         origin: line.origin,
-        refuted: line.refuted,
+        contradiction: line.contradiction,
         sigma_m: line.sigma_m,
         covariance: line
             .covariance

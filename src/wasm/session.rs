@@ -79,7 +79,7 @@ struct SceneInfo {
     views: Vec<ViewInfo>,
     origin: [f64; 3],
     warnings: Vec<String>,
-    doctor: Option<crate::agreement::AgreementReport>,
+    agreement: Option<crate::agreement::AgreementReport>,
 }
 
 /// A view of the scene; its centre in metres, local frame, and its 3 x 4 matrix from there to
@@ -210,7 +210,7 @@ impl Session {
             views: views.collect(),
             origin: scene.origin.into(),
             warnings: scene.warnings.clone(),
-            doctor: scene.survey.agreement.clone(),
+            agreement: scene.survey.agreement.clone(),
         });
         self.run = Some(Run::new(scene, self.params.clone()));
         info

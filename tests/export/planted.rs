@@ -192,7 +192,7 @@ pub fn planted_evidence() -> Evidence {
         sigma_m: 0.02,
         covariance: [Matrix3::zeros(); 2],
         supports: vec![support],
-        refuted: None,
+        contradiction: None,
     };
     let half_plane = HalfPlane {
         line: LineId(0),

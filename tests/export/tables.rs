@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 use ridgeline::ids::LineId;
-use ridgeline::lines3d::Refutation;
+use ridgeline::lines3d::LineContradiction;
 use ridgeline::model::Surface;
 use serde_json::Value;
 
@@ -117,7 +117,7 @@ fn no_file_shows_what_the_model_refutes_and_ids_stay() {
     let (segments, mut lines, mut half_planes) = planted_evidence();
     let standing = lines[0].clone();
     lines.push(standing.clone());
-    lines[0].refuted = Some(Refutation::Hidden);
+    lines[0].contradiction = Some(LineContradiction::Hidden);
     lines[0].segment.p0.z += 1.0;
     half_planes.push(half_planes[0].clone());
     half_planes[1].line = LineId(1);

@@ -27,7 +27,9 @@ use super::surfaces::{Surfaces, share_where};
 use crate::ids::{LineId, ViewId};
 use crate::linematch::{EDGE_MARGIN_PX, MANY_VIEWS};
 use crate::lines2d::GuidedEdge;
-use crate::lines3d::{Line3d, LineOrigin, LineSupport, Observation, ProjectedLine, Refutation};
+use crate::lines3d::{
+    Line3d, LineContradiction, LineOrigin, LineSupport, Observation, ProjectedLine,
+};
 use crate::model::{Facet, Occluders};
 use crate::params::{Lines3dParams, Params};
 use crate::scene::Scene;
@@ -58,22 +60,23 @@ pub(super) fn contradicted_lines(
     facets: &[Facet],
     ground: &Ground,
     params: &Params,
-) -> Vec<(LineId, Refutation)> {
+) -> Vec<(LineId, LineContradiction)> {
     let surfaces = Surfaces::new(facets, ground);
     let reasons = crate::execution::map(lines, |_, line| {
         if dips_below_ground(line, ground) {
-            Some(Refutation::Underground)
+            Some(LineContradiction::Underground)
         } else if is_occluded(scene, line, &surfaces.roofs) {
-            Some(Refutation::Hidden)
+            Some(LineContradiction::Hidden)
         } else if lies_on_no_surface(scene, line, &surfaces, params) {
-            Some(Refutation::Afloat)
+            Some(LineContradiction::OffSurface)
         } else if has_too_few_views(scene, line, &surfaces.roofs, params) {
-            Some(Refutation::TooFewViews)
+            Some(LineContradiction::TooFewViews)
         } else {
             None
         }
     });
-    let contradicted = |(i, why): (usize, Option<Refutation>)| Some((LineId::from_index(i), why?));
+    let contradicted =
+        |(i, why): (usize, Option<LineContradiction>)| Some((LineId::from_index(i), why?));
     reasons
         .into_iter()
         .enumerate()
@@ -227,7 +230,10 @@ mod tests {
         ];
         let ground = Ground::level(top - 100.0);
         let contradicted = |roof: &[Facet]| contradicted(&scene, &lines, roof, &ground);
-        assert_eq!(contradicted(&roof), [(LineId(1), Refutation::Hidden)]);
+        assert_eq!(
+            contradicted(&roof),
+            [(LineId(1), LineContradiction::Hidden)]
+        );
         assert_eq!(contradicted(&[]), []);
     }
 
@@ -241,7 +247,7 @@ mod tests {
         lines: &[Line3d],
         facets: &[Facet],
         ground: &Ground,
-    ) -> Vec<(LineId, Refutation)> {
+    ) -> Vec<(LineId, LineContradiction)> {
         contradicted_lines(scene, lines, facets, ground, &Params::default())
     }
 
@@ -268,26 +274,26 @@ mod tests {
         let reason =
             |by: f64, views: u32, score: f64| reason_for(raised([by, by]), views, score, 0.0);
         assert_eq!(reason(0.0, 4, 0.3), None, "on the roof");
-        assert_eq!(reason(2.0, 4, 0.3), Some(Refutation::Afloat));
+        assert_eq!(reason(2.0, 4, 0.3), Some(LineContradiction::OffSurface));
         // Four fifths of it have to lie on something.
         let prolonged = |by: f64| reason_for([ridge.at(0.0), ridge.at(1.0 + by)], 4, 0.3, 0.0);
         assert_eq!(prolonged(0.1), None);
-        assert_eq!(prolonged(0.4), Some(Refutation::Afloat));
+        assert_eq!(prolonged(0.4), Some(LineContradiction::OffSurface));
         // Four of six views at 0.6 are 2.4, less a tenth for each of the two that do not show it;
         // 2.25 are required.
-        assert_eq!(reason(2.0, 4, 0.6), Some(Refutation::Afloat));
+        assert_eq!(reason(2.0, 4, 0.6), Some(LineContradiction::OffSurface));
         assert_eq!(reason(2.0, 4, 0.65), None);
         assert_eq!(reason(2.0, 6, 0.4), None);
         // An edge five standard deviations beside the line hardly counts.
         assert_eq!(reason_for(raised([2.0, 2.0]), 4, 0.7, 1.0), None);
         let beside = reason_for(raised([2.0, 2.0]), 4, 0.7, 5.0);
-        assert_eq!(beside, Some(Refutation::Afloat));
+        assert_eq!(beside, Some(LineContradiction::OffSurface));
         // A sloping line on no surface needs a fourth view, 3.0; four at 0.8 are 3.2, less two
         // tenths.
         assert_eq!(reason(2.0, 4, 0.8), None);
         assert_eq!(
             reason_for(raised([2.0, 3.5]), 4, 0.7, 0.0),
-            Some(Refutation::Afloat)
+            Some(LineContradiction::OffSurface)
         );
         assert_eq!(reason_for(raised([2.0, 3.5]), 4, 0.9, 0.0), None);
         // As level as a gutter.
@@ -299,7 +305,7 @@ mod tests {
             ..line(&scene, raised([2.0, 2.0]), 0..3)
         };
         let others = [LineOrigin::Clustered, LineOrigin::Intersection].map(unseen);
-        let clustered = (LineId(0), Refutation::Afloat);
+        let clustered = (LineId(0), LineContradiction::OffSurface);
         assert_eq!(contradicted(&scene, &others, &roof, &ground), [clustered]);
     }
 
@@ -314,7 +320,7 @@ mod tests {
             let contradicted = contradicted(scene, &lines, roof, &ground);
             contradicted.first().map(|(_, why)| *why)
         };
-        let too_few = Some(Refutation::TooFewViews);
+        let too_few = Some(LineContradiction::TooFewViews);
         assert_eq!(reason(&scene, 3, &roof), too_few);
         assert_eq!(reason(&scene, 4, &roof), None);
         // A roof 40 m above, where the rays of the last view pass.

@@ -143,7 +143,7 @@ mod tests {
         // A contradicted line has no duplicates, and one of no views, such as an intersection, is
         // not compared.
         let contradicted = Line3d {
-            refuted: Some(crate::lines3d::Refutation::Hidden),
+            contradiction: Some(crate::lines3d::LineContradiction::Hidden),
             ..whole.clone()
         };
         assert_eq!(duplicates(&contradicted, &vague), []);

@@ -267,7 +267,7 @@ impl NewLineSearch<'_> {
             sigma_m,
             covariance: [0.0, 1.0].map(|t| fit.covariance_at(t)),
             supports: edges.iter().map(support).collect(),
-            refuted: None,
+            contradiction: None,
         }
     }
 
@@ -291,7 +291,7 @@ impl NewLineSearch<'_> {
             sigma_m,
             covariance: [across * (sigma_m * sigma_m); 2],
             supports: Vec::new(),
-            refuted: None,
+            contradiction: None,
         })
     }
 
@@ -314,7 +314,7 @@ fn distance(stretch: &Segment3, p: &Point3<f64>) -> f64 {
 mod tests {
     use super::*;
     use crate::ids::BuildingId;
-    use crate::lines3d::Refutation;
+    use crate::lines3d::LineContradiction;
     use crate::synthetic::{SyntheticTruth, hip_scene};
     use nalgebra::{Matrix2, Point2};
 
@@ -348,7 +348,7 @@ mod tests {
             sigma_m: 0.03,
             covariance: [Matrix3::zeros(); 2],
             supports: Vec::new(),
-            refuted: None,
+            contradiction: None,
         }
     }
 
@@ -389,9 +389,9 @@ mod tests {
             "{length}"
         );
         // A line that cannot be explains nothing.
-        let mut refuted = known_lines;
-        refuted[0].refuted = Some(Refutation::Afloat);
-        assert_eq!(found(&scene, &refuted, &model(&truth, &[])).len(), 1);
+        let mut contradicted = known_lines;
+        contradicted[0].contradiction = Some(LineContradiction::OffSurface);
+        assert_eq!(found(&scene, &contradicted, &model(&truth, &[])).len(), 1);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::contradicted::contradicted_lines;
 use super::duplicates::duplicate_lines;
 use super::new_lines::new_lines;
 use crate::ids::LineId;
-use crate::lines3d::{Line3d, Refutation};
+use crate::lines3d::{Line3d, LineContradiction};
 use crate::model::RoofModel;
 use crate::params::Params;
 use crate::scene::Scene;
@@ -19,17 +19,17 @@ pub fn verify_lines(
     model: &RoofModel,
     ground: &Ground,
     params: &Params,
-) -> (Vec<Line3d>, Vec<(LineId, Refutation)>) {
+) -> (Vec<Line3d>, Vec<(LineId, LineContradiction)>) {
     let contradicted_among =
         |lines: &[Line3d]| contradicted_lines(scene, lines, &model.facets, ground, params);
     let mut rejected = contradicted_among(lines);
     let mut remaining = lines.to_vec();
     for (id, why) in &rejected {
-        remaining[id.index()].refuted = Some(*why);
+        remaining[id.index()].contradiction = Some(*why);
     }
     for id in duplicate_lines(scene, &remaining, params.matching.gate_px) {
-        rejected.push((id, Refutation::Repeated));
-        remaining[id.index()].refuted = Some(Refutation::Repeated);
+        rejected.push((id, LineContradiction::Duplicate));
+        remaining[id.index()].contradiction = Some(LineContradiction::Duplicate);
     }
     let new = new_lines(scene, &remaining, model, &params.matching, &params.lines3d);
     let id_of_new = |id: LineId| LineId::from_index(lines.len() + id.index());

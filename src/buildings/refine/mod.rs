@@ -71,7 +71,7 @@ pub struct BuildingRefinement {
     /// Straight sides of its wireframe.
     pub sides: usize,
     /// Edges measured for them over all views.
-    pub sightings: usize,
+    pub observations: usize,
     /// Root mean square distance of these edges from the images of the sides before, px.
     pub error_before_px: f64,
     /// ... and after the adjustment.
@@ -142,7 +142,7 @@ impl BuildingRefinement {
         Self {
             building,
             sides: 0,
-            sightings: 0,
+            observations: 0,
             error_before_px: 0.0,
             error_after_px: 0.0,
             largest_move_m: 0.0,
@@ -293,10 +293,10 @@ impl BuildingRefiner<'_> {
         let pattern = far.pattern();
         let near = far.solve(&start, &pattern).ok_or_else(singular)?;
         let mut problem = problem(&near.state, &vec![false; open.len()]);
-        report.sightings = problem.observations();
-        if report.sightings < params.min_sightings {
-            let sightings = report.sightings;
-            return Err(rejected(RefineRejection::FewSightings { sightings }));
+        report.observations = problem.observations();
+        if report.observations < params.min_observations {
+            let observations = report.observations;
+            return Err(rejected(RefineRejection::FewObservations { observations }));
         }
         let pattern = problem.pattern();
         let free = problem.solve(&near.state, &pattern).ok_or_else(singular)?;
@@ -496,7 +496,7 @@ mod tests {
         let refused = trace.buildings[0].refused;
         assert_eq!(
             refused,
-            Some(RefineRejection::FewSightings { sightings: 0 })
+            Some(RefineRejection::FewObservations { observations: 0 })
         );
     }
 

@@ -13,9 +13,9 @@ pub enum RefineRejection {
         unknowns: usize,
     },
     /// Too few of its sides show in the images.
-    FewSightings {
+    FewObservations {
         /// Measured edges.
-        sightings: usize,
+        observations: usize,
     },
     /// The adjustment has no solution.
     Singular,

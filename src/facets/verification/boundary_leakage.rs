@@ -91,7 +91,7 @@ fn leakage(
         return None;
     }
     let similarity = seen.overall / seen.weight;
-    Some((short, FacetRejection::BeyondLine { similarity }))
+    Some((short, FacetRejection::BoundaryLeakage { similarity }))
 }
 
 /// The smaller part of a facet beside a line, in plan, where the line runs along most of it.
@@ -231,6 +231,6 @@ mod tests {
         };
         assert!(corner(3.0).is_none() && corner(4.0).is_some());
         let (short, reason) = short(&strip(-2.0)).expect("there is nothing");
-        assert!(short > 0.0 && matches!(reason, FacetRejection::BeyondLine { .. }));
+        assert!(short > 0.0 && matches!(reason, FacetRejection::BoundaryLeakage { .. }));
     }
 }

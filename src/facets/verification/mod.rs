@@ -163,7 +163,7 @@ pub(crate) fn verify(
         return Err(FacetRejection::Vegetation { excess_green });
     }
     if let Some((by, sigmas)) = better_plane(competing, outline, &inside) {
-        return Err(FacetRejection::Outdone { by, sigmas });
+        return Err(FacetRejection::Dominated { by, sigmas });
     }
     Ok(())
 }

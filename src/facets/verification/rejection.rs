@@ -52,7 +52,7 @@ pub enum FacetRejection {
     },
     /// The part of a facet beyond a line that bounds it, on whose plane the views agree by chance
     /// at most there.
-    BeyondLine {
+    BoundaryLeakage {
         /// Mean correlation of all their pairs inside that part.
         similarity: f64,
     },
@@ -62,7 +62,7 @@ pub enum FacetRejection {
         excess_green: f64,
     },
     /// Inside the outline the views agree better on the plane of another group.
-    Outdone {
+    Dominated {
         /// Index of that group.
         by: u32,
         /// How much better, in standard deviations.

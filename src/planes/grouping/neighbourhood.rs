@@ -146,7 +146,7 @@ mod tests {
             sigma_m: 0.05,
             covariance: [Matrix3::identity() * 0.0025; 2],
             supports: Vec::new(),
-            refuted: None,
+            contradiction: None,
         }
     }
 

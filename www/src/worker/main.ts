@@ -44,7 +44,7 @@ function failureOf(error: unknown): Failure {
     return { message, kind: "crash", orientationCheck: null };
   }
   if (error instanceof Error) {
-    const { doctor: orientationCheck = null } = error as Error & { doctor?: AgreementReport };
+    const { agreement: orientationCheck = null } = error as Error & { agreement?: AgreementReport };
     return {
       message: error.message,
       kind: error.name === "InputError" ? "input" : "internal",

@@ -138,7 +138,7 @@ export class Session implements CoreSession {
       center: [0, 0, 4000 + i] as P,
       projection: downwards(4000 + i),
     }));
-    return { views, origin: [1000, 2000, 0], warnings: [], doctor: null };
+    return { views, origin: [1000, 2000, 0], warnings: [], agreement: null };
   }
 
   setParams(): void {}
@@ -245,7 +245,7 @@ export class Session implements CoreSession {
     const [a, b] = EDGES[segment] ?? EDGES[0];
     const ends = [pixel(corner(a)), pixel(corner(b))] as const;
     return {
-      outcome: { fate: "matched", line: segment },
+      outcome: { kind: "matched", line: segment },
       beams: [{ view: other, corners: [ends[0], ends[0], ends[1], ends[1]] }],
       candidates: [{ view: other, segment, score: 0.9, line: segment, predictions: [] }],
     };
@@ -276,7 +276,7 @@ export class Session implements CoreSession {
   lineRecords(): LineRecord[] {
     return EDGES.map((_, i) => ({
       origin: "matched" as const,
-      refuted: null,
+      contradiction: null,
       sigma_m: 0.01 * (i + 1),
       covariance: [
         [1e-4, 0, 0, 1e-4, 0, 4e-4],
@@ -340,14 +340,14 @@ export class Session implements CoreSession {
     const [a, b] = EDGES[0] as (typeof EDGES)[number];
     const [p0, p1] = [corner(a), corner(b)];
     return {
-      partings: [],
+      gaps: [],
       before: { facets, sources: facets.map((_, i) => i) },
       trace: {
         buildings: [
           {
             building: 0,
             sides: EDGES.length,
-            sightings: 3 * EDGES.length,
+            observations: 3 * EDGES.length,
             error_before_px: 0.8,
             error_after_px: 0.2,
             largest_move_m: 0.1,

@@ -23,7 +23,7 @@ export function refinementRows(index: number): Row[] {
   return [
     ["Reprojection error", refinementWords(found)],
     ["Straight sides", String(found.sides)],
-    ["Edges measured", String(found.sightings), "over all views"],
+    ["Edges measured", String(found.observations), "over all views"],
     ["Largest move", `${found.largest_move_m.toFixed(2)} m`],
     ["Relations adopted", `${adopted} of ${found.relations.length}`],
     ["Facets", refinedFacets(index).map(linkToFacet)],

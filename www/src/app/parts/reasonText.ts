@@ -2,7 +2,7 @@
 import type {
   BuildingRefinement,
   LineOrigin,
-  Refutation,
+  LineContradiction,
   SegmentOutcome,
   TestedRelation,
 } from "../../shared/records";
@@ -34,7 +34,7 @@ const NOT_VERIFIED: Record<string, string> = {
 };
 
 export function outcomeWords(outcome: SegmentOutcome | null): string {
-  switch (outcome?.fate) {
+  switch (outcome?.kind) {
     case undefined:
       return "not matched yet";
     case "matched":
@@ -61,12 +61,12 @@ export const ORIGIN_WORDS: Record<LineOrigin, string> = {
 };
 
 /** Why the model contradicts a 3D line, which the files then leave out. */
-export const CONTRADICTION_WORDS: Record<Refutation, string> = {
+export const CONTRADICTION_WORDS: Record<LineContradiction, string> = {
   hidden: "roofs hide it from all but two of its views",
   underground: "it goes into the ground",
-  afloat: "it lies on no surface, and too few views are certain of it",
+  off_surface: "it lies on no surface, and too few views are certain of it",
   too_few_views: "three views show it where six can see it",
-  repeated: "a better line runs along it",
+  duplicate: "a better line runs along it",
 };
 
 export const RELATION_WORDS: Record<TestedRelation["kind"], string> = {
@@ -80,7 +80,7 @@ export const RELATION_WORDS: Record<TestedRelation["kind"], string> = {
 /** Why a building keeps the shape that it had (B99 2). */
 const UNREFINED: Record<string, string> = {
   too_large: "too many unknowns",
-  few_sightings: "too few sides show",
+  few_observations: "too few sides show",
   singular: "no solution",
   no_gain: "the images fit no better",
   broken: "the new outline does not close",
@@ -122,11 +122,11 @@ export function facetRejectionWords(reason: Record<string, Record<string, number
       return `steep, without a half-plane, and the views that see it agree by chance at most (${value.toFixed(2)}): it spans a gap`;
     case "displaced":
       return `the views agree better on it moved up or down (by ${value.toFixed(1)} σ)`;
-    case "beyond_line":
+    case "boundary_leakage":
       return `beyond a line that bounds it, where the views agree by chance at most (${value.toFixed(2)})`;
     case "vegetation":
       return `green as plants are, and no roof by its lines or its inside (${value.toFixed(2)})`;
-    case "outdone":
+    case "dominated":
       return `the views agree better on plane ${numbers["by"]} inside (by ${(numbers["sigmas"] ?? 0).toFixed(1)} σ)`;
     case "unsupported":
       return `too little of its outline is real (τ = ${value.toFixed(2)})`;

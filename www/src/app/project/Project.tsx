@@ -243,7 +243,7 @@ function Warnings() {
 
 /** The orientation check of a scene that was not rejected, where there is something to see. */
 function Doubts() {
-  const report = scene.value?.doctor ?? null;
+  const report = scene.value?.agreement ?? null;
   const isCured = runOptions.value.applyFix;
   if (report === null || isCured || (report.mistake === null && report.trials.length === 0)) {
     return null;

@@ -29,8 +29,8 @@ export function isUnseen({ origin, supports }: Pick<LineRecord, "origin" | "supp
 }
 
 /** By how a line was found, and as what is rejected where the model contradicts it. */
-export function colourOf(record: Pick<LineRecord, "origin" | "refuted"> | undefined): string {
-  return record?.refuted == null ? ORIGIN_COLOURS[record?.origin ?? "matched"] : PALETTE.rejected;
+export function colourOf(record: Pick<LineRecord, "origin" | "contradiction"> | undefined): string {
+  return record?.contradiction == null ? ORIGIN_COLOURS[record?.origin ?? "matched"] : PALETTE.rejected;
 }
 
 /**

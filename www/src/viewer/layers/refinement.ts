@@ -23,7 +23,7 @@ export function buildRefinement(refinement: Refinement): Layer {
     PALETTE.grown,
     WIDTH_PX,
   );
-  const gaps = over(ends(refinement.partings.map(({ side }) => side)), PALETTE.rejected, WIDTH_PX);
+  const gaps = over(ends(refinement.gaps.map(({ side }) => side)), PALETTE.rejected, WIDTH_PX);
   object.add(before, gaps);
   const chosen = new SelectedObject(object);
   return {

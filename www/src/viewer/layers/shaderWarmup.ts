@@ -20,7 +20,7 @@ const PLANE = { normal: [0, 0, 1], d: 0 } as const;
 const NO_COVARIANCE: LineRecord["covariance"][number] = [0, 0, 0, 0, 0, 0];
 const SEEN: LineRecord = {
   origin: "matched",
-  refuted: null,
+  contradiction: null,
   sigma_m: 0,
   covariance: [NO_COVARIANCE, NO_COVARIANCE],
   supports: [],

@@ -8,7 +8,7 @@ import { sidesOf } from "../../../src/viewer/scene/strokes";
 
 const record = (origin: LineOrigin, views: number): LineRecord => ({
   origin,
-  refuted: null,
+  contradiction: null,
   sigma_m: 0.1,
   covariance: [
     [1, 0, 0, 1, 0, 1],
@@ -37,7 +37,7 @@ it("draws lines that no view shows apart, dashed, and knows them when they are p
 
 it("shows a line that the model contradicts like what is rejected", () => {
   expect(colourOf(record("border", 3))).toBe(ORIGIN_COLOURS.border);
-  expect(colourOf({ origin: "border", refuted: "hidden" })).toBe(PALETTE.rejected);
+  expect(colourOf({ origin: "border", contradiction: "hidden" })).toBe(PALETTE.rejected);
   expect(colourOf(undefined)).toBe(ORIGIN_COLOURS.matched);
 });
 

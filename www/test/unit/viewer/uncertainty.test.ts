@@ -37,7 +37,7 @@ const record = (sigma: number): LineRecord => {
   const covariance: Covariance = [sigma ** 2, 0, 0, sigma ** 2, 0, sigma ** 2];
   return {
     origin: "matched",
-    refuted: null,
+    contradiction: null,
     sigma_m: sigma,
     covariance: [covariance, covariance],
     supports: [],
