@@ -13,16 +13,19 @@
 //! paint      the colours of a patch from all views
 //! exposure   the brightness of the views relative to each other
 //! atlas      packing
+//! ground     the ground around the buildings
 //! ```
 //!
 //! Invariant: every corner of every face has texture coordinates inside the atlas.
 
 mod atlas;
 mod exposure;
+mod ground;
 mod occlusion;
 mod paint;
 mod patch;
 
+pub use ground::{GroundTexture, texture_ground};
 pub use paint::ViewOfFace;
 
 use serde::Serialize;
@@ -97,16 +100,7 @@ pub fn texture_model(
     model: &RoofModel,
     params: &TextureParams,
 ) -> (TexturedModel, TextureTrace) {
-    let keys: Vec<(usize, usize)> = (0..model.buildings.len())
-        .flat_map(|b| (0..model.buildings[b].solid.faces.len()).map(move |f| (b, f)))
-        .collect();
-    let faces: Vec<FacePlane> = keys
-        .iter()
-        .map(|&(b, f)| {
-            let solid = &model.buildings[b].solid;
-            FacePlane::new(solid, &solid.faces[f])
-        })
-        .collect();
+    let (keys, faces) = faces_of(model);
     let face_images: Vec<FaceImages> = scene
         .views
         .iter()
@@ -154,6 +148,19 @@ pub fn texture_model(
         });
     }
     (textured, trace)
+}
+
+/// All faces of a model, with building and index of each.
+fn faces_of(model: &RoofModel) -> (Vec<(usize, usize)>, Vec<FacePlane>) {
+    let keys: Vec<(usize, usize)> = (0..model.buildings.len())
+        .flat_map(|b| (0..model.buildings[b].solid.faces.len()).map(move |f| (b, f)))
+        .collect();
+    let plane = |&(b, f): &(usize, usize)| {
+        let solid = &model.buildings[b].solid;
+        FacePlane::new(solid, &solid.faces[f])
+    };
+    let faces = keys.iter().map(plane).collect();
+    (keys, faces)
 }
 
 /// The texel size for a face, metres: a pixel of the view that shows it with the most pixels. Faces

@@ -94,7 +94,7 @@ struct Refinement<'a> {
 /// A picture and what it shows.
 #[wasm_bindgen(getter_with_clone)]
 pub struct Picture {
-    /// What it shows: `WarpedViews`.
+    /// What it shows: `WarpedViews` or `GroundPicture`.
     pub about: JsValue,
     /// `4 * width * height` bytes, RGBA row by row.
     pub rgba: js_sys::Uint8ClampedArray,

@@ -1,20 +1,34 @@
 //! What the stages of a session have found, and the files of a finished run.
 
 use js_sys::{Float32Array, Float64Array};
+use nalgebra::Point3;
 use serde::Serialize;
 use wasm_bindgen::prelude::*;
 
 use super::convert::{end_points_px, line_array, named_error, segment_array, to_js};
-use super::figures::{lines_of, segments_of};
+use super::figures::{Picture, lines_of, segments_of};
 use super::session::{Session, not_loaded};
 use crate::lines3d::SupportKind;
 use crate::objectspace::{Window, WindowTrace};
+use crate::texture::texture_ground;
 
 /// What `directions` returns.
 #[derive(Serialize, tsify::Tsify)]
 struct Directions<'a> {
     windows: &'a [Window],
     trace: &'a WindowTrace,
+}
+
+/// What `ground` shows.
+#[derive(Serialize, tsify::Tsify)]
+struct GroundPicture {
+    /// Its upper left, upper right, lower right and lower left corner, metres, local frame.
+    #[tsify(type = "[Vec3, Vec3, Vec3, Vec3]")]
+    corners: [Point3<f64>; 4],
+    /// Texels in a row.
+    width: u32,
+    /// Rows.
+    height: u32,
 }
 
 /// The pixels of a view, RGBA row by row: what `ImageData` takes.
@@ -70,6 +84,28 @@ impl Session {
     pub fn half_planes(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().half_planes.as_ref();
         to_js(&found.map_or(&[][..], |h| &h.value))
+    }
+
+    /// The ground around the buildings, painted from the photographs (`about`: `GroundPicture`);
+    /// `undefined` without a building.
+    pub fn ground(&self) -> Result<Option<Picture>, JsValue> {
+        let run = self.loaded()?;
+        let model = run.results().roof_model();
+        let Some(ground) =
+            model.and_then(|m| texture_ground(run.scene(), m, &run.params().texture))
+        else {
+            return Ok(None);
+        };
+        let (width, height) = ground.image.dimensions();
+        let about = GroundPicture {
+            corners: ground.corners,
+            width,
+            height,
+        };
+        Ok(Some(Picture {
+            about: to_js(&about)?,
+            rgba: js_sys::Uint8ClampedArray::from(&ground.image.into_raw()[..]),
+        }))
     }
 
     /// The roof facets, as an array of objects.

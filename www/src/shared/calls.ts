@@ -8,7 +8,7 @@
  */
 import type { Session } from "../pkg/ridgeline.js";
 import type { ParamTree } from "./paramTree";
-import type { StageSummary, TileReport, WarpedViews } from "./records";
+import type { GroundPicture, StageSummary, TileReport, WarpedViews } from "./records";
 
 /** A file of the project. The page keeps the handle, so that a new worker can be given it again. */
 export interface InputFile {
@@ -24,6 +24,12 @@ export interface WarpedPicture {
   rgba: Uint8ClampedArray<ArrayBuffer>;
 }
 
+/** The ground around the buildings, `about.height` rows of `about.width` texels. */
+export interface GroundTexture {
+  about: GroundPicture;
+  rgba: Uint8ClampedArray<ArrayBuffer>;
+}
+
 /** The calls that are not the session's own methods: they read files, report progress or make pictures. */
 export interface WorkerCalls {
   setFiles(files: readonly InputFile[]): Promise<void>;
@@ -31,6 +37,7 @@ export interface WorkerCalls {
   setParams(params: ParamTree): void;
   image(view: number): Promise<ImageBitmap>;
   warped(line: number, left: boolean, theta: number): WarpedPicture | null;
+  ground(): GroundTexture | null;
   runStage(stage: string): StageSummary;
   runShard(stage: string, map: string, index: number, of: number): Bytes;
   /** The next tile, which is the `index`-th of `of`, with its progress as that of `stage`; null when all are done. */

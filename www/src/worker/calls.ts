@@ -2,7 +2,7 @@
 import type { Session } from "../pkg/ridgeline.js";
 import type { CallName, InputFile, WorkerCalls } from "../shared/calls";
 import { asTree } from "../shared/paramTree";
-import type { Params, Picture, ViewImage, WarpedViews } from "../shared/records";
+import type { GroundPicture, Params, Picture, ViewImage, WarpedViews } from "../shared/records";
 
 export interface Answer {
   result: unknown;
@@ -15,9 +15,10 @@ const PROGRESS_INTERVAL_MS = 40;
 type OnProgress = (stage: string, fraction: number) => void;
 
 /** The session; its pictures are objects of the core, of which only their fields are read. */
-export type CoreSession = Omit<Session, "free" | typeof Symbol.dispose | "image" | "warped"> & {
+export type CoreSession = Omit<Session, "free" | typeof Symbol.dispose | "image" | "warped" | "ground"> & {
   image(view: number): FieldsOf<ViewImage>;
   warped(line: number, left: boolean, theta: number): FieldsOf<Picture> | undefined;
+  ground(): FieldsOf<Picture> | undefined;
 };
 type FieldsOf<T> = Omit<T, "free" | typeof Symbol.dispose>;
 
@@ -36,15 +37,8 @@ export function workerCalls(
       // The bitmap is made here: on the page it would hold everything else up.
       return createImageBitmap(new ImageData(rgba as Uint8ClampedArray<ArrayBuffer>, width, height));
     },
-    warped: (line, left, theta) => {
-      const picture = session.warped(line, left, theta);
-      return picture === undefined
-        ? null
-        : {
-            about: picture.about as WarpedViews,
-            rgba: picture.rgba as Uint8ClampedArray<ArrayBuffer>,
-          };
-    },
+    warped: (line, left, theta) => pictureOf<WarpedViews>(session.warped(line, left, theta)),
+    ground: () => pictureOf<GroundPicture>(session.ground()),
     runStage: (stage) => session.runStage(stage, throttled(stage, onProgress)),
     runShard: (stage, map, index, of) =>
       session.runShard(stage, map, index, of, throttled(stage, onProgress)),
@@ -53,6 +47,13 @@ export function workerCalls(
       return session.runTile((fraction) => onTileProgress((index + fraction) / of));
     },
   };
+}
+
+/** A picture of the core as a plain record. */
+function pictureOf<T>(picture: FieldsOf<Picture> | undefined) {
+  return picture === undefined
+    ? null
+    : { about: picture.about as T, rgba: picture.rgba as Uint8ClampedArray<ArrayBuffer> };
 }
 
 /** Answers a call by its name, with what moves to the page instead of being copied. */

@@ -5,12 +5,13 @@
  */
 
 import { stagesOf } from "../../src/app/session/stageCatalogue";
-import type { WarpedPicture } from "../../src/shared/calls";
+import type { GroundTexture, WarpedPicture } from "../../src/shared/calls";
 import type { ParamTree } from "../../src/shared/paramTree";
 import type {
   Correspondence,
   Facet,
   FacetTrace,
+  GroundPicture,
   HalfPlane,
   LineRecord,
   MatchRecord,
@@ -333,6 +334,16 @@ export class Session implements CoreSession {
       about: { theta, reference: 0, similarity: 0.7, points: [], line_row: 4, columns, rows, views },
       rgba,
     };
+  }
+
+  ground(): GroundTexture {
+    const corners: GroundPicture["corners"] = [
+      [-20, 20, 0],
+      [20, 20, 0],
+      [20, -20, 0],
+      [-20, -20, 0],
+    ];
+    return { about: { corners, width: 2, height: 2 }, rgba: new Uint8ClampedArray(16).fill(120) };
   }
 
   refinement(): Refinement {

@@ -43,7 +43,10 @@ const FETCHED: Record<StageName, () => Promise<Partial<Results>>> = {
     // The model adds new lines to the matched ones.
     ...(await fetchLines()),
   }),
-  model: async () => ({ glb: await engine.call("exportFile", "model.glb") }),
+  model: async () => ({
+    glb: await engine.call("exportFile", "model.glb"),
+    ground: await engine.call("ground"),
+  }),
 };
 
 /** What a stage adds to the results. */

@@ -33,6 +33,7 @@ const LAYER_TITLES: Record<LayerName, string> = {
   groups: "Groups",
   facets: "Facets",
   model: "Model",
+  ground: "Ground",
   cameras: "Cameras",
 };
 

@@ -6,6 +6,7 @@ import type { Facet, Vec3 } from "../../shared/records";
 import { buildCameras } from "../../viewer/layers/cameras";
 import { buildFacets } from "../../viewer/layers/facets";
 import { buildFans, buildTurning } from "../../viewer/layers/fans";
+import { buildGround } from "../../viewer/layers/ground";
 import { buildGroups } from "../../viewer/layers/groups";
 import { buildHighlight } from "../../viewer/layers/highlight";
 import { buildLines } from "../../viewer/layers/lines";
@@ -25,7 +26,16 @@ import { selection, tab } from "../state/viewState";
 import { isBeside } from "./keptBeside";
 
 /** Layers that a person switches; "stretches" and "turning" follow other switches. */
-export const LAYERS = ["lines", "uncertainty", "fans", "groups", "facets", "model", "cameras"] as const;
+export const LAYERS = [
+  "lines",
+  "uncertainty",
+  "fans",
+  "groups",
+  "facets",
+  "model",
+  "ground",
+  "cameras",
+] as const;
 export type LayerName = (typeof LAYERS)[number];
 
 /** What each tab shows until a person switches something. */
@@ -42,7 +52,7 @@ const chosen = signal<Record<Tab, readonly LayerName[]>>({
   directions: [],
   clusters: [],
   rectangles: ["facets", "lines"],
-  model: ["model"],
+  model: ["model", "ground"],
 });
 export const shownLayers: ReadonlySignal<Record<Tab, readonly LayerName[]>> = chosen;
 
@@ -109,6 +119,10 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
     return side !== null && ends.length === 2 && tab.value === "halfplanes"
       ? [() => buildTurning(ends as unknown as [Vec3, Vec3], side.side, theta), side, theta]
       : null;
+  },
+  ground: () => {
+    const { ground } = results.value;
+    return ground && [() => buildGround(ground), ground];
   },
   facets: () => {
     const { facets } = results.value;

@@ -1,5 +1,6 @@
 /** What the stages have found. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
+import type { GroundTexture } from "../../shared/calls";
 import type { ParamTree } from "../../shared/paramTree";
 import type {
   ClusterTrace,
@@ -28,6 +29,7 @@ export interface Results {
   /** The parameters that the facets were found with. */
   madeWith: ParamTree | null;
   glb: Uint8Array<ArrayBuffer> | null;
+  ground: GroundTexture | null;
   rejected: Float32Array[];
   matching: MatchRecord | null;
   records: LineRecord[];
@@ -49,6 +51,7 @@ export const NO_RESULTS: Results = {
   facets: null,
   madeWith: null,
   glb: null,
+  ground: null,
   rejected: [],
   matching: null,
   records: [],
