@@ -33,13 +33,14 @@ pub(super) fn exposures(
     scene: &Scene,
     faces: &[FacePlane],
     face_images: &[FaceImages],
+    overhang_m: f64,
 ) -> Vec<[f32; 3]> {
     let views = scene.views.len();
     let compared = crate::execution::map_part(faces, 0.2..0.3, |i, face| {
         let [low, high] = face.bounds();
         let area = ((high.x - low.x) * (high.y - low.y)).max(1e-6);
         let patch = TexturePatch::new(face, (area / SAMPLES).sqrt());
-        let seen = views_of(scene, faces, i, &patch, face_images);
+        let seen = views_of(scene, faces, i, &patch, face_images, overhang_m);
         let colours = |s: &FaceView| (s.0.view, colours_in(scene, face, &patch, s));
         log_ratios(&seen.iter().map(colours).collect::<Vec<_>>())
     });

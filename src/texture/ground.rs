@@ -52,7 +52,7 @@ pub fn texture_ground(
         let views = scene.views.iter();
         views.map(|v| FaceImages::new(faces, &v.camera)).collect()
     };
-    let exposures = exposures(scene, &faces, &images_of(&faces));
+    let exposures = exposures(scene, &faces, &images_of(&faces), params.overhang_m);
     faces.push(plane);
     let ground = faces.len() - 1;
     let mut painted = paint(
@@ -62,6 +62,7 @@ pub fn texture_ground(
         &patch,
         &images_of(&faces),
         &exposures,
+        params.overhang_m,
     );
     painted.fill(&patch);
 

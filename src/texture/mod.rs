@@ -47,6 +47,9 @@ const MAX_TEXEL_GROUND_PIXELS: f64 = 8.0;
 /// The colour of faces where nothing at all is seen.
 const NEUTRAL: [f32; 3] = [128.0; 3];
 
+/// The colour of walls where no view shows one: plaster.
+const PLASTER: [f32; 3] = [205.0, 200.0, 190.0];
+
 /// The texture of one face of a solid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaceTexture {
@@ -110,9 +113,18 @@ pub fn texture_model(
         texel_m(scene, i, face, &face_images, params)
     });
     let (patches, packing, coarsened) = lay_out(&faces, &texels, params);
-    let exposures = exposures(scene, &faces, &face_images);
+    let exposures = exposures(scene, &faces, &face_images, params.overhang_m);
     let mut painted = crate::execution::map_part(&patches, 0.3..0.9, |i, patch| {
-        paint(scene, &faces, i, patch, &face_images, &exposures)
+        let overhang_m = params.overhang_m;
+        paint(
+            scene,
+            &faces,
+            i,
+            patch,
+            &face_images,
+            &exposures,
+            overhang_m,
+        )
     });
     let kinds: Vec<Surface> = keys
         .iter()
@@ -236,7 +248,7 @@ fn colour_unseen(painted: &mut [PaintedPatch], kinds: &[Surface]) {
     };
     let any = mean(&|_| true).unwrap_or(NEUTRAL);
     let roof = mean(&|kind| matches!(kind, Surface::Roof(_))).unwrap_or(any);
-    let wall = mean(&|kind| *kind == Surface::Wall).unwrap_or(any);
+    let wall = mean(&|kind| *kind == Surface::Wall).unwrap_or(PLASTER);
     for (p, kind) in painted
         .iter_mut()
         .zip(kinds)

@@ -87,7 +87,108 @@ pub(super) fn occluded_texels(
     mask
 }
 
+/// How far the texels of a wall lie below its upper and above its lower end.
+///
+/// A wall of the model stands below the outline of the roof, the real one some way behind it. A
+/// view that meets the model's wall within that way of its upper end saw the roof, and of its
+/// lower end the ground before the wall.
+pub(super) struct WallMargins {
+    /// Per texel: the distance to the nearer end in its column, metres.
+    to_end_m: Vec<f64>,
+    overhang_m: f64,
+}
+
+impl WallMargins {
+    /// For a face that is a wall.
+    pub(super) fn new(
+        plane: &FacePlane,
+        patch: &TexturePatch,
+        inside: &[bool],
+        overhang_m: f64,
+    ) -> Option<Self> {
+        // Walls are vertical up to rounding; the steepest roofs are far from it.
+        let is_wall = plane.normal.z.abs() < 0.01;
+        is_wall.then(|| {
+            let mut to_end_m = vec![0.0; inside.len()];
+            for column in 0..patch.width {
+                let rows = (0..patch.height).filter(|row| inside[row * patch.width + column]);
+                let (Some(first), Some(last)) = (rows.clone().min(), rows.max()) else {
+                    continue;
+                };
+                for row in first..=last {
+                    let texels = (row - first).min(last - row) as f64 + 0.5;
+                    to_end_m[row * patch.width + column] = texels * patch.texel_m;
+                }
+            }
+            Self {
+                to_end_m,
+                overhang_m,
+            }
+        })
+    }
+
+    /// Marks the texels where a view from this centre sees roof or ground in place of the wall.
+    pub(super) fn hide(
+        &self,
+        plane: &FacePlane,
+        patch: &TexturePatch,
+        center: &Point3<f64>,
+        hidden: &mut [bool],
+    ) {
+        for (i, hidden) in hidden.iter_mut().enumerate() {
+            let (x, y) = (
+                (i % patch.width) as f64 + 0.5,
+                (i / patch.width) as f64 + 0.5,
+            );
+            let ray = center - plane.lift(&patch.point_of(x, y));
+            // The ray passes the overhang while it climbs this far.
+            let climb = self.overhang_m * ray.z.max(0.0) / plane.normal.dot(&ray).max(1e-9);
+            *hidden |= self.to_end_m[i] < climb;
+        }
+    }
+}
+
 /// Do two boxes overlap?
 fn meet(a: &[f64; 4], b: &[f64; 4]) -> bool {
     a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn a_steep_view_shows_only_the_middle_of_a_wall() {
+        // A wall of 6 m by 6 m that looks south.
+        let flat = vec![(0.0, 0.0), (6.0, 0.0), (6.0, 6.0), (0.0, 6.0)];
+        let flat: Vec<Point2<f64>> = flat.into_iter().map(|(x, y)| Point2::new(x, y)).collect();
+        let plane = FacePlane {
+            origin: Point3::origin(),
+            right: Vector3::x(),
+            up: Vector3::z(),
+            normal: -Vector3::y(),
+            rings: vec![flat.iter().map(|p| Point3::new(p.x, 0.0, p.y)).collect()],
+            flat: vec![flat],
+        };
+        let patch = TexturePatch::new(&plane, 0.1);
+        let inside = patch.inside(&plane.flat);
+        let margins = WallMargins::new(&plane, &patch, &inside, 0.4).unwrap();
+        // Shown rows of the middle column from this far to the south, 1000 m up.
+        let shown = |south: f64| {
+            let mut hidden = vec![false; inside.len()];
+            let center = Point3::new(3.0, -south, 1000.0);
+            margins.hide(&plane, &patch, &center, &mut hidden);
+            (0..60).filter(|row| !hidden[row * 60 + 30]).count()
+        };
+        // Obliquely: 0.4 m are lost at both ends; at 76 degrees four times as much; from above all.
+        assert_eq!(shown(1000.0), 60 - 2 * 4);
+        assert_eq!(shown(250.0), 60 - 2 * 16);
+        assert_eq!(shown(0.0), 0);
+        let roof = FacePlane {
+            normal: Vector3::new(0.0, -0.6, 0.8),
+            ..plane
+        };
+        assert!(WallMargins::new(&roof, &patch, &inside, 0.4).is_none());
+    }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Matrix3x2, Point2};
 use serde::Serialize;
 
-use super::occlusion::{FaceImages, occluded_texels};
+use super::occlusion::{FaceImages, WallMargins, occluded_texels};
 use super::patch::{FacePlane, TexturePatch};
 use crate::camera::Camera;
 use crate::ids::ViewId;
@@ -66,8 +66,9 @@ pub(super) fn paint(
     patch: &TexturePatch,
     face_images: &[FaceImages],
     exposures: &[[f32; 3]],
+    overhang_m: f64,
 ) -> PaintedPatch {
-    let seen = views_of(scene, faces, face, patch, face_images);
+    let seen = views_of(scene, faces, face, patch, face_images, overhang_m);
     let total = texels_inside(&patch.inside(&faces[face].flat));
     let (colours, known) = compose(scene, &faces[face], patch, &seen, exposures);
     let share = |mask: &[bool]| mask.iter().filter(|&&k| k).count() as f64 / total;
@@ -93,17 +94,22 @@ pub(super) fn views_of(
     face: usize,
     patch: &TexturePatch,
     face_images: &[FaceImages],
+    overhang_m: f64,
 ) -> Vec<FaceView> {
     let plane = &faces[face];
     let inside = patch.inside(&plane.flat);
     let total = texels_inside(&inside);
+    let margins = WallMargins::new(plane, patch, &inside, overhang_m);
     let mut seen: Vec<FaceView> = Vec::new();
     for view in scene.view_ids() {
         let (camera, face_images) = (scene.camera(view), &face_images[view.index()]);
         if !face_images.shows(face, camera) {
             continue;
         }
-        let hidden = occluded_texels(face, patch, faces, face_images, &camera.center);
+        let mut hidden = occluded_texels(face, patch, faces, face_images, &camera.center);
+        if let Some(margins) = &margins {
+            margins.hide(plane, patch, &camera.center, &mut hidden);
+        }
         let mask = visible_texels(&inside, &hidden, plane, patch, camera);
         let visible = mask.iter().filter(|&&v| v).count() as f64 / total;
         if visible > 0.0 {
