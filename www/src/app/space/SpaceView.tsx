@@ -25,6 +25,7 @@ import { ModeLegend, ModeSwitches } from "./ModelModes";
 import { model, showsKeptFacets, useModels } from "./modelLayers";
 import { followResults, LAYERS, type LayerName, shownLayers, toggleLayer } from "./resultLayers";
 import { SpaceTools } from "./SpaceTools";
+import { Unmodelled } from "./Unmodelled";
 
 const LAYER_TITLES: Record<LayerName, string> = {
   lines: "3D lines",
@@ -88,6 +89,7 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
             }
           }}
         />
+        {tab.value === "model" && <Unmodelled />}
         {isEmpty && (
           <div class="empty over">
             <p>Nothing to show yet.</p>

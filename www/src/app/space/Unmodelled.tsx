@@ -1,0 +1,30 @@
+/** Says how many roof planes have no facet in the model, and leads to them one after the other. */
+import { computed } from "@preact/signals";
+import { results } from "../state/results";
+import { select, selection, showTab } from "../state/viewState";
+import { unmodelledPlanes } from "./unmodelledPlanes";
+
+const missing = computed(() => {
+  const { grouping, facets } = results.value;
+  return grouping === null || facets === null ? [] : unmodelledPlanes(grouping.rejected, facets);
+});
+
+export function Unmodelled() {
+  const planes = missing.value;
+  if (planes.length === 0) {
+    return null;
+  }
+  const showNext = () => {
+    const picked = selection.peek();
+    const shown = picked?.kind === "rejectedFacet" ? planes.indexOf(picked.index) : -1;
+    showTab("facets");
+    select({ kind: "rejectedFacet", index: planes[(shown + 1) % planes.length] as number });
+  };
+  return (
+    <button type="button" class="unmodelled" onClick={showNext}>
+      {planes.length === 1
+        ? "1 roof plane was found and rejected"
+        : `${planes.length} roof planes were found and rejected`}
+    </button>
+  );
+}
