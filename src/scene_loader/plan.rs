@@ -297,6 +297,7 @@ impl Plan {
             self.views = views;
             return;
         }
+        self.warnings.extend(notice_of_fisheyes(&views));
         self.origin = camera_checks::scene_origin(views.iter().map(|v| &v.whole));
         for view in &mut views {
             view.whole.center -= self.origin;
@@ -327,6 +328,18 @@ impl Plan {
     }
 }
 
+/// What part of fisheye photographs is used.
+fn notice_of_fisheyes(views: &[PlannedView]) -> Option<String> {
+    let of_fisheye = (views.iter())
+        .filter(|v| v.distortion.is_some_and(|lens| lens.is_fisheye()))
+        .map(|v| v.whole.half_field_deg());
+    let widest = of_fisheye.reduce(f64::max)?;
+    Some(format!(
+        "fisheye photographs are rectified to pinholes: what lies more than {widest:.0} degrees from \
+         their axis is not used"
+    ))
+}
+
 /// The camera of a whole image in the world of its orientation file, after the checks that need no
 /// other view.
 fn planned_view(
@@ -355,7 +368,7 @@ fn planned_view(
         k[(0, 2)] += f64::from(width) / 2.0;
         k[(1, 2)] += f64::from(height) / 2.0;
     }
-    let camera = Camera {
+    let mut camera = Camera {
         k,
         r: orientation.r,
         center: orientation.center,
@@ -371,21 +384,24 @@ fn planned_view(
             "export the orientation again",
         ));
     }
-    if let Some(lens) = &orientation.distortion
-        && !lens.is_plausible(&camera.k, width, height)
-    {
-        return Err(refuse(
-            format!(
-                "the lens distortion in {} folds the image over",
-                orientation.source
-            ),
-            "check the order and the signs of the coefficients, or undistort the images",
-        ));
+    let mut distortion = orientation.distortion;
+    if let Some(lens) = &mut distortion {
+        let pinhole = match lens.is_fisheye() {
+            true => lens.rectified(&camera.k, width, height),
+            false if lens.is_plausible(&camera.k, width, height) => Ok((camera.k, *lens)),
+            false => Err("folds the image over"),
+        };
+        (camera.k, *lens) = pinhole.map_err(|problem| {
+            refuse(
+                format!("the lens distortion in {} {problem}", orientation.source),
+                "check the order and the signs of the coefficients, or undistort the images",
+            )
+        })?;
     }
     Ok(PlannedView {
         file,
         whole: camera,
-        distortion: orientation.distortion,
+        distortion,
         angles: orientation.angles,
         crop: orientation.crop,
         part: None,
