@@ -7,8 +7,8 @@
 //!   oriented. An extra file of principal points (`image cx cy width height`) is read where it is
 //!   there.
 //! * NVM: quaternion (w x y z) of `cam_from_world`, y down, and the projection centre; its k leads
-//!   from measured to ideal coordinates, so the series of the inverse is used. `FixedK` in its first
-//!   line states a principal point and two focal lengths.
+//!   from measured to ideal coordinates, so the series of the inverse is used. `FixedK` in its
+//!   first line states a principal point and two focal lengths.
 
 use nalgebra::{Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 
