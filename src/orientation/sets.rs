@@ -2,9 +2,10 @@
 
 use super::detect::FileKind;
 use super::format::Format;
+use super::formats::json::{krc, nerfstudio, opensfm};
+use super::formats::xml::{blocks, metashape};
 use super::formats::{
-    bundles, colmap, colmap_binary, inpho, json, matrices, micmac, patb, photogrammetric,
-    projection, xml,
+    bundles, colmap, colmap_binary, inpho, matrices, micmac, patb, photogrammetric, projection,
 };
 use super::geodesy::Anchor;
 use super::image_orientation::Orientation;
@@ -53,7 +54,7 @@ impl OrientationSet {
     /// Geodetic position of the local frame's origin, where the files state it.
     pub fn anchor(&self, inputs: &[InputFile]) -> Option<Anchor> {
         let text = (self.format == Format::OpenSfm).then(|| inputs[self.files[0]].text())?;
-        json::opensfm_anchor(&text)
+        opensfm::anchor(&text)
     }
 
     /// Reads the orientations of the set. Warnings are added to `warnings`.
@@ -79,13 +80,13 @@ impl OrientationSet {
             Format::Photogrammetric => photogrammetric::read(file(0), file(1), warnings),
             Format::Inpho => inpho::read(path, text, warnings),
             Format::Patb => patb::read(file(0), file(1), warnings),
-            Format::Metashape => xml::read_metashape(path, text),
-            Format::Blocks => xml::read_blocks(path, text),
+            Format::Metashape => metashape::read(path, text),
+            Format::Blocks => blocks::read(path, text),
             Format::Pix4d => matrices::read_pix4d(path, text),
-            Format::OpenSfm => json::read_opensfm(path, text),
-            Format::Shots => json::read_shots(file(0), further(1), warnings),
-            Format::Krc => json::read_krc(path, text),
-            Format::Nerfstudio => json::read_nerfstudio(path, text),
+            Format::OpenSfm => opensfm::read(path, text),
+            Format::Shots => opensfm::read_shots(file(0), further(1), warnings),
+            Format::Krc => krc::read(path, text),
+            Format::Nerfstudio => nerfstudio::read(path, text),
             Format::Bundler => bundles::read_bundler(file(0), file(1), further(2)),
             Format::Nvm => bundles::read_nvm(path, text),
             Format::Middlebury => matrices::read_middlebury(path, text),

@@ -1,24 +1,21 @@
-//! Orientations in XML: Metashape's `cameras.xml` and ContextCapture's BlocksExchange.
+//! Metashape's `cameras.xml`.
 //!
-//! * Metashape: 4 x 4 per camera, camera (y down, z forward) to chunk; the chunk's rotation,
-//!   translation and scale lead to the world. cx, cy count from the middle of the image; p1 and p2
-//!   are exchanged against ours.
-//! * BlocksExchange: rotation world to camera (`XRightYDown` unless `CameraOrientation` says
-//!   `XRightYUp`) and centre; the principal point counts from the centre of the top-left pixel; the
-//!   focal length is in pixels, or in the unit of `SensorSize`, which belongs to the longer side.
-//!   P1, P2 as Metashape's.
+//! 4 x 4 per camera, camera (y down, z forward) to chunk; the chunk's rotation, translation and
+//! scale lead to the world. cx, cy count from the middle of the image; p1 and p2 are exchanged
+//! against ours.
 
 use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Matrix4, Point3, Vector3};
-use roxmltree::{Document, Node};
+use roxmltree::Node;
 
+use super::{Sensor, XmlReader, child, parse};
 use crate::camera::Distortion;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::orientation::image_orientation::{Orientation, pinhole};
 
 /// Reads Metashape's cameras.
-pub(crate) fn read_metashape(path: &str, text: &str) -> Result<Vec<Orientation>> {
+pub(crate) fn read(path: &str, text: &str) -> Result<Vec<Orientation>> {
     let document = parse(path, text)?;
     let file = XmlReader { path };
     let mut found = Vec::new();
@@ -55,61 +52,6 @@ pub(crate) fn read_metashape(path: &str, text: &str) -> Result<Vec<Orientation>>
         }
     }
     Ok(found)
-}
-
-/// Reads a block of ContextCapture.
-pub(crate) fn read_blocks(path: &str, text: &str) -> Result<Vec<Orientation>> {
-    let document = parse(path, text)?;
-    let file = XmlReader { path };
-    let mut found = Vec::new();
-    for group in document
-        .descendants()
-        .filter(|n| n.has_tag_name("Photogroup"))
-    {
-        let lens = file.photogroup(group)?;
-        let y_up = text_of(group, "CameraOrientation").is_some_and(|o| o == "XRightYUp");
-        for photo in group.children().filter(|n| n.has_tag_name("Photo")) {
-            let Some(pose) = child(photo, "Pose") else {
-                continue;
-            };
-            let (Some(rotation), Some(center)) = (child(pose, "Rotation"), child(pose, "Center"))
-            else {
-                continue;
-            };
-            let r = file.rotation(rotation)?;
-            let axes = Vector3::new(1.0, -1.0, -1.0);
-            let r = if y_up {
-                Matrix3::from_diagonal(&axes) * r
-            } else {
-                r
-            };
-            let at = |axis: &str| file.number(center, axis);
-            let image = text_of(photo, "ImagePath").unwrap_or_default();
-            found.push(Orientation {
-                distortion: lens.distortion,
-                size: Some(lens.size),
-                ..pinhole(
-                    image.rsplit(['/', '\\']).next().unwrap_or(image),
-                    &file.place(photo),
-                    lens.k,
-                    r,
-                    Point3::new(at("x")?, at("y")?, at("z")?),
-                )
-            });
-        }
-    }
-    Ok(found)
-}
-
-struct Sensor {
-    k: Matrix3<f64>,
-    distortion: Option<Distortion>,
-    size: (u32, u32),
-}
-
-/// Reads elements of one file; refusals name it and the line.
-pub(crate) struct XmlReader<'a> {
-    pub path: &'a str,
 }
 
 impl XmlReader<'_> {
@@ -184,100 +126,6 @@ impl XmlReader<'_> {
         }
         Ok(m)
     }
-
-    fn photogroup(&self, group: Node) -> Result<Sensor> {
-        let dimensions = child(group, "ImageDimensions")
-            .ok_or_else(|| self.error(group, "ImageDimensions are missing"))?;
-        let size = (
-            self.number(dimensions, "Width")?,
-            self.number(dimensions, "Height")?,
-        );
-        let longer = size.0.max(size.1);
-        let f = match child(group, "FocalLengthPixels") {
-            Some(_) => self.number(group, "FocalLengthPixels")?,
-            None => {
-                self.number(group, "FocalLength")? * longer / self.number(group, "SensorSize")?
-            }
-        };
-        let (cx, cy) = match child(group, "PrincipalPoint") {
-            Some(p) => (self.number(p, "x")? + 0.5, self.number(p, "y")? + 0.5),
-            None => (size.0 / 2.0, size.1 / 2.0),
-        };
-        let lens = child(group, "Distortion");
-        let or_zero = |name: &str| match lens.and_then(|l| child(l, name).map(|_| l)) {
-            Some(lens) => self.number(lens, name),
-            None => Ok(0.0),
-        };
-        Ok(Sensor {
-            k: Matrix3::new(f, 0.0, cx, 0.0, f, cy, 0.0, 0.0, 1.0),
-            distortion: Distortion::brown(
-                [or_zero("K1")?, or_zero("K2")?, or_zero("K3")?],
-                [or_zero("P2")?, or_zero("P1")?],
-            ),
-            size: (size.0 as u32, size.1 as u32),
-        })
-    }
-
-    fn rotation(&self, node: Node) -> Result<Matrix3<f64>> {
-        let mut m = Matrix3::zeros();
-        for i in 0..3 {
-            for j in 0..3 {
-                m[(i, j)] = self.number(node, &format!("M_{i}{j}"))?;
-            }
-        }
-        Ok(m)
-    }
-
-    pub(crate) fn number(&self, parent: Node, name: &str) -> Result<f64> {
-        let node = child(parent, name)
-            .ok_or_else(|| self.error(parent, &format!("<{name}> is missing")))?;
-        Ok(self.numbers::<1>(node)?[0])
-    }
-
-    pub(crate) fn numbers<const N: usize>(&self, node: Node) -> Result<[f64; N]> {
-        let text = node.text().unwrap_or_default();
-        let numbers: Vec<f64> = text
-            .split_whitespace()
-            .filter_map(|f| f.parse().ok())
-            .filter(|v: &f64| v.is_finite())
-            .collect();
-        let wrong = |_| self.error(node, &format!("it does not hold {N} finite numbers"));
-        numbers.try_into().map_err(wrong)
-    }
-
-    fn place(&self, node: Node) -> String {
-        format!("{}, line {}", self.path, line_of(node))
-    }
-
-    pub(crate) fn error(&self, node: Node, problem: &str) -> Error {
-        Error::Line {
-            file: self.path.to_owned(),
-            line: line_of(node),
-            problem: format!("<{}>: {problem}", node.tag_name().name()),
-            expected: "what the program exports; export it again".to_owned(),
-        }
-    }
-}
-
-fn line_of(node: Node) -> usize {
-    node.document().text_pos_at(node.range().start).row as usize
-}
-
-pub(crate) fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
-    node.children().find(|n| n.has_tag_name(name))
-}
-
-pub(crate) fn text_of<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
-    child(node, name).and_then(|n| n.text()).map(str::trim)
-}
-
-pub(crate) fn parse<'a>(path: &str, text: &'a str) -> Result<Document<'a>> {
-    Document::parse(text.trim_start_matches('\u{feff}')).map_err(|e| Error::Line {
-        file: path.to_owned(),
-        line: e.pos().row as usize,
-        problem: super::text::quoted_long(&e.to_string()),
-        expected: "well-formed XML; export it again".to_owned(),
-    })
 }
 
 #[cfg(test)]
@@ -301,7 +149,7 @@ mod tests {
             ("p2", -0.0007),
         ];
         let calibration: String = terms.map(|(n, v)| format!("<{n}>{v}</{n}>")).concat();
-        let found = read_metashape(
+        let found = read(
             "cameras.xml",
             &format!(
                 "<document><chunk><sensors><sensor id=\"0\" type=\"frame\"><calibration class=\"adjusted\">\
