@@ -52,5 +52,5 @@ pub use image_orientation::{Crop, Orientation};
 pub use input_file::InputFile;
 pub(crate) use input_file::{base_name, stem};
 pub use metric_frame::to_metric_frame;
-pub use reference::epsg_of;
+pub use reference::{StatedReference, epsg_of};
 pub use sets::{OrientationSet, orientation_sets};

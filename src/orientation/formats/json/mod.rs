@@ -18,7 +18,7 @@ fn parse<T: DeserializeOwned>(path: &str, text: &str) -> Result<T> {
             file: path.to_owned(),
             line: e.line().max(1),
             problem: quoted_long(problem),
-            expected: "the JSON that the program writes; export it again".to_owned(),
+            expected: "the JSON that the program writes".to_owned(),
         }
     })
 }
@@ -27,6 +27,6 @@ fn refuse(path: &str, problem: &str) -> Error {
     Error::File {
         file: path.to_owned(),
         problem: quoted_long(problem),
-        advice: "export the model again, with undistorted perspective images".to_owned(),
+        advice: "export perspective cameras; images of other lenses undistorted".to_owned(),
     }
 }

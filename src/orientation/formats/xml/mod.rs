@@ -45,11 +45,24 @@ impl XmlReader<'_> {
     }
 
     pub(crate) fn error(&self, node: Node, problem: &str) -> Error {
+        self.refusal(node, problem, "what the description of the format has here")
+    }
+
+    /// An error that says what should stand there.
+    fn refusal(&self, node: Node, problem: &str, expected: &str) -> Error {
         Error::Line {
             file: self.path.to_owned(),
             line: line_of(node),
-            problem: format!("<{}>: {problem}", node.tag_name().name()),
-            expected: "what the program exports; export it again".to_owned(),
+            problem: format!("<{}>: {}", node.tag_name().name(), quoted_long(problem)),
+            expected: expected.to_owned(),
+        }
+    }
+
+    /// The number of an element that may be missing.
+    fn number_or(&self, parent: Node, name: &str, default: f64) -> Result<f64> {
+        match child(parent, name) {
+            Some(_) => self.number(parent, name),
+            None => Ok(default),
         }
     }
 }
@@ -71,6 +84,6 @@ pub(crate) fn parse<'a>(path: &str, text: &'a str) -> Result<Document<'a>> {
         file: path.to_owned(),
         line: e.pos().row as usize,
         problem: quoted_long(&e.to_string()),
-        expected: "well-formed XML; export it again".to_owned(),
+        expected: "well-formed XML to the end of the file".to_owned(),
     })
 }
