@@ -13,8 +13,8 @@ use super::region::RegionOfInterest;
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::orientation::{
-    FileKind, InputFile, Orientation, OrientationSet, detect, epsg_of, orientation_sets, stem,
-    to_metric_frame,
+    Anchor, FileKind, InputFile, Orientation, OrientationSet, StatedReference, detect, epsg_of,
+    orientation_sets, stem, to_metric_frame,
 };
 use crate::raster::{ImageHeader, image_header};
 use crate::scene::Survey;
@@ -189,12 +189,10 @@ impl Plan {
             ));
         }
         self.orientation = Some(format!("{}: {}", set.format.name(), set.label(files)));
+        let (epsg, anchor) = self.reference_of(set, files);
         self.survey = Survey {
-            epsg: options
-                .epsg
-                .or_else(|| set.reference(files))
-                .or_else(|| self.stated_reference(files)),
-            anchor: set.anchor(files),
+            epsg: options.epsg.or(epsg),
+            anchor,
             ..Survey::default()
         };
         let read = set.read(files, &mut self.warnings);
@@ -213,12 +211,37 @@ impl Plan {
         Some(orientations)
     }
 
-    /// The reference system that a file of its own names.
-    fn stated_reference(&self, files: &[InputFile]) -> Option<u32> {
+    /// EPSG code of the coordinates' system, or the place that they count from.
+    fn reference_of(
+        &mut self,
+        set: &OrientationSet,
+        files: &[InputFile],
+    ) -> (Option<u32>, Option<Anchor>) {
+        let beside = self.stated_reference(files);
+        let (reason, anchor) = match set.reference(files, None) {
+            StatedReference::None => return (beside.map(|(_, code)| code), None),
+            StatedReference::System(code) => return (Some(code), None),
+            StatedReference::Place(anchor) => (
+                "the orientation counts east, north and up from a place".to_owned(),
+                Some(anchor),
+            ),
+            StatedReference::Local(reason) => (reason, None),
+        };
+        if let Some((path, code)) = beside {
+            self.warnings.push(format!(
+                "{path} names EPSG:{code}, but the coordinates of {} are not in it: {reason}",
+                set.label(files)
+            ));
+        }
+        (None, anchor)
+    }
+
+    /// The reference system that a file of its own names, and that file.
+    fn stated_reference<'a>(&self, files: &'a [InputFile]) -> Option<(&'a str, u32)> {
         // Photographs are not searched as text.
         (self.kinds.iter().zip(files))
             .filter(|(kind, _)| **kind == FileKind::ReferenceSystem)
-            .find_map(|(_, file)| epsg_of(&file.text()))
+            .find_map(|(_, file)| Some((&*file.path, epsg_of(&file.text())?)))
     }
 
     fn warn_of_json(&mut self, files: &[InputFile]) {

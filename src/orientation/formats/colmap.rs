@@ -191,6 +191,7 @@ fn read_image(line: &TextLine, lenses: &Cameras, cameras: &str) -> Result<Orient
         from_middle: false,
         angles: None,
         crop: None,
+        group: None,
     })
 }
 
