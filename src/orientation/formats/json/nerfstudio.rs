@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Matrix4, Point3, Vector3};
 use serde::Deserialize;
 
 use super::{parse, refuse};
-use crate::camera::Distortion;
+use crate::camera::{Distortion, Projection};
 use crate::error::{Error, Result};
 use crate::orientation::formats::left_out::LeftOut;
 use crate::orientation::image_orientation::{Orientation, pinhole};
@@ -128,16 +128,17 @@ impl NerfstudioCamera {
             "OPENCV",
             "PERSPECTIVE",
         ];
-        let model = match (&self.camera_model, self.is_fisheye) {
-            (_, Some(true)) => "fisheye",
-            (Some(model), _) => model,
-            (None, _) => "PINHOLE",
-        };
-        if !PERSPECTIVE.contains(&&*model.to_ascii_uppercase()) {
+        let model = self.camera_model.as_deref().unwrap_or("PINHOLE");
+        let is_fisheye = self.is_fisheye();
+        if !is_fisheye && !PERSPECTIVE.contains(&&*model.to_ascii_uppercase()) {
             return Err(unsupported_model(path, image, model));
         }
+        if is_fisheye && [self.p1, self.p2].iter().any(|p| p.unwrap_or(0.0) != 0.0) {
+            return Err(unsupported_model(path, image, "fisheye with p1 and p2"));
+        }
         let of_angle = |angle: Option<f64>, size: Option<f64>| {
-            let (angle, size) = angle.zip(size)?;
+            // The angle of a fisheye says nothing of its focal length.
+            let (angle, size) = angle.filter(|_| !is_fisheye).zip(size)?;
             let (s, c) = crate::math::sin_cos(angle / 2.0);
             Some(size / 2.0 * c / s)
         };
@@ -154,9 +155,21 @@ impl NerfstudioCamera {
         Ok(Matrix3::new(fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0))
     }
 
+    /// OpenCV's fisheye, as nerfstudio's model or instant-ngp's key.
+    fn is_fisheye(&self) -> bool {
+        let model = self.camera_model.as_deref();
+        self.is_fisheye == Some(true)
+            || model.is_some_and(|m| m.eq_ignore_ascii_case("OPENCV_FISHEYE"))
+    }
+
     fn distortion(&self) -> Option<Distortion> {
         let or_zero = |v: Option<f64>| v.unwrap_or(0.0);
-        Distortion::brown(
+        let projection = match self.is_fisheye() {
+            true => Projection::Equidistant,
+            false => Projection::Perspective,
+        };
+        Distortion::lens(
+            projection,
             [self.k1, self.k2, self.k3, self.k4].map(or_zero),
             [self.p1, self.p2].map(or_zero),
         )
@@ -180,4 +193,46 @@ fn homogeneous(rows: &[[f64; 4]]) -> Matrix4<f64> {
             identity[(i, j)]
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math;
+
+    #[test]
+    fn an_opencv_fisheye_puts_points_where_opencv_does() {
+        let k = [-0.03, 0.004, -0.002, 0.0006];
+        let file = |model: &str| {
+            format!(
+                "{{{model}, \"fl_x\": 300, \"fl_y\": 310, \"cx\": 320, \"cy\": 240, \"w\": 640, \"h\": 480, \"k1\": {}, \"k2\": {}, \
+                 \"k3\": {}, \"k4\": {}, \"frames\": [{{\"file_path\": \"a.png\", \
+                 \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}}]}}",
+                k[0], k[1], k[2], k[3]
+            )
+        };
+        for model in [
+            "\"camera_model\": \"OPENCV_FISHEYE\"",
+            "\"is_fisheye\": true",
+            "\"camera_model\": \"OPENCV\", \"is_fisheye\": true",
+        ] {
+            let found = &read("transforms.json", &file(model), &mut Vec::new()).unwrap()[0];
+            for (x, y) in [(0.3, -0.2), (1.2, 0.9), (-1.6, 0.4)] {
+                let r = math::hypot(x, y);
+                let theta = math::atan(r);
+                let t2 = theta * theta;
+                let g = 1.0 + k.iter().rev().fold(0.0, |sum, k| (sum + k) * t2);
+                let d = found.distortion.unwrap().distort(&[x, y].into());
+                let p = found.k * Vector3::new(d.x, d.y, 1.0);
+                assert!((p.x - (300.0 * x * theta / r * g + 320.0)).abs() < 1e-9);
+                assert!((p.y - (310.0 * y * theta / r * g + 240.0)).abs() < 1e-9);
+            }
+        }
+        for model in [
+            "\"camera_model\": \"ORTHOPHOTO\"",
+            "\"camera_model\": \"OPENCV_FISHEYE\", \"p1\": 0.1",
+        ] {
+            assert!(read("transforms.json", &file(model), &mut Vec::new()).is_err());
+        }
+    }
 }

@@ -13,7 +13,7 @@ use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use super::{parse, refuse};
-use crate::camera::Distortion;
+use crate::camera::{Distortion, Projection};
 use crate::error::{Error, Result};
 use crate::geometry::rotation_from_axis_angle;
 use crate::orientation::formats::left_out::{LeftOut, few};
@@ -301,9 +301,23 @@ struct OpenSfmCamera {
     #[serde(default)]
     k3: f64,
     #[serde(default)]
+    k4: f64,
+    #[serde(default)]
+    k5: f64,
+    #[serde(default)]
+    k6: f64,
+    #[serde(default)]
     p1: f64,
     #[serde(default)]
     p2: f64,
+    #[serde(default)]
+    s0: f64,
+    #[serde(default)]
+    s1: f64,
+    #[serde(default)]
+    s2: f64,
+    #[serde(default)]
+    s3: f64,
 }
 
 impl OpenSfmCamera {
@@ -325,8 +339,15 @@ impl OpenSfmCamera {
             k1: 0.0,
             k2: 0.0,
             k3: 0.0,
+            k4: 0.0,
+            k5: 0.0,
+            k6: 0.0,
             p1: 0.0,
             p2: 0.0,
+            s0: 0.0,
+            s1: 0.0,
+            s2: 0.0,
+            s3: 0.0,
         })
     }
 
@@ -339,7 +360,11 @@ impl OpenSfmCamera {
     }
 
     fn k(&self, path: &str, (width, height): (u32, u32)) -> Result<Matrix3<f64>> {
-        if !["perspective", "brown", "simple_radial", "radial"].contains(&&*self.projection_type) {
+        // Of the larger fisheye models the terms that all agree on.
+        let has_further = [self.p1, self.p2, self.s0, self.s1, self.s2, self.s3] != [0.0; 6];
+        let is_perspective =
+            ["perspective", "brown", "simple_radial", "radial"].contains(&&*self.projection_type);
+        if !is_perspective && (!self.is_fisheye() || has_further) {
             return Err(refuse(
                 path,
                 &format!(
@@ -368,7 +393,56 @@ impl OpenSfmCamera {
         ))
     }
 
+    fn is_fisheye(&self) -> bool {
+        ["fisheye", "fisheye_opencv", "fisheye62", "fisheye624"].contains(&&*self.projection_type)
+    }
+
     fn distortion(&self) -> Option<Distortion> {
-        Distortion::brown([self.k1, self.k2, self.k3], [self.p1, self.p2])
+        match self.is_fisheye() {
+            true => Distortion::lens(
+                Projection::Equidistant,
+                [self.k1, self.k2, self.k3, self.k4, self.k5, self.k6],
+                [0.0; 2],
+            ),
+            false => Distortion::brown([self.k1, self.k2, self.k3], [self.p1, self.p2]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math;
+
+    #[test]
+    fn the_fisheyes_of_opensfm_are_polynomials_of_the_angle() {
+        let file = |kind: &str, terms: &str| {
+            format!(
+                "[{{\"cameras\": {{\"c\": {{\"projection_type\": \"{kind}\", \"width\": 640, \"height\": 480, {terms}}}}}, \
+                 \"shots\": {{\"a.jpg\": {{\"rotation\": [0,0,0], \"translation\": [0,0,0], \"camera\": \"c\"}}}}}}]"
+            )
+        };
+        let read = |text: &str| read("reconstruction.json", text, &mut Vec::new());
+        let k = [-0.03, 0.004, -0.002, 0.0006];
+        let two = format!("\"focal\": 0.5, \"k1\": {}, \"k2\": {}", k[0], k[1]);
+        let four = format!(
+            "\"focal_x\": 0.5, \"focal_y\": 0.5, \"c_x\": 0, \"c_y\": 0, \"k1\": {}, \"k2\": {}, \"k3\": {}, \"k4\": {}",
+            k[0], k[1], k[2], k[3]
+        );
+        for (kind, terms, count) in [("fisheye", &two, 2), ("fisheye_opencv", &four, 4)] {
+            let found = &read(&file(kind, terms)).unwrap()[0];
+            for (x, y) in [(0.3, -0.2), (1.2, 0.9), (-1.6, 0.4)] {
+                let r = math::hypot(x, y);
+                let theta = math::atan(r);
+                let t2 = theta * theta;
+                let g = 1.0 + k[..count].iter().rev().fold(0.0, |sum, k| (sum + k) * t2);
+                let d = found.distortion.unwrap().distort(&[x, y].into());
+                let p = found.k * Vector3::new(d.x, d.y, 1.0);
+                assert!((p.x - (320.0 * x * theta / r * g + 320.0)).abs() < 1e-9);
+                assert!((p.y - (320.0 * y * theta / r * g + 240.0)).abs() < 1e-9);
+            }
+        }
+        assert!(read(&file("fisheye62", &format!("{four}, \"p1\": 0.1"))).is_err());
+        assert!(read(&file("dual", &two)).is_err());
     }
 }

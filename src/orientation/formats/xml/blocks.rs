@@ -13,7 +13,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use roxmltree::{Document, Node};
 
 use super::{Sensor, XmlReader, child, parse, text_of};
-use crate::camera::Distortion;
+use crate::camera::{Distortion, Projection};
 use crate::error::{Error, Result};
 use crate::orientation::angles::rotation_from_omega_phi_kappa;
 use crate::orientation::formats::left_out::{LeftOut, few};
@@ -216,7 +216,8 @@ impl XmlReader<'_> {
 
     /// The lens of a photogroup, and what leads from the camera's axes to the image's.
     fn photogroup(&self, group: Node) -> Result<(Sensor, Matrix3<f64>)> {
-        if let Some(model) = text_of(group, "CameraModelType").filter(|m| *m != "Perspective") {
+        let model = text_of(group, "CameraModelType").unwrap_or("Perspective");
+        if !["Perspective", "Fisheye"].contains(&model) {
             return Err(self.unknown_model(group, model));
         }
         let image_from_camera = self.axes(group)?;
@@ -233,10 +234,6 @@ impl XmlReader<'_> {
             }
             None => Err(self.error(group, "<SensorSize> or <PixelSize> is missing")),
         };
-        let f = match child(group, "FocalLengthPixels") {
-            Some(_) => self.number(group, "FocalLengthPixels")?,
-            None => self.number(group, "FocalLength")? / pixel_mm()?,
-        };
         let middle = Vector3::new(size.0 / 2.0, size.1 / 2.0, 0.0);
         let principal = match child(group, "PrincipalPoint") {
             Some(p) if child(p, "xmm").is_some() => {
@@ -246,13 +243,28 @@ impl XmlReader<'_> {
             Some(p) => Vector3::new(self.number(p, "x")? + 0.5, self.number(p, "y")? + 0.5, 0.0),
             None => middle,
         };
+        let image_size = (size.0 as u32, size.1 as u32);
+        if model == "Fisheye" {
+            let (mut k, distortion) = self.fisheye(group)?;
+            (k[(0, 2)], k[(1, 2)]) = (principal.x, principal.y);
+            let lens = Sensor {
+                k,
+                distortion,
+                size: image_size,
+            };
+            return Ok((lens, image_from_camera));
+        }
+        let f = match child(group, "FocalLengthPixels") {
+            Some(_) => self.number(group, "FocalLengthPixels")?,
+            None => self.number(group, "FocalLength")? / pixel_mm()?,
+        };
         let fy = f * self.number_or(group, "AspectRatio", 1.0)?;
         let skew = self.number_or(group, "Skew", 0.0)?;
         Ok((
             Sensor {
                 k: Matrix3::new(f, skew, principal.x, 0.0, fy, principal.y, 0.0, 0.0, 1.0),
                 distortion: self.distortion(group)?,
-                size: (size.0 as u32, size.1 as u32),
+                size: image_size,
             },
             image_from_camera,
         ))
@@ -277,9 +289,44 @@ impl XmlReader<'_> {
         ))
     }
 
+    /// Pixels from the principal point are M (x, y) / r of the polynomial P0 + P1 t + ... + P4 t^4 of
+    /// t = 2 theta / pi, with the matrix M.
+    fn fisheye(&self, group: Node) -> Result<(Matrix3<f64>, Option<Distortion>)> {
+        let matrix = child(group, "FisheyeFocalMatrix")
+            .ok_or_else(|| self.error(group, "<FisheyeFocalMatrix> is missing"))?;
+        let term = |name: &str| self.number_or(matrix, name, 0.0);
+        if term("M_10")? != 0.0 {
+            let problem = "a sheared matrix is not read";
+            return Err(self.refusal(
+                matrix,
+                problem,
+                "M_10 = 0: adjust the fisheye symmetrically",
+            ));
+        }
+        let mut terms = [0.0, 1.0, 0.0, 0.0, 0.0];
+        if let Some(lens) = child(group, "FisheyeDistortion") {
+            for (i, term) in terms.iter_mut().enumerate() {
+                *term = self.number_or(lens, &format!("P{i}"), *term)?;
+            }
+        }
+        // So that the focal length is that of small angles.
+        let unit = std::f64::consts::FRAC_PI_2;
+        let [m00, m01, m11] = [
+            self.number(matrix, "M_00")?,
+            term("M_01")?,
+            self.number(matrix, "M_11")?,
+        ]
+        .map(|m| m / unit);
+        let of_angle = Projection::OfAngle(terms.map(|p| p * unit));
+        Ok((
+            Matrix3::new(m00, m01, 0.0, 0.0, m11, 0.0, 0.0, 0.0, 1.0),
+            Distortion::lens(of_angle, [], [0.0; 2]),
+        ))
+    }
+
     fn unknown_model(&self, group: Node, model: &str) -> Error {
         let problem = format!("cameras of the model \"{model}\" are not read");
-        let expected = "Perspective: export undistorted photos with their block";
+        let expected = "Perspective or Fisheye: export undistorted photos with their block";
         self.refusal(group, &problem, expected)
     }
 
@@ -329,5 +376,58 @@ impl XmlReader<'_> {
             }
         }
         Ok(m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math;
+    use nalgebra::Point2;
+
+    fn seen(found: &Orientation, x: f64, y: f64) -> [f64; 2] {
+        let put = found.distortion.unwrap().distort(&Point2::new(x, y));
+        let pixel = found.k * Vector3::new(put.x, put.y, 1.0);
+        [pixel.x, pixel.y]
+    }
+
+    fn block(camera: &str) -> Result<Vec<Orientation>> {
+        let unit = "<M_00>1</M_00><M_01>0</M_01><M_02>0</M_02><M_10>0</M_10><M_11>1</M_11><M_12>0</M_12>\
+                    <M_20>0</M_20><M_21>0</M_21><M_22>1</M_22>";
+        read(
+            "block.xml",
+            &format!(
+                "<BlocksExchange><Photogroup><ImageDimensions><Width>1200</Width><Height>900</Height></ImageDimensions>\
+                 <PrincipalPoint><x>610</x><y>440</y></PrincipalPoint>{camera}<Photo><ImagePath>a.jpg</ImagePath><Pose>\
+                 <Rotation>{unit}</Rotation><Center><x>0</x><y>0</y><z>0</z></Center></Pose></Photo>\
+                 </Photogroup></BlocksExchange>"
+            ),
+            &mut Vec::new(),
+        )
+    }
+
+    #[test]
+    fn the_fisheye_of_blocks_is_a_polynomial_of_the_angle() {
+        let terms = [0.001, 1.0, 0.05, -0.2, 0.1];
+        let of = |m10: f64| {
+            let p: String = (0..5)
+                .map(|i| format!("<P{i}>{}</P{i}>", terms[i]))
+                .collect();
+            block(&format!(
+                "<CameraModelType>Fisheye</CameraModelType><FisheyeFocalMatrix><M_00>1100</M_00><M_01>2</M_01>\
+                 <M_10>{m10}</M_10><M_11>1090</M_11></FisheyeFocalMatrix><FisheyeDistortion>{p}</FisheyeDistortion>"
+            ))
+        };
+        let found = &of(0.0).unwrap()[0];
+        for (x, y) in [(0.31, 0.22), (-1.35, 0.9), (0.05, -1.6)] {
+            let r = math::hypot(x, y);
+            let t = math::atan(r) * 2.0 / std::f64::consts::PI;
+            let radius = terms.iter().rev().fold(0.0, |sum, p| sum * t + p);
+            let (u, v) = (x * radius / r, y * radius / r);
+            let [column, row] = seen(found, x, y);
+            assert!((column - (1100.0 * u + 2.0 * v + 610.5)).abs() < 1e-9);
+            assert!((row - (1090.0 * v + 440.5)).abs() < 1e-9);
+        }
+        assert!(of(3.0).unwrap_err().to_string().contains("M_10"));
     }
 }

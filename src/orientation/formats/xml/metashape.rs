@@ -14,7 +14,7 @@ use nalgebra::{Matrix3, Matrix4, Point3, Vector3};
 use roxmltree::{Document, Node};
 
 use super::{Sensor, XmlReader, child, parse};
-use crate::camera::Distortion;
+use crate::camera::{Distortion, Projection};
 use crate::error::{Error, Result};
 use crate::orientation::formats::left_out::{LeftOut, few};
 use crate::orientation::image_orientation::{Orientation, pinhole};
@@ -289,10 +289,16 @@ impl XmlReader<'_> {
         let calibration = adjusted
             .or_else(|| calibrations().next())
             .ok_or_else(|| self.error(sensor, "it has no calibration"))?;
+        let mut projection = Projection::Perspective;
         for node in [sensor, calibration] {
-            if let Some(model) = node.attribute("type").filter(|t| *t != "frame") {
-                return Err(self.unsupported_lens(node, model));
-            }
+            projection = match node.attribute("type") {
+                None => projection,
+                Some("frame") => Projection::Perspective,
+                // Metashape's manual: r = theta, from version 2.3 on also r = 2 sin(theta / 2).
+                Some("fisheye" | "equidistant_fisheye") => Projection::Equidistant,
+                Some("equisolid_fisheye") => Projection::Equisolid,
+                Some(model) => return Err(self.unsupported_lens(node, model)),
+            };
         }
         let size = |of: Node| {
             child(of, "resolution")
@@ -330,7 +336,7 @@ impl XmlReader<'_> {
         let radial = [term("k1")?, term("k2")?, term("k3")?, term("k4")?];
         let mut lens = Sensor {
             k,
-            distortion: Distortion::brown(radial, tangential),
+            distortion: Distortion::lens(projection, radial, tangential),
             size: lens_size,
         };
         if let Some(size) = of_images.filter(|&size| size != lens_size) {
@@ -352,7 +358,8 @@ impl XmlReader<'_> {
 
     fn unsupported_lens(&self, node: Node, model: &str) -> Error {
         let problem = format!("cameras of type \"{model}\" are not read");
-        let expected = "a frame camera: undistort the images there and export their orientation";
+        let expected =
+            "a frame or fisheye camera: undistort the images there and export their orientation";
         self.refusal(node, &problem, expected)
     }
 
@@ -401,6 +408,7 @@ impl XmlReader<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math;
     use nalgebra::Point2;
 
     #[test]
@@ -440,5 +448,55 @@ mod tests {
             let pixel = found[0].k * Vector3::new(put.x, put.y, 1.0);
             assert!((pixel.x - column).abs() < 1e-9 && (pixel.y - row).abs() < 1e-9);
         }
+    }
+    fn metashape(kind: &str, terms: &str) -> Result<Vec<Orientation>> {
+        read(
+            "cameras.xml",
+            &format!(
+                "<document><chunk><sensors><sensor id=\"0\" type=\"{kind}\"><calibration class=\"adjusted\">\
+                 <resolution width=\"1200\" height=\"900\"/>{terms}</calibration></sensor></sensors><cameras>\
+                 <camera id=\"0\" sensor_id=\"0\" label=\"a\">\
+                 <transform>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</transform></camera></cameras></chunk></document>"
+            ),
+            &mut Vec::new(),
+        )
+    }
+
+    fn seen(found: &Orientation, x: f64, y: f64) -> [f64; 2] {
+        let put = found.distortion.unwrap().distort(&Point2::new(x, y));
+        let pixel = found.k * Vector3::new(put.x, put.y, 1.0);
+        [pixel.x, pixel.y]
+    }
+
+    #[test]
+    fn the_fisheyes_of_metashape_put_points_where_its_manual_says() {
+        let terms = "<f>700</f><cx>12</cx><cy>-7</cy><b1>0.8</b1><b2>-0.3</b2><k1>-0.06</k1><k2>0.02</k2>\
+                     <k3>-0.004</k3><p1>0.0012</p1><p2>-0.0007</p2>";
+        for (kind, radius) in [
+            ("fisheye", (|theta| theta) as fn(f64) -> f64),
+            ("equidistant_fisheye", |theta| theta),
+            ("equisolid_fisheye", |theta| 2.0 * math::sin(theta / 2.0)),
+        ] {
+            let found = &metashape(kind, terms).unwrap()[0];
+            for (x0, y0) in [(0.31, 0.22), (-1.35, 0.9), (0.05, -1.6)] {
+                let r0 = math::hypot(x0, y0);
+                let (x, y) = (
+                    x0 * radius(math::atan(r0)) / r0,
+                    y0 * radius(math::atan(r0)) / r0,
+                );
+                let r2: f64 = x * x + y * y;
+                let g = 1.0 - 0.06 * r2 + 0.02 * r2 * r2 - 0.004 * r2 * r2 * r2;
+                let u = x * g + 0.0012 * (r2 + 2.0 * x * x) - 0.0014 * x * y;
+                let v = y * g - 0.0007 * (r2 + 2.0 * y * y) + 0.0024 * x * y;
+                let [column, row] = seen(found, x0, y0);
+                assert!(
+                    (column - (612.0 + u * 700.8 - v * 0.3)).abs() < 1e-9,
+                    "{kind}"
+                );
+                assert!((row - (443.0 + v * 700.0)).abs() < 1e-9, "{kind}");
+            }
+        }
+        let refusal = metashape("spherical", terms).unwrap_err().to_string();
+        assert!(refusal.contains("spherical"), "{refusal}");
     }
 }
