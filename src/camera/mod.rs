@@ -2,7 +2,9 @@
 //!
 //! ```text
 //! pinhole       K, R, C: projection, rays
-//! distortion    the lens, and photographs resampled to a pinhole
+//! projection    what lenses do with the angles of rays: pinholes and fisheyes
+//! distortion    the lens: Brown's terms about a projection
+//! undistort     photographs resampled to a pinhole
 //! two_view      fundamental matrix, plane homographies (B99 3.1, 4.1), line transfer (3.2)
 //! ```
 //!
@@ -13,12 +15,16 @@
 
 mod distortion;
 mod pinhole;
+mod projection;
 #[cfg(test)]
 pub(crate) mod testing;
 mod two_view;
+mod undistort;
 
-pub use distortion::{Distortion, undistort};
+pub use distortion::Distortion;
 pub use pinhole::Camera;
+pub use projection::Projection;
 pub use two_view::{
     Homography, fundamental, homography_of_plane, plane_of_image_line, transfer_line,
 };
+pub use undistort::undistort;

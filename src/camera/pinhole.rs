@@ -91,6 +91,15 @@ impl Camera {
             && image.y <= f64::from(self.height) - margin_px
     }
 
+    /// Angle between the optical axis and the farthest corner of the image, degrees.
+    pub(crate) fn half_field_deg(&self) -> f64 {
+        let (w, h) = (f64::from(self.width), f64::from(self.height));
+        let axis = self.r.row(2).transpose();
+        let corners = [[0.0, 0.0], [w, 0.0], [0.0, h], [w, h]].map(Point2::from);
+        let nearest = corners.map(|corner| self.ray(&corner).dot(&axis));
+        crate::math::acos(nearest.into_iter().fold(1.0, f64::min)).to_degrees()
+    }
+
     /// Size in metres of a pixel at a world point, across the ray.
     pub fn ground_pixel(&self, world: &Point3<f64>) -> f64 {
         (world - self.center).norm() / self.k[(0, 0)].abs()

@@ -138,7 +138,12 @@ pub fn detect(file: &InputFile) -> FileKind {
             .trim_start()
             .starts_with(['{', '['])
         {
-            return by_keys(&file.text());
+            // OpenSfM's place of the local frame: no content tells it from other places.
+            let is_place = file.name().eq_ignore_ascii_case("reference_lla.json");
+            return match is_place {
+                true => FileKind::ReferenceSystem,
+                false => by_keys(&file.text()),
+            };
         }
         if let Some(kind) = by_content(&text) {
             return kind;

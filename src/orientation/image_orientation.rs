@@ -29,6 +29,8 @@ pub struct Orientation {
     pub angles: Option<[f64; 3]>,
     /// The part of the frame that the image shows, where the file states it.
     pub crop: Option<Crop>,
+    /// Label of the chunk or block that it stands in, where the file has more than one.
+    pub group: Option<String>,
 }
 
 /// The position of an image in the frame that it was cropped from, pixels.
@@ -61,5 +63,6 @@ pub(crate) fn pinhole(
         from_middle: false,
         angles: None,
         crop: None,
+        group: None,
     }
 }

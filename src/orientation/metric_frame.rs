@@ -2,7 +2,7 @@
 //! (ellipsoidal height).
 //!
 //! * Geocentric coordinates (Metashape's chunks, many GNSS solutions) are recognised by their
-//!   distance from the centre of the Earth, and by cameras that look towards it.
+//!   distance from the centre of the Earth; near the equator by cameras that look towards it.
 //! * Longitude, latitude and height in lists: positions that differ by less than a degree, at
 //!   flying heights.
 //!
@@ -55,18 +55,14 @@ fn coordinate_kind(orientations: &[Orientation]) -> Option<CoordinateKind> {
     let centers = || orientations.iter().map(|o| &o.center);
     // Map coordinates can be that large too (northings at 57 degrees, oblique views to the south),
     // but not 20 km high.
-    let looks_down = |o: &Orientation| {
-        let least = if o.center.z.abs() > 20_000.0 {
-            0.5
-        } else {
-            0.95
-        };
-        o.r.row(2).transpose().dot(&o.center.coords) < -least * o.center.coords.norm()
+    let is_no_map = |o: &Orientation| {
+        o.center.z.abs() > 20_000.0
+            || o.r.row(2).transpose().dot(&o.center.coords) < -0.95 * o.center.coords.norm()
     };
     let at_surface = |c: &Point3<f64>| (EARTH_M[0]..EARTH_M[1]).contains(&c.coords.norm());
     if orientations.is_empty() {
         None
-    } else if centers().all(at_surface) && orientations.iter().all(looks_down) {
+    } else if centers().all(at_surface) && orientations.iter().all(is_no_map) {
         Some(CoordinateKind::Geocentric)
     } else if centers().all(is_geographic)
         && (0..2).all(|i| is_small_spread(centers().map(move |c| c[i])))
@@ -163,6 +159,14 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn oblique_and_level_views_are_places_on_the_earth_too() {
+        let (mut orientations, anchor) = abroad(false);
+        let tilt = rotation_from_axis_angle(&Vector3::new(1.4, 0.0, 0.0));
+        orientations[0].r = tilt.matrix() * orientations[0].r;
+        assert_eq!(to_metric_frame(&mut orientations), Some(anchor));
     }
 
     #[test]

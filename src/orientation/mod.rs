@@ -18,10 +18,10 @@
 //! | COLMAP text, binary | `cameras` + `images` | none: these are the conventions of this program |
 //! | photogrammetric list | camera + exterior | omega, phi, kappa; mm from the centre, y up |
 //! | INPHO, PAT-B | text | see `inpho`, `patb` |
-//! | Metashape, BlocksExchange | XML | see `xml` |
+//! | Metashape, BlocksExchange | XML | see `xml::metashape`, `xml::blocks` |
 //! | MicMac | XML | see `micmac` |
 //! | Pix4D parameters, pmatrix | text | see `matrices` |
-//! | OpenSfM, ODM, nerfstudio, K R C | JSON | see `json` |
+//! | OpenSfM, ODM, nerfstudio, K R C | JSON | see `json::opensfm` and its neighbours |
 //! | Bundler, VisualSFM | text | see `bundles` |
 //! | Strecha, Middlebury | text | see `matrices` |
 //! | projection matrices | one `.P` per image | scale and sign; (0, 0) is the centre of a pixel |
@@ -52,5 +52,5 @@ pub use image_orientation::{Crop, Orientation};
 pub use input_file::InputFile;
 pub(crate) use input_file::{base_name, stem};
 pub use metric_frame::to_metric_frame;
-pub use reference::epsg_of;
+pub use reference::{StatedReference, epsg_of};
 pub use sets::{OrientationSet, orientation_sets};

@@ -2,14 +2,14 @@
 
 use super::detect::FileKind;
 use super::format::Format;
+use super::formats::json::{krc, nerfstudio, opensfm};
+use super::formats::xml::{blocks, metashape};
 use super::formats::{
-    bundles, colmap, colmap_binary, inpho, json, matrices, micmac, patb, photogrammetric,
-    projection, xml,
+    bundles, colmap, colmap_binary, inpho, matrices, micmac, patb, photogrammetric, projection,
 };
-use super::geodesy::Anchor;
 use super::image_orientation::Orientation;
 use super::input_file::InputFile;
-use super::reference;
+use super::reference::{self, StatedReference};
 use crate::error::Result;
 use crate::sorting::sort_by;
 
@@ -45,15 +45,21 @@ impl OrientationSet {
         }
     }
 
-    /// EPSG code of the reference system that the files name.
-    pub fn reference(&self, inputs: &[InputFile]) -> Option<u32> {
-        reference::stated(self.format, &inputs[self.files[0]].text())
-    }
-
-    /// Geodetic position of the local frame's origin, where the files state it.
-    pub fn anchor(&self, inputs: &[InputFile]) -> Option<Anchor> {
-        let text = (self.format == Format::OpenSfm).then(|| inputs[self.files[0]].text())?;
-        json::opensfm_anchor(&text)
+    /// What the files say about the system of their coordinates; of a group (chunk or block) of
+    /// theirs, or of the preferred one.
+    pub fn reference(&self, inputs: &[InputFile], group: Option<&str>) -> StatedReference {
+        let text = |i: usize| self.files.get(i).map(|&f| inputs[f].text());
+        let first = text(0).unwrap_or_default();
+        match self.format {
+            Format::Inpho => reference::of_inpho(&first),
+            Format::Blocks => blocks::reference(&first, group),
+            Format::OpenSfm => opensfm::reference(&first, text(1).as_deref(), group),
+            Format::Pix4d | Format::Pmatrix if self.files.len() == 1 => StatedReference::Local(
+                "its positions count from the zero of an _offset.xyz, which is not among the files"
+                    .to_owned(),
+            ),
+            _ => StatedReference::None,
+        }
     }
 
     /// Reads the orientations of the set. Warnings are added to `warnings`.
@@ -79,13 +85,13 @@ impl OrientationSet {
             Format::Photogrammetric => photogrammetric::read(file(0), file(1), warnings),
             Format::Inpho => inpho::read(path, text, warnings),
             Format::Patb => patb::read(file(0), file(1), warnings),
-            Format::Metashape => xml::read_metashape(path, text),
-            Format::Blocks => xml::read_blocks(path, text),
-            Format::Pix4d => matrices::read_pix4d(path, text),
-            Format::OpenSfm => json::read_opensfm(path, text),
-            Format::Shots => json::read_shots(file(0), further(1), warnings),
-            Format::Krc => json::read_krc(path, text),
-            Format::Nerfstudio => json::read_nerfstudio(path, text),
+            Format::Metashape => metashape::read(path, text, warnings),
+            Format::Blocks => blocks::read(path, text, warnings),
+            Format::Pix4d => matrices::read_pix4d(file(0), further(1)),
+            Format::OpenSfm => opensfm::read(path, text, warnings),
+            Format::Shots => opensfm::read_shots(file(0), further(1), warnings),
+            Format::Krc => krc::read(path, text),
+            Format::Nerfstudio => nerfstudio::read(path, text, warnings),
             Format::Bundler => bundles::read_bundler(file(0), file(1), further(2)),
             Format::Nvm => bundles::read_nvm(path, text),
             Format::Middlebury => matrices::read_middlebury(path, text),
@@ -157,32 +163,55 @@ pub fn orientation_sets(
     sets.extend(folders(inputs, kinds, Format::Strecha, FileKind::Strecha));
     sets.extend(folders(inputs, kinds, Format::Micmac, FileKind::Micmac));
     for set in &mut sets {
-        let extra = match set.format {
-            Format::Bundler => FileKind::PrincipalPoints,
-            Format::Pmatrix => FileKind::Offset,
-            Format::Shots => FileKind::OpenSfmCameras,
-            Format::Micmac => {
-                // Each orientation file names its calibration.
-                let lenses = (0..inputs.len()).filter(|&i| kinds[i] == FileKind::MicmacCalibration);
-                set.files.extend(lenses);
-                continue;
-            }
-            _ => continue,
-        };
-        let beside = |&i: &usize| kinds[i] == extra && inputs[i].folder() == set.folder;
-        let alone = || {
-            (0..inputs.len())
-                .filter(|&i| kinds[i] == FileKind::OpenSfmCameras && set.format == Format::Shots)
-        };
-        // ODM keeps its cameras in another folder than its shots.
-        let only = || alone().next().filter(|_| alone().count() == 1);
-        let extra = (0..inputs.len()).find(beside).or_else(only);
-        set.files.extend(extra);
+        add_files_beside(inputs, kinds, set);
     }
     sort_by(&mut sets, |a, b| {
         (a.format, &a.folder, &a.files).cmp(&(b.format, &b.folder, &b.files))
     });
     (sets, incomplete)
+}
+
+/// Adds the files that a set's first files need besides.
+fn add_files_beside(inputs: &[InputFile], kinds: &[FileKind], set: &mut OrientationSet) {
+    let all = |kind: FileKind| (0..inputs.len()).filter(move |&i| kinds[i] == kind);
+    let beside = |kind: FileKind| all(kind).filter(|&i| inputs[i].folder() == set.folder);
+    let named = |i: usize, name: &str| inputs[i].name().eq_ignore_ascii_case(name);
+    let only = |kind: FileKind| all(kind).next().filter(|_| all(kind).count() == 1);
+    let extra = match set.format {
+        Format::Bundler => beside(FileKind::PrincipalPoints).next(),
+        Format::Pix4d | Format::Pmatrix => {
+            // Each project of a folder has its own: PROJECT_offset.xyz.
+            let common = |i: usize| {
+                let (a, b) = (inputs[i].name(), inputs[set.files[0]].name());
+                a.bytes().zip(b.bytes()).take_while(|(a, b)| a == b).count()
+            };
+            beside(FileKind::Offset)
+                .max_by_key(|&i| common(i))
+                .or_else(|| only(FileKind::Offset))
+        }
+        // ODM keeps its cameras in another folder than its shots; OpenSfM's camera_models.json
+        // beside them holds what the adjustment began with.
+        Format::Shots => {
+            let is_odms = |&i: &usize| named(i, "cameras.json");
+            let odms = || all(FileKind::OpenSfmCameras).filter(is_odms);
+            beside(FileKind::OpenSfmCameras)
+                .find(is_odms)
+                .or_else(|| beside(FileKind::OpenSfmCameras).next())
+                .or_else(|| odms().next().filter(|_| odms().count() == 1))
+                .or_else(|| only(FileKind::OpenSfmCameras))
+        }
+        Format::OpenSfm => {
+            beside(FileKind::ReferenceSystem).find(|&i| named(i, "reference_lla.json"))
+        }
+        Format::Micmac => {
+            // Each orientation file names its calibration.
+            let lenses: Vec<usize> = all(FileKind::MicmacCalibration).collect();
+            set.files.extend(lenses);
+            return;
+        }
+        _ => None,
+    };
+    set.files.extend(extra);
 }
 
 /// The format of a file that is a complete orientation.

@@ -13,8 +13,8 @@ use super::region::RegionOfInterest;
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::orientation::{
-    FileKind, InputFile, Orientation, OrientationSet, detect, epsg_of, orientation_sets, stem,
-    to_metric_frame,
+    Anchor, FileKind, InputFile, Orientation, OrientationSet, StatedReference, detect, epsg_of,
+    orientation_sets, stem, to_metric_frame,
 };
 use crate::raster::{ImageHeader, image_header};
 use crate::scene::Survey;
@@ -189,12 +189,10 @@ impl Plan {
             ));
         }
         self.orientation = Some(format!("{}: {}", set.format.name(), set.label(files)));
+        let (epsg, anchor) = self.reference_of(set, files);
         self.survey = Survey {
-            epsg: options
-                .epsg
-                .or_else(|| set.reference(files))
-                .or_else(|| self.stated_reference(files)),
-            anchor: set.anchor(files),
+            epsg: options.epsg.or(epsg),
+            anchor,
             ..Survey::default()
         };
         let read = set.read(files, &mut self.warnings);
@@ -213,12 +211,37 @@ impl Plan {
         Some(orientations)
     }
 
-    /// The reference system that a file of its own names.
-    fn stated_reference(&self, files: &[InputFile]) -> Option<u32> {
+    /// EPSG code of the coordinates' system, or the place that they count from.
+    fn reference_of(
+        &mut self,
+        set: &OrientationSet,
+        files: &[InputFile],
+    ) -> (Option<u32>, Option<Anchor>) {
+        let beside = self.stated_reference(files);
+        let (reason, anchor) = match set.reference(files, None) {
+            StatedReference::None => return (beside.map(|(_, code)| code), None),
+            StatedReference::System(code) => return (Some(code), None),
+            StatedReference::Place(anchor) => (
+                "the orientation counts east, north and up from a place".to_owned(),
+                Some(anchor),
+            ),
+            StatedReference::Local(reason) => (reason, None),
+        };
+        if let Some((path, code)) = beside {
+            self.warnings.push(format!(
+                "{path} names EPSG:{code}, but the coordinates of {} are not in it: {reason}",
+                set.label(files)
+            ));
+        }
+        (None, anchor)
+    }
+
+    /// The reference system that a file of its own names, and that file.
+    fn stated_reference<'a>(&self, files: &'a [InputFile]) -> Option<(&'a str, u32)> {
         // Photographs are not searched as text.
         (self.kinds.iter().zip(files))
             .filter(|(kind, _)| **kind == FileKind::ReferenceSystem)
-            .find_map(|(_, file)| epsg_of(&file.text()))
+            .find_map(|(_, file)| Some((&*file.path, epsg_of(&file.text())?)))
     }
 
     fn warn_of_json(&mut self, files: &[InputFile]) {
@@ -297,6 +320,7 @@ impl Plan {
             self.views = views;
             return;
         }
+        self.warnings.extend(notice_of_fisheyes(&views));
         self.origin = camera_checks::scene_origin(views.iter().map(|v| &v.whole));
         for view in &mut views {
             view.whole.center -= self.origin;
@@ -327,6 +351,18 @@ impl Plan {
     }
 }
 
+/// What part of fisheye photographs is used.
+fn notice_of_fisheyes(views: &[PlannedView]) -> Option<String> {
+    let of_fisheye = (views.iter())
+        .filter(|v| v.distortion.is_some_and(|lens| lens.is_fisheye()))
+        .map(|v| v.whole.half_field_deg());
+    let widest = of_fisheye.reduce(f64::max)?;
+    Some(format!(
+        "fisheye photographs are rectified to pinholes: what lies more than {widest:.0} degrees from \
+         their axis is not used"
+    ))
+}
+
 /// The camera of a whole image in the world of its orientation file, after the checks that need no
 /// other view.
 fn planned_view(
@@ -355,7 +391,7 @@ fn planned_view(
         k[(0, 2)] += f64::from(width) / 2.0;
         k[(1, 2)] += f64::from(height) / 2.0;
     }
-    let camera = Camera {
+    let mut camera = Camera {
         k,
         r: orientation.r,
         center: orientation.center,
@@ -371,21 +407,24 @@ fn planned_view(
             "export the orientation again",
         ));
     }
-    if let Some(lens) = &orientation.distortion
-        && !lens.is_plausible(&camera.k, width, height)
-    {
-        return Err(refuse(
-            format!(
-                "the lens distortion in {} folds the image over",
-                orientation.source
-            ),
-            "check the order and the signs of the coefficients, or undistort the images",
-        ));
+    let mut distortion = orientation.distortion;
+    if let Some(lens) = &mut distortion {
+        let pinhole = match lens.is_fisheye() {
+            true => lens.rectified(&camera.k, width, height),
+            false if lens.is_plausible(&camera.k, width, height) => Ok((camera.k, *lens)),
+            false => Err("folds the image over"),
+        };
+        (camera.k, *lens) = pinhole.map_err(|problem| {
+            refuse(
+                format!("the lens distortion in {} {problem}", orientation.source),
+                "check the order and the signs of the coefficients, or undistort the images",
+            )
+        })?;
     }
     Ok(PlannedView {
         file,
         whole: camera,
-        distortion: orientation.distortion,
+        distortion,
         angles: orientation.angles,
         crop: orientation.crop,
         part: None,

@@ -239,11 +239,7 @@ pub(crate) fn source_of(part: [u32; 4], whole: &Camera, lens: &Distortion) -> [u
     for (i, j) in (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |j| (i, j))) {
         let t = |n: u32| f64::from(n) / f64::from(STEPS);
         let (x, y) = (column + t(i) * width, row + t(j) * height);
-        let d = lens.distort(&Point2::new(
-            (x - k[(0, 2)]) / k[(0, 0)],
-            (y - k[(1, 2)]) / k[(1, 1)],
-        ));
-        let p = [d.x * k[(0, 0)] + k[(0, 2)], d.y * k[(1, 1)] + k[(1, 2)]];
+        let p = lens.measured(k, &Point2::new(x, y));
         low = [0, 1].map(|a| low[a].min(p[a]));
         high = [0, 1].map(|a| high[a].max(p[a]));
     }

@@ -332,12 +332,7 @@ fn distorted(view: &View, lens: &Distortion) -> image::RgbImage {
 fn a_distorting_lens_is_removed() {
     let (mut scene, _) = gable_scene(160);
     let original = scene.clone();
-    let lens = Distortion {
-        radial: [-0.02, 0.001, 0.0, 0.0],
-        radial_below: [0.0; 3],
-        tangential: [1e-4, -2e-4],
-        center: [0.0; 2],
-    };
+    let lens = Distortion::brown([-0.02, 0.001], [1e-4, -2e-4]).unwrap();
     for view in &mut scene.views {
         view.rgb = distorted(view, &lens);
     }
@@ -367,12 +362,7 @@ fn a_distorting_lens_is_removed() {
 #[test]
 fn a_part_of_a_large_frame_has_the_pixels_of_the_whole() {
     let (mut scene, truth) = gable_scene(400);
-    let lens = Distortion {
-        radial: [-0.02, 0.001, 0.0, 0.0],
-        radial_below: [0.0; 3],
-        tangential: [1e-4, -2e-4],
-        center: [0.0; 2],
-    };
+    let lens = Distortion::brown([-0.02, 0.001], [1e-4, -2e-4]).unwrap();
     for view in &mut scene.views {
         view.rgb = distorted(view, &lens);
     }

@@ -7,7 +7,8 @@
 //!   oriented. An extra file of principal points (`image cx cy width height`) is read where it is
 //!   there.
 //! * NVM: quaternion (w x y z) of `cam_from_world`, y down, and the projection centre; its k leads
-//!   from measured to ideal coordinates, so the series of the inverse is used.
+//!   from measured to ideal coordinates, so the series of the inverse is used. `FixedK` in its
+//!   first line states a principal point and two focal lengths.
 
 use nalgebra::{Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 
@@ -62,7 +63,11 @@ pub(crate) fn read_bundler(
 
 /// Reads the first model of an `.nvm` file.
 pub(crate) fn read_nvm(path: &str, text: &str) -> Result<Vec<Orientation>> {
-    let mut lines = data_lines(path, text).skip_while(|l| l.text.starts_with("NVM_V3"));
+    let mut lines = data_lines(path, text).peekable();
+    let mut fixed = None;
+    while let Some(line) = lines.next_if(|l| l.text.starts_with("NVM_V3")) {
+        fixed = fixed_calibration(&line)?;
+    }
     let count = header(path, lines.next())?;
     let camera = |line: TextLine| {
         let fields = line.fields();
@@ -83,17 +88,14 @@ pub(crate) fn read_nvm(path: &str, text: &str) -> Result<Vec<Orientation>> {
         let r = UnitQuaternion::from_quaternion(q)
             .to_rotation_matrix()
             .into_inner();
-        let k = v[8];
+        let k = fixed.unwrap_or_else(|| Matrix3::from_diagonal(&Vector3::new(v[0], v[0], 1.0)));
         Ok(Orientation {
-            distortion: Distortion::brown(
-                [-k, 3.0 * k * k, -12.0 * k * k * k, 55.0 * k * k * k * k],
-                [0.0, 0.0],
-            ),
-            from_middle: true,
+            distortion: inverse_of_cubic(v[8]),
+            from_middle: fixed.is_none(),
             ..pinhole(
                 fields[0],
                 &format!("{path}, line {}", line.number),
-                Matrix3::from_diagonal(&Vector3::new(v[0], v[0], 1.0)),
+                k,
                 r,
                 Point3::new(v[5], v[6], v[7]),
             )
@@ -104,6 +106,36 @@ pub(crate) fn read_nvm(path: &str, text: &str) -> Result<Vec<Orientation>> {
         return Err(too_short(path));
     }
     Ok(found)
+}
+
+/// The calibration that the first line of an `.nvm` file fixes: `FixedK fx cx fy cy`.
+fn fixed_calibration(line: &TextLine) -> Result<Option<Matrix3<f64>>> {
+    let fields = line.fields();
+    let Some(at) = fields.iter().position(|f| f.starts_with("FixedK")) else {
+        return Ok(None);
+    };
+    let v = line.numbers(&fields[at + 1..], "a number of the fixed calibration")?;
+    let (&[fx, cx, fy, cy], []) = v.split_at(v.len().min(4)) else {
+        return Err(line.error(
+            format!("FixedK has {} numbers", v.len()),
+            "FixedK fx cx fy cy",
+        ));
+    };
+    Ok(Some(Matrix3::new(fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0)))
+}
+
+/// The lens for which `ideal = measured (1 + k |measured|^2)`: the series of its inverse.
+fn inverse_of_cubic(k: f64) -> Option<Distortion> {
+    // C(3 n, n) / (2 n + 1).
+    let terms = [
+        1.0, 3.0, 12.0, 55.0, 273.0, 1428.0, 7752.0, 43263.0, 246675.0, 1430715.0,
+    ];
+    let mut power = 1.0;
+    let radial = terms.map(|term| {
+        power *= -k;
+        term * power
+    });
+    Distortion::brown(radial, [0.0, 0.0])
 }
 
 /// The number of cameras, the first field of a line.
@@ -162,5 +194,47 @@ fn too_short(path: &str) -> Error {
         file: path.to_owned(),
         problem: "it ends before its last camera".to_owned(),
         advice: "export or copy it again".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn nvm(first: &str, k: f64) -> Result<Vec<Orientation>> {
+        read_nvm(
+            "a.nvm",
+            &format!("{first}\n\n1\na.jpg 1000 1 0 0 0 1 2 3 {k} 0\n\n0\n"),
+        )
+    }
+
+    #[test]
+    fn a_fixed_calibration_is_used() {
+        let found = &nvm("NVM_V3 FixedK 1000 640.5 1010 470", 0.0).unwrap()[0];
+        let k = Matrix3::new(1000.0, 0.0, 640.5, 0.0, 1010.0, 470.0, 0.0, 0.0, 1.0);
+        assert_eq!((found.k, found.from_middle), (k, false));
+        assert!(nvm("NVM_V3", 0.0).unwrap()[0].from_middle);
+        let refusal = nvm("NVM_V3 FixedK 1000 640.5", 0.0)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            refusal.contains("a.nvm, line 1: FixedK has 2 numbers"),
+            "{refusal}"
+        );
+    }
+
+    #[test]
+    fn the_lens_of_visual_sfm_is_inverted() {
+        for k in [-0.1, 0.08] {
+            let lens = nvm("NVM_V3", k).unwrap()[0].distortion.unwrap();
+            for measured in [
+                nalgebra::Point2::new(0.3, -0.2),
+                nalgebra::Point2::new(-0.5, 0.6),
+            ] {
+                let ideal = measured * (1.0 + k * measured.coords.norm_squared());
+                // A hundredth of a pixel at a focal length of 1000 px.
+                assert!((lens.distort(&ideal) - measured).norm() < 1e-5);
+            }
+        }
     }
 }

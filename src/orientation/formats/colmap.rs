@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 
 use super::text::{TextLine, data_lines, lines, quoted};
-use crate::camera::Distortion;
+use crate::camera::{Distortion, Projection};
 use crate::error::{Error, Result};
 use crate::orientation::image_orientation::Orientation;
 
@@ -47,7 +47,10 @@ struct ColmapCamera {
     distortion: Option<Distortion>,
 }
 
-fn read_cameras(file: &str, text: &str) -> Result<BTreeMap<u32, ColmapCamera>> {
+/// Cameras by number, or why they cannot be used.
+type Cameras = BTreeMap<u32, Result<ColmapCamera>>;
+
+fn read_cameras(file: &str, text: &str) -> Result<Cameras> {
     let mut lenses = BTreeMap::new();
     for line in data_lines(file, text) {
         let fields = line.fields();
@@ -62,12 +65,13 @@ fn read_cameras(file: &str, text: &str) -> Result<BTreeMap<u32, ColmapCamera>> {
             line.whole(fields[2], "the width")?,
             line.whole(fields[3], "the height")?,
         );
-        let (k, distortion) = read_model(&line, fields[1], &fields[4..])?;
-        let lens = ColmapCamera {
+        // The model of a camera that no image uses may be an unknown one.
+        let model = read_model(&line, fields[1], &fields[4..]);
+        let lens = model.map(|(k, distortion)| ColmapCamera {
             size,
             k,
             distortion,
-        };
+        });
         if lenses.insert(id, lens).is_some() {
             return Err(line.error(format!("camera {id} stands twice"), "one line per camera"));
         }
@@ -83,17 +87,18 @@ fn read_model(
 ) -> Result<(Matrix3<f64>, Option<Distortion>)> {
     // One focal length or two; then the principal point; then the names of COLMAP's coefficients.
     let (focals, coefficients) = match model {
-        "SIMPLE_PINHOLE" => (1, 0),
-        "PINHOLE" => (2, 0),
-        "SIMPLE_RADIAL" => (1, 1),
-        "RADIAL" => (1, 2),
-        "OPENCV" => (2, 4),
-        "FULL_OPENCV" => (2, 8),
+        "SIMPLE_PINHOLE" | "SIMPLE_FISHEYE" => (1, 0),
+        "PINHOLE" | "FISHEYE" => (2, 0),
+        "SIMPLE_RADIAL" | "SIMPLE_RADIAL_FISHEYE" => (1, 1),
+        "RADIAL" | "RADIAL_FISHEYE" => (1, 2),
+        "OPENCV" | "OPENCV_FISHEYE" => (2, 4),
+        "FULL_OPENCV" | "THIN_PRISM_FISHEYE" => (2, 8),
+        "FOV" => (2, 1),
         _ => {
             return Err(line.error(
                 format!("the camera model {} is not supported", quoted(model)),
-                "a perspective model (PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV); \
-                 undistort the images and export their PINHOLE model",
+                "PINHOLE, RADIAL, OPENCV, FULL_OPENCV, FOV, or a fisheye of these; colmap \
+                 image_undistorter writes images and a model that are PINHOLE",
             ));
         }
     };
@@ -112,18 +117,34 @@ fn read_model(
         ));
     }
     let k = Matrix3::new(fx, 0.0, c[0], 0.0, fy, c[1], 0.0, 0.0, 1.0);
-    Ok((k, distortion(&c[2..])))
+    Ok((k, distortion(model, &c[2..])))
 }
 
-/// COLMAP's coefficients (k1, k2, p1, p2, k3 ... k6) as a distortion; none when all are zero.
-fn distortion(c: &[f64]) -> Option<Distortion> {
+/// COLMAP's coefficients as a distortion; none where the camera is a pinhole.
+fn distortion(model: &str, c: &[f64]) -> Option<Distortion> {
     let at = |i: usize| c.get(i).copied().unwrap_or(0.0);
-    c.iter().any(|&v| v != 0.0).then(|| Distortion {
-        radial: [at(0), at(1), at(4), 0.0],
-        radial_below: [at(5), at(6), at(7)],
-        tangential: [at(2), at(3)],
-        center: [0.0; 2],
-    })
+    let angle = Projection::Equidistant;
+    match model {
+        // Without an angle it is a pinhole.
+        "FOV" if at(0) != 0.0 => Distortion::lens(Projection::FieldOfView(at(0)), [], [0.0; 2]),
+        "FOV" => None,
+        // k1 ... k4 of the angle.
+        "OPENCV_FISHEYE" => Distortion::lens(angle, [at(0), at(1), at(2), at(3)], [0.0; 2]),
+        // k1, k2, p1, p2, k3, k4, sx1, sy1.
+        "THIN_PRISM_FISHEYE" => {
+            let radial = [at(0), at(1), at(4), at(5)];
+            Distortion::lens(angle, radial, [at(2), at(3)]).map(|lens| Distortion {
+                thin_prism: [at(6), at(7)],
+                ..lens
+            })
+        }
+        _ if model.ends_with("FISHEYE") => Distortion::lens(angle, [at(0), at(1)], [0.0; 2]),
+        // k1, k2, p1, p2, k3 ... k6.
+        _ => c.iter().any(|&v| v != 0.0).then(|| Distortion {
+            radial_below: [at(5), at(6), at(7)],
+            ..Distortion::brown([at(0), at(1), at(4)], [at(2), at(3)]).unwrap_or_default()
+        }),
+    }
 }
 
 /// Ten fields or more, of which the tenth is a name: a line of points holds numbers only.
@@ -132,11 +153,7 @@ fn is_image_line(line: &TextLine) -> bool {
     fields.nth(9).is_some_and(|f| f.parse::<f64>().is_err())
 }
 
-fn read_image(
-    line: &TextLine,
-    lenses: &BTreeMap<u32, ColmapCamera>,
-    cameras: &str,
-) -> Result<Orientation> {
+fn read_image(line: &TextLine, lenses: &Cameras, cameras: &str) -> Result<Orientation> {
     let fields = line.fields();
     if fields.len() < 10 {
         return Err(line.error(
@@ -161,6 +178,7 @@ fn read_image(
             "a camera of that list",
         )
     })?;
+    let lens = lens.as_ref().map_err(Error::clone)?;
     let r = UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix();
     Ok(Orientation {
         image: after_fields(line.text, 9).to_owned(),
@@ -173,6 +191,7 @@ fn read_image(
         from_middle: false,
         angles: None,
         crop: None,
+        group: None,
     })
 }
 
@@ -187,6 +206,7 @@ fn after_fields(text: &str, count: usize) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math;
 
     const CAMERAS: &str = "# comment\n1 PINHOLE 600 400 1000 1100 300 200\n\
                            7 OPENCV 600 400 1000 1100 300 200 0.1 -0.01 0.001 0.002\n";
@@ -205,11 +225,8 @@ mod tests {
         assert_eq!(found[0].center, Point3::new(-1.0, -2.0, -3.0));
         // Half a turn about x: y and z of t keep their sign in -R^T t.
         assert!((found[1].center - Point3::new(-1.0, 2.0, 3.0)).norm() < 1e-12);
-        let d = found[1].distortion.unwrap();
-        assert_eq!(
-            (d.radial, d.tangential),
-            ([0.1, -0.01, 0.0, 0.0], [0.001, 0.002])
-        );
+        let expected = Distortion::brown([0.1, -0.01], [0.001, 0.002]);
+        assert_eq!(found[1].distortion, expected);
         assert_eq!(found[1].source, "images.txt, line 3");
     }
 
@@ -238,11 +255,79 @@ mod tests {
             image,
             "cameras.txt, line 2: the focal length",
         );
-        check("1 OPENCV_FISHEYE 6 4 1 1 3 2 0 0 0 0\n", image, "undistort");
+        check("1 EUCM 6 4 1 1 3 2 0.5 1\n", image, "image_undistorter");
         check(
             "1 PINHOLE 6 4 1 1 3\n",
             image,
             "3 parameters; expected 4 for PINHOLE",
+        );
+    }
+    /// Where a camera sees a direction, pixels.
+    fn seen(camera: &str, ideal: [f64; 2]) -> [f64; 2] {
+        let found = &read_both(camera, "1 1 0 0 0 0 0 0 1 a.jpg\n").unwrap()[0];
+        let d = found.distortion.unwrap().distort(&ideal.into());
+        let p = found.k * Vector3::new(d.x, d.y, 1.0);
+        [p.x, p.y]
+    }
+
+    #[test]
+    fn fisheyes_put_points_where_colmap_does() {
+        let (k, p, s) = ([-0.03, 0.004, -0.002, 0.0006], [3e-4, -2e-4], [1e-3, -5e-4]);
+        for (x, y) in [(0.0, 1e-12), (0.3, -0.2), (1.2, 0.9), (-1.6, 0.4)] {
+            let r = math::hypot(x, y);
+            let theta = math::atan(r);
+            let (u, v) = (x * theta / r, y * theta / r);
+            let t2 = theta * theta;
+            let radial = |k: &[f64]| 1.0 + k.iter().rev().fold(0.0, |sum, k| (sum + k) * t2);
+            let aside = [
+                2.0 * p[0] * u * v + p[1] * (t2 + 2.0 * u * u) + s[0] * t2,
+                2.0 * p[1] * u * v + p[0] * (t2 + 2.0 * v * v) + s[1] * t2,
+            ];
+            let w = 0.9_f64;
+            let fov = math::atan(2.0 * r * math::sin(w / 2.0) / math::cos(w / 2.0)) / (r * w);
+            let pixel = |a: f64, b: f64| [300.0 * a + 320.0, 310.0 * b + 240.0];
+            let [k1, k2, k3, k4] = k;
+            let [p1, p2] = p;
+            let [sx, sy] = s;
+            let of = |model: &str, terms: &str| format!("1 {model} 640 480 {terms}\n");
+            let two = "300 310 320 240";
+            for (camera, expected) in [
+                (
+                    of("OPENCV_FISHEYE", &format!("{two} {k1} {k2} {k3} {k4}")),
+                    pixel(u * radial(&k), v * radial(&k)),
+                ),
+                (
+                    of(
+                        "THIN_PRISM_FISHEYE",
+                        &format!("{two} {k1} {k2} {p1} {p2} {k3} {k4} {sx} {sy}"),
+                    ),
+                    pixel(u * radial(&k) + aside[0], v * radial(&k) + aside[1]),
+                ),
+                (of("FOV", &format!("{two} {w}")), pixel(x * fov, y * fov)),
+                (of("FISHEYE", two), pixel(u, v)),
+            ] {
+                let found = seen(&camera, [x, y]);
+                let off = math::hypot(found[0] - expected[0], found[1] - expected[1]);
+                assert!(off < 1e-6, "{camera}: {found:?} instead of {expected:?}");
+            }
+            let one = of("RADIAL_FISHEYE", &format!("310 320 240 {k1} {k2}"));
+            let expected = [
+                310.0 * u * radial(&k[..2]) + 320.0,
+                310.0 * v * radial(&k[..2]) + 240.0,
+            ];
+            let found = seen(&one, [x, y]);
+            assert!(math::hypot(found[0] - expected[0], found[1] - expected[1]) < 1e-6);
+        }
+    }
+
+    #[test]
+    fn an_unknown_model_that_no_image_uses_does_no_harm() {
+        let cameras = format!("{CAMERAS}9 EUCM 6 4 1 1 3 2 0.5 1\n");
+        assert_eq!(
+            read_both(&cameras, "1 1 0 0 0 1 2 3 1 a.jpg\n")
+                .unwrap()
+                .len(),
+            1
         );
     }
 }

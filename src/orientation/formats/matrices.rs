@@ -2,8 +2,8 @@
 //!
 //! * Pix4D `_calibrated_camera_parameters.txt`: per image name, size, K, radial (3), tangential
 //!   (2), t, R with X' = R (X - t).
-//! * Pix4D `_pmatrix.txt`: name and the 12 numbers of P of the undistorted image; the numbers of
-//!   `_offset.xyz` beside it are added to the world.
+//! * Pix4D `_pmatrix.txt`: name and the 12 numbers of P of the undistorted image.
+//! * The numbers of `_offset.xyz` beside them are added to the world of both.
 //! * Middlebury: name, K, R, t of P = K [R, t]; the centre of the top-left pixel is (0, 0).
 //! * Strecha: one file `NAME.camera` an image: K, a line of zeros, R (`world_from_cam`), C, size.
 
@@ -16,7 +16,11 @@ use crate::error::{Error, Result};
 use crate::orientation::image_orientation::{Orientation, pinhole};
 
 /// Reads Pix4D's calibrated camera parameters.
-pub(crate) fn read_pix4d(path: &str, text: &str) -> Result<Vec<Orientation>> {
+pub(crate) fn read_pix4d(
+    (path, text): (&str, &str),
+    offset: Option<(&str, &str)>,
+) -> Result<Vec<Orientation>> {
+    let offset = offset_of(offset)?;
     // Eight lines of header describe the content.
     let is_image = |line: &TextLine| {
         let f = line.fields();
@@ -45,7 +49,7 @@ pub(crate) fn read_pix4d(path: &str, text: &str) -> Result<Vec<Orientation>> {
                 first.whole(fields[1], "the width")?,
                 first.whole(fields[2], "the height")?,
             )),
-            ..pinhole(fields[0], &source, k, r, Point3::from(center))
+            ..pinhole(fields[0], &source, k, r, Point3::from(center) + offset)
         });
     }
     Ok(found)
@@ -56,10 +60,7 @@ pub(crate) fn read_pmatrix(
     (path, text): (&str, &str),
     offset: Option<(&str, &str)>,
 ) -> Result<Vec<Orientation>> {
-    let offset = match offset {
-        Some((path, text)) => numbers::<3>(path, data_lines(path, text).next())?,
-        None => [0.0; 3],
-    };
+    let offset = offset_of(offset)?;
     let one = |line: TextLine| {
         let fields = line.fields();
         if fields.len() != 13 {
@@ -71,15 +72,17 @@ pub(crate) fn read_pmatrix(
         let (k, r, center) = decompose(&m, &column)
             .ok_or_else(|| line.error("its left 3 x 3 part is singular", "P = K [R | -R C]"))?;
         let source = format!("{path}, line {}", line.number);
-        Ok(pinhole(
-            fields[0],
-            &source,
-            k,
-            r,
-            center + Vector3::from(offset),
-        ))
+        Ok(pinhole(fields[0], &source, k, r, center + offset))
     };
     data_lines(path, text).map(one).collect()
+}
+
+/// The zero of Pix4D's local coordinates in its world.
+fn offset_of(file: Option<(&str, &str)>) -> Result<Vector3<f64>> {
+    Ok(match file {
+        Some((path, text)) => Vector3::from(numbers::<3>(path, data_lines(path, text).next())?),
+        None => Vector3::zeros(),
+    })
 }
 
 /// Reads Middlebury's parameters.

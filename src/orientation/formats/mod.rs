@@ -2,10 +2,12 @@
 //!
 //! ```text
 //! text            lines with their position, for messages
-//! xml             XML elements with theirs; Metashape, BlocksExchange
+//! xml             XML elements with theirs; xml/metashape, xml/blocks
+//! json            JSON with theirs; json/opensfm (and ODM), json/nerfstudio, json/krc
+//! left_out        images whose camera cannot be read
 //! brown_fit       distortion stated from measured to ideal points, fitted by Brown's model
 //! projection      P = K [R | t] and its decomposition
-//! photogrammetric, patb, inpho, colmap, colmap_binary, bundles, matrices, micmac, json
+//! photogrammetric, patb, inpho, colmap, colmap_binary, bundles, matrices, micmac
 //! ```
 //!
 //! To add a format:
@@ -29,6 +31,7 @@ pub(crate) mod colmap;
 pub(crate) mod colmap_binary;
 pub(crate) mod inpho;
 pub(crate) mod json;
+mod left_out;
 pub(crate) mod matrices;
 pub(crate) mod micmac;
 pub(crate) mod patb;

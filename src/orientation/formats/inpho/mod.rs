@@ -7,6 +7,7 @@
 //! * `$EXT_ORI`: focal length, X, Y, Z, and the matrix Rx(omega) Ry(phi) Rz(kappa), from the image
 //!   to the world.
 //! * The distortion: `lens`.
+//! * Of a camera's `$CALIBRATION_SET`s the one that `$ACTIVE_CALIBRATION` names.
 //!
 //! `$CAMERA_MOUNT_ROTATION` belongs to the angles of the flight, not to the matrix, and is not
 //! read.
@@ -22,14 +23,24 @@ use super::brown_fit::fit;
 use super::projection::decompose;
 use super::text::TextLine;
 use crate::camera::Distortion;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::math;
 use crate::orientation::image_orientation::{Orientation, pinhole};
 
 /// Reads the photos of a project.
 pub(crate) fn read(path: &str, text: &str, warnings: &mut Vec<String>) -> Result<Vec<Orientation>> {
     let blocks = project_blocks(path, text);
-    let cameras: Vec<&ProjectBlock> = blocks.iter().filter(|b| b.is_camera).collect();
+    // One that no photo names may be an unknown one.
+    let cameras: Vec<(Option<&str>, Result<InteriorOrientation>)> = (blocks.iter())
+        .filter(|b| b.is_camera)
+        .map(|b| {
+            let camera = b.calibrated();
+            (
+                b.word("ID"),
+                camera.and_then(|c| InteriorOrientation::read(&c)),
+            )
+        })
+        .collect();
     let (mut found, mut distorts) = (Vec::new(), false);
     for photo in blocks.iter().filter(|b| !b.is_camera) {
         // Photos without it were not oriented.
@@ -37,16 +48,16 @@ pub(crate) fn read(path: &str, text: &str, warnings: &mut Vec<String>) -> Result
             continue;
         };
         let id = photo.word("CAMERA_ID");
-        let same = cameras.iter().find(|c| c.word("ID") == id && id.is_some());
+        let same = cameras.iter().find(|(of, _)| *of == id && id.is_some());
         // Older files hold one camera, which has no name.
         let camera = same.or(cameras.first().filter(|_| cameras.len() == 1));
-        let Some(camera) = camera else {
+        let Some((_, interior)) = camera else {
             let problem = format!("its camera {} is missing", id.unwrap_or("(without name)"));
             return Err(photo.start.error(problem, "a $CAMERA block of this $ID"));
         };
-        let interior = InteriorOrientation::read(camera)?;
+        let interior = interior.as_ref().map_err(Error::clone)?;
         distorts |= interior.lens != InphoLens::None;
-        found.push(orientation(photo, exterior, &interior)?);
+        found.push(orientation(photo, exterior, interior)?);
     }
     if distorts {
         warnings.push(format!(
@@ -320,6 +331,44 @@ mod tests {
         assert!(with(odd, false).unwrap_err().to_string().contains("pairs"));
         let zero = " $RADIAL_COEFFS :\n 0 0 0 0\n $DECENTRE_COEFFS :\n 0 0\n";
         assert_eq!(with(zero, false).unwrap().distortion, None);
+    }
+
+    #[test]
+    fn the_active_calibration_is_taken() {
+        let set = |id: u32, focal: f64| {
+            format!(
+                " $CALIBRATION_SET :\n  $ID : {id}\n  $CCD_INTERIOR_ORIENTATION :\n  200 0 3000\n  0 -200 2000\n  $FOCAL_LENGTH : {focal}\n \
+                 $END\n"
+            )
+        };
+        let text = |active: &str, sets: &str| {
+            format!(
+                "$CAMERA_DEFINITION\n $ID : nadir\n $CCD_COLUMNS : 6000\n $CCD_ROWS : 4000\n{active}{sets}$END\n\
+                 $PHOTO\n $PHOTO_NUM : a\n $CAMERA_ID : nadir\n $EXT_ORI :\n 50 0 0 1000\n 1 0 0\n 0 1 0\n 0 0 1\n$END\n"
+            )
+        };
+        let focal_px = |active: &str, sets: &[(u32, f64)]| {
+            let sets: String = sets.iter().map(|&(id, focal)| set(id, focal)).collect();
+            let found = read("a.prj", &text(active, &sets), &mut Vec::new())?;
+            Ok::<_, crate::error::Error>(found[0].k[(0, 0)])
+        };
+        let two = [(1, 50.0), (2, 52.0)];
+        assert_eq!(focal_px(" $ACTIVE_CALIBRATION : 2\n", &two), Ok(10400.0));
+        assert_eq!(focal_px(" $ACTIVE_CALIBRATION : 1\n", &two), Ok(10000.0));
+        assert_eq!(focal_px("", &two[1..]), Ok(10400.0));
+        for (active, said) in [
+            ("", "$ACTIVE_CALIBRATION is missing"),
+            (
+                " $ACTIVE_CALIBRATION : 3\n",
+                "$ACTIVE_CALIBRATION is \"3\", but",
+            ),
+        ] {
+            let refusal = focal_px(active, &two).unwrap_err().to_string();
+            assert!(
+                refusal.contains(said) && refusal.contains("\"1, 2\""),
+                "{refusal}"
+            );
+        }
     }
 
     #[test]
