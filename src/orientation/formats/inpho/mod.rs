@@ -39,7 +39,9 @@ pub(crate) fn read(path: &str, text: &str, warnings: &mut Vec<String>) -> Result
         let id = photo.word("CAMERA_ID");
         let same = cameras.iter().find(|c| c.word("ID") == id && id.is_some());
         // Older files hold one camera, which has no name.
-        let camera = same.or(cameras.first().filter(|_| cameras.len() == 1));
+        let nameless = |c: &&&ProjectBlock| id.is_none() || c.word("ID").is_none();
+        let only = cameras.first().filter(|_| cameras.len() == 1);
+        let camera = same.or(only.filter(nameless));
         let Some(camera) = camera else {
             let problem = format!("its camera {} is missing", id.unwrap_or("(without name)"));
             return Err(photo.start.error(problem, "a $CAMERA block of this $ID"));
