@@ -11,7 +11,7 @@ use super::image_orientation::Orientation;
 use super::input_file::InputFile;
 use super::reference::{self, StatedReference};
 use crate::error::Result;
-use crate::sorting::sort_by;
+use crate::sorting::{sort_by, sort_by_key};
 
 /// Files that together orient images: one candidate for the orientation of a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,7 +92,7 @@ impl OrientationSet {
             Format::Shots => opensfm::read_shots(file(0), further(1), warnings),
             Format::Krc => krc::read(path, text),
             Format::Nerfstudio => nerfstudio::read(path, text, warnings),
-            Format::Bundler => bundles::read_bundler(file(0), file(1), further(2)),
+            Format::Bundler => bundles::read_bundler(file(0), file(1), further(2), warnings),
             Format::Nvm => bundles::read_nvm(path, text),
             Format::Middlebury => matrices::read_middlebury(path, text),
             Format::Pmatrix => matrices::read_pmatrix(file(0), further(1)),
@@ -204,8 +204,9 @@ fn add_files_beside(inputs: &[InputFile], kinds: &[FileKind], set: &mut Orientat
             beside(FileKind::ReferenceSystem).find(|&i| named(i, "reference_lla.json"))
         }
         Format::Micmac => {
-            // Each orientation file names its calibration.
-            let lenses: Vec<usize> = all(FileKind::MicmacCalibration).collect();
+            // Each orientation file names its calibration; of equal names the last is taken.
+            let mut lenses: Vec<usize> = all(FileKind::MicmacCalibration).collect();
+            sort_by_key(&mut lenses, |&i| inputs[i].folder() == set.folder);
             set.files.extend(lenses);
             return;
         }

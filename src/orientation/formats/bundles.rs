@@ -12,6 +12,7 @@
 
 use nalgebra::{Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 
+use super::left_out::few;
 use super::text::{TextLine, data_lines};
 use crate::camera::Distortion;
 use crate::error::{Error, Result};
@@ -22,6 +23,7 @@ pub(crate) fn read_bundler(
     (path, text): (&str, &str),
     (list_path, list): (&str, &str),
     points: Option<(&str, &str)>,
+    warnings: &mut Vec<String>,
 ) -> Result<Vec<Orientation>> {
     let mut lines = data_lines(path, text);
     let count = header(path, lines.next())?;
@@ -57,6 +59,15 @@ pub(crate) fn read_bundler(
     }
     if let Some((path, text)) = points {
         add_principal_points(path, text, &mut found)?;
+        let without: Vec<&str> = (found.iter().filter(|o| o.from_middle))
+            .map(|o| &*o.image)
+            .collect();
+        if !without.is_empty() {
+            warnings.push(format!(
+                "{path} states no principal point for {}: it is taken to be in the middle",
+                few(&without)
+            ));
+        }
     }
     Ok(found)
 }

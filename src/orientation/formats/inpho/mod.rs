@@ -50,8 +50,9 @@ pub(crate) fn read(path: &str, text: &str, warnings: &mut Vec<String>) -> Result
         let id = photo.word("CAMERA_ID");
         let same = cameras.iter().find(|(of, _)| *of == id && id.is_some());
         // Older files hold one camera, which has no name.
-        let camera = same.or(cameras.first().filter(|_| cameras.len() == 1));
-        let Some((_, interior)) = camera else {
+        let nameless = |(of, _): &&(Option<&str>, _)| id.is_none() || of.is_none();
+        let only = cameras.first().filter(|_| cameras.len() == 1);
+        let Some((_, interior)) = same.or(only.filter(nameless)) else {
             let problem = format!("its camera {} is missing", id.unwrap_or("(without name)"));
             return Err(photo.start.error(problem, "a $CAMERA block of this $ID"));
         };
