@@ -172,6 +172,7 @@ fn read_image(
         size: Some(lens.size),
         from_middle: false,
         angles: None,
+        readings: Vec::new(),
         crop: None,
     })
 }
