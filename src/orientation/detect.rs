@@ -5,8 +5,9 @@
 
 use serde::Serialize;
 
-use super::formats::{TextLine, data_lines, patb};
+use super::formats::{TextLine, bundles, data_lines, patb, photogrammetric};
 use super::input_file::InputFile;
+use super::unread;
 
 /// What an input file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -73,6 +74,8 @@ pub enum FileKind {
     Strecha,
     /// Middlebury's parameters.
     Middlebury,
+    /// A format that is known but not read.
+    Unread,
     /// JSON that is no orientation known here.
     Json,
     /// Nothing that is used.
@@ -113,6 +116,7 @@ impl FileKind {
             Self::Nvm => "VisualSFM model (.nvm)",
             Self::Strecha => "Strecha camera",
             Self::Middlebury => "Middlebury parameters",
+            Self::Unread => "known, but not read",
             Self::Json => "JSON that is no orientation known here",
             Self::Ignored => "not used",
         }
@@ -120,7 +124,7 @@ impl FileKind {
 }
 
 /// How much of a file is inspected: enough for the longest comment header.
-const HEAD_BYTES: usize = 64 * 1024;
+pub(crate) const HEAD_BYTES: usize = 64 * 1024;
 
 /// Data lines that are inspected: a list may begin with a damaged one.
 const HEAD_LINES: usize = 6;
@@ -130,9 +134,7 @@ pub fn detect(file: &InputFile) -> FileKind {
     if crate::raster::image_format(&file.bytes).is_some() {
         return FileKind::Image;
     }
-    let head = &file.bytes[..file.bytes.len().min(HEAD_BYTES)];
-    if !head.contains(&0) {
-        let text = String::from_utf8_lossy(head);
+    if let Some(text) = file.head(HEAD_BYTES) {
         if text
             .trim_start_matches('\u{feff}')
             .trim_start()
@@ -140,16 +142,23 @@ pub fn detect(file: &InputFile) -> FileKind {
         {
             // OpenSfM's place of the local frame: no content tells it from other places.
             let is_place = file.name().eq_ignore_ascii_case("reference_lla.json");
-            return match is_place {
-                true => FileKind::ReferenceSystem,
-                false => by_keys(&file.text()),
+            if is_place {
+                return FileKind::ReferenceSystem;
+            }
+            return match by_keys(&file.text()) {
+                FileKind::Json if unread::of(file).is_some() => FileKind::Unread,
+                kind => kind,
             };
         }
-        if let Some(kind) = by_content(&text) {
+        let unread = unread::by_content(&text).map(|_| FileKind::Unread);
+        if let Some(kind) = unread.or_else(|| by_content(&text)) {
             return kind;
         }
     }
-    by_name(file)
+    match by_name(file) {
+        FileKind::Ignored if unread::of(file).is_some() => FileKind::Unread,
+        kind => kind,
+    }
 }
 
 fn by_content(text: &str) -> Option<FileKind> {
@@ -191,11 +200,17 @@ fn by_content(text: &str) -> Option<FileKind> {
     {
         return Some(FileKind::Strecha);
     }
-    if fields.len() > 1 && fields[0].len() == 1 && is_number(fields[0][0]) && fields[1].len() == 22
+    // The image may have blanks in its name, the 21 numbers of its camera stand behind.
+    let is_middlebury =
+        |f: &[&str]| f.len() >= 22 && f[f.len() - 21..].iter().all(|f| is_number(f));
+    if fields.len() > 1
+        && fields[0].len() == 1
+        && is_number(fields[0][0])
+        && (fields[1].len() == 22 || is_middlebury(&fields[1]))
     {
         return Some(FileKind::Middlebury);
     }
-    if !fields.is_empty() && fields.iter().all(|f| is_image_name(f)) {
+    if !lines.is_empty() && (lines.iter()).all(|l| bundles::listed_image(l.text).is_some()) {
         return Some(FileKind::BundlerList);
     }
     if lines.len() == 3
@@ -206,7 +221,8 @@ fn by_content(text: &str) -> Option<FileKind> {
         return Some(FileKind::Projection);
     }
     let of_lines = fields.iter().find_map(|f| by_fields(f));
-    of_lines.or(patb::is_patb(text).then_some(FileKind::Patb))
+    let of_list = || photogrammetric::is_list(text).then_some(FileKind::PhotogrammetricExterior);
+    (of_lines.or(patb::is_patb(text).then_some(FileKind::Patb))).or_else(of_list)
 }
 
 /// The kind that one line of a list shows.
@@ -222,7 +238,11 @@ fn by_fields(f: &[&str]) -> Option<FileKind> {
         && is_colour(&f[4..7])
     {
         Some(FileKind::ColmapPoints)
-    } else if f.len() == 13 && !is_number(f[0]) && numbers(1..13) {
+    } else if f.len() >= 13
+        && !is_number(f[0])
+        && !is_number(f[f.len() - 13])
+        && numbers(f.len() - 12..f.len())
+    {
         Some(FileKind::Pmatrix)
     } else if f.len() == 7 && !is_number(f[0]) && numbers(1..7) {
         Some(FileKind::PhotogrammetricExterior)
@@ -262,17 +282,6 @@ fn by_keys(text: &str) -> FileKind {
     } else {
         FileKind::Json
     }
-}
-
-/// A line of Bundler's list: an image, perhaps with a focal length.
-fn is_image_name(fields: &[&str]) -> bool {
-    let extension = fields[0]
-        .rsplit_once('.')
-        .map_or("", |(_, e)| e)
-        .to_ascii_lowercase();
-    fields.len() <= 3
-        && ["jpg", "jpeg", "png", "tif", "tiff"].contains(&&*extension)
-        && fields[1..].iter().all(|f| is_number(f))
 }
 
 fn is_number(field: &str) -> bool {

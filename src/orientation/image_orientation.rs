@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Point3};
 
+use super::angles::AngleUnit;
 use crate::camera::Distortion;
 
 /// The orientation of one image as its file states it: a pinhole, perhaps behind a distorting lens.
@@ -27,6 +28,9 @@ pub struct Orientation {
     pub from_middle: bool,
     /// The rotation angles as the file states them, in any unit and order.
     pub angles: Option<[f64; 3]>,
+    /// The rotations that the angles mean in each unit, where the file does not state it: then the
+    /// images decide, and `r` is the first guess.
+    pub readings: Vec<(AngleUnit, Matrix3<f64>)>,
     /// The part of the frame that the image shows, where the file states it.
     pub crop: Option<Crop>,
     /// Label of the chunk or block that it stands in, where the file has more than one.
@@ -62,6 +66,7 @@ pub(crate) fn pinhole(
         size: None,
         from_middle: false,
         angles: None,
+        readings: Vec::new(),
         crop: None,
         group: None,
     }

@@ -44,7 +44,11 @@ pub fn to_metric_frame(orientations: &mut [Orientation]) -> Option<Anchor> {
             _ => Anchor::near(&center).exact_axes(&center),
         };
         // axes: geocentric to east, north, up where the angles were measured.
-        orientation.r = orientation.r * axes * anchor.axes().transpose();
+        let turned = |r: &Matrix3<f64>| r * axes * anchor.axes().transpose();
+        orientation.r = turned(&orientation.r);
+        for (_, r) in &mut orientation.readings {
+            *r = turned(r);
+        }
         orientation.center = anchor.local(&center);
         orientation.angles = None;
     }

@@ -8,6 +8,7 @@
 //! formats            the readers, one file for each format; how to add one
 //! format             the list of formats, in the order of preference
 //! detect             what kind of file it is
+//! unread             formats that are known but not read, and what to do instead
 //! reference          EPSG code of the coordinate reference system
 //! sets               the files that together orient images, and their reader
 //! metric_frame       geocentric and geographic positions become a local metric frame
@@ -43,8 +44,13 @@ mod input_file;
 mod metric_frame;
 mod reference;
 mod sets;
+mod unread;
 
-pub use angles::{AngleUnit, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa};
+pub(crate) use angles::EXACT as EXACT_ROTATION;
+pub use angles::{
+    AngleUnit, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa,
+    rotation_from_yaw_pitch_roll,
+};
 pub use detect::{FileKind, detect};
 pub use format::Format;
 pub use geodesy::Anchor;
@@ -54,3 +60,4 @@ pub(crate) use input_file::{base_name, stem};
 pub use metric_frame::to_metric_frame;
 pub use reference::{StatedReference, epsg_of};
 pub use sets::{OrientationSet, orientation_sets};
+pub(crate) use unread::{UnreadFormat, of as unread_format};

@@ -1,5 +1,6 @@
 //! Which files together orient images, and the reader of each format.
 
+use super::angles::without_rounding;
 use super::detect::FileKind;
 use super::format::Format;
 use super::formats::json::{krc, nerfstudio, opensfm};
@@ -62,8 +63,20 @@ impl OrientationSet {
         }
     }
 
-    /// Reads the orientations of the set. Warnings are added to `warnings`.
+    /// Reads the orientations of the set; rounded rotations are made orthonormal. Warnings are added to `warnings`.
     pub fn read(
+        &self,
+        inputs: &[InputFile],
+        warnings: &mut Vec<String>,
+    ) -> Result<Vec<Orientation>> {
+        let mut found = self.read_as_stated(inputs, warnings)?;
+        for orientation in &mut found {
+            orientation.r = without_rounding(&orientation.r);
+        }
+        Ok(found)
+    }
+
+    fn read_as_stated(
         &self,
         inputs: &[InputFile],
         warnings: &mut Vec<String>,
@@ -168,6 +181,18 @@ pub fn orientation_sets(
     sort_by(&mut sets, |a, b| {
         (a.format, &a.folder, &a.files).cmp(&(b.format, &b.folder, &b.files))
     });
+    if sets.is_empty() {
+        let nearly: Vec<String> = (0..inputs.len())
+            .filter(|&i| kinds[i] == FileKind::Ignored)
+            .filter_map(|i| nearly_a_list(&inputs[i]))
+            .collect();
+        if !nearly.is_empty() {
+            // What a camera file lacks is the list that cannot be read.
+            let lacks_list = FileKind::PhotogrammetricExterior.describe();
+            incomplete.retain(|message| !message.contains(lacks_list));
+            incomplete.splice(0..0, nearly);
+        }
+    }
     (sets, incomplete)
 }
 
@@ -215,6 +240,15 @@ fn add_files_beside(inputs: &[InputFile], kinds: &[FileKind], set: &mut Orientat
     set.files.extend(extra);
 }
 
+/// Why a text that nearly is a list of orientations is none, with its line.
+fn nearly_a_list(input: &InputFile) -> Option<String> {
+    const MOST_BYTES: usize = 1 << 20;
+    // A list of more than some thousand images is none that a scene is made of.
+    let text = input.head(MOST_BYTES)?;
+    let error = photogrammetric::nearly_a_list(&input.path, &text)?;
+    Some(error.to_string().replace("; ", ", "))
+}
+
 /// The format of a file that is a complete orientation.
 fn single_file_format(kind: FileKind) -> Option<Format> {
     Some(match kind {
@@ -258,9 +292,14 @@ fn add_pairs(
             // Lists of images are written for many other ends.
             None if second == FileKind::BundlerList => {}
             None => incomplete.push(format!(
-                "{} has no {} beside it",
+                "{} has no {} beside it{}",
                 inputs[s].path,
-                first.describe()
+                first.describe(),
+                match first {
+                    FileKind::PhotogrammetricCamera =>
+                        " (lines principal_distance_mm, pixel_size_mm, image_size_px)",
+                    _ => "",
+                }
             )),
         }
     }

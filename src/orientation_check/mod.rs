@@ -5,6 +5,7 @@
 //! interest_points    corners of the reduced images, spread over the image
 //! epipolar           the best match of a point on its epipolar line and on lines shifted across it
 //! epipolar_check     share of the points matched on the line, against what chance gives
+//! angle_readings     the unit of angles that no file states
 //! error_hypothesis   the usual errors of orientation files, and the cameras without them
 //! hypothesis_search  the error without which the images agree best
 //! subpixel           matches to a fraction of a pixel; an offset of half a pixel
@@ -19,6 +20,7 @@
 //! Invariant: only the images count. An error that moves the whole world (a wrong datum) leaves the
 //! views in agreement and is not found here.
 
+mod angle_readings;
 mod epipolar;
 mod epipolar_check;
 mod error_hypothesis;
@@ -30,6 +32,7 @@ mod shifts;
 mod subpixel;
 mod view;
 
+pub use angle_readings::{AngleReadings, cameras_in, try_angle_readings};
 pub use error_hypothesis::{AngleOrder, ErrorHypothesis, RotationSequence};
 pub use finding::{CheckFinding, OrientationCheck};
 pub use view::CheckedView;

@@ -1,9 +1,9 @@
 //! A view as the orientation check sees it: its image, and what the files state about it.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::camera::Camera;
-use crate::orientation::Crop;
+use crate::orientation::{AngleUnit, Crop};
 use crate::raster::Gray;
 
 /// A view whose orientation is checked.
@@ -19,6 +19,8 @@ pub struct CheckedView<'a> {
     pub origin: Vector3<f64>,
     /// The rotation angles as the file states them.
     pub angles: Option<[f64; 3]>,
+    /// The rotations that the angles mean in each unit, where the file does not state it.
+    pub readings: Vec<(AngleUnit, Matrix3<f64>)>,
     /// The part of the frame that the image shows, where the file states it.
     pub crop: Option<Crop>,
 }

@@ -82,7 +82,7 @@ pub fn inspect_files(files: &[InputFile], options: &LoadOptions) -> Inspection {
         orientations: plan.candidates,
         views: plan.views.len(),
         peak_mb: plan.peak_bytes >> 20,
-        warnings: plan.warnings,
+        warnings: [plan.warnings, plan.placement_warnings].concat(),
         errors: plan.errors.iter().map(ToString::to_string).collect(),
         is_implausible: plan.is_implausible,
     }

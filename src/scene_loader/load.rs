@@ -8,7 +8,7 @@ use super::input::LoadOptions;
 use super::plan::Plan;
 use super::planned_view::PlannedView;
 use super::region;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::orientation::InputFile;
 use crate::orientation_check::CheckedView;
 use crate::raster::Gray;
@@ -27,6 +27,24 @@ pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
         .map(|(planned, view)| checked_view(planned, view, plan.origin))
         .collect();
     let checked = check_and_correct(checked, refusal, options)?;
+    if let (Some(unit), Some(_), false) = (checked.reread, options.roi, plan.is_cut_later) {
+        return Err(Error::Scene {
+            problem: format!(
+                "the images show that the angles are in {}, but the region of interest was cut \
+                 before, for want of memory",
+                unit.name()
+            ),
+            advice: format!(
+                "state the unit in the list (\"# angles in {}\")",
+                unit.name()
+            ),
+        });
+    }
+    // What was said of cameras with the angles read otherwise is out of date.
+    let placement_warnings = match checked.reread {
+        Some(_) => Vec::new(),
+        None => plan.placement_warnings,
+    };
     for (view, camera) in views.iter_mut().zip(checked.cameras) {
         view.camera = camera;
     }
@@ -36,14 +54,16 @@ pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
         ground_z: options
             .ground_z
             .map(|z| z - plan.origin.z - checked.origin_change.z),
-        warnings: plan.warnings.into_iter().chain(checked.warnings).collect(),
+        warnings: (plan.warnings.into_iter().chain(placement_warnings))
+            .chain(checked.warnings)
+            .collect(),
         survey: Survey {
             shifts: checked.shifts,
             agreement: Some(checked.report),
             ..plan.survey
         },
     };
-    if let (Some(roi), true) = (options.roi, options.apply_fix) {
+    if let (Some(roi), true) = (options.roi, plan.is_cut_later) {
         region::cut_scene(&mut scene, roi)?;
     }
     Ok(scene)
@@ -70,7 +90,7 @@ pub fn whole_views(files: &[InputFile], options: &LoadOptions) -> Result<Scene> 
         views: plan.views.iter().map(view).collect(),
         origin: plan.origin,
         ground_z: options.ground_z.map(|z| z - plan.origin.z),
-        warnings: plan.warnings,
+        warnings: [plan.warnings, plan.placement_warnings].concat(),
         survey: plan.survey,
     })
 }
@@ -87,6 +107,7 @@ fn checked_view<'a>(
         gray: &view.gray,
         origin,
         angles: planned.angles,
+        readings: planned.readings.clone(),
         // The crop that the file states is that of the whole image.
         crop: planned.crop.filter(|_| planned.part.is_none()),
     }

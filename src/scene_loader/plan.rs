@@ -13,8 +13,8 @@ use super::region::RegionOfInterest;
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::orientation::{
-    Anchor, FileKind, InputFile, Orientation, OrientationSet, StatedReference, detect, epsg_of,
-    orientation_sets, stem, to_metric_frame,
+    Anchor, FileKind, InputFile, Orientation, OrientationSet, StatedReference, UnreadFormat,
+    detect, epsg_of, orientation_sets, stem, to_metric_frame, unread_format,
 };
 use crate::raster::{ImageHeader, image_header};
 use crate::scene::Survey;
@@ -39,6 +39,10 @@ pub(crate) struct Plan {
     /// Bytes that loading takes at its peak, the files included.
     pub peak_bytes: u64,
     pub warnings: Vec<String>,
+    /// What the places of the cameras give reason to warn of.
+    pub placement_warnings: Vec<String>,
+    /// Is the region of interest cut from the loaded scene, since the cameras may change before?
+    pub is_cut_later: bool,
     /// Refusals, the one to report first in front.
     pub errors: Vec<Error>,
     /// Do only the positions of the cameras give reason to refuse the scene? Then the images may
@@ -59,6 +63,8 @@ impl Plan {
             survey: Survey::default(),
             peak_bytes: 0,
             warnings: Vec::new(),
+            placement_warnings: Vec::new(),
+            is_cut_later: false,
             errors: Vec::new(),
             is_implausible: false,
         };
@@ -174,8 +180,13 @@ impl Plan {
                 .or_else(|| named(wanted, &|path, wanted| path.contains(wanted))),
         };
         let Some(set) = chosen else {
-            self.errors
-                .push(no_orientation(files, options, &sets, &incomplete));
+            self.errors.push(no_orientation(
+                files,
+                &self.kinds,
+                options,
+                &sets,
+                &incomplete,
+            ));
             return None;
         };
         self.warnings.extend(incomplete);
@@ -333,9 +344,16 @@ impl Plan {
         let found = camera_checks::check_cameras(&named, ground_z);
         self.is_implausible = self.errors.is_empty() && !found.errors.is_empty();
         self.errors.extend(found.errors);
-        self.warnings.extend(found.warnings);
-        // A wrong orientation projects the region elsewhere: then it is cut after the correction.
-        let cut_now = !options.apply_fix;
+        self.placement_warnings = found.warnings;
+        // A wrong orientation projects the region elsewhere: then it is cut after the correction,
+        // and after the images have decided about the angles, where there is memory for that.
+        let is_undecided = views.iter().all(|v| !v.readings.is_empty());
+        let whole_fits = || {
+            let bytes = memory::peak_bytes(files, &views);
+            memory::check_memory(bytes, &views, options.memory_mb).is_none()
+        };
+        self.is_cut_later = options.apply_fix || is_undecided && whole_fits();
+        let cut_now = !self.is_cut_later;
         if let (Some(roi), Some(heights), true) = (options.roi, found.heights, cut_now) {
             let roi = RegionOfInterest::new(roi, &self.origin, heights);
             match roi.and_then(|roi| roi.cut(files, &mut views)) {
@@ -383,7 +401,7 @@ fn planned_view(
                 "the image has {width} x {height} pixels, but its orientation ({}) is for {w} x {h}",
                 orientation.source
             ),
-            "use the image that was oriented, or export the orientation for this size",
+            "use the images in the size that was oriented, or scale the orientation to this one",
         ));
     }
     let mut k = orientation.k;
@@ -404,7 +422,7 @@ fn planned_view(
                 "its orientation ({}) is impossible: {problem}",
                 orientation.source
             ),
-            "export the orientation again",
+            "correct the numbers of this image, or leave it out",
         ));
     }
     let mut distortion = orientation.distortion;
@@ -426,6 +444,7 @@ fn planned_view(
         whole: camera,
         distortion,
         angles: orientation.angles,
+        readings: orientation.readings.clone(),
         crop: orientation.crop,
         part: None,
     })
@@ -433,6 +452,7 @@ fn planned_view(
 
 fn no_orientation(
     files: &[InputFile],
+    kinds: &[FileKind],
     options: &LoadOptions,
     sets: &[OrientationSet],
     incomplete: &[String],
@@ -447,8 +467,33 @@ fn no_orientation(
         };
     }
     let mut problem = "no orientation was found".to_owned();
-    if !incomplete.is_empty() {
-        problem = format!("{problem}: {}", incomplete.join("; "));
+    let unread: Vec<(&InputFile, &UnreadFormat)> = (files.iter().zip(kinds))
+        .filter(|(_, kind)| **kind == FileKind::Unread)
+        .filter_map(|(file, _)| Some((file, unread_format(file)?)))
+        .collect();
+    let known = |(file, format): &(&InputFile, &UnreadFormat)| {
+        format!("{} is {}, which is not read", file.path, format.name)
+    };
+    let mut reasons = incomplete.to_vec();
+    // Their advice differs: of many files of one format one is named.
+    let mut formats: Vec<&str> = Vec::new();
+    for found in &unread {
+        if !formats.contains(&found.1.name) {
+            formats.push(found.1.name);
+            reasons.push(known(found));
+        }
+    }
+    if !reasons.is_empty() {
+        problem = format!("{problem}: {}", reasons.join("; "));
+    }
+    if let (Some((_, format)), true) = (unread.first(), incomplete.is_empty()) {
+        return Error::Scene {
+            problem,
+            advice: format.advice.to_owned(),
+        };
+    }
+    if reasons.is_empty() {
+        problem.push_str(" (a position in the header of a photograph does not orient it)");
     }
     Error::Scene {
         problem,

@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 
 use crate::camera::{Camera, Distortion};
-use crate::orientation::{Crop, Orientation};
+use crate::orientation::{AngleUnit, Crop, Orientation};
 use crate::raster::ImageHeader;
 
 /// An image and the orientation found for it.
@@ -21,6 +21,8 @@ pub(crate) struct PlannedView {
     pub distortion: Option<Distortion>,
     /// The rotation angles as the file states them, and the crop of the image in its frame.
     pub angles: Option<[f64; 3]>,
+    /// The rotations that the angles mean in each unit, where the file does not state it.
+    pub readings: Vec<(AngleUnit, Matrix3<f64>)>,
     pub crop: Option<Crop>,
     /// Column, row, width, height of the part that is used; the whole image when absent.
     pub part: Option<[u32; 4]>,

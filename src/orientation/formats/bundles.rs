@@ -13,9 +13,10 @@
 use nalgebra::{Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 
 use super::left_out::few;
-use super::text::{TextLine, data_lines};
+use super::text::{TextLine, data_lines, quoted};
 use crate::camera::Distortion;
 use crate::error::{Error, Result};
+use crate::orientation::angles::without_rounding;
 use crate::orientation::image_orientation::{Orientation, pinhole};
 
 /// Reads Bundler's cameras; `list` names their images, `points` their principal points.
@@ -27,8 +28,14 @@ pub(crate) fn read_bundler(
 ) -> Result<Vec<Orientation>> {
     let mut lines = data_lines(path, text);
     let count = header(path, lines.next())?;
-    let names: Vec<&str> = data_lines(list_path, list)
-        .map(|l| l.text.split_whitespace().next().unwrap_or_default())
+    let first = |text: &'_ str| {
+        text.split_whitespace()
+            .next()
+            .unwrap_or_default()
+            .to_owned()
+    };
+    let names: Vec<String> = data_lines(list_path, list)
+        .map(|l| listed_image(l.text).map_or_else(|| first(l.text), str::to_owned))
         .collect();
     if names.len() != count {
         return Err(Error::File {
@@ -48,13 +55,13 @@ pub(crate) fn read_bundler(
             continue;
         }
         let axes = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
-        let r = axes * Matrix3::from_fn(|i, j| rows[i + 1][j]);
+        let r = without_rounding(&(axes * Matrix3::from_fn(|i, j| rows[i + 1][j])));
         let t = axes * Vector3::from(rows[4]);
         let k = Matrix3::from_diagonal(&Vector3::new(f, f, 1.0));
         found.push(Orientation {
             distortion: Distortion::brown([k1, k2, 0.0], [0.0, 0.0]),
             from_middle: true,
-            ..pinhole(name, &source, k, r, Point3::from(-(r.transpose() * t)))
+            ..pinhole(&name, &source, k, r, Point3::from(-(r.transpose() * t)))
         });
     }
     if let Some((path, text)) = points {
@@ -72,23 +79,50 @@ pub(crate) fn read_bundler(
     Ok(found)
 }
 
+/// The image of a line of Bundler's list, whose name may hold blanks; up to two numbers follow it
+/// (zero and a focal length). `None` where the line ends otherwise.
+pub(crate) fn listed_image(text: &str) -> Option<&str> {
+    text.match_indices('.').rev().find_map(|(dot, _)| {
+        let behind = &text[dot + 1..];
+        let end = behind
+            .find(|c: char| !c.is_ascii_alphanumeric())
+            .unwrap_or(behind.len());
+        let extension = behind[..end].to_ascii_lowercase();
+        let numbers = behind[end..].strip_prefix('"').unwrap_or(&behind[end..]);
+        let is_image = ["jpg", "jpeg", "png", "tif", "tiff"].contains(&&*extension)
+            && numbers.split_whitespace().count() <= 2
+            && numbers.split_whitespace().all(|f| f.parse::<f64>().is_ok())
+            && (numbers.is_empty() || numbers.starts_with(char::is_whitespace));
+        is_image.then(|| text[..dot + 1 + end].trim_start_matches('"'))
+    })
+}
+
 /// Reads the first model of an `.nvm` file.
 pub(crate) fn read_nvm(path: &str, text: &str) -> Result<Vec<Orientation>> {
     let mut lines = data_lines(path, text).peekable();
-    let mut fixed = None;
-    while let Some(line) = lines.next_if(|l| l.text.starts_with("NVM_V3")) {
-        fixed = fixed_calibration(&line)?;
-    }
+    let fixed = match lines.next_if(|l| l.text.starts_with("NVM_V3")) {
+        Some(line) => fixed_calibration(&line)?,
+        None => None,
+    };
     let count = header(path, lines.next())?;
     let camera = |line: TextLine| {
         let fields = line.fields();
-        if fields.len() < 10 {
+        // The name may hold blanks; the final zero is missing in some files.
+        let is_number = |i: usize| fields[i].parse::<f64>().is_ok();
+        let has_zero = fields.len() > 10 && is_zero(fields[fields.len() - 1]);
+        let behind = if has_zero && is_number(fields.len() - 10) {
+            10
+        } else {
+            9
+        };
+        let Some(first) = fields.len().checked_sub(behind).filter(|&n| n > 0) else {
             return Err(line.error(
                 format!("{} fields", fields.len()),
                 "name f qw qx qy qz cx cy cz k 0",
             ));
-        }
-        let v = line.numbers(&fields[1..10], "a camera's number")?;
+        };
+        let name = nvm_name(&line, &fields[..first]);
+        let v = line.numbers(&fields[first..first + 9], "a camera's number")?;
         let q = Quaternion::new(v[1], v[2], v[3], v[4]);
         if (q.norm() - 1.0).abs() > 1e-3 {
             return Err(line.error(
@@ -104,7 +138,7 @@ pub(crate) fn read_nvm(path: &str, text: &str) -> Result<Vec<Orientation>> {
             distortion: inverse_of_cubic(v[8]),
             from_middle: fixed.is_none(),
             ..pinhole(
-                fields[0],
+                &name,
                 &format!("{path}, line {}", line.number),
                 k,
                 r,
@@ -119,20 +153,49 @@ pub(crate) fn read_nvm(path: &str, text: &str) -> Result<Vec<Orientation>> {
     Ok(found)
 }
 
-/// The calibration that the first line of an `.nvm` file fixes: `FixedK fx cx fy cy`.
+/// The calibration that was fixed for all images, behind the version: `FixedK fx cx fy cy`.
 fn fixed_calibration(line: &TextLine) -> Result<Option<Matrix3<f64>>> {
     let fields = line.fields();
-    let Some(at) = fields.iter().position(|f| f.starts_with("FixedK")) else {
-        return Ok(None);
-    };
-    let v = line.numbers(&fields[at + 1..], "a number of the fixed calibration")?;
-    let (&[fx, cx, fy, cy], []) = v.split_at(v.len().min(4)) else {
+    if fields[0] != "NVM_V3" {
         return Err(line.error(
-            format!("FixedK has {} numbers", v.len()),
-            "FixedK fx cx fy cy",
+            format!("the version is {}", quoted(fields[0])),
+            "NVM_V3, with quaternions",
         ));
+    }
+    let numbers = match fields[1..] {
+        [] => return Ok(None),
+        ["FixedK", ref numbers @ ..] if (4..=5).contains(&numbers.len()) => numbers,
+        _ => {
+            return Err(line.error(
+                format!("{} fields", fields.len()),
+                "NVM_V3, or NVM_V3 FixedK fx cx fy cy",
+            ));
+        }
     };
-    Ok(Some(Matrix3::new(fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0)))
+    let v = line.numbers(numbers, "a number of the calibration")?;
+    if v.get(4).is_some_and(|&k| k != 0.0) {
+        return Err(line.error(
+            "the fixed calibration has a distortion of its own",
+            "none: undistort the images",
+        ));
+    }
+    Ok(Some(Matrix3::new(
+        v[0], 0.0, v[1], 0.0, v[2], v[3], 0.0, 0.0, 1.0,
+    )))
+}
+
+/// The name in front of the numbers. VisualSFM writes a quotation mark for each blank, other
+/// programs set the name between two of them, or leave the blanks.
+fn nvm_name(line: &TextLine, fields: &[&str]) -> String {
+    let last = fields[fields.len() - 1];
+    let end = last.as_ptr() as usize - line.text.as_ptr() as usize + last.len();
+    let name = line.text.get(..end).unwrap_or(fields[0]);
+    let inside = name.strip_prefix('"').and_then(|n| n.strip_suffix('"'));
+    inside.unwrap_or(name).replace('"', " ")
+}
+
+fn is_zero(field: &str) -> bool {
+    field.parse::<f64>() == Ok(0.0)
 }
 
 /// The lens for which `ideal = measured (1 + k |measured|^2)`: the series of its inverse.
@@ -181,18 +244,27 @@ fn rows<'a>(
 fn add_principal_points(path: &str, text: &str, found: &mut [Orientation]) -> Result<()> {
     for line in data_lines(path, text) {
         let fields = line.fields();
-        if fields.len() < 3 {
+        // The name may hold blanks: two numbers follow it, or four.
+        let is_number = |f: &&str| f.parse::<f64>().is_ok();
+        let numbers = fields[1..]
+            .iter()
+            .rev()
+            .take(4)
+            .take_while(|f| is_number(f));
+        let first = fields.len() - if numbers.count() == 4 { 4 } else { 2 }.min(fields.len());
+        if first == 0 {
             return Err(line.error(
                 format!("{} fields", fields.len()),
                 "image cx cy width height",
             ));
         }
-        let v = line.numbers(&fields[1..3], "a coordinate")?;
-        let named = |o: &&mut Orientation| o.image.rsplit('/').next() == Some(fields[0]);
+        let v = line.numbers(&fields[first..first + 2], "a coordinate")?;
+        let name = fields[..first].join(" ");
+        let named = |o: &&mut Orientation| o.image.rsplit('/').next() == Some(&name);
         if let Some(o) = found.iter_mut().find(named) {
             (o.k[(0, 2)], o.k[(1, 2)]) = (v[0], v[1]);
             o.from_middle = false;
-            if let [w, h] = fields[3..] {
+            if let [w, h] = fields[first + 2..] {
                 o.size = Some((line.whole(w, "the width")?, line.whole(h, "the height")?));
             }
         }
@@ -204,7 +276,7 @@ fn too_short(path: &str) -> Error {
     Error::File {
         file: path.to_owned(),
         problem: "it ends before its last camera".to_owned(),
-        advice: "export or copy it again".to_owned(),
+        advice: "copy the whole file: its end is missing".to_owned(),
     }
 }
 
@@ -228,10 +300,7 @@ mod tests {
         let refusal = nvm("NVM_V3 FixedK 1000 640.5", 0.0)
             .unwrap_err()
             .to_string();
-        assert!(
-            refusal.contains("a.nvm, line 1: FixedK has 2 numbers"),
-            "{refusal}"
-        );
+        assert!(refusal.starts_with("a.nvm, line 1: 4 fields"), "{refusal}");
     }
 
     #[test]

@@ -190,6 +190,7 @@ fn read_image(line: &TextLine, lenses: &Cameras, cameras: &str) -> Result<Orient
         size: Some(lens.size),
         from_middle: false,
         angles: None,
+        readings: Vec::new(),
         crop: None,
         group: None,
     })

@@ -13,6 +13,7 @@ use super::projection::decompose;
 use super::text::{TextLine, data_lines};
 use crate::camera::Distortion;
 use crate::error::{Error, Result};
+use crate::orientation::angles::without_rounding;
 use crate::orientation::image_orientation::{Orientation, pinhole};
 
 /// Reads Pix4D's calibrated camera parameters.
@@ -24,9 +25,9 @@ pub(crate) fn read_pix4d(
     // Eight lines of header describe the content.
     let is_image = |line: &TextLine| {
         let f = line.fields();
-        f.len() == 3
-            && f[0].parse::<f64>().is_err()
-            && f[1..].iter().all(|f| f.parse::<u32>().is_ok())
+        f.len() >= 3
+            && f[..f.len() - 2].iter().any(|f| f.parse::<f64>().is_err())
+            && f[f.len() - 2..].iter().all(|f| f.parse::<u32>().is_ok())
     };
     let mut lines = data_lines(path, text)
         .skip_while(|l| !is_image(l))
@@ -36,7 +37,7 @@ pub(crate) fn read_pix4d(
         if !is_image(&first) {
             return Err(first.error("no image stands here", "NAME width height"));
         }
-        let fields = first.fields();
+        let (name, size) = split_name::<2>(&first, "NAME width height")?;
         let k = matrix(path, &mut lines)?;
         let radial = numbers::<3>(path, lines.next())?;
         let tangential = numbers::<2>(path, lines.next())?;
@@ -46,10 +47,10 @@ pub(crate) fn read_pix4d(
         found.push(Orientation {
             distortion: Distortion::brown(radial, tangential),
             size: Some((
-                first.whole(fields[1], "the width")?,
-                first.whole(fields[2], "the height")?,
+                first.whole(size[0], "the width")?,
+                first.whole(size[1], "the height")?,
             )),
-            ..pinhole(fields[0], &source, k, r, Point3::from(center) + offset)
+            ..pinhole(name, &source, k, r, Point3::from(center) + offset)
         });
     }
     Ok(found)
@@ -62,17 +63,14 @@ pub(crate) fn read_pmatrix(
 ) -> Result<Vec<Orientation>> {
     let offset = offset_of(offset)?;
     let one = |line: TextLine| {
-        let fields = line.fields();
-        if fields.len() != 13 {
-            return Err(line.error(format!("{} fields", fields.len()), "NAME and 12 numbers"));
-        }
-        let v = line.numbers(&fields[1..], "an element")?;
+        let (name, fields) = split_name::<12>(&line, "NAME and 12 numbers")?;
+        let v = line.numbers(&fields, "an element")?;
         let m = Matrix3::from_fn(|i, j| v[4 * i + j]);
         let column = Vector3::new(v[3], v[7], v[11]);
         let (k, r, center) = decompose(&m, &column)
             .ok_or_else(|| line.error("its left 3 x 3 part is singular", "P = K [R | -R C]"))?;
         let source = format!("{path}, line {}", line.number);
-        Ok(pinhole(fields[0], &source, k, r, center + offset))
+        Ok(pinhole(name, &source, k, r, center + offset))
     };
     data_lines(path, text).map(one).collect()
 }
@@ -88,22 +86,16 @@ fn offset_of(file: Option<(&str, &str)>) -> Result<Vector3<f64>> {
 /// Reads Middlebury's parameters.
 pub(crate) fn read_middlebury(path: &str, text: &str) -> Result<Vec<Orientation>> {
     let one = |line: TextLine| {
-        let fields = line.fields();
-        if fields.len() != 22 {
-            return Err(line.error(
-                format!("{} fields", fields.len()),
-                "NAME and 21 numbers of K, R, t",
-            ));
-        }
-        let v = line.numbers(&fields[1..], "an element")?;
+        let (name, fields) = split_name::<21>(&line, "NAME and 21 numbers of K, R, t")?;
+        let v = line.numbers(&fields, "an element")?;
         let mut k = Matrix3::from_row_slice(&v[..9]);
-        let r = Matrix3::from_row_slice(&v[9..18]);
+        let r = without_rounding(&Matrix3::from_row_slice(&v[9..18]));
         let t = Vector3::from_row_slice(&v[18..]);
         k[(0, 2)] += 0.5;
         k[(1, 2)] += 0.5;
         let source = format!("{path}, line {}", line.number);
         Ok(pinhole(
-            fields[0],
+            name,
             &source,
             k,
             r,
@@ -135,6 +127,24 @@ pub(crate) fn read_strecha(path: &str, text: &str) -> Result<Orientation> {
     })
 }
 
+/// The name in front of N fields; it may hold blanks.
+fn split_name<'a, const N: usize>(
+    line: &TextLine<'a>,
+    expected: &str,
+) -> Result<(&'a str, [&'a str; N])> {
+    let fields = line.fields();
+    let wrong = || line.error(format!("{} fields", fields.len()), expected);
+    let (before, behind) = fields.split_last_chunk::<N>().ok_or_else(wrong)?;
+    let last = before.last().ok_or_else(wrong)?;
+    // A number too many is no part of a name.
+    if before.len() > 1 && last.parse::<f64>().is_ok() {
+        return Err(wrong());
+    }
+    let end = last.as_ptr() as usize - line.text.as_ptr() as usize + last.len();
+    let name = line.text.get(..end).unwrap_or(last);
+    Ok((name.trim_matches('"'), *behind))
+}
+
 fn matrix<'a>(path: &str, lines: &mut impl Iterator<Item = TextLine<'a>>) -> Result<Matrix3<f64>> {
     let mut m = Matrix3::zeros();
     for i in 0..3 {
@@ -149,7 +159,7 @@ fn numbers<const N: usize>(path: &str, line: Option<TextLine>) -> Result<[f64; N
     let line = line.ok_or_else(|| Error::File {
         file: path.to_owned(),
         problem: "it ends in the middle of a camera".to_owned(),
-        advice: "export or copy it again".to_owned(),
+        advice: "copy the whole file: its end is missing".to_owned(),
     })?;
     let fields: Vec<&str> = line
         .text

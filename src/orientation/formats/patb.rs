@@ -35,7 +35,7 @@ pub(crate) fn read(
         _ => Err(Error::File {
             file: exterior.0.to_owned(),
             problem: "it ends in the middle of a photo".to_owned(),
-            advice: "export or copy it again".to_owned(),
+            advice: "copy the whole file: its end is missing".to_owned(),
         }),
     });
     photos.collect()

@@ -47,6 +47,7 @@ pub(crate) fn read(path: &str, text: &str) -> Result<Orientation> {
         size: None,
         from_middle: false,
         angles: None,
+        readings: Vec::new(),
         crop: None,
         group: None,
     })

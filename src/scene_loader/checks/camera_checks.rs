@@ -9,6 +9,7 @@ use nalgebra::{Matrix3, Point2, Point3, Vector3};
 use crate::camera::Camera;
 use crate::error::Error;
 use crate::geometry::mean_point;
+use crate::orientation::EXACT_ROTATION;
 use crate::scene_loader::names::listed;
 use crate::sorting::sort_by;
 
@@ -49,8 +50,10 @@ pub(crate) fn numeric_problem(camera: &Camera) -> Option<&'static str> {
         Some("a number is infinite or not a number")
     } else if k[(0, 0)] <= 0.0 || k[(1, 1)] <= 0.0 {
         Some("the focal length is not positive")
-    } else if (r * r.transpose() - Matrix3::identity()).amax() > 1e-6 || r.determinant() < 0.0 {
-        Some("the rotation matrix is not a rotation")
+    } else if (r * r.transpose() - Matrix3::identity()).amax() > EXACT_ROTATION
+        || r.determinant() < 0.0
+    {
+        Some("the rotation matrix is not a rotation: its rows are not orthonormal")
     } else {
         None
     }
@@ -81,7 +84,7 @@ fn placement_error(name: &str, camera: &Camera, ground_z: Option<f64>) -> Option
     if z.abs() > LARGE_M {
         return refuse(
             format!("its camera is {z:.0} m high"),
-            "export the orientation in metres with Z up (map or local coordinates, not geocentric)",
+            "metres with Z up are needed: map or local coordinates, or geocentric ones throughout",
         );
     }
     if let Some(ground) = ground_z.filter(|&ground| z <= ground) {

@@ -29,7 +29,7 @@ pub(crate) fn warning_or_refusal(
                 "the images contradict their orientation: they agree to {:.2} as it stands, and to {:.2} if {words}",
                 before.score, after.score
             ),
-            "correct the orientation file, export it again, or have it corrected on loading (--apply-fix)",
+            "correct the orientation file, or have it corrected on loading (--apply-fix)",
         ));
     }
     if let Some(refusal) = refusal {
@@ -42,7 +42,7 @@ pub(crate) fn warning_or_refusal(
                         problem_of(&refusal),
                         agreement.score
                     ),
-                    "export the orientation with Z up, in metres above the ground's height system",
+                    "the orientation is needed with Z up, in metres above the ground's height system",
                 )
             }
             (_, Error::Scene { problem, advice }) => contradiction(problem, &advice),

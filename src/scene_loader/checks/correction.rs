@@ -4,10 +4,14 @@ use nalgebra::Vector3;
 
 use super::camera_checks;
 use super::consequence::warning_or_refusal;
-use crate::agreement::AgreementReport;
+use crate::agreement::{Agreement, AgreementReport};
 use crate::camera::Camera;
 use crate::error::{Error, Result};
-use crate::orientation_check::{CheckFinding, CheckedView, OrientationCheck, check_orientation};
+use crate::orientation::AngleUnit;
+use crate::orientation_check::{
+    AngleReadings, CheckFinding, CheckedView, OrientationCheck, cameras_in, check_orientation,
+    try_angle_readings,
+};
 use crate::scene::ViewShift;
 use crate::scene_loader::input::LoadOptions;
 use crate::scene_loader::names::listed;
@@ -20,16 +24,35 @@ pub(crate) struct CheckedCameras {
     pub shifts: Vec<ViewShift>,
     pub report: AgreementReport,
     pub warnings: Vec<String>,
+    /// The unit of the angles, where the images decided for another one than was guessed.
+    pub reread: Option<AngleUnit>,
 }
 
 /// Checks the orientation of views and corrects it where the options ask for it. `refusal` is the
 /// one that the positions of the cameras alone gave reason for.
 pub(crate) fn check_and_correct(
     mut views: Vec<CheckedView>,
-    refusal: Option<Error>,
+    mut refusal: Option<Error>,
     options: &LoadOptions,
 ) -> Result<CheckedCameras> {
     let mut warnings = Vec::new();
+    let mut reread = None;
+    if let Some(readings) = try_angle_readings(&views) {
+        warnings.push(words_of_readings(&readings));
+        reread = readings.decided.filter(|unit| *unit != readings.guess);
+        if let Some(cameras) = reread.and_then(|unit| cameras_in(&views, unit)) {
+            for (view, camera) in views.iter_mut().zip(cameras) {
+                view.camera = camera;
+            }
+            let ground_z = options.ground_z.map(|z| z - views[0].origin.z);
+            let named: Vec<(&str, &Camera)> = views.iter().map(|v| (v.name, &v.camera)).collect();
+            let found = camera_checks::check_cameras(&named, ground_z);
+            refusal = found.errors.into_iter().next();
+            warnings.extend(found.warnings);
+        }
+    } else if views.iter().all(|v| !v.readings.is_empty()) {
+        warnings.extend(words_of_guess(&views));
+    }
     let mut origin_change = Vector3::zeros();
     let mut check = check_orientation(&views);
     if options.apply_fix
@@ -64,7 +87,38 @@ pub(crate) fn check_and_correct(
         report: check.report(),
         shifts: check.shifts,
         warnings,
+        reread,
     })
+}
+
+/// Which unit was taken, and why.
+fn words_of_readings(readings: &AngleReadings) -> String {
+    let figure = |(unit, agreement): &(AngleUnit, Agreement)| {
+        format!("{} {:.2}", unit.name(), agreement.score)
+    };
+    let figures = listed(readings.agreements.iter().map(figure));
+    match readings.decided {
+        Some(unit) => format!(
+            "the angles were read in {}: so the images agree best ({figures}, where 0 is chance and 1 \
+             perfect)",
+            unit.name()
+        ),
+        None => format!(
+            "the angles were read in {}, under which the views look at one place; the images do not \
+             decide ({figures})",
+            readings.guess.name()
+        ),
+    }
+}
+
+/// The unit that was guessed, where the images cannot be asked.
+fn words_of_guess(views: &[CheckedView]) -> Option<String> {
+    let first = views.first()?;
+    let (unit, _) = (first.readings.iter()).find(|(_, r)| *r == first.camera.r)?;
+    Some(format!(
+        "the angles were read in {}, under which the views look at one place; the images do not decide",
+        unit.name()
+    ))
 }
 
 struct Correction {
