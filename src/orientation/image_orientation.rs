@@ -29,6 +29,9 @@ pub struct Orientation {
     pub angles: Option<[f64; 3]>,
     /// The part of the frame that the image shows, where the file states it.
     pub crop: Option<Crop>,
+    /// The chunk or block that it belongs to, where the file holds several orientations of the same
+    /// images; the last group in a file is the preferred one.
+    pub group: Option<String>,
 }
 
 /// The position of an image in the frame that it was cropped from, pixels.
@@ -61,5 +64,6 @@ pub(crate) fn pinhole(
         from_middle: false,
         angles: None,
         crop: None,
+        group: None,
     }
 }

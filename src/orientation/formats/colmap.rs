@@ -173,6 +173,7 @@ fn read_image(
         from_middle: false,
         angles: None,
         crop: None,
+        group: None,
     })
 }
 

@@ -264,6 +264,7 @@ impl ListedPose {
             from_middle: false,
             angles: Some(self.angles),
             crop: Some(frame.crop(part)),
+            group: None,
         }
     }
 }

@@ -48,6 +48,7 @@ pub(crate) fn read(path: &str, text: &str) -> Result<Orientation> {
         from_middle: false,
         angles: None,
         crop: None,
+        group: None,
     })
 }
 
