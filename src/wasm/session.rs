@@ -61,6 +61,9 @@ struct JsLoadOptions {
     /// Undo the mistake in the orientation that the images give away.
     #[tsify(optional)]
     apply_fix: bool,
+    /// Go on where the images do not agree with their orientation.
+    #[tsify(optional)]
+    ignore_check: bool,
     /// Adjust views that are turned or moved against the others by up to a few pixels.
     #[tsify(optional)]
     adjust: bool,
@@ -75,6 +78,7 @@ impl Readable for JsLoadOptions {
             ("groundZ", &mut self.ground_z),
             ("epsg", &mut self.epsg),
             ("applyFix", &mut self.apply_fix),
+            ("ignoreCheck", &mut self.ignore_check),
             ("adjust", &mut self.adjust),
         ];
         read_fields(value, fields)
@@ -299,6 +303,7 @@ pub(crate) fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
         epsg: options.epsg,
         memory_mb: None,
         apply_fix: options.apply_fix,
+        ignore_check: options.ignore_check,
         adjust: options.adjust,
     })
 }
@@ -312,6 +317,7 @@ impl From<&LoadOptions> for JsLoadOptions {
             ground_z: options.ground_z,
             epsg: options.epsg,
             apply_fix: options.apply_fix,
+            ignore_check: options.ignore_check,
             adjust: options.adjust,
         }
     }
