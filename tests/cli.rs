@@ -163,10 +163,53 @@ fn archives_and_folders_stand_for_their_files() {
 }
 
 #[test]
-fn an_image_without_orientation_is_refused() {
+fn images_without_orientation_are_left_out_until_too_few_remain() {
     let scene = Scene::new();
     scene.write("images/stray.png", &scene.read("images/s1_01.png"));
-    scene.is_refused(&[], &["stray.png", "orientation"]);
+    let output = scene.run(&["--method", "lines", "--views", "s1_01,s1_02,s1_03,stray"]);
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{printed}");
+    assert!(
+        printed.contains("3 views") && printed.contains("left out: images/stray.png"),
+        "{printed}"
+    );
+    fs::remove_dir_all(scene.out()).unwrap();
+    scene.is_refused(
+        &["--views", "s1_01,s1_02,stray"],
+        &["none for images/stray.png", "three are needed"],
+    );
+}
+
+/// Photographs of other places under the names that the orientation states.
+#[test]
+fn what_hardly_agrees_is_refused_unless_asked_for() {
+    let scene = Scene::new();
+    let mut state = 1u32;
+    let mut random = |below: u32| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) % below
+    };
+    for name in ["s1_01", "s1_02", "s1_03", "s2_01", "s2_02", "s2_03"] {
+        let mut image = image::RgbImage::new(common::SIZE_PX, common::SIZE_PX);
+        for _ in 0..400 {
+            let (x, y) = (random(common::SIZE_PX - 20), random(common::SIZE_PX - 20));
+            let (w, h, gray) = (4 + random(16), 4 + random(16), random(256) as u8);
+            for (column, row) in (0..w).flat_map(|i| (0..h).map(move |j| (i, j))) {
+                image.put_pixel(x + column, y + row, image::Rgb([gray; 3]));
+            }
+        }
+        let mut png = std::io::Cursor::new(Vec::new());
+        image.write_to(&mut png, image::ImageFormat::Png).unwrap();
+        scene.write(&format!("images/{name}.png"), &png.into_inner());
+    }
+    scene.is_refused(&[], &["hardly agree", "--ignore-check"]);
+    let output = scene.run(&["--method", "lines", "--ignore-check"]);
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{printed}");
+    assert!(
+        printed.contains("warning: the images hardly agree"),
+        "{printed}"
+    );
 }
 
 #[test]

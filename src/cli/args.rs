@@ -27,7 +27,8 @@ pub(super) enum Command {
 pub(super) struct InputArgs {
     /// Folder or .zip archive with images and orientation files, anywhere in it.
     pub scene: PathBuf,
-    /// Which orientation to take where the folder holds several: a part of its path.
+    /// Which orientation to take where the folder holds several: a part of its path, or the name of
+    /// a chunk or block in a file of several.
     #[arg(long, value_name = "PATH")]
     pub orientation: Option<String>,
     /// Use only these views (image names, separated by commas).
@@ -43,6 +44,9 @@ pub(super) struct InputArgs {
     /// scene.
     #[arg(long)]
     pub apply_fix: bool,
+    /// Go on with an orientation that the images contradict or hardly agree with.
+    #[arg(long, conflicts_with = "apply_fix")]
+    pub ignore_check: bool,
     /// Adjust views that are turned or moved against the others by up to a few pixels.
     #[arg(long)]
     pub adjust: bool,

@@ -52,6 +52,7 @@ pub(super) fn open(
         epsg: args.crs.or(stated.epsg),
         memory_mb: args.memory.or(stated.memory_mb),
         apply_fix: args.apply_fix || stated.apply_fix,
+        ignore_check: args.ignore_check || stated.ignore_check,
         adjust: args.adjust || stated.adjust,
     };
     Ok(OpenedScene {

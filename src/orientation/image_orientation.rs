@@ -33,7 +33,8 @@ pub struct Orientation {
     pub readings: Vec<(AngleUnit, Matrix3<f64>)>,
     /// The part of the frame that the image shows, where the file states it.
     pub crop: Option<Crop>,
-    /// Label of the chunk or block that it stands in, where the file has more than one.
+    /// The chunk or block that it belongs to, where the file holds several orientations of the same
+    /// images; the last group in a file is the preferred one.
     pub group: Option<String>,
 }
 

@@ -56,7 +56,7 @@ pub use format::Format;
 pub use geodesy::Anchor;
 pub use image_orientation::{Crop, Orientation};
 pub use input_file::InputFile;
-pub(crate) use input_file::{base_name, stem};
+pub(crate) use input_file::stem;
 pub use metric_frame::to_metric_frame;
 pub use reference::{StatedReference, epsg_of};
 pub use sets::{OrientationSet, orientation_sets};

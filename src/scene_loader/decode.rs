@@ -51,9 +51,8 @@ fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
     if source != part {
         photograph = photograph.crop([column - source[0], row - source[1], width, height]);
     }
-    let name = file.name().to_owned();
     Ok(View::new(
-        name,
+        planned.name.clone(),
         planned.camera(),
         photograph.gray,
         photograph.rgb,

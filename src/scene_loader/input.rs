@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LoadOptions {
-    /// Part of the path of the orientation to take, where there are several.
+    /// Part of the path of the orientation to take, where there are several, or of the label of a
+    /// group in it.
     pub orientation: Option<String>,
     /// Names of the images to use, with or without extension; all when absent.
     pub views: Option<Vec<String>>,
@@ -20,6 +21,8 @@ pub struct LoadOptions {
     pub memory_mb: Option<u32>,
     /// Correct the error in the orientation that the images reveal, instead of refusing the scene.
     pub apply_fix: bool,
+    /// Go on where the images do not agree with their orientation, instead of refusing the scene.
+    pub ignore_check: bool,
     /// Correct shifts of a few pixels between the views.
     pub adjust: bool,
 }

@@ -69,9 +69,19 @@ pub fn inspect_files(files: &[InputFile], options: &LoadOptions) -> Inspection {
             kind,
             description: kind.describe(),
         });
+    let name = |file: usize| {
+        let own = files[file].name();
+        let others = plan.images.iter().filter(|other| other.file != file);
+        match plan.views.iter().find(|view| view.file == file) {
+            Some(view) => view.name.clone(),
+            None if others.clone().all(|other| files[other.file].name() != own) => own.to_owned(),
+            // An image that is left out is told from a view of its name.
+            None => files[file].path.clone(),
+        }
+    };
     let images = plan.images.iter().map(|image| ImageReport {
         path: files[image.file].path.clone(),
-        name: files[image.file].name().to_owned(),
+        name: name(image.file),
         size: image.header.map(|h| (h.width, h.height)),
         orientation: image.orientation.as_ref().map(|o| o.source.clone()),
     });

@@ -82,9 +82,8 @@ pub fn whole_views(files: &[InputFile], options: &LoadOptions) -> Result<Scene> 
         return Err(error);
     }
     let view = |planned: &PlannedView| {
-        let name = files[planned.file].name().to_owned();
         let none = (Gray::new(0, 0), image::RgbImage::new(0, 0));
-        View::new(name, planned.whole.clone(), none.0, none.1)
+        View::new(planned.name.clone(), planned.whole.clone(), none.0, none.1)
     };
     Ok(Scene {
         views: plan.views.iter().map(view).collect(),

@@ -5,7 +5,8 @@
 //! archive, project   files of a .zip; a project's files and options
 //! input              what the caller asks for beyond the files
 //! plan               one orientation chosen, images assigned to it by name; all refusals
-//! candidate, names   what the plan chooses from and assigns by; planned_view: its views
+//! candidate          the orientations that the plan chooses from
+//! assignment, names  which image an orientation belongs to; planned_view: the plan's views
 //! checks             the cameras by themselves and against the images; corrections
 //! region             part of each image that shows the region of interest
 //! memory             memory that a run takes
@@ -19,6 +20,7 @@
 //! never disagrees with a run.
 
 mod archive;
+mod assignment;
 mod candidate;
 mod checks;
 mod decode;

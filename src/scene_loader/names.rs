@@ -1,36 +1,47 @@
-//! How images and orientations find each other by name, and how messages list names.
+//! The names by which views go, and how messages list names.
 
-use crate::orientation::{Orientation, base_name, stem};
+use std::collections::BTreeMap;
 
-/// How well a name in an orientation file fits an image's; less is better, `None` is not at all.
-pub(crate) fn match_rank(oriented: &str, image: &str) -> Option<u8> {
-    let name = base_name(oriented);
-    let fits = |a: &str, b: &str| {
-        if a == b {
-            Some(0)
-        } else {
-            (a.to_lowercase() == b.to_lowercase()).then_some(3)
-        }
+use super::assignment::PathName;
+
+/// The names of views: without folders, or with as many as tell them apart.
+pub(crate) fn view_names(paths: &[&str]) -> Vec<String> {
+    let parts: Vec<Vec<&str>> = paths.iter().map(|p| p.rsplit('/').collect()).collect();
+    let mut depths = vec![1; paths.len()];
+    let name = |i: usize, depth: usize| {
+        let mut parts = parts[i][..depth].to_vec();
+        parts.reverse();
+        parts.join("/")
     };
-    [
-        fits(name, image),
-        fits(name, stem(image)).map(|rank| rank + 1),
-        fits(stem(name), stem(image)).map(|rank| rank + 2),
-    ]
-    .into_iter()
-    .flatten()
-    .min()
+    loop {
+        let mut same: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+        for (i, &depth) in depths.iter().enumerate() {
+            same.entry(name(i, depth)).or_default().push(i);
+        }
+        let repeated = same.into_values().filter(|views| views.len() > 1);
+        let short: Vec<usize> = repeated
+            .flatten()
+            .filter(|&i| depths[i] < parts[i].len())
+            .collect();
+        if short.is_empty() {
+            return (0..paths.len()).map(|i| name(i, depths[i])).collect();
+        }
+        for i in short {
+            depths[i] += 1;
+        }
+    }
 }
 
-/// The orientations that fit an image best.
-pub(crate) fn best_match(orientations: &[Orientation], image: &str) -> Vec<usize> {
-    let ranks: Vec<Option<u8>> = orientations
+/// The images that a name means, which may leave out folders and extension: those that fit best.
+pub(crate) fn images_called(name: &str, paths: &[PathName]) -> Vec<usize> {
+    let readings = PathName::readings(name);
+    let fits: Vec<_> = paths
         .iter()
-        .map(|o| match_rank(&o.image, image))
+        .map(|path| readings.iter().filter_map(|name| name.fit(path)).min())
         .collect();
-    let best = ranks.iter().flatten().min();
-    (0..ranks.len())
-        .filter(|&i| best.is_some() && ranks[i].as_ref() == best)
+    let best = fits.iter().flatten().min();
+    (0..paths.len())
+        .filter(|&i| best.is_some() && fits[i].as_ref() == best)
         .collect()
 }
 
@@ -50,18 +61,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_closest_name_wins() {
-        assert_eq!(match_rank("a/b.jpg", "b.jpg"), Some(0));
-        assert_eq!(match_rank("b", "b.jpg"), Some(1));
-        assert_eq!(match_rank("b.tif", "b.jpg"), Some(2));
-        assert_eq!(match_rank("B.JPG", "b.jpg"), Some(3));
-        assert_eq!(
-            match_rank("b.c", "b.c.jpg"),
-            Some(1),
-            "a dot is no extension"
-        );
-        assert_eq!(match_rank("b.1.tif", "b.2.jpg"), None);
-        assert_eq!(match_rank("ab.jpg", "b.jpg"), None);
+    fn views_are_named_by_as_many_folders_as_tell_them_apart() {
+        let paths = ["x/a.jpg", "p/c0/1.jpg", "p/c1/1.jpg", "q/c1/1.jpg", "2.jpg"];
+        let names = ["a.jpg", "c0/1.jpg", "p/c1/1.jpg", "q/c1/1.jpg", "2.jpg"];
+        assert_eq!(view_names(&paths), names);
+        assert_eq!(view_names(&["1.jpg", "c/1.jpg"]), ["1.jpg", "c/1.jpg"]);
+        assert_eq!(view_names(&["1.jpg", "1.jpg"]), ["1.jpg", "1.jpg"]);
+    }
+
+    #[test]
+    fn a_name_means_the_images_that_fit_it_best() {
+        let paths = ["c0/1.jpg", "c1/1.jpg", "masks/2.jpg.png", "c0/2.jpg"].map(PathName::new);
+        assert_eq!(images_called("1", &paths), [0, 1]);
+        assert_eq!(images_called("c1/1.JPG", &paths), [1]);
+        assert_eq!(images_called("2.jpg", &paths), [3]);
+        assert_eq!(images_called("3.jpg", &paths), [0; 0]);
     }
 
     #[test]

@@ -1,24 +1,29 @@
 //! The plan of a scene: one orientation chosen, images and orientations assigned by name, all
 //! refusals collected.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use nalgebra::Vector3;
 
-use super::candidate::OrientationCandidate;
+use super::assignment::{
+    Ambiguity, ImageCandidate, LeftOut, PathName, assign, factor_in_words, resized, scale,
+};
+use super::candidate::{Choice, OrientationCandidate, choose, take_group};
 use super::checks::camera_checks;
 use super::input::LoadOptions;
 use super::memory;
-use super::names::{best_match, listed, match_rank};
+use super::names::{images_called, listed, view_names};
 use super::planned_view::{PlannedImage, PlannedView};
 use super::region::RegionOfInterest;
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::orientation::{
     Anchor, FileKind, InputFile, Orientation, OrientationSet, StatedReference, UnreadFormat,
-    detect, epsg_of, orientation_sets, stem, to_metric_frame, unread_format,
+    detect, epsg_of, orientation_sets, to_metric_frame, unread_format,
 };
 use crate::raster::{ImageHeader, image_header};
 use crate::scene::Survey;
-use crate::sorting::{sort_by, sort_by_key};
+use crate::sorting::sort_by_key;
 
 /// Everything about a scene but its pixels.
 pub(crate) struct Plan {
@@ -72,6 +77,9 @@ impl Plan {
         if let Some(orientations) = plan.choose_orientation(files, options) {
             plan.match_orientations(files, orientations, options.views.is_some());
             plan.form_views(files, options);
+        } else {
+            let unreadable = plan.images.iter().filter_map(|i| i.unreadable.clone());
+            plan.errors.splice(0..0, unreadable.collect::<Vec<_>>());
         }
         plan
     }
@@ -85,7 +93,6 @@ impl Plan {
         if let Some(wanted) = &options.views {
             images = self.select(files, &images, wanted);
         }
-        self.refuse_duplicates(files, &images);
         if images.is_empty() && self.errors.is_empty() {
             self.errors.push(Error::Scene {
                 problem: format!("there is no image among the {} files", files.len()),
@@ -103,21 +110,27 @@ impl Plan {
                     files[file].path
                 ));
             }
-            let header = header.map_err(|e| self.errors.push(e)).ok();
+            let (header, unreadable) = match header {
+                Ok(header) => (Some(header), None),
+                Err(error) => (None, Some(error)),
+            };
             self.images.push(PlannedImage {
                 file,
                 header,
+                unreadable,
                 orientation: None,
             });
         }
     }
 
     fn select(&mut self, files: &[InputFile], images: &[usize], wanted: &[String]) -> Vec<usize> {
+        let paths: Vec<PathName> = (images.iter())
+            .map(|&i| PathName::new(&files[i].path))
+            .collect();
+        let mut chosen = BTreeSet::new();
         for name in wanted {
-            if !images
-                .iter()
-                .any(|&i| match_rank(name, files[i].name()).is_some())
-            {
+            let called = images_called(name, &paths);
+            if called.is_empty() {
                 self.errors.push(Error::Scene {
                     problem: format!("there is no image called {name}"),
                     advice: format!(
@@ -126,31 +139,9 @@ impl Plan {
                     ),
                 });
             }
+            chosen.extend(called);
         }
-        let is_wanted = |i: usize| {
-            wanted
-                .iter()
-                .any(|name| match_rank(name, files[i].name()).is_some())
-        };
-        images.iter().copied().filter(|&i| is_wanted(i)).collect()
-    }
-
-    fn refuse_duplicates(&mut self, files: &[InputFile], images: &[usize]) {
-        let mut keys: Vec<(String, usize)> = images
-            .iter()
-            .map(|&i| (stem(&files[i].path).to_lowercase(), i))
-            .collect();
-        sort_by(&mut keys, Ord::cmp);
-        for pair in keys.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
-            self.errors.push(Error::Scene {
-                problem: format!(
-                    "{} and {} have the same name",
-                    files[pair[0].1].path, files[pair[1].1].path
-                ),
-                advice: "rename or remove one: images and orientations are matched by name"
-                    .to_owned(),
-            });
-        }
+        chosen.into_iter().map(|i| images[i]).collect()
     }
 
     /// Reads the preferred candidate, or the one that the options choose.
@@ -161,25 +152,10 @@ impl Plan {
     ) -> Option<Vec<Orientation>> {
         let (sets, incomplete) = orientation_sets(files, &self.kinds);
         self.warn_of_json(files);
-        self.candidates = sets
-            .iter()
-            .map(|set| OrientationCandidate {
-                label: format!("{}: {}", set.format.name(), set.label(files)),
-                path: files[set.files[0]].path.clone(),
-            })
-            .collect();
-        let named = |wanted: &str, fits: &dyn Fn(&str, &str) -> bool| {
-            let wanted = wanted.trim_end_matches('/');
-            sets.iter()
-                .find(|set| set.files.iter().any(|&i| fits(&files[i].path, wanted)))
-        };
-        let chosen = match &options.orientation {
-            None => sets.first(),
-            // A whole path names one set, even where it is a part of another's.
-            Some(wanted) => named(wanted, &|path, wanted| path == wanted)
-                .or_else(|| named(wanted, &|path, wanted| path.contains(wanted))),
-        };
-        let Some(set) = chosen else {
+        self.candidates = OrientationCandidate::of(&sets, files);
+        let Some(Choice { set: index, group }) =
+            choose(&sets, files, options.orientation.as_deref())
+        else {
             self.errors.push(no_orientation(
                 files,
                 &self.kinds,
@@ -189,6 +165,7 @@ impl Plan {
             ));
             return None;
         };
+        let set = &sets[index];
         self.warnings.extend(incomplete);
         if options.orientation.is_none() && sets.len() > 1 {
             let others = sets[1..].iter().map(|s| s.label(files));
@@ -200,14 +177,25 @@ impl Plan {
             ));
         }
         self.orientation = Some(format!("{}: {}", set.format.name(), set.label(files)));
-        let (epsg, anchor) = self.reference_of(set, files);
+        let read = set.read(files, &mut self.warnings);
+        let orientations = read.map_err(|e| self.errors.push(e)).ok()?;
+        let images = self.image_candidates(files);
+        let taken = take_group(orientations, group.as_deref(), &images);
+        self.warnings.extend(taken.warning(&set.label(files)));
+        if let Some(taken) = &taken.group {
+            self.orientation = self
+                .orientation
+                .take()
+                .map(|label| format!("{label}: {taken}"));
+        }
+        let (epsg, anchor) = self.reference_of(set, files, taken.group.as_deref());
         self.survey = Survey {
             epsg: options.epsg.or(epsg),
             anchor,
             ..Survey::default()
         };
-        let read = set.read(files, &mut self.warnings);
-        let mut orientations = read.map_err(|e| self.errors.push(e)).ok()?;
+        OrientationCandidate::split(&mut self.candidates, index, &taken.groups);
+        let mut orientations = taken.orientations;
         if let Some(anchor) = to_metric_frame(&mut orientations) {
             self.warnings.push(format!(
                 "the positions are places on the Earth; the model stands in metres east and north of {:.3} degrees of longitude, {:.3} \
@@ -227,9 +215,10 @@ impl Plan {
         &mut self,
         set: &OrientationSet,
         files: &[InputFile],
+        group: Option<&str>,
     ) -> (Option<u32>, Option<Anchor>) {
         let beside = self.stated_reference(files);
-        let (reason, anchor) = match set.reference(files, None) {
+        let (reason, anchor) = match set.reference(files, group) {
             StatedReference::None => return (beside.map(|(_, code)| code), None),
             StatedReference::System(code) => return (Some(code), None),
             StatedReference::Place(anchor) => (
@@ -266,63 +255,124 @@ impl Plan {
         }
     }
 
-    /// Gives each image its orientation.
+    fn image_candidates<'a>(&self, files: &'a [InputFile]) -> Vec<ImageCandidate<'a>> {
+        let candidate = |image: &PlannedImage| {
+            let InputFile { path, bytes } = &files[image.file];
+            ImageCandidate {
+                path,
+                size: image.header.map(|h| [h.width, h.height]),
+                is_gray_png: is_gray_png(bytes),
+            }
+        };
+        self.images.iter().map(candidate).collect()
+    }
+
+    /// Gives each image its orientation; what is left over is named.
     fn match_orientations(
         &mut self,
         files: &[InputFile],
         orientations: Vec<Orientation>,
         selected: bool,
     ) {
+        let found = assign(&orientations, &self.image_candidates(files));
+        let path = |i: usize| &*files[self.images[i].file].path;
+        let unreadable =
+            (found.of_image.iter().zip(&self.images)).filter_map(|(of_image, image)| {
+                image.unreadable.clone().filter(|_| of_image.is_some())
+            });
+        let mut errors: Vec<Error> = unreadable.collect();
+        let unclear = found.ambiguous.iter();
+        errors.extend(unclear.map(|same| ambiguous(same, &orientations, &path)));
+        let without: Vec<&str> = (0..self.images.len())
+            .filter(|&i| found.of_image[i].is_none() && found.left_out[i].is_none())
+            .filter(|i| found.ambiguous.iter().all(|same| !same.images.contains(i)))
+            .map(path)
+            .collect();
+        let copies = found
+            .left_out
+            .iter()
+            .enumerate()
+            .filter_map(|(i, why)| match (*why)? {
+                LeftOut::For(taken) => Some(format!("{} ({} was taken)", path(i), path(taken))),
+                LeftOut::WithCopies => Some(path(i).to_owned()),
+            });
+        let copies: Vec<String> = copies.collect();
         let mut used = vec![false; orientations.len()];
-        for image in &mut self.images {
-            let name = files[image.file].name();
-            match best_match(&orientations, name)[..] {
-                [] => self.errors.push(Error::File {
-                    file: files[image.file].path.clone(),
-                    problem: format!(
-                        "the image has no orientation in {}",
-                        self.orientation.as_deref().unwrap_or("any file")
-                    ),
-                    advice: "add its orientation, remove the image, or choose the views to use"
-                        .to_owned(),
-                }),
-                [one] => {
-                    used[one] = true;
-                    image.orientation = Some(orientations[one].clone());
-                }
-                [first, second, ..] => self.errors.push(Error::File {
-                    file: files[image.file].path.clone(),
-                    problem: format!(
-                        "two orientations are called like the image ({} and {})",
-                        orientations[first].source, orientations[second].source
-                    ),
-                    advice: "remove one of them".to_owned(),
-                }),
-            }
+        for one in found.of_image.iter().flatten() {
+            used[*one] = true;
         }
-        let without: Vec<&str> = (orientations.iter().zip(&used))
+        let unused: Vec<&str> = (orientations.iter().zip(&used))
             .filter(|(_, used)| !**used)
             .map(|(o, _)| &*o.image)
             .collect();
-        if !without.is_empty() && !selected {
-            self.warnings.push(format!(
-                "orientations without an image, ignored: {}",
-                listed(without.into_iter())
+        let label = self.orientation.as_deref().unwrap_or("any file");
+        let oriented = used.iter().filter(|used| **used).count();
+        if oriented < 3 && errors.is_empty() && !without.is_empty() {
+            errors.push(too_few_oriented(oriented, &without, &unused, label));
+        }
+        let mut warnings = Vec::new();
+        if !without.is_empty() {
+            warnings.push(format!(
+                "images without an orientation in {label}, left out: {}",
+                listed(without.iter())
             ));
+        }
+        if !copies.is_empty() {
+            warnings.push(format!(
+                "masks or copies of images, left out because an orientation belongs to one image: {}",
+                listed(copies.iter())
+            ));
+        }
+        if !unused.is_empty() && !selected {
+            warnings.push(format!(
+                "orientations without an image, ignored: {}",
+                listed(unused.iter())
+            ));
+        }
+        self.warnings.extend(warnings);
+        self.errors.extend(errors);
+        for (image, one) in self.images.iter_mut().zip(found.of_image) {
+            image.orientation = one.map(|one| orientations[one].clone());
         }
     }
 
     /// Forms views in the local frame and checks them together.
     fn form_views(&mut self, files: &[InputFile], options: &LoadOptions) {
         let mut views = Vec::new();
+        let mut scaled: BTreeMap<String, Vec<&str>> = BTreeMap::new();
         for image in &self.images {
             let (Some(header), Some(orientation)) = (&image.header, &image.orientation) else {
                 continue;
             };
-            match planned_view(&files[image.file].path, image.file, header, orientation) {
+            let path = &*files[image.file].path;
+            let size = [header.width, header.height];
+            let stated = orientation.size.map(|(w, h)| [w, h]).filter(|&s| s != size);
+            let view = match stated.and_then(|stated| scale(stated, size)) {
+                Some(factors) => {
+                    let words = factor_in_words(factors[0]);
+                    scaled.entry(words).or_default().push(path);
+                    let orientation = &Orientation {
+                        size: None,
+                        ..resized(orientation, factors)
+                    };
+                    planned_view(path, image.file, header, orientation)
+                }
+                None => planned_view(path, image.file, header, orientation),
+            };
+            match view {
                 Ok(view) => views.push(view),
                 Err(error) => self.errors.push(error),
             }
+        }
+        let paths: Vec<&str> = views.iter().map(|v| &*files[v.file].path).collect();
+        for (view, name) in views.iter_mut().zip(view_names(&paths)) {
+            view.name = name;
+        }
+        for (factor, paths) in scaled {
+            self.warnings.push(format!(
+                "images of {factor} the size that their orientation states, whose cameras were scaled: {}",
+                listed(paths.into_iter())
+            ));
         }
         if views.len() < 3 && self.errors.is_empty() {
             self.errors.push(too_few(files, &views));
@@ -441,6 +491,7 @@ fn planned_view(
     }
     Ok(PlannedView {
         file,
+        name: String::new(),
         whole: camera,
         distortion,
         angles: orientation.angles,
@@ -499,6 +550,57 @@ fn no_orientation(
         problem,
         advice: "add the orientation as COLMAP, Metashape, BlocksExchange, Pix4D, OpenSfM or Bundler write it, a camera \
                  file with a list `image X0 Y0 Z0 omega phi kappa`, or one 3 x 4 matrix NAME.P an image"
+            .to_owned(),
+    }
+}
+
+/// A mask, perhaps: a photograph in grey values alone is rarely a PNG.
+fn is_gray_png(bytes: &[u8]) -> bool {
+    const COLOUR_TYPE: usize = 25;
+    bytes.starts_with(b"\x89PNG\r\n\x1a\n") && bytes.get(COLOUR_TYPE) == Some(&0)
+}
+
+fn ambiguous<'a>(
+    same: &Ambiguity,
+    orientations: &[Orientation],
+    path: &impl Fn(usize) -> &'a str,
+) -> Error {
+    let images: Vec<&str> = same.images.iter().map(|&i| path(i)).collect();
+    let sources = listed((same.orientations.iter()).map(|&i| &*orientations[i].source));
+    match images[..] {
+        [one] => Error::File {
+            file: one.to_owned(),
+            problem: format!("two orientations are called like the image ({sources})"),
+            advice: "remove one of them".to_owned(),
+        },
+        _ => Error::Scene {
+            problem: format!(
+                "{} have the same name, and nothing tells which of them belongs to {sources}",
+                images.join(" and ")
+            ),
+            advice: "rename or remove one, or give them the folders that the orientation states"
+                .to_owned(),
+        },
+    }
+}
+
+/// The refusal of images of which too few have an orientation.
+fn too_few_oriented(oriented: usize, without: &[&str], unused: &[&str], label: &str) -> Error {
+    let named = match unused.is_empty() {
+        true => String::new(),
+        false => format!(" (it names {})", listed(unused.iter())),
+    };
+    Error::Scene {
+        problem: format!(
+            "{oriented} {} an orientation in {label}, but three are needed: none for {}{named}",
+            if oriented == 1 {
+                "image has"
+            } else {
+                "images have"
+            },
+            listed(without.iter())
+        ),
+        advice: "add the orientation of the others, or give the images the names that it states"
             .to_owned(),
     }
 }

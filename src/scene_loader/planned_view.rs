@@ -3,6 +3,7 @@
 use nalgebra::Matrix3;
 
 use crate::camera::{Camera, Distortion};
+use crate::error::Error;
 use crate::orientation::{AngleUnit, Crop, Orientation};
 use crate::raster::ImageHeader;
 
@@ -10,12 +11,16 @@ use crate::raster::ImageHeader;
 pub(crate) struct PlannedImage {
     pub file: usize,
     pub header: Option<ImageHeader>,
+    /// Why there is no header.
+    pub unreadable: Option<Error>,
     pub orientation: Option<Orientation>,
 }
 
 /// A view before its pixels are decoded.
 pub(crate) struct PlannedView {
     pub file: usize,
+    /// The name that it goes by: that of the file, with folders where names repeat.
+    pub name: String,
     /// Camera of the whole image, local frame.
     pub whole: Camera,
     pub distortion: Option<Distortion>,

@@ -88,10 +88,26 @@ fn a_scene_survives_the_way_through_files() {
 fn images_and_orientations_without_each_other() {
     let mut files = gable_files();
     edit(&mut files, "colmap/images.txt", "s2_01.png", "other.png");
+    // Five are left: the sixth is named, by run and page alike.
+    let scene = load_scene(&files, &all()).unwrap();
+    assert_eq!(scene.views.len(), 5);
+    let named = "images without an orientation in COLMAP text model: colmap/cameras.txt + colmap/images.txt, left out: \
+                 images/s2_01.png";
+    assert!(
+        scene.warnings.iter().any(|w| w == named),
+        "{:?}",
+        scene.warnings
+    );
+    assert_eq!(inspect_files(&files, &all()).warnings, scene.warnings);
     refused(
         &files,
-        &all(),
-        &["images/s2_01.png: the image has no orientation", "COLMAP"],
+        &only(&["s1_01", "s1_02", "s2_01"]),
+        &[
+            "2 images have an orientation in COLMAP",
+            "none for images/s2_01.png",
+            "it names",
+            "other.png",
+        ],
     );
     // Left out by the choice of views, it does not matter.
     let names = ["s1_01", "s1_02.png", "S1_03"];
@@ -115,14 +131,22 @@ fn images_and_orientations_without_each_other() {
 fn names_that_are_not_unique() {
     let mut files = gable_files();
     let copy = find(&mut files, "images/s1_02.png").bytes.clone();
-    files.push(InputFile::new("more\\S1_02.tif", copy));
+    files.push(InputFile::new("more\\S1_02.tif", copy.clone()));
+    let scene = load_scene(&files, &all()).unwrap();
+    assert_eq!(scene.views[1].name, "s1_02.png", "the name that is stated");
+    let named = "more/S1_02.tif (images/s1_02.png was taken)";
+    assert!(scene.warnings[0].ends_with(named), "{:?}", scene.warnings);
+    files.push(InputFile::new("again\\s1_02.png", copy));
     refused(
         &files,
         &all(),
-        &["images/s1_02.png", "more/S1_02.tif", "same name"],
+        &[
+            "again/s1_02.png and images/s1_02.png have the same name",
+            "colmap/images.txt, line 5",
+        ],
     );
     let mut files = gable_files();
-    edit(&mut files, "colmap/images.txt", "s2_01.png", "x/s1_01.png");
+    edit(&mut files, "colmap/images.txt", "s2_01.png", "s1_01.png");
     refused(
         &files,
         &all(),
@@ -173,7 +197,7 @@ fn an_image_of_another_size() {
         &mut files,
         "colmap/cameras.txt",
         "3 PINHOLE 48 48",
-        "3 PINHOLE 96 96",
+        "3 PINHOLE 96 80",
     );
     refused(
         &files,
@@ -181,7 +205,7 @@ fn an_image_of_another_size() {
         &[
             "images/s1_03.png",
             "48 x 48",
-            "96 x 96",
+            "96 x 80",
             "colmap/images.txt, line 7",
         ],
     );
@@ -345,7 +369,12 @@ fn a_distorting_lens_is_removed() {
             / 1e4
     };
     let mut files = inputs(to_files(&scene));
-    let before = difference(&load_scene(&files, &all()).unwrap());
+    // With its lens left out the images hardly agree, which is to be seen here.
+    let neglected = LoadOptions {
+        ignore_check: true,
+        ..all()
+    };
+    let before = difference(&load_scene(&files, &neglected).unwrap());
     let cameras = find(&mut files, "colmap/cameras.txt");
     let lines = cameras.text().replace(" PINHOLE", " OPENCV");
     let lines = lines.lines().map(|line| match line.starts_with('#') {

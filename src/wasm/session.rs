@@ -59,6 +59,9 @@ struct JsLoadOptions {
     /// Undo the mistake in the orientation that the images give away.
     #[tsify(optional)]
     apply_fix: bool,
+    /// Go on where the images do not agree with their orientation.
+    #[tsify(optional)]
+    ignore_check: bool,
     /// Adjust views that are turned or moved against the others by up to a few pixels.
     #[tsify(optional)]
     adjust: bool,
@@ -282,6 +285,7 @@ pub(crate) fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
         epsg: options.epsg,
         memory_mb: None,
         apply_fix: options.apply_fix,
+        ignore_check: options.ignore_check,
         adjust: options.adjust,
     })
 }
@@ -295,6 +299,7 @@ impl From<&LoadOptions> for JsLoadOptions {
             ground_z: options.ground_z,
             epsg: options.epsg,
             apply_fix: options.apply_fix,
+            ignore_check: options.ignore_check,
             adjust: options.adjust,
         }
     }

@@ -5,11 +5,12 @@ use crate::orientation_check::{CheckFinding, CheckedView, OrientationCheck};
 use crate::scene_loader::names::listed;
 
 /// A warning, or the refusal of the scene. `refusal` is the one that the positions of the cameras
-/// alone gave reason for.
+/// alone gave reason for; with `ignore_check` what the images contradict is only a warning.
 pub(crate) fn warning_or_refusal(
     check: &OrientationCheck,
     views: &[CheckedView],
     refusal: Option<Error>,
+    ignore_check: bool,
 ) -> Result<Option<String>> {
     let finding = &check.finding;
     let contradiction = |problem, advice: &str| Error::Contradiction {
@@ -17,20 +18,35 @@ pub(crate) fn warning_or_refusal(
         advice: advice.to_owned(),
         report: Box::new(check.report()),
     };
-    if let CheckFinding::Explained {
-        before,
-        after,
-        words,
-        ..
-    } = finding
-    {
-        return Err(contradiction(
+    let disagreement = match finding {
+        CheckFinding::Explained {
+            before,
+            after,
+            words,
+            ..
+        } => Some((
             format!(
                 "the images contradict their orientation: they agree to {:.2} as it stands, and to {:.2} if {words}",
                 before.score, after.score
             ),
             "correct the orientation file, or have it corrected on loading (--apply-fix)",
-        ));
+        )),
+        CheckFinding::Unexplained(agreement) => Some((
+            format!(
+                "the images hardly agree with their orientation (to {:.2}, where 0 is chance and 1 perfect), and no \
+                 usual mistake explains it",
+                agreement.score
+            ),
+            "check that images and orientation belong together (names, folders, the same flight), or go on \
+             nevertheless (--ignore-check)",
+        )),
+        _ => None,
+    };
+    if let (Some((problem, advice)), false) = (&disagreement, ignore_check) {
+        // What the positions of the cameras say is more than that nothing explains it.
+        if refusal.is_none() || matches!(finding, CheckFinding::Explained { .. }) {
+            return Err(contradiction(problem.clone(), advice));
+        }
     }
     if let Some(refusal) = refusal {
         return Err(match (finding, refusal) {
@@ -49,6 +65,9 @@ pub(crate) fn warning_or_refusal(
             (_, refusal) => refusal,
         });
     }
+    if let Some((problem, _)) = disagreement {
+        return Ok(Some(problem));
+    }
     Ok(match finding {
         CheckFinding::Offset {
             offsets_px: [before, after],
@@ -62,12 +81,10 @@ pub(crate) fn warning_or_refusal(
              leave them out)",
             listed(outliers.iter().map(|&i| views[i].name))
         )),
-        CheckFinding::Unexplained(agreement) => Some(format!(
-            "the images hardly agree with their orientation (to {:.2}, where 0 is chance and 1 perfect), and no usual \
-             mistake explains it: check that they belong together",
-            agreement.score
-        )),
-        CheckFinding::Sound(_) | CheckFinding::Unknown(_) | CheckFinding::Explained { .. } => None,
+        CheckFinding::Sound(_)
+        | CheckFinding::Unknown(_)
+        | CheckFinding::Explained { .. }
+        | CheckFinding::Unexplained(_) => None,
     })
 }
 

@@ -75,9 +75,19 @@ pub(crate) fn check_and_correct(
             return Err(error);
         }
         check = check_orientation(&views);
-        warnings.extend(warning_or_refusal(&check, &views, None)?);
+        warnings.extend(warning_or_refusal(
+            &check,
+            &views,
+            None,
+            options.ignore_check,
+        )?);
     } else {
-        warnings.extend(warning_or_refusal(&check, &views, refusal)?);
+        warnings.extend(warning_or_refusal(
+            &check,
+            &views,
+            refusal,
+            options.ignore_check,
+        )?);
     }
     let mut cameras: Vec<Camera> = views.iter().map(|v| v.camera.clone()).collect();
     warnings.extend(correct_shifts(&check, &views, &mut cameras, options.adjust));

@@ -113,7 +113,7 @@ const BAD_INPUTS: { what: string; files: () => Upload[]; says: RegExp }[] = [
     files: () => [
       ...demoImages(3),
       ...demoImages(1).map(({ buffer }) => upload("s1_01.jpeg", buffer)),
-      ...demoOrientation(),
+      ...demoOrientation((text) => text.replace(/^s1_01\.jpg/m, "s1_01")),
     ],
     says: /s1_01\.jpe?g.*same name/,
   },
@@ -150,6 +150,17 @@ const BAD_INPUTS: { what: string; files: () => Upload[]; says: RegExp }[] = [
       ...demoOrientation((text) => text.replace(/^(s\S+ \S+ \S+ \S+) (\S+) (\S+)/gm, "$1 $3 $2")),
     ],
     says: /contradict.*phi, omega, kappa/,
+  },
+  {
+    // Each image under the name of one from the other strip and end, in no order.
+    what: "photographs of another place",
+    files: () => {
+      const images = demoImages(6);
+      const order = [4, 2, 5, 0, 3, 1];
+      const swapped = images.map(({ name }, i) => upload(name, (images[order[i] ?? 0] as Upload).buffer));
+      return [...swapped, ...demoOrientation()];
+    },
+    says: /hardly agree.*--ignore-check/,
   },
   {
     what: "rows counted from the bottom",

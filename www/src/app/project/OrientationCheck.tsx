@@ -3,6 +3,7 @@
 import "./project.css";
 import type { Agreement, AgreementReport } from "../../shared/records";
 import { grouped } from "../parts/numberText";
+import { runOptions } from "../state/project";
 import { setRunOptions } from "./projectActions";
 
 /** Trials beyond these explain nothing. */
@@ -23,8 +24,16 @@ export function OrientationCheck({ report }: { report: AgreementReport }) {
         ))}
       </dl>
       {mistake !== null && (
-        <button type="button" class="primary" onClick={() => void setRunOptions({ applyFix: true })}>
+        <button type="button" class="primary" onClick={() => void setRunOptions({ applyFix: true, ignoreCheck: false })}>
           Apply the fix
+        </button>
+      )}
+      {isRefused(report.finding) && !runOptions.value.ignoreCheck && (
+        <button
+          type="button"
+          onClick={() => void setRunOptions({ applyFix: false, ignoreCheck: true })}
+        >
+          Go on nevertheless
         </button>
       )}
       {trials.length > 0 && (
@@ -55,6 +64,11 @@ export function OrientationCheck({ report }: { report: AgreementReport }) {
       )}
     </div>
   );
+}
+
+/** What loading refuses unless it is told to go on. */
+function isRefused(finding: AgreementReport["finding"]): boolean {
+  return finding === "explained" || finding === "unexplained";
 }
 
 /** 0 is what chance gives, 1 is perfect. */

@@ -25,6 +25,11 @@ export function Project() {
           Take the orientation as it is
         </button>
       )}
+      {runOptions.value.ignoreCheck && (
+        <button type="button" onClick={() => void setRunOptions({ ignoreCheck: false })}>
+          Heed the orientation check again
+        </button>
+      )}
       <KeptNote />
     </section>
   );

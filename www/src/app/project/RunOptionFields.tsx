@@ -1,6 +1,7 @@
 /** Which orientation, which part of the ground, how high it lies. */
 import { signal } from "@preact/signals";
 import { useState } from "preact/hooks";
+import type { OrientationCandidate } from "../../shared/records";
 import { TextField } from "../parts/TextField";
 import { type Parsed, parseHeight, parseRegion, parseTile } from "../settings/loadOptions";
 import { inspection, runOptions } from "../state/project";
@@ -17,7 +18,7 @@ export function OrientationChoice() {
       <label for="orientation">Orientation</label>
       <select
         id="orientation"
-        value={runOptions.value.orientation ?? found[0]?.path}
+        value={chosen(found, runOptions.value.orientation)}
         onChange={(event) => void setRunOptions({ orientation: event.currentTarget.value })}
       >
         {found.map(({ label, path }) => (
@@ -28,6 +29,15 @@ export function OrientationChoice() {
       </select>
     </div>
   );
+}
+
+/** The path of the one that is taken: a file of several is taken by its first. */
+function chosen(found: readonly OrientationCandidate[], wanted: string | null): string | undefined {
+  const paths = found.map(({ path }) => path);
+  if (wanted === null || paths.includes(wanted)) {
+    return wanted ?? paths[0];
+  }
+  return paths.find((path) => path.startsWith(`${wanted}: `)) ?? wanted;
 }
 
 /** Whether the fields were open last; views that are read again draw them anew. */

@@ -4,7 +4,7 @@ import type { RunOptions } from "../state/project";
 
 /** The core's options; the views are named only where some are left out. */
 export function loadOptions(wanted: RunOptions, inspection: Inspection | null): LoadOptions {
-  const { orientation, leftOut, roi, groundZ, applyFix, adjust, epsg } = wanted;
+  const { orientation, leftOut, roi, groundZ, applyFix, ignoreCheck, adjust, epsg } = wanted;
   const used = (inspection?.images ?? []).filter(({ path }) => !leftOut.includes(path));
   return {
     ...(orientation !== null && { orientation }),
@@ -12,6 +12,7 @@ export function loadOptions(wanted: RunOptions, inspection: Inspection | null): 
     ...(roi !== null && { roi }),
     ...(groundZ !== null && { groundZ }),
     ...(applyFix && { applyFix }),
+    ...(ignoreCheck && { ignoreCheck }),
     ...(adjust && { adjust }),
     ...(epsg !== null && { epsg }),
   };
@@ -29,6 +30,7 @@ export function wishesOf(opened: OpenedProject["options"], inspection: Inspectio
     groundZ,
     epsg,
     applyFix: opened.applyFix === true,
+    ignoreCheck: opened.ignoreCheck === true,
     adjust: opened.adjust === true,
     tileM: null,
   };

@@ -11,6 +11,8 @@ export interface RunOptions {
   groundZ: number | null;
   /** Undo the mistake in the orientation that the images give away. */
   applyFix: boolean;
+  /** Go on where the images do not agree with their orientation. */
+  ignoreCheck: boolean;
   /** Adjust small errors of single views. */
   adjust: boolean;
   /** Size of the tiles in which the region is worked off, metres; null: in one. */
@@ -25,6 +27,7 @@ export const NO_OPTIONS: RunOptions = {
   roi: null,
   groundZ: null,
   applyFix: false,
+  ignoreCheck: false,
   adjust: false,
   tileM: null,
   epsg: null,

@@ -18,6 +18,7 @@ describe("run options", () => {
       roi: [1, 2, 3, 4] as const,
       groundZ: 0,
       applyFix: true,
+      ignoreCheck: true,
       adjust: true,
       tileM: 50,
       epsg: 25832,
@@ -28,6 +29,7 @@ describe("run options", () => {
       roi: [1, 2, 3, 4],
       groundZ: 0,
       applyFix: true,
+      ignoreCheck: true,
       adjust: true,
       epsg: 25832,
     });
