@@ -15,6 +15,8 @@ use super::input_file::InputFile;
 pub enum FileKind {
     /// JPEG, PNG or TIFF.
     Image,
+    /// An image in a format that is not read.
+    UnreadImage,
     /// COLMAP's list of cameras.
     ColmapCameras,
     /// COLMAP's list of images.
@@ -84,6 +86,7 @@ impl FileKind {
     pub fn describe(self) -> &'static str {
         match self {
             Self::Image => "image",
+            Self::UnreadImage => "image in a format that is not read",
             Self::ColmapCameras => "COLMAP camera list (cameras.txt)",
             Self::ColmapImages => "COLMAP image list (images.txt)",
             Self::ColmapPoints => "COLMAP points, not needed",
@@ -127,6 +130,9 @@ const HEAD_LINES: usize = 6;
 
 /// Recognises a file.
 pub fn detect(file: &InputFile) -> FileKind {
+    if crate::raster::unread_format(&file.path, &file.bytes).is_some_and(|f| f.is_image) {
+        return FileKind::UnreadImage;
+    }
     if crate::raster::image_format(&file.bytes).is_some() {
         return FileKind::Image;
     }

@@ -7,6 +7,8 @@
 //! plan               one orientation chosen, images assigned to it by name; all refusals
 //! candidate, names   what the plan chooses from and assigns by; planned_view: its views
 //! checks             the cameras by themselves and against the images; corrections
+//! turned             images that were oriented as their EXIF header shows them
+//! notices            what is said of images: bands and turns, formats that are not read
 //! region             part of each image that shows the region of interest
 //! memory             memory that a run takes
 //! inspect            the plan as a table
@@ -27,12 +29,14 @@ mod inspect;
 mod load;
 mod memory;
 mod names;
+mod notices;
 mod plan;
 mod planned_view;
 mod project;
 mod region;
 #[cfg(test)]
 mod tests;
+mod turned;
 
 pub use archive::unpack;
 pub use candidate::OrientationCandidate;

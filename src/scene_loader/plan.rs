@@ -8,8 +8,10 @@ use super::checks::camera_checks;
 use super::input::LoadOptions;
 use super::memory;
 use super::names::{best_match, listed, match_rank};
+use super::notices;
 use super::planned_view::{PlannedImage, PlannedView};
 use super::region::RegionOfInterest;
+use super::turned::{shown_size, turn_of};
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::orientation::{
@@ -67,6 +69,7 @@ impl Plan {
             plan.match_orientations(files, orientations, options.views.is_some());
             plan.form_views(files, options);
         }
+        notices::add_to(&mut plan, files);
         plan
     }
 
@@ -90,13 +93,6 @@ impl Plan {
             image_header(&files[i].path, &files[i].bytes)
         });
         for (file, header) in images.into_iter().zip(headers) {
-            if header.as_ref().is_ok_and(|h| h.turned) {
-                self.warnings.push(format!(
-                    "{}: its EXIF header asks for a turn, which is not applied: the orientation \
-                     must describe the pixels as they are stored",
-                    files[file].path
-                ));
-            }
             let header = header.map_err(|e| self.errors.push(e)).ok();
             self.images.push(PlannedImage {
                 file,
@@ -340,7 +336,8 @@ fn planned_view(
         problem,
         advice: advice.to_owned(),
     };
-    let (width, height) = (header.width, header.height);
+    let turn = turn_of(header, orientation);
+    let (width, height) = shown_size(header, turn);
     if let Some((w, h)) = orientation.size.filter(|&size| size != (width, height)) {
         return Err(refuse(
             format!(
@@ -389,6 +386,7 @@ fn planned_view(
         angles: orientation.angles,
         crop: orientation.crop,
         part: None,
+        turn,
     })
 }
 
