@@ -16,6 +16,8 @@ use super::unread;
 pub enum FileKind {
     /// JPEG, PNG or TIFF.
     Image,
+    /// An image in a format that is not read.
+    UnreadImage,
     /// COLMAP's list of cameras.
     ColmapCameras,
     /// COLMAP's list of images.
@@ -87,6 +89,7 @@ impl FileKind {
     pub fn describe(self) -> &'static str {
         match self {
             Self::Image => "image",
+            Self::UnreadImage => "image in a format that is not read",
             Self::ColmapCameras => "COLMAP camera list (cameras.txt)",
             Self::ColmapImages => "COLMAP image list (images.txt)",
             Self::ColmapPoints => "COLMAP points, not needed",
@@ -131,6 +134,9 @@ const HEAD_LINES: usize = 6;
 
 /// Recognises a file.
 pub fn detect(file: &InputFile) -> FileKind {
+    if crate::raster::unread_format(&file.path, &file.bytes).is_some_and(|f| f.is_image) {
+        return FileKind::UnreadImage;
+    }
     if crate::raster::image_format(&file.bytes).is_some() {
         return FileKind::Image;
     }

@@ -2,9 +2,9 @@
 //! to 1.
 //!
 //! ```text
-//! load            JPEG (jpeg), PNG and TIFF bytes, whole or one pixel window (window)
-//!    -> samples   8 or 16 bits a channel, as stored
+//! files           JPEG, PNG and TIFF bytes, whole or one pixel window
 //!    -> photograph    colours and grey values
+//! turn            a photograph as its EXIF header wants it shown
 //!
 //! gray            a raster of f32: a grey value, or the red-blue difference of a pixel (red_blue)
 //! channel         the choice between the two; linear_light undoes the camera's tone curve
@@ -17,26 +17,27 @@
 
 mod bilinear;
 mod channel;
+mod files;
 pub(crate) mod fill;
 mod filter;
 mod gray;
-mod jpeg;
 mod linear_light;
-mod load;
 mod noise;
 mod photograph;
 mod red_blue;
-mod samples;
+mod turn;
 mod warp;
-mod window;
 
 pub use channel::Channel;
+pub use files::{
+    Bands, ImageHeader, UnreadFormat, decoding_bytes, image_format, image_header, load_image,
+    load_window, unread_format,
+};
 pub(crate) use fill::{fill_gaps, mark_inside};
 pub use filter::gaussian_blur;
 pub use gray::Gray;
-pub use load::{ImageHeader, image_format, image_header, load_image};
 pub use noise::estimate_noise;
 pub use photograph::{Photograph, PixelWindow};
 pub use red_blue::RedBlueDifference;
+pub use turn::Turn;
 pub use warp::{Outside, Warp, corners};
-pub use window::{decoding_bytes, load_window};

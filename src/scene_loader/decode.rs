@@ -32,16 +32,23 @@ fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
         Some(lens) => region::source_of(part, whole, lens),
         None => part,
     };
+    let stored = match planned.turn {
+        Some(turn) => turn.stored_window(source, [whole.height, whole.width]),
+        None => source,
+    };
     let mut photograph = match source == all {
         true => load_image(&file.path, &file.bytes)?,
-        false => load_window(&file.path, &file.bytes, source)?,
+        false => load_window(&file.path, &file.bytes, stored)?,
     };
-    if photograph.rgb.dimensions() != (source[2], source[3]) {
+    if photograph.rgb.dimensions() != (stored[2], stored[3]) {
         return Err(Error::File {
             file: file.path.clone(),
             problem: "its header and its content have different sizes".to_owned(),
             advice: "export it again".to_owned(),
         });
+    }
+    if let Some(turn) = planned.turn {
+        photograph = turn.apply(&photograph);
     }
     let [column, row, width, height] = part;
     if let Some(lens) = &planned.distortion {

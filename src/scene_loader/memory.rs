@@ -28,9 +28,9 @@ pub(crate) fn peak_bytes(files: &[InputFile], views: &[PlannedView]) -> u64 {
     let decoding = views.iter().map(|v| {
         let whole = [v.whole.width, v.whole.height];
         let chunk = decoding_bytes(&files[v.file].bytes, whole);
-        // Without its lens a view is a second image of the same size.
-        let lens = v.distortion.map_or(0, |_| v.pixels() * (3 + 4));
-        chunk + lens
+        // Without its lens, or turned, a view is a second image of the same size.
+        let is_copied = v.distortion.is_some() || v.turn.is_some();
+        chunk + if is_copied { v.pixels() * (3 + 4) } else { 0 }
     });
     // Views are decoded at the same time when there is room, one by one otherwise.
     BASE_BYTES + read + kept + decoding.max().unwrap_or(0)

@@ -13,8 +13,10 @@ use super::checks::camera_checks;
 use super::input::LoadOptions;
 use super::memory;
 use super::names::{images_called, listed, view_names};
+use super::notices;
 use super::planned_view::{PlannedImage, PlannedView};
 use super::region::RegionOfInterest;
+use super::turned::{shown_size, turn_of};
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::orientation::{
@@ -81,6 +83,7 @@ impl Plan {
             let unreadable = plan.images.iter().filter_map(|i| i.unreadable.clone());
             plan.errors.splice(0..0, unreadable.collect::<Vec<_>>());
         }
+        notices::add_to(&mut plan, files);
         plan
     }
 
@@ -103,13 +106,6 @@ impl Plan {
             image_header(&files[i].path, &files[i].bytes)
         });
         for (file, header) in images.into_iter().zip(headers) {
-            if header.as_ref().is_ok_and(|h| h.turned) {
-                self.warnings.push(format!(
-                    "{}: its EXIF header asks for a turn, which is not applied: the orientation \
-                     must describe the pixels as they are stored",
-                    files[file].path
-                ));
-            }
             let (header, unreadable) = match header {
                 Ok(header) => (Some(header), None),
                 Err(error) => (None, Some(error)),
@@ -444,7 +440,8 @@ fn planned_view(
         problem,
         advice: advice.to_owned(),
     };
-    let (width, height) = (header.width, header.height);
+    let turn = turn_of(header, orientation);
+    let (width, height) = shown_size(header, turn);
     if let Some((w, h)) = orientation.size.filter(|&size| size != (width, height)) {
         return Err(refuse(
             format!(
@@ -498,6 +495,7 @@ fn planned_view(
         readings: orientation.readings.clone(),
         crop: orientation.crop,
         part: None,
+        turn,
     })
 }
 

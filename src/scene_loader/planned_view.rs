@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use crate::camera::{Camera, Distortion};
 use crate::error::Error;
 use crate::orientation::{AngleUnit, Crop, Orientation};
-use crate::raster::ImageHeader;
+use crate::raster::{ImageHeader, Turn};
 
 /// An image and the orientation found for it.
 pub(crate) struct PlannedImage {
@@ -31,6 +31,8 @@ pub(crate) struct PlannedView {
     pub crop: Option<Crop>,
     /// Column, row, width, height of the part that is used; the whole image when absent.
     pub part: Option<[u32; 4]>,
+    /// How the stored pixels are turned first.
+    pub turn: Option<Turn>,
 }
 
 impl PlannedView {

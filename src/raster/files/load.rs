@@ -3,19 +3,21 @@
 //! The format follows from the content. Alpha is dropped. 16-bit images, of which many cameras
 //! fill only 10 to 14 bits, are divided by the smallest power of two that holds their brightest
 //! value, and their grey values keep the full depth. An orientation in the EXIF header is
-//! reported, never applied: the orientation files describe the pixels as they are stored.
+//! reported, not applied here: the orientation files mostly describe the pixels as they are stored.
 
 use std::io::Cursor;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use image::codecs::png::PngDecoder;
-use image::codecs::tiff::TiffDecoder;
 use image::error::{LimitError, LimitErrorKind};
 use image::{ImageDecoder, ImageError, ImageFormat, ImageResult, Limits};
 
-use super::jpeg::Jpeg;
-use super::photograph::Photograph;
+use super::jpeg::{self, Jpeg};
 use super::samples::Samples;
+use super::tiff::{Bands, Tiff, is_tiff};
+use super::unread::unread_format;
 use crate::error::{Error, Result};
+use crate::raster::photograph::Photograph;
 
 /// The header of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,32 +26,53 @@ pub struct ImageHeader {
     pub width: u32,
     /// Height, pixels.
     pub height: u32,
+    /// The EXIF orientation, 1 (upright) to 8.
+    pub orientation: u8,
+    /// Which bands are used.
+    pub bands: Bands,
+}
+
+impl ImageHeader {
     /// Is the EXIF orientation other than upright?
-    pub turned: bool,
+    pub fn turned(&self) -> bool {
+        self.orientation != 1
+    }
 }
 
 /// Most pixels in one image: larger than the largest aerial frame camera (about 450 megapixels).
 const MAX_PIXELS: u64 = 600_000_000;
 
-/// No encoding packs more pixels into a byte (deflate: a thousand), so that a file which claims
-/// more is refused before memory is taken.
-const MOST_PIXELS_PER_BYTE: u64 = 4096;
-
 /// The format of an image that can be read, by its first bytes.
 pub fn image_format(bytes: &[u8]) -> Option<ImageFormat> {
+    if is_tiff(bytes) {
+        return Some(ImageFormat::Tiff);
+    }
     image::guess_format(bytes)
         .ok()
-        .filter(|f| matches!(f, ImageFormat::Jpeg | ImageFormat::Png | ImageFormat::Tiff))
+        .filter(|f| matches!(f, ImageFormat::Jpeg | ImageFormat::Png))
 }
 
 /// Reads the size from the header alone. `file` is for messages.
 pub fn image_header(file: &str, bytes: &[u8]) -> Result<ImageHeader> {
-    let mut decoder = decoder(file, bytes)?;
-    let (width, height) = decoder.size();
-    Ok(ImageHeader {
-        width,
-        height,
-        turned: decoder.turned(),
+    refusing_panics(file, || {
+        if is_tiff(bytes) {
+            let tiff = open_tiff(file, bytes)?;
+            let (width, height) = tiff.size();
+            return Ok(ImageHeader {
+                width,
+                height,
+                orientation: tiff.orientation(),
+                bands: tiff.bands(),
+            });
+        }
+        let mut decoder = decoder(file, bytes)?;
+        let (width, height) = decoder.size();
+        Ok(ImageHeader {
+            width,
+            height,
+            orientation: decoder.exif_orientation(),
+            bands: Bands::All,
+        })
     })
 }
 
@@ -61,28 +84,64 @@ pub fn load_image(file: &str, bytes: &[u8]) -> Result<Photograph> {
 }
 
 /// The samples as they are stored.
-pub(crate) fn decode(file: &str, bytes: &[u8]) -> Result<Samples> {
-    if image_format(bytes) == Some(ImageFormat::Jpeg) && !jpeg_is_complete(bytes) {
-        // The decoder would fill the missing part with grey.
-        return Err(unreadable(file, "the JPEG is cut off before its end"));
-    }
-    let decoder = decoder(file, bytes)?;
-    let samples = decoder
-        .samples()
-        .map_err(|e| unreadable(file, &e.to_string()))?;
-    samples.ok_or_else(|| Error::File {
-        file: file.to_owned(),
-        problem: "it holds floating-point values, whose range is unknown".to_owned(),
-        advice: "convert it to 8 or 16 bits per channel".to_owned(),
+pub(super) fn decode(file: &str, bytes: &[u8]) -> Result<Samples> {
+    refusing_panics(file, || {
+        if is_tiff(bytes) {
+            let tiff = open_tiff(file, bytes)?;
+            let (width, height) = tiff.size();
+            return tiff.window([0, 0, width, height]);
+        }
+        if image_format(bytes) == Some(ImageFormat::Jpeg) && !jpeg::is_complete(bytes) {
+            // The decoder would fill the missing part with grey.
+            return Err(unreadable(file, "the JPEG is cut off before its end"));
+        }
+        let decoder = decoder(file, bytes)?;
+        let samples = decoder
+            .samples()
+            .map_err(|e| unreadable(file, &e.to_string()))?;
+        samples.ok_or_else(|| Error::File {
+            file: file.to_owned(),
+            problem: "it holds floating-point values, whose range is unknown".to_owned(),
+            advice: "convert it to 8 or 16 bits per channel".to_owned(),
+        })
     })
+}
+
+/// The tags of a TIFF, unless it is a camera's raw file or claims an impossible size.
+pub(super) fn open_tiff<'a>(file: &'a str, bytes: &'a [u8]) -> Result<Tiff<'a>> {
+    refuse_unread(file, bytes)?;
+    let tiff = Tiff::open(file, bytes)?;
+    check_size(file, bytes, tiff.size())?;
+    Ok(tiff)
+}
+
+/// A decoder that fails in an unforeseen way refuses its file only, where panics can be caught.
+pub(super) fn refusing_panics<T>(file: &str, read: impl FnOnce() -> Result<T>) -> Result<T> {
+    catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| {
+        Err(unreadable(
+            file,
+            "its content makes no sense to the decoder",
+        ))
+    })
+}
+
+fn refuse_unread(file: &str, bytes: &[u8]) -> Result<()> {
+    match unread_format(file, bytes) {
+        None => Ok(()),
+        Some(format) => Err(Error::File {
+            file: file.to_owned(),
+            problem: format!("it is {}, which is not read", format.name),
+            advice: format.advice.to_owned(),
+        }),
+    }
 }
 
 /// The part of a decoder's interface that is used: the rest stays out of the wasm.
 trait SampleSource {
     /// Width and height, pixels.
     fn size(&self) -> (u32, u32);
-    /// Is the EXIF orientation other than upright?
-    fn turned(&mut self) -> bool;
+    /// The EXIF orientation, 1 (upright) to 8.
+    fn exif_orientation(&mut self) -> u8;
     /// All samples; `None` for floating-point values.
     fn samples(self: Box<Self>) -> ImageResult<Option<Samples>>;
 }
@@ -92,9 +151,8 @@ impl<D: ImageDecoder> SampleSource for D {
         self.dimensions()
     }
 
-    fn turned(&mut self) -> bool {
-        self.orientation()
-            .is_ok_and(|o| o != image::metadata::Orientation::NoTransforms)
+    fn exif_orientation(&mut self) -> u8 {
+        self.orientation().map_or(1, |o| o.to_exif())
     }
 
     fn samples(self: Box<Self>) -> ImageResult<Option<Samples>> {
@@ -115,10 +173,15 @@ fn zeroed_buffer(total_bytes: u64) -> ImageResult<Vec<u8>> {
 }
 
 fn decoder<'a>(file: &str, bytes: &'a [u8]) -> Result<Box<dyn SampleSource + 'a>> {
+    refuse_unread(file, bytes)?;
     let format = image_format(bytes)
         .ok_or_else(|| unreadable(file, "its content is neither JPEG nor PNG nor TIFF"))?;
     let decoder = decoder_of(format, bytes).map_err(|e| unreadable(file, &e.to_string()))?;
-    let (width, height) = decoder.size();
+    check_size(file, bytes, decoder.size())?;
+    Ok(decoder)
+}
+
+fn check_size(file: &str, bytes: &[u8], (width, height): (u32, u32)) -> Result<()> {
     let pixels = u64::from(width) * u64::from(height);
     if pixels > MAX_PIXELS || pixels == 0 {
         return Err(Error::File {
@@ -130,14 +193,14 @@ fn decoder<'a>(file: &str, bytes: &'a [u8]) -> Result<Box<dyn SampleSource + 'a>
             ),
         });
     }
-    if pixels / MOST_PIXELS_PER_BYTE > bytes.len() as u64 {
+    if pixels / jpeg::MOST_PIXELS_PER_BYTE as u64 > bytes.len() as u64 {
         let problem = format!(
             "{} bytes cannot hold {width} x {height} pixels",
             bytes.len()
         );
         return Err(unreadable(file, &problem));
     }
-    Ok(decoder)
+    Ok(())
 }
 
 fn decoder_of<'a>(format: ImageFormat, bytes: &'a [u8]) -> ImageResult<Box<dyn SampleSource + 'a>> {
@@ -146,8 +209,7 @@ fn decoder_of<'a>(format: ImageFormat, bytes: &'a [u8]) -> ImageResult<Box<dyn S
     let file = Cursor::new(bytes);
     match format {
         ImageFormat::Jpeg => limited(Jpeg::new(bytes)?, limits),
-        ImageFormat::Png => limited(PngDecoder::with_limits(file, limits.clone())?, limits),
-        _ => limited(TiffDecoder::new(file)?, limits),
+        _ => limited(PngDecoder::with_limits(file, limits.clone())?, limits),
     }
 }
 
@@ -165,28 +227,6 @@ fn unreadable(file: &str, problem: &str) -> Error {
         problem: format!("the image cannot be read: {problem}"),
         advice: "copy or export it again as JPEG, PNG or TIFF (8 or 16 bits)".to_owned(),
     }
-}
-
-/// Does the entropy-coded data of a JPEG run to its end-of-image marker?
-///
-/// Segments are skipped by their lengths, so that the marker of a thumbnail inside one does not
-/// count.
-fn jpeg_is_complete(bytes: &[u8]) -> bool {
-    let mut i = 2;
-    while let Some(&[a, marker]) = bytes.get(i..i + 2) {
-        match (a, marker) {
-            (0xff, 0xd9) => return true,
-            // Fill bytes, markers without a segment, and entropy-coded data.
-            (0xff, 0x00 | 0x01 | 0xd0..=0xd8) => i += 2,
-            (0xff, 0xff) => i += 1,
-            (0xff, _) => match bytes.get(i + 2..i + 4) {
-                Some(&[high, low]) => i += 2 + usize::from(high) * 256 + usize::from(low),
-                _ => return false,
-            },
-            _ => i += 1,
-        }
-    }
-    false
 }
 
 #[cfg(test)]

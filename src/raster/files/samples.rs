@@ -5,8 +5,8 @@
 
 use image::ColorType;
 
-use super::gray::Gray;
-use super::photograph::{Photograph, PixelWindow};
+use crate::raster::gray::Gray;
+use crate::raster::photograph::{Photograph, PixelWindow};
 
 /// The samples of all pixels, row by row.
 pub(crate) struct Samples {
@@ -87,7 +87,7 @@ impl Samples {
 }
 
 /// The brightest of the colours; alpha does not count.
-pub(crate) fn brightest(values: &[u16], channels: usize) -> u16 {
+fn brightest(values: &[u16], channels: usize) -> u16 {
     let colours = values
         .chunks(channels)
         .flat_map(|pixel| &pixel[..colours_of(channels).min(pixel.len())]);

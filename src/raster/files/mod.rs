@@ -1,0 +1,20 @@
+//! Photographs from the bytes of files.
+//!
+//! ```text
+//! unread          what cannot be read, by name
+//! load, window    a whole photograph, or one pixel window of it
+//!    jpeg, tiff   PNG is left to crate `image`
+//! samples         8 or 16 bits a channel, as stored, and the photograph they make
+//! ```
+
+mod jpeg;
+mod load;
+mod samples;
+mod tiff;
+mod unread;
+mod window;
+
+pub use load::{ImageHeader, image_format, image_header, load_image};
+pub use tiff::Bands;
+pub use unread::{UnreadFormat, unread_format};
+pub use window::{decoding_bytes, load_window};

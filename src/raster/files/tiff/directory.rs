@@ -1,0 +1,172 @@
+//! The directories of a TIFF: tags and their values.
+
+use std::ops::Range;
+
+/// The tags that are looked at.
+pub(crate) mod tags {
+    pub(crate) const NEW_SUBFILE_TYPE: u16 = 254;
+    pub(crate) const IMAGE_WIDTH: u16 = 256;
+    pub(crate) const IMAGE_LENGTH: u16 = 257;
+    pub(crate) const BITS_PER_SAMPLE: u16 = 258;
+    pub(crate) const COMPRESSION: u16 = 259;
+    pub(crate) const PHOTOMETRIC: u16 = 262;
+    pub(crate) const FILL_ORDER: u16 = 266;
+    pub(crate) const STRIP_OFFSETS: u16 = 273;
+    pub(crate) const ORIENTATION: u16 = 274;
+    pub(crate) const SAMPLES_PER_PIXEL: u16 = 277;
+    pub(crate) const ROWS_PER_STRIP: u16 = 278;
+    pub(crate) const STRIP_BYTE_COUNTS: u16 = 279;
+    pub(crate) const PLANAR_CONFIGURATION: u16 = 284;
+    pub(crate) const PREDICTOR: u16 = 317;
+    pub(crate) const COLOR_MAP: u16 = 320;
+    pub(crate) const TILE_WIDTH: u16 = 322;
+    pub(crate) const TILE_LENGTH: u16 = 323;
+    pub(crate) const TILE_OFFSETS: u16 = 324;
+    pub(crate) const TILE_BYTE_COUNTS: u16 = 325;
+    pub(crate) const SUB_IFDS: u16 = 330;
+    pub(crate) const EXTRA_SAMPLES: u16 = 338;
+    pub(crate) const SAMPLE_FORMAT: u16 = 339;
+    pub(crate) const JPEG_TABLES: u16 = 347;
+    pub(crate) const DNG_VERSION: u16 = 50706;
+}
+
+/// Does a file begin as a TIFF or a BigTIFF does?
+pub(crate) fn is_tiff(bytes: &[u8]) -> bool {
+    let starts = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
+    starts.iter().any(|start| bytes.starts_with(*start))
+}
+
+/// Byte order and size of the offsets.
+#[derive(Clone, Copy)]
+struct Form {
+    big_endian: bool,
+    big_offsets: bool,
+}
+
+/// One directory: an image, or a reduced copy, a mask, a page.
+pub(crate) struct Directory<'a> {
+    bytes: &'a [u8],
+    form: Form,
+    entries: Vec<Entry>,
+    /// Where the next one stands; 0 for none.
+    next: u64,
+}
+
+struct Entry {
+    tag: u16,
+    /// Bytes of one value; 0 for kinds that hold no whole numbers.
+    size: usize,
+    /// Where the values stand.
+    place: Range<usize>,
+}
+
+/// Most directories that are followed: overviews and masks come by the dozen at most.
+const MOST_DIRECTORIES: usize = 64;
+
+impl<'a> Directory<'a> {
+    /// The directories of the main chain, up to the first that is damaged.
+    pub(crate) fn chain(bytes: &'a [u8]) -> impl Iterator<Item = Self> {
+        let form = Form {
+            big_endian: bytes.starts_with(b"MM"),
+            big_offsets: bytes.get(2..4).is_some_and(|b| b.contains(&43)),
+        };
+        let at = match form.big_offsets {
+            true => form.number(bytes, 8..16),
+            false => form.number(bytes, 4..8),
+        };
+        let first = at.and_then(|at| Self::at(bytes, form, at));
+        std::iter::successors(first, move |directory| {
+            Self::at(bytes, form, directory.next)
+        })
+        .take(MOST_DIRECTORIES)
+    }
+
+    /// The directories below this one.
+    pub(crate) fn below(&self) -> impl Iterator<Item = Self> {
+        let offsets = self.numbers(tags::SUB_IFDS).unwrap_or_default();
+        let count = offsets.len().min(MOST_DIRECTORIES);
+        (offsets.into_iter().take(count)).filter_map(|at| Self::at(self.bytes, self.form, at))
+    }
+
+    fn at(bytes: &'a [u8], form: Form, at: u64) -> Option<Self> {
+        let at = usize::try_from(at).ok().filter(|&at| at > 0)?;
+        let (count_size, entry_size, value_size) = if form.big_offsets {
+            (8, 20, 8)
+        } else {
+            (2, 12, 4)
+        };
+        let start = at.checked_add(count_size)?;
+        let count = usize::try_from(form.number(bytes, at..start)?).ok()?;
+        let end = start.checked_add(count.checked_mul(entry_size)?)?;
+        let entries = bytes.get(start..end)?.chunks_exact(entry_size);
+        let read = |i: usize, entry: &[u8]| {
+            let tag = u16::try_from(form.number(entry, 0..2)?).ok()?;
+            let (size, bytes_each) = match form.number(entry, 2..4)? {
+                1 | 6 | 7 => (1, 1),
+                2 => (0, 1),
+                3 => (2, 2),
+                4 | 13 => (4, 4),
+                16 | 18 => (8, 8),
+                8 => (0, 2),
+                9 | 11 => (0, 4),
+                _ => (0, 8),
+            };
+            let values = entry_size - value_size..entry_size;
+            let count = usize::try_from(form.number(entry, 4..values.start)?).ok()?;
+            let length = count.checked_mul(bytes_each)?;
+            let from = match length <= value_size {
+                true => start + i * entry_size + values.start,
+                false => usize::try_from(form.number(entry, values)?).ok()?,
+            };
+            let place = from..from.checked_add(length)?;
+            Some(Entry { tag, size, place })
+        };
+        Some(Self {
+            bytes,
+            form,
+            // An entry of a private tag may be damaged: only its own values are missing then.
+            entries: entries
+                .enumerate()
+                .filter_map(|(i, e)| read(i, e))
+                .collect(),
+            next: form
+                .number(bytes, end..end.checked_add(value_size)?)
+                .unwrap_or(0),
+        })
+    }
+
+    /// Is the most significant byte first?
+    pub(crate) fn big_endian(&self) -> bool {
+        self.form.big_endian
+    }
+
+    /// The bytes of a tag's values.
+    pub(crate) fn raw(&self, tag: u16) -> Option<&'a [u8]> {
+        let entry = self.entries.iter().find(|e| e.tag == tag)?;
+        self.bytes.get(entry.place.clone())
+    }
+
+    /// The whole numbers of a tag.
+    pub(crate) fn numbers(&self, tag: u16) -> Option<Vec<u64>> {
+        let entry = self.entries.iter().find(|e| e.tag == tag && e.size > 0)?;
+        let values = self.bytes.get(entry.place.clone())?;
+        let number = |value: &[u8]| self.form.number(value, 0..entry.size);
+        values.chunks_exact(entry.size).map(number).collect()
+    }
+
+    /// The first number of a tag.
+    pub(crate) fn number(&self, tag: u16) -> Option<u64> {
+        self.numbers(tag)?.first().copied()
+    }
+}
+
+impl Form {
+    fn number(self, bytes: &[u8], place: Range<usize>) -> Option<u64> {
+        let value = bytes.get(place)?;
+        let join = |sum: u64, byte: &u8| sum << 8 | u64::from(*byte);
+        Some(match self.big_endian {
+            true => value.iter().fold(0, join),
+            false => value.iter().rev().fold(0, join),
+        })
+    }
+}
