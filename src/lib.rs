@@ -93,7 +93,6 @@ pub mod raster;
 pub mod scene;
 pub mod scene_loader;
 pub mod solids;
-mod sorting;
 pub mod synthetic;
 pub mod terrain;
 #[cfg(test)]

@@ -134,7 +134,7 @@ const HEAD_LINES: usize = 6;
 
 /// Recognises a file.
 pub fn detect(file: &InputFile) -> FileKind {
-    if crate::raster::unread_format(&file.path, &file.bytes).is_some_and(|f| f.is_image) {
+    if crate::raster::unread_image_format(&file.path, &file.bytes).is_some_and(|f| f.is_image) {
         return FileKind::UnreadImage;
     }
     if crate::raster::image_format(&file.bytes).is_some() {

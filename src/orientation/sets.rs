@@ -12,7 +12,6 @@ use super::image_orientation::Orientation;
 use super::input_file::InputFile;
 use super::reference::{self, StatedReference};
 use crate::error::Result;
-use crate::sorting::{sort_by, sort_by_key};
 
 /// Files that together orient images: one candidate for the orientation of a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -178,9 +177,7 @@ pub fn orientation_sets(
     for set in &mut sets {
         add_files_beside(inputs, kinds, set);
     }
-    sort_by(&mut sets, |a, b| {
-        (a.format, &a.folder, &a.files).cmp(&(b.format, &b.folder, &b.files))
-    });
+    sets.sort_by(|a, b| (a.format, &a.folder, &a.files).cmp(&(b.format, &b.folder, &b.files)));
     if sets.is_empty() {
         let nearly: Vec<String> = (0..inputs.len())
             .filter(|&i| kinds[i] == FileKind::Ignored)
@@ -231,7 +228,7 @@ fn add_files_beside(inputs: &[InputFile], kinds: &[FileKind], set: &mut Orientat
         Format::Micmac => {
             // Each orientation file names its calibration; of equal names the last is taken.
             let mut lenses: Vec<usize> = all(FileKind::MicmacCalibration).collect();
-            sort_by_key(&mut lenses, |&i| inputs[i].folder() == set.folder);
+            lenses.sort_by_key(|&i| inputs[i].folder() == set.folder);
             set.files.extend(lenses);
             return;
         }

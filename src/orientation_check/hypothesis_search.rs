@@ -9,7 +9,6 @@ use super::error_hypothesis::ErrorHypothesis;
 use super::view::CheckedView;
 use crate::agreement::{Agreement, TestedHypothesis};
 use crate::camera::Camera;
-use crate::sorting::sort_by;
 
 /// What came of testing hypotheses.
 pub(crate) struct HypothesisSearch {
@@ -58,7 +57,7 @@ impl HypothesisSearch {
                 Some((agreement, hypothesis, cameras))
             })
             .collect();
-        sort_by(&mut ranked, |a, b| b.0.score.total_cmp(&a.0.score));
+        ranked.sort_by(|a, b| b.0.score.total_cmp(&a.0.score));
         let record = |agreement, hypothesis: ErrorHypothesis, all_pairs| TestedHypothesis {
             hypothesis: hypothesis.describe(views),
             agreement,
@@ -73,9 +72,7 @@ impl HypothesisSearch {
                 best = (agreement, Some(*hypothesis));
             }
         }
-        sort_by(&mut tested, |a, b| {
-            b.agreement.score.total_cmp(&a.agreement.score)
-        });
+        tested.sort_by(|a, b| b.agreement.score.total_cmp(&a.agreement.score));
         let others = ranked.iter().skip(FINALISTS);
         tested.extend(
             others.map(|(agreement, hypothesis, _)| record(*agreement, *hypothesis, false)),
@@ -86,7 +83,7 @@ impl HypothesisSearch {
     /// This search's best, and the tested hypotheses of both.
     fn after(mut self, earlier: Self) -> Self {
         self.tested.extend(earlier.tested);
-        sort_by(&mut self.tested, |a, b| {
+        self.tested.sort_by(|a, b| {
             let by_score = b.agreement.score.total_cmp(&a.agreement.score);
             b.all_pairs.cmp(&a.all_pairs).then(by_score)
         });

@@ -1,6 +1,5 @@
 //! Filling on small rasters: polygons into masks, gaps with smooth colours.
 
-use crate::sorting::sort_by;
 use nalgebra::Point2;
 
 /// Sets the pixels of a mask (`width * height`) whose centres lie inside the rings (even-odd).
@@ -27,7 +26,7 @@ pub(crate) fn mark_inside(
                 }
             }
         }
-        sort_by(&mut crossings, f64::total_cmp);
+        crossings.sort_by(f64::total_cmp);
         for span in crossings.chunks_exact(2) {
             let from = (span[0] - 0.5).ceil().max(0.0) as usize;
             let to = ((span[1] - 0.5).ceil().max(0.0) as usize).min(width);

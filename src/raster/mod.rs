@@ -30,8 +30,8 @@ mod warp;
 
 pub use channel::Channel;
 pub use files::{
-    Bands, ImageHeader, UnreadFormat, decoding_bytes, image_format, image_header, load_image,
-    load_window, unread_format,
+    Bands, ImageHeader, UnreadImageFormat, decoding_bytes, image_format, image_header, load_image,
+    load_window, unread_image_format,
 };
 pub(crate) use fill::{fill_gaps, mark_inside};
 pub use filter::gaussian_blur;

@@ -6,7 +6,6 @@ use zip::ZipArchive;
 
 use crate::error::{Error, Result};
 use crate::orientation::InputFile;
-use crate::sorting::sort_by;
 
 /// Unpacked bytes of one archive at most: a few bytes can be packed that unpack to any size.
 const MOST_BYTES: u64 = if cfg!(target_arch = "wasm32") {
@@ -58,7 +57,7 @@ pub fn unpack(file: InputFile) -> Result<Vec<InputFile>> {
             .ok_or_else(|| refuse(format!("it unpacks to more than {MOST_BYTES} bytes")))?;
         files.push(InputFile::new(&format!("{folder}/{name}"), bytes));
     }
-    sort_by(&mut files, |a, b| a.path.cmp(&b.path));
+    files.sort_by(|a, b| a.path.cmp(&b.path));
     Ok(files)
 }
 

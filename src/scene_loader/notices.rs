@@ -7,7 +7,7 @@ use super::names::listed;
 use super::plan::Plan;
 use crate::error::Error;
 use crate::orientation::{FileKind, InputFile, stem};
-use crate::raster::{Bands, UnreadFormat, unread_format};
+use crate::raster::{Bands, UnreadImageFormat, unread_image_format};
 
 /// Adds to the warnings of a plan, and names images in other formats as the reason where too few
 /// can be read.
@@ -91,13 +91,13 @@ fn unread<'a>(
     plan: &Plan,
     files: &'a [InputFile],
     is_short: bool,
-) -> Vec<(UnreadFormat, Vec<&'a str>)> {
+) -> Vec<(UnreadImageFormat, Vec<&'a str>)> {
     let key = |file: &InputFile| stem(file.name()).to_lowercase();
     let of_kind = |kind: FileKind| (0..files.len()).filter(move |&i| plan.kinds[i] == kind);
     let read: Vec<String> = of_kind(FileKind::Image).map(|i| key(&files[i])).collect();
-    let mut found: BTreeMap<&str, (UnreadFormat, Vec<&str>)> = BTreeMap::new();
+    let mut found: BTreeMap<&str, (UnreadImageFormat, Vec<&str>)> = BTreeMap::new();
     for i in of_kind(FileKind::UnreadImage).chain(of_kind(FileKind::Ignored)) {
-        let Some(format) = unread_format(&files[i].path, &files[i].bytes) else {
+        let Some(format) = unread_image_format(&files[i].path, &files[i].bytes) else {
             continue;
         };
         if is_short || (format.is_image && !read.contains(&key(&files[i]))) {
@@ -111,7 +111,7 @@ fn unread<'a>(
     found
 }
 
-fn refusal(format: &UnreadFormat, names: &[&str]) -> Error {
+fn refusal(format: &UnreadImageFormat, names: &[&str]) -> Error {
     match names {
         [one] => Error::File {
             file: (*one).to_owned(),

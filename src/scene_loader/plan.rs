@@ -25,7 +25,6 @@ use crate::orientation::{
 };
 use crate::raster::{ImageHeader, image_header};
 use crate::scene::Survey;
-use crate::sorting::sort_by_key;
 
 /// Everything about a scene but its pixels.
 pub(crate) struct Plan {
@@ -92,7 +91,7 @@ impl Plan {
         let mut images: Vec<usize> = (0..files.len())
             .filter(|&i| self.kinds[i] == FileKind::Image)
             .collect();
-        sort_by_key(&mut images, |&i| (files[i].name(), &files[i].path));
+        images.sort_by_key(|&i| (files[i].name(), &files[i].path));
         if let Some(wanted) = &options.views {
             images = self.select(files, &images, wanted);
         }

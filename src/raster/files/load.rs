@@ -15,7 +15,7 @@ use image::{ImageDecoder, ImageError, ImageFormat, ImageResult, Limits};
 use super::jpeg::{self, Jpeg};
 use super::samples::Samples;
 use super::tiff::{Bands, Tiff, is_tiff};
-use super::unread::unread_format;
+use super::unread::unread_image_format;
 use crate::error::{Error, Result};
 use crate::raster::photograph::Photograph;
 
@@ -126,7 +126,7 @@ pub(super) fn refusing_panics<T>(file: &str, read: impl FnOnce() -> Result<T>) -
 }
 
 fn refuse_unread(file: &str, bytes: &[u8]) -> Result<()> {
-    match unread_format(file, bytes) {
+    match unread_image_format(file, bytes) {
         None => Ok(()),
         Some(format) => Err(Error::File {
             file: file.to_owned(),

@@ -16,5 +16,5 @@ mod window;
 
 pub use load::{ImageHeader, image_format, image_header, load_image};
 pub use tiff::Bands;
-pub use unread::{UnreadFormat, unread_format};
+pub use unread::{UnreadImageFormat, unread_image_format};
 pub use window::{decoding_bytes, load_window};

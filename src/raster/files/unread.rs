@@ -4,7 +4,7 @@ use super::tiff::{Directory, is_tiff, tags};
 
 /// A format that is known by name only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct UnreadFormat {
+pub struct UnreadImageFormat {
     /// What such a file is, in a sentence after "it is".
     pub name: &'static str,
     /// What to do with it.
@@ -13,8 +13,8 @@ pub struct UnreadFormat {
     pub is_image: bool,
 }
 
-const fn image(name: &'static str, advice: &'static str) -> UnreadFormat {
-    UnreadFormat {
+const fn image(name: &'static str, advice: &'static str) -> UnreadImageFormat {
+    UnreadImageFormat {
         name,
         advice,
         is_image: true,
@@ -26,22 +26,22 @@ const DEVELOP: &str = "develop it to JPEG or TIFF at its full size as the images
                        oriented, without a correction of the lens";
 const CONVERT: &str = "convert it to TIFF, PNG or JPEG at its full size";
 
-const HEIC: UnreadFormat = image("a HEIC (HEIF) image", PHONE);
-const AVIF: UnreadFormat = image("an AVIF image", PHONE);
-const RAW: UnreadFormat = image("a camera's raw file", DEVELOP);
-const DNG: UnreadFormat = image("a camera's raw file (DNG)", DEVELOP);
-const CANON: UnreadFormat = image("a camera's raw file (Canon)", DEVELOP);
-const PHASE_ONE: UnreadFormat = image("a camera's raw file (Phase One IIQ)", DEVELOP);
-const JPEG_2000: UnreadFormat = image("a JPEG 2000 image", CONVERT);
-const JPEG_XL: UnreadFormat = image("a JPEG XL image", CONVERT);
-const VIDEO: UnreadFormat = UnreadFormat {
+const HEIC: UnreadImageFormat = image("a HEIC (HEIF) image", PHONE);
+const AVIF: UnreadImageFormat = image("an AVIF image", PHONE);
+const RAW: UnreadImageFormat = image("a camera's raw file", DEVELOP);
+const DNG: UnreadImageFormat = image("a camera's raw file (DNG)", DEVELOP);
+const CANON: UnreadImageFormat = image("a camera's raw file (Canon)", DEVELOP);
+const PHASE_ONE: UnreadImageFormat = image("a camera's raw file (Phase One IIQ)", DEVELOP);
+const JPEG_2000: UnreadImageFormat = image("a JPEG 2000 image", CONVERT);
+const JPEG_XL: UnreadImageFormat = image("a JPEG XL image", CONVERT);
+const VIDEO: UnreadImageFormat = UnreadImageFormat {
     name: "a video",
     advice: "give the single frames that were oriented, as JPEG or PNG",
     is_image: false,
 };
 
 /// What a file is that holds an image in a format that is not read; `None` for all others.
-pub fn unread_format(path: &str, bytes: &[u8]) -> Option<UnreadFormat> {
+pub fn unread_image_format(path: &str, bytes: &[u8]) -> Option<UnreadImageFormat> {
     if is_tiff(bytes) {
         return raw_in_tiff(bytes);
     }
@@ -55,7 +55,7 @@ pub fn unread_format(path: &str, bytes: &[u8]) -> Option<UnreadFormat> {
         && bytes.get(6..10) == Some(&[0; 4])
         && matches!(bytes.get(14), Some(12 | 40 | 52 | 56 | 64 | 108 | 124));
     let is_ecw = bytes.first() == Some(&b'e') && path.to_ascii_lowercase().ends_with(".ecw");
-    let starts: [(&[u8], UnreadFormat); 18] = [
+    let starts: [(&[u8], UnreadImageFormat); 18] = [
         (
             b"FUJIFILMCCD-RAW",
             image("a camera's raw file (Fujifilm)", DEVELOP),
@@ -80,7 +80,7 @@ pub fn unread_format(path: &str, bytes: &[u8]) -> Option<UnreadFormat> {
         (b"NITF0", image("a NITF image", CONVERT)),
         (
             b"%PDF-",
-            UnreadFormat {
+            UnreadImageFormat {
                 name: "a PDF document",
                 advice: "give the photographs themselves, as JPEG, PNG or TIFF",
                 is_image: false,
@@ -101,7 +101,7 @@ pub fn unread_format(path: &str, bytes: &[u8]) -> Option<UnreadFormat> {
 }
 
 /// The formats whose files are made of boxes: the first names the kind, others that it fits.
-fn by_boxes(bytes: &[u8]) -> Option<UnreadFormat> {
+fn by_boxes(bytes: &[u8]) -> Option<UnreadImageFormat> {
     match bytes.get(4..12)? {
         b"jP  \r\n\x87\n" => return Some(JPEG_2000),
         b"JXL \r\n\x87\n" => return Some(JPEG_XL),
@@ -139,7 +139,7 @@ fn by_boxes(bytes: &[u8]) -> Option<UnreadFormat> {
 }
 
 /// Raw files that are TIFFs: the first image in them is a thumbnail, or a sensor's pattern.
-fn raw_in_tiff(bytes: &[u8]) -> Option<UnreadFormat> {
+fn raw_in_tiff(bytes: &[u8]) -> Option<UnreadImageFormat> {
     const PATTERN_OF_A_SENSOR: u64 = 32803;
     const LINEAR_RAW: u64 = 34892;
     const MOST: usize = 8;
@@ -198,7 +198,7 @@ mod tests {
             (b"II*\0\x60\0\0\0IIIIwaR".to_vec(), "Phase One"),
             (b"FUJIFILMCCD-RAW 0201".to_vec(), "Fujifilm"),
         ] {
-            let format = unread_format("a.jpg", &bytes).expect(part);
+            let format = unread_image_format("a.jpg", &bytes).expect(part);
             assert!(format.name.contains(part), "{part}: {}", format.name);
             assert_eq!(format.is_image, !["video", "PDF"].contains(&part));
         }
@@ -209,7 +209,7 @@ mod tests {
             b"BM 12 4.0",
             b"eac 1 2",
         ] {
-            assert_eq!(unread_format("a.txt", other), None);
+            assert_eq!(unread_image_format("a.txt", other), None);
         }
     }
 }

@@ -23,7 +23,6 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use self::path_name::{NameEnding, NameFit};
 use self::size::SizeFit;
 use crate::orientation::Orientation;
-use crate::sorting::sort_by;
 
 /// An image that may be given an orientation.
 #[derive(Clone)]
@@ -171,9 +170,7 @@ fn pairs(
             orientation: index,
         }));
     }
-    sort_by(&mut pairs, |a, b| {
-        (a.rank, a.image, a.orientation).cmp(&(b.rank, b.image, b.orientation))
-    });
+    pairs.sort_by(|a, b| (a.rank, a.image, a.orientation).cmp(&(b.rank, b.image, b.orientation)));
     pairs
 }
 

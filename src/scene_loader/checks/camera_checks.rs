@@ -11,7 +11,6 @@ use crate::error::Error;
 use crate::geometry::mean_point;
 use crate::orientation::EXACT_ROTATION;
 use crate::scene_loader::names::listed;
-use crate::sorting::sort_by;
 
 /// What the cameras give reason to refuse or to warn of.
 #[derive(Default)]
@@ -187,7 +186,7 @@ fn candidate_heights(cameras: &[&Camera]) -> Vec<f64> {
         .filter(|&(_, j)| j < cameras.len())
         .flat_map(|(i, j)| pair_heights(cameras[i], cameras[j]))
         .collect();
-    sort_by(&mut crossings, f64::total_cmp);
+    crossings.sort_by(f64::total_cmp);
     let step = crossings.len().div_ceil(MOST).max(1);
     let lowest = cameras
         .iter()

@@ -21,7 +21,6 @@ use crate::orientation::formats::text::quoted_long;
 use crate::orientation::geodesy::Anchor;
 use crate::orientation::image_orientation::{Orientation, pinhole};
 use crate::orientation::reference::StatedReference;
-use crate::sorting::sort_by_key;
 
 /// Reads all reconstructions of OpenSfM's `reconstruction.json`, the largest last.
 pub(crate) fn read(path: &str, text: &str, warnings: &mut Vec<String>) -> Result<Vec<Orientation>> {
@@ -58,7 +57,7 @@ fn by_size<T>(
     models: &[T],
 ) -> impl Iterator<Item = (Option<String>, &T)> {
     let mut order: Vec<(usize, usize)> = sizes.enumerate().filter(|(_, n)| *n > 0).collect();
-    sort_by_key(&mut order, |&(_, n)| n);
+    order.sort_by_key(|&(_, n)| n);
     let several = order.len() > 1;
     order.into_iter().map(move |(i, _)| {
         let label = several.then(|| format!("reconstruction {}", i + 1));

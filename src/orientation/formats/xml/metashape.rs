@@ -18,7 +18,6 @@ use crate::camera::{Distortion, Projection};
 use crate::error::{Error, Result};
 use crate::orientation::formats::left_out::{LeftOut, few};
 use crate::orientation::image_orientation::{Orientation, pinhole};
-use crate::sorting::sort_by_key;
 
 /// Reads the aligned cameras of all chunks, those of the chunk in use last.
 pub(crate) fn read(path: &str, text: &str, warnings: &mut Vec<String>) -> Result<Vec<Orientation>> {
@@ -60,7 +59,7 @@ fn chunks<'a, 'b>(document: &'a Document<'b>) -> Vec<(String, Node<'a, 'b>)> {
             (label, node)
         })
         .collect();
-    sort_by_key(&mut chunks, |(_, node)| {
+    chunks.sort_by_key(|(_, node)| {
         let is_active = active.is_some() && node.attribute("id") == active;
         (is_active, is_on(*node))
     });
