@@ -216,9 +216,6 @@ fn by_content(text: &str) -> Option<FileKind> {
     {
         return Some(FileKind::Middlebury);
     }
-    if !lines.is_empty() && (lines.iter()).all(|l| bundles::listed_image(l.text).is_some()) {
-        return Some(FileKind::BundlerList);
-    }
     if lines.len() == 3
         && fields
             .iter()
@@ -227,6 +224,11 @@ fn by_content(text: &str) -> Option<FileKind> {
         return Some(FileKind::Projection);
     }
     let of_lines = fields.iter().find_map(|f| by_fields(f));
+    // Names have blanks: a line of COLMAP's list of images ends like one of these too.
+    let is_names = (lines.iter()).all(|l| bundles::listed_image(l.text).is_some());
+    if of_lines.is_none() && !lines.is_empty() && is_names {
+        return Some(FileKind::BundlerList);
+    }
     let of_list = || photogrammetric::is_list(text).then_some(FileKind::PhotogrammetricExterior);
     (of_lines.or(patb::is_patb(text).then_some(FileKind::Patb))).or_else(of_list)
 }
