@@ -1,7 +1,7 @@
 //! Images whose camera cannot be read, while those of other images can.
 //!
-//! A file may hold more cameras than the scene has images: a lens of an unknown model does harm only
-//! where nothing else is left.
+//! A file may hold more cameras than the scene has images: a lens of an unknown model does harm
+//! only where nothing else is left.
 
 use crate::error::{Error, Result};
 use crate::orientation::image_orientation::Orientation;

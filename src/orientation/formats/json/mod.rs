@@ -1,5 +1,5 @@
-//! Orientations in JSON: OpenSfM's reconstruction, ODM's shots, nerfstudio's transforms, and lists of
-//! K, R, C.
+//! Orientations in JSON: OpenSfM's reconstruction, ODM's shots, nerfstudio's transforms, and lists
+//! of K, R, C.
 
 pub(crate) mod krc;
 pub(crate) mod nerfstudio;

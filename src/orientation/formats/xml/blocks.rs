@@ -1,9 +1,9 @@
 //! ContextCapture's BlocksExchange.
 //!
-//! * Rotation world to camera, as matrix or as omega, phi, kappa in degrees, and centre. The axes of
-//!   the camera are those of `CameraOrientation` (`XRightYDown` unless it is stated).
-//! * The principal point counts from the centre of the top-left pixel, in millimetres from the middle
-//!   of the sensor along the camera's axes.
+//! * Rotation world to camera, as matrix or as omega, phi, kappa in degrees, and centre. The axes
+//!   of the camera are those of `CameraOrientation` (`XRightYDown` unless it is stated).
+//! * The principal point counts from the centre of the top-left pixel, in millimetres from the
+//!   middle of the sensor along the camera's axes.
 //! * The focal length is in pixels, or in the unit of `PixelSize` or of `SensorSize`, which belongs
 //!   to the longer side. `AspectRatio` is fy / fx, `Skew` is in pixels. P1 and P2 are exchanged
 //!   against ours, as Metashape's.
