@@ -5,8 +5,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use ridgeline::agreement::Finding;
 use ridgeline::execution::progress::Listener;
 use ridgeline::pipeline::{Run, Stage, load_adjusted};
+use ridgeline::scene::Scene;
 use ridgeline::scene_loader::{Project, inspect_files};
 
 use super::args::ReconstructArgs;
@@ -49,10 +51,22 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
     eprintln!("{seen}");
     // Only a project needs the files once more.
     let input = args.project.as_ref().map(|_| input);
+    let is_doubtful = !options.ignore_check && hardly_agrees(&scene);
     let load_seconds = start.elapsed().as_secs_f64();
 
     let mut run = Run::new(scene, params);
     let seconds = run_stages(&mut run);
+    let is_empty = (run.results().roof_model()).is_none_or(|model| model.buildings.is_empty());
+    if is_doubtful && is_empty {
+        let error = ridgeline::Error::Scene {
+            problem: "the images hardly agree with their orientation, and show no roof with it"
+                .to_owned(),
+            advice: "check that images and orientation belong together (names, folders, the same \
+                     flight), or have the empty model written nevertheless (--ignore-check)"
+                .to_owned(),
+        };
+        return Err(refusal(&error, &seen));
+    }
     let written = run.files(&seconds);
     files::write_all(&args.out, &written)?;
     if let (Some(path), Some(input)) = (&args.project, input) {
@@ -65,6 +79,12 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
         table::summary(&run, load_seconds, &seconds, &written, &args.out)
     );
     Ok(())
+}
+
+/// Do the images hardly agree with the orientation, though no mistake explains it?
+fn hardly_agrees(scene: &Scene) -> bool {
+    let report = scene.survey.agreement.as_ref();
+    report.is_some_and(|report| report.finding == Finding::Unexplained)
 }
 
 fn make_folder(args: &ReconstructArgs) -> Result<(), Failure> {

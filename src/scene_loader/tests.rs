@@ -369,12 +369,7 @@ fn a_distorting_lens_is_removed() {
             / 1e4
     };
     let mut files = inputs(to_files(&scene));
-    // With its lens left out the images hardly agree, which is to be seen here.
-    let neglected = LoadOptions {
-        ignore_check: true,
-        ..all()
-    };
-    let before = difference(&load_scene(&files, &neglected).unwrap());
+    let before = difference(&load_scene(&files, &all()).unwrap());
     let cameras = find(&mut files, "colmap/cameras.txt");
     let lines = cameras.text().replace(" PINHOLE", " OPENCV");
     let lines = lines.lines().map(|line| match line.starts_with('#') {

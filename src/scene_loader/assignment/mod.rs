@@ -198,12 +198,10 @@ fn rank(orientation: &Orientation, image: &ImageCandidate, fit: NameFit) -> Rank
 }
 
 /// A folder of masks or twins loses wherever the photograph is there; what it holds beyond that is
-/// no photograph either.
+/// no photograph either, unless the orientation states its folder.
 fn leave_out_copies(found: &mut Assignment, pairs: &[Pair], images: &[ImageCandidate]) {
-    let mut rivals: BTreeMap<usize, usize> = BTreeMap::new();
     let mut best: BTreeMap<usize, &Pair> = BTreeMap::new();
     for pair in pairs {
-        *rivals.entry(pair.orientation).or_default() += 1;
         if found.of_image[pair.image] == Some(pair.orientation) {
             best.insert(pair.image, pair);
         } else {
@@ -215,28 +213,19 @@ fn leave_out_copies(found: &mut Assignment, pairs: &[Pair], images: &[ImageCandi
         let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
         (folder, best[&image].rank.is_appended)
     };
-    let mut tally: BTreeMap<(&str, bool), Tally> = BTreeMap::new();
+    // Of each kind: how many have lost against another image, and how many were taken.
+    let mut tally: BTreeMap<(&str, bool), [usize; 2]> = BTreeMap::new();
     for &image in best.keys() {
-        let tally = tally.entry(kind(image)).or_default();
-        match found.of_image[image] {
-            Some(orientation) if rivals[&orientation] > 1 => tally.won += 1,
-            Some(_) => tally.alone += 1,
-            None => tally.lost += usize::from(found.left_out[image].is_some()),
-        }
+        let [lost, taken] = tally.entry(kind(image)).or_default();
+        *lost += usize::from(found.left_out[image].is_some());
+        *taken += usize::from(found.of_image[image].is_some());
     }
-    for &image in best.keys() {
-        let Tally { lost, won, alone } = tally[&kind(image)];
-        if found.of_image[image].is_some() && won == 0 && lost > alone {
+    for (&image, pair) in &best {
+        let [lost, taken] = tally[&kind(image)];
+        let is_stated = pair.rank.folders.0 > 0;
+        if found.of_image[image].is_some() && lost > taken && !is_stated {
             found.of_image[image] = None;
             found.left_out[image] = Some(LeftOut::WithCopies);
         }
     }
-}
-
-/// How the images of a folder did: against others, or alone with their orientation.
-#[derive(Clone, Copy, Default)]
-struct Tally {
-    lost: usize,
-    won: usize,
-    alone: usize,
 }

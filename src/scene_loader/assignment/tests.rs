@@ -168,6 +168,28 @@ fn what_a_folder_of_copies_holds_beyond_the_photographs_is_left_out() {
     assert_eq!(found.of_image, [Some(0), Some(1), None, None, None]);
     let reasons = [LeftOut::For(0), LeftOut::For(1), LeftOut::WithCopies].map(Some);
     assert_eq!(found.left_out[2..], reasons);
+    // Two kinds of copies compete for what is not there.
+    let more = [
+        ("masks/1.png", true),
+        ("masks/2.png", true),
+        ("masks/3.png", true),
+    ];
+    images.extend(more.map(|(path, is_gray_png)| ImageCandidate {
+        is_gray_png,
+        ..image(path)
+    }));
+    let found = assign(&orientations, &images);
+    assert_eq!(found.of_image[..2], [Some(0), Some(1)]);
+    assert!(found.of_image[2..].iter().all(Option::is_none), "{found:?}");
+    // Of one camera little is oriented, but its folder is stated.
+    let rig = paths(&[
+        "c0/1.jpg", "c0/2.jpg", "c0/3.jpg", "c1/1.jpg", "c1/2.jpg", "c1/3.jpg",
+    ]);
+    let names = ["c0/1.jpg", "c1/1.jpg", "c1/2.jpg", "c1/3.jpg"];
+    assert_eq!(
+        given(&names, &rig),
+        "c0/1.jpg - - c1/1.jpg c1/2.jpg c1/3.jpg"
+    );
     // Two flights of which one has a stray copy remain two flights.
     images.truncate(3);
     images.extend(paths(&["small/4.jpg", "small/5.jpg"]));

@@ -1,5 +1,6 @@
 //! What follows from the finding of the orientation check: a refusal or a warning, in words.
 
+use crate::agreement::Agreement;
 use crate::error::{Error, Result};
 use crate::orientation_check::{CheckFinding, CheckedView, OrientationCheck};
 use crate::scene_loader::names::listed;
@@ -31,12 +32,9 @@ pub(crate) fn warning_or_refusal(
             ),
             "correct the orientation file, or have it corrected on loading (--apply-fix)",
         )),
-        CheckFinding::Unexplained(agreement) => Some((
-            format!(
-                "the images hardly agree with their orientation (to {:.2}, where 0 is chance and 1 perfect), and no \
-                 usual mistake explains it",
-                agreement.score
-            ),
+        // Anything above chance is some evidence: small or blurred images reach no more.
+        CheckFinding::Unexplained(agreement) if agreement.score <= 0.0 => Some((
+            hardly_agree(agreement),
             "check that images and orientation belong together (names, folders, the same flight), or go on \
              nevertheless (--ignore-check)",
         )),
@@ -81,11 +79,20 @@ pub(crate) fn warning_or_refusal(
              leave them out)",
             listed(outliers.iter().map(|&i| views[i].name))
         )),
-        CheckFinding::Sound(_)
-        | CheckFinding::Unknown(_)
-        | CheckFinding::Explained { .. }
-        | CheckFinding::Unexplained(_) => None,
+        CheckFinding::Sound(_) | CheckFinding::Unknown(_) | CheckFinding::Explained { .. } => None,
+        CheckFinding::Unexplained(agreement) => Some(format!(
+            "{}: check that they belong together",
+            hardly_agree(agreement)
+        )),
     })
+}
+
+fn hardly_agree(agreement: &Agreement) -> String {
+    format!(
+        "the images hardly agree with their orientation (to {:.2}, where 0 is chance and 1 perfect), and no usual \
+         mistake explains it",
+        agreement.score
+    )
 }
 
 /// A refusal without its advice.

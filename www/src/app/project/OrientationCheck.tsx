@@ -28,7 +28,7 @@ export function OrientationCheck({ report }: { report: AgreementReport }) {
           Apply the fix
         </button>
       )}
-      {isRefused(report.finding) && !runOptions.value.ignoreCheck && (
+      {isRefused(report) && !runOptions.value.ignoreCheck && (
         <button
           type="button"
           onClick={() => void setRunOptions({ applyFix: false, ignoreCheck: true })}
@@ -67,8 +67,8 @@ export function OrientationCheck({ report }: { report: AgreementReport }) {
 }
 
 /** What loading refuses unless it is told to go on. */
-function isRefused(finding: AgreementReport["finding"]): boolean {
-  return finding === "explained" || finding === "unexplained";
+function isRefused({ finding, stated }: AgreementReport): boolean {
+  return finding === "explained" || (finding === "unexplained" && stated.score === 0);
 }
 
 /** 0 is what chance gives, 1 is perfect. */
