@@ -194,6 +194,7 @@ impl Session {
     ) -> Result<JsValue, JsValue> {
         let options = load_options(&options)?;
         self.area = None;
+        self.merged = MergedShards::default();
         self.run = None;
         self.outputs = None;
         self.points = None;
@@ -224,6 +225,7 @@ impl Session {
         #[wasm_bindgen(unchecked_param_type = "Params")] params: JsValue,
     ) -> Result<(), JsValue> {
         self.params = from_js(&params, "parameters")?;
+        self.merged = MergedShards::default();
         self.outputs = None;
         self.points = None;
         if let Some(run) = &mut self.run {
