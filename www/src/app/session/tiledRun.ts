@@ -49,6 +49,9 @@ export async function runTiles(tileM: number): Promise<void> {
   } catch (error) {
     const cancelled = error instanceof EngineError && error.kind === "cancelled";
     updateStage(STAGE, { status: cancelled ? "waiting" : "failed", fraction: 0 });
+    if (error instanceof EngineError) {
+      error.during = "the tiles";
+    }
     throw error;
   }
 }

@@ -1,27 +1,38 @@
 /** What the page begins with: the scene of a link, or the project of the last visit. */
 import { batch } from "@preact/signals";
 import type { Selection } from "../../shared/selection";
-import { openDemo, restoreProject } from "../project/projectActions";
+import { openDemoIn, restoreIn } from "../project/projectActions";
 import { readStoredProject } from "../project/storedProject";
 import { lineEnds } from "../selection/selectionShapes";
-import { runTo } from "../session/stageRuns";
+import type { Turn } from "../session/actionQueue";
+import { actions } from "../session/session";
+import { runStages } from "../session/stageRuns";
 import { opened } from "../settings/addressLink";
 import { stageOfTab, TABS, type Tab } from "../state/methods";
 import { method } from "../state/parameters";
 import { results } from "../state/results";
 import { scene } from "../state/scene";
 import { select, shownView, showTab, showView } from "../state/viewState";
-import { goTo } from "../tour/lessons";
+import { goToIn } from "../tour/lessons";
 
 export async function restoreOpeningState(): Promise<void> {
+  // Who has begun something while the core was compiled wants that.
+  if (actions.isIdle) {
+    await actions.perform({ kind: "open", name: "last visit", phase: "load" }, restoreIt);
+  }
+}
+
+async function restoreIt(turn: Turn): Promise<void> {
   if (opened.scene === "demo") {
-    await openDemo(opened.tab === null ? null : stageOfTab(opened.tab));
+    await openDemoIn(turn, opened.tab === null ? null : stageOfTab(opened.tab));
   } else {
     const kept = await readStoredProject();
+    turn.signal.throwIfAborted();
     if (kept !== null && kept.files.length > 0) {
-      await restoreProject(kept);
-      if (opened.tab !== null && opened.tab !== "images") {
-        await runTo(stageOfTab(opened.tab) ?? "model");
+      turn.enter("load", "Reading files");
+      await restoreIn(kept);
+      if (opened.tab !== null && opened.tab !== "images" && scene.value !== null) {
+        await runStages(turn, stageOfTab(opened.tab) ?? "model");
       }
     }
   }
@@ -29,7 +40,7 @@ export async function restoreOpeningState(): Promise<void> {
     return;
   }
   if (isNewLine(opened.selection)) {
-    await runTo("facets");
+    await runStages(turn, "facets");
   }
   const tabs: readonly Tab[] = TABS[method.value];
   batch(() => {
@@ -40,7 +51,7 @@ export async function restoreOpeningState(): Promise<void> {
     select(opened.selection);
   });
   if (opened.lesson !== null && results.value.glb !== null) {
-    await goTo(opened.lesson);
+    await goToIn(turn, opened.lesson);
   }
 }
 

@@ -165,6 +165,7 @@ function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefine
   } catch {
     notify({
       severity: "warning",
+      about: "browser",
       title: "No 3D view",
       text: "This browser offers no WebGL 2. Everything else works, and the model can be downloaded.",
       advice: "Switch on hardware acceleration in the browser's settings to see the model here.",
