@@ -31,7 +31,7 @@ function stopOf(error: unknown, lastWords: string | null): Pick<Failure, "messag
   // Running out of memory aborts without a panic: the trap is all that is left of it. The browser's own words differ.
   const isTrap = error instanceof WebAssembly.RuntimeError;
   const saysMemory = /out of memory|memory allocation|allocation failed|memory\.grow|could not allocate/i;
-  if ((isTrap && error.message === "unreachable") || saysMemory.test(error.message)) {
+  if ((isTrap && /^unreachable\b/i.test(error.message)) || saysMemory.test(error.message)) {
     return { message: "the images and results need more than the browser gives", kind: "memory" };
   }
   // Too deep a recursion is a RangeError, and leaves the core in the middle of a call.

@@ -5,8 +5,10 @@ import type { Phase } from "../state/activity";
 export type ActionKind =
   /** The core is compiled, or made anew. */
   | "start"
-  /** Another project: the demo scene, own files, the project of the last visit, a new one. */
+  /** Another project: the demo scene, own files, a new one. */
   | "open"
+  /** What a link names, or the project of the last visit: whoever has begun something else wants that. */
+  | "restore"
   /** Other files or wishes of the same project, tiles among them. */
   | "change"
   /** Up to a stage, or all. */
@@ -30,6 +32,7 @@ export type Rule = "wait" | "replace" | "ignore" | "beside";
 export const RULES: Readonly<Record<ActionKind, Readonly<Record<Phase, Rule>>>> = {
   start: { start: "ignore", load: "wait", run: "wait", save: "wait" },
   open: { start: "wait", load: "replace", run: "replace", save: "wait" },
+  restore: { start: "wait", load: "ignore", run: "ignore", save: "ignore" },
   change: { start: "wait", load: "replace", run: "replace", save: "wait" },
   run: { start: "wait", load: "wait", run: "ignore", save: "wait" },
   tour: { start: "wait", load: "wait", run: "wait", save: "wait" },
@@ -45,6 +48,7 @@ export const RULES: Readonly<Record<ActionKind, Readonly<Record<Phase, Rule>>>> 
 export const SAME_AGAIN: Readonly<Record<ActionKind, Rule>> = {
   start: "ignore",
   open: "ignore",
+  restore: "ignore",
   change: "replace",
   run: "ignore",
   tour: "wait",

@@ -16,10 +16,7 @@ import { select, shownView, showTab, showView } from "../state/viewState";
 import { goToIn } from "../tour/lessons";
 
 export async function restoreOpeningState(): Promise<void> {
-  // Who has begun something while the core was compiled wants that.
-  if (actions.isIdle) {
-    await actions.perform({ kind: "open", name: "last visit", phase: "load" }, restoreIt);
-  }
+  await actions.perform({ kind: "restore", phase: "load" }, restoreIt);
 }
 
 async function restoreIt(turn: Turn): Promise<void> {
