@@ -88,7 +88,7 @@ test("a project opens again to the same state, here and on the command line", as
   const model = await saved(page, "model.city.json");
   const project = await saved(page, "Save project");
 
-  await page.getByRole("button", { name: "Remove all" }).click();
+  await page.getByRole("button", { name: "New project" }).click();
   await give(page, [upload("house.zip", project)]);
   await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
   await expect(page.getByLabel(/Height of the ground/)).toHaveValue("100");
