@@ -7,6 +7,9 @@ import type { Args, CallName, Result } from "../shared/calls";
 import type { FailureKind, Reply, Request } from "../shared/messages";
 import type { AgreementReport } from "../shared/records";
 
+/** Changes with every other core that is built: what one found, another may not find. */
+export const CORE_VERSION: string = import.meta.env.PROD ? wasmUrl : String(performance.timeOrigin);
+
 /** A call that the worker rejected, or that was cut short. */
 export class EngineError extends Error {
   readonly kind: FailureKind | "cancelled";

@@ -40,7 +40,7 @@ import {
 } from "../state/project";
 import { clearScene } from "../state/scene";
 import { replaceStages } from "../state/stages";
-import { showView } from "../state/viewState";
+import { showView, standAt } from "../state/viewState";
 import type { StoredProject } from "./storedProject";
 
 /** Adds files to the project (the same path replaces), inspects them, and loads the scene once it looks whole. */
@@ -274,6 +274,7 @@ async function loadProject(adopt?: () => Promise<void>): Promise<void> {
 function closeScene(): void {
   clearScene();
   showView(0);
+  standAt(null);
   keepResult(null);
   clearResults();
 }

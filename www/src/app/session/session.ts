@@ -25,7 +25,7 @@ import { failureNotice } from "./failureNotice";
 import { stagesOf } from "./stageCatalogue";
 
 /** Whether the present worker holds the project's files, has the scene loaded, and was asked about them as they are wanted now. */
-const held = { files: false, scene: false, inspection: false };
+const held = { files: false, scene: false, inspection: false, results: false };
 
 export const engine = new Engine(
   (stage, fraction) => workerPool.engineReached(stage, fraction),
@@ -68,7 +68,7 @@ export async function cancel(): Promise<void> {
 
 /** Asks the core about its results; null while it has none, or is at work on others. */
 export async function ask<K extends CallName>(call: K, ...of: Args<K>): Promise<Result<K> | null> {
-  if (!held.scene || runningStage.peek() !== null) {
+  if (!held.results || runningStage.peek() !== null) {
     return null;
   }
   const asked = results.peek();
@@ -195,10 +195,21 @@ export function outdateFiles(): void {
 /** The scene is another one than the worker's, or the worker has dropped it. */
 export function outdateScene(): void {
   held.scene = false;
+  held.results = false;
   setFreshStages(0);
 }
 
 /** The files are wanted in another way than they were inspected for. */
 export function outdateInspection(): void {
   held.inspection = false;
+}
+
+/** The worker has results of its own, and can be asked about them. */
+export function noteResults(): void {
+  held.results = true;
+}
+
+/** Whether it can. */
+export function hasResults(): boolean {
+  return held.results;
 }

@@ -6,7 +6,7 @@ import type { StageName } from "../../shared/stages";
 import { saveFile } from "../parts/saveFile";
 import { withParam } from "../settings/parameterForm";
 import type { Method } from "../state/methods";
-import { announce, notify } from "../state/notices";
+import { announce, dismissOffers, notify } from "../state/notices";
 import { defaults, method, params, replaceParams } from "../state/parameters";
 import { files, runOptions } from "../state/project";
 import { addResults, exportNames, NO_RESULTS, setExportNames, setResults } from "../state/results";
@@ -25,7 +25,7 @@ import { select, showPlane, showTab } from "../state/viewState";
 import { chooseWorkers, workers } from "../state/workers";
 import type { Turn } from "./actionQueue";
 import { workerNotice } from "./failureNotice";
-import { actions, engine, ensureScene, workerPool } from "./session";
+import { actions, engine, ensureScene, hasResults, noteResults, workerPool } from "./session";
 import { firstStageOf, stagesOf, stageWords } from "./stageCatalogue";
 import { fetchResults } from "./stageResults";
 import { runTiles } from "./tiledRun";
@@ -43,6 +43,7 @@ export function runAll(): Promise<void> {
 /** The same as part of another action. */
 export async function runEverything(turn: Turn): Promise<void> {
   turn.enter("run");
+  dismissOffers("Run all");
   const { tileM } = runOptions.value;
   const last = stages.value.at(-1);
   if (tileM !== null) {
@@ -109,9 +110,15 @@ export function resetParams(): void {
 /** Saves one output file through the browser. */
 export async function download(name: string): Promise<void> {
   const words = `Writing ${name}`;
-  await actions.perform({ kind: "save", name, phase: "save", words }, async () => {
+  await actions.perform({ kind: "save", name, phase: "save", words }, async (turn) => {
     // What it waited for may have taken the results away.
     if (exportNames.value.includes(name)) {
+      const last = stages.value.at(-1);
+      // Of an earlier visit the page has what it shows; the same input gives the same files.
+      if (!hasResults() && last !== undefined) {
+        await runEverything(turn);
+        turn.enter("save", words);
+      }
       const bytes = await engine.call("exportFile", name);
       saveFile(name, new Blob([bytes], { type: mediaType(name) }));
     }
@@ -126,6 +133,7 @@ async function runStage(name: StageName, position: number, taken: ParamTree): Pr
     await runShards(name, taken);
     const summary = await engine.call("runStage", name);
     workerPool.hasRun(name);
+    noteResults();
     const found = await fetchResults(name);
     const seconds = (performance.now() - started) / 1000;
     const names = await engine.call("exportNames");

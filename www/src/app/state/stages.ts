@@ -35,6 +35,12 @@ export function updateStage(name: string, change: Partial<StageState>): void {
   all.value = all.value.map((stage) => (stage.name === name ? { ...stage, ...change } : stage));
 }
 
+/** What stages found in an earlier visit is shown again; the worker has it not. */
+export function restoreStages(kept: readonly StageState[]): void {
+  fresh.value = 0;
+  all.value = kept.map((stage) => (stage.status === "running" ? freshStage(stage.name) : stage));
+}
+
 /** None has run. */
 export function restartStages(): void {
   fresh.value = 0;

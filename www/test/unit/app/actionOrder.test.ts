@@ -9,6 +9,7 @@ import { FakeWorker, failing, ran, violations } from "../../fake/worker";
 vi.mock("../../../src/pkg/ridgeline_bg.wasm?url", () => ({ default: "none" }));
 vi.mock("../../../src/app/parts/saveFile", () => ({ saveFile: () => {} }));
 vi.mock("../../../src/app/project/storedProject", () => ({
+  readStoredResults: async () => null,
   readStoredProject: async () => ({
     name: "Own files",
     isDemo: false,
