@@ -204,7 +204,6 @@ export async function openDemoIn(turn: Turn, target?: StageName | null): Promise
   const fetched = await fetchDemo(turn.signal);
   turn.signal.throwIfAborted();
   turn.enter("load", "Reading files");
-  replaceFiles([]);
   const opening = openIn(fetched.files, fetched.title);
   markAsDemo(true);
   await opening;
