@@ -8,7 +8,9 @@ import type { FailureKind, Reply, Request } from "../shared/messages";
 import type { AgreementReport } from "../shared/records";
 
 /** Changes with every other core that is built: what one found, another may not find. */
-export const CORE_VERSION: string = import.meta.env.PROD ? wasmUrl : String(performance.timeOrigin);
+export const CORE_VERSION: string = import.meta.env.PROD
+  ? wasmUrl.slice(wasmUrl.lastIndexOf("/") + 1)
+  : String(performance.timeOrigin);
 
 /** A call that the worker rejected, or that was cut short. */
 export class EngineError extends Error {

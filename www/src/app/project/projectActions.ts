@@ -38,10 +38,12 @@ import {
   runOptions,
   setInspection,
 } from "../state/project";
-import { clearScene } from "../state/scene";
+import { allResults } from "../state/results";
+import { clearScene, scene } from "../state/scene";
 import { replaceStages } from "../state/stages";
-import { showView, standAt } from "../state/viewState";
+import { showTab, showView, standAt } from "../state/viewState";
 import type { StoredProject } from "./storedProject";
+import { packResults, presentResults, showStoredResults, unpackResults } from "./storedResults";
 
 /** Adds files to the project (the same path replaces), inspects them, and loads the scene once it looks whole. */
 export async function addFiles(added: InputFile[]): Promise<void> {
@@ -59,6 +61,7 @@ export async function addFiles(added: InputFile[]): Promise<void> {
     }
     setProject([...byPath.values()]);
     await loadProject(adoptProject);
+    await adoptResults();
   });
 }
 
@@ -81,6 +84,7 @@ async function openIn(next: InputFile[], name: string): Promise<void> {
   nameProject(name);
   setProject(next);
   await loadProject(adoptProject);
+  await adoptResults();
 }
 
 /** Takes up what a project file among the added ones asks for. */
@@ -99,6 +103,18 @@ async function adoptProject(): Promise<void> {
   await ensureInspected();
 }
 
+/** Shows what a project file was saved with; more files than that one make other results. */
+async function adoptResults(): Promise<void> {
+  if (files.value.length !== 1 || scene.value === null) {
+    return;
+  }
+  const kept = unpackResults(await engine.call("openedResults"));
+  if (kept !== null) {
+    showStoredResults(kept);
+    showTab(allResults.value.main.glb === null ? "images" : "model");
+  }
+}
+
 /** Saves files, wishes, parameters and results as one file, which opens to the same state. */
 export async function saveProject(): Promise<void> {
   const words = "Writing the project";
@@ -109,7 +125,9 @@ export async function saveProject(): Promise<void> {
     await ensureInspected();
     await engine.call("setParams", params.value);
     const options = loadOptions(runOptions.value, inspection.value);
-    const bytes = await engine.call("exportProject", options);
+    const shown = presentResults();
+    const packed = shown === null ? new Uint8Array() : packResults(shown);
+    const bytes = await engine.call("exportProject", options, packed);
     saveFile("ridgeline-project.zip", new Blob([bytes], { type: "application/zip" }));
   });
 }

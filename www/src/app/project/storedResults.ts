@@ -2,7 +2,8 @@
 import { batch } from "@preact/signals";
 import { CORE_VERSION } from "../../core/engine";
 import type { ParamTree } from "../../shared/paramTree";
-import { params } from "../state/parameters";
+import { changedParams } from "../settings/parameterForm";
+import { defaults, params } from "../state/parameters";
 import { allResults, exportNames, type ResultSets, restoreResults, setExportNames } from "../state/results";
 import { outdateStages, restoreStages, type StageState, stages } from "../state/stages";
 
@@ -39,10 +40,15 @@ export function showStoredResults(kept: StoredResults): void {
     restoreResults(kept.results);
     restoreStages(kept.stages);
     setExportNames(kept.exportNames);
-    if (JSON.stringify(kept.params) !== JSON.stringify(params.value)) {
+    if (changesOf(kept.params) !== changesOf(params.value)) {
       outdateStages(0);
     }
   });
+}
+
+/** In what parameters differ from the defaults, whatever the order of their names. */
+function changesOf(values: ParamTree): string {
+  return JSON.stringify(Object.entries(changedParams(defaults.value, values)).sort());
 }
 
 /** As bytes, for a project file: JSON, with arrays of numbers as base64. */
