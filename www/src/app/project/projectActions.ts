@@ -43,7 +43,13 @@ import { clearScene, scene } from "../state/scene";
 import { replaceStages } from "../state/stages";
 import { showTab, showView, standAt } from "../state/viewState";
 import type { StoredProject } from "./storedProject";
-import { packResults, presentResults, showStoredResults, unpackResults } from "./storedResults";
+import {
+  packResults,
+  presentResults,
+  type StoredResults,
+  showStoredResults,
+  unpackResults,
+} from "./storedResults";
 
 /** Adds files to the project (the same path replaces), inspects them, and loads the scene once it looks whole. */
 export async function addFiles(added: InputFile[]): Promise<void> {
@@ -156,7 +162,7 @@ export async function clearProject(): Promise<void> {
 const UNDO = "Undo";
 
 /** What was removed since files came last, and the project before that; the last removal is taken back first. */
-let removals: { what: string; before: StoredProject }[] = [];
+let removals: { what: string; before: StoredProject; found: StoredResults | null }[] = [];
 
 /** Leaves some of the files, and offers to take that back. */
 function remove(what: string, left: InputFile[]): void {
@@ -167,7 +173,7 @@ function remove(what: string, left: InputFile[]): void {
     options: runOptions.value,
     params: params.value,
   };
-  removals = [...removals, { what, before }];
+  removals = [...removals, { what, before, found: presentResults() }];
   setProject(left);
   offerUndo();
 }
@@ -181,15 +187,18 @@ function offerUndo(): void {
       severity: "info",
       title: `${last.what} was removed`,
       text: "",
-      action: { name: UNDO, run: () => void undo(last.before) },
+      action: { name: UNDO, run: () => void undo(last.before, last.found) },
     });
   }
 }
 
-async function undo(before: StoredProject): Promise<void> {
+async function undo(before: StoredProject, found: StoredResults | null): Promise<void> {
   await actions.perform({ kind: "open", phase: "load", words: "Reading files" }, async () => {
     removals = removals.slice(0, -1);
     await restoreIn(before, offerUndo);
+    if (found !== null && scene.value !== null) {
+      showStoredResults(found);
+    }
   });
 }
 

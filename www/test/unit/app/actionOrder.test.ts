@@ -244,6 +244,37 @@ describe("any two actions, the second while the first goes on", () => {
   });
 });
 
+describe("many actions", () => {
+  it("in any order leave no error and a page that still runs", async () => {
+    // The same order each time: a congruential generator.
+    let seed = 38;
+    const below = (count: number) => {
+      seed = (seed * 1_103_515_245 + 12_345) % 2_147_483_648;
+      return Math.floor((seed / 2_147_483_648) * count);
+    };
+    for (let round = 0; round < 60; round += 1) {
+      await beginAnew();
+      const order = Array.from({ length: 6 }, () => NAMES[below(NAMES.length)] as string);
+      for (const name of order) {
+        begin(name);
+        await vi.advanceTimersByTimeAsync(below(60));
+      }
+      await untilIdle();
+      const errors = page.notices.value.filter(({ severity }) => severity !== "info");
+      const tooFew = errors.every(({ text }) => text.startsWith("fewer than three views"));
+      expect([order, violations, tooFew]).toEqual([order, [], true]);
+      begin("own files");
+      await untilIdle();
+      begin("run all");
+      await untilIdle();
+      expect([order, page.stages.value.map(({ status }) => status)]).toEqual([
+        order,
+        page.stages.value.map(() => "done"),
+      ]);
+    }
+  });
+});
+
 describe("a run", () => {
   it("takes up parameters that are changed while it goes on", async () => {
     await beginAnew();

@@ -5,7 +5,7 @@ import {
   splitAdvice,
   workerNotice,
 } from "../../../src/app/session/failureNotice";
-import { withNotice } from "../../../src/app/state/notices";
+import { dismissAbout, notices, notify, withNotice } from "../../../src/app/state/notices";
 import { EngineError } from "../../../src/core/engine";
 import type { AgreementReport } from "../../../src/shared/records";
 
@@ -97,5 +97,14 @@ describe("withNotice", () => {
     });
     const shown = withNotice([notice(1, "too low"), notice(2, "too dark")], notice(3, "too low"));
     expect(shown.map(({ id }) => id)).toEqual([2, 3]);
+  });
+});
+
+describe("another project", () => {
+  it("takes the notices of the last one away, and leaves those about the browser", () => {
+    notify({ severity: "error", title: "This input cannot be used", text: "" });
+    notify({ severity: "warning", title: "No 3D view", text: "", about: "browser" });
+    dismissAbout("project");
+    expect(notices.value.map(({ title }) => title)).toEqual(["No 3D view"]);
   });
 });
