@@ -6,4 +6,5 @@ pub mod shard;
 
 pub(crate) use parallel::{SILENT, map, map_part};
 pub(crate) use progress::{Listener, reached, silent};
-pub(crate) use shard::{MergedShards, ShardTask, Sharded, run_merged, run_shard, sharded_map};
+pub(crate) use shard::{MergedShards, Origin, ShardTask, Sharded};
+pub(crate) use shard::{run_merged, run_shard, sharded_map};

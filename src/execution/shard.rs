@@ -19,6 +19,11 @@
 //! result to hand on: it gets [`ShardDone`], which the stage passes up with `?`. Several calls of
 //! one map in a stage, none of which depends on another, are all made before the first `?`.
 //!
+//! Invariant: nobody takes a shard that was made for something else. Every shard says which of how
+//! many instances made it, and of what ([`Origin`]); a map whose shards are not exactly those of
+//! all instances, once each and of this run, is computed whole. The results of items are dealt by
+//! position, so that a shard too many would give items the results of others.
+//!
 //! Rejected: stages in pieces (plan, shard, merge) as functions of their own. Every stage with such
 //! a map would be three functions and a type for what passes between them, and four of these stages
 //! have several maps.
@@ -42,6 +47,20 @@ pub type Sharded<R> = Result<R, ShardDone>;
 /// stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShardDone(());
+
+/// What a shard is made of, in short: equal for runs of one scene and the same parameters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Origin(u64);
+
+impl Origin {
+    /// Of what is written in these bytes (FNV-1a).
+    pub fn of(bytes: &[u8]) -> Self {
+        let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
+        });
+        Self(hash)
+    }
+}
 
 /// Which items of which map an instance does.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -72,31 +91,46 @@ impl ShardTask {
 /// The results of sharded maps: for each map the bytes of all instances, in their order.
 #[derive(Clone, Debug, Default)]
 pub struct MergedShards {
-    maps: BTreeMap<String, Vec<Arc<Vec<CallShard>>>>,
+    maps: BTreeMap<String, Vec<Arc<Shard>>>,
 }
 
 impl MergedShards {
-    /// Adds the shard of the next instance, counted from zero, of a map. False where these are no
-    /// such bytes.
+    /// Adds the shard of the next instance, counted from zero, of a map. False where it is no
+    /// such shard, and none of the map are kept then.
     pub fn merge(&mut self, map: &str, shard: &[u8]) -> bool {
-        let calls: Option<Vec<CallShard>> = postcard::from_bytes(shard).ok();
-        let is_shard = calls.is_some();
         let instances = self.maps.entry(map.to_owned()).or_default();
-        instances.extend(calls.map(Arc::new));
-        is_shard
+        let shard: Option<Shard> = postcard::from_bytes(shard).ok();
+        let next = shard.filter(|shard| {
+            let is_next = shard.index == instances.len() && shard.index < shard.of;
+            is_next && (instances.first()).is_none_or(|first| first.is_beside(shard))
+        });
+        let fits = next.is_some();
+        match next {
+            Some(shard) => instances.push(Arc::new(shard)),
+            None => instances.clear(),
+        }
+        fits
     }
 
     /// The results of one call of a map in the order of its items; `None` unless they are all
-    /// there.
-    fn results<R: DeserializeOwned>(&self, map: &str, call: usize, items: usize) -> Option<Vec<R>> {
+    /// there, and made of the same.
+    fn results<R: DeserializeOwned>(
+        &self,
+        map: &str,
+        origin: Origin,
+        call: usize,
+        items: usize,
+    ) -> Option<Vec<R>> {
         let instances = self.maps.get(map)?;
-        let parts = instances.iter().map(|calls| {
+        let of = instances.len();
+        let parts = instances.iter().map(|shard| {
+            let is_whole = shard.of == of && shard.origin == origin;
+            let calls = is_whole.then_some(&shard.calls)?;
             let call = calls.get(call).filter(|call| call.items == items)?;
             let part: Vec<R> = postcard::from_bytes(&call.results).ok()?;
             Some(part.into_iter())
         });
         let mut parts: Vec<std::vec::IntoIter<R>> = parts.collect::<Option<_>>()?;
-        let of = parts.len();
         (0..items)
             .map(|i| parts.get_mut(instance_of(i, of))?.next())
             .collect()
@@ -114,6 +148,24 @@ fn instance_of(item: usize, of: usize) -> usize {
     }
 }
 
+/// What one instance did of a map.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Shard {
+    /// Which instance.
+    index: usize,
+    /// Of how many.
+    of: usize,
+    origin: Origin,
+    calls: Vec<CallShard>,
+}
+
+impl Shard {
+    /// Are these two of the same dealing?
+    fn is_beside(&self, other: &Self) -> bool {
+        self.of == other.of && self.origin == other.origin
+    }
+}
+
 /// One call of a map, as one instance did it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct CallShard {
@@ -126,6 +178,7 @@ struct CallShard {
 /// What the sharded maps on this thread are to do.
 #[derive(Default)]
 struct Sharding {
+    origin: Origin,
     merged: MergedShards,
     task: Option<ShardTask>,
     /// How often each map was called.
@@ -137,9 +190,15 @@ thread_local! {
     static SHARDING: RefCell<Option<Sharding>> = const { RefCell::new(None) };
 }
 
-/// Runs a stage on this thread, whose maps take the merged results where there are any.
-pub fn run_merged<R>(merged: MergedShards, stage: impl FnOnce() -> Sharded<R>) -> R {
+/// Runs a stage on this thread, whose maps take the merged results where there are any of this
+/// origin.
+pub fn run_merged<R>(
+    origin: Origin,
+    merged: MergedShards,
+    stage: impl FnOnce() -> Sharded<R>,
+) -> R {
     let sharding = Sharding {
+        origin,
         merged,
         ..Sharding::default()
     };
@@ -151,16 +210,25 @@ pub fn run_merged<R>(merged: MergedShards, stage: impl FnOnce() -> Sharded<R>) -
 /// before it; the shard of the task. No calls are in it where the stage does not come to that map.
 pub fn run_shard<R>(
     task: ShardTask,
+    origin: Origin,
     merged: MergedShards,
     stage: impl FnOnce() -> Sharded<R>,
 ) -> Vec<u8> {
+    let (index, of) = (task.index, task.of);
     let sharding = Sharding {
+        origin,
         merged,
         task: Some(task),
         ..Sharding::default()
     };
-    let (_, done) = sharded(sharding, stage);
-    postcard::to_stdvec(&done).expect("bytes can be written to memory")
+    let (_, calls) = sharded(sharding, stage);
+    let shard = Shard {
+        index,
+        of,
+        origin,
+        calls,
+    };
+    postcard::to_stdvec(&shard).expect("bytes can be written to memory")
 }
 
 fn sharded<R>(sharding: Sharding, stage: impl FnOnce() -> R) -> (R, Vec<CallShard>) {
@@ -224,7 +292,7 @@ fn role<R: DeserializeOwned>(name: &str, items: usize) -> Role<R> {
                 return Role::Behind;
             }
         }
-        match sharding.merged.results(name, call, items) {
+        match sharding.merged.results(name, sharding.origin, call, items) {
             Some(results) => Role::Merged(results),
             None => Role::Whole,
         }
@@ -248,6 +316,7 @@ mod tests {
     use super::*;
 
     const MAPS: &[&str] = &["halves", "roots"];
+    const HERE: Origin = Origin(1);
 
     /// Two maps, the second of which is called twice and works on what the first found. An empty
     /// list of items would be out of bounds.
@@ -272,14 +341,14 @@ mod tests {
             let counted = AtomicUsize::new(0);
             let shards: Vec<Vec<u8>> = (0..of)
                 .map(|k| ShardTask::new(MAPS, map, k, of).unwrap())
-                .map(|task| run_shard(task, merged.clone(), || stage(&counted)))
+                .map(|task| run_shard(task, HERE, merged.clone(), || stage(&counted)))
                 .collect();
             // Nobody does another map than this one.
             assert_eq!(counted.into_inner(), 11);
             assert!(shards.iter().all(|bytes| merged.merge(map, bytes)));
         }
         let counted = AtomicUsize::new(0);
-        let result = run_merged(merged, || stage(&counted));
+        let result = run_merged(HERE, merged, || stage(&counted));
         (result, counted.into_inner())
     }
 
@@ -299,7 +368,7 @@ mod tests {
         let mut went_on = false;
         let mut run = |task| {
             let counted = AtomicUsize::new(0);
-            run_shard(task, MergedShards::default(), || {
+            run_shard(task, HERE, MergedShards::default(), || {
                 let result = stage(&counted);
                 went_on |= result.is_ok();
                 result
@@ -329,12 +398,58 @@ mod tests {
         let mut merged = MergedShards::default();
         assert!(!merged.merge("halves", &[255; 3]));
         let task = ShardTask::new(MAPS, "halves", 0, 1).unwrap();
-        let foreign = run_shard(task, MergedShards::default(), || {
+        let foreign = run_shard(task, HERE, MergedShards::default(), || {
             sharded_map("halves", &[1.0, 2.0], 0.0..1.0, |_, x| *x)
         });
         assert!(merged.merge("halves", &foreign));
         let counted = AtomicUsize::new(0);
-        run_merged(merged, || stage(&counted));
+        run_merged(HERE, merged, || stage(&counted));
         assert_eq!(counted.into_inner(), 22);
+    }
+
+    /// The shards of map "halves" by so many instances.
+    fn halves(of: usize, origin: Origin) -> Vec<Vec<u8>> {
+        let tasks = (0..of).map(|k| ShardTask::new(MAPS, "halves", k, of).unwrap());
+        let counted = AtomicUsize::new(0);
+        let none = MergedShards::default;
+        tasks
+            .map(|task| run_shard(task, origin, none(), || stage(&counted)))
+            .collect()
+    }
+
+    #[test]
+    fn shards_that_came_twice_give_no_item_the_result_of_another() {
+        let whole = stage(&AtomicUsize::new(0)).unwrap();
+        let dealt = halves(2, HERE);
+        let elsewhere = halves(2, Origin::of(b"another scene"));
+        let of_three = halves(3, HERE);
+        let mixtures: [&[&Vec<u8>]; 6] = [
+            &[&dealt[0], &dealt[1], &dealt[0], &dealt[1]],
+            &[&dealt[0], &dealt[0], &dealt[1], &dealt[1]],
+            &[&dealt[1], &dealt[0]],
+            &[&dealt[0]],
+            &[&dealt[0], &of_three[1]],
+            &[&elsewhere[0], &elsewhere[1]],
+        ];
+        for (k, mixture) in mixtures.into_iter().enumerate() {
+            let mut merged = MergedShards::default();
+            for shard in mixture {
+                merged.merge("halves", shard);
+            }
+            let counted = AtomicUsize::new(0);
+            let result = run_merged(HERE, merged, || stage(&counted));
+            assert_eq!(result, whole, "mixture {k}");
+        }
+    }
+
+    #[test]
+    fn a_shard_that_is_not_the_next_is_refused() {
+        let dealt = halves(2, HERE);
+        let mut merged = MergedShards::default();
+        assert!(merged.merge("halves", &dealt[0]));
+        assert!(!merged.merge("halves", &dealt[0]), "the same again");
+        assert!(!merged.merge("halves", &dealt[1]), "not the first");
+        assert!(merged.merge("halves", &dealt[0]));
+        assert!(!merged.merge("halves", &halves(2, Origin::of(b"another scene"))[1]));
     }
 }

@@ -142,13 +142,15 @@ impl Run {
     ) -> StageSummary {
         for earlier in self.stages().into_iter().filter(|&s| s < stage) {
             if !self.has(earlier) {
-                run_merged(MergedShards::default(), || self.run_stage(earlier));
+                let origin = self.shards_origin(earlier);
+                run_merged(origin, MergedShards::default(), || self.run_stage(earlier));
             }
         }
         self.drop_from(stage);
         progress(0.0);
+        let origin = self.shards_origin(stage);
         progress::with_listener(Listener::clone(progress), || {
-            run_merged(merged, || self.run_stage(stage));
+            run_merged(origin, merged, || self.run_stage(stage));
         });
         progress(1.0);
         self.summaries.last().expect("just pushed").clone()

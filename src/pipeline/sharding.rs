@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::{Run, Stage};
 use crate::camera::Camera;
 use crate::execution::{Listener, progress};
-use crate::execution::{MergedShards, ShardTask, run_shard};
+use crate::execution::{MergedShards, Origin, ShardTask, run_shard};
 use crate::params::Params;
 use crate::raster::Gray;
 use crate::scene::{Scene, Survey, View};
@@ -114,10 +114,29 @@ impl Run {
             return Vec::new();
         };
         self.drop_from(stage);
+        let origin = self.shards_origin(stage);
         let bytes = progress::with_listener(Listener::clone(progress), || {
-            run_shard(task, merged, || self.run_stage(stage))
+            run_shard(task, origin, merged, || self.run_stage(stage))
         });
         self.drop_from(stage);
         bytes
+    }
+
+    /// What the shards of a stage are made of: instances whose scenes or parameters differ do not
+    /// share.
+    pub(super) fn shards_origin(&self, stage: Stage) -> Origin {
+        let scene = &self.scene;
+        let views: Vec<(&str, &Camera)> = (scene.views.iter())
+            .map(|view| (view.name.as_str(), &view.camera))
+            .collect();
+        let params = super::as_json(&self.params).to_string();
+        let of = (
+            stage.name(),
+            scene.origin.as_slice(),
+            scene.ground_z,
+            views,
+            params,
+        );
+        Origin::of(&postcard::to_stdvec(&of).expect("bytes can be written to memory"))
     }
 }

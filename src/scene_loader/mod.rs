@@ -45,4 +45,6 @@ pub use candidate::OrientationCandidate;
 pub use input::LoadOptions;
 pub use inspect::{FileReport, ImageReport, Inspection, inspect_files};
 pub use load::{load_scene, whole_views};
+#[cfg(target_arch = "wasm32")]
+pub(crate) use project::SHOWN;
 pub use project::{Project, open_project};

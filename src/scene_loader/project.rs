@@ -6,8 +6,9 @@
 //! results/...       what was written
 //! ```
 //!
-//! Results are for users and other programs; opening reads the input and reconstructs again, since
-//! the same input and parameters give the same bytes.
+//! Results are for users and other programs; opening reads the input, from which the same
+//! parameters give the same bytes. What the page shows of a run is among them ([`SHOWN`]), so that
+//! the same version shows it again without a run.
 
 use std::io::{Cursor, Write};
 
@@ -27,6 +28,9 @@ const PROJECT_FILE: &str = "project.json";
 const INPUT: &str = "input/";
 const RESULTS: &str = "results/";
 
+/// What the page shows of a run, in the page's own form.
+pub(crate) const SHOWN: &str = "page.json";
+
 /// Options and parameters of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -37,6 +41,9 @@ pub struct Project {
     pub options: LoadOptions,
     /// Parameters of the stages.
     pub params: Params,
+    /// What the page showed when this version wrote it; empty where it showed nothing.
+    #[serde(skip)]
+    pub shown: Vec<u8>,
 }
 
 impl Project {
@@ -46,6 +53,7 @@ impl Project {
             ridgeline: env!("CARGO_PKG_VERSION").to_owned(),
             options,
             params,
+            shown: Vec::new(),
         }
     }
 
@@ -92,7 +100,7 @@ pub fn open_project(files: Vec<InputFile>) -> Result<(Vec<InputFile>, Option<Pro
     let Some(file) = files.iter().find(is_project) else {
         return Ok((files, None));
     };
-    let project: Project = crate::json::read(&file.text()).map_err(|e| Error::Line {
+    let mut project: Project = crate::json::read(&file.text()).map_err(|e| Error::Line {
         file: file.path.clone(),
         line: e.line().unwrap_or(1),
         problem: e
@@ -109,8 +117,14 @@ pub fn open_project(files: Vec<InputFile>) -> Result<(Vec<InputFile>, Option<Pro
         .unwrap_or_default()
         .to_owned();
     let input = format!("{base}{INPUT}");
+    let shown = format!("{base}{RESULTS}{SHOWN}");
+    let is_ours = project.ridgeline == env!("CARGO_PKG_VERSION");
     let inputs: Vec<InputFile> = (files.into_iter())
         .filter_map(|f| {
+            if is_ours && f.path == shown {
+                project.shown = f.bytes;
+                return None;
+            }
             Some(InputFile {
                 path: f.path.strip_prefix(&input)?.to_owned(),
                 bytes: f.bytes,
@@ -168,6 +182,7 @@ mod tests {
         );
         let (inputs, opened) = open_project(unpacked).unwrap();
         assert_eq!(opened.as_ref(), Some(&project));
+        assert!(project.shown.is_empty());
         let used: Vec<_> = files
             .iter()
             .filter(|f| f.path != "notes.txt")
@@ -184,6 +199,22 @@ mod tests {
             (a.views.len(), a.views[2].camera.clone()),
             (3, b.views[2].camera.clone())
         );
+    }
+
+    #[test]
+    fn what_the_page_showed_is_there_again_in_the_same_version() {
+        let (mut project, files) = project();
+        let results = [(SHOWN.to_owned(), b"{}".to_vec())];
+        let opened = |project: &Project| {
+            let packed = project.pack(&files, &results).unwrap();
+            let (inputs, opened) =
+                open_project(unpack(InputFile::new("a.zip", packed)).unwrap()).unwrap();
+            assert!(inputs.iter().all(|f| !f.path.contains(SHOWN)));
+            opened.unwrap().shown
+        };
+        assert_eq!(opened(&project), b"{}");
+        project.ridgeline = "0.0.1".to_owned();
+        assert!(opened(&project).is_empty());
     }
 
     #[test]

@@ -12,7 +12,7 @@ use crate::orientation::InputFile;
 use crate::params::Params;
 use crate::pipeline::{PackedView, Run, Stage, load_adjusted};
 use crate::planes::PointsOfInterest;
-use crate::scene_loader::{LoadOptions, Project, inspect_files, open_project, unpack};
+use crate::scene_loader::{LoadOptions, Project, SHOWN, inspect_files, open_project, unpack};
 use crate::tiles::Area;
 
 /// Files, parameters and the reconstruction made of them.
@@ -150,16 +150,27 @@ impl Session {
         }))
     }
 
-    /// The files, the options of `load`, the parameters and the results so far as a project file
-    /// (.zip).
+    /// What the page showed when the project among the added files was written by this version;
+    /// empty otherwise.
+    #[wasm_bindgen(js_name = openedResults, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
+    pub fn opened_results(&self) -> Vec<u8> {
+        (self.project.as_ref()).map_or_else(Vec::new, |project| project.shown.clone())
+    }
+
+    /// The files, the options of `load`, the parameters, the results so far and what the page shows
+    /// of them (empty for nothing) as a project file (.zip).
     #[wasm_bindgen(js_name = exportProject, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
     pub fn export_project(
         &self,
         #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
+        shown: Vec<u8>,
     ) -> Result<Vec<u8>, JsValue> {
         let project = Project::new(load_options(&options)?, self.params.clone());
         let of_run = || self.run.as_ref().map(|run| run.files(&[]));
-        let results = self.outputs.clone().or_else(of_run).unwrap_or_default();
+        let mut results = self.outputs.clone().or_else(of_run).unwrap_or_default();
+        if !shown.is_empty() {
+            results.push((SHOWN.to_owned(), shown));
+        }
         project
             .pack(&self.files, &results)
             .map_err(|e| input_error(&e))
@@ -197,6 +208,7 @@ impl Session {
     ) -> Result<JsValue, JsValue> {
         let options = load_options(&options)?;
         self.area = None;
+        self.merged = MergedShards::default();
         self.run = None;
         self.outputs = None;
         self.points = None;
@@ -227,6 +239,7 @@ impl Session {
         #[wasm_bindgen(unchecked_param_type = "Params")] params: JsValue,
     ) -> Result<(), JsValue> {
         self.params = from_js(&params, "parameters")?;
+        self.merged = MergedShards::default();
         self.outputs = None;
         self.points = None;
         if let Some(run) = &mut self.run {

@@ -90,6 +90,7 @@ impl Session {
     pub fn merge_shards(&mut self, map: &str, shards: Vec<Uint8Array>) -> Result<(), JsValue> {
         for shard in shards {
             if !self.merged.merge(map, &shard.to_vec()) {
+                self.merged = MergedShards::default();
                 return Err(foreign("a shard of a map"));
             }
         }

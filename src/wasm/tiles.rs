@@ -5,6 +5,7 @@ use wasm_bindgen::prelude::*;
 
 use super::convert::{input_error, named_error, to_js};
 use super::session::{Session, listener_of, load_options};
+use crate::execution::MergedShards;
 use crate::tiles::Area;
 
 #[wasm_bindgen]
@@ -18,6 +19,7 @@ impl Session {
         tile_m: f64,
     ) -> Result<JsValue, JsValue> {
         self.run = None;
+        self.merged = MergedShards::default();
         self.outputs = None;
         self.points = None;
         let options = load_options(&options)?;

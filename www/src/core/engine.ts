@@ -7,10 +7,17 @@ import type { Args, CallName, Result } from "../shared/calls";
 import type { FailureKind, Reply, Request } from "../shared/messages";
 import type { AgreementReport } from "../shared/records";
 
+/** Changes with every other core that is built: what one found, another may not find. */
+export const CORE_VERSION: string = import.meta.env.PROD
+  ? wasmUrl.slice(wasmUrl.lastIndexOf("/") + 1)
+  : String(performance.timeOrigin);
+
 /** A call that the worker rejected, or that was cut short. */
 export class EngineError extends Error {
   readonly kind: FailureKind | "cancelled";
   readonly orientationCheck: AgreementReport | null;
+  /** The stage that was running, in words. */
+  during: string | null = null;
 
   constructor(
     message: string,
@@ -21,6 +28,11 @@ export class EngineError extends Error {
     this.kind = kind;
     this.orientationCheck = orientationCheck;
   }
+}
+
+/** Did the core stop for good? */
+export function isFatal(kind: EngineError["kind"]): boolean {
+  return kind === "crash" || kind === "memory";
 }
 
 interface Pending {
@@ -36,9 +48,17 @@ export class Engine {
   #pending = new Map<number, Pending>();
   #lastId = 0;
   readonly #onProgress: (stage: string, fraction: number) => void;
+  readonly #mayAsk: () => boolean;
 
-  constructor(onProgress: (stage: string, fraction: number) => void) {
+  /** While `mayAsk` says no, requests fail as if the worker had been ended. */
+  constructor(onProgress: (stage: string, fraction: number) => void, mayAsk = () => true) {
     this.#onProgress = onProgress;
+    this.#mayAsk = mayAsk;
+  }
+
+  /** Whether requests are waiting for their answers. */
+  get isWorking(): boolean {
+    return this.#pending.size > 0;
   }
 
   /** Whether a worker with a core exists, or is being made. */
@@ -52,7 +72,7 @@ export class Engine {
     this.#worker.onmessage = (event: MessageEvent<Reply>) => this.#receive(event.data);
     this.#worker.onerror = (event) => {
       event.preventDefault();
-      this.close(new EngineError(event.message || "The worker could not be started.", "crash"));
+      this.close(new EngineError(event.message || "the worker could not be started", "crash"));
     };
     return this.#send({ type: "open", wasmUrl: new URL(wasmUrl, document.baseURI).href }, []);
   }
@@ -72,7 +92,7 @@ export class Engine {
 
   #send<T>(request: Unnumbered<Request>, transfer: readonly Transferable[]): Promise<T> {
     const worker = this.#worker;
-    if (worker === undefined) {
+    if (worker === undefined || !this.#mayAsk()) {
       return Promise.reject(new EngineError("No worker is running.", "cancelled"));
     }
     this.#lastId += 1;
@@ -107,7 +127,7 @@ export class Engine {
     }
     const error = new EngineError(reply.message, reply.kind, reply.orientationCheck);
     pending?.reject(error);
-    if (reply.kind === "crash") {
+    if (isFatal(reply.kind)) {
       this.close(error);
     }
   }

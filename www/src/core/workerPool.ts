@@ -39,25 +39,25 @@ export class WorkerPool {
     this.#onProgress = onProgress;
   }
 
-  /** Computes the maps of a stage in shards; false where that failed and the engine is to run by itself. */
-  async runShards(wanted: Wanted): Promise<boolean> {
+  /** Computes the maps of a stage in shards; why that failed and the engine is to run by itself, or null. */
+  async runShards(wanted: Wanted): Promise<Error | null> {
     const maps = await this.#engine.call("shardMaps", wanted.stage);
     if (wanted.workers < 2 || maps.length === 0) {
-      return true;
+      return null;
     }
     try {
       await this.#resize(wanted.workers - 1);
       await this.#giveViews(wanted.views, await this.#engine.call("shardsReadColours", wanted.stage));
       await this.#giveResults(wanted);
       await this.#doMaps(wanted.stage, maps);
-      return true;
+      return null;
     } catch (error) {
       const cancelled = error instanceof EngineError && error.kind === "cancelled";
       if (cancelled || !this.#engine.isOpen) {
         throw error;
       }
       this.close();
-      return false;
+      return error instanceof Error ? error : new Error(String(error));
     }
   }
 

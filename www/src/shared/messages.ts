@@ -8,10 +8,10 @@ export type Request =
   | { type: "call"; id: number; name: CallName; args: readonly unknown[] };
 
 /**
- * Why a call failed: the input is at fault; the core is, but it still runs; or it stopped for good and
- * the worker must be made anew.
+ * Why a call failed: the input is at fault; the core is, but it still runs; or it stopped for good, of a fault or for want
+ * of memory, and the worker must be made anew.
  */
-export type FailureKind = "input" | "internal" | "crash";
+export type FailureKind = "input" | "internal" | "crash" | "memory";
 
 export interface Failure {
   message: string;

@@ -23,3 +23,6 @@ export type Selection =
   | { kind: "pair"; index: number }
   /** A rejected cluster of a cluster plane; the selected ones are 3D lines. */
   | { kind: "cluster"; plane: number; index: number };
+
+/** Where the 3D view's camera stands and what it looks at: x, y, z each, metres, local frame. */
+export type Standpoint = readonly [number, number, number, number, number, number];

@@ -17,8 +17,9 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { ThemeColours } from "../shared/palette";
 import type { ViewInfo } from "../shared/records";
-import type { Selection } from "../shared/selection";
+import type { Selection, Standpoint } from "../shared/selection";
 import { buildGrid } from "./layers/grid";
+import { yUp, zUp } from "./scene/frame";
 import { gpuFinished } from "./scene/gpuFence";
 import type { Layer } from "./scene/layer";
 import { CUT, MEASURED, OF_BOTH_HALVES, PICK_ORDER } from "./scene/layerRoles";
@@ -60,6 +61,9 @@ export class Viewer {
   #points: Vector3[] | null = null;
   #onPoint: (points: Vector3[]) => void = () => undefined;
 
+  /** Hears where the camera stands once a person has moved it. */
+  onStand: (standpoint: Standpoint) => void = () => undefined;
+
   constructor(
     canvas: HTMLCanvasElement,
     colours: ThemeColours,
@@ -78,6 +82,7 @@ export class Viewer {
     this.#controls.maxPolarAngle = 0.495 * Math.PI;
     this.#controls.listenToKeyEvents(canvas);
     this.#controls.addEventListener("change", () => this.draw());
+    this.#controls.addEventListener("end", () => this.onStand(this.#standpoint()));
     canvas.addEventListener("pointerdown", (event) => this.#pressedAt.set(event.clientX, event.clientY));
     canvas.addEventListener("pointerup", (event) => this.#click(event));
     this.#observer = new ResizeObserver(() => void this.#resize());
@@ -197,7 +202,20 @@ export class Viewer {
     const distance = this.#camera.position.distanceTo(this.#controls.target);
     this.#camera.position.copy(this.#controls.target).add(new Vector3(0, distance, 1e-3 * distance));
     this.#controls.update();
+    this.onStand(this.#standpoint());
     this.draw();
+  }
+
+  /** Puts the camera where it stood. */
+  standAt([x, y, z, toX, toY, toZ]: Standpoint): void {
+    this.#camera.position.copy(yUp([x, y, z]));
+    this.#controls.target.copy(yUp([toX, toY, toZ]));
+    this.#controls.update();
+    this.draw();
+  }
+
+  #standpoint(): Standpoint {
+    return [...zUp(this.#camera.position), ...zUp(this.#controls.target)];
   }
 
   /** Looks through a view's own camera, or freely again. */

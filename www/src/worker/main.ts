@@ -2,9 +2,9 @@
 /// <reference lib="webworker" />
 import init, { Session } from "../pkg/ridgeline.js";
 import type { WorkerCalls } from "../shared/calls";
-import type { Failure, Reply, Request } from "../shared/messages";
-import type { AgreementReport } from "../shared/records";
+import type { Reply, Request } from "../shared/messages";
 import { type Answer, answer, type CoreSession, workerCalls } from "./calls";
+import { failureOf } from "./failures";
 
 declare const self: DedicatedWorkerGlobalScope;
 
@@ -15,12 +15,21 @@ self.onmessage = (event: MessageEvent<Request>) => {
   queue = queue.then(() => reply(event.data));
 };
 
+/** What the core wrote to the console last: a panic's message, of which the trap behind it says nothing. */
+let lastWords: string | null = null;
+const write = console.error.bind(console);
+console.error = (...words: unknown[]) => {
+  lastWords = String(words[0]);
+  write(...words);
+};
+
 async function reply(request: Request): Promise<void> {
+  lastWords = null;
   try {
     const { result, transfer } = await perform(request);
     post({ type: "done", id: request.id, result }, transfer);
   } catch (error) {
-    post({ type: "failed", id: request.id, ...failureOf(error) });
+    post({ type: "failed", id: request.id, ...failureOf(error, lastWords) });
   }
 }
 
@@ -36,22 +45,6 @@ async function perform(request: Request): Promise<Answer> {
     throw new Error("The reconstruction core is not ready. Reload the page.");
   }
   return answer(core.session, core.own, request.name, request.args);
-}
-
-function failureOf(error: unknown): Failure {
-  if (error instanceof WebAssembly.RuntimeError) {
-    const message = `The reconstruction core stopped (${error.message}).`;
-    return { message, kind: "crash", orientationCheck: null };
-  }
-  if (error instanceof Error) {
-    const { agreement: orientationCheck = null } = error as Error & { agreement?: AgreementReport };
-    return {
-      message: error.message,
-      kind: error.name === "InputError" ? "input" : "internal",
-      orientationCheck,
-    };
-  }
-  return { message: String(error), kind: "internal", orientationCheck: null };
 }
 
 function post(reply: Reply, transfer: Transferable[] = []): void {

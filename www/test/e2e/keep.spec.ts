@@ -19,7 +19,7 @@ test("what was removed comes back on request", async ({ page }) => {
     await expect(views).toHaveCount(again);
   }
   await expect(page.getByRole("button", { name: "Undo" })).toHaveCount(0);
-  await page.getByRole("button", { name: "Remove all" }).click();
+  await page.getByRole("button", { name: "New project" }).click();
   await expect(page.locator(".view")).toHaveCount(0);
   await page.getByRole("button", { name: "Undo" }).click();
   await expect(page.locator(".status.good")).toHaveCount(6);

@@ -88,11 +88,15 @@ test("a project opens again to the same state, here and on the command line", as
   const model = await saved(page, "model.city.json");
   const project = await saved(page, "Save project");
 
-  await page.getByRole("button", { name: "Remove all" }).click();
+  await page.getByRole("button", { name: "New project" }).click();
   await give(page, [upload("house.zip", project)]);
   await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
   await expect(page.getByLabel(/Height of the ground/)).toHaveValue("100");
   await expect(page.locator("#param-texture-padding_px")).toHaveValue("5");
+  // Its results are shown without a run.
+  await waitForStage(page, "model", 20_000);
+  await expect(page.getByText("Nothing to show yet.")).toHaveCount(0);
+  await expect(page.getByRole("button", { name: "model.glb" })).toBeVisible();
   await page.getByRole("button", { name: "Run all" }).click();
   await waitForStage(page, "model");
   expect((await saved(page, "model.city.json")).equals(model)).toBe(true);

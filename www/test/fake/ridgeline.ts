@@ -432,6 +432,10 @@ export class Session implements CoreSession {
     return null;
   }
 
+  openedResults(): Uint8Array<ArrayBuffer> {
+    return new Uint8Array();
+  }
+
   #images(): string[] {
     return this.#files.filter((path) => path.endsWith(".jpg"));
   }

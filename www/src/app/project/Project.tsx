@@ -2,12 +2,15 @@
 import "./project.css";
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { ImageReport } from "../../shared/records";
+import { isBusy } from "../state/activity";
 import { notify } from "../state/notices";
 import { files, inspection, projectName, runOptions } from "../state/project";
 import { peakMb, scene } from "../state/scene";
+import { ArrivalHabit, ArrivalQuestion } from "./ArrivalQuestion";
+import { takeFiles } from "./arrivals";
 import { droppedFiles, pickedFiles } from "./inputFiles";
 import { OrientationCheck } from "./OrientationCheck";
-import { addFiles, clearProject, openDemo, removeFile, setRunOptions } from "./projectActions";
+import { clearProject, openDemo, removeFile, setRunOptions } from "./projectActions";
 import { OrientationChoice, PlaceFields } from "./RunOptionFields";
 import { storedBytes } from "./storedProject";
 import { Thumbnail } from "./Thumbnail";
@@ -15,7 +18,15 @@ import { Thumbnail } from "./Thumbnail";
 export function Project() {
   return (
     <section class="panel">
-      <h2>Project{projectName.value !== "" && <span class="muted"> · {projectName}</span>}</h2>
+      <div class="row spread">
+        <h2>Project{projectName.value !== "" && <span class="muted"> · {projectName}</span>}</h2>
+        {files.value.length > 0 && (
+          <button type="button" onClick={() => void clearProject()}>
+            New project
+          </button>
+        )}
+      </div>
+      <ArrivalQuestion />
       <DropZone />
       {files.value.length > 0 && <Views />}
       {files.value.length > 0 && <OtherFiles />}
@@ -45,7 +56,7 @@ function DropZone() {
     const input = event.currentTarget as HTMLInputElement;
     const picked = pickedFiles(input.files ?? new DataTransfer().files);
     input.value = "";
-    void addFiles(picked);
+    void takeFiles(picked);
   };
 
   return (
@@ -53,8 +64,9 @@ function DropZone() {
       <p>
         {isEmpty
           ? "Drop three or more overlapping photographs and their orientation files: files or a folder, in one go, anywhere on the page."
-          : "Drop more files here."}
+          : "Drop more files here, or another project."}
       </p>
+      {!isEmpty && <ArrivalHabit />}
       {isEmpty && (
         <p class="muted">
           JPEG, PNG or TIFF; orientation as COLMAP, Metashape, Pix4D, OpenSfM, Bundler and others write it,
@@ -108,7 +120,7 @@ function useFileDrop(): boolean {
       setOver(false);
       if (event.dataTransfer?.types.includes("Files")) {
         event.preventDefault();
-        droppedFiles(event.dataTransfer).then(addFiles, (error: unknown) =>
+        droppedFiles(event.dataTransfer).then(takeFiles, (error: unknown) =>
           notify({ severity: "error", title: "The dropped files cannot be read", text: String(error) }),
         );
       }
@@ -121,16 +133,12 @@ function useFileDrop(): boolean {
 function Views() {
   const report = inspection.value;
   if (report === null) {
-    return <p class="muted">Reading {files.value.length} files…</p>;
+    const count = `${files.value.length} ${files.value.length === 1 ? "file" : "files"}`;
+    return <p class="muted">{isBusy.value ? `Reading ${count}…` : `${count}, not read`}</p>;
   }
   return (
     <>
-      <div class="row spread">
-        <h3>{countText(report.images)}</h3>
-        <button type="button" class="quiet" onClick={() => void clearProject()}>
-          Remove all
-        </button>
-      </div>
+      <h3>{countText(report.images)}</h3>
       {peakMb.value !== null && <p class="muted numbers">about {peakMb} MB of memory in each worker</p>}
       <ul class="views">
         {report.images.map((image) => (

@@ -4,25 +4,26 @@ import type { InputFile } from "../../shared/calls";
 import { asTree } from "../../shared/paramTree";
 import type { StageName } from "../../shared/stages";
 import { saveFile } from "../parts/saveFile";
-import { failureNotice } from "../session/failureNotice";
+import type { Turn } from "../session/actionQueue";
+import { refusalNotices } from "../session/failureNotice";
 import {
+  actions,
   engine,
   ensureInspected,
   ensureScene,
-  guarded,
-  listStages,
   outdateFiles,
   outdateInspection,
   outdateScene,
-  stopWorker,
+  tellParams,
 } from "../session/session";
-import { clearResults, runAll, runTo } from "../session/stageRuns";
+import { stagesOf } from "../session/stageCatalogue";
+import { clearResults, runEverything, runStages } from "../session/stageRuns";
 import { linkedParams } from "../settings/addressLink";
 import { loadOptions, wishesOf } from "../settings/loadOptions";
 import { changedParams, paramsOf } from "../settings/parameterForm";
 import { keepResult } from "../state/keptResult";
-import { dismissAll, dismissOffers, notify } from "../state/notices";
-import { defaults, params, replaceParams } from "../state/parameters";
+import { dismissAbout, dismissOffers, notify } from "../state/notices";
+import { defaults, method, params, replaceParams } from "../state/parameters";
 import {
   files,
   inspection,
@@ -37,27 +38,59 @@ import {
   runOptions,
   setInspection,
 } from "../state/project";
-import { clearScene } from "../state/scene";
-import { showView } from "../state/viewState";
+import { allResults } from "../state/results";
+import { clearScene, scene } from "../state/scene";
+import { replaceStages } from "../state/stages";
+import { showTab, showView, standAt } from "../state/viewState";
 import type { StoredProject } from "./storedProject";
+import {
+  packResults,
+  presentResults,
+  type StoredResults,
+  showStoredResults,
+  unpackResults,
+} from "./storedResults";
 
-/** So many rejections are shown at once: the first ones usually explain the others. */
-const MAX_PROBLEMS = 4;
-
-/** Adds files (the same path replaces), inspects them, and loads the scene once it looks whole. */
-export async function addFiles(added: InputFile[], name?: string): Promise<void> {
+/** Adds files to the project (the same path replaces), inspects them, and loads the scene once it looks whole. */
+export async function addFiles(added: InputFile[]): Promise<void> {
   if (added.length === 0) {
     return;
   }
+  await actions.perform({ kind: "change", phase: "load", words: "Reading files" }, async () => {
+    removals = [];
+    const byPath = new Map(files.value.map((file) => [file.path, file]));
+    for (const file of added) {
+      byPath.set(file.path, file);
+    }
+    if (projectName.value === "") {
+      nameProject(OWN_FILES);
+    }
+    setProject([...byPath.values()]);
+    await loadProject(adoptProject);
+    await adoptResults();
+  });
+}
+
+/** Begins a new project with these files: nothing of the present one stays. */
+export async function openFiles(added: InputFile[]): Promise<void> {
+  if (added.length === 0) {
+    return;
+  }
+  await actions.perform({ kind: "open", phase: "load", words: "Reading files" }, () =>
+    openIn(added, OWN_FILES),
+  );
+}
+
+const OWN_FILES = "Own files";
+
+/** The same as part of another action. */
+async function openIn(next: InputFile[], name: string): Promise<void> {
   removals = [];
-  const byPath = new Map(files.value.map((file) => [file.path, file]));
-  for (const file of added) {
-    byPath.set(file.path, file);
-  }
-  if (name !== undefined || projectName.value === "") {
-    nameProject(name ?? "Own files");
-  }
-  await setProject([...byPath.values()], adoptProject);
+  replaceFiles([]);
+  nameProject(name);
+  setProject(next);
+  await loadProject(adoptProject);
+  await adoptResults();
 }
 
 /** Takes up what a project file among the added ones asks for. */
@@ -72,41 +105,67 @@ async function adoptProject(): Promise<void> {
     replaceParams(paramsOf(defaults.value, changedParams(defaults.value, asTree(opened.params))));
     setInspection(null);
   });
-  await listStages();
+  await tellParams();
   await ensureInspected();
+}
+
+/** Shows what a project file was saved with; more files than that one make other results. */
+async function adoptResults(): Promise<void> {
+  if (files.value.length !== 1 || scene.value === null) {
+    return;
+  }
+  const kept = unpackResults(await engine.call("openedResults"));
+  if (kept !== null) {
+    showStoredResults(kept);
+    showTab(allResults.value.main.glb === null ? "images" : "model");
+  }
 }
 
 /** Saves files, wishes, parameters and results as one file, which opens to the same state. */
 export async function saveProject(): Promise<void> {
-  await guarded("Writing the project", async () => {
+  const words = "Writing the project";
+  await actions.perform({ kind: "save", name: "project", phase: "save", words }, async () => {
+    if (files.value.length === 0) {
+      return;
+    }
     await ensureInspected();
     await engine.call("setParams", params.value);
     const options = loadOptions(runOptions.value, inspection.value);
-    const bytes = await engine.call("exportProject", options);
+    const shown = presentResults();
+    const packed = shown === null ? new Uint8Array() : packResults(shown);
+    const bytes = await engine.call("exportProject", options, packed);
     saveFile("ridgeline-project.zip", new Blob([bytes], { type: "application/zip" }));
   });
 }
 
 export async function removeFile(path: string): Promise<void> {
-  await removing(path.slice(path.lastIndexOf("/") + 1), () =>
-    setProject(files.value.filter((file) => file.path !== path)),
-  );
+  await actions.perform({ kind: "change", phase: "load", words: "Reading files" }, async () => {
+    const left = files.value.filter((file) => file.path !== path);
+    // A second click on the same file.
+    if (left.length < files.value.length) {
+      remove(path.slice(path.lastIndexOf("/") + 1), left);
+      await loadProject();
+    }
+  });
 }
 
+/** Lets go of the project: what comes next is another one. */
 export async function clearProject(): Promise<void> {
-  await removing("The project", async () => {
-    nameProject("");
-    await setProject([]);
+  await actions.perform({ kind: "open", name: "nothing", phase: "load" }, () => {
+    if (files.value.length > 0) {
+      remove("The project", []);
+      nameProject("");
+    }
   });
 }
 
 const UNDO = "Undo";
 
 /** What was removed since files came last, and the project before that; the last removal is taken back first. */
-let removals: { what: string; before: StoredProject }[] = [];
+let removals: { what: string; before: StoredProject; found: StoredResults | null }[] = [];
 
-/** Removes something, and offers to take that back. */
-async function removing(what: string, remove: () => Promise<void>): Promise<void> {
+/** Leaves some of the files, and offers to take that back. */
+function remove(what: string, left: InputFile[]): void {
   const before: StoredProject = {
     name: projectName.value,
     isDemo: isDemo.value,
@@ -114,11 +173,9 @@ async function removing(what: string, remove: () => Promise<void>): Promise<void
     options: runOptions.value,
     params: params.value,
   };
-  removals = [...removals, { what, before }];
-  // It is gone at once; reading what is left takes its time.
-  const reading = remove();
+  removals = [...removals, { what, before, found: presentResults() }];
+  setProject(left);
   offerUndo();
-  await reading;
 }
 
 /** Offers to take back the last removal, in place of any other one. */
@@ -130,126 +187,141 @@ function offerUndo(): void {
       severity: "info",
       title: `${last.what} was removed`,
       text: "",
-      action: { name: UNDO, run: () => void undo(last.before) },
+      action: { name: UNDO, run: () => void undo(last.before, last.found) },
     });
   }
 }
 
-async function undo(before: StoredProject): Promise<void> {
-  removals = removals.slice(0, -1);
-  await restoreProject(before);
-  offerUndo();
+async function undo(before: StoredProject, found: StoredResults | null): Promise<void> {
+  await actions.perform({ kind: "open", phase: "load", words: "Reading files" }, async () => {
+    removals = removals.slice(0, -1);
+    await restoreIn(before, offerUndo);
+    if (found !== null && scene.value !== null) {
+      showStoredResults(found);
+    }
+  });
 }
 
-/** Takes up the project of the last visit. */
-export async function restoreProject(kept: StoredProject): Promise<void> {
+/** Takes up a stored project as part of another action; `shown` happens as soon as its files are there. */
+export async function restoreIn(kept: StoredProject, shown = () => {}): Promise<void> {
   nameProject(kept.name);
-  replaceRunOptions({ ...NO_OPTIONS, ...kept.options });
   const linked = linkedParams();
-  replaceParams(paramsOf(defaults.value, { ...changedParams(defaults.value, kept.params), ...linked }));
-  await guarded("", listStages);
-  await setProject(kept.files);
-  markAsDemo(kept.isDemo);
+  batch(() => {
+    replaceParams(paramsOf(defaults.value, { ...changedParams(defaults.value, kept.params), ...linked }));
+    replaceStages(stagesOf(method.value));
+    setProject(kept.files);
+    replaceRunOptions({ ...NO_OPTIONS, ...kept.options });
+    markAsDemo(kept.isDemo);
+  });
+  shown();
+  await loadProject();
 }
 
 /**
- * Fetches the demo scene from this site and drops it in as if it were the user's; then runs it up to a stage: the last
+ * Fetches the demo scene from this site and opens it as if it were the user's; then runs it up to a stage: the last
  * one unless another is named, none for null.
  */
 export async function openDemo(target?: StageName | null): Promise<void> {
-  const fetched = await guarded("Fetching the demo scene", fetchDemo);
-  if (fetched === undefined) {
-    return;
-  }
-  replaceFiles([]);
-  await addFiles(fetched.files, fetched.title);
+  await actions.perform({ kind: "open", name: "demo", phase: "load" }, (turn) => openDemoIn(turn, target));
+}
+
+/** The same as part of another action. */
+export async function openDemoIn(turn: Turn, target?: StageName | null): Promise<void> {
+  turn.enter("load", "Fetching the demo scene");
+  const fetched = await fetchDemo(turn.signal);
+  turn.signal.throwIfAborted();
+  turn.enter("load", "Reading files");
+  const opening = openIn(fetched.files, fetched.title);
   markAsDemo(true);
+  await opening;
   if (target === undefined) {
-    await runAll();
+    await runEverything(turn);
   } else if (target !== null) {
-    await runTo(target);
+    await runStages(turn, target);
   }
 }
 
 /** Changes what is asked for beyond the files, and loads the scene again. */
 export async function setRunOptions(change: Partial<RunOptions>): Promise<void> {
-  stopWorker();
-  outdateScene();
-  outdateInspection();
-  batch(() => {
-    replaceRunOptions({ ...runOptions.value, ...change });
-    if (change.orientation !== undefined) {
-      setInspection(null);
-    }
-    dismissAll();
-    closeScene();
+  await actions.perform({ kind: "change", phase: "load", words: "Loading" }, async () => {
+    outdateScene();
+    outdateInspection();
+    batch(() => {
+      replaceRunOptions({ ...runOptions.value, ...change });
+      if (change.orientation !== undefined) {
+        setInspection(null);
+      }
+      dismissAbout("project");
+      closeScene();
+    });
+    await loadProject();
   });
-  await loadProject("Loading");
 }
 
-async function setProject(next: InputFile[], adopt?: () => Promise<void>): Promise<void> {
-  stopWorker();
+/** Has other files take the place of the project's. */
+function setProject(next: InputFile[]): void {
   outdateFiles();
   batch(() => {
     replaceFiles(next);
-    dismissAll();
+    dismissAbout("project");
     closeScene();
   });
-  await loadProject("Reading files", adopt);
 }
 
 /** Inspects the files, says what stands against them, or loads the scene. */
-async function loadProject(what: string, adopt?: () => Promise<void>): Promise<void> {
+async function loadProject(adopt?: () => Promise<void>): Promise<void> {
   if (files.value.length === 0) {
     return;
   }
-  await guarded(what, async () => {
-    await ensureInspected();
-    await adopt?.();
-    const problems = inspection.value?.errors ?? [];
-    // The inspection is of all images, and does not look into them: where that matters, loading says
-    // what is wrong.
-    const { leftOut, tileM } = runOptions.value;
-    const isFinal = leftOut.length === 0 && inspection.value?.is_implausible !== true;
-    if (tileM !== null) {
-      // A large area may be too much to load at once: where something stands against the whole, the plan of the tiles says
-      // whether it does against them.
-      const options = loadOptions(runOptions.value, inspection.value);
-      await (problems.length === 0 || engine.call("planTiles", options, tileM));
-      return;
-    }
-    if (problems.length === 0 || !isFinal) {
-      await ensureScene();
-      return;
-    }
-    for (const problem of problems.slice(0, MAX_PROBLEMS)) {
-      notify(failureNotice(problem, "input"));
-    }
-  });
+  await ensureInspected();
+  await adopt?.();
+  const problems = inspection.value?.errors ?? [];
+  // The inspection is of all images, and does not look into them: where that matters, loading says
+  // what is wrong.
+  const { leftOut, tileM } = runOptions.value;
+  const isFinal = leftOut.length === 0 && inspection.value?.is_implausible !== true;
+  if (tileM !== null) {
+    // A large area may be too much to load at once: where something stands against the whole, the plan of the tiles says
+    // whether it does against them.
+    const options = loadOptions(runOptions.value, inspection.value);
+    await (problems.length === 0 || engine.call("planTiles", options, tileM));
+    return;
+  }
+  if (problems.length === 0 || !isFinal) {
+    await ensureScene();
+    return;
+  }
+  for (const notice of refusalNotices(problems)) {
+    notify(notice);
+  }
 }
 
 /** Lets go of the scene and of all that was found in it. */
 function closeScene(): void {
   clearScene();
   showView(0);
+  standAt(null);
   keepResult(null);
   clearResults();
 }
 
-async function fetchDemo(): Promise<{ title: string; files: InputFile[] }> {
+async function fetchDemo(signal: AbortSignal): Promise<{ title: string; files: InputFile[] }> {
   const folder = new URL("demo/", document.baseURI);
-  const manifest = (await (await fetchOk(new URL("manifest.json", folder))).json()) as {
+  const manifest = (await (await fetchOk(new URL("manifest.json", folder), signal)).json()) as {
     title: string;
     files: string[];
   };
   const fetched = await Promise.all(
-    manifest.files.map(async (path) => ({ path, blob: await (await fetchOk(new URL(path, folder))).blob() })),
+    manifest.files.map(async (path) => ({
+      path,
+      blob: await (await fetchOk(new URL(path, folder), signal)).blob(),
+    })),
   );
   return { title: manifest.title, files: fetched };
 }
 
-async function fetchOk(url: URL): Promise<Response> {
-  const response = await fetch(url);
+async function fetchOk(url: URL, signal: AbortSignal): Promise<Response> {
+  const response = await fetch(url, { signal });
   if (!response.ok) {
     throw new Error(`${url.pathname}: the site answered ${response.status}. Was the demo folder published?`);
   }

@@ -1,9 +1,11 @@
-/** The project kept in this browser (IndexedDB) over reloads: files, options and parameters; results are computed again. */
+/** The project kept in this browser (IndexedDB) over reloads: files, options, parameters, and what was found with them. */
 import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import type { InputFile } from "../../shared/calls";
 import type { ParamTree } from "../../shared/paramTree";
+import { isBusy } from "../state/activity";
 import { defaults, params } from "../state/parameters";
 import { files, isDemo, projectName, type RunOptions, runOptions } from "../state/project";
+import { presentResults, type StoredResults } from "./storedResults";
 
 export interface StoredProject {
   name: string;
@@ -16,6 +18,7 @@ export interface StoredProject {
 const DATABASE = "ridgeline";
 const STORE = "project";
 const KEY = "present";
+const RESULTS_KEY = "results";
 const written = signal<number | null>(null);
 /** Bytes that the browser keeps of the project; null when it keeps nothing. */
 export const storedBytes: ReadonlySignal<number | null> = written;
@@ -33,9 +36,25 @@ export async function readStoredProject(): Promise<StoredProject | null> {
   }
 }
 
+/** What was found of the present project in the last visit; null where there is nothing. */
+export async function readStoredResults(): Promise<StoredResults | null> {
+  try {
+    const get = (store: IDBObjectStore) => store.get(RESULTS_KEY);
+    const kept = await request<{ of: string; found: StoredResults } | undefined>("readonly", get);
+    return kept?.of === presentInput() ? kept.found : null;
+  } catch {
+    return null;
+  }
+}
+
+/** By what the results of other files or wishes are told from those of the present ones. */
+function presentInput(): string {
+  return JSON.stringify([files.value.map(({ path, blob }) => [path, blob.size]), runOptions.value]);
+}
+
 export async function forgetStoredProject(): Promise<void> {
   try {
-    await request("readwrite", (store) => store.delete(KEY));
+    await request("readwrite", (store) => store.clear());
   } catch {
     // Nothing was kept.
   }
@@ -58,6 +77,30 @@ export function storeProject(): void {
       timer = window.setTimeout(() => void write(kept), DELAY_MS);
     }
   });
+}
+
+/** Writes the results whenever there are others and nothing is going on. */
+export function storeResults(): void {
+  let timer = 0;
+  effect(() => {
+    const found = presentResults();
+    clearTimeout(timer);
+    if (!isBusy.value && files.value.length > 0) {
+      const kept = { of: presentInput(), found };
+      timer = window.setTimeout(() => void writeResults(kept), DELAY_MS);
+    }
+  });
+}
+
+async function writeResults(kept: { of: string; found: StoredResults | null }): Promise<void> {
+  try {
+    const isSome = kept.found !== null;
+    await request("readwrite", (store) =>
+      isSome ? store.put(kept, RESULTS_KEY) : store.delete(RESULTS_KEY),
+    );
+  } catch {
+    // They are computed again.
+  }
 }
 
 async function write(kept: StoredProject): Promise<void> {

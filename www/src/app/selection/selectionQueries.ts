@@ -1,9 +1,11 @@
 /** What follows from a selection: the figures ask the core about the thing that was picked. */
 import { effect } from "@preact/signals";
 import type { Side, SideTrace } from "../../shared/records";
-import { ask } from "../session/session";
+import { actions, ask, hasResults } from "../session/session";
+import { runAll } from "../session/stageRuns";
+import { notify } from "../state/notices";
 import { results, shownResultSet } from "../state/results";
-import { beginDetail, changeDetail, NO_DETAIL, selectionDetail } from "../state/selectionDetail";
+import { beginDetail, changeDetail, NO_DETAIL, selectionDetail, takeResumed } from "../state/selectionDetail";
 import { runningStage } from "../state/stages";
 import { select, selection } from "../state/viewState";
 
@@ -95,12 +97,28 @@ export function sideOf(picked: typeof selection.value): { line: number; side: Si
   }
 }
 
+/** The results of an earlier visit are there to be seen; figures ask the core, which has not found them yet. */
+function offerRun(): void {
+  if (!hasResults() && actions.isIdle) {
+    notify({
+      severity: "info",
+      title: "The figures of what is picked need a run",
+      text: "The results are those of the last visit.",
+      action: { name: "Run all", run: () => void runAll() },
+    });
+  }
+}
+
 async function askAboutSegment(view: number, segment: number): Promise<void> {
+  if (results.peek().matching !== null) {
+    offerRun();
+  }
   const story = results.peek().matching === null ? null : await ask("segmentStory", view, segment);
   const now = selection.peek();
   if (now?.kind === "segment" && now.view === view && now.index === segment) {
     beginDetail({ story });
-    await compareAt(0, NO_DETAIL.at, false);
+    const point = story === null ? null : takeResumed().point;
+    await compareAt(point?.[0] ?? 0, point?.[1] ?? NO_DETAIL.at, point !== null);
   }
 }
 
@@ -109,11 +127,13 @@ async function askAboutSide(line: number, side: Side): Promise<void> {
     beginDetail();
     return;
   }
+  offerRun();
   const found = await ask("side", line, side === "left");
   const now = sideOf(selection.peek());
   if (now?.line === line && now.side === side) {
     beginDetail({ side: found, theta: bestTheta(found) });
-    await turnTo(bestTheta(found), false);
+    const thetaDeg = found === null ? null : takeResumed().thetaDeg;
+    await turnTo(thetaDeg === null ? bestTheta(found) : (thetaDeg * Math.PI) / 180, thetaDeg !== null);
   }
 }
 

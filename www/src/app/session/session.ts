@@ -1,25 +1,36 @@
 /** The worker and what keeps it fit: opening, loading, questions, and what is said when something fails. */
 
-import { Engine, EngineError } from "../../core/engine";
+import { Engine, EngineError, isFatal } from "../../core/engine";
 import { WorkerPool } from "../../core/workerPool";
 import type { Args, CallName, Result } from "../../shared/calls";
 import type { SceneInfo } from "../../shared/records";
 import { linkedParams } from "../settings/addressLink";
 import { loadOptions } from "../settings/loadOptions";
 import { paramsOf } from "../settings/parameterForm";
-import { beginActivity, endActivity, isBusy } from "../state/activity";
-import { notify } from "../state/notices";
+import { announce, notify } from "../state/notices";
 import { method, params, replaceParams, setDefaults } from "../state/parameters";
 import { files, inspection, runOptions, setInspection } from "../state/project";
+import { results, setExportNames } from "../state/results";
 import { images, setImages, setPeakMb, setScene } from "../state/scene";
-import { replaceStages, runningStage, setFreshStages, stages, updateStage } from "../state/stages";
+import {
+  haltStages,
+  replaceStages,
+  runningStage,
+  setFreshStages,
+  stages,
+  updateStage,
+} from "../state/stages";
+import { ActionQueue } from "./actionQueue";
 import { failureNotice } from "./failureNotice";
 import { stagesOf } from "./stageCatalogue";
 
 /** Whether the present worker holds the project's files, has the scene loaded, and was asked about them as they are wanted now. */
-const held = { files: false, scene: false, inspection: false };
+const held = { files: false, scene: false, inspection: false, results: false };
 
-export const engine = new Engine((stage, fraction) => workerPool.engineReached(stage, fraction));
+export const engine = new Engine(
+  (stage, fraction) => workerPool.engineReached(stage, fraction),
+  () => !actions.isEnding,
+);
 export const workerPool = new WorkerPool(engine, (name, fraction) => {
   const running = stages.value.find((stage) => stage.name === name && stage.status === "running");
   if (running !== undefined && fraction > running.fraction) {
@@ -27,53 +38,85 @@ export const workerPool = new WorkerPool(engine, (name, fraction) => {
   }
 });
 
+/** All actions of the page, one at a time. */
+export const actions = new ActionQueue({
+  stop: (phase) => {
+    if (phase === "run" || engine.isWorking) {
+      forgetWorker();
+      engine.close();
+    }
+  },
+  failed: report,
+});
+
 /** Compiles the core and reads its stages and defaults. */
-export async function start(): Promise<void> {
-  await guarded("Starting", async () => {
+export function start(): Promise<void> {
+  return actions.perform({ kind: "start", phase: "start", words: "Starting" }, openEngine);
+}
+
+/** Ends what is going on. What it had found stays on the page; the next run starts afresh. */
+export async function cancel(): Promise<void> {
+  if (actions.isIdle) {
+    return;
+  }
+  await actions.perform({ kind: "cancel", phase: "start" }, async () => {
+    haltStages();
+    announce("Cancelled. The next run begins with the first stage.");
     await openEngine();
   });
 }
 
 /** Asks the core about its results; null while it has none, or is at work on others. */
 export async function ask<K extends CallName>(call: K, ...of: Args<K>): Promise<Result<K> | null> {
-  if (!held.scene || runningStage.peek() !== null) {
+  if (!held.results || runningStage.peek() !== null) {
     return null;
   }
+  const asked = results.peek();
   try {
     return await engine.call(call, ...of);
   } catch (error) {
-    await report(error);
+    // Of results that have been replaced since, nobody wants to know.
+    const isFailed = error instanceof EngineError && isFatal(error.kind);
+    if (isFailed || (actions.isIdle && results.peek() === asked)) {
+      await actions.perform({ kind: "start", name: "failed", phase: "start" }, () => report(error));
+    }
     return null;
   }
 }
 
-/** Runs a task, shows what it is, and turns whatever it throws into a notice. */
-export async function guarded<T>(what: string, task: () => Promise<T>): Promise<T | undefined> {
-  beginActivity(what);
-  try {
-    return await task();
-  } catch (error) {
-    await report(error);
-    return undefined;
-  } finally {
-    endActivity(what);
-  }
-}
-
+/** Says what failed. A core that stopped is made anew, and given what it had. */
 async function report(error: unknown): Promise<void> {
-  const { kind, orientationCheck } =
-    error instanceof EngineError ? error : { kind: "internal" as const, orientationCheck: null };
+  const { kind, orientationCheck, during } =
+    error instanceof EngineError ? error : { ...UNEXPECTED, kind: "internal" as const };
   if (kind === "cancelled") {
     return;
   }
-  notify(failureNotice(error instanceof Error ? error.message : String(error), kind, orientationCheck));
-  if (kind === "crash") {
+  notify(failureNotice(messageOf(error), kind, orientationCheck, during));
+  if (isFatal(kind)) {
+    const hadScene = held.scene;
     forgetWorker();
-    await start();
+    engine.close();
+    try {
+      // What stopped it while it loaded would stop it again.
+      await (hadScene ? ensureScene() : openEngine());
+    } catch (again) {
+      if (!(again instanceof EngineError && again.kind === "cancelled")) {
+        notify(failureNotice(messageOf(again), "crash"));
+      }
+    }
   }
 }
 
+const UNEXPECTED = { orientationCheck: null, during: null };
+
+function messageOf(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}
+
 async function openEngine(): Promise<void> {
+  if (actions.isEnding) {
+    throw new EngineError("Cancelled.", "cancelled");
+  }
   if (engine.isOpen) {
     return;
   }
@@ -83,12 +126,12 @@ async function openEngine(): Promise<void> {
   if (stages.value.length === 0) {
     // With what has been chosen while the core was compiled.
     replaceParams(paramsOf(defaults, { ...linkedParams(), ...params.value }));
-    await listStages();
+    await tellParams();
   }
 }
 
 /** Gives the core the parameters, and shows the stages of the chosen method. */
-export async function listStages(): Promise<void> {
+export async function tellParams(): Promise<void> {
   await openEngine();
   await engine.call("setParams", params.value);
   replaceStages(stagesOf(method.value));
@@ -136,17 +179,11 @@ async function fetchImages(loaded: SceneInfo): Promise<ImageBitmap[]> {
   return bitmaps;
 }
 
-/** Ends the worker if it is at work: what it does is out of date. */
-export function stopWorker(): void {
-  if (isBusy.value) {
-    forgetWorker();
-    engine.close();
-  }
-}
-
-export function forgetWorker(): void {
+/** The worker is no more, and with it all that it had found. */
+function forgetWorker(): void {
   workerPool.close();
   outdateFiles();
+  setExportNames([]);
 }
 
 /** There are other files than the worker's. */
@@ -158,10 +195,21 @@ export function outdateFiles(): void {
 /** The scene is another one than the worker's, or the worker has dropped it. */
 export function outdateScene(): void {
   held.scene = false;
+  held.results = false;
   setFreshStages(0);
 }
 
 /** The files are wanted in another way than they were inspected for. */
 export function outdateInspection(): void {
   held.inspection = false;
+}
+
+/** The worker has results of its own, and can be asked about them. */
+export function noteResults(): void {
+  held.results = true;
+}
+
+/** Whether it can. */
+export function hasResults(): boolean {
+  return held.results;
 }

@@ -5,73 +5,70 @@ import type { ParamTree, ParamValue } from "../../shared/paramTree";
 import type { StageName } from "../../shared/stages";
 import { saveFile } from "../parts/saveFile";
 import { withParam } from "../settings/parameterForm";
-import { endAllActivity } from "../state/activity";
 import type { Method } from "../state/methods";
-import { announce, notify } from "../state/notices";
+import { announce, dismissOffers, notify } from "../state/notices";
 import { defaults, method, params, replaceParams } from "../state/parameters";
-import { runOptions } from "../state/project";
-import { addResults, NO_RESULTS, setExportNames, setResults } from "../state/results";
+import { files, runOptions } from "../state/project";
+import { addResults, exportNames, NO_RESULTS, setExportNames, setResults } from "../state/results";
 import { scene } from "../state/scene";
 import {
+  beginStage,
+  endStage,
   freshStages,
-  haltStages,
   outdateStages,
+  replaceStages,
   restartStages,
-  setFreshStages,
   stages,
   updateStage,
 } from "../state/stages";
 import { select, showPlane, showTab } from "../state/viewState";
 import { chooseWorkers, workers } from "../state/workers";
-import {
-  engine,
-  ensureScene,
-  forgetWorker,
-  guarded,
-  listStages,
-  start,
-  stopWorker,
-  workerPool,
-} from "./session";
-import { firstStageOf, stageWords } from "./stageCatalogue";
+import type { Turn } from "./actionQueue";
+import { workerNotice } from "./failureNotice";
+import { actions, engine, ensureScene, hasResults, noteResults, workerPool } from "./session";
+import { firstStageOf, stagesOf, stageWords } from "./stageCatalogue";
 import { fetchResults } from "./stageResults";
 import { runTiles } from "./tiledRun";
 
 /** Runs every stage up to `target` that the worker has not run with the present parameters. */
-export async function runTo(target: StageName): Promise<void> {
-  await guarded("", async () => {
-    await ensureScene();
-    const names = stages.value.map(({ name }) => name);
-    const end = names.indexOf(target);
-    for (let i = freshStages.value; i <= end; i += 1) {
-      await runStage(names[i] as StageName);
-      setFreshStages(i + 1);
-    }
-  });
+export function runTo(target: StageName): Promise<void> {
+  return actions.perform({ kind: "run", name: target, phase: "run" }, (turn) => runStages(turn, target));
 }
 
-export async function runAll(): Promise<void> {
-  if (runOptions.value.tileM !== null) {
-    await guarded("", () => runTiles(runOptions.value.tileM as number));
+/** Runs all stages, or the tiles of a large area. */
+export function runAll(): Promise<void> {
+  return actions.perform({ kind: "run", name: "all", phase: "run" }, runEverything);
+}
+
+/** The same as part of another action. */
+export async function runEverything(turn: Turn): Promise<void> {
+  turn.enter("run");
+  dismissOffers("Run all");
+  const { tileM } = runOptions.value;
+  const last = stages.value.at(-1);
+  if (tileM !== null) {
+    await runTiles(tileM);
+  } else if (last !== undefined) {
+    await runStages(turn, last.name);
+  }
+}
+
+/** Runs up to a stage as part of another action. */
+export async function runStages(turn: Turn, target: StageName): Promise<void> {
+  turn.enter("run");
+  if (files.value.length === 0) {
     return;
   }
-  const last = stages.value.at(-1);
-  if (last !== undefined) {
-    await runTo(last.name);
+  await ensureScene();
+  const names = stages.value.map(({ name }) => name);
+  const end = names.indexOf(target);
+  // A parameter that is changed meanwhile sets back which stages are up to date.
+  for (let i = freshStages.value; i <= end; i = freshStages.value) {
+    const taken = params.value;
+    beginStage(i);
+    await engine.call("setParams", taken);
+    await runStage(names[i] as StageName, i, taken);
   }
-}
-
-/** Ends the worker. What it had found stays on the page; the next run starts afresh. */
-export async function cancel(): Promise<void> {
-  forgetWorker();
-  engine.close();
-  batch(() => {
-    endAllActivity();
-    haltStages();
-    setExportNames([]);
-  });
-  announce("Cancelled. The next run begins with the first stage.");
-  await start();
 }
 
 /** Changes the parameter at a path of names; stages that depend on it become outdated. */
@@ -87,15 +84,21 @@ export function setParam(path: string, value: ParamValue): void {
 
 /** Chooses the method: its stages take the place of the other's, and begin anew. */
 export async function setMethod(next: Method): Promise<void> {
-  if (next === method.value) {
-    return;
+  if (next !== method.value) {
+    await actions.perform({ kind: "method", phase: "load" }, () => chooseMethod(next));
   }
-  stopWorker();
+}
+
+/** The same as part of another action; the core is told when it runs. */
+export function chooseMethod(next: Method): void {
   batch(() => {
     replaceParams({ ...params.value, method: next as unknown as ParamTree[string] });
+    // Until the core is compiled there are none.
+    if (stages.value.length > 0) {
+      replaceStages(stagesOf(next));
+    }
     clearResults();
   });
-  await guarded("", listStages);
 }
 
 export function resetParams(): void {
@@ -106,20 +109,31 @@ export function resetParams(): void {
 
 /** Saves one output file through the browser. */
 export async function download(name: string): Promise<void> {
-  await guarded(`Writing ${name}`, async () => {
-    const bytes = await engine.call("exportFile", name);
-    saveFile(name, new Blob([bytes], { type: mediaType(name) }));
+  const words = `Writing ${name}`;
+  await actions.perform({ kind: "save", name, phase: "save", words }, async (turn) => {
+    // What it waited for may have taken the results away.
+    if (exportNames.value.includes(name)) {
+      const last = stages.value.at(-1);
+      // Of an earlier visit the page has what it shows; the same input gives the same files.
+      if (!hasResults() && last !== undefined) {
+        await runEverything(turn);
+        turn.enter("save", words);
+      }
+      const bytes = await engine.call("exportFile", name);
+      saveFile(name, new Blob([bytes], { type: mediaType(name) }));
+    }
   });
 }
 
-async function runStage(name: StageName): Promise<void> {
+async function runStage(name: StageName, position: number, taken: ParamTree): Promise<void> {
   const started = performance.now();
   updateStage(name, { status: "running", fraction: 0, warnings: [] });
   announce(`${stageWords(name).title} running`);
   try {
-    await runShards(name);
+    await runShards(name, taken);
     const summary = await engine.call("runStage", name);
     workerPool.hasRun(name);
+    noteResults();
     const found = await fetchResults(name);
     const seconds = (performance.now() - started) / 1000;
     const names = await engine.call("exportNames");
@@ -129,32 +143,32 @@ async function runStage(name: StageName): Promise<void> {
       select(null);
       showTab(name);
       updateStage(name, { ...summary, status: "done", fraction: 1, seconds });
+      endStage(position);
     });
     announce(`${stageWords(name).title} done in ${seconds.toFixed(1)} s`);
   } catch (error) {
     const cancelled = error instanceof EngineError && error.kind === "cancelled";
     updateStage(name, { status: cancelled ? "waiting" : "failed", fraction: 0 });
+    if (error instanceof EngineError) {
+      error.during = stageWords(name).title;
+    }
     throw error;
   }
 }
 
 /** Has the worker pool compute its shards of a stage. */
-async function runShards(stage: StageName): Promise<void> {
+async function runShards(stage: StageName, taken: ParamTree): Promise<void> {
   const names = stages.value.map(({ name }) => name);
-  const isMerged = await workerPool.runShards({
+  const failure = await workerPool.runShards({
     stage,
     earlier: names.slice(0, names.indexOf(stage)),
     views: scene.value?.views.length ?? 0,
-    params: params.value,
+    params: taken,
     workers: workers.value,
   });
-  if (!isMerged) {
+  if (failure !== null) {
     chooseWorkers(1);
-    notify({
-      severity: "warning",
-      title: "A worker stopped",
-      text: "The computation goes on with one worker: there may not be memory for more.",
-    });
+    notify(workerNotice(failure));
   }
 }
 

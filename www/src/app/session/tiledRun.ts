@@ -9,7 +9,7 @@ import { inspection, runOptions } from "../state/project";
 import { NO_RESULTS, setExportNames, setResults } from "../state/results";
 import { updateStage } from "../state/stages";
 import { showTab } from "../state/viewState";
-import { engine, ensureInspected, outdateScene } from "./session";
+import { engine, ensureInspected, noteResults, outdateScene } from "./session";
 
 /** The progress of the whole area is shown at the last stage: only the model spans the tiles. */
 const STAGE = "model";
@@ -29,6 +29,7 @@ export async function runTiles(tileM: number): Promise<void> {
   try {
     const reports = await runEach(tileM);
     await engine.call("joinTiles");
+    noteResults();
     const glb = await engine.call("exportFile", "model.glb");
     const names = await engine.call("exportNames");
     batch(() => {
@@ -49,6 +50,9 @@ export async function runTiles(tileM: number): Promise<void> {
   } catch (error) {
     const cancelled = error instanceof EngineError && error.kind === "cancelled";
     updateStage(STAGE, { status: cancelled ? "waiting" : "failed", fraction: 0 });
+    if (error instanceof EngineError) {
+      error.during = "the tiles";
+    }
     throw error;
   }
 }

@@ -1,15 +1,18 @@
 /**
  * The page's state in the address, behind "#", so that a link shows what the teacher sees: scene (the demo only: own
- * files stay where they are), method, tab, view, selection and changed parameters.
+ * files stay where they are), method, tab, view, selection, theta, point, camera and changed parameters. Back and
+ * forward go from one tab, view, selection or lesson to another.
  */
-import { effect } from "@preact/signals";
+import { batch, effect } from "@preact/signals";
 import type { ParamValue } from "../../shared/paramTree";
-import type { Selection } from "../../shared/selection";
+import type { Selection, Standpoint } from "../../shared/selection";
+import { isBusy } from "../state/activity";
 import { methodNamed, TABS, type Tab } from "../state/methods";
 import { defaults, method, params } from "../state/parameters";
 import { isDemo } from "../state/project";
-import { lessonStep } from "../state/tour";
-import { selection, shownView, tab } from "../state/viewState";
+import { resumeDetail, selectionDetail } from "../state/selectionDetail";
+import { lessonStep, showLesson } from "../state/tour";
+import { camera, select, selection, shownView, showTab, showView, standAt, tab } from "../state/viewState";
 import { changedParams } from "./parameterForm";
 
 export interface Link {
@@ -19,6 +22,11 @@ export interface Link {
   selection: Selection | null;
   params: Record<string, ParamValue>;
   lesson: number | null;
+  /** The angle to which the half-plane was turned, degrees. */
+  thetaDeg: number | null;
+  /** The candidate that the segment is compared with, and where on the segment, 0 to 1. */
+  point: readonly [candidate: number, at: number] | null;
+  camera: Standpoint | null;
 }
 
 /** What the address asked for when the page was opened. */
@@ -42,6 +50,9 @@ export function parseLink(hash: string): Link {
     selection: parseSelection(fields.get("select")),
     params: { ...parseParams(fields.get("params")), ...chosen },
     lesson: wholeNumber(fields.get("lesson")),
+    thetaDeg: numbers(fields.get("theta"), 1)?.[0] ?? null,
+    point: numbers(fields.get("point"), 2) as Link["point"],
+    camera: numbers(fields.get("camera"), 6) as Link["camera"],
   };
 }
 
@@ -60,6 +71,9 @@ export function formatLink(link: Link): string {
   set("select", link.selection === null ? null : formatSelection(link.selection));
   set("params", Object.keys(changed).length === 0 ? null : JSON.stringify(changed));
   set("lesson", link.lesson);
+  set("theta", link.thetaDeg);
+  set("point", link.point?.join() ?? null);
+  set("camera", link.camera?.join() ?? null);
   return fields.toString();
 }
 
@@ -122,25 +136,71 @@ export function parseSelection(text: string | null): Selection | null {
   }
 }
 
-/** Keeps the address up to date, without filling the history. */
+/** Keeps the address up to date, and goes where back and forward lead. */
 export function followState(): void {
-  effect(() => {
-    const link: Link = {
-      scene: isDemo.value ? "demo" : null,
-      tab: tab.value,
-      view: shownView.value < 0 ? null : shownView.value,
-      selection: selection.value,
-      params: { ...changedParams(defaults.value, params.value), method: method.value },
-      lesson: lessonStep.value,
-    };
-    if (Object.keys(defaults.value).length > 0) {
-      history.replaceState(null, "", `#${formatLink(link)}`);
-    }
+  let last = "";
+  window.addEventListener("popstate", () => {
+    const link = parseLink(location.hash);
+    last = placeOf(link);
+    const isTabOfMethod = TABS[method.value].includes(link.tab ?? "images");
+    batch(() => {
+      resumeDetail(link);
+      if (isTabOfMethod) {
+        showTab(link.tab ?? "images");
+      }
+      showView(link.view ?? ALL_VIEWS);
+      select(link.selection);
+      showLesson(link.lesson);
+      standAt(link.camera);
+    });
   });
+  effect(() => {
+    const link = presentLink();
+    if (Object.keys(defaults.value).length === 0) {
+      return;
+    }
+    const place = placeOf(link);
+    // What stages show by themselves is no step of the person's.
+    const isStep = last !== "" && place !== last && !isBusy.peek();
+    history[isStep ? "pushState" : "replaceState"](null, "", `#${formatLink(link)}`);
+    last = place;
+  });
+}
+
+const ALL_VIEWS = -1;
+
+function presentLink(): Link {
+  const { isTurned, theta, isMoved, candidate, at } = selectionDetail.value;
+  return {
+    scene: isDemo.value ? "demo" : null,
+    tab: tab.value,
+    view: shownView.value < 0 ? null : shownView.value,
+    selection: selection.value,
+    params: { ...changedParams(defaults.value, params.value), method: method.value },
+    lesson: lessonStep.value,
+    thetaDeg: isTurned ? rounded((theta * 180) / Math.PI, 10) : null,
+    point: isMoved ? [candidate, rounded(at, 1000)] : null,
+    camera: (camera.value?.map((metres) => rounded(metres, 100)) ?? null) as Standpoint | null,
+  };
+}
+
+/** What back and forward tell apart. */
+function placeOf(link: Link): string {
+  return formatLink({ ...link, params: {}, thetaDeg: null, point: null, camera: null });
+}
+
+function rounded(value: number, steps: number): number {
+  return Math.round(value * steps) / steps;
 }
 
 function wholeNumber(text: string | null): number | null {
   return text !== null && /^\d{1,6}$/.test(text) ? Number(text) : null;
+}
+
+/** So many numbers with commas between them. */
+function numbers(text: string | null, count: number): number[] | null {
+  const found = (text ?? "").split(",").map((word) => (word.trim() === "" ? Number.NaN : Number(word)));
+  return found.length === count && found.every(Number.isFinite) ? found : null;
 }
 
 function parseParams(text: string | null): Record<string, ParamValue> {

@@ -3,7 +3,7 @@ import "./base.css";
 import "../parts/parts.css";
 import "../parts/charts.css";
 import { render } from "preact";
-import { storeProject } from "../project/storedProject";
+import { storeProject, storeResults } from "../project/storedProject";
 import { askAboutSelection } from "../selection/selectionQueries";
 import { start } from "../session/session";
 import { followState } from "../settings/addressLink";
@@ -22,6 +22,7 @@ async function open(): Promise<void> {
   await restoreOpeningState();
   followState();
   storeProject();
+  storeResults();
 }
 
 // Offline after the first load; only the built site has one.

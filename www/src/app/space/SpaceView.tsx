@@ -19,7 +19,15 @@ import { method } from "../state/parameters";
 import { results } from "../state/results";
 import { scene } from "../state/scene";
 import { theme } from "../state/theme";
-import { beforeGrowing, select, selection, showBeforeGrowing, tab } from "../state/viewState";
+import {
+  beforeGrowing,
+  camera,
+  select,
+  selection,
+  showBeforeGrowing,
+  standAt,
+  tab,
+} from "../state/viewState";
 import { canStandBeside, isBeside, standBeside, wantsBeside } from "./keptBeside";
 import { ModeLegend, ModeSwitches } from "./ModelModes";
 import { model, showsKeptFacets, useModels } from "./modelLayers";
@@ -158,6 +166,7 @@ function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefine
     const made = new Viewer(canvas, THEME_COLOURS[theme.peek()], (picked) => {
       select(picked);
     });
+    made.onStand = standAt;
     const { clientWidth = 0, clientHeight = 0 } = canvas.closest(".stage-view") ?? {};
     made.prepareSize(clientWidth, Math.round(CANVAS_SHARE * clientHeight));
     warmupLayers().forEach((layer, i) => {
@@ -168,6 +177,7 @@ function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefine
   } catch {
     notify({
       severity: "warning",
+      about: "browser",
       title: "No 3D view",
       text: "This browser offers no WebGL 2. Everything else works, and the model can be downloaded.",
       advice: "Switch on hardware acceleration in the browser's settings to see the model here.",
@@ -199,6 +209,13 @@ function useLayers(): void {
     }
   });
   useModels(viewer);
+  // After the effects that look at new results: where a person or a link has put the camera, it stays.
+  useSignalEffect(() => {
+    void [model.value, lineStage.value];
+    if (camera.value !== null) {
+      viewer.value?.standAt(camera.value);
+    }
+  });
   useSignalEffect(() => viewer.value?.setTheme(THEME_COLOURS[theme.value]));
   useSignalEffect(() => {
     viewer.value?.halve(isBeside.value ? ["kept", "keptModel"] : null);
@@ -220,6 +237,7 @@ function useLayers(): void {
 
 /** Looks at what is shown, the cameras with it where they are. */
 function fitView(): void {
+  standAt(null);
   const centres = scene.value?.views.map(({ center }) => center) ?? [];
   const areShown = shownLayers.value[tab.value].includes("cameras");
   viewer.value?.lookAt(areShown ? withCameras(boundsNow(), centres) : boundsNow());

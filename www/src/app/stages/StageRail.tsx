@@ -4,11 +4,12 @@ import "./stages.css";
 import type { StageName } from "../../shared/stages";
 import { KeepResult } from "../comparison/Comparison";
 import { grouped } from "../parts/numberText";
+import { cancel } from "../session/session";
 import { stageWords } from "../session/stageCatalogue";
-import { cancel, runAll, runTo } from "../session/stageRuns";
-import { isBusy } from "../state/activity";
+import { runAll, runTo } from "../session/stageRuns";
+import { isBusy, phase } from "../state/activity";
 import { files } from "../state/project";
-import { freshStages, runningStage, type StageState, type StageStatus, stages } from "../state/stages";
+import { freshStages, type StageState, type StageStatus, stages } from "../state/stages";
 import { showTab } from "../state/viewState";
 import { chooseWorkers, chosenWorkers, usefulWorkers } from "../state/workers";
 
@@ -21,7 +22,7 @@ const STATUS_WORDS: Record<StageStatus, string> = {
 };
 
 export function StageRail() {
-  const isRunning = runningStage.value !== null;
+  const isRunning = phase.value === "run";
   return (
     <section class="rail" aria-label="Stages">
       <div class="rail-run">

@@ -1,24 +1,21 @@
-/** What the worker is busy with. */
+/** What the page is busy with: one action at a time, in one of its phases. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
-import { runningStage } from "./stages";
 
-const what = signal("");
+/** Compiling the core; reading and loading a project; running stages; writing a file. */
+export type Phase = "start" | "load" | "run" | "save";
 
-/** What the worker is doing besides stages; empty when idle. */
-export const activity: ReadonlySignal<string> = what;
-export const isBusy = computed(() => activity.value !== "" || runningStage.value !== null);
+const going = signal<{ phase: Phase; words: string } | null>(null);
 
-export function beginActivity(name: string): void {
-  what.value = name;
+/** The phase of the action that is going on; null when idle. */
+export const phase: ReadonlySignal<Phase | null> = computed(() => going.value?.phase ?? null);
+/** What is being done besides stages, in words; empty when idle. */
+export const activity: ReadonlySignal<string> = computed(() => going.value?.words ?? "");
+export const isBusy: ReadonlySignal<boolean> = computed(() => going.value !== null);
+
+export function showActivity(now: Phase, words: string): void {
+  going.value = { phase: now, words };
 }
 
-/** Ends an activity, unless another one has begun since. */
-export function endActivity(name: string): void {
-  if (what.value === name) {
-    what.value = "";
-  }
-}
-
-export function endAllActivity(): void {
-  what.value = "";
+export function showIdle(): void {
+  going.value = null;
 }

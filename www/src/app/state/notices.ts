@@ -13,6 +13,8 @@ export interface Notice {
   orientationCheck?: AgreementReport;
   /** Something that can be done about it. */
   action?: { name: string; run: () => void };
+  /** What it is about: of the browser it stays when the project changes. Of the project, unless it is said. */
+  about?: "project" | "browser";
 }
 
 const shown = signal<Notice[]>([]);
@@ -38,8 +40,9 @@ export function dismissOffers(name: string): void {
   shown.value = shown.value.filter(({ action }) => action?.name !== name);
 }
 
-export function dismissAll(): void {
-  shown.value = [];
+/** Dismisses all notices about this. */
+export function dismissAbout(what: "project" | "browser"): void {
+  shown.value = shown.value.filter(({ about = "project" }) => about !== what);
 }
 
 export function announce(text: string): void {

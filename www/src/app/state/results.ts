@@ -67,7 +67,14 @@ export const NO_RESULTS: Results = {
 
 /** Where a stage's results are kept: in method "combined" both methods have segments, lines and facets of their own. */
 type ResultSet = "main" | "regions";
-const found = signal<Record<ResultSet, Results>>({ main: NO_RESULTS, regions: NO_RESULTS });
+export type ResultSets = Record<ResultSet, Results>;
+const found = signal<ResultSets>({ main: NO_RESULTS, regions: NO_RESULTS });
+
+export const allResults: ReadonlySignal<ResultSets> = found;
+
+export function restoreResults(all: ResultSets): void {
+  found.value = all;
+}
 
 /** Of which stages the present tab tells. */
 export const shownResultSet = computed<ResultSet>(() => resultSetOf(tab.value));

@@ -46,3 +46,23 @@ export function beginDetail(first: Partial<SelectionDetail> = {}): void {
 export function changeDetail(part: Partial<SelectionDetail>): void {
   shown.value = { ...shown.peek(), ...part };
 }
+
+/** What a link says of the thing that it selects. */
+export interface Resumed {
+  thetaDeg: number | null;
+  point: readonly [candidate: number, at: number] | null;
+}
+
+let resumed: Resumed = { thetaDeg: null, point: null };
+
+/** The next selection is shown as a link says. */
+export function resumeDetail(of: Resumed): void {
+  resumed = of;
+}
+
+/** What the link said; once. */
+export function takeResumed(): Resumed {
+  const of = resumed;
+  resumed = { thetaDeg: null, point: null };
+  return of;
+}

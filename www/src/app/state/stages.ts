@@ -35,6 +35,12 @@ export function updateStage(name: string, change: Partial<StageState>): void {
   all.value = all.value.map((stage) => (stage.name === name ? { ...stage, ...change } : stage));
 }
 
+/** What stages found in an earlier visit is shown again; the worker has it not. */
+export function restoreStages(kept: readonly StageState[]): void {
+  fresh.value = 0;
+  all.value = kept.map((stage) => (stage.status === "running" ? freshStage(stage.name) : stage));
+}
+
 /** None has run. */
 export function restartStages(): void {
   fresh.value = 0;
@@ -48,8 +54,26 @@ export function haltStages(): void {
   );
 }
 
+/** Of the stages that were outdated since the present one began, the first. */
+let outdatedSince = Number.POSITIVE_INFINITY;
+
+/** A stage begins, with the parameters as they are now. */
+export function beginStage(position: number): void {
+  fresh.value = position;
+  outdatedSince = Number.POSITIVE_INFINITY;
+}
+
+/** It has ended; parameters that were changed meanwhile make it, or earlier ones, outdated at once. */
+export function endStage(position: number): void {
+  fresh.value = position + 1;
+  if (outdatedSince <= position) {
+    outdateStages(outdatedSince);
+  }
+}
+
 /** The results of this stage and those after it are out of date. */
 export function outdateStages(from: number): void {
+  outdatedSince = Math.min(outdatedSince, from);
   fresh.value = Math.min(fresh.value, from);
   all.value = all.value.map((stage, i) =>
     i >= from && stage.status === "done" ? { ...stage, status: "outdated" } : stage,

@@ -1,6 +1,6 @@
 /** What is looked at: the tab, the view, the selection, and how the figures show them. */
 import { type ReadonlySignal, signal } from "@preact/signals";
-import type { Selection } from "../../shared/selection";
+import type { Selection, Standpoint } from "../../shared/selection";
 import type { Tab } from "./methods";
 
 const present = {
@@ -11,6 +11,7 @@ const present = {
   beforeGrowing: signal(false),
   followsSelection: signal(true),
   withRejected: signal(false),
+  camera: signal<Standpoint | null>(null),
 };
 
 export const tab: ReadonlySignal<Tab> = present.tab;
@@ -25,6 +26,13 @@ export const beforeGrowing: ReadonlySignal<boolean> = present.beforeGrowing;
 export const followsSelection: ReadonlySignal<boolean> = present.followsSelection;
 /** Whether the rejected lines of edgels are drawn too. */
 export const withRejected: ReadonlySignal<boolean> = present.withRejected;
+
+/** Where the person has put the 3D view's camera; null: where all is seen. */
+export const camera: ReadonlySignal<Standpoint | null> = present.camera;
+
+export function standAt(standpoint: Standpoint | null): void {
+  present.camera.value = standpoint;
+}
 
 export function showTab(name: Tab): void {
   present.tab.value = name;

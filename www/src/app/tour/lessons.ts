@@ -1,9 +1,11 @@
 /** The guided tour: eight steps through B99 and one through W96, in the views themselves, on the demo scene. */
 import { effect } from "@preact/signals";
 import { isRejected } from "../../shared/records";
-import { openDemo } from "../project/projectActions";
+import { openDemoIn } from "../project/projectActions";
 import { bestTheta, turnTo } from "../selection/selectionQueries";
-import { runAll, setMethod } from "../session/stageRuns";
+import type { Turn } from "../session/actionQueue";
+import { actions } from "../session/session";
+import { chooseMethod, runEverything } from "../session/stageRuns";
 import { throughView } from "../space/Photograph";
 import type { Method, Tab } from "../state/methods";
 import { method } from "../state/parameters";
@@ -169,20 +171,32 @@ export function endTour(): void {
 
 /** Opens a step: its method run to the end on the demo scene, its view, and what it is about. */
 export async function goTo(step: number): Promise<void> {
-  const lesson = LESSONS[step];
-  if (lesson === undefined) {
+  if (LESSONS[step] === undefined) {
     endTour();
     return;
   }
   showLesson(step);
+  await actions.perform({ kind: "tour", name: "step", phase: "load" }, async (turn) => {
+    // Steps that were passed while this one waited need no run of their own.
+    await goToIn(turn, lessonStep.value ?? step);
+  });
+}
+
+/** The same as part of another action. */
+export async function goToIn(turn: Turn, step: number): Promise<void> {
+  const lesson = LESSONS[step];
+  if (lesson === undefined) {
+    return;
+  }
+  showLesson(step);
   if (files.value.length === 0) {
-    await openDemo();
+    await openDemoIn(turn, null);
   }
   if (method.value !== lesson.method) {
-    await setMethod(lesson.method);
+    chooseMethod(lesson.method);
   }
   if (freshStages.value < stages.value.length) {
-    await runAll();
+    await runEverything(turn);
   }
   if (lessonStep.value === step) {
     select(null);

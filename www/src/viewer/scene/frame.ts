@@ -17,3 +17,8 @@ export function zUpGroup(): Group {
 export function yUp([x, y, z]: Vec3): Vector3 {
   return new Vector3(x, z, -y);
 }
+
+/** The way back. */
+export function zUp({ x, y, z }: Vector3): [number, number, number] {
+  return [x, -z, y];
+}

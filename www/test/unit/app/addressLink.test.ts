@@ -8,6 +8,9 @@ const LINK: Link = {
   selection: { kind: "side", line: 12, side: "left" },
   params: { method: "rectangles", "sweep.min_similarity": 0.45 },
   lesson: 4,
+  thetaDeg: -12.5,
+  point: [2, 0.375],
+  camera: [1, 2, 30.25, -4, 5, 0],
 };
 
 describe("links", () => {
@@ -46,6 +49,10 @@ describe("links", () => {
     "params=[1]",
     "scene=http://elsewhere",
     "method=constructor",
+    "theta=up",
+    "theta=",
+    "point=3",
+    "camera=1,2,3,4,5,NaN",
   ])("take nothing from %j", (hash) => {
     expect(parseLink(hash)).toEqual({
       scene: null,
@@ -54,6 +61,9 @@ describe("links", () => {
       selection: null,
       params: {},
       lesson: null,
+      thetaDeg: null,
+      point: null,
+      camera: null,
     });
   });
 });

@@ -86,7 +86,7 @@ describe("worker pool", () => {
 
   it("gives a shard of every map to all workers and merges the shards by their index", async () => {
     const pool = await poolOf();
-    expect(await pool.runShards(wanted)).toBe(true);
+    expect(await pool.runShards(wanted)).toBeNull();
     expect(of("runShard").map(([worker, , [, map, index, all]]) => [worker, map, index, all])).toEqual([
       [0, "heights", 0, 3],
       [1, "heights", 1, 3],
@@ -153,9 +153,9 @@ describe("worker pool", () => {
   it("leaves the engine by itself where a worker fails, or none is wanted", async () => {
     broken = 2;
     const pool = await poolOf();
-    expect(await pool.runShards(wanted)).toBe(false);
+    expect(await pool.runShards(wanted)).toMatchObject({ message: "stopped" });
     calls = [];
-    expect(await pool.runShards({ ...wanted, workers: 1 })).toBe(true);
+    expect(await pool.runShards({ ...wanted, workers: 1 })).toBeNull();
     expect(of("runShard")).toEqual([]);
   });
 });
