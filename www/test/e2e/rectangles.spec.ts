@@ -1,6 +1,15 @@
 /** The other method (W96) and its four stages. */
 import { expect, test } from "@playwright/test";
-import { lookOf, looksOfHalves, openTab, stage, steadyLook, waitForStage, watch } from "./helpers";
+import {
+  lookOf,
+  looksOfHalves,
+  openParameters,
+  openTab,
+  stage,
+  steadyLook,
+  waitForStage,
+  watch,
+} from "./helpers";
 
 test("a method that is chosen while the core is still compiled stays chosen", async ({ page }) => {
   const { problems } = watch(page);
@@ -94,9 +103,9 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
   });
 
   await test.step("its parameters stand in the place of the other method's", async () => {
+    await openParameters(page, "Planes");
     await expect(page.getByText("Regions (ORIS)", { exact: true })).toBeVisible();
     await expect(page.getByText("Half-plane sweep", { exact: true })).toHaveCount(0);
-    await page.getByText("Planes", { exact: true }).click();
     const field = page.locator("#param-objectspace-planes-min_measure_m2");
     await field.fill("9");
     await field.press("Enter");

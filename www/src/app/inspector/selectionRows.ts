@@ -246,7 +246,9 @@ function historyOfLine(index: number): Row[] {
   const rejected = sides.filter(({ line, rejection }) => line === index && rejection !== null);
   return [
     ...(record === undefined ? [] : [["Found", ORIGIN_WORDS[record.origin]] as const]),
-    ...(record?.contradiction == null ? [] : [["Contradicted", CONTRADICTION_WORDS[record.contradiction]] as const]),
+    ...(record?.contradiction == null
+      ? []
+      : [["Contradicted", CONTRADICTION_WORDS[record.contradiction]] as const]),
     ...(record === undefined ? [] : [["σ across", `${(100 * record.sigma_m).toFixed(1)} cm`] as const]),
     ...(record?.supports ?? []).map(
       ({ view, segments, kind, score }) =>

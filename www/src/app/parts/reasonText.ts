@@ -1,8 +1,8 @@
 /** The core's reasons in words. */
 import type {
   BuildingRefinement,
-  LineOrigin,
   LineContradiction,
+  LineOrigin,
   SegmentOutcome,
   TestedRelation,
 } from "../../shared/records";

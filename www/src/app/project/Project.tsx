@@ -3,6 +3,7 @@ import "./project.css";
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { ImageReport } from "../../shared/records";
 import { notify } from "../state/notices";
+import { showsEntrance } from "../state/opening";
 import { files, inspection, projectName, runOptions } from "../state/project";
 import { peakMb, scene } from "../state/scene";
 import { droppedFiles, pickedFiles } from "./inputFiles";
@@ -16,7 +17,7 @@ export function Project() {
   return (
     <section class="panel">
       <h2>Project{projectName.value !== "" && <span class="muted"> · {projectName}</span>}</h2>
-      <DropZone />
+      {!showsEntrance.value && <DropZone />}
       {files.value.length > 0 && <Views />}
       {files.value.length > 0 && <OtherFiles />}
       <Warnings />
@@ -30,7 +31,8 @@ export function Project() {
   );
 }
 
-function DropZone() {
+/** The entrance has it while nothing is open: there is one at a time. */
+export function DropZone() {
   const isOver = useFileDrop();
   const fileInput = useRef<HTMLInputElement>(null);
   const folderInput = useRef<HTMLInputElement>(null);
@@ -63,9 +65,11 @@ function DropZone() {
         <button type="button" onClick={() => folderInput.current?.click()}>
           Folder…
         </button>
-        <button type="button" class={isEmpty ? "primary" : ""} onClick={() => void openDemo()}>
-          Demo scene
-        </button>
+        {!showsEntrance.value && (
+          <button type="button" class={isEmpty ? "primary" : ""} onClick={() => void openDemo()}>
+            Demo scene
+          </button>
+        )}
       </div>
       <input ref={fileInput} type="file" multiple hidden data-testid="file-input" onChange={onPick} />
       <input

@@ -3,6 +3,7 @@
 import { setMethod } from "../session/stageRuns";
 import { activity } from "../state/activity";
 import type { Method } from "../state/methods";
+import { showsEntrance } from "../state/opening";
 import { method } from "../state/parameters";
 import { biggerText, textScale } from "../state/textScale";
 import { theme, toggleTheme } from "../state/theme";
@@ -35,20 +36,7 @@ export function Header() {
           {activity}
         </span>
       )}
-      <fieldset class="choice">
-        <legend class="visually-hidden">Method</legend>
-        {METHODS.map(([name, title, what]) => (
-          <button
-            key={name}
-            type="button"
-            title={what}
-            aria-pressed={method.value === name}
-            onClick={() => void setMethod(name)}
-          >
-            {title}
-          </button>
-        ))}
-      </fieldset>
+      {!showsEntrance.value && <MethodChoice />}
       <button type="button" onClick={startTour}>
         Tour
       </button>
@@ -65,5 +53,24 @@ export function Header() {
         {other}
       </button>
     </header>
+  );
+}
+
+function MethodChoice() {
+  return (
+    <fieldset class="choice methods">
+      <legend class="visually-hidden">Method</legend>
+      {METHODS.map(([name, title, what]) => (
+        <button
+          key={name}
+          type="button"
+          title={what}
+          aria-pressed={method.value === name}
+          onClick={() => void setMethod(name)}
+        >
+          {title}
+        </button>
+      ))}
+    </fieldset>
   );
 }

@@ -7,8 +7,9 @@ import { storeProject } from "../project/storedProject";
 import { askAboutSelection } from "../selection/selectionQueries";
 import { start } from "../session/session";
 import { followState } from "../settings/addressLink";
+import { setOpening } from "../state/opening";
 import { App } from "./App";
-import { restoreOpeningState } from "./openingState";
+import { isAwaited, restoreOpeningState } from "./openingState";
 
 const root = document.getElementById("app");
 if (root !== null) {
@@ -17,9 +18,13 @@ if (root !== null) {
 }
 
 async function open(): Promise<void> {
+  // Whether something is on its way is known long before the core is.
+  setOpening((await isAwaited()) ? "restoring" : "open");
   await start();
+  performance.mark("core ready");
   askAboutSelection();
   await restoreOpeningState();
+  setOpening("open");
   followState();
   storeProject();
 }

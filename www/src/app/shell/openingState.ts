@@ -13,6 +13,11 @@ import { scene } from "../state/scene";
 import { select, shownView, showTab, showView } from "../state/viewState";
 import { goTo } from "../tour/lessons";
 
+/** Does the page begin with something? */
+export async function isAwaited(): Promise<boolean> {
+  return opened.scene !== null || ((await readStoredProject())?.files.length ?? 0) > 0;
+}
+
 export async function restoreOpeningState(): Promise<void> {
   if (opened.scene === "demo") {
     await openDemo(opened.tab === null ? null : stageOfTab(opened.tab));

@@ -1,0 +1,19 @@
+/** What the page begins with: it looks for a link or a kept project before it shows its entrance. */
+import { computed, type ReadonlySignal, signal } from "@preact/signals";
+import { files } from "./project";
+import { lessonStep } from "./tour";
+
+/** "looking" for what was kept, "restoring" it, or "open". */
+type Opening = "looking" | "restoring" | "open";
+
+const reached = signal<Opening>("looking");
+
+export const opening: ReadonlySignal<Opening> = reached;
+/** Nothing is open, and nothing is on its way. */
+export const showsEntrance = computed(
+  () => reached.value === "open" && files.value.length === 0 && lessonStep.value === null,
+);
+
+export function setOpening(next: Opening): void {
+  reached.value = next;
+}
