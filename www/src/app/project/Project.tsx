@@ -2,8 +2,8 @@
 import "./project.css";
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { ImageReport } from "../../shared/records";
+import { showsEntrance } from "../screen/opening";
 import { notify } from "../state/notices";
-import { showsEntrance } from "../state/opening";
 import { files, inspection, projectName, runOptions } from "../state/project";
 import { peakMb, scene } from "../state/scene";
 import { droppedFiles, pickedFiles } from "./inputFiles";

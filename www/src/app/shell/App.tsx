@@ -2,9 +2,9 @@
 import "./shell.css";
 import { useEffect, useState } from "preact/hooks";
 import { Entrance } from "../entrance/Entrance";
-import { isPhone } from "../state/layout";
+import { isPhone } from "../screen/layout";
+import { opening, showsEntrance } from "../screen/opening";
 import { announcement } from "../state/notices";
-import { opening, showsEntrance } from "../state/opening";
 import { tab } from "../state/viewState";
 import { Header } from "./Header";
 import { Notices } from "./Notices";

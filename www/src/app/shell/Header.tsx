@@ -1,9 +1,9 @@
 /** The name, the method, the tour, and how the page looks. */
 
+import { showsEntrance } from "../screen/opening";
 import { setMethod } from "../session/stageRuns";
 import { activity } from "../state/activity";
 import type { Method } from "../state/methods";
-import { showsEntrance } from "../state/opening";
 import { method } from "../state/parameters";
 import { biggerText, textScale } from "../state/textScale";
 import { theme, toggleTheme } from "../state/theme";

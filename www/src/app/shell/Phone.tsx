@@ -2,9 +2,9 @@
 import type { ComponentChildren } from "preact";
 import { Downloads } from "../project/Downloads";
 import { Project } from "../project/Project";
+import { showsEntrance } from "../screen/opening";
 import { StageRail } from "../stages/StageRail";
 import { StageView } from "../stages/StageView";
-import { showsEntrance } from "../state/opening";
 import { lessonStep } from "../state/tour";
 import { showTab, tab } from "../state/viewState";
 import { Lesson } from "../tour/Lesson";

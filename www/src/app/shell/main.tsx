@@ -4,10 +4,10 @@ import "../parts/parts.css";
 import "../parts/charts.css";
 import { render } from "preact";
 import { storeProject } from "../project/storedProject";
+import { setOpening } from "../screen/opening";
 import { askAboutSelection } from "../selection/selectionQueries";
 import { start } from "../session/session";
 import { followState } from "../settings/addressLink";
-import { setOpening } from "../state/opening";
 import { App } from "./App";
 import { isAwaited, restoreOpeningState } from "./openingState";
 

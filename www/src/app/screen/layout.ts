@@ -1,6 +1,6 @@
 /** How much room there is, counted in the size of the text: large type needs another layout as a small screen does. */
 import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
-import { textScale } from "./textScale";
+import { textScale } from "../state/textScale";
 
 /** "phone": no workbench; "stacked": the side columns below the views; "tight": narrow columns beside them. */
 export type Layout = "phone" | "stacked" | "tight" | "wide";

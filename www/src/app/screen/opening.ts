@@ -1,7 +1,7 @@
 /** What the page begins with: it looks for a link or a kept project before it shows its entrance. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
-import { files } from "./project";
-import { lessonStep } from "./tour";
+import { files } from "../state/project";
+import { lessonStep } from "../state/tour";
 
 /** "looking" for what was kept, "restoring" it, or "open". */
 type Opening = "looking" | "restoring" | "open";
