@@ -125,6 +125,8 @@ export async function createTurntable(
       disposeObject(floor);
       texture.dispose();
       renderer.dispose();
+      // Browsers allow few at a time, and the viewer has one, too.
+      renderer.forceContextLoss();
     },
   };
 }

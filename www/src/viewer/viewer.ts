@@ -83,8 +83,12 @@ export class Viewer {
     canvas.addEventListener("pointercancel", (event) => watch.cancel(event));
     this.#observer = new ResizeObserver(() => void this.#resize());
     this.#observer.observe(canvas);
+    window.addEventListener("beforeprint", this.#drawForPaper);
     this.setTheme(colours);
   }
+
+  /** What is printed is what is drawn in the same breath. */
+  readonly #drawForPaper = (): void => this.#render();
 
   /**
    * While it holds, the canvas keeps its pixels, and what is drawn is stretched to the canvas: pixels anew are waited for, up to
@@ -276,6 +280,7 @@ export class Viewer {
   dispose(): void {
     cancelAnimationFrame(this.#frame);
     this.#observer.disconnect();
+    window.removeEventListener("beforeprint", this.#drawForPaper);
     for (const name of [...this.#layers.keys()]) {
       this.setLayer(name, null);
     }

@@ -6,11 +6,12 @@ test("both methods find one model of a house, and each view tells of its own sta
   test.slow();
   const { problems } = watch(page);
   await page.goto("/");
+  await give(page, houseFiles());
+  await expect(page.locator(".status.good")).toHaveCount(6);
   await page.getByRole("button", { name: "Combined", exact: true }).click();
   await expect(page.getByRole("tab", { name: "Clusters" })).toBeVisible();
   await expect(page.getByRole("tab", { name: "Half-planes" })).toBeVisible();
   await expect(page).toHaveURL(/method=combined/);
-  await give(page, houseFiles());
   await page.getByRole("button", { name: "Run all" }).click();
   await waitForStage(page, "model");
   const names = await page

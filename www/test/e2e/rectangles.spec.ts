@@ -21,7 +21,7 @@ test("a method that is chosen while the core is still compiled stays chosen", as
     await clicked;
     await route.continue();
   });
-  await page.goto("/");
+  await page.goto("/#scene=demo&tab=images");
   await page.getByRole("button", { name: "Rectangles", exact: true }).click();
   go();
   await expect(stage(page, "regions")).toBeVisible();
@@ -34,13 +34,12 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
   // Both methods run, where graphics are computed in software, too.
   test.slow();
   const { problems } = watch(page);
-  await page.goto("/");
-  await page.getByRole("button", { name: "Rectangles", exact: true }).click();
+  await page.goto("/#method=rectangles");
+  await page.getByRole("button", { name: "Demo scene" }).click();
   await expect(page.getByRole("tab", { name: "Clusters" })).toBeVisible();
   await expect(page.getByRole("tab", { name: "Half-planes" })).toHaveCount(0);
   await expect(stage(page, "regions")).toBeVisible();
   await expect(stage(page, "segments")).toHaveCount(0);
-  await page.getByRole("button", { name: "Demo scene" }).click();
   await waitForStage(page, "model");
   const inspector = page.getByTestId("inspector");
   const image = page.locator(".image-view canvas").first();
