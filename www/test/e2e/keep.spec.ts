@@ -1,6 +1,6 @@
 /** What lasts: the project over reloads, and the page without a network. */
 import { expect, test } from "@playwright/test";
-import { give, houseFiles, openParameters, stage, waitForStage, watch } from "./helpers";
+import { give, houseFiles, openParameters, waitForStage, watch } from "./helpers";
 
 test("what was removed comes back on request", async ({ page }) => {
   await page.goto("/");
@@ -49,8 +49,7 @@ test("a reload keeps the project until it is deleted", async ({ page }) => {
   await expect(page.locator(".view")).toHaveCount(0);
   await page.waitForTimeout(600);
   await page.reload();
-  await expect(stage(page, "segments")).toBeVisible();
-  await expect(page.locator(".view")).toHaveCount(0);
+  await expect(page.getByTestId("entrance")).toBeVisible();
   expect(problems).toEqual([]);
 });
 
