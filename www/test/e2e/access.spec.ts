@@ -68,8 +68,11 @@ test("in the hand: model, photographs and lessons, with fingers", async ({ brows
   await page.goto("/");
   await give(page, houseFiles());
   await page.getByRole("button", { name: "Run all" }).click();
+  const places = page.getByRole("navigation", { name: "Places" });
+  await places.getByRole("button", { name: "Model" }).click();
   await expect(page.getByRole("button", { name: "model.glb" })).toBeVisible({ timeout: 120_000 });
-  await page.getByRole("button", { name: "Photographs" }).click();
+  await expect(page.getByRole("tab")).toHaveCount(0);
+  await places.getByRole("button", { name: "Photographs" }).click();
   const caption = page.locator(".image-view figcaption").first();
   const zoom = async () => Number(/(\d+) %/.exec((await caption.textContent()) ?? "")?.[1]);
   const before = await zoom();

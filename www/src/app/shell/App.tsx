@@ -3,7 +3,7 @@ import "./shell.css";
 import { useEffect, useState } from "preact/hooks";
 import { Entrance } from "../entrance/Entrance";
 import { isPhone } from "../screen/layout";
-import { opening, showsEntrance } from "../screen/opening";
+import { showsEntrance, showsWorkbench } from "../screen/opening";
 import { announcement } from "../state/notices";
 import { tab } from "../state/viewState";
 import { Header } from "./Header";
@@ -18,7 +18,7 @@ const PREPARE_AFTER_MS = 1500;
 export function App() {
   const isPrepared = useDelay(PREPARE_AFTER_MS);
   const isEntrance = showsEntrance.value;
-  const isOpen = opening.value !== "looking" && !isEntrance;
+  const isOpen = showsWorkbench.value;
   return (
     <>
       {isOpen && <SkipLink />}

@@ -1,6 +1,6 @@
 /** The name, the method, the tour, and how the page looks. */
 
-import { showsEntrance } from "../screen/opening";
+import { showsWorkbench } from "../screen/opening";
 import { setMethod } from "../session/stageRuns";
 import { activity } from "../state/activity";
 import type { Method } from "../state/methods";
@@ -36,7 +36,7 @@ export function Header() {
           {activity}
         </span>
       )}
-      {!showsEntrance.value && <MethodChoice />}
+      {showsWorkbench.value && <MethodChoice />}
       <button type="button" onClick={startTour}>
         Tour
       </button>
