@@ -31,9 +31,10 @@ WASM32 := $(STAMPS)/wasm32-$(shell rustc --version | cut -d ' ' -f 2)
 NPM := www/node_modules/.installed-$(shell cksum < www/package-lock.json | tr ' ' '-')
 RUST_SOURCES := $(shell find src -name '*.rs') Cargo.toml Cargo.lock .cargo/config.toml
 WWW_SOURCES := $(shell find www -type f -not -name '*.tsbuildinfo' -not -path 'www/node_modules/*' \
-	-not -path 'www/dist/*' -not -path 'www/src/pkg/*' -not -path 'www/test*' -not -path 'www/screenshots/*' \
+	-not -path 'www/dist/*' -not -path 'www/src/pkg/*' -not -path 'www/public/entrance/*' -not -path 'www/test*' -not -path 'www/screenshots/*' \
 	-not -path 'www/playwright-report/*')
 PACKAGE := www/src/pkg/ridgeline_bg.wasm
+ENTRANCE := www/public/entrance/model.glb
 SITE := www/dist/index.html
 PORT ?= 4173
 
@@ -75,7 +76,7 @@ native:
 setup: $(SITE)
 
 clean:
-	rm -rf target www/dist www/src/pkg www/node_modules
+	rm -rf target www/dist www/src/pkg www/public/entrance www/node_modules
 
 # ---- the wasm package and the site -------------------------------------------------------------
 
@@ -93,7 +94,11 @@ $(PACKAGE): $(RUST_SOURCES) $(WASM32) $(WASM_BINDGEN) $(NPM) $(CHOSEN)
 	cargo build --lib --profile $(PROFILE) --target wasm32-unknown-unknown
 	wasm-bindgen target/wasm32-unknown-unknown/$(PROFILE)/ridgeline.wasm $(@D) ridgeline
 
-$(SITE): $(PACKAGE) $(NPM) $(WWW_SOURCES)
+# What the page shows before anything is computed in the browser: the demo scene's model, made by the page's own core.
+$(ENTRANCE): $(PACKAGE) www/scripts/entrance.mjs tests/session.mjs $(shell find www/public/demo -type f)
+	node www/scripts/entrance.mjs
+
+$(SITE): $(PACKAGE) $(ENTRANCE) $(NPM) $(WWW_SOURCES)
 	cd www && npm run build
 	touch $@
 

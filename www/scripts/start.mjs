@@ -2,8 +2,8 @@
 //
 //   npm run build && npm run start-time
 //
-// Printed are the medians of several visits, seconds from the start of the navigation: until something is painted, until a tab
-// answers a click, and until the core (WebAssembly) has told the page its parameters.
+// Printed are the medians of several visits, seconds from the start of the navigation: until something is painted, until the
+// entrance's model is drawn, and until the core (WebAssembly) has told the page its parameters.
 
 import { cpus } from "node:os";
 import { withSite } from "./site.mjs";
@@ -11,20 +11,14 @@ import { withSite } from "./site.mjs";
 const PORT = Number(process.env.PORT ?? 4181);
 const VISITS = 7;
 
-/** In the page: clicks the second tab in every frame until it is chosen, and notes when; and when there are parameters. */
+/** In the page: notes in which frame the model is drawn, and when the page marked that the core is ready. */
 function note() {
   window.answered = {};
   const look = () => {
-    const tab = document.querySelectorAll('[role="tab"]')[1];
-    if (tab !== undefined && window.answered.tab === undefined) {
-      tab.click();
-      if (tab.getAttribute("aria-selected") === "true") {
-        window.answered.tab = performance.now();
-      }
+    if (document.querySelector(".turntable.drawn") !== null) {
+      window.answered.model ??= performance.now();
     }
-    if (document.querySelector('[id^="param-"]') !== null) {
-      window.answered.core ??= performance.now();
-    }
+    window.answered.core ??= performance.getEntriesByName("core ready")[0]?.startTime;
     requestAnimationFrame(look);
   };
   requestAnimationFrame(look);
@@ -35,7 +29,7 @@ async function visit(browser) {
   const page = await context.newPage();
   await page.addInitScript(note);
   await page.goto(`http://127.0.0.1:${PORT}/`);
-  await page.waitForFunction(() => window.answered.tab !== undefined && window.answered.core !== undefined);
+  await page.waitForFunction(() => window.answered.model !== undefined && window.answered.core !== undefined);
   const found = await page.evaluate(() => ({
     paint: performance.getEntriesByName("first-contentful-paint")[0]?.startTime ?? Number.NaN,
     ...window.answered,
@@ -52,7 +46,7 @@ await withSite(PORT, async (browser) => {
     visits.push(await visit(browser));
   }
   console.log(`${cpus().length} cores, ${VISITS} visits`);
-  const WORDS = { paint: "first paint", tab: "a tab answers", core: "the core is ready" };
+  const WORDS = { paint: "first paint", model: "the model is drawn", core: "the core is ready" };
   for (const [name, words] of Object.entries(WORDS)) {
     const all = visits.map((one) => one[name] / 1000);
     console.log(`${words.padEnd(18)} ${median(all).toFixed(2)} s (longest ${Math.max(...all).toFixed(2)} s)`);

@@ -26,11 +26,10 @@ import { CUT, MEASURED, OF_BOTH_HALVES, PICK_ORDER } from "./scene/layerRoles";
 import { clipFromViewer } from "./scene/photoProjection";
 import { clipPlace, drawHalves } from "./scene/splitView";
 import { buildMeasure, type Measured, measure } from "./tools/measure";
+import { PressWatch } from "./tools/press";
 import { clippingPlane, type Section, sectionOf } from "./tools/section";
 
 const FIELD_OF_VIEW_DEG = 35;
-/** A press that moves less, in CSS pixels, is a click. */
-const CLICK_SLACK_PX = 4;
 const PICK_REACH_PX = 7;
 
 export class Viewer {
@@ -50,7 +49,6 @@ export class Viewer {
   #colours: ThemeColours;
   #bounds: Sphere | null = null;
   #frame = 0;
-  #pressedAt = new Vector2();
   /** The plane of the section. */
   #cut: Plane | null = null;
   /** The view whose camera is looked through; null for the free one. */
@@ -83,12 +81,19 @@ export class Viewer {
     this.#controls.listenToKeyEvents(canvas);
     this.#controls.addEventListener("change", () => this.draw());
     this.#controls.addEventListener("end", () => this.onStand(this.#standpoint()));
-    canvas.addEventListener("pointerdown", (event) => this.#pressedAt.set(event.clientX, event.clientY));
-    canvas.addEventListener("pointerup", (event) => this.#click(event));
+    const watch = new PressWatch((at) => this.press(at));
+    canvas.addEventListener("pointerdown", (event) => watch.down(event));
+    canvas.addEventListener("pointermove", (event) => watch.move(event));
+    canvas.addEventListener("pointerup", (event) => watch.up(event));
+    canvas.addEventListener("pointercancel", (event) => watch.cancel(event));
     this.#observer = new ResizeObserver(() => void this.#resize());
     this.#observer.observe(canvas);
+    window.addEventListener("beforeprint", this.#drawForPaper);
     this.setTheme(colours);
   }
+
+  /** What is printed is what is drawn in the same breath. */
+  readonly #drawForPaper = (): void => this.#render();
 
   /**
    * While it holds, the canvas keeps its pixels, and what is drawn is stretched to the canvas: pixels anew are waited for, up to
@@ -293,6 +298,7 @@ export class Viewer {
   dispose(): void {
     cancelAnimationFrame(this.#frame);
     this.#observer.disconnect();
+    window.removeEventListener("beforeprint", this.#drawForPaper);
     for (const name of [...this.#layers.keys()]) {
       this.setLayer(name, null);
     }
@@ -384,13 +390,10 @@ export class Viewer {
     this.prepareSize(clientWidth, clientHeight);
   }
 
-  #click(event: PointerEvent): void {
-    if (this.#pressedAt.distanceTo(new Vector2(event.clientX, event.clientY)) > CLICK_SLACK_PX) {
-      return;
-    }
+  /** Picks at a place of the canvas, CSS pixels, or gives the tool a point. */
+  press(place: { x: number; y: number }): void {
     const { clientWidth: width, clientHeight: height } = this.#renderer.domElement;
-    const clicked = { x: event.offsetX, y: event.offsetY };
-    const { at, side } = clipPlace(clicked, { width, height }, this.#left !== null);
+    const { at, side } = clipPlace(place, { width, height }, this.#left !== null);
     if (this.#points !== null) {
       const names = MEASURED.filter((name) => this.#sideOf(name) === side);
       this.#pointAt(at, this.#points, names);

@@ -1,16 +1,17 @@
 /** Both methods for one model (`--method combined`). */
 import { expect, test } from "@playwright/test";
-import { give, houseFiles, lookOf, openTab, stage, waitForStage, watch } from "./helpers";
+import { give, houseFiles, lookOf, openParameters, openTab, stage, waitForStage, watch } from "./helpers";
 
 test("both methods find one model of a house, and each view tells of its own stages", async ({ page }) => {
   test.slow();
   const { problems } = watch(page);
   await page.goto("/");
+  await give(page, houseFiles());
+  await expect(page.locator(".status.good")).toHaveCount(6);
   await page.getByRole("button", { name: "Combined", exact: true }).click();
   await expect(page.getByRole("tab", { name: "Clusters" })).toBeVisible();
   await expect(page.getByRole("tab", { name: "Half-planes" })).toBeVisible();
   await expect(page).toHaveURL(/method=combined/);
-  await give(page, houseFiles());
   await page.getByRole("button", { name: "Run all" }).click();
   await waitForStage(page, "model");
   const names = await page
@@ -58,7 +59,7 @@ test("both methods find one model of a house, and each view tells of its own sta
 
   await test.step("a parameter of half-planes leaves the rectangles alone", async () => {
     await openTab(page, "Half-planes");
-    await page.getByText("Half-plane sweep", { exact: true }).click();
+    await openParameters(page, "Half-plane sweep");
     const field = page.locator("#param-sweep-min_similarity");
     await field.fill("0.5");
     await field.press("Enter");

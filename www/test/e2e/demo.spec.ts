@@ -1,6 +1,6 @@
 import { readFileSync } from "node:fs";
 import { expect, test } from "@playwright/test";
-import { lookOf, openTab, stage, waitForStage, watch } from "./helpers";
+import { lookOf, openParameters, openTab, stage, waitForStage, watch } from "./helpers";
 
 test("one click turns the demo scene into a textured model that can be downloaded", async ({ page }) => {
   const { problems } = watch(page);
@@ -71,7 +71,7 @@ test("one click turns the demo scene into a textured model that can be downloade
   });
 
   await test.step("a changed parameter makes its stage and the later ones outdated, not the earlier", async () => {
-    await page.getByText("Half-plane sweep", { exact: true }).click();
+    await openParameters(page, "Half-plane sweep");
     const field = page.locator("#param-sweep-min_similarity");
     await field.fill("0.45");
     await field.press("Enter");

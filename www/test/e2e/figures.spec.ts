@@ -1,6 +1,16 @@
 /** Each figure of B99 shows what the core found, and follows what is pointed at. One run of the demo scene for all. */
 import { expect, type Page, test } from "@playwright/test";
-import { axeFindings, lookOf, onePage, openTab, pickUntil, stage, steadyLook, waitForStage } from "./helpers";
+import {
+  axeFindings,
+  lookOf,
+  onePage,
+  openParameters,
+  openTab,
+  pickUntil,
+  stage,
+  steadyLook,
+  waitForStage,
+} from "./helpers";
 
 let page: Page;
 
@@ -316,7 +326,7 @@ test("nothing serious for axe in any figure", async () => {
 test("only the stages behind a changed parameter run again", async () => {
   const time = (name: string) => stage(page, name).locator(".muted.numbers").textContent();
   const before = await time("matches");
-  await page.getByText("Grouping and facets", { exact: true }).click();
+  await openParameters(page, "Grouping and facets");
   const field = page.locator("#param-roof-min_area_m2");
   await field.fill("6");
   await field.press("Enter");

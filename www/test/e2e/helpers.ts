@@ -81,6 +81,15 @@ export async function give(page: Page, files: Upload[]): Promise<void> {
   await page.getByTestId("file-input").setInputFiles(files);
 }
 
+/** Opens the parameters, which are closed at first, and a section of them. */
+export async function openParameters(page: Page, section: string): Promise<void> {
+  const all = page.locator("details.parameters");
+  if ((await all.getAttribute("open")) === null) {
+    await all.getByRole("heading", { name: "Parameters" }).click();
+  }
+  await all.getByText(section, { exact: true }).click();
+}
+
 export function stage(page: Page, name: string): Locator {
   return page.locator(`[data-stage="${name}"]`);
 }

@@ -1,6 +1,6 @@
 /** What lasts: the project over reloads, and the page without a network. */
 import { expect, test } from "@playwright/test";
-import { give, houseFiles, stage, waitForStage, watch } from "./helpers";
+import { give, houseFiles, openParameters, waitForStage, watch } from "./helpers";
 
 test("what was removed comes back on request", async ({ page }) => {
   await page.goto("/");
@@ -31,7 +31,7 @@ test("a reload keeps the project until it is deleted", async ({ page }) => {
   await give(page, houseFiles());
   await expect(page.locator(".status.good")).toHaveCount(6);
   await page.locator(".view input[type=checkbox]").nth(2).uncheck();
-  await page.getByText("Texture", { exact: true }).click();
+  await openParameters(page, "Texture");
   const field = page.locator("#param-texture-padding_px");
   await field.fill("5");
   await field.press("Enter");
@@ -49,8 +49,7 @@ test("a reload keeps the project until it is deleted", async ({ page }) => {
   await expect(page.locator(".view")).toHaveCount(0);
   await page.waitForTimeout(600);
   await page.reload();
-  await expect(stage(page, "segments")).toBeVisible();
-  await expect(page.locator(".view")).toHaveCount(0);
+  await expect(page.getByTestId("entrance")).toBeVisible();
   expect(problems).toEqual([]);
 });
 

@@ -1,6 +1,15 @@
 /** The other method (W96) and its four stages. */
 import { expect, test } from "@playwright/test";
-import { lookOf, looksOfHalves, openTab, stage, steadyLook, waitForStage, watch } from "./helpers";
+import {
+  lookOf,
+  looksOfHalves,
+  openParameters,
+  openTab,
+  stage,
+  steadyLook,
+  waitForStage,
+  watch,
+} from "./helpers";
 
 test("a method that is chosen while the core is still compiled stays chosen", async ({ page }) => {
   const { problems } = watch(page);
@@ -12,7 +21,7 @@ test("a method that is chosen while the core is still compiled stays chosen", as
     await clicked;
     await route.continue();
   });
-  await page.goto("/");
+  await page.goto("/#scene=demo&tab=images");
   await page.getByRole("button", { name: "Rectangles", exact: true }).click();
   go();
   await expect(stage(page, "regions")).toBeVisible();
@@ -25,13 +34,12 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
   // Both methods run, where graphics are computed in software, too.
   test.slow();
   const { problems } = watch(page);
-  await page.goto("/");
-  await page.getByRole("button", { name: "Rectangles", exact: true }).click();
+  await page.goto("/#method=rectangles");
+  await page.getByRole("button", { name: "Demo scene" }).click();
   await expect(page.getByRole("tab", { name: "Clusters" })).toBeVisible();
   await expect(page.getByRole("tab", { name: "Half-planes" })).toHaveCount(0);
   await expect(stage(page, "regions")).toBeVisible();
   await expect(stage(page, "segments")).toHaveCount(0);
-  await page.getByRole("button", { name: "Demo scene" }).click();
   await waitForStage(page, "model");
   const inspector = page.getByTestId("inspector");
   const image = page.locator(".image-view canvas").first();
@@ -94,9 +102,9 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
   });
 
   await test.step("its parameters stand in the place of the other method's", async () => {
+    await openParameters(page, "Planes");
     await expect(page.getByText("Regions (ORIS)", { exact: true })).toBeVisible();
     await expect(page.getByText("Half-plane sweep", { exact: true })).toHaveCount(0);
-    await page.getByText("Planes", { exact: true }).click();
     const field = page.locator("#param-objectspace-planes-min_measure_m2");
     await field.fill("9");
     await field.press("Enter");

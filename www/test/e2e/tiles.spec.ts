@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { expect, type Page, test } from "@playwright/test";
-import { give, houseFiles, stage, upload, waitForStage, watch } from "./helpers";
+import { give, houseFiles, openParameters, stage, upload, waitForStage, watch } from "./helpers";
 
 const built = (profile: string) =>
   fileURLToPath(new URL(`../../../target/${profile}/ridgeline`, import.meta.url));
@@ -80,7 +80,7 @@ test("a project opens again to the same state, here and on the command line", as
   await expect(page.getByRole("heading", { name: "5 of 6 views" })).toBeVisible();
   await page.getByText("Region and ground").click();
   await askFor(page, /Height of the ground/, "100");
-  await page.getByText("Texture", { exact: true }).click();
+  await openParameters(page, "Texture");
   await page.locator("#param-texture-padding_px").fill("5");
   await page.locator("#param-texture-padding_px").press("Enter");
   await page.getByRole("button", { name: "Run all" }).click();

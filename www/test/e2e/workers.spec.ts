@@ -40,8 +40,10 @@ for (const method of ["Lines", "Rectangles"]) {
 }
 
 test("cancelling ends all workers, and the next run hires them again", async ({ page }) => {
+  await page.addInitScript(() => {
+    Object.defineProperty(navigator, "hardwareConcurrency", { value: 4 });
+  });
   await page.goto("/");
-  await page.getByLabel("Workers").selectOption("3");
   await page.getByRole("button", { name: "Demo scene" }).click();
   await expect(stage(page, "matches")).toHaveAttribute("data-status", "running", { timeout: 60_000 });
   await expect.poll(() => page.workers().length).toBe(3);

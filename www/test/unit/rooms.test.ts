@@ -19,6 +19,7 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
     ["shared", "core", "viewer/scene", "viewer/layers", "viewer/tools", "viewer"],
     [
       "app/state",
+      "app/screen",
       "app/parts",
       "app/settings",
       "app/session",
@@ -31,6 +32,7 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
       "app/figures",
       "app/tour",
       "app/stages",
+      "app/entrance",
       "app/shell",
     ],
   ),

@@ -1,8 +1,9 @@
-/** One view, to zoom (wheel, + and -), pan (drag, arrows), fit (0) and pick (click). */
+/** One view, to zoom (wheel, two fingers, + and -), pan (drag, arrows), fit (0) and pick (click, tap, long press). */
 import { useEffect, useRef, useState } from "preact/hooks";
 import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_STRIDE } from "../../shared/flatArrays";
 import type { Vec2 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
+import { type Place, PressWatch } from "../../viewer/tools/press";
 import { textScale } from "../state/textScale";
 import { drawView, type Overlay } from "./drawing";
 import type { Mark } from "./selectionMarks";
@@ -12,6 +13,7 @@ import {
   nearestSegment,
   type Point,
   pan,
+  pinch,
   type Size,
   toImage,
   type Viewport,
@@ -33,14 +35,17 @@ interface Props {
 const ZOOM_STEP = 1.25;
 const PAN_STEP_PX = 40;
 const PICK_REACH_PX = 8;
-const CLICK_SLACK_PX = 4;
+/** A finger hides what it points at. */
+const TOUCH_REACH_PX = 18;
 
 export function ImageCanvas({ view, name, image, overlay, selection, marks, follows, onPick }: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   void textScale.value;
   const [box, setBox] = useState<Size>({ width: 0, height: 0 });
   const [moved, setMoved] = useState<Viewport | null>(null);
-  const drag = useRef<{ last: Point; travelled: number } | null>(null);
+  const held = useRef(new Map<number, Point>());
+  const pick = useRef<(at: Place) => void>(() => undefined);
+  const press = useRef(new PressWatch((at) => pick.current(at)));
   const fitted = fitImage(image, box);
   const viewport = moved ?? (follows ? around(marks, image, box) : null) ?? fitted;
 
@@ -67,28 +72,34 @@ export function ImageCanvas({ view, name, image, overlay, selection, marks, foll
     event.preventDefault();
     zoom({ x: event.offsetX, y: event.offsetY }, 1.0015 ** -event.deltaY);
   };
+  // The watch outlives this drawing: a finger that rests is told of later.
+  pick.current = ({ x, y, isTouch }) => {
+    const reach = (isTouch ? TOUCH_REACH_PX : PICK_REACH_PX) / viewport.scale;
+    onPick(pickAt(overlay, view, toImage(viewport, { x, y }), reach));
+  };
   const onPointerDown = (event: PointerEvent) => {
     canvas.current?.setPointerCapture(event.pointerId);
-    drag.current = { last: { x: event.clientX, y: event.clientY }, travelled: 0 };
+    held.current.set(event.pointerId, placeOf(event));
+    press.current.down(event);
   };
   const onPointerMove = (event: PointerEvent) => {
-    const { current } = drag;
-    if (current !== null) {
-      const dx = event.clientX - current.last.x;
-      const dy = event.clientY - current.last.y;
-      drag.current = {
-        last: { x: event.clientX, y: event.clientY },
-        travelled: current.travelled + Math.hypot(dx, dy),
-      };
-      setMoved(pan(viewport, dx, dy));
+    const before = held.current.get(event.pointerId);
+    if (before === undefined) {
+      return;
     }
+    const next = placeOf(event);
+    const [other] = [...held.current].filter(([id]) => id !== event.pointerId).map(([, at]) => at);
+    held.current.set(event.pointerId, next);
+    press.current.move(event);
+    setMoved((last) =>
+      other === undefined
+        ? pan(last ?? viewport, next.x - before.x, next.y - before.y)
+        : pinch(last ?? viewport, [before, other], [next, other], fitted.scale * 0.5),
+    );
   };
   const onPointerUp = (event: PointerEvent) => {
-    if (drag.current !== null && drag.current.travelled < CLICK_SLACK_PX) {
-      const at = toImage(viewport, { x: event.offsetX, y: event.offsetY });
-      onPick(pickAt(overlay, view, at, PICK_REACH_PX / viewport.scale));
-    }
-    drag.current = null;
+    held.current.delete(event.pointerId);
+    press.current.up(event);
   };
   const onKeyDown = (event: KeyboardEvent) => {
     const next = viewportAfterKey(event.key, viewport, box, fitted.scale);
@@ -111,9 +122,11 @@ export function ImageCanvas({ view, name, image, overlay, selection, marks, foll
         onPointerDown={onPointerDown}
         onPointerMove={onPointerMove}
         onPointerUp={onPointerUp}
-        onPointerCancel={() => {
-          drag.current = null;
+        onPointerCancel={(event) => {
+          held.current.delete(event.pointerId);
+          press.current.cancel(event);
         }}
+        onContextMenu={(event) => event.preventDefault()}
         onDblClick={() => setMoved(null)}
         onKeyDown={onKeyDown}
       />
@@ -122,6 +135,10 @@ export function ImageCanvas({ view, name, image, overlay, selection, marks, foll
       </figcaption>
     </figure>
   );
+}
+
+function placeOf({ offsetX, offsetY }: PointerEvent): Point {
+  return { x: offsetX, y: offsetY };
 }
 
 /** Image pixels about marks that are zoomed to. */

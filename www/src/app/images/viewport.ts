@@ -66,6 +66,20 @@ export function pan(viewport: Viewport, dx: number, dy: number): Viewport {
   return { ...viewport, x: viewport.x + dx, y: viewport.y + dy };
 }
 
+/** Two fingers move: the image points below them stay there, as far as scale and shift can do that. */
+export function pinch(
+  viewport: Viewport,
+  [a, b]: readonly [Point, Point],
+  [nextA, nextB]: readonly [Point, Point],
+  minScale: number,
+): Viewport {
+  const apart = (p: Point, q: Point) => Math.max(1, Math.hypot(p.x - q.x, p.y - q.y));
+  const middle = (p: Point, q: Point) => ({ x: (p.x + q.x) / 2, y: (p.y + q.y) / 2 });
+  const [from, to] = [middle(a, b), middle(nextA, nextB)];
+  const zoomed = zoomAt(viewport, from, apart(nextA, nextB) / apart(a, b), minScale);
+  return pan(zoomed, to.x - from.x, to.y - from.y);
+}
+
 /** The image position of a point of the canvas. */
 export function toImage(viewport: Viewport, at: Point): Point {
   return { x: (at.x - viewport.x) / viewport.scale, y: (at.y - viewport.y) / viewport.scale };

@@ -7,8 +7,10 @@ import {
   fieldText,
   type ParamField,
   type ParamSection,
+  paramName,
   paramSections,
   parseField,
+  wantedFields,
 } from "../settings/parameterForm";
 import { defaults, params } from "../state/parameters";
 
@@ -17,18 +19,26 @@ export function Parameters() {
   const changed = sections.reduce((sum, section) => sum + section.changed, 0);
   return (
     <section class="panel">
-      <div class="row spread">
-        <h2>Parameters</h2>
+      <details class="parameters" open={changed > 0}>
+        <summary>
+          <h2>Parameters</h2>
+          {changed > 0 && <span class="changed-mark">{changed} changed</span>}
+        </summary>
+        <p class="muted">A change makes its stage and all later ones outdated.</p>
         {changed > 0 && (
-          <button type="button" class="quiet" onClick={resetParams}>
+          <button type="button" onClick={resetParams}>
             Reset {changed}
           </button>
         )}
-      </div>
-      <p class="muted">The defaults are the paper's. A change makes its stage and all later ones outdated.</p>
-      {sections.map((section) => (
-        <Section key={section.path} section={section} />
-      ))}
+        <h3>Changed most often</h3>
+        {wantedFields(sections).map(({ section, field }) => (
+          <Field key={`${section.path}.${field.key}`} path={section.path} field={field} place="wanted" />
+        ))}
+        <h3>All, by stage</h3>
+        {sections.map((section) => (
+          <Section key={section.path} section={section} />
+        ))}
+      </details>
     </section>
   );
 }
@@ -41,15 +51,15 @@ function Section({ section }: { section: ParamSection }) {
         {section.changed > 0 && <span class="changed-mark">{section.changed} changed</span>}
       </summary>
       {section.fields.map((field) => (
-        <Field key={field.key} path={section.path} field={field} />
+        <Field key={field.key} path={section.path} field={field} place="param" />
       ))}
     </details>
   );
 }
 
-function Field({ path, field }: { path: string; field: ParamField }) {
+function Field({ path, field, place }: { path: string; field: ParamField; place: "wanted" | "param" }) {
   const [error, setError] = useState("");
-  const id = `param-${path.replaceAll(".", "-")}-${field.key}`;
+  const id = `${place}-${path.replaceAll(".", "-")}-${field.key}`;
   const change = (text: string) => {
     const parsed = parseField(field, text);
     setError("error" in parsed ? parsed.error : "");
@@ -60,8 +70,8 @@ function Field({ path, field }: { path: string; field: ParamField }) {
   };
   return (
     <div class={`field ${field.changed ? "changed" : ""}`}>
-      <label for={id} title={field.key}>
-        {field.label}
+      <label for={id} title={`${path}.${field.key}`}>
+        {place === "wanted" ? paramName(`${path}.${field.key}`, false) : field.label}
       </label>
       {field.kind === "boolean" ? (
         <input

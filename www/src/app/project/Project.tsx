@@ -3,6 +3,7 @@ import "./project.css";
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { ImageReport } from "../../shared/records";
 import { isBusy } from "../state/activity";
+import { showsEntrance } from "../screen/opening";
 import { notify } from "../state/notices";
 import { files, inspection, projectName, runOptions } from "../state/project";
 import { peakMb, scene } from "../state/scene";
@@ -27,7 +28,7 @@ export function Project() {
         )}
       </div>
       <ArrivalQuestion />
-      <DropZone />
+      {!showsEntrance.value && <DropZone />}
       {files.value.length > 0 && <Views />}
       {files.value.length > 0 && <OtherFiles />}
       <Warnings />
@@ -46,7 +47,8 @@ export function Project() {
   );
 }
 
-function DropZone() {
+/** The entrance has it while nothing is open: there is one at a time. */
+export function DropZone() {
   const isOver = useFileDrop();
   const fileInput = useRef<HTMLInputElement>(null);
   const folderInput = useRef<HTMLInputElement>(null);
@@ -80,9 +82,11 @@ function DropZone() {
         <button type="button" onClick={() => folderInput.current?.click()}>
           Folder…
         </button>
-        <button type="button" class={isEmpty ? "primary" : ""} onClick={() => void openDemo()}>
-          Demo scene
-        </button>
+        {!showsEntrance.value && (
+          <button type="button" class={isEmpty ? "primary" : ""} onClick={() => void openDemo()}>
+            Demo scene
+          </button>
+        )}
       </div>
       <input ref={fileInput} type="file" multiple hidden data-testid="file-input" onChange={onPick} />
       <input

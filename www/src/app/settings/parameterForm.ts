@@ -56,6 +56,32 @@ const GROUPS_OF_METHOD: Record<string, readonly string[]> = {
   rectangles: ["objectspace", "texture"],
 };
 
+/** What a person most often wants to change, by what it does to the result; all else stands in its stage's section. */
+export const WANTED: readonly string[] = [
+  "roof.min_area_m2",
+  "roof.min_height_m",
+  "roof.refine.refine",
+  "segments.min_length_px",
+  "matching.min_views",
+  "sweep.min_similarity",
+  "objectspace.planes.min_area_m2",
+  "objectspace.clusters.min_views",
+  "texture.max_atlas_px",
+  "texture.jpeg_quality",
+];
+
+/** The wanted fields that the method reads, each with the section that it is of. */
+export function wantedFields(
+  sections: readonly ParamSection[],
+): { section: ParamSection; field: ParamField }[] {
+  return WANTED.flatMap((path) => {
+    const at = path.lastIndexOf(".");
+    const section = sections.find((one) => one.path === path.slice(0, at));
+    const field = section?.fields.find(({ key }) => key === path.slice(at + 1));
+    return section === undefined || field === undefined ? [] : [{ section, field }];
+  });
+}
+
 /** One section a group, groups inside groups apart, in the core's order; only what the method reads. */
 export function paramSections(defaults: ParamTree, values: ParamTree): ParamSection[] {
   const groups = GROUPS_OF_METHOD[String(values["method"] ?? "lines")];
@@ -103,11 +129,11 @@ export function withParam(values: ParamTree, path: string, value: ParamValue): P
 }
 
 /** A parameter in words, with its group: "Half-plane sweep: Min similarity". */
-export function paramName(path: string): string {
+export function paramName(path: string, withUnit = true): string {
   const at = path.lastIndexOf(".");
   const [group, key] = [path.slice(0, at), path.slice(at + 1)];
   const { label, unit } = labelAndUnit(key);
-  return `${TITLES[group] ?? innerTitle(group)}: ${label}${unit === "" ? "" : ` (${unit})`}`;
+  return `${TITLES[group] ?? innerTitle(group)}: ${label}${unit === "" || !withUnit ? "" : ` (${unit})`}`;
 }
 
 /** What differs from the defaults, by path: what a link carries. */

@@ -1,5 +1,6 @@
 /** The name, the method, the tour, and how the page looks. */
 
+import { showsWorkbench } from "../screen/opening";
 import { setMethod } from "../session/stageRuns";
 import { activity } from "../state/activity";
 import type { Method } from "../state/methods";
@@ -35,20 +36,7 @@ export function Header() {
           {activity}
         </span>
       )}
-      <fieldset class="choice">
-        <legend class="visually-hidden">Method</legend>
-        {METHODS.map(([name, title, what]) => (
-          <button
-            key={name}
-            type="button"
-            title={what}
-            aria-pressed={method.value === name}
-            onClick={() => void setMethod(name)}
-          >
-            {title}
-          </button>
-        ))}
-      </fieldset>
+      {showsWorkbench.value && <MethodChoice />}
       <button type="button" onClick={startTour}>
         Tour
       </button>
@@ -65,5 +53,24 @@ export function Header() {
         {other}
       </button>
     </header>
+  );
+}
+
+function MethodChoice() {
+  return (
+    <fieldset class="choice methods">
+      <legend class="visually-hidden">Method</legend>
+      {METHODS.map(([name, title, what]) => (
+        <button
+          key={name}
+          type="button"
+          title={what}
+          aria-pressed={method.value === name}
+          onClick={() => void setMethod(name)}
+        >
+          {title}
+        </button>
+      ))}
+    </fieldset>
   );
 }

@@ -4,11 +4,12 @@ import "../parts/parts.css";
 import "../parts/charts.css";
 import { render } from "preact";
 import { storeProject, storeResults } from "../project/storedProject";
+import { setOpening } from "../screen/opening";
 import { askAboutSelection } from "../selection/selectionQueries";
 import { start } from "../session/session";
 import { followState } from "../settings/addressLink";
 import { App } from "./App";
-import { restoreOpeningState } from "./openingState";
+import { isAwaited, restoreOpeningState } from "./openingState";
 
 const root = document.getElementById("app");
 if (root !== null) {
@@ -17,9 +18,13 @@ if (root !== null) {
 }
 
 async function open(): Promise<void> {
+  // Whether something is on its way is known long before the core is.
+  setOpening((await isAwaited()) ? "restoring" : "open");
   await start();
+  performance.mark("core ready");
   askAboutSelection();
   await restoreOpeningState();
+  setOpening("open");
   followState();
   storeProject();
   storeResults();

@@ -19,6 +19,11 @@ import { stages } from "../state/stages";
 import { select, shownView, showTab, showView, standAt } from "../state/viewState";
 import { goToIn } from "../tour/lessons";
 
+/** Does the page begin with something? */
+export async function isAwaited(): Promise<boolean> {
+  return opened.scene !== null || ((await readStoredProject())?.files.length ?? 0) > 0;
+}
+
 export async function restoreOpeningState(): Promise<void> {
   await actions.perform({ kind: "restore", phase: "load" }, restoreIt);
 }

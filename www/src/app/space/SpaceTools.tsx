@@ -1,5 +1,6 @@
 /** The tools of the 3D view: fit, look down, look through a view's camera, measure, cut, keep a picture. */
 import { signal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
 import type { Measured } from "../../viewer/tools/measure";
 import type { Section } from "../../viewer/tools/section";
 import type { Viewer } from "../../viewer/viewer";
@@ -19,6 +20,7 @@ export function SpaceTools({ viewer, onFit }: { viewer: Viewer | null; onFit: ()
   const leave = () => lookThrough(viewer, null);
   const choose = (next: Tool) => {
     const isOn = tool.value === next;
+    aim.value = null;
     measured.value = null;
     section.value = null;
     tool.value = isOn ? null : next;
@@ -64,10 +66,61 @@ export function SpaceTools({ viewer, onFit }: { viewer: Viewer | null; onFit: ()
         </button>
         <FlyTo viewer={viewer} />
       </div>
+      {tool.value !== null && <Crosshair viewer={viewer} onLeave={() => choose(tool.value ?? "measure")} />}
       {tool.value === "measure" && <Reading measured={measured.value} />}
       {tool.value === "section" && <Profile viewer={viewer} />}
     </>
   );
+}
+
+/** Where the crosshair is, CSS pixels of the canvas; null: in its middle. */
+const aim = signal<{ x: number; y: number } | null>(null);
+
+const STEP_PX = 12;
+const STEPS: Record<string, readonly [number, number]> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, -1],
+  ArrowDown: [0, 1],
+};
+
+/** Points for the tools without a pointer: arrows move the crosshair (Shift: finely), Enter takes the point below it. */
+function Crosshair({ viewer, onLeave }: { viewer: Viewer | null; onLeave: () => void }) {
+  const button = useRef<HTMLButtonElement>(null);
+  const { clientWidth = 0, clientHeight = 0 } = button.current?.parentElement ?? {};
+  const place = aim.value ?? { x: clientWidth / 2, y: clientHeight / 2 };
+  const onKeyDown = (event: KeyboardEvent) => {
+    const step = STEPS[event.key];
+    if (step !== undefined) {
+      event.preventDefault();
+      const size = event.shiftKey ? 1 : STEP_PX;
+      aim.value = {
+        x: Math.min(clientWidth - 1, Math.max(0, place.x + size * step[0])),
+        y: Math.min(clientHeight - 1, Math.max(0, place.y + size * step[1])),
+      };
+    } else if (event.key === "Escape") {
+      onLeave();
+    }
+  };
+  // Its place is known once it is laid out.
+  useEffect(() => {
+    aim.value ??= { x: (button.current?.parentElement?.clientWidth ?? 0) / 2, y: middleOf(button.current) };
+  }, []);
+  return (
+    <button
+      ref={button}
+      type="button"
+      class="crosshair"
+      aria-label="Crosshair: arrow keys move it, Shift finely, Enter takes the point below it, Escape ends the tool"
+      style={{ left: `${place.x}px`, top: `${place.y}px` }}
+      onKeyDown={onKeyDown}
+      onClick={() => viewer?.press(place)}
+    />
+  );
+}
+
+function middleOf(element: HTMLElement | null): number {
+  return (element?.parentElement?.clientHeight ?? 0) / 2;
 }
 
 /** The profile once there are two points, and which side of the cut is taken away. */
@@ -75,7 +128,7 @@ function Profile({ viewer }: { viewer: Viewer | null }) {
   if (section.value === null) {
     return (
       <p class="reading" role="status">
-        Click the two ends of the cut.
+        Click the two ends of the cut. By keyboard: Tab to the crosshair.
       </p>
     );
   }
@@ -98,7 +151,9 @@ function Reading({ measured: found }: { measured: Measured | null }) {
   if (found === null || found.distanceM === null || found.slope === null) {
     return (
       <p class="reading" role="status">
-        {found === null || found.points === 0 ? "Click two points, or more for an area." : "One more point."}
+        {found === null || found.points === 0
+          ? "Click two points, or more for an area. By keyboard: Tab to the crosshair."
+          : "One more point."}
       </p>
     );
   }

@@ -294,7 +294,7 @@ function LayerSwitches() {
     }
   };
   return (
-    <fieldset class="choice">
+    <fieldset class="choice layers">
       <legend class="visually-hidden">Layers</legend>
       {LAYERS.filter((name) => method.value !== "rectangles" || !LAYERS_OF_LINES.includes(name)).map(
         (name) => (

@@ -1,20 +1,24 @@
 /** What stands in the image tabs as long as there are no images. */
+import { PhotographsOnly } from "../project/PhotographsOnly";
 import { openDemo } from "../project/projectActions";
+import { inspection } from "../state/project";
 import { startTour } from "../tour/lessons";
 
 export function EmptyStage() {
+  const photographs = inspection.value?.images ?? [];
+  if (photographs.length > 0 && photographs.every(({ orientation }) => orientation === null)) {
+    return <PhotographsOnly />;
+  }
   return (
     <div class="empty">
       <p>No oriented views yet.</p>
-      <p class="muted">
-        Add photographs with their orientation on the left, or begin with six aerial views of detached houses.
-      </p>
+      <p class="muted">Add photographs with their orientation to the project, or begin with the example.</p>
       <p class="row">
         <button type="button" class="primary" onClick={() => void openDemo()}>
           Reconstruct the example
         </button>
         <button type="button" onClick={startTour}>
-          Be shown how it works
+          How?
         </button>
       </p>
     </div>

@@ -6,6 +6,7 @@ import {
   paramSections,
   paramsOf,
   parseField,
+  wantedFields,
   withParam,
 } from "../../../src/app/settings/parameterForm";
 import type { ParamTree } from "../../../src/shared/paramTree";
@@ -126,5 +127,21 @@ describe("firstStageOf", () => {
 
   it("outdates everything for a group it does not know", () => {
     expect(firstStageOf("novel", stages)).toBe(0);
+  });
+});
+
+describe("wantedFields", () => {
+  it("stand in the order of their list, as far as the method reads them", () => {
+    const all: ParamTree = {
+      segments: { min_length_px: 15, area_m2: 2 },
+      roof: { min_area_m2: 1.5 },
+      objectspace: { planes: { min_area_m2: 3 } },
+    };
+    const paths = (method: string) =>
+      wantedFields(paramSections(all, { ...all, method: method as unknown as ParamTree[string] })).map(
+        ({ section, field: { key } }) => `${section.path}.${key}`,
+      );
+    expect(paths("lines")).toEqual(["roof.min_area_m2", "segments.min_length_px"]);
+    expect(paths("rectangles")).toEqual(["objectspace.planes.min_area_m2"]);
   });
 });

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { fitImage, nearestSegment, pan, toImage, zoomAt } from "../../../src/app/images/viewport";
+import { fitImage, nearestSegment, pan, pinch, toImage, zoomAt } from "../../../src/app/images/viewport";
 
 describe("viewport", () => {
   it("shows the whole image in the middle", () => {
@@ -49,5 +49,24 @@ describe("nearestSegment", () => {
 
   it("copes with a segment of no length", () => {
     expect(nearestSegment(Float32Array.from([3, 3, 3, 3]), 4, { x: 3, y: 4 }, 2)).toBe(0);
+  });
+});
+
+it("two fingers zoom and move: what is below them stays below them", () => {
+  const viewport = { scale: 2, x: 10, y: -4 };
+  const before = [
+    { x: 100, y: 100 },
+    { x: 200, y: 100 },
+  ] as const;
+  const after = [
+    { x: 80, y: 150 },
+    { x: 280, y: 150 },
+  ] as const;
+  const moved = pinch(viewport, before, after, 0.1);
+  expect(moved.scale).toBe(4);
+  before.forEach((at, i) => {
+    const [was, is] = [toImage(viewport, at), toImage(moved, after[i] as (typeof after)[0])];
+    expect(is.x).toBeCloseTo(was.x, 9);
+    expect(is.y).toBeCloseTo(was.y, 9);
   });
 });

@@ -1,0 +1,77 @@
+/** What a printed page has that the screen says elsewhere: which project, by which method, and what was found. */
+import "./print.css";
+import { slopedArea } from "../parts/facetArea";
+import { grouped } from "../parts/numberText";
+import { stageWords } from "../session/stageCatalogue";
+import { method } from "../state/parameters";
+import { projectName } from "../state/project";
+import { mainResults } from "../state/results";
+import { scene } from "../state/scene";
+import { stages } from "../state/stages";
+
+export function PrintHead() {
+  const views = scene.value?.views ?? [];
+  const done = stages.value.filter(({ status }) => status === "done");
+  if (views.length === 0) {
+    return null;
+  }
+  return (
+    <header class="print-only print-head">
+      <h1>{projectName}</h1>
+      <p>
+        Method: {method}. {views.length} photographs: {views.map(({ name }) => name).join(", ")}.
+      </p>
+      {done.length > 0 && (
+        <table>
+          <caption>What was found</caption>
+          <tbody>
+            {done.map(({ name, counts }) => (
+              <tr key={name}>
+                <th scope="row">{stageWords(name).title}</th>
+                <td>
+                  {Object.entries(counts)
+                    .map(([what, count]) => `${grouped(count)} ${what.replaceAll("_", " ")}`)
+                    .join(", ")}
+                </td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      )}
+      <RoofAreas />
+    </header>
+  );
+}
+
+/** Sloped area and number of roof faces, building by building. */
+function RoofAreas() {
+  const facets = mainResults.value.facets ?? [];
+  const buildings = [...new Set(facets.map(({ building }) => building))].sort((a, b) => a - b);
+  if (buildings.length === 0) {
+    return null;
+  }
+  return (
+    <table>
+      <caption>Roofs</caption>
+      <thead>
+        <tr>
+          <th scope="col">Building</th>
+          <th scope="col">Roof faces</th>
+          <th scope="col">Area along the slope</th>
+        </tr>
+      </thead>
+      <tbody>
+        {buildings.map((number) => {
+          const own = facets.filter(({ building }) => building === number);
+          return (
+            <tr key={number}>
+              <td>{number + 1}</td>
+              <td>{own.length}</td>
+              <td>{own.reduce((sum, facet) => sum + slopedArea(facet), 0).toFixed(1)} m²</td>
+            </tr>
+          );
+        })}
+      </tbody>
+    </table>
+  );
+}

@@ -1,0 +1,37 @@
+/** Project on the left, the stage views in the middle, what they mean and parameters on the right. */
+import { Comparison } from "../comparison/Comparison";
+import { AboutFigure } from "../figures/AboutFigure";
+import { Inspector } from "../inspector/Inspector";
+import { Downloads } from "../project/Downloads";
+import { Parameters } from "../project/Parameters";
+import { Project } from "../project/Project";
+import { showsEntrance } from "../screen/opening";
+import { StageRail } from "../stages/StageRail";
+import { StageView } from "../stages/StageView";
+import { images } from "../state/scene";
+import { lessonStep } from "../state/tour";
+import { Lesson } from "../tour/Lesson";
+import { Notices } from "./Notices";
+
+export function Workbench() {
+  const isBehind = showsEntrance.value;
+  return (
+    <div class="columns">
+      <aside class="column project" aria-label="Project">
+        <Project />
+        <Downloads />
+      </aside>
+      <main class="centre">
+        {!isBehind && <Notices />}
+        <StageView />
+        <StageRail />
+      </main>
+      <aside class="column details" aria-label="Details">
+        {lessonStep.value !== null ? <Lesson /> : images.value.length > 0 && <AboutFigure />}
+        <Comparison />
+        <Inspector />
+        <Parameters />
+      </aside>
+    </div>
+  );
+}
