@@ -5,6 +5,7 @@ import type { WarpedPicture } from "../../shared/calls";
 import { category } from "../../shared/palette";
 import type { SideTrace } from "../../shared/records";
 import { axesOf, Chart, Fit, type Frame, pathOf } from "../parts/charts";
+import { counted } from "../parts/counted";
 import { REJECTION_WORDS } from "../parts/reasonText";
 import { bestTheta, sideOf, turnTo } from "../selection/selectionQueries";
 import { params } from "../state/parameters";
@@ -76,12 +77,12 @@ function SideHead({ side }: { side: SideTrace }) {
       {isPicked && (
         <button
           type="button"
-          class="quiet"
+          class="quiet other-side"
           onClick={() => {
             select({ kind: "side", line: side.line, side: other });
           }}
         >
-          {other} side
+          Show the {other} side
         </button>
       )}
     </div>
@@ -107,7 +108,7 @@ function SimChart({ frame, side, theta }: { frame: Frame; side: SideTrace; theta
       xTitle="θ (degrees)"
       yTitle="Sim(θ)"
       xTicks={[-60, -30, 0, 30, 60]}
-      label={`Sim of theta for ${views.length} views; its maximum is ${Math.max(0, ...similarity).toFixed(2)}`}
+      label={`Sim of theta for ${counted(views.length, "views")}; its maximum is ${Math.max(0, ...similarity).toFixed(2)}`}
       testid="sim-chart"
       onDrag={(value) => void turnTo(Math.round(2 * value) * 0.5 * DEGREE)}
     >
@@ -170,7 +171,7 @@ function Windows({ picture: { about, rgba }, side }: { picture: WarpedPicture; s
               {viewName(view)}
             </span>
             <span class="numbers muted">
-              {similarity === null ? "reference, POI" : `Sim ${similarity.toFixed(2)}`}
+              {similarity === null ? "reference view" : `Sim ${similarity.toFixed(2)}`}
             </span>
           </li>
         );
