@@ -236,7 +236,7 @@ test("refinement: outlines before, relations by their chi-square, adopted and re
   const plain = await steadyLook(page, viewer);
   await dots.first().press("Enter");
   await expect(inspector().locator(".picked")).toHaveText(/^Relation \d+ of building \d+$/);
-  await expect(inspector().getByText("Free solution off by")).toBeVisible();
+  await expect(inspector().getByText("Deviation of the free solution")).toBeVisible();
   expect(await page.getByTestId("filmstrip").locator("canvas").count()).toBeGreaterThanOrEqual(3);
   expect(await steadyLook(page, viewer)).not.toEqual(plain);
   await inspector()

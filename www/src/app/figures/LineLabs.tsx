@@ -4,6 +4,7 @@ import { category } from "../../shared/palette";
 import type { FacetTrace, LineRecord, Vec2, Vec3 } from "../../shared/records";
 import { Filmstrip } from "../images/Filmstrip";
 import { axesOf, Chart, dotsOf, Fit, type Frame, pathOf, type Scale } from "../parts/charts";
+import { counted } from "../parts/counted";
 import { facetRejectionWords } from "../parts/reasonText";
 import { results } from "../state/results";
 import { select, selection } from "../state/viewState";
@@ -48,7 +49,7 @@ function Accuracy({ frame }: { frame: Frame }) {
       xTitle="views that support the line"
       yTitle="σ across (cm)"
       xTicks={counts}
-      label={`Standard deviation of ${records.length} lines against the number of their views`}
+      label={`Standard deviation of ${counted(records.length, "lines")} against the number of their views`}
       testid="accuracy"
       onClick={(views, sigma) => {
         const index = nearest(views, sigma, x, y);
@@ -143,8 +144,9 @@ export function GroupLab() {
                 <span class="dot" style={{ background: category(index) }} aria-hidden="true" />
                 <span>Group {index}</span>
                 <span class="muted numbers">
-                  {group.members.length} lines · {fans} half-planes ·{" "}
-                  {group.rectangles?.length ? `${group.rectangles.length} rectangles · ` : ""}
+                  {counted(new Set(group.members.map(({ line }) => line)).size, "lines")} ·{" "}
+                  {counted(fans, "half-planes")} ·{" "}
+                  {group.rectangles?.length ? `${counted(group.rectangles.length, "rectangles")} · ` : ""}
                   {((Math.atan2(Math.hypot(nx, ny), Math.abs(nz)) * 180) / Math.PI).toFixed(0)}°
                 </span>
               </button>
@@ -194,7 +196,7 @@ const BORDER_WORDS = {
   real: "3D lines",
   inplane: "new lines",
   intersection: "intersections",
-  closing: "closing",
+  closing: "closing lines",
   rectangle: "sides of rectangles",
 };
 
@@ -228,7 +230,7 @@ function Plan({
       class="chart plan-chart"
       viewBox={`0 0 ${frame.width} ${frame.height}`}
       role="group"
-      aria-label={`Plan: ${grouping.borders.length} border lines cut it into ${grouping.cells} cells; ${outlines.length} facets, ${grouping.rejected.length} rejected`}
+      aria-label={`Plan: ${counted(grouping.borders.length, "border lines")}, ${counted(grouping.cells, "cells")}, ${counted(outlines.length, "facets")}; ${grouping.rejected.length} rejected`}
       data-testid="plan"
     >
       {outlines.map((ring, i) => (

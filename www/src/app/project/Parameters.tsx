@@ -25,7 +25,10 @@ export function Parameters() {
           </button>
         )}
       </div>
-      <p class="muted">The defaults are the paper's. A change makes its stage and all later ones outdated.</p>
+      <p class="muted">
+        Where a paper states a value, the default follows it unless another one proved better. A change makes
+        its stage and all later ones outdated.
+      </p>
       {sections.map((section) => (
         <Section key={section.path} section={section} />
       ))}

@@ -2,6 +2,7 @@
 import "./project.css";
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { ImageReport } from "../../shared/records";
+import { counted } from "../parts/counted";
 import { notify } from "../state/notices";
 import { files, inspection, projectName, runOptions } from "../state/project";
 import { peakMb, scene } from "../state/scene";
@@ -116,7 +117,7 @@ function useFileDrop(): boolean {
 function Views() {
   const report = inspection.value;
   if (report === null) {
-    return <p class="muted">Reading {files.value.length} files…</p>;
+    return <p class="muted">Reading {counted(files.value.length, "files")}…</p>;
   }
   return (
     <>
@@ -254,7 +255,7 @@ function Doubts() {
 /** "6 views", or "4 of 6 views" where some are left out. */
 function countText(images: readonly ImageReport[]): string {
   const used = images.filter(({ path }) => !runOptions.value.leftOut.includes(path)).length;
-  const all = `${images.length} ${images.length === 1 ? "view" : "views"}`;
+  const all = counted(images.length, "views");
   return used === images.length ? all : `${used} of ${all}`;
 }
 

@@ -14,7 +14,7 @@ export function EmptyStage() {
           Reconstruct the example
         </button>
         <button type="button" onClick={startTour}>
-          Be shown how it works
+          Take the tour
         </button>
       </p>
     </div>

@@ -1,4 +1,4 @@
-/** Roof facets, tinted by their normal: the hue says where a facet faces, its strength how steep it is. */
+/** Roof facets, tinted by their normal: the hue says where a facet faces, the saturation how steep it is. */
 import {
   BufferAttribute,
   BufferGeometry,
@@ -18,7 +18,7 @@ import { zUpGroup } from "../scene/frame";
 import { BOTH_SIDES, disposeObject, type Layer } from "../scene/layer";
 import { SelectedObject } from "../scene/selectedObject";
 
-/** From this slope on, radians, the tint has its full strength. */
+/** From this slope on, radians, the tint has its full saturation. */
 const FULL_TINT_SLOPE = (40 * Math.PI) / 180;
 const DIMMED = 0.3;
 const OPACITY = 0.92;
