@@ -148,6 +148,11 @@ test("6: a side that agrees at no angle, beside one with a clear peak", async ()
   await expect(answer()).toBeVisible();
   expect(await maximumOf(chart)).toBeLessThan(0.3);
   await expect(page.getByTestId("sim-lab").locator(".rejection")).toContainText(/peak is too low/);
+  // A line on the ground has no curve: its chart is empty, and no invalid path is logged (`watch`).
+  await page.getByRole("button", { name: "Clear" }).click();
+  await page.getByRole("button", { name: "Next item" }).click();
+  await expect(page.getByTestId("sim-lab").locator(".rejection")).toContainText("lies on the ground");
+  await expect(page.getByTestId("posterior")).toHaveAttribute("d", "");
 });
 
 /** The maximum that the chart states. */

@@ -22,7 +22,10 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
     ["half-plane", "half-plane"],
     ["rejected", "rejected side"],
   ],
-  groups: [["bar", "line found in a plane"]],
+  groups: [
+    ["bar", "line found in a plane"],
+    ["unmatched", "thin: no facet"],
+  ],
   directions: [
     ["first-direction", "first direction"],
     ["second-direction", "second direction"],

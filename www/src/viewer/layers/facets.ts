@@ -14,8 +14,10 @@ import {
 import { PALETTE } from "../../shared/palette";
 import type { Facet, Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
+import { middleOf } from "../scene/facetPlan";
 import { zUpGroup } from "../scene/frame";
 import { BOTH_SIDES, disposeObject, type Layer } from "../scene/layer";
+import { nameLabels } from "../scene/nameLabels";
 import { SelectedObject } from "../scene/selectedObject";
 
 /** From this slope on, radians, the tint has its full saturation. */
@@ -30,7 +32,8 @@ export function buildFacets(facets: readonly Facet[]): Layer {
     new Array<number>(positions.length / 9).fill(i),
   );
   const all = facetMesh(triangles, facets.map(normalTint));
-  object.add(all, outlines(facets));
+  const names = facets.map(({ outer }, i) => ({ text: `Facet ${i}`, at: middleOf(outer) }));
+  object.add(all, outlines(facets), nameLabels(names));
   const chosen = new SelectedObject(object);
 
   return {
@@ -75,7 +78,7 @@ function clip(value: number): number {
 }
 
 /** Positions of a facet's triangles, nine numbers each; its plan is triangulated, roofs do not overhang. */
-function triangulate({ outer, holes }: Facet): number[] {
+export function triangulate({ outer, holes }: Facet): number[] {
   const corners = [...outer, ...holes.flat()];
   const plan = (ring: readonly Vec3[]) => ring.map(([x, y]) => new Vector2(x, y));
   return ShapeUtils.triangulateShape(plan(outer), holes.map(plan)).flatMap((triangle) =>
@@ -83,7 +86,7 @@ function triangulate({ outer, holes }: Facet): number[] {
   );
 }
 
-function facetMesh(
+export function facetMesh(
   triangles: readonly number[][],
   tints: readonly Color[],
 ): Mesh<BufferGeometry, MeshBasicMaterial> {
