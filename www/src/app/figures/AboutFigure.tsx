@@ -292,7 +292,7 @@ const FIGURES: Record<Tab, Figure> = {
         <mn>2</mn>
       </mrow>
     ),
-    hint: "Fly to a view to lay its photograph over the model. Measure distances, slopes and areas.",
+    hint: "Choose a view instead of the free camera to lay its photograph over the model. Measure distances, slopes and areas.",
   },
   regions: {
     title: "Regions (ORIS)",
