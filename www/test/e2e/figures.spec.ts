@@ -157,7 +157,7 @@ test("figures 16 to 23: groups, border lines and facets", async () => {
   await openTab(page, "Facets");
   const facets = Number(/(\d+) facets/.exec((await stage(page, "facets").textContent()) ?? "")?.[1]);
   await expect(page.getByTestId("plan").locator(".plan-facet")).toHaveCount(facets);
-  const borders = page.getByTestId("plan").locator(".border-real");
+  const borders = page.getByTestId("plan").locator(".border-real[data-count]");
   expect(Number(await borders.getAttribute("data-count"))).toBeGreaterThan(facets);
   await page.getByTestId("plan").locator(".plan-facet").first().press("Enter");
   await expect(inspector().locator(".picked")).toHaveText("Facet 0");
