@@ -40,7 +40,7 @@ pub(super) struct InputArgs {
     /// Reference system of the orientation's world, as EPSG:25832; it is named in the results.
     #[arg(long, value_name = "EPSG:N", value_parser = parse_crs)]
     pub crs: Option<u32>,
-    /// Correct the mistake in the orientation that the images reveal, instead of refusing the
+    /// Correct the mistake in the orientation that the images reveal, instead of rejecting the
     /// scene.
     #[arg(long)]
     pub apply_fix: bool,
@@ -50,7 +50,7 @@ pub(super) struct InputArgs {
     /// Adjust views that are turned or moved against the others by up to a few pixels.
     #[arg(long)]
     pub adjust: bool,
-    /// Refuse what needs more memory than this, megabytes.
+    /// Stop before the reconstruction where it needs more memory than this, megabytes.
     #[arg(long, value_name = "MB")]
     pub memory: Option<u32>,
     /// JSON file with parameters; what it leaves out keeps its default.

@@ -7,7 +7,7 @@ use std::time::Instant;
 use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::agreement::Finding;
 use ridgeline::execution::progress::Listener;
-use ridgeline::pipeline::{Run, Stage, load_adjusted};
+use ridgeline::pipeline::{Run, Stage, counted, load_adjusted};
 use ridgeline::scene::Scene;
 use ridgeline::scene_loader::{Project, inspect_files};
 
@@ -42,8 +42,9 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
     let inspection = inspect_files(&input, &options);
     if inspection.errors.is_empty() {
         println!(
-            "{} views, about {} MB of memory",
-            inspection.views, inspection.peak_mb
+            "{}, about {} MB of memory",
+            counted(inspection.views, "views"),
+            inspection.peak_mb
         );
     }
     let scene = load_adjusted(&input, &options, &params);

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use ridgeline::pipeline::{Run, Stage};
+use ridgeline::pipeline::{Run, Stage, counted};
 
 /// Counts and times per stage, warnings, files.
 pub(super) fn summary(
@@ -15,12 +15,12 @@ pub(super) fn summary(
 ) -> String {
     let mut text = format!("{:<12}{:>9}\n", "stage", "seconds");
     let views = run.scene().views.len();
-    add(&mut text, "load", load_seconds, &format!("{views} views"));
+    add(&mut text, "load", load_seconds, &counted(views, "views"));
     for (summary, (stage, time)) in run.summaries().iter().zip(seconds) {
         let counts: Vec<_> = summary
             .counts
             .iter()
-            .map(|(name, count)| format!("{count} {name}"))
+            .map(|&(name, count)| counted(count, name))
             .collect();
         add(&mut text, stage.name(), *time, &counts.join(", "));
     }

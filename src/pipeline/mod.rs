@@ -23,7 +23,7 @@ mod summary;
 pub use adjustment::{adjust_orientation, load_adjusted};
 pub use sharding::PackedView;
 pub use stages::{Outcome, Results, Stage};
-pub use summary::StageSummary;
+pub use summary::{StageSummary, counted};
 
 use std::borrow::Cow;
 

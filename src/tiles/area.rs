@@ -16,7 +16,7 @@ use crate::ids::ViewId;
 use crate::objectspace::{image_segments, world_lines};
 use crate::orientation::InputFile;
 use crate::params::{Method, Params};
-use crate::pipeline::{Run, Stage, load_adjusted};
+use crate::pipeline::{Run, Stage, counted, load_adjusted};
 use crate::scene::{Scene, View};
 use crate::scene_loader::{LoadOptions, whole_views};
 use crate::texture::texture_model;
@@ -99,7 +99,7 @@ impl Area {
         let outcome = match load_adjusted(files, &options, &self.params) {
             Ok(scene) => {
                 let part = part(scene, &self.params, &tile, &self.whole, progress);
-                let outcome = format!("{} buildings", part.model.buildings.len());
+                let outcome = counted(part.model.buildings.len(), "buildings");
                 self.parts.push(part);
                 outcome
             }

@@ -167,7 +167,7 @@ test("figures 16 to 23: groups, border lines and facets", async () => {
   await openTab(page, "Facets");
   const facets = Number(/(\d+) facets/.exec((await stage(page, "facets").textContent()) ?? "")?.[1]);
   await expect(page.getByTestId("plan").locator(".plan-facet")).toHaveCount(facets);
-  const borders = page.getByTestId("plan").locator(".border-real");
+  const borders = page.getByTestId("plan").locator(".border-real[data-count]");
   expect(Number(await borders.getAttribute("data-count"))).toBeGreaterThan(facets);
   await page.getByTestId("plan").locator(".plan-facet").first().press("Enter");
   await expect(inspector().locator(".picked")).toHaveText("Facet 0");
@@ -246,7 +246,7 @@ test("refinement: outlines before, relations by their chi-square, adopted and re
   const plain = await steadyLook(page, viewer);
   await dots.first().press("Enter");
   await expect(inspector().locator(".picked")).toHaveText(/^Relation \d+ of building \d+$/);
-  await expect(inspector().getByText("Free solution off by")).toBeVisible();
+  await expect(inspector().getByText("Deviation of the free solution")).toBeVisible();
   expect(await page.getByTestId("filmstrip").locator("canvas").count()).toBeGreaterThanOrEqual(3);
   expect(await steadyLook(page, viewer)).not.toEqual(plain);
   await inspector()

@@ -176,7 +176,7 @@ export async function steadyLook(page: Page, element: Locator): Promise<Look> {
   return last;
 }
 
-/** Fails the test on a script error, and on a request to anywhere but the page's own origin. */
+/** Fails the test on a script error, an invalid drawing, and a request to anywhere but the page's own origin. */
 export function watch(page: Page): { problems: string[] } {
   const problems: string[] = [];
   page.on("pageerror", (error) => problems.push(`script error: ${error.message}`));
@@ -195,7 +195,8 @@ export function watch(page: Page): { problems: string[] } {
     }
   });
   page.on("console", (message) => {
-    if (message.type() === "error" && /Content Security Policy/.test(message.text())) {
+    // Of drawings, the browser says "Error: <path> attribute d: Expected moveto path command".
+    if (/Content Security Policy|<\w+> attribute/.test(message.text())) {
       problems.push(message.text());
     }
   });

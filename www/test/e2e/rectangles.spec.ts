@@ -140,7 +140,7 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
     await page.getByRole("button", { name: "Outlines over it" }).click();
     await expect(halves).toHaveCount(0);
     const both = await lookOf(page, viewer);
-    await page.getByRole("button", { name: "Drop kept" }).click();
+    await page.getByRole("button", { name: "Discard kept result" }).click();
     await expect(async () => {
       expect((await lookOf(page, viewer)).drawn).toBeLessThan(both.drawn);
     }).toPass({ timeout: 10_000 });

@@ -29,6 +29,9 @@ test("a cut through the model shows its profile, and lines their uncertainty", a
     const section = page.getByTestId("section");
     await expect(section).toBeVisible();
     expect(await section.locator("line.profile").count()).toBeGreaterThan(3);
+    const [panel, cut] = [await section.boundingBox(), await viewer.boundingBox()];
+    expect(panel?.y).toBeGreaterThanOrEqual((cut?.y ?? 0) + (cut?.height ?? 0) - 1);
+    expect(cut?.height).toBeGreaterThan(150);
     await expect(section.locator(".profile-slope").first()).toHaveText(/^-?\d+\.\d°$/);
     const [, length = "", low = "", high = ""] =
       /([\d.]+) m long, heights ([\d.]+) to ([\d.]+) m/.exec(await section.getByText(/m long/).innerText()) ??

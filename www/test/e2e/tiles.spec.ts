@@ -43,11 +43,11 @@ test("tiles run one after the other into the model of the command line", async (
   await give(page, houseFiles());
   await expect(page.locator(".status.good")).toHaveCount(6);
   await page.getByText("Region and ground").click();
-  await askFor(page, /In tiles of/, "10");
+  await askFor(page, /Tile size/, "10");
   await expect(page.getByText("30 m or more")).toBeVisible();
   await askFor(page, /Region/, REGION);
   await askFor(page, /Height of the ground/, "100");
-  await askFor(page, /In tiles of/, "31");
+  await askFor(page, /Tile size/, "31");
 
   // Cancelled in the middle, and begun again.
   await page.getByRole("button", { name: "Run all" }).click();

@@ -419,7 +419,7 @@ export class Session implements CoreSession {
 
   runTile(onProgress: (fraction: number) => void): TileReport {
     onProgress(1);
-    return { core: [0, 0, 50, 50], outcome: "1 buildings" };
+    return { core: [0, 0, 50, 50], outcome: "1 building" };
   }
 
   joinTiles(): void {}

@@ -21,7 +21,7 @@ export function KeepResult() {
         keepResult(isKept ? null : presentResult());
       }}
     >
-      {isKept ? "Drop kept" : "Compare"}
+      {isKept ? "Discard kept result" : "Compare"}
     </button>
   );
 }

@@ -31,7 +31,7 @@ function titleOf(values: ParamTree): string {
     return name;
   }
   const what = `${only.label.toLowerCase()} ${fieldText(only.value)} ${only.unit}`.trimEnd();
-  return `${name}, ${changed.length === 1 ? what : `${changed.length} changed`}`;
+  return `${name}, ${changed.length === 1 ? what : `${changed.length} parameters changed`}`;
 }
 
 /** The present result, to be kept; null while there are no facets. */

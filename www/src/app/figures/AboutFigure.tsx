@@ -126,12 +126,12 @@ const FIGURES: Record<Tab, Figure> = {
         <Close />
       </mrow>
     ),
-    hint: "Switch to Before growing to see what the segments alone give. Red lines cannot be: the finished model hides them from their views, or they go into the ground. No file has them.",
+    hint: "Switch to Before growing to see what the segments alone give. Red lines contradict the finished model, which hides them from their views, or they go into the ground. The files leave them out.",
   },
   halfplanes: {
     title: "Half-planes",
     source: "B99 4.1, figures 10 to 15",
-    text: "A line leaves one angle of its plane open. Each θ induces a homography between the first view [I | 0] and view i, [A | a]; v is the plane's normal over its distance. At the right θ the neighbourhoods agree: Sim(θ) averages the squared correlations at points of interest, weighted by w, the inverse of their distance from the line, over the views that see the side.",
+    text: "A 3D line fixes the plane through it except for one angle, θ. Each θ induces a homography between the reference view [I | 0] and view i, [A | a]; v is the plane's normal over its distance. At the right θ the neighbourhoods agree: Sim(θ) averages the squared correlations at points of interest, weighted by w, the inverse of their distance from the line, over the views that see the side.",
     equation: (
       <mtable displaystyle>
         <mtr>
@@ -209,7 +209,7 @@ const FIGURES: Record<Tab, Figure> = {
   groups: {
     title: "Grouping",
     source: "B99 4.2, figures 16 to 20",
-    text: "Collinear lines with a common half-plane are joined; neighbours that lie in one plane within its uncertainty form a group, which gets a new plane by regression over points X of all its lines. The Delaunay triangulation constrained to the projected lines says who is a neighbour. In each plane, further lines are found where segments of several views coincide.",
+    text: "Collinear lines with a common half-plane are joined; neighbours that lie in one plane within its uncertainty form a group, which gets a new plane by regression over points X of all its lines. The Delaunay triangulation constrained to the projected lines decides which lines are neighbours. In each plane, further lines are found where segments of several views coincide.",
     equation: (
       <mrow>
         <msup>
@@ -241,7 +241,7 @@ const FIGURES: Record<Tab, Figure> = {
         </msub>
       </mrow>
     ),
-    hint: "Hue: where a facet faces; strength: how steep it is. Red outlines in the plan were rejected.",
+    hint: "Hue: where a facet faces; saturation: how steep it is. Red outlines in the plan were rejected.",
   },
   refinement: {
     title: "Regularisation and refinement",
@@ -275,7 +275,7 @@ const FIGURES: Record<Tab, Figure> = {
         </mfrac>
       </mrow>
     ),
-    hint: "Orange: outlines before. Pick a dot: its sides light up in space and in every view; left of the dashed line is adopted.",
+    hint: "Orange: outlines before refinement. Pick a dot: its sides light up in space and in every view; what lies left of the dashed line is adopted.",
   },
   model: {
     title: "Model",
@@ -292,7 +292,7 @@ const FIGURES: Record<Tab, Figure> = {
         <mn>2</mn>
       </mrow>
     ),
-    hint: "Fly to a view to lay its photograph over the model. Measure distances, slopes and areas.",
+    hint: "Choose a view instead of the free camera to lay its photograph over the model. Measure distances, slopes and areas.",
   },
   regions: {
     title: "Regions (ORIS)",
@@ -314,7 +314,7 @@ const FIGURES: Record<Tab, Figure> = {
         <Close />
       </mrow>
     ),
-    hint: "Pick a region for its area, mean and variance. Tints only tell neighbours apart.",
+    hint: "Pick a region for its area, mean and variance. Tints only distinguish neighbouring regions.",
   },
   directions: {
     title: "Main directions",
@@ -344,7 +344,7 @@ const FIGURES: Record<Tab, Figure> = {
   clusters: {
     title: "Clusters",
     source: "W96 3.5, figures 6 to 9",
-    text: "In the plane across a main direction, each image line of that direction is a straight line, and a 3D line is a point where lines of several images meet. The points compete by description length: G is how many bits shorter the image lines are told as one cluster than alone. Colours are views.",
+    text: "In the plane across a main direction, each image line of that direction is a straight line, and a 3D line is a point where lines of several images meet. The points compete by description length: G is by how many bits the description of the image lines gets shorter when they share one cluster. Colours are views.",
     equation: (
       <mrow>
         <mi>G</mi>

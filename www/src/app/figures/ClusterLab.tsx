@@ -3,9 +3,10 @@
 import "./figures.css";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import { category } from "../../shared/palette";
-import type { ClusterTrace, Vec2 } from "../../shared/records";
+import type { ClusterTrace, Directions, Vec2 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { axesOf, Chart, Fit, type Frame, pathOf, type Scale } from "../parts/charts";
+import { counted } from "../parts/counted";
 import { degreesOf, grouped } from "../parts/numberText";
 import { results } from "../state/results";
 import { select, selection, shownPlane, showPlane } from "../state/viewState";
@@ -22,7 +23,7 @@ export function ClusterLab() {
   return (
     <div class="chart-lab" data-testid="cluster-lab">
       <PlaneChoice
-        names={clusters.map(({ azimuth }, i) => `${i}: ${degreesOf(azimuth).toFixed(0)}°`)}
+        names={planeNames(clusters, results.value.directions)}
         shown={shown}
         onShow={(i) => {
           showPlane(i);
@@ -30,11 +31,25 @@ export function ClusterLab() {
       />
       <Fit>{(frame) => <ClusterPlane frame={frame} plane={shown} trace={trace} />}</Fit>
       <p class="muted numbers note-line">
-        {trace.lines.length} image lines, {grouped(trace.proposals[0])} intersections,{" "}
-        {grouped(trace.proposals[1])} looked at, {trace.selected.length} selected
+        {counted(trace.lines.length, "image lines")}, {counted(trace.proposals[0], "intersections")},{" "}
+        {grouped(trace.proposals[1])} evaluated, {grouped(trace.selected.length)} selected
       </p>
     </div>
   );
+}
+
+/** Each plane by its building and the direction that it is across: a building has two. */
+export function planeNames(
+  clusters: readonly Pick<ClusterTrace, "azimuth">[],
+  directions: Pick<Directions, "windows"> | null,
+): string[] {
+  const buildings = (directions?.windows ?? []).flatMap((window, i) =>
+    window.directions.flatMap(() => [i, i]),
+  );
+  return clusters.map(({ azimuth }, i) => {
+    const along = `along ${degreesOf(azimuth).toFixed(0)}°`;
+    return buildings.length === clusters.length ? `Building ${buildings[i]}, ${along}` : `Lines ${along}`;
+  });
 }
 
 function ClusterPlane({ frame, plane, trace }: { frame: Frame; plane: number; trace: ClusterTrace }) {
@@ -49,7 +64,7 @@ function ClusterPlane({ frame, plane, trace }: { frame: Frame; plane: number; tr
       y={y}
       xTitle="across the main direction (m)"
       yTitle="height (m)"
-      label={`Cluster plane: ${trace.lines.length} image lines and ${trace.selected.length} selected clusters`}
+      label={`Cluster plane: ${counted(trace.lines.length, "image lines")} and ${counted(trace.selected.length, "selected clusters")}`}
       testid="cluster-plane"
       onClick={(across, height) => {
         const distance = ([u, v]: Vec2) =>

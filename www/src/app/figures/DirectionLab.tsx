@@ -2,7 +2,7 @@
 import "./figures.css";
 import { category } from "../../shared/palette";
 import type { MainDirections } from "../../shared/records";
-import { axesOf, Chart, Fit, type Frame, pathOf } from "../parts/charts";
+import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../parts/charts";
 import { degreesOf } from "../parts/numberText";
 import { results } from "../state/results";
 import { shownPlane, showPlane } from "../state/viewState";
@@ -69,7 +69,7 @@ function Histogram({
         .join(", ")} degrees`}
       testid="histogram"
     >
-      <path class="area" d={`${pathOf([[toX(0), floor], ...outline, [toX(180), floor]])}Z`} />
+      <path class="area" d={closedPathOf([[toX(0), floor], ...outline, [toX(180), floor]])} />
       {pairs.slice(0, 1).flatMap(({ azimuth, share }) =>
         [azimuth, azimuth + HALF].map((angle, axis) => {
           const at = toX(degreesOf(angle) % 180);

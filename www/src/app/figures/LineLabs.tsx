@@ -1,10 +1,10 @@
 /** B99 figure 9: accuracy against the number of views; figures 17 to 23: groups and border lines in plan. */
 import "./figures.css";
 import { category } from "../../shared/palette";
-import type { FacetTrace, LineRecord, Vec2, Vec3 } from "../../shared/records";
+import type { LineRecord } from "../../shared/records";
 import { Filmstrip } from "../images/Filmstrip";
-import { axesOf, Chart, dotsOf, Fit, type Frame, pathOf, type Scale } from "../parts/charts";
-import { facetRejectionWords } from "../parts/reasonText";
+import { axesOf, Chart, dotsOf, Fit, type Frame, type Scale } from "../parts/charts";
+import { counted } from "../parts/counted";
 import { results } from "../state/results";
 import { select, selection } from "../state/viewState";
 
@@ -48,7 +48,7 @@ function Accuracy({ frame }: { frame: Frame }) {
       xTitle="views that support the line"
       yTitle="σ across (cm)"
       xTicks={counts}
-      label={`Standard deviation of ${records.length} lines against the number of their views`}
+      label={`Standard deviation of ${counted(records.length, "lines")} against the number of their views`}
       testid="accuracy"
       onClick={(views, sigma) => {
         const index = nearest(views, sigma, x, y);
@@ -143,8 +143,9 @@ export function GroupLab() {
                 <span class="dot" style={{ background: category(index) }} aria-hidden="true" />
                 <span>Group {index}</span>
                 <span class="muted numbers">
-                  {group.members.length} lines · {fans} half-planes ·{" "}
-                  {group.rectangles?.length ? `${group.rectangles.length} rectangles · ` : ""}
+                  {counted(new Set(group.members.map(({ line }) => line)).size, "lines")} ·{" "}
+                  {counted(fans, "half-planes")} ·{" "}
+                  {group.rectangles?.length ? `${counted(group.rectangles.length, "rectangles")} · ` : ""}
                   {((Math.atan2(Math.hypot(nx, ny), Math.abs(nz)) * 180) / Math.PI).toFixed(0)}°
                 </span>
               </button>
@@ -154,141 +155,5 @@ export function GroupLab() {
       </ol>
       <Filmstrip />
     </div>
-  );
-}
-
-/** Figures 21 to 23: border lines by their kind, what they enclose, and what was rejected. */
-export function FacetLab() {
-  const { grouping, facets } = results.value;
-  if (grouping === null || facets === null) {
-    return <p class="lab-hint muted">Run the stage: the border lines in plan appear here.</p>;
-  }
-  return (
-    <div class="split-lab even">
-      <figure class="plan">
-        <Fit>
-          {(frame) => <Plan frame={frame} grouping={grouping} outlines={facets.map(({ outer }) => outer)} />}
-        </Fit>
-        <figcaption class="muted numbers">
-          <ul class="legend">
-            {BORDER_KINDS.map((kind) => (
-              <li key={kind}>
-                <span class={`swatch border-${kind}`} aria-hidden="true" />
-                {BORDER_WORDS[kind]} {grouping.borders.filter((border) => border.kind === kind).length}
-              </li>
-            ))}
-            <li>
-              <span class="swatch rejected" aria-hidden="true" />
-              rejected {grouping.rejected.length}
-            </li>
-          </ul>
-        </figcaption>
-      </figure>
-      <Filmstrip />
-    </div>
-  );
-}
-
-const BORDER_KINDS = ["real", "inplane", "intersection", "closing", "rectangle"] as const;
-const BORDER_WORDS = {
-  real: "3D lines",
-  inplane: "new lines",
-  intersection: "intersections",
-  closing: "closing",
-  rectangle: "sides of rectangles",
-};
-
-/** In SVG the attribute has no capital. */
-const FOCUSABLE = { tabindex: 0 };
-
-function Plan({
-  frame,
-  grouping,
-  outlines,
-}: {
-  frame: Frame;
-  grouping: FacetTrace;
-  outlines: readonly (readonly Vec3[])[];
-}) {
-  const points: Vec2[] = [
-    ...grouping.borders.flatMap(({ a, b }) => [a, b]),
-    ...outlines.flat().map(([x, y]): Vec2 => [x, y]),
-  ];
-  const xs = points.map(([x]) => x);
-  const ys = points.map(([, y]) => y);
-  const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-  const scale = Math.min(frame.width / (x1 - x0 || 1), frame.height / (y1 - y0 || 1)) * 0.96;
-  const at = ([x, y]: readonly number[]): [number, number] => [
-    frame.width / 2 + ((x as number) - (x0 + x1) / 2) * scale,
-    frame.height / 2 - ((y as number) - (y0 + y1) / 2) * scale,
-  ];
-  return (
-    // biome-ignore lint/a11y/useSemanticElements: SVG has no fieldset
-    <svg
-      class="chart plan-chart"
-      viewBox={`0 0 ${frame.width} ${frame.height}`}
-      role="group"
-      aria-label={`Plan: ${grouping.borders.length} border lines cut it into ${grouping.cells} cells; ${outlines.length} facets, ${grouping.rejected.length} rejected`}
-      data-testid="plan"
-    >
-      {outlines.map((ring, i) => (
-        <PlanArea
-          key={i}
-          picks={{ kind: "facet", index: i }}
-          name={`Facet ${i}`}
-          className="plan-facet"
-          d={`${pathOf(ring.map(at))}Z`}
-        />
-      ))}
-      {grouping.rejected.map(({ outline, reason }, i) => (
-        <PlanArea
-          key={i}
-          picks={{ kind: "rejectedFacet", index: i }}
-          name={`Rejected: ${facetRejectionWords(reason)}`}
-          className="plan-rejected"
-          d={`${pathOf(outline.map(at))}Z`}
-        />
-      ))}
-      {BORDER_KINDS.map((kind) => {
-        const own = grouping.borders.filter((border) => border.kind === kind);
-        const path = own.map(({ a, b }) => pathOf([at(a), at(b)])).join("");
-        return <path key={kind} class={`border-${kind}`} d={path} data-count={own.length} />;
-      })}
-    </svg>
-  );
-}
-
-/** An outline that can be picked, by key as well. */
-function PlanArea(of: {
-  picks: { kind: "facet" | "rejectedFacet"; index: number };
-  name: string;
-  className: string;
-  d: string;
-}) {
-  const { kind, index } = of.picks;
-  const picked = selection.value;
-  const isChosen = picked?.kind === kind && picked.index === index;
-  const pick = () => {
-    select(of.picks);
-  };
-  return (
-    // biome-ignore lint/a11y/useSemanticElements: SVG has no button
-    <path
-      role="button"
-      {...FOCUSABLE}
-      aria-label={of.name}
-      aria-pressed={isChosen}
-      class={`${of.className} ${isChosen ? "chosen" : ""}`}
-      d={of.d}
-      onClick={pick}
-      onKeyDown={(event) => {
-        if (event.key === "Enter" || event.key === " ") {
-          event.preventDefault();
-          pick();
-        }
-      }}
-    >
-      <title>{of.name}</title>
-    </path>
   );
 }

@@ -1,6 +1,7 @@
 /** B99 figures 2 to 4: the candidates of a segment, pointwise correspondence, and the two windows that are compared. */
 import "./figures.css";
 import { useEffect, useRef } from "preact/hooks";
+import { counted } from "../parts/counted";
 import { outcomeWords } from "../parts/reasonText";
 import { compareAt } from "../selection/selectionQueries";
 import { scene } from "../state/scene";
@@ -51,8 +52,8 @@ export function PointLab() {
                     {one.score.toFixed(2)}
                   </td>
                   <td class="numbers">
-                    {one.predictions.filter(({ verified }) => verified !== null).length} views
-                    {one.line !== null && " · won"}
+                    {counted(one.predictions.filter(({ verified }) => verified !== null).length, "views")}
+                    {one.line !== null && ` · match ${one.line}`}
                   </td>
                 </tr>
               ))}

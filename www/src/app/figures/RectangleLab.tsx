@@ -4,6 +4,7 @@ import { category } from "../../shared/palette";
 import type { PlaneTrace } from "../../shared/records";
 import { Filmstrip } from "../images/Filmstrip";
 import { axesOf, Chart, Fit, type Frame, histogramOf, type Scale } from "../parts/charts";
+import { counted } from "../parts/counted";
 import { PAIR_WORDS } from "../parts/reasonText";
 import { results } from "../state/results";
 import { select, selection } from "../state/viewState";
@@ -95,7 +96,7 @@ function PlaneWindow({ outer, pair }: { outer: Frame; pair: PlaneTrace }) {
       y={y}
       xTitle="position along the lines (m)"
       yTitle="across (m)"
-      label={`${pair.crossings.length} image lines cross the window, ${pair.ends.length} ends were found`}
+      label={`Window with ${counted(pair.crossings.length, "crossing image lines")} and ${counted(pair.ends.length, "ends")}`}
       testid="plane-window"
     >
       {pair.crossings.map(({ view, at, across, contrast }, i) => (

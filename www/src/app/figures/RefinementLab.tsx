@@ -3,6 +3,7 @@ import "./figures.css";
 import type { BuildingRefinement, TestedRelation } from "../../shared/records";
 import { Filmstrip } from "../images/Filmstrip";
 import { axesOf, Chart, Fit, type Frame } from "../parts/charts";
+import { counted } from "../parts/counted";
 import { RELATION_WORDS, refinementWords } from "../parts/reasonText";
 import { buildingOfFacet, relationLimit } from "../selection/refinedBuildings";
 import { results } from "../state/results";
@@ -85,7 +86,7 @@ function Relations({ outer, building, of }: { outer: Frame; building: number; of
       xTitle="log₁₀ χ²"
       yTitle=""
       yTicks={[]}
-      label={`${of.relations.length} tested relations by their chi-square, ${of.relations.filter(({ adopted }) => adopted).length} adopted`}
+      label={`${counted(of.relations.length, "tested relations")} by chi-square, ${of.relations.filter(({ adopted }) => adopted).length} adopted`}
       interactive
       testid="relations"
     >

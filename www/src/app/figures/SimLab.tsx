@@ -4,7 +4,8 @@ import { useEffect, useRef } from "preact/hooks";
 import type { WarpedPicture } from "../../shared/calls";
 import { category } from "../../shared/palette";
 import type { SideTrace } from "../../shared/records";
-import { axesOf, Chart, Fit, type Frame, pathOf } from "../parts/charts";
+import { axesOf, Chart, closedPathOf, Fit, type Frame, pathOf } from "../parts/charts";
+import { counted } from "../parts/counted";
 import { REJECTION_WORDS } from "../parts/reasonText";
 import { bestTheta, sideOf, turnTo } from "../selection/selectionQueries";
 import { params } from "../state/parameters";
@@ -76,12 +77,12 @@ function SideHead({ side }: { side: SideTrace }) {
       {isPicked && (
         <button
           type="button"
-          class="quiet"
+          class="quiet other-side"
           onClick={() => {
             select({ kind: "side", line: side.line, side: other });
           }}
         >
-          {other} side
+          Show the {other} side
         </button>
       )}
     </div>
@@ -94,10 +95,13 @@ function SimChart({ frame, side, theta }: { frame: Frame; side: SideTrace; theta
   const x = { min: -limit, max: limit };
   const y = { min: 0, max: 1 };
   const [toX, toY] = axesOf(frame, x, y);
-  const curve = (values: readonly number[]) =>
-    pathOf(values.map((value, i) => [toX((thetas[i] ?? 0) / DEGREE), toY(value)]));
-  const first = toX((thetas[0] ?? 0) / DEGREE);
-  const last = toX((thetas[thetas.length - 1] ?? 0) / DEGREE);
+  const places = (values: readonly number[]) =>
+    values.map((value, i) => [toX((thetas[i] ?? 0) / DEGREE), toY(value)] as const);
+  const curve = (values: readonly number[]) => pathOf(places(values));
+  const inside = places(scaled(posterior));
+  const ends = [inside.at(-1), inside[0]].flatMap((end) =>
+    end === undefined ? [] : [[end[0], toY(0)] as const],
+  );
   const least = params.value["sweep"]?.["min_similarity"];
   return (
     <Chart
@@ -107,15 +111,11 @@ function SimChart({ frame, side, theta }: { frame: Frame; side: SideTrace; theta
       xTitle="θ (degrees)"
       yTitle="Sim(θ)"
       xTicks={[-60, -30, 0, 30, 60]}
-      label={`Sim of theta for ${views.length} views; its maximum is ${Math.max(0, ...similarity).toFixed(2)}`}
+      label={`Sim of theta for ${counted(views.length, "views")}; its maximum is ${Math.max(0, ...similarity).toFixed(2)}`}
       testid="sim-chart"
       onDrag={(value) => void turnTo(Math.round(2 * value) * 0.5 * DEGREE)}
     >
-      <path
-        class="posterior"
-        data-testid="posterior"
-        d={`${curve(scaled(posterior))} L${last} ${toY(0)} L${first} ${toY(0)} Z`}
-      >
+      <path class="posterior" data-testid="posterior" d={closedPathOf([...inside, ...ends])}>
         <title>Posterior over θ (B99 5), as high as the probability that a plane is there</title>
       </path>
       {typeof least === "number" && (
@@ -170,7 +170,7 @@ function Windows({ picture: { about, rgba }, side }: { picture: WarpedPicture; s
               {viewName(view)}
             </span>
             <span class="numbers muted">
-              {similarity === null ? "reference, POI" : `Sim ${similarity.toFixed(2)}`}
+              {similarity === null ? "reference view" : `Sim ${similarity.toFixed(2)}`}
             </span>
           </li>
         );

@@ -37,10 +37,10 @@ export function relationRows(building: number, index: number): Row[] {
   }
   const limit = relationLimit();
   return [
-    ["Says", RELATION_WORDS[found.kind]],
-    ["Free solution off by", `${(100 * Math.abs(found.deviation_m)).toFixed(1)} cm`],
+    ["Relation", RELATION_WORDS[found.kind]],
+    ["Deviation of the free solution", `${(100 * Math.abs(found.deviation_m)).toFixed(1)} cm`],
     ["χ²", `${found.chi2.toFixed(2)}${limit === null ? "" : ` (≤ ${limit})`}`],
-    ["Verdict", found.adopted ? "adopted: it now holds" : "rejected: the images contradict it"],
+    ["Outcome", found.adopted ? "adopted: it holds exactly now" : "rejected: the images contradict it"],
     ["Building", [linkToRefinement(building)]],
   ];
 }

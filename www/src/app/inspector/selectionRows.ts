@@ -180,7 +180,7 @@ function regionRows(view: number, index: number): Row[] {
         ["Perimeter", `${region.perimeter_px.toFixed(0)} px`],
         ["Mean grey value", region.mean.toFixed(1)],
         ["Standard deviation", Math.sqrt(region.variance).toFixed(1)],
-        ["Regions at first", grouped(found?.initial_regions ?? 0)],
+        ["Regions at the start", grouped(found?.initial_regions ?? 0)],
         ...Object.entries(found?.moves ?? {}).map(
           ([move, count]) => [MOVES[move] ?? move, grouped(count)] as const,
         ),
@@ -243,9 +243,13 @@ function lineRows(index: number): Row[] {
 function historyOfLine(index: number): Row[] {
   const { records, halfPlanes, sides, grouping, facets } = results.value;
   const record = records[index];
+  // In object space nothing is matched: the score is the share of the line that boundaries cover.
+  const isClustered = results.value.clusters !== null;
   const rejected = sides.filter(({ line, rejection }) => line === index && rejection !== null);
   return [
-    ...(record === undefined ? [] : [["Found", ORIGIN_WORDS[record.origin]] as const]),
+    ...(record === undefined
+      ? []
+      : [["Found", ORIGIN_WORDS[isClustered ? "clustered" : record.origin]] as const]),
     ...(record?.contradiction == null
       ? []
       : [["Contradicted", CONTRADICTION_WORDS[record.contradiction]] as const]),
@@ -260,7 +264,7 @@ function historyOfLine(index: number): Row[] {
               selection: { kind: "segment", view, index: segment },
             }),
           ),
-          `${kind} ${score.toFixed(2)}`,
+          isClustered ? `show ${Math.round(100 * score)} % of it` : `${kind} ${score.toFixed(2)}`,
         ] as const,
     ),
     ...(halfPlanes === null

@@ -22,7 +22,10 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
     ["half-plane", "half-plane"],
     ["rejected", "rejected side"],
   ],
-  groups: [["bar", "line found in a plane"]],
+  groups: [
+    ["bar", "line found in a plane"],
+    ["unmatched", "thin: no facet"],
+  ],
   directions: [
     ["first-direction", "first direction"],
     ["second-direction", "second direction"],
@@ -33,14 +36,14 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
     ["matched", "3D line"],
   ],
   rectangles: [
-    ["normals", "hue: azimuth, strength: slope"],
+    ["normals", "hue: azimuth, saturation: slope"],
     ["plane-end", "end of a plane"],
   ],
-  facets: [["normals", "hue: azimuth, strength: slope"]],
+  facets: [["normals", "hue: azimuth, saturation: slope"]],
   refinement: [
-    ["grown", "before"],
-    ["bar", "adopted"],
-    ["rejected", "rejected; gap"],
+    ["grown", "outline before refinement"],
+    ["bar", "side in an adopted relation"],
+    ["rejected", "rejected; gap in the outline"],
   ],
 };
 

@@ -40,14 +40,30 @@ export function axesOf(frame: Frame, x: Scale, y: Scale) {
   ] as const;
 }
 
-/** "M x y L x y ..." */
+/** "M x y L x y ..."; what has no place, as a logarithm of nothing, is left out. */
 export function pathOf(points: readonly (readonly [number, number])[]): string {
-  return points.map(([x, y], i) => `${i === 0 ? "M" : "L"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
+  return points
+    .filter(hasPlace)
+    .map(([x, y], i) => `${i === 0 ? "M" : "L"}${x.toFixed(1)} ${y.toFixed(1)}`)
+    .join("");
+}
+
+/** The same back to its start: no path at all where there are no points, which browsers would call invalid. */
+export function closedPathOf(points: readonly (readonly [number, number])[]): string {
+  const path = pathOf(points);
+  return path === "" ? "" : `${path}Z`;
+}
+
+function hasPlace([x, y]: readonly [number, number]): boolean {
+  return Number.isFinite(x) && Number.isFinite(y);
 }
 
 /** Dots as one path, for a style with round ends: thousands of elements would hold the page up. */
 export function dotsOf(points: readonly (readonly [number, number])[]): string {
-  return points.map(([x, y]) => `M${x.toFixed(1)} ${y.toFixed(1)}h0`).join("");
+  return points
+    .filter(hasPlace)
+    .map(([x, y]) => `M${x.toFixed(1)} ${y.toFixed(1)}h0`)
+    .join("");
 }
 
 /** Round numbers within a range, about `count` of them. */
@@ -147,7 +163,7 @@ export function Chart(props: ChartProps) {
       {(props.yTicks ?? ticks(y, 4)).map((value) => (
         <g key={value}>
           <line class="grid" x1={frame.left} x2={frame.width - frame.right} y1={toY(value)} y2={toY(value)} />
-          <text class="tick" x={frame.left - 5} y={toY(value) + 3.5} text-anchor="end">
+          <text class="tick" x={frame.left - 5} y={toY(value) + 4} text-anchor="end">
             {grouped(value)}
           </text>
         </g>

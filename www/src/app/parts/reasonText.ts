@@ -14,7 +14,7 @@ export const REJECTION_WORDS: Record<string, string> = {
   too_short: "no view shows the whole line at sufficient length",
   no_points_of_interest: "too little texture beside the line",
   no_valid_view: "too few views agree at any angle",
-  at_interval_end: "Sim grows up to the end of the interval",
+  at_interval_end: "Sim still rises where the range of angles ends",
   low_peak: "the peak is too low",
   flat_curve: "the curve is too flat",
   small_amplitude: "the amplitude is too small",
@@ -23,14 +23,14 @@ export const REJECTION_WORDS: Record<string, string> = {
 
 const NOT_VERIFIED: Record<string, string> = {
   no_fit: "no line fits the segments",
-  ill_conditioned: "the line is not determined across itself",
+  ill_conditioned: "the segments do not fix its position across",
   unverified: "one view alone determines it",
   too_few_edges: "the edge shows in fewer than three views",
   too_few_segments: "too few views have a segment on it",
   not_alike: "its surroundings differ between the views",
   too_few_views: "too few views support it",
   too_short: "the supported stretch is too short",
-  outside_heights: "it leaves the height range",
+  outside_heights: "it lies outside the height range",
 };
 
 export function outcomeWords(outcome: SegmentOutcome | null): string {
@@ -46,9 +46,9 @@ export function outcomeWords(outcome: SegmentOutcome | null): string {
     case "not_verified":
       return `rejected: ${NOT_VERIFIED[outcome.reason] ?? outcome.reason}`;
     case "left_out":
-      return `rejected: match ${outcome.line}, which its pair became, fits better without it`;
+      return `rejected: match ${outcome.line}, made from its pair, fits better without it`;
     case "lost_to":
-      return `lost its partners to match ${outcome.line}`;
+      return `rejected: its candidates fit match ${outcome.line} better`;
   }
 }
 
@@ -65,7 +65,7 @@ export const CONTRADICTION_WORDS: Record<LineContradiction, string> = {
   hidden: "roofs hide it from all but two of its views",
   underground: "it goes into the ground",
   off_surface: "it lies on no surface, and too few views are certain of it",
-  too_few_views: "three views show it where six can see it",
+  too_few_views: "only three views show it, though six could",
   duplicate: "a better line runs along it",
 };
 
@@ -80,7 +80,7 @@ export const RELATION_WORDS: Record<TestedRelation["kind"], string> = {
 /** Why a building keeps the shape that it had (B99 2). */
 const UNREFINED: Record<string, string> = {
   too_large: "too many unknowns",
-  few_observations: "too few sides show",
+  few_observations: "too few sides are visible",
   singular: "no solution",
   no_gain: "the images fit no better",
   broken: "the new outline does not close",
@@ -98,7 +98,7 @@ export function refinementWords({ error_before_px, error_after_px, refused }: Bu
 export const PAIR_WORDS: Record<string, string> = {
   shape: "too steep, too narrow or too wide",
   near_ground: "not higher above the ground than a car",
-  no_ends: "crossing lines make no two ends",
+  no_ends: "the crossing lines do not give two ends",
   weak: "its best measure is not positive",
 };
 
@@ -119,13 +119,13 @@ export function facetRejectionWords(reason: Record<string, Record<string, number
     case "contradicted":
       return `the views that see it do not agree inside (${value.toFixed(2)})`;
     case "bridge":
-      return `steep, without a half-plane, and the views that see it agree by chance at most (${value.toFixed(2)}): it spans a gap`;
+      return `steep, without a half-plane, and the views that see it agree no better than by chance (${value.toFixed(2)}): it spans a gap`;
     case "displaced":
-      return `the views agree better on it moved up or down (by ${value.toFixed(1)} σ)`;
+      return `the views agree better when it is moved up or down (by ${value.toFixed(1)} σ)`;
     case "boundary_leakage":
-      return `beyond a line that bounds it, where the views agree by chance at most (${value.toFixed(2)})`;
+      return `beyond a line that bounds it, where the views agree no better than by chance (${value.toFixed(2)})`;
     case "vegetation":
-      return `green as plants are, and no roof by its lines or its inside (${value.toFixed(2)})`;
+      return `green like vegetation, and neither its lines nor its inside show a roof (${value.toFixed(2)})`;
     case "dominated":
       return `the views agree better on plane ${numbers["by"]} inside (by ${(numbers["sigmas"] ?? 0).toFixed(1)} σ)`;
     case "unsupported":

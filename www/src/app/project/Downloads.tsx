@@ -10,7 +10,7 @@ import { saveProject } from "./projectActions";
 const WHAT: Record<string, string> = {
   "model.glb": "textured model, glTF 2.0",
   "model.city.json": "CityJSON 2.0, LoD 2.2",
-  "model_atlas.jpg": "its texture, as of the OBJ file",
+  "model_atlas.jpg": "texture of the CityJSON and OBJ files",
   "model.obj": "triangles with texture",
   "model.mtl": "material of the OBJ file",
   "model.ply": "triangles, and 3D lines as edges",

@@ -24,15 +24,16 @@ export function OrientationCheck({ report }: { report: AgreementReport }) {
         ))}
       </dl>
       {mistake !== null && (
-        <button type="button" class="primary" onClick={() => void setRunOptions({ applyFix: true, ignoreCheck: false })}>
+        <button
+          type="button"
+          class="primary"
+          onClick={() => void setRunOptions({ applyFix: true, ignoreCheck: false })}
+        >
           Apply the fix
         </button>
       )}
       {isRefused(report) && !runOptions.value.ignoreCheck && (
-        <button
-          type="button"
-          onClick={() => void setRunOptions({ applyFix: false, ignoreCheck: true })}
-        >
+        <button type="button" onClick={() => void setRunOptions({ applyFix: false, ignoreCheck: true })}>
           Go on nevertheless
         </button>
       )}

@@ -24,7 +24,10 @@ export function Parameters() {
           <h2>Parameters</h2>
           {changed > 0 && <span class="changed-mark">{changed} changed</span>}
         </summary>
-        <p class="muted">A change makes its stage and all later ones outdated.</p>
+        <p class="muted">
+          Where a paper states a value, the default follows it unless another one proved better. A change
+          makes its stage and all later ones outdated.
+        </p>
         {changed > 0 && (
           <button type="button" onClick={resetParams}>
             Reset {changed}

@@ -2,8 +2,9 @@
 import "./project.css";
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { ImageReport } from "../../shared/records";
-import { isBusy } from "../state/activity";
+import { counted } from "../parts/counted";
 import { showsEntrance } from "../screen/opening";
+import { isBusy } from "../state/activity";
 import { notify } from "../state/notices";
 import { files, inspection, projectName, runOptions } from "../state/project";
 import { peakMb, scene } from "../state/scene";
@@ -137,7 +138,7 @@ function useFileDrop(): boolean {
 function Views() {
   const report = inspection.value;
   if (report === null) {
-    const count = `${files.value.length} ${files.value.length === 1 ? "file" : "files"}`;
+    const count = counted(files.value.length, "files");
     return <p class="muted">{isBusy.value ? `Reading ${count}…` : `${count}, not read`}</p>;
   }
   return (
@@ -271,7 +272,7 @@ function Doubts() {
 /** "6 views", or "4 of 6 views" where some are left out. */
 function countText(images: readonly ImageReport[]): string {
   const used = images.filter(({ path }) => !runOptions.value.leftOut.includes(path)).length;
-  const all = `${images.length} ${images.length === 1 ? "view" : "views"}`;
+  const all = counted(images.length, "views");
   return used === images.length ? all : `${used} of ${all}`;
 }
 

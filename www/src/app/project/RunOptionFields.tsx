@@ -73,8 +73,8 @@ export function PlaceFields() {
       />
       <OptionField
         id="tile"
-        label="In tiles of (m)"
-        placeholder="in one"
+        label="Tile size (m)"
+        placeholder="no tiles"
         value={tileM}
         parse={parseTile}
         onValue={(tileM) => void setRunOptions({ tileM })}

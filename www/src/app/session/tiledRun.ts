@@ -2,6 +2,7 @@
 import { batch } from "@preact/signals";
 import { EngineError } from "../../core/engine";
 import type { TileReport } from "../../shared/records";
+import { counted } from "../parts/counted";
 import { loadOptions } from "../settings/loadOptions";
 import { announce } from "../state/notices";
 import { params } from "../state/parameters";
@@ -42,11 +43,11 @@ export async function runTiles(tileM: number): Promise<void> {
         seconds: (performance.now() - started) / 1000,
         counts: { tiles: reports.length },
         warnings: reports
-          .filter(({ outcome }) => !outcome.endsWith(" buildings"))
+          .filter(({ outcome }) => !/ buildings?$/.test(outcome))
           .map(({ outcome }) => outcome),
       });
     });
-    announce(`${reports.length} tiles done and joined`);
+    announce(`${counted(reports.length, "tiles")} done and joined`);
   } catch (error) {
     const cancelled = error instanceof EngineError && error.kind === "cancelled";
     updateStage(STAGE, { status: cancelled ? "waiting" : "failed", fraction: 0 });

@@ -228,8 +228,21 @@ function labelAndUnit(key: string): { label: string; unit: string } {
   return { label: words(key.slice(0, -suffix.length)), unit };
 }
 
+/** What the core's names shorten. */
+const SHORT_WORDS: Record<string, string> = {
+  poi: "interest point",
+  min: "minimum",
+  max: "maximum",
+  rms: "RMS",
+  ln: "log",
+  chi2: "χ²",
+};
+
 function words(key: string): string {
-  const text = key.replaceAll("_", " ");
+  const text = key
+    .split("_")
+    .map((word) => SHORT_WORDS[word] ?? word)
+    .join(" ");
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 

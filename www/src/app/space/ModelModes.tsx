@@ -3,6 +3,7 @@ import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import { METHOD_COLOURS } from "../../shared/palette";
 import type { Facet } from "../../shared/records";
 import type { ModelMode } from "../../viewer/layers/model";
+import { counted } from "../parts/counted";
 import { keptResult } from "../state/keptResult";
 import type { Method } from "../state/methods";
 import { method } from "../state/parameters";
@@ -72,7 +73,7 @@ export function ModeLegend() {
       <ul class="legend" aria-label="Colours">
         <li>
           <span class="swatch normals" aria-hidden="true" />
-          hue: azimuth, strength: slope
+          hue: azimuth, saturation: slope
         </li>
       </ul>
     );
@@ -86,13 +87,13 @@ export function ModeLegend() {
       {made.value.map(([name, count]) => (
         <li key={name}>
           <span class={`swatch by-${name}`} aria-hidden="true" />
-          {METHOD_TITLES[name]}: {count} {count === 1 ? "facet" : "facets"}
+          {METHOD_TITLES[name]}: {counted(count, "facets")}
         </li>
       ))}
       {kept !== null && (
         <li>
           <span class="swatch merged" aria-hidden="true" />
-          kept: {kept.title}, {kept.facets.length} facets
+          kept: {kept.title}, {counted(kept.facets.length, "facets")}
         </li>
       )}
     </ul>

@@ -1,11 +1,8 @@
 /** The profile along a vertical cut, drawn to one scale both ways, with heights and slopes. */
 import type { ProfilePiece, Section } from "../../viewer/tools/section";
-import { axesOf, Chart, type Frame, frameOf, type Scale } from "../parts/charts";
+import { axesOf, Chart, Fit, type Frame, type Scale } from "../parts/charts";
 import { scene } from "../state/scene";
 
-const WIDTH = 460;
-const MOST_INNER_HEIGHT = 190;
-const LEAST_INNER_HEIGHT = 70;
 /** Labels nearer to each other than this are left out, units of the view box. */
 const LABEL_SPACE = 40;
 /** Steeper pieces are walls. */
@@ -20,35 +17,18 @@ export function SectionChart({ section }: { section: Section }) {
   const [low, high] = [Math.min(...heights), Math.max(...heights)];
   const places = section.pieces.flatMap(({ from, to }) => [from[0], to[0]]);
   const reach = { min: Math.min(...places), max: Math.max(...places) };
-  const { frame, x, y } = scales(reach, low + ground, high + ground);
-  const [toX, toY] = axesOf(frame, x, y);
-  const at = ([along, height]: readonly [number, number]) => [toX(along), toY(height + ground)] as const;
   return (
     <>
-      <Chart
-        frame={frame}
-        x={x}
-        y={y}
-        xTitle="along the cut (m)"
-        yTitle="height (m)"
-        label={`Profile of ${section.lengthM.toFixed(1)} m`}
-        testid="profile"
-      >
-        {section.pieces.map((piece) => {
-          const [[x1, y1], [x2, y2]] = [at(piece.from), at(piece.to)];
-          return <line key={`${x1} ${y1} ${x2} ${y2}`} class="profile" x1={x1} y1={y1} x2={x2} y2={y2} />;
-        })}
-        {slopeLabels(section.pieces, at).map(([text, lx, ly]) => (
-          <text key={`${lx} ${ly}`} class="profile-slope" x={lx} y={ly} text-anchor="middle">
-            {text}
-          </text>
-        ))}
-        {heightLabels(section.pieces, at, ground).map(([text, lx, ly]) => (
-          <text key={`${lx} ${ly}`} class="profile-height" x={lx} y={ly} text-anchor="middle">
-            {text}
-          </text>
-        ))}
-      </Chart>
+      <Fit>
+        {(frame) => (
+          <Profile
+            frame={frame}
+            section={section}
+            reach={reach}
+            range={{ min: low + ground, max: high + ground }}
+          />
+        )}
+      </Fit>
       <p class="numbers">
         {section.lengthM.toFixed(2)} m long, heights {(low + ground).toFixed(2)} to{" "}
         {(high + ground).toFixed(2)} m ({(high - low).toFixed(2)} m), one scale both ways
@@ -57,23 +37,53 @@ export function SectionChart({ section }: { section: Section }) {
   );
 }
 
+function Profile(of: { frame: Frame; section: Section; reach: Scale; range: Scale }) {
+  const { frame, section } = of;
+  const ground = scene.value?.origin[2] ?? 0;
+  const [x, y] = oneScale(frame, of.reach, of.range);
+  const [toX, toY] = axesOf(frame, x, y);
+  const at = ([along, height]: readonly [number, number]) => [toX(along), toY(height + ground)] as const;
+  return (
+    <Chart
+      frame={frame}
+      x={x}
+      y={y}
+      xTitle="along the cut (m)"
+      yTitle="height (m)"
+      label={`Profile of ${section.lengthM.toFixed(1)} m`}
+      testid="profile"
+    >
+      {section.pieces.map((piece) => {
+        const [[x1, y1], [x2, y2]] = [at(piece.from), at(piece.to)];
+        return <line key={`${x1} ${y1} ${x2} ${y2}`} class="profile" x1={x1} y1={y1} x2={x2} y2={y2} />;
+      })}
+      {slopeLabels(section.pieces, at).map(([text, lx, ly]) => (
+        <text key={`${lx} ${ly}`} class="profile-slope" x={lx} y={ly} text-anchor="middle">
+          {text}
+        </text>
+      ))}
+      {heightLabels(section.pieces, at, ground).map(([text, lx, ly]) => (
+        <text key={`${lx} ${ly}`} class="profile-height" x={lx} y={ly} text-anchor="middle">
+          {text}
+        </text>
+      ))}
+    </Chart>
+  );
+}
+
 /** The same number of units per metre both ways: slopes look as steep as they are. */
-function scales(reach: Scale, low: number, high: number) {
-  const empty = frameOf(WIDTH, 0);
-  const inner = WIDTH - empty.left - empty.right;
-  const range = Math.max(1, 1.15 * (high - low));
-  const lengthM = Math.max(1, 1.1 * (reach.max - reach.min));
-  const perM = Math.min(inner / lengthM, MOST_INNER_HEIGHT / range);
-  const start = (reach.min + reach.max - inner / perM) / 2;
-  const height = Math.max(LEAST_INNER_HEIGHT, range * perM);
-  const frame: Frame = frameOf(WIDTH, height + empty.top + empty.bottom);
-  const middle = (low + high) / 2;
-  const half = height / perM / 2;
-  return {
-    frame,
-    x: { min: start, max: start + inner / perM },
-    y: { min: middle - half, max: middle + half },
-  };
+export function oneScale(frame: Frame, reach: Scale, range: Scale): [x: Scale, y: Scale] {
+  const width = Math.max(1, frame.width - frame.left - frame.right);
+  const height = Math.max(1, frame.height - frame.top - frame.bottom);
+  const perM = Math.min(
+    width / Math.max(1, 1.1 * (reach.max - reach.min)),
+    height / Math.max(1, 1.3 * (range.max - range.min)),
+  );
+  const about = ({ min, max }: Scale, units: number) => ({
+    min: (min + max - units / perM) / 2,
+    max: (min + max + units / perM) / 2,
+  });
+  return [about(reach, width), about(range, height)];
 }
 
 type At = (point: readonly [number, number]) => readonly [number, number];

@@ -114,7 +114,7 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
 /** B99 figures 5 and 7 against 6 and 8. */
 function GrowingSwitch() {
   return (
-    <fieldset class="choice">
+    <fieldset class="choice growing">
       <legend class="visually-hidden">Before or after growing</legend>
       {[true, false].map((before) => (
         <button

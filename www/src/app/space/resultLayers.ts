@@ -2,7 +2,7 @@
 import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import { Vector3 } from "three";
 import { LINE_STRIDE } from "../../shared/flatArrays";
-import type { Facet, Vec3 } from "../../shared/records";
+import type { Facet, FacetTrace, Vec3 } from "../../shared/records";
 import { buildCameras } from "../../viewer/layers/cameras";
 import { buildFacets } from "../../viewer/layers/facets";
 import { buildFans, buildTurning } from "../../viewer/layers/fans";
@@ -87,8 +87,9 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
     return has ? [() => buildFans(halfPlanes, lines, sides), halfPlanes, lines] : null;
   },
   groups: () => {
-    const { lines, grouping } = results.value;
-    return lines && grouping && [() => buildGroups(grouping, lines), grouping, lines];
+    const { lines, grouping, facets } = results.value;
+    const build = () => buildGroups(grouping as FacetTrace, lines as Float64Array, facets ?? []);
+    return lines && grouping && [build, grouping, lines, facets];
   },
   stretches: () => {
     const { stretches } = results.value;

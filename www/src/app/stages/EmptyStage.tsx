@@ -18,7 +18,7 @@ export function EmptyStage() {
           Reconstruct the example
         </button>
         <button type="button" onClick={startTour}>
-          How?
+          Take the tour
         </button>
       </p>
     </div>

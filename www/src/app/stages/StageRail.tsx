@@ -3,7 +3,7 @@
 import "./stages.css";
 import type { StageName } from "../../shared/stages";
 import { KeepResult } from "../comparison/Comparison";
-import { grouped } from "../parts/numberText";
+import { counted } from "../parts/counted";
 import { cancel } from "../session/session";
 import { stageWords } from "../session/stageCatalogue";
 import { runAll, runTo } from "../session/stageRuns";
@@ -116,7 +116,7 @@ function StageCard({ stage, position }: { stage: StageState; position: number })
       </button>
       {stage.warnings.length > 0 && (
         <span class="stage-warning" title={stage.warnings.join("\n")}>
-          {stage.warnings.length} {stage.warnings.length === 1 ? "warning" : "warnings"}
+          {counted(stage.warnings.length, "warnings")}
         </span>
       )}
     </li>
@@ -132,9 +132,7 @@ function statusLine(stage: StageState): string {
 }
 
 function countsText({ counts, seconds }: StageState): string {
-  const texts = Object.entries(counts).map(
-    ([name, count]) => `${grouped(count)} ${name.replaceAll("_", " ")}`,
-  );
+  const texts = Object.entries(counts).map(([name, count]) => counted(count, name.replaceAll("_", " ")));
   if (counts["correlations"] !== undefined && seconds) {
     texts.push(`${(counts["correlations"] / seconds / 1e6).toFixed(1)} million correlations per second`);
   }
@@ -145,7 +143,7 @@ function countsText({ counts, seconds }: StageState): string {
 function mainCount({ name, counts }: StageState): string {
   const entries = Object.entries(counts);
   const [what, count] = entries.find(([one]) => one === MAIN_COUNTS[name]) ?? entries[0] ?? [];
-  return what === undefined || count === undefined ? "" : `${grouped(count)} ${what.replaceAll("_", " ")}`;
+  return what === undefined || count === undefined ? "" : counted(count, what.replaceAll("_", " "));
 }
 
 const MAIN_COUNTS: Partial<Record<StageName, string>> = {

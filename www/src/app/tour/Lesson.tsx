@@ -1,26 +1,39 @@
 /** The present step of the guided tour: what is seen, a question, and whether the answer was found. */
 import "./tour.css";
 import { signal, useSignalEffect } from "@preact/signals";
+import { useEffect } from "preact/hooks";
 import { isBusy } from "../state/activity";
 import { lessonStep } from "../state/tour";
 import { endTour, goTo, isOnDemo, LESSONS } from "./lessons";
 
-/** Steps whose answer was found once: it does not go away again. */
-const found = signal<ReadonlySet<number>>(new Set());
+/** What was said of the steps whose answer was found once: it does not go away again. */
+const found = signal<ReadonlyMap<number, string>>(new Map());
 
 export function Lesson() {
   useSignalEffect(() => {
     const step = lessonStep.value;
-    if (step !== null && !isBusy.value && LESSONS[step]?.isFound() === true && !found.peek().has(step)) {
-      found.value = new Set([...found.peek(), step]);
+    const now = LESSONS[step ?? -1];
+    if (step !== null && !isBusy.value && now?.isFound() === true && !found.peek().has(step)) {
+      found.value = new Map([...found.peek(), [step, now.answer()]]);
     }
   });
   const step = lessonStep.value ?? 0;
   const lesson = LESSONS[step];
+  const mark = lesson?.pointsTo;
+  useEffect(() => {
+    if (mark === undefined) {
+      return undefined;
+    }
+    document.body.dataset["pointsTo"] = mark;
+    return () => {
+      delete document.body.dataset["pointsTo"];
+    };
+  }, [mark]);
   if (lesson === undefined) {
     return null;
   }
-  const isFound = found.value.has(step);
+  const answer = found.value.get(step);
+  const isFound = answer !== undefined;
   return (
     <section class="panel lesson" aria-label="Guided tour" data-testid="lesson">
       <div class="row spread">
@@ -36,10 +49,10 @@ export function Lesson() {
       <p class="question">{lesson.question}</p>
       <p class={`answer ${isFound ? "found" : ""}`} role="status">
         {isFound
-          ? `✓ ${lesson.answer}`
+          ? `✓ ${answer}`
           : isBusy.value
             ? "The scene is being reconstructed…"
-            : "Not found yet."}
+            : (lesson.hint?.() ?? "Not found yet.")}
       </p>
       {!isOnDemo() && (
         <p class="muted">The tour was written for the demo scene; on other scenes its answers may differ.</p>

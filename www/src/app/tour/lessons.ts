@@ -1,14 +1,16 @@
 /** The guided tour: eight steps through B99 and one through W96, in the views themselves, on the demo scene. */
-import { effect } from "@preact/signals";
 import { isRejected } from "../../shared/records";
+import { counted } from "../parts/counted";
+import { degreesOf } from "../parts/numberText";
+import { REJECTION_WORDS } from "../parts/reasonText";
 import { openDemoIn } from "../project/projectActions";
-import { bestTheta, turnTo } from "../selection/selectionQueries";
+import { bestTheta } from "../selection/selectionQueries";
 import type { Turn } from "../session/actionQueue";
 import { actions } from "../session/session";
 import { chooseMethod, runEverything } from "../session/stageRuns";
 import { throughView } from "../space/Photograph";
 import type { Method, Tab } from "../state/methods";
-import { method } from "../state/parameters";
+import { method, params } from "../state/parameters";
 import { files, isDemo } from "../state/project";
 import { results } from "../state/results";
 import { selectionDetail } from "../state/selectionDetail";
@@ -23,15 +25,21 @@ import {
   showView,
   tab,
 } from "../state/viewState";
+import { agreesNowhere, facetOfSegment, groupParts, growthOf, highestSim, segmentLength } from "./examples";
+import { showRoofEnd, showSteepFall, showVaryingSegment } from "./prepare";
 
 export interface LessonStep {
   title: string;
   text: string;
   question: string;
-  /** What is said once the answer was found. */
-  answer: string;
+  /** What is said once the answer was found, in the numbers of what was picked. */
+  answer: () => string;
+  /** Why what is picked is not the answer; null where nothing is picked. */
+  hint?: () => string | null;
   method: Method;
   tab: Tab;
+  /** The control that the question is about: the style sheet marks it, wherever it stands. */
+  pointsTo?: "growing" | "theta" | "other-side" | "camera";
   /** Selects what the step is about. */
   prepare?: () => void;
   /** Has the student found it? Read from the state of the views alone. */
@@ -40,118 +48,181 @@ export interface LessonStep {
 
 const DEGREE = Math.PI / 180;
 const ALL_VIEWS = -1;
+const LONG_PX = 60;
+const GREW_M = 0.5;
+const HIGH_CORRELATION = 0.9;
 
 export const LESSONS: readonly LessonStep[] = [
   {
     title: "Straight edges",
-    text: "Everything begins with edgels linked into straight segments. A roof edge is rarely found whole in every view.",
-    question: "Find the longest segment that you can: pick one of more than 100 pixels.",
-    answer: "Long segments are ridges and eaves; their direction is known to a tenth of a degree.",
+    text: "Everything begins with edgels linked into straight segments. A roof edge is rarely found whole in every view, and the longest segments need not be roofs.",
+    question: `Pick a segment at the edge of a roof, longer than ${LONG_PX} pixels.`,
+    answer: () => {
+      const { length, facet } = pickedSegment();
+      return `${length.toFixed(0)} px, at a side of facet ${facet} of the finished model. One photograph alone cannot tell it from a kerb: that takes the other views.`;
+    },
+    hint: () => {
+      const { length, facet } = pickedSegment();
+      if (length === 0) {
+        return null;
+      }
+      return facet === null
+        ? `${length.toFixed(0)} px long, but no facet of the model has it as a side: kerbs, paths and shadows are straight, too.`
+        : `It is at a side of facet ${facet}, but ${length.toFixed(0)} px long: look for a longer one.`;
+    },
     method: "lines",
     tab: "segments",
     isFound: () => {
-      const picked = selection.value;
-      return picked?.kind === "segment" && lengthOf(picked.view, picked.index) > 100;
+      const { length, facet } = pickedSegment();
+      return facet !== null && length > LONG_PX;
     },
   },
   {
     title: "The epipolar beam",
     text: "Where can the same edge lie in another view? Between the epipolar lines of its end points, cut to the heights that roofs can have.",
     question: "Pick a segment that has candidates in at least three other views.",
-    answer: "The beam is short because the heights are known roughly: that leaves few candidates.",
+    answer: () =>
+      `${counted(selectionDetail.value.story?.candidates.length ?? 0, "candidates")} in ${counted(candidateViews(), "views")}: the beam is short because the heights are known roughly.`,
+    hint: () =>
+      selectionDetail.value.story === null
+        ? null
+        : `It has candidates in ${counted(candidateViews(), "other views")}.`,
     method: "lines",
     tab: "matches",
     prepare: () => {
       showView(ALL_VIEWS);
     },
-    isFound: () => new Set(selectionDetail.value.story?.candidates.map(({ view }) => view)).size >= 3,
+    isFound: () => candidateViews() >= 3,
   },
   {
     title: "Point by point",
-    text: "A point x of the segment corresponds to x′, where its epipolar line meets the candidate. The windows about both are compared.",
-    question: "Drag the point along the segment until the correlation exceeds 0.9.",
-    answer:
-      "Where the windows show the same roof, they correlate; near occlusions they do not. The score is the mean of all that exceed 0.65.",
+    text: "A point x of the segment corresponds to x′, where its epipolar line meets the candidate. The windows about both are compared. Here the point is where they differ most.",
+    question: `Drag the point along the segment until the correlation exceeds ${HIGH_CORRELATION}.`,
+    answer: () => {
+      const least = params.value["matching"]?.["edgel_correlation"];
+      return `Now it is ${selectionDetail.value.correspondence?.correlation?.toFixed(2)}: both windows show the same place. The score of the pair is the mean of all correlations along it that exceed ${least}.`;
+    },
     method: "lines",
     tab: "matches",
     prepare: () => {
       showView(ALL_VIEWS);
-      selectMatchedSegment();
+      void showVaryingSegment();
     },
     isFound: () => {
       const { isMoved, correspondence } = selectionDetail.value;
-      return isMoved && (correspondence?.correlation ?? 0) > 0.9;
+      return isMoved && (correspondence?.correlation ?? 0) > HIGH_CORRELATION;
     },
   },
   {
     title: "Merging and growing",
     text: "A 3D line collects fragments from all views: where one view has a gap, another has not.",
-    question: "Switch between Before growing and After. Which lines become longer? Pick one.",
-    answer: "Ridges gain most: they run across chimneys and shadows that break their segments.",
+    question: `Switch between Before growing and After, and pick a line that became at least ${GREW_M} m longer.`,
+    answer: () => {
+      const { line, before, after } = pickedLine();
+      return `Line ${line} showed ${before.toFixed(1)} m in one piece before, and is ${after.toFixed(1)} m long now.`;
+    },
+    hint: () => {
+      const { line, before, after } = pickedLine();
+      if (beforeGrowing.value) {
+        return "This is before growing.";
+      }
+      return line === null
+        ? null
+        : `Line ${line} is ${after.toFixed(1)} m long, ${before.toFixed(1)} m before: look for one that gained more.`;
+    },
     method: "lines",
     tab: "lines",
+    pointsTo: "growing",
     prepare: () => {
       showBeforeGrowing(true);
     },
-    isFound: () => !beforeGrowing.value && selection.value?.kind === "line",
+    isFound: () => {
+      const { line, before, after } = pickedLine();
+      return !beforeGrowing.value && line !== null && before > 0 && after - before >= GREW_M;
+    },
   },
   {
-    title: "One angle is left",
-    text: "A line fixes a plane but for the angle θ. Each θ warps the views differently; only one makes them agree.",
+    title: "One angle is unknown",
+    text: "A 3D line fixes the plane through it except for one angle, θ. Each θ warps the views differently; only one makes them agree.",
     question: "Drag θ until the windows are alike, without the Best button: within 2° of the maximum.",
-    answer:
-      "That is the paper's own accuracy for θ. The curve is as sharp as the roof is textured and the baseline long.",
+    answer: () => {
+      const { side } = selectionDetail.value;
+      return `Sim is ${(side === null ? 0 : highestSim(side)).toFixed(2)} at its peak, at ${degreesOf(bestTheta(side)).toFixed(0)}°. The more texture a roof has and the longer the baseline, the sharper the peak.`;
+    },
     method: "lines",
     tab: "halfplanes",
-    prepare: () => {
-      selectClearHalfPlane();
-      void turnAway();
-    },
+    pointsTo: "theta",
+    prepare: () => void showSteepFall(),
     isFound: () => {
       const { side, theta, isTurned } = selectionDetail.value;
       return side !== null && isTurned && Math.abs(theta - bestTheta(side)) < 2 * DEGREE;
     },
   },
   {
-    title: "Occlusion",
-    text: "Beyond a rake or an eave there is no roof: no angle makes the views agree, and the side is rejected. It is drawn as a thin red line.",
-    question: "Pick a red line, and read in the inspector why it was rejected.",
-    answer: "Low peaks and flat curves tell eaves from ridges, without any knowledge of roofs.",
+    title: "Where a roof ends",
+    text: "On this side of the line there is a roof, and Sim has one clear peak. Beyond the line the roof ends: no angle makes the views agree, and that side is rejected. In space it is a thin red line.",
+    question: "Show the other side of the line, and see how high its curve rises.",
+    answer: () => {
+      const { side } = selectionDetail.value;
+      return side === null
+        ? ""
+        : `Its highest Sim is ${highestSim(side).toFixed(2)}, and the side is rejected: ${REJECTION_WORDS[side.rejection ?? ""]}. So eaves and rakes differ from ridges, without any knowledge of roofs.`;
+    },
+    hint: () => {
+      const { side } = selectionDetail.value;
+      return side === null || !isRejected(side)
+        ? null
+        : `This side was rejected for another reason: ${REJECTION_WORDS[side.rejection ?? ""]}.`;
+    },
     method: "lines",
     tab: "halfplanes",
-    prepare: () => {
-      select(null);
-    },
-    isFound: () => selectionDetail.value.side !== null && isRejected(selectionDetail.value.side),
+    pointsTo: "other-side",
+    prepare: () => void showRoofEnd(),
+    isFound: () => selectionDetail.value.side !== null && agreesNowhere(selectionDetail.value.side),
   },
   {
     title: "Planes",
     text: "Half-planes that share a plane form a group. Its border lines, and where it meets other planes, close the facet.",
-    question: "Pick a group of at least four lines.",
-    answer: "Ridge, eave and both rakes: a whole facet, each line found on its own.",
+    question: "Pick a group of at least four lines that became a facet.",
+    answer: () => {
+      const { lines, facets } = pickedGroup();
+      return `${counted(lines, "lines")}, each found on its own, lie in one plane: facet ${facets.join(", ")} of the model.`;
+    },
+    hint: () => {
+      const { lines, facets } = pickedGroup();
+      if (lines === 0) {
+        return null;
+      }
+      return facets.length === 0
+        ? `${counted(lines, "lines")}, but no facet: nothing shows that there is a roof in this plane.`
+        : `Facet ${facets.join(", ")}, from ${counted(lines, "lines")}: look for a group with more.`;
+    },
     method: "lines",
     tab: "groups",
     isFound: () => {
-      const picked = selection.value;
-      const members = picked?.kind === "group" ? results.value.grouping?.groups[picked.index]?.members : [];
-      return new Set(members?.map(({ line }) => line)).size >= 4;
+      const { lines, facets } = pickedGroup();
+      return lines >= 4 && facets.length > 0;
     },
   },
   {
     title: "The model",
     text: "Facets, walls to the ground, textures from the photographs.",
     question:
-      "Look through the camera of a view (bottom right of the picture) and fade its photograph in and out.",
-    answer: "Where model and photograph part, the model is wrong: the plainest check there is.",
+      "Choose a view in the marked list “Free camera”: you look through its camera, and the slider below fades its photograph in and out.",
+    answer: () =>
+      "Where the edges of the model and of the photograph do not coincide, the model is wrong: the plainest check there is.",
     method: "lines",
     tab: "model",
+    pointsTo: "camera",
     isFound: () => throughView.value !== null,
   },
   {
     title: "Another way: object space",
-    text: "Wiman and Axelsson match nothing between images. Each image line of a main direction is a line in the plane across it; where lines of many views meet, there is a roof edge.",
+    text: "Wiman and Axelsson match nothing between images. Each image line of a main direction is a line in the plane across it; where lines of several views meet, there is an edge in space.",
     question: "Pick a ring in the cluster plane, and see its line in every view.",
-    answer: "Nothing was compared pixel by pixel: geometry and description length alone chose the line.",
+    answer: () =>
+      `Boundaries of regions in ${counted(pickedViews(), "views")} meet there. Nothing was compared pixel by pixel: geometry and description length alone chose the line.`,
+    hint: () => (selection.value?.kind === "cluster" ? "This one was rejected: pick a large ring." : null),
     method: "rectangles",
     tab: "clusters",
     prepare: () => {
@@ -205,51 +276,40 @@ export async function goToIn(turn: Turn, step: number): Promise<void> {
   }
 }
 
-/** Turns the half-plane far off, as soon as its curve is known. */
-async function turnAway(): Promise<void> {
-  const known = new Promise<void>((resolve) => {
-    const stop = effect(() => {
-      if (selectionDetail.value.warped !== null) {
-        queueMicrotask(() => stop());
-        resolve();
-      }
-    });
-  });
-  await known;
-  await turnTo(selectionDetail.peek().theta - 35 * DEGREE, false);
-}
-
 /** Whether the tour runs on the scene that it was written for. */
 export function isOnDemo(): boolean {
   return files.value.length === 0 || isDemo.value;
 }
 
-function lengthOf(view: number, index: number): number {
-  const [x0 = 0, y0 = 0, x1 = 0, y1 = 0] =
-    results.value.segments[view]?.subarray(4 * index, 4 * index + 4) ?? [];
-  return Math.hypot(x1 - x0, y1 - y0);
+/** Of the picked segment; no length where none is picked. */
+function pickedSegment(): { length: number; facet: number | null } {
+  const picked = selection.value;
+  return picked?.kind === "segment"
+    ? {
+        length: segmentLength(results.value, picked.view, picked.index),
+        facet: facetOfSegment(results.value, picked.view, picked.index),
+      }
+    : { length: 0, facet: null };
 }
 
-/** The longest segment of the first view that supports a 3D line. */
-function selectMatchedSegment(): void {
-  const own = results.value.records.flatMap(({ supports }) =>
-    supports.filter(({ view }) => view === 0).flatMap(({ segments }) => segments),
-  );
-  const longest = own.reduce((best, one) => (lengthOf(0, one) > lengthOf(0, best) ? one : best), own[0] ?? 0);
-  select({ kind: "segment", view: 0, index: longest });
+function candidateViews(): number {
+  return new Set(selectionDetail.value.story?.candidates.map(({ view }) => view)).size;
 }
 
-/** The half-plane with the highest Sim at an angle that is worth looking for. */
-function selectClearHalfPlane(): void {
-  const all = results.value.halfPlanes ?? [];
-  const sloped = all
-    .map((one, index) => ({ one, index }))
-    .filter(({ one }) => Math.abs(one.theta) > 15 * DEGREE);
-  const best = sloped.reduce(
-    (a, b) => (b.one.similarity > a.one.similarity ? b : a),
-    sloped[0] ?? ({ one: all[0], index: 0 } as never),
-  );
-  if (best?.one !== undefined) {
-    select({ kind: "halfplane", index: best.index });
-  }
+function pickedLine(): { line: number | null; before: number; after: number } {
+  const picked = selection.value;
+  return picked?.kind === "line"
+    ? { line: picked.index, ...growthOf(results.value, picked.index) }
+    : { line: null, before: 0, after: 0 };
+}
+
+function pickedGroup(): { lines: number; facets: number[] } {
+  const picked = selection.value;
+  return picked?.kind === "group" ? groupParts(results.value, picked.index) : { lines: 0, facets: [] };
+}
+
+/** In how many views the picked line shows. */
+function pickedViews(): number {
+  const picked = selection.value;
+  return picked?.kind === "line" ? (results.value.records[picked.index]?.supports.length ?? 0) : 0;
 }

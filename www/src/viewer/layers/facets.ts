@@ -1,4 +1,4 @@
-/** Roof facets, tinted by their normal: the hue says where a facet faces, its strength how steep it is. */
+/** Roof facets, tinted by their normal: the hue says where a facet faces, the saturation how steep it is. */
 import {
   BufferAttribute,
   BufferGeometry,
@@ -14,11 +14,13 @@ import {
 import { PALETTE } from "../../shared/palette";
 import type { Facet, Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
+import { middleOf } from "../scene/facetPlan";
 import { zUpGroup } from "../scene/frame";
 import { BOTH_SIDES, disposeObject, type Layer } from "../scene/layer";
+import { nameLabels } from "../scene/nameLabels";
 import { SelectedObject } from "../scene/selectedObject";
 
-/** From this slope on, radians, the tint has its full strength. */
+/** From this slope on, radians, the tint has its full saturation. */
 const FULL_TINT_SLOPE = (40 * Math.PI) / 180;
 const DIMMED = 0.3;
 const OPACITY = 0.92;
@@ -30,7 +32,8 @@ export function buildFacets(facets: readonly Facet[]): Layer {
     new Array<number>(positions.length / 9).fill(i),
   );
   const all = facetMesh(triangles, facets.map(normalTint));
-  object.add(all, outlines(facets));
+  const names = facets.map(({ outer }, i) => ({ text: `Facet ${i}`, at: middleOf(outer) }));
+  object.add(all, outlines(facets), nameLabels(names));
   const chosen = new SelectedObject(object);
 
   return {
@@ -75,7 +78,7 @@ function clip(value: number): number {
 }
 
 /** Positions of a facet's triangles, nine numbers each; its plan is triangulated, roofs do not overhang. */
-function triangulate({ outer, holes }: Facet): number[] {
+export function triangulate({ outer, holes }: Facet): number[] {
   const corners = [...outer, ...holes.flat()];
   const plan = (ring: readonly Vec3[]) => ring.map(([x, y]) => new Vector2(x, y));
   return ShapeUtils.triangulateShape(plan(outer), holes.map(plan)).flatMap((triangle) =>
@@ -83,7 +86,7 @@ function triangulate({ outer, holes }: Facet): number[] {
   );
 }
 
-function facetMesh(
+export function facetMesh(
   triangles: readonly number[][],
   tints: readonly Color[],
 ): Mesh<BufferGeometry, MeshBasicMaterial> {

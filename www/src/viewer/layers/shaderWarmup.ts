@@ -67,7 +67,7 @@ export function warmupLayers(): Layer[] {
   return [
     buildLines(LINES, RECORDS, () => []),
     buildFans([HALF_PLANE], LINES, [REJECTED]),
-    buildGroups(GROUPING, LINES),
+    buildGroups(GROUPING, LINES, [FACET]),
     buildFacets([FACET]),
     buildOutlines([FACET]),
     buildHighlight([{ points: FACET.outer, closed: true }]),

@@ -1,6 +1,9 @@
+import { readdirSync, readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
+import { planeNames } from "../../../src/app/figures/ClusterLab";
 import { quantile } from "../../../src/app/figures/LineLabs";
-import { axesOf, frameOf, histogramOf, ticks } from "../../../src/app/parts/charts";
+import { axesOf, closedPathOf, frameOf, histogramOf, pathOf, ticks } from "../../../src/app/parts/charts";
+import { oneScale } from "../../../src/app/space/SectionChart";
 
 describe("ticks", () => {
   it("are round and inside", () => {
@@ -32,5 +35,57 @@ describe("quantile", () => {
   it("sorts by number", () => {
     expect(quantile([10, 9, 100], 0.5)).toBe(10);
     expect(quantile([], 0.5)).toBe(0);
+  });
+});
+
+describe("paths", () => {
+  it("are valid whatever they are given", () => {
+    const nowhere = [Number.NEGATIVE_INFINITY, Number.NaN] as const;
+    expect(pathOf([nowhere, [1, 2], [3, 4]])).toBe("M1.0 2.0L3.0 4.0");
+    expect(closedPathOf([[1, 2], nowhere, [3, 4]])).toBe("M1.0 2.0L3.0 4.0Z");
+    expect(closedPathOf([])).toBe("");
+    expect(closedPathOf([nowhere])).toBe("");
+  });
+});
+
+describe("the section's scale", () => {
+  it("is the same both ways, whatever the frame", () => {
+    for (const frame of [frameOf(460, 200), frameOf(200, 400)]) {
+      const [x, y] = oneScale(frame, { min: 0, max: 30 }, { min: 80, max: 90 });
+      const [toX, toY] = axesOf(frame, x, y);
+      expect(toX(11) - toX(10)).toBeCloseTo(toY(80) - toY(81), 6);
+      expect([x.min <= 0, x.max >= 30, y.min <= 80, y.max >= 90]).toEqual([true, true, true, true]);
+    }
+  });
+});
+
+describe("cluster planes", () => {
+  it("are named by building and direction", () => {
+    const right = Math.PI / 2;
+    const planes = [0.5, 0.5 + right, 1, 1 + right].map((azimuth) => ({ azimuth }));
+    const windows = [0.5, 1].map((azimuth) => ({ directions: [{ azimuth, share: 1 }] }));
+    expect(planeNames(planes, { windows } as never)).toEqual([
+      "Building 0, along 29°",
+      "Building 0, along 119°",
+      "Building 1, along 57°",
+      "Building 1, along 147°",
+    ]);
+    expect(planeNames(planes.slice(0, 1), null)).toEqual(["Lines along 29°"]);
+  });
+});
+
+describe("chart text", () => {
+  it("is at least 12 px large", () => {
+    const app = new URL("../../../src/app/", import.meta.url);
+    const sheets = readdirSync(app, { recursive: true, encoding: "utf8" }).filter((name) =>
+      name.endsWith(".css"),
+    );
+    const sizes = sheets.flatMap((name) =>
+      [...readFileSync(new URL(name, app), "utf8").matchAll(/\.chart[^{]*\{[^}]*font-size: ([^;]+);/g)].map(
+        ([, size = ""]) => size,
+      ),
+    );
+    expect(sizes.length).toBeGreaterThan(0);
+    expect(sizes.filter((size) => !(Number.parseFloat(size) >= 12 && size.endsWith("px")))).toEqual([]);
   });
 });

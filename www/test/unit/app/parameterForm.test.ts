@@ -37,9 +37,9 @@ describe("paramSections", () => {
   });
 
   it("reads the unit from the name", () => {
-    expect(field("segments", "min_length_px")).toMatchObject({ label: "Min length", unit: "px" });
+    expect(field("segments", "min_length_px")).toMatchObject({ label: "Minimum length", unit: "px" });
     expect(field("segments", "area_m2")).toMatchObject({ label: "Area", unit: "m²" });
-    expect(field("sweep", "max_theta_deg")).toMatchObject({ label: "Max theta", unit: "°" });
+    expect(field("sweep", "max_theta_deg")).toMatchObject({ label: "Maximum theta", unit: "°" });
   });
 
   it("marks what differs from the default, and only that", () => {

@@ -1,0 +1,155 @@
+/** B99 figures 21 to 23: the facets in plan, each in the colour of its plane, and the border lines that enclose them. */
+import "./figures.css";
+import type { Facet, FacetTrace, Vec2 } from "../../shared/records";
+import { normalTint } from "../../viewer/layers/facets";
+import { isOfRoof, middleOf } from "../../viewer/scene/facetPlan";
+import { Filmstrip } from "../images/Filmstrip";
+import { closedPathOf, Fit, type Frame, pathOf } from "../parts/charts";
+import { counted } from "../parts/counted";
+import { facetRejectionWords } from "../parts/reasonText";
+import { results } from "../state/results";
+import { select, selection } from "../state/viewState";
+
+/** Figures 21 to 23: border lines by their kind, what they enclose, and what was rejected. */
+export function FacetLab() {
+  const { grouping, facets } = results.value;
+  if (grouping === null || facets === null) {
+    return <p class="lab-hint muted">Run the stage: the border lines in plan appear here.</p>;
+  }
+  return (
+    <div class="split-lab even">
+      <figure class="plan">
+        <Fit>{(frame) => <Plan frame={frame} grouping={grouping} facets={facets} />}</Fit>
+        <figcaption class="muted numbers">
+          <ul class="legend">
+            {BORDER_KINDS.map((kind) => (
+              <li key={kind}>
+                <span class={`swatch border-${kind}`} aria-hidden="true" />
+                {BORDER_WORDS[kind]} {grouping.borders.filter((border) => border.kind === kind).length}
+              </li>
+            ))}
+            <li>
+              <span class="swatch rejected" aria-hidden="true" />
+              rejected {grouping.rejected.length}
+            </li>
+          </ul>
+        </figcaption>
+      </figure>
+      <Filmstrip />
+    </div>
+  );
+}
+
+const BORDER_KINDS = ["real", "inplane", "intersection", "closing", "rectangle"] as const;
+const BORDER_WORDS = {
+  real: "3D lines",
+  inplane: "new lines",
+  intersection: "intersections",
+  closing: "closing lines",
+  rectangle: "sides of rectangles",
+};
+
+/** In SVG the attribute has no capital. */
+const FOCUSABLE = { tabindex: 0 };
+
+function Plan({ frame, grouping, facets }: { frame: Frame; grouping: FacetTrace; facets: readonly Facet[] }) {
+  const outlines = facets.map(({ outer }) => outer);
+  // The roofs fill the figure; border lines on the ground reach far beyond them.
+  const points: readonly (readonly number[])[] =
+    outlines.length > 0 ? outlines.flat() : grouping.borders.flatMap(({ a, b }): Vec2[] => [a, b]);
+  const xs = points.map(([x = 0]) => x);
+  const ys = points.map(([, y = 0]) => y);
+  const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+  const scale = Math.min(frame.width / (x1 - x0 || 1), frame.height / (y1 - y0 || 1)) * 0.9;
+  const at = ([x, y]: readonly number[]): [number, number] => [
+    frame.width / 2 + ((x as number) - (x0 + x1) / 2) * scale,
+    frame.height / 2 - ((y as number) - (y0 + y1) / 2) * scale,
+  ];
+  return (
+    // biome-ignore lint/a11y/useSemanticElements: SVG has no fieldset
+    <svg
+      class="chart plan-chart"
+      viewBox={`0 0 ${frame.width} ${frame.height}`}
+      role="group"
+      aria-label={`Plan: ${counted(grouping.borders.length, "border lines")}, ${counted(grouping.cells, "cells")}, ${counted(outlines.length, "facets")}; ${grouping.rejected.length} rejected`}
+      data-testid="plan"
+    >
+      {facets.map((facet, i) => (
+        <PlanArea
+          key={i}
+          picks={{ kind: "facet", index: i }}
+          name={`Facet ${i}`}
+          className="plan-facet"
+          fill={`#${normalTint(facet).getHexString()}`}
+          d={closedPathOf(facet.outer.map(at))}
+        />
+      ))}
+      {grouping.rejected.map(({ outline, reason }, i) => (
+        <PlanArea
+          key={i}
+          picks={{ kind: "rejectedFacet", index: i }}
+          name={`Rejected: ${facetRejectionWords(reason)}`}
+          className="plan-rejected"
+          d={closedPathOf(outline.map(at))}
+        />
+      ))}
+      {BORDER_KINDS.map((kind) => {
+        const own = grouping.borders.filter((border) => border.kind === kind);
+        const pathFor = (borders: typeof own) => borders.map(({ a, b }) => pathOf([at(a), at(b)])).join("");
+        const roof = own.filter((border) => isOfRoof(border, outlines));
+        const ground = own.filter((border) => !roof.includes(border));
+        return (
+          <g key={kind}>
+            <path class={`border-${kind} ground`} d={pathFor(ground)} />
+            <path class={`border-${kind}`} d={pathFor(roof)} data-count={own.length} />
+          </g>
+        );
+      })}
+      {outlines.map((ring, i) => {
+        const [x, y] = at(middleOf(ring));
+        return (
+          <text key={i} class="plan-name" x={x} y={y + 4} text-anchor="middle">
+            {i}
+          </text>
+        );
+      })}
+    </svg>
+  );
+}
+
+/** An outline that can be picked, by key as well. */
+function PlanArea(of: {
+  picks: { kind: "facet" | "rejectedFacet"; index: number };
+  name: string;
+  className: string;
+  fill?: string;
+  d: string;
+}) {
+  const { kind, index } = of.picks;
+  const picked = selection.value;
+  const isChosen = picked?.kind === kind && picked.index === index;
+  const pick = () => {
+    select(of.picks);
+  };
+  return (
+    // biome-ignore lint/a11y/useSemanticElements: SVG has no button
+    <path
+      role="button"
+      {...FOCUSABLE}
+      aria-label={of.name}
+      aria-pressed={isChosen}
+      class={`${of.className} ${isChosen ? "chosen" : ""}`}
+      d={of.d}
+      style={isChosen || of.fill === undefined ? undefined : { fill: of.fill }}
+      onClick={pick}
+      onKeyDown={(event) => {
+        if (event.key === "Enter" || event.key === " ") {
+          event.preventDefault();
+          pick();
+        }
+      }}
+    >
+      <title>{of.name}</title>
+    </path>
+  );
+}
