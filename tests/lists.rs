@@ -158,6 +158,12 @@ fn headings_decide_about_the_columns() {
         format!("Nr;Kappa [deg];Phi [deg];Omega [deg];Höhe;Hochwert;Rechtswert;Bild\n{list}"),
         plain,
     );
+    let list = lines(|i, v| format!("v{i}.jpg;{}", joined(v, ";")));
+    check(
+        "another language",
+        format!("Снимок;Восток;Север;Высота;а;б;в [deg]\n{list}"),
+        plain,
+    );
     let heading = "Label,X/Easting,Y/Northing,Z/Altitude,Yaw,Pitch,Roll,X_est,Y_est,Z_est,Yaw_est,Pitch_est,Roll_est";
     let list = "# CoordinateSystem: LOCAL\n#LABEL\nv1.jpg,9,9,9,9,9,9,1,2,100,30,2,-1\nv2.jpg,9,9,9,9,9,9,,,,,,\n";
     let found = read("reference.csv", list.replace("LABEL", heading)).unwrap();
@@ -222,6 +228,10 @@ fn a_list_that_nearly_fits_is_named_with_its_line() {
         (
             "flight 1 0 0 100 1 0 0\nflight 2 0 0 100 1 0 0\n",
             "which may end with a number of its own",
+        ),
+        (
+            "foto;breite;lange;hohe;o;p;k;quality\nv1;0;0;9;1;2;3;4\nv2;0;0;9;1;2;3;4\n",
+            "eo.txt, line 1: the heading",
         ),
         (
             "name;x;y;z;omega;phi\nv1;0;0;9;1;2\n",

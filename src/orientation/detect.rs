@@ -156,7 +156,8 @@ pub fn detect(file: &InputFile) -> FileKind {
                 kind => kind,
             };
         }
-        let unread = unread::by_content(&text).map(|_| FileKind::Unread);
+        let unread = unread::by_content(&text).or_else(|| unread::by_whole_name(file));
+        let unread = unread.map(|_| FileKind::Unread);
         if let Some(kind) = unread.or_else(|| by_content(&text)) {
             return kind;
         }

@@ -177,6 +177,12 @@ pub(crate) fn by_content(head: &str) -> Option<&'static UnreadFormat> {
     (UNREAD.iter()).find(|format| format.signatures.iter().any(holds))
 }
 
+/// The format by a name that programs give to such files alone.
+pub(crate) fn by_whole_name(file: &InputFile) -> Option<&'static UnreadFormat> {
+    let name = file.name().to_lowercase();
+    (UNREAD.iter()).find(|format| format.endings.contains(&&*name))
+}
+
 /// The format by the name of a file.
 pub(crate) fn by_name(file: &InputFile) -> Option<&'static UnreadFormat> {
     let name = file.name().to_lowercase();
@@ -241,6 +247,7 @@ mod tests {
                 "KML",
             ),
             ("a_Timestamp.MRK", "1\t2.5\t[2000]\n", "exposure"),
+            ("geo.txt", "EPSG:32632\na.jpg 1 2 3 4 5 6\n", "OpenDroneMap"),
             ("block.abc", "Ogawa\u{ff}\0", "Alembic"),
         ] {
             let file = InputFile::new(path, content.as_bytes().to_vec());

@@ -68,8 +68,14 @@ pub(super) fn read(path: &str, text: &str) -> Result<ExteriorList> {
             advice: format!("add lines `{EXPECTED}`"),
         });
     }
-    let (columns, unknown_heading) = parts.columns()?;
+    let (columns, unknown) = parts.columns()?;
     let form = parts.form(columns.as_ref());
+    if let Some(line) = unknown.filter(|_| !has_no_more(&parts.data[0], &form)) {
+        return Err(line.error(
+            format!("the heading {} is not understood", quoted(line.text)),
+            "columns called image, X, Y, Z, omega, phi, kappa",
+        ));
+    }
     let mut poses = Vec::new();
     for line in &parts.data {
         poses.extend(pose(line, &form)?);
@@ -87,7 +93,7 @@ pub(super) fn read(path: &str, text: &str) -> Result<ExteriorList> {
         .iter()
         .any(|heading| lower.contains(heading)),
         words: parts.words,
-        unknown_heading,
+        unknown_heading: unknown.map(|line| quoted(line.text)),
     })
 }
 
@@ -109,7 +115,8 @@ pub(crate) fn is_list(text: &str) -> bool {
         }
         _ => true,
     };
-    form.columns.is_some() || unknown.is_none() && parts.sample().iter().all(is_named)
+    let is_plain = unknown.is_none() || has_no_more(&parts.data[0], &form);
+    form.columns.is_some() || is_plain && parts.sample().iter().all(is_named)
 }
 
 /// Why a text that is no list is none, where it nearly is: lines of a name and three numbers or
@@ -168,7 +175,7 @@ impl<'a> Parts<'a> {
     }
 
     /// The columns that a heading names, or the heading that names none.
-    fn columns(&self) -> Result<(Option<Columns>, Option<String>)> {
+    fn columns(&self) -> Result<(Option<Columns>, Option<TextLine<'a>>)> {
         let mut unknown = None;
         for line in self.headings.iter().rev() {
             let is_comment = line.text.starts_with(['#', '!', '%', '/']);
@@ -186,7 +193,7 @@ impl<'a> Parts<'a> {
                 Heading::Lacks(_) => {}
                 Heading::Other if is_comment => {}
                 Heading::Other => {
-                    let _ = unknown.get_or_insert_with(|| quoted(line.text));
+                    let _ = unknown.get_or_insert(*line);
                 }
             }
         }
@@ -285,6 +292,12 @@ fn pose(line: &TextLine, form: &Form) -> Result<Option<ListedPose>> {
         center: Point3::new(x, y, z),
         angles: [a, b, c],
     }))
+}
+
+/// Does a line hold nothing but the image and six numbers, so that no heading is needed?
+fn has_no_more(line: &TextLine, form: &Form) -> bool {
+    let by_form = || cells(line.text, form.separator).len() == 7 + usize::from(form.is_numbered);
+    form.separator == Separator::Blank || form.columns.is_some() || by_form()
 }
 
 /// The image and the six numbers where the heading says.
