@@ -27,7 +27,8 @@ export function StageRail() {
     <section class="rail" aria-label="Stages">
       <div class="rail-run">
         {isRunning ? (
-          <button type="button" onClick={() => void cancel()}>
+          // The second click of a double click on "Run all" is meant for that.
+          <button type="button" onClick={({ detail }) => void (detail < 2 && cancel())}>
             Cancel
           </button>
         ) : (
