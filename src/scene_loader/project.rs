@@ -62,7 +62,9 @@ impl Project {
     pub fn pack(&self, files: &[InputFile], results: &[(String, Vec<u8>)]) -> Result<Vec<u8>> {
         let json =
             serde_json::to_vec_pretty(self).expect("options and parameters have string keys only");
-        let used = files.iter().filter(|f| detect(f) != FileKind::Ignored);
+        let is_used =
+            |f: &&InputFile| !matches!(detect(f), FileKind::Ignored | FileKind::UnreadImage);
+        let used = files.iter().filter(is_used);
         let inputs = used.map(|f| (format!("{INPUT}{}", f.path), &f.bytes[..]));
         let results = results
             .iter()
