@@ -1,4 +1,5 @@
 /** What is shown while nothing is open: a finished model, the photographs that it came from, and where to put one's own. */
+import { counted } from "../parts/counted";
 import "./entrance.css";
 import { signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
@@ -112,7 +113,7 @@ function Photographs() {
   return (
     <div class="sources">
       <p>
-        Five houses, computed from {names.length === 0 ? "six" : names.length} photographs.{" "}
+        Five houses, computed from {counted(names.length === 0 ? 6 : names.length, "photographs")}.{" "}
         <button type="button" onClick={() => void openDemo()}>
           Demo scene
         </button>

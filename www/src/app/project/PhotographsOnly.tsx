@@ -1,4 +1,5 @@
 /** Photographs without orientation: what is missing, which programs write it, and what the photographs say themselves. */
+import { counted } from "../parts/counted";
 import "./photographsOnly.css";
 import { signal, useSignalEffect } from "@preact/signals";
 import type { ComponentChildren } from "preact";
@@ -24,7 +25,7 @@ export function PhotographsOnly() {
   const count = inspection.value?.images.length ?? 0;
   return (
     <div class="photographs-only" data-testid="photographs-only">
-      <h2>{count === 1 ? "One photograph" : `${count} photographs`}, and no orientation yet</h2>
+      <h2>{counted(count, "photographs")}, and no orientation yet</h2>
       <p>
         A model needs to know, for each photograph, where the camera stood, where it looked, and its focal
         length. Programs for photogrammetry compute that from the photographs; add the file that they write to

@@ -1,4 +1,5 @@
 /** What a printed page has that the screen says elsewhere: which project, by which method, and what was found. */
+import { counted } from "../parts/counted";
 import "./print.css";
 import { slopedArea } from "../parts/facetArea";
 import { grouped } from "../parts/numberText";
@@ -19,7 +20,7 @@ export function PrintHead() {
     <header class="print-only print-head">
       <h1>{projectName}</h1>
       <p>
-        Method: {method}. {views.length} photographs: {views.map(({ name }) => name).join(", ")}.
+        Method: {method}. {counted(views.length, "photographs")}: {views.map(({ name }) => name).join(", ")}.
       </p>
       {done.length > 0 && (
         <table>

@@ -1,5 +1,7 @@
 /** Says how many roof planes have no facet in the model, and leads to them one after the other. */
+
 import { computed } from "@preact/signals";
+import { counted } from "../parts/counted";
 import { results } from "../state/results";
 import { select, selection, showTab } from "../state/viewState";
 import { unmodelledPlanes } from "./unmodelledPlanes";
@@ -22,9 +24,7 @@ export function Unmodelled() {
   };
   return (
     <button type="button" class="unmodelled" onClick={showNext}>
-      {planes.length === 1
-        ? "1 roof plane was found and rejected"
-        : `${planes.length} roof planes were found and rejected`}
+      Rejected: {counted(planes.length, "roof planes")}
     </button>
   );
 }
