@@ -14,12 +14,11 @@ use source_tree::{SourceTree, circles};
 const FLOORS: [&str; 38] = [
     // What every room uses.
     "math",
-    "sorting",
     "geometry",
     "ids",
     "plan_index",
     "execution",
-    "plain_json",
+    "json",
     "params",
     "agreement",
     "error",

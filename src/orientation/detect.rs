@@ -6,7 +6,7 @@
 use serde::Serialize;
 
 use super::formats::{TextLine, bundles, data_lines, patb, photogrammetric};
-use super::input_file::InputFile;
+use super::input_file::{HEAD_BYTES, InputFile};
 use super::unread;
 
 /// What an input file is.
@@ -125,9 +125,6 @@ impl FileKind {
         }
     }
 }
-
-/// How much of a file is inspected: enough for the longest comment header.
-pub(crate) const HEAD_BYTES: usize = 64 * 1024;
 
 /// Data lines that are inspected: a list may begin with a damaged one.
 const HEAD_LINES: usize = 6;

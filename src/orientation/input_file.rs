@@ -2,6 +2,9 @@
 
 use std::borrow::Cow;
 
+/// How much of a file is inspected: enough for the longest comment header.
+pub(super) const HEAD_BYTES: usize = 64 * 1024;
+
 /// A file in memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InputFile {

@@ -62,7 +62,8 @@ impl OrientationSet {
         }
     }
 
-    /// Reads the orientations of the set; rounded rotations are made orthonormal. Warnings are added to `warnings`.
+    /// Reads the orientations of the set; rounded rotations are made orthonormal. Warnings are
+    /// added to `warnings`.
     pub fn read(
         &self,
         inputs: &[InputFile],

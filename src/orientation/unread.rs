@@ -1,7 +1,6 @@
 //! Formats that are known but not read, each with what to do instead.
 
-use super::detect::HEAD_BYTES;
-use super::input_file::InputFile;
+use super::input_file::{HEAD_BYTES, InputFile};
 
 /// A format that is recognised to say what to do instead of reading it.
 #[derive(Debug)]

@@ -134,8 +134,9 @@ pub struct TextureParams {
     /// Border around each patch, px, against bleeding. Assumption: 4, so that patches stay apart
     /// down to the second mipmap level.
     pub padding_px: u32,
-    /// How far a wall may stand behind the outline of its roof, metres. Assumption: 0.4, an ordinary
-    /// eave; where a view passes over or under the wall within that, it shows roof or ground.
+    /// How far a wall may stand behind the outline of its roof, metres. Assumption: 0.4, an
+    /// ordinary eave; where a view passes over or under the wall within that, it shows roof or
+    /// ground.
     pub overhang_m: f64,
     /// Quality of the atlas as JPEG, 1 to 100. Assumption: 90, where its blocks cannot be seen.
     pub jpeg_quality: u8,

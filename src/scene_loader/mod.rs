@@ -8,7 +8,6 @@
 //! candidate          the orientations that the plan chooses from
 //! assignment, names  which image an orientation belongs to; planned_view: the plan's views
 //! checks             the cameras by themselves and against the images; corrections
-//! turned             images that were oriented as their EXIF header shows them
 //! notices            what is said of images: bands and turns, formats that are not read
 //! region             part of each image that shows the region of interest
 //! memory             memory that a run takes
@@ -38,7 +37,6 @@ mod project;
 mod region;
 #[cfg(test)]
 mod tests;
-mod turned;
 
 pub use archive::unpack;
 pub use candidate::OrientationCandidate;

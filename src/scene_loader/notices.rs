@@ -4,35 +4,44 @@
 use std::collections::BTreeMap;
 
 use super::names::listed;
-use super::plan::Plan;
+use super::planned_view::{PlannedImage, PlannedView};
 use crate::error::Error;
 use crate::orientation::{FileKind, InputFile, stem};
 use crate::raster::{Bands, UnreadImageFormat, unread_image_format};
 
-/// Adds to the warnings of a plan, and names images in other formats as the reason where too few
-/// can be read.
-pub(super) fn add_to(plan: &mut Plan, files: &[InputFile]) {
-    let warnings = [turns(plan, files), bands(plan, files)].concat();
-    plan.warnings.extend(warnings);
-    let images = plan.kinds.iter().filter(|k| **k == FileKind::Image);
-    let is_short = images.count() < 3;
-    for (format, names) in unread(plan, files, is_short) {
-        let error = refusal(&format, &names);
-        match is_short {
-            true => plan.errors.insert(0, error),
-            false => plan.warnings.push(format!("left out: {error}")),
-        }
-    }
+/// What is said of images.
+pub(super) struct Notices {
+    pub warnings: Vec<String>,
+    /// Images in other formats, where too few can be read; the first is to be reported first.
+    pub errors: Vec<Error>,
 }
 
-fn turns(plan: &Plan, files: &[InputFile]) -> Vec<String> {
-    let is_turned = |file: usize| {
-        plan.views
-            .iter()
-            .any(|v| v.file == file && v.turn.is_some())
+/// What is said of the images of a plan, `views` being those that have an orientation.
+pub(super) fn of_images(
+    files: &[InputFile],
+    kinds: &[FileKind],
+    images: &[PlannedImage],
+    views: &[PlannedView],
+) -> Notices {
+    let mut notices = Notices {
+        warnings: [turns(files, images, views), bands(files, images)].concat(),
+        errors: Vec::new(),
     };
-    let asking = plan
-        .images
+    let read = kinds.iter().filter(|k| **k == FileKind::Image);
+    let is_short = read.count() < 3;
+    for (format, names) in unread(files, kinds, is_short) {
+        let error = refusal(&format, &names);
+        match is_short {
+            true => notices.errors.insert(0, error),
+            false => notices.warnings.push(format!("left out: {error}")),
+        }
+    }
+    notices
+}
+
+fn turns(files: &[InputFile], images: &[PlannedImage], views: &[PlannedView]) -> Vec<String> {
+    let is_turned = |file: usize| views.iter().any(|v| v.file == file && v.turn.is_some());
+    let asking = images
         .iter()
         .filter(|i| i.header.is_some_and(|h| h.turned()));
     let (turned, stored): (Vec<usize>, Vec<usize>) = asking
@@ -58,9 +67,9 @@ fn turns(plan: &Plan, files: &[InputFile]) -> Vec<String> {
     .collect()
 }
 
-fn bands(plan: &Plan, files: &[InputFile]) -> Vec<String> {
+fn bands(files: &[InputFile], images: &[PlannedImage]) -> Vec<String> {
     let mut found: BTreeMap<String, Vec<&str>> = BTreeMap::new();
-    for image in &plan.images {
+    for image in images {
         let words = match image.header.map(|h| h.bands) {
             None | Some(Bands::All) => continue,
             Some(Bands::Without(first, last)) if first == last => {
@@ -88,12 +97,12 @@ fn bands(plan: &Plan, files: &[InputFile]) -> Vec<String> {
 /// The files that are not read by their format; a photograph that is there in another format too
 /// is no loss, and documents and videos matter only where images are missing.
 fn unread<'a>(
-    plan: &Plan,
     files: &'a [InputFile],
+    kinds: &[FileKind],
     is_short: bool,
 ) -> Vec<(UnreadImageFormat, Vec<&'a str>)> {
     let key = |file: &InputFile| stem(file.name()).to_lowercase();
-    let of_kind = |kind: FileKind| (0..files.len()).filter(move |&i| plan.kinds[i] == kind);
+    let of_kind = |kind: FileKind| (0..files.len()).filter(move |&i| kinds[i] == kind);
     let read: Vec<String> = of_kind(FileKind::Image).map(|i| key(&files[i])).collect();
     let mut found: BTreeMap<&str, (UnreadImageFormat, Vec<&str>)> = BTreeMap::new();
     for i in of_kind(FileKind::UnreadImage).chain(of_kind(FileKind::Ignored)) {

@@ -14,16 +14,15 @@ use super::input::LoadOptions;
 use super::memory;
 use super::names::{images_called, listed, view_names};
 use super::notices;
-use super::planned_view::{PlannedImage, PlannedView};
+use super::planned_view::{PlannedImage, PlannedView, planned_view};
 use super::region::RegionOfInterest;
-use super::turned::{shown_size, turn_of};
 use crate::camera::Camera;
-use crate::error::{Error, Result};
+use crate::error::Error;
 use crate::orientation::{
     Anchor, FileKind, InputFile, Orientation, OrientationSet, StatedReference, UnreadFormat,
     detect, epsg_of, orientation_sets, to_metric_frame, unread_format,
 };
-use crate::raster::{ImageHeader, image_header};
+use crate::raster::image_header;
 use crate::scene::Survey;
 
 /// Everything about a scene but its pixels.
@@ -82,7 +81,9 @@ impl Plan {
             let unreadable = plan.images.iter().filter_map(|i| i.unreadable.clone());
             plan.errors.splice(0..0, unreadable.collect::<Vec<_>>());
         }
-        notices::add_to(&mut plan, files);
+        let notices = notices::of_images(files, &plan.kinds, &plan.images, &plan.views);
+        plan.warnings.extend(notices.warnings);
+        plan.errors.splice(0..0, notices.errors);
         plan
     }
 
@@ -424,78 +425,6 @@ fn notice_of_fisheyes(views: &[PlannedView]) -> Option<String> {
         "fisheye photographs are rectified to pinholes: what lies more than {widest:.0} degrees from \
          their axis is not used"
     ))
-}
-
-/// The camera of a whole image in the world of its orientation file, after the checks that need no
-/// other view.
-fn planned_view(
-    path: &str,
-    file: usize,
-    header: &ImageHeader,
-    orientation: &Orientation,
-) -> Result<PlannedView> {
-    let refuse = |problem: String, advice: &str| Error::File {
-        file: path.to_owned(),
-        problem,
-        advice: advice.to_owned(),
-    };
-    let turn = turn_of(header, orientation);
-    let (width, height) = shown_size(header, turn);
-    if let Some((w, h)) = orientation.size.filter(|&size| size != (width, height)) {
-        return Err(refuse(
-            format!(
-                "the image has {width} x {height} pixels, but its orientation ({}) is for {w} x {h}",
-                orientation.source
-            ),
-            "use the images in the size that was oriented, or scale the orientation to this one",
-        ));
-    }
-    let mut k = orientation.k;
-    if orientation.from_middle {
-        k[(0, 2)] += f64::from(width) / 2.0;
-        k[(1, 2)] += f64::from(height) / 2.0;
-    }
-    let mut camera = Camera {
-        k,
-        r: orientation.r,
-        center: orientation.center,
-        width,
-        height,
-    };
-    if let Some(problem) = camera_checks::numeric_problem(&camera) {
-        return Err(refuse(
-            format!(
-                "its orientation ({}) is impossible: {problem}",
-                orientation.source
-            ),
-            "correct the numbers of this image, or leave it out",
-        ));
-    }
-    let mut distortion = orientation.distortion;
-    if let Some(lens) = &mut distortion {
-        let pinhole = match lens.is_fisheye() {
-            true => lens.rectified(&camera.k, width, height),
-            false if lens.is_plausible(&camera.k, width, height) => Ok((camera.k, *lens)),
-            false => Err("folds the image over"),
-        };
-        (camera.k, *lens) = pinhole.map_err(|problem| {
-            refuse(
-                format!("the lens distortion in {} {problem}", orientation.source),
-                "check the order and the signs of the coefficients, or undistort the images",
-            )
-        })?;
-    }
-    Ok(PlannedView {
-        file,
-        name: String::new(),
-        whole: camera,
-        distortion,
-        angles: orientation.angles,
-        readings: orientation.readings.clone(),
-        crop: orientation.crop,
-        part: None,
-        turn,
-    })
 }
 
 fn no_orientation(

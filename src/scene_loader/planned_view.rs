@@ -2,8 +2,9 @@
 
 use nalgebra::Matrix3;
 
+use super::checks::camera_checks;
 use crate::camera::{Camera, Distortion};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::orientation::{AngleUnit, Crop, Orientation};
 use crate::raster::{ImageHeader, Turn};
 
@@ -61,4 +62,96 @@ pub(crate) fn offset_calibration(k: &Matrix3<f64>, [column, row]: [u32; 2]) -> M
     k[(0, 2)] -= f64::from(column);
     k[(1, 2)] -= f64::from(row);
     k
+}
+
+/// The camera of a whole image in the world of its orientation file, after the checks that need no
+/// other view.
+pub(super) fn planned_view(
+    path: &str,
+    file: usize,
+    header: &ImageHeader,
+    orientation: &Orientation,
+) -> Result<PlannedView> {
+    let refuse = |problem: String, advice: &str| Error::File {
+        file: path.to_owned(),
+        problem,
+        advice: advice.to_owned(),
+    };
+    let turn = turn_of(header, orientation);
+    let (width, height) = shown_size(header, turn);
+    if let Some((w, h)) = orientation.size.filter(|&size| size != (width, height)) {
+        return Err(refuse(
+            format!(
+                "the image has {width} x {height} pixels, but its orientation ({}) is for {w} x {h}",
+                orientation.source
+            ),
+            "use the images in the size that was oriented, or scale the orientation to this one",
+        ));
+    }
+    let mut k = orientation.k;
+    if orientation.from_middle {
+        k[(0, 2)] += f64::from(width) / 2.0;
+        k[(1, 2)] += f64::from(height) / 2.0;
+    }
+    let mut camera = Camera {
+        k,
+        r: orientation.r,
+        center: orientation.center,
+        width,
+        height,
+    };
+    if let Some(problem) = camera_checks::numeric_problem(&camera) {
+        return Err(refuse(
+            format!(
+                "its orientation ({}) is impossible: {problem}",
+                orientation.source
+            ),
+            "correct the numbers of this image, or leave it out",
+        ));
+    }
+    let mut distortion = orientation.distortion;
+    if let Some(lens) = &mut distortion {
+        let pinhole = match lens.is_fisheye() {
+            true => lens.rectified(&camera.k, width, height),
+            false if lens.is_plausible(&camera.k, width, height) => Ok((camera.k, *lens)),
+            false => Err("folds the image over"),
+        };
+        (camera.k, *lens) = pinhole.map_err(|problem| {
+            refuse(
+                format!("the lens distortion in {} {problem}", orientation.source),
+                "check the order and the signs of the coefficients, or undistort the images",
+            )
+        })?;
+    }
+    Ok(PlannedView {
+        file,
+        name: String::new(),
+        whole: camera,
+        distortion,
+        angles: orientation.angles,
+        readings: orientation.readings.clone(),
+        crop: orientation.crop,
+        part: None,
+        turn,
+    })
+}
+
+/// The quarter turn after which the image has the size that its orientation states.
+///
+/// Some programs orient the pixels as stored, others turn them first. Where width and height are
+/// exchanged between orientation and file, and the EXIF header asks for a quarter turn, the second
+/// is certain; half a turn leaves the size as it is, and the pixels are taken as stored.
+fn turn_of(header: &ImageHeader, orientation: &Orientation) -> Option<Turn> {
+    let stored = (header.width, header.height);
+    let shown = (header.height, header.width);
+    let is_exchanged = orientation.size == Some(shown) && stored != shown;
+    Turn::from_exif(header.orientation).filter(|_| is_exchanged)
+}
+
+/// Width and height of the image as its orientation describes it.
+fn shown_size(header: &ImageHeader, turn: Option<Turn>) -> (u32, u32) {
+    match turn {
+        Some(_) => (header.height, header.width),
+        None => (header.width, header.height),
+    }
 }

@@ -137,9 +137,9 @@ fn ground_rectangle(model: &RoofModel) -> Option<FacePlane> {
     })
 }
 
-/// Height at the middle and slopes to the east and north of the plane that fits the feet best. It is
-/// drawn towards the horizontal by as much as one foot at the farthest distance would, so that the
-/// feet of a single building give a level plane.
+/// Height at the middle and slopes to the east and north of the plane that fits the feet best. It
+/// is drawn towards the horizontal by as much as one foot at the farthest distance would, so that
+/// the feet of a single building give a level plane.
 fn plane_through(feet: &[Point3<f64>], middle: &Point2<f64>) -> [f64; 3] {
     let count = feet.len() as f64;
     let reach = feet.iter().map(|p| (p.xy() - middle).norm_squared());

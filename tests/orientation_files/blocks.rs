@@ -161,9 +161,9 @@ fn the_forms_of_a_block_that_its_description_allows() {
         &["line 3", "<Yaw>", "M_00"],
     );
     refused(
-        "<CameraModelType>Fisheye</CameraModelType>",
+        "<CameraModelType>Spherical</CameraModelType>",
         &matrix,
-        &["\"Fisheye\"", "line 1"],
+        &["\"Spherical\"", "line 1"],
     );
     refused(
         "<FocalLength>9</FocalLength>",

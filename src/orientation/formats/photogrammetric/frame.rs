@@ -1,4 +1,4 @@
-//! Interior orientation of a photogrammetric camera: keys and values, millimetres, crops of a frame.
+//! Interior orientation of a photogrammetric camera: keys and values, millimetres, crops.
 
 use std::collections::BTreeMap;
 

@@ -1,6 +1,6 @@
 //! The columns that the heading of a list names, in the words of programs and languages.
 
-use super::list::{Separator, cells, is_number};
+use super::fields::{Separator, cells, is_number};
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::Point3;
 
+use super::fields::{Separator, cells, is_number, is_whole};
 use super::heading::{AngleKind, Columns, Heading, heading};
 use crate::error::{Error, Result};
 use crate::orientation::formats::text::{TextLine, lines, quoted};
@@ -18,15 +19,6 @@ const EXPECTED: &str = "image X0 Y0 Z0 omega phi kappa";
 
 /// Lines from which the form is found.
 const SAMPLE_LINES: usize = 20;
-
-/// What separates the fields of a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Separator {
-    Tab,
-    Semicolon,
-    Comma,
-    Blank,
-}
 
 /// How the numbers of a list are written, and where they stand.
 #[derive(Clone, Debug)]
@@ -209,7 +201,7 @@ impl<'a> Parts<'a> {
             Separator::Comma,
             Separator::Blank,
         ];
-        let mut best: Option<((usize, usize), Form)> = None;
+        let mut best: Option<((usize, usize, bool), Form)> = None;
         for decimal_comma in [false, true] {
             for separator in separators {
                 for columns in [columns, None] {
@@ -220,7 +212,10 @@ impl<'a> Parts<'a> {
                             columns: columns.cloned(),
                             is_numbered,
                         };
-                        let rank = (self.fitting(&form), self.numbers(&form));
+                        let fitting = self.fitting(&form);
+                        // A damaged line is explained as one without a running number.
+                        let is_plain = fitting == 0 && !is_numbered;
+                        let rank = (fitting, self.numbers(&form), is_plain);
                         if best.as_ref().is_none_or(|(most, _)| rank > *most) {
                             best = Some((rank, form));
                         }
@@ -233,16 +228,17 @@ impl<'a> Parts<'a> {
 
     /// Lines of the sample that can be read; none where running numbers cannot be told from names.
     fn fitting(&self, form: &Form) -> usize {
-        let poses: Vec<ListedPose> = (self.sample().iter())
-            .filter_map(|line| pose(line, form).ok().flatten())
+        let read: Vec<Option<ListedPose>> = (self.sample().iter())
+            .filter_map(|line| pose(line, form).ok())
             .collect();
         if form.is_numbered {
-            let names: BTreeSet<&str> = poses.iter().map(|p| &*p.image).collect();
-            if names.len() < poses.len() {
+            let poses = || read.iter().flatten();
+            let names: BTreeSet<&str> = poses().map(|p| &*p.image).collect();
+            if names.len() < poses().count() {
                 return 0;
             }
         }
-        poses.len()
+        read.len()
     }
 
     /// Numbers in the first line: where no line can be read, the nearest form explains why.
@@ -404,48 +400,6 @@ fn refuse_split_decimals(line: &TextLine, form: &Form) -> Result<()> {
     Ok(())
 }
 
-/// The fields of a line; what stands in quotation marks is one field.
-pub(crate) fn cells(text: &str, separator: Separator) -> Vec<&str> {
-    let is_separator = |c: char| match separator {
-        Separator::Tab => c == '\t',
-        Separator::Semicolon => c == ';',
-        Separator::Comma => c == ',',
-        Separator::Blank => c.is_whitespace(),
-    };
-    let trimmed = |text| str::trim_matches(text, |c: char| c.is_whitespace() && !is_separator(c));
-    let mut found = Vec::new();
-    let mut rest = text.trim();
-    loop {
-        rest = trimmed(rest);
-        if separator == Separator::Blank {
-            rest = rest.trim_start();
-            if rest.is_empty() {
-                break;
-            }
-        }
-        let (cell, after) = match in_quotes(rest, &is_separator) {
-            Some(parts) => parts,
-            None => rest.split_at(rest.find(is_separator).unwrap_or(rest.len())),
-        };
-        found.push(cell.trim());
-        let mut after = trimmed(after).chars();
-        if after.next().is_none() {
-            break;
-        }
-        rest = after.as_str();
-    }
-    found
-}
-
-/// What stands in quotation marks at the beginning, and what follows them.
-fn in_quotes<'a>(text: &'a str, is_separator: &dyn Fn(char) -> bool) -> Option<(&'a str, &'a str)> {
-    let mark = text.chars().next().filter(|c| ['"', '\''].contains(c))?;
-    let (inside, after) = text[1..].split_once(mark)?;
-    let next = after.trim_start_matches(|c: char| c == ' ' && !is_separator(c));
-    let ends = next.chars().next().is_none_or(is_separator);
-    ends.then_some((inside, after))
-}
-
 /// The text from one field to another.
 fn span<'a>(text: &'a str, first: &'a str, last: &'a str) -> &'a str {
     let begin = first.as_ptr() as usize - text.as_ptr() as usize;
@@ -483,15 +437,6 @@ fn without_groups(text: &str, group: char, decimal: char) -> Option<String> {
             && groups[0].len() <= 3;
     (is_grouped && !fraction.contains([group, decimal]))
         .then(|| format!("{}{decimal}{fraction}", whole.replace(group, "")))
-}
-
-/// Is a field a number with a decimal point?
-pub(crate) fn is_number(field: &str) -> bool {
-    field.parse::<f64>().is_ok()
-}
-
-fn is_whole(field: &str) -> bool {
-    !field.is_empty() && field.bytes().all(|b| b.is_ascii_digit())
 }
 
 fn is_image_name(field: &str) -> bool {

@@ -11,8 +11,9 @@
 //! frame: `crop NAME column row width height`; without a crop line the view is the whole frame. The
 //! rotation is that of [`rotation_from_omega_phi_kappa`], or of [`rotation_from_yaw_pitch_roll`]
 //! where the heading names these. Where nothing states the unit of the angles, all of them are
-//! handed on, and the images decide; the unit under which the views look at the same point is first.
+//! handed on, and the images decide; that under which the views look at the same point is first.
 
+mod fields;
 mod frame;
 mod heading;
 mod list;

@@ -289,8 +289,8 @@ impl XmlReader<'_> {
         ))
     }
 
-    /// Pixels from the principal point are M (x, y) / r of the polynomial P0 + P1 t + ... + P4 t^4 of
-    /// t = 2 theta / pi, with the matrix M.
+    /// Pixels from the principal point are M (x, y) / r of the polynomial P0 + P1 t + ... + P4
+    /// t^4 of t = 2 theta / pi, with the matrix M.
     fn fisheye(&self, group: Node) -> Result<(Matrix3<f64>, Option<Distortion>)> {
         let matrix = child(group, "FisheyeFocalMatrix")
             .ok_or_else(|| self.error(group, "<FisheyeFocalMatrix> is missing"))?;

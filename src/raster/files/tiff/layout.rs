@@ -13,7 +13,8 @@ pub enum Bands {
     All,
     /// Not those from the first to the last, counted from one, whose meaning is not stated.
     Without(u16, u16),
-    /// The first three of so many, taken for red, green and blue although the file names no colours.
+    /// The first three of so many, taken for red, green and blue although the file names no
+    /// colours.
     Unnamed(u16),
 }
 
