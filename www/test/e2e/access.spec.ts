@@ -152,7 +152,7 @@ async function atEverySize(page: Page): Promise<void> {
   for (const type of [1, 1.5]) {
     for (const [width, height] of SIZES) {
       await page.setViewportSize({ width, height });
-      expect(await overflow(page), `${width} px, type ${type}`).toBeLessThanOrEqual(0);
+      await expect.poll(() => overflow(page), `${width} px, type ${type}`).toBeLessThanOrEqual(0);
       const tabs = page.getByRole("tablist", { name: "Stage views" });
       if (await tabs.isVisible()) {
         expect(await tabs.evaluate((list) => list.scrollWidth - list.clientWidth)).toBeLessThanOrEqual(0);

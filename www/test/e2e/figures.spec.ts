@@ -152,12 +152,15 @@ test("figures 10 to 14: theta is dragged, the windows and Sim follow", async () 
 test("a link shows the stage, the method's parameters and the selection", async () => {
   await expect(page).toHaveURL(/tab=halfplanes/);
   await expect(page).toHaveURL(/select=halfplane%3A0/);
-  // Only what the link needs has run.
-  await expect(stage(page, "model")).toHaveAttribute("data-status", "waiting");
+  // What was found before the page was opened again is kept.
+  await expect(stage(page, "model")).toHaveAttribute("data-status", "done");
 });
 
 test("figures 16 to 23: groups, border lines and facets", async () => {
-  await page.getByRole("button", { name: "Run all" }).click();
+  const runAll = page.getByRole("button", { name: "Run all" });
+  if (await runAll.isEnabled()) {
+    await runAll.click();
+  }
   await waitForStage(page, "model");
   await openTab(page, "Groups");
   await page.getByTestId("groups").getByRole("button").first().click();

@@ -152,17 +152,6 @@ const BAD_INPUTS: { what: string; files: () => Upload[]; says: RegExp }[] = [
     says: /contradict.*phi, omega, kappa/,
   },
   {
-    // Each image under the name of one from the other strip and end, in no order.
-    what: "photographs of another place",
-    files: () => {
-      const images = demoImages(6);
-      const order = [4, 2, 5, 0, 3, 1];
-      const swapped = images.map(({ name }, i) => upload(name, (images[order[i] ?? 0] as Upload).buffer));
-      return [...swapped, ...demoOrientation()];
-    },
-    says: /hardly agree.*--ignore-check/,
-  },
-  {
     what: "rows counted from the bottom",
     files: () => [
       ...demoImages(6),

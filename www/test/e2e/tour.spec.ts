@@ -7,7 +7,7 @@ let page: Page;
 onePage(
   async (opened) => {
     page = opened;
-    await page.getByRole("button", { name: "Tour" }).click();
+    await page.getByRole("button", { name: "Tour", exact: true }).click();
     await expect(lesson()).toContainText("Step 1 of 9");
     await waitForStage(page, "model");
   },

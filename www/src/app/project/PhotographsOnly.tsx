@@ -24,7 +24,13 @@ export function PhotographsOnly() {
   });
   const count = inspection.value?.images.length ?? 0;
   return (
-    <div class="photographs-only" data-testid="photographs-only">
+    <section
+      class="photographs-only"
+      data-testid="photographs-only"
+      aria-label="Photographs without orientation"
+      // biome-ignore lint/a11y/noNoninteractiveTabindex: it scrolls by key.
+      tabIndex={0}
+    >
       <h2>{counted(count, "photographs")}, and no orientation yet</h2>
       <p>
         A model needs to know, for each photograph, where the camera stood, where it looked, and its focal
@@ -33,7 +39,7 @@ export function PhotographsOnly() {
       </p>
       <Recipes />
       <WhatIsKnown />
-    </div>
+    </section>
   );
 }
 

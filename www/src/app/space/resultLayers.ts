@@ -24,6 +24,7 @@ import { images, scene } from "../state/scene";
 import { selectionDetail } from "../state/selectionDetail";
 import { selection, tab } from "../state/viewState";
 import { isBeside } from "./keptBeside";
+import { modelMode } from "./ModelModes";
 
 /** Layers that a person switches; "stretches" and "turning" follow other switches. */
 export const LAYERS = [
@@ -123,7 +124,8 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   },
   ground: () => {
     const { ground } = results.value;
-    return ground && [() => buildGround(ground), ground];
+    // Beside a model without photographs on it, it would only distract.
+    return modelMode.value === "textured" && ground !== null ? [() => buildGround(ground), ground] : null;
   },
   facets: () => {
     const { facets } = results.value;
