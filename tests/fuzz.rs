@@ -161,7 +161,7 @@ fn read_orientation(files: &[InputFile]) {
     let kinds: Vec<_> = files.iter().map(detect).collect();
     let (sets, _) = orientation_sets(files, &kinds);
     for set in sets {
-        set.reference(files, None);
+        let _ = set.reference(files, None);
         check(set.read(files, &mut Vec::new()).map(|_| ()));
     }
 }

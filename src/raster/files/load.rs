@@ -225,7 +225,7 @@ fn unreadable(file: &str, problem: &str) -> Error {
     Error::File {
         file: file.to_owned(),
         problem: format!("the image cannot be read: {problem}"),
-        advice: "copy or export it again as JPEG, PNG or TIFF (8 or 16 bits)".to_owned(),
+        advice: "save it as JPEG, PNG or TIFF (8 or 16 bits)".to_owned(),
     }
 }
 

@@ -259,7 +259,11 @@ impl<'a, 'b, 'c> Chunk<'a, 'b, 'c> {
         let active = self.active_component;
         let kept = match count(None) {
             0 if active.is_some() && count(active) > 0 => active,
-            0 => (posed.iter().max_by_key(|(_, of)| count(*of))).and_then(|(_, of)| *of),
+            0 => {
+                let ids = self.components.iter().map(|c| c.id).chain([""]);
+                let used = ids.map(Some).filter(|id| count(*id) > 0);
+                used.max_by_key(|id| count(*id)).flatten()
+            }
             _ => None,
         };
         let others = posed.iter().filter(|(_, of)| *of != kept);
