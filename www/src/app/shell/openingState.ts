@@ -85,6 +85,5 @@ function isShown(stage: StageName): boolean {
 
 /** A line that the model adds to the matched ones? */
 function isNewLine(picked: Selection | null): boolean {
-  const { lines, facets } = results.value;
-  return picked?.kind === "line" && lines !== null && facets === null && lineEnds(picked.index).length === 0;
+  return picked?.kind === "line" && results.value.lines !== null && lineEnds(picked.index).length === 0;
 }

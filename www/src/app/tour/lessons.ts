@@ -123,11 +123,11 @@ export const LESSONS: readonly LessonStep[] = [
     },
     hint: () => {
       const { line, before, after } = pickedLine();
-      if (beforeGrowing.value) {
-        return "This is before growing.";
+      if (line === null) {
+        return null;
       }
-      return line === null
-        ? null
+      return beforeGrowing.value
+        ? "This is before growing."
         : `Line ${line} is ${after.toFixed(1)} m long, ${before.toFixed(1)} m before: look for one that gained more.`;
     },
     method: "lines",
