@@ -170,7 +170,7 @@ fn pairs(
             orientation: index,
         }));
     }
-    pairs.sort_by(|a, b| (a.rank, a.image, a.orientation).cmp(&(b.rank, b.image, b.orientation)));
+    pairs.sort_by_key(|pair| (pair.rank, pair.image, pair.orientation));
     pairs
 }
 
