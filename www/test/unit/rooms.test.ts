@@ -24,6 +24,7 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
       "app/settings",
       "app/session",
       "app/project",
+      "app/photographs",
       "app/selection",
       "app/inspector",
       "app/comparison",

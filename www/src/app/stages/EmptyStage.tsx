@@ -1,5 +1,5 @@
 /** What stands in the image tabs as long as there are no images. */
-import { PhotographsOnly } from "../project/PhotographsOnly";
+import { PhotographsOnly } from "../photographs/PhotographsOnly";
 import { openDemo } from "../project/projectActions";
 import { inspection } from "../state/project";
 import { startTour } from "../tour/lessons";
