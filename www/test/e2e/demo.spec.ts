@@ -78,7 +78,7 @@ test("one click turns the demo scene into a textured model that can be downloade
     await expect(stage(page, "halfplanes")).toHaveAttribute("data-status", "outdated");
     await expect(stage(page, "model")).toHaveAttribute("data-status", "outdated");
     await expect(stage(page, "lines")).toHaveAttribute("data-status", "done");
-    await expect(page.getByText("default 0.4", { exact: true })).toBeVisible();
+    await expect(page.locator("#param-sweep-min_similarity-note")).toHaveText("default 0.4");
   });
   expect(problems).toEqual([]);
 });
