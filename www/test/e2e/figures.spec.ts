@@ -160,6 +160,10 @@ test("figures 16 to 23: groups, border lines and facets", async () => {
   const runAll = page.getByRole("button", { name: "Run all" });
   if (await runAll.isEnabled()) {
     await runAll.click();
+    // What was kept stays in view until the run replaces it.
+    const cancel = page.getByRole("button", { name: "Cancel" });
+    await expect(cancel).toBeVisible();
+    await expect(cancel).toBeHidden({ timeout: 100_000 });
   }
   await waitForStage(page, "model");
   await openTab(page, "Groups");
