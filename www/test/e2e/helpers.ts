@@ -223,3 +223,18 @@ export function onePage(prepare: (page: Page) => Promise<void>, leave = async ()
     await page.close();
   });
 }
+
+/** What the browser keeps of the page; runs in the page. */
+export function storedKeys(): Promise<IDBValidKey[]> {
+  return new Promise((resolve, reject) => {
+    const opening = indexedDB.open("ridgeline", 1);
+    opening.onerror = () => reject(opening.error);
+    opening.onsuccess = () => {
+      const keys = opening.result.transaction("project").objectStore("project").getAllKeys();
+      keys.onsuccess = () => {
+        opening.result.close();
+        resolve(keys.result);
+      };
+    };
+  });
+}

@@ -1,6 +1,6 @@
 /** What lasts: the project over reloads, and the page without a network. */
 import { expect, test } from "@playwright/test";
-import { give, houseFiles, openParameters, waitForStage, watch } from "./helpers";
+import { give, houseFiles, openParameters, storedKeys, waitForStage, watch } from "./helpers";
 
 test("what was removed comes back on request", async ({ page }) => {
   await page.goto("/");
@@ -46,8 +46,8 @@ test("a reload keeps the project until it is deleted", async ({ page }) => {
   await waitForStage(page, "segments");
 
   await page.getByTestId("kept").getByRole("button", { name: "Delete" }).click();
-  await expect(page.locator(".view")).toHaveCount(0);
-  await page.waitForTimeout(600);
+  await expect(page.getByTestId("entrance")).toBeVisible();
+  await expect.poll(() => page.evaluate(storedKeys)).toEqual([]);
   await page.reload();
   await expect(page.getByTestId("entrance")).toBeVisible();
   expect(problems).toEqual([]);

@@ -1,6 +1,6 @@
 /** Clicks in any order, with the real core; every pair of actions is in test/unit/app/actionOrder.test.ts. */
 import { expect, test } from "@playwright/test";
-import { give, houseFiles, openTab, stage, waitForStage, watch } from "./helpers";
+import { give, houseFiles, openTab, stage, storedKeys, waitForStage, watch } from "./helpers";
 
 test("double clicks, the tour over the demo, own files next, and a reload", async ({ page }) => {
   test.setTimeout(200_000);
@@ -47,18 +47,3 @@ test("double clicks, the tour over the demo, own files next, and a reload", asyn
   await expect(alerts).toHaveCount(0);
   expect(problems).toEqual([]);
 });
-
-/** What the browser keeps of the page. */
-function storedKeys(): Promise<IDBValidKey[]> {
-  return new Promise((resolve, reject) => {
-    const opening = indexedDB.open("ridgeline", 1);
-    opening.onerror = () => reject(opening.error);
-    opening.onsuccess = () => {
-      const keys = opening.result.transaction("project").objectStore("project").getAllKeys();
-      keys.onsuccess = () => {
-        opening.result.close();
-        resolve(keys.result);
-      };
-    };
-  });
-}

@@ -3,12 +3,14 @@
  * fills its layer, and asking for it waits for the graphics beside the running pipeline.
  */
 import { Mesh, MeshBasicMaterial, type Object3D, Sphere, SphereGeometry, Texture, Vector3 } from "three";
+import type { GroundTexture } from "../../shared/calls";
 import { PALETTE } from "../../shared/palette";
 import type { Facet, FacetTrace, HalfPlane, LineRecord, SideRecord } from "../../shared/records";
 import { disposeObject, type Layer, unpicked } from "../scene/layer";
 import { buildFacets } from "./facets";
 import { buildFans } from "./fans";
 import { buildGrid } from "./grid";
+import { buildGround } from "./ground";
 import { buildGroups } from "./groups";
 import { buildHighlight } from "./highlight";
 import { buildLines } from "./lines";
@@ -16,6 +18,19 @@ import { edgeLines } from "./model";
 import { buildOutlines } from "./outlines";
 
 const LINES = Float64Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0);
+const GROUND: GroundTexture = {
+  about: {
+    corners: [
+      [0, 1, 0],
+      [1, 1, 0],
+      [1, 0, 0],
+      [0, 0, 0],
+    ],
+    width: 1,
+    height: 1,
+  },
+  rgba: new Uint8ClampedArray(4),
+};
 const PLANE = { normal: [0, 0, 1], d: 0 } as const;
 const NO_COVARIANCE: LineRecord["covariance"][number] = [0, 0, 0, 0, 0, 0];
 const SEEN: LineRecord = {
@@ -66,6 +81,7 @@ const GROUPING: FacetTrace = {
 export function warmupLayers(): Layer[] {
   return [
     buildLines(LINES, RECORDS, () => []),
+    buildGround(GROUND),
     buildFans([HALF_PLANE], LINES, [REJECTED]),
     buildGroups(GROUPING, LINES, [FACET]),
     buildFacets([FACET]),
