@@ -189,12 +189,12 @@ fn an_archive_stands_for_its_files() {
 }
 
 #[wasm_bindgen_test]
-fn an_image_without_orientation_is_refused() {
+fn an_image_without_orientation_is_left_out_and_named() {
     let mut files = synthetic_files();
     files.push(("images/stray.png".into(), files[0].1.clone()));
-    let (name, message) = refusal(&mut session_of(&files));
-    assert_eq!(name, "InputError");
-    assert!(message.contains("stray.png"), "{message}");
+    let info = session_of(&files).load(JsValue::UNDEFINED).unwrap();
+    let said = String::from(Array::from(&member(&info, "warnings")).join("\n"));
+    assert!(said.contains("stray.png"), "{said}");
 }
 
 #[wasm_bindgen_test]
