@@ -44,7 +44,7 @@ fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
         return Err(Error::File {
             file: file.path.clone(),
             problem: "its header and its content have different sizes".to_owned(),
-            advice: "export it again".to_owned(),
+            advice: "save it anew in an image program, at full size".to_owned(),
         });
     }
     if let Some(turn) = planned.turn {
