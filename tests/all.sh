@@ -56,6 +56,8 @@ if [ "${1:-all}" = all ]; then
     step identical check node tests/identical.mjs target/debug/ridgeline
     step typescript node www test:unit
     step size check www size
+    # Named, so that the comparison with it is not skipped.
+    export RIDGELINE=$PWD/target/debug/ridgeline
     step page playwright www test:e2e
 fi
 

@@ -11,6 +11,8 @@ const built = (profile: string) =>
   fileURLToPath(new URL(`../../../target/${profile}/ridgeline`, import.meta.url));
 const BINARY =
   process.env["RIDGELINE"] ?? ["debug", "release"].map(built).find(existsSync) ?? built("release");
+/** `make test` names the program: then it must be there. */
+const MAY_SKIP = process.env["RIDGELINE"] === undefined && !existsSync(BINARY);
 const REGION = "-31, -31, 31, 31";
 
 /** Runs the command line on files; the folder of its results. */
@@ -63,7 +65,7 @@ test("tiles run one after the other into the model of the command line", async (
   expect(Object.keys(JSON.parse(model.toString()).CityObjects)).toHaveLength(1);
   expect(problems).toEqual([]);
 
-  test.skip(!existsSync(BINARY), `there is no ${BINARY} to compare with`);
+  test.skip(MAY_SKIP, `there is no ${BINARY} to compare with`);
   const region = REGION.replaceAll(" ", "");
   const out = reconstruct(houseFiles(), ".", ["--roi", region, "--ground-z", "100", "--tile", "31"]);
   expect(model.equals(readFileSync(join(out, "model.city.json")))).toBe(true);
@@ -102,7 +104,7 @@ test("a project opens again to the same state, here and on the command line", as
   expect((await saved(page, "model.city.json")).equals(model)).toBe(true);
   expect(problems).toEqual([]);
 
-  test.skip(!existsSync(BINARY), `there is no ${BINARY} to compare with`);
+  test.skip(MAY_SKIP, `there is no ${BINARY} to compare with`);
   const out = reconstruct([{ name: "house.zip", buffer: project }], "house.zip", []);
   expect(model.equals(readFileSync(join(out, "model.city.json")))).toBe(true);
 });
