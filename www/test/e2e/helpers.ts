@@ -196,7 +196,8 @@ export function watch(page: Page): { problems: string[] } {
   });
   page.on("console", (message) => {
     // Of drawings, the browser says "Error: <path> attribute d: Expected moveto path command".
-    if (/Content Security Policy|<\w+> attribute/.test(message.text())) {
+    // three complains of what it is given in words that begin with its name.
+    if (/Content Security Policy|<\w+> attribute|^THREE\./.test(message.text())) {
       problems.push(message.text());
     }
   });

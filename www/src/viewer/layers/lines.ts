@@ -55,7 +55,9 @@ export function buildLines(
     );
     return { own, drawn: k === 0 ? drawn : dashed(drawn) };
   });
-  object.add(...parts.filter(({ own }) => own.length > 0).map(({ drawn }) => drawn));
+  for (const { drawn } of parts.filter(({ own }) => own.length > 0)) {
+    object.add(drawn);
+  }
   const chosen = new SelectedObject(object);
 
   return {

@@ -19,7 +19,7 @@ const SIZE = 0.024;
 export function nameLabels(names: readonly NamedPlace[]): Group {
   const group = new Group();
   // Where there is no canvas, as in unit tests, nothing is written.
-  if (typeof OffscreenCanvas !== "undefined") {
+  if (typeof OffscreenCanvas !== "undefined" && names.length > 0) {
     group.add(...names.slice(0, MOST_NAMES).map(label));
   }
   return group;
