@@ -196,9 +196,13 @@ export function watch(page: Page): { problems: string[] } {
   });
   page.on("console", (message) => {
     // Of drawings, the browser says "Error: <path> attribute d: Expected moveto path command".
-    // three complains of what it is given in words that begin with its name.
-    if (/Content Security Policy|<\w+> attribute|^THREE\./.test(message.text())) {
-      problems.push(message.text());
+    // three complains of what it is given by an error that begins with its name.
+    const text = message.text();
+    if (
+      /Content Security Policy|<\w+> attribute/.test(text) ||
+      (message.type() === "error" && text.startsWith("THREE."))
+    ) {
+      problems.push(text);
     }
   });
   return { problems };
