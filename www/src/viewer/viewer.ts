@@ -9,7 +9,7 @@ import {
   Plane,
   Raycaster,
   Scene,
-  type Sphere,
+  Sphere,
   Vector2,
   Vector3,
   WebGLRenderer,
@@ -19,6 +19,7 @@ import type { ThemeColours } from "../shared/palette";
 import type { ViewInfo } from "../shared/records";
 import type { Selection, Standpoint } from "../shared/selection";
 import { buildGrid } from "./layers/grid";
+import { standFor } from "./scene/bounds";
 import { yUp, zUp } from "./scene/frame";
 import { gpuFinished } from "./scene/gpuFence";
 import type { Layer } from "./scene/layer";
@@ -31,6 +32,10 @@ import { clippingPlane, type Section, sectionOf } from "./tools/section";
 
 const FIELD_OF_VIEW_DEG = 35;
 const PICK_REACH_PX = 7;
+/** From the south-west, as from a low aeroplane. */
+const FIRST_LOOK = new Vector3(-0.45, 0.72, 0.62).normalize();
+/** Room about what is looked at, for the tools above it. */
+const ROOM = 1.2;
 
 export class Viewer {
   readonly #renderer: WebGLRenderer;
@@ -186,17 +191,14 @@ export class Viewer {
     this.draw();
   }
 
-  /** Looks at a sphere from the south-west, as from a low aeroplane, and lays the grid below it. */
-  lookAt(bounds: Sphere): void {
-    this.#bounds = bounds.clone();
+  /** Looks at points so that they fill the canvas, and lays the grid below them. */
+  lookAt(points: readonly Vector3[]): void {
+    this.#bounds = new Box3().setFromPoints([...points]).getBoundingSphere(new Sphere());
     this.#takeAspect();
-    const upright = (FIELD_OF_VIEW_DEG * Math.PI) / 360;
-    const level = Math.atan(Math.tan(upright) * this.#camera.aspect);
-    const distance = bounds.radius / Math.sin(Math.min(upright, level));
-    this.#controls.target.copy(bounds.center);
-    this.#camera.position
-      .copy(bounds.center)
-      .addScaledVector(new Vector3(-0.45, 0.72, 0.62).normalize(), distance);
+    const upright = Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360) / ROOM;
+    const stand = standFor(points, FIRST_LOOK, [upright * this.#camera.aspect, upright]);
+    this.#controls.target.copy(stand.target);
+    this.#camera.position.copy(stand.position);
     this.#controls.update();
     this.#buildGrid();
     this.draw();
