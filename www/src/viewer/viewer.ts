@@ -31,6 +31,7 @@ import { PressWatch } from "./tools/press";
 import { clippingPlane, type Section, sectionOf } from "./tools/section";
 
 const FIELD_OF_VIEW_DEG = 35;
+const PAPER = 0xffffff;
 const PICK_REACH_PX = 7;
 /** From the south-west, as from a low aeroplane. */
 const FIRST_LOOK = new Vector3(-0.45, 0.72, 0.62).normalize();
@@ -93,12 +94,8 @@ export class Viewer {
     canvas.addEventListener("pointercancel", (event) => watch.cancel(event));
     this.#observer = new ResizeObserver(() => void this.#resize());
     this.#observer.observe(canvas);
-    window.addEventListener("beforeprint", this.#drawForPaper);
     this.setTheme(colours);
   }
-
-  /** What is printed is what is drawn in the same breath. */
-  readonly #drawForPaper = (): void => this.#render();
 
   /**
    * While it holds, the canvas keeps its pixels, and what is drawn is stretched to the canvas: pixels anew are waited for, up to
@@ -291,6 +288,19 @@ export class Viewer {
     return new Promise((resolve) => this.#renderer.domElement.toBlob(resolve, "image/png"));
   }
 
+  /** Draws the present picture on a plain canvas, on white: browsers print what WebGL drew last, or nothing. */
+  printOn(paper: HTMLCanvasElement): void {
+    const { domElement } = this.#renderer;
+    const onScreen = this.#scene.background;
+    this.#scene.background = new Color(PAPER);
+    this.#render();
+    this.#scene.background = onScreen;
+    paper.width = domElement.width;
+    paper.height = domElement.height;
+    paper.getContext("2d")?.drawImage(domElement, 0, 0);
+    this.draw();
+  }
+
   draw(): void {
     if (this.#frame === 0) {
       this.#frame = requestAnimationFrame(() => this.#render());
@@ -300,7 +310,6 @@ export class Viewer {
   dispose(): void {
     cancelAnimationFrame(this.#frame);
     this.#observer.disconnect();
-    window.removeEventListener("beforeprint", this.#drawForPaper);
     for (const name of [...this.#layers.keys()]) {
       this.setLayer(name, null);
     }

@@ -170,6 +170,14 @@ async function onPaper(page: Page): Promise<void> {
   await page.emulateMedia({ media: "print" });
   await expect(page.locator(".print-head")).toContainText("Roofs");
   await expect(page.getByTestId("viewer")).toBeVisible();
+  // What WebGL has drawn is copied for the printer, on white.
+  await page.pdf();
+  const paper = page.locator("canvas.paper");
+  await expect(paper).toBeVisible();
+  const corner = await paper.evaluate((canvas: HTMLCanvasElement) =>
+    Array.from(canvas.getContext("2d")?.getImageData(0, 0, 1, 1).data ?? []),
+  );
+  expect(corner).toEqual([255, 255, 255, 255]);
   for (const control of [".header", ".tabs", ".rail", ".space-tools", ".dropzone"]) {
     await expect(page.locator(control).first(), control).toBeHidden();
   }

@@ -56,6 +56,12 @@ const viewer = signal<Viewer | null>(null);
 export function SpaceView({ hidden }: { hidden: boolean }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => createViewer(canvas.current), []);
+  const paper = useRef<HTMLCanvasElement>(null);
+  useEffect(() => {
+    const print = () => paper.current !== null && viewer.value?.printOn(paper.current);
+    window.addEventListener("beforeprint", print);
+    return () => window.removeEventListener("beforeprint", print);
+  }, []);
   useLayers();
   const isEmpty = layerIsEmpty(tab.value);
   return (
@@ -98,6 +104,7 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
             }
           }}
         />
+        <canvas ref={paper} class="paper" />
         {tab.value === "model" && <Unmodelled />}
         {isEmpty && (
           <div class="empty over">
