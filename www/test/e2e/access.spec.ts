@@ -42,7 +42,8 @@ test("the entrance: a model on its ground before the core is there, at every siz
   }
   for (const [width, height] of SIZES) {
     await page.setViewportSize({ width, height });
-    expect(await overflow(page), `${width} px`).toBeLessThanOrEqual(0);
+    // The layout follows the size a moment later.
+    await expect.poll(() => overflow(page), `${width} px`).toBeLessThanOrEqual(0);
     for (const name of ["How?", "Demo scene", "Files…", "Folder…"]) {
       await expect(entrance.getByRole("button", { name, exact: true }), name).toBeVisible();
     }
