@@ -98,7 +98,10 @@ impl Plan {
         }
         if images.is_empty() && self.errors.is_empty() {
             self.errors.push(Error::Scene {
-                problem: format!("there is no image among the {} files", files.len()),
+                problem: match files.len() {
+                    1 => "the one file that was given is no image".to_owned(),
+                    count => format!("there is no image among the {count} files"),
+                },
                 advice: "add three or more JPEG, PNG or TIFF images".to_owned(),
             });
         }

@@ -124,7 +124,7 @@ fn images_and_orientations_without_each_other() {
         &["no orientation was found: colmap/cameras.txt has no COLMAP image list"],
     );
     files.retain(|f| !f.path.starts_with("images/"));
-    refused(&files, &all(), &["no image among the 1 files"]);
+    refused(&files, &all(), &["the one file that was given is no image"]);
 }
 
 #[test]

@@ -44,8 +44,9 @@ async function pickHalfPlane(page) {
 
 /** Opens a link of the page itself, whose address holds the state of a view, and waits for the stage that it needs. */
 const link = (fields, stage) => async (page) => {
+  // Anew: what a reload brings back has no figures that ask the core.
+  await page.goto("about:blank");
   await page.goto(`${SITE}#scene=demo&${fields}`);
-  await page.reload();
   const isDone = (name) => document.querySelector(`[data-stage="${name}"]`)?.dataset.status === "done";
   await page.waitForFunction(isDone, stage, { timeout: 120_000 });
   await page.waitForTimeout(1000);

@@ -72,7 +72,7 @@ export async function createTurntable(
   });
   floor.geometry.computeBoundingSphere();
   const { center, radius } = floor.geometry.boundingSphere ?? { center: new Vector3(), radius: 30 };
-  controls.target.copy(center).add(new Vector3(0, 2, 0));
+  controls.target.copy(center).add(new Vector3(0, -0.5, 0));
 
   /** The whole ground in the picture, whatever its shape. */
   const fit = () => {

@@ -9,7 +9,7 @@ import {
   Plane,
   Raycaster,
   Scene,
-  type Sphere,
+  Sphere,
   Vector2,
   Vector3,
   WebGLRenderer,
@@ -19,6 +19,7 @@ import type { ThemeColours } from "../shared/palette";
 import type { ViewInfo } from "../shared/records";
 import type { Selection, Standpoint } from "../shared/selection";
 import { buildGrid } from "./layers/grid";
+import { standFor } from "./scene/bounds";
 import { yUp, zUp } from "./scene/frame";
 import { gpuFinished } from "./scene/gpuFence";
 import type { Layer } from "./scene/layer";
@@ -30,7 +31,12 @@ import { PressWatch } from "./tools/press";
 import { clippingPlane, type Section, sectionOf } from "./tools/section";
 
 const FIELD_OF_VIEW_DEG = 35;
+const PAPER = 0xffffff;
 const PICK_REACH_PX = 7;
+/** From the south-west, as from a low aeroplane. */
+const FIRST_LOOK = new Vector3(-0.45, 0.72, 0.62).normalize();
+/** Room about what is looked at, for the tools above it. */
+const ROOM = 1.2;
 
 export class Viewer {
   readonly #renderer: WebGLRenderer;
@@ -88,12 +94,8 @@ export class Viewer {
     canvas.addEventListener("pointercancel", (event) => watch.cancel(event));
     this.#observer = new ResizeObserver(() => void this.#resize());
     this.#observer.observe(canvas);
-    window.addEventListener("beforeprint", this.#drawForPaper);
     this.setTheme(colours);
   }
-
-  /** What is printed is what is drawn in the same breath. */
-  readonly #drawForPaper = (): void => this.#render();
 
   /**
    * While it holds, the canvas keeps its pixels, and what is drawn is stretched to the canvas: pixels anew are waited for, up to
@@ -186,17 +188,14 @@ export class Viewer {
     this.draw();
   }
 
-  /** Looks at a sphere from the south-west, as from a low aeroplane, and lays the grid below it. */
-  lookAt(bounds: Sphere): void {
-    this.#bounds = bounds.clone();
+  /** Looks at points so that they fill the canvas, and lays the grid below them. */
+  lookAt(points: readonly Vector3[]): void {
+    this.#bounds = new Box3().setFromPoints([...points]).getBoundingSphere(new Sphere());
     this.#takeAspect();
-    const upright = (FIELD_OF_VIEW_DEG * Math.PI) / 360;
-    const level = Math.atan(Math.tan(upright) * this.#camera.aspect);
-    const distance = bounds.radius / Math.sin(Math.min(upright, level));
-    this.#controls.target.copy(bounds.center);
-    this.#camera.position
-      .copy(bounds.center)
-      .addScaledVector(new Vector3(-0.45, 0.72, 0.62).normalize(), distance);
+    const upright = Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360) / ROOM;
+    const stand = standFor(points, FIRST_LOOK, [upright * this.#camera.aspect, upright]);
+    this.#controls.target.copy(stand.target);
+    this.#camera.position.copy(stand.position);
     this.#controls.update();
     this.#buildGrid();
     this.draw();
@@ -289,6 +288,19 @@ export class Viewer {
     return new Promise((resolve) => this.#renderer.domElement.toBlob(resolve, "image/png"));
   }
 
+  /** Draws the present picture on a plain canvas, on white: browsers print what WebGL drew last, or nothing. */
+  printOn(paper: HTMLCanvasElement): void {
+    const { domElement } = this.#renderer;
+    const onScreen = this.#scene.background;
+    this.#scene.background = new Color(PAPER);
+    this.#render();
+    this.#scene.background = onScreen;
+    paper.width = domElement.width;
+    paper.height = domElement.height;
+    paper.getContext("2d")?.drawImage(domElement, 0, 0);
+    this.draw();
+  }
+
   draw(): void {
     if (this.#frame === 0) {
       this.#frame = requestAnimationFrame(() => this.#render());
@@ -298,7 +310,6 @@ export class Viewer {
   dispose(): void {
     cancelAnimationFrame(this.#frame);
     this.#observer.disconnect();
-    window.removeEventListener("beforeprint", this.#drawForPaper);
     for (const name of [...this.#layers.keys()]) {
       this.setLayer(name, null);
     }

@@ -42,7 +42,8 @@ test("the entrance: a model on its ground before the core is there, at every siz
   }
   for (const [width, height] of SIZES) {
     await page.setViewportSize({ width, height });
-    expect(await overflow(page), `${width} px`).toBeLessThanOrEqual(0);
+    // The layout follows the size a moment later.
+    await expect.poll(() => overflow(page), `${width} px`).toBeLessThanOrEqual(0);
     for (const name of ["How?", "Demo scene", "Files…", "Folder…"]) {
       await expect(entrance.getByRole("button", { name, exact: true }), name).toBeVisible();
     }
@@ -170,6 +171,14 @@ async function onPaper(page: Page): Promise<void> {
   await page.emulateMedia({ media: "print" });
   await expect(page.locator(".print-head")).toContainText("Roofs");
   await expect(page.getByTestId("viewer")).toBeVisible();
+  // What WebGL has drawn is copied for the printer, on white.
+  await page.pdf();
+  const paper = page.locator("canvas.paper");
+  await expect(paper).toBeVisible();
+  const corner = await paper.evaluate((canvas: HTMLCanvasElement) =>
+    Array.from(canvas.getContext("2d")?.getImageData(0, 0, 1, 1).data ?? []),
+  );
+  expect(corner).toEqual([255, 255, 255, 255]);
   for (const control of [".header", ".tabs", ".rail", ".space-tools", ".dropzone"]) {
     await expect(page.locator(control).first(), control).toBeHidden();
   }

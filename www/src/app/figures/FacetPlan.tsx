@@ -22,12 +22,14 @@ export function FacetLab() {
         <Fit>{(frame) => <Plan frame={frame} grouping={grouping} facets={facets} />}</Fit>
         <figcaption class="muted numbers">
           <ul class="legend">
-            {BORDER_KINDS.map((kind) => (
-              <li key={kind}>
-                <span class={`swatch border-${kind}`} aria-hidden="true" />
-                {BORDER_WORDS[kind]} {grouping.borders.filter((border) => border.kind === kind).length}
-              </li>
-            ))}
+            {BORDER_KINDS.map((kind) => [kind, countOf(kind, grouping)] as const)
+              .filter(([, count]) => count > 0)
+              .map(([kind, count]) => (
+                <li key={kind}>
+                  <span class={`swatch border-${kind}`} aria-hidden="true" />
+                  {BORDER_WORDS[kind]} {count}
+                </li>
+              ))}
             <li>
               <span class="swatch rejected" aria-hidden="true" />
               rejected {grouping.rejected.length}
@@ -48,6 +50,10 @@ const BORDER_WORDS = {
   closing: "closing lines",
   rectangle: "sides of rectangles",
 };
+
+function countOf(kind: (typeof BORDER_KINDS)[number], { borders }: FacetTrace): number {
+  return borders.filter((border) => border.kind === kind).length;
+}
 
 /** In SVG the attribute has no capital. */
 const FOCUSABLE = { tabindex: 0 };

@@ -1,26 +1,18 @@
 /** What the colours of the present tab mean. */
+import type { LineOrigin } from "../../shared/records";
 import type { Tab } from "../state/methods";
-import { tab, withRejected } from "../state/viewState";
+import { results } from "../state/results";
+import { beforeGrowing, tab, withRejected } from "../state/viewState";
 
-const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
+type Entry = readonly [colour: string, meaning: string];
+
+const ENTRIES: Partial<Record<Tab, readonly Entry[]>> = {
   segments: [["unmatched", "segment"]],
   matches: [
     ["unmatched", "unmatched"],
     ["matched", "matched"],
     ["merged", "merged"],
     ["grown", "grown"],
-  ],
-  lines: [
-    ["matched", "matched"],
-    ["grown", "from regions"],
-    ["border-intersection", "intersection"],
-    ["border-inplane", "border"],
-    ["rejected", "contradicted"],
-  ],
-  halfplanes: [
-    ["matched", "3D line"],
-    ["half-plane", "half-plane"],
-    ["rejected", "rejected side"],
   ],
   groups: [
     ["bar", "line found in a plane"],
@@ -47,9 +39,52 @@ const ENTRIES: Partial<Record<Tab, readonly (readonly [string, string])[]>> = {
   ],
 };
 
+const LINE_ENTRIES: readonly (readonly [LineOrigin, string, string])[] = [
+  ["matched", "matched", "matched"],
+  ["clustered", "grown", "from regions"],
+  ["intersection", "border-intersection", "intersection"],
+  ["border", "border-inplane", "border"],
+];
+
+/** The kinds of 3D lines that there are. */
+function lineEntries(): Entry[] {
+  const { records } = results.value;
+  if (records.length === 0 || (tab.value === "lines" && beforeGrowing.value)) {
+    return [["matched", "matched"]];
+  }
+  const origins = new Set(records.filter((one) => one.contradiction == null).map(({ origin }) => origin));
+  return LINE_ENTRIES.filter(([origin]) => origins.has(origin)).map(([, ...entry]) => entry);
+}
+
+function hasContradicted(): boolean {
+  return results.value.records.some(({ contradiction }) => contradiction != null);
+}
+
+/** What is drawn now: an entry without anything in its colour would be looked for. */
+function presentEntries(): readonly Entry[] {
+  switch (tab.value) {
+    case "lines":
+      return hasContradicted() && !beforeGrowing.value
+        ? [...lineEntries(), ["rejected", "contradicted"]]
+        : lineEntries();
+    case "halfplanes":
+      return [
+        ...lineEntries().map(([colour, what]): Entry => [colour, what === "matched" ? "3D line" : what]),
+        ["half-plane", "half-plane"],
+        ["rejected", hasContradicted() ? "rejected side, contradicted line" : "rejected side"],
+      ];
+    case "segments":
+      return [
+        ...(ENTRIES.segments ?? []),
+        ...(withRejected.value ? [["rejected", "rejected"] as const] : []),
+      ];
+    default:
+      return ENTRIES[tab.value] ?? [];
+  }
+}
+
 export function Legend() {
-  const rejected = tab.value === "segments" && withRejected.value ? [["rejected", "rejected"] as const] : [];
-  const entries = [...(ENTRIES[tab.value] ?? []), ...rejected];
+  const entries = presentEntries();
   if (entries.length === 0) {
     return null;
   }

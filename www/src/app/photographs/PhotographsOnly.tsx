@@ -2,7 +2,7 @@
 import { counted } from "../parts/counted";
 import "./photographsOnly.css";
 import { signal, useSignalEffect } from "@preact/signals";
-import type { ComponentChildren } from "preact";
+import { type ComponentChildren, Fragment } from "preact";
 import { files, inspection } from "../state/project";
 import { type PhotographFacts, planOf, readFacts, scaleBarM } from "./photographFacts";
 
@@ -54,16 +54,13 @@ function Recipes() {
         </li>
         <li>Drop both files here.</li>
       </Recipe>
-      <Recipe title="COLMAP (free)" writes="cameras.txt and images.txt">
+      <Recipe title="COLMAP (free)" writes="cameras.bin and images.bin">
         <li>
-          <code>colmap automatic_reconstructor --workspace_path w --image_path photographs</code>
+          <Command of="colmap automatic_reconstructor --workspace_path w --image_path photographs" />
         </li>
         <li>
           In metres, with Z up:{" "}
-          <code>
-            colmap model_aligner --input_path w/sparse/0 --output_path w/sparse/0 --database_path
-            w/database.db --ref_is_gps 1 --alignment_type enu --alignment_max_error 3
-          </code>
+          <Command of="colmap model_aligner --input_path w/sparse/0 --output_path w/sparse/0 --database_path w/database.db --ref_is_gps 1 --alignment_type enu --alignment_max_error 3" />
         </li>
         <li>
           Drop <code>cameras.bin</code> and <code>images.bin</code> of <code>w/sparse/0</code>, or the same as
@@ -80,6 +77,19 @@ function Recipes() {
         <li>Drop the file here.</li>
       </Recipe>
     </div>
+  );
+}
+
+/** Words stay whole where the line breaks: "--" alone would be no option. */
+function Command({ of }: { of: string }) {
+  return (
+    <code>
+      {of.split(" ").map((word, i) => (
+        <Fragment key={i}>
+          <span>{word}</span>{" "}
+        </Fragment>
+      ))}
+    </code>
   );
 }
 
@@ -126,7 +136,7 @@ function WhatIsKnown() {
                   <th scope="row">{one.path.slice(one.path.lastIndexOf("/") + 1)}</th>
                   <td>{one.camera ?? "–"}</td>
                   <td>{one.focalMm === null ? "–" : `${Number(one.focalMm.toFixed(2))} mm`}</td>
-                  <td>{one.taken?.toLocaleString() ?? "–"}</td>
+                  <td>{takenText(one.taken)}</td>
                   <td>{positionText(one.position)}</td>
                 </tr>
               ))}
@@ -136,6 +146,16 @@ function WhatIsKnown() {
       </div>
     </section>
   );
+}
+
+/** Largest unit first: no country reads it differently. */
+function takenText(taken: PhotographFacts["taken"]): string {
+  if (taken === null) {
+    return "–";
+  }
+  const two = (value: number) => String(value).padStart(2, "0");
+  const day = [taken.getFullYear(), taken.getMonth() + 1, taken.getDate()].map(two).join("-");
+  return `${day} ${two(taken.getHours())}:${two(taken.getMinutes())}`;
 }
 
 function positionText(position: PhotographFacts["position"]): string {
@@ -181,7 +201,7 @@ function Plan({ all }: { all: readonly PhotographFacts[] }) {
         {bar} m
       </text>
       <path class="bar" d={`M${SIDE - 14} 28v-20m-4 6l4-6l4 6`} />
-      <text x={SIDE - 26} y={20}>
+      <text x={SIDE - 34} y={22}>
         N
       </text>
     </svg>

@@ -26,6 +26,7 @@ import { dismissAbout, dismissOffers, notify } from "../state/notices";
 import { defaults, method, params, replaceParams } from "../state/parameters";
 import {
   files,
+  hasPhotographsOnly,
   inspection,
   isDemo,
   markAsDemo,
@@ -291,7 +292,9 @@ async function loadProject(adopt?: () => Promise<void>): Promise<void> {
     await ensureScene();
     return;
   }
-  for (const notice of refusalNotices(problems)) {
+  // What is missing, and how to come by it, fills the page already.
+  const isSaid = hasPhotographsOnly.value && problems.length === 1;
+  for (const notice of isSaid ? [] : refusalNotices(problems)) {
     notify(notice);
   }
 }

@@ -29,7 +29,10 @@ export function Header() {
     <header class="header">
       <img src="./icon.svg" alt="" width="22" height="22" />
       <h1>ridgeline</h1>
-      <p class="muted">Aerial photographs in, textured roof models out. Nothing leaves this computer.</p>
+      <p class="muted">
+        <span class="what">Aerial photographs in, textured roof models out. </span>Nothing leaves this
+        computer.
+      </p>
       {activity.value !== "" && (
         <span class="activity">
           <span class="spinner" aria-hidden="true" />

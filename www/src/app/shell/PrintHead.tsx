@@ -2,7 +2,6 @@
 import { counted } from "../parts/counted";
 import "./print.css";
 import { slopedArea } from "../parts/facetArea";
-import { grouped } from "../parts/numberText";
 import { stageWords } from "../session/stageCatalogue";
 import { method } from "../state/parameters";
 import { projectName } from "../state/project";
@@ -31,7 +30,7 @@ export function PrintHead() {
                 <th scope="row">{stageWords(name).title}</th>
                 <td>
                   {Object.entries(counts)
-                    .map(([what, count]) => `${grouped(count)} ${what.replaceAll("_", " ")}`)
+                    .map(([what, count]) => counted(count, what.replaceAll("_", " ")))
                     .join(", ")}
                 </td>
               </tr>
@@ -66,7 +65,7 @@ function RoofAreas() {
           const own = facets.filter(({ building }) => building === number);
           return (
             <tr key={number}>
-              <td>{number + 1}</td>
+              <td>{number}</td>
               <td>{own.length}</td>
               <td>{own.reduce((sum, facet) => sum + slopedArea(facet), 0).toFixed(1)} m²</td>
             </tr>

@@ -62,8 +62,8 @@ function Profile(of: { frame: Frame; section: Section; reach: Scale; range: Scal
           {text}
         </text>
       ))}
-      {heightLabels(section.pieces, at, ground).map(([text, lx, ly]) => (
-        <text key={`${lx} ${ly}`} class="profile-height" x={lx} y={ly} text-anchor="middle">
+      {heightLabels(section.pieces, at, ground).map(({ text, x: lx, y: ly, anchor }) => (
+        <text key={`${lx} ${ly}`} class="profile-height" x={lx} y={ly} text-anchor={anchor}>
           {text}
         </text>
       ))}
@@ -92,21 +92,43 @@ type Label = [text: string, x: number, y: number];
 function slopeLabels(pieces: readonly ProfilePiece[], at: At): Label[] {
   return pieces.flatMap(({ from, to, slope }): Label[] => {
     const [[x1, y1], [x2, y2]] = [at(from), at(to)];
-    if (Math.abs(slope) > WALL || x2 - x1 < LABEL_SPACE) {
+    // The level base of a building needs no slope, and its heights stand there.
+    if (Math.abs(slope) > WALL || x2 - x1 < LABEL_SPACE || to[1] === from[1]) {
       return [];
     }
     return [[`${((slope * 180) / Math.PI).toFixed(1)}°`, (x1 + x2) / 2, (y1 + y2) / 2 + 14]];
   });
 }
 
+/** Below what is lowest, beside what rises away from it, else above: no label lies on the profile. */
+interface HeightLabel {
+  text: string;
+  x: number;
+  y: number;
+  anchor: "start" | "middle" | "end";
+}
+
+const FLAT_M = 0.1;
+
 /** Heights at the ends of the pieces, the highest first, as far as there is room. */
-function heightLabels(pieces: readonly ProfilePiece[], at: At, ground: number): Label[] {
-  const ends = pieces.filter(({ slope }) => Math.abs(slope) <= WALL).flatMap(({ from, to }) => [from, to]);
-  const labels: Label[] = [];
-  for (const end of ends.sort((p, q) => q[1] - p[1])) {
-    const [x, y] = at(end);
-    if (labels.every(([, lx, ly]) => Math.abs(lx - x) > LABEL_SPACE || Math.abs(ly + 5 - y) > 20)) {
-      labels.push([(end[1] + ground).toFixed(2), x, y - 5]);
+function heightLabels(pieces: readonly ProfilePiece[], at: At, ground: number): HeightLabel[] {
+  const lowest = Math.min(...pieces.flatMap(({ from, to }) => [from[1], to[1]]));
+  const ends = pieces
+    .filter(({ slope }) => Math.abs(slope) <= WALL)
+    .flatMap(({ from, to }) => {
+      const rise = to[1] - from[1];
+      return [
+        { end: from, anchor: rise > FLAT_M ? ("end" as const) : ("middle" as const) },
+        { end: to, anchor: rise < -FLAT_M ? ("start" as const) : ("middle" as const) },
+      ];
+    });
+  const labels: HeightLabel[] = [];
+  for (const { end, anchor } of ends.sort((p, q) => q.end[1] - p.end[1])) {
+    const [x, corner] = at(end);
+    const isLowest = end[1] - lowest < FLAT_M;
+    const y = isLowest ? corner + 14 : corner - 5;
+    if (labels.every((label) => Math.abs(label.x - x) > LABEL_SPACE || Math.abs(label.y - y) > 15)) {
+      labels.push({ text: (end[1] + ground).toFixed(2), x, y, anchor: isLowest ? "middle" : anchor });
     }
   }
   return labels;

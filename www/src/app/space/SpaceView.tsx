@@ -2,12 +2,13 @@
 import "./space.css";
 import { computed, signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
+import { Box3, Vector3 } from "three";
 import { THEME_COLOURS } from "../../shared/palette";
 import type { Vec3 } from "../../shared/records";
 import { GRID_STEP_M } from "../../viewer/layers/grid";
 import { warmupLayers } from "../../viewer/layers/shaderWarmup";
 import { enlargement } from "../../viewer/layers/uncertainty";
-import { boundsOf, boundsOfFacets, boundsOfLines, withCameras } from "../../viewer/scene/bounds";
+import { cornersOf, cornersOfFacets, endsOfLines, withCameras } from "../../viewer/scene/bounds";
 import { Viewer } from "../../viewer/viewer";
 import { presentTitle } from "../comparison/comparedResults";
 import { Legend } from "../parts/Legend";
@@ -55,6 +56,12 @@ const viewer = signal<Viewer | null>(null);
 export function SpaceView({ hidden }: { hidden: boolean }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => createViewer(canvas.current), []);
+  const paper = useRef<HTMLCanvasElement>(null);
+  useEffect(() => {
+    const print = () => paper.current !== null && viewer.value?.printOn(paper.current);
+    window.addEventListener("beforeprint", print);
+    return () => window.removeEventListener("beforeprint", print);
+  }, []);
   useLayers();
   const isEmpty = layerIsEmpty(tab.value);
   return (
@@ -97,6 +104,7 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
             }
           }}
         />
+        <canvas ref={paper} class="paper" />
         {tab.value === "model" && <Unmodelled />}
         {isEmpty && (
           <div class="empty over">
@@ -205,7 +213,7 @@ function useLayers(): void {
   useSignalEffect(() => {
     const found = lines.peek();
     if (lineStage.value !== null && found !== null) {
-      viewer.value?.lookAt(boundsOfLines(found));
+      viewer.value?.lookAt(endsOfLines(found));
     }
   });
   useModels(viewer);
@@ -240,28 +248,28 @@ function fitView(): void {
   standAt(null);
   const centres = scene.value?.views.map(({ center }) => center) ?? [];
   const areShown = shownLayers.value[tab.value].includes("cameras");
-  viewer.value?.lookAt(areShown ? withCameras(boundsNow(), centres) : boundsNow());
+  viewer.value?.lookAt(areShown ? withCameras(pointsNow(), centres) : pointsNow());
 }
 
-/** The middle of what is shown, local frame: the bounds are in the viewer's. */
+/** The middle of what is shown, local frame: the points are in the viewer's. */
 function middleNow(): Vec3 {
-  const { x, y, z } = boundsNow().center;
+  const { x, y, z } = new Box3().setFromPoints(pointsNow()).getCenter(new Vector3());
   return [x, -z, y];
 }
 
 /** Tabs about facets. */
 const FACET_TABS: readonly Tab[] = ["facets", "refinement", "rectangles"];
 
-/** What the present tab shows, as a sphere in the viewer's frame. */
-function boundsNow() {
+/** What the present tab shows, in the viewer's frame. */
+function pointsNow(): Vector3[] {
   const { facets } = results.value;
   if (tab.value === "model" && model.value !== null) {
-    return boundsOf(model.value.object);
+    return cornersOf(model.value.object);
   }
   if (FACET_TABS.includes(tab.value) && facets !== null && facets.length > 0) {
-    return boundsOfFacets(facets);
+    return cornersOfFacets(facets);
   }
-  return boundsOfLines(lines.value ?? new Float64Array());
+  return endsOfLines(lines.value ?? new Float64Array());
 }
 
 function layerIsEmpty(name: Tab): boolean {

@@ -24,7 +24,7 @@ export function Unmodelled() {
   };
   return (
     <button type="button" class="unmodelled" onClick={showNext}>
-      Rejected: {counted(planes.length, "roof planes")}
+      {counted(planes.length, "roof planes")} found, but not in the model: show
     </button>
   );
 }

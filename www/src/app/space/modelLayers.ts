@@ -2,7 +2,7 @@
 import { computed, type ReadonlySignal, type Signal, signal, useSignalEffect } from "@preact/signals";
 import { THEME_COLOURS } from "../../shared/palette";
 import { buildModel, type ModelLayer } from "../../viewer/layers/model";
-import { boundsOf } from "../../viewer/scene/bounds";
+import { cornersOf } from "../../viewer/scene/bounds";
 import { unpicked } from "../../viewer/scene/layer";
 import type { Viewer } from "../../viewer/viewer";
 import { keptResult } from "../state/keptResult";
@@ -48,7 +48,7 @@ export function useModels(viewer: ReadonlySignal<Viewer | null>): void {
   });
   useSignalEffect(() => {
     if (model.value !== null) {
-      viewer.peek()?.lookAt(boundsOf(model.value.object));
+      viewer.peek()?.lookAt(cornersOf(model.value.object));
     }
   });
 }

@@ -8,7 +8,7 @@ import { cancel } from "../session/session";
 import { stageWords } from "../session/stageCatalogue";
 import { runAll, runTo } from "../session/stageRuns";
 import { isBusy, phase } from "../state/activity";
-import { files } from "../state/project";
+import { files, hasPhotographsOnly } from "../state/project";
 import { freshStages, type StageState, type StageStatus, stages } from "../state/stages";
 import { showTab } from "../state/viewState";
 import { chooseWorkers, chosenWorkers, usefulWorkers } from "../state/workers";
@@ -79,7 +79,7 @@ function WorkerChoice() {
 
 /** Whether there is something to run among the first `count` stages, and nothing else going on. */
 function canRun(count: number): boolean {
-  return files.value.length > 0 && !isBusy.value && freshStages.value < count;
+  return files.value.length > 0 && !hasPhotographsOnly.value && !isBusy.value && freshStages.value < count;
 }
 
 function StageCard({ stage, position }: { stage: StageState; position: number }) {
@@ -128,8 +128,13 @@ function statusLine(stage: StageState): string {
   if (stage.status === "running") {
     return `${Math.round(100 * stage.fraction)} %`;
   }
-  const time = stage.seconds === null ? "" : `${stage.seconds.toFixed(1)} s`;
+  const time = stage.seconds === null ? "" : secondsText(stage.seconds);
   return stage.status === "outdated" || stage.status === "failed" ? STATUS_WORDS[stage.status] : time;
+}
+
+/** What takes no time that anybody waits for is not "0.0 s". */
+function secondsText(seconds: number): string {
+  return seconds < 0.05 ? "< 0.1 s" : `${seconds.toFixed(1)} s`;
 }
 
 function countsText({ counts, seconds }: StageState): string {

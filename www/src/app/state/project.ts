@@ -1,5 +1,5 @@
 /** The project: its files, what they were recognised as, and what is asked for beyond them. */
-import { batch, type ReadonlySignal, signal } from "@preact/signals";
+import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
 import type { InputFile } from "../../shared/calls";
 import type { Inspection } from "../../shared/records";
 
@@ -47,6 +47,13 @@ export const isDemo: ReadonlySignal<boolean> = present.isDemo;
 export const projectName: ReadonlySignal<string> = present.name;
 export const runOptions: ReadonlySignal<RunOptions> = present.options;
 export const inspection: ReadonlySignal<Inspection | null> = present.inspection;
+
+/** Whether there are photographs, none of them oriented, and nothing that was meant to orient them. */
+export const hasPhotographsOnly = computed(() => {
+  const { files: known, images } = inspection.value ?? { files: [], images: [] };
+  const isHelpless = known.every(({ kind }) => kind === "image" || kind === "ignored");
+  return isHelpless && images.length > 0 && images.every(({ orientation }) => orientation === null);
+});
 
 /** Other files: nothing is known of them yet, and without any nothing is asked for. */
 export function replaceFiles(next: InputFile[]): void {

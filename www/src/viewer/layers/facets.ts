@@ -32,7 +32,7 @@ export function buildFacets(facets: readonly Facet[]): Layer {
     new Array<number>(positions.length / 9).fill(i),
   );
   const all = facetMesh(triangles, facets.map(normalTint));
-  const names = facets.map(({ outer }, i) => ({ text: `Facet ${i}`, at: middleOf(outer) }));
+  const names = facets.map(({ outer }, i) => ({ text: String(i), at: middleOf(outer) }));
   object.add(all, outlines(facets), nameLabels(names));
   const chosen = new SelectedObject(object);
 

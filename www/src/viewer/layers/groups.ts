@@ -110,7 +110,7 @@ function groupOf({ half_planes, rectangles }: Facet, { groups }: FacetTrace): nu
   );
 }
 
-/** Each group's name on its largest facet. */
+/** Each group's number on its largest facet. */
 function namesOf(facets: readonly Facet[], became: readonly number[]) {
   const size = ({ outer }: Facet) =>
     Math.max(...outer.map(([x, y]) => Math.hypot(x - (outer[0]?.[0] ?? 0), y - (outer[0]?.[1] ?? 0))));
@@ -122,7 +122,7 @@ function namesOf(facets: readonly Facet[], became: readonly number[]) {
       largest.set(group, facet);
     }
   });
-  return [...largest].map(([group, { outer }]) => ({ text: `Group ${group}`, at: middleOf(outer) }));
+  return [...largest].map(([group, { outer }]) => ({ text: String(group), at: middleOf(outer) }));
 }
 
 /** Whether a line lies over a facet and not below the roof. */

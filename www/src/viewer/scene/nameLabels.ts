@@ -1,5 +1,5 @@
 /** Names in space: text of constant size on the screen, over whatever lies before it. */
-import { CanvasTexture, Group, Sprite, SpriteMaterial, SRGBColorSpace } from "three";
+import { CanvasTexture, Group, Sprite, SpriteMaterial, SRGBColorSpace, Vector2 } from "three";
 import type { Vec3 } from "../../shared/records";
 
 export interface NamedPlace {
@@ -9,12 +9,10 @@ export interface NamedPlace {
 
 /** More names than these are not read: the first ones are drawn. */
 const MOST_NAMES = 40;
-const FONT_PX = 14;
-const PADDING_PX = 4;
+const FONT_PX = 13;
+const PADDING_PX = 3;
 /** The picture is finer than the screen's pixels by this. */
 const SHARPNESS = 2;
-/** Height of a name as a share of the picture's, at a distance of one. */
-const SIZE = 0.024;
 
 export function nameLabels(names: readonly NamedPlace[]): Group {
   const group = new Group();
@@ -44,9 +42,15 @@ function label({ text, at }: NamedPlace): Sprite {
   const map = new CanvasTexture(canvas);
   map.colorSpace = SRGBColorSpace;
   const sprite = new Sprite(new SpriteMaterial({ map, depthTest: false, sizeAttenuation: false }));
-  sprite.scale.set((SIZE * canvas.width) / canvas.height, SIZE, 1);
   sprite.position.set(...at);
   sprite.renderOrder = 4;
   sprite.raycast = () => undefined;
+  // As large in a low canvas as in a high one.
+  sprite.onBeforeRender = (renderer, _scene, camera) => {
+    const shown = renderer.getSize(new Vector2()).y * Math.abs(camera.projectionMatrix.elements[5] ?? 1);
+    const perPx = 2 / (SHARPNESS * shown);
+    sprite.scale.set(perPx * canvas.width, perPx * canvas.height, 1);
+    sprite.updateMatrixWorld();
+  };
   return sprite;
 }

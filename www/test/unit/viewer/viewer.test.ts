@@ -1,10 +1,10 @@
-import { Vector3 } from "three";
+import { PerspectiveCamera, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import type { HalfPlane } from "../../../src/shared/records";
 import { groundCorners } from "../../../src/viewer/layers/cameras";
 import { normalTint } from "../../../src/viewer/layers/facets";
 import { fanCorners } from "../../../src/viewer/layers/fans";
-import { boundsOfLines } from "../../../src/viewer/scene/bounds";
+import { endsOfLines, standFor } from "../../../src/viewer/scene/bounds";
 import { yUp, zUpGroup } from "../../../src/viewer/scene/frame";
 
 describe("frame", () => {
@@ -97,7 +97,7 @@ describe("normalTint", () => {
   });
 });
 
-describe("boundsOfLines", () => {
+describe("endsOfLines", () => {
   it("is not blown up by one stray line", () => {
     const lines = Array.from({ length: 60 }, (_, i) => [
       i % 10,
@@ -108,6 +108,34 @@ describe("boundsOfLines", () => {
       5,
     ]);
     lines.push([9000, 9000, 5, 9001, 9000, 5]);
-    expect(boundsOfLines(Float64Array.from(lines.flat())).radius).toBeLessThan(20);
+    const ends = endsOfLines(Float64Array.from(lines.flat()));
+    expect(Math.max(...ends.map((end) => end.length()))).toBeLessThan(20);
+    expect(ends.length).toBeGreaterThan(90);
+  });
+});
+
+describe("standFor", () => {
+  it.each([
+    [40, 4, 30, 2.3],
+    [6, 30, 6, 0.6],
+  ])("has points within %d x %d x %d m just in the picture, at aspect %f", (x, y, z, aspect) => {
+    const share = (i: number, step: number) => ((i * step) % 1) - 0.5;
+    const points = Array.from(
+      { length: 60 },
+      (_, i) => new Vector3(100 + x * share(i, 0.618), y * share(i, 0.414), z * share(i, 0.732) - 50),
+    );
+    const camera = new PerspectiveCamera(35, aspect, 0.1, 1000);
+    const towards = new Vector3(-0.45, 0.72, 0.62).normalize();
+    const upright = Math.tan((35 * Math.PI) / 360);
+    const { position, target } = standFor(points, towards, [aspect * upright, upright]);
+    camera.position.copy(position);
+    camera.lookAt(target);
+    camera.updateMatrixWorld();
+    const seen = points.map((point) => point.clone().project(camera));
+    // From edge to edge in one direction, and within the picture in the other one.
+    const extents = (["x", "y"] as const).map((axis) => seen.map((point) => point[axis]));
+    const filled = extents.map((places) => Math.min(Math.max(...places), -Math.min(...places)));
+    expect(Math.max(...filled)).toBeCloseTo(1, 6);
+    expect(Math.max(...extents.flat().map(Math.abs))).toBeCloseTo(1, 6);
   });
 });
