@@ -230,6 +230,12 @@ fn encodings_and_ends_of_lines_of_other_systems_are_read() {
     check("UTF-16, little", utf16(0xfeff, u16::to_le_bytes), name);
     check("UTF-16, big", utf16(0xfeff, u16::to_be_bytes), name);
     check("byte order mark", format!("\u{feff}{list}"), name);
+    let without = list.trim_start_matches("# degrees\n");
+    check(
+        "byte order mark before an image",
+        format!("\u{feff}{without}# degrees\n"),
+        name,
+    );
     check(
         "Windows-1252",
         list.chars().map(|c| c as u8).collect::<Vec<u8>>(),
