@@ -1,6 +1,8 @@
 //! Lenses, pixels that are not square, portraits and places: the terms that plain samples leave at
 //! zero.
 
+#![allow(clippy::disallowed_methods)]
+
 use nalgebra::{Matrix3, Point2, Point3};
 use ridgeline::orientation::Orientation;
 
@@ -21,7 +23,8 @@ fn has_lens(found: &Orientation) {
             x * g + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
             y * g + 2.0 * p2 * x * y + p1 * (r2 + 2.0 * y * y),
         );
-        let put = found.distortion.unwrap().distort(&Point2::new(x, y));
+        let lens = found.distortion.expect("a lens is stated");
+        let put = lens.distort(&Point2::new(x, y));
         assert!((put - expected).norm() < 1e-12, "{put} for {expected}");
     }
 }
