@@ -1,9 +1,9 @@
 //! One reader under libFuzzer, which keeps the inputs that reach new code: `run.sh`.
 //!
 //! An input is the contents of all files of a sample, with [`BORDER`] between them;
-//! `RIDGELINE_FUZZ_FOLDER` names the sample, whose file names are kept. With `RIDGELINE_FUZZ_ONE` an
-//! input is one `image`, one `archive` or the description of one `project`. Whatever the bytes are,
-//! the answer is a value or a readable refusal.
+//! `RIDGELINE_FUZZ_FOLDER` names the sample, whose file names are kept. With `RIDGELINE_FUZZ_ONE`
+//! an input is one `image`, one `archive` or the description of one `project`. Whatever the bytes
+//! are, the answer is a value or a readable refusal.
 #![no_main]
 
 use std::path::PathBuf;
