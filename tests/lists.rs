@@ -175,6 +175,48 @@ fn headings_decide_about_the_columns() {
 }
 
 #[test]
+fn a_unit_that_is_stated_holds_for_all_angles() {
+    for (word, per_degree) in [
+        ("degrees", 1.0),
+        ("gon", 1.0 / 0.9),
+        ("radians", 1f64.to_radians()),
+    ] {
+        let row = |v: [f64; 6]| {
+            let [a, b, c] = [v[3], v[4], v[5]].map(|v| v * per_degree);
+            format!("{} {} {} {a} {b} {c}", v[0], v[1], v[2])
+        };
+        let list = lines(|i, v| format!("v{i}.jpg {}", row(v)));
+        check(word, format!("# angles in {word}\n{list}"), |i| {
+            format!("v{i}.jpg")
+        });
+        let found = read(
+            "eo.txt",
+            format!("# {word}\nimage X Y Z yaw pitch roll\n{list}"),
+        );
+        for (found, v) in found.unwrap().iter().zip(PLANTED) {
+            let [yaw, pitch, roll] = [v[3], v[4], v[5]].map(f64::to_radians);
+            let r = rotation_from_yaw_pitch_roll(yaw, pitch, roll);
+            assert!((found.r - r.matrix()).norm() < 1e-9, "{word}");
+        }
+    }
+}
+
+#[test]
+fn pixels_need_not_be_square() {
+    let camera = CAMERA.replace("pixel_size_mm 0.01", "pixel_size_mm 0.01 0.02");
+    let camera = format!("{camera}principal_point_mm 0.02 0.04\n");
+    let files = [
+        InputFile::new("camera.txt", camera.into_bytes()),
+        InputFile::new("eo.txt", b"# degrees\nv1.jpg 0 0 100 0 0 0\n".to_vec()),
+    ];
+    let kinds: Vec<_> = files.iter().map(detect).collect();
+    let (sets, _) = orientation_sets(&files, &kinds);
+    let found = sets[0].read(&files, &mut Vec::new()).unwrap();
+    let k = Matrix3::new(400.0, 0.0, 10.0, 0.0, 200.0, 4.0, 0.0, 0.0, 1.0);
+    assert!((found[0].k - k).norm() < 1e-9, "{}", found[0].k);
+}
+
+#[test]
 fn encodings_and_ends_of_lines_of_other_systems_are_read() {
     let name = |i: usize| format!("überflug {i}.jpg");
     let list = format!(
@@ -188,11 +230,28 @@ fn encodings_and_ends_of_lines_of_other_systems_are_read() {
     check("UTF-16, little", utf16(0xfeff, u16::to_le_bytes), name);
     check("UTF-16, big", utf16(0xfeff, u16::to_be_bytes), name);
     check("byte order mark", format!("\u{feff}{list}"), name);
+    let without = list.trim_start_matches("# degrees\n");
+    check(
+        "byte order mark before an image",
+        format!("\u{feff}{without}# degrees\n"),
+        name,
+    );
     check(
         "Windows-1252",
         list.chars().map(|c| c as u8).collect::<Vec<u8>>(),
         name,
     );
+    // A dash, an apostrophe and a euro stand where Latin-1 has nothing.
+    let special = |i: usize| format!("flug \u{2013} l\u{2019}été {i}\u{20ac}.jpg");
+    let byte = |c: char| match c {
+        '\u{2013}' => 0x96,
+        '\u{2019}' => 0x92,
+        '\u{20ac}' => 0x80,
+        c => c as u8,
+    };
+    let listed = lines(|i, v| format!("{}\t{}", special(i), joined(v, "\t")));
+    let bytes: Vec<u8> = format!("# degrees\n{listed}").chars().map(byte).collect();
+    check("Windows-1252 beyond Latin-1", bytes, special);
     check("CRLF", list.replace('\n', "\r\n"), name);
     check("CR", list.replace('\n', "\r"), name);
 }

@@ -113,6 +113,25 @@ fn every_combination_has_its_pixels() {
 }
 
 #[test]
+fn a_table_of_colours_may_fill_the_low_bytes_only() {
+    let name = "palette_none.tif";
+    let plain = fs::read(fixtures().join(name)).unwrap();
+    let number = |at: usize| u32::from_le_bytes(plain[at..at + 4].try_into().unwrap()) as usize;
+    let directory = number(4);
+    let entries = number(directory) & 0xffff;
+    let mut tags = (0..entries).map(|i| directory + 2 + 12 * i);
+    const COLOR_MAP: usize = 320;
+    let tag = tags.find(|&at| number(at) & 0xffff == COLOR_MAP).unwrap();
+    let (count, place) = (number(tag + 4), number(tag + 8));
+    let mut low = plain.clone();
+    for value in low[place..place + 2 * count].chunks_exact_mut(2) {
+        (value[0], value[1]) = (value[1], 0);
+    }
+    assert_ne!(low, plain);
+    assert!(load_image(name, &low).unwrap() == load_image(name, &plain).unwrap());
+}
+
+#[test]
 fn bands_that_are_not_used_are_told() {
     for (name, bytes) in samples(&folder()) {
         let expected = match name.split('_').next().unwrap() {

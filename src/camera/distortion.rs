@@ -174,4 +174,15 @@ mod tests {
         let folded = Distortion::brown([-3.0], [0.001, -0.002]).unwrap();
         assert!(!folded.is_plausible(&k, 200, 150));
     }
+
+    #[test]
+    fn a_skewed_calibration_leads_to_the_lens_and_back_to_pixels() {
+        let k = Matrix3::new(200.0, 7.0, 100.0, 0.0, 230.0, 75.0, 0.0, 0.0, 1.0);
+        let lens = Distortion::brown([-0.25, 0.03], [0.001, -0.002]).unwrap();
+        let pixel = |p: Point2<f64>| Point2::from((k * p.to_homogeneous()).xy());
+        for ideal in [[0.3, -0.2], [-0.4, 0.3], [0.1, 0.25]].map(Point2::from) {
+            let seen = lens.measured(&k, &pixel(ideal));
+            assert!((seen - pixel(lens.distort(&ideal))).norm() < 1e-9, "{seen}");
+        }
+    }
 }

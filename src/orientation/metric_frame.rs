@@ -107,10 +107,12 @@ mod tests {
     use crate::geometry::rotation_from_axis_angle;
     use crate::synthetic::gable_scene;
 
-    /// The gable house at a position on the Earth: its cameras geocentric or geographic.
-    fn abroad(geographic: bool) -> (Vec<Orientation>, Anchor) {
+    /// The gable house at a position on the Earth: its cameras geocentric or geographic. Only east
+    /// of 90 degrees the latitude shows which of two numbers it is.
+    fn abroad(kind: CoordinateKind) -> (Vec<Orientation>, Anchor) {
+        let is_east = kind == CoordinateKind::LatLon;
         let anchor = Anchor {
-            lon_deg: 8.412,
+            lon_deg: if is_east { 151.207 } else { 8.412 },
             lat_deg: 49.013,
             height_m: 0.0,
         };
@@ -118,13 +120,14 @@ mod tests {
         let of_view = |camera: &Camera| {
             let local = camera.center;
             let at = anchor.zero() + anchor.axes().transpose() * local.coords;
-            if geographic {
-                let there = Anchor::near(&at).exact_axes(&at);
-                let r = camera.r * anchor.axes() * there.transpose();
-                pinhole("a", "a", camera.k, r, Point3::from(geographic_of(&at)))
-            } else {
-                pinhole("a", "a", camera.k, camera.r * anchor.axes(), at)
+            if kind == CoordinateKind::Geocentric {
+                return pinhole("a", "a", camera.k, camera.r * anchor.axes(), at);
             }
+            let there = Anchor::near(&at).exact_axes(&at);
+            let r = camera.r * anchor.axes() * there.transpose();
+            let [lon, lat, height] = geographic_of(&at);
+            let (x, y) = if is_east { (lat, lon) } else { (lon, lat) };
+            pinhole("a", "a", camera.k, r, Point3::new(x, y, height))
         };
         (
             scene.views.iter().map(|v| of_view(&v.camera)).collect(),
@@ -135,8 +138,12 @@ mod tests {
     #[test]
     fn a_house_anywhere_on_the_earth_keeps_its_projections() {
         let (scene, truth) = gable_scene(48);
-        for geographic in [false, true] {
-            let (mut orientations, anchor) = abroad(geographic);
+        for kind in [
+            CoordinateKind::Geocentric,
+            CoordinateKind::LonLat,
+            CoordinateKind::LatLon,
+        ] {
+            let (mut orientations, anchor) = abroad(kind);
             assert_eq!(to_metric_frame(&mut orientations), Some(anchor));
             for (o, view) in orientations.iter().zip(&scene.views) {
                 let camera = Camera {
@@ -167,7 +174,7 @@ mod tests {
 
     #[test]
     fn oblique_and_level_views_are_places_on_the_earth_too() {
-        let (mut orientations, anchor) = abroad(false);
+        let (mut orientations, anchor) = abroad(CoordinateKind::Geocentric);
         let tilt = rotation_from_axis_angle(&Vector3::new(1.4, 0.0, 0.0));
         orientations[0].r = tilt.matrix() * orientations[0].r;
         assert_eq!(to_metric_frame(&mut orientations), Some(anchor));

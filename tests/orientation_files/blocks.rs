@@ -113,7 +113,7 @@ fn all_eight_orientations_of_a_camera_are_read() {
 }
 
 /// A block of one photo of 16 x 12 pixels.
-fn block_of(group: &str, rotation: &str, center: &Point3<f64>) -> String {
+pub(super) fn block_of(group: &str, rotation: &str, center: &Point3<f64>) -> String {
     format!(
         "<BlocksExchange version=\"2.1\"><Block><Photogroups><Photogroup>\n\
          <ImageDimensions><Width>16</Width><Height>12</Height></ImageDimensions>{group}\n\
@@ -124,7 +124,7 @@ fn block_of(group: &str, rotation: &str, center: &Point3<f64>) -> String {
     )
 }
 
-fn matrix_elements(m: &Matrix3<f64>) -> String {
+pub(super) fn matrix_elements(m: &Matrix3<f64>) -> String {
     let at = |i: usize, j: usize| format!("<M_{i}{j}>{}</M_{i}{j}>", m[(i, j)]);
     (0..9).map(|n| at(n / 3, n % 3)).collect()
 }

@@ -29,6 +29,7 @@ macro_rules! case {
 mod blocks;
 mod metashape;
 mod others;
+mod sensors;
 
 /// Rotation and centre of the cameras a, b, c.
 fn truth(i: usize) -> (Matrix3<f64>, Point3<f64>) {

@@ -322,6 +322,24 @@ mod tests {
     }
 
     #[test]
+    fn the_full_model_of_opencv_divides_two_polynomials() {
+        let [k1, k2, p1, p2, k3, k4, k5, k6] = [-0.2, 0.05, 1e-3, -2e-3, 0.02, 0.1, -0.04, 0.03];
+        let camera = format!(
+            "1 FULL_OPENCV 640 480 300 310 320 240 {k1} {k2} {p1} {p2} {k3} {k4} {k5} {k6}\n"
+        );
+        for [x, y] in [[0.3, -0.2], [-0.5, 0.4], [0.1, 0.6]] {
+            let r2: f64 = x * x + y * y;
+            let above = 1.0 + k1 * r2 + k2 * r2 * r2 + k3 * r2 * r2 * r2;
+            let g = above / (1.0 + k4 * r2 + k5 * r2 * r2 + k6 * r2 * r2 * r2);
+            let u = x * g + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x);
+            let v = y * g + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y;
+            let [column, row] = seen(&camera, [x, y]);
+            assert!((column - (300.0 * u + 320.0)).abs() < 1e-9, "{column}");
+            assert!((row - (310.0 * v + 240.0)).abs() < 1e-9, "{row}");
+        }
+    }
+
+    #[test]
     fn an_unknown_model_that_no_image_uses_does_no_harm() {
         let cameras = format!("{CAMERAS}9 EUCM 6 4 1 1 3 2 0.5 1\n");
         assert_eq!(

@@ -376,6 +376,34 @@ mod tests {
     }
 
     #[test]
+    fn projections_and_conventions_that_are_not_read_are_named() {
+        let [exterior, interior] = files("<ModNoDist/>", "");
+        let message = |exterior: &str, interior: &str| {
+            let files = [
+                ("Ori-A/Orientation-a.jpg.xml", exterior),
+                ("Ori-A/AutoCal.xml", interior),
+            ];
+            read(&files).map(|_| ()).map_err(|e| e.to_string())
+        };
+        let affinity = |i00: &str| {
+            let parts = format!("<I00>{i00}</I00><V10>1 0</V10><V01>0 1</V01>");
+            let node = format!("<OrIntImaM2C>{parts}</OrIntImaM2C><Externe>");
+            exterior.1.replace("<Externe>", &node)
+        };
+        assert_eq!(message(&affinity("0 0"), &interior.1), Ok(()));
+        let ortho = exterior.1.replace("eProjStenope", "eProjOrtho");
+        let other = interior.1.replace("DistM2C", "DistC2M");
+        for (refusal, word) in [
+            (message(&affinity("3 0"), &interior.1), "ReSampFid"),
+            (message(&ortho, &interior.1), "eProjStenope"),
+            (message(&exterior.1, &other), "eConvApero_DistM2C"),
+        ] {
+            let refusal = refusal.unwrap_err();
+            assert!(refusal.contains(word), "{refusal}");
+        }
+    }
+
+    #[test]
     fn models_that_are_not_read_are_named() {
         let unified =
             "<ModUnif><TypeModele>eModele_FishEye_10_5_5</TypeModele><Params>1</Params></ModUnif>";

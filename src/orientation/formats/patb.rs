@@ -138,12 +138,9 @@ mod tests {
         let record =
             "            1042      153.190000-4321000.1234567-5432100.1234567 1234567890.1234\n";
         let matrix = "  1.000000000000  0.000000000000  0.000000000000  0.000000000000  1.000000000000\n  0.000000000000  0.000000000000  0.000000000000  1.000000000000\n";
-        let found = read(
-            ("c", CAMERA),
-            ("e", &format!("{record}{matrix}")),
-            &mut Vec::new(),
-        )
-        .unwrap();
+        let read = |text: &str| read(("c", CAMERA), ("e", text), &mut Vec::new()).unwrap();
+        let found = read(&format!("{record}{matrix}"));
+        assert_eq!(read(&format!("\u{feff}{record}{matrix}")), found);
         assert_eq!(found[0].image, "1042");
         assert_eq!(
             found[0].center,

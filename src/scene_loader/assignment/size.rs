@@ -94,6 +94,24 @@ mod tests {
     }
 
     #[test]
+    fn a_resampled_image_has_the_camera_and_the_crop_of_its_size() {
+        let stated = Orientation {
+            crop: Some(Crop {
+                column: 100.0,
+                row: 200.0,
+                frame: [1000.0, 800.0],
+            }),
+            ..super::super::tests::stated("a")
+        };
+        let found = resized(&stated, [0.5, 0.25]);
+        let k = Matrix3::new(1750.0, 0.0, 1000.0, 0.0, 875.0, 375.0, 0.0, 0.0, 1.0);
+        assert_eq!(found.k, k);
+        let crop = found.crop.unwrap();
+        assert_eq!((crop.column, crop.row), (50.0, 50.0));
+        assert_eq!(crop.frame, [500.0, 200.0]);
+    }
+
+    #[test]
     fn factors_are_said_in_words() {
         let words = [0.5, 1.0 / 3.0, 0.512, 2.0, 1.5].map(factor_in_words);
         assert_eq!(

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Point3};
 use super::*;
 
 /// An orientation for 4000 x 3000 pixels.
-fn stated(image: &str) -> Orientation {
+pub(super) fn stated(image: &str) -> Orientation {
     let k = Matrix3::new(3500.0, 0.0, 2000.0, 0.0, 3500.0, 1500.0, 0.0, 0.0, 1.0);
     Orientation {
         image: image.to_owned(),

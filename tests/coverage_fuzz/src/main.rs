@@ -1,8 +1,9 @@
 //! One reader under libFuzzer, which keeps the inputs that reach new code: `run.sh`.
 //!
 //! An input is the contents of all files of a sample, with [`BORDER`] between them;
-//! `RIDGELINE_FUZZ_FOLDER` names the sample, whose file names are kept. Whatever the bytes are, the
-//! answer is a value or a readable refusal. Images are read as images, all else as orientations.
+//! `RIDGELINE_FUZZ_FOLDER` names the sample, whose file names are kept. With `RIDGELINE_FUZZ_ONE`
+//! an input is one `image`, one `archive` or the description of one `project`. Whatever the bytes
+//! are, the answer is a value or a readable refusal.
 #![no_main]
 
 use std::path::PathBuf;
@@ -12,12 +13,27 @@ use libfuzzer_sys::fuzz_target;
 use ridgeline::InputFile;
 use ridgeline::orientation::{detect, orientation_sets};
 use ridgeline::raster::{image_header, load_image, load_window};
+use ridgeline::scene_loader::{open_project, unpack};
 
 /// Two record separators: what hardly stands in a file.
 const BORDER: &[u8] = b"\x1e\x1e";
 
-/// The paths of the sample's files, sorted by name.
-static PATHS: LazyLock<Vec<String>> = LazyLock::new(|| {
+/// What an input is.
+enum Kind {
+    Image,
+    Archive,
+    Project,
+    /// The files of a sample, by their names.
+    Orientation(Vec<String>),
+}
+
+static KIND: LazyLock<Kind> = LazyLock::new(|| {
+    match std::env::var("RIDGELINE_FUZZ_ONE").as_deref() {
+        Ok("image") => return Kind::Image,
+        Ok("archive") => return Kind::Archive,
+        Ok("project") => return Kind::Project,
+        _ => {}
+    }
     let folder = PathBuf::from(std::env::var("RIDGELINE_FUZZ_FOLDER").expect("a folder is named"));
     let mut paths: Vec<String> = std::fs::read_dir(&folder)
         .expect("the folder can be read")
@@ -30,18 +46,18 @@ static PATHS: LazyLock<Vec<String>> = LazyLock::new(|| {
         })
         .collect();
     paths.sort();
-    paths
+    Kind::Orientation(paths)
 });
 
 /// The input as files; what has no name of its own is left over.
-fn files(mut input: &[u8]) -> Vec<InputFile> {
+fn files(paths: &[String], mut input: &[u8]) -> Vec<InputFile> {
     let mut files = Vec::new();
-    for path in PATHS.iter() {
+    for path in paths {
         let border = input
             .windows(BORDER.len())
             .position(|bytes| bytes == BORDER);
         let end = border.unwrap_or(input.len());
-        files.push(InputFile::new(path, input[..end].to_vec()));
+        files.push(file(path, &input[..end]));
         input = input.get(end + BORDER.len()..).unwrap_or_default();
     }
     files
@@ -59,27 +75,37 @@ fn check<T>(outcome: ridgeline::Result<T>) {
     }
 }
 
-fuzz_target!(|input: &[u8]| {
-    let files = files(input);
-    if std::env::var_os("RIDGELINE_FUZZ_IMAGES").is_some() {
-        for file in &files {
-            check(load_image(&file.path, &file.bytes));
-            if let Ok(header) = image_header(&file.path, &file.bytes) {
-                let part = [
-                    header.width / 3,
-                    header.height / 3,
-                    header.width.div_ceil(3),
-                    header.height.div_ceil(3),
-                ];
-                check(load_window(&file.path, &file.bytes, part));
-            }
-        }
-        return;
+fn read_image(bytes: &[u8]) {
+    check(load_image("a", bytes));
+    if let Ok(header) = image_header("a", bytes) {
+        let part = [
+            header.width / 3,
+            header.height / 3,
+            header.width.div_ceil(3),
+            header.height.div_ceil(3),
+        ];
+        check(load_window("a", bytes, part));
     }
+}
+
+fn file(path: &str, input: &[u8]) -> InputFile {
+    InputFile::new(path, input.to_vec())
+}
+
+fn read_orientation(files: &[InputFile]) {
     let kinds: Vec<_> = files.iter().map(detect).collect();
-    let (sets, _) = orientation_sets(&files, &kinds);
+    let (sets, _) = orientation_sets(files, &kinds);
     for set in sets {
-        set.reference(&files, None);
-        check(set.read(&files, &mut Vec::new()));
+        set.reference(files, None);
+        check(set.read(files, &mut Vec::new()));
+    }
+}
+
+fuzz_target!(|input: &[u8]| {
+    match &*KIND {
+        Kind::Image => read_image(input),
+        Kind::Archive => check(unpack(file("a.zip", input)).and_then(open_project)),
+        Kind::Project => check(open_project(vec![file("project.json", input)])),
+        Kind::Orientation(paths) => read_orientation(&files(paths, input)),
     }
 });

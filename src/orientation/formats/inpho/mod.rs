@@ -250,6 +250,22 @@ mod tests {
         );
     }
 
+    #[test]
+    fn a_sensor_that_is_mounted_askew_keeps_rows_and_columns_apart() {
+        let text = "$PROJECT 6\n$CAMERA\n $CCD_INTERIOR_ORIENTATION :\n 200 4 3000\n 7 -198 2000\n \
+                    $CCD_COLUMNS : 6000\n $CCD_ROWS : 4000\n $FOCAL_LENGTH : 50\n$END\n\
+                    $PHOTO\n $PHOTO_NUM : a\n $EXT_ORI :\n 50 0 0 1000\n 1 0 0\n 0 1 0\n 0 0 1\n$END\n";
+        let found = &read("a.prj", text, &mut Vec::new()).unwrap()[0];
+        // 5 mm to the right and 3 mm up in the image plane.
+        let seen = found.k * found.r * Vector3::new(5.0, 3.0, -50.0);
+        let expected = Vector2::new(
+            200.0 * 5.0 + 4.0 * 3.0 + 3000.5,
+            7.0 * 5.0 - 198.0 * 3.0 + 2000.5,
+        );
+        let off = (seen.xy() / seen.z - expected).norm();
+        assert!(off < 1e-6, "{off} px");
+    }
+
     /// A camera of 100 mm and 5 micrometres, whose image is rotated if `turned`.
     fn with(lens: &str, turned: bool) -> Result<Orientation> {
         let interior = match turned {
