@@ -7,6 +7,7 @@ import {
   openParameters,
   openTab,
   pickUntil,
+  reopen,
   stage,
   steadyLook,
   waitForStage,
@@ -113,8 +114,7 @@ test("figures 5 to 9: lines before and after growing, accuracy against views", a
 });
 
 test("figures 10 to 14: theta is dragged, the windows and Sim follow", async () => {
-  await page.goto("/#scene=demo&tab=halfplanes&select=halfplane:0");
-  await page.reload();
+  await reopen(page, "Half-planes", "scene=demo&tab=halfplanes&select=halfplane:0");
   await waitForStage(page, "halfplanes");
   const lab = page.getByTestId("sim-lab");
   await expect(lab.locator(".windows li")).toHaveCount(6);
@@ -361,8 +361,7 @@ test("only the stages behind a changed parameter run again", async () => {
 test("new lines of the model stand behind the matched ones, and say where they come from", async () => {
   const matched = Number(/(\d+) lines/.exec((await stage(page, "lines").textContent()) ?? "")?.[1]);
   // Such a link needs more than its tab: the line comes with the model.
-  await page.goto(`/#scene=demo&tab=lines&select=line:${matched}`);
-  await page.reload();
+  await reopen(page, "3D lines", `scene=demo&tab=lines&select=line:${matched}`);
   await waitForStage(page, "facets");
   await expect(page.getByRole("tab", { name: "3D lines" })).toHaveAttribute("aria-selected", "true");
   await expect(inspector().locator(".picked")).toHaveText(`3D line ${matched}`);

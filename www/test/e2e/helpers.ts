@@ -208,6 +208,14 @@ export function watch(page: Page): { problems: string[] } {
   return { problems };
 }
 
+/** Opens a link to a tab in an open page, and that page again: what it shows is kept. */
+export async function reopen(page: Page, tab: string, fields: string): Promise<void> {
+  await page.goto(`/#${fields}`);
+  // Before the tab is there the address may still be that of the state before.
+  await expect(page.getByRole("tab", { name: tab })).toHaveAttribute("aria-selected", "true");
+  await page.reload();
+}
+
 /**
  * One page for all tests of a file, in their order: prepared before them, left after them. It fails the last one where `watch`
  * has found a problem.
