@@ -28,7 +28,7 @@ test("a cut through the model shows its profile, and lines their uncertainty", a
     await clickAt(viewer, 0.75, 0.45);
     const section = page.getByTestId("section");
     await expect(section).toBeVisible();
-    expect(await section.locator("line.profile").count()).toBeGreaterThan(3);
+    await expect.poll(() => section.locator("line.profile").count()).toBeGreaterThan(3);
     const [panel, cut] = [await section.boundingBox(), await viewer.boundingBox()];
     expect(panel?.y).toBeGreaterThanOrEqual((cut?.y ?? 0) + (cut?.height ?? 0) - 1);
     expect(cut?.height).toBeGreaterThan(150);
