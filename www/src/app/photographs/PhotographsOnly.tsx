@@ -60,7 +60,7 @@ function Recipes() {
         </li>
         <li>
           In metres, with Z up:{" "}
-          <Command of="colmap model_aligner --input_path w/sparse/0 --output_path w/sparse/0 --database_path w/database.db --ref_is_gps 1 --alignment_type enu --alignment_max_error 3" />
+          <Command of={ALIGNER} />
         </li>
         <li>
           Drop <code>cameras.bin</code> and <code>images.bin</code> of <code>w/sparse/0</code>, or the same as
@@ -79,6 +79,11 @@ function Recipes() {
     </div>
   );
 }
+
+const ALIGNER = [
+  "colmap model_aligner --input_path w/sparse/0 --output_path w/sparse/0",
+  "--database_path w/database.db --ref_is_gps 1 --alignment_type enu --alignment_max_error 3",
+].join(" ");
 
 /** Words stay whole where the line breaks: "--" alone would be no option. */
 function Command({ of }: { of: string }) {

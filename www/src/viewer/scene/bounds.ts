@@ -54,7 +54,8 @@ export function withCameras(points: readonly Vector3[], centres: readonly Vec3[]
 }
 
 /**
- * Where a camera stands that has all points in its picture and as large as can be, and the place in their midst that it turns about.
+ * Where a camera stands that has all points in its picture, as large as can be, and the place in
+ * their midst that it turns about.
  * @param towards from the points to the camera, of length one
  * @param tangents of half the angles of view, level and upright
  */
