@@ -59,8 +59,7 @@ function Recipes() {
           <Command of="colmap automatic_reconstructor --workspace_path w --image_path photographs" />
         </li>
         <li>
-          In metres, with Z up:{" "}
-          <Command of={ALIGNER} />
+          In metres, with Z up: <Command of={ALIGNER} />
         </li>
         <li>
           Drop <code>cameras.bin</code> and <code>images.bin</code> of <code>w/sparse/0</code>, or the same as
