@@ -44,7 +44,7 @@ async function pickHalfPlane(page) {
 
 /** Opens a link of the page itself, whose address holds the state of a view, and waits for the stage that it needs. */
 const link = (fields, stage) => async (page) => {
-  // Anew: what a reload brings back has no figures that ask the core.
+  // Anew: in an open page the link would only change what that page shows.
   await page.goto("about:blank");
   await page.goto(`${SITE}#scene=demo&${fields}`);
   const isDone = (name) => document.querySelector(`[data-stage="${name}"]`)?.dataset.status === "done";
