@@ -494,3 +494,44 @@ fn adjusting_leaves_sound_scenes_as_they_are() {
         }
     }
 }
+
+#[test]
+fn renamed_images_are_taken_in_their_order_if_they_agree() {
+    let scene = gable_scene(320).0;
+    let load = |numbers: [usize; 6], ignore_check| {
+        let mut files = to_files(&scene);
+        let images = files.iter_mut().filter(|f| f.0.starts_with("images/"));
+        for (file, number) in images.zip(numbers) {
+            file.0 = format!("images/IMG_{number}.png");
+        }
+        let files = files.iter();
+        let files: Vec<InputFile> = files
+            .map(|(path, bytes)| InputFile::new(path, bytes.clone()))
+            .collect();
+        let options = LoadOptions {
+            ignore_check,
+            ..LoadOptions::default()
+        };
+        load_scene(&files, &options)
+    };
+    let found = load([1, 2, 3, 4, 5, 6], false).unwrap();
+    let cameras = |scene: &Scene| {
+        scene
+            .views
+            .iter()
+            .map(|v| v.camera.clone())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(cameras(&found).len(), cameras(&scene).len());
+    for (found, planted) in cameras(&found).iter().zip(cameras(&scene)) {
+        assert!((found.center - planted.center).norm() < 1e-4);
+    }
+    let words = found.warnings.join("\n");
+    assert!(words.contains("IMG_2.png for s1_02.png"), "{words}");
+    // Two are exchanged, and all are mixed.
+    for numbers in [[1, 3, 2, 4, 5, 6], [3, 5, 1, 6, 2, 4]] {
+        let refusal = load(numbers, false).unwrap_err().to_string();
+        assert!(refusal.contains("give the images the names"), "{refusal}");
+        assert!(load(numbers, true).is_ok(), "--ignore-check");
+    }
+}

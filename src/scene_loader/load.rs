@@ -8,6 +8,7 @@ use super::input::LoadOptions;
 use super::plan::Plan;
 use super::planned_view::PlannedView;
 use super::region;
+use crate::agreement::{AgreementReport, Finding};
 use crate::error::{Error, Result};
 use crate::orientation::InputFile;
 use crate::orientation_check::CheckedView;
@@ -26,7 +27,13 @@ pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
     let checked: Vec<CheckedView> = (plan.views.iter().zip(&views))
         .map(|(planned, view)| checked_view(planned, view, plan.origin))
         .collect();
-    let checked = check_and_correct(checked, refusal, options)?;
+    let checked = check_and_correct(checked, refusal, options);
+    if let (Some(error), false) = (plan.unless_agreed, options.ignore_check)
+        && !checked.as_ref().is_ok_and(|c| agrees(&c.report))
+    {
+        return Err(error);
+    }
+    let checked = checked?;
     if let (Some(unit), Some(_), false) = (checked.reread, options.roi, plan.is_cut_later) {
         return Err(Error::Scene {
             problem: format!(
@@ -67,6 +74,11 @@ pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
         region::cut_scene(&mut scene, roi)?;
     }
     Ok(scene)
+}
+
+/// Do the images agree, each with some others?
+fn agrees(report: &AgreementReport) -> bool {
+    matches!(report.finding, Finding::Sound | Finding::Offset)
 }
 
 /// The views as whole images, without their pixels: names, cameras and reference system. Region of

@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector3;
 
 use super::assignment::{
-    Ambiguity, ImageCandidate, LeftOut, PathName, assign, factor_in_words, resized, scale,
+    Ambiguity, ImageCandidate, LeftOut, PathName, assign, assign_in_order, factor_in_words,
+    resized, scale,
 };
 use super::candidate::{Choice, OrientationCandidate, choose, take_group};
 use super::checks::camera_checks;
@@ -53,6 +54,8 @@ pub(crate) struct Plan {
     /// Do only the positions of the cameras give reason to refuse the scene? Then the images may
     /// show why.
     pub is_implausible: bool,
+    /// The refusal of images that were taken in the order of their names, unless they agree.
+    pub unless_agreed: Option<Error>,
 }
 
 impl Plan {
@@ -72,6 +75,7 @@ impl Plan {
             is_cut_later: false,
             errors: Vec::new(),
             is_implausible: false,
+            unless_agreed: None,
         };
         plan.find_images(files, options);
         if let Some(orientations) = plan.choose_orientation(files, options) {
@@ -273,8 +277,24 @@ impl Plan {
         orientations: Vec<Orientation>,
         selected: bool,
     ) {
-        let found = assign(&orientations, &self.image_candidates(files));
+        let candidates = self.image_candidates(files);
+        let mut found = assign(&orientations, &candidates);
         let path = |i: usize| &*files[self.images[i].file].path;
+        let label = self.orientation.clone().unwrap_or("any file".to_owned());
+        let mut warnings = Vec::new();
+        let fits = !found.ambiguous.is_empty() || found.of_image.iter().any(Option::is_some);
+        if let (false, Some(order)) = (fits, assign_in_order(&orientations, &candidates)) {
+            let paths: Vec<&str> = (0..order.len()).map(path).collect();
+            let stated: Vec<&str> = order.iter().map(|&one| &*orientations[one].image).collect();
+            let pairs =
+                (paths.iter().zip(&stated)).map(|(path, name)| format!("{path} for {name}"));
+            warnings.push(format!(
+                "no image is called as {label} says; they were taken in the order of their names: {}",
+                listed(pairs)
+            ));
+            self.unless_agreed = Some(too_few_oriented(0, &paths, &stated, &label));
+            found.of_image = order.into_iter().map(Some).collect();
+        }
         let unreadable =
             (found.of_image.iter().zip(&self.images)).filter_map(|(of_image, image)| {
                 image.unreadable.clone().filter(|_| of_image.is_some())
@@ -304,12 +324,10 @@ impl Plan {
             .filter(|(_, used)| !**used)
             .map(|(o, _)| &*o.image)
             .collect();
-        let label = self.orientation.as_deref().unwrap_or("any file");
         let oriented = used.iter().filter(|used| **used).count();
         if oriented < 3 && errors.is_empty() && !without.is_empty() {
-            errors.push(too_few_oriented(oriented, &without, &unused, label));
+            errors.push(too_few_oriented(oriented, &without, &unused, &label));
         }
-        let mut warnings = Vec::new();
         if !without.is_empty() {
             warnings.push(format!(
                 "images without an orientation in {label}, left out: {}",

@@ -1,6 +1,7 @@
 //! The best assignment of orientations to images: at most one each.
 //!
 //! ```text
+//! order       photographs that were renamed
 //! path_name   paths as names are compared, and how well two of them fit
 //! size        images of another size than their orientation states
 //! ```
@@ -9,11 +10,13 @@
 //! undistorted twins and thumbnails are called like the photograph. The closest pair is assigned
 //! first. Pairs that are equally close are ambiguous where they share an image or an orientation.
 
+mod order;
 mod path_name;
 mod size;
 #[cfg(test)]
 mod tests;
 
+pub(super) use order::assign_in_order;
 pub(super) use path_name::PathName;
 pub(super) use size::{factor_in_words, resized, scale};
 

@@ -23,7 +23,7 @@ pub(super) fn stated(image: &str) -> Orientation {
     }
 }
 
-fn image(path: &str) -> ImageCandidate<'_> {
+pub(super) fn image(path: &str) -> ImageCandidate<'_> {
     ImageCandidate {
         path,
         size: Some([4000, 3000]),
