@@ -44,6 +44,7 @@
 //!    -> lines2d                  edgels, chains, segments (per view)          B99 3.2
 //!    -> linematch                pairs, triples, tracks over N views          B99 3.1 - 3.4
 //!    -> lines3d                  3D lines with covariance                     B99 3.2, figure 4
+//!    -> adjustment               single views adjusted to these, and matched again
 //!    -> terrain                  the ground
 //!    -> planes                   Sim(theta), half-planes, plane hypotheses    B99 4.1, 4.2
 //!    -> facets                   borders, labelling, verification             B99 4.3

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Turn, move and shift one view of every scene a little, and see whether --adjust takes it back.
+"""Turn, move and shift one view of every scene a little, and see whether the adjustment takes it back.
 
     python3 tests/adjust_table.py --binary target/release/ridgeline --scenes FOLDER [--only NAME,...] [--models]
 
@@ -44,7 +44,7 @@ def row(args, scene, sound, what, error):
         work = pathlib.Path(folder)
         shutil.copytree(scene / 'images', work / 'images')
         (work / 'cameras.json').write_text(json.dumps(broken))
-        done = subprocess.run([args.binary, 'check', work, '--adjust', '--json'], capture_output=True, text=True)
+        done = subprocess.run([args.binary, 'check', work, '--json'], capture_output=True, text=True)
         if done.returncode:
             print(f'| {scene.name} | {what} | | refused: {done.stderr.strip()} |')
             return
@@ -61,7 +61,7 @@ def row(args, scene, sound, what, error):
         line = (f"| {scene.name} | {what}{', ' + sound['views'][view]['file'] if error else ''} | {before[view]:.2f} px"
                 f" | {', '.join(touched) or 'none'} | {after[view]:.2f} px | {max(after):.2f} px |")
         if args.models:
-            line += ' ' + ', '.join(model(args, scene, work, adjust) for adjust in ((), ('--adjust',))) + ' |'
+            line += ' ' + ', '.join(model(args, scene, work, adjust) for adjust in (('--no-adjust',), ())) + ' |'
     print(line, flush=True)
 
 

@@ -138,7 +138,7 @@ fn a_good_scene_gives_all_files() {
     let report: serde_json::Value =
         serde_json::from_slice(&fs::read(scene.out().join("report.json")).unwrap()).unwrap();
     assert!(report["seconds"]["matches"].as_f64().unwrap() > 0.0);
-    assert!(report["stages"][4]["counts"]["facets"].as_u64().unwrap() >= 4);
+    assert!(report["stages"][5]["counts"]["facets"].as_u64().unwrap() >= 4);
     assert_eq!(report["params"]["sweep"]["min_similarity"], 0.4);
 }
 
@@ -550,6 +550,15 @@ fn a_check_says_what_the_images_say() {
     let json = check(&scene, &["--json"]).stdout;
     let found: serde_json::Value = serde_json::from_slice(&json).unwrap();
     assert_eq!(found["doctor"]["finding"], "sound");
+    let adjustment = |more: &[&str]| {
+        let found = check(&scene, more).stdout;
+        let found: serde_json::Value = serde_json::from_slice(&found).unwrap();
+        found["views"][0]["adjustment"].clone()
+    };
+    assert_eq!(adjustment(&["--json"])["rms_motion_px"], 0.0);
+    assert!(adjustment(&["--json", "--no-adjust"]).is_null());
+    assert!(adjustment(&["--json", "--adjust"]).is_object());
+    assert!(!check(&scene, &["--adjust", "--no-adjust"]).status.success());
     // What it prints is an orientation itself.
     fs::remove_dir_all(scene.0.path().join("scene/colmap")).unwrap();
     scene.write("checked.json", &json);

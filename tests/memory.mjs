@@ -66,6 +66,8 @@ function prepareHelpers(stage, views, earlier) {
         }
         Object.assign(given, { colours, stages: new Set() });
     }
+    // The adjustment may have moved views.
+    for (const { session } of helpers) session.takeCameras(engine.session.packCameras());
     for (const before of earlier.filter((name) => !given.stages.has(name))) {
         const found = engine.session.handOver(before);
         for (const { session } of found.length > 0 ? helpers : []) session.takeOver(before, found);

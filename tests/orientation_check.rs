@@ -6,9 +6,10 @@ use std::fmt::Write;
 
 use nalgebra::{Matrix3, Vector3};
 use ridgeline::agreement::Finding;
+use ridgeline::execution::progress::silent;
 use ridgeline::orientation::InputFile;
 use ridgeline::params::Params;
-use ridgeline::pipeline::{Run, load_adjusted};
+use ridgeline::pipeline::{Run, Stage};
 use ridgeline::scene::Scene;
 use ridgeline::scene_loader::{LoadOptions, load_scene};
 use ridgeline::synthetic::{
@@ -403,12 +404,8 @@ fn a_shifted_view_is_measured_and_shifted_back() {
                 "{:?}",
                 found.warnings
             );
-            let adjust = LoadOptions {
-                adjust: true,
-                ..LoadOptions::default()
-            };
-            let back = load_with(&scene, shifted(), &adjust).unwrap();
-            for (a, b) in back.views.iter().zip(&scene.views) {
+            let run = Run::new(found, Params::default());
+            for (a, b) in run.scene().views.iter().zip(&scene.views) {
                 assert!(
                     (a.camera.k - b.camera.k).amax() < 0.1,
                     "{} {}",
@@ -446,27 +443,26 @@ fn small_errors_of_a_view_are_found_and_the_model_comes_back() {
             .chain(orientation)
             .map(|(path, bytes)| InputFile::new(&path, bytes))
             .collect();
-        let options = LoadOptions {
-            adjust: true,
-            ..LoadOptions::default()
-        };
-        load_adjusted(&files, &options, &Params::default()).unwrap()
+        let scene = load_scene(&files, &LoadOptions::default()).unwrap();
+        let mut run = Run::new(scene, Params::default());
+        let summary = run.step(Stage::Adjustment, &silent());
+        (run, summary)
     };
     // What is sound stays as it is.
-    let sound = adjusted(to_colmap(&scene));
-    assert!(difference_px(&sound, &scene, &corners) < 1e-6 && sound.warnings.is_empty());
+    let (sound, summary) = adjusted(to_colmap(&scene));
+    assert!(difference_px(sound.scene(), &scene, &corners) < 1e-6);
+    assert!(summary.warnings.is_empty() && summary.counts == [("adjusted views", 0)]);
     for (what, error) in SMALL_ERRORS {
         let broken = || colmap(&scene, |s| error(&mut s.views[3].camera));
         let before = difference_px(&load(&scene, broken()).unwrap(), &scene, &corners);
-        let found = adjusted(broken());
-        let after = difference_px(&found, &scene, &corners);
+        let (mut run, summary) = adjusted(broken());
+        let after = difference_px(run.scene(), &scene, &corners);
         assert!(
             after < 0.3 * before && after < 0.35,
-            "{what}: {before} px, {after} px, {:?}",
-            found.warnings
+            "{what}: {before} px, {after} px, {summary:?}"
         );
-        assert!(found.warnings[0].contains("s2_01"), "{:?}", found.warnings);
-        let mut run = Run::new(found, Params::default());
+        assert!(summary.warnings[0].contains("s2_01"), "{summary:?}");
+        assert!(summary.counts == [("adjusted views", 1)], "{summary:?}");
         run.run_all();
         let model = run.results().roof_model().unwrap();
         assert_eq!((what, model.buildings.len()), (what, 1));
@@ -481,15 +477,15 @@ fn small_errors_of_a_view_are_found_and_the_model_comes_back() {
 #[test]
 fn adjusting_leaves_sound_scenes_as_they_are() {
     for (scene, _) in [gable_scene(320), l_scene(480)] {
-        let adjust = LoadOptions {
-            adjust: true,
+        let fix = LoadOptions {
             apply_fix: true,
             ..LoadOptions::default()
         };
-        let found = load_with(&scene, to_colmap(&scene), &adjust).unwrap();
+        let found = load_with(&scene, to_colmap(&scene), &fix).unwrap();
         assert!(found.warnings.is_empty(), "{:?}", found.warnings);
         assert_eq!(found.survey.shifts.len(), 6);
-        for (a, b) in found.views.iter().zip(&scene.views) {
+        let run = Run::new(found, Params::default());
+        for (a, b) in run.scene().views.iter().zip(&scene.views) {
             assert!((a.camera.k - b.camera.k).amax() < 1e-9);
         }
     }

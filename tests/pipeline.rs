@@ -18,6 +18,7 @@ use ridgeline::orientation::InputFile;
 use ridgeline::params::{Method, Params};
 use ridgeline::pipeline::{PackedView, Run, Stage};
 use ridgeline::raster::RedBlueDifference;
+use ridgeline::scene::Scene;
 use ridgeline::scene_loader::{LoadOptions, load_scene};
 use ridgeline::synthetic::{SyntheticTruth, l_scene, to_files};
 
@@ -209,12 +210,7 @@ fn one_thread_gives_the_bytes_of_many() {
 const NO_CALLS: usize = 13;
 
 /// A run that several instances divide between them, as the page's workers do it.
-fn divided(method: Method, of: usize) -> Run {
-    let (scene, _) = l_scene(SIZE_PX);
-    let params = Params {
-        method,
-        ..Params::default()
-    };
+fn divided(scene: Scene, params: &Params, of: usize) -> Run {
     let mut first = Run::new(scene, params.clone());
     let packed = || {
         let views = (0..6).map(|v| PackedView::new(first.scene(), v, true).unwrap().to_bytes());
@@ -225,7 +221,11 @@ fn divided(method: Method, of: usize) -> Run {
     let mut others: Vec<Run> = (1..of)
         .map(|_| Run::of_packed(packed(), params.clone()))
         .collect();
-    for stage in Stage::of(method) {
+    while let Some(stage) = first.stages().into_iter().find(|&s| !first.has(s)) {
+        let cameras = first.pack_cameras();
+        for run in &mut others {
+            assert!(run.take_cameras(&cameras));
+        }
         let mut merged = MergedShards::default();
         for map in stage.shard_maps() {
             let runs = std::iter::once(&mut first).chain(&mut others);
@@ -238,7 +238,12 @@ fn divided(method: Method, of: usize) -> Run {
                 assert!(merged.merge(map, &shard));
             }
         }
-        first.step_merged(stage, merged, &silent());
+        if stage == Stage::Adjustment {
+            // Where views move, the matches come next.
+            let _ = first.adjust_once(&silent());
+        } else {
+            first.step_merged(stage, merged, &silent());
+        }
         let found = first.hand_over(stage);
         for run in others.iter_mut().filter(|_| !found.is_empty()) {
             assert!(run.take_over(stage, &found));
@@ -251,18 +256,88 @@ fn divided(method: Method, of: usize) -> Run {
 fn instances_that_divide_a_run_give_the_bytes_of_one() {
     for (method, _) in METHODS {
         let (scene, _) = l_scene(SIZE_PX);
-        let mut alone = Run::new(
-            scene,
-            Params {
-                method,
-                ..Params::default()
-            },
-        );
+        let params = Params {
+            method,
+            ..Params::default()
+        };
+        let mut alone = Run::new(scene.clone(), params.clone());
         alone.run_all();
         for of in [2, 3] {
-            assert!(divided(method, of).files(&[]) == alone.files(&[]));
+            assert!(divided(scene.clone(), &params, of).files(&[]) == alone.files(&[]));
         }
     }
+}
+
+/// The view of [`moved_scene`] that is wrong.
+const MOVED: usize = 2;
+
+/// The house, with a view shifted by a pixel, which two rounds take back.
+fn moved_scene() -> Scene {
+    let (mut scene, _) = l_scene(SIZE_PX);
+    scene.views[MOVED].camera.k[(0, 2)] += 1.0;
+    scene
+}
+
+#[test]
+fn instances_that_divide_a_run_have_the_same_adjusted_cameras() {
+    let params = Params::default();
+    let mut alone = Run::new(moved_scene(), params.clone());
+    alone.run_all();
+    let survey = &alone.scene().survey;
+    assert!(survey.adjustments[MOVED].moves() && survey.adjustment_rounds == 2);
+    let shared = divided(moved_scene(), &params, 2);
+    assert!(shared.files(&[]) == alone.files(&[]));
+    assert!(!alone.clone().take_cameras(&[255; 3]));
+}
+
+/// Whatever is turned on and off in which order, the results are those of a fresh run.
+#[test]
+fn views_are_adjusted_or_as_stated_by_a_parameter() {
+    let off = || {
+        let mut params = Params::default();
+        params.adjustment.enabled = false;
+        params
+    };
+    let stated = moved_scene();
+    let mut run = Run::new(stated.clone(), Params::default());
+    run.step(Stage::Lines, &silent());
+    let cameras =
+        |scene: &Scene| -> Vec<_> { scene.views.iter().map(|v| v.camera.clone()).collect() };
+    let adjusted = run.clone();
+    assert!(cameras(run.scene())[MOVED] != stated.views[MOVED].camera);
+    // Once more changes nothing.
+    for &stage in &[
+        Stage::Segments,
+        Stage::Lines,
+        Stage::Adjustment,
+        Stage::Lines,
+    ] {
+        run.step(stage, &silent());
+    }
+    assert_eq!(cameras(run.scene()), cameras(adjusted.scene()));
+    assert_eq!(run.summaries(), adjusted.summaries());
+
+    run.set_params(off());
+    assert!(run.has(Stage::Segments) && !run.has(Stage::Matches));
+    assert_eq!(cameras(run.scene()), cameras(&stated));
+    assert!(run.scene().survey.adjustments.is_empty());
+    run.step(Stage::Lines, &silent());
+    let mut fresh = Run::new(stated.clone(), off());
+    fresh.step(Stage::Lines, &silent());
+    assert_eq!(run.summaries(), fresh.summaries());
+    assert_eq!(cameras(run.scene()), cameras(&stated));
+
+    run.set_params(Params::default());
+    run.step(Stage::Lines, &silent());
+    assert_eq!(cameras(run.scene()), cameras(adjusted.scene()));
+    assert_eq!(run.summaries(), adjusted.summaries());
+
+    // A later stage's parameters leave the cameras as they are.
+    let mut params = Params::default();
+    params.sweep.min_similarity = 0.9;
+    run.set_params(params);
+    assert!(run.has(Stage::Lines));
+    assert_eq!(cameras(run.scene()), cameras(adjusted.scene()));
 }
 
 /// Two starts of one run that overlap deliver every shard twice: the planes then had the

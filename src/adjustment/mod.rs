@@ -18,7 +18,11 @@
 //! Invariant: where no view stands out, the cameras stay as they are.
 
 mod pose;
+mod rounds;
 mod system;
+
+pub use self::rounds::AdjustmentRound;
+pub(crate) use self::rounds::{next_round, shifts_back};
 
 use nalgebra::Vector2;
 
@@ -41,7 +45,7 @@ const FEWEST_EDGES: usize = 12;
 
 /// Adjusts the cameras of a scene to its matched lines. Returns the cameras and one record for
 /// each view; where no view stands out the cameras are those of the scene.
-pub(crate) fn adjust_views(
+fn adjust_views(
     scene: &Scene,
     lines: &[Line3d],
     params: &Lines3dParams,
@@ -117,7 +121,7 @@ fn rms(motions: &[Vector2<f64>]) -> f64 {
 mod tests {
     use super::pose::PoseChange;
     use super::*;
-    use crate::execution::silent;
+    use crate::execution::progress::silent;
     use crate::params::Params;
     use crate::pipeline::{Run, Stage};
     use crate::synthetic::l_scene;

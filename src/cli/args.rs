@@ -47,7 +47,11 @@ pub(super) struct InputArgs {
     /// Go on with an orientation that the images contradict or hardly agree with.
     #[arg(long, conflicts_with = "apply_fix")]
     pub ignore_check: bool,
-    /// Adjust views that are turned or moved against the others by up to a few pixels.
+    /// Leave views that are turned or moved against the others by up to a few pixels as they are,
+    /// instead of adjusting them.
+    #[arg(long, conflicts_with = "adjust")]
+    pub no_adjust: bool,
+    /// Adjust such views: the default, unless the parameters say otherwise.
     #[arg(long)]
     pub adjust: bool,
     /// Stop before the reconstruction where it needs more memory than this, megabytes.

@@ -5,28 +5,35 @@ use std::path::Path;
 use nalgebra::Matrix3;
 use ridgeline::Error;
 use ridgeline::agreement::{AgreementReport, Finding};
-use ridgeline::pipeline::load_adjusted;
-use ridgeline::scene::Scene;
+use ridgeline::execution::progress::silent;
+use ridgeline::pipeline::{Run, Stage};
+use ridgeline::scene_loader::load_scene;
 use serde_json::{Value, json};
 
 use super::args::CheckArgs;
 use super::failure::Failure;
 use super::input;
 
-/// Loads the scene and prints what the orientation check found; a scene that is refused is a
-/// failure as anywhere.
+/// Loads the scene, adjusts its views as a run would, and prints what was found; a scene that is
+/// refused is a failure as anywhere.
 pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
     let params = input::read_params(&args.input)?;
     let opened = input::open(&args.input, params, Path::new(""))?;
-    let outcome = load_adjusted(&opened.files, &opened.options, &opened.params);
+    let outcome = load_scene(&opened.files, &opened.options).map(|scene| {
+        let mut run = Run::new(scene, opened.params);
+        if run.stages().contains(&Stage::Adjustment) {
+            run.step(Stage::Adjustment, &silent());
+        }
+        run
+    });
     if args.json {
         let json = match &outcome {
-            Ok(scene) => of_scene(scene),
+            Ok(run) => of_run(run),
             Err(error) => of_refusal(error),
         };
         println!("{json:#}");
-    } else if let Ok(scene) = &outcome {
-        print!("{}", words(scene));
+    } else if let Ok(run) = &outcome {
+        print!("{}", words(run));
     }
     outcome.map_err(|error| input::refusal(&error, &opened.seen))?;
     eprintln!("{}", opened.seen);
@@ -35,7 +42,8 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
 
 /// The findings, and the cameras as they are used: an orientation file of its own (docs/formats.md,
 /// K, R, C).
-fn of_scene(scene: &Scene) -> Value {
+fn of_run(run: &Run) -> Value {
+    let scene = run.scene();
     let views = scene.views.iter().enumerate().map(|(i, view)| {
         let camera = &view.camera;
         let rows = |m: &Matrix3<f64>| [0, 1, 2].map(|i| [m[(i, 0)], m[(i, 1)], m[(i, 2)]]);
@@ -54,7 +62,7 @@ fn of_scene(scene: &Scene) -> Value {
         "doctor": scene.survey.agreement,
         "origin": scene.origin.as_slice(),
         "views": views.collect::<Vec<_>>(),
-        "warnings": scene.warnings,
+        "warnings": warnings(run),
     })
 }
 
@@ -67,7 +75,8 @@ fn of_refusal(error: &Error) -> Value {
 }
 
 /// The findings as text.
-fn words(scene: &Scene) -> String {
+fn words(run: &Run) -> String {
+    let scene = run.scene();
     let mut text = scene
         .survey
         .agreement
@@ -83,10 +92,18 @@ fn words(scene: &Scene) -> String {
             view.name, s.sigma_px, s.before_px, s.after_px, s.places
         );
     }
-    for warning in &scene.warnings {
+    for warning in warnings(run) {
         text += &format!("warning: {warning}\n");
     }
     text
+}
+
+/// Those of the readers, and of the adjustment: of the other stages only a whole run tells.
+fn warnings(run: &Run) -> Vec<&String> {
+    let of_run = run.summaries().iter();
+    let adjustment = of_run.filter(|summary| summary.stage == Stage::Adjustment);
+    let found = adjustment.flat_map(|summary| &summary.warnings);
+    run.scene().warnings.iter().chain(found).collect()
 }
 
 fn found(report: &AgreementReport) -> String {

@@ -53,14 +53,21 @@ pub(super) fn open(
         memory_mb: args.memory.or(stated.memory_mb),
         apply_fix: args.apply_fix || stated.apply_fix,
         ignore_check: args.ignore_check || stated.ignore_check,
-        adjust: args.adjust || stated.adjust,
     };
     Ok(OpenedScene {
         files,
         options,
-        params: params.unwrap_or(project.params),
+        params: with_switches(params.unwrap_or(project.params), args),
         seen,
     })
+}
+
+/// The parameters, with what the arguments say of them.
+fn with_switches(mut params: Params, args: &InputArgs) -> Params {
+    if args.adjust || args.no_adjust {
+        params.adjustment.enabled = args.adjust;
+    }
+    params
 }
 
 /// A path relative to the scene's folder, also where the whole path was given.

@@ -7,9 +7,9 @@ use std::time::Instant;
 use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::agreement::Finding;
 use ridgeline::execution::progress::Listener;
-use ridgeline::pipeline::{Run, Stage, counted, load_adjusted};
+use ridgeline::pipeline::{Run, Stage, counted};
 use ridgeline::scene::Scene;
-use ridgeline::scene_loader::{Project, inspect_files};
+use ridgeline::scene_loader::{Project, inspect_files, load_scene};
 
 use super::args::ReconstructArgs;
 use super::failure::Failure;
@@ -47,7 +47,7 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
             inspection.peak_mb
         );
     }
-    let scene = load_adjusted(&input, &options, &params);
+    let scene = load_scene(&input, &options);
     let scene = scene.map_err(|e| refusal(&e, &seen))?;
     eprintln!("{seen}");
     // Only a project needs the files once more.

@@ -2,11 +2,13 @@
 //!
 //! Each field quotes its section; where the paper gives no value, "Assumption:" gives the reason.
 
+mod adjustment;
 mod buildings;
 mod lines;
 mod objectspace;
 mod planes;
 
+pub use self::adjustment::*;
 pub use self::buildings::*;
 pub use self::lines::*;
 pub use self::objectspace::*;
@@ -25,6 +27,8 @@ pub struct Params {
     pub segments: SegmentParams,
     /// Line matching.
     pub matching: MatchParams,
+    /// Adjustment of the views.
+    pub adjustment: AdjustmentParams,
     /// 3D lines.
     pub lines3d: Lines3dParams,
     /// Half-plane sweep.

@@ -2,14 +2,17 @@
 //! tests all run a reconstruction through [`Run`].
 //!
 //! ```text
-//! B99:  Scene -> segments -> matches -> lines -> halfplanes -> facets -> model -> files
-//! W96:  Scene -> regions -> directions -> clusters -> rectangles      -> model -> files
-//! both: Scene -> those of W96, then those of B99, which take in its lines and planes
+//! B99:  segments -> matches -> adjustment -> lines -> halfplanes -> facets -> model
+//!                      ^           |
+//!                      +-----------+ where views moved
+//! W96:  regions -> directions -> clusters -> rectangles -> model
+//! both: segments to adjustment, those of W96, then the others of B99, which take in its lines and
+//!       planes
 //! ```
 //!
 //! `stages` has a file for each of them, and how to add one; `sharding` is what passes between
-//! instances that divide a stage; `report` and `summary` are what people read; `adjustment` runs
-//! the first stages for the cameras' sake.
+//! instances that divide a stage; `report` and `summary` are what people read; `adjustment` keeps
+//! the cameras.
 //!
 //! Invariant: no geometry here. Invariant: a result in a [`Run`] always belongs to the current
 //! parameters and to the current results before it; what is out of date is dropped, never shown.
@@ -20,7 +23,7 @@ mod sharding;
 mod stages;
 mod summary;
 
-pub use adjustment::{adjust_orientation, load_adjusted};
+pub use crate::adjustment::AdjustmentRound;
 pub use sharding::PackedView;
 pub use stages::{Outcome, Results, Stage};
 pub use summary::{StageSummary, counted};
@@ -29,6 +32,7 @@ use std::borrow::Cow;
 
 use serde_json::Value;
 
+use crate::camera::Camera;
 use crate::execution::{Listener, progress};
 use crate::execution::{MergedShards, Sharded, run_merged};
 use crate::export;
@@ -65,7 +69,10 @@ impl Results {
 /// One reconstruction: a scene, the parameters, and the results so far.
 #[derive(Clone, Debug)]
 pub struct Run {
+    /// Its cameras are those that the results so far belong to.
     scene: Scene,
+    /// The cameras as the scene came with them.
+    stated: Vec<Camera>,
     params: Params,
     results: Results,
     summaries: Vec<StageSummary>,
@@ -74,15 +81,18 @@ pub struct Run {
 impl Run {
     /// A run of which no stage has been done.
     pub fn new(scene: Scene, params: Params) -> Self {
-        Self {
+        let mut run = Self {
+            stated: scene.views.iter().map(|v| v.camera.clone()).collect(),
             scene,
             params,
             results: Results::default(),
             summaries: Vec::new(),
-        }
+        };
+        run.restore_cameras();
+        run
     }
 
-    /// The scene.
+    /// The scene, its views adjusted as far as the stages have run.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -123,6 +133,9 @@ impl Run {
         self.params = params;
         if let Some(stage) = first {
             self.drop_from(stage);
+            if stage <= Stage::Adjustment {
+                self.restore_cameras();
+            }
         }
     }
 
@@ -140,20 +153,42 @@ impl Run {
         merged: MergedShards,
         progress: &Listener,
     ) -> StageSummary {
-        for earlier in self.stages().into_iter().filter(|&s| s < stage) {
-            if !self.has(earlier) {
-                let origin = self.shards_origin(earlier);
-                run_merged(origin, MergedShards::default(), || self.run_stage(earlier));
-            }
+        let mut summary = self.step_once(stage, merged, progress);
+        while !self.has(stage) {
+            summary = self.step_once(stage, MergedShards::default(), progress);
+        }
+        summary
+    }
+
+    /// One round of the adjustment, as [`Self::step`] where all views stay. `None` where views
+    /// moved: the stages from the matches on have not run then, and instances may divide them.
+    pub fn adjust_once(&mut self, progress: &Listener) -> Option<StageSummary> {
+        let summary = self.step_once(Stage::Adjustment, MergedShards::default(), progress);
+        self.has(Stage::Adjustment).then_some(summary)
+    }
+
+    fn step_once(
+        &mut self,
+        stage: Stage,
+        merged: MergedShards,
+        progress: &Listener,
+    ) -> StageSummary {
+        let missing = |run: &Self| {
+            let mut earlier = run.stages().into_iter().take_while(|&s| s < stage);
+            earlier.find(|&s| !run.has(s))
+        };
+        while let Some(earlier) = missing(self) {
+            let origin = self.shards_origin(earlier);
+            run_merged(origin, MergedShards::default(), || self.run_stage(earlier));
         }
         self.drop_from(stage);
         progress(0.0);
         let origin = self.shards_origin(stage);
-        progress::with_listener(Listener::clone(progress), || {
-            run_merged(origin, merged, || self.run_stage(stage));
+        let summary = progress::with_listener(Listener::clone(progress), || {
+            run_merged(origin, merged, || self.run_stage(stage))
         });
         progress(1.0);
-        self.summaries.last().expect("just pushed").clone()
+        summary
     }
 
     /// Runs all stages, with nobody listening.
@@ -215,15 +250,19 @@ impl Run {
         })
     }
 
-    fn run_stage(&mut self, stage: Stage) -> Sharded<()> {
+    fn run_stage(&mut self, stage: Stage) -> Sharded<StageSummary> {
         (stage.row().run)(&self.scene, &self.params, &mut self.results)?;
         let findings = (stage.row().summary)(&self.scene, &self.results);
-        self.summaries.push(StageSummary {
+        let summary = StageSummary {
             stage,
             counts: findings.counts,
             warnings: findings.warnings,
-        });
-        Ok(())
+        };
+        self.summaries.push(summary.clone());
+        if stage == Stage::Adjustment {
+            self.take_round();
+        }
+        Ok(summary)
     }
 
     fn drop_from(&mut self, stage: Stage) {

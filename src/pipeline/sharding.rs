@@ -79,6 +79,26 @@ impl Run {
         Self::new(scene, params)
     }
 
+    /// The cameras, for [`Self::take_cameras`] of the other instances before each stage: the
+    /// adjustment and other parameters move them.
+    pub fn pack_cameras(&self) -> Vec<u8> {
+        let cameras: Vec<&Camera> = self.scene.views.iter().map(|v| &v.camera).collect();
+        postcard::to_stdvec(&cameras).expect("bytes can be written to memory")
+    }
+
+    /// Takes the cameras of another instance. False where the bytes are not that, or of another
+    /// scene.
+    pub fn take_cameras(&mut self, bytes: &[u8]) -> bool {
+        let cameras: Option<Vec<Camera>> = postcard::from_bytes(bytes).ok();
+        let Some(cameras) = cameras.filter(|c| c.len() == self.scene.views.len()) else {
+            return false;
+        };
+        for (view, camera) in self.scene.views.iter_mut().zip(cameras) {
+            view.camera = camera;
+        }
+        true
+    }
+
     /// What a stage found, as far as sharded maps of later stages read it; empty where none do, or
     /// it has not run.
     pub fn hand_over(&self, stage: Stage) -> Vec<u8> {

@@ -16,6 +16,8 @@ pub struct Survey {
     pub shifts: Vec<ViewShift>,
     /// How each view was adjusted to its matched lines; empty where that was not asked for.
     pub adjustments: Vec<ViewAdjustment>,
+    /// How often views moved in the adjustment.
+    pub adjustment_rounds: usize,
     /// How well the images agree with the orientation that is used; `None` where it was not
     /// checked.
     pub agreement: Option<AgreementReport>,
@@ -72,4 +74,11 @@ pub struct ViewAdjustment {
     pub after_px: f64,
     /// Number of edges.
     pub edges: usize,
+}
+
+impl ViewAdjustment {
+    /// Was the view moved?
+    pub fn moves(&self) -> bool {
+        self.rms_motion_px != 0.0
+    }
 }

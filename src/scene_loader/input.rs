@@ -23,6 +23,4 @@ pub struct LoadOptions {
     pub apply_fix: bool,
     /// Go on where the images do not agree with their orientation, instead of refusing the scene.
     pub ignore_check: bool,
-    /// Correct shifts of a few pixels between the views.
-    pub adjust: bool,
 }

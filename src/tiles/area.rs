@@ -16,9 +16,9 @@ use crate::ids::ViewId;
 use crate::objectspace::{image_segments, world_lines};
 use crate::orientation::InputFile;
 use crate::params::{Method, Params};
-use crate::pipeline::{Run, Stage, counted, load_adjusted};
+use crate::pipeline::{Run, Stage, counted};
 use crate::scene::{Scene, View};
-use crate::scene_loader::{LoadOptions, whole_views};
+use crate::scene_loader::{LoadOptions, load_scene, whole_views};
 use crate::texture::texture_model;
 
 /// An area, its tiles, and what those that are done have found.
@@ -96,7 +96,7 @@ impl Area {
             roi: Some(tile.region),
             ..self.options.clone()
         };
-        let outcome = match load_adjusted(files, &options, &self.params) {
+        let outcome = match load_scene(files, &options) {
             Ok(scene) => {
                 let part = part(scene, &self.params, &tile, &self.whole, progress);
                 let outcome = counted(part.model.buildings.len(), "buildings");
@@ -148,6 +148,7 @@ fn part(
     whole: &Scene,
     progress: &Listener,
 ) -> TilePart {
+    let views = places(&scene, whole);
     let mut run = Run::new(scene, params.clone());
     let stages: Vec<Stage> = (run.stages().into_iter())
         .filter(|&stage| stage != Stage::Model)
@@ -179,7 +180,7 @@ fn part(
     TilePart {
         tile: *tile,
         origin: scene.origin,
-        views: places(scene, whole),
+        views,
         segments,
         lines,
         half_planes,
@@ -194,7 +195,6 @@ fn places(scene: &Scene, whole: &Scene) -> Vec<(ViewId, [f64; 4])> {
         let named = whole.views.iter().position(|w| w.name == view.name);
         let index = named.expect("tiles show views of the scene");
         let (a, b) = (&whole.views[index].camera, &view.camera);
-        // Adjusted views are shifted by fractions of a pixel.
         let [x, y] = [0, 1].map(|i| (a.k[(i, 2)] - b.k[(i, 2)]).round());
         let place = [x, y, f64::from(b.width), f64::from(b.height)];
         (ViewId::from_index(index), place)

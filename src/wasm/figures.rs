@@ -294,13 +294,13 @@ fn line_record(line: &Line3d) -> LineRecord<'_> {
     }
 }
 
-/// The segments of the method; where both run, those that were found last.
+/// The segments of the method; where both run, those of regions until there are lines of both.
 pub(crate) fn segments_of(run: &Run) -> Cow<'_, [Vec<ImageSegment>]> {
     let r = run.results();
-    match (&r.segments, &r.regions) {
-        (Some(segments), _) => Cow::Borrowed(&segments.value),
-        (None, Some(regions)) => Cow::Owned(image_segments(&regions.value)),
-        (None, None) => Cow::Borrowed(&[]),
+    match (&r.segments, &r.regions, &r.lines) {
+        (_, Some(regions), None) => Cow::Owned(image_segments(&regions.value)),
+        (Some(segments), ..) => Cow::Borrowed(&segments.value),
+        (None, ..) => Cow::Borrowed(&[]),
     }
 }
 

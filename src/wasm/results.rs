@@ -57,9 +57,11 @@ impl Session {
     pub fn matched_segments(&self, view: usize) -> Result<Float32Array, JsValue> {
         let run = self.loaded()?;
         let lines = lines_of(run);
-        let matches = run.results().matches.as_ref();
-        let supports: Vec<_> = match matches {
-            Some(matches) if lines.is_empty() => {
+        let found = run.results();
+        let supports: Vec<_> = match (&found.matches, &found.clusters) {
+            (Some(matches), clusters)
+                if lines.is_empty() && (clusters.is_none() || found.lines.is_some()) =>
+            {
                 matches.value.iter().map(|m| &m.supports).collect()
             }
             _ => lines.iter().map(|l| &l.supports).collect(),

@@ -10,9 +10,11 @@ use super::convert::{from_js, input_error, named_error, row_major, to_js};
 use crate::execution::{Listener, MergedShards};
 use crate::orientation::InputFile;
 use crate::params::Params;
-use crate::pipeline::{PackedView, Run, Stage, load_adjusted};
+use crate::pipeline::{PackedView, Run, Stage};
 use crate::planes::PointsOfInterest;
-use crate::scene_loader::{LoadOptions, Project, SHOWN, inspect_files, open_project, unpack};
+use crate::scene_loader::{
+    LoadOptions, Project, SHOWN, inspect_files, load_scene, open_project, unpack,
+};
 use crate::tiles::Area;
 
 /// Files, parameters and the reconstruction made of them.
@@ -62,9 +64,6 @@ struct JsLoadOptions {
     /// Go on where the images do not agree with their orientation.
     #[tsify(optional)]
     ignore_check: bool,
-    /// Adjust views that are turned or moved against the others by up to a few pixels.
-    #[tsify(optional)]
-    adjust: bool,
 }
 
 /// What `openedProject` returns.
@@ -76,7 +75,7 @@ struct OpenedProject<'a> {
     params: &'a Params,
 }
 
-/// What `load` returns.
+/// What `load` and `scene` return.
 #[derive(Serialize, tsify::Tsify)]
 struct SceneInfo {
     views: Vec<ViewInfo>,
@@ -212,8 +211,15 @@ impl Session {
         self.run = None;
         self.outputs = None;
         self.points = None;
-        let scene =
-            load_adjusted(&self.files, &options, &self.params).map_err(|e| input_error(&e))?;
+        let scene = load_scene(&self.files, &options).map_err(|e| input_error(&e))?;
+        self.run = Some(Run::new(scene, self.params.clone()));
+        self.scene()
+    }
+
+    /// The loaded scene, its views adjusted as far as the stages have run.
+    #[wasm_bindgen(unchecked_return_type = "SceneInfo")]
+    pub fn scene(&self) -> Result<JsValue, JsValue> {
+        let scene = self.loaded()?.scene();
         let views = scene.views.iter().map(|view| ViewInfo {
             name: view.name.clone(),
             width: view.camera.width,
@@ -221,14 +227,12 @@ impl Session {
             center: view.camera.center.coords.into(),
             projection: row_major(&view.camera.projection_matrix()),
         });
-        let info = to_js(&SceneInfo {
+        to_js(&SceneInfo {
             views: views.collect(),
             origin: scene.origin.into(),
             warnings: scene.warnings.clone(),
             agreement: scene.survey.agreement.clone(),
-        });
-        self.run = Some(Run::new(scene, self.params.clone()));
-        info
+        })
     }
 
     /// Sets the parameters (what is missing takes its default) and drops the results that they
@@ -261,6 +265,17 @@ impl Session {
         let merged = std::mem::take(&mut self.merged);
         let run = self.loaded_mut()?;
         to_js(&run.step_merged(stage, merged, &listener_of(on_progress)))
+    }
+
+    /// Runs the adjustment of the views once; as `runStage` where they stay. Where views moved,
+    /// null: the stages from the matches on are to be run again, which sessions may divide.
+    #[wasm_bindgen(js_name = adjustOnce, unchecked_return_type = "StageSummary | null")]
+    pub fn adjust_once(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "(fraction: number) => void")] on_progress: &Function,
+    ) -> Result<JsValue, JsValue> {
+        self.outputs = None;
+        to_js(&self.loaded_mut()?.adjust_once(&listener_of(on_progress)))
     }
 
     pub(crate) fn loaded(&self) -> Result<&Run, JsValue> {
@@ -299,7 +314,6 @@ pub(crate) fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
         memory_mb: None,
         apply_fix: options.apply_fix,
         ignore_check: options.ignore_check,
-        adjust: options.adjust,
     })
 }
 
@@ -313,7 +327,6 @@ impl From<&LoadOptions> for JsLoadOptions {
             epsg: options.epsg,
             apply_fix: options.apply_fix,
             ignore_check: options.ignore_check,
-            adjust: options.adjust,
         }
     }
 }

@@ -48,6 +48,21 @@ impl Session {
         Ok(())
     }
 
+    /// The cameras, for `takeCameras` of the other sessions before each stage.
+    #[wasm_bindgen(js_name = packCameras, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
+    pub fn pack_cameras(&self) -> Result<Vec<u8>, JsValue> {
+        Ok(self.loaded()?.pack_cameras())
+    }
+
+    /// Takes the cameras of another session, which its adjustment may have moved.
+    #[wasm_bindgen(js_name = takeCameras)]
+    pub fn take_cameras(&mut self, packed: Vec<u8>) -> Result<(), JsValue> {
+        match self.loaded_mut()?.take_cameras(&packed) {
+            true => Ok(()),
+            false => Err(foreign("the cameras of the views")),
+        }
+    }
+
     /// What a stage found, as far as sharded maps of later stages read it; empty otherwise.
     #[wasm_bindgen(js_name = handOver, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
     pub fn hand_over(&self, stage: &str) -> Result<Vec<u8>, JsValue> {

@@ -19,8 +19,9 @@ impl StageDefinition for Matches {
     const NAME: &'static str = "matches";
     const TITLE: &'static str = "Matches";
     const SECTION: &'static str = "B99 3.1–3.4";
-    // Matching fits 3D lines too, to tell which segments agree.
-    const READS: &'static [&'static str] = &["matching", "lines3d"];
+    // Matching fits 3D lines too, to tell which segments agree; the last matches are those of the
+    // adjusted views.
+    const READS: &'static [&'static str] = &["matching", "lines3d", "adjustment"];
     const NEEDS: &'static [Stage] = &[Stage::Segments];
     const SHARD_MAPS: &'static [&'static str] = &["heights", "pairs", "triples", "bundles"];
     const SHARDS_READ_COLOURS: bool = true;

@@ -10,6 +10,7 @@
 //!
 //! Invariant: no file of a stage knows another one; they meet in [`Results`].
 
+mod adjustment;
 mod clusters;
 mod directions;
 mod facets;
@@ -93,6 +94,12 @@ const ALL: &[Method] = &[Method::Lines, Method::Rectangles, Method::Combined];
 
 // The order of the stages, the file of each, and the methods that it belongs to.
 stage_table! {
+    /// Straight image segments in every view (B99 3.2).
+    Segments in segments: LINES,
+    /// Segments matched over the views (B99 3.1 - 3.4).
+    Matches in matches: LINES,
+    /// Single views adjusted to the matched lines.
+    Adjustment in adjustment: LINES,
     /// Regions with straight boundaries in every view, and the lines on these (W96 3.3).
     Regions in regions: RECTANGLES,
     /// Windows and their main directions (W96 3.4).
@@ -101,10 +108,6 @@ stage_table! {
     Clusters in clusters: RECTANGLES,
     /// Planes between parallel lines and the closed buildings below them (W96 3.6).
     Rectangles in rectangles: RECTANGLES,
-    /// Straight image segments in every view (B99 3.2).
-    Segments in segments: LINES,
-    /// Segments matched over the views (B99 3.1 - 3.4).
-    Matches in matches: LINES,
     /// 3D lines (B99 3.2).
     Lines in lines: LINES,
     /// The ground, and half-planes at the 3D lines (B99 4.1).

@@ -89,10 +89,9 @@ pub(crate) fn check_and_correct(
             options.ignore_check,
         )?);
     }
-    let mut cameras: Vec<Camera> = views.iter().map(|v| v.camera.clone()).collect();
-    warnings.extend(correct_shifts(&check, &views, &mut cameras, options.adjust));
+    warnings.extend(words_of_shifts(&check, &views));
     Ok(CheckedCameras {
-        cameras,
+        cameras: views.iter().map(|v| v.camera.clone()).collect(),
         origin_change,
         report: check.report(),
         shifts: check.shifts,
@@ -170,32 +169,19 @@ fn correction(finding: &CheckFinding, views: &[CheckedView]) -> Option<Correctio
     })
 }
 
-/// Corrects the cameras of shifted views, or only names these views.
-fn correct_shifts(
-    check: &OrientationCheck,
-    views: &[CheckedView],
-    cameras: &mut [Camera],
-    adjust: bool,
-) -> Option<String> {
+/// The names of shifted views.
+fn words_of_shifts(check: &OrientationCheck, views: &[CheckedView]) -> Option<String> {
     // Half a pixel in all views is an error of its own, which has been named.
     if matches!(check.finding, CheckFinding::Offset { .. }) {
         return None;
     }
-    let mut names = Vec::new();
-    for ((shift, view), camera) in check.shifts.iter().zip(views).zip(cameras) {
-        let [x, y] = shift.shift_px;
-        if shift.is_significant() {
-            names.push(format!("{} by ({x:+.2}, {y:+.2}) px", view.name));
-            if adjust {
-                camera.k[(0, 2)] += x;
-                camera.k[(1, 2)] += y;
-            }
-        }
-    }
-    let done = if adjust {
-        "were shifted back"
-    } else {
-        "are shifted against the others (--adjust shifts them back)"
-    };
-    (!names.is_empty()).then(|| format!("views that {done}: {}", listed(names.iter())))
+    let shifted = check.shifts.iter().zip(views);
+    let names: Vec<String> = (shifted.filter(|(shift, _)| shift.is_significant()))
+        .map(|(shift, view)| {
+            let [x, y] = shift.shift_px;
+            format!("{} by ({x:+.2}, {y:+.2}) px", view.name)
+        })
+        .collect();
+    let words = "views that are shifted against the others";
+    (!names.is_empty()).then(|| format!("{words}: {}", listed(names.iter())))
 }

@@ -49,6 +49,7 @@ export class WorkerPool {
       await this.#resize(wanted.workers - 1);
       await this.#giveViews(wanted.views, await this.#engine.call("shardsReadColours", wanted.stage));
       await this.#giveResults(wanted);
+      await this.#giveCameras();
       await this.#doMaps(wanted.stage, maps);
       return null;
     } catch (error) {
@@ -133,6 +134,14 @@ export class WorkerPool {
         taken.set(stage, run);
       }
     }
+  }
+
+  /** After the parameters, which may move cameras as the adjustment does. */
+  async #giveCameras(): Promise<void> {
+    const packed = await this.#engine.call("packCameras");
+    await giveAll(workersOf(this.#pooled), [packed], (worker, transfer) =>
+      worker.callMoving(transfer, "takeCameras", packed),
+    );
   }
 
   async #doMaps(stage: string, maps: readonly string[]): Promise<void> {

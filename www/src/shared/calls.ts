@@ -39,6 +39,8 @@ export interface WorkerCalls {
   warped(line: number, left: boolean, theta: number): WarpedPicture | null;
   ground(): GroundTexture | null;
   runStage(stage: string): StageSummary;
+  /** Null where views moved. */
+  adjustOnce(): StageSummary | null;
   runShard(stage: string, map: string, index: number, of: number): Bytes;
   /** The next tile, which is the `index`-th of `of`, with its progress as that of `stage`; null when all are done. */
   runTile(stage: string, index: number, of: number): TileReport | null;

@@ -6,6 +6,27 @@ export type Method = (typeof METHODS)[number];
 /** In their order; each with the methods that have it, and the parameters that it reads. */
 export const STAGES = [
   {
+    name: "segments",
+    title: "Segments",
+    section: "B99 3.2",
+    methods: ["lines", "combined"],
+    reads: ["segments"],
+  },
+  {
+    name: "matches",
+    title: "Matches",
+    section: "B99 3.1–3.4",
+    methods: ["lines", "combined"],
+    reads: ["matching", "lines3d", "adjustment"],
+  },
+  {
+    name: "adjustment",
+    title: "Adjustment",
+    section: "views to their lines",
+    methods: ["lines", "combined"],
+    reads: ["adjustment", "lines3d"],
+  },
+  {
     name: "regions",
     title: "Regions",
     section: "W96 3.3",
@@ -32,20 +53,6 @@ export const STAGES = [
     section: "W96 3.6",
     methods: ["rectangles", "combined"],
     reads: ["objectspace.planes"],
-  },
-  {
-    name: "segments",
-    title: "Segments",
-    section: "B99 3.2",
-    methods: ["lines", "combined"],
-    reads: ["segments"],
-  },
-  {
-    name: "matches",
-    title: "Matches",
-    section: "B99 3.1–3.4",
-    methods: ["lines", "combined"],
-    reads: ["matching", "lines3d"],
   },
   {
     name: "lines",

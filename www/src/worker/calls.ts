@@ -40,6 +40,7 @@ export function workerCalls(
     warped: (line, left, theta) => pictureOf<WarpedViews>(session.warped(line, left, theta)),
     ground: () => pictureOf<GroundPicture>(session.ground()),
     runStage: (stage) => session.runStage(stage, throttled(stage, onProgress)),
+    adjustOnce: () => session.adjustOnce(throttled("adjustment", onProgress)),
     runShard: (stage, map, index, of) =>
       session.runShard(stage, map, index, of, throttled(stage, onProgress)),
     runTile: (stage, index, of) => {

@@ -18,8 +18,9 @@ test("both methods find one model of a house, and each view tells of its own sta
     .locator("[data-stage]")
     .evaluateAll((all) => all.map((one) => one.dataset["stage"]));
   expect(names).toEqual([
+    ...["segments", "matches", "adjustment"],
     ...["regions", "directions", "clusters", "rectangles"],
-    ...["segments", "matches", "lines", "halfplanes", "facets", "model"],
+    ...["lines", "halfplanes", "facets", "model"],
   ]);
 
   await test.step("the model is seen, by the method that made each facet", async () => {

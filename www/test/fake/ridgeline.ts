@@ -21,6 +21,7 @@ import type {
   SegmentMatching,
   SideRecord,
   SideTrace,
+  StageSummary,
   TileReport,
 } from "../../src/shared/records";
 import type { CoreSession } from "../../src/worker/calls";
@@ -92,6 +93,7 @@ export class Session implements CoreSession {
     const params: ParamTree = {
       segments: { min_length_px: 15 },
       matching: { window_px: 15 },
+      adjustment: { enabled: true },
       lines3d: {},
       sweep: { max_theta_deg: 75, min_similarity: 0.4, min_curvature: 4, min_amplitude: 0.2 },
       roof: {},
@@ -129,6 +131,10 @@ export class Session implements CoreSession {
   }
 
   load(): SceneInfo {
+    return this.scene();
+  }
+
+  scene(): SceneInfo {
     if (this.#images().length < 3) {
       throw Object.assign(new Error("fewer than three views; add photographs"), { name: "InputError" });
     }
@@ -143,6 +149,17 @@ export class Session implements CoreSession {
   }
 
   setParams(): void {}
+
+  /** All views stay. */
+  adjustOnce(onProgress: (fraction: number) => void): StageSummary | null {
+    return this.runStage("adjustment", onProgress);
+  }
+
+  packCameras(): Uint8Array<ArrayBuffer> {
+    return new Uint8Array();
+  }
+
+  takeCameras(): void {}
 
   runStage(stage: string, onProgress: (fraction: number) => void) {
     for (let step = 1; step <= 20; step += 1) {

@@ -15,10 +15,14 @@ const TAKES: Partial<Record<CallName | "open", number>> = {
   inspect: 5,
   load: 20,
   runStage: 30,
+  adjustOnce: 30,
   runShard: 10,
   runTile: 60,
   exportProject: 20,
 };
+
+/** One at a time, in all workers. */
+const RUNNING: readonly string[] = ["runStage", "adjustOnce", "runTile"];
 
 /** What the real core would have answered with a crash or mixed results. */
 export const violations: string[] = [];
@@ -28,6 +32,9 @@ export const ran: string[] = [];
 
 /** Calls that fail once with what is thrown here, by name. */
 export const failing = new Map<string, () => never>();
+
+/** In how many rounds of the adjustment views will move. */
+export const moving = { rounds: 0 };
 
 let stagesAtWork = 0;
 
@@ -67,6 +74,12 @@ class StrictSession extends Session {
     ran.push(stage);
     onProgress(1);
     return { stage, counts: { [stage]: 7 }, warnings: [] };
+  }
+
+  override adjustOnce(onProgress: (fraction: number) => void) {
+    const summary = super.adjustOnce(onProgress);
+    moving.rounds -= 1;
+    return moving.rounds < 0 ? summary : null;
   }
 
   override runShard(
@@ -109,7 +122,7 @@ export class FakeWorker {
 
   postMessage(request: Request): void {
     const name = request.type === "open" ? "open" : request.name;
-    if (name === "runStage" || name === "runTile") {
+    if (RUNNING.includes(name)) {
       this.#stages += 1;
       stagesAtWork += 1;
       if (stagesAtWork > 1) {
@@ -134,7 +147,7 @@ export class FakeWorker {
     if (this.#isEnded) {
       return;
     }
-    if (name === "runStage" || name === "runTile") {
+    if (RUNNING.includes(name)) {
       this.#stages -= 1;
       stagesAtWork -= 1;
     }

@@ -3,7 +3,9 @@ import { signal } from "@preact/signals";
 import { useState } from "preact/hooks";
 import type { OrientationCandidate } from "../../shared/records";
 import { TextField } from "../parts/TextField";
+import { setParam } from "../session/stageRuns";
 import { type Parsed, parseHeight, parseRegion, parseTile } from "../settings/loadOptions";
+import { method, params } from "../state/parameters";
 import { inspection, runOptions } from "../state/project";
 import { setRunOptions } from "./projectActions";
 
@@ -45,11 +47,11 @@ const placeOpen = signal(false);
 
 /** Region of interest and height of the ground, both in the frame of the orientation. */
 export function PlaceFields() {
-  const { roi, groundZ, tileM, adjust } = runOptions.value;
+  const { roi, groundZ, tileM } = runOptions.value;
   return (
     <details
       class="params"
-      open={placeOpen.value || roi !== null || groundZ !== null || adjust}
+      open={placeOpen.value || roi !== null || groundZ !== null || !isAdjusted()}
       onToggle={(event) => {
         placeOpen.value = event.currentTarget.open;
       }}
@@ -79,12 +81,21 @@ export function PlaceFields() {
         parse={parseTile}
         onValue={(tileM) => void setRunOptions({ tileM })}
       />
-      <label class="option">
-        <input type="checkbox" checked={adjust} onChange={() => void setRunOptions({ adjust: !adjust })} />
-        Adjust small errors of single views
-      </label>
+      {method.value !== "rectangles" && (
+        <label class="option">
+          <input type="checkbox" checked={isAdjusted()} onChange={() => setParam(ADJUSTED, !isAdjusted())} />
+          Adjust small errors of single views
+        </label>
+      )}
     </details>
   );
+}
+
+/** Whether single views are adjusted: a parameter of the run. */
+const ADJUSTED = "adjustment.enabled";
+
+function isAdjusted(): boolean {
+  return params.value["adjustment"]?.["enabled"] !== false;
 }
 
 interface FieldProps<T> {

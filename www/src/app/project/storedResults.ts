@@ -2,9 +2,11 @@
 import { batch } from "@preact/signals";
 import { CORE_VERSION } from "../../core/engine";
 import type { ParamTree } from "../../shared/paramTree";
+import type { SceneInfo } from "../../shared/records";
 import { changedParams } from "../settings/parameterForm";
 import { defaults, params } from "../state/parameters";
 import { allResults, exportNames, type ResultSets, restoreResults, setExportNames } from "../state/results";
+import { scene, setScene } from "../state/scene";
 import { outdateStages, restoreStages, type StageState, stages } from "../state/stages";
 
 export interface StoredResults {
@@ -12,6 +14,8 @@ export interface StoredResults {
   core: string;
   params: ParamTree;
   results: ResultSets;
+  /** As the results have them: some may be adjusted. */
+  views: SceneInfo["views"];
   stages: StageState[];
   exportNames: string[];
 }
@@ -25,6 +29,7 @@ export function presentResults(): StoredResults | null {
     core: CORE_VERSION,
     params: params.value,
     results: allResults.value,
+    views: scene.value?.views ?? [],
     stages: stages.value,
     exportNames: exportNames.value,
   };
@@ -38,6 +43,9 @@ export function showStoredResults(kept: StoredResults): void {
   }
   batch(() => {
     restoreResults(kept.results);
+    if (scene.value !== null && kept.views.length === scene.value.views.length) {
+      setScene({ ...scene.value, views: kept.views });
+    }
     restoreStages(kept.stages);
     setExportNames(kept.exportNames);
     if (changesOf(kept.params) !== changesOf(params.value)) {

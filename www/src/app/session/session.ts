@@ -11,7 +11,7 @@ import { announce, notify } from "../state/notices";
 import { method, params, replaceParams, setDefaults } from "../state/parameters";
 import { files, inspection, runOptions, setInspection } from "../state/project";
 import { results, setExportNames } from "../state/results";
-import { images, setImages, setPeakMb, setScene } from "../state/scene";
+import { images, scene, setImages, setPeakMb, setScene } from "../state/scene";
 import {
   haltStages,
   replaceStages,
@@ -169,6 +169,14 @@ export async function ensureScene(): Promise<void> {
     }
   }
   await engine.call("setParams", params.value);
+}
+
+/** Shows the views where they are now: the adjustment moves them, and changed parameters move them back. */
+export async function followCameras(): Promise<void> {
+  const found = await engine.call("scene");
+  if (JSON.stringify(found.views) !== JSON.stringify(scene.value?.views)) {
+    setScene(found);
+  }
 }
 
 async function fetchImages(loaded: SceneInfo): Promise<ImageBitmap[]> {

@@ -27,6 +27,8 @@ const FETCHED: Record<StageName, () => Promise<Partial<Results>>> = {
     supports: await perView("matchedSegments"),
     matching: await engine.call("matching"),
   }),
+  // Where views moved, `followCameras` shows it.
+  adjustment: async () => ({}),
   lines: async () => ({
     ...(await fetchLines()),
     stretches: await engine.call("detectedStretches"),

@@ -5,7 +5,7 @@ import type { ParamTree, ParamValue } from "../../shared/paramTree";
 import type { StageName } from "../../shared/stages";
 import { saveFile } from "../parts/saveFile";
 import { withParam } from "../settings/parameterForm";
-import type { Method } from "../state/methods";
+import { type Method, mainTabOf } from "../state/methods";
 import { announce, dismissOffers, notify } from "../state/notices";
 import { defaults, method, params, replaceParams } from "../state/parameters";
 import { files, runOptions } from "../state/project";
@@ -25,7 +25,7 @@ import { select, showPlane, showTab } from "../state/viewState";
 import { chooseWorkers, workers } from "../state/workers";
 import type { Turn } from "./actionQueue";
 import { workerNotice } from "./failureNotice";
-import { actions, engine, ensureScene, hasResults, noteResults, workerPool } from "./session";
+import { actions, engine, ensureScene, followCameras, hasResults, noteResults, workerPool } from "./session";
 import { firstStageOf, stagesOf, stageWords } from "./stageCatalogue";
 import { fetchResults } from "./stageResults";
 import { runTiles } from "./tiledRun";
@@ -62,7 +62,7 @@ export async function runStages(turn: Turn, target: StageName): Promise<void> {
   await ensureScene();
   const names = stages.value.map(({ name }) => name);
   const end = names.indexOf(target);
-  // A parameter that is changed meanwhile sets back which stages are up to date.
+  // A parameter that is changed meanwhile sets back which stages are up to date, and so do views that move.
   for (let i = freshStages.value; i <= end; i = freshStages.value) {
     const taken = params.value;
     beginStage(i);
@@ -131,17 +131,24 @@ async function runStage(name: StageName, position: number, taken: ParamTree): Pr
   announce(`${stageWords(name).title} running`);
   try {
     await runShards(name, taken);
-    const summary = await engine.call("runStage", name);
+    const isAdjustment = name === "adjustment";
+    const summary = await (isAdjustment ? engine.call("adjustOnce") : engine.call("runStage", name));
+    await followCameras();
+    if (summary === null) {
+      updateStage(name, { status: "waiting", fraction: 0 });
+      outdateStages(stages.value.findIndex((stage) => stage.name === "matches"));
+      return;
+    }
     workerPool.hasRun(name);
     noteResults();
     const found = await fetchResults(name);
     const seconds = (performance.now() - started) / 1000;
     const names = await engine.call("exportNames");
     batch(() => {
-      addResults(name, found);
+      addResults(mainTabOf(name), found);
       setExportNames(names);
       select(null);
-      showTab(name);
+      showTab(mainTabOf(name));
       updateStage(name, { ...summary, status: "done", fraction: 1, seconds });
       endStage(position);
     });

@@ -4,7 +4,7 @@ import type { RunOptions } from "../state/project";
 
 /** The core's options; the views are named only where some are left out. */
 export function loadOptions(wanted: RunOptions, inspection: Inspection | null): LoadOptions {
-  const { orientation, leftOut, roi, groundZ, applyFix, ignoreCheck, adjust, epsg } = wanted;
+  const { orientation, leftOut, roi, groundZ, applyFix, ignoreCheck, epsg } = wanted;
   const used = (inspection?.images ?? []).filter(({ path }) => !leftOut.includes(path));
   return {
     ...(orientation !== null && { orientation }),
@@ -13,7 +13,6 @@ export function loadOptions(wanted: RunOptions, inspection: Inspection | null): 
     ...(groundZ !== null && { groundZ }),
     ...(applyFix && { applyFix }),
     ...(ignoreCheck && { ignoreCheck }),
-    ...(adjust && { adjust }),
     ...(epsg !== null && { epsg }),
   };
 }
@@ -31,7 +30,6 @@ export function wishesOf(opened: OpenedProject["options"], inspection: Inspectio
     epsg,
     applyFix: opened.applyFix === true,
     ignoreCheck: opened.ignoreCheck === true,
-    adjust: opened.adjust === true,
     tileM: null,
   };
 }

@@ -33,6 +33,7 @@ const UNITS: readonly (readonly [string, string])[] = [
 const TITLES: Record<string, string> = {
   segments: "Segments",
   matching: "Matching",
+  adjustment: "Adjustment of the views",
   lines3d: "3D lines",
   sweep: "Half-plane sweep",
   roof: "Grouping and facets",
@@ -52,7 +53,7 @@ const CHOICES: Record<string, readonly string[]> = {
 
 /** The groups that a method reads; "combined" reads all. */
 const GROUPS_OF_METHOD: Record<string, readonly string[]> = {
-  lines: ["segments", "matching", "lines3d", "sweep", "roof", "texture"],
+  lines: ["segments", "matching", "adjustment", "lines3d", "sweep", "roof", "texture"],
   rectangles: ["objectspace", "texture"],
 };
 

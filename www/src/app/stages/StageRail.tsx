@@ -8,6 +8,7 @@ import { cancel } from "../session/session";
 import { stageWords } from "../session/stageCatalogue";
 import { runAll, runTo } from "../session/stageRuns";
 import { isBusy, phase } from "../state/activity";
+import { mainTabOf } from "../state/methods";
 import { files, hasPhotographsOnly } from "../state/project";
 import { freshStages, type StageState, type StageStatus, stages } from "../state/stages";
 import { showTab } from "../state/viewState";
@@ -92,7 +93,7 @@ function StageCard({ stage, position }: { stage: StageState; position: number })
         class="link"
         title={words.section}
         onClick={() => {
-          showTab(stage.name);
+          showTab(mainTabOf(stage.name));
         }}
       >
         {words.title}

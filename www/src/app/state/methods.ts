@@ -5,8 +5,8 @@ import { METHODS, type Method, STAGES, type StageName } from "../../shared/stage
 
 export type { Method };
 
-/** Views beside those of the stages: the photographs, and what the facets were made of. */
-export type Tab = StageName | "images" | "groups" | "refinement";
+/** Views of the stages (the adjustment has none), and beside them the photographs and what the facets were made of. */
+export type Tab = Exclude<StageName, "adjustment"> | "images" | "groups" | "refinement";
 
 /** The views of a stage, in their order; one of its own name where it has no others. */
 const TABS_OF_STAGE: Partial<Record<StageName, readonly Tab[]>> = {
@@ -25,12 +25,21 @@ export const REGION_TABS: readonly Tab[] = tabsOf("rectangles").filter((tab) => 
 
 function tabsOf(method: Method): Tab[] {
   const stages = STAGES.filter(({ methods }) => (methods as readonly Method[]).includes(method));
-  return stages.flatMap(({ name }) => TABS_OF_STAGE[name] ?? [name]);
+  return stages.flatMap(({ name }) => tabsOfStage(name));
+}
+
+function tabsOfStage(name: StageName): readonly Tab[] {
+  return name === "adjustment" ? [] : (TABS_OF_STAGE[name] ?? [name]);
+}
+
+/** The view that tells most of a stage: of the adjusted cameras, the matches. */
+export function mainTabOf(name: StageName): Tab {
+  return name === "adjustment" ? "matches" : name;
 }
 
 /** The stage whose result a view shows; null where it needs none. */
 export function stageOfTab(tab: Tab): StageName | null {
-  const shows = ({ name }: { name: StageName }) => (TABS_OF_STAGE[name] ?? [name]).includes(tab);
+  const shows = ({ name }: { name: StageName }) => tabsOfStage(name).includes(tab);
   return STAGES.find(shows)?.name ?? null;
 }
 

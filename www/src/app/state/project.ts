@@ -13,8 +13,6 @@ export interface RunOptions {
   applyFix: boolean;
   /** Go on where the images do not agree with their orientation. */
   ignoreCheck: boolean;
-  /** Adjust small errors of single views. */
-  adjust: boolean;
   /** Size of the tiles in which the region is worked off, metres; null: in one. */
   tileM: number | null;
   /** As a project file says. */
@@ -28,7 +26,6 @@ export const NO_OPTIONS: RunOptions = {
   groundZ: null,
   applyFix: false,
   ignoreCheck: false,
-  adjust: false,
   tileM: null,
   epsg: null,
 };

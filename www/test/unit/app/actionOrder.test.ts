@@ -4,7 +4,7 @@
  */
 import { afterAll, beforeAll, describe, expect, it, vi } from "vitest";
 import type { InputFile } from "../../../src/shared/calls";
-import { FakeWorker, failing, ran, violations } from "../../fake/worker";
+import { FakeWorker, failing, moving, ran, violations } from "../../fake/worker";
 
 vi.mock("../../../src/pkg/ridgeline_bg.wasm?url", () => ({ default: "none" }));
 vi.mock("../../../src/app/parts/saveFile", () => ({ saveFile: () => {} }));
@@ -285,6 +285,17 @@ describe("a run", () => {
     await untilIdle();
     expect(ran.filter((name) => name === "segments")).toHaveLength(1);
     expect(ran.filter((name) => name === "matches")).toHaveLength(2);
+    expect(new Set(page.stages.value.map(({ status }) => status))).toEqual(new Set(["done"]));
+  });
+
+  it("finds the matches again as long as views move", async () => {
+    await beginAnew();
+    moving.rounds = 2;
+    begin("run all");
+    await untilIdle();
+    const times = (wanted: string) => ran.filter((name) => name === wanted).length;
+    expect(["segments", "matches", "adjustment", "lines"].map(times)).toEqual([1, 3, 3, 1]);
+    expect(ran.slice(-6)).toEqual(["matches", "adjustment", "lines", "halfplanes", "facets", "model"]);
     expect(new Set(page.stages.value.map(({ status }) => status))).toEqual(new Set(["done"]));
   });
 

@@ -19,7 +19,6 @@ describe("run options", () => {
       groundZ: 0,
       applyFix: true,
       ignoreCheck: true,
-      adjust: true,
       tileM: 50,
       epsg: 25832,
     };
@@ -30,7 +29,6 @@ describe("run options", () => {
       groundZ: 0,
       applyFix: true,
       ignoreCheck: true,
-      adjust: true,
       epsg: 25832,
     });
   });

@@ -114,8 +114,9 @@ describe("firstStageOf", () => {
   const stages = stagesOf("lines");
 
   it("finds the stage that a group changes first", () => {
-    expect(firstStageOf("sweep", stages)).toBe(3);
-    expect(firstStageOf("texture", stages)).toBe(5);
+    expect(firstStageOf("sweep", stages)).toBe(4);
+    expect(firstStageOf("texture", stages)).toBe(6);
+    expect(firstStageOf("adjustment", stages)).toBe(stages.indexOf("matches"));
   });
 
   it("tells parameters of one group apart, and leaves the other method alone", () => {

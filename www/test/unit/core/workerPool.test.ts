@@ -124,6 +124,16 @@ describe("worker pool", () => {
     expect(of("takeOver").length).toBe(6);
   });
 
+  it("gives the cameras before every stage, after the parameters", async () => {
+    const pool = await poolOf();
+    await pool.runShards(wanted);
+    await pool.runShards(wanted);
+    expect(of("takeCameras").length).toBe(4);
+    const ofOne = calls.filter(([worker]) => worker === 1).map(([, name]) => name);
+    expect(ofOne.indexOf("setParams")).toBeLessThan(ofOne.indexOf("takeCameras"));
+    expect(ofOne.indexOf("takeCameras")).toBeLessThan(ofOne.indexOf("runShard"));
+  });
+
   it("copies for all workers but the last, which gets the bytes themselves", async () => {
     const pool = await poolOf();
     pool.hasRun("segments");

@@ -1,0 +1,71 @@
+//! Rounds of the adjustment: better cameras find more lines, which tell more of the cameras.
+
+use super::adjust_views;
+use crate::agreement::Finding;
+use crate::camera::Camera;
+use crate::lines3d::Line3d;
+use crate::params::Lines3dParams;
+use crate::scene::{Scene, Survey, ViewAdjustment, ViewShift};
+
+/// Most rounds of matching and adjusting in which views move.
+const MOST_ROUNDS: usize = 3;
+
+/// What a round found.
+#[derive(Clone, Debug, Default)]
+pub struct AdjustmentRound {
+    /// Cameras with which the lines are to be found again; `None` where all views stay.
+    pub cameras: Option<Vec<Camera>>,
+    /// How each view was adjusted, in all rounds.
+    pub views: Vec<ViewAdjustment>,
+}
+
+/// The views that are shifted against the others, and by how much.
+pub(crate) fn shifts_back(survey: &Survey) -> Vec<(usize, ViewShift)> {
+    // Half a pixel in all views is an error of its own, which has been named.
+    let is_offset = (survey.agreement.as_ref()).is_some_and(|a| a.finding == Finding::Offset);
+    let shifts = survey.shifts.iter().copied().enumerate();
+    let shifted = shifts.filter(|(_, shift)| shift.is_significant() && !is_offset);
+    shifted.collect()
+}
+
+/// The next round of a scene whose earlier ones stand in its survey. `lines` are not asked for
+/// after the last one.
+pub(crate) fn next_round(
+    scene: &Scene,
+    lines: impl FnOnce() -> Vec<Line3d>,
+    params: &Lines3dParams,
+) -> AdjustmentRound {
+    let Survey {
+        adjustments: before,
+        adjustment_rounds: rounds,
+        ..
+    } = &scene.survey;
+    if *rounds >= MOST_ROUNDS {
+        return AdjustmentRound {
+            cameras: None,
+            views: before.clone(),
+        };
+    }
+    let (cameras, found) = adjust_views(scene, &lines(), params);
+    let moves = found.iter().any(ViewAdjustment::moves);
+    AdjustmentRound {
+        cameras: moves.then_some(cameras),
+        views: match before.is_empty() {
+            true => found,
+            false => before.iter().zip(found).map(together).collect(),
+        },
+    }
+}
+
+/// Two rounds as one; motions that follow each other add up, at most.
+fn together((first, second): (&ViewAdjustment, ViewAdjustment)) -> ViewAdjustment {
+    let motion_px = [0, 1].map(|i| first.motion_px[i] + second.motion_px[i]);
+    ViewAdjustment {
+        motion_px,
+        rms_motion_px: first.rms_motion_px + second.rms_motion_px,
+        turn_deg: first.turn_deg + second.turn_deg,
+        move_m: first.move_m + second.move_m,
+        before_px: first.before_px,
+        ..second
+    }
+}
