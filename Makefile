@@ -10,13 +10,14 @@
 #   make score      all scenes against their truth; rewrites the tables of docs/results.md
 #   make fuzz       all readers on damaged files, FUZZ_SECONDS (600) for each format
 #   make jury       all scenes many times over, changed a little each time; rewrites its tables there
+#   make calibrate  fits the tables of src/evidence to scenes with truth, PYTHON (python3) with numpy, scipy, shapely
 #   make bench      time of every stage on the synthetic scene, and of the lines of the scene in SCENE
 #   make clean      remove what was built (not the tool cache)
 
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: demo test build lint identical golden score jury bench fuzz native setup clean
+.PHONY: demo test build lint identical golden score jury calibrate bench fuzz native setup clean
 
 # Small programs of our own on the crates of wasm-bindgen and wasm-pack, kept for all clones that have the same ones.
 CACHE := $(or $(RIDGELINE_CACHE),$(HOME)/.cache/ridgeline)
@@ -37,6 +38,7 @@ PACKAGE := www/src/pkg/ridgeline_bg.wasm
 ENTRANCE := www/public/entrance/model.glb
 SITE := www/dist/index.html
 PORT ?= 4173
+PYTHON ?= python3
 
 demo: $(SITE)
 	cd www && npm run preview -- --port $(PORT)
@@ -62,6 +64,11 @@ score: native
 
 jury: native
 	python3 tests/jury.py --binary target/release/ridgeline --scenes "$${SCENES:-../shared/scenes}"
+
+calibrate: native
+	$(PYTHON) tests/calibrate.py --self-test
+	$(PYTHON) tests/calibrate.py --binary target/release/ridgeline --fit "$${FIT:-../shared/fit}" \
+		--more "$${SCENES:-../shared/scenes}"
 
 bench:
 	cargo bench --bench stages

@@ -70,6 +70,7 @@ pub mod agreement;
 pub mod buildings;
 pub mod camera;
 mod error;
+pub mod evidence;
 pub mod execution;
 pub mod export;
 pub mod facets;

@@ -30,6 +30,7 @@ pub(crate) fn facet(ring: &[Point3<f64>]) -> Facet {
         holes: Vec::new(),
         similarity: 0.0,
         real_ratio: 0.0,
+        probability: 1.0,
         lines: Vec::new(),
         half_planes: Vec::new(),
         rectangles: Vec::new(),
@@ -43,6 +44,7 @@ pub(crate) fn line(p0: Point3<f64>, p1: Point3<f64>) -> Line3d {
         segment: Segment3::new(p0, p1),
         sigma_m: 0.01,
         covariance: [Matrix3::zeros(); 2],
+        probability: 1.0,
         supports: Vec::new(),
         contradiction: None,
     }

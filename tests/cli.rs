@@ -12,7 +12,8 @@ use std::process::{Command, Output};
 use common::{synthetic_files, zipped};
 
 /// What a run writes.
-const OUTPUTS: [&str; 13] = [
+const OUTPUTS: [&str; 14] = [
+    "evidence.json",
     "footprints.geojson",
     "halfplanes.json",
     "lines.csv",

@@ -134,6 +134,7 @@ fn semantic_surface(model: &RoofModel, surface: Surface) -> Value {
                 "slopeDeg": rounded(slope.to_degrees(), 3),
                 "similarity": rounded(facet.similarity, 4),
                 "realLineRatio": rounded(facet.real_ratio, 4),
+                "probability": rounded(facet.probability, 4),
             })
         }
     }

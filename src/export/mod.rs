@@ -11,12 +11,14 @@
 //! | `footprints.geojson` | outlines on the ground, with heights |
 //! | `lines.csv` | the 3D lines as a table |
 //! | `lines.json`, `segments.json`, `halfplanes.json` | what the model was made from |
+//! | `evidence.json` | what spoke for every candidate, and against it |
 //!
 //! `format` holds what the writers share, `triangulate` the triangles of a face.
 //!
 //! Invariant: the same input gives the same bytes; nothing writes a date, a path or a random id.
 
 mod cityjson;
+mod evidence;
 mod format;
 mod glb;
 mod json;
@@ -25,6 +27,7 @@ mod plans;
 mod triangulate;
 
 pub use cityjson::city_json;
+pub use evidence::evidence_json;
 pub use format::{ATLAS_FILE, MATERIAL_FILE};
 pub use glb::glb;
 pub use json::{half_planes_json, lines_json, segments_json};
@@ -34,6 +37,7 @@ pub use triangulate::triangulate;
 
 use image::codecs::jpeg::JpegEncoder;
 
+use crate::evidence::Candidates;
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
 use crate::model::RoofModel;
@@ -53,6 +57,8 @@ pub struct ExportInput<'a> {
     pub lines: &'a [Line3d],
     /// Half-planes.
     pub half_planes: &'a [HalfPlane],
+    /// The lines and facets that were weighed.
+    pub candidates: &'a Candidates,
     /// The model.
     pub model: &'a RoofModel,
     /// Its textures.
@@ -66,6 +72,7 @@ pub fn export_all(input: &ExportInput, params: &TextureParams) -> Vec<(String, V
         segments,
         lines,
         half_planes,
+        candidates,
         model,
         textured,
     } = *input;
@@ -86,6 +93,7 @@ pub fn export_all(input: &ExportInput, params: &TextureParams) -> Vec<(String, V
             "halfplanes.json",
             half_planes_json(scene, lines, half_planes),
         ),
+        ("evidence.json", evidence_json(scene, candidates)),
     ]
     .map(|(name, bytes)| (name.to_owned(), bytes))
     .into()

@@ -5,7 +5,7 @@ use nalgebra::Point3;
 use super::borders::{Arrangement, LINE_HEIGHT, LineIndex};
 use super::delineation::{Delineation, Outline};
 use super::evidence::PlaneEvidence;
-use crate::geometry::{Plane, Segment3};
+use crate::geometry::Plane;
 use crate::ids::{BuildingId, ViewId};
 use crate::model::{Facet, Occluders};
 use crate::photoconsistency::ConsistencyMap;
@@ -21,8 +21,6 @@ pub(super) struct CompetingPlanes {
     pub index: LineIndex,
     /// How the views agree on each plane.
     pub maps: Vec<ConsistencyMap>,
-    /// The lines that may bound a facet.
-    pub bounding: Vec<Segment3>,
     /// With pixels about as wide as the cells of the maps.
     pub scene: Scene,
 }
@@ -63,6 +61,7 @@ impl CompetingPlanes {
                 0.0
             },
             real_ratio: self.real_ratio(outline, delineation),
+            probability: 1.0,
             lines: group.lines(),
             half_planes: group.half_planes(),
             rectangles: group.rectangles.clone(),

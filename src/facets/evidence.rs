@@ -21,8 +21,8 @@ pub(super) struct CellEvidence {
     pub weight: f64,
     /// Sum of weight x correlation over the area.
     pub correlation: f64,
-    /// The same for the correlation at which the plane is as good as none.
-    pub least: f64,
+    /// Sum of what the windows say of the plane over the area, square metres of agreement.
+    pub gain: f64,
     /// Sum of the single-view evidence over the area, square metres.
     pub single_view: f64,
 }
@@ -72,14 +72,14 @@ impl PlaneEvidence {
     ) -> Self {
         let raster = arrangement.raster(grid);
         let mut ground = match ground {
-            Some(map) => ground_evidence(map, windows, &raster, arrangement.cells, params),
+            Some(map) => ground_evidence(map, windows, &raster, arrangement.cells),
             None => vec![0.0; arrangement.cells],
         };
         for (cell, metres) in half_planes_over_cells(input, hypotheses, &raster, grid) {
             ground[cell] -= params.half_plane_gain_m * metres;
         }
         let per_group = crate::execution::map_part(hypotheses, 0.7..0.75, |_, h| {
-            sum_over_cells(h, windows, &raster, grid, params)
+            sum_over_cells(h, windows, &raster, grid)
         });
         let samples = samples_of_cells(&raster, arrangement.cells);
         let sample_m2 = grid.step * grid.step;
@@ -124,9 +124,8 @@ impl PlaneEvidence {
                 let best = best.fold(-1.0, larger);
                 (candidates.iter())
                     .map(|(plane, e)| {
-                        // sum of weight x (least correlation - correlation): negative for a match.
-                        let mismatch = e.least - e.correlation + e.behind(best)
-                            - SINGLE_VIEW_WEIGHT * e.single_view;
+                        let mismatch =
+                            -e.gain + e.behind(best) - SINGLE_VIEW_WEIGHT * e.single_view;
                         // "No plane" keeps the cost 0, so evidence for the ground counts against
                         // roofs.
                         (*plane, mismatch + ground)
@@ -190,13 +189,12 @@ fn ground_evidence(
     windows: &ShiftableWindows,
     raster: &[u32],
     cells: usize,
-    params: &RoofParams,
 ) -> Vec<f64> {
     let area = map.grid.step * map.grid.step;
     let mut evidence = vec![0.0f64; cells];
     for (k, &cell) in raster.iter().enumerate().filter(|(_, c)| **c != u32::MAX) {
         let at = [k % map.grid.width, k / map.grid.width];
-        let observed = windows.evidence_at(map, at, params.min_correlation);
+        let observed = windows.evidence_at(map, at);
         evidence[cell as usize] += observed.gain() * area;
     }
     evidence.into_iter().map(against_roofs).collect()
@@ -216,7 +214,6 @@ fn sum_over_cells(
     windows: &ShiftableWindows,
     raster: &[u32],
     grid: &PlanGrid,
-    params: &RoofParams,
 ) -> BTreeMap<usize, CellEvidence> {
     let (map, region) = (&hypothesis.map, &hypothesis.region);
     let window = &map.grid;
@@ -253,12 +250,12 @@ fn sum_over_cells(
             }
             let e = &mut run.1;
             e.single_view += single_view * area;
-            let observed = windows.evidence_at(map, [column, row], params.min_correlation);
+            let observed = windows.evidence_at(map, [column, row]);
             let weight = observed.weight * area;
             e.area += area;
             e.weight += weight;
             e.correlation += weight * observed.correlation;
-            e.least += weight * observed.least;
+            e.gain += observed.gain() * area;
         }
     }
     store(&mut cells, run);
@@ -476,7 +473,7 @@ mod tests {
             area: 10.0,
             weight: 10.0 * weight,
             correlation: 10.0 * weight * correlation,
-            least: 0.0,
+            gain: 0.0,
             single_view: 0.0,
         };
         let (weak, strong) = (cell(0.1, 0.3), cell(0.9, 0.3));

@@ -17,9 +17,8 @@ use super::evidence::PlaneEvidence;
 use super::input::FacetInput;
 use super::islands::without_islands;
 use super::labelling::Labelling;
-use super::verification::{
-    FacetRejection, RejectedFacet, boundary_leakage, tail_on_ground, verify,
-};
+use super::verification::{FacetRejection, RejectedFacet, tail_on_ground, verify};
+use crate::evidence::JudgedFacet;
 use crate::execution::{Sharded, sharded_map};
 use crate::geometry::{Plane, bounds};
 use crate::lines3d::Line3d;
@@ -45,6 +44,9 @@ pub struct FacetTrace {
     pub borders: Vec<Border>,
     /// Number of cells that the border lines cut the plan into.
     pub cells: usize,
+    /// Every facet that was weighed, with what speaks for it and against it: the accepted ones in
+    /// their order before refinement, then those that were rejected as improbable.
+    pub judged: Vec<JudgedFacet>,
     /// Rejected facets.
     pub rejected: Vec<RejectedFacet>,
 }
@@ -134,19 +136,19 @@ pub fn reconstruct_facets(
         planes,
         index,
         maps,
-        bounding,
         scene: reduced,
     };
-    let (facets, rejected) = solve(&mut labelling, &competing, &groups, ground, scene, params);
+    let verified = solve(&mut labelling, &competing, &groups, ground, scene, params);
     let cells = competing.arrangement.cells;
     let trace = FacetTrace {
         groups,
         plane_lines,
         borders,
         cells,
-        rejected,
+        judged: verified.judged,
+        rejected: verified.rejected,
     };
-    Ok((facets, trace))
+    Ok((verified.facets, trace))
 }
 
 /// Are all lines of the group lower than any eave?
@@ -223,6 +225,13 @@ fn with_frame(borders: &[Border], grid: &PlanGrid) -> Vec<Border> {
     borders.iter().copied().chain(frame).collect()
 }
 
+/// The facets that stand, all that were weighed, and those that were rejected.
+struct Verified {
+    facets: Vec<Facet>,
+    judged: Vec<JudgedFacet>,
+    rejected: Vec<RejectedFacet>,
+}
+
 /// Labels, delineates and verifies until no facet is rejected.
 fn solve(
     labelling: &mut Labelling<BorderCosts>,
@@ -231,16 +240,16 @@ fn solve(
     ground: &Ground,
     colours: &Scene,
     params: &RoofParams,
-) -> (Vec<Facet>, Vec<RejectedFacet>) {
+) -> Verified {
     const ROUNDS: usize = 4;
-    let mut rejected = Vec::new();
+    let (mut rejected, mut improbable) = (Vec::new(), Vec::new());
     for round in 1..=ROUNDS {
         labelling.minimise();
         let labels = labelling.labels().to_vec();
         let labels = without_islands(&competing.arrangement, labels, params.min_area_m2);
         let delineation = delineate(&competing.arrangement, &labels, &competing.planes);
         labelling.relabel(labels);
-        let mut facets = Vec::new();
+        let (mut facets, mut accepted) = (Vec::new(), Vec::new());
         let mut excluded: Vec<(u32, Vec<usize>)> = Vec::new();
         // On the ground no other plane may take their place: they stay in the labelling.
         let mut on_ground = Vec::new();
@@ -252,27 +261,31 @@ fn solve(
             .map(|(outline, facet)| {
                 verify(
                     competing, facet, outline, &occluders, ground, colours, params,
-                )?;
-                // In the last round nothing would take its place.
-                let beyond = || boundary_leakage(competing, facet, outline, &occluders, params);
-                Ok((round < ROUNDS).then(beyond).flatten())
+                )
             })
             .collect();
         for ((outline, facet), result) in delineation.outlines.iter().zip(found).zip(results) {
-            let result = match result {
-                // In the last round nothing would take the facet's place either.
-                Err(FacetRejection::Dominated { .. }) if round == ROUNDS => Ok(None),
-                result => result,
-            };
             let reason = match result {
-                Ok(Some((cells, rejection))) => {
-                    rejected.push(rejection);
-                    excluded.push((outline.plane, cells));
-                    continue;
-                }
-                Ok(None) => {
-                    facets.push(facet);
-                    continue;
+                Ok((evidence, windows)) => {
+                    let probability = evidence.probability();
+                    let judged = JudgedFacet {
+                        outline: facet.outer.clone(),
+                        holes: facet.holes.clone(),
+                        plane: facet.plane,
+                        accepted: evidence.accepts(params.least_nats),
+                        evidence: evidence.clone(),
+                        windows,
+                    };
+                    if judged.accepted {
+                        facets.push(Facet {
+                            probability,
+                            ..facet
+                        });
+                        accepted.push(judged);
+                        continue;
+                    }
+                    improbable.push(judged);
+                    FacetRejection::Improbable { evidence }
                 }
                 Err(reason) => reason,
             };
@@ -284,12 +297,13 @@ fn solve(
                 excluded.push((outline.plane, tail));
                 continue;
             }
+            let near_ground = matches!(reason, FacetRejection::NearGround { .. });
             let rejection = RejectedFacet {
                 group: outline.plane,
                 outline: facet.outer,
                 reason,
             };
-            if matches!(reason, FacetRejection::NearGround { .. }) {
+            if near_ground {
                 on_ground.push(rejection);
             } else {
                 rejected.push(rejection);
@@ -298,7 +312,12 @@ fn solve(
         }
         if excluded.is_empty() || round == ROUNDS {
             rejected.extend(on_ground);
-            return (facets, rejected);
+            accepted.extend(improbable);
+            return Verified {
+                facets,
+                judged: accepted,
+                rejected,
+            };
         }
         for (plane, cells) in excluded {
             labelling.exclude(plane, &cells);

@@ -146,6 +146,7 @@ impl Selection {
 mod tests {
     use super::super::testing::PlantedRoof;
     use super::*;
+    use crate::evidence::Evidence;
     use crate::geometry::{Segment2, Segment3};
     use crate::ids::SegmentId;
     use crate::ids::ViewId;
@@ -201,6 +202,10 @@ mod tests {
                 segment,
                 fit,
                 supports,
+                evidence: Evidence {
+                    prior: 3.0,
+                    terms: Vec::new(),
+                },
             }
         }
 

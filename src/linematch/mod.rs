@@ -41,7 +41,7 @@ mod view_selection;
 
 pub use line_strip::EdgelScore;
 pub(crate) use nview::EDGE_MARGIN_PX;
-pub use nview::{MANY_VIEWS, MatchRejection};
+pub use nview::MatchRejection;
 pub use segment_geometry::{SegmentRef, epipolar_beam};
 pub use trace::{MatchTrace, PairTrace, SegmentOutcome, StepCount};
 pub use triples::Verification;

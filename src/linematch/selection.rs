@@ -306,6 +306,10 @@ mod tests {
                 segment,
                 fit,
                 supports: Vec::new(),
+                evidence: crate::evidence::Evidence {
+                    prior: 3.0,
+                    terms: Vec::new(),
+                },
             });
             for s in taken {
                 selection.owners[s.view.index()][s.segment.index()] = Some(0);

@@ -182,10 +182,23 @@ fn contrast(gray: &Gray, segment: &Segment2, distance_px: f64) -> f32 {
 mod tests {
     use super::super::testing::{add_noise, distance_to_edge, lit_edge, step_edge};
     use super::*;
+    use crate::params::EdgelParams;
 
     /// The segments of a photograph without colour.
     fn detect_in_grey(gray: &Gray, params: &SegmentParams) -> (Vec<ImageSegment>, SegmentTrace) {
         detect_segments(gray, None, params)
+    }
+
+    /// Thresholds above what noise alone reaches anywhere in a small image.
+    fn strict() -> SegmentParams {
+        SegmentParams {
+            edgels: EdgelParams {
+                low: 1.8,
+                high: 2.5,
+                ..EdgelParams::default()
+            },
+            ..SegmentParams::default()
+        }
     }
 
     /// A planted edge between two colours of one grey value, the difference one on the side where
@@ -199,8 +212,7 @@ mod tests {
             add_noise(&mut difference, 2.0 / 255.0, step as u64);
             add_noise(&mut gray, 2.0 / 255.0, 100 + step as u64);
             let difference = RedBlueDifference::new(difference);
-            let (segments, _) =
-                detect_segments(&gray, Some(&difference), &SegmentParams::default());
+            let (segments, _) = detect_segments(&gray, Some(&difference), &strict());
             assert_eq!(segments.len(), 1, "at {angle}");
             let found = &segments[0];
             assert_eq!(found.kind, SegmentKind::Color);
@@ -285,7 +297,7 @@ mod tests {
         add_noise(&mut difference, 8.0 / 255.0, 3);
         let shared = RedBlueDifference::new(subsampled(&difference));
         let found = |red_blue: &RedBlueDifference| {
-            let (segments, _) = detect_segments(&gray, Some(red_blue), &SegmentParams::default());
+            let (segments, _) = detect_segments(&gray, Some(red_blue), &strict());
             segments.len()
         };
         assert_eq!(found(&shared), 1);

@@ -107,6 +107,7 @@ fn reconstruct(
         segment: along_supports(scene, segment, &track.supports),
         sigma_m: stated.sigma_at(f0).max(stated.sigma_at(f1)),
         covariance: [f0, f1].map(|f| stated.covariance_at(f)),
+        probability: track.evidence.probability(),
         supports: track.supports.clone(),
         contradiction: None,
     };
@@ -129,11 +130,19 @@ fn along_supports(scene: &Scene, segment: Segment3, supports: &[LineSupport]) ->
 mod tests {
     use super::super::track::SupportKind;
     use super::*;
+    use crate::evidence::Evidence;
     use crate::geometry::Segment2;
     use crate::ids::ViewId;
     use crate::lines2d::{GuidedEdge, SegmentKind};
     use crate::lines3d::planted;
     use nalgebra::Matrix2;
+
+    fn certain() -> Evidence {
+        Evidence {
+            prior: 20.0,
+            terms: Vec::new(),
+        }
+    }
 
     /// The support of a view by an edge whose offset at the middle and angle times length have
     /// these variances, px^2.
@@ -170,8 +179,13 @@ mod tests {
         let track = LineTrack {
             supports: [0, 1, 2].map(support).to_vec(),
             score: 1.0,
+            evidence: certain(),
         };
-        let (_, trace) = reconstruct_lines(&scene, &[track], &Lines3dParams::default());
+        let params = Lines3dParams {
+            max_sigma_px: 1.5,
+            ..Lines3dParams::default()
+        };
+        let (_, trace) = reconstruct_lines(&scene, &[track], &params);
         trace.outcomes.into_iter().next().unwrap()
     }
 
@@ -196,6 +210,7 @@ mod tests {
         let track = LineTrack {
             supports: (0..5).map(support).collect(),
             score: 1.0,
+            evidence: certain(),
         };
         let (lines, _) = reconstruct_lines(&scene, &[track], &Lines3dParams::default());
         lines.into_iter().next().expect("a line")

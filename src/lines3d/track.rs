@@ -3,6 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::evidence::Evidence;
 use crate::geometry::Segment2;
 use crate::ids::{SegmentId, ViewId};
 use crate::lines2d::GuidedEdge;
@@ -48,4 +49,6 @@ pub struct LineTrack {
     pub supports: Vec<LineSupport>,
     /// Mean photometric score, 0 to 1.
     pub score: f64,
+    /// What speaks for it and against it: is it the image of an edge in space?
+    pub evidence: Evidence,
 }

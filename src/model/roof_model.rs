@@ -29,6 +29,9 @@ pub struct Facet {
     pub similarity: f64,
     /// Share of the outline that lies on reconstructed 3D lines: tau_real (B99 4.3).
     pub real_ratio: f64,
+    /// Probability that it is a roof's face, 0 to 1 ([`crate::evidence`]); 1 where nothing weighed
+    /// it.
+    pub probability: f64,
     /// The 3D lines in its outline or in its plane.
     pub lines: Vec<LineId>,
     /// The half-planes that it was made from.
@@ -50,6 +53,11 @@ impl Facet {
         let twice =
             |(a, b): (&Point3<f64>, &Point3<f64>)| (a.xy() - origin).perp(&(b.xy() - origin));
         0.5 * self.outer.iter().zip(next).map(twice).sum::<f64>()
+    }
+
+    /// Area inside the outer ring on its plane, square metres.
+    pub fn sloped_area(&self) -> f64 {
+        self.plan_area() / self.plane.normal.z
     }
 }
 

@@ -286,6 +286,7 @@ fn facet(index: usize, candidate: &PlaneCandidate) -> Facet {
         holes: Vec::new(),
         similarity: candidate.correlation,
         real_ratio: candidate.support,
+        probability: 1.0,
         lines: candidate
             .lines
             .iter()
@@ -330,6 +331,7 @@ fn world_line(image_lines: &[ImageLine], line: &ClusterLine) -> Line3d {
         segment: line.segment,
         sigma_m: line.sigma_m,
         covariance: [Matrix3::identity() * variance; 2],
+        probability: 1.0,
         supports: supports.collect(),
         contradiction: None,
     }

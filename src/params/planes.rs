@@ -147,12 +147,16 @@ pub struct RoofParams {
     pub half_plane_gain_m: f64,
     /// Facets smaller than this are not reported, square metres. Assumption.
     pub min_area_m2: f64,
-    /// Least share of a facet's outline that lies on reconstructed lines (tau_real, B99 4.3).
-    /// Assumption.
-    pub min_real_ratio: f64,
+    /// Of older project files; not read. The share of an outline on lines is a term of a facet's
+    /// evidence.
+    #[serde(skip_serializing)]
+    pub min_real_ratio: Option<f64>,
     /// Facets whose middle is lower than this above the ground are not roofs, metres. Assumption:
     /// higher than cars, lower than garages.
     pub min_height_m: f64,
+    /// Natural logarithm of the odds from which on a facet is true ([`crate::evidence`]): even
+    /// ones. `make calibrate` sees every candidate by a very low one.
+    pub least_nats: f64,
     /// Regularisation and refinement of the buildings.
     pub refine: RefineParams,
 }
@@ -177,8 +181,9 @@ impl Default for RoofParams {
             border_cost_m: 0.25,
             half_plane_gain_m: 0.05,
             min_area_m2: 1.5,
-            min_real_ratio: 0.25,
+            min_real_ratio: None,
             min_height_m: 2.0,
+            least_nats: 0.0,
             refine: RefineParams::default(),
         }
     }

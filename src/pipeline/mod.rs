@@ -33,12 +33,13 @@ use std::borrow::Cow;
 use serde_json::Value;
 
 use crate::camera::Camera;
+use crate::evidence::{Candidates, JudgedLine};
 use crate::execution::{Listener, progress};
 use crate::execution::{MergedShards, Sharded, run_merged};
 use crate::export;
 use crate::export::export_all;
 use crate::lines2d::ImageSegment;
-use crate::lines3d::Line3d;
+use crate::lines3d::{Line3d, LineOutcome, LineTrack};
 use crate::model::RoofModel;
 use crate::objectspace::{image_segments, world_lines};
 use crate::params::{Method, Params};
@@ -51,6 +52,24 @@ impl Results {
     pub fn roof_model(&self) -> Option<&RoofModel> {
         let lines = self.facets.as_ref().map(|r| &r.value);
         lines.or(self.rectangles.as_ref().map(|r| &r.value))
+    }
+
+    /// The lines and facets of B99 that were weighed; none by another method.
+    pub fn candidates(&self) -> Candidates {
+        let matches = self.matches.iter().flat_map(|found| &found.value);
+        let outcomes = self.lines.iter().flat_map(|found| &found.trace.outcomes);
+        let line = |(track, outcome): (&LineTrack, &LineOutcome)| match outcome {
+            LineOutcome::Reconstructed { line, .. } => Some(JudgedLine {
+                segment: self.lines.as_ref()?.value[*line as usize].segment,
+                evidence: track.evidence.clone(),
+            }),
+            _ => None,
+        };
+        let facets = self.facets.as_ref();
+        Candidates {
+            lines: matches.zip(outcomes).filter_map(line).collect(),
+            facets: facets.map_or_else(Vec::new, |found| found.trace.facets.judged.clone()),
+        }
     }
 
     /// The 3D lines of B99, by their ids (matched ones, then those adopted of W96), and then the
@@ -215,6 +234,7 @@ impl Run {
             segments: &outputs.segments,
             lines: &outputs.lines,
             half_planes: outputs.half_planes,
+            candidates: &self.results.candidates(),
             model: outputs.model,
             textured: outputs.textured,
         };

@@ -9,9 +9,9 @@ use crate::photoconsistency::{ConsistencyMap, PlanGrid};
 /// Distance from a line at which its sides are sampled, cells: farther than half a window.
 pub(super) const NEXT_TO: f64 = 8.0;
 /// Correlation and texture weight from which on a position clearly shows the plane's surface.
-pub(crate) const ON_SURFACE: f32 = 0.65;
+pub(super) const ON_SURFACE: f32 = 0.65;
 /// See [`ON_SURFACE`].
-pub(crate) const TEXTURED: f32 = 0.3;
+pub(super) const TEXTURED: f32 = 0.3;
 
 /// Does the plane's surface clearly continue on both sides of the line? Rows of tiles do that,
 /// borders do not.

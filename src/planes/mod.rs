@@ -31,7 +31,7 @@ pub use grouping::{Member, PlaneGroup, ProposedPlane};
 pub use half_plane::HalfPlane;
 pub(crate) use half_plane::is_wall;
 pub(crate) use hypothesis::{PlaneHypothesis, plane_hypotheses};
-pub(crate) use line_sides::{ON_SURFACE, TEXTURED, crosses_surface};
+pub(crate) use line_sides::crosses_surface;
 pub use plane_lines::PlaneLine;
 pub use sweep::{
     PointsOfInterest, Posterior, SideTrace, SimilarityCurve, SweepRejection, SweepTrace, ViewCurve,

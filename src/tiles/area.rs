@@ -184,6 +184,7 @@ fn part(
         segments,
         lines,
         half_planes,
+        candidates: results.candidates(),
         model,
         textured,
     }

@@ -7,6 +7,7 @@ use nalgebra::{Point3, Vector2, Vector3};
 
 use super::model_parts::{append, middle, moved, moved_plane};
 use super::tile::Tile;
+use crate::evidence::Candidates;
 use crate::export::{ExportInput, export_all};
 use crate::geometry::Segment2;
 use crate::ids::{HalfPlaneId, LineId, ViewId};
@@ -38,6 +39,8 @@ pub struct TilePart {
     pub lines: Vec<Line3d>,
     /// Half-planes at these.
     pub half_planes: Vec<HalfPlane>,
+    /// The lines and facets that were weighed.
+    pub candidates: Candidates,
     /// The buildings that it may be responsible for.
     pub model: RoofModel,
     /// Their textures.
@@ -55,6 +58,8 @@ pub struct Joined {
     pub lines: Vec<Line3d>,
     /// Half-planes at these.
     pub half_planes: Vec<HalfPlane>,
+    /// The lines and facets of the cores that were weighed.
+    pub candidates: Candidates,
     /// All buildings.
     pub model: RoofModel,
     /// Their textures, in one atlas.
@@ -69,6 +74,7 @@ impl Joined {
             segments,
             lines,
             half_planes,
+            candidates,
             model,
             textured,
         } = self;
@@ -78,6 +84,7 @@ impl Joined {
                 segments,
                 lines,
                 half_planes,
+                candidates,
                 model,
                 textured,
             },
@@ -93,6 +100,7 @@ pub fn join(scene: Scene, parts: &[TilePart]) -> Joined {
         scene,
         lines: Vec::new(),
         half_planes: Vec::new(),
+        candidates: Candidates::default(),
         model: RoofModel::default(),
         textured: TexturedModel {
             atlas: image::RgbImage::new(0, 0),
@@ -106,6 +114,7 @@ pub fn join(scene: Scene, parts: &[TilePart]) -> Joined {
         join_segments(part, &mut joined.segments, &mut covered);
         let ids = join_lines(part, buildings, &mut joined);
         join_buildings(part, buildings, &ids, place, &mut joined);
+        join_candidates(part, &mut joined);
     }
     joined
 }
@@ -270,6 +279,15 @@ fn join_lines(part: &TilePart, buildings: &[usize], joined: &mut Joined) -> NewI
     ids
 }
 
+/// Adds the candidates of a part's core, which no other part has.
+fn join_candidates(part: &TilePart, joined: &mut Joined) {
+    let by = joined.scene.origin - part.origin;
+    let in_core = |p: &Point3<f64>| part.tile.holds(&(p.xy() + part.origin.xy()));
+    let moved = part.candidates.moved(&by, in_core);
+    joined.candidates.lines.extend(moved.lines);
+    joined.candidates.facets.extend(moved.facets);
+}
+
 fn join_buildings(
     part: &TilePart,
     buildings: &[usize],
@@ -344,6 +362,7 @@ mod tests {
             segments: Vec::new(),
             lines: Vec::new(),
             half_planes: Vec::new(),
+            candidates: Candidates::default(),
             model,
             textured,
         }

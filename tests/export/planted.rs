@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use ridgeline::camera::Camera;
+use ridgeline::evidence::{
+    Candidates, Evidence, EvidenceTerm, JudgedFacet, JudgedLine, WindowCounts,
+};
 use ridgeline::export::{ExportInput, export_all};
 use ridgeline::geometry::{Plane, Segment2, Segment3};
 use ridgeline::ids::{BuildingId, LineId, SegmentId, ViewId};
@@ -34,6 +37,7 @@ fn facet(rings: &[&[(f64, f64)]], z0: f64, gx: f64, gy: f64) -> Facet {
         holes: rings[1..].iter().map(lift).collect(),
         similarity: 0.9,
         real_ratio: 0.8,
+        probability: 1.0,
         lines: Vec::new(),
         half_planes: Vec::new(),
         rectangles: Vec::new(),
@@ -151,7 +155,7 @@ pub fn files_of(scene: &Scene, model: &RoofModel) -> BTreeMap<String, Vec<u8>> {
 pub fn files_with(
     scene: &Scene,
     model: &RoofModel,
-    (segments, lines, half_planes): Evidence,
+    (segments, lines, half_planes): Sources,
 ) -> BTreeMap<String, Vec<u8>> {
     let params = TextureParams::default();
     let (textured, _) = texture_model(scene, model, &params);
@@ -160,16 +164,49 @@ pub fn files_with(
         segments: &segments,
         lines: &lines,
         half_planes: &half_planes,
+        candidates: &planted_candidates(),
         model,
         textured: &textured,
     };
     export_all(&results, &params).into_iter().collect()
 }
 
-/// Image segments, 3D lines and half-planes.
-pub type Evidence = (Vec<Vec<ImageSegment>>, Vec<Line3d>, Vec<HalfPlane>);
+/// A line and a facet that were weighed.
+fn planted_candidates() -> Candidates {
+    let term = EvidenceTerm {
+        feature: "slope_deg",
+        value: 12.5,
+        nats: -0.5,
+    };
+    let evidence = Evidence {
+        prior: 0.5,
+        terms: vec![term],
+    };
+    let plane = Plane {
+        normal: Vector3::z(),
+        d: -5.0,
+    };
+    let outline = [(1.0, 2.0), (4.0, 2.0), (1.0, 6.0)].map(|(x, y)| Point3::new(x, y, 5.0));
+    Candidates {
+        lines: vec![JudgedLine {
+            segment: Segment3::new([1.0, 2.0, 3.0].into(), [4.0, 5.0, 6.123_456].into()),
+            evidence: evidence.clone(),
+        }],
+        facets: vec![JudgedFacet {
+            outline: outline.to_vec(),
+            holes: Vec::new(),
+            plane,
+            accepted: false,
+            evidence,
+            windows: WindowCounts::default(),
+        }],
+    }
+}
 
-pub fn planted_evidence() -> Evidence {
+/// Image segments, 3D lines and half-planes.
+pub type Sources = (Vec<Vec<ImageSegment>>, Vec<Line3d>, Vec<HalfPlane>);
+
+pub fn planted_evidence() -> Sources {
     let segment = Segment2::new([1.0, 2.0].into(), [30.25, 4.0].into());
     let image_segment = ImageSegment {
         kind: Default::default(),
@@ -191,6 +228,7 @@ pub fn planted_evidence() -> Evidence {
         segment: Segment3::new([1.0, 2.0, 3.0].into(), [4.0, 5.0, 6.123_456].into()),
         sigma_m: 0.02,
         covariance: [Matrix3::zeros(); 2],
+        probability: 0.9,
         supports: vec![support],
         contradiction: None,
     };

@@ -42,6 +42,30 @@ fn evidence_is_written_in_the_world_frame_of_the_input() {
 }
 
 #[test]
+fn what_spoke_for_candidates_is_written_with_their_places() {
+    let (_, model, _) = planted_models().remove(0);
+    let files = files_of(&scene(), &model);
+    let evidence: Value = serde_json::from_slice(&files["evidence.json"]).unwrap();
+    let (line, facet) = (&evidence["lines"][0], &evidence["facets"][0]);
+    assert_eq!(
+        line["p1"],
+        serde_json::json!([432_104.0, 5_412_305.0, 6.1235])
+    );
+    // Half a nat for it and half a nat against it.
+    assert_eq!(line["probability"], 0.5);
+    assert_eq!(line["terms"][0]["feature"], "slope_deg");
+    assert_eq!(line["terms"][0]["value"], 12.5);
+    assert_eq!(facet["accepted"], false);
+    assert_eq!(facet["outline"][1][0], 432_104.0);
+    assert_eq!(facet["plane"], serde_json::json!([0.0, 0.0, 1.0, -5.0]));
+    let classes = &evidence["window_classes"];
+    let count = |list: &Value| list.as_array().unwrap().len();
+    let rows = &facet["windows"]["on"];
+    assert_eq!(count(rows), count(&classes["weights_below"]));
+    assert_eq!(count(&rows[0]), count(&classes["correlations_from"]));
+}
+
+#[test]
 fn footprints_read_back_with_the_plan_area() {
     let scene = scene();
     let ring_area = |ring: &Vec<geojson::Position>| -> f64 {

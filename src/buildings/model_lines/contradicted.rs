@@ -25,7 +25,7 @@ use nalgebra::Point3;
 
 use super::surfaces::{Surfaces, share_where};
 use crate::ids::{LineId, ViewId};
-use crate::linematch::{EDGE_MARGIN_PX, MANY_VIEWS};
+use crate::linematch::EDGE_MARGIN_PX;
 use crate::lines2d::GuidedEdge;
 use crate::lines3d::{
     Line3d, LineContradiction, LineOrigin, LineSupport, Observation, ProjectedLine,
@@ -35,8 +35,14 @@ use crate::params::{Lines3dParams, Params};
 use crate::scene::Scene;
 use crate::terrain::Ground;
 
+/// Number of views of a line from which on [`crate::params::MatchParams::min_views`] must support
+/// it (B99 3.4).
+const MANY_VIEWS: usize = 6;
 /// Least number of views that must be able to see a line.
 const MIN_VIEWS: usize = 3;
+/// Photometric score of a view that shows a line which lies on no surface. B99 3.2: half as much
+/// again as that of a pair.
+const ALIKE: f64 = 0.75;
 /// A view does not see a stretch of which this share is occluded.
 const OCCLUDED_SHARE: f64 = 0.5;
 /// Walls stand back below their eaves by up to this, metres. Assumption.
@@ -88,7 +94,7 @@ pub(super) fn contradicted_lines(
 /// stand without one?
 fn lies_on_no_surface(scene: &Scene, line: &Line3d, surfaces: &Surfaces, params: &Params) -> bool {
     let views = MIN_VIEWS + usize::from(slopes(line));
-    let required = views as f64 * params.matching.pair_score * params.matching.without_segment;
+    let required = views as f64 * ALIKE;
     matches!(line.origin, LineOrigin::Matched | LineOrigin::Clustered)
         && surfaces.share_of(line) < MIN_SURFACE_SHARE
         && image_evidence(scene, line, &surfaces.roofs, &params.lines3d) < required

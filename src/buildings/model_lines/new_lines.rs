@@ -266,6 +266,7 @@ impl NewLineSearch<'_> {
             segment: Segment3::new(foot(&part.p0), foot(&part.p1)),
             sigma_m,
             covariance: [0.0, 1.0].map(|t| fit.covariance_at(t)),
+            probability: 1.0,
             supports: edges.iter().map(support).collect(),
             contradiction: None,
         }
@@ -290,6 +291,7 @@ impl NewLineSearch<'_> {
             segment: *part,
             sigma_m,
             covariance: [across * (sigma_m * sigma_m); 2],
+            probability: planes.map(|f| f.probability).iter().product(),
             supports: Vec::new(),
             contradiction: None,
         })
@@ -326,6 +328,7 @@ mod tests {
             holes: Vec::new(),
             similarity: 1.0,
             real_ratio: 1.0,
+            probability: 1.0,
             lines: lines.to_vec(),
             half_planes: Vec::new(),
             rectangles: Vec::new(),
@@ -347,6 +350,7 @@ mod tests {
             segment,
             sigma_m: 0.03,
             covariance: [Matrix3::zeros(); 2],
+            probability: 1.0,
             supports: Vec::new(),
             contradiction: None,
         }

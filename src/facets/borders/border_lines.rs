@@ -60,7 +60,7 @@ pub(crate) fn border_lines(
     for border in outermost_lines(input, hypotheses, params) {
         add(&mut borders, border);
     }
-    for border in extent_lines(input, hypotheses, windows, params) {
+    for border in extent_lines(input, hypotheses, windows) {
         add(&mut borders, border);
     }
     for border in closing_lines(input, hypotheses, params) {

@@ -50,7 +50,7 @@ pub(crate) fn bounding_lines(
 }
 
 /// Does a line lie in a plane?
-pub(crate) fn lies_in(plane: &Plane, line: &Segment3) -> bool {
+fn lies_in(plane: &Plane, line: &Segment3) -> bool {
     const NEAR: f64 = 0.2;
     plane.signed_distance(&line.p0).abs() < NEAR && plane.signed_distance(&line.p1).abs() < NEAR
 }

@@ -11,7 +11,6 @@ use nalgebra::{Point2, Vector2};
 
 use super::border::{Border, BorderKind};
 use crate::geometry::Segment3;
-use crate::params::RoofParams;
 use crate::photoconsistency::{ShiftableWindows, WINDOW};
 use crate::planes::{GroupingInput, PlaneHypothesis};
 
@@ -32,10 +31,9 @@ pub(super) fn extent_lines(
     input: &GroupingInput,
     hypotheses: &[PlaneHypothesis],
     windows: &ShiftableWindows,
-    params: &RoofParams,
 ) -> Vec<Border> {
     crate::execution::map(hypotheses, |_, h| {
-        sides(input, h, windows, params).unwrap_or_default()
+        sides(input, h, windows).unwrap_or_default()
     })
     .into_iter()
     .flatten()
@@ -48,7 +46,6 @@ fn sides(
     input: &GroupingInput,
     h: &PlaneHypothesis,
     windows: &ShiftableWindows,
-    params: &RoofParams,
 ) -> Option<Vec<Border>> {
     if h.group.half_planes().is_empty() {
         return None;
@@ -60,7 +57,7 @@ fn sides(
     let reach = longest.p1.xy() - start;
     let along = reach.try_normalize(1e-6)?;
     let across = Vector2::new(-along.y, along.x);
-    let votes = votes(h, windows, &start, [&along, &across], params);
+    let votes = votes(h, windows, &start, [&along, &across]);
     let least = LEAST_AGREEMENT_M2 / (h.map.grid.step * h.map.grid.step);
     let [(t0, t1), (u0, u1)] = best_rectangle(&votes, reach.norm(), least)?;
     let at = |t: f64, u: f64| start + along * t + across * u;
@@ -117,7 +114,6 @@ fn votes(
     windows: &ShiftableWindows,
     start: &Point2<f64>,
     axes: [&Vector2<f64>; 2],
-    params: &RoofParams,
 ) -> Vec<Vote> {
     let grid = &h.map.grid;
     (0..grid.width * grid.height)
@@ -126,7 +122,7 @@ fn votes(
         .filter(|(_, p)| h.region.contains(p))
         .map(|(k, p)| {
             let at = [k % grid.width, k / grid.width];
-            let observed = windows.evidence_at(&h.map, at, params.min_correlation);
+            let observed = windows.evidence_at(&h.map, at);
             Vote {
                 at: axes.map(|axis| (p - start).dot(axis)),
                 gain: observed.gain(),

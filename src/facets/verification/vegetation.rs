@@ -2,17 +2,13 @@
 //! as roofs.
 //!
 //! The measure is the excess green of weed detection (Woebbecke et al. 1995), (2 G - R - B) / (R +
-//! G + B): the same in sun and in shade. Painted and copper roofs are green, too, so it only makes
-//! the other tests stricter. Photographs without colour, and colour infrared ones, in which plants
-//! are red, give no evidence.
+//! G + B): the same in sun and in shade. Painted and copper roofs are green, too, so it only speaks
+//! against a facet and rejects none by itself. Photographs without colour, and colour infrared
+//! ones, in which plants are red, give no evidence.
 
 use nalgebra::Point3;
 
 use crate::scene::{Scene, View};
-
-/// Excess green from which on a facet may be vegetation. Measured: hedges of real-barns 0.10 to
-/// 0.13, the greenest rendered roofs (metal) 0.07, tiles and bitumen below 0.
-pub(super) const GREEN: f64 = 0.09;
 
 /// Excess green at some points: of each view that sees them in the mean, and of the views the
 /// median. 0 where no view does.

@@ -6,7 +6,6 @@ use super::context::{CompletedLine, IsTaken, MIN_MEASURED, MatchContext, MatchRe
 use super::ends::located_ends;
 use super::grow::supported_stretch;
 use super::profile::LineProfile;
-use super::support::disagreeing_views;
 use crate::geometry::Segment3;
 use crate::linematch::segment_geometry::SegmentRef;
 use crate::lines2d::GuidedEdge;
@@ -38,34 +37,21 @@ pub(crate) fn complete_line(
         let adopted = context.adopt(&fit.line, &segments, &[], 1.0, taken);
         (fit, segments) = context.fit_consistent(&fit.line, &adopted)?;
     }
-    let (mut fit, mut edges) = context.measure_again(fit, &segments, taken)?;
-    let mut segments = context.adopt(&fit.line, &segments, &edges, OWN, taken);
-    loop {
-        let evidence = edges.len() + views_of(&segments);
-        if evidence < context.least_evidence() {
-            return Err(MatchRejection::TooFewSegments);
-        }
-        let profile = context.profile(&fit.line, &segments, &edges)?;
-        let stretch =
-            supported_stretch(&profile, context.params).ok_or(MatchRejection::TooFewViews)?;
-        let stretch = located_ends(context.scene, &profile, stretch);
-        if stretch.1 - stretch.0 + 1 < context.params.min_edgels {
-            return Err(MatchRejection::TooShort);
-        }
-        let supports = context.supports(&profile, stretch);
-        let disagreeing = disagreeing_views(&profile, &supports, context.params);
-        if disagreeing.is_empty() {
-            let ends = [profile.t[stretch.0], profile.t[stretch.1]];
-            let expected = context.expected_views(&profile, stretch);
-            return context.check_line(fit, ends, expected, supports);
-        }
-        segments.retain(|s| !disagreeing.contains(&s.view));
-        edges.retain(|e| !disagreeing.contains(&e.view));
-        if edges.len() < MIN_MEASURED {
-            return Err(MatchRejection::NotAlike);
-        }
-        (fit, edges) = context.fit_edges(&fit.line, &edges)?;
+    let (fit, edges) = context.measure_again(fit, &segments, taken)?;
+    let segments = context.adopt(&fit.line, &segments, &edges, OWN, taken);
+    let evidence = edges.len() + views_of(&segments);
+    if evidence < context.least_evidence() {
+        return Err(MatchRejection::TooFewSegments);
     }
+    let profile = context.profile(&fit.line, &segments, &edges)?;
+    let stretch = supported_stretch(&profile, context.params).ok_or(MatchRejection::NoStretch)?;
+    let stretch = located_ends(context.scene, &profile, stretch);
+    if stretch.1 - stretch.0 + 1 < context.params.min_edgels {
+        return Err(MatchRejection::TooShort);
+    }
+    let supports = context.supports(&profile, stretch);
+    let ends = [profile.t[stretch.0], profile.t[stretch.1]];
+    context.judge_line(fit, ends, context.seeing_views(&profile, stretch), supports)
 }
 
 impl MatchContext<'_> {

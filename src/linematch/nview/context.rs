@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::evidence::Evidence;
 use crate::geometry::Segment3;
 use crate::linematch::segment_geometry::{Compatibility, PreparedSegments, SegmentRef};
 use crate::lines2d::ImageSegment;
@@ -22,16 +23,14 @@ pub enum MatchRejection {
     NoFit,
     /// The line is not determined well enough across itself.
     IllConditioned,
-    /// A single view determines it in some direction, where any segment would fit.
-    Unverified,
     /// Fewer than three views have an edge.
     TooFewEdges,
     /// Too few views have a segment of their own on it.
     TooFewSegments,
-    /// The neighbourhoods of its edges differ between the views.
-    NotAlike,
-    /// Fewer than the minimum of views support it.
-    TooFewViews,
+    /// No stretch of it is supported by three views.
+    NoStretch,
+    /// Likelier false than true.
+    Improbable,
     /// The supported stretch is shorter than the minimum of edgels.
     TooShort,
     /// It leaves the height range.
@@ -47,6 +46,8 @@ pub struct CompletedLine {
     pub fit: LineFit,
     /// Its supports, by view.
     pub supports: Vec<LineSupport>,
+    /// What speaks for it.
+    pub evidence: Evidence,
 }
 
 impl From<CompletedLine> for LineTrack {
@@ -54,6 +55,7 @@ impl From<CompletedLine> for LineTrack {
         let sum: f64 = line.supports.iter().map(|s| s.score).sum();
         Self {
             score: sum / line.supports.len().max(1) as f64,
+            evidence: line.evidence,
             supports: line.supports,
         }
     }

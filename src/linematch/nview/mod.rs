@@ -6,8 +6,8 @@
 //!    -> adopt       segments near the reprojection, and edges measured again along it       3.4
 //!    -> profile     detection and correlation of every view along the line
 //!    -> grow, ends  the supported stretch, merged and grown, and its ends to a pixel        3.3
-//!    -> support     the views that support the stretch, and those that show another edge    3.2
-//!    -> checks      precision, number of views, length, heights                             3.4
+//!    -> support     the views that support the stretch                                      3.2
+//!    -> checks      precision and heights; what speaks for the line                         3.4
 //!
 //! context           the input of a completion, its result and the reasons for a rejection
 //! ```
@@ -24,7 +24,6 @@ mod grow;
 mod profile;
 mod support;
 
-pub use checks::MANY_VIEWS;
 pub(crate) use complete::complete_line;
 pub use context::MatchRejection;
 pub(crate) use context::{CompletedLine, IsTaken, MatchContext};

@@ -145,6 +145,7 @@ mod tests {
             segment: Segment3::new(Point3::new(a[0], a[1], 0.0), Point3::new(b[0], b[1], 0.0)),
             sigma_m: 0.05,
             covariance: [Matrix3::identity() * 0.0025; 2],
+            probability: 1.0,
             supports: Vec::new(),
             contradiction: None,
         }

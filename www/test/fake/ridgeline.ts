@@ -62,6 +62,7 @@ function facet(indices: number[], plane: typeof SOUTH): Facet {
     building: 0,
     similarity: 0.8,
     real_ratio: 1,
+    probability: 1,
     lines: [],
     half_planes: [],
     rectangles: [],
@@ -402,6 +403,7 @@ export class Session implements CoreSession {
         return { kind: "real" as const, a: [p[0], p[1]] as const, b: [q[0], q[1]] as const };
       }),
       cells: 2,
+      judged: [],
       rejected: [],
     };
   }

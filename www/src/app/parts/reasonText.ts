@@ -1,6 +1,8 @@
 /** The core's reasons in words. */
 import type {
   BuildingRefinement,
+  Evidence,
+  FacetRejection,
   LineContradiction,
   LineOrigin,
   SegmentOutcome,
@@ -24,11 +26,10 @@ export const REJECTION_WORDS: Record<string, string> = {
 const NOT_VERIFIED: Record<string, string> = {
   no_fit: "no line fits the segments",
   ill_conditioned: "the segments do not fix its position across",
-  unverified: "one view alone determines it",
   too_few_edges: "the edge shows in fewer than three views",
   too_few_segments: "too few views have a segment on it",
-  not_alike: "its surroundings differ between the views",
-  too_few_views: "too few views support it",
+  no_stretch: "no stretch of it is supported by three views",
+  improbable: "more likely no line than one",
   too_short: "the supported stretch is too short",
   outside_heights: "it lies outside the height range",
 };
@@ -102,35 +103,39 @@ export const PAIR_WORDS: Record<string, string> = {
   weak: "its best measure is not positive",
 };
 
-export function facetRejectionWords(reason: Record<string, Record<string, number>>): string {
-  const [name, numbers] = Object.entries(reason)[0] ?? ["", {}];
-  const value = Object.values(numbers)[0] ?? 0;
-  switch (name) {
-    case "too_small":
-      return `too small (${value.toFixed(1)} m²)`;
-    case "too_narrow":
-      return `too narrow for windows of ${value.toFixed(1)} m to show it`;
-    case "near_ground":
-      return `near the ground (${value.toFixed(1)} m above it)`;
-    case "reaches_ground":
-      return `its low side lies on the ground (${value.toFixed(1)} m above it)`;
-    case "dissimilar":
-      return `the views do not agree inside (${value.toFixed(2)})`;
-    case "contradicted":
-      return `the views that see it do not agree inside (${value.toFixed(2)})`;
-    case "bridge":
-      return `steep, without a half-plane, and the views that see it agree no better than by chance (${value.toFixed(2)}): it spans a gap`;
-    case "displaced":
-      return `the views agree better when it is moved up or down (by ${value.toFixed(1)} σ)`;
-    case "boundary_leakage":
-      return `beyond a line that bounds it, where the views agree no better than by chance (${value.toFixed(2)})`;
-    case "vegetation":
-      return `green like vegetation, and neither its lines nor its inside show a roof (${value.toFixed(2)})`;
-    case "dominated":
-      return `the views agree better on plane ${numbers["by"]} inside (by ${(numbers["sigmas"] ?? 0).toFixed(1)} σ)`;
-    case "unsupported":
-      return `too little of its outline is real (τ = ${value.toFixed(2)})`;
-    default:
-      return name;
+/** What was measured of a facet, by the names of the core's model. */
+const FEATURE_WORDS: Record<string, string> = {
+  outline_on_lines: "outline on lines",
+  displaced_plane_margin_sigmas: "margin over the plane moved up or down",
+  rival_plane_margin_sigmas: "margin over other planes",
+  correlation: "agreement of the views",
+  excess_green: "excess green",
+  ln_area_m2: "size",
+  ln_1_plus_lines: "number of lines",
+  ln_1_plus_half_planes: "number of half-planes",
+  cos_slope: "slope",
+};
+
+/** Logarithm of the odds, by all that speaks for a candidate and against it. */
+export function natsOf({ prior, terms }: Evidence): number {
+  return terms.reduce((sum, { nats }) => sum + nats, prior);
+}
+
+export function facetRejectionWords(reason: FacetRejection): string {
+  if ("too_small" in reason) {
+    return `too small (${reason.too_small.area_m2.toFixed(1)} m²)`;
   }
+  if ("near_ground" in reason) {
+    return `near the ground (${reason.near_ground.height_m.toFixed(1)} m above it)`;
+  }
+  if ("reaches_ground" in reason) {
+    return `its low side lies on the ground (${reason.reaches_ground.lowest_m.toFixed(1)} m above it)`;
+  }
+  const { evidence } = reason.improbable;
+  const percent = 100 / (1 + Math.exp(-natsOf(evidence)));
+  const against = evidence.terms.filter(({ nats }) => nats < 0).sort((a, b) => a.nats - b.nats);
+  const strongest = against.slice(0, 3).map(({ feature, nats }) => {
+    return `${FEATURE_WORDS[feature] ?? feature} ${nats.toFixed(1).replace("-", "−")}`;
+  });
+  return `more likely no roof (probability ${percent.toFixed(0)} %); against it, in nats: ${strongest.join(", ")}`;
 }

@@ -20,6 +20,7 @@ const WHAT: Record<string, string> = {
   "lines.json": "3D lines and their views",
   "halfplanes.json": "half-planes and Sim(theta)",
   "segments.json": "image segments",
+  "evidence.json": "what speaks for each line and facet",
   "report.json": "counts, parameters, warnings",
 };
 

@@ -1,23 +1,26 @@
 /** Roof planes that were looked for and have no facet in the model: what is missing is said. */
-import type { Facet, RejectedFacet, Vec3 } from "../../shared/records";
 
-/** Reasons for which there is no roof: ground, plants, a gap that was spanned, or a better plane in its place. */
-const NO_ROOF: ReadonlySet<string> = new Set([
-  "too_small",
-  "too_narrow",
-  "near_ground",
-  "reaches_ground",
-  "bridge",
-  "vegetation",
-  "dominated",
-]);
+import type { Facet, RejectedFacet, Vec3 } from "../../shared/records";
+import { natsOf } from "../parts/reasonText";
+
+/** Odds from which on a rejected facet may be a roof all the same: one in ten. */
+const MAY_BE_ROOF_NATS = -Math.log(9);
+
+function mayBeRoof({ reason }: RejectedFacet): boolean {
+  return "improbable" in reason && natsOf(reason.improbable.evidence) >= MAY_BE_ROOF_NATS;
+}
 
 /** Indices of the rejected facets that may be roof and are not covered by the model, the largest first. */
 export function unmodelledPlanes(rejected: readonly RejectedFacet[], facets: readonly Facet[]): number[] {
   const covered: (readonly Vec3[])[] = facets.map(({ outer }) => outer);
   const largestFirst = rejected
-    .map(({ outline, reason }, index) => ({ outline, reason, index, area: Math.abs(planArea(outline)) }))
-    .filter(({ reason }) => !NO_ROOF.has(Object.keys(reason)[0] ?? ""))
+    .map((facet, index) => ({
+      facet,
+      outline: facet.outline,
+      index,
+      area: Math.abs(planArea(facet.outline)),
+    }))
+    .filter(({ facet }) => mayBeRoof(facet))
     .sort((a, b) => b.area - a.area);
   const found: number[] = [];
   for (const { outline, index } of largestFirst) {

@@ -66,6 +66,7 @@ const FACET: Facet = {
   holes: [],
   similarity: 1,
   real_ratio: 1,
+  probability: 1,
   lines: [],
   half_planes: [],
   rectangles: [],
@@ -75,6 +76,7 @@ const GROUPING: FacetTrace = {
   plane_lines: [{ segment: { p0: [0, 0, 0], p1: [1, 0, 0] }, views: [] }],
   borders: [],
   cells: 0,
+  judged: [],
   rejected: [],
 };
 

@@ -1,0 +1,64 @@
+//! `evidence.json`: what spoke for every candidate and against it, in natural logarithms.
+
+use nalgebra::Point3;
+use serde_json::{Value, json};
+
+use super::format::{rounded, to_bytes, world};
+use crate::evidence::{Candidates, Evidence, JudgedFacet, WindowHistogram};
+use crate::scene::Scene;
+
+/// `evidence.json`: every matched line, every facet that was weighed, and the classes in which the
+/// windows of the facets are counted. World frame of the input.
+pub fn evidence_json(scene: &Scene, candidates: &Candidates) -> Vec<u8> {
+    let lines = candidates.lines.iter().map(|line| {
+        json!({
+            "p0": world(scene, &line.segment.p0),
+            "p1": world(scene, &line.segment.p1),
+            "probability": rounded(line.evidence.probability(), 4),
+            "terms": terms(&line.evidence),
+        })
+    });
+    let facets = candidates.facets.iter().map(|f| facet(scene, f));
+    let correlations: Vec<f64> = (0..WindowHistogram::CORRELATIONS)
+        .map(|class| rounded(class as f64 / 10.0 - 1.0, 1))
+        .collect();
+    to_bytes(&json!({
+        "lines": lines.collect::<Vec<_>>(),
+        "facets": facets.collect::<Vec<_>>(),
+        "window_classes": {
+            "weights_below": WindowHistogram::WEIGHTS_BELOW.map(|w| rounded(f64::from(w), 2)),
+            "correlations_from": correlations,
+        },
+    }))
+}
+
+fn facet(scene: &Scene, facet: &JudgedFacet) -> Value {
+    let ring =
+        |ring: &Vec<Point3<f64>>| -> Vec<_> { ring.iter().map(|p| world(scene, p)).collect() };
+    let counts =
+        |of: &WindowHistogram| -> Vec<Vec<u32>> { of.rows().map(<[u32]>::to_vec).collect() };
+    let n = facet.plane.normal;
+    json!({
+        "outline": ring(&facet.outline),
+        "holes": facet.holes.iter().map(ring).collect::<Vec<_>>(),
+        "plane": [n.x, n.y, n.z, facet.plane.d - n.dot(&scene.origin)],
+        "accepted": facet.accepted,
+        "probability": rounded(facet.evidence.probability(), 4),
+        "terms": terms(&facet.evidence),
+        "windows": {
+            "on": counts(&facet.windows.on),
+            "beside": counts(&facet.windows.beside),
+        },
+    })
+}
+
+fn terms(evidence: &Evidence) -> Vec<Value> {
+    let term = |t: &crate::evidence::EvidenceTerm| {
+        json!({
+            "feature": t.feature,
+            "value": rounded(t.value, 6),
+            "nats": rounded(t.nats, 4),
+        })
+    };
+    evidence.terms.iter().map(term).collect()
+}

@@ -1,0 +1,70 @@
+//! What is measured of a facet, for the model that weighs it.
+
+use super::displaced_plane::PlaneAgreement;
+use super::interior::InteriorWindows;
+use super::vegetation::excess_green;
+use crate::evidence::WindowCounts;
+use crate::facets::competing_planes::CompetingPlanes;
+use crate::facets::delineation::Outline;
+use crate::math::{larger, ln};
+use crate::model::{Facet, Occluders};
+use crate::scene::Scene;
+
+/// Share of a facet that another plane must be able to cover to be its rival. Assumption.
+const ALMOST_ALL: f64 = 0.9;
+
+/// Advantage of a facet that has no rival over its rivals, standard deviations: more than any has.
+const NO_RIVAL: f64 = 12.0;
+
+/// The features of a facet between the other facets, in the order of the model. `colours` are the
+/// photographs as they were taken. With them the windows inside it.
+pub(super) fn measure(
+    competing: &CompetingPlanes,
+    facet: &Facet,
+    outline: &Outline,
+    occluders: &Occluders,
+    colours: &Scene,
+) -> ([(&'static str, f64); 9], WindowCounts) {
+    let map = &competing.maps[outline.plane as usize];
+    let inside = InteriorWindows::of(facet, map);
+    let hidden = competing.hidden_by(occluders);
+    let agreement = PlaneAgreement::measure(&competing.scene, facet, map.grid.step, &hidden);
+    let places = inside.places().map(|p| facet.plane.lift(p.x, p.y));
+    let features = [
+        // tau_real of B99 4.3.
+        ("outline_on_lines", facet.real_ratio),
+        ("displaced_plane_margin_sigmas", agreement.margin_sigmas),
+        (
+            "rival_plane_margin_sigmas",
+            rival_margin(competing, outline, &inside),
+        ),
+        ("correlation", agreement.correlation),
+        (
+            "excess_green",
+            excess_green(colours, &places.collect::<Vec<_>>()),
+        ),
+        ("ln_area_m2", ln(larger(facet.sloped_area(), 1e-3))),
+        ("ln_1_plus_lines", ln(1.0 + facet.lines.len() as f64)),
+        (
+            "ln_1_plus_half_planes",
+            ln(1.0 + facet.half_planes.len() as f64),
+        ),
+        ("cos_slope", facet.plane.normal.z),
+    ];
+    (features, agreement.windows)
+}
+
+/// By how much the views agree better on a facet's plane than on the best other one that could
+/// cover it, inside it, in standard deviations. A level plane through the ridges of two roofs has
+/// more edges than the roof between them, and little else.
+fn rival_margin(competing: &CompetingPlanes, outline: &Outline, inside: &InteriorWindows) -> f64 {
+    let area = |plane: u32| -> f64 {
+        let evidence = (outline.cells.iter()).filter_map(|&c| competing.evidence.get(c, plane));
+        evidence.map(|e| e.area).sum()
+    };
+    let most = ALMOST_ALL * area(outline.plane);
+    let others = (0..competing.planes.len() as u32).filter(|p| *p != outline.plane);
+    let rivals = others.filter(|p| area(*p) >= most);
+    let advantages = rivals.map(|p| inside.advantage_of(&competing.maps[p as usize]));
+    -advantages.fold(-NO_RIVAL, larger)
+}
