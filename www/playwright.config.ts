@@ -27,6 +27,8 @@ export default defineConfig({
         "--use-gl=angle",
         "--use-angle=swiftshader",
         "--enable-unsafe-swiftshader",
+        // Without a graphics card photographs are drawn by the processor, as browsers do by themselves.
+        "--disable-accelerated-2d-canvas",
         "--disable-background-networking",
         "--disable-component-update",
         "--disable-sync",
