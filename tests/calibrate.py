@@ -1,20 +1,25 @@
 #!/usr/bin/env python3
-"""Fit the tables of src/evidence (lines, facets, windows) to scenes of which the truth is known.
+"""Fit the tables of src/evidence (lines, facets, windows, lines in the model) to scenes of which the truth is known.
 
-    python3 tests/calibrate.py --binary target/release/ridgeline [--scenes NAME,...] [--fit FOLDER] [--more FOLDER] [--dry] [--keep]
+    python3 tests/calibrate.py --binary target/release/ridgeline [--scenes NAME,...]
+                               [--fit FOLDER] [--more FOLDER] [--dry] [--keep]
     python3 tests/calibrate.py --self-test
 
-Every scene runs three times: with all line candidates accepted, with all facet candidates accepted, and as it is, which gives the
-facets that are found once others were rejected. The folder of --fit (../shared/fit) has random scenes, named `r` and their seed,
-that of --more (../shared/scenes) those of FITTED; beside them lies `score/` with score.py, by whose definitions a candidate is
-true. Printed are area under the ROC curve and expected calibration error of the present tables, which may know these scenes, and of
-the new ones, cross-validated by scene. Written are src/evidence/*.json and docs/calibration-*.svg (--dry: nothing; --keep takes runs
-that are there already). Other lines make other facets: build and run again until the tables stay. Needs numpy, scipy and shapely.
+Every scene runs three times: with all line candidates accepted, with all facet candidates
+accepted, and as it is, which gives the facets that are found once others were rejected, and the
+lines in the finished model. The folder of --fit (../shared/fit) has random scenes, named `r` and
+their seed, that of --more (../shared/scenes) those of FITTED; beside them lies `score/` with
+score.py, by whose definitions a candidate is true. Printed are area under the ROC curve and expected calibration error of the
+present tables, which may know these scenes, and of the new ones, cross-validated by scene. Written
+are src/evidence/*.json and docs/calibration-*.svg (--dry: nothing; --keep takes runs that are there
+already). Other lines make other facets: build and run again until the tables stay. Needs numpy,
+scipy and shapely.
 """
 import argparse
 import importlib.util
 import json
 import math
+import re
 import pathlib
 import subprocess
 import sys
@@ -34,8 +39,8 @@ ALL = -1e9
 # What differs from the defaults in each run. Lines that are wrong on purpose must not move the views.
 RUN = {
     'lines': {'matching': {'least_nats': ALL}, 'adjustment': {'enabled': False}},
-    'facets': {'roof': {'least_nats': ALL}, 'adjustment': {'enabled': False}},
-    'strict': {'adjustment': {'enabled': False}},
+    'facets': {'roof': {'least_nats': ALL}},
+    'strict': {},
 }
 # What a candidate counts: scenes of the old rendering look less like photographs.
 WEIGHTS = {'random': 1.0, 'real': 1.5, 'old': 0.4}
@@ -49,6 +54,8 @@ SIGNS = {
         'outline_on_lines': 1, 'displaced_plane_margin_sigmas': 1, 'rival_plane_margin_sigmas': 1, 'correlation': 1,
         'excess_green': -1, 'ln_area_m2': 1, 'ln_1_plus_lines': 1, 'ln_1_plus_half_planes': 1, 'cos_slope': 0,
     },
+    'model_lines': {'nats_before': 1, 'is_border': 0, 'is_intersection': 0, 'share_on_surfaces': 1, 'hidden_views': -1,
+                    'facets_on_it': 1},
 }
 # A facet is true if so much of it lies on true faces of its plane; of those of which more does the windows are counted.
 TRUE_SHARE, WINDOWS_SHARE, FEWEST_WINDOWS = 0.5, 0.9, 20
@@ -83,14 +90,15 @@ def main():
               f'{scorer} {"is there" if scorer.is_file() else "is missing"}; two scenes are needed')
         return 0
     truth = loaded(scorer)
-    lines, facets = [], []
+    lines, facets, model_lines = [], [], []
     for scene in scenes:
         found = {how: run(args, scene, how) for how in RUN}
         if all(found.values()):
-            lines += lines_of(truth, scene, found['lines'])
+            lines += lines_of(truth, scene, found['lines']['lines'])
+            model_lines += lines_of(truth, scene, found['strict']['model_lines'])
             facets += facets_of(truth, scene, [found['facets'], found['strict']])
             print(f'{scene.name}: {len(lines)} lines, {len(facets)} facets so far', flush=True)
-    for kind, candidates in (('lines', lines), ('facets', facets)):
+    for kind, candidates in (('lines', lines), ('facets', facets), ('model_lines', model_lines)):
         calibrate(args, kind, candidates)
     calibrate_windows(args, facets)
     return 0
@@ -155,7 +163,7 @@ def lines_of(truth, scene, found):
     """The lines of a scene with a surface model, without which nothing tells a wrong line."""
     surfaces = [truth.load_dsm(str(scene), name) for name in ('dsm', 'dsm_full')]
     surfaces = [surface for surface in surfaces if surface is not None]
-    lines = [(np.array(line['p0']), np.array(line['p1']), values_of(line)) for line in found['lines']]
+    lines = [(np.array(line['p0']), np.array(line['p1']), values_of(line)) for line in found]
     if not surfaces or not lines:
         return []
     edges = json.loads((scene / 'truth' / 'edges.json').read_text())['edges']
@@ -234,12 +242,16 @@ def calibrate(args, kind, candidates):
                     f'{logistic.calibration_error(true[of], e[of]):.3f}' for e in (present, odds)]
             print(f'{kind}, {which}: {of.sum()}, {100 * true[of].mean():.1f} % true; present {told[0]}; new {told[1]}')
     prior, curves = logistic.fit(features, true, weights, signs)
-    table = {'source': f'Fitted by tests/calibrate.py to {len(true)} {kind} of {told_scenes(names)}', 'prior': rounded([prior])[0],
-             'features': [{'name': name, 'knots': rounded(knots), 'nats': rounded(nats)} for name, (knots, nats) in curves.items()]}
+    table = {
+        'source': f'{len(true)} {kind} of {told_scenes(names)}',
+        'prior': rounded([prior])[0],
+        'features': [{'name': name, 'knots': rounded(knots), 'nats': rounded(nats)}
+                     for name, (knots, nats) in curves.items()],
+    }
     for feature in table['features']:
         print(f'  {feature["name"]:30}', ' '.join(f'{k:g}:{v:+.2f}' for k, v in zip(feature['knots'], feature['nats'])))
     if not args.dry:
-        (TABLES / f'{kind}.json').write_text(json.dumps(table, indent=1) + '\n')
+        (TABLES / f'{kind}.json').write_text(written(table))
         (ROOT / 'docs' / f'calibration-{kind}.svg').write_text(diagram(kind, true, odds))
 
 
@@ -254,12 +266,21 @@ def rounded(values, digits=3):
 
 
 def told_scenes(names):
-    """The scenes in words."""
+    """The scenes in words, seeds that follow each other as a range."""
     names = set(names)
     seeds = sorted(int(name[1:]) for name in names if kind_of(name) == 'random')
     others = sorted(name for name in names if kind_of(name) != 'random')
-    of_seeds = f'random scenes of seeds {", ".join(map(str, seeds))}' if seeds else 'no random scenes (no seeds)'
-    return of_seeds + (f' and of {", ".join(others)}' if others else '')
+    starts = [seed for seed in seeds if seed - 1 not in seeds]
+    ends = [seed for seed in seeds if seed + 1 not in seeds]
+    ranges = [f'{first} to {last}' if last > first else str(first) for first, last in zip(starts, ends)]
+    told = [f'seeds {", ".join(ranges)}'] * bool(seeds) + others
+    return ', '.join(told)
+
+
+def written(table):
+    """JSON with a list of numbers a line."""
+    text = json.dumps(table, indent=1)
+    return re.sub(r'\[\s+([-\d.,\s]+?)\s+\]', lambda m: f'[{" ".join(m[1].split())}]', text) + '\n'
 
 
 def diagram(kind, true, odds):
@@ -274,7 +295,8 @@ def diagram(kind, true, odds):
         return f'<text x="{x}" y="{y}" text-anchor="{anchor}">{words}</text>'
 
     (x0, y0), (x1, y1) = at(0, 0, 0), at(0, 1, 1)
-    parts = [f'<title>{kind}: expected calibration error {error:.3f}, cross-validated by scene</title>',
+    words = kind.replace('_', ' ')
+    parts = [f'<title>{words}: expected calibration error {error:.3f}, cross-validated by scene</title>',
              f'<path d="M{x0} {y0}L{x1} {y1}" stroke="#777" stroke-dasharray="4 3"/>']
     points = [at(0, stated, share) for _, stated, share in bins]
     parts.append(f'<polyline points="{" ".join(map(",".join, points))}" fill="none" stroke="#0072b2" stroke-width="2"/>')
@@ -291,8 +313,8 @@ def diagram(kind, true, odds):
         parts.append(f'<path d="M{x} {TOP}V{y}H{right}" fill="none" stroke="#777"/>')
         parts += [text(at(place, v, 0)[0], TOP + HEIGHT + 16, f'{v:g}') for v in (0, 0.5, 1)]
         parts += [text(float(x) - 6, float(at(place, 0, v)[1]) + 4, words, 'end') for v, words in ((0, '0'), (1, top))]
-    captions = [(f'share of true {kind} over stated probability', f'expected calibration error {error:.3f}, by scene'),
-                (f'number of {kind} over stated probability', 'blue: the true ones')]
+    captions = [(f'share of true {words} over stated probability', f'expected calibration error {error:.3f}, by scene'),
+                (f'number of {words} over stated probability', 'blue: the true ones')]
     parts += [text(at(place, 0.5, 0)[0], TOP + HEIGHT + 35 + 15 * line, words)
               for place, lines in enumerate(captions) for line, words in enumerate(lines)]
     return document(['\n'.join(parts)], '', below=15)
@@ -323,18 +345,22 @@ def calibrate_windows(args, facets):
     nats = window_nats(on, beside)
     first = FIRST_CORRELATION
     correlations = rounded(np.arange(on.shape[1])[first:] / 10 - 0.95)
-    table = {'source': 'Fitted by tests/calibrate.py to windows inside true facets, on their plane and on the same plane moved up '
-                       f'and down, of {told_scenes(used)}',
-             'prior': WINDOW_PRIOR, 'weights': [0.0, *WINDOW_TEXTURES[FIRST_TEXTURE:]], 'correlations': correlations,
-             'nats': [rounded(row[first:], 2) for row in np.vstack([0 * nats[0], nats[FIRST_TEXTURE:]])]}
+    table = {
+        'source': f'windows inside true facets of {told_scenes(used)}',
+        'prior': WINDOW_PRIOR,
+        'weights': [0.0, *WINDOW_TEXTURES[FIRST_TEXTURE:]],
+        'correlations': correlations,
+        'nats': [rounded(row[first:], 2) for row in np.vstack([0 * nats[0], nats[FIRST_TEXTURE:]])],
+    }
     before = json.loads((TABLES / 'windows.json').read_text())['nats']
     is_alike = np.shape(before) == np.shape(table['nats'])
     off = np.abs(np.subtract(before, table['nats'])) if is_alike else np.array([math.nan])
-    print(f'windows: of {len(used)} scenes; {off.mean():.2f} nats from the present table in the mean, {off.max():.2f} at most')
+    print(f'windows: of {len(used)} scenes; from the present table {off.mean():.2f} nats in the mean, '
+          f'{off.max():.2f} at most')
     for weight, row in zip(table['weights'], table['nats']):
         print(f'  {weight:5}', ' '.join(f'{v:+.2f}' for v in row))
     if not args.dry:
-        (TABLES / 'windows.json').write_text(json.dumps(table) + '\n')
+        (TABLES / 'windows.json').write_text(written(table))
 
 
 def window_nats(on, beside):

@@ -168,7 +168,7 @@ fn both_methods_share_their_planes() {
         }
         first.run_stage(stage, &silent).unwrap();
     }
-    assert_eq!(stages.first().map(String::as_str), Some("regions"));
+    assert!(stages.iter().any(|s| s == "regions"), "{stages:?}");
     let groups = Array::from(&member(&first.grouping().unwrap(), "groups"));
     let joined = |g: &JsValue| Array::from(&member(g, "rectangles")).length() > 0;
     assert!(groups.iter().any(|g| joined(&g)));

@@ -12,7 +12,7 @@ mod model_lines;
 mod reconstruct;
 mod refine;
 
-pub use model_lines::verify_lines;
+pub use model_lines::{VerifiedLines, verify_lines};
 pub use reconstruct::{RoofTrace, UnrefinedFacets, reconstruct_roofs};
 #[cfg(test)]
 pub(crate) use refine::gable;

@@ -2,11 +2,10 @@
 
 use serde::Serialize;
 
+use super::model_lines::VerifiedLines;
 use super::refine::{RefineTrace, RoofGap, cut_back_at_gaps, refine_roofs};
 use crate::execution::Sharded;
 use crate::facets::{FacetInput, FacetTrace, reconstruct_facets};
-use crate::ids::LineId;
-use crate::lines3d::{Line3d, LineContradiction};
 use crate::model::{Facet, RoofModel};
 use crate::params::RoofParams;
 use crate::scene::Scene;
@@ -25,10 +24,8 @@ pub struct RoofTrace {
     pub refinement: RefineTrace,
     /// Walls and ground.
     pub solids: SolidTrace,
-    /// Lines that the model adds to the matched ones (B99 4.2, 4.3).
-    pub new_lines: Vec<Line3d>,
-    /// The lines that the model contradicts; ids count the matched lines and then the new ones.
-    pub contradicted_lines: Vec<(LineId, LineContradiction)>,
+    /// What the model says of the lines.
+    pub lines: VerifiedLines,
 }
 
 /// The facets before refinement, whose buildings are those of [`RefineTrace`].
@@ -67,8 +64,7 @@ pub fn reconstruct_roofs(
         unrefined,
         refinement,
         solids,
-        new_lines: Vec::new(),
-        contradicted_lines: Vec::new(),
+        lines: VerifiedLines::default(),
     };
     Ok((model, trace))
 }

@@ -10,8 +10,10 @@ use crate::geometry::{Plane, Segment3};
 /// The candidates of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Candidates {
-    /// Every matched line.
+    /// Every matched line, by its views alone.
     pub lines: Vec<JudgedLine>,
+    /// Every line, with those that the model adds, in the finished model.
+    pub model_lines: Vec<JudgedLine>,
     /// Every facet that was weighed.
     pub facets: Vec<JudgedFacet>,
 }
@@ -98,11 +100,15 @@ impl Candidates {
             },
             ..facet.clone()
         };
-        let lines = self.lines.iter().filter(|l| holds(&l.segment.at(0.5)));
+        let lines_of = |lines: &[JudgedLine]| -> Vec<JudgedLine> {
+            let inside = lines.iter().filter(|l| holds(&l.segment.at(0.5)));
+            inside.map(line).collect()
+        };
         let facets =
             (self.facets.iter()).filter(|f| holds(&crate::geometry::mean_point(&f.outline)));
         Self {
-            lines: lines.map(line).collect(),
+            lines: lines_of(&self.lines),
+            model_lines: lines_of(&self.model_lines),
             facets: facets.map(facet).collect(),
         }
     }
@@ -147,10 +153,11 @@ mod tests {
         };
         let all = Candidates {
             lines: vec![line(1.0), line(90.0)],
+            model_lines: vec![line(2.0)],
             facets: vec![facet],
         };
         let moved = all.moved(&Vector3::new(10.0, 0.0, 2.0), |p| p.x < 50.0);
-        assert_eq!(moved.lines.len(), 1);
+        assert_eq!([moved.lines.len(), moved.model_lines.len()], [1, 1]);
         assert_eq!(moved.lines[0].segment.p0, Point3::new(-9.0, 0.0, 3.0));
         assert_eq!(moved.facets[0].outline[1], Point3::new(-4.0, 0.0, 3.0));
         assert!((moved.facets[0].plane.z_at(0.0, 0.0) - 3.0).abs() < 1e-12);

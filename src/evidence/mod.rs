@@ -99,6 +99,12 @@ impl EvidenceModel {
         MODEL.get_or_init(|| Self::read(include_str!("lines.json")))
     }
 
+    /// The model of lines in a finished roof model.
+    pub(crate) fn of_model_lines() -> &'static Self {
+        static MODEL: OnceLock<EvidenceModel> = OnceLock::new();
+        MODEL.get_or_init(|| Self::read(include_str!("model_lines.json")))
+    }
+
     fn read(json: &str) -> Self {
         serde_json::from_str(json).expect("the tables are part of the program")
     }
@@ -190,7 +196,12 @@ mod tests {
 
     #[test]
     fn tables_of_the_program_are_whole() {
-        for model in [EvidenceModel::of_facets(), EvidenceModel::of_lines()] {
+        let models = [
+            EvidenceModel::of_facets(),
+            EvidenceModel::of_lines(),
+            EvidenceModel::of_model_lines(),
+        ];
+        for model in models {
             assert!(model.source.contains("seeds"), "{}", model.source);
             for table in &model.features {
                 assert_eq!(table.knots.len(), table.nats.len());

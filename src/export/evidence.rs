@@ -4,26 +4,29 @@ use nalgebra::Point3;
 use serde_json::{Value, json};
 
 use super::format::{rounded, to_bytes, world};
-use crate::evidence::{Candidates, Evidence, JudgedFacet, WindowHistogram};
+use crate::evidence::{Candidates, Evidence, JudgedFacet, JudgedLine, WindowHistogram};
 use crate::scene::Scene;
 
-/// `evidence.json`: every matched line, every facet that was weighed, and the classes in which the
-/// windows of the facets are counted. World frame of the input.
+/// `evidence.json`: every matched line, every line in the finished model, every facet that was
+/// weighed, and the classes in which the windows of the facets are counted. World frame of the
+/// input.
 pub fn evidence_json(scene: &Scene, candidates: &Candidates) -> Vec<u8> {
-    let lines = candidates.lines.iter().map(|line| {
+    let line = |line: &JudgedLine| {
         json!({
             "p0": world(scene, &line.segment.p0),
             "p1": world(scene, &line.segment.p1),
             "probability": rounded(line.evidence.probability(), 4),
             "terms": terms(&line.evidence),
         })
-    });
+    };
+    let lines_of = |lines: &[JudgedLine]| lines.iter().map(line).collect::<Vec<_>>();
     let facets = candidates.facets.iter().map(|f| facet(scene, f));
     let correlations: Vec<f64> = (0..WindowHistogram::CORRELATIONS)
         .map(|class| rounded(class as f64 / 10.0 - 1.0, 1))
         .collect();
     to_bytes(&json!({
-        "lines": lines.collect::<Vec<_>>(),
+        "lines": lines_of(&candidates.lines),
+        "model_lines": lines_of(&candidates.model_lines),
         "facets": facets.collect::<Vec<_>>(),
         "window_classes": {
             "weights_below": WindowHistogram::WEIGHTS_BELOW.map(|w| rounded(f64::from(w), 2)),

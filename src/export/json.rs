@@ -38,6 +38,7 @@ pub fn lines_json(scene: &Scene, lines: &[Line3d]) -> Vec<u8> {
                 "p0": point(&line.segment.p0).as_slice(),
                 "p1": point(&line.segment.p1).as_slice(),
                 "sigma_m": rounded(line.sigma_m, 4),
+                "probability": rounded(line.probability, 4),
                 "origin": line.origin,
                 "views": views,
             })

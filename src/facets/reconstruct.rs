@@ -257,13 +257,11 @@ fn solve(
             .map(|outline| competing.facet(outline, &delineation, groups))
             .collect();
         let occluders = Occluders::new(&found);
-        let results: Vec<_> = (delineation.outlines.iter().zip(&found))
-            .map(|(outline, facet)| {
-                verify(
-                    competing, facet, outline, &occluders, ground, colours, params,
-                )
-            })
-            .collect();
+        let results = crate::execution::map(&delineation.outlines, |i, outline| {
+            verify(
+                competing, &found[i], outline, &occluders, ground, colours, params,
+            )
+        });
         for ((outline, facet), result) in delineation.outlines.iter().zip(found).zip(results) {
             let reason = match result {
                 Ok((evidence, windows)) => {

@@ -40,14 +40,8 @@ impl LineOrigin {
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "snake_case")]
 pub enum LineContradiction {
-    /// Roofs occlude it in all but two of its views.
-    Hidden,
-    /// One end lies in the ground, the other does not.
-    Underground,
-    /// It lies on no surface, and its views alone do not determine it well enough.
-    OffSurface,
-    /// Three views support it where six can see it.
-    TooFewViews,
+    /// It is more likely no edge than one ([`crate::evidence`]).
+    Improbable,
     /// A duplicate of a line that more views support or that is more certain.
     Duplicate,
 }

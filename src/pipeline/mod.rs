@@ -33,13 +33,13 @@ use std::borrow::Cow;
 use serde_json::Value;
 
 use crate::camera::Camera;
-use crate::evidence::{Candidates, JudgedLine};
+use crate::evidence::{Candidates, Evidence, JudgedLine};
 use crate::execution::{Listener, progress};
 use crate::execution::{MergedShards, Sharded, run_merged};
 use crate::export;
 use crate::export::export_all;
 use crate::lines2d::ImageSegment;
-use crate::lines3d::{Line3d, LineOutcome, LineTrack};
+use crate::lines3d::{Line3d, LineOutcome};
 use crate::model::RoofModel;
 use crate::objectspace::{image_segments, world_lines};
 use crate::params::{Method, Params};
@@ -54,20 +54,31 @@ impl Results {
         lines.or(self.rectangles.as_ref().map(|r| &r.value))
     }
 
-    /// The lines and facets of B99 that were weighed; none by another method.
-    pub fn candidates(&self) -> Candidates {
+    /// What speaks for each matched line, and against it, as its views show it: in the order of
+    /// the lines.
+    pub fn evidence_of_matches(&self) -> Vec<&Evidence> {
         let matches = self.matches.iter().flat_map(|found| &found.value);
         let outcomes = self.lines.iter().flat_map(|found| &found.trace.outcomes);
-        let line = |(track, outcome): (&LineTrack, &LineOutcome)| match outcome {
-            LineOutcome::Reconstructed { line, .. } => Some(JudgedLine {
-                segment: self.lines.as_ref()?.value[*line as usize].segment,
-                evidence: track.evidence.clone(),
-            }),
-            _ => None,
-        };
+        let is_line = |outcome: &LineOutcome| matches!(outcome, LineOutcome::Reconstructed { .. });
+        let reconstructed = matches
+            .zip(outcomes)
+            .filter(|(_, outcome)| is_line(outcome));
+        reconstructed.map(|(track, _)| &track.evidence).collect()
+    }
+
+    /// The lines and facets of B99 that were weighed; none by another method.
+    pub fn candidates(&self) -> Candidates {
         let facets = self.facets.as_ref();
+        let in_model = facets.map_or(&[][..], |found| &found.trace.lines.evidence);
+        let all = self.all_lines().unwrap_or_default();
+        let judged = |(line, evidence): (&Line3d, &Evidence)| JudgedLine {
+            segment: line.segment,
+            evidence: evidence.clone(),
+        };
+        let matched = self.lines.iter().flat_map(|found| &found.value);
         Candidates {
-            lines: matches.zip(outcomes).filter_map(line).collect(),
+            lines: (matched.zip(self.evidence_of_matches()).map(judged)).collect(),
+            model_lines: all.iter().zip(in_model).map(judged).collect(),
             facets: facets.map_or_else(Vec::new, |found| found.trace.facets.judged.clone()),
         }
     }
@@ -76,9 +87,12 @@ impl Results {
     /// new lines of the model, which says of each whether it stands.
     pub fn all_lines(&self) -> Option<Vec<Line3d>> {
         let mut lines = self.lines.as_ref()?.value.clone();
-        let trace = &self.facets.as_ref()?.trace;
-        lines.extend_from_slice(&trace.new_lines);
-        for (line, why) in &trace.contradicted_lines {
+        let verified = &self.facets.as_ref()?.trace.lines;
+        lines.extend_from_slice(&verified.new_lines);
+        for (line, evidence) in lines.iter_mut().zip(&verified.evidence) {
+            line.probability = evidence.probability();
+        }
+        for (line, why) in &verified.contradicted {
             lines[line.index()].contradiction = Some(*why);
         }
         Some(lines)

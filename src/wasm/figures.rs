@@ -10,6 +10,7 @@ use wasm_bindgen::prelude::*;
 use super::convert::{end_points_px, named_error, to_js};
 use super::session::Session;
 use crate::buildings::{RefineTrace, RoofGap, UnrefinedFacets};
+use crate::evidence::Evidence;
 use crate::figures::{correspondence, detected_stretches, segment_matching, warped_views};
 use crate::ids::SegmentId;
 use crate::ids::ViewId;
@@ -28,6 +29,11 @@ struct LineRecord<'a> {
     origin: LineOrigin,
     /// Why the model leaves it out.
     contradiction: Option<LineContradiction>,
+    probability: f64,
+    /// What speaks for it and against it, as its views show it; `null` where it was not matched.
+    by_views: Option<&'a Evidence>,
+    /// The same in the finished model; `null` before there is one.
+    in_model: Option<&'a Evidence>,
     sigma_m: f64,
     /// Of the start and of the end point, m^2: xx, xy, xz, yy, yz, zz.
     covariance: [[f64; 6]; 2],
@@ -167,8 +173,17 @@ impl Session {
     /// How certain each 3D line is and what supports it, in the order of `lines`.
     #[wasm_bindgen(js_name = lineRecords, unchecked_return_type = "LineRecord[]")]
     pub fn line_records(&self) -> Result<JsValue, JsValue> {
-        let lines = lines_of(self.loaded()?);
-        let records: Vec<LineRecord> = lines.iter().map(line_record).collect();
+        let run = self.loaded()?;
+        let lines = lines_of(run);
+        let by_views = run.results().evidence_of_matches();
+        let facets = run.results().facets.as_ref();
+        let in_model = facets.map_or(&[][..], |found| &found.trace.lines.evidence);
+        let record = |(i, line)| LineRecord {
+            by_views: by_views.get(i).copied(),
+            in_model: in_model.get(i),
+            ..line_record(line)
+        };
+        let records: Vec<LineRecord> = lines.iter().enumerate().map(record).collect();
         to_js(&records)
     }
 
@@ -286,6 +301,9 @@ fn line_record(line: &Line3d) -> LineRecord<'_> {
     LineRecord {
         origin: line.origin,
         contradiction: line.contradiction,
+        probability: line.probability,
+        by_views: None,
+        in_model: None,
         sigma_m: line.sigma_m,
         covariance: line
             .covariance

@@ -187,11 +187,13 @@ fn planted_candidates() -> Candidates {
         d: -5.0,
     };
     let outline = [(1.0, 2.0), (4.0, 2.0), (1.0, 6.0)].map(|(x, y)| Point3::new(x, y, 5.0));
+    let line = JudgedLine {
+        segment: Segment3::new([1.0, 2.0, 3.0].into(), [4.0, 5.0, 6.123_456].into()),
+        evidence: evidence.clone(),
+    };
     Candidates {
-        lines: vec![JudgedLine {
-            segment: Segment3::new([1.0, 2.0, 3.0].into(), [4.0, 5.0, 6.123_456].into()),
-            evidence: evidence.clone(),
-        }],
+        lines: vec![line.clone()],
+        model_lines: vec![line],
         facets: vec![JudgedFacet {
             outline: outline.to_vec(),
             holes: Vec::new(),

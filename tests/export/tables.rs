@@ -55,6 +55,7 @@ fn what_spoke_for_candidates_is_written_with_their_places() {
     assert_eq!(line["probability"], 0.5);
     assert_eq!(line["terms"][0]["feature"], "slope_deg");
     assert_eq!(line["terms"][0]["value"], 12.5);
+    assert_eq!(&evidence["model_lines"][0], line);
     assert_eq!(facet["accepted"], false);
     assert_eq!(facet["outline"][1][0], 432_104.0);
     assert_eq!(facet["plane"], serde_json::json!([0.0, 0.0, 1.0, -5.0]));
@@ -141,7 +142,7 @@ fn no_file_shows_what_the_model_refutes_and_ids_stay() {
     let (segments, mut lines, mut half_planes) = planted_evidence();
     let standing = lines[0].clone();
     lines.push(standing.clone());
-    lines[0].contradiction = Some(LineContradiction::Hidden);
+    lines[0].contradiction = Some(LineContradiction::Improbable);
     lines[0].segment.p0.z += 1.0;
     half_planes.push(half_planes[0].clone());
     half_planes[1].line = LineId(1);

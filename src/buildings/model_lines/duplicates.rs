@@ -79,7 +79,7 @@ mod tests {
     use crate::ids::ViewId;
     use crate::lines2d::SegmentKind;
     use crate::lines3d::planted;
-    use crate::lines3d::{LineSupport, SupportKind};
+    use crate::lines3d::{LineContradiction, LineSupport, SupportKind};
     use crate::testing;
 
     /// A part of the planted roof's edge, `up_m` above it, as some views show it.
@@ -143,7 +143,7 @@ mod tests {
         // A contradicted line has no duplicates, and one of no views, such as an intersection, is
         // not compared.
         let contradicted = Line3d {
-            contradiction: Some(crate::lines3d::LineContradiction::Hidden),
+            contradiction: Some(LineContradiction::Improbable),
             ..whole.clone()
         };
         assert_eq!(duplicates(&contradicted, &vague), []);

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! surfaces      roofs, walls and ground, and the share of a line that lies on them
-//! contradicted  lines that these surfaces exclude
+//! judge         what speaks for a line in this model and against it
 //! duplicates    lines of which a better one shows the same edge
 //! model_edges   straight edges of the facets and what is beyond them
 //! new_lines     edges of the model that no line explains, measured in all views
@@ -12,11 +12,11 @@
 //!
 //! Invariant: no line is removed; the id of a rejected one is returned with the reason.
 
-mod contradicted;
 mod duplicates;
+mod judge;
 mod model_edges;
 mod new_lines;
 mod surfaces;
 mod verify;
 
-pub use verify::verify_lines;
+pub use verify::{VerifiedLines, verify_lines};

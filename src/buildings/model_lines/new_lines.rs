@@ -20,6 +20,7 @@ use crate::lines3d::{
     Line3d, LineFit, LineOrigin, LineSupport, Observation, PlaneConstraint, ProjectedLine,
     SupportKind, fit_line_on,
 };
+use crate::math::larger;
 use crate::model::{Facet, Occluders, RoofModel};
 use crate::params::{Lines3dParams, MatchParams};
 use crate::scene::Scene;
@@ -101,8 +102,14 @@ impl NewLineSearch<'_> {
             return Vec::new();
         };
         let line_of = |part: Segment3| {
-            let line =
-                (self.measured(edge, &part, pixel_m)).or_else(|| self.intersection(edge, &part))?;
+            let facets = edge.facets.iter().map(|f| &self.model.facets[f.index()]);
+            // A border is there if one of its facets is, an intersection if both are.
+            let likelier = facets.map(|f| f.probability).fold(0.0, larger);
+            let border = self.measured(edge, &part, pixel_m).map(|line| Line3d {
+                probability: likelier,
+                ..line
+            });
+            let line = border.or_else(|| self.intersection(edge, &part))?;
             let origin = edge.origin();
             Some(Line3d { origin, ..line })
         };
@@ -394,7 +401,7 @@ mod tests {
         );
         // A line that cannot be explains nothing.
         let mut contradicted = known_lines;
-        contradicted[0].contradiction = Some(LineContradiction::OffSurface);
+        contradicted[0].contradiction = Some(LineContradiction::Improbable);
         assert_eq!(found(&scene, &contradicted, &model(&truth, &[])).len(), 1);
     }
 

@@ -43,8 +43,7 @@ impl StageDefinition for Facets {
             rectangles: &rectangles,
         };
         let (model, mut trace) = reconstruct_roofs(scene, &evidence, &params.roof)?;
-        (trace.new_lines, trace.contradicted_lines) =
-            verify_lines(scene, evidence.lines, &model, evidence.ground, params);
+        trace.lines = verify_lines(scene, evidence.lines, &model, evidence.ground, params);
         Ok((model, trace).into())
     }
 
@@ -57,7 +56,7 @@ impl StageDefinition for Facets {
             counts: vec![
                 ("facets", facets.len()),
                 ("buildings", found.value.buildings.len()),
-                ("contradicted lines", found.trace.contradicted_lines.len()),
+                ("contradicted lines", found.trace.lines.contradicted.len()),
             ],
             warnings: warn_if(facets.is_empty() && has_half_planes, none),
         }

@@ -9,6 +9,7 @@ import type { GroundTexture, WarpedPicture } from "../../src/shared/calls";
 import type { ParamTree } from "../../src/shared/paramTree";
 import type {
   Correspondence,
+  Evidence,
   Facet,
   FacetTrace,
   GroundPicture,
@@ -54,7 +55,7 @@ const NORTH = { normal: [0, 0.6, 0.8] as P, d: -6.4 };
 
 const corner = (i: number) => CORNERS[i] as P;
 
-function facet(indices: number[], plane: typeof SOUTH): Facet {
+function facet(indices: number[], plane: typeof SOUTH, probability: number): Facet {
   return {
     outer: indices.map(corner),
     holes: [],
@@ -62,14 +63,14 @@ function facet(indices: number[], plane: typeof SOUTH): Facet {
     building: 0,
     similarity: 0.8,
     real_ratio: 1,
-    probability: 1,
+    probability,
     lines: [],
     half_planes: [],
     rectangles: [],
   };
 }
 
-export const FACETS: Facet[] = [facet([0, 1, 5, 4], SOUTH), facet([2, 3, 4, 5], NORTH)];
+export const FACETS: Facet[] = [facet([0, 1, 5, 4], SOUTH, 0.97), facet([2, 3, 4, 5], NORTH, 0.72)];
 
 const HALF_PLANES: HalfPlane[] = [
   { line: 0, side: "left", theta: 0.64, plane: SOUTH },
@@ -86,6 +87,41 @@ const HALF_PLANES: HalfPlane[] = [
   probability: 0.99,
   views: [0, 1, 2],
 }));
+
+/** Less and less from line to line speaks for them. */
+function byViews(line: number): Evidence {
+  return {
+    prior: 3,
+    terms: [
+      { feature: "missing_views", value: line % 3, nats: 0.2 - 0.4 * (line % 3) },
+      { feature: "correlation", value: 0.9 - 0.05 * line, nats: 0.4 - 0.3 * line },
+      { feature: "ln_sigma_without_a_view_px", value: 0.3 * line, nats: 0.9 - 0.4 * line },
+      { feature: "residual_rms_sigmas", value: 1.3, nats: -0.1 },
+      { feature: "slope_deg", value: line < 3 ? 0 : 40, nats: line < 3 ? 0.5 : -1 },
+    ],
+  };
+}
+
+function inModel(before: number): Evidence {
+  return {
+    prior: 3.3,
+    terms: [
+      { feature: "nats_before", value: before, nats: 0.6 * (before - 3) },
+      { feature: "is_border", value: 0, nats: 0.1 },
+      { feature: "is_intersection", value: 0, nats: 0 },
+      { feature: "share_on_surfaces", value: 1, nats: 0.5 },
+      { feature: "hidden_views", value: 0, nats: 0 },
+    ],
+  };
+}
+
+function weighed(line: number) {
+  const by_views = byViews(line);
+  const in_model = inModel(natsOf(by_views));
+  return { probability: 1 / (1 + Math.exp(-natsOf(in_model))), by_views, in_model };
+}
+
+const natsOf = ({ prior, terms }: Evidence) => terms.reduce((sum, { nats }) => sum + nats, prior);
 
 export class Session implements CoreSession {
   #files: string[] = [];
@@ -296,6 +332,7 @@ export class Session implements CoreSession {
     return EDGES.map((_, i) => ({
       origin: "matched" as const,
       contradiction: null,
+      ...weighed(i),
       sigma_m: 0.01 * (i + 1),
       covariance: [
         [1e-4, 0, 0, 1e-4, 0, 4e-4],

@@ -2,7 +2,8 @@
 
 import "./inspector.css";
 import { select, selection } from "../state/viewState";
-import type { Related, Row } from "./rowLinks";
+import { EvidenceBars } from "./EvidenceBars";
+import type { Bars, Related, Row } from "./rowLinks";
 import { rowsOf, titleOf } from "./selectionRows";
 import { placeAmong, siblingsOf } from "./siblings";
 
@@ -68,10 +69,10 @@ function Facts({ title, rows }: { title: string; rows: readonly Row[] }) {
       <h3 class="picked">{title}</h3>
       <dl class="facts">
         {rows.map(([label, value, note]) => (
-          <div key={label}>
+          <div key={label} class={isBars(value) ? "broad" : undefined}>
             <dt>{label}</dt>
             <dd class="numbers">
-              {typeof value === "string" ? value : <Links to={value} />}
+              <Value value={value} />
               {note !== undefined && <span class="muted"> {note}</span>}
             </dd>
           </div>
@@ -79,6 +80,17 @@ function Facts({ title, rows }: { title: string; rows: readonly Row[] }) {
       </dl>
     </>
   );
+}
+
+function Value({ value }: { value: Row[1] }) {
+  if (typeof value === "string") {
+    return <>{value}</>;
+  }
+  return isBars(value) ? <EvidenceBars bars={value.bars} /> : <Links to={value} />;
+}
+
+function isBars(value: Row[1]): value is Bars {
+  return typeof value !== "string" && "bars" in value;
 }
 
 const MOST_LINKS = 12;

@@ -4,6 +4,7 @@ import type { Vec3 } from "../../shared/records";
 import { degreesOf } from "../parts/numberText";
 import { facetRejectionWords } from "../parts/reasonText";
 import { results } from "../state/results";
+import { evidenceRow } from "./evidenceRows";
 import type { Row } from "./rowLinks";
 
 /** By the core's numbers for them. */
@@ -35,6 +36,9 @@ export function rejectedFacetRows(index: number): Row[] {
   const [x, y, z] = areaVector(facet.outline);
   return [
     ["Rejected", facetRejectionWords(facet.reason)],
+    ...("improbable" in facet.reason
+      ? evidenceRow("For and against it (nats)", facet.reason.improbable.evidence)
+      : []),
     ...(facet.group === undefined ? [] : [["Group", String(facet.group)] as const]),
     ["Area", `${Math.hypot(x, y, z).toFixed(1)} m²`],
     ["Slope", `${degreesOf(Math.atan2(Math.hypot(x, y), Math.abs(z))).toFixed(1)}°`],

@@ -1,12 +1,22 @@
 /** The rows of the inspector, and the things that they lead on to. */
 import type { Selection } from "../../shared/selection";
 
-/** A number of the picked thing, or other things that made it or that it made, to go on to. */
-export type Row = readonly [label: string, value: string | readonly Related[], note?: string];
+/** A number of the picked thing, things to go on to (they made it or it made them), or bars. */
+export type Row = readonly [label: string, value: string | readonly Related[] | Bars, note?: string];
 
 export interface Related {
   name: string;
   selection: Selection;
+}
+
+/** Amounts for it and against it, positive and negative. */
+export interface Bars {
+  bars: readonly Bar[];
+}
+
+export interface Bar {
+  name: string;
+  nats: number;
 }
 
 /** To the thing of this kind at an index. */

@@ -17,6 +17,7 @@ import { params } from "../state/parameters";
 import { results } from "../state/results";
 import { scene } from "../state/scene";
 import { selectionDetail } from "../state/selectionDetail";
+import { evidenceOfLine, probabilityRow } from "./evidenceRows";
 import { refinedRow, refinementRows, relationRows } from "./refinementRows";
 import { rejectedClusterRows, rejectedFacetRows, rejectedSegmentRows } from "./rejectedRows";
 import { linkToFacet, linkToGroup, linkToHalfPlane, linkToLine, type Related, type Row } from "./rowLinks";
@@ -253,6 +254,7 @@ function historyOfLine(index: number): Row[] {
     ...(record?.contradiction == null
       ? []
       : [["Contradicted", CONTRADICTION_WORDS[record.contradiction]] as const]),
+    ...(record === undefined ? [] : evidenceOfLine(record)),
     ...(record === undefined ? [] : [["σ across", `${(100 * record.sigma_m).toFixed(1)} cm`] as const]),
     ...(record?.supports ?? []).map(
       ({ view, segments, kind, score }) =>
@@ -348,6 +350,7 @@ function facetRows(index: number): Row[] {
     ["Corners", String(facet.outer.length + facet.holes.flat().length)],
     ["Similarity", facet.similarity.toFixed(3)],
     ["τ real", facet.real_ratio === undefined ? "–" : facet.real_ratio.toFixed(2)],
+    ...probabilityRow(facet.probability),
     ["3D lines", (facet.lines ?? []).map(linkToLine)],
     ...groupsOfFacet(facet),
     ...refinedRow(index),

@@ -1,5 +1,6 @@
 /** What the colours of the present tab mean. */
 import type { LineOrigin } from "../../shared/records";
+import { CERTAIN } from "../../viewer/scene/certainty";
 import type { Tab } from "../state/methods";
 import { results } from "../state/results";
 import { beforeGrowing, tab, withRejected } from "../state/viewState";
@@ -48,11 +49,10 @@ const LINE_ENTRIES: readonly (readonly [LineOrigin, string, string])[] = [
 
 /** The kinds of 3D lines that there are. */
 function lineEntries(): Entry[] {
-  const { records } = results.value;
-  if (records.length === 0 || (tab.value === "lines" && beforeGrowing.value)) {
+  if (results.value.records.length === 0 || (tab.value === "lines" && beforeGrowing.value)) {
     return [["matched", "matched"]];
   }
-  const origins = new Set(records.filter((one) => one.contradiction == null).map(({ origin }) => origin));
+  const origins = new Set(standingLines().map(({ origin }) => origin));
   return LINE_ENTRIES.filter(([origin]) => origins.has(origin)).map(([, ...entry]) => entry);
 }
 
@@ -60,16 +60,33 @@ function hasContradicted(): boolean {
   return results.value.records.some(({ contradiction }) => contradiction != null);
 }
 
+const isUncertain = ({ probability = 1 }: { probability?: number }) => probability < CERTAIN;
+
+/** Only where something is faint. */
+function faintEntry(things: readonly { probability?: number }[] | null): Entry[] {
+  return things?.some(isUncertain) === true ? [["faint", "faint: less certain"]] : [];
+}
+
+/** Lines that are drawn as certain as they are. */
+function standingLines() {
+  return results.value.records.filter(({ contradiction }) => contradiction == null);
+}
+
 /** What is drawn now: an entry without anything in its colour would be looked for. */
-function presentEntries(): readonly Entry[] {
+export function presentEntries(): readonly Entry[] {
   switch (tab.value) {
     case "lines":
-      return hasContradicted() && !beforeGrowing.value
-        ? [...lineEntries(), ["rejected", "contradicted"]]
-        : lineEntries();
+      return beforeGrowing.value
+        ? lineEntries()
+        : [
+            ...lineEntries(),
+            ...faintEntry(standingLines()),
+            ...(hasContradicted() ? [["rejected", "contradicted"] as const] : []),
+          ];
     case "halfplanes":
       return [
         ...lineEntries().map(([colour, what]): Entry => [colour, what === "matched" ? "3D line" : what]),
+        ...faintEntry(standingLines()),
         ["half-plane", "half-plane"],
         ["rejected", hasContradicted() ? "rejected side, contradicted line" : "rejected side"],
       ];
@@ -78,6 +95,9 @@ function presentEntries(): readonly Entry[] {
         ...(ENTRIES.segments ?? []),
         ...(withRejected.value ? [["rejected", "rejected"] as const] : []),
       ];
+    case "facets":
+    case "refinement":
+      return [...(ENTRIES[tab.value] ?? []), ...faintEntry(results.value.facets)];
     default:
       return ENTRIES[tab.value] ?? [];
   }

@@ -7,4 +7,19 @@ export function grouped(value: number): string {
   return decimals === undefined ? text : `${text}.${decimals}`;
 }
 
+/** With its sign, as text has it: "+0.4", "−1.3", "0.0". */
+export function signed(value: number, decimals = 1): string {
+  const size = Math.abs(value).toFixed(decimals);
+  return Number(size) === 0 ? size : `${value < 0 ? "−" : "+"}${size}`;
+}
+
+/** "93 %"; only what is certain is 0 or 100 %. */
+export function percentText(share: number): string {
+  const percent = Math.round(100 * share);
+  if (percent === 100 && share < 1) {
+    return "> 99 %";
+  }
+  return percent === 0 && share > 0 ? "< 1 %" : `${percent} %`;
+}
+
 export const degreesOf = (radians: number) => (radians * 180) / Math.PI;

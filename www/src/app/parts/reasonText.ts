@@ -8,6 +8,7 @@ import type {
   SegmentOutcome,
   TestedRelation,
 } from "../../shared/records";
+import { percentText, signed } from "./numberText";
 
 /** Why a side of a line has no half-plane (B99 4.1). */
 export const REJECTION_WORDS: Record<string, string> = {
@@ -63,10 +64,7 @@ export const ORIGIN_WORDS: Record<LineOrigin, string> = {
 
 /** Why the model contradicts a 3D line, which the files then leave out. */
 export const CONTRADICTION_WORDS: Record<LineContradiction, string> = {
-  hidden: "roofs hide it from all but two of its views",
-  underground: "it goes into the ground",
-  off_surface: "it lies on no surface, and too few views are certain of it",
-  too_few_views: "only three views show it, though six could",
+  improbable: "too unlikely an edge in this model",
   duplicate: "a better line runs along it",
 };
 
@@ -103,8 +101,8 @@ export const PAIR_WORDS: Record<string, string> = {
   weak: "its best measure is not positive",
 };
 
-/** What was measured of a facet, by the names of the core's model. */
-const FEATURE_WORDS: Record<string, string> = {
+/** What was measured of a facet or a line, by the names of the core's models. */
+export const FEATURE_WORDS: Record<string, string> = {
   outline_on_lines: "outline on lines",
   displaced_plane_margin_sigmas: "margin over the plane moved up or down",
   rival_plane_margin_sigmas: "margin over other planes",
@@ -114,11 +112,25 @@ const FEATURE_WORDS: Record<string, string> = {
   ln_1_plus_lines: "number of lines",
   ln_1_plus_half_planes: "number of half-planes",
   cos_slope: "slope",
+  missing_views: "views that see it and do not show it",
+  ln_sigma_without_a_view_px: "uncertainty without its weightiest view",
+  residual_rms_sigmas: "residuals of its edges",
+  slope_deg: "slope",
+  nats_before: "what its views said",
+  is_border: "border of a facet",
+  is_intersection: "intersection of facets",
+  share_on_surfaces: "share on roofs, walls, ground",
+  hidden_views: "views that roofs hide it from",
+  facets_on_it: "facets found with it",
 };
 
 /** Logarithm of the odds, by all that speaks for a candidate and against it. */
 export function natsOf({ prior, terms }: Evidence): number {
   return terms.reduce((sum, { nats }) => sum + nats, prior);
+}
+
+export function probabilityOf(evidence: Evidence): number {
+  return 1 / (1 + Math.exp(-natsOf(evidence)));
 }
 
 export function facetRejectionWords(reason: FacetRejection): string {
@@ -132,10 +144,10 @@ export function facetRejectionWords(reason: FacetRejection): string {
     return `its low side lies on the ground (${reason.reaches_ground.lowest_m.toFixed(1)} m above it)`;
   }
   const { evidence } = reason.improbable;
-  const percent = 100 / (1 + Math.exp(-natsOf(evidence)));
-  const against = evidence.terms.filter(({ nats }) => nats < 0).sort((a, b) => a.nats - b.nats);
-  const strongest = against.slice(0, 3).map(({ feature, nats }) => {
-    return `${FEATURE_WORDS[feature] ?? feature} ${nats.toFixed(1).replace("-", "−")}`;
-  });
-  return `more likely no roof (probability ${percent.toFixed(0)} %); against it, in nats: ${strongest.join(", ")}`;
+  const [worst] = evidence.terms.filter(({ nats }) => nats < 0).sort((a, b) => a.nats - b.nats);
+  const most =
+    worst === undefined
+      ? ""
+      : `; most against it: ${FEATURE_WORDS[worst.feature] ?? worst.feature} (${signed(worst.nats)} nats)`;
+  return `more likely no roof (probability ${percentText(probabilityOf(evidence))})${most}`;
 }

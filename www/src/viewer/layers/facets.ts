@@ -14,6 +14,7 @@ import {
 import { PALETTE } from "../../shared/palette";
 import type { Facet, Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
+import { opacityOf } from "../scene/certainty";
 import { middleOf } from "../scene/facetPlan";
 import { zUpGroup } from "../scene/frame";
 import { BOTH_SIDES, disposeObject, type Layer } from "../scene/layer";
@@ -31,7 +32,8 @@ export function buildFacets(facets: readonly Facet[]): Layer {
   const facetOfTriangle = triangles.flatMap((positions, i) =>
     new Array<number>(positions.length / 9).fill(i),
   );
-  const all = facetMesh(triangles, facets.map(normalTint));
+  const opacities = facets.map(({ probability }) => opacityOf(probability));
+  const all = facetMesh(triangles, facets.map(normalTint), opacities);
   const names = facets.map(({ outer }, i) => ({ text: String(i), at: middleOf(outer) }));
   object.add(all, outlines(facets), nameLabels(names));
   const chosen = new SelectedObject(object);
@@ -86,17 +88,19 @@ export function triangulate({ outer, holes }: Facet): number[] {
   );
 }
 
+/** @param opacities of each facet, as a share of the material's; 1 where there is none */
 export function facetMesh(
   triangles: readonly number[][],
   tints: readonly Color[],
+  opacities: readonly number[] = [],
 ): Mesh<BufferGeometry, MeshBasicMaterial> {
   const colours = triangles.flatMap((positions, i) => {
-    const tint = (tints[i] as Color).toArray();
+    const tint = [...(tints[i] as Color).toArray(), opacities[i] ?? 1];
     return new Array(positions.length / 3).fill(tint).flat() as number[];
   });
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(Float32Array.from(triangles.flat()), 3));
-  geometry.setAttribute("color", new BufferAttribute(Float32Array.from(colours), 3));
+  geometry.setAttribute("color", new BufferAttribute(Float32Array.from(colours), 4));
   const material = new MeshBasicMaterial({
     vertexColors: true,
     ...BOTH_SIDES,

@@ -4,6 +4,7 @@ import { LINE_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import type { LineOrigin, LineRecord } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
+import { opacityOf } from "../scene/certainty";
 import { zUpGroup } from "../scene/frame";
 import { disposeObject, type Layer } from "../scene/layer";
 import { SelectedObject } from "../scene/selectedObject";
@@ -33,6 +34,11 @@ export function colourOf(record: Pick<LineRecord, "origin" | "contradiction"> | 
   return record?.contradiction == null ? ORIGIN_COLOURS[record?.origin ?? "matched"] : PALETTE.rejected;
 }
 
+/** A line is as opaque as it is probable; what the model contradicts has its colour to say so. */
+export function opacityOfLine(record: Pick<LineRecord, "probability" | "contradiction"> | undefined): number {
+  return record?.contradiction == null ? opacityOf(record?.probability) : 1;
+}
+
 /**
  * @param lines p0 and p1 of each line, local frame, metres
  * @param linesOf the lines that belong to a selection
@@ -46,18 +52,31 @@ export function buildLines(
   const count = Math.floor(lines.length / LINE_STRIDE);
   const indices = Array.from({ length: count }, (_, i) => i);
   const unseen = (index: number) => records[index] !== undefined && isUnseen(records[index]);
+  const opacity = (index: number) => opacityOfLine(records[index]);
   const colour = (index: number) => colourOf(records[index]);
-  const parts = [indices.filter((i) => !unseen(i)), indices.filter(unseen)].map((own, k) => {
+  const draw = (own: readonly number[]) => {
     const drawn = strokes(
       own.flatMap((i) => endsOf(lines, i)),
       own.map(colour),
       WIDTH_PX,
     );
-    return { own, drawn: k === 0 ? drawn : dashed(drawn) };
-  });
-  for (const { drawn } of parts.filter(({ own }) => own.length > 0)) {
+    return unseen(own[0] as number) ? dashed(drawn) : drawn;
+  };
+  // Solid before dashed, opaque before faint: each look has a material of its own.
+  const opacities = [...new Set(indices.map(opacity))].sort((a, b) => b - a);
+  const parts = [indices.filter((i) => !unseen(i)), indices.filter(unseen)]
+    .flatMap((alike) => opacities.map((one) => alike.filter((i) => opacity(i) === one)))
+    .filter((own) => own.length > 0)
+    .map((own) => ({ own, opacity: opacity(own[0] as number), drawn: draw(own) }));
+  for (const { drawn } of parts) {
     object.add(drawn);
   }
+  const dim = (by: number) => {
+    for (const part of parts) {
+      part.drawn.material.opacity = by * part.opacity;
+    }
+  };
+  dim(1);
   const chosen = new SelectedObject(object);
 
   return {
@@ -68,9 +87,7 @@ export function buildLines(
       return index === undefined ? null : { kind: "line", index };
     },
     highlight(selection: Selection | null) {
-      for (const { drawn } of parts) {
-        drawn.material.opacity = selection === null ? 1 : DIMMED;
-      }
+      dim(selection === null ? 1 : DIMMED);
       const own = linesOf(selection).filter((index) => index < count);
       chosen.show(own.length === 0 ? null : above(own.flatMap((index) => endsOf(lines, index))));
     },

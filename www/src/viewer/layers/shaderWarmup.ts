@@ -36,6 +36,9 @@ const NO_COVARIANCE: LineRecord["covariance"][number] = [0, 0, 0, 0, 0, 0];
 const SEEN: LineRecord = {
   origin: "matched",
   contradiction: null,
+  probability: 1,
+  by_views: null,
+  in_model: null,
   sigma_m: 0,
   covariance: [NO_COVARIANCE, NO_COVARIANCE],
   supports: [],

@@ -38,6 +38,9 @@ const record = (sigma: number): LineRecord => {
   return {
     origin: "matched",
     contradiction: null,
+    probability: 1,
+    by_views: null,
+    in_model: null,
     sigma_m: sigma,
     covariance: [covariance, covariance],
     supports: [],
