@@ -10,6 +10,7 @@
 #   make score      all scenes against their truth; rewrites the tables of docs/results.md
 #   make fuzz       all readers on damaged files, FUZZ_SECONDS (600) for each format
 #   make jury       all scenes many times over, changed a little each time; rewrites its tables there
+#   make judge      SEEDS (as "518 to 530") of random scenes that chose nothing; BEFORE=PROGRAM compares in pairs
 #   make calibrate  fits the tables of src/evidence to scenes with truth, PYTHON (python3) with numpy, scipy, shapely
 #   make bench      time of every stage on the synthetic scene, and of the lines of the scene in SCENE
 #   make clean      remove what was built (not the tool cache)
@@ -17,7 +18,7 @@
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: demo test build lint identical golden score jury calibrate bench fuzz native setup clean
+.PHONY: demo test build lint identical golden score jury judge calibrate bench fuzz native setup clean
 
 # Small programs of our own on the crates of wasm-bindgen and wasm-pack, kept for all clones that have the same ones.
 CACHE := $(or $(RIDGELINE_CACHE),$(HOME)/.cache/ridgeline)
@@ -64,6 +65,9 @@ score: native
 
 jury: native
 	python3 tests/jury.py --binary target/release/ridgeline --scenes "$${SCENES:-../shared/scenes}"
+
+judge: native
+	$(PYTHON) tests/judge.py --binary target/release/ridgeline $(if $(BEFORE),--before $(BEFORE)) --seeds $(SEEDS)
 
 calibrate: native
 	$(PYTHON) tests/calibrate.py --self-test

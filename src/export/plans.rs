@@ -140,16 +140,18 @@ fn closed_ring(scene: &Scene, solid: &Solid, ring: &[u32]) -> Vec<[f64; 2]> {
 
 /// The 3D lines as CSV, one a line of text; columns are named in the first one.
 pub fn lines_csv(scene: &Scene, lines: &[Line3d]) -> Vec<u8> {
-    let mut text = String::from("id,x0_m,y0_m,z0_m,x1_m,y1_m,z1_m,length_m,sigma_m,views,origin\n");
+    let columns = "id,x0_m,y0_m,z0_m,x1_m,y1_m,z1_m,length_m,sigma_m,probability,views,origin\n";
+    let mut text = String::from(columns);
     for (id, l) in Line3d::standing(lines) {
         let id = id.index();
         let ([x0, y0, z0], [x1, y1, z1]) =
             (world(scene, &l.segment.p0), world(scene, &l.segment.p1));
-        let (length, sigma) = (rounded(l.segment.length(), 4), rounded(l.sigma_m, 4));
+        let [length, sigma, probability] =
+            [l.segment.length(), l.sigma_m, l.probability].map(|v| rounded(v, 4));
         push_line(
             &mut text,
             format_args!(
-                "{id},{x0},{y0},{z0},{x1},{y1},{z1},{length},{sigma},{},{}",
+                "{id},{x0},{y0},{z0},{x1},{y1},{z1},{length},{sigma},{probability},{},{}",
                 l.supports.len(),
                 l.origin.name()
             ),

@@ -134,6 +134,7 @@ fn the_table_of_lines_reads_back() {
         assert!((p - line.segment.p1.coords).norm() < 1e-4);
         assert!((row("length_m") - line.segment.length()).abs() < 1e-4);
         assert_eq!(row("views") as usize, line.supports.len());
+        assert!((row("probability") - line.probability).abs() < 1e-4);
     }
 }
 
