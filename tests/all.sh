@@ -41,23 +41,41 @@ step() {
     passed=$((passed + good)) failed=$((failed + bad))
 }
 
+# start NAME COMMAND...: runs it beside the steps that follow; `step NAME KIND finished NAME` takes its result.
+start() {
+    local name=$1 out="$logs/$1.out"
+    shift
+    rm -f "$out.status"
+    { "$@" > "$out" 2>&1; echo $? > "$out.status"; } &
+}
+
+finished() {
+    local out="$logs/$1.out"
+    until [ -s "$out.status" ]; do sleep 1; done
+    cat "$out"
+    return "$(< "$out.status")"
+}
+
 www() { (cd www && npm run --silent "$@"); }
 
 formatted() { cargo fmt --all --check && cargo fmt --all --check --manifest-path tools/Cargo.toml; }
 
 step format check formatted
-step clippy-native check cargo clippy --all-targets --quiet -- -D warnings
 # With the page's profile, which has its derives compiled already.
-step clippy-wasm32 check cargo clippy --lib --bins --tests --quiet --profile page --target wasm32-unknown-unknown -- -D warnings
+start clippy-wasm32 cargo clippy --lib --bins --tests --quiet --profile page --target wasm32-unknown-unknown -- -D warnings
+step clippy-native check cargo clippy --all-targets --quiet -- -D warnings
 step typecheck check www typecheck
 step biome check www lint
+step clippy-wasm32 check finished clippy-wasm32
 if [ "${1:-all}" = all ]; then
     step native cargo cargo test --quiet
+    # One core is enough for it.
+    start identical node tests/identical.mjs target/debug/ridgeline
     step doc check env RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --quiet
     step wasm cargo wasm-pack test --node --mode no-install tests/wasm --profile page
-    step identical check node tests/identical.mjs target/debug/ridgeline
     step typescript node www test:unit
     step size check www size
+    step identical check finished identical
     # Named, so that the comparison with it is not skipped.
     export RIDGELINE=$PWD/target/debug/ridgeline
     step page playwright www test:e2e
