@@ -126,7 +126,10 @@ const FIGURES: Record<Tab, Figure> = {
         <Close />
       </mrow>
     ),
-    hint: "Switch to Before growing to see what the segments alone give. The fainter a line, the less certain it is; pick it to see what speaks for it and against it. Red lines contradict the finished model: they are too unlikely edges in it, or a better line runs along them. The files leave them out.",
+    hint:
+      "Before growing shows what the segments alone give. The fainter a line, the less certain it is; pick " +
+      "it to see what speaks for it and against it. Red lines are too unlikely edges in the finished model, " +
+      "or a better line runs along them: the files leave them out.",
   },
   halfplanes: {
     title: "Half-planes",
