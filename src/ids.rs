@@ -37,3 +37,14 @@ id! {
     /// A building: index into [`crate::model::RoofModel::buildings`].
     BuildingId,
 }
+
+/// What proposed a plane, beside the half-planes and lines of B99.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+#[serde(rename_all = "snake_case")]
+pub enum ProposalOrigin {
+    /// A candidate of W96: index into the candidates of [`crate::objectspace::RectangleTrace`].
+    Rectangle(u32),
+    /// A plane of dense matching: index into the list of [`crate::dense::DensePlane`].
+    DensePlane(u32),
+}

@@ -47,6 +47,7 @@
 //!    -> adjustment               single views adjusted to these, and matched again
 //!    -> terrain                  the ground
 //!    -> planes                   Sim(theta), half-planes, plane hypotheses    B99 4.1, 4.2
+//!    -> dense                    planes from dense matching                   B99 2
 //!    -> facets                   borders, labelling, verification             B99 4.3
 //!    or, from the images to the roofs in one go
 //!    -> objectspace              regions, directions, clusters, rectangles    W96 3.3 - 3.6
@@ -69,6 +70,7 @@ mod adjustment;
 pub mod agreement;
 pub mod buildings;
 pub mod camera;
+pub mod dense;
 mod error;
 pub mod evidence;
 pub mod execution;
@@ -78,6 +80,7 @@ pub mod figures;
 pub mod geometry;
 pub mod ids;
 mod json;
+mod labelling;
 pub mod linematch;
 pub mod lines2d;
 pub mod lines3d;

@@ -33,7 +33,7 @@ pub(crate) fn facet(ring: &[Point3<f64>]) -> Facet {
         probability: 1.0,
         lines: Vec::new(),
         half_planes: Vec::new(),
-        rectangles: Vec::new(),
+        proposals: Vec::new(),
     }
 }
 

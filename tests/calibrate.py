@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fit the tables of src/evidence (lines, facets, windows, lines in the model) to scenes of which the truth is known.
+"""Fit the tables of src/evidence (lines, facets, windows, lines in the model, surfaces) to scenes of which the truth is known.
 
     python3 tests/calibrate.py --binary target/release/ridgeline [--scenes NAME,...]
                                [--fit FOLDER] [--more FOLDER] [--dry] [--keep]
@@ -51,14 +51,18 @@ SIGNS = {
         'missing_views': -1, 'correlation': 1, 'ln_sigma_without_a_view_px': -1, 'residual_rms_sigmas': -1, 'slope_deg': -1,
     },
     'facets': {
-        'outline_on_lines': 1, 'displaced_plane_margin_sigmas': 1, 'rival_plane_margin_sigmas': 1, 'correlation': 1,
+        'outline_on_lines': 1, 'displaced_plane_margin_sigmas': 1, 'rival_plane_margin_sigmas': 1,
         'excess_green': -1, 'ln_area_m2': 1, 'ln_1_plus_lines': 1, 'ln_1_plus_half_planes': 1, 'cos_slope': 0,
     },
+    'buildings': {'height_m': 1, 'roughness_px': -1, 'excess_green': 0, 'correlation': 0, 'cos_slope': 0, 'ln_area_m2': 0},
+    'vegetation': {'height_m': 0, 'roughness_px': 1, 'excess_green': 1, 'correlation': 0, 'cos_slope': 0, 'ln_area_m2': 0},
     'model_lines': {'nats_before': 1, 'is_border': 0, 'is_intersection': 0, 'share_on_surfaces': 1, 'hidden_views': -1,
                     'facets_on_it': 1},
 }
 # A facet is true if so much of it lies on true faces of its plane; of those of which more does the windows are counted.
 TRUE_SHARE, WINDOWS_SHARE, FEWEST_WINDOWS = 0.5, 0.9, 20
+# How near the surface model a patch lies on it, and how high what stands on it rises, metres.
+SURFACE_M = 0.5
 # Smaller facets are not judged, square metres in plan.
 LEAST_AREA_M2 = 0.5
 # Middles of the classes of texture weights; where there is no texture nothing is said.
@@ -90,15 +94,20 @@ def main():
               f'{scorer} {"is there" if scorer.is_file() else "is missing"}; two scenes are needed')
         return 0
     truth = loaded(scorer)
-    lines, facets, model_lines = [], [], []
+    lines, facets, model_lines, buildings, vegetation = [], [], [], [], []
     for scene in scenes:
         found = {how: run(args, scene, how) for how in RUN}
         if all(found.values()):
             lines += lines_of(truth, scene, found['lines']['lines'])
             model_lines += lines_of(truth, scene, found['strict']['model_lines'])
             facets += facets_of(truth, scene, [found['facets'], found['strict']])
+            surfaces = surfaces_of(truth, scene, found['strict']['surfaces'])
+            buildings += [{**s, 'values': s['building'], 'true': s['class'] == 'building'} for s in surfaces]
+            vegetation += [{**s, 'values': s['vegetation'], 'true': s['class'] == 'vegetation'}
+                           for s in surfaces if s['class'] != 'building']
             print(f'{scene.name}: {len(lines)} lines, {len(facets)} facets so far', flush=True)
-    for kind, candidates in (('lines', lines), ('facets', facets), ('model_lines', model_lines)):
+    for kind, candidates in (('lines', lines), ('facets', facets), ('model_lines', model_lines),
+                             ('buildings', buildings), ('vegetation', vegetation)):
         calibrate(args, kind, candidates)
     calibrate_windows(args, facets)
     return 0
@@ -220,6 +229,37 @@ def overlap_of(truth, face, place, normal, offset):
     angle = math.degrees(math.acos(np.clip(face.n @ normal, -1, 1)))
     is_on = angle < truth.MAX_ANGLE and math.sqrt(squares / max(area, 1e-9)) < truth.MAX_RMS_Z
     return shared.area if is_on else 0.0
+
+
+def surfaces_of(truth, scene, found):
+    """The surfaces of a scene with a surface model, each with its class: that of most of its patches."""
+    bare, full = (truth.load_dsm(str(scene), name) for name in ('dsm', 'dsm_full'))
+    if bare is None or full is None or not found:
+        return []
+    from shapely.geometry import MultiPoint
+    from shapely.ops import unary_union
+    faces, _ = truth.read_truth(str(scene))
+    roofs = unary_union([face.poly for face in faces])
+    move = to_truth(scene, [p for surface in found for p in surface['patches']])
+    surfaces = []
+    for surface in found:
+        patches = np.array(surface['patches']) + move
+        on_roof = np.array([roofs.contains(p) for p in MultiPoint(patches[:, :2]).geoms])
+        near = truth.near_surface(bare, patches, SURFACE_M)
+        stands = heights_of(full, patches) - heights_of(bare, patches) > SURFACE_M
+        is_roof = (on_roof & near).mean() >= TRUE_SHARE
+        is_plant = not is_roof and (stands & ~on_roof).mean() >= TRUE_SHARE
+        surfaces.append({'scene': scene.name, 'class': 'building' if is_roof else 'vegetation' if is_plant else 'ground',
+                         **{of: {t['feature']: t['value'] for t in surface[of]} for of in ('building', 'vegetation')}})
+    return surfaces
+
+
+def heights_of(surface, places):
+    """Heights of a surface model below some places."""
+    z = surface['z']
+    columns, rows = (np.floor((places[:, i] - surface[start]) / surface['cell']).astype(int)
+                     for i, start in ((0, 'x0'), (1, 'y0')))
+    return z[np.clip(rows, 0, z.shape[0] - 1), np.clip(columns, 0, z.shape[1] - 1)]
 
 
 # ---- lines and facets ---------------------------------------------------------------------------

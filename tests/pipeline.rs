@@ -12,11 +12,13 @@ use nalgebra::{Point2, Point3};
 use ridgeline::execution::progress::silent;
 use ridgeline::execution::shard::MergedShards;
 use ridgeline::geometry::{Plane, Segment3};
+use ridgeline::ids::ProposalOrigin;
 use ridgeline::lines3d::{Line3d, LineOrigin};
 use ridgeline::model::{Facet, check_invariants};
 use ridgeline::orientation::InputFile;
 use ridgeline::params::{Method, Params};
 use ridgeline::pipeline::{PackedView, Run, Stage};
+use ridgeline::planes::PlaneGroup;
 use ridgeline::raster::RedBlueDifference;
 use ridgeline::scene::Scene;
 use ridgeline::scene_loader::{LoadOptions, load_scene};
@@ -410,12 +412,12 @@ fn both_methods_find_one_model() {
     assert!(lines.is_sorted_by_key(adopted) && !adopted(&lines[0]));
     let rectangles = &results.rectangles.as_ref().unwrap().trace.candidates;
     let groups = &results.facets.as_ref().unwrap().trace.facets.groups;
-    let of_both = groups.iter().filter(|g| !g.rectangles.is_empty());
+    let of_both = groups.iter().filter(|g| rectangles_of(g).count() > 0);
     assert!(
         of_both.clone().count() > 0,
         "planes that both methods found"
     );
-    let mut joined: Vec<u32> = of_both.flat_map(|g| g.rectangles.clone()).collect();
+    let mut joined: Vec<u32> = of_both.flat_map(rectangles_of).collect();
     joined.sort_unstable();
     joined.dedup();
     assert_eq!(
@@ -423,6 +425,14 @@ fn both_methods_find_one_model() {
         rectangles.len(),
         "every candidate is somewhere, once"
     );
+}
+
+/// The candidates of W96 in a group's plane.
+fn rectangles_of(group: &PlaneGroup) -> impl Iterator<Item = u32> {
+    group.proposals.iter().filter_map(|origin| match origin {
+        ProposalOrigin::Rectangle(index) => Some(*index),
+        ProposalOrigin::DensePlane(_) => None,
+    })
 }
 
 #[test]

@@ -160,7 +160,7 @@ fn both_methods_share_their_planes() {
         if stage == "facets" {
             let shard = |helper: &mut Session| helper.run_shard(stage, "planes", 0, 1, &silent);
             assert!(shard(helper).unwrap().is_empty(), "nothing is known yet");
-            for earlier in ["rectangles", "segments", "lines", "halfplanes"] {
+            for earlier in ["rectangles", "segments", "lines", "halfplanes", "dense"] {
                 let found = first.hand_over(earlier).unwrap();
                 helper.take_over(earlier, found).unwrap();
             }
@@ -170,7 +170,7 @@ fn both_methods_share_their_planes() {
     }
     assert!(stages.iter().any(|s| s == "regions"), "{stages:?}");
     let groups = Array::from(&member(&first.grouping().unwrap(), "groups"));
-    let joined = |g: &JsValue| Array::from(&member(g, "rectangles")).length() > 0;
+    let joined = |g: &JsValue| Array::from(&member(g, "proposals")).length() > 0;
     assert!(groups.iter().any(|g| joined(&g)));
     assert!(Array::from(&first.facets().unwrap()).length() > 0);
 }

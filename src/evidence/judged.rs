@@ -16,6 +16,19 @@ pub struct Candidates {
     pub model_lines: Vec<JudgedLine>,
     /// Every facet that was weighed.
     pub facets: Vec<JudgedFacet>,
+    /// Every surface of dense matching.
+    pub surfaces: Vec<JudgedSurface>,
+}
+
+/// A surface of which was weighed what it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JudgedSurface {
+    /// The middles of its patches, metres, local frame.
+    pub patches: Vec<Point3<f64>>,
+    /// For a building rather than ground or vegetation.
+    pub building: Evidence,
+    /// For vegetation rather than ground.
+    pub vegetation: Evidence,
 }
 
 /// A line that was weighed.
@@ -104,12 +117,19 @@ impl Candidates {
             let inside = lines.iter().filter(|l| holds(&l.segment.at(0.5)));
             inside.map(line).collect()
         };
+        let surface = |surface: &JudgedSurface| JudgedSurface {
+            patches: ring(&surface.patches),
+            ..surface.clone()
+        };
+        let surfaces =
+            (self.surfaces.iter()).filter(|s| holds(&crate::geometry::mean_point(&s.patches)));
         let facets =
             (self.facets.iter()).filter(|f| holds(&crate::geometry::mean_point(&f.outline)));
         Self {
             lines: lines_of(&self.lines),
             model_lines: lines_of(&self.model_lines),
             facets: facets.map(facet).collect(),
+            surfaces: surfaces.map(surface).collect(),
         }
     }
 }
@@ -139,6 +159,11 @@ mod tests {
             segment: Segment3::new(Point3::new(x, 0.0, 5.0), Point3::new(x, 4.0, 5.0)),
             evidence: evidence.clone(),
         };
+        let surface = |x: f64| JudgedSurface {
+            patches: vec![Point3::new(x, 0.0, 5.0)],
+            building: evidence.clone(),
+            vegetation: evidence.clone(),
+        };
         let outline = [(0.0, 0.0), (6.0, 0.0), (0.0, 6.0)].map(|(x, y)| Point3::new(x, y, 5.0));
         let facet = JudgedFacet {
             outline: outline.to_vec(),
@@ -155,11 +180,14 @@ mod tests {
             lines: vec![line(1.0), line(90.0)],
             model_lines: vec![line(2.0)],
             facets: vec![facet],
+            surfaces: [1.0, 90.0].map(surface).to_vec(),
         };
         let moved = all.moved(&Vector3::new(10.0, 0.0, 2.0), |p| p.x < 50.0);
         assert_eq!([moved.lines.len(), moved.model_lines.len()], [1, 1]);
         assert_eq!(moved.lines[0].segment.p0, Point3::new(-9.0, 0.0, 3.0));
         assert_eq!(moved.facets[0].outline[1], Point3::new(-4.0, 0.0, 3.0));
+        assert_eq!(moved.surfaces.len(), 1);
+        assert_eq!(moved.surfaces[0].patches, [Point3::new(-9.0, 0.0, 3.0)]);
         assert!((moved.facets[0].plane.z_at(0.0, 0.0) - 3.0).abs() < 1e-12);
     }
 }

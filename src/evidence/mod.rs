@@ -18,7 +18,9 @@
 mod judged;
 mod windows;
 
-pub use judged::{Candidates, JudgedFacet, JudgedLine, WindowCounts, WindowHistogram};
+pub use judged::{
+    Candidates, JudgedFacet, JudgedLine, JudgedSurface, WindowCounts, WindowHistogram,
+};
 pub(crate) use windows::WindowEvidenceTable;
 
 use std::sync::OnceLock;
@@ -103,6 +105,18 @@ impl EvidenceModel {
     pub(crate) fn of_model_lines() -> &'static Self {
         static MODEL: OnceLock<EvidenceModel> = OnceLock::new();
         MODEL.get_or_init(|| Self::read(include_str!("model_lines.json")))
+    }
+
+    /// The model of buildings among the surfaces of dense matching.
+    pub(crate) fn of_buildings() -> &'static Self {
+        static MODEL: OnceLock<EvidenceModel> = OnceLock::new();
+        MODEL.get_or_init(|| Self::read(include_str!("buildings.json")))
+    }
+
+    /// The model of vegetation among those surfaces that are no buildings.
+    pub(crate) fn of_vegetation() -> &'static Self {
+        static MODEL: OnceLock<EvidenceModel> = OnceLock::new();
+        MODEL.get_or_init(|| Self::read(include_str!("vegetation.json")))
     }
 
     fn read(json: &str) -> Self {
@@ -200,6 +214,8 @@ mod tests {
             EvidenceModel::of_facets(),
             EvidenceModel::of_lines(),
             EvidenceModel::of_model_lines(),
+            EvidenceModel::of_buildings(),
+            EvidenceModel::of_vegetation(),
         ];
         for model in models {
             assert!(model.source.contains("seeds"), "{}", model.source);

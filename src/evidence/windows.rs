@@ -62,6 +62,14 @@ impl WindowEvidenceTable {
         }
     }
 
+    /// [`Self::nats`] of a weight from 0 to 1 and a correlation from -1 to 1.
+    pub(crate) fn nats_of(&self, weight: f32, correlation: f32) -> f64 {
+        self.nats(
+            (weight * 255.0).round() as u8,
+            (correlation * 127.0).round() as i8,
+        )
+    }
+
     /// What the images of a window say, nats: its texture weight in steps of 1 / 255, its
     /// correlation in steps of 1 / 127.
     pub(crate) fn nats(&self, weight: u8, correlation: i8) -> f64 {

@@ -8,8 +8,8 @@ use crate::evidence::{Candidates, Evidence, JudgedFacet, JudgedLine, WindowHisto
 use crate::scene::Scene;
 
 /// `evidence.json`: every matched line, every line in the finished model, every facet that was
-/// weighed, and the classes in which the windows of the facets are counted. World frame of the
-/// input.
+/// weighed, every surface of dense matching, and the classes in which the windows of the facets are
+/// counted. World frame of the input.
 pub fn evidence_json(scene: &Scene, candidates: &Candidates) -> Vec<u8> {
     let line = |line: &JudgedLine| {
         json!({
@@ -21,6 +21,14 @@ pub fn evidence_json(scene: &Scene, candidates: &Candidates) -> Vec<u8> {
     };
     let lines_of = |lines: &[JudgedLine]| lines.iter().map(line).collect::<Vec<_>>();
     let facets = candidates.facets.iter().map(|f| facet(scene, f));
+    let surfaces = candidates.surfaces.iter().map(|s| {
+        let patches = s.patches.iter().map(|p| world(scene, p));
+        json!({
+            "patches": patches.collect::<Vec<_>>(),
+            "building": terms(&s.building),
+            "vegetation": terms(&s.vegetation),
+        })
+    });
     let correlations: Vec<f64> = (0..WindowHistogram::CORRELATIONS)
         .map(|class| rounded(class as f64 / 10.0 - 1.0, 1))
         .collect();
@@ -28,6 +36,7 @@ pub fn evidence_json(scene: &Scene, candidates: &Candidates) -> Vec<u8> {
         "lines": lines_of(&candidates.lines),
         "model_lines": lines_of(&candidates.model_lines),
         "facets": facets.collect::<Vec<_>>(),
+        "surfaces": surfaces.collect::<Vec<_>>(),
         "window_classes": {
             "weights_below": WindowHistogram::WEIGHTS_BELOW.map(|w| rounded(f64::from(w), 2)),
             "correlations_from": correlations,

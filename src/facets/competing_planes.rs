@@ -64,7 +64,7 @@ impl CompetingPlanes {
             probability: 1.0,
             lines: group.lines(),
             half_planes: group.half_planes(),
-            rectangles: group.rectangles.clone(),
+            proposals: group.proposals.clone(),
         }
     }
 

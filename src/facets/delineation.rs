@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix2, Point2, Vector2};
 
 use super::borders::Arrangement;
-use super::labelling::NO_PLANE;
 use crate::geometry::Plane;
+use crate::labelling::NO_PLANE;
 
 /// A facet in plan, before it is lifted onto its plane.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,13 +4,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::borders::{Arrangement, BorderCosts, LineIndex};
-use super::labelling::Energy;
 use crate::geometry::Plane;
-use crate::lines3d::ThetaFrame;
+use crate::labelling::Energy;
 use crate::math::larger;
 use crate::params::RoofParams;
 use crate::photoconsistency::{ConsistencyMap, PlanGrid, ShiftableWindows};
-use crate::planes::{GroupingInput, PlaneGroup, PlaneHypothesis};
+use crate::planes::PlaneHypothesis;
 
 /// Photo-consistency of one plane in one cell.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,40 +20,18 @@ pub(super) struct CellEvidence {
     pub weight: f64,
     /// Sum of weight x correlation over the area.
     pub correlation: f64,
-    /// Sum of what the windows say of the plane over the area, square metres of agreement.
-    pub gain: f64,
-    /// Sum of the single-view evidence over the area, square metres.
+    /// Sum of what the windows say of the plane over the area, nats: windows a metre apart are
+    /// independent.
+    pub nats: f64,
+    /// Sum of the single-view evidence over the area, nats: at most one a square metre.
     pub single_view: f64,
-}
-
-/// Least texture weight with which planes are compared with each other. Chance correlation is the
-/// same for every plane at one place, so that weak texture discriminates between planes better than
-/// between a plane and none. Measured: from 1 on it is noise that decides between them.
-const AMONG_PLANES: f64 = 0.5;
-
-/// Weight of single-view evidence against perfect agreement of several views. Assumption: half of
-/// what agreement mostly reaches beyond the threshold.
-const SINGLE_VIEW_WEIGHT: f64 = 0.2;
-
-impl CellEvidence {
-    /// Mean correlation of the texture; `None` without any.
-    fn mean_correlation(&self) -> Option<f64> {
-        (self.weight > 0.0).then(|| self.correlation / self.weight)
-    }
-
-    /// Extra cost of a plane of weak texture where another one correlates by `best`.
-    fn behind(&self, best: f64) -> f64 {
-        let lacking = (AMONG_PLANES * self.area - self.weight).max(0.0);
-        (self.mean_correlation()).map_or(0.0, |correlation| lacking * (best - correlation))
-    }
 }
 
 /// The evidence for every plane in every cell that it may cover.
 pub(super) struct PlaneEvidence {
     /// Per cell: (plane, evidence), ascending by plane.
     cells: Vec<Vec<(u32, CellEvidence)>>,
-    /// Per cell: what the ground costs a roof, from the sum of weight x (correlation - least
-    /// correlation), square metres.
+    /// Per cell: what its windows say of the ground, nats; 0 where they speak against it.
     ground: Vec<f64>,
 }
 
@@ -62,22 +39,17 @@ impl PlaneEvidence {
     /// Sums each hypothesis' consistency map over the cells; `ground` are the maps of the ground
     /// plane at a few heights, over `grid`.
     pub(super) fn collect(
-        input: &GroupingInput,
         hypotheses: &[PlaneHypothesis],
         arrangement: &Arrangement,
         grid: &PlanGrid,
         ground: Option<&ConsistencyMap>,
         windows: &ShiftableWindows,
-        params: &RoofParams,
     ) -> Self {
         let raster = arrangement.raster(grid);
-        let mut ground = match ground {
+        let ground = match ground {
             Some(map) => ground_evidence(map, windows, &raster, arrangement.cells),
             None => vec![0.0; arrangement.cells],
         };
-        for (cell, metres) in half_planes_over_cells(input, hypotheses, &raster, grid) {
-            ground[cell] -= params.half_plane_gain_m * metres;
-        }
         let per_group = crate::execution::map_part(hypotheses, 0.7..0.75, |_, h| {
             sum_over_cells(h, windows, &raster, grid)
         });
@@ -115,24 +87,12 @@ impl PlaneEvidence {
         index: &LineIndex,
         params: &RoofParams,
     ) -> Energy<BorderCosts> {
-        let unary = self
-            .cells
-            .iter()
-            .zip(&self.ground)
-            .map(|(candidates, ground)| {
-                let best = (candidates.iter()).filter_map(|(_, e)| e.mean_correlation());
-                let best = best.fold(-1.0, larger);
-                (candidates.iter())
-                    .map(|(plane, e)| {
-                        let mismatch =
-                            -e.gain + e.behind(best) - SINGLE_VIEW_WEIGHT * e.single_view;
-                        // "No plane" keeps the cost 0, so evidence for the ground counts against
-                        // roofs.
-                        (*plane, mismatch + ground)
-                    })
-                    .collect()
-            })
-            .collect();
+        // "No plane" keeps the cost 0, so evidence for the ground counts against roofs.
+        let costs = |(planes, ground): (&Vec<(u32, CellEvidence)>, &f64)| {
+            let cost = |(plane, e): &(u32, CellEvidence)| (*plane, ground - e.nats - e.single_view);
+            planes.iter().map(cost).collect()
+        };
+        let unary = self.cells.iter().zip(&self.ground).map(costs).collect();
         Energy {
             unary,
             edges: (arrangement.edges.iter())
@@ -174,16 +134,8 @@ fn cover_unsampled_cells(
     }
 }
 
-/// How much of the ground's match counts. Assumption: most of it. Rows of tiles or seams that run
-/// along the parallax correlate at any height, so a match with the ground is weaker evidence than a
-/// half-plane's.
-const GROUND_SHARE: f64 = 0.8;
-
-/// How much of the ground's mismatch counts for roofs. Assumption: a quarter. What is no ground may
-/// be a tree.
-const NOT_GROUND_SHARE: f64 = 0.25;
-
-/// What the ground explains at least as well as a roof could, per cell.
+/// What the windows of each cell say of the ground, nats, where that is more than nothing: what is
+/// no ground need not be a roof.
 fn ground_evidence(
     map: &ConsistencyMap,
     windows: &ShiftableWindows,
@@ -195,18 +147,9 @@ fn ground_evidence(
     for (k, &cell) in raster.iter().enumerate().filter(|(_, c)| **c != u32::MAX) {
         let at = [k % map.grid.width, k / map.grid.width];
         let observed = windows.evidence_at(map, at);
-        evidence[cell as usize] += observed.gain() * area;
+        evidence[cell as usize] += observed.nats_with_prior() * area;
     }
-    evidence.into_iter().map(against_roofs).collect()
-}
-
-/// What the agreement of the views on the ground, summed over a cell, costs every roof there.
-fn against_roofs(agreement: f64) -> f64 {
-    if agreement > 0.0 {
-        GROUND_SHARE * agreement
-    } else {
-        NOT_GROUND_SHARE * agreement
-    }
+    evidence.into_iter().map(|nats| larger(nats, 0.0)).collect()
 }
 
 fn sum_over_cells(
@@ -255,69 +198,19 @@ fn sum_over_cells(
             e.area += area;
             e.weight += weight;
             e.correlation += weight * observed.correlation;
-            e.gain += observed.gain() * area;
+            e.nats += observed.nats_with_prior() * area;
         }
     }
     store(&mut cells, run);
     cells
 }
 
-/// Metres of line beside each cell with a half-plane over it, of the group that has most: there is
-/// a roof, whichever.
-fn half_planes_over_cells(
-    input: &GroupingInput,
-    hypotheses: &[PlaneHypothesis],
-    raster: &[u32],
-    grid: &PlanGrid,
-) -> BTreeMap<usize, f64> {
-    let mut most = BTreeMap::<usize, f64>::new();
-    for h in hypotheses {
-        for (cell, metres) in half_planes_of(input, &h.group, raster, grid) {
-            let m = most.entry(cell).or_default();
-            *m = m.max(metres);
-        }
-    }
-    most
-}
-
-/// Metres of the group's lines beside each cell, on the side of their half-planes.
-fn half_planes_of(
-    input: &GroupingInput,
-    group: &PlaneGroup,
-    raster: &[u32],
-    grid: &PlanGrid,
-) -> BTreeMap<usize, f64> {
-    const STEP: f64 = 0.1;
-    /// How far beside the line the cell is looked up, metres: beyond the snapping of vertices.
-    const BESIDE: f64 = 0.3;
-    let mut metres = BTreeMap::<usize, f64>::new();
-    for member in &group.members {
-        let half_plane = member.half_plane.map(|h| &input.half_planes[h.index()]);
-        let line = &input.lines[member.line.index()].segment;
-        let swept = half_plane.filter(|h| h.is_swept());
-        let Some(frame) = swept.and_then(|h| ThetaFrame::new(line, h.side)) else {
-            continue;
-        };
-        let count = (line.length() / STEP).ceil().max(1.0);
-        for i in 0..count as usize {
-            let p = line.at((i as f64 + 0.5) / count).xy() + frame.outward.xy() * BESIDE;
-            let at = grid.cell(&p).map(|(c, r)| raster[r * grid.width + c]);
-            if let Some(cell) = at.filter(|cell| *cell != u32::MAX) {
-                *metres.entry(cell as usize).or_default() += line.length() / count;
-            }
-        }
-    }
-    metres
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::facets::borders::{Border, BorderKind};
-    use crate::ids::{HalfPlaneId, LineId, ViewId};
-    use crate::lines3d::{Line3d, Side};
     use crate::planes::single_view::SingleViewEvidence;
-    use crate::planes::{HalfPlane, Member, PlanRegion, line_neighbours};
+    use crate::planes::{PlaneGroup, region_beside};
     use crate::testing::line;
     use nalgebra::{Point2, Point3, Vector3};
 
@@ -344,150 +237,62 @@ mod tests {
         d: -6.0,
     };
 
-    /// A line of 8 m along y = 2 with a half-plane to its left, north of it.
-    fn line_with_half_plane() -> ([Line3d; 1], [HalfPlane; 1], PlaneGroup) {
-        let half_plane = HalfPlane {
-            line: LineId(0),
-            side: Side::Left,
-            theta: 0.0,
-            sigma_theta: 0.01,
-            similarity: 0.9,
-            curvature: 9.0,
-            amplitude: 0.5,
-            probability: 1.0,
-            views: vec![ViewId(0)],
-            plane: HORIZONTAL,
-        };
-        let group = PlaneGroup {
-            plane: HORIZONTAL,
-            members: vec![Member {
-                line: LineId(0),
-                side: Some(Side::Left),
-                half_plane: Some(HalfPlaneId(0)),
-            }],
-            rectangles: Vec::new(),
-        };
-        let eave = line(Point3::new(1.0, 2.0, 6.0), Point3::new(9.0, 2.0, 6.0));
-        ([eave], [half_plane], group)
-    }
-
-    #[test]
-    fn a_half_plane_counts_beside_its_line() {
-        let (lines, half_planes, group) = line_with_half_plane();
-        let input = GroupingInput {
-            lines: &lines,
-            half_planes: &half_planes,
-            neighbours: &line_neighbours(&lines),
-            rectangles: &[],
-        };
-        let grid = PlanGrid::covering(Point2::new(0.0, 0.0), Point2::new(10.0, 10.0), 0.5);
-        // Cell 0 lies south of the line, cell 1 north of it: to the left.
-        let cells = grid.width * grid.height;
-        let raster: Vec<u32> = (0..cells).map(|k| u32::from(5 * k >= cells)).collect();
-        let metres = half_planes_of(&input, &group, &raster, &grid);
-        assert_eq!(metres.keys().collect::<Vec<_>>(), [&1]);
-        assert!((metres[&1] - 8.0).abs() < 1e-9);
-        let mut propagated = half_planes.clone();
-        propagated[0].views.clear();
-        let input = GroupingInput {
-            half_planes: &propagated,
-            ..input
-        };
-        assert!(half_planes_of(&input, &group, &raster, &grid).is_empty());
-    }
-
-    /// What the planes of a group with a half-plane and of one without cost over all cells, with a
-    /// `gain` for the half-plane, correlation and weight of the maps, and the single-view evidence
-    /// everywhere.
-    fn costs(gain: f64, correlation: i8, weight: u8, single_view: i8) -> [f64; 2] {
-        let (lines, half_planes, group) = line_with_half_plane();
-        let input = GroupingInput {
-            lines: &lines,
-            half_planes: &half_planes,
-            neighbours: &line_neighbours(&lines),
-            rectangles: &[],
-        };
+    /// What a plane costs over all cells, with the correlation and weight of its map and the
+    /// single-view evidence everywhere, where the ground correlates by so much.
+    fn cost(correlation: i8, weight: u8, single_view: i8, ground: Option<i8>) -> f64 {
         let (arrangement, grid) = with_splinter();
-        let other = PlaneGroup {
-            members: vec![Member {
-                half_plane: None,
-                ..group.members[0]
-            }],
-            ..group.clone()
-        };
-        let params = RoofParams {
-            half_plane_gain_m: gain,
-            ..RoofParams::default()
-        };
+        let eave = line(Point3::new(0.0, 0.0, 6.0), Point3::new(10.0, 0.0, 6.0));
         let cells = grid.width * grid.height;
-        let hypotheses = [&group, &other].map(|g| PlaneHypothesis {
-            group: g.clone(),
-            region: PlanRegion::new(&input, g, &params),
-            map: ConsistencyMap {
-                grid,
-                correlation: vec![correlation; cells],
-                overall: vec![correlation; cells],
-                weight: vec![weight; cells],
-                common_weight: vec![weight; cells],
+        let map = |correlation: i8| ConsistencyMap {
+            grid,
+            correlation: vec![correlation; cells],
+            weight: vec![weight; cells],
+            common_weight: vec![weight; cells],
+        };
+        let hypothesis = PlaneHypothesis {
+            group: PlaneGroup {
+                plane: HORIZONTAL,
+                members: Vec::new(),
+                proposals: Vec::new(),
             },
+            region: region_beside(eave, HORIZONTAL),
+            map: map(correlation),
             single_view: SingleViewEvidence::everywhere(cells, single_view),
             lines: Vec::new(),
-        });
+        };
+        let ground = ground.map(map);
         let windows = ShiftableWindows::new([], &grid);
         let evidence = PlaneEvidence::collect(
-            &input,
-            &hypotheses,
+            &[hypothesis],
             &arrangement,
             &grid,
-            None,
+            ground.as_ref(),
             &windows,
-            &params,
         );
         let index = LineIndex::new(Vec::new());
-        let energy = evidence.energy(&arrangement, &[HORIZONTAL; 2], &index, &params);
-        [0, 1].map(|plane| {
-            let of_plane = energy.unary.iter().flatten().filter(|(p, _)| *p == plane);
-            of_plane.map(|(_, cost)| cost).sum()
-        })
+        let energy = evidence.energy(&arrangement, &[HORIZONTAL], &index, &RoofParams::default());
+        energy.unary.iter().flatten().map(|(_, cost)| cost).sum()
     }
 
     #[test]
-    fn a_half_plane_makes_every_roof_beside_its_line_cheaper() {
-        let [without, with] = [0.0, 0.5].map(|gain| costs(gain, 80, 200, 0));
-        // Both planes, the one whose half-plane it is and the other one, by the same.
-        let earned = [0, 1].map(|plane| without[plane] - with[plane]);
-        assert!(earned[0] > 0.0, "{earned:?}");
-        assert!((earned[0] - earned[1]).abs() < 1e-9, "{earned:?}");
+    fn agreement_of_the_views_earns_and_disagreement_costs() {
+        let [agree, differ] = [110, -30].map(|correlation| cost(correlation, 250, 0, None));
+        assert!(agree < -100.0 && differ > 30.0, "{agree} {differ}");
     }
 
     #[test]
     fn single_view_evidence_counts_where_nothing_else_does() {
-        let [nothing, alike, unlike] = [0, 127, -127].map(|value| costs(0.0, 0, 0, value)[0]);
+        let [nothing, alike, unlike] = [0, 127, -127].map(|value| cost(0, 0, value, None));
         assert_eq!(nothing, 0.0, "nobody sees it");
         assert!(alike < -1.0 && (alike + unlike).abs() < 1e-9);
     }
 
     #[test]
-    fn planes_of_weak_texture_are_told_apart_though_little_tells_them_from_none() {
-        let cell = |weight: f64, correlation: f64| CellEvidence {
-            area: 10.0,
-            weight: 10.0 * weight,
-            correlation: 10.0 * weight * correlation,
-            gain: 0.0,
-            single_view: 0.0,
-        };
-        let (weak, strong) = (cell(0.1, 0.3), cell(0.9, 0.3));
-        assert!((weak.behind(0.4) - 0.1 * (5.0 - 1.0)).abs() < 1e-12);
-        assert_eq!(strong.behind(0.4), 0.0, "its own weight is enough");
-        assert!(weak.behind(0.3).abs() < 1e-12, "the best of all");
-        assert_eq!(CellEvidence::default().behind(0.4), 0.0);
-    }
-
-    #[test]
-    fn ground_costs_a_roof_and_what_is_no_ground_earns_it_less() {
-        let (agreeing, contrary) = (against_roofs(2.0), against_roofs(-2.0));
-        assert!(agreeing > 0.0 && contrary < 0.0);
-        assert!(-contrary < 0.5 * agreeing, "a tree is no roof");
+    fn ground_costs_a_roof_and_what_is_no_ground_earns_it_nothing() {
+        let alone = cost(110, 250, 0, None);
+        let [on_ground, beside_ground] = [110, -30].map(|c| cost(110, 250, 0, Some(c)));
+        assert!(on_ground.abs() < 1e-6 * alone.abs(), "as good as the roof");
+        assert_eq!(beside_ground, alone, "a tree is no roof");
     }
 
     #[test]

@@ -16,6 +16,6 @@ pub struct FacetInput<'a> {
     pub half_planes: &'a [HalfPlane],
     /// Where the ground is.
     pub ground: &'a Ground,
-    /// Planes that the other method proposes; none in method "lines".
-    pub rectangles: &'a [ProposedPlane],
+    /// Planes that other sources propose.
+    pub proposals: &'a [ProposedPlane],
 }

@@ -89,9 +89,9 @@ impl Islands {
 
 #[cfg(test)]
 mod tests {
-    use super::super::labelling::NO_PLANE;
     use super::*;
     use crate::facets::borders::{Border, BorderKind};
+    use crate::labelling::NO_PLANE;
     use nalgebra::Point2;
 
     /// A square of 10 m within one of 30 m, with a square of `side` in its middle.

@@ -5,7 +5,6 @@
 //!
 //! ```text
 //! input             the results of the stages before
-//! labelling         which plane covers which cell: alpha-expansion
 //! borders           border lines, the cells between them, and what a border costs
 //! evidence          the data term: photo-consistency and lines for each plane over each cell
 //! islands           patches too small to be a facet or a hole
@@ -26,7 +25,6 @@ mod delineation;
 mod evidence;
 mod input;
 mod islands;
-mod labelling;
 mod reconstruct;
 mod verification;
 

@@ -16,17 +16,17 @@ use super::delineation::delineate;
 use super::evidence::PlaneEvidence;
 use super::input::FacetInput;
 use super::islands::without_islands;
-use super::labelling::Labelling;
 use super::verification::{FacetRejection, RejectedFacet, tail_on_ground, verify};
 use crate::evidence::JudgedFacet;
 use crate::execution::{Sharded, sharded_map};
 use crate::geometry::{Plane, bounds};
+use crate::labelling::Labelling;
 use crate::lines3d::Line3d;
 use crate::model::{Facet, Occluders};
 use crate::params::RoofParams;
 use crate::photoconsistency::{ConsistencyMap, PlanGrid, ShiftableWindows, consistency_map};
 use crate::planes::{
-    GroupingInput, Member, PlanRegion, PlaneGroup, PlaneLine, add_rectangles, group_planes,
+    GroupingInput, Member, PlanRegion, PlaneGroup, PlaneLine, add_proposals, group_planes,
     group_propagated, is_wall, line_neighbours, plane_hypotheses, with_propagated,
 };
 use crate::scene::Scene;
@@ -63,14 +63,14 @@ pub fn reconstruct_facets(
         lines,
         half_planes,
         ground,
-        rectangles,
+        proposals,
     } = *evidence;
     let neighbours = line_neighbours(lines);
     let input = GroupingInput {
         lines,
         half_planes,
         neighbours: &neighbours,
-        rectangles,
+        proposals,
     };
     let mut groups: Vec<PlaneGroup> = group_planes(&input, params);
     groups.retain(|g| !is_wall(&g.plane) && !lies_on_ground(&input, g, ground, params));
@@ -80,7 +80,7 @@ pub fn reconstruct_facets(
         ..input
     };
     groups.extend(group_propagated(&input, params));
-    add_rectangles(&input, &mut groups, params);
+    add_proposals(&input, &mut groups, params);
     let regions: Vec<PlanRegion> = groups
         .iter()
         .map(|g| PlanRegion::new(&input, g, params))
@@ -108,13 +108,11 @@ pub fn reconstruct_facets(
     let arrangement = Arrangement::new(&with_frame(&borders, &grid));
 
     let evidence = PlaneEvidence::collect(
-        &input,
         &hypotheses,
         &arrangement,
         &grid,
         ground_map.as_ref(),
         &windows,
-        params,
     );
     let groups: Vec<PlaneGroup> = (hypotheses.iter())
         .map(|h| h.group.without_propagated(&input))
@@ -160,7 +158,7 @@ fn lies_on_ground(
 ) -> bool {
     let mut members = group.members.iter();
     let line = |m: &Member| &input.lines[m.line.index()].segment;
-    members.all(|m| ground.is_near(line(m), params.lowest_eave_m()))
+    members.all(|m| ground.is_near(line(m), params.min_height_m))
 }
 
 /// The plan grid of the whole scene: the ground pixel as cell, the regions of all groups as window.
@@ -289,8 +287,13 @@ fn solve(
             };
             if round < ROUNDS
                 && matches!(reason, FacetRejection::ReachesGround { .. })
-                && let Some(tail) =
-                    tail_on_ground(&facet.plane, &outline.cells, &competing.arrangement, ground)
+                && let Some(tail) = tail_on_ground(
+                    &facet.plane,
+                    &outline.cells,
+                    &competing.arrangement,
+                    ground,
+                    params.min_height_m,
+                )
             {
                 excluded.push((outline.plane, tail));
                 continue;
@@ -327,6 +330,7 @@ fn solve(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ids::ProposalOrigin;
     use crate::planes::ProposedPlane;
     use crate::planes::rendered_planes::{TexturedPlane, scene};
     use crate::testing::line;
@@ -345,7 +349,7 @@ mod tests {
     fn rectangle(index: u32, z: f64) -> ProposedPlane {
         let corners = [(-4.0, -3.0), (4.0, -3.0), (4.0, 3.0), (-4.0, 3.0)];
         ProposedPlane {
-            index,
+            origin: ProposalOrigin::Rectangle(index),
             plane: level(z),
             ring: corners.map(|(x, y)| Point3::new(x, y, z)).to_vec(),
         }
@@ -353,7 +357,7 @@ mod tests {
 
     /// The facets of a flat roof of which one eave was matched, without a half-plane, with planes
     /// that are proposed for it.
-    fn facets(rectangles: &[ProposedPlane]) -> Vec<Facet> {
+    fn facets(proposals: &[ProposedPlane]) -> Vec<Facet> {
         let on_roof = |x: f64, y: f64| x.abs() < 4.0 && y.abs() < 3.0;
         let textured = |plane, exists| TexturedPlane {
             plane,
@@ -373,7 +377,7 @@ mod tests {
             lines: &[eave],
             half_planes: &[],
             ground: &Ground::level(0.0),
-            rectangles,
+            proposals,
         };
         reconstruct_facets(&scene, &evidence, &RoofParams::default())
             .unwrap()
@@ -387,7 +391,7 @@ mod tests {
         let proposed = [rectangle(7, 7.5), rectangle(8, 2.5), rectangle(9, ROOF_Z)];
         let found = facets(&proposed);
         assert_eq!(found.len(), 1, "{found:?}");
-        assert_eq!(found[0].rectangles, [9]);
+        assert_eq!(found[0].proposals, [ProposalOrigin::Rectangle(9)]);
         assert!((found[0].plane.z_at(0.0, 0.0) - ROOF_Z).abs() < 0.05);
         let covered = |p: &Point3<f64>| p.x.abs() < 4.5 && p.y.abs() < 3.5;
         assert!(found[0].outer.iter().all(covered), "{:?}", found[0].outer);

@@ -4,7 +4,7 @@ use nalgebra::{Point2, Point3};
 use serde::Serialize;
 
 use crate::geometry::{Plane, bounds};
-use crate::ids::{BuildingId, FacetId, HalfPlaneId, LineId};
+use crate::ids::{BuildingId, FacetId, HalfPlaneId, LineId, ProposalOrigin};
 
 /// Plan positions closer than this are one, metres. Ten times the step in which coordinates are
 /// written, so that no two corners of a solid become equal in a file.
@@ -36,8 +36,8 @@ pub struct Facet {
     pub lines: Vec<LineId>,
     /// The half-planes that it was made from.
     pub half_planes: Vec<HalfPlaneId>,
-    /// Candidates of W96 with its plane, as indices into [`crate::objectspace::RectangleTrace`].
-    pub rectangles: Vec<u32>,
+    /// What other sources proposed in its plane.
+    pub proposals: Vec<ProposalOrigin>,
 }
 
 impl Facet {

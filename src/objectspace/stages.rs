@@ -12,7 +12,7 @@ use super::rectangles::{PlaneCandidate, PlaneRejection, PlaneSearch, PlaneTrace}
 use super::windows::{Window, WindowTrace, find_windows};
 use crate::execution::{Sharded, reached, sharded_map};
 use crate::geometry::{Segment2, Segment3};
-use crate::ids::{BuildingId, LineId};
+use crate::ids::{BuildingId, LineId, ProposalOrigin};
 use crate::linematch::scene_heights;
 use crate::lines2d::ImageSegment;
 use crate::lines3d::{Line3d, LineSupport, SupportKind};
@@ -269,7 +269,7 @@ pub fn proposed_planes(trace: &RectangleTrace) -> Vec<ProposedPlane> {
     let proposed = order.into_iter().map(|k| {
         let c = &trace.candidates[k];
         ProposedPlane {
-            index: k as u32,
+            origin: ProposalOrigin::Rectangle(k as u32),
             plane: c.plane,
             ring: c.ring.clone(),
         }
@@ -279,7 +279,7 @@ pub fn proposed_planes(trace: &RectangleTrace) -> Vec<ProposedPlane> {
 
 fn facet(index: usize, candidate: &PlaneCandidate) -> Facet {
     Facet {
-        rectangles: vec![index as u32],
+        proposals: vec![ProposalOrigin::Rectangle(index as u32)],
         building: BuildingId(0),
         plane: candidate.plane,
         outer: candidate.ring.clone(),

@@ -4,12 +4,14 @@
 
 mod adjustment;
 mod buildings;
+mod dense;
 mod lines;
 mod objectspace;
 mod planes;
 
 pub use self::adjustment::*;
 pub use self::buildings::*;
+pub use self::dense::*;
 pub use self::lines::*;
 pub use self::objectspace::*;
 pub use self::planes::*;
@@ -33,6 +35,8 @@ pub struct Params {
     pub lines3d: Lines3dParams,
     /// Half-plane sweep.
     pub sweep: SweepParams,
+    /// Dense matching.
+    pub dense: DenseParams,
     /// Grouping, delineation, verification, conflicts.
     pub roof: RoofParams,
     /// Rectangles in object space.

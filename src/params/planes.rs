@@ -139,34 +139,29 @@ pub struct RoofParams {
     /// Correlation at which a plane is as good as no plane. Assumption: half-way between what true
     /// planes and chance reach; B99 accepts half-planes from `Sim = 0.4` on.
     pub min_correlation: f64,
-    /// Cost of a metre of facet border that no line supports, in square metres of mismatch.
-    /// Assumption.
-    pub border_cost_m: f64,
-    /// Gain of a metre of half-plane for any plane beside it over no plane, in square metres of
-    /// match. Assumption.
-    pub half_plane_gain_m: f64,
+    /// Cost of a metre of facet border that no line supports, nats; a square metre on which the
+    /// views agree has about five. Measured: half and twice as much find as many facets.
+    pub border_nats_per_m: f64,
+    /// Of older project files; not read.
+    #[serde(skip_serializing)]
+    pub border_cost_m: Option<f64>,
+    /// Of older project files; not read.
+    #[serde(skip_serializing)]
+    pub half_plane_gain_m: Option<f64>,
     /// Facets smaller than this are not reported, square metres. Assumption.
     pub min_area_m2: f64,
     /// Of older project files; not read. The share of an outline on lines is a term of a facet's
     /// evidence.
     #[serde(skip_serializing)]
     pub min_real_ratio: Option<f64>,
-    /// Facets whose middle is lower than this above the ground are not roofs, metres. Assumption:
-    /// higher than cars, lower than garages.
+    /// No eave is lower than this above the ground, metres. Assumption: that of a low garage, less
+    /// the error of the ground's height.
     pub min_height_m: f64,
     /// Natural logarithm of the odds from which on a facet is true ([`crate::evidence`]): even
     /// ones. `make calibrate` sees every candidate by a very low one.
     pub least_nats: f64,
     /// Regularisation and refinement of the buildings.
     pub refine: RefineParams,
-}
-
-impl RoofParams {
-    /// A line lower than this above the ground is no eave, metres: an eave may be lower than the
-    /// middle of its roof.
-    pub fn lowest_eave_m(&self) -> f64 {
-        0.7 * self.min_height_m
-    }
 }
 
 impl Default for RoofParams {
@@ -178,11 +173,12 @@ impl Default for RoofParams {
             max_facet_depth_m: 15.0,
             extension_m: 1.5,
             min_correlation: 0.45,
-            border_cost_m: 0.25,
-            half_plane_gain_m: 0.05,
+            border_nats_per_m: 1.25,
+            border_cost_m: None,
+            half_plane_gain_m: None,
             min_area_m2: 1.5,
             min_real_ratio: None,
-            min_height_m: 2.0,
+            min_height_m: 1.2,
             least_nats: 0.0,
             refine: RefineParams::default(),
         }

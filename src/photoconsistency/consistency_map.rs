@@ -17,8 +17,6 @@ pub(crate) struct ConsistencyMap {
     /// Correlation in steps of 1 / 127. A scene has hundreds of maps: a byte a value keeps them
     /// small.
     pub(crate) correlation: Vec<i8>,
-    /// The same of all pairs.
-    pub(crate) overall: Vec<i8>,
     /// Weight in steps of 1 / 255.
     pub(crate) weight: Vec<u8>,
     /// The same from the median of the views instead of their mean.
@@ -46,17 +44,10 @@ impl ConsistencyMap {
                 continue;
             };
             best.correlation[k] = map.correlation[k];
-            best.overall[k] = map.overall[k];
             best.weight[k] = map.weight[k];
             best.common_weight[k] = map.common_weight[k];
         }
         Some(best)
-    }
-
-    /// Mean of all pairwise correlations, whatever stands in front of the cell in some of the
-    /// views.
-    pub(crate) fn overall(&self, k: usize) -> f32 {
-        f32::from(self.overall[k]) / 127.0
     }
 
     /// Texture weight of the window at cell `k`, 0 to 1; 0 where fewer than two views see the
@@ -84,7 +75,7 @@ pub(crate) fn least_correlation(weight: f64, textured: f64) -> f64 {
     CHANCE + (textured - CHANCE) * weight
 }
 
-/// The same for [`ConsistencyMap::overall`].
+/// The same for the mean of all pairs.
 pub(crate) fn least_overall(weight: f64, textured: f64) -> f64 {
     CHANCE_OVERALL + (textured - CHANCE_OVERALL) * weight
 }
@@ -110,7 +101,6 @@ mod tests {
                 height: 2,
             },
             correlation: correlation.to_vec(),
-            overall: correlation.to_vec(),
             weight: vec![weight; 2],
             common_weight: vec![weight + 1; 2],
         };

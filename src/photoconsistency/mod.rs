@@ -12,6 +12,7 @@
 //! consistency_map       the photo-consistency map, and what windows correlate by chance
 //! pairwise_correlation  correlations of all pairs of orthophotos by running sums
 //! plane_consistency     view selection and the map of a plane over the image set
+//! plane_window          the same in a single window
 //! shiftable_windows     windows that stay on one side of a line
 //! ```
 //!
@@ -24,6 +25,7 @@ mod line_side_strip;
 mod pairwise_correlation;
 mod plan_grid;
 mod plane_consistency;
+mod plane_window;
 mod shiftable_windows;
 mod windows;
 
@@ -33,5 +35,6 @@ pub(crate) use consistency_map::{least_correlation, least_overall};
 pub(crate) use line_side_strip::{LineSideStrip, StripPatch};
 pub(crate) use plan_grid::{PlanGrid, orthophoto};
 pub(crate) use plane_consistency::{consistency_map, consistency_map_behind};
+pub(crate) use plane_window::{Agreement, WindowMatcher};
 pub(crate) use shiftable_windows::ShiftableWindows;
 pub(crate) use windows::CorrelationWindows;

@@ -23,7 +23,6 @@ pub(super) fn correlate_views(
     let mut map = ConsistencyMap {
         grid: *grid,
         correlation: vec![0; cells],
-        overall: vec![0; cells],
         weight: vec![0; cells],
         common_weight: vec![0; cells],
     };
@@ -43,11 +42,10 @@ pub(super) fn correlate_views(
         let correlations: Vec<&[f32]> = pairs.iter().map(|p| p.row.as_slice()).collect();
         let variances: Vec<&[f32]> = views.iter().map(|v| v.variance.as_slice()).collect();
         for start in (0..grid.width).step_by(LANES) {
-            let [better, all, seen] = best.agreement(&correlations, start);
+            let [better, seen] = best.agreement(&correlations, start);
             let (variance, median) = middle.texture(&variances, start);
-            let [better, all, seen, variance, median] = [
+            let [better, seen, variance, median] = [
                 (better * f32x8::splat(127.0)).round(),
-                (all * f32x8::splat(127.0)).round(),
                 seen,
                 weight_of(variance, residual_variance),
                 weight_of(median, residual_variance),
@@ -57,7 +55,6 @@ pub(super) fn correlate_views(
                 if seen[lane] > 0.0 {
                     let k = y * grid.width + x;
                     map.correlation[k] = better[lane] as i8;
-                    map.overall[k] = all[lane] as i8;
                     map.weight[k] = variance[lane] as u8;
                     map.common_weight[k] = median[lane] as u8;
                 }
@@ -68,7 +65,7 @@ pub(super) fn correlate_views(
 }
 
 /// Least variance that is not the rounding of a constant.
-const LEAST_VARIANCE: f32 = 1e-7;
+pub(super) const LEAST_VARIANCE: f32 = 1e-7;
 /// Cells per SIMD register.
 const LANES: usize = 8;
 /// Pairs of [`MAX_VIEWS`] views.
@@ -307,11 +304,11 @@ impl Ranking {
         }
     }
 
-    /// Means of the better half of the pairs' correlations and of all of them, and the number of
-    /// pairs that see the cell.
-    fn agreement(&self, pairs: &[&[f32]], start: usize) -> [f32x8; 3] {
+    /// Mean of the better half of the pairs' correlations, and the number of pairs that see the
+    /// cell.
+    fn agreement(&self, pairs: &[&[f32]], start: usize) -> [f32x8; 2] {
         let mut columns = columns(pairs, start);
-        let (total, seen) = sum_of_seen(&columns[..self.columns]);
+        let (_, seen) = sum_of_seen(&columns[..self.columns]);
         self.rank(&mut columns);
         let better = half(seen + f32x8::ONE);
         let ranked = columns[..self.ranked].iter().enumerate();
@@ -319,9 +316,7 @@ impl Ranking {
             let counts = f32x8::splat(place as f32).simd_lt(better);
             sum + counts.select(*c, f32x8::ZERO)
         });
-        let [better, all] =
-            [(sum, better), (total, seen)].map(|(sum, count)| sum / count.fast_max(f32x8::ONE));
-        [better, all, seen]
+        [sum / better.fast_max(f32x8::ONE), seen]
     }
 
     /// Mean and lower median of the variances of the windows that see a cell.
@@ -373,10 +368,10 @@ mod tests {
         };
         let rows = [0.5, 0.9, UNSEEN, 0.1].map(row);
         let rows = rows.each_ref().map(|r| r.as_slice());
-        let [better, all, seen] = Ranking::new(4).agreement(&rows, 0);
+        let [better, seen] = Ranking::new(4).agreement(&rows, 0);
         assert_eq!(
-            [better, all, seen].map(|x| x.to_array()[0]),
-            [(0.9 + 0.5) / 2.0, (0.5 + 0.9 + 0.1) / 3.0, 3.0]
+            [better, seen].map(|x| x.to_array()[0]),
+            [(0.9 + 0.5) / 2.0, 3.0]
         );
         assert_eq!(seen.to_array()[1..], [0.0; 7]);
         let (mean, median) = Ranking::new(4).texture(&rows, 0);

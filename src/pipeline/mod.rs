@@ -80,6 +80,8 @@ impl Results {
             lines: (matched.zip(self.evidence_of_matches()).map(judged)).collect(),
             model_lines: all.iter().zip(in_model).map(judged).collect(),
             facets: facets.map_or_else(Vec::new, |found| found.trace.facets.judged.clone()),
+            surfaces: (self.dense.as_ref())
+                .map_or_else(Vec::new, |found| found.trace.judged(&found.value)),
         }
     }
 

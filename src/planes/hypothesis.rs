@@ -51,7 +51,7 @@ pub(crate) fn plane_hypotheses(
         let region = PlanRegion::new(input, group, params);
         let [min, max] = region.bounds();
         let map = consistency_map(reduced, &group.plane, &PlanGrid::covering(min, max, step));
-        let proposed_by_lines = group.half_planes().is_empty() && group.rectangles.is_empty();
+        let proposed_by_lines = group.half_planes().is_empty() && group.proposals.is_empty();
         if proposed_by_lines && !supported(input, group, &map, params) {
             return None;
         }
@@ -178,7 +178,7 @@ mod tests {
                 lines: &lines,
                 half_planes: &half_planes,
                 neighbours: &line_neighbours(&lines),
-                rectangles: &[],
+                proposals: &[],
             };
             let group = PlaneGroup {
                 plane: slope(theta),
@@ -187,7 +187,7 @@ mod tests {
                     side: Some(Side::Left),
                     half_plane: Some(HalfPlaneId(0)),
                 }],
-                rectangles: Vec::new(),
+                proposals: Vec::new(),
             };
             confirmed_beside_lines(&input, &group, &scene, 0.1, &RoofParams::default())
         };

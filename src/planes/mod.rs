@@ -23,8 +23,10 @@ pub(crate) mod rendered_planes;
 pub(crate) mod single_view;
 mod sweep;
 
+#[cfg(test)]
+pub(crate) use grouping::region_beside;
 pub(crate) use grouping::{
-    GroupingInput, MARGIN, PlanRegion, add_rectangles, group_planes, group_propagated,
+    GroupingInput, MARGIN, PlanRegion, add_proposals, group_planes, group_propagated,
     line_neighbours, with_propagated,
 };
 pub use grouping::{Member, PlaneGroup, ProposedPlane};

@@ -1,7 +1,9 @@
 //! What a reconstruction starts from: oriented views in one local frame.
 
+mod excess_green;
 mod survey;
 
+pub(crate) use excess_green::excess_green;
 pub use survey::{Survey, ViewAdjustment, ViewShift};
 
 use nalgebra::{Matrix3, Vector3};

@@ -21,7 +21,7 @@ fn facet(rings: &[&[(f64, f64)]], z0: f64, gx: f64, gy: f64) -> Facet {
         probability: 1.0,
         lines: Vec::new(),
         half_planes: Vec::new(),
-        rectangles: Vec::new(),
+        proposals: Vec::new(),
     }
 }
 

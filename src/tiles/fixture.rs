@@ -22,7 +22,7 @@ pub(crate) fn house([x, y]: [f64; 2]) -> RoofModel {
         probability: 1.0,
         lines: Vec::new(),
         half_planes: Vec::new(),
-        rectangles: Vec::new(),
+        proposals: Vec::new(),
     };
     close_buildings(&[facet], |_| 0.0).0
 }

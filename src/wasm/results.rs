@@ -8,6 +8,7 @@ use wasm_bindgen::prelude::*;
 use super::convert::{end_points_px, line_array, named_error, segment_array, to_js};
 use super::figures::{Picture, lines_of, segments_of};
 use super::session::{Session, not_loaded};
+use crate::dense::{DensePlane, DenseTrace};
 use crate::lines3d::SupportKind;
 use crate::objectspace::{Window, WindowTrace};
 use crate::texture::texture_ground;
@@ -17,6 +18,13 @@ use crate::texture::texture_ground;
 struct Directions<'a> {
     windows: &'a [Window],
     trace: &'a WindowTrace,
+}
+
+/// What `dense` returns.
+#[derive(Serialize, tsify::Tsify)]
+struct DensePlanes<'a> {
+    planes: &'a [DensePlane],
+    trace: &'a DenseTrace,
 }
 
 /// What `ground` shows.
@@ -86,6 +94,17 @@ impl Session {
     pub fn half_planes(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().half_planes.as_ref();
         to_js(&found.map_or(&[][..], |h| &h.value))
+    }
+
+    /// The planes of dense matching, with all patches and what speaks for the class of each plane,
+    /// `{planes, trace}`; `null` before that stage.
+    #[wasm_bindgen(unchecked_return_type = "DensePlanes | null")]
+    pub fn dense(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().dense.as_ref();
+        to_js(&found.map(|d| DensePlanes {
+            planes: &d.value,
+            trace: &d.trace,
+        }))
     }
 
     /// The ground around the buildings, painted from the photographs (`about`: `GroundPicture`);

@@ -338,7 +338,7 @@ mod tests {
             probability: 1.0,
             lines: lines.to_vec(),
             half_planes: Vec::new(),
-            rectangles: Vec::new(),
+            proposals: Vec::new(),
         };
         RoofModel {
             facets: truth.facets.iter().map(facet).collect(),

@@ -69,7 +69,7 @@ pub(crate) fn border_lines(
     for border in hull_sides(hypotheses, params) {
         add(&mut borders, border);
     }
-    for border in rectangle_sides(input, hypotheses) {
+    for border in proposed_sides(input, hypotheses) {
         add(&mut borders, border);
     }
     borders
@@ -259,9 +259,9 @@ fn closing_lines(
 }
 
 /// The sides of the rectangles: across the lines they are where crossing image lines end the plane.
-fn rectangle_sides(input: &GroupingInput, hypotheses: &[PlaneHypothesis]) -> Vec<Border> {
-    let rectangles = hypotheses.iter().flat_map(|h| h.group.rectangles(input));
-    let sides = rectangles.flat_map(|r| {
+fn proposed_sides(input: &GroupingInput, hypotheses: &[PlaneHypothesis]) -> Vec<Border> {
+    let proposed = hypotheses.iter().flat_map(|h| h.group.proposed(input));
+    let sides = proposed.flat_map(|r| {
         r.sides().map(|[a, b]| Border {
             kind: BorderKind::Rectangle,
             a,

@@ -27,7 +27,7 @@ pub(crate) fn bounding_lines(
     ground: &Ground,
     params: &RoofParams,
 ) -> Vec<Segment3> {
-    let on_ground = |l: &Line3d| ground.is_near(&l.segment, params.lowest_eave_m());
+    let on_ground = |l: &Line3d| ground.is_near(&l.segment, params.min_height_m);
     let above: Vec<Segment3> = (input.lines.iter())
         .filter(|l| !on_ground(l))
         .map(|l| l.segment)

@@ -12,21 +12,21 @@ use nalgebra::{Point2, Vector2};
 use super::border::{Border, BorderKind};
 use crate::geometry::Segment3;
 use crate::photoconsistency::{ShiftableWindows, WINDOW};
-use crate::planes::{GroupingInput, PlaneHypothesis};
+use crate::planes::{GroupingInput, PlaneHypothesis, ProposedPlane};
 
 /// Width of a strip, metres: about a pixel of aerial photographs.
 const STRIP_M: f64 = 0.1;
 /// How often the two spans of the rectangle are sought by turns. Assumption: a third time changes
 /// few.
 const TURNS: usize = 2;
-/// Planes with less evidence than such an area of perfect agreement, square metres, get no closing
-/// lines.
-const LEAST_AGREEMENT_M2: f64 = 0.5;
+/// Planes with less evidence than this, nats, get no closing lines: that of about half a square
+/// metre of agreement.
+const LEAST_NATS: f64 = 2.5;
 /// How far an end goes beyond the sides across it, metres, to meet their lines.
 const OVER_M: f64 = 0.5;
 
-/// Lines where planes with a half-plane seem to end, up to four for each, unless a real line shows
-/// that end.
+/// Lines where planes with a half-plane, or proposed ones, seem to end, up to four for each, unless
+/// a real line shows that end.
 pub(super) fn extent_lines(
     input: &GroupingInput,
     hypotheses: &[PlaneHypothesis],
@@ -40,25 +40,27 @@ pub(super) fn extent_lines(
     .collect()
 }
 
-/// The sides, where no real line shows them, of the rectangle along the longest line in which the
-/// views agree on a plane.
+/// The sides, where no real line shows them, of the rectangle along the longest line, or side of a
+/// proposed plane, in which the views agree on a plane.
 fn sides(
     input: &GroupingInput,
     h: &PlaneHypothesis,
     windows: &ShiftableWindows,
 ) -> Option<Vec<Border>> {
-    if h.group.half_planes().is_empty() {
+    if h.group.half_planes().is_empty() && h.group.proposals.is_empty() {
         return None;
     }
-    let longest = (h.group.members.iter())
+    let lines = (h.group.members.iter())
         .map(|m| &input.lines[m.line.index()].segment)
-        .max_by(|a, b| a.length().total_cmp(&b.length()))?;
-    let start = longest.p0.xy();
-    let reach = longest.p1.xy() - start;
+        .map(|line| [line.p0.xy(), line.p1.xy()]);
+    let sides = h.group.proposed(input).flat_map(ProposedPlane::sides);
+    let [start, end] =
+        (lines.chain(sides)).max_by(|[a, b], [c, d]| (b - a).norm().total_cmp(&(d - c).norm()))?;
+    let reach = end - start;
     let along = reach.try_normalize(1e-6)?;
     let across = Vector2::new(-along.y, along.x);
     let votes = votes(h, windows, &start, [&along, &across]);
-    let least = LEAST_AGREEMENT_M2 / (h.map.grid.step * h.map.grid.step);
+    let least = LEAST_NATS / (h.map.grid.step * h.map.grid.step);
     let [(t0, t1), (u0, u1)] = best_rectangle(&votes, reach.norm(), least)?;
     let at = |t: f64, u: f64| start + along * t + across * u;
     let half_window = 0.5 * WINDOW as f64 * h.map.grid.step + STRIP_M;
@@ -104,8 +106,8 @@ fn shows(line: &Segment3, [a, b]: &[Point2<f64>; 2], half_window: f64) -> bool {
 struct Vote {
     /// Where, along two axes, metres.
     at: [f64; 2],
-    /// Weight x (correlation - least correlation): positive for the plane.
-    gain: f64,
+    /// What its window says, nats: positive for the plane.
+    nats: f64,
 }
 
 /// The votes of all positions in a plane's region, along `axes` from `start`.
@@ -125,7 +127,7 @@ fn votes(
             let observed = windows.evidence_at(&h.map, at);
             Vote {
                 at: axes.map(|axis| (p - start).dot(axis)),
-                gain: observed.gain(),
+                nats: observed.nats_with_prior(),
             }
         })
         .collect()
@@ -139,7 +141,7 @@ fn best_rectangle(votes: &[Vote], length: f64, least: f64) -> Option<[(f64, f64)
     for axis in [1, 0].repeat(TURNS) {
         let (from, to) = spans[1 - axis];
         let beside = |v: &&Vote| v.at[1 - axis] >= from && v.at[1 - axis] <= to;
-        let inside = votes.iter().filter(beside).map(|v| (v.at[axis], v.gain));
+        let inside = votes.iter().filter(beside).map(|v| (v.at[axis], v.nats));
         (spans[axis], sum) = best_span(inside)?;
     }
     (sum >= least).then_some(spans)
@@ -177,7 +179,7 @@ mod tests {
 
     /// Agreement over a rectangle, with a hole in it, among disagreement; a chance match far away.
     fn votes() -> Vec<Vote> {
-        let gain = |t: f64, u: f64| {
+        let nats = |t: f64, u: f64| {
             let inside = (2.0..9.0).contains(&t) && (-1.0..4.0).contains(&u);
             let hole = (5.0..5.5).contains(&t) && (1.0..2.0).contains(&u);
             let chance = (13.0..13.5).contains(&t) && (6.0..6.5).contains(&u);
@@ -192,7 +194,7 @@ mod tests {
             .flat_map(|t| steps(240).map(move |u| [t, u - 4.0]))
             .map(|at| Vote {
                 at,
-                gain: gain(at[0], at[1]),
+                nats: nats(at[0], at[1]),
             })
             .collect()
     }
@@ -227,7 +229,7 @@ mod tests {
     fn a_plane_without_agreement_has_no_end() {
         let mut against = votes();
         assert!(best_rectangle(&against, 7.0, 1e5).is_none(), "too little");
-        against.iter_mut().for_each(|v| v.gain = -v.gain.abs());
+        against.iter_mut().for_each(|v| v.nats = -v.nats.abs());
         assert!(best_rectangle(&against, 7.0, 0.0).is_none());
     }
 }

@@ -2,13 +2,12 @@
 
 use super::displaced_plane::PlaneAgreement;
 use super::interior::InteriorWindows;
-use super::vegetation::excess_green;
 use crate::evidence::WindowCounts;
 use crate::facets::competing_planes::CompetingPlanes;
 use crate::facets::delineation::Outline;
 use crate::math::{larger, ln};
 use crate::model::{Facet, Occluders};
-use crate::scene::Scene;
+use crate::scene::{Scene, excess_green};
 
 /// Share of a facet that another plane must be able to cover to be its rival. Assumption.
 const ALMOST_ALL: f64 = 0.9;
@@ -24,7 +23,7 @@ pub(super) fn measure(
     outline: &Outline,
     occluders: &Occluders,
     colours: &Scene,
-) -> ([(&'static str, f64); 9], WindowCounts) {
+) -> ([(&'static str, f64); 8], WindowCounts) {
     let map = &competing.maps[outline.plane as usize];
     let inside = InteriorWindows::of(facet, map);
     let hidden = competing.hidden_by(occluders);
@@ -38,7 +37,6 @@ pub(super) fn measure(
             "rival_plane_margin_sigmas",
             rival_margin(competing, outline, &inside),
         ),
-        ("correlation", agreement.correlation),
         (
             "excess_green",
             excess_green(colours, &places.collect::<Vec<_>>()),

@@ -53,20 +53,6 @@ impl<'m> InteriorWindows<'m> {
         Self { map, windows }
     }
 
-    /// Mean correlation of all pairs of views, weighted by texture; 0 without any.
-    pub(super) fn mean_correlation(&self) -> f64 {
-        let (mut weight, mut correlation) = (0.0, 0.0);
-        for &k in &self.windows {
-            weight += f64::from(self.map.weight(k));
-            correlation += f64::from(self.map.weight(k) * self.map.overall(k));
-        }
-        if weight > 0.0 {
-            correlation / weight
-        } else {
-            0.0
-        }
-    }
-
     /// Some of the windows' middles, in plan, spread over the facet.
     pub(super) fn places(&self) -> impl Iterator<Item = Point2<f64>> {
         const MOST: usize = 500;
@@ -186,7 +172,6 @@ mod tests {
         ConsistencyMap {
             grid,
             correlation: (0..cells).map(|k| (at(k) * 127.0) as i8).collect(),
-            overall: (0..cells).map(|k| (at(k) * 127.0) as i8).collect(),
             weight: vec![200; cells],
             common_weight: vec![200; cells],
         }
@@ -204,7 +189,9 @@ mod tests {
             let from_edge = p.x.min(5.0 - p.x).min(p.y.min(3.0 - p.y));
             if from_edge > 0.5 { inside } else { 0.9 }
         });
-        InteriorWindows::new(&[facet()], &map).mean_correlation()
+        let inside = InteriorWindows::new(&[facet()], &map).windows;
+        let sum: f64 = inside.iter().map(|&k| f64::from(map.correlation(k))).sum();
+        sum / inside.len() as f64
     }
 
     /// Values between -1 and 1 that change from cell to cell.

@@ -9,14 +9,12 @@
 //! features          what is measured of a facet
 //! interior          photo-consistency inside a facet, away from its edges
 //! displaced_plane   the facet against its own plane moved up and down
-//! vegetation        how green a facet is
 //! ```
 
 mod displaced_plane;
 mod features;
 mod interior;
 mod rejection;
-mod vegetation;
 
 pub use rejection::{FacetRejection, RejectedFacet};
 
@@ -32,9 +30,6 @@ use crate::params::RoofParams;
 use crate::scene::Scene;
 use crate::terrain::Ground;
 
-/// Height above the ground that no eave is below, metres. Assumption: with a few decimetres for the
-/// ground's own error.
-const LOWEST_EAVE: f64 = 1.0;
 /// Share of a facet that may lie on the ground for the rest to be a roof still: a corner drawn too
 /// far. Assumption: of a bank that rises to the height of an eave more lies lower than
 /// [`LOWEST_EAVE`].
@@ -50,17 +45,22 @@ fn is_placed_like_a_roof(
     if area_m2 < params.min_area_m2 {
         return Err(FacetRejection::TooSmall { area_m2 });
     }
-    let middle = mean_point(&facet.outer);
-    let height_m = middle.z - ground.z_at(&middle.xy());
-    if height_m < params.min_height_m {
-        return Err(FacetRejection::NearGround { height_m });
-    }
     let heights = facet.outer.iter().map(|p| p.z - ground.z_at(&p.xy()));
     let lowest_m = heights.fold(f64::INFINITY, f64::min);
-    if lowest_m < LOWEST_EAVE {
-        return Err(FacetRejection::ReachesGround { lowest_m });
+    if lowest_m < params.min_height_m {
+        let height_m = height_above(facet, ground);
+        return Err(match height_m < params.min_height_m {
+            true => FacetRejection::NearGround { height_m },
+            false => FacetRejection::ReachesGround { lowest_m },
+        });
     }
     Ok(())
+}
+
+/// Height of a facet's middle above the ground, metres.
+fn height_above(facet: &Facet, ground: &Ground) -> f64 {
+    let middle = mean_point(&facet.outer);
+    middle.z - ground.z_at(&middle.xy())
 }
 
 /// The cells of a facet that come down to the ground, where these are few: without them it may be a
@@ -70,11 +70,12 @@ pub(crate) fn tail_on_ground(
     cells: &[usize],
     arrangement: &Arrangement,
     ground: &Ground,
+    lowest_eave_m: f64,
 ) -> Option<Vec<usize>> {
     let of_facet: BTreeSet<usize> = cells.iter().copied().collect();
     let on_ground = |corners: &[usize; 3]| {
         let mut corners = corners.iter().map(|&v| arrangement.vertices[v]);
-        corners.any(|p| plane.z_at(p.x, p.y) - ground.z_at(&p) < LOWEST_EAVE)
+        corners.any(|p| plane.z_at(p.x, p.y) - ground.z_at(&p) < lowest_eave_m)
     };
     let low: BTreeSet<usize> = (arrangement.triangles.iter())
         .filter(|(corners, cell)| of_facet.contains(cell) && on_ground(corners))
@@ -140,7 +141,7 @@ mod tests {
             xs.iter().sum::<f64>() / xs.len() as f64
         };
         cells.sort_by(|a, b| middle(*a).total_cmp(&middle(*b)));
-        let tail = |cells: &[usize]| tail_on_ground(&slope, cells, &arrangement, &ground);
+        let tail = |cells: &[usize]| tail_on_ground(&slope, cells, &arrangement, &ground, 1.0);
         assert_eq!(tail(&cells[1..3]), None, "all of it is high");
         assert_eq!(
             tail(&cells[1..4]),

@@ -9,6 +9,7 @@ use crate::facets::FacetInput;
 use crate::model::RoofModel;
 use crate::objectspace::proposed_planes;
 use crate::params::Params;
+use crate::planes::ProposedPlane;
 use crate::scene::Scene;
 
 /// Facets and buildings.
@@ -28,6 +29,7 @@ impl StageDefinition for Facets {
         Stage::Lines,
         Stage::HalfPlanes,
         Stage::Rectangles,
+        Stage::Dense,
     ];
     const SHARD_MAPS: &'static [&'static str] = &["planes"];
 
@@ -35,12 +37,15 @@ impl StageDefinition for Facets {
         let half_planes = required(&before.half_planes);
         let rectangles = before.rectangles.as_ref();
         let rectangles = rectangles.map_or_else(Vec::new, |found| proposed_planes(&found.trace));
+        let dense = required(&before.dense).value.iter().enumerate();
+        let dense = dense.map(|(i, plane)| plane.proposed(i));
+        let proposals: Vec<ProposedPlane> = rectangles.into_iter().chain(dense).collect();
         let evidence = FacetInput {
             segments: &required(&before.segments).value,
             lines: &required(&before.lines).value,
             half_planes: &half_planes.value,
             ground: &half_planes.ground,
-            rectangles: &rectangles,
+            proposals: &proposals,
         };
         let (model, mut trace) = reconstruct_roofs(scene, &evidence, &params.roof)?;
         trace.lines = verify_lines(scene, evidence.lines, &model, evidence.ground, params);

@@ -12,6 +12,7 @@
 
 mod adjustment;
 mod clusters;
+mod dense;
 mod directions;
 mod facets;
 mod half_planes;
@@ -112,6 +113,8 @@ stage_table! {
     Lines in lines: LINES,
     /// The ground, and half-planes at the 3D lines (B99 4.1).
     HalfPlanes in half_planes: LINES,
+    /// Planes from dense matching (B99 2).
+    Dense in dense: LINES,
     /// Roof facets and the closed buildings below them (B99 4.2, 4.3).
     Facets in facets: LINES,
     /// The textured model.

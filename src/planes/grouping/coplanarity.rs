@@ -18,7 +18,7 @@ pub(super) fn lies_in_plane(
     params: &RoofParams,
 ) -> bool {
     let candidate = &input.lines[line.index()];
-    let over: Vec<&ProposedPlane> = group.rectangles(input).collect();
+    let over: Vec<&ProposedPlane> = group.proposed(input).collect();
     [candidate.segment.p0, candidate.segment.p1]
         .iter()
         .all(|p| {

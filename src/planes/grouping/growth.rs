@@ -32,7 +32,7 @@ pub(super) fn grow(
     let mut group = PlaneGroup {
         plane: half_plane.plane,
         members: vec![member(input, half_plane.line, Some(seed))],
-        rectangles: Vec::new(),
+        proposals: Vec::new(),
     };
     extend(input, by_line, &mut group, free, params);
     group

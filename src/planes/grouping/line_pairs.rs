@@ -46,7 +46,7 @@ pub(super) fn add_line_pairs(
             let mut group = PlaneGroup {
                 plane,
                 members,
-                rectangles: Vec::new(),
+                proposals: Vec::new(),
             };
             extend(input, by_line, &mut group, &mut none_free, params);
             groups.push(group);
@@ -166,7 +166,7 @@ mod tests {
             lines,
             half_planes: &[],
             neighbours: &neighbours,
-            rectangles: &[],
+            proposals: &[],
         };
         group_planes(&input, &RoofParams::default())
     }
@@ -191,7 +191,7 @@ mod tests {
             lines: &lines,
             half_planes: &[],
             neighbours: &neighbours,
-            rectangles: &[],
+            proposals: &[],
         };
         let params = RoofParams::default();
         let plane = plane_of_pair(&input, LineId(0), LineId(2)).expect("a plane");
@@ -202,7 +202,7 @@ mod tests {
         let mut group = PlaneGroup {
             plane,
             members,
-            rectangles: Vec::new(),
+            proposals: Vec::new(),
         };
         infer_sides(&input, &mut group);
         let larger = with_lines_around(&input, &group, &params);

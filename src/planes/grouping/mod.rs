@@ -17,7 +17,7 @@
 //! growth          how groups grow and merge
 //! line_pairs      planes of two lines without a half-plane (B99 5)
 //! propagated      half-planes propagated from a plane next to them, where texture is weak
-//! rectangles      planes of the other method beside the groups
+//! proposals       planes of other sources beside the groups
 //! ```
 //!
 //! Invariant: every half-plane of the sweep ends in exactly one group.
@@ -28,16 +28,16 @@ mod line_pairs;
 mod neighbourhood;
 mod plane_group;
 pub(crate) mod propagated;
+mod proposals;
 mod proposed_plane;
-mod rectangles;
 mod region;
 
 pub(crate) use neighbourhood::line_neighbours;
 pub(crate) use plane_group::GroupingInput;
 pub use plane_group::{Member, PlaneGroup};
 pub(crate) use propagated::{group_propagated, with_propagated};
+pub(crate) use proposals::add_proposals;
 pub use proposed_plane::ProposedPlane;
-pub(crate) use rectangles::add_rectangles;
 pub(crate) use region::{MARGIN, PlanRegion};
 
 #[cfg(test)]

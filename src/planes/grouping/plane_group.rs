@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::neighbourhood::LineNeighbours;
 use super::proposed_plane::ProposedPlane;
 use crate::geometry::Plane;
-use crate::ids::{HalfPlaneId, LineId};
+use crate::ids::{HalfPlaneId, LineId, ProposalOrigin};
 use crate::lines3d::{Line3d, Side};
 use crate::planes::half_plane::HalfPlane;
 
@@ -30,8 +30,8 @@ pub struct PlaneGroup {
     pub plane: Plane,
     /// Members, the seed first.
     pub members: Vec<Member>,
-    /// Planes of the other method in this plane ([`ProposedPlane::index`]).
-    pub rectangles: Vec<u32>,
+    /// What other sources proposed in this plane.
+    pub proposals: Vec<ProposalOrigin>,
 }
 
 impl PlaneGroup {
@@ -52,18 +52,18 @@ impl PlaneGroup {
     pub fn place(&self, input: &GroupingInput) -> Option<Point3<f64>> {
         let first = self.members.first();
         let on_line = first.map(|m| input.lines[m.line.index()].at(0.5));
-        on_line.or_else(|| self.rectangles(input).next()?.ring.first().copied())
+        on_line.or_else(|| self.proposed(input).next()?.ring.first().copied())
     }
 
-    /// The rectangles of the other method.
-    pub fn rectangles<'a>(
+    /// What other sources proposed in its plane.
+    pub fn proposed<'a>(
         &self,
         input: &GroupingInput<'a>,
     ) -> impl Iterator<Item = &'a ProposedPlane> {
-        let proposed = input.rectangles;
+        let proposed = input.proposals;
         proposed
             .iter()
-            .filter(|r| self.rectangles.contains(&r.index))
+            .filter(|r| self.proposals.contains(&r.origin))
     }
 
     /// Are all its half-planes propagated from other planes?
@@ -101,7 +101,7 @@ pub struct GroupingInput<'a> {
     /// Neighbours of each line.
     pub neighbours: &'a LineNeighbours,
     /// Planes that the other method proposes.
-    pub rectangles: &'a [ProposedPlane],
+    pub proposals: &'a [ProposedPlane],
 }
 
 /// A line as a member of a group, with its half-plane.

@@ -48,7 +48,7 @@ pub(crate) fn with_propagated(
     let mut half_planes = input.half_planes.to_vec();
     for id in (0..input.lines.len()).map(LineId::from_index) {
         let segment = &input.lines[id.index()].segment;
-        let on_ground = ground.is_near(segment, params.lowest_eave_m());
+        let on_ground = ground.is_near(segment, params.min_height_m);
         if segment.length() < LEAST_LENGTH || on_ground {
             continue;
         }
@@ -178,7 +178,7 @@ mod tests {
             lines: &lines,
             half_planes: &swept,
             neighbours: &neighbours,
-            rectangles: &[],
+            proposals: &[],
         };
         let groups = group_planes(&input, &params);
         let half_planes = with_propagated(&input, &groups, &Ground::level(0.0), &params);

@@ -1,16 +1,17 @@
-//! A plane that the other method proposes (W96 3.6).
+//! A plane that another source than lines and half-planes proposes.
 
 use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::{Plane, mean_point};
+use crate::ids::ProposalOrigin;
 use crate::params::RoofParams;
 
 /// A convex polygon in a plane.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProposedPlane {
-    /// Its index where it comes from.
-    pub index: u32,
+    /// Where it comes from.
+    pub origin: ProposalOrigin,
     /// The plane.
     pub plane: Plane,
     /// Corners, metres, counter-clockwise seen from above.

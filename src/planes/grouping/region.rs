@@ -92,7 +92,7 @@ impl PlanRegion {
                     ends,
                 })
             })
-            .chain(group.rectangles(input).filter_map(PlanBox::around))
+            .chain(group.proposed(input).filter_map(PlanBox::around))
             .collect();
         let lines = (group.members.iter()).map(|m| &input.lines[m.line.index()].segment);
         Self {
@@ -174,14 +174,14 @@ pub(crate) fn region_beside(line: crate::lines3d::Line3d, plane: Plane) -> PlanR
     let group = PlaneGroup {
         plane,
         members: [Side::Left, Side::Right].map(member).to_vec(),
-        rectangles: Vec::new(),
+        proposals: Vec::new(),
     };
     let lines = [line];
     let input = GroupingInput {
         lines: &lines,
         half_planes: &[],
         neighbours: &super::neighbourhood::line_neighbours(&lines),
-        rectangles: &[],
+        proposals: &[],
     };
     PlanRegion::new(&input, &group, &RoofParams::default())
 }
@@ -210,7 +210,7 @@ mod tests {
             lines: &lines,
             half_planes: &[],
             neighbours: &line_neighbours(&lines),
-            rectangles: &[],
+            proposals: &[],
         };
         let member = |index: u32, side| Member {
             line: LineId(index),
@@ -220,7 +220,7 @@ mod tests {
         let group = PlaneGroup {
             plane: shed(),
             members: vec![member(0, Side::Right), member(1, Side::Left)],
-            rectangles: Vec::new(),
+            proposals: Vec::new(),
         };
         PlanRegion::new(&input, &group, &RoofParams::default())
     }

@@ -48,6 +48,13 @@ export const METHOD_COLOURS = {
   combined: CATEGORIES[2],
 } as const;
 
+/** What a surface of dense matching is; told apart without red and green, and from the grey of what is in no plane. */
+export const CLASS_COLOURS = {
+  building: CATEGORIES[1],
+  ground: CATEGORIES[2],
+  vegetation: CATEGORIES[3],
+} as const;
+
 export function category(index: number): string {
   return CATEGORIES[index % CATEGORIES.length] as string;
 }

@@ -9,6 +9,8 @@ export type Selection =
   /** A side of a 3D line, whether it has a half-plane or not. */
   | { kind: "side"; line: number; side: Side }
   | { kind: "halfplane"; index: number }
+  /** A plane of dense matching. */
+  | { kind: "dense"; index: number }
   | { kind: "group"; index: number }
   | { kind: "facet"; index: number }
   /** A facet that was rejected. */

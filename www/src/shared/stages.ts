@@ -69,6 +69,13 @@ export const STAGES = [
     reads: ["sweep"],
   },
   {
+    name: "dense",
+    title: "Dense planes",
+    section: "B99 2",
+    methods: ["lines", "combined"],
+    reads: ["dense"],
+  },
+  {
     name: "facets",
     title: "Facets",
     section: "B99 4.2, 4.3",

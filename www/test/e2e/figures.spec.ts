@@ -186,6 +186,60 @@ test("figures 16 to 23: groups, border lines and facets", async () => {
   await expect(inspector().locator(".picked")).toHaveText(/^3D line \d+$/);
 });
 
+test("dense planes: patches by class, in plan and in space, and what became of a plane", async () => {
+  await openTab(page, "Dense planes");
+  const planes = Number(/([\d,]+) planes/.exec((await stage(page, "dense").textContent()) ?? "")?.[1]);
+  expect(planes).toBeGreaterThan(2);
+  const viewer = page.getByTestId("viewer");
+  await clear();
+  const plain = await steadyLook(page, viewer);
+  expect(plain.vivid).toBeGreaterThan(0.05);
+
+  const lab = page.getByTestId("dense-lab");
+  const plan = page.getByTestId("dense-plan");
+  await expect(plan).toHaveAttribute("aria-label", new RegExp(`^Plan of ${planes} dense planes`));
+  const drawn = async () => {
+    const counts = await plan
+      .locator(".dense-patches")
+      .evaluateAll((all) => all.map((one) => Number((one as SVGElement).dataset["count"])));
+    return counts.reduce((sum, count) => sum + count, 0);
+  };
+  const inPlanes = await drawn();
+  expect(inPlanes).toBeGreaterThan(100);
+  await lab.getByRole("button", { name: "Probability of building" }).click();
+  await expect(plan.locator(".class-vegetation")).toHaveCount(0);
+  // The same patches in other colours.
+  expect(await drawn()).toBe(inPlanes);
+  await lab.getByRole("button", { name: "Classes" }).click();
+
+  const title = inspector().locator(".picked");
+  const fact = (label: RegExp) => inspector().locator("div", { hasText: label }).last();
+  await pickUntil(plan, async () => /^Dense plane/.test((await title.allTextContents())[0] ?? ""));
+  const name = (await title.textContent()) ?? "";
+  await expect(plan.locator(".chosen-ring")).toHaveCount(1);
+  const shares = (await fact(/^It is/).textContent())?.match(/\d+(?= %)/g)?.map(Number) ?? [];
+  expect(shares).toHaveLength(3);
+  expect(Math.abs(shares.reduce((sum, share) => sum + share, 0) - 100)).toBeLessThanOrEqual(3);
+  await expect(fact(/^Slope/)).toContainText(/\d+\.\d° ± \d+\.\d°/);
+  await expect(inspector().locator(".evidence").first()).toContainText("height above the ground");
+  expect(await page.getByTestId("filmstrip").locator("canvas").count()).toBeGreaterThanOrEqual(3);
+  expect(await steadyLook(page, viewer)).not.toEqual(plain);
+
+  // A facet leads to the plane that proposed it.
+  const next = page.getByRole("button", { name: "Next item" });
+  const facets = fact(/^Facets/).getByRole("button");
+  for (let i = 0; i < planes && (await facets.count()) === 0; i += 1) {
+    await next.click();
+  }
+  const proposed = (await title.textContent()) ?? name;
+  await facets.first().click();
+  await expect(title).toHaveText(/^Facet \d+$/);
+  await fact(/^Dense planes/)
+    .getByRole("button", { name: /\d+/.exec(proposed)?.[0] ?? "", exact: true })
+    .click();
+  await expect(title).toHaveText(proposed);
+});
+
 test("what was rejected is picked, too: it says why, and shows in every view and in space", async () => {
   const title = inspector().locator(".picked");
   await openTab(page, "Segments");
@@ -324,7 +378,10 @@ test("the viewer: normals, cameras, measuring, a picture, and a view's own camer
 });
 
 test("nothing serious for axe in any figure", async () => {
-  for (const name of ["Segments", "Matches", "3D lines", "Half-planes", "Groups", "Facets", "Model"]) {
+  for (const name of [
+    ...["Segments", "Matches", "3D lines", "Half-planes", "Dense planes"],
+    ...["Groups", "Facets", "Model"],
+  ]) {
     await openTab(page, name);
     expect(await axeFindings(page), name).toEqual([]);
   }

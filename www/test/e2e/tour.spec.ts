@@ -8,7 +8,7 @@ onePage(
   async (opened) => {
     page = opened;
     await page.getByRole("button", { name: "Tour", exact: true }).click();
-    await expect(lesson()).toContainText("Step 1 of 9");
+    await expect(lesson()).toContainText("Step 1 of 10");
     await waitForStage(page, "model");
   },
   async () => {
@@ -31,7 +31,7 @@ async function isAsked(step: number, tab: string): Promise<void> {
   if (step > 1) {
     await lesson().getByRole("button", { name: "Next" }).click();
   }
-  await expect(lesson()).toContainText(`Step ${step} of 9`);
+  await expect(lesson()).toContainText(`Step ${step} of 10`);
   await expect(page.getByRole("tab", { name: tab, exact: true })).toHaveAttribute("aria-selected", "true", {
     timeout: 120_000,
   });
@@ -170,8 +170,26 @@ function numbersIn(text: string | null): number[] {
   return (text?.match(/\d+(\.\d+)?/g) ?? []).map(Number);
 }
 
-test("7: a group of at least four lines that became a facet, and no other", async () => {
-  await isAsked(7, "Groups");
+test("7: a dense plane that is a building and became a facet, and no other", async () => {
+  await isAsked(7, "Dense planes");
+  const next = page.getByRole("button", { name: "Next item" });
+  const fact = (label: RegExp) => inspector().locator("div", { hasText: label }).last();
+  for (let i = 0; i < 60 && !(await isAnswered()); i += 1) {
+    await next.click();
+    await expect(picked()).toHaveText(`Dense plane ${i}`);
+    const [building = 0, ground = 0, vegetation = 0] = numbersIn(await fact(/^It is/).textContent());
+    const isBuilding = building > Math.max(ground, vegetation);
+    const isFacet =
+      (await fact(/^Facets/)
+        .getByRole("button")
+        .count()) > 0;
+    await expect(answer()).toHaveCount(isBuilding && isFacet ? 1 : 0);
+  }
+  await expect(answer()).toBeVisible();
+});
+
+test("8: a group of at least four lines that became a facet, and no other", async () => {
+  await isAsked(8, "Groups");
   const groups = page.getByTestId("groups").getByRole("button");
   const count = await groups.count();
   for (let i = 0; i < count && !(await isAnswered()); i += 1) {
@@ -185,8 +203,8 @@ test("7: a group of at least four lines that became a facet, and no other", asyn
   await expect(answer()).toBeVisible();
 });
 
-test("8: model and photograph over each other", async () => {
-  await isAsked(8, "Model");
+test("9: model and photograph over each other", async () => {
+  await isAsked(9, "Model");
   const cameras = page.getByLabel("Look through the camera of a view");
   await marked(cameras);
   await expect(lesson()).toContainText(await cameras.locator("option").first().innerText());
@@ -196,8 +214,8 @@ test("8: model and photograph over each other", async () => {
   await expect(page.getByTestId("photograph")).toHaveCSS("opacity", "0.5");
 });
 
-test("9: a line of the other method, which the inspector does not call matched", async () => {
-  await isAsked(9, "Clusters");
+test("10: a line of the other method, which the inspector does not call matched", async () => {
+  await isAsked(10, "Clusters");
   await page.locator(".cluster").first().click({ force: true });
   await expect(picked()).toHaveText(/^3D line \d+$/);
   await expect(answer()).toBeVisible();

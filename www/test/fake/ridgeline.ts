@@ -9,6 +9,8 @@ import type { GroundTexture, WarpedPicture } from "../../src/shared/calls";
 import type { ParamTree } from "../../src/shared/paramTree";
 import type {
   Correspondence,
+  DensePlane,
+  DensePlanes,
   Evidence,
   Facet,
   FacetTrace,
@@ -55,7 +57,7 @@ const NORTH = { normal: [0, 0.6, 0.8] as P, d: -6.4 };
 
 const corner = (i: number) => CORNERS[i] as P;
 
-function facet(indices: number[], plane: typeof SOUTH, probability: number): Facet {
+function facet(indices: number[], plane: typeof SOUTH, probability: number, dense: number): Facet {
   return {
     outer: indices.map(corner),
     holes: [],
@@ -66,11 +68,11 @@ function facet(indices: number[], plane: typeof SOUTH, probability: number): Fac
     probability,
     lines: [],
     half_planes: [],
-    rectangles: [],
+    proposals: [{ dense_plane: dense }],
   };
 }
 
-export const FACETS: Facet[] = [facet([0, 1, 5, 4], SOUTH, 0.97), facet([2, 3, 4, 5], NORTH, 0.72)];
+export const FACETS: Facet[] = [facet([0, 1, 5, 4], SOUTH, 0.97, 0), facet([2, 3, 4, 5], NORTH, 0.72, 1)];
 
 const HALF_PLANES: HalfPlane[] = [
   { line: 0, side: "left", theta: 0.64, plane: SOUTH },
@@ -133,6 +135,7 @@ export class Session implements CoreSession {
       adjustment: { enabled: true },
       lines3d: {},
       sweep: { max_theta_deg: 75, min_similarity: 0.4, min_curvature: 4, min_amplitude: 0.2 },
+      dense: { enabled: true },
       roof: {},
       texture: { max_atlas_px: 4096 },
     };
@@ -223,6 +226,10 @@ export class Session implements CoreSession {
 
   halfPlanes(): HalfPlane[] {
     return HALF_PLANES;
+  }
+
+  dense(): DensePlanes {
+    return denseGable();
   }
 
   facets(): Facet[] {
@@ -431,8 +438,8 @@ export class Session implements CoreSession {
     const members = (lines: number[]) => lines.map((line) => ({ line, side: null, half_plane: null }));
     return {
       groups: [
-        { plane: SOUTH, members: members([0, 2, 3, 5]), rectangles: [] },
-        { plane: NORTH, members: members([1, 2, 4, 6]), rectangles: [] },
+        { plane: SOUTH, members: members([0, 2, 3, 5]), proposals: [{ dense_plane: 0 }] },
+        { plane: NORTH, members: members([1, 2, 4, 6]), proposals: [{ dense_plane: 1 }] },
       ],
       plane_lines: [],
       borders: EDGES.map(([a, b]) => {
@@ -495,6 +502,45 @@ export class Session implements CoreSession {
   #images(): string[] {
     return this.#files.filter((path) => path.endsWith(".jpg"));
   }
+}
+
+/** Patches a metre apart: on both roof sides, one of them uncertain, and north of them some in no plane. */
+function denseGable(): DensePlanes {
+  const rows = [-3.5, -2.5, -1.5, -0.5, 0.5, 1.5, 2.5, 3.5, 5.5];
+  const patches = rows.flatMap((y) =>
+    Array.from({ length: 12 }, (_, i) => ({
+      middle: [i - 5.5, y] as [number, number],
+      z: y > 4 ? 1 : 8 - 0.75 * Math.abs(y) + 0.02 * ((i % 3) - 1),
+      gradient: [0, y > 4 ? 0 : -0.75 * Math.sign(y)] as [number, number],
+      correlation: 0.8,
+      weight: 0.7,
+    })),
+  );
+  const plane = (first: number, facetIndex: number, building: number): DensePlane => ({
+    plane: facetIndex === 0 ? SOUTH : NORTH,
+    covariance: [
+      [1e-4, 0, 0],
+      [0, 4e-6, 0],
+      [0, 0, 4e-6],
+    ],
+    ring: FACETS[facetIndex]?.outer ?? [],
+    patches: Array.from({ length: 48 }, (_, i) => first + i),
+    area_m2: 48,
+    rms_m: 0.02,
+    class: { building, ground: (1 - building) / 4, vegetation: (3 * (1 - building)) / 4 },
+  });
+  const evidence = (nats: number): Evidence => ({
+    prior: 0,
+    terms: [{ feature: "height_m", value: 6, nats }],
+  });
+  return {
+    planes: [plane(0, 0, 0.98), plane(48, 1, 0.6)],
+    trace: {
+      patches,
+      classes: [4, 0.4].map((nats) => ({ building: evidence(nats), vegetation: evidence(1.1) })),
+      spacing_m: 1,
+    },
+  };
 }
 
 /** A camera straight above the middle, so far away that every height has the same scale. */

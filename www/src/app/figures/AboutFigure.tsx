@@ -209,6 +209,57 @@ const FIGURES: Record<Tab, Figure> = {
     ),
     hint: "Pick a line or a fan, then drag θ: the windows below are alike only at the right angle.",
   },
+  dense: {
+    title: "Dense planes",
+    source: "B99 2 (ENST); Barnes et al. 2009; Bleyer et al. 2011; Isack and Boykov 2012",
+    text: "Where no line starts a plane, the photographs themselves do. On a grid in plan, small slanted patches try the planes of their neighbours and variations of their own, and keep the one on which the views agree best (PatchMatch). The planes of patches that fit together then compete (PEaRL): each patch p gets the plane l for which the views say most, N in nats, or none; neighbours p and q with different planes cost β. Height, roughness, colour and size say what a plane is.",
+    equation: (
+      <mrow>
+        <munder>
+          <mo>max</mo>
+          <mi>l</mi>
+        </munder>
+        <munder>
+          <mo>∑</mo>
+          <mi>p</mi>
+        </munder>
+        <msub>
+          <mi>N</mi>
+          <mi>p</mi>
+        </msub>
+        <Open />
+        <msub>
+          <mi>l</mi>
+          <mi>p</mi>
+        </msub>
+        <Close />
+        <mo>−</mo>
+        <mi>β</mi>
+        <munder>
+          <mo>∑</mo>
+          <mrow>
+            <mi>p</mi>
+            <mo>,</mo>
+            <mi>q</mi>
+          </mrow>
+        </munder>
+        <mrow>
+          <Up>[</Up>
+          <msub>
+            <mi>l</mi>
+            <mi>p</mi>
+          </msub>
+          <mo>≠</mo>
+          <msub>
+            <mi>l</mi>
+            <mi>q</mi>
+          </msub>
+          <Up>]</Up>
+        </mrow>
+      </mrow>
+    ),
+    hint: "Pick a patch: its plane lights up, and stems lead to the heights that its patches had by themselves. The inspector says what speaks for a building and against it.",
+  },
   groups: {
     title: "Grouping",
     source: "B99 4.2, figures 16 to 20",

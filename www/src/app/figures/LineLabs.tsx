@@ -1,7 +1,7 @@
 /** B99 figure 9: accuracy against the number of views; figures 17 to 23: groups and border lines in plan. */
 import "./figures.css";
 import { category } from "../../shared/palette";
-import type { LineRecord } from "../../shared/records";
+import { densePlanesOf, type LineRecord, type PlaneGroup, rectanglesOf } from "../../shared/records";
 import { Filmstrip } from "../images/Filmstrip";
 import { axesOf, Chart, dotsOf, Fit, type Frame, type Scale } from "../parts/charts";
 import { counted } from "../parts/counted";
@@ -144,8 +144,7 @@ export function GroupLab() {
                 <span>Group {index}</span>
                 <span class="muted numbers">
                   {counted(new Set(group.members.map(({ line }) => line)).size, "lines")} ·{" "}
-                  {counted(fans, "half-planes")} ·{" "}
-                  {group.rectangles?.length ? `${counted(group.rectangles.length, "rectangles")} · ` : ""}
+                  {counted(fans, "half-planes")} · {proposalWords(group)}
                   {((Math.atan2(Math.hypot(nx, ny), Math.abs(nz)) * 180) / Math.PI).toFixed(0)}°
                 </span>
               </button>
@@ -156,4 +155,13 @@ export function GroupLab() {
       <Filmstrip />
     </div>
   );
+}
+
+/** What else proposed a group's plane. */
+function proposalWords(group: Pick<PlaneGroup, "proposals">): string {
+  const counts = [
+    [densePlanesOf(group).length, "dense planes"],
+    [rectanglesOf(group).length, "rectangles"],
+  ] as const;
+  return counts.map(([count, what]) => (count === 0 ? "" : `${counted(count, what)} · `)).join("");
 }

@@ -19,6 +19,11 @@ export interface Bar {
   nats: number;
 }
 
+/** The indices of the items that pass. */
+export function indicesOf<T>(items: readonly T[] | null | undefined, test: (item: T) => boolean): number[] {
+  return (items ?? []).flatMap((item, i) => (test(item) ? [i] : []));
+}
+
 /** To the thing of this kind at an index. */
 const linkTo =
   (kind: IndexedKind) =>
@@ -28,6 +33,7 @@ export const linkToLine = linkTo("line");
 export const linkToHalfPlane = linkTo("halfplane");
 export const linkToFacet = linkTo("facet");
 export const linkToRefinement = linkTo("refinement");
+export const linkToDense = linkTo("dense");
 export const linkToGroup = linkTo("group");
 
-type IndexedKind = "line" | "halfplane" | "facet" | "refinement" | "group";
+type IndexedKind = "line" | "halfplane" | "facet" | "refinement" | "dense" | "group";

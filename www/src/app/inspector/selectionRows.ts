@@ -1,10 +1,17 @@
 /** What the inspector says of the picked thing: its numbers, what made it and what it made. */
 
 import { LINE_STRIDE, SEGMENT_STRIDE } from "../../shared/flatArrays";
-import type { Facet, Vec3 } from "../../shared/records";
+import {
+  densePlanesOf,
+  type Facet,
+  isMadeFrom,
+  type PlaneGroup,
+  rectanglesOf,
+  type Vec3,
+} from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { slopedArea } from "../parts/facetArea";
-import { grouped } from "../parts/numberText";
+import { degreesOf, grouped, slopeOf } from "../parts/numberText";
 import {
   CONTRADICTION_WORDS,
   ORIGIN_WORDS,
@@ -17,18 +24,20 @@ import { params } from "../state/parameters";
 import { results } from "../state/results";
 import { scene } from "../state/scene";
 import { selectionDetail } from "../state/selectionDetail";
+import { densePlaneRows } from "./densePlaneRows";
 import { evidenceOfLine, probabilityRow } from "./evidenceRows";
 import { refinedRow, refinementRows, relationRows } from "./refinementRows";
 import { rejectedClusterRows, rejectedFacetRows, rejectedSegmentRows } from "./rejectedRows";
-import { linkToFacet, linkToGroup, linkToHalfPlane, linkToLine, type Related, type Row } from "./rowLinks";
-
-/** The indices of the items that pass. */
-function indicesOf<T>(
-  items: readonly T[] | null | undefined,
-  test: (item: T, index: number) => boolean,
-): number[] {
-  return (items ?? []).flatMap((item, i) => (test(item, i) ? [i] : []));
-}
+import {
+  indicesOf,
+  linkToDense,
+  linkToFacet,
+  linkToGroup,
+  linkToHalfPlane,
+  linkToLine,
+  type Related,
+  type Row,
+} from "./rowLinks";
 
 export function titleOf(picked: Selection): string {
   switch (picked.kind) {
@@ -40,6 +49,8 @@ export function titleOf(picked: Selection): string {
       return `3D line ${picked.index}`;
     case "side":
       return `3D line ${picked.line}, ${picked.side} side`;
+    case "dense":
+      return `Dense plane ${picked.index}`;
     case "group":
       return `Group ${picked.index}`;
     case "region":
@@ -75,6 +86,8 @@ export function rowsOf(picked: Selection): Row[] {
       return lineRows(picked.index);
     case "side":
       return sideRows(picked.line, picked.side);
+    case "dense":
+      return densePlaneRows(picked.index);
     case "group":
       return groupRows(picked.index);
     case "region":
@@ -149,26 +162,23 @@ function groupRows(index: number): Row[] {
   }
   const lines = [...new Set(group.members.map(({ line }) => line))];
   const halfPlanes = group.members.flatMap(({ half_plane }) => (half_plane === null ? [] : [half_plane]));
-  const rectangles = group.rectangles ?? [];
-  const facets = indicesOf(
-    results.value.facets,
-    (facet) =>
-      (facet.half_planes ?? []).some((one) => halfPlanes.includes(one)) ||
-      (facet.rectangles ?? []).some((one) => rectangles.includes(one)),
-  );
+  const facets = indicesOf(results.value.facets, (facet) => isMadeFrom(facet, group));
   return [
     ["Slope of the plane", slopeText(group.plane.normal)],
     ["3D lines", lines.map(linkToLine)],
     ["Half-planes", halfPlanes.map(linkToHalfPlane)],
-    ...rectangleRow(group.rectangles),
+    ...proposalRows(group),
     ["Facets", facets.map(linkToFacet)],
   ];
 }
 
-/** How many candidates of the other method have this plane. */
-function rectangleRow(rectangles: readonly number[] | undefined): Row[] {
-  const count = rectangles?.length ?? 0;
-  return count === 0 ? [] : [["Rectangles", `${count} in its plane (W96 3.6)`]];
+/** The planes of dense matching that proposed this one, and how many candidates of the other method. */
+function proposalRows(proposed: Pick<PlaneGroup, "proposals">): Row[] {
+  const [dense, rectangles] = [densePlanesOf(proposed), rectanglesOf(proposed).length];
+  return [
+    ...(dense.length === 0 ? [] : [["Dense planes", dense.map(linkToDense)] as const]),
+    ...(rectangles === 0 ? [] : [["Rectangles", `${rectangles} in its plane (W96 3.6)`] as const]),
+  ];
 }
 
 function regionRows(view: number, index: number): Row[] {
@@ -354,21 +364,16 @@ function facetRows(index: number): Row[] {
     ["3D lines", (facet.lines ?? []).map(linkToLine)],
     ...groupsOfFacet(facet),
     ...refinedRow(index),
-    ...(results.value.grouping === null ? [] : rectangleRow(facet.rectangles)),
+    ...(results.value.grouping === null ? [] : proposalRows(facet)),
     ...((facet.half_planes ?? []).length === 0
       ? []
       : [["Half-planes", (facet.half_planes ?? []).map(linkToHalfPlane)] as const]),
   ];
 }
 
-/** The groups of the half-planes, or of the other method's planes, that a facet was made from. */
-function groupsOfFacet({ half_planes = [], rectangles = [] }: Facet): Row[] {
-  const groups = indicesOf(
-    results.value.grouping?.groups,
-    (group) =>
-      group.members.some(({ half_plane }) => half_plane !== null && half_planes.includes(half_plane)) ||
-      (group.rectangles ?? []).some((one) => rectangles.includes(one)),
-  );
+/** The groups of the half-planes, or of other proposals, that a facet was made from. */
+function groupsOfFacet(facet: Facet): Row[] {
+  const groups = indicesOf(results.value.grouping?.groups, (group) => isMadeFrom(facet, group));
   return groups.length === 0 ? [] : [["Groups", groups.map(linkToGroup)]];
 }
 
@@ -415,15 +420,11 @@ function worldText([x, y, z]: Vec3): string {
   return `${(x + ox).toFixed(2)}, ${(y + oy).toFixed(2)}, ${(z + oz).toFixed(2)}\u00a0m`;
 }
 
-function degrees(radians: number): string {
-  return `${((radians * 180) / Math.PI).toFixed(1)}°`;
-}
+const degrees = (radians: number) => `${degreesOf(radians).toFixed(1)}°`;
 
 /** Clockwise from north. */
 function azimuth(east: number, north: number): string {
   return `${(((Math.atan2(east, north) * 180) / Math.PI + 360) % 360).toFixed(0)}° from north`;
 }
 
-function slopeText([x, y, z]: Vec3): string {
-  return degrees(Math.atan2(Math.hypot(x, y), Math.abs(z)));
-}
+const slopeText = (normal: Vec3) => degrees(slopeOf(normal));

@@ -25,6 +25,8 @@ export function siblingsOf(picked: Selection | null): readonly Selection[] {
     case "side":
     case "halfplane":
       return itemsOfTab("halfplanes");
+    case "dense":
+      return itemsOfTab("dense");
     case "group":
       return itemsOfTab("groups");
     case "facet":
@@ -57,7 +59,7 @@ export function placeAmong(items: readonly Selection[], picked: Selection | null
 }
 
 function itemsOfTab(name: Tab): readonly Selection[] {
-  const { lines, grouping, facets, refinement, rectangles } = results.value;
+  const { lines, dense, grouping, facets, refinement, rectangles } = results.value;
   const view = Math.max(0, shownView.value);
   switch (name) {
     case "images":
@@ -73,6 +75,8 @@ function itemsOfTab(name: Tab): readonly Selection[] {
       return numbered((lines?.length ?? 0) / LINE_STRIDE, (index) => ({ kind: "line", index }));
     case "halfplanes":
       return sides();
+    case "dense":
+      return numbered(dense?.planes.length, (index) => ({ kind: "dense", index }));
     case "groups":
       return numbered(grouping?.groups.length, (index) => ({ kind: "group", index }));
     case "refinement":

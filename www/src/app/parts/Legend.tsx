@@ -1,5 +1,6 @@
 /** What the colours of the present tab mean. */
 import type { LineOrigin } from "../../shared/records";
+import { CLASSES, type ClassName, likeliestClass } from "../../shared/surfaceClass";
 import { CERTAIN } from "../../viewer/scene/certainty";
 import type { Tab } from "../state/methods";
 import { results } from "../state/results";
@@ -72,6 +73,19 @@ function standingLines() {
   return results.value.records.filter(({ contradiction }) => contradiction == null);
 }
 
+/** The classes that there are, and whether there are patches in no plane. */
+function denseEntries(): Entry[] {
+  const { planes, trace } = results.value.dense ?? { planes: [], trace: null };
+  const found = planes.map((plane) => likeliestClass(plane.class));
+  const names = new Set<ClassName>(found.map(({ name }) => name));
+  const inPlanes = planes.reduce((sum, { patches }) => sum + patches.length, 0);
+  return [
+    ...CLASSES.filter((name) => names.has(name)).map((name): Entry => [`class-${name}`, name]),
+    ...((trace?.patches.length ?? 0) > inPlanes ? [["unmatched", "small: in no plane"] as const] : []),
+    ...faintEntry(found),
+  ];
+}
+
 /** What is drawn now: an entry without anything in its colour would be looked for. */
 export function presentEntries(): readonly Entry[] {
   switch (tab.value) {
@@ -90,6 +104,8 @@ export function presentEntries(): readonly Entry[] {
         ["half-plane", "half-plane"],
         ["rejected", hasContradicted() ? "rejected side, contradicted line" : "rejected side"],
       ];
+    case "dense":
+      return denseEntries();
     case "segments":
       return [
         ...(ENTRIES.segments ?? []),

@@ -6,6 +6,7 @@ const SINGULARS: Record<string, string> = {
   "pairs of directions": "pair of directions",
   "pairs of lines": "pair of lines",
   matches: "match",
+  patches: "patch",
 };
 
 /** "1 view", "1,952 segments": the thing is named by its plural, as the core names its counts. */

@@ -22,4 +22,9 @@ export function percentText(share: number): string {
   return percent === 0 && share > 0 ? "< 1 %" : `${percent} %`;
 }
 
+/** Of a plane against the level, by its normal; radians. */
+export function slopeOf([x, y, z]: readonly [number, number, number]): number {
+  return Math.atan2(Math.hypot(x, y), Math.abs(z));
+}
+
 export const degreesOf = (radians: number) => (radians * 180) / Math.PI;

@@ -112,6 +112,8 @@ export const FEATURE_WORDS: Record<string, string> = {
   ln_1_plus_lines: "number of lines",
   ln_1_plus_half_planes: "number of half-planes",
   cos_slope: "slope",
+  height_m: "height above the ground",
+  roughness_px: "roughness",
   missing_views: "views that see it and do not show it",
   ln_sigma_without_a_view_px: "uncertainty without its weightiest view",
   residual_rms_sigmas: "residuals of its edges",
@@ -138,10 +140,10 @@ export function facetRejectionWords(reason: FacetRejection): string {
     return `too small (${reason.too_small.area_m2.toFixed(1)} m²)`;
   }
   if ("near_ground" in reason) {
-    return `near the ground (${reason.near_ground.height_m.toFixed(1)} m above it)`;
+    return `lower than any eave (its middle ${reason.near_ground.height_m.toFixed(1)} m above the ground)`;
   }
   if ("reaches_ground" in reason) {
-    return `its low side lies on the ground (${reason.reaches_ground.lowest_m.toFixed(1)} m above it)`;
+    return `its low side is lower than any eave (${reason.reaches_ground.lowest_m.toFixed(1)} m above the ground)`;
   }
   const { evidence } = reason.improbable;
   const [worst] = evidence.terms.filter(({ nats }) => nats < 0).sort((a, b) => a.nats - b.nats);

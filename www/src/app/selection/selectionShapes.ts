@@ -1,7 +1,7 @@
 /** What a selection is in space: polylines in the local frame, which light up in every image and in the 3D view. */
 
 import { LINE_STRIDE } from "../../shared/flatArrays";
-import type { HalfPlane, Segment3, Vec3 } from "../../shared/records";
+import { densePlanesOf, type HalfPlane, type Segment3, type Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { fanCorners } from "../../viewer/layers/fans";
 import { outlinesOf } from "../../viewer/layers/refinement";
@@ -24,8 +24,10 @@ export function shapesOf(picked: Selection | null): Shape[] {
       const halfPlane = results.value.halfPlanes?.[picked.index];
       return halfPlane === undefined ? [] : areas([fanOf(halfPlane)]);
     }
+    case "dense":
+      return areas([densePlaneRing(picked.index)]);
     case "group":
-      return linesShape(groupLines(picked.index));
+      return groupShape(picked.index);
     case "facet":
       return areas(facetRings(picked.index));
     case "surface":
@@ -101,6 +103,17 @@ export function lineOfSegment(view: number, segment: number): number[] {
 function groupLines(index: number): number[] {
   const members = results.value.grouping?.groups[index]?.members ?? [];
   return [...new Set(members.map(({ line }) => line))];
+}
+
+/** The lines of a group, or, where it has none, the dense planes that proposed its plane. */
+function groupShape(index: number): Shape[] {
+  const lines = linesShape(groupLines(index));
+  const group = results.value.grouping?.groups[index];
+  return lines.length > 0 || group === undefined ? lines : areas(densePlanesOf(group).map(densePlaneRing));
+}
+
+function densePlaneRing(index: number): readonly Vec3[] {
+  return results.value.dense?.planes[index]?.ring ?? [];
 }
 
 /** A cluster has no ends (W96 3.5): it is drawn as far as any line of its direction reaches. */

@@ -123,6 +123,7 @@ export function parseSelection(text: string | null): Selection | null {
       return second === "left" || second === "right" ? { kind, line: index, side: second } : null;
     case "line":
     case "halfplane":
+    case "dense":
     case "group":
     case "refinement":
     case "facet":

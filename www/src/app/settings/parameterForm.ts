@@ -36,6 +36,7 @@ const TITLES: Record<string, string> = {
   adjustment: "Adjustment of the views",
   lines3d: "3D lines",
   sweep: "Half-plane sweep",
+  dense: "Dense planes",
   roof: "Grouping and facets",
   "roof.refine": "Regularisation and refinement",
   texture: "Texture",
@@ -53,7 +54,7 @@ const CHOICES: Record<string, readonly string[]> = {
 
 /** The groups that a method reads; "combined" reads all. */
 const GROUPS_OF_METHOD: Record<string, readonly string[]> = {
-  lines: ["segments", "matching", "adjustment", "lines3d", "sweep", "roof", "texture"],
+  lines: ["segments", "matching", "adjustment", "lines3d", "sweep", "dense", "roof", "texture"],
   rectangles: ["objectspace", "texture"],
 };
 

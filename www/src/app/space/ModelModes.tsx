@@ -1,7 +1,7 @@
 /** How the model looks in the 3D view, and what its colours mean. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import { METHOD_COLOURS } from "../../shared/palette";
-import type { Facet } from "../../shared/records";
+import { densePlanesOf, type Facet, rectanglesOf } from "../../shared/records";
 import type { ModelMode } from "../../viewer/layers/model";
 import { counted } from "../parts/counted";
 import { keptResult } from "../state/keptResult";
@@ -27,11 +27,12 @@ const METHOD_TITLES: Record<Method, string> = {
 };
 
 /** The method that proposed a facet's plane; where both ran, both may have. */
-function methodOfFacet({ half_planes, rectangles }: Facet, ran: Method): Method {
-  if (ran !== "combined" || (rectangles ?? []).length === 0) {
+export function methodOfFacet(facet: Pick<Facet, "half_planes" | "proposals">, ran: Method): Method {
+  if (ran !== "combined" || rectanglesOf(facet).length === 0) {
     return ran === "combined" ? "lines" : ran;
   }
-  return (half_planes ?? []).length > 0 ? "combined" : "rectangles";
+  const byLines = (facet.half_planes ?? []).length > 0 || densePlanesOf(facet).length > 0;
+  return byLines ? "combined" : "rectangles";
 }
 
 export function facetColours(facets: readonly Facet[] | null, ran: Method): string[] {

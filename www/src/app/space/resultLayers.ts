@@ -4,6 +4,7 @@ import { Vector3 } from "three";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import type { Facet, FacetTrace, Vec3 } from "../../shared/records";
 import { buildCameras } from "../../viewer/layers/cameras";
+import { buildDense } from "../../viewer/layers/dense";
 import { buildFacets } from "../../viewer/layers/facets";
 import { buildFans, buildTurning } from "../../viewer/layers/fans";
 import { buildGround } from "../../viewer/layers/ground";
@@ -31,6 +32,7 @@ export const LAYERS = [
   "lines",
   "uncertainty",
   "fans",
+  "dense",
   "groups",
   "facets",
   "model",
@@ -46,6 +48,7 @@ const chosen = signal<Record<Tab, readonly LayerName[]>>({
   matches: [],
   lines: ["lines"],
   halfplanes: ["lines", "fans"],
+  dense: ["dense"],
   groups: ["groups"],
   facets: ["facets"],
   refinement: ["facets"],
@@ -86,6 +89,12 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
     const { lines, halfPlanes, sides } = results.value;
     const has = lines !== null && halfPlanes !== null;
     return has ? [() => buildFans(halfPlanes, lines, sides), halfPlanes, lines] : null;
+  },
+  dense: () => {
+    const { dense } = results.value;
+    // Thousands of patches: not before somebody looks.
+    const isShown = shownLayers.value[tab.value].includes("dense");
+    return isShown && dense !== null ? [() => buildDense(dense), dense] : null;
   },
   groups: () => {
     const { lines, grouping, facets } = results.value;

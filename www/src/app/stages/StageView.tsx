@@ -3,6 +3,7 @@ import "./stages.css";
 import type { ComponentType } from "preact";
 import { useRef } from "preact/hooks";
 import { ClusterLab } from "../figures/ClusterLab";
+import { DenseLab } from "../figures/DenseLab";
 import { DirectionLab } from "../figures/DirectionLab";
 import { FacetLab } from "../figures/FacetPlan";
 import { GroupLab, LineLab } from "../figures/LineLabs";
@@ -25,6 +26,7 @@ const TITLES: Record<Tab, string> = {
   matches: "Matches",
   lines: "3D lines",
   halfplanes: "Half-planes",
+  dense: "Dense planes",
   groups: "Groups",
   facets: "Facets",
   refinement: "Refinement",
@@ -43,6 +45,7 @@ const LABS: Partial<Record<Tab, ComponentType>> = {
   matches: PointLab,
   lines: LineLab,
   halfplanes: SimLab,
+  dense: DenseLab,
   groups: GroupLab,
   facets: FacetLab,
   refinement: RefinementLab,

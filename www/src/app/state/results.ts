@@ -4,6 +4,7 @@ import type { GroundTexture } from "../../shared/calls";
 import type { ParamTree } from "../../shared/paramTree";
 import type {
   ClusterTrace,
+  DensePlanes,
   Directions,
   Facet,
   FacetTrace,
@@ -25,6 +26,7 @@ export interface Results {
   supports: Float32Array[];
   lines: Float64Array | null;
   halfPlanes: HalfPlane[] | null;
+  dense: DensePlanes | null;
   facets: Facet[] | null;
   /** The parameters that the facets were found with. */
   madeWith: ParamTree | null;
@@ -48,6 +50,7 @@ export const NO_RESULTS: Results = {
   supports: [],
   lines: null,
   halfPlanes: null,
+  dense: null,
   facets: null,
   madeWith: null,
   glb: null,

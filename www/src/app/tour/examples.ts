@@ -1,6 +1,7 @@
 /** What the tour's steps are about, chosen by the results: a step's claim holds for what it shows. */
 import { LINE_STRIDE, STRETCH_STRIDE } from "../../shared/flatArrays";
-import type { Side, SideTrace } from "../../shared/records";
+import { densePlanesOf, isMadeFrom, type Side, type SideTrace } from "../../shared/records";
+import { type ClassName, likeliestClass } from "../../shared/surfaceClass";
 import type { Results } from "../state/results";
 
 const DEGREE = Math.PI / 180;
@@ -102,19 +103,46 @@ export function highestSim({ curve }: SideTrace): number {
   return Math.max(0, ...curve.similarity);
 }
 
-/** The lines of a group, and the facets that its half-planes became. */
+/** The lines of a group, and the facets that it became. */
 export function groupParts(
   { grouping, facets }: Pick<Results, "grouping" | "facets">,
   group: number,
 ): { lines: number; facets: number[] } {
-  const members = grouping?.groups[group]?.members ?? [];
-  const own = members.flatMap(({ half_plane }) => half_plane ?? []);
-  return {
-    lines: new Set(members.map(({ line }) => line)).size,
-    facets: (facets ?? []).flatMap(({ half_planes }, i) =>
-      half_planes?.some((one) => own.includes(one)) === true ? [i] : [],
-    ),
-  };
+  const found = grouping?.groups[group];
+  return found === undefined
+    ? { lines: 0, facets: [] }
+    : {
+        lines: new Set(found.members.map(({ line }) => line)).size,
+        facets: (facets ?? []).flatMap((facet, i) => (isMadeFrom(facet, found) ? [i] : [])),
+      };
+}
+
+export interface DensePlaneParts {
+  name: ClassName;
+  probability: number;
+  patches: number;
+  rmsM: number;
+  /** The facets that it proposed, and how many half-planes these were made from. */
+  facets: number[];
+  halfPlanes: number;
+}
+
+/** What a plane of dense matching is, and what became of it; null where there is none. */
+export function densePlaneParts(
+  { dense, facets }: Pick<Results, "dense" | "facets">,
+  index: number,
+): DensePlaneParts | null {
+  const plane = dense?.planes[index];
+  const proposed = (facets ?? []).flatMap((facet, i) => (densePlanesOf(facet).includes(index) ? [i] : []));
+  return plane === undefined
+    ? null
+    : {
+        ...likeliestClass(plane.class),
+        patches: plane.patches.length,
+        rmsM: plane.rms_m,
+        facets: proposed,
+        halfPlanes: new Set(proposed.flatMap((i) => facets?.[i]?.half_planes ?? [])).size,
+      };
 }
 
 /** The 3D lines at the sides of facets. */

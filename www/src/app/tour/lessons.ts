@@ -1,7 +1,7 @@
-/** The guided tour: eight steps through B99 and one through W96, in the views themselves, on the demo scene. */
+/** The guided tour: nine steps through B99 and one through W96, in the views themselves, on the demo scene. */
 import { isRejected } from "../../shared/records";
 import { counted } from "../parts/counted";
-import { degreesOf } from "../parts/numberText";
+import { degreesOf, percentText } from "../parts/numberText";
 import { REJECTION_WORDS } from "../parts/reasonText";
 import { openDemoIn } from "../project/projectActions";
 import { bestTheta } from "../selection/selectionQueries";
@@ -25,7 +25,16 @@ import {
   showView,
   tab,
 } from "../state/viewState";
-import { agreesNowhere, facetOfSegment, groupParts, growthOf, highestSim, segmentLength } from "./examples";
+import {
+  agreesNowhere,
+  type DensePlaneParts,
+  densePlaneParts,
+  facetOfSegment,
+  groupParts,
+  growthOf,
+  highestSim,
+  segmentLength,
+} from "./examples";
 import { showRoofEnd, showSteepFall, showVaryingSegment } from "./prepare";
 
 export interface LessonStep {
@@ -181,6 +190,30 @@ export const LESSONS: readonly LessonStep[] = [
     isFound: () => selectionDetail.value.side !== null && agreesNowhere(selectionDetail.value.side),
   },
   {
+    title: "Dense planes",
+    text: "Not every roof has a line that starts its plane. So small patches are matched all over the plan, by their texture alone, and those in one plane are joined. They find lawns and trees as well: what is a building follows from height, roughness and colour.",
+    question: "Pick a plane that is most probably a building, and that a facet of the model has.",
+    answer: () => {
+      const found = pickedDensePlane();
+      return found === null ? "" : `${denseWords(found)} ${halfPlaneWords(found)}`;
+    },
+    hint: () => {
+      const found = pickedDensePlane();
+      if (found === null) {
+        return null;
+      }
+      return found.name === "building"
+        ? "Most probably a building, but no facet of the model has this plane."
+        : `Most probably ${found.name} (${percentText(found.probability)}): look for another colour.`;
+    },
+    method: "lines",
+    tab: "dense",
+    isFound: () => {
+      const found = pickedDensePlane();
+      return found?.name === "building" && found.facets.length > 0;
+    },
+  },
+  {
     title: "Planes",
     text: "Half-planes that share a plane form a group. Its border lines, and where it meets other planes, close the facet.",
     question: "Pick a group of at least four lines that became a facet.",
@@ -306,6 +339,21 @@ function pickedLine(): { line: number | null; before: number; after: number } {
 function pickedGroup(): { lines: number; facets: number[] } {
   const picked = selection.value;
   return picked?.kind === "group" ? groupParts(results.value, picked.index) : { lines: 0, facets: [] };
+}
+
+function pickedDensePlane(): DensePlaneParts | null {
+  const picked = selection.value;
+  return picked?.kind === "dense" ? densePlaneParts(results.value, picked.index) : null;
+}
+
+function denseWords({ patches, rmsM, facets }: DensePlaneParts): string {
+  return `${counted(patches, "patches")}, each matched on its own, lie within ${(100 * rmsM).toFixed(0)} cm (RMS) of one plane: that of facet ${facets.join(", ")}.`;
+}
+
+function halfPlaneWords({ halfPlanes }: DensePlaneParts): string {
+  return halfPlanes === 0
+    ? "No half-plane found it."
+    : `From lines, ${counted(halfPlanes, "half-planes")} found it, too: two ways, one plane.`;
 }
 
 /** In how many views the picked line shows. */

@@ -4,7 +4,7 @@
  */
 import { Color } from "three";
 import { category, PALETTE } from "../../shared/palette";
-import type { Facet, FacetTrace, Segment3 } from "../../shared/records";
+import { type Facet, type FacetTrace, isMadeFrom, type Segment3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { isOfRoof, middleOf } from "../scene/facetPlan";
 import { zUpGroup } from "../scene/frame";
@@ -102,12 +102,8 @@ function owners(grouping: FacetTrace, became: ReadonlySet<number>): Map<number, 
 }
 
 /** The group that a facet was made from; -1 where none says so. */
-function groupOf({ half_planes, rectangles }: Facet, { groups }: FacetTrace): number {
-  return groups.findIndex(
-    (group) =>
-      group.members.some(({ half_plane }) => half_plane !== null && half_planes?.includes(half_plane)) ||
-      group.rectangles?.some((one) => rectangles?.includes(one)),
-  );
+function groupOf(facet: Facet, { groups }: FacetTrace): number {
+  return groups.findIndex((group) => isMadeFrom(facet, group));
 }
 
 /** Each group's number on its largest facet. */

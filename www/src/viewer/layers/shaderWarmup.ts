@@ -72,10 +72,10 @@ const FACET: Facet = {
   probability: 1,
   lines: [],
   half_planes: [],
-  rectangles: [],
+  proposals: [],
 };
 const GROUPING: FacetTrace = {
-  groups: [{ plane: PLANE, members: [{ line: 0, side: null, half_plane: null }], rectangles: [] }],
+  groups: [{ plane: PLANE, members: [{ line: 0, side: null, half_plane: null }], proposals: [] }],
   plane_lines: [{ segment: { p0: [0, 0, 0], p1: [1, 0, 0] }, views: [] }],
   borders: [],
   cells: 0,

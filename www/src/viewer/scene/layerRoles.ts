@@ -7,13 +7,23 @@ export const PICK_ORDER = [
   "lines",
   "uncertainty",
   "fans",
+  "dense",
   "facets",
   "model",
   "cameras",
 ] as const;
 
 /** Layers whose points can be measured. */
-export const MEASURED = ["lines", "stretches", "groups", "facets", "model", "kept", "keptModel"] as const;
+export const MEASURED = [
+  "lines",
+  "stretches",
+  "groups",
+  "dense",
+  "facets",
+  "model",
+  "kept",
+  "keptModel",
+] as const;
 
 /** Layers of the place itself, and not of one result. */
 export const OF_BOTH_HALVES: ReadonlySet<string> = new Set(["grid", "measure"]);

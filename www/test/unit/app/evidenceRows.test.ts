@@ -115,6 +115,15 @@ it("a rejected facet says in short why, and in bars all that was weighed", () =>
   expect(bars.map(({ nats }) => nats)).toEqual([-1, -1.67, 0.9, -0.25]);
 });
 
+it("a facet that does not stand above the ground says by how much", () => {
+  expect(facetRejectionWords({ near_ground: { height_m: 0.84 } })).toBe(
+    "lower than any eave (its middle 0.8 m above the ground)",
+  );
+  expect(facetRejectionWords({ reaches_ground: { lowest_m: 0.31 } })).toBe(
+    "its low side is lower than any eave (0.3 m above the ground)",
+  );
+});
+
 describe("the legend", () => {
   const entries = () => presentEntries().map(([, meaning]) => meaning);
 

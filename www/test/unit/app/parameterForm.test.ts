@@ -115,7 +115,8 @@ describe("firstStageOf", () => {
 
   it("finds the stage that a group changes first", () => {
     expect(firstStageOf("sweep", stages)).toBe(4);
-    expect(firstStageOf("texture", stages)).toBe(6);
+    expect(firstStageOf("dense", stages)).toBe(5);
+    expect(firstStageOf("texture", stages)).toBe(7);
     expect(firstStageOf("adjustment", stages)).toBe(stages.indexOf("matches"));
   });
 

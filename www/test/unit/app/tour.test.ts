@@ -4,6 +4,7 @@ import { counted } from "../../../src/app/parts/counted";
 import type { Results } from "../../../src/app/state/results";
 import {
   agreesNowhere,
+  densePlaneParts,
   facetOfSegment,
   fallOf,
   groupParts,
@@ -99,6 +100,28 @@ describe("the tour's examples", () => {
   });
 });
 
+it("a dense plane is told with the facets that it proposed, and their half-planes", () => {
+  const of = (building: number) => ({
+    class: { building, ground: 0, vegetation: 1 - building },
+    patches: [0, 1],
+    rms_m: 0.05,
+  });
+  const all = {
+    dense: { planes: [of(0.8), of(0.3)] },
+    facets: [{ proposals: [{ dense_plane: 0 }, { rectangle: 1 }], half_planes: [4, 5] }, { proposals: [] }],
+  } as unknown as Results;
+  expect(densePlaneParts(all, 0)).toEqual({
+    name: "building",
+    probability: 0.8,
+    patches: 2,
+    rmsM: 0.05,
+    facets: [0],
+    halfPlanes: 2,
+  });
+  expect(densePlaneParts(all, 1)).toMatchObject({ name: "vegetation", facets: [], halfPlanes: 0 });
+  expect(densePlaneParts(all, 2)).toBeNull();
+});
+
 describe("counted", () => {
   it("knows one from many", () => {
     expect(counted(1, "segments")).toBe("1 segment");
@@ -106,5 +129,6 @@ describe("counted", () => {
     expect(counted(1, "pairs of directions")).toBe("1 pair of directions");
     expect(counted(0, "matches")).toBe("0 matches");
     expect(counted(1, "matches")).toBe("1 match");
+    expect(counted(1, "patches")).toBe("1 patch");
   });
 });

@@ -18,7 +18,7 @@ const FACET = {
   outer: SQUARE,
   holes: [],
   half_planes: [7],
-  rectangles: [],
+  proposals: [],
 } as unknown as Facet;
 /** Group 0 lies on the ground and is the larger; group 1 became the facet; line 1 is of both. */
 const GROUPING = {
@@ -26,9 +26,9 @@ const GROUPING = {
     {
       plane: PLANE,
       members: [0, 1, 2].map((line) => ({ line, side: "left", half_plane: null })),
-      rectangles: [],
+      proposals: [],
     },
-    { plane: PLANE, members: [{ line: 1, side: "left", half_plane: 7 }], rectangles: [] },
+    { plane: PLANE, members: [{ line: 1, side: "left", half_plane: 7 }], proposals: [] },
   ],
   plane_lines: [
     { segment: { p0: [0, 0, 5], p1: [4, 0, 5] }, views: [0] },

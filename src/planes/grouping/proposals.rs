@@ -1,8 +1,9 @@
-//! Planes that the other method proposes (W96 3.6), beside the groups of half-planes and lines.
+//! Planes of other sources beside the groups of half-planes and lines: rectangles (W96 3.6) and
+//! planes of dense matching (B99 2).
 //!
-//! A rectangle in the plane of a group, over its place, joins it: the plane is then sought there
-//! too. Any other one is a group of its own, with the lines that lie in it. Which plane covers what
-//! is settled by one labelling.
+//! One in the plane of a group, over its place, joins it: the plane is then sought there too. Any
+//! other one is a group of its own, with the lines that lie in it. Which plane covers what is
+//! settled by one labelling.
 
 use nalgebra::Point2;
 
@@ -14,32 +15,32 @@ use crate::ids::LineId;
 use crate::lines3d::{Line3d, Side};
 use crate::params::RoofParams;
 
-/// Adds the rectangles to the groups, those in the plane of a group to it.
-pub(crate) fn add_rectangles(
+/// Adds the proposed planes to the groups, those in the plane of a group to it.
+pub(crate) fn add_proposals(
     input: &GroupingInput,
     groups: &mut Vec<PlaneGroup>,
     params: &RoofParams,
 ) {
-    for rectangle in input.rectangles {
-        let middle = rectangle.middle().xy();
+    for proposed in input.proposals {
+        let middle = proposed.middle().xy();
         let same = groups.iter_mut().find(|g| {
-            rectangle.lies_in(&g.plane, params)
+            proposed.lies_in(&g.plane, params)
                 && PlanRegion::new(input, g, params).contains(&middle)
         });
         match same {
-            Some(group) => group.rectangles.push(rectangle.index),
-            None => groups.push(group_of(input, rectangle, params)),
+            Some(group) => group.proposals.push(proposed.origin),
+            None => groups.push(group_of(input, proposed, params)),
         }
     }
 }
 
-/// A rectangle as a group, with the lines in its plane, to which the plane is fitted where they
-/// span one.
-fn group_of(input: &GroupingInput, rectangle: &ProposedPlane, params: &RoofParams) -> PlaneGroup {
+/// A proposed plane as a group, with the lines in its plane, to which the plane is fitted where
+/// they span one.
+fn group_of(input: &GroupingInput, proposed: &ProposedPlane, params: &RoofParams) -> PlaneGroup {
     let mut group = PlaneGroup {
-        plane: rectangle.plane,
+        plane: proposed.plane,
         members: Vec::new(),
-        rectangles: vec![rectangle.index],
+        proposals: vec![proposed.origin],
     };
     let region = PlanRegion::new(input, &group, params);
     let ids = (0..input.lines.len()).map(LineId::from_index);
@@ -48,13 +49,13 @@ fn group_of(input: &GroupingInput, rectangle: &ProposedPlane, params: &RoofParam
         let over = (0..5).filter(|i| region.contains(&line.at(f64::from(*i) / 4.0).xy()));
         let in_it = over.count() >= 3 && lies_in_plane(input, &group, id, params);
         in_it.then(|| Member {
-            side: Some(side_of(line, &rectangle.middle().xy())),
+            side: Some(side_of(line, &proposed.middle().xy())),
             ..member(input, id, None)
         })
     });
     let members: Vec<Member> = members.collect();
-    let fitted = fit_plane(input, &members).filter(|plane| rectangle.lies_in(plane, params));
-    group.plane = fitted.unwrap_or(rectangle.plane);
+    let fitted = fit_plane(input, &members).filter(|plane| proposed.lies_in(plane, params));
+    group.plane = fitted.unwrap_or(proposed.plane);
     group.members = members;
     group
 }
@@ -70,6 +71,7 @@ fn side_of(line: &Line3d, p: &Point2<f64>) -> Side {
 mod tests {
     use super::*;
     use crate::geometry::Plane;
+    use crate::ids::ProposalOrigin;
     use crate::testing::line;
     use nalgebra::{Point3, Vector3};
 
@@ -86,7 +88,7 @@ mod tests {
     fn rectangle(index: u32, z: f64) -> ProposedPlane {
         let corners = [(-4.0, -3.0), (4.0, -3.0), (4.0, 3.0), (-4.0, 3.0)];
         ProposedPlane {
-            index,
+            origin: ProposalOrigin::Rectangle(index),
             plane: level(z),
             ring: corners.map(|(x, y)| Point3::new(x, y, z)).to_vec(),
         }
@@ -102,14 +104,17 @@ mod tests {
             lines: &lines,
             half_planes: &[],
             neighbours: &neighbours,
-            rectangles: &rectangles,
+            proposals: &rectangles,
         };
         let params = RoofParams::default();
         let mut groups = super::super::group_planes(&input, &params);
         assert_eq!(groups.len(), 1, "the plane of both eaves");
-        add_rectangles(&input, &mut groups, &params);
-        let joined: Vec<&[u32]> = groups.iter().map(|g| &g.rectangles[..]).collect();
-        assert_eq!(joined, [[0], [1]]);
+        add_proposals(&input, &mut groups, &params);
+        let joined: Vec<&[ProposalOrigin]> = groups.iter().map(|g| &g.proposals[..]).collect();
+        assert_eq!(
+            joined,
+            [[0], [1]].map(|of| of.map(ProposalOrigin::Rectangle))
+        );
         assert!((groups[0].plane.z_at(0.0, 0.0) - ROOF_Z).abs() < 1e-6);
         assert!(groups[1].members.is_empty(), "no line lies a metre higher");
     }

@@ -1,18 +1,18 @@
-//! Is a facet green, as plants are? Crowns and hedges are textured, and from above nearly as plane
+//! Is a surface green, as plants are? Crowns and hedges are textured, and from above nearly as plane
 //! as roofs.
 //!
 //! The measure is the excess green of weed detection (Woebbecke et al. 1995), (2 G - R - B) / (R +
 //! G + B): the same in sun and in shade. Painted and copper roofs are green, too, so it only speaks
-//! against a facet and rejects none by itself. Photographs without colour, and colour infrared
+//! against a roof and rejects none by itself. Photographs without colour, and colour infrared
 //! ones, in which plants are red, give no evidence.
 
 use nalgebra::Point3;
 
-use crate::scene::{Scene, View};
+use super::{Scene, View};
 
 /// Excess green at some points: of each view that sees them in the mean, and of the views the
 /// median. 0 where no view does.
-pub(super) fn excess_green(scene: &Scene, points: &[Point3<f64>]) -> f64 {
+pub(crate) fn excess_green(scene: &Scene, points: &[Point3<f64>]) -> f64 {
     let mut of_views: Vec<f64> = (scene.views.iter())
         .filter_map(|view| of_view(view, points))
         .collect();

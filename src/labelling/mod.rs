@@ -9,11 +9,11 @@
 //! E(l) = sum_cells D(cell, l)  +  sum_edges length x V(edge, l, l')
 //! ```
 //!
-//! D is the mismatch of the images under the plane against that of "no plane" (0), weighted by
-//! texture, less the gain of half-planes beside the cell, which is the same for all planes. V is
-//! small where a reconstructed line or the intersection of the two planes supports the border, so
-//! outlines follow real lines (tau_real) and area counts as in S(P). The minimum is found by
-//! alpha-expansion (Boykov, Veksler, Zabih 2001), each expansion a minimum cut.
+//! D is minus what the images say of the plane against "no plane" (0), nats. V is small where a
+//! reconstructed line or the intersection of the two planes supports the border, so outlines follow
+//! real lines (tau_real) and area counts as in S(P). The minimum is found by alpha-expansion
+//! (Boykov, Veksler, Zabih 2001), each expansion a minimum cut. The patches of dense matching get
+//! their planes in the same way.
 //!
 //! ```text
 //! energy     data and border terms

@@ -1,0 +1,310 @@
+//! Planes from dense matching, where no line starts one (B99 2: the approach of ENST).
+//!
+//! ```text
+//! sweep         the best level plane at every place
+//! patch         a small piece of a surface
+//! patch_match   slanted patches by PatchMatch, all views at once
+//! region        patches in one plane, joined
+//! segmentation  the planes compete for the patches
+//! surface_class building, ground or vegetation
+//! ```
+
+mod patch;
+mod patch_match;
+mod region;
+mod segmentation;
+mod surface_class;
+mod sweep;
+
+pub use patch::Patch;
+pub use surface_class::{SurfaceClass, SurfaceEvidence};
+
+use nalgebra::{Point2, Point3, Vector2};
+use serde::{Deserialize, Serialize};
+
+use crate::evidence::JudgedSurface;
+use crate::execution::Sharded;
+use crate::geometry::{Plane, bounds};
+use crate::ids::ProposalOrigin;
+use crate::lines3d::Line3d;
+use crate::photoconsistency::{PlanGrid, WindowMatcher};
+use crate::planes::ProposedPlane;
+use crate::scene::Scene;
+use crate::terrain::Ground;
+
+/// Distance of neighbouring patches, in positions of a window.
+const SPACING: f64 = 4.0;
+/// Positions of a window are so many pixels apart: a window of eleven is about two metres wide on
+/// photographs of a decimetre a pixel.
+const REDUCED: usize = 2;
+
+/// A plane that dense matching found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+pub struct DensePlane {
+    /// The plane.
+    pub plane: Plane,
+    /// Covariance of the height at the middle of the region, metres, and of its gradient along x
+    /// and y: 3 x 3.
+    pub covariance: [[f64; 3]; 3],
+    /// The least rectangle around the region in plan, in the plane, counter-clockwise from above.
+    pub ring: Vec<Point3<f64>>,
+    /// Its patches, by their places among all.
+    pub patches: Vec<usize>,
+    /// Area in plan, square metres.
+    pub area_m2: f64,
+    /// Root mean square of the patches' heights above and below the plane, metres.
+    pub rms_m: f64,
+    /// What it is.
+    pub class: SurfaceClass,
+}
+
+impl DensePlane {
+    /// As a plane that facets may have; `index` is its place in the list.
+    pub fn proposed(&self, index: usize) -> ProposedPlane {
+        ProposedPlane {
+            origin: ProposalOrigin::DensePlane(index as u32),
+            plane: self.plane,
+            ring: self.ring.clone(),
+        }
+    }
+}
+
+/// How the planes came about.
+#[derive(Clone, Debug, Default, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+pub struct DenseTrace {
+    /// All patches, row by row in plan.
+    pub patches: Vec<Patch>,
+    /// What speaks for each plane being a building or vegetation, and against it.
+    pub classes: Vec<SurfaceEvidence>,
+    /// Distance of neighbouring patches, metres.
+    pub spacing_m: f64,
+}
+
+impl DenseTrace {
+    /// What the planes are, as it is written out.
+    pub(crate) fn judged(&self, planes: &[DensePlane]) -> Vec<JudgedSurface> {
+        let judged = |(plane, class): (&DensePlane, &SurfaceEvidence)| JudgedSurface {
+            patches: (plane.patches.iter())
+                .map(|&k| self.patches[k].middle)
+                .map(|p| plane.plane.lift(p.x, p.y))
+                .collect(),
+            building: class.building.clone(),
+            vegetation: class.vegetation.clone(),
+        };
+        planes.iter().zip(&self.classes).map(judged).collect()
+    }
+}
+
+/// Planes of the surfaces that the views agree on.
+pub fn dense_planes(
+    scene: &Scene,
+    lines: &[Line3d],
+    ground: &Ground,
+) -> Sharded<(Vec<DensePlane>, DenseTrace)> {
+    let Some(extent) = extent(lines) else {
+        return Ok(Default::default());
+    };
+    let reduced = scene.reduced(REDUCED);
+    let middle = nalgebra::center(&extent[0], &extent[1]);
+    let pixels = reduced.views.iter().map(|v| v.camera.ground_pixel(&middle));
+    let step = pixels.fold(f64::INFINITY, f64::min);
+    let z_per_pixel = step * height_by_base(&reduced, &middle);
+    let grid = PlanGrid::covering(extent[0].xy(), extent[1].xy(), SPACING * step);
+    let heights = [extent[0].z, extent[1].z];
+    let levels = sweep::best_levels(&reduced, &grid, step, heights, z_per_pixel)?;
+    let matcher = WindowMatcher::new(&reduced, step);
+    let found = patch_match::match_patches(&matcher, grid, &levels, z_per_pixel)?;
+    let places: Vec<usize> = (found.patches.iter())
+        .scan(0, |n, patch| {
+            let place = *n;
+            *n += usize::from(patch.is_some());
+            Some(place)
+        })
+        .collect();
+    let regions = segmentation::segmented(&found, &matcher, z_per_pixel);
+    let classes = crate::execution::map(&regions, |_, region| {
+        surface_class::weigh(region, &found, scene, ground, z_per_pixel)
+    });
+    let planes = regions.into_iter().zip(&classes).map(|(region, evidence)| {
+        let middles = (region.cells.iter()).filter_map(|&k| found.patches[k].map(|p| p.middle));
+        let middles: Vec<Point2<f64>> = middles.collect();
+        let corners = least_rectangle(&middles, 0.5 * grid.step, &region.plane);
+        DensePlane {
+            plane: region.plane,
+            covariance: region.covariance.transpose().into(),
+            ring: (corners.iter())
+                .map(|p| region.plane.lift(p.x, p.y))
+                .collect(),
+            area_m2: region.cells.len() as f64 * grid.step * grid.step,
+            patches: region.cells.iter().map(|&k| places[k]).collect(),
+            rms_m: region.rms_m,
+            class: evidence.class(),
+        }
+    });
+    let planes = planes.collect();
+    let trace = DenseTrace {
+        patches: found.patches.into_iter().flatten().collect(),
+        classes,
+        spacing_m: grid.step,
+    };
+    Ok((planes, trace))
+}
+
+/// The box in which surfaces are sought: around the lines, which may be wrong in a few places.
+fn extent(lines: &[Line3d]) -> Option<[Point3<f64>; 2]> {
+    const MARGIN: f64 = 3.0;
+    if lines.is_empty() {
+        return None;
+    }
+    let ends = || lines.iter().flat_map(|l| [l.segment.p0, l.segment.p1]);
+    let mut heights: Vec<f64> = ends().map(|p| p.z).collect();
+    heights.sort_by(f64::total_cmp);
+    let share = |f: f64| heights[(f * (heights.len() - 1) as f64) as usize];
+    let [low, high] = bounds(ends().map(|p| p.xy()));
+    Some([
+        Point3::new(low.x - MARGIN, low.y - MARGIN, share(0.02) - 1.0),
+        Point3::new(high.x + MARGIN, high.y + MARGIN, share(0.98) + 1.0),
+    ])
+}
+
+/// Height over base: the change of height that moves the images of the two most different views by
+/// one ground pixel against each other.
+fn height_by_base(scene: &Scene, middle: &Point3<f64>) -> f64 {
+    let down = |p: &Point3<f64>| (p.xy() - middle.xy()) / (p.z - middle.z);
+    let centers = || scene.views.iter().map(|v| &v.camera.center);
+    let bases = centers().flat_map(|a| centers().map(move |b| (down(a) - down(b)).norm()));
+    1.0 / bases.fold(0.05, f64::max)
+}
+
+/// The least rectangle in plan around some points and a margin, one side along the contour lines
+/// of a plane or along x.
+fn least_rectangle(points: &[Point2<f64>], margin: f64, plane: &Plane) -> [Point2<f64>; 4] {
+    let directions = (0..18).map(|i| {
+        let (s, c) = crate::math::sin_cos(f64::from(i) * std::f64::consts::PI / 36.0);
+        Vector2::new(c, s)
+    });
+    let level = Vector2::new(-plane.normal.y, plane.normal.x).try_normalize(0.05);
+    let boxes = directions.chain(level).map(|along| {
+        let across = Vector2::new(-along.y, along.x);
+        let [low, high] = bounds(
+            points
+                .iter()
+                .map(|p| Point2::new(p.coords.dot(&along), p.coords.dot(&across))),
+        );
+        let (low, high) = (
+            low.coords.add_scalar(-margin),
+            high.coords.add_scalar(margin),
+        );
+        let at = |t: f64, u: f64| Point2::from(along * t + across * u);
+        let corners = [
+            at(low.x, low.y),
+            at(high.x, low.y),
+            at(high.x, high.y),
+            at(low.x, high.y),
+        ];
+        ((high - low).product(), corners)
+    });
+    let least = boxes.min_by(|a, b| a.0.total_cmp(&b.0));
+    least.expect("there are directions").1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::planes::rendered_planes::{TexturedPlane, scene};
+    use crate::testing::line;
+    use nalgebra::Vector3;
+
+    const RIDGE_Z: f64 = 6.0;
+    const PITCH: f64 = 0.7;
+
+    fn slope(to_the_north: f64) -> Plane {
+        let normal = Vector3::new(0.0, to_the_north * PITCH, 1.0);
+        Plane::from_point_normal(&Point3::new(0.0, 0.0, RIDGE_Z), &normal).unwrap()
+    }
+
+    /// The planes of a gable roof of 14 m by 10 m on level ground.
+    fn found() -> (Vec<DensePlane>, DenseTrace) {
+        let textured = |plane, exists| TexturedPlane {
+            plane,
+            exists,
+            texture: 0.3,
+        };
+        let ground = Plane {
+            normal: Vector3::z(),
+            d: 0.0,
+        };
+        let views = scene(&[
+            textured(slope(1.0), |x, y| x.abs() < 7.0 && (0.0..5.0).contains(&y)),
+            textured(slope(-1.0), |x, y| {
+                x.abs() < 7.0 && (-5.0..0.0).contains(&y)
+            }),
+            textured(ground, |_, _| true),
+        ]);
+        let ridge = line(
+            Point3::new(-7.0, 0.0, RIDGE_Z),
+            Point3::new(7.0, 0.0, RIDGE_Z),
+        );
+        let kerb = line(Point3::new(-7.0, -8.0, 0.0), Point3::new(7.0, 8.0, 0.0));
+        dense_planes(&views, &[ridge, kerb], &Ground::level(0.0)).unwrap()
+    }
+
+    #[test]
+    fn planted_slopes_are_found_where_no_line_lies_in_them() {
+        let (planes, trace) = found();
+        for truth in [slope(1.0), slope(-1.0)] {
+            let near = |p: &&DensePlane| p.plane.angle_to(&truth) < 0.05;
+            let plane = planes.iter().find(near).expect("the slope");
+            let middle = crate::geometry::mean_point(&plane.ring);
+            assert!(truth.signed_distance(&middle).abs() < 0.1, "{middle}");
+            // Windows reach over the borders by half their width.
+            assert!((plane.area_m2 - 70.0).abs() < 25.0, "{}", plane.area_m2);
+            assert!(plane.rms_m < 0.3, "{}", plane.rms_m);
+            assert!(plane.covariance[0][0].sqrt() < 0.1);
+            let inside = |k: &usize| {
+                let p = trace.patches[*k].middle;
+                p.x.abs() < 8.0 && p.y.abs() < 6.0
+            };
+            assert!(plane.patches.iter().all(inside));
+        }
+        let level = |p: &&DensePlane| p.plane.normal.z > 0.99 && p.class.building < 0.5;
+        assert!(planes.iter().any(|p| level(&&p.clone())), "the ground");
+    }
+
+    #[test]
+    fn probabilities_of_a_class_add_up() {
+        let (planes, trace) = found();
+        assert_eq!(planes.len(), trace.classes.len());
+        for class in planes.iter().map(|p| p.class) {
+            let sum = class.building + class.ground + class.vegetation;
+            assert!(
+                (sum - 1.0).abs() < 1e-12 && class.ground >= 0.0,
+                "{class:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_least_rectangle_lies_along_the_contour_lines_of_a_long_slope() {
+        let plane = Plane::from_point_normal(&Point3::origin(), &Vector3::new(0.6, 0.8, 2.0));
+        let plane = plane.unwrap();
+        let (along, down) = (Vector2::new(-0.8, 0.6), Vector2::new(0.6, 0.8));
+        let points = (0..20).flat_map(|i| (0..5).map(move |j| (f64::from(i), f64::from(j))));
+        let points: Vec<Point2<f64>> = points
+            .map(|(t, u)| Point2::from(along * t + down * u))
+            .collect();
+        let corners = least_rectangle(&points, 0.5, &plane);
+        let sides = [corners[1] - corners[0], corners[2] - corners[1]];
+        assert!((sides[0].norm() - 20.0).abs() < 1e-9 && (sides[1].norm() - 5.0).abs() < 1e-9);
+        assert!(sides[0].perp(&sides[1]) > 0.0, "counter-clockwise");
+        assert!(sides[0].perp(&along).abs() < 1e-9);
+    }
+
+    #[test]
+    fn nothing_is_sought_without_lines() {
+        let (planes, trace) = dense_planes(&scene(&[]), &[], &Ground::level(0.0)).unwrap();
+        assert!(planes.is_empty() && trace.patches.is_empty());
+    }
+}

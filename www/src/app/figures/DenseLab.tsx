@@ -1,0 +1,78 @@
+/** B99 2: the patches of dense matching in plan, by what their planes are, or by how probably they are buildings. */
+import "./figures.css";
+import { useState } from "preact/hooks";
+import type { DensePlanes, Vec2 } from "../../shared/records";
+import { Filmstrip } from "../images/Filmstrip";
+import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../parts/charts";
+import { counted } from "../parts/counted";
+import { results } from "../state/results";
+import { select, selection } from "../state/viewState";
+import { areasOf, equalScales, type PlanColours, planeAt, squaresAt } from "./densePlan";
+
+export function DenseLab() {
+  const { dense } = results.value;
+  const [shows, show] = useState<PlanColours>("class");
+  if (dense === null) {
+    return <p class="lab-hint muted">Run the stage: the planes of dense matching appear here, in plan.</p>;
+  }
+  if (dense.planes.length === 0) {
+    return <p class="lab-hint muted">Dense matching found no plane, or is switched off in the parameters.</p>;
+  }
+  return (
+    <div class="split-lab even">
+      <div class="chart-lab" data-testid="dense-lab">
+        <fieldset class="choice">
+          <legend class="visually-hidden">Colours of the plan</legend>
+          {(["class", "building"] as const).map((one) => (
+            <button key={one} type="button" aria-pressed={shows === one} onClick={() => show(one)}>
+              {one === "class" ? "Classes" : "Probability of building"}
+            </button>
+          ))}
+        </fieldset>
+        <Fit>{(frame) => <Plan frame={frame} dense={dense} shows={shows} />}</Fit>
+      </div>
+      <Filmstrip />
+    </div>
+  );
+}
+
+function Plan({ frame, dense, shows }: { frame: Frame; dense: DensePlanes; shows: PlanColours }) {
+  const { patches, spacing_m } = dense.trace;
+  const places = patches.map(({ middle }) => middle);
+  const [x, y] = equalScales(frame, places, spacing_m);
+  const [toX, toY] = axesOf(frame, x, y);
+  const side = toX(spacing_m) - toX(0);
+  const buildings = dense.planes.filter((plane) => plane.class.building > 0.5).length;
+  const picked = selection.value;
+  const ring = picked?.kind === "dense" ? (dense.planes[picked.index]?.ring ?? []) : [];
+  const outline = closedPathOf(ring.map(([px, py]) => [toX(px), toY(py)] as const));
+  return (
+    <Chart
+      frame={frame}
+      x={x}
+      y={y}
+      xTitle="x (m)"
+      yTitle="y (m)"
+      label={`Plan of ${counted(dense.planes.length, "dense planes")}; buildings, more probably than not: ${buildings}`}
+      testid="dense-plan"
+      onClick={(...at) => {
+        const index = planeAt(dense, at);
+        select(index === null ? null : { kind: "dense", index });
+      }}
+    >
+      {areasOf(dense, shows).map(({ name, opacity, own }) => (
+        <path
+          key={`${name} ${opacity}`}
+          class={`dense-patches class-${name}`}
+          fill-opacity={opacity}
+          d={squaresAt(
+            own.map((i) => places[i] as Vec2).map(([px, py]) => [toX(px), toY(py)]),
+            side,
+          )}
+          data-count={own.length}
+        />
+      ))}
+      {outline !== "" && <path class="chosen-ring" d={outline} />}
+    </Chart>
+  );
+}
