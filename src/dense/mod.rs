@@ -33,7 +33,7 @@ use crate::scene::Scene;
 use crate::terrain::Ground;
 
 /// Distance of neighbouring patches, in positions of a window.
-const SPACING: f64 = 4.0;
+const SPACING: f64 = 5.0;
 /// Positions of a window are so many pixels apart: a window of eleven is about two metres wide on
 /// photographs of a decimetre a pixel.
 const REDUCED: usize = 2;

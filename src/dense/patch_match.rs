@@ -24,7 +24,7 @@ const BAND: usize = 24;
 /// ... with so many more on both sides, whose planes they may take over.
 const MARGIN: usize = 4;
 /// Turns of both colours.
-const TURNS: usize = 4;
+const TURNS: usize = 3;
 /// Own planes that a patch tries in each of its turns.
 const TRIALS: usize = 4;
 /// First change of the height, in heights that move the images by one pixel against each other.

@@ -23,9 +23,9 @@ use crate::photoconsistency::WindowMatcher;
 /// What it costs that two neighbours have different planes, nats.
 const BORDER: f64 = 1.0;
 /// How far beyond its patches a plane is weighed, in patches.
-const REACH: usize = 6;
+const REACH: usize = 5;
 /// Labellings, each on the planes of the one before.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 2;
 /// Steps of the search for the plane on which the views agree best are halved so often.
 const HALVINGS: usize = 4;
 
@@ -148,7 +148,7 @@ fn agreed(
     start: &Plane,
     z_per_pixel: f64,
 ) -> Plane {
-    const MOST_CELLS: usize = 48;
+    const MOST_CELLS: usize = 24;
     let every = cells.len().div_ceil(MOST_CELLS);
     let cells: Vec<usize> = cells.iter().copied().step_by(every).collect();
     let at = |k: usize| {

@@ -128,7 +128,7 @@ impl<'s> WindowMatcher<'s> {
             *values = gray.sample_eight(at[0], at[1]) * *is_one;
             sum += *values;
         }
-        let sum = sum.reduce_add();
+        let sum = total(sum);
         // Positions outside the image are not numbers.
         if sum.is_nan() {
             return None;
@@ -139,13 +139,18 @@ impl<'s> WindowMatcher<'s> {
             *values = (*values - mean) * *is_one;
             squares += *values * *values;
         }
-        let variance = squares.reduce_add() / POSITIONS as f32;
+        let variance = total(squares) / POSITIONS as f32;
         Some(NormalisedWindow {
             values: window,
             variance,
             inverse_deviation: 1.0 / larger(variance, LEAST_VARIANCE).sqrt(),
         })
     }
+}
+
+/// The sum of a register, in the same order on every target.
+fn total(register: f32x8) -> f32 {
+    register.to_array().iter().sum()
 }
 
 /// A view in a window.
@@ -161,7 +166,7 @@ impl NormalisedWindow {
     fn correlation(&self, other: &Self) -> f32 {
         let products = self.values.iter().zip(&other.values);
         let sum = products.fold(f32x8::ZERO, |sum, (a, b)| sum + *a * *b);
-        let r = sum.reduce_add() / POSITIONS as f32;
+        let r = total(sum) / POSITIONS as f32;
         (r * self.inverse_deviation * other.inverse_deviation).clamp(-1.0, 1.0)
     }
 }

@@ -1,5 +1,5 @@
-//! Is a surface green, as plants are? Crowns and hedges are textured, and from above nearly as plane
-//! as roofs.
+//! Is a surface green, as plants are? Crowns and hedges are textured, and from above nearly as
+//! plane as roofs.
 //!
 //! The measure is the excess green of weed detection (Woebbecke et al. 1995), (2 G - R - B) / (R +
 //! G + B): the same in sun and in shade. Painted and copper roofs are green, too, so it only speaks

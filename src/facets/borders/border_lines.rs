@@ -18,6 +18,7 @@ use nalgebra::{Point2, Vector2};
 use super::border::{Border, BorderKind};
 use super::extent::extent_lines;
 use crate::geometry::Segment3;
+use crate::ids::ProposalOrigin;
 use crate::lines3d::ThetaFrame;
 use crate::params::RoofParams;
 use crate::photoconsistency::ShiftableWindows;
@@ -258,9 +259,14 @@ fn closing_lines(
     found
 }
 
-/// The sides of the rectangles: across the lines they are where crossing image lines end the plane.
+/// The sides of the rectangles, which are where crossing image lines end the plane, and of those
+/// planes of dense matching that have no line.
 fn proposed_sides(input: &GroupingInput, hypotheses: &[PlaneHypothesis]) -> Vec<Border> {
-    let proposed = hypotheses.iter().flat_map(|h| h.group.proposed(input));
+    let proposed = hypotheses.iter().flat_map(|h| {
+        let has_lines = !h.group.members.is_empty();
+        let proposed = h.group.proposed(input);
+        proposed.filter(move |p| !has_lines || matches!(p.origin, ProposalOrigin::Rectangle(_)))
+    });
     let sides = proposed.flat_map(|r| {
         r.sides().map(|[a, b]| Border {
             kind: BorderKind::Rectangle,

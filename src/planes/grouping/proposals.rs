@@ -5,7 +5,7 @@
 //! other one is a group of its own, with the lines that lie in it. Which plane covers what is
 //! settled by one labelling.
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Point3};
 
 use super::coplanarity::{fit_plane, lies_in_plane};
 use super::plane_group::{GroupingInput, Member, PlaneGroup, member};
@@ -21,18 +21,41 @@ pub(crate) fn add_proposals(
     groups: &mut Vec<PlaneGroup>,
     params: &RoofParams,
 ) {
+    let region = |group: &PlaneGroup| PlanRegion::new(input, group, params);
+    let mut regions: Vec<PlanRegion> = groups.iter().map(region).collect();
     for proposed in input.proposals {
-        let middle = proposed.middle().xy();
-        let same = groups.iter_mut().find(|g| {
-            proposed.lies_in(&g.plane, params)
-                && PlanRegion::new(input, g, params).contains(&middle)
-        });
+        let same = (groups.iter().zip(&regions))
+            .position(|(group, region)| explains(group, region, proposed, params));
         match same {
-            Some(group) => group.proposals.push(proposed.origin),
-            None => groups.push(group_of(input, proposed, params)),
+            Some(k) => {
+                groups[k].proposals.push(proposed.origin);
+                regions[k] = region(&groups[k]);
+            }
+            None => {
+                let group = group_of(input, proposed, params);
+                regions.push(region(&group));
+                groups.push(group);
+            }
         }
     }
 }
+
+/// Does a group say as much as a proposed plane, over most of it?
+fn explains(
+    group: &PlaneGroup,
+    region: &PlanRegion,
+    proposed: &ProposedPlane,
+    params: &RoofParams,
+) -> bool {
+    let places: Vec<Point3<f64>> = proposed.places().collect();
+    let inside = (places.iter())
+        .filter(|p| region.contains(&p.xy()) && proposed.is_near(&group.plane, p, params));
+    proposed.is_parallel(&group.plane, params)
+        && inside.count() as f64 >= MOST * places.len() as f64
+}
+
+/// Share of a proposed plane that a group must explain. Assumption: half, and some more.
+const MOST: f64 = 0.6;
 
 /// A proposed plane as a group, with the lines in its plane, to which the plane is fitted where
 /// they span one.

@@ -46,11 +46,26 @@ impl ProposedPlane {
 
     /// Do its corners lie in a plane, as well as the lines of one plane do?
     pub(super) fn lies_in(&self, plane: &Plane, params: &RoofParams) -> bool {
-        let far = 2.0 * params.coplanar_distance_m;
+        self.is_parallel(plane, params) && self.ring.iter().all(|p| self.is_near(plane, p, params))
+    }
+
+    /// Has a plane about its normal?
+    pub(super) fn is_parallel(&self, plane: &Plane, params: &RoofParams) -> bool {
         plane.angle_to(&self.plane) < params.coplanar_angle_deg.to_radians()
-            && self
-                .ring
-                .iter()
-                .all(|p| plane.signed_distance(p).abs() <= far)
+    }
+
+    /// Is one of its points as near to a plane as lines of one plane are?
+    pub(super) fn is_near(&self, plane: &Plane, p: &Point3<f64>, params: &RoofParams) -> bool {
+        plane.signed_distance(p).abs() <= 2.0 * params.coplanar_distance_m
+    }
+
+    /// Points all over it.
+    pub(super) fn places(&self) -> impl Iterator<Item = Point3<f64>> {
+        let middle = self.middle();
+        let towards = move |p: &Point3<f64>, share: f64| middle + (p - middle) * share;
+        let shares = [0.3, 0.6, 0.9];
+        self.ring
+            .iter()
+            .flat_map(move |p| shares.map(|share| towards(p, share)))
     }
 }
