@@ -141,10 +141,12 @@ pub(super) fn fitted<'p>(
     }
     let inverse = normal.try_inverse()?;
     let solved = inverse * right;
-    let squares: f64 = patches.map(|p| (p.z - row(p).dot(&solved)).powi(2)).sum();
+    let off = patches.map(|p| p.z - row(p).dot(&solved));
+    let squares: f64 = off.map(|off| off * off).sum();
     let rms = (squares / count as f64).sqrt();
     // Windows of neighbouring patches overlap: no less than matching can tell of one.
-    let variance = (squares / (count - 3) as f64).max((0.1 * z_per_pixel).powi(2));
+    let least = 0.1 * z_per_pixel;
+    let variance = (squares / (count - 3) as f64).max(least * least);
     let plane = super::patch::plane_through(
         &Point2::from(middle),
         solved[0],

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use ridgeline::camera::Camera;
 use ridgeline::evidence::{
-    Candidates, Evidence, EvidenceTerm, JudgedFacet, JudgedLine, WindowCounts,
+    Candidates, Evidence, EvidenceTerm, JudgedFacet, JudgedLine, JudgedSurface, WindowCounts,
 };
 use ridgeline::export::{ExportInput, export_all};
 use ridgeline::geometry::{Plane, Segment2, Segment3};
@@ -199,8 +199,13 @@ fn planted_candidates() -> Candidates {
             holes: Vec::new(),
             plane,
             accepted: false,
-            evidence,
+            evidence: evidence.clone(),
             windows: WindowCounts::default(),
+        }],
+        surfaces: vec![JudgedSurface {
+            patches: outline.to_vec(),
+            building: evidence.clone(),
+            vegetation: evidence,
         }],
     }
 }

@@ -56,6 +56,11 @@ fn what_spoke_for_candidates_is_written_with_their_places() {
     assert_eq!(line["terms"][0]["feature"], "slope_deg");
     assert_eq!(line["terms"][0]["value"], 12.5);
     assert_eq!(&evidence["model_lines"][0], line);
+    let surface = &evidence["surfaces"][0];
+    assert_eq!(surface["patches"], facet["outline"]);
+    for class in ["building", "vegetation"] {
+        assert_eq!(surface[class], facet["terms"]);
+    }
     assert_eq!(facet["accepted"], false);
     assert_eq!(facet["outline"][1][0], 432_104.0);
     assert_eq!(facet["plane"], serde_json::json!([0.0, 0.0, 1.0, -5.0]));
