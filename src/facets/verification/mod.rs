@@ -31,8 +31,7 @@ use crate::scene::Scene;
 use crate::terrain::Ground;
 
 /// Share of a facet that may lie on the ground for the rest to be a roof still: a corner drawn too
-/// far. Assumption: of a bank that rises to the height of an eave more lies lower than
-/// [`LOWEST_EAVE`].
+/// far. Assumption: of a bank that rises to the height of an eave more lies lower.
 const MOST_ON_GROUND: f64 = 0.15;
 
 /// Is a facet large enough, and as high above the ground as roofs are?

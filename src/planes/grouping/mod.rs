@@ -10,7 +10,7 @@
 //!
 //! ```text
 //! neighbourhood   Delaunay triangulation constrained to the projected lines
-//! proposed_plane  planes of the other method (W96 3.6)
+//! proposed_plane  a plane of another source (B99 2, W96 3.6)
 //! plane_group     lines and half-planes that share a plane
 //! region          the part of the plan that a group may cover
 //! coplanarity     which lines lie in a plane, and the plane that fits them

@@ -100,7 +100,7 @@ pub struct GroupingInput<'a> {
     pub half_planes: &'a [HalfPlane],
     /// Neighbours of each line.
     pub neighbours: &'a LineNeighbours,
-    /// Planes that the other method proposes.
+    /// Planes that other sources propose.
     pub proposals: &'a [ProposedPlane],
 }
 
