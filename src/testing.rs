@@ -30,6 +30,7 @@ pub(crate) fn facet(ring: &[Point3<f64>]) -> Facet {
         holes: Vec::new(),
         similarity: 0.0,
         real_ratio: 0.0,
+        uncertainty: None,
         probability: 1.0,
         lines: Vec::new(),
         half_planes: Vec::new(),

@@ -27,6 +27,7 @@ import sys
 import numpy as np
 
 import logistic
+import roof_sigmas
 from growth import HEIGHT, LEFT, TOP, WIDTH, document
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -87,6 +88,7 @@ def main():
     args = parser.parse_args()
     if args.self_test:
         windows_self_test()
+        uncertainty_self_test()
         return logistic.self_test()
     scenes, scorer = scenes_of(args), args.more.parent / 'score' / 'score.py'
     if not scorer.is_file() or len(scenes) < 2:
@@ -110,6 +112,7 @@ def main():
                              ('buildings', buildings), ('vegetation', vegetation)):
         calibrate(args, kind, candidates)
     calibrate_windows(args, facets)
+    calibrate_uncertainty(args, truth, scenes)
     return 0
 
 
@@ -443,6 +446,57 @@ def windows_self_test():
     assert abs(nats[0, 14]) < 0.2, 'half-way between them says nothing'
     assert (window_nats(0 * on, beside) == 0).all(), 'nothing was counted'
     assert rising([1.0, 3.0, 1.0, 4.0], [1.0, 1.0, 1.0, 1.0]).tolist() == [1, 2, 2, 4]
+
+
+# ---- standard deviations ------------------------------------------------------------------------
+
+# Shares of errors within one and two standard deviations.
+NORMAL = (0.6827, 0.9545)
+SCALES = np.geomspace(1, 8, 25)
+FLOORS_PX = np.linspace(0, 2, 41)
+
+
+def calibrate_uncertainty(args, truth, scenes):
+    """Fits how far the stated standard deviations of facets and corners are inflated, and writes it."""
+    path = TABLES / 'uncertainty.json'
+    present = json.loads(path.read_text())
+    found, used = {kind: [] for kind in roof_sigmas.KINDS}, set()
+    for scene in scenes:
+        city = RUNS / scene.name / 'strict' / 'model.city.json'
+        # The old scenes have an exact orientation, which no photograph has.
+        if city.is_file() and kind_of(scene.name) != 'old':
+            used.add(scene.name)
+            for kind, errors in roof_sigmas.compare(truth, scene, city).items():
+                found[kind] += errors
+    table = {'source': f'{len(found["height"])} facets of {told_scenes(used)}'}
+    for kind, errors in found.items():
+        error, stated, pixel = np.array(errors).T
+        scale, floor = (present[kind][k] for k in ('scale', 'floor_px'))
+        adjusted = np.sqrt(np.maximum(stated**2 - (floor * pixel) ** 2, 0)) / scale
+        scale, floor = inflation(error, adjusted, pixel)
+        table[kind] = {'scale': round(scale, 2), 'floor_px': round(floor, 2)}
+        sigma = np.hypot(scale * adjusted, floor * pixel)
+        print(f'{kind}: {roof_sigmas.coverage(errors)}; scale {scale:.2f}, floor {floor:.2f} px: '
+              f'{roof_sigmas.coverage(list(zip(error, sigma, pixel)))}')
+    if not args.dry:
+        path.write_text(re.sub(r'\{\s+("scale"[^}]+?)\s+\}', lambda m: '{' + ' '.join(m[1].split()) + '}', json.dumps(table, indent=1)) + '\n')
+
+
+def inflation(error, adjusted, pixel):
+    """Scale and floor with which most nearly so many errors lie within one and two standard deviations as of normal ones."""
+    def miss(scale, floor):
+        sigma = np.hypot(scale * adjusted, floor * pixel)
+        return sum((np.mean(np.abs(error) <= times * sigma) - share) ** 2 for times, share in zip((1, 2), NORMAL))
+    return min(((scale, floor) for scale in SCALES for floor in FLOORS_PX), key=lambda at: miss(*at))
+
+
+def uncertainty_self_test():
+    """A planted inflation comes back."""
+    draw = np.random.default_rng(7)
+    adjusted, pixel = draw.uniform(0.005, 0.2, 20000), np.full(20000, 0.1)
+    error = draw.normal(size=20000) * np.hypot(2 * adjusted, 0.4 * pixel)
+    scale, floor = inflation(error, adjusted, pixel)
+    assert abs(scale - 2) < 0.3 and abs(floor - 0.4) < 0.3, (scale, floor)
 
 
 if __name__ == '__main__':

@@ -16,11 +16,13 @@
 //! `least_nats` so low that every candidate is seen.
 
 mod judged;
+mod uncertainty;
 mod windows;
 
 pub use judged::{
     Candidates, JudgedFacet, JudgedLine, JudgedSurface, WindowCounts, WindowHistogram,
 };
+pub(crate) use uncertainty::UncertaintyTable;
 pub(crate) use windows::WindowEvidenceTable;
 
 use std::sync::OnceLock;

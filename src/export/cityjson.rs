@@ -128,14 +128,22 @@ fn semantic_surface(model: &RoofModel, surface: Surface) -> Value {
         Surface::Roof(id) => {
             let facet = &model.facets[id.index()];
             let slope = crate::math::acos(facet.plane.normal.z.clamp(-1.0, 1.0));
-            json!({
+            let mut surface = json!({
                 "type": "RoofSurface",
                 "facet": id,
                 "slopeDeg": rounded(slope.to_degrees(), 3),
                 "similarity": rounded(facet.similarity, 4),
                 "realLineRatio": rounded(facet.real_ratio, 4),
                 "probability": rounded(facet.probability, 4),
-            })
+            });
+            if let Some(known) = &facet.uncertainty {
+                let corners = facet.outer.iter().filter_map(|p| known.at(p));
+                let corners = corners.map(|sigma| [0, 1, 2].map(|k| rounded(sigma[k], 4)));
+                surface["slopeSigmaDeg"] = json!(rounded(known.slope_deg, 4));
+                surface["heightSigma"] = json!(rounded(known.height_m, 4));
+                surface["cornerSigma"] = corners.collect();
+            }
+            surface
         }
     }
 }

@@ -61,6 +61,7 @@ impl CompetingPlanes {
                 0.0
             },
             real_ratio: self.real_ratio(outline, delineation),
+            uncertainty: None,
             probability: 1.0,
             lines: group.lines(),
             half_planes: group.half_planes(),

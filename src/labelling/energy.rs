@@ -5,8 +5,7 @@ pub(crate) const NO_PLANE: u32 = u32::MAX;
 
 /// What different labels on both sides of a border cost.
 pub(crate) trait PairwiseCosts {
-    /// Cost of `left` and `right`, which differ, on the two cells of an edge, whichever is on
-    /// which.
+    /// Cost of `left` and `right`, which differ, on the first and the second cell of an edge.
     fn cost(&self, edge: usize, left: u32, right: u32) -> f64;
 
     /// The most that any two labels can cost there.

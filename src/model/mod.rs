@@ -3,6 +3,7 @@
 //! ```text
 //! roof_model  facets, buildings and their closed solids
 //! invariants  what every model must fulfil
+//! uncertainty standard deviations of facets and corners
 //! visibility  occlusion of points by roofs
 //! ```
 //!
@@ -10,10 +11,12 @@
 
 mod invariants;
 mod roof_model;
+mod uncertainty;
 mod visibility;
 
 pub(crate) use invariants::is_simple;
 pub use invariants::{PLANAR_M, Violation, check_invariants};
 pub use roof_model::{Building, Facet, RoofModel, Solid, SolidFace, Surface, WELD_M};
+pub use uncertainty::{CornerUncertainty, FacetUncertainty};
 pub use visibility::Occluders;
 pub(crate) use visibility::inside;

@@ -3,6 +3,7 @@
 use nalgebra::{Point2, Point3};
 use serde::Serialize;
 
+use super::uncertainty::FacetUncertainty;
 use crate::geometry::{Plane, bounds};
 use crate::ids::{BuildingId, FacetId, HalfPlaneId, LineId, ProposalOrigin};
 
@@ -32,6 +33,8 @@ pub struct Facet {
     /// Probability that it is a roof's face, 0 to 1 ([`crate::evidence`]); 1 where nothing weighed
     /// it.
     pub probability: f64,
+    /// How well it is known; `None` where the images show too few of its edges.
+    pub uncertainty: Option<FacetUncertainty>,
     /// The 3D lines in its outline or in its plane.
     pub lines: Vec<LineId>,
     /// The half-planes that it was made from.

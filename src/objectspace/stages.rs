@@ -286,6 +286,7 @@ fn facet(index: usize, candidate: &PlaneCandidate) -> Facet {
         holes: Vec::new(),
         similarity: candidate.correlation,
         real_ratio: candidate.support,
+        uncertainty: None,
         probability: 1.0,
         lines: candidate
             .lines

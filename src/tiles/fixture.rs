@@ -19,6 +19,7 @@ pub(crate) fn house([x, y]: [f64; 2]) -> RoofModel {
         holes: Vec::new(),
         similarity: 0.9,
         real_ratio: 0.8,
+        uncertainty: None,
         probability: 1.0,
         lines: Vec::new(),
         half_planes: Vec::new(),

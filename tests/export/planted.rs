@@ -37,6 +37,7 @@ fn facet(rings: &[&[(f64, f64)]], z0: f64, gx: f64, gy: f64) -> Facet {
         holes: rings[1..].iter().map(lift).collect(),
         similarity: 0.9,
         real_ratio: 0.8,
+        uncertainty: None,
         probability: 1.0,
         lines: Vec::new(),
         half_planes: Vec::new(),

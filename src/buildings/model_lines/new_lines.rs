@@ -335,6 +335,7 @@ mod tests {
             holes: Vec::new(),
             similarity: 1.0,
             real_ratio: 1.0,
+            uncertainty: None,
             probability: 1.0,
             lines: lines.to_vec(),
             half_planes: Vec::new(),

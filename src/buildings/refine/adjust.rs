@@ -159,6 +159,24 @@ impl<'a> AdjustmentProblem<'a> {
                 break;
             }
         }
+        self.solution(state, normal)
+    }
+
+    /// A state as it is, with how certain its residuals make it; `None` when the normal equations
+    /// are singular.
+    pub(super) fn unsolved<'p>(
+        &self,
+        state: &WireframeState,
+        pattern: &'p Pattern,
+    ) -> Option<Solution<'p>> {
+        self.solution(state.clone(), self.normal(state, pattern)?)
+    }
+
+    fn solution<'p>(
+        &self,
+        state: WireframeState,
+        normal: NormalEquations<'p>,
+    ) -> Option<Solution<'p>> {
         // Residuals that scatter more than they should make the solution less certain.
         let redundancy = (2 * self.observations()) as f64;
         let scatter = ((normal.cost + SCATTER_PRIOR) / (redundancy + SCATTER_PRIOR)).max(1.0);

@@ -12,6 +12,7 @@
 //! relations          parallel, perpendicular, horizontal, symmetric: proposals
 //! adjust             least squares of a wireframe, first without relations
 //! relation_tests     relations that the covariance allows, for the second adjustment
+//! uncertainty        standard deviations of planes and corners
 //! acceptance         tests of the adjusted building
 //! rejection          why a building is not adjusted
 //! ```
@@ -38,6 +39,7 @@ mod profiles;
 mod rejection;
 mod relation_tests;
 mod relations;
+mod uncertainty;
 mod wireframe;
 
 #[cfg(test)]
@@ -56,9 +58,11 @@ use self::adjust::{AdjustmentProblem, Solution, Term};
 use self::edge_observations::{EdgeObservation, measure_sides};
 use self::relation_tests::adopt_relations;
 use self::wireframe::{Wireframe, WireframeState};
+use crate::evidence::UncertaintyTable;
 use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
-use crate::model::{Building, Facet, Occluders, RoofModel};
+use crate::math::median;
+use crate::model::{Building, Facet, FacetUncertainty, Occluders, RoofModel};
 use crate::params::RefineParams;
 use crate::scene::Scene;
 
@@ -119,17 +123,15 @@ pub fn refine_roofs(
             params,
         };
         let mut report = BuildingRefinement::of(BuildingId::from_index(i));
-        let new = refiner.refine(&mut report);
-        (new, report)
+        let new = refiner.refine(&mut report).unwrap_or_else(|refusal| {
+            report.refused = Some(refusal);
+            old.iter().copied().cloned().collect()
+        });
+        (refiner.with_uncertainty(new), report)
     });
-    for (building, (new, mut report)) in model.buildings.iter().zip(refined) {
-        match new {
-            Ok(new) => {
-                for (id, facet) in building.facets.iter().zip(new) {
-                    facets[id.index()] = facet;
-                }
-            }
-            Err(refusal) => report.refused = Some(refusal),
+    for (building, (new, report)) in model.buildings.iter().zip(refined) {
+        for (id, facet) in building.facets.iter().zip(new) {
+            facets[id.index()] = facet;
         }
         trace.buildings.push(report);
     }
@@ -254,6 +256,36 @@ impl BuildingRefiner<'_> {
         None
     }
 
+    /// The facets with their uncertainty: where they are not the adjusted ones, from how far the
+    /// image edges lie from them as they are; without it where the images show too few.
+    fn with_uncertainty(&self, facets: Vec<Facet>) -> Vec<Facet> {
+        if facets.iter().all(|f| f.uncertainty.is_some()) {
+            return facets;
+        }
+        let all: Vec<&Facet> = facets.iter().collect();
+        let (wireframe, state) = Wireframe::new(&all);
+        if wireframe.size() > self.params.max_unknowns {
+            return facets;
+        }
+        let near = vec![false; facets.len()];
+        let observations = self.edge_observations(&wireframe, &state, &near);
+        if observations.len() < self.params.min_observations {
+            return facets;
+        }
+        let mut problem =
+            AdjustmentProblem::new(self.scene, &wireframe, &state, observations, self.params);
+        let heights = height_terms(&wireframe, &state, &all, self.lines, self.params);
+        problem.terms.extend(heights);
+        let pattern = problem.pattern();
+        match problem.unsolved(&state, &pattern) {
+            Some(solution) => {
+                let uncertainties = uncertainty_of(&problem, &solution);
+                with_uncertainties(facets, uncertainties)
+            }
+            None => facets,
+        }
+    }
+
     fn acceptance_test(&self) -> AcceptanceTest<'_> {
         AcceptanceTest {
             scene: self.scene,
@@ -300,7 +332,7 @@ impl BuildingRefiner<'_> {
         }
         let pattern = problem.pattern();
         let free = problem.solve(&near.state, &pattern).ok_or_else(singular)?;
-        let regular =
+        let (regular, uncertainties) =
             regularised(&mut problem, &free, params, &mut report.relations).ok_or_else(singular)?;
 
         report.error_before_px = problem.error_px(&start, params.cap_px);
@@ -310,21 +342,42 @@ impl BuildingRefiner<'_> {
         report.largest_move_m = moves.fold(0.0, f64::max);
         // NaN fails the comparison.
         if report.error_after_px < report.error_before_px {
-            self.acceptance_test()
-                .accept(wireframe.facets(&regular, &from))
+            let new = (self.acceptance_test()).accept(wireframe.facets(&regular, &from))?;
+            Ok(with_uncertainties(new, uncertainties))
         } else {
             Err(rejected(RefineRejection::NoGain))
         }
     }
 }
 
-/// Solves once more with the relations that the free solution allows.
+fn uncertainty_of(problem: &AdjustmentProblem, solution: &Solution) -> Vec<FacetUncertainty> {
+    let (w, state) = (problem.wireframe, &solution.state);
+    let place = w.corner(state, 0, w.faces[0][0][0]);
+    let pixels = problem
+        .scene
+        .views
+        .iter()
+        .map(|v| v.camera.ground_pixel(&place));
+    let pixel_m = median(&mut pixels.collect::<Vec<_>>()).unwrap_or(0.0);
+    uncertainty::of_facets(w, solution, pixel_m, UncertaintyTable::fitted())
+}
+
+fn with_uncertainties(facets: Vec<Facet>, of: Vec<FacetUncertainty>) -> Vec<Facet> {
+    let with = |(facet, of)| Facet {
+        uncertainty: Some(of),
+        ..facet
+    };
+    facets.into_iter().zip(of).map(with).collect()
+}
+
+/// Solves once more with the relations that the free solution allows; with the uncertainty of every
+/// facet then.
 fn regularised(
     problem: &mut AdjustmentProblem,
     free: &Solution,
     params: &RefineParams,
     tested: &mut Vec<TestedRelation>,
-) -> Option<WireframeState> {
+) -> Option<(WireframeState, Vec<FacetUncertainty>)> {
     let proposed = relations::propose(problem.wireframe, &free.state, params);
     let (adopted, tests) = adopt_relations(problem.wireframe, free, &proposed, params);
     *tested = tests;
@@ -333,8 +386,10 @@ fn regularised(
         .map(|r| Term::Relation(r, ADOPTED_SIGMA_M));
     problem.terms.extend(terms);
     // Relations join unknowns that no image edge does.
-    let solution = problem.solve(&free.state, &problem.pattern())?.state;
-    Some(solution)
+    let pattern = problem.pattern();
+    let solution = problem.solve(&free.state, &pattern)?;
+    let uncertainties = uncertainty_of(problem, &solution);
+    Some((solution.state, uncertainties))
 }
 
 /// Standard deviation of an adopted relation, metres: small enough to make it hold.

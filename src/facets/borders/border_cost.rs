@@ -6,12 +6,13 @@
 //! Costs are computed on demand, from the heights of both planes at the border: a
 //! list of all pairs would grow with the square of the planes.
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 use super::arrangement::{Arrangement, CellEdge};
 use super::line_index::LineIndex;
 use crate::geometry::Plane;
 use crate::labelling::PairwiseCosts;
+use crate::math::{larger, smaller};
 use crate::params::RoofParams;
 
 /// The costs of all borders of an arrangement.
@@ -44,21 +45,26 @@ impl BorderCosts {
         }
     }
 
-    /// Share of the full cost of a border between two labels.
+    /// Share of the full cost of a border between the labels to its left and right.
     fn share(&self, border: &CellBorder, left: u32, right: u32) -> f64 {
-        let planes = [left, right].map(|label| self.planes.get(label as usize));
-        let bounds = |plane: &&Plane| border.bounds(plane);
-        let meet = |a: &Plane, b: &Plane| {
-            let apart = border
-                .ends
-                .map(|p| (a.z_at(p.x, p.y) - b.z_at(p.x, p.y)).abs());
-            apart.iter().all(|apart| *apart < MEETING) && a.normal.dot(&b.normal) < SAME_COSINE
-        };
-        match planes {
-            _ if planes.iter().flatten().any(bounds) => ON_LINE,
-            [Some(a), Some(b)] if meet(a, b) => CREASE,
+        let plane = |label: u32| self.planes.get(label as usize);
+        let (left, right) = (plane(left), plane(right));
+        let sides = [
+            (left, right, -border.to_left()),
+            (right, left, border.to_left()),
+        ];
+        let supports = sides.map(|(plane, beyond, outwards)| match plane {
+            Some(plane) if border.bounds(plane) => {
+                let open_top = border.open_top(plane, beyond, &outwards);
+                ON_LINE + (1.0 - ON_LINE) * open_top
+            }
             _ => 1.0,
-        }
+        });
+        let crease = match (left, right) {
+            (Some(a), Some(b)) if border.is_crease(a, b) => CREASE,
+            _ => 1.0,
+        };
+        supports.into_iter().fold(crease, smaller)
     }
 }
 
@@ -96,6 +102,34 @@ impl CellBorder {
     }
 }
 
+impl CellBorder {
+    /// The unit vector across it, to its left.
+    fn to_left(&self) -> Vector2<f64> {
+        let along = (self.ends[1] - self.ends[0]).normalize();
+        Vector2::new(-along.y, along.x)
+    }
+
+    /// Do two planes meet here at an angle?
+    fn is_crease(&self, a: &Plane, b: &Plane) -> bool {
+        let apart = (self.ends).map(|p| (a.z_at(p.x, p.y) - b.z_at(p.x, p.y)).abs());
+        apart.iter().all(|apart| *apart < MEETING) && a.normal.dot(&b.normal) < SAME_COSINE
+    }
+
+    /// How much of the border is the top of a slope that ends in the air, 0 to 1: a line there is a
+    /// ridge, and a ridge has a second slope (prior of roofs).
+    fn open_top(&self, plane: &Plane, beyond: Option<&Plane>, outwards: &Vector2<f64>) -> f64 {
+        let uphill = -plane.normal.xy();
+        let height = |plane: &Plane| middle(self.ends.map(|p| plane.z_at(p.x, p.y)));
+        let goes_on = beyond.is_some_and(|other| height(other) > height(plane) - MEETING);
+        match uphill.norm() {
+            slope if slope > LEAST_SLOPE_SINE && !goes_on => {
+                larger(outwards.dot(&uphill) / slope, 0.0)
+            }
+            _ => 0.0,
+        }
+    }
+}
+
 fn middle(heights: [f64; 2]) -> f64 {
     0.5 * (heights[0] + heights[1])
 }
@@ -107,6 +141,8 @@ const SAME_COSINE: f64 = 0.994_521_895_368_273_3;
 const ON_LINE: f64 = 0.1;
 /// ... and where two planes meet without one. Measured: 0.1 breaks roofs into more pieces.
 const CREASE: f64 = 0.3;
+/// Sine of the least slope that has a top (6 degrees).
+const LEAST_SLOPE_SINE: f64 = 0.1;
 /// Planes meet when their heights differ by less, metres.
 const MEETING: f64 = 0.25;
 /// A line lies in a plane's border when their heights differ by less, metres.
@@ -155,5 +191,22 @@ mod tests {
         assert_eq!(costs.cost(0, 0, NO_PLANE), 2.0 * ON_LINE);
         assert_eq!(costs.cost(0, NO_PLANE, 0), 2.0 * ON_LINE);
         assert_eq!(costs.cost(0, 1, NO_PLANE), 2.0);
+    }
+
+    #[test]
+    fn a_line_at_the_top_of_a_slope_is_no_end_of_the_roof() {
+        // The first plane rises to the east, the second one to the west; to the left is west.
+        let gable = [[-1.0, 0.0, 1.0], [1.0, 0.0, 1.0]];
+        let ridge = costs(gable, 0.0, true);
+        assert_eq!(
+            ridge.cost(0, 0, 1),
+            2.0 * ON_LINE,
+            "it has its second slope"
+        );
+        assert_eq!(ridge.cost(0, 0, NO_PLANE), 2.0, "it ends in the air");
+        assert_eq!(ridge.cost(0, NO_PLANE, 1), 2.0);
+        assert_eq!(ridge.cost(0, NO_PLANE, 0), 2.0 * ON_LINE, "an eave");
+        let below_a_wall = costs(gable, 3.0, true);
+        assert_eq!(below_a_wall.cost(0, 0, 1), 2.0 * ON_LINE);
     }
 }

@@ -355,9 +355,10 @@ function facetRows(index: number): Row[] {
   return [
     ["Building", String(facet.building)],
     ["Area", `${slopedArea(facet).toFixed(1)} m²`],
-    ["Slope", slopeText(facet.plane.normal)],
+    ["Slope", `${slopeText(facet.plane.normal)}${plusMinus(facet.uncertainty?.slope_deg, 2, "°")}`],
     ["Faces", Math.hypot(nx, ny) < 0.02 ? "level" : azimuth(nx, ny)],
-    ["Corners", String(facet.outer.length + facet.holes.flat().length)],
+    ["Corners", `${facet.outer.length + facet.holes.flat().length}${cornerSigma(facet)}`],
+    ...heightSigma(facet),
     ["Similarity", facet.similarity.toFixed(3)],
     ["τ real", facet.real_ratio === undefined ? "–" : facet.real_ratio.toFixed(2)],
     ...probabilityRow(facet.probability),
@@ -369,6 +370,22 @@ function facetRows(index: number): Row[] {
       ? []
       : [["Half-planes", (facet.half_planes ?? []).map(linkToHalfPlane)] as const]),
   ];
+}
+
+/** A standard deviation behind a value; nothing where it is not known. */
+function plusMinus(sigma: number | undefined, digits: number, unit: string): string {
+  return sigma === undefined ? "" : ` ± ${sigma.toFixed(digits)}${unit}`;
+}
+
+/** The median over the corners of their standard deviation in plan. */
+function cornerSigma({ uncertainty }: Facet): string {
+  const inPlan = (uncertainty?.corners ?? []).map(({ sigma_m: [x, y] }) => Math.hypot(x, y) / Math.SQRT2);
+  inPlan.sort((a, b) => a - b);
+  return plusMinus(inPlan[Math.floor(inPlan.length / 2)], 2, " m");
+}
+
+function heightSigma({ uncertainty }: Facet): Row[] {
+  return uncertainty ? [["Height in its middle", `± ${uncertainty.height_m.toFixed(2)} m`]] : [];
 }
 
 /** The groups of the half-planes, or of other proposals, that a facet was made from. */

@@ -70,6 +70,7 @@ const FACET: Facet = {
   similarity: 1,
   real_ratio: 1,
   probability: 1,
+  uncertainty: null,
   lines: [],
   half_planes: [],
   proposals: [],

@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""How the errors of facets and corners compare with the standard deviations that model.city.json states.
+
+    python3 tests/roof_sigmas.py SCORER RESULTS SCENE...
+
+RESULTS has a folder with model.city.json for every scene, named as the scene's. A facet is compared
+with the true one of which it covers most, if its plane is that one's by the scorer's definitions: its
+height in its middle, and its slope along the steepest direction. A corner is compared with the
+nearest true corner of that facet, within NEAR_M: another one is another place. Printed are the shares
+of errors within one and two standard deviations (68 and 95 % where they are right), and the median
+error and standard deviation. calibrate.py fits src/evidence/uncertainty.json by the same comparison.
+Needs numpy and shapely.
+"""
+import json
+import math
+import pathlib
+import sys
+
+# A corner farther away is not the same corner inexactly found, metres.
+NEAR_M = 0.5
+KINDS = ('height', 'slope', 'corner_plan', 'corner_height')
+
+
+def main():
+    scorer, results, *scenes = [pathlib.Path(p) for p in sys.argv[1:]]
+    sys.path.insert(0, str(scorer.parent))
+    import score
+
+    found = {kind: [] for kind in KINDS}
+    for scene in scenes:
+        path = results / scene.name / 'model.city.json'
+        if path.is_file():
+            for kind, errors in compare(score, scene, path).items():
+                found[kind] += errors
+    for kind, errors in found.items():
+        print(f'{kind:14} {coverage(errors)}')
+    return 0
+
+
+def coverage(errors):
+    """Shares within one and two standard deviations, and medians, of (error, standard deviation, unit)."""
+    if not errors:
+        return 'none'
+    within = [100 * sum(abs(e) <= times * s for e, s, _ in errors) / len(errors) for times in (1, 2)]
+    error, sigma, _ = [sorted(abs(v) for v in values)[len(errors) // 2] for values in zip(*errors)]
+    return f'{len(errors):5}  within one {within[0]:.0f} %, two {within[1]:.0f} %; median error {error:.3f}, stated {sigma:.3f}'
+
+
+def compare(score, scene, path):
+    """Per kind (error, stated standard deviation, what a ground pixel is in that unit)."""
+    import numpy as np
+
+    truth, origin = score.read_truth(str(scene))
+    middles = [(f.poly.centroid.x, f.poly.centroid.y) for f in truth]
+    centre = np.mean([(x, y, f.z(x, y)) for f, (x, y) in zip(truth, middles)], axis=0)
+    pixel = score.scene_gsd(str(scene), centre)
+    faces, _ = score.read_cityjson(str(path), centre, origin)
+    found = {kind: [] for kind in KINDS}
+    known = surfaces(path)
+    for face in faces:
+        surface, ring = known[face.id]
+        true = same_facet(score, truth, face)
+        if true is None or 'heightSigma' not in surface:
+            continue
+        middle = face.poly.centroid.x, face.poly.centroid.y
+        found['height'].append((face.z(*middle) - true.z(*middle), surface['heightSigma'], pixel))
+        slope = math.hypot(*face.abc[:2])
+        if slope > 0.05:
+            along = (true.abc[0] * face.abc[0] + true.abc[1] * face.abc[1]) / slope
+            turn = math.degrees(math.atan(slope) - math.atan(along))
+            found['slope'].append((turn, surface['slopeSigmaDeg'], math.degrees(pixel / math.sqrt(face.poly.area))))
+        move = min((np.zeros(3), -origin), key=lambda m: np.linalg.norm((ring[0] + m - centre)[:2]))
+        corners = np.array([(p[0], p[1], true.z(p[0], p[1])) for p in list(true.poly.exterior.coords)[:-1]])
+        for corner, sigma in zip(ring + move, surface['cornerSigma']):
+            apart = corners - corner
+            nearest = apart[np.argmin(np.hypot(apart[:, 0], apart[:, 1]))]
+            if np.hypot(*nearest[:2]) <= NEAR_M:
+                found['corner_plan'] += [(nearest[0], sigma[0], pixel), (nearest[1], sigma[1], pixel)]
+                found['corner_height'].append((nearest[2], sigma[2], pixel))
+    return found
+
+
+def same_facet(score, truth, face):
+    """The true facet that it covers most, if it has its plane."""
+    area, true = max(((face.poly.intersection(f.poly).area, f) for f in truth), key=lambda over: over[0])
+    x, y = face.poly.centroid.x, face.poly.centroid.y
+    turn = math.degrees(math.acos(min(1.0, float(face.n @ true.n))))
+    is_same = area >= 0.5 * face.poly.area and abs(face.z(x, y) - true.z(x, y)) <= score.MAX_RMS_Z and turn <= score.MAX_ANGLE
+    return true if is_same else None
+
+
+def surfaces(path):
+    """Of every face, by score.py's name, its semantic surface and its outer ring."""
+    import numpy as np
+
+    city = json.loads(path.read_text())
+    scale, move = (np.array(city['transform'][k]) for k in ('scale', 'translate'))
+    vertices = np.array(city['vertices']).reshape(-1, 3) * scale + move
+    known = {}
+    for name, thing in city['CityObjects'].items():
+        for geometry in thing.get('geometry', []):
+            semantics = geometry['semantics']
+            values = [value for shell in semantics['values'] for value in shell]
+            faces = [rings for shell in geometry['boundaries'] for rings in shell]
+            for k, (rings, value) in enumerate(zip(faces, values)):
+                known[f'{name}/{k}'] = semantics['surfaces'][value], vertices[rings[0]]
+    return known
+
+
+if __name__ == '__main__':
+    sys.exit(main())
