@@ -32,8 +32,10 @@ pub(super) struct BlockPhoto {
     pub keypoints: Vec<Point2<f64>>,
     /// Which camera took it.
     pub camera: usize,
-    /// Standard deviation of a keypoint, pixels.
+    /// Standard deviation of a keypoint of factor one, pixels.
     pub sigma_px: f64,
+    /// Standard deviations of the keypoints as multiples of it: coarse ones are less exact.
+    pub factors: Vec<f64>,
     /// Where it was taken, once known.
     pub pose: Option<Pose>,
 }
@@ -79,6 +81,12 @@ impl Block {
         self.photos[o.photo].keypoints[o.keypoint]
     }
 
+    /// Standard deviation of an observation, pixels.
+    pub(super) fn sigma_px(&self, o: &Observation) -> f64 {
+        let photo = &self.photos[o.photo];
+        photo.sigma_px * photo.factors[o.keypoint]
+    }
+
     /// The ray (x, y, 1) of an observation.
     pub(super) fn ray(&self, o: &Observation) -> Vector2<f64> {
         self.intrinsics(o.photo).ray(&self.pixel(o))
@@ -95,25 +103,17 @@ impl Block {
         if p.z <= 1e-9 {
             return f64::INFINITY;
         }
-        let seen = self.intrinsics(o.photo).project(&Vector2::new(p.x / p.z, p.y / p.z));
-        (seen - self.pixel(o)).norm() / photo.sigma_px
+        let seen = self
+            .intrinsics(o.photo)
+            .project(&Vector2::new(p.x / p.z, p.y / p.z));
+        (seen - self.pixel(o)).norm() / self.sigma_px(o)
     }
 
     pub(super) fn registered(&self) -> Vec<usize> {
         let photos = self.photos.iter().enumerate();
-        photos.filter(|(_, p)| p.pose.is_some()).map(|(i, _)| i).collect()
-    }
-
-    /// Forgets poses and points.
-    pub(super) fn reset(&mut self) {
-        for photo in &mut self.photos {
-            photo.pose = None;
-        }
-        for track in &mut self.tracks {
-            track.point = None;
-            for o in &mut track.observations {
-                o.is_used = false;
-            }
-        }
+        photos
+            .filter(|(_, p)| p.pose.is_some())
+            .map(|(i, _)| i)
+            .collect()
     }
 }

@@ -151,7 +151,10 @@ fn by_positions(block: &mut Block, stated: &[StatedPose], anchor: Anchor) -> Opt
 fn robust_similarity(from: &[Point3<f64>], to: &[Point3<f64>]) -> Option<(Similarity, Vec<f64>)> {
     let n = from.len();
     let distances = |s: &Similarity| -> Vec<f64> {
-        from.iter().zip(to).map(|(a, b)| (s.point(a) - b).norm()).collect()
+        from.iter()
+            .zip(to)
+            .map(|(a, b)| (s.point(a) - b).norm())
+            .collect()
     };
     let mut best = Similarity::between(from, to, &vec![1.0; n])?;
     let median = |s: &Similarity| math::median(&mut distances(s)).unwrap_or(f64::INFINITY);
@@ -221,7 +224,9 @@ fn up_of_angles(block: &Block, stated: &[StatedPose]) -> Option<(Rotation3<f64>,
         return None;
     }
     // The mean in the sense of the chordal distance.
-    let sum = world_from_block.iter().fold(Matrix3::zeros(), |s, r| s + r.matrix());
+    let sum = world_from_block
+        .iter()
+        .fold(Matrix3::zeros(), |s, r| s + r.matrix());
     let mean = rotation_between(&sum.transpose());
     let up = mean * Vector3::z();
     let squares = world_from_block.iter().map(|r| {
@@ -242,7 +247,11 @@ fn up_of_plane(block: &Block) -> Vector3<f64> {
         let distance = |p: &Point3<f64>| (p - middle).dot(&s.normal).abs();
         let mut distances: Vec<f64> = all.iter().map(distance).collect();
         let most = 3.0 * math::median(&mut distances).unwrap_or(0.0);
-        let near: Vec<Point3<f64>> = all.iter().filter(|p| distance(p) <= most).copied().collect();
+        let near: Vec<Point3<f64>> = all
+            .iter()
+            .filter(|p| distance(p) <= most)
+            .copied()
+            .collect();
         if near.len() < 3 {
             break;
         }
@@ -250,7 +259,11 @@ fn up_of_plane(block: &Block) -> Vector3<f64> {
     }
     let normal = spread(&kept).normal;
     let towards = mean_point(&centers(block)) - mean_point(&kept);
-    if towards.dot(&normal) < 0.0 { -normal } else { normal }
+    if towards.dot(&normal) < 0.0 {
+        -normal
+    } else {
+        normal
+    }
 }
 
 /// A rotation that brings a direction to Z.
@@ -259,7 +272,9 @@ fn turn_to_up(up: &Vector3<f64>) -> Rotation3<f64> {
     let angle = math::atan2(axis.norm(), up.z);
     match axis.try_normalize(1e-12) {
         Some(axis) => rotation_from_axis_angle(&(axis * angle)),
-        None if up.z < 0.0 => rotation_from_axis_angle(&Vector3::new(std::f64::consts::PI, 0.0, 0.0)),
+        None if up.z < 0.0 => {
+            rotation_from_axis_angle(&Vector3::new(std::f64::consts::PI, 0.0, 0.0))
+        }
         None => Rotation3::identity(),
     }
 }
@@ -330,9 +345,17 @@ mod tests {
     #[test]
     fn stated_positions_give_metres_though_one_is_wrong() {
         let (truth, mut block, mut stated) = moved();
-        stated[4].position = stated[4].position.map(|p| p + Vector3::new(60.0, -20.0, 9.0));
+        stated[4].position = stated[4]
+            .position
+            .map(|p| p + Vector3::new(60.0, -20.0, 9.0));
         let basis = to_frame(&mut block, &stated, Some(ANCHOR));
-        let FrameBasis::Positions { agreeing, stated, is_levelled, .. } = basis else {
+        let FrameBasis::Positions {
+            agreeing,
+            stated,
+            is_levelled,
+            ..
+        } = basis
+        else {
             panic!("{basis:?}")
         };
         assert_eq!((agreeing, stated, is_levelled), (8, 9, false));
@@ -354,7 +377,16 @@ mod tests {
             one.rotation = None;
         }
         let basis = to_frame(&mut block, &stated, Some(ANCHOR));
-        assert!(matches!(basis, FrameBasis::Positions { is_levelled: true, .. }), "{basis:?}");
+        assert!(
+            matches!(
+                basis,
+                FrameBasis::Positions {
+                    is_levelled: true,
+                    ..
+                }
+            ),
+            "{basis:?}"
+        );
         let (_, tilt) = off(&block, &truth);
         assert!(tilt < 0.2, "{tilt}");
     }
@@ -365,13 +397,22 @@ mod tests {
         stated.iter_mut().for_each(|s| s.position = None);
         let mut by_angles = block.clone();
         let basis = to_frame(&mut by_angles, &stated, None);
-        assert!(matches!(basis, FrameBasis::Angles { rms_deg } if rms_deg < 0.01), "{basis:?}");
+        assert!(
+            matches!(basis, FrameBasis::Angles { rms_deg } if rms_deg < 0.01),
+            "{basis:?}"
+        );
         assert!(off(&by_angles, &truth).1 < 1e-4);
         stated.iter_mut().for_each(|s| s.rotation = None);
         let mut by_plane = block;
-        assert_eq!(to_frame(&mut by_plane, &stated, None), FrameBasis::MainPlane);
+        assert_eq!(
+            to_frame(&mut by_plane, &stated, None),
+            FrameBasis::MainPlane
+        );
         let heights: Vec<f64> = centers(&by_plane).iter().map(|c| c.z).collect();
-        assert!(heights.iter().all(|h| (80.0..120.0).contains(h)), "{heights:?}");
+        assert!(
+            heights.iter().all(|h| (80.0..120.0).contains(h)),
+            "{heights:?}"
+        );
         let off: f64 = (by_plane.photos.iter().zip(&truth.photos))
             .map(|(a, b)| {
                 let [a, b] = [a, b].map(|p| p.pose.as_ref().unwrap().rotation * Vector3::z());

@@ -39,7 +39,7 @@ const GROWTH: f64 = 1.2;
 const BEST_ANGLE: f64 = 12.0 * std::f64::consts::PI / 180.0;
 
 /// Rounds of adjusting and removing outliers at the end.
-const FINAL_ROUNDS: usize = 4;
+const FINAL_ROUNDS: usize = 3;
 
 /// Median length of a residual of two normal components, in their standard deviation.
 const RAYLEIGH_MEDIAN: f64 = 1.177_41;
@@ -83,7 +83,10 @@ fn joinable(photos: usize, pairs: &[VerifiedPair]) -> usize {
     let mut groups: Vec<usize> = (0..photos).collect();
     for pair in pairs {
         let [a, b] = pair.photos.map(|p| groups[p]);
-        groups.iter_mut().filter(|g| **g == a.max(b)).for_each(|g| *g = a.min(b));
+        groups
+            .iter_mut()
+            .filter(|g| **g == a.max(b))
+            .for_each(|g| *g = a.min(b));
     }
     let size = |group: usize| groups.iter().filter(|g| **g == group).count();
     (0..photos).map(size).max().unwrap_or(0)
@@ -102,7 +105,11 @@ fn starts(pairs: &[VerifiedPair]) -> Vec<&VerifiedPair> {
         pair.matches.len() as f64 * angle * of_kind
     };
     let mut order: Vec<&VerifiedPair> = pairs.iter().filter(|p| quality(p) > 0.0).collect();
-    order.sort_by(|a, b| quality(b).total_cmp(&quality(a)).then(a.photos.cmp(&b.photos)));
+    order.sort_by(|a, b| {
+        quality(b)
+            .total_cmp(&quality(a))
+            .then(a.photos.cmp(&b.photos))
+    });
     order
 }
 
@@ -193,7 +200,10 @@ impl Growing<'_> {
         order.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));
         for tried in order.chunks(TRIED) {
             let poses = map(tried, |_, &(_, photo)| self.pose(block, photo));
-            let found = tried.iter().zip(poses).find_map(|(&(_, p), pose)| Some((p, pose?)));
+            let found = tried
+                .iter()
+                .zip(poses)
+                .find_map(|(&(_, p), pose)| Some((p, pose?)));
             if let Some((photo, pose)) = found {
                 block.photos[photo].pose = Some(pose);
                 self.take_points(block, photo);
@@ -206,7 +216,9 @@ impl Growing<'_> {
     /// Tracks with a point that a photograph sees.
     fn seen(&self, block: &Block, photo: usize) -> Vec<(usize, usize)> {
         let tracks = self.of_photo[photo].iter().copied();
-        tracks.filter(|(t, _)| block.tracks[*t].point.is_some()).collect()
+        tracks
+            .filter(|(t, _)| block.tracks[*t].point.is_some())
+            .collect()
     }
 
     fn pose(&self, block: &Block, photo: usize) -> Option<Pose> {
@@ -302,8 +314,12 @@ pub(super) fn remove_outliers(block: &mut Block) {
 fn finish(block: &mut Block, means: &[Intrinsics], prior: [f64; PARAMETERS]) {
     for round in 0..FINAL_ROUNDS {
         let options = BundleOptions {
-            steps: 20,
-            least_gain: if round + 1 == FINAL_ROUNDS { 1e-8 } else { 1e-5 },
+            steps: if round + 1 == FINAL_ROUNDS { 20 } else { 8 },
+            least_gain: if round + 1 == FINAL_ROUNDS {
+                1e-6
+            } else {
+                1e-4
+            },
             prior,
         };
         adjust(block, means, &options);

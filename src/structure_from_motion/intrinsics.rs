@@ -40,10 +40,7 @@ impl Intrinsics {
         let r2 = ray.norm_squared();
         let g = 1.0 + r2 * (self.radial[0] + r2 * self.radial[1]);
         let [cx, cy] = self.center;
-        Point2::new(
-            self.focal * g * ray.x + cx,
-            self.focal * g * ray.y + cy,
-        )
+        Point2::new(self.focal * g * ray.x + cx, self.focal * g * ray.y + cy)
     }
 
     /// The ray (x, y, 1) of an image point; where the lens shows nothing, the nearest that Newton's

@@ -19,7 +19,8 @@ pub(super) fn null_space<const R: usize, const C: usize, const N: usize>(
                 }
             }
         }
-        if !(m[(row, column)].abs() > 1e-12 * size) {
+        let largest = m[(row, column)].abs();
+        if largest.is_nan() || largest <= 1e-12 * size {
             return None;
         }
         m.swap_rows(k, row);
@@ -48,7 +49,8 @@ pub(super) fn null_space<const R: usize, const C: usize, const N: usize>(
     for n in 0..N {
         for k in 0..n {
             let along = basis[n].dot(&basis[k]);
-            basis[n] = basis[n] - basis[k] * along;
+            let along = basis[k] * along;
+            basis[n] -= along;
         }
         basis[n] /= basis[n].norm();
     }
@@ -89,7 +91,9 @@ pub(super) fn real_roots(coefficients: &[f64]) -> Vec<f64> {
     let inner = roots_within_one(coefficients);
     let reversed: Vec<f64> = coefficients.iter().rev().copied().collect();
     let outer = roots_within_one(&reversed);
-    let outer = outer.into_iter().filter(|r| r.abs() < 1.0 && r.abs() > 1e-9);
+    let outer = outer
+        .into_iter()
+        .filter(|r| r.abs() < 1.0 && r.abs() > 1e-9);
     let mut roots: Vec<f64> = inner.into_iter().chain(outer.map(|r| 1.0 / r)).collect();
     roots.sort_by(f64::total_cmp);
     roots
@@ -157,7 +161,11 @@ fn root_between(p: &[f64], mut low: f64, mut high: f64) -> Option<f64> {
             high = x;
         }
         let step = x - f / slope;
-        let next = if step > low && step < high { step } else { 0.5 * (low + high) };
+        let next = if step > low && step < high {
+            step
+        } else {
+            0.5 * (low + high)
+        };
         if (next - x).abs() <= 1e-15 {
             return Some(next);
         }

@@ -33,6 +33,8 @@ mod random;
 mod resection;
 mod robust;
 mod similarity;
+#[cfg(test)]
+mod tests;
 mod tracks;
 mod triangulation;
 mod two_view;

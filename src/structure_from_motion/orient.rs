@@ -1,10 +1,10 @@
 //! From photographs to their orientation.
 
-use nalgebra::{Point3, Rotation3};
+use nalgebra::{Point3, Rotation3, Vector3};
 
 use super::block::{Block, BlockPhoto};
 use super::bundle::{BundleOptions, Covariance, adjust, covariance};
-use super::features::{FeatureOptions, Features, detect_features};
+use super::features::{FeatureOptions, Features, Keypoint, detect_features};
 use super::frame::{StatedPose, to_frame};
 use super::incremental::{VerifiedPair, register};
 use super::intrinsics::Intrinsics;
@@ -26,6 +26,9 @@ pub struct OrientOptions {
     pub features: FeatureOptions,
     /// Focal length of all photographs, pixels, instead of what their headers state.
     pub focal_px: Option<f64>,
+    /// Keep the principal point in the middle of the photographs, also where the block determines
+    /// it.
+    pub holds_center: bool,
 }
 
 /// Oriented photographs.
@@ -41,7 +44,10 @@ impl Oriented {
     /// COLMAP's text model and the report, by name.
     pub fn files(&self) -> Vec<(String, Vec<u8>)> {
         let mut files = self.model.colmap_files();
-        files.push(("orientation.json".into(), self.report.to_json().into_bytes()));
+        files.push((
+            "orientation.json".into(),
+            self.report.to_json().into_bytes(),
+        ));
         files.push(("orientation.log".into(), self.report.to_text().into_bytes()));
         files
     }
@@ -56,6 +62,9 @@ const FEWEST_PHOTOS: usize = 3;
 /// Standard deviation of a keypoint before it is measured, pixels of the working size.
 const KEYPOINT_SIGMA: f64 = 1.0;
 
+/// Scale of a fine keypoint, pixels of the working size.
+const FINE_SCALE: f64 = 1.6;
+
 /// Prior standard deviations of k1 and k2, and of f as a share where it is stated and where it is
 /// guessed.
 const RADIAL_PRIOR: f64 = 0.2;
@@ -64,6 +73,9 @@ const GUESSED_FOCAL_PRIOR: f64 = 0.5;
 
 /// The principal point is free where the block determines it to this share of the longer side.
 const LEAST_CENTER_SIGMA: f64 = 0.001;
+
+/// Photographs whose rows run one way leave it open: longest mean of the directions of their rows.
+const MOST_PARALLEL: f64 = 0.7;
 
 /// Its prior standard deviation, a share of the longer side.
 const CENTER_PRIOR: f64 = 0.02;
@@ -122,7 +134,12 @@ pub fn orient(files: &[InputFile], options: &OrientOptions) -> Result<Oriented> 
     if registered < FEWEST_PHOTOS {
         return Err(unconnected(&verified, &left_out));
     }
-    let covariance = calibrate_center(&mut block, &means, &cameras.is_guessed);
+    let covariance = calibrate_center(
+        &mut block,
+        &means,
+        &cameras.is_guessed,
+        options.holds_center,
+    );
     let basis = to_frame(&mut block, &stated, anchor);
     // The covariance belongs to the frame.
     let covariance = covariance.and_then(|options| self::covariance(&block, &means, &options));
@@ -164,7 +181,11 @@ fn read<'a>(images: &[&'a InputFile], options: &OrientOptions) -> (Vec<Photo<'a>
             path: &file.path,
             size,
             metadata: PhotoMetadata::read(&file.bytes, size),
-            colours: features.keypoints.iter().map(|k| colour(k.position)).collect(),
+            colours: features
+                .keypoints
+                .iter()
+                .map(|k| colour(k.position))
+                .collect(),
             features,
         })
     });
@@ -251,6 +272,11 @@ fn prior(is_guessed: &[bool], center_px: f64) -> [f64; 5] {
     [focal, RADIAL_PRIOR, RADIAL_PRIOR, center_px, center_px]
 }
 
+/// Standard deviation of a keypoint as a multiple of that of a fine one: it grows with the scale.
+fn factor(keypoint: &Keypoint, pixel: f64) -> f64 {
+    (f64::from(keypoint.scale) / pixel / FINE_SCALE).max(1.0)
+}
+
 fn block(
     photos: &[Photo],
     matched: &[MatchedPhoto],
@@ -265,9 +291,20 @@ fn block(
         })
         .collect();
     let photo = |m: &MatchedPhoto| BlockPhoto {
-        keypoints: m.features.keypoints.iter().map(|k| k.position.into()).collect(),
+        keypoints: m
+            .features
+            .keypoints
+            .iter()
+            .map(|k| k.position.into())
+            .collect(),
         camera: m.camera,
         sigma_px: m.sigma_px,
+        factors: m
+            .features
+            .keypoints
+            .iter()
+            .map(|k| factor(k, m.sigma_px))
+            .collect(),
         pose: None,
     };
     Block {
@@ -277,12 +314,15 @@ fn block(
     }
 }
 
-/// Adjusts the principal point too where the block determines it; how the block was adjusted in the
-/// end.
+/// Adjusts the principal point too where the block determines it: photographs that are turned
+/// against each other, and a small standard deviation. Where all point one way it follows whatever
+/// the camera's model lacks (sheffield: 16 px, and larger differences of the poses). Returned is how
+/// the block was adjusted in the end.
 fn calibrate_center(
     block: &mut Block,
     means: &[Intrinsics],
     is_guessed: &[bool],
+    is_held: bool,
 ) -> Option<BundleOptions> {
     let longest = |c: &Intrinsics| f64::from(c.size[0].max(c.size[1]));
     let most = means.iter().map(longest).fold(0.0, f64::max);
@@ -293,11 +333,23 @@ fn calibrate_center(
     };
     let free = options(CENTER_PRIOR * most);
     let is_determined = |c: &Covariance| {
-        c.cameras.iter().zip(means).all(|(sigmas, mean)| {
-            sigmas[3].max(sigmas[4]) < LEAST_CENTER_SIGMA * longest(mean)
-        })
+        c.cameras
+            .iter()
+            .zip(means)
+            .all(|(sigmas, mean)| sigmas[3].max(sigmas[4]) < LEAST_CENTER_SIGMA * longest(mean))
     };
-    if covariance(block, means, &free).as_ref().is_some_and(is_determined) {
+    let rows: Vec<Vector3<f64>> = (block.photos.iter())
+        .filter_map(|p| p.pose.as_ref())
+        .map(|pose| pose.rotation.inverse() * Vector3::x())
+        .collect();
+    let mean = rows.iter().fold(Vector3::zeros(), |a, b| a + b) / rows.len() as f64;
+    if is_held || mean.norm() > MOST_PARALLEL {
+        return Some(options(0.0));
+    }
+    if covariance(block, means, &free)
+        .as_ref()
+        .is_some_and(is_determined)
+    {
         adjust(block, means, &free);
         return Some(free);
     }
@@ -339,7 +391,10 @@ fn too_few(left_out: &[LeftOut]) -> Error {
         .map(|left| format!("{}: {}", left.file, left.reason.words()))
         .collect();
     refusal(
-        format!("fewer than three photographs are of use ({})", named.join("; ")),
+        format!(
+            "fewer than three photographs are of use ({})",
+            named.join("; ")
+        ),
         "give three or more sharp photographs that overlap",
     )
 }
@@ -352,7 +407,10 @@ fn unconnected(verified: &[VerifiedPair], left_out: &[LeftOut]) -> Error {
             "take photographs that overlap by two thirds, of things that do not move",
         );
     }
-    if verified.iter().all(|p| p.geometry.kind == PairKind::Rotation) {
+    if verified
+        .iter()
+        .all(|p| p.geometry.kind == PairKind::Rotation)
+    {
         return refusal(
             "the photographs were taken from one place, the camera only turned: nothing shows depth"
                 .to_owned(),

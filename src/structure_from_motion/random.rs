@@ -75,6 +75,9 @@ mod tests {
         let values: Vec<f64> = (0..4000).map(|_| random.normal()).collect();
         let mean = values.iter().sum::<f64>() / 4000.0;
         let variance = values.iter().map(|v| v * v).sum::<f64>() / 4000.0;
-        assert!(mean.abs() < 0.06 && (variance - 1.0).abs() < 0.1, "{mean} {variance}");
+        assert!(
+            mean.abs() < 0.06 && (variance - 1.0).abs() < 0.1,
+            "{mean} {variance}"
+        );
     }
 }

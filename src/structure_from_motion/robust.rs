@@ -86,8 +86,7 @@ impl Likelihood {
 
     fn of(table: &[f64], end: f64, r2: f64) -> f64 {
         let x = r2 * STEPS;
-        // Not a number and infinity end here too.
-        if !(x < (table.len() - 1) as f64) {
+        if x.is_nan() || x >= (table.len() - 1) as f64 {
             return end;
         }
         let i = x as usize;
@@ -215,5 +214,9 @@ fn samples_needed<E: Estimator>(problem: &E, likelihood: &Likelihood, model: &E:
         return 1;
     }
     let needed = math::ln(1.0 - CONFIDENCE) / math::ln(1.0 - good);
-    if needed.is_finite() { needed.ceil() as usize } else { usize::MAX }
+    if needed.is_finite() {
+        needed.ceil() as usize
+    } else {
+        usize::MAX
+    }
 }

@@ -16,7 +16,11 @@ pub(super) struct Similarity {
 impl Similarity {
     /// The similarity of least weighted squares from points to others (Horn 1987; Umeyama 1991);
     /// `None` where the points do not differ. Points on a line leave the turn about it open.
-    pub(super) fn between(from: &[Point3<f64>], to: &[Point3<f64>], weights: &[f64]) -> Option<Self> {
+    pub(super) fn between(
+        from: &[Point3<f64>],
+        to: &[Point3<f64>],
+        weights: &[f64],
+    ) -> Option<Self> {
         let total: f64 = weights.iter().sum();
         let mean = |points: &[Point3<f64>]| {
             let weighted = points.iter().zip(weights).map(|(p, w)| p.coords * *w);

@@ -68,7 +68,9 @@ pub(super) fn triangulate(
             });
             if agreeing.len() >= 2 && is_better {
                 // All agreeing rays say more than the pair does, unless they bring another one in.
-                let all = agreeing.iter().map(|&k| (rays[k].pose.center, rays[k].direction));
+                let all = agreeing
+                    .iter()
+                    .map(|&k| (rays[k].pose.center, rays[k].direction));
                 let mean = nearest_point(all).unwrap_or(point);
                 let indices: Vec<usize> = agreeing.iter().map(|&k| rays[k].index).collect();
                 let stays = |p: &Point3<f64>| {
@@ -111,7 +113,9 @@ fn angle(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
 }
 
 /// The point with the least sum of squared distances from rays.
-fn nearest_point(rays: impl IntoIterator<Item = (Point3<f64>, Vector3<f64>)>) -> Option<Point3<f64>> {
+fn nearest_point(
+    rays: impl IntoIterator<Item = (Point3<f64>, Vector3<f64>)>,
+) -> Option<Point3<f64>> {
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for (center, direction) in rays {
         let across = Matrix3::identity() - direction * direction.transpose();

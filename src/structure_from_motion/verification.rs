@@ -85,7 +85,8 @@ fn geometry(
         .collect();
     let of_photo = |p: &MatchedPhoto| p.sigma_px / cameras[p.camera].focal;
     let sigma = 0.5 * (of_photo(first) + of_photo(second));
-    let longest = |p: &MatchedPhoto| f64::from(cameras[p.camera].size[0].max(cameras[p.camera].size[1]));
+    let longest =
+        |p: &MatchedPhoto| f64::from(cameras[p.camera].size[0].max(cameras[p.camera].size[1]));
     let range = longest(second) / second.sigma_px;
     let seed = (pair.photos[0] * 100_003 + pair.photos[1]) as u64;
     two_view_geometry(&rays, sigma, range, seed)
@@ -102,14 +103,23 @@ pub(super) fn guess_focal(
     let mut judges: Vec<&MatchedPair> = (pairs.iter())
         .filter(|p| p.photos.iter().any(|&i| is_guessed[photos[i].camera]))
         .collect();
-    judges.sort_by(|a, b| b.matches.len().cmp(&a.matches.len()).then(a.photos.cmp(&b.photos)));
+    judges.sort_by(|a, b| {
+        b.matches
+            .len()
+            .cmp(&a.matches.len())
+            .then(a.photos.cmp(&b.photos))
+    });
     // The pairs with the most matches hardly differ in their place: every third says more.
     let judges: Vec<&MatchedPair> = judges.into_iter().step_by(3).take(JUDGES).collect();
     let with = |share: f64| -> Vec<Intrinsics> {
         (cameras.iter().zip(is_guessed))
             .map(|(camera, &guessed)| {
                 let longest = f64::from(camera.size[0].max(camera.size[1]));
-                let focal = if guessed { share * longest } else { camera.focal };
+                let focal = if guessed {
+                    share * longest
+                } else {
+                    camera.focal
+                };
                 Intrinsics {
                     focal,
                     ..camera.clone()

@@ -14,7 +14,7 @@ fn factorise(a: &mut [f64], n: usize) -> bool {
             } else {
                 let rest = row[i] - dot(&row[..i], &row[..i]);
                 // What rounding leaves of a singular matrix is no pivot.
-                if !(rest > 1e-14 * row[i]) {
+                if rest.is_nan() || rest <= 1e-14 * row[i] {
                     return false;
                 }
                 row[i] = rest.sqrt();

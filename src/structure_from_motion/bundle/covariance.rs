@@ -47,9 +47,14 @@ pub(in super::super) fn covariance(
     // Constraints on the centres alone, as heavy as the system itself.
     let n = layout.unknowns();
     let size = centers.iter().enumerate().fold(0.0f64, |most, (slot, _)| {
-        (3..6).fold(most, |most, k| most.max(system.matrix[at(6 * slot + k, 6 * slot + k)]))
+        (3..6).fold(most, |most, k| {
+            most.max(system.matrix[at(6 * slot + k, 6 * slot + k)])
+        })
     });
-    let constraints: Vec<Vec<f64>> = free.iter().map(|motion| on_centers(motion, n, centers.len())).collect();
+    let constraints: Vec<Vec<f64>> = free
+        .iter()
+        .map(|motion| on_centers(motion, n, centers.len()))
+        .collect();
     for c in &constraints {
         for i in 0..n {
             if c[i] != 0.0 {

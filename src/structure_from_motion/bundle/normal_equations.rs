@@ -9,7 +9,7 @@ use nalgebra::{Matrix2x3, Matrix2x5, Matrix2x6, Matrix3, Point3, SMatrix, Vector
 use super::Prior;
 use crate::execution::map;
 use crate::math;
-use crate::structure_from_motion::block::{Block, Track};
+use crate::structure_from_motion::block::{Block, Observation, Track};
 use crate::structure_from_motion::intrinsics::PARAMETERS;
 use crate::structure_from_motion::resection::linearised;
 
@@ -88,7 +88,7 @@ fn rows(block: &Block, layout: &Layout, track: &Track) -> Vec<Row> {
     let Some(point) = &track.point else {
         return Vec::new();
     };
-    let row = |o: &crate::structure_from_motion::block::Observation| {
+    let row = |o: &Observation| {
         let photo = &block.photos[o.photo];
         let (residual, by_pose, by_camera, by_point) = linearised(
             photo.pose.as_ref()?,
@@ -96,7 +96,7 @@ fn rows(block: &Block, layout: &Layout, track: &Track) -> Vec<Row> {
             point,
             &photo.keypoints[o.keypoint],
         )?;
-        let inverse = 1.0 / photo.sigma_px;
+        let inverse = 1.0 / block.sigma_px(o);
         let square = residual.norm_squared() * inverse * inverse;
         let scale = inverse / (1.0 + square / (LOSS * LOSS)).sqrt();
         Some(Row {
@@ -145,7 +145,10 @@ pub(super) fn cost(block: &Block, layout: &Layout, priors: &[Prior]) -> f64 {
     let sums = map(&layout.shards(), |_, shard| of_shard(shard));
     let mut total: f64 = sums.iter().sum();
     for (intrinsics, prior) in block.cameras.iter().zip(priors) {
-        let pairs = intrinsics.parameters().into_iter().zip(prior.mean.parameters());
+        let pairs = intrinsics
+            .parameters()
+            .into_iter()
+            .zip(prior.mean.parameters());
         for ((value, mean), sigma) in pairs.zip(prior.sigma) {
             if sigma > 0.0 {
                 total += (value - mean) * (value - mean) / (sigma * sigma);
@@ -177,7 +180,10 @@ pub(super) fn reduced_system(
     }
     for (camera, (intrinsics, prior)) in block.cameras.iter().zip(priors).enumerate() {
         let start = layout.of_camera(camera);
-        let pairs = intrinsics.parameters().into_iter().zip(prior.mean.parameters());
+        let pairs = intrinsics
+            .parameters()
+            .into_iter()
+            .zip(prior.mean.parameters());
         for (i, ((value, mean), sigma)) in pairs.zip(prior.sigma).enumerate() {
             if sigma > 0.0 {
                 let weight = 1.0 / (sigma * sigma);
@@ -274,7 +280,10 @@ impl Part {
         let mut of_cameras: Vec<(usize, Matrix5x3)> = Vec::new();
         for row in rows {
             let w = row.by_camera.transpose() * row.by_point;
-            match of_cameras.iter_mut().find(|(camera, _)| *camera == row.camera) {
+            match of_cameras
+                .iter_mut()
+                .find(|(camera, _)| *camera == row.camera)
+            {
                 Some((_, sum)) => *sum += w,
                 None => of_cameras.push((row.camera, w)),
             }

@@ -36,6 +36,7 @@ pub(in super::super) fn planted(sigma_px: f64, seed: u64) -> Block {
             keypoints: Vec::new(),
             camera: 0,
             sigma_px,
+            factors: Vec::new(),
             pose: Some(pose),
         })
         .collect();
@@ -59,6 +60,7 @@ pub(in super::super) fn planted(sigma_px: f64, seed: u64) -> Block {
                     is_used: true,
                 });
                 photo.keypoints.push(Point2::from(pixel.coords + noise));
+                photo.factors.push(1.0);
             }
         }
         if observations.len() >= 2 {
@@ -87,12 +89,18 @@ fn options() -> BundleOptions {
 /// Position and rotation differences after a similarity between two blocks.
 fn differences(found: &Block, truth: &Block) -> (f64, f64) {
     let centers = |b: &Block| -> Vec<Point3<f64>> {
-        b.photos.iter().map(|p| p.pose.as_ref().unwrap().center).collect()
+        b.photos
+            .iter()
+            .map(|p| p.pose.as_ref().unwrap().center)
+            .collect()
     };
     let weights = vec![1.0; truth.photos.len()];
-    let similarity =
-        crate::structure_from_motion::similarity::Similarity::between(&centers(found), &centers(truth), &weights)
-            .unwrap();
+    let similarity = crate::structure_from_motion::similarity::Similarity::between(
+        &centers(found),
+        &centers(truth),
+        &weights,
+    )
+    .unwrap();
     let (mut position, mut angle) = (0.0f64, 0.0f64);
     for (a, b) in found.photos.iter().zip(&truth.photos) {
         let (a, b) = (a.pose.as_ref().unwrap(), b.pose.as_ref().unwrap());
@@ -154,7 +162,10 @@ fn stated_deviations_are_those_of_many_throws() {
         adjust(&mut block, &means, &options());
         let covariance = covariance(&block, &means, &options()).unwrap();
         let centers = |b: &Block| -> Vec<Point3<f64>> {
-            b.photos.iter().map(|p| p.pose.as_ref().unwrap().center).collect()
+            b.photos
+                .iter()
+                .map(|p| p.pose.as_ref().unwrap().center)
+                .collect()
         };
         let similarity = crate::structure_from_motion::similarity::Similarity::between(
             &centers(&block),

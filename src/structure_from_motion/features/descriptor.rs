@@ -26,7 +26,7 @@ const LARGEST: f32 = 0.2;
 pub(crate) const BYTES_AT_ONE: f32 = 512.0;
 
 /// Square roots of histograms whose sum is one, times 512.
-pub type Descriptor = [u8; LENGTH];
+pub(crate) type Descriptor = [u8; LENGTH];
 
 thread_local! {
     static DECAY: Decay = Decay::new();
@@ -91,7 +91,12 @@ pub(super) fn describe(octave: &Octave, extremum: &Extremum, angle: f32) -> Desc
 }
 
 fn in_bytes(histogram: &mut [f32; LENGTH]) -> Descriptor {
-    let norm = histogram.iter().map(|v| v * v).sum::<f32>().sqrt().max(1e-12);
+    let norm = histogram
+        .iter()
+        .map(|v| v * v)
+        .sum::<f32>()
+        .sqrt()
+        .max(1e-12);
     for value in histogram.iter_mut() {
         let share = *value / norm;
         *value = if share > LARGEST { LARGEST } else { share };

@@ -50,7 +50,9 @@ pub(super) fn find(space: &ScaleSpace) -> Vec<Extremum> {
                         continue;
                     }
                     let fitted = fit(&differences, [w, h], [x, y, scale]);
-                    found.extend(fitted.map(|(at, response)| in_image(octave, number, at, response)));
+                    found.extend(
+                        fitted.map(|(at, response)| in_image(octave, number, at, response)),
+                    );
                 }
             }
         }

@@ -19,8 +19,14 @@ pub(super) fn angle_of(y: f32, x: f32) -> f32 {
     let (low, high) = if ax > ay { (ay, ax) } else { (ax, ay) };
     let t = low / (high + f32::MIN_POSITIVE);
     let t2 = t * t;
-    let a = t * (0.999_866 + t2 * (-0.330_299_5 + t2 * (0.180_141 + t2 * (-0.085_133 + t2 * 0.020_835_1))));
-    let a = if ay > ax { std::f32::consts::FRAC_PI_2 - a } else { a };
+    let a = t
+        * (0.999_866
+            + t2 * (-0.330_299_5 + t2 * (0.180_141 + t2 * (-0.085_133 + t2 * 0.020_835_1))));
+    let a = if ay > ax {
+        std::f32::consts::FRAC_PI_2 - a
+    } else {
+        a
+    };
     let a = if x < 0.0 { std::f32::consts::PI - a } else { a };
     if y < 0.0 { -a } else { a }
 }
@@ -63,7 +69,10 @@ mod tests {
             let (sin, cos) = crate::math::sin_cos(f64::from(i).to_radians());
             let expected = crate::math::atan2(sin, cos) as f32;
             let off = (angle_of(sin as f32, cos as f32) - expected).abs();
-            assert!(off < 1e-4 || (off - std::f32::consts::TAU).abs() < 1e-4, "{i}: {off}");
+            assert!(
+                off < 1e-4 || (off - std::f32::consts::TAU).abs() < 1e-4,
+                "{i}: {off}"
+            );
         }
         assert_eq!(angle_of(0.0, 0.0), 0.0);
         let decay = Decay::new();

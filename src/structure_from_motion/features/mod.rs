@@ -21,7 +21,7 @@ mod resample;
 mod scale_space;
 mod spread;
 
-pub use descriptor::Descriptor;
+pub(super) use descriptor::Descriptor;
 
 use crate::raster::Gray;
 
@@ -29,7 +29,7 @@ use self::scale_space::ScaleSpace;
 
 /// A keypoint.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Keypoint {
+pub(super) struct Keypoint {
     /// Column and row in the photograph, pixels (centre of the top-left one at (0.5, 0.5)).
     pub position: [f64; 2],
     /// Standard deviation of the Gaussian at which it is an extremum, pixels of the photograph.
@@ -42,7 +42,7 @@ pub struct Keypoint {
 
 /// Keypoints of a photograph and their descriptors, the strongest first.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Features {
+pub(super) struct Features {
     /// Where they are.
     pub keypoints: Vec<Keypoint>,
     /// What they look like, as many.
@@ -73,7 +73,7 @@ impl Default for FeatureOptions {
 const DOUBLED_BELOW_PX: usize = 1200;
 
 /// The features of a photograph.
-pub fn detect_features(photograph: &Gray, options: &FeatureOptions) -> Features {
+pub(super) fn detect_features(photograph: &Gray, options: &FeatureOptions) -> Features {
     let work = resample::to_working_size(photograph, options.working_px);
     let longest = work.width.max(work.height);
     if work.width.min(work.height) < 16 {

@@ -69,7 +69,9 @@ fn smoothed(histogram: &[f32; BINS]) -> [f32; BINS] {
 }
 
 fn peaks(histogram: &[f32; BINS]) -> Vec<f32> {
-    let highest = histogram.iter().fold(0.0f32, |a, &b| if b > a { b } else { a });
+    let highest = histogram
+        .iter()
+        .fold(0.0f32, |a, &b| if b > a { b } else { a });
     if highest <= 0.0 {
         return Vec::new();
     }

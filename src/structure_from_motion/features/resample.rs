@@ -23,7 +23,10 @@ pub(super) fn to_working_size(image: &Gray, longest_px: usize) -> Gray {
             }
         }
         for (x, value) in out.iter_mut().enumerate() {
-            *value = columns.of(x).map(|(column, share)| sums[column] * share).sum();
+            *value = columns
+                .of(x)
+                .map(|(column, share)| sums[column] * share)
+                .sum();
         }
     }
     reduced

@@ -10,7 +10,13 @@ fn scene(size: usize, scale: f64, turn: f64) -> Gray {
             let place = 0.55 * size as f64;
             let width = 1.5 + 2.5 * (1.0 + random.signed());
             let long = width * (1.5 + 0.5 * random.signed());
-            [place * random.signed(), place * random.signed(), width, long, random.signed()]
+            [
+                place * random.signed(),
+                place * random.signed(),
+                width,
+                long,
+                random.signed(),
+            ]
         })
         .collect();
     Gray::from_fn(size, size, |x, y| {
@@ -55,9 +61,15 @@ fn keypoints_and_descriptors_follow_a_turn_and_a_change_of_scale() {
 #[test]
 fn an_image_without_texture_has_no_features() {
     let flat = Gray::from_fn(200, 150, |_, _| 0.4);
-    assert_eq!(detect_features(&flat, &FeatureOptions::default()), Features::default());
+    assert_eq!(
+        detect_features(&flat, &FeatureOptions::default()),
+        Features::default()
+    );
     let tiny = Gray::new(8, 8);
-    assert_eq!(detect_features(&tiny, &FeatureOptions::default()), Features::default());
+    assert_eq!(
+        detect_features(&tiny, &FeatureOptions::default()),
+        Features::default()
+    );
 }
 
 #[test]

@@ -50,7 +50,12 @@ pub(in super::super) fn candidate_pairs(
     };
     let quick: Vec<Vec<Descriptor>> = map(features, |_, f| of_largest_scales(f));
     let asked: Vec<Candidate> = (0..n)
-        .flat_map(|i| (i + 1..n).map(move |j| Candidate { first: i, second: j }))
+        .flat_map(|i| {
+            (i + 1..n).map(move |j| Candidate {
+                first: i,
+                second: j,
+            })
+        })
         .filter(|c| is_near(c.first, c.second, NEAREST))
         .collect();
     let counts = map_part(&asked, part, |_, c| {

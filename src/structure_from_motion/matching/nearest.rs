@@ -26,7 +26,10 @@ impl Wide {
         };
         Self {
             parts: std::array::from_fn(part),
-            square: descriptor.iter().map(|&v| i32::from(v) * i32::from(v)).sum(),
+            square: descriptor
+                .iter()
+                .map(|&v| i32::from(v) * i32::from(v))
+                .sum(),
         }
     }
 }

@@ -40,12 +40,16 @@ impl PhotoMetadata {
         let tags = exif.and_then(Tags::read).unwrap_or_default();
         let xmp = xmp.map(String::from_utf8_lossy).unwrap_or_default();
         Self {
-            camera: [&tags.make, &tags.model].map(|s| s.as_str()).join(" ").trim().to_owned(),
+            camera: [&tags.make, &tags.model]
+                .map(|s| s.as_str())
+                .join(" ")
+                .trim()
+                .to_owned(),
             focal_mm: tags.focal_mm.filter(is_positive),
             focal_px: focal_px(&tags, xmp::number(&xmp, "CalibratedFocalLength"), size),
-            position: tags.position.filter(|p| {
-                p[0].abs() <= 180.0 && p[1].abs() <= 90.0 && p[..2] != [0.0, 0.0]
-            }),
+            position: tags
+                .position
+                .filter(|p| p[0].abs() <= 180.0 && p[1].abs() <= 90.0 && p[..2] != [0.0, 0.0]),
             yaw_pitch_roll: xmp::yaw_pitch_roll(&xmp),
         }
     }
@@ -70,7 +74,10 @@ fn focal_px(tags: &Tags, calibrated: Option<f64>, [width, height]: [u32; 2]) -> 
     let of_film = tags.focal_35mm.map(|mm| mm / FILM_DIAGONAL_MM * diagonal);
     // From fisheye to long telephoto lenses.
     let is_possible = |f: &f64| (0.2 * diagonal..20.0 * diagonal).contains(f);
-    [of_maker, of_pixels, of_film].into_iter().flatten().find(is_possible)
+    [of_maker, of_pixels, of_film]
+        .into_iter()
+        .flatten()
+        .find(is_possible)
 }
 
 const EXIF: &[u8] = b"Exif\0\0";

@@ -82,13 +82,19 @@ fn position(reader: &Reader, gps: &[Entry]) -> Option<[f64; 3]> {
         Some(letter) if letter.eq_ignore_ascii_case(&negative) => -1.0,
         _ => 1.0,
     };
-    let height = of(6).and_then(|e| reader.numbers(e).first().copied()).unwrap_or(0.0);
+    let height = of(6)
+        .and_then(|e| reader.numbers(e).first().copied())
+        .unwrap_or(0.0);
     let is_below = of(5).and_then(|e| e.value.first()) == Some(&1);
     let position = [
         angle(4)? * sign(3, b'W'),
         angle(2)? * sign(1, b'S'),
         // Drones write a height above the sea as one below it where its sign does not fit.
-        if is_below && height > 0.0 { -height } else { height },
+        if is_below && height > 0.0 {
+            -height
+        } else {
+            height
+        },
     ];
     position.iter().all(|v| v.is_finite()).then_some(position)
 }
@@ -101,24 +107,38 @@ fn text(value: &[u8]) -> String {
 impl<'a> Reader<'a> {
     fn u16(&self, at: usize) -> Option<u16> {
         let b: [u8; 2] = self.bytes.get(at..at + 2)?.try_into().ok()?;
-        Some(if self.is_little { u16::from_le_bytes(b) } else { u16::from_be_bytes(b) })
+        Some(if self.is_little {
+            u16::from_le_bytes(b)
+        } else {
+            u16::from_be_bytes(b)
+        })
     }
 
     fn u32(&self, at: usize) -> Option<usize> {
         let b: [u8; 4] = self.bytes.get(at..at.checked_add(4)?)?.try_into().ok()?;
-        Some(if self.is_little { u32::from_le_bytes(b) } else { u32::from_be_bytes(b) } as usize)
+        Some(if self.is_little {
+            u32::from_le_bytes(b)
+        } else {
+            u32::from_be_bytes(b)
+        } as usize)
     }
 
     /// The entries of a directory that lie within the bytes.
     fn directory(&self, at: usize) -> Vec<Entry<'a>> {
         let count = usize::from(self.u16(at).unwrap_or(0));
-        (0..count).filter_map(|i| self.entry(at + 2 + 12 * i)).collect()
+        (0..count)
+            .filter_map(|i| self.entry(at + 2 + 12 * i))
+            .collect()
     }
 
     fn entry(&self, at: usize) -> Option<Entry<'a>> {
         let (tag, kind) = (self.u16(at)?, self.u16(at + 2)?);
         let length = self.u32(at + 4)?.checked_mul(size_of_kind(kind)?)?;
-        let start = if length <= 4 { at + 8 } else { self.u32(at + 8)? };
+        let start = if length <= 4 {
+            at + 8
+        } else {
+            self.u32(at + 8)?
+        };
         let value = self.bytes.get(start..start.checked_add(length)?)?;
         Some(Entry { tag, kind, value })
     }
@@ -145,7 +165,9 @@ impl<'a> Reader<'a> {
                 _ => None,
             }
         };
-        (0..entry.value.len() / size).map_while(|i| number(i * size)).collect()
+        (0..entry.value.len() / size)
+            .map_while(|i| number(i * size))
+            .collect()
     }
 }
 
@@ -164,8 +186,20 @@ pub(super) mod tests {
     /// EXIF of a drone in a byte order ("II" or "MM").
     pub(in super::super) fn written(order: &[u8; 2]) -> Vec<u8> {
         let little = order == b"II";
-        let u16s = |v: u16| if little { v.to_le_bytes() } else { v.to_be_bytes() };
-        let u32s = |v: u32| if little { v.to_le_bytes() } else { v.to_be_bytes() };
+        let u16s = |v: u16| {
+            if little {
+                v.to_le_bytes()
+            } else {
+                v.to_be_bytes()
+            }
+        };
+        let u32s = |v: u32| {
+            if little {
+                v.to_le_bytes()
+            } else {
+                v.to_be_bytes()
+            }
+        };
         let rationals = |list: &[[u32; 2]]| -> Vec<u8> {
             list.iter().flatten().flat_map(|&v| u32s(v)).collect()
         };
@@ -173,7 +207,8 @@ pub(super) mod tests {
         bytes.extend(u16s(42));
         bytes.extend(u32s(8));
         // Three directories of fixed places; values that do not fit follow them.
-        let directories: [Vec<(u16, u16, u32, Vec<u8>)>; 3] = [
+        type Written = Vec<(u16, u16, u32, Vec<u8>)>;
+        let directories: [Written; 3] = [
             vec![
                 (0x010f, 2, 4, b"DJI\0".to_vec()),
                 (0x0110, 2, 7, b"FC300S\0".to_vec()),

@@ -34,8 +34,13 @@ fn tracks(block: &Block) -> impl Iterator<Item = (&Track, Point3<f64>)> {
 }
 
 /// Residual of all used rays, pixels.
-fn residuals<'a>(block: &'a Block, t: &'a Track, point: &'a Point3<f64>) -> impl Iterator<Item = (usize, f64)> + 'a {
-    t.used().map(move |o| (o.photo, block.residual(o, point) * block.photos[o.photo].sigma_px))
+fn residuals<'a>(
+    block: &'a Block,
+    t: &'a Track,
+    point: &'a Point3<f64>,
+) -> impl Iterator<Item = (usize, f64)> + 'a {
+    t.used()
+        .map(move |o| (o.photo, block.residual(o, point) * block.sigma_px(o)))
 }
 
 /// The model of what has an orientation.
@@ -107,7 +112,9 @@ pub(in super::super) fn report(
     let total: usize = rays.iter().sum();
     let partners = |photo: usize| {
         let others = registered.iter().filter(|&&other| other != photo);
-        others.filter(|&&other| shared[photo * n + other] >= FEWEST_SHARED).count()
+        others
+            .filter(|&&other| shared[photo * n + other] >= FEWEST_SHARED)
+            .count()
     };
     let photos: Vec<PhotoReport> = (registered.iter().enumerate())
         .map(|(slot, &photo)| PhotoReport {
@@ -156,7 +163,10 @@ pub(in super::super) fn report(
 fn cameras(block: &Block, names: &Names, covariance: Option<&Covariance>) -> Vec<CameraReport> {
     (block.cameras.iter().enumerate())
         .map(|(i, camera)| {
-            let oriented = block.photos.iter().filter(|p| p.camera == i && p.pose.is_some());
+            let oriented = block
+                .photos
+                .iter()
+                .filter(|p| p.camera == i && p.pose.is_some());
             CameraReport {
                 name: names.cameras[i].clone(),
                 photos: oriented.count(),
@@ -169,12 +179,7 @@ fn cameras(block: &Block, names: &Names, covariance: Option<&Covariance>) -> Vec
         .collect()
 }
 
-fn from_stated(
-    block: &Block,
-    names: &Names,
-    basis: &FrameBasis,
-    photo: usize,
-) -> Option<[f64; 3]> {
+fn from_stated(block: &Block, names: &Names, basis: &FrameBasis, photo: usize) -> Option<[f64; 3]> {
     if !matches!(basis, FrameBasis::Positions { .. }) {
         return None;
     }
@@ -187,7 +192,11 @@ fn deviations(covariance: &Matrix3<f64>) -> [f64; 3] {
 }
 
 fn largest_deviation(covariance: &Matrix3<f64>) -> f64 {
-    SymmetricEigen::new(*covariance).eigenvalues.max().max(0.0).sqrt()
+    SymmetricEigen::new(*covariance)
+        .eigenvalues
+        .max()
+        .max(0.0)
+        .sqrt()
 }
 
 fn frame_words(basis: &FrameBasis) -> (String, Option<crate::orientation::Anchor>, Vec<String>) {

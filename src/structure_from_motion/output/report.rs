@@ -149,7 +149,12 @@ impl OrientReport {
         for camera in &self.cameras {
             text += &camera.words();
         }
-        let widest = self.photos.iter().map(|p| p.file.chars().count()).max().unwrap_or(0);
+        let widest = self
+            .photos
+            .iter()
+            .map(|p| p.file.chars().count())
+            .max()
+            .unwrap_or(0);
         let width = widest.max("photograph".len());
         let unit = if self.is_metric { "m" } else { "units" };
         let _ = writeln!(
@@ -162,7 +167,9 @@ impl OrientReport {
                 || format!("{:>27}", "-"),
                 |[x, y, z]| format!("{x:>9.4}{y:>9.4}{z:>9.4}"),
             );
-            let turn = p.sigma_deg.map_or_else(|| "-".to_owned(), |s| format!("{s:.4}"));
+            let turn = p
+                .sigma_deg
+                .map_or_else(|| "-".to_owned(), |s| format!("{s:.4}"));
             let _ = writeln!(
                 text,
                 "{:<width$}{:>6}{:>10}{:>8.3}{sigma}{turn:>11}",
@@ -194,7 +201,11 @@ impl CameraReport {
                 }
             })
             .collect();
-        let name = if self.name.is_empty() { "camera" } else { &self.name };
+        let name = if self.name.is_empty() {
+            "camera"
+        } else {
+            &self.name
+        };
         let origin = if self.is_stated { "stated" } else { "guessed" };
         format!(
             "{name}, {} photographs: {}; {origin} f {:.1} px\n",

@@ -98,7 +98,8 @@ impl SparseModel {
     }
 
     fn points(&self) -> String {
-        let mut text = "# POINT3D_ID X Y Z R G B ERROR TRACK[] as IMAGE_ID POINT2D_IDX\n".to_owned();
+        let mut text =
+            "# POINT3D_ID X Y Z R G B ERROR TRACK[] as IMAGE_ID POINT2D_IDX\n".to_owned();
         for (i, point) in self.points.iter().enumerate() {
             let (p, [r, g, b]) = (point.position, point.rgb);
             let _ = write!(

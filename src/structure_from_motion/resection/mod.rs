@@ -125,7 +125,9 @@ mod tests {
 
     use super::*;
 
-    fn setting() -> (Pose, Intrinsics, Vec<(Point3<f64>, Point2<f64>)>) {
+    type Setting = (Pose, Intrinsics, Vec<(Point3<f64>, Point2<f64>)>);
+
+    fn setting() -> Setting {
         let pose = Pose {
             rotation: rotation_from_axis_angle(&Vector3::new(3.0, 0.1, -0.4)),
             center: Point3::new(4.0, -3.0, 60.0),

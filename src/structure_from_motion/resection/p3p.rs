@@ -8,7 +8,10 @@ use crate::structure_from_motion::block::Pose;
 use crate::structure_from_motion::linear::real_roots;
 
 /// All poses that see three world points in three unit directions of the camera; four at most.
-pub(super) fn poses_of_three(world: &[Point3<f64>; 3], directions: &[Vector3<f64>; 3]) -> Vec<Pose> {
+pub(super) fn poses_of_three(
+    world: &[Point3<f64>; 3],
+    directions: &[Vector3<f64>; 3],
+) -> Vec<Pose> {
     let [p1, p2, p3] = world;
     let [j1, j2, j3] = directions;
     // Squared sides across from the points, cosines of the angles between the directions.
@@ -18,7 +21,7 @@ pub(super) fn poses_of_three(world: &[Point3<f64>; 3], directions: &[Vector3<f64
         (p1 - p2).norm_squared(),
     );
     let (cos_a, cos_b, cos_c) = (j2.dot(j3), j1.dot(j3), j1.dot(j2));
-    if !(a2.min(b2).min(c2) > 0.0) {
+    if a2.min(b2).min(c2) <= 0.0 {
         return Vec::new();
     }
     let (ab, cb) = (a2 / b2, c2 / b2);
@@ -112,13 +115,17 @@ mod tests {
                 rotation: rotation_from_axis_angle(&(any() * 2.0)),
                 center: Point3::from(any() * 3.0),
             };
-            let seen: [Vector3<f64>; 3] =
-                std::array::from_fn(|_| any().component_mul(&Vector3::new(1.5, 1.5, 1.0)) + Vector3::z() * 4.0);
+            let seen: [Vector3<f64>; 3] = std::array::from_fn(|_| {
+                any().component_mul(&Vector3::new(1.5, 1.5, 1.0)) + Vector3::z() * 4.0
+            });
             let world = seen.map(|p| pose.center + pose.rotation.inverse() * p);
             let found = poses_of_three(&world, &seen.map(|p| p.normalize()));
             assert!(found.len() <= 4);
             let nearest = (found.iter())
-                .map(|f| (f.center - pose.center).norm() + (f.rotation.matrix() - pose.rotation.matrix()).norm())
+                .map(|f| {
+                    (f.center - pose.center).norm()
+                        + (f.rotation.matrix() - pose.rotation.matrix()).norm()
+                })
                 .fold(f64::INFINITY, f64::min);
             assert!(nearest < 1e-6, "{nearest}");
         }

@@ -99,9 +99,8 @@ impl Estimator for EssentialProblem<'_> {
                 continue;
             }
             let (residual, length) = Self::sampson(&e, rays);
-            let row = SVector::<f64, 5>::from_fn(|i, _| {
-                rays.1.dot(&(derivatives[i] * rays.0)) / length
-            });
+            let row =
+                SVector::<f64, 5>::from_fn(|i, _| rays.1.dot(&(derivatives[i] * rays.0)) / length);
             normal += row * row.transpose() * weight;
             right -= row * (weight * residual);
         }
@@ -141,7 +140,12 @@ fn decompositions(e: &Matrix3<f64>) -> [RelativePose; 4] {
         translation: t.normalize() * sign_t,
     };
     // The first belongs to E itself, not to its negative.
-    [pose(1.0, 1.0), pose(-1.0, -1.0), pose(1.0, -1.0), pose(-1.0, 1.0)]
+    [
+        pose(1.0, 1.0),
+        pose(-1.0, -1.0),
+        pose(1.0, -1.0),
+        pose(-1.0, 1.0),
+    ]
 }
 
 /// The next rotation: Newton's iteration for the orthonormal polar factor.

@@ -8,15 +8,40 @@ use crate::structure_from_motion::linear::{null_space, real_roots};
 
 /// Monomials of degree 3 in x, y, z in Nister's order, as powers: the ten to eliminate first.
 const CUBIC: [[u8; 3]; 20] = [
-    [3, 0, 0], [0, 3, 0], [2, 1, 0], [1, 2, 0], [2, 0, 1], [2, 0, 0], [0, 2, 1], [0, 2, 0],
-    [1, 1, 1], [1, 1, 0], [1, 0, 2], [1, 0, 1], [1, 0, 0], [0, 1, 2], [0, 1, 1], [0, 1, 0],
-    [0, 0, 3], [0, 0, 2], [0, 0, 1], [0, 0, 0],
+    [3, 0, 0],
+    [0, 3, 0],
+    [2, 1, 0],
+    [1, 2, 0],
+    [2, 0, 1],
+    [2, 0, 0],
+    [0, 2, 1],
+    [0, 2, 0],
+    [1, 1, 1],
+    [1, 1, 0],
+    [1, 0, 2],
+    [1, 0, 1],
+    [1, 0, 0],
+    [0, 1, 2],
+    [0, 1, 1],
+    [0, 1, 0],
+    [0, 0, 3],
+    [0, 0, 2],
+    [0, 0, 1],
+    [0, 0, 0],
 ];
 
 /// Monomials of degree 2.
 const QUADRATIC: [[u8; 3]; 10] = [
-    [2, 0, 0], [1, 1, 0], [0, 2, 0], [1, 0, 1], [0, 1, 1], [0, 0, 2], [1, 0, 0], [0, 1, 0],
-    [0, 0, 1], [0, 0, 0],
+    [2, 0, 0],
+    [1, 1, 0],
+    [0, 2, 0],
+    [1, 0, 1],
+    [0, 1, 1],
+    [0, 0, 2],
+    [1, 0, 0],
+    [0, 1, 0],
+    [0, 0, 1],
+    [0, 0, 0],
 ];
 
 /// Those of degree 1.
@@ -103,9 +128,10 @@ pub(super) fn essential_matrices(rays: &[(Vector3<f64>, Vector3<f64>); 5]) -> Ve
             .each_ref()
             .map(|row| Vector3::from_fn(|i, _| evaluate(&row[i], z)));
         let crossed = [(0, 1), (0, 2), (1, 2)].map(|(i, j)| at[i].cross(&at[j]));
-        let v = crossed
-            .into_iter()
-            .fold(Vector3::zeros(), |a, b| if b.norm() > a.norm() { b } else { a });
+        let v = crossed.into_iter().fold(
+            Vector3::zeros(),
+            |a, b| if b.norm() > a.norm() { b } else { a },
+        );
         if v.z.abs() < 1e-12 * v.norm() {
             continue;
         }
@@ -134,10 +160,10 @@ fn cubic_constraints(e: &[[Linear; 3]; 3]) -> SMatrix<f64, 10, 20> {
     for (i, row) in squares.iter_mut().enumerate() {
         row[i] = sum(&row[i], &trace, -0.5);
     }
-    for r in 0..3 {
+    for (r, row) in squares.iter().enumerate() {
         for c in 0..3 {
-            let equation = (0..3).fold(Cubic::zeros(), |s, k| {
-                s + times_linear(&squares[r][k], &e[k][c])
+            let equation = (row.iter().zip(e)).fold(Cubic::zeros(), |s, (square, e)| {
+                s + times_linear(square, &e[c])
             });
             equations.set_row(3 * r + c, &equation.transpose());
         }
@@ -157,9 +183,13 @@ fn eliminated(equations: &SMatrix<f64, 10, 20>) -> Option<SMatrix<f64, 10, 10>> 
     let mut m = *equations;
     for k in 0..10 {
         let pivot = (k..10).fold(k, |best, r| {
-            if m[(r, k)].abs() > m[(best, k)].abs() { r } else { best }
+            if m[(r, k)].abs() > m[(best, k)].abs() {
+                r
+            } else {
+                best
+            }
         });
-        if !(m[(pivot, k)].abs() > 1e-14) {
+        if m[(pivot, k)].abs() <= 1e-14 {
             return None;
         }
         m.swap_rows(k, pivot);

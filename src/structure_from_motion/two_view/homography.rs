@@ -15,7 +15,7 @@ pub(super) struct HomographyProblem<'a> {
 /// Squared distance of the transferred first ray from the second one, which has the noise of both.
 fn transfer2(h: &Matrix3<f64>, (a, b): &(Vector3<f64>, Vector3<f64>), sigma: f64) -> f64 {
     let p = h * a;
-    if !(p.z.abs() > 1e-12) {
+    if p.z.abs() <= 1e-12 {
         return f64::INFINITY;
     }
     let (dx, dy) = (p.x / p.z - b.x, p.y / p.z - b.y);
@@ -47,7 +47,10 @@ impl Estimator for HomographyProblem<'_> {
         let rows = sample.map(|i| equations(&self.rays[i]));
         let system = SMatrix::<f64, 8, 9>::from_fn(|r, c| rows[r / 2][r % 2][c]);
         let solution = null_space::<8, 9, 1>(&system);
-        solution.map(|[h]| Matrix3::from_fn(|r, c| h[3 * r + c])).into_iter().collect()
+        solution
+            .map(|[h]| Matrix3::from_fn(|r, c| h[3 * r + c]))
+            .into_iter()
+            .collect()
     }
 
     fn residual2(&self, h: &Matrix3<f64>, i: usize) -> f64 {
@@ -68,7 +71,10 @@ impl Estimator for HomographyProblem<'_> {
             }
         }
         let eigen = SymmetricEigen::new(normal);
-        let least = eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned();
+        let least = eigen
+            .eigenvectors
+            .column(eigen.eigenvalues.imin())
+            .into_owned();
         let refined = Matrix3::from_fn(|r, c| least[3 * r + c]);
         refined.iter().all(|v| v.is_finite()).then_some(refined)
     }

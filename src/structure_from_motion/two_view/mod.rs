@@ -131,9 +131,8 @@ mod tests {
                 if i % 3 == 0 {
                     b = Vector3::new(0.5 * random.signed(), 0.4 * random.signed(), 1.0);
                 }
-                let mut noisy = |v: Vector3<f64>| {
-                    v + Vector3::new(noise.normal(), noise.normal(), 0.0) * SIGMA
-                };
+                let mut noisy =
+                    |v: Vector3<f64>| v + Vector3::new(noise.normal(), noise.normal(), 0.0) * SIGMA;
                 (noisy(Vector3::new(x, y, 1.0)), noisy(b))
             })
             .collect()
@@ -147,7 +146,11 @@ mod tests {
         let of = |m: &[_]| two_view_geometry(m, SIGMA, 1.0 / SIGMA, 1).unwrap();
         let found = of(&matches(turn, shift, general));
         assert_eq!(found.kind, PairKind::General);
-        assert!((190..=215).contains(&found.inliers.len()), "{}", found.inliers.len());
+        assert!(
+            (190..=215).contains(&found.inliers.len()),
+            "{}",
+            found.inliers.len()
+        );
         let off = found.pose.rotation.matrix() - rotation_from_axis_angle(&turn).matrix();
         assert!(off.norm() < 0.003, "{}", off.norm());
         assert!(found.pose.translation.dot(&shift.normalize()) > 0.999);
