@@ -371,9 +371,7 @@ mod tests {
         }
         for (i, one) in stated[..3].iter_mut().enumerate() {
             let pose = truth.photos[i].pose.as_ref().unwrap();
-            let at = Point3::new(pose.center.x, -20.0, 60.0);
-            // A photograph's true position along the strip, and none of its offsets across.
-            one.position = Some(at);
+            one.position = Some(pose.center);
             one.rotation = None;
         }
         let basis = to_frame(&mut block, &stated, Some(ANCHOR));

@@ -65,10 +65,12 @@ const KEYPOINT_SIGMA: f64 = 1.0;
 /// Scale of a fine keypoint, pixels of the working size.
 const FINE_SCALE: f64 = 1.6;
 
-/// Prior standard deviations of k1 and k2, and of f as a share where it is stated and where it is
-/// guessed.
-const RADIAL_PRIOR: f64 = 0.2;
-const STATED_FOCAL_PRIOR: f64 = 0.1;
+/// Prior standard deviations of k1 and k2: weak blocks keep an ordinary lens, strong ones measure
+/// any.
+const RADIAL_PRIOR: [f64; 2] = [0.05, 0.03];
+
+/// That of f as a share, where it is stated and where it is guessed.
+const STATED_FOCAL_PRIOR: f64 = 0.05;
 const GUESSED_FOCAL_PRIOR: f64 = 0.5;
 
 /// The principal point is free where the block determines it to this share of the longer side.
@@ -269,7 +271,8 @@ fn prior(is_guessed: &[bool], center_px: f64) -> [f64; 5] {
         true => GUESSED_FOCAL_PRIOR,
         false => STATED_FOCAL_PRIOR,
     };
-    [focal, RADIAL_PRIOR, RADIAL_PRIOR, center_px, center_px]
+    let [k1, k2] = RADIAL_PRIOR;
+    [focal, k1, k2, center_px, center_px]
 }
 
 /// Standard deviation of a keypoint as a multiple of that of a fine one: it grows with the scale.

@@ -71,18 +71,18 @@ pub(super) fn adjust(block: &mut Block, means: &[Intrinsics], options: &BundleOp
             }
             continue;
         };
-        let points = point_steps(block, &layout, &step, damping);
-        let moved = stepped(block, &layout, &step, &points);
-        let next = cost(&moved, &layout, &priors);
+        let mut other = stepped(block, &layout, &step, damping);
+        exchange(block, &layout, &mut other);
+        let next = cost(block, &layout, &priors);
         if next < current {
             let gain = (current - next) / current;
-            *block = moved;
             current = next;
             damping = (damping / 8.0).max(LEAST_DAMPING);
             if gain < options.least_gain {
                 break;
             }
         } else {
+            exchange(block, &layout, &mut other);
             damping *= 10.0;
             if damping > MOST_DAMPING {
                 break;
@@ -92,26 +92,48 @@ pub(super) fn adjust(block: &mut Block, means: &[Intrinsics], options: &BundleOp
     current
 }
 
-/// The block after a step.
-fn stepped(block: &Block, layout: &Layout, step: &[f64], points: &[Point3<f64>]) -> Block {
-    let mut moved_block = block.clone();
-    for (slot, &photo) in layout.photos.iter().enumerate() {
+/// Unknowns in the order of the layout.
+struct State {
+    poses: Vec<Option<Pose>>,
+    cameras: Vec<Intrinsics>,
+    points: Vec<Option<Point3<f64>>>,
+}
+
+/// Exchanges the unknowns of the block with others.
+fn exchange(block: &mut Block, layout: &Layout, other: &mut State) {
+    for (&photo, pose) in layout.photos.iter().zip(&mut other.poses) {
+        std::mem::swap(&mut block.photos[photo].pose, pose);
+    }
+    std::mem::swap(&mut block.cameras, &mut other.cameras);
+    for (&track, point) in layout.tracks.iter().zip(&mut other.points) {
+        std::mem::swap(&mut block.tracks[track].point, point);
+    }
+}
+
+/// The unknowns after a step.
+fn stepped(block: &Block, layout: &Layout, step: &[f64], damping: f64) -> State {
+    let poses = layout.photos.iter().enumerate().map(|(slot, &photo)| {
         let step = Vector6::from_column_slice(&step[6 * slot..6 * slot + 6]);
-        let pose: Option<Pose> = block.photos[photo].pose.as_ref().map(|p| moved(p, &step));
-        moved_block.photos[photo].pose = pose;
+        block.photos[photo].pose.as_ref().map(|p| moved(p, &step))
+    });
+    let cameras = block
+        .cameras
+        .iter()
+        .enumerate()
+        .map(|(camera, intrinsics)| {
+            let start = layout.of_camera(camera);
+            let mut parameters = intrinsics.parameters();
+            for (value, step) in parameters.iter_mut().zip(&step[start..start + PARAMETERS]) {
+                *value += step;
+            }
+            intrinsics.with_parameters(parameters)
+        });
+    let points = point_steps(block, layout, step, damping);
+    State {
+        poses: poses.collect(),
+        cameras: cameras.collect(),
+        points: points.into_iter().map(Some).collect(),
     }
-    for (camera, intrinsics) in moved_block.cameras.iter_mut().enumerate() {
-        let start = layout.of_camera(camera);
-        let mut parameters = intrinsics.parameters();
-        for (value, step) in parameters.iter_mut().zip(&step[start..start + PARAMETERS]) {
-            *value += step;
-        }
-        *intrinsics = intrinsics.with_parameters(parameters);
-    }
-    for (&track, point) in layout.tracks.iter().zip(points) {
-        moved_block.tracks[track].point = Some(*point);
-    }
-    moved_block
 }
 
 #[cfg(test)]
