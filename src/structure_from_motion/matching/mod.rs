@@ -11,7 +11,7 @@ mod nearest;
 pub(super) use candidates::{Candidate, candidate_pairs};
 
 use super::features::{Descriptor, Features};
-use nearest::{Wide, nearest};
+use nearest::nearest;
 
 /// Largest ratio of the distances to the nearest and the second nearest descriptor (Lowe 2004,
 /// section 7.1).
@@ -26,8 +26,7 @@ pub(super) fn mutual_matches(first: &Features, second: &Features) -> Vec<(usize,
 }
 
 fn matches_of(first: &[Descriptor], second: &[Descriptor]) -> Vec<(usize, usize)> {
-    let widened = |d: &[Descriptor]| d.iter().map(Wide::new).collect::<Vec<_>>();
-    let found = nearest(&widened(first), &widened(second));
+    let found = nearest(first, second);
     let is_distinct = |best: i32, next: i32| {
         let (best, next) = (best as f32, next as f32);
         best <= MOST_DISTANCE * MOST_DISTANCE && best < RATIO * RATIO * next
