@@ -319,8 +319,8 @@ fn block(
 
 /// Adjusts the principal point too where the block determines it: photographs that are turned
 /// against each other, and a small standard deviation. Where all point one way it follows whatever
-/// the camera's model lacks (sheffield: 16 px, and larger differences of the poses). Returned is how
-/// the block was adjusted in the end.
+/// the camera's model lacks (sheffield: 16 px, and larger differences of the poses). Returned is
+/// how the block was adjusted in the end.
 fn calibrate_center(
     block: &mut Block,
     means: &[Intrinsics],

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::cholesky::inverse;
 use super::normal_equations::{Layout, at, reduced_system};
-use super::{BundleOptions, Prior};
+use super::options::BundleOptions;
 use crate::geometry::mean_point;
 use crate::structure_from_motion::block::Block;
 use crate::structure_from_motion::intrinsics::{Intrinsics, PARAMETERS};
@@ -30,14 +30,7 @@ pub(in super::super) fn covariance(
     options: &BundleOptions,
 ) -> Option<Covariance> {
     let layout = Layout::new(block);
-    let priors: Vec<Prior> = (means.iter())
-        .map(|mean| {
-            let mut sigma = options.prior;
-            sigma[0] *= mean.focal;
-            let mean = mean.clone();
-            Prior { mean, sigma }
-        })
-        .collect();
+    let priors = options.priors(means);
     let mut system = reduced_system(block, &layout, &priors, 0.0);
     let centers: Vec<Point3<f64>> = (layout.photos.iter())
         .filter_map(|&p| block.photos[p].pose.as_ref())

@@ -6,7 +6,7 @@
 
 use nalgebra::{Matrix2x3, Matrix2x5, Matrix2x6, Matrix3, Point3, SMatrix, Vector2, Vector3};
 
-use super::Prior;
+use super::options::Prior;
 use crate::execution::map;
 use crate::math;
 use crate::structure_from_motion::block::{Block, Observation, Track};

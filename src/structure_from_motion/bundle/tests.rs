@@ -1,9 +1,11 @@
-use nalgebra::{Point2, Rotation3, Vector2, Vector3};
+use nalgebra::{Point2, Point3, Rotation3, Vector2, Vector3, Vector6};
 
 use super::*;
 use crate::geometry::rotation_from_axis_angle;
-use crate::structure_from_motion::block::{BlockPhoto, Observation, Track};
+use crate::structure_from_motion::block::{Block, BlockPhoto, Observation, Pose, Track};
+use crate::structure_from_motion::intrinsics::Intrinsics;
 use crate::structure_from_motion::random::Random;
+use crate::structure_from_motion::resection::moved;
 
 /// Nine photographs in three strips over uneven ground, some of them tilted and turned; what
 /// `sigma_px` of noise leaves of their keypoints.
