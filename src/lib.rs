@@ -39,7 +39,7 @@
 //! 3D-structures in multiple aerial images using lines and regions").
 //!
 //! ```text
-//! images + orientation files
+//! images + orientation files (or structure_from_motion, where there are none)
 //!    -> orientation, camera, scene_loader   Scene { views, ground }
 //!    -> lines2d                  edgels, chains, segments (per view)          B99 3.2
 //!    -> linematch                pairs, triples, tracks over N views          B99 3.1 - 3.4
@@ -98,6 +98,7 @@ pub mod raster;
 pub mod scene;
 pub mod scene_loader;
 pub mod solids;
+pub mod structure_from_motion;
 pub mod synthetic;
 pub mod terrain;
 #[cfg(test)]

@@ -586,3 +586,91 @@ fn a_check_says_what_the_images_say() {
     assert_eq!(found["doctor"]["finding"], "explained");
     assert!(found["refusal"].as_str().unwrap().contains("kappa in gon"));
 }
+
+#[test]
+fn photographs_alone_are_oriented_into_a_folder_that_is_read_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let (photos, out) = (folder.path().join("photos"), folder.path().join("oriented"));
+    let (scene, _) = ridgeline::synthetic::drone_scene(240);
+    for (path, bytes) in ridgeline::synthetic::to_files(&scene) {
+        if path.ends_with(".png") {
+            let path = photos.join(path);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, bytes).unwrap();
+        }
+    }
+    let run = |arguments: &[&std::ffi::OsStr]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ridgeline"));
+        command.args(arguments).output().unwrap()
+    };
+    let orient = |more: &[&str]| {
+        let mut arguments: Vec<&std::ffi::OsStr> = vec![
+            "orient".as_ref(),
+            photos.as_ref(),
+            "--out".as_ref(),
+            out.as_ref(),
+        ];
+        arguments.extend(more.iter().map(|a| std::ffi::OsStr::new(*a)));
+        run(&arguments)
+    };
+    let output = orient(&["--features", "800", "--focal", "216"]);
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(
+        printed.starts_with("9 of 9 photographs oriented"),
+        "{printed}"
+    );
+    let expected = [
+        "cameras.txt",
+        "images.txt",
+        "orientation.json",
+        "orientation.log",
+        "points3D.txt",
+    ];
+    assert_eq!(names_in(&out), expected);
+    let files = names_in(&out)
+        .into_iter()
+        .map(|name| fs::read(out.join(name)).unwrap());
+    let first: Vec<Vec<u8>> = files.collect();
+    assert!(
+        orient(&["--features", "800", "--focal", "216", "--threads", "1"])
+            .status
+            .success()
+    );
+    let again = names_in(&out)
+        .into_iter()
+        .map(|name| fs::read(out.join(name)).unwrap());
+    assert_eq!(again.collect::<Vec<_>>(), first);
+    let check = [
+        "check".as_ref(),
+        photos.as_ref(),
+        "--orientation".as_ref(),
+        out.as_ref(),
+    ];
+    let output = run(&check);
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(
+        printed.contains("images and orientation agree"),
+        "{printed}"
+    );
+    // Two photographs are none.
+    for i in 2..9 {
+        fs::remove_file(photos.join(format!("images/d{i}.png"))).unwrap();
+    }
+    let output = orient(&[]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(
+        message.contains("2 photographs; give three or more"),
+        "{message}"
+    );
+}

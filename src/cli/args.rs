@@ -18,6 +18,8 @@ pub(super) enum Command {
     Reconstruct(Box<ReconstructArgs>),
     /// Check whether the images agree with their orientation, and how far each view is off.
     Check(Box<CheckArgs>),
+    /// Compute the orientation of photographs that have none, as COLMAP's text model.
+    Orient(Box<OrientArgs>),
     /// Print all parameters with their defaults, as JSON for --params.
     Params,
 }
@@ -28,7 +30,7 @@ pub(super) struct InputArgs {
     /// Folder or .zip archive with images and orientation files, anywhere in it.
     pub scene: PathBuf,
     /// Which orientation to take where the folder holds several: a part of its path, or the name of
-    /// a chunk or block in a file of several.
+    /// a chunk or block in a file of several; or another folder that holds the orientation.
     #[arg(long, value_name = "PATH")]
     pub orientation: Option<String>,
     /// Use only these views (image names, separated by commas).
@@ -78,6 +80,32 @@ pub(super) struct CheckArgs {
     pub json: bool,
 }
 
+/// The arguments of `orient`.
+#[derive(Args)]
+pub(super) struct OrientArgs {
+    /// Folder or .zip archive with three or more photographs that overlap by about two thirds.
+    pub photos: PathBuf,
+    /// Folder for cameras.txt, images.txt, points3D.txt and the report; made if missing.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Focal length of all photographs, pixels, where their headers state none or a wrong one; the
+    /// adjustment refines it.
+    #[arg(long, value_name = "PX", value_parser = parse_positive)]
+    pub focal: Option<f64>,
+    /// Keep the principal point in the middle, also where the photographs determine it.
+    #[arg(long)]
+    pub hold_center: bool,
+    /// Longer side of the images that are worked on, pixels.
+    #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u16).range(200..=8000))]
+    pub working_size: Option<u16>,
+    /// Most features of a photograph.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(200..=20000))]
+    pub features: Option<u16>,
+    /// Number of threads; by default one per core. It never changes the result.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
 /// The arguments of `reconstruct`.
 #[derive(Args)]
 pub(super) struct ReconstructArgs {
@@ -124,6 +152,12 @@ fn parse_finite(text: &str) -> Result<f64, String> {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err(format!("'{text}' is not a number in metres")),
     }
+}
+
+fn parse_positive(text: &str) -> Result<f64, String> {
+    let parsed = text.trim().parse::<f64>().ok();
+    let positive = parsed.filter(|value| value.is_finite() && *value > 0.0);
+    positive.ok_or_else(|| format!("'{text}' is not a positive number"))
 }
 
 fn parse_crs(text: &str) -> Result<u32, String> {

@@ -31,20 +31,24 @@ pub(super) fn open(
     params: Option<Params>,
     results: &Path,
 ) -> Result<OpenedScene, Failure> {
-    set_threads(args);
-    let (files, seen) = files::read_scene(&args.scene, results)?;
+    set_threads(args.threads);
+    let (mut files, seen) = files::read_scene(&args.scene, results)?;
     for notice in seen.notices() {
         eprintln!("warning: {notice}");
     }
+    let beside = args.orientation.as_deref().map(Path::new);
+    let beside = beside.filter(|path| path.is_dir() && !lies_in(path, &args.scene));
+    let beside = match beside {
+        Some(path) => Some(add_orientation(&mut files, path)?),
+        None => None,
+    };
     let seen = format!("{} holds {seen}", args.scene.display());
     let (files, project) = open_project(files).map_err(|e| refusal(&e, &seen))?;
     let project = project.unwrap_or_default();
     let stated = project.options;
     let options = LoadOptions {
-        orientation: args
-            .orientation
-            .as_deref()
-            .map(|path| below(&args.scene, path))
+        orientation: beside
+            .or_else(|| Some(below(&args.scene, args.orientation.as_deref()?)))
             .or(stated.orientation),
         views: args.views.clone().or(stated.views),
         roi: args.roi.or(stated.roi),
@@ -70,6 +74,32 @@ fn with_switches(mut params: Params, args: &InputArgs) -> Params {
     params
 }
 
+/// Is a folder the scene's or one within it?
+fn lies_in(folder: &Path, scene: &Path) -> bool {
+    match (fs::canonicalize(folder), fs::canonicalize(scene)) {
+        (Ok(folder), Ok(scene)) => folder.starts_with(scene),
+        _ => true,
+    }
+}
+
+/// Adds the orientation files of a folder beside the scene (as `orient` writes one), under a folder
+/// of their own, whose name is returned.
+fn add_orientation(files: &mut Vec<InputFile>, folder: &Path) -> Result<String, Failure> {
+    let (beside, _) = files::read_scene(folder, Path::new(""))?;
+    let name = format!(
+        "{}/",
+        folder.file_name().unwrap_or_default().to_string_lossy()
+    );
+    let is_image = |file: &InputFile| ridgeline::raster::image_format(&file.bytes).is_some();
+    let orientations = beside.into_iter().filter(|file| !is_image(file));
+    files.extend(orientations.map(|file| {
+        let path = format!("{name}{}", file.path);
+        InputFile::new(&path, file.bytes)
+    }));
+    files.sort_by(|a, b| a.path.cmp(&b.path));
+    Ok(name)
+}
+
 /// A path relative to the scene's folder, also where the whole path was given.
 fn below(scene: &Path, path: &str) -> String {
     let inner = Path::new(path).strip_prefix(scene);
@@ -93,8 +123,8 @@ pub(super) fn read_params(args: &InputArgs) -> Result<Option<Params>, Failure> {
     })
 }
 
-fn set_threads(args: &InputArgs) {
-    if let Some(threads) = args.threads {
+pub(super) fn set_threads(threads: Option<u16>) {
+    if let Some(threads) = threads {
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads.into())
             .build_global()

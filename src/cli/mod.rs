@@ -5,6 +5,7 @@
 //! walk, files     the files of a folder or archive; writing results
 //! input           a scene's files, options and parameters
 //! check           the orientation check alone
+//! orient          photographs alone: their orientation
 //! tiles, table    a region tile by tile; the summary of a run
 //! reconstruct     the whole reconstruction
 //! ```
@@ -17,6 +18,7 @@ mod check;
 mod failure;
 mod files;
 mod input;
+mod orient;
 mod reconstruct;
 mod table;
 mod tiles;
@@ -35,6 +37,7 @@ pub fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Reconstruct(args) => reconstruct::reconstruct(&args),
         Command::Check(args) => check::check(&args),
+        Command::Orient(args) => orient::orient(&args),
         Command::Params => print_params(),
     };
     match outcome {

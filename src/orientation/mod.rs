@@ -54,6 +54,7 @@ pub use angles::{
 pub use detect::{FileKind, detect};
 pub use format::Format;
 pub use geodesy::Anchor;
+pub(crate) use geodesy::geocentric_of;
 pub use image_orientation::{Crop, Orientation};
 pub use input_file::InputFile;
 pub(crate) use input_file::stem;

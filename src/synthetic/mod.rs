@@ -75,9 +75,26 @@ pub fn hip_scene(size: u32) -> (Scene, SyntheticTruth) {
     scene_of(&building::hip(), size)
 }
 
+/// The same houses as a drone photographs them: nine views of `size` x `size` pixels with a normal
+/// lens (principal point in the middle) in three strips, 45 m above the ground.
+pub fn drone_scene(size: u32) -> (Scene, SyntheticTruth) {
+    tower_scene_of(&drone_cameras(size))
+}
+
+/// The same houses, seen by these cameras.
+pub fn tower_scene_of(cameras: &[(String, Camera)]) -> (Scene, SyntheticTruth) {
+    scene_seen_by(&building::tower_and_annex(), cameras)
+}
+
 fn scene_of(building: &building::SyntheticBuilding, size: u32) -> (Scene, SyntheticTruth) {
-    let cameras = strip_cameras(size);
-    let views = crate::execution::map(&cameras, |_, (name, camera)| {
+    scene_seen_by(building, &strip_cameras(size))
+}
+
+fn scene_seen_by(
+    building: &building::SyntheticBuilding,
+    cameras: &[(String, Camera)],
+) -> (Scene, SyntheticTruth) {
+    let views = crate::execution::map(cameras, |_, (name, camera)| {
         let rgb = render::render(&building.faces, camera);
         let gray = crate::raster::Gray::from_rgb(&rgb);
         View::new(name.clone(), camera.clone(), gray, rgb)
@@ -124,6 +141,35 @@ fn strip_cameras(size: u32) -> Vec<(String, Camera)> {
             camera.k[(0, 2)] = (f64::from(size) / 2.0 - target.x).round() + 0.25;
             camera.k[(1, 2)] = (f64::from(size) / 2.0 - target.y).round() - 0.25;
             ((*name).to_owned(), camera)
+        })
+        .collect()
+}
+
+/// A drone's cameras: strips 8 m apart flown there and back, photographs 7 m apart, tilted by some
+/// degrees.
+fn drone_cameras(size: u32) -> Vec<(String, Camera)> {
+    let focal = 0.9 * f64::from(size);
+    let middle = f64::from(size) / 2.0;
+    let k = Matrix3::new(focal, 0.0, middle, 0.0, focal, middle, 0.0, 0.0, 1.0);
+    (0..9)
+        .map(|i| {
+            let (along, strip) = (f64::from(i % 3) - 1.0, f64::from(i / 3) - 1.0);
+            // Small numbers that differ from photograph to photograph.
+            let vary = |n: i32| f64::from((i * n) % 7 - 3) / 3.0;
+            let center = Point3::new(
+                7.0 * along + 0.8 * vary(5),
+                8.0 * strip + 0.6 * vary(3),
+                46.5 + 1.2 * vary(2),
+            );
+            let kappa = if i / 3 == 1 { 180.0 } else { 0.0 } + 4.0 * vary(4);
+            let angles = [
+                8.0 * strip + 2.0 * vary(6),
+                -8.0 * along + 2.0 * vary(5),
+                kappa,
+            ];
+            let [omega, phi, kappa] = angles.map(f64::to_radians);
+            let r = rotation_from_omega_phi_kappa(omega, phi, kappa);
+            (format!("d{i}.png"), Camera::new(k, r, center, size, size))
         })
         .collect()
 }

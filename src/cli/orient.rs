@@ -1,0 +1,72 @@
+//! `ridgeline orient`: photographs in, their orientation out.
+
+use std::fs;
+use std::sync::Arc;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use ridgeline::execution::progress::{Listener, with_listener};
+use ridgeline::structure_from_motion::{FeatureOptions, OrientOptions, orient as orient_photos};
+
+use super::args::OrientArgs;
+use super::failure::Failure;
+use super::{files, input};
+
+/// Steps of the progress bar.
+const BAR_STEPS: f64 = 1000.0;
+
+/// Reads the photographs, orients them and writes COLMAP's text model and the report.
+pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
+    fs::create_dir_all(&args.out).map_err(|e| {
+        Failure::Input(format!(
+            "{}: cannot be made: {e}; give --out a folder that can be written",
+            args.out.display()
+        ))
+    })?;
+    input::set_threads(args.threads);
+    let (photographs, seen) = files::read_scene(&args.photos, &args.out)?;
+    for notice in seen.notices() {
+        eprintln!("warning: {notice}");
+    }
+    let seen = format!("{} holds {seen}", args.photos.display());
+    let defaults = FeatureOptions::default();
+    let options = OrientOptions {
+        features: FeatureOptions {
+            working_px: args.working_size.map_or(defaults.working_px, usize::from),
+            most: args.features.map_or(defaults.most, usize::from),
+        },
+        focal_px: args.focal,
+        holds_center: args.hold_center,
+    };
+    let bar = ProgressBar::new(BAR_STEPS as u64);
+    let style = ProgressStyle::with_template("{msg:12} {bar:40} {elapsed}");
+    bar.set_style(style.expect("the template is well formed"));
+    let shown = bar.clone();
+    let listener: Listener = Arc::new(move |fraction| {
+        shown.set_message(step_at(fraction));
+        shown.set_position((fraction * BAR_STEPS) as u64);
+    });
+    let oriented = with_listener(listener, || orient_photos(&photographs, &options));
+    bar.finish_and_clear();
+    let oriented = oriented.map_err(|e| input::refusal(&e, &seen))?;
+    eprintln!("{seen}");
+    files::write_all(&args.out, &oriented.files())?;
+    print!("{}", oriented.report.to_text());
+    println!(
+        "written to {}; go on with: ridgeline reconstruct {} --orientation {}",
+        args.out.display(),
+        args.photos.display(),
+        args.out.display()
+    );
+    Ok(())
+}
+
+/// What is done at a fraction of the work.
+fn step_at(fraction: f64) -> &'static str {
+    match fraction {
+        f if f < 0.4 => "features",
+        f if f < 0.62 => "matches",
+        f if f < 0.7 => "pairs",
+        f if f < 0.9 => "poses",
+        _ => "adjustment",
+    }
+}

@@ -1,0 +1,26 @@
+//! Bundle adjustment with self-calibration: poses, points, and the parameters that the photographs
+//! of a camera share (Triggs et al. 2000, "Bundle adjustment - a modern synthesis").
+//!
+//! ```text
+//! options               what is free, how long, and priors
+//! normal_equations      linearised observations; points eliminated by the Schur complement
+//! cholesky              the solution of the reduced system
+//! levenberg_marquardt   the steps
+//! covariance            of the unknowns, in the datum of the projection centres
+//! ```
+//!
+//! Levenberg-Marquardt, Cauchy's loss. Points are divided into a fixed number of shards, whose sums
+//! are added in their order, so that threads never change a result.
+
+mod cholesky;
+mod covariance;
+mod levenberg_marquardt;
+mod normal_equations;
+mod options;
+
+pub(super) use covariance::{Covariance, covariance};
+pub(super) use levenberg_marquardt::adjust;
+pub(super) use options::BundleOptions;
+
+#[cfg(test)]
+pub(super) mod tests;

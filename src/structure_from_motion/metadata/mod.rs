@@ -1,0 +1,151 @@
+//! What a photograph's file says of its camera: EXIF and XMP.
+//!
+//! ```text
+//! tiff_tags   the tags of EXIF, which is a TIFF without pixels
+//! xmp         attributes of drones' gimbals, by name
+//! ```
+
+mod tiff_tags;
+mod xmp;
+
+use self::tiff_tags::Tags;
+
+/// What is stated of a photograph.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PhotoMetadata {
+    /// Maker and model of the camera; empty where not stated.
+    pub camera: String,
+    /// Focal length, millimetres.
+    pub focal_mm: Option<f64>,
+    /// Focal length in pixels of the photograph as it is stored, from whatever states it.
+    pub focal_px: Option<f64>,
+    /// Longitude and latitude (degrees, WGS84) and height (metres, above whatever the receiver
+    /// takes for zero).
+    pub position: Option<[f64; 3]>,
+    /// Yaw (from north, clockwise), pitch (0 level, -90 down) and roll of the camera, degrees.
+    pub yaw_pitch_roll: Option<[f64; 3]>,
+}
+
+/// Diagonal of a frame of 35 mm film, millimetres.
+const FILM_DIAGONAL_MM: f64 = 43.266_615;
+
+impl PhotoMetadata {
+    /// Reads the header of a JPEG or TIFF of `size` pixels; what is damaged counts as not stated.
+    pub fn read(bytes: &[u8], size: [u32; 2]) -> Self {
+        let (exif, xmp) = if bytes.starts_with(&[0xff, 0xd8]) {
+            (segment(bytes, EXIF), segment(bytes, XMP))
+        } else {
+            (Some(bytes), None)
+        };
+        let tags = exif.and_then(Tags::read).unwrap_or_default();
+        let xmp = xmp.map(String::from_utf8_lossy).unwrap_or_default();
+        Self {
+            camera: [&tags.make, &tags.model]
+                .map(|s| s.as_str())
+                .join(" ")
+                .trim()
+                .to_owned(),
+            focal_mm: tags.focal_mm.filter(is_positive),
+            focal_px: focal_px(&tags, xmp::number(&xmp, "CalibratedFocalLength"), size),
+            position: tags
+                .position
+                .filter(|p| p[0].abs() <= 180.0 && p[1].abs() <= 90.0 && p[..2] != [0.0, 0.0]),
+            yaw_pitch_roll: xmp::yaw_pitch_roll(&xmp),
+        }
+    }
+}
+
+fn is_positive(value: &f64) -> bool {
+    value.is_finite() && *value > 0.0
+}
+
+/// The focal length in pixels: calibrated by the maker, else by the size of the sensor's pixels,
+/// else by the field of view on film.
+fn focal_px(tags: &Tags, calibrated: Option<f64>, [width, height]: [u32; 2]) -> Option<f64> {
+    let (width, height) = (f64::from(width), f64::from(height));
+    let recorded = tags.width.filter(is_positive);
+    // A reduced copy keeps the number of the original.
+    let of_maker = calibrated.filter(|_| recorded == Some(width));
+    let of_pixels = match (tags.focal_mm, tags.pixels_per_mm) {
+        (Some(mm), Some(density)) => recorded.map(|recorded| mm * density * width / recorded),
+        _ => None,
+    };
+    let diagonal = (width * width + height * height).sqrt();
+    let of_film = tags.focal_35mm.map(|mm| mm / FILM_DIAGONAL_MM * diagonal);
+    // From fisheye to long telephoto lenses.
+    let is_possible = |f: &f64| (0.2 * diagonal..20.0 * diagonal).contains(f);
+    [of_maker, of_pixels, of_film]
+        .into_iter()
+        .flatten()
+        .find(is_possible)
+}
+
+const EXIF: &[u8] = b"Exif\0\0";
+const XMP: &[u8] = b"http://ns.adobe.com/xap/1.0/\0";
+
+/// The content of a JPEG's application segment that starts like this.
+fn segment<'a>(bytes: &'a [u8], start: &[u8]) -> Option<&'a [u8]> {
+    let mut at = 2;
+    loop {
+        let header = bytes.get(at..at + 4)?;
+        // Image data follow, or no marker.
+        if header[0] != 0xff || header[1] == 0xda {
+            return None;
+        }
+        let length = usize::from(u16::from_be_bytes([header[2], header[3]]));
+        let content = bytes.get(at + 4..at + 2 + length)?;
+        if header[1] == 0xe1 && content.starts_with(start) {
+            return Some(&content[start.len()..]);
+        }
+        at += 2 + length;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A JPEG's head with EXIF of a drone (focal lengths, position) and gimbal angles.
+    pub(super) fn head(order: &[u8; 2]) -> Vec<u8> {
+        let exif = tiff_tags::tests::written(order);
+        let xmp = br#"<x drone-dji:GimbalYawDegree="+91.5" drone-dji:GimbalPitchDegree="-89.90"
+            drone-dji:GimbalRollDegree="+0.00"/>"#;
+        let mut bytes = vec![0xff, 0xd8];
+        for (start, content) in [(EXIF, &exif[..]), (XMP, &xmp[..])] {
+            bytes.extend([0xff, 0xe1]);
+            bytes.extend(((start.len() + content.len() + 2) as u16).to_be_bytes());
+            bytes.extend(start);
+            bytes.extend(content);
+        }
+        bytes.extend([0xff, 0xda, 0, 0]);
+        bytes
+    }
+
+    #[test]
+    fn what_a_drone_states_is_read_in_both_byte_orders() {
+        for order in [b"II", b"MM"] {
+            let stated = PhotoMetadata::read(&head(order), [800, 600]);
+            assert_eq!(stated.camera, "DJI FC300S");
+            assert_eq!(stated.focal_mm, Some(3.61));
+            assert!((stated.focal_px.unwrap() - 20.0 / FILM_DIAGONAL_MM * 1000.0).abs() < 1e-9);
+            let [lon, lat, height] = stated.position.unwrap();
+            assert!((lon + 82.697_394).abs() < 1e-6 && (lat - 28.041_25).abs() < 1e-6);
+            assert_eq!(height, 5.5);
+            assert_eq!(stated.yaw_pitch_roll, Some([91.5, -89.9, 0.0]));
+        }
+    }
+
+    #[test]
+    fn damaged_headers_state_nothing_and_do_no_harm() {
+        let whole = head(b"II");
+        for end in 0..whole.len() {
+            PhotoMetadata::read(&whole[..end], [800, 600]);
+        }
+        for i in 0..whole.len() {
+            let mut bytes = whole.clone();
+            bytes[i] ^= 0xff;
+            PhotoMetadata::read(&bytes, [800, 600]);
+        }
+        assert_eq!(PhotoMetadata::read(b"", [1, 1]), PhotoMetadata::default());
+    }
+}

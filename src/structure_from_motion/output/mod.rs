@@ -1,0 +1,9 @@
+//! What comes out: the sparse model, and the report on it.
+
+mod assemble;
+mod report;
+mod sparse_model;
+
+pub(super) use assemble::{Names, report, sparse_model};
+pub use report::{CameraReport, LeftOut, NotJoined, OrientReport, PhotoReport};
+pub use sparse_model::{OrientedPhoto, SparseModel, SparsePoint};

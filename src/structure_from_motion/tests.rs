@@ -1,0 +1,153 @@
+//! The whole chain on rendered photographs.
+
+use nalgebra::{Matrix3, Point3};
+
+use super::similarity::Similarity;
+use super::*;
+use crate::camera::Camera;
+use crate::orientation::{InputFile, rotation_from_omega_phi_kappa};
+use crate::scene::Scene;
+use crate::synthetic::{drone_scene, to_files, tower_scene_of};
+
+const SIZE_PX: u32 = 300;
+
+/// The photographs of a scene without their orientation.
+fn photographs(scene: &Scene) -> Vec<InputFile> {
+    let files = to_files(scene).into_iter();
+    let images = files.filter(|(path, _)| path.ends_with(".png"));
+    images
+        .map(|(path, bytes)| InputFile::new(&path, bytes))
+        .collect()
+}
+
+fn options() -> OrientOptions {
+    OrientOptions {
+        features: FeatureOptions {
+            most: 1200,
+            ..FeatureOptions::default()
+        },
+        ..OrientOptions::default()
+    }
+}
+
+fn png(width: u32, pixel: impl Fn(u32, u32) -> u8) -> Vec<u8> {
+    let image = image::GrayImage::from_fn(width, width, |x, y| image::Luma([pixel(x, y)]));
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn photographs_alone_are_oriented_and_go_on_to_a_scene() {
+    let (scene, _) = drone_scene(SIZE_PX);
+    let mut files = photographs(&scene);
+    // One photograph of something else, one of nothing.
+    let hash = |x: u32, y: u32| {
+        (x / 3)
+            .wrapping_mul(2_654_435_761)
+            .wrapping_add((y / 3).wrapping_mul(40_503_977))
+            >> 13
+    };
+    files.push(InputFile::new(
+        "images/stranger.png",
+        png(SIZE_PX, |x, y| (hash(x, y) % 251) as u8),
+    ));
+    files.push(InputFile::new("images/sky.png", png(SIZE_PX, |_, _| 200)));
+    let oriented = orient(&files, &options()).unwrap();
+    let report = &oriented.report;
+    assert_eq!(report.photos.len(), 9, "{}", report.to_text());
+    let reasons: Vec<_> = report
+        .left_out
+        .iter()
+        .map(|l| (l.file.as_str(), &l.reason))
+        .collect();
+    assert!(
+        matches!(
+            reasons[..],
+            [
+                ("images/sky.png", NotJoined::FewFeatures { keypoints: 0 }),
+                ("images/stranger.png", NotJoined::NoOverlap)
+            ]
+        ),
+        "{reasons:?}"
+    );
+    assert!(
+        report.rms_px < 0.3 && !report.is_metric,
+        "{}",
+        report.to_text()
+    );
+    // Nothing states the focal length.
+    let focal = oriented.model.cameras[0].focal / f64::from(SIZE_PX);
+    assert!((focal - 0.9).abs() < 0.02, "{focal}");
+    let found: Vec<Point3<f64>> = oriented
+        .model
+        .photos
+        .iter()
+        .map(|p| p.pose.center)
+        .collect();
+    let truth: Vec<Point3<f64>> = scene.views.iter().map(|v| v.camera.center).collect();
+    let similarity = Similarity::between(&found, &truth, &[1.0; 9]).unwrap();
+    for (photo, view) in oriented.model.photos.iter().zip(&scene.views) {
+        let pose = similarity.pose(&photo.pose);
+        // A ground pixel is 0.17 m.
+        let off = (pose.center - view.camera.center).norm();
+        assert!(off < 0.17, "{}: {off} m", photo.path);
+        let turn = (pose.rotation.matrix() - view.camera.r).norm().to_degrees();
+        assert!(turn < 0.3, "{}: {turn} degrees", photo.path);
+    }
+    // What is written is read on: photographs, and the model beside them.
+    files.truncate(9);
+    let written = oriented.files().into_iter();
+    files
+        .extend(written.map(|(name, bytes)| InputFile::new(&format!("orientation/{name}"), bytes)));
+    let loaded = crate::load_scene(&files, &crate::LoadOptions::default()).unwrap();
+    assert_eq!(loaded.views.len(), 9);
+}
+
+#[test]
+fn a_camera_that_only_turns_is_refused_by_name() {
+    let size = SIZE_PX;
+    let (focal, middle) = (0.9 * f64::from(size), f64::from(size) / 2.0);
+    let k = Matrix3::new(focal, 0.0, middle, 0.0, focal, middle, 0.0, 0.0, 1.0);
+    let cameras: Vec<(String, Camera)> = [[0.0, 0.0, 0.0], [0.08, 0.05, 0.6], [-0.06, 0.1, -0.4]]
+        .iter()
+        .enumerate()
+        .map(|(i, [o, p, q])| {
+            let r = rotation_from_omega_phi_kappa(*o, *p, *q);
+            let at = Point3::new(1.0, -2.0, 45.0);
+            (format!("t{i}.png"), Camera::new(k, r, at, size, size))
+        })
+        .collect();
+    let files = photographs(&tower_scene_of(&cameras).0);
+    let stated = OrientOptions {
+        focal_px: Some(focal),
+        ..options()
+    };
+    let message = orient(&files, &stated).unwrap_err().to_string();
+    assert!(message.contains("the camera only turned"), "{message}");
+}
+
+#[test]
+fn what_cannot_be_oriented_is_refused_with_advice() {
+    let flat = |name: &str| InputFile::new(name, png(120, |_, _| 90));
+    let message = |files: &[InputFile]| orient(files, &options()).unwrap_err().to_string();
+    let two = message(&[flat("a.png"), flat("b.png")]);
+    assert!(two.starts_with("2 photographs"), "{two}");
+    let blurred = message(&[flat("a.png"), flat("b.png"), flat("c.png")]);
+    assert!(
+        blurred.contains("a.png: 0 keypoints: it is blurred"),
+        "{blurred}"
+    );
+    let noise = |seed: u32| {
+        let bytes = png(160, |x, y| {
+            let h = ((x / 4) ^ seed).wrapping_mul(0x9e37_79b1) ^ (y / 4).wrapping_mul(0x85eb_ca77);
+            (h.wrapping_mul(0x2c1b_3c6d) >> 24) as u8
+        });
+        InputFile::new(&format!("{seed}.png"), bytes)
+    };
+    let apart = message(&[noise(91), noise(5_003), noise(70_001)]);
+    assert!(
+        apart.contains("no two photographs show enough of the same"),
+        "{apart}"
+    );
+}

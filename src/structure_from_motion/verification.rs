@@ -1,0 +1,144 @@
+//! Matches of pairs that agree with one geometry; and a focal length, where none is stated.
+
+use std::ops::Range;
+
+use nalgebra::{Point2, Vector3};
+
+use super::features::Features;
+use super::incremental::VerifiedPair;
+use super::intrinsics::Intrinsics;
+use super::matching::{Candidate, mutual_matches};
+use super::two_view::{TwoViewGeometry, two_view_geometry};
+use crate::execution::map_part;
+
+/// Fewest matches for which a geometry is sought.
+const FEWEST_MATCHES: usize = 24;
+
+/// Focal lengths that are tried where none is stated, as shares of the longer side.
+const GUESSES: [f64; 8] = [0.6, 0.72, 0.86, 1.0, 1.2, 1.5, 2.0, 2.8];
+
+/// Pairs that judge them.
+const JUDGES: usize = 10;
+
+/// What is known of a photograph before there is a block.
+pub(super) struct MatchedPhoto<'a> {
+    pub features: &'a Features,
+    /// Which camera took it.
+    pub camera: usize,
+    /// Standard deviation of a keypoint, pixels.
+    pub sigma_px: f64,
+}
+
+/// Matches of a candidate, by its descriptors alone.
+pub(super) struct MatchedPair {
+    pub photos: [usize; 2],
+    pub matches: Vec<(usize, usize)>,
+}
+
+/// Matches all candidates.
+pub(super) fn match_pairs(
+    photos: &[MatchedPhoto],
+    candidates: &[Candidate],
+    part: Range<f64>,
+) -> Vec<MatchedPair> {
+    let found = map_part(candidates, part, |_, c| {
+        let [a, b] = [c.first, c.second].map(|i| photos[i].features);
+        MatchedPair {
+            photos: [c.first, c.second],
+            matches: mutual_matches(a, b),
+        }
+    });
+    let is_enough = |pair: &MatchedPair| pair.matches.len() >= FEWEST_MATCHES;
+    found.into_iter().filter(is_enough).collect()
+}
+
+/// The geometry of all pairs; those without one are left out.
+pub(super) fn verify(
+    photos: &[MatchedPhoto],
+    cameras: &[Intrinsics],
+    pairs: &[MatchedPair],
+    part: Range<f64>,
+) -> Vec<VerifiedPair> {
+    let found = map_part(pairs, part, |_, pair| {
+        let geometry = geometry(photos, cameras, pair)?;
+        Some(VerifiedPair {
+            photos: pair.photos,
+            matches: geometry.inliers.iter().map(|&i| pair.matches[i]).collect(),
+            geometry,
+        })
+    });
+    found.into_iter().flatten().collect()
+}
+
+fn geometry(
+    photos: &[MatchedPhoto],
+    cameras: &[Intrinsics],
+    pair: &MatchedPair,
+) -> Option<TwoViewGeometry> {
+    let [first, second] = pair.photos.map(|i| &photos[i]);
+    let ray = |photo: &MatchedPhoto, keypoint: usize| -> Vector3<f64> {
+        let pixel = Point2::from(photo.features.keypoints[keypoint].position);
+        cameras[photo.camera].ray(&pixel).push(1.0)
+    };
+    let rays: Vec<_> = (pair.matches.iter())
+        .map(|&(i, j)| (ray(first, i), ray(second, j)))
+        .collect();
+    let of_photo = |p: &MatchedPhoto| p.sigma_px / cameras[p.camera].focal;
+    let sigma = 0.5 * (of_photo(first) + of_photo(second));
+    let longest =
+        |p: &MatchedPhoto| f64::from(cameras[p.camera].size[0].max(cameras[p.camera].size[1]));
+    let range = longest(second) / second.sigma_px;
+    let seed = (pair.photos[0] * 100_003 + pair.photos[1]) as u64;
+    two_view_geometry(&rays, sigma, range, seed)
+}
+
+/// The focal length (a share of the longer side) under which the pairs with the most matches are
+/// likeliest, for the cameras that are marked.
+pub(super) fn guess_focal(
+    photos: &[MatchedPhoto],
+    cameras: &mut [Intrinsics],
+    is_guessed: &[bool],
+    pairs: &[MatchedPair],
+) {
+    let mut judges: Vec<&MatchedPair> = (pairs.iter())
+        .filter(|p| p.photos.iter().any(|&i| is_guessed[photos[i].camera]))
+        .collect();
+    judges.sort_by(|a, b| {
+        b.matches
+            .len()
+            .cmp(&a.matches.len())
+            .then(a.photos.cmp(&b.photos))
+    });
+    // The pairs with the most matches hardly differ in their place: every third says more.
+    let judges: Vec<&MatchedPair> = judges.into_iter().step_by(3).take(JUDGES).collect();
+    let with = |share: f64| -> Vec<Intrinsics> {
+        (cameras.iter().zip(is_guessed))
+            .map(|(camera, &guessed)| {
+                let longest = f64::from(camera.size[0].max(camera.size[1]));
+                let focal = if guessed {
+                    share * longest
+                } else {
+                    camera.focal
+                };
+                Intrinsics {
+                    focal,
+                    ..camera.clone()
+                }
+            })
+            .collect()
+    };
+    let mut best: Option<(f64, Vec<Intrinsics>)> = None;
+    for share in GUESSES {
+        let tried = with(share);
+        let scores = map_part(&judges, crate::execution::SILENT, |_, pair| {
+            geometry(photos, &tried, pair).map_or(0.0, |g| g.score)
+        });
+        let score: f64 = scores.iter().sum();
+        if best.as_ref().is_none_or(|(most, _)| score > *most) {
+            best = Some((score, tried));
+        }
+    }
+    if let Some((_, tried)) = best {
+        cameras.clone_from_slice(&tried);
+    }
+}
