@@ -66,6 +66,11 @@ function facet(indices: number[], plane: typeof SOUTH, probability: number, dens
     similarity: 0.8,
     real_ratio: 1,
     probability,
+    uncertainty: {
+      height_m: 0.05,
+      slope_deg: 0.4,
+      corners: indices.map((i) => ({ at: corner(i), sigma_m: [0.03, 0.04, 0.06] })),
+    },
     lines: [],
     half_planes: [],
     proposals: [{ dense_plane: dense }],
