@@ -149,4 +149,44 @@ mod tests {
             assert!((corner.sigma_m.z - SIGMA * 0.75f64.sqrt()).abs() < 1e-9);
         }
     }
+
+    #[test]
+    fn the_end_of_a_ridge_is_as_high_on_both_slopes() {
+        let (scene, _) = gable_scene(64);
+        let slope = |corners: [(f64, f64, f64); 4]| {
+            crate::testing::facet(&corners.map(|(x, y, z)| Point3::new(x, y, z)))
+        };
+        let west = [
+            (0.0, 0.0, 5.0),
+            (4.0, 0.0, 7.0),
+            (4.0, 9.0, 7.0),
+            (0.0, 9.0, 5.0),
+        ];
+        let east = [
+            (4.0, 0.0, 7.0),
+            (7.0, 0.0, 5.0),
+            (7.0, 9.0, 5.0),
+            (4.0, 9.0, 7.0),
+        ];
+        let roof = [west, east].map(slope);
+        let (w, state) = Wireframe::new(&[&roof[0], &roof[1]]);
+        let params = RefineParams::default();
+        let mut problem = AdjustmentProblem::new(&scene, &w, &state, Vec::new(), &params);
+        for (face, ring) in [west, east].into_iter().enumerate() {
+            problem.terms.extend(ring.map(|(x, y, z)| Term::Height {
+                face,
+                at: Point2::new(x, y),
+                z,
+                sigma_m: 0.1 + 0.1 * face as f64,
+            }));
+        }
+        let pattern = problem.pattern();
+        let solution = problem.unsolved(&state, &pattern).expect("regular");
+        let table = UncertaintyTable::as_adjusted();
+        let known = of_facets(&w, &solution, 0.1, &table);
+        for ridge_end in [Point3::new(4.0, 0.0, 7.0), Point3::new(4.0, 9.0, 7.0)] {
+            let [a, b] = [0, 1].map(|i| known[i].at(&ridge_end).expect("corners").z);
+            assert!((a - b).abs() < 1e-3 && a > 0.03, "{a} {b}");
+        }
+    }
 }
