@@ -10,11 +10,13 @@
 //! W96 assumes one building. A window may hold several orientations: peaks are taken in turn while
 //! they stand out.
 
+use std::f64::consts::{FRAC_PI_2, TAU};
+
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::image_lines::ImageLine;
-use crate::math::{atan2, exp, sin_cos};
+use crate::math::{atan2, exp, ln, sin_cos};
 use crate::params::DirectionParams;
 
 /// A pair of perpendicular horizontal directions.
@@ -98,6 +100,104 @@ fn directions_of(
     (found, trace)
 }
 
+/// Azimuth of a line from the X axis towards Y, up to right angles, with its standard deviation;
+/// radians.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct MeasuredAzimuth {
+    pub radians: f64,
+    pub sigma: f64,
+}
+
+impl MeasuredAzimuth {
+    /// The weighted mean of azimuths about `start`; `None` of nothing.
+    pub(super) fn mean(start: f64, measured: impl Iterator<Item = Self>) -> Option<Self> {
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for m in measured {
+            let weight = 1.0 / (m.sigma * m.sigma);
+            sum += weight * difference(m.radians, start);
+            weights += weight;
+        }
+        (weights > 0.0).then(|| Self {
+            radians: (start + sum / weights).rem_euclid(FRAC_PI_2),
+            sigma: 1.0 / weights.sqrt(),
+        })
+    }
+
+    /// The azimuth of a horizontal line from where the interpretation planes of its image lines cut
+    /// the XY plane; `sigma_px` is the error of either end of an image line.
+    pub(super) fn of_line(start: f64, image_lines: &[&ImageLine], sigma_px: f64) -> Option<Self> {
+        let cuts = image_lines.iter().filter_map(|line| {
+            let [radians, _] = azimuth(line)?;
+            let sigma = std::f64::consts::SQRT_2 * sigma_px / line.length_px;
+            Some(Self { radians, sigma })
+        });
+        Self::mean(start, cuts)
+    }
+}
+
+/// The directions of lines, by their description length, nats, and which of them each line follows.
+///
+/// ```text
+/// L = sum over lines       min(d^2 / (2 s^2) + ln(s sqrt(2 pi) K), ln(pi / 2))
+///   + sum over directions  ln(pi / 2 / s)
+/// ```
+///
+/// A line runs along one of K directions but for its standard deviation s, or anywhere; a direction
+/// is stated as exactly as its lines know it. The one that saves most is added while any does.
+pub(super) fn directions_by_length(
+    lines: &[MeasuredAzimuth],
+) -> (Vec<MeasuredAzimuth>, Vec<Option<usize>>) {
+    let mut best = (Vec::new(), vec![None; lines.len()]);
+    let mut least = described(&best.0, lines).0;
+    loop {
+        let mut next = None;
+        for start in lines {
+            let mut directions = best.0.clone();
+            directions.push(*start);
+            const ROUNDS: usize = 3;
+            for _ in 0..ROUNDS {
+                let along = described(&directions, lines).1;
+                for (k, direction) in directions.iter_mut().enumerate() {
+                    let own = lines.iter().zip(&along).filter(|(_, d)| **d == Some(k));
+                    let mean = MeasuredAzimuth::mean(direction.radians, own.map(|(l, _)| *l));
+                    *direction = mean.unwrap_or(*direction);
+                }
+            }
+            let (length, along) = described(&directions, lines);
+            if length < least {
+                least = length;
+                next = Some((directions, along));
+            }
+        }
+        match next {
+            Some(better) => best = better,
+            None => return best,
+        }
+    }
+}
+
+/// The description length of lines with these directions, and the direction of each line.
+fn described(
+    directions: &[MeasuredAzimuth],
+    lines: &[MeasuredAzimuth],
+) -> (f64, Vec<Option<usize>>) {
+    let anywhere = ln(FRAC_PI_2);
+    let mut length: f64 = directions.iter().map(|d| anywhere - ln(d.sigma)).sum();
+    let choices = ln(directions.len().max(1) as f64);
+    let along = lines.iter().map(|line| {
+        let along = directions.iter().enumerate().map(|(k, d)| {
+            let t = difference(line.radians, d.radians) / line.sigma;
+            (0.5 * t * t + ln(line.sigma * TAU.sqrt()) + choices, k)
+        });
+        let nearest = along.min_by(|a, b| a.0.total_cmp(&b.0));
+        let followed = nearest.filter(|(nats, _)| *nats < anywhere);
+        length += followed.map_or(anywhere, |(nats, _)| nats);
+        followed.map(|(_, k)| k)
+    });
+    let along = along.collect();
+    (length, along)
+}
+
 /// Azimuth, 0 to pi, and weight of the cut of an interpretation plane with the XY plane; `None` for
 /// a horizontal plane.
 fn azimuth(image_line: &ImageLine) -> Option<[f64; 2]> {
@@ -133,9 +233,8 @@ fn histogram(cuts: &[[f64; 2]]) -> Vec<f64> {
 
 /// Difference of two azimuths up to right angles, radians, -pi/4 to pi/4.
 fn difference(a: f64, b: f64) -> f64 {
-    let quarter = std::f64::consts::FRAC_PI_2;
-    let d = (a - b).rem_euclid(quarter);
-    if d > 0.5 * quarter { d - quarter } else { d }
+    let d = (a - b).rem_euclid(FRAC_PI_2);
+    if d > 0.5 * FRAC_PI_2 { d - FRAC_PI_2 } else { d }
 }
 
 /// The mean of the azimuths around a peak, far ones weighted down.
@@ -158,7 +257,7 @@ fn refined(start: f64, cuts: &[[f64; 2]]) -> f64 {
             azimuth += sum / weights;
         }
     }
-    azimuth.rem_euclid(std::f64::consts::FRAC_PI_2)
+    azimuth.rem_euclid(FRAC_PI_2)
 }
 
 fn share(azimuth: f64, cuts: &[[f64; 2]], tolerance: f64) -> f64 {
@@ -200,6 +299,26 @@ mod tests {
                 prop_assert!(d.abs() < 0.3, "{d} degrees after {wrong}");
             }
         }
+    }
+
+    #[test]
+    fn houses_a_degree_apart_have_directions_of_their_own() {
+        let measured = |degrees: f64| MeasuredAzimuth {
+            radians: degrees.to_radians(),
+            sigma: 0.2f64.to_radians(),
+        };
+        // Two houses, one of them across the end of the range, and a line of neither.
+        let lines = [0.2, 89.9, 0.1, 1.5, 1.3, 1.4, 1.6, 40.0].map(measured);
+        let (directions, along) = directions_by_length(&lines);
+        assert_eq!(directions.len(), 2);
+        let [a, b] = [along[0].expect("a house"), along[3].expect("a house")];
+        let expected = [a, a, a, b, b, b, b].map(Some);
+        assert_eq!(along[..7], expected);
+        assert_eq!(along[7], None);
+        assert!(difference(directions[a].radians, 0.0667f64.to_radians()).abs() < 1e-4);
+        // What one direction explains is not parted.
+        let one = [0.2, 89.9, 0.1, 0.3, 89.8].map(measured);
+        assert_eq!(directions_by_length(&one).0.len(), 1);
     }
 
     #[test]

@@ -4,16 +4,21 @@
 //! ... is known". It may be given; otherwise the method itself finds it. Overlapping tiles,
 //! somewhat larger than a house, are analysed as if each held one building: main directions,
 //! clusters. 3D lines that stand above the ground are linked where they come near each other and
-//! run parallel or perpendicular; each connected group is a building, its box the window.
+//! run parallel or perpendicular. The lines of a connected group that follow one pair of directions
+//! are a building, their box its window: neighbours are seldom exactly parallel.
+
+use std::collections::BTreeMap;
 
 use nalgebra::{Point2, Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::clusters::{ClusterLine, cluster_lines};
-use super::directions::{DirectionTrace, MainDirections, main_directions};
+use super::directions::{
+    DirectionTrace, MainDirections, MeasuredAzimuth, directions_by_length, main_directions,
+};
 use super::image_lines::ImageLine;
 use crate::execution::{Sharded, sharded_map};
-use crate::geometry::Segment3;
+use crate::geometry::{Segment3, bounds};
 use crate::math::atan2;
 use crate::params::ObjectSpaceParams;
 use crate::scene::Scene;
@@ -66,6 +71,8 @@ pub struct WindowTrace {
 /// Lines shorter than this, or alone, are no building, metres together. Assumption: less than the
 /// outline of a garage.
 const LEAST_LINES_M: f64 = 6.0;
+/// Lines within this angle, radians, may be of one building. Assumption: the error of a short one.
+const NEARLY_PARALLEL: f64 = 0.05;
 
 /// Windows at the given places (x0, y0, x1, y1, local frame), or around the buildings that the
 /// lines show.
@@ -85,20 +92,13 @@ pub(crate) fn find_windows(
         let raised = raised_lines(scene, image_lines, z_range_m, params)?;
         let group = groups(&raised, params.windows.link_m);
         windows = windows_of(&raised, &group, z_range_m, params.windows.margin_m);
-        trace.lines = raised.into_iter().zip(group).collect();
+        let segments = raised.iter().map(|l| l.segment);
+        trace.lines = segments.zip(group).collect();
     }
     for w in &mut windows {
         let inside: Vec<ImageLine> = image_lines.iter().filter(|s| w.shows(s)).cloned().collect();
         let (found, histogram) = main_directions(&inside, &params.directions);
-        if given.is_empty() {
-            let known = w.directions[0].azimuth;
-            let near = |m: &&MainDirections| {
-                apart(m.azimuth, known) < params.directions.apart_deg.to_radians()
-            };
-            if let Some(better) = found.iter().find(near) {
-                w.directions = vec![*better];
-            }
-        } else {
+        if !given.is_empty() {
             w.directions = found;
         }
         trace.histograms.push(histogram);
@@ -115,39 +115,48 @@ fn window([min, max]: [Point2<f64>; 2], z_range_m: [f64; 2]) -> Window {
     }
 }
 
+/// A horizontal 3D line of a tile.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct TileLine {
+    segment: Segment3,
+    azimuth: MeasuredAzimuth,
+}
+
 /// The 3D lines of all tiles that stand above the ground, longest first, each place once.
 fn raised_lines(
     scene: &Scene,
     image_lines: &[ImageLine],
     z_range_m: [f64; 2],
     params: &ObjectSpaceParams,
-) -> Sharded<Vec<Segment3>> {
+) -> Sharded<Vec<TileLine>> {
     let tiles = tiles(image_lines, z_range_m, params.windows.tile_m);
     let per_tile = sharded_map("tiles", &tiles, 0.2..1.0, |_, tile| {
         tile_lines(scene, image_lines, tile, params)
     })?;
-    let mut lines: Vec<Segment3> = per_tile.into_iter().flatten().map(|l| l.segment).collect();
+    let mut lines: Vec<TileLine> = per_tile.into_iter().flatten().collect();
     lines.sort_by(|a, b| {
+        let (a, b) = (&a.segment, &b.segment);
         let key = |s: &Segment3| (s.p0.x, s.p0.y);
         b.length()
             .total_cmp(&a.length())
             .then(key(a).0.total_cmp(&key(b).0))
             .then(key(a).1.total_cmp(&key(b).1))
     });
-    let mut kept: Vec<Segment3> = Vec::new();
+    let mut kept: Vec<TileLine> = Vec::new();
     for line in lines {
-        let known = |k: &Segment3| {
+        let known = |k: &TileLine| {
             [0.1, 0.5, 0.9]
                 .iter()
-                .all(|&t| distance(k, &line.at(t)) < 0.4)
+                .all(|&t| distance(&k.segment, &line.segment.at(t)) < 0.4)
         };
         if !kept.iter().any(known) {
             kept.push(line);
         }
     }
-    let ground = Ground::of_segments(scene, &kept, Some(z_range_m))?;
+    let segments: Vec<Segment3> = kept.iter().map(|l| l.segment).collect();
+    let ground = Ground::of_segments(scene, &segments, Some(z_range_m))?;
     let height = |s: &Segment3| s.p0.z - ground.z_at(&s.at(0.5).xy());
-    kept.retain(|s| height(s) >= 0.7 * params.planes.min_height_m);
+    kept.retain(|l| height(&l.segment) >= 0.7 * params.planes.min_height_m);
     Ok(kept)
 }
 
@@ -178,7 +187,7 @@ fn tile_lines(
     image_lines: &[ImageLine],
     tile: &Window,
     params: &ObjectSpaceParams,
-) -> Vec<ClusterLine> {
+) -> Vec<TileLine> {
     let inside: Vec<ImageLine> = image_lines
         .iter()
         .filter(|s| tile.shows(s))
@@ -191,12 +200,43 @@ fn tile_lines(
         .flat_map(|axis: Vector3<f64>| {
             cluster_lines(scene, &inside, &axis, tile.z_range_m, &params.clusters).0
         })
+        .filter_map(|line: ClusterLine| {
+            let supports: Vec<&ImageLine> = line.supports.iter().map(|&k| &inside[k]).collect();
+            let segment = line.segment;
+            let start = azimuth(&segment);
+            let azimuth = MeasuredAzimuth::of_line(start, &supports, params.clusters.sigma_px)?;
+            Some(TileLine { segment, azimuth })
+        })
         .collect()
 }
 
-/// The group of each line: lines that come near each other in plan and are parallel or
-/// perpendicular.
-fn groups(lines: &[Segment3], link_m: f64) -> Vec<Option<usize>> {
+/// The building of each line: lines that come near each other in plan and follow one pair of
+/// directions.
+fn groups(lines: &[TileLine], link_m: f64) -> Vec<Option<usize>> {
+    let linked = linked(lines, link_m);
+    let mut building: Vec<Option<[usize; 2]>> = vec![None; lines.len()];
+    for root in (0..lines.len()).filter(|&k| linked[k] == k) {
+        let members: Vec<usize> = (0..lines.len()).filter(|&k| linked[k] == root).collect();
+        let azimuths: Vec<MeasuredAzimuth> = members.iter().map(|&k| lines[k].azimuth).collect();
+        let (_, along) = directions_by_length(&azimuths);
+        for (member, direction) in members.into_iter().zip(along) {
+            building[member] = direction.map(|direction| [root, direction]);
+        }
+    }
+    let mut length: BTreeMap<[usize; 2], f64> = BTreeMap::new();
+    for (line, building) in lines.iter().zip(&building) {
+        if let Some(building) = building {
+            *length.entry(*building).or_default() += line.segment.length();
+        }
+    }
+    length.retain(|_, length| *length >= LEAST_LINES_M);
+    let number = |of: &[usize; 2]| length.keys().position(|building| building == of);
+    building.iter().map(|b| b.as_ref().and_then(number)).collect()
+}
+
+/// The first of the lines that each line is linked to: they come near each other in plan and are
+/// nearly parallel or perpendicular.
+fn linked(lines: &[TileLine], link_m: f64) -> Vec<usize> {
     let mut parent: Vec<usize> = (0..lines.len()).collect();
     fn root(parent: &mut [usize], mut k: usize) -> usize {
         while parent[k] != k {
@@ -207,70 +247,42 @@ fn groups(lines: &[Segment3], link_m: f64) -> Vec<Option<usize>> {
     }
     for i in 0..lines.len() {
         for j in i + 1..lines.len() {
-            if apart(azimuth(&lines[i]), azimuth(&lines[j])) < 0.05
-                && between(&lines[i], &lines[j]) < link_m
+            let [a, b] = [&lines[i], &lines[j]];
+            if apart(a.azimuth.radians, b.azimuth.radians) < NEARLY_PARALLEL
+                && between(&a.segment, &b.segment) < link_m
             {
                 let (a, b) = (root(&mut parent, i), root(&mut parent, j));
                 parent[a.max(b)] = a.min(b);
             }
         }
     }
-    let roots: Vec<usize> = (0..lines.len()).map(|k| root(&mut parent, k)).collect();
-    let mut length = vec![0.0; lines.len()];
-    for (k, r) in roots.iter().enumerate() {
-        length[*r] += lines[k].length();
-    }
-    let numbered: Vec<usize> = (0..lines.len())
-        .filter(|&r| length[r] >= LEAST_LINES_M)
-        .collect();
-    roots
-        .iter()
-        .map(|r| numbered.binary_search(r).ok())
-        .collect()
+    (0..lines.len()).map(|k| root(&mut parent, k)).collect()
 }
 
 fn windows_of(
-    lines: &[Segment3],
+    lines: &[TileLine],
     group: &[Option<usize>],
     z_range_m: [f64; 2],
     margin_m: f64,
 ) -> Vec<Window> {
     let count = group.iter().flatten().max().map_or(0, |m| m + 1);
-    (0..count)
-        .map(|g| {
-            let own = || {
-                lines
-                    .iter()
-                    .zip(group)
-                    .filter(|(_, h)| **h == Some(g))
-                    .map(|(l, _)| l)
-            };
-            let ends = || own().flat_map(|l| [l.p0, l.p1]);
-            let margin = nalgebra::Vector2::new(margin_m, margin_m);
-            let bound = |start: f64, f: fn(f64, f64) -> f64| {
-                Point2::new(
-                    ends().map(|p| p.x).fold(start, f),
-                    ends().map(|p| p.y).fold(start, f),
-                )
-            };
-            let corners = [
-                bound(f64::INFINITY, f64::min) - margin,
-                bound(f64::NEG_INFINITY, f64::max) + margin,
-            ];
-            // The lines are sorted: the first one is the longest.
-            let azimuth = own()
-                .next()
-                .map_or(0.0, azimuth)
-                .rem_euclid(std::f64::consts::FRAC_PI_2);
-            Window {
-                directions: vec![MainDirections {
-                    azimuth,
-                    share: 0.0,
-                }],
-                ..window(corners, z_range_m)
-            }
+    let window_of = |g: usize| {
+        let own = || lines.iter().zip(group).filter(move |(_, h)| **h == Some(g)).map(|(l, _)| l);
+        let ends = own().flat_map(|l| [l.segment.p0.xy(), l.segment.p1.xy()]);
+        let [min, max] = bounds(ends);
+        let margin = nalgebra::Vector2::new(margin_m, margin_m);
+        // The lines are sorted: the first one is the longest.
+        let longest = own().next()?.azimuth.radians;
+        let azimuth = MeasuredAzimuth::mean(longest, own().map(|l| l.azimuth))?.radians;
+        Some(Window {
+            directions: vec![MainDirections {
+                azimuth,
+                share: 0.0,
+            }],
+            ..window([min - margin, max + margin], z_range_m)
         })
-        .collect()
+    };
+    (0..count).filter_map(window_of).collect()
 }
 
 fn azimuth(line: &Segment3) -> f64 {
@@ -310,8 +322,15 @@ fn between(a: &Segment3, b: &Segment3) -> f64 {
 mod tests {
     use super::*;
 
-    fn line(x0: f64, y0: f64, x1: f64, y1: f64) -> Segment3 {
-        Segment3::new(Point3::new(x0, y0, 5.0), Point3::new(x1, y1, 5.0))
+    fn line(x0: f64, y0: f64, x1: f64, y1: f64) -> TileLine {
+        let segment = Segment3::new(Point3::new(x0, y0, 5.0), Point3::new(x1, y1, 5.0));
+        TileLine {
+            segment,
+            azimuth: MeasuredAzimuth {
+                radians: azimuth(&segment),
+                sigma: 0.005,
+            },
+        }
     }
 
     #[test]
