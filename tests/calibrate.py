@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Fit the tables of src/evidence (lines, facets, windows, lines in the model, surfaces) to scenes of which the truth is known.
+"""Fit the tables of src/evidence (lines, facets, rectangles, windows, lines in the model, surfaces) to scenes of which the truth is known.
 
     python3 tests/calibrate.py --binary target/release/ridgeline [--scenes NAME,...]
                                [--fit FOLDER] [--more FOLDER] [--dry] [--keep]
     python3 tests/calibrate.py --self-test
 
-Every scene runs three times: with all line candidates accepted, with all facet candidates
-accepted, and as it is, which gives the facets that are found once others were rejected, and the
+Every scene runs four times: with all line candidates accepted, with all facet candidates
+accepted, with all planes between parallel lines as candidates, and as it is, which gives the facets that are found once others were rejected, and the
 lines in the finished model. The folder of --fit (../shared/fit) has random scenes, named `r` and
 their seed, that of --more (../shared/scenes) those of FITTED; beside them lies `score/` with
 score.py, by whose definitions a candidate is true. Printed are area under the ROC curve and expected calibration error of the
@@ -42,6 +42,7 @@ RUN = {
     'lines': {'matching': {'least_nats': ALL}, 'adjustment': {'enabled': False}},
     'facets': {'roof': {'least_nats': ALL}},
     'strict': {},
+    'rectangles': {'method': 'rectangles', 'objectspace': {'planes': {'least_nats': ALL}}},
 }
 # What a candidate counts: scenes of the old rendering look less like photographs.
 WEIGHTS = {'random': 1.0, 'real': 1.5, 'old': 0.4}
@@ -55,6 +56,10 @@ SIGNS = {
         'outline_on_lines': 1, 'displaced_plane_margin_sigmas': 1, 'rival_plane_margin_sigmas': 1,
         'excess_green': -1, 'ln_area_m2': 1, 'ln_1_plus_lines': 1, 'ln_1_plus_half_planes': 1, 'cos_slope': 0,
     },
+    'rectangles': {
+        'plane_nats_per_m2': 1, 'displaced_plane_margin_nats_per_m2': 1, 'outline_on_lines': 1, 'ln_area_m2': 0, 'slanted_ends': -1,
+        'cos_slope': 0, 'height_m': 0,
+    },
     'buildings': {'height_m': 1, 'roughness_px': -1, 'excess_green': 0, 'correlation': 0, 'cos_slope': 0, 'ln_area_m2': 0},
     'vegetation': {'height_m': 0, 'roughness_px': 1, 'excess_green': 1, 'correlation': 0, 'cos_slope': 0, 'ln_area_m2': 0},
     'model_lines': {'nats_before': 1, 'is_border': 0, 'is_intersection': 0, 'share_on_surfaces': 1, 'hidden_views': -1,
@@ -62,6 +67,8 @@ SIGNS = {
 }
 # A facet is true if so much of it lies on true faces of its plane; of those of which more does the windows are counted.
 TRUE_SHARE, WINDOWS_SHARE, FEWEST_WINDOWS = 0.5, 0.9, 20
+# Of a rectangle more: of those of one plane the one with the right ends is wanted.
+RECTANGLE_SHARE = 0.75
 # How near the surface model a patch lies on it, and how high what stands on it rises, metres.
 SURFACE_M = 0.5
 # Smaller facets are not judged, square metres in plan.
@@ -96,20 +103,22 @@ def main():
               f'{scorer} {"is there" if scorer.is_file() else "is missing"}; two scenes are needed')
         return 0
     truth = loaded(scorer)
-    lines, facets, model_lines, buildings, vegetation = [], [], [], [], []
+    lines, facets, model_lines, buildings, vegetation, rectangles = [], [], [], [], [], []
     for scene in scenes:
         found = {how: run(args, scene, how) for how in RUN}
         if all(found.values()):
             lines += lines_of(truth, scene, found['lines']['lines'])
             model_lines += lines_of(truth, scene, found['strict']['model_lines'])
             facets += facets_of(truth, scene, [found['facets'], found['strict']])
+            of_strips = facets_of(truth, scene, [{'facets': found['rectangles']['rectangles']}])
+            rectangles += [{**r, 'true': r['on'] >= RECTANGLE_SHARE} for r in of_strips]
             surfaces = surfaces_of(truth, scene, found['strict']['surfaces'])
             buildings += [{**s, 'values': s['building'], 'true': s['class'] == 'building'} for s in surfaces]
             vegetation += [{**s, 'values': s['vegetation'], 'true': s['class'] == 'vegetation'}
                            for s in surfaces if s['class'] != 'building']
             print(f'{scene.name}: {len(lines)} lines, {len(facets)} facets so far', flush=True)
     for kind, candidates in (('lines', lines), ('facets', facets), ('model_lines', model_lines),
-                             ('buildings', buildings), ('vegetation', vegetation)):
+                             ('rectangles', rectangles), ('buildings', buildings), ('vegetation', vegetation)):
         calibrate(args, kind, candidates)
     calibrate_windows(args, facets)
     calibrate_uncertainty(args, truth, scenes)

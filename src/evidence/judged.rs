@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 
 use super::Evidence;
-use crate::geometry::{Plane, Segment3};
+use crate::geometry::{Plane, Segment3, mean_point};
 
 /// The candidates of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,6 +16,8 @@ pub struct Candidates {
     pub model_lines: Vec<JudgedLine>,
     /// Every facet that was weighed.
     pub facets: Vec<JudgedFacet>,
+    /// Every plane between parallel lines that was weighed.
+    pub rectangles: Vec<JudgedFacet>,
     /// Every surface of dense matching.
     pub surfaces: Vec<JudgedSurface>,
 }
@@ -122,13 +124,16 @@ impl Candidates {
             ..surface.clone()
         };
         let surfaces =
-            (self.surfaces.iter()).filter(|s| holds(&crate::geometry::mean_point(&s.patches)));
-        let facets =
-            (self.facets.iter()).filter(|f| holds(&crate::geometry::mean_point(&f.outline)));
+            (self.surfaces.iter()).filter(|s| holds(&mean_point(&s.patches)));
+        let facets_of = |facets: &[JudgedFacet]| -> Vec<JudgedFacet> {
+            let inside = facets.iter().filter(|f| holds(&mean_point(&f.outline)));
+            inside.map(facet).collect()
+        };
         Self {
             lines: lines_of(&self.lines),
             model_lines: lines_of(&self.model_lines),
-            facets: facets.map(facet).collect(),
+            facets: facets_of(&self.facets),
+            rectangles: facets_of(&self.rectangles),
             surfaces: surfaces.map(surface).collect(),
         }
     }
@@ -180,6 +185,7 @@ mod tests {
             lines: vec![line(1.0), line(90.0)],
             model_lines: vec![line(2.0)],
             facets: vec![facet],
+            rectangles: Vec::new(),
             surfaces: [1.0, 90.0].map(surface).to_vec(),
         };
         let moved = all.moved(&Vector3::new(10.0, 0.0, 2.0), |p| p.x < 50.0);

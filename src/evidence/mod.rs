@@ -109,6 +109,12 @@ impl EvidenceModel {
         MODEL.get_or_init(|| Self::read(include_str!("model_lines.json")))
     }
 
+    /// The model of planes between parallel lines (W96 3.6).
+    pub(crate) fn of_rectangles() -> &'static Self {
+        static MODEL: OnceLock<EvidenceModel> = OnceLock::new();
+        MODEL.get_or_init(|| Self::read(include_str!("rectangles.json")))
+    }
+
     /// The model of buildings among the surfaces of dense matching.
     pub(crate) fn of_buildings() -> &'static Self {
         static MODEL: OnceLock<EvidenceModel> = OnceLock::new();

@@ -8,7 +8,7 @@ use crate::evidence::{Candidates, Evidence, JudgedFacet, JudgedLine, WindowHisto
 use crate::scene::Scene;
 
 /// `evidence.json`: every matched line, every line in the finished model, every facet that was
-/// weighed, every surface of dense matching, and the classes in which the windows of the facets are
+/// weighed, every plane between parallel lines, every surface of dense matching, and the classes in which the windows of the facets are
 /// counted. World frame of the input.
 pub fn evidence_json(scene: &Scene, candidates: &Candidates) -> Vec<u8> {
     let line = |line: &JudgedLine| {
@@ -20,7 +20,9 @@ pub fn evidence_json(scene: &Scene, candidates: &Candidates) -> Vec<u8> {
         })
     };
     let lines_of = |lines: &[JudgedLine]| lines.iter().map(line).collect::<Vec<_>>();
-    let facets = candidates.facets.iter().map(|f| facet(scene, f));
+    let facets_of = |facets: &[JudgedFacet]| -> Vec<_> {
+        facets.iter().map(|f| facet(scene, f)).collect()
+    };
     let surfaces = candidates.surfaces.iter().map(|s| {
         let patches = s.patches.iter().map(|p| world(scene, p));
         json!({
@@ -35,7 +37,8 @@ pub fn evidence_json(scene: &Scene, candidates: &Candidates) -> Vec<u8> {
     to_bytes(&json!({
         "lines": lines_of(&candidates.lines),
         "model_lines": lines_of(&candidates.model_lines),
-        "facets": facets.collect::<Vec<_>>(),
+        "facets": facets_of(&candidates.facets),
+        "rectangles": facets_of(&candidates.rectangles),
         "surfaces": surfaces.collect::<Vec<_>>(),
         "window_classes": {
             "weights_below": WindowHistogram::WEIGHTS_BELOW.map(|w| rounded(f64::from(w), 2)),

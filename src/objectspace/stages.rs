@@ -10,6 +10,7 @@ use super::rectangles::OccludingSolid;
 use super::rectangles::best_set;
 use super::rectangles::{PlaneCandidate, PlaneRejection, PlaneSearch, PlaneTrace};
 use super::windows::{Window, WindowTrace, find_windows};
+use crate::evidence::{JudgedFacet, WindowCounts};
 use crate::execution::{Sharded, reached, sharded_map};
 use crate::geometry::{Segment2, Segment3};
 use crate::ids::{BuildingId, LineId, ProposalOrigin};
@@ -142,6 +143,21 @@ pub struct RectangleTrace {
     pub solids: SolidTrace,
 }
 
+impl RectangleTrace {
+    /// Every candidate with what speaks for it and against it.
+    pub(crate) fn judged(&self) -> Vec<JudgedFacet> {
+        let judged = self.candidates.iter().enumerate().map(|(k, c)| JudgedFacet {
+            outline: c.ring.clone(),
+            holes: Vec::new(),
+            plane: c.plane,
+            accepted: self.chosen.binary_search(&k).is_ok(),
+            evidence: c.features.evidence(),
+            windows: WindowCounts::default(),
+        });
+        judged.collect()
+    }
+}
+
 /// Planes between parallel lines, the best set of them, and the buildings below (W96 3.6).
 pub fn find_rectangles(
     scene: &Scene,
@@ -262,7 +278,7 @@ pub fn proposed_planes(trace: &RectangleTrace) -> Vec<ProposedPlane> {
     let mut order: Vec<usize> = (0..trace.candidates.len()).collect();
     let chosen = |k: &usize| trace.chosen.binary_search(k).is_ok();
     order.sort_by(|a, b| {
-        let measure = |k: &usize| trace.candidates[*k].measure;
+        let measure = |k: &usize| trace.candidates[*k].measure();
         let chosen_first = chosen(b).cmp(&chosen(a));
         chosen_first.then(measure(b).total_cmp(&measure(a)))
     });
@@ -285,9 +301,9 @@ fn facet(index: usize, candidate: &PlaneCandidate) -> Facet {
         outer: candidate.ring.clone(),
         holes: Vec::new(),
         similarity: candidate.correlation,
-        real_ratio: candidate.support,
+        real_ratio: candidate.features.outline_on_lines,
         uncertainty: None,
-        probability: 1.0,
+        probability: candidate.features.evidence().probability(),
         lines: candidate
             .lines
             .iter()

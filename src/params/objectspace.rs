@@ -47,33 +47,14 @@ pub struct PlaneParams {
     /// Least share of an outline that image lines cover, mean over the views, for it to be looked
     /// at. Assumption.
     pub min_support: f64,
-    /// Support at which a side counts neither for nor against a plane. Assumption.
-    pub least_support: f64,
-    /// Least correlation of the views on a plane. Assumption: unrelated textures reach 0.45, since
-    /// only the better half of all pairs of views counts.
-    pub least_correlation: f64,
-    /// Planes whose correlation is lower than that of the planes beside them by more are rejected
-    /// whatever their sides. Assumption: twice the error of the comparison on weak texture.
-    pub min_rise: f64,
-    /// By how much the views agree better on a plane than beside it where an area counts neither
-    /// for nor against. Assumption: the error of the comparison on weak texture, so that the sides
-    /// decide there.
-    pub least_rise: f64,
     /// A plane is compared with those above and below it at a distance that moves the images
     /// against each other by this, px. Assumption: more than the error of a true plane, less than
     /// the windows.
     pub beside_px: f64,
-    /// Weight of a metre of side against a square metre of area, metres. Assumption.
-    pub side_weight_m: f64,
-    /// What a plane costs, square metres. Assumption: two planes must explain more than one by
-    /// this.
-    pub plane_cost_m2: f64,
-    /// What an end costs that is not at right angles, square metres. Assumption: it has a parameter
-    /// more.
-    pub slant_cost_m2: f64,
-    /// Least measure, square metres. W96 accepts any best plane, and proposes "thresholding the
-    /// measure". Assumption.
-    pub min_measure_m2: f64,
+    /// Natural logarithm of the odds from which on a plane is a candidate ([`crate::evidence`]): even
+    /// ones, where W96 accepts any best plane and proposes "thresholding the measure". `make
+    /// calibrate` sees every candidate by a very low one.
+    pub least_nats: f64,
     /// Smallest plane, square metres. Assumption.
     pub min_area_m2: f64,
 }
@@ -92,15 +73,8 @@ impl Default for PlaneParams {
             max_ends: 8,
             max_candidates: 4,
             min_support: 0.25,
-            least_support: 0.3,
-            least_correlation: 0.5,
-            min_rise: -0.1,
-            least_rise: -0.05,
             beside_px: 3.0,
-            side_weight_m: 0.5,
-            plane_cost_m2: 1.0,
-            slant_cost_m2: 1.5,
-            min_measure_m2: 1.0,
+            least_nats: 0.0,
             min_area_m2: 3.0,
         }
     }

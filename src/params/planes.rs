@@ -142,18 +142,8 @@ pub struct RoofParams {
     /// Cost of a metre of facet border that no line supports, nats; a square metre on which the
     /// views agree has about five. Measured: half and twice as much find as many facets.
     pub border_nats_per_m: f64,
-    /// Of older project files; not read.
-    #[serde(skip_serializing)]
-    pub border_cost_m: Option<f64>,
-    /// Of older project files; not read.
-    #[serde(skip_serializing)]
-    pub half_plane_gain_m: Option<f64>,
     /// Facets smaller than this are not reported, square metres. Assumption.
     pub min_area_m2: f64,
-    /// Of older project files; not read. The share of an outline on lines is a term of a facet's
-    /// evidence.
-    #[serde(skip_serializing)]
-    pub min_real_ratio: Option<f64>,
     /// No eave is lower than this above the ground, metres. Assumption: that of a low garage, less
     /// the error of the ground's height.
     pub min_height_m: f64,
@@ -174,10 +164,7 @@ impl Default for RoofParams {
             extension_m: 1.5,
             min_correlation: 0.45,
             border_nats_per_m: 1.25,
-            border_cost_m: None,
-            half_plane_gain_m: None,
             min_area_m2: 1.5,
-            min_real_ratio: None,
             min_height_m: 1.2,
             least_nats: 0.0,
             refine: RefineParams::default(),

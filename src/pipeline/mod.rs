@@ -66,7 +66,7 @@ impl Results {
         reconstructed.map(|(track, _)| &track.evidence).collect()
     }
 
-    /// The lines and facets of B99 that were weighed; none by another method.
+    /// Everything that was weighed.
     pub fn candidates(&self) -> Candidates {
         let facets = self.facets.as_ref();
         let in_model = facets.map_or(&[][..], |found| &found.trace.lines.evidence);
@@ -80,6 +80,8 @@ impl Results {
             lines: (matched.zip(self.evidence_of_matches()).map(judged)).collect(),
             model_lines: all.iter().zip(in_model).map(judged).collect(),
             facets: facets.map_or_else(Vec::new, |found| found.trace.facets.judged.clone()),
+            rectangles: (self.rectangles.as_ref())
+                .map_or_else(Vec::new, |found| found.trace.judged()),
             surfaces: (self.dense.as_ref())
                 .map_or_else(Vec::new, |found| found.trace.judged(&found.value)),
         }

@@ -4,7 +4,9 @@ use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
 
 use super::ends::{Crossing, PlaneEnd};
+use crate::evidence::{Evidence, EvidenceModel};
 use crate::geometry::Plane;
+use crate::math::{larger, ln};
 
 /// A polygon in a plane, with the evidence for it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -16,14 +18,57 @@ pub struct PlaneCandidate {
     pub ring: Vec<Point3<f64>>,
     /// The two lines (one for a triangle), as indices into the clusters of the window.
     pub lines: Vec<usize>,
-    /// Share of the outline that image lines cover, mean over the views.
-    pub support: f64,
     /// Mean correlation of the views inside, weighted by texture.
     pub correlation: f64,
-    /// By how much it exceeds the correlation on planes above and below it, median.
-    pub rise: f64,
-    /// The measure M, square metres.
-    pub measure: f64,
+    /// What its evidence is measured from.
+    pub features: PlaneFeatures,
+}
+
+/// What is measured of a plane candidate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+pub struct PlaneFeatures {
+    /// What the windows inside say of the plane, nats for a square metre in plan.
+    pub plane_nats_per_m2: f64,
+    /// By how much that is more than what they say of the better one of the planes a little above
+    /// and below: smooth surfaces correlate on any plane near them.
+    pub displaced_plane_margin_nats_per_m2: f64,
+    /// Share of the outline that image lines cover, mean over the views.
+    pub outline_on_lines: f64,
+    /// Area, square metres.
+    pub area_m2: f64,
+    /// Ends that are not at right angles to the lines: each is a parameter more.
+    pub slanted_ends: usize,
+    /// Cosine of the slope.
+    pub cos_slope: f64,
+    /// Height of the middle above the ground, metres.
+    pub height_m: f64,
+}
+
+impl PlaneFeatures {
+    /// What speaks for the plane and its outline, and against them.
+    pub fn evidence(&self) -> Evidence {
+        EvidenceModel::of_rectangles().weigh(&[
+            ("plane_nats_per_m2", self.plane_nats_per_m2),
+            (
+                "displaced_plane_margin_nats_per_m2",
+                self.displaced_plane_margin_nats_per_m2,
+            ),
+            ("outline_on_lines", self.outline_on_lines),
+            ("ln_area_m2", ln(larger(self.area_m2, 1e-3))),
+            ("slanted_ends", self.slanted_ends as f64),
+            ("cos_slope", self.cos_slope),
+            ("height_m", self.height_m),
+        ])
+    }
+}
+
+impl PlaneCandidate {
+    /// The measure M, square metres: the area that is likely roof less the area that is likely not.
+    pub fn measure(&self) -> f64 {
+        let probability = self.features.evidence().probability();
+        self.features.area_m2 * (2.0 * probability - 1.0)
+    }
 }
 
 /// Why a plane hypothesis gave no candidate.
@@ -37,7 +82,7 @@ pub enum PlaneRejection {
     NearGround,
     /// Crossing lines make no two ends.
     NoEnds,
-    /// The measure of its best polygon is not positive.
+    /// Its best polygon is likelier false than true.
     Weak,
 }
 

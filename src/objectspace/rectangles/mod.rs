@@ -2,24 +2,22 @@
 //!
 //! Each pair of parallel lines defines a plane; the image lines that cross it show where it ends
 //! ([`ends`]); and radiometry separates true planes from false ones. W96 sums geometric and
-//! radiometric criteria up in one measure without writing it down. Here
+//! radiometric criteria up in one measure without writing it down. Here it is
 //!
 //! ```text
-//! M = sum over the area of  weight (rise - least_rise)
-//!   + side_weight  sum over the sides of  length (support - least_support)       square metres
-//!   - plane_cost - slant_cost (ends that are not at right angles)
+//! M = area (2 p - 1)      square metres
 //! ```
 //!
-//! * the first sum is the paper's criterion that "the area ... inside the 3D plane should be
-//!   radiometrically homogeneous over all images": the views, warped to the plane, are compared by
-//!   correlation (`photoconsistency`), with little weight where there is no texture. They
-//!   must agree better than on planes a little above and below, and the rise is the median by how
-//!   much they do: smooth surfaces correlate on any plane near them, so that a fixed level of
-//!   correlation lets many false planes through (of 910 candidates of the rendered scenes the
-//!   difference separates true from false in 88 of 100 pairs, correlation alone in 80). The median,
-//!   because what stands on a roof agrees above it;
-//! * the second is its geometry, and the contrast of its lines, since only lines with contrast are
-//!   region boundaries: support is the share of a side that image lines cover, mean over all views.
+//! the area that is likely roof less the area that is likely not, where p is the probability of the
+//! candidate by the model of evidence ([`PlaneFeatures`]):
+//!
+//! * radiometry, the paper's criterion that "the area ... inside the 3D plane should be
+//!   radiometrically homogeneous over all images": what the correlation windows say of the plane,
+//!   and by how much more than of planes a little above and below, for smooth surfaces correlate on
+//!   any plane near them;
+//! * geometry, and the contrast of its lines, since only lines with contrast are region boundaries:
+//!   the share of the outline that image lines cover, mean over all views; slanted ends, which have
+//!   a parameter more; area, slope and height.
 //!
 //! Of the polygons between two lines those with the largest M are kept as candidates. A pair of
 //! lines may hold several, with gaps between them: U-shapes. A line with an end of a perpendicular,
@@ -45,7 +43,7 @@ mod selection;
 mod shapes;
 mod strip;
 
-pub use candidate::{PlaneCandidate, PlaneRejection, PlaneTrace};
+pub use candidate::{PlaneCandidate, PlaneFeatures, PlaneRejection, PlaneTrace};
 pub use ends::{Crossing, PlaneEnd};
 pub(crate) use occluding_solids::OccludingSolid;
 pub(crate) use selection::best_set;
@@ -54,13 +52,13 @@ use nalgebra::Point3;
 
 use self::ends::{crossings, ends, slanted_ends};
 use self::occluding_solids::partly_hidden;
-use self::plane_evidence::{CHANCE, PlaneAgreement, PlaneConsistency, area_2d};
+use self::plane_evidence::{PlaneConsistency, area_2d};
 use self::shapes::{StripLine, StripPolygon, quadrilaterals, triangle};
 use self::strip::PlaneStrip;
 use super::clusters::{ClusterAxes, ClusterLine, overlap};
 use super::image_lines::ImageLine;
 use crate::execution::{SILENT, Sharded, sharded_map};
-use crate::geometry::Plane;
+use crate::geometry::mean_point;
 use crate::params::PlaneParams;
 use crate::scene::Scene;
 use crate::terrain::Ground;
@@ -241,7 +239,7 @@ impl PlaneSearch<'_> {
         Ok(strip)
     }
 
-    /// The best shapes of a strip by the measure, those with a positive one.
+    /// The best shapes of a strip by the measure, those that are likelier true than false.
     fn measured(&self, strip: &PlaneStrip, mut shapes: Vec<StripPolygon>) -> Vec<PlaneCandidate> {
         let plane = &strip.plane;
         let in_front = self.solids.iter().filter(|s| s.stands_above(plane));
@@ -253,15 +251,25 @@ impl PlaneSearch<'_> {
         let Some(consistency) = PlaneConsistency::new(self.scene, plane, &rings, &solids) else {
             return Vec::new();
         };
-        let promising: Vec<(StripPolygon, Vec<Point3<f64>>, PlaneAgreement)> = shapes
+        let promising: Vec<(Vec<Point3<f64>>, PlaneFeatures, f64)> = shapes
             .into_iter()
             .zip(rings)
-            .map(|(shape, ring)| (consistency.agreement(&ring), shape, ring))
-            .filter(|(on, shape, ring)| {
-                self.measure(plane, ring, shape, on, on.median - CHANCE)
-                    .is_some()
+            .filter_map(|(shape, ring)| {
+                let on = consistency.agreement(&ring);
+                let features = PlaneFeatures {
+                    plane_nats_per_m2: on.nats_per_m2,
+                    // The best that the comparison with displaced planes can say.
+                    displaced_plane_margin_nats_per_m2: f64::INFINITY,
+                    outline_on_lines: shape.support,
+                    area_m2: area_2d(&ring) / plane.normal.z,
+                    slanted_ends: shape.slants,
+                    cos_slope: plane.normal.z,
+                    height_m: self.height_above_ground(&ring),
+                };
+                let may_live = features.area_m2 >= self.params.min_area_m2
+                    && features.evidence().accepts(self.params.least_nats);
+                may_live.then_some((ring, features, on.correlation))
             })
-            .map(|(on, shape, ring)| (shape, ring, on))
             .collect();
         if promising.is_empty() {
             return Vec::new();
@@ -269,44 +277,30 @@ impl PlaneSearch<'_> {
         let displaced = consistency.displaced(self.params.beside_px);
         let mut found: Vec<PlaneCandidate> = promising
             .into_iter()
-            .filter_map(|(shape, ring, on)| {
-                let rise = consistency.rise(&displaced, &ring);
-                let measure = self.measure(plane, &ring, &shape, &on, rise)?;
-                Some(PlaneCandidate {
+            .filter_map(|(ring, features, correlation)| {
+                let beside = consistency.best_displaced_nats(&displaced, &ring);
+                let features = PlaneFeatures {
+                    displaced_plane_margin_nats_per_m2: features.plane_nats_per_m2 - beside,
+                    ..features
+                };
+                let lives = features.evidence().accepts(self.params.least_nats);
+                lives.then_some(PlaneCandidate {
                     plane: *plane,
                     ring,
                     lines: Vec::new(),
-                    support: shape.support,
-                    correlation: on.correlation,
-                    rise,
-                    measure,
+                    correlation,
+                    features,
                 })
             })
             .collect();
-        found.sort_by(|a, b| b.measure.total_cmp(&a.measure));
+        found.sort_by(|a, b| b.measure().total_cmp(&a.measure()));
         found.truncate(self.params.max_candidates);
         found
     }
 
-    /// The measure M; `None` where it is too small.
-    fn measure(
-        &self,
-        plane: &Plane,
-        ring: &[Point3<f64>],
-        shape: &StripPolygon,
-        on: &PlaneAgreement,
-        rise: f64,
-    ) -> Option<f64> {
-        let p = self.params;
-        let area = area_2d(ring) / plane.normal.z;
-        let measure = area * on.weight * (rise - p.least_rise)
-            + p.side_weight_m * shape.length * (shape.support - p.least_support)
-            - p.plane_cost_m2
-            - p.slant_cost_m2 * shape.slants as f64;
-        let accepted = measure > p.min_measure_m2
-            && area >= p.min_area_m2
-            && on.correlation >= p.least_correlation
-            && rise >= p.min_rise;
-        accepted.then_some(measure)
+    /// Height of the middle of a ring above the ground, metres.
+    fn height_above_ground(&self, ring: &[Point3<f64>]) -> f64 {
+        let middle = mean_point(ring);
+        middle.z - self.ground.z_at(&middle.xy())
     }
 }

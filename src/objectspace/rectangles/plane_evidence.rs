@@ -4,7 +4,9 @@
 use nalgebra::{Point2, Point3, Vector2};
 
 use super::occluding_solids::OccludingSolid;
+use crate::evidence::WindowEvidenceTable;
 use crate::geometry::Plane;
+use crate::math::larger;
 use crate::photoconsistency::{ConsistencyMap, PlanGrid, consistency_map, consistency_map_behind};
 use crate::scene::Scene;
 
@@ -31,20 +33,15 @@ pub(crate) struct PlaneConsistency<'a> {
 
 /// Agreement of the views inside a polygon in the plane.
 pub(crate) struct PlaneAgreement {
-    /// Weight of its texture, 0 to 1.
-    pub weight: f64,
     /// Correlation of the views, weighted by texture.
     pub correlation: f64,
-    /// Its weighted median.
-    pub median: f64,
+    /// What the windows say of the plane, nats for a square metre in plan: windows a metre apart
+    /// are independent.
+    pub nats_per_m2: f64,
 }
 
 /// The comparison of the views on planes above and below.
 pub(crate) struct DisplacedMaps([ConsistencyMap; 2]);
-
-/// Correlation of unrelated textures: only the better half of all pairs of views counts. No plane
-/// beside another one is taken to be worse, so that hopeless planes need not be compared with any.
-pub(crate) const CHANCE: f64 = 0.45;
 
 /// Largest number of cells of a plane's grid.
 const MOST_CELLS: f64 = 60_000.0;
@@ -73,35 +70,25 @@ impl<'a> PlaneConsistency<'a> {
 
     /// The agreement inside a convex ring that runs counter-clockwise.
     pub(super) fn agreement(&self, ring: &[Point3<f64>]) -> PlaneAgreement {
-        let (mut cells, mut weights, mut sum) = (0u32, 0.0, 0.0);
-        let mut spread = WeightedHistogram::default();
-        for k in self.cells(ring) {
+        let cells = self.cells(ring);
+        let (mut weights, mut sum) = (0.0, 0.0);
+        for &k in &cells {
             let (weight, c) = (self.map.common_weight(k), self.map.correlation(k));
-            cells += 1;
             weights += f64::from(weight);
             sum += f64::from(weight) * f64::from(c);
-            spread.add(c, weight);
         }
         PlaneAgreement {
-            weight: weights / f64::from(cells.max(1)),
             correlation: if weights > 0.0 { sum / weights } else { 0.0 },
-            median: spread.median(),
+            nats_per_m2: mean_nats(&self.map, &cells),
         }
     }
 
-    /// By how much the views agree better on the plane than above and below it inside a ring: the
-    /// lower one of the medians.
-    pub(super) fn rise(&self, displaced: &DisplacedMaps, ring: &[Point3<f64>]) -> f64 {
+    /// What the windows say of the better one of the planes above and below inside a ring, nats for
+    /// a square metre in plan.
+    pub(super) fn best_displaced_nats(&self, displaced: &DisplacedMaps, ring: &[Point3<f64>]) -> f64 {
         let cells = self.cells(ring);
-        let medians = displaced.0.each_ref().map(|map| {
-            let mut spread = WeightedHistogram::default();
-            for &k in &cells {
-                let other = map.correlation(k).max(CHANCE as f32);
-                spread.add(self.map.correlation(k) - other, self.map.common_weight(k));
-            }
-            spread.median()
-        });
-        medians[0].min(medians[1])
+        let nats = displaced.0.each_ref().map(|map| mean_nats(map, &cells));
+        larger(nats[0], nats[1])
     }
 
     /// The cells inside a ring without its border: windows that reach over it show its edge, which
@@ -136,39 +123,13 @@ impl<'a> PlaneConsistency<'a> {
     }
 }
 
-/// A weighted histogram of values from -2 to 2.
-struct WeightedHistogram {
-    weights: [f64; Self::BINS],
-}
-
-impl Default for WeightedHistogram {
-    fn default() -> Self {
-        Self {
-            weights: [0.0; Self::BINS],
-        }
-    }
-}
-
-impl WeightedHistogram {
-    const BINS: usize = 512;
-    /// Bins per unit.
-    const FINENESS: f32 = 128.0;
-
-    fn add(&mut self, value: f32, weight: f32) {
-        let bin = ((value + 2.0) * Self::FINENESS).round().max(0.0) as usize;
-        self.weights[bin.min(Self::BINS - 1)] += f64::from(weight);
-    }
-
-    /// The weighted median; -2 of nothing.
-    fn median(&self) -> f64 {
-        let half = 0.5 * self.weights.iter().sum::<f64>();
-        let mut sum = 0.0;
-        let bin = self.weights.iter().position(|w| {
-            sum += w;
-            sum >= half
-        });
-        bin.unwrap_or(0) as f64 / f64::from(Self::FINENESS) - 2.0
-    }
+/// Mean of what the windows of some cells say of the plane of a map, nats.
+fn mean_nats(map: &ConsistencyMap, cells: &[usize]) -> f64 {
+    let table = WindowEvidenceTable::fitted();
+    let nats = cells
+        .iter()
+        .map(|&k| table.nats_of(map.common_weight(k), map.correlation(k)));
+    nats.sum::<f64>() / cells.len().max(1) as f64
 }
 
 fn compare(
@@ -271,16 +232,6 @@ fn span(ring: &[Point3<f64>], y: f64) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_median_is_not_moved_by_a_minority() {
-        let mut spread = WeightedHistogram::default();
-        (0..60).for_each(|_| spread.add(0.25, 0.5));
-        (0..28).for_each(|_| spread.add(-0.9, 1.0));
-        assert!((spread.median() - 0.25).abs() < 0.01);
-        (0..4).for_each(|_| spread.add(-0.9, 1.0));
-        assert!((spread.median() + 0.9).abs() < 0.01);
-    }
 
     #[test]
     fn a_rectangle_shrinks_on_all_sides_and_a_sliver_does_not() {

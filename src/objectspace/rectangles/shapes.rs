@@ -22,8 +22,6 @@ pub(crate) struct StripLine {
 pub(crate) struct StripPolygon {
     /// (u, w) of the corners.
     corners: Vec<[f64; 2]>,
-    /// Length of the outline, metres.
-    pub length: f64,
     /// Share of it that image lines cover, mean over the views.
     pub support: f64,
     /// Ends that are not at right angles.
@@ -37,7 +35,6 @@ impl StripPolygon {
         let support = sides.iter().map(|s| s[0] * s[1]).sum::<f64>() / length;
         (support >= params.min_support).then_some(Self {
             corners,
-            length,
             support,
             slants: 0,
         })

@@ -105,7 +105,7 @@ test("regions, directions, clusters and planes of the demo scene", async ({ page
     await openParameters(page, "Planes");
     await expect(page.getByText("Regions (ORIS)", { exact: true })).toBeVisible();
     await expect(page.getByText("Half-plane sweep", { exact: true })).toHaveCount(0);
-    const field = page.locator("#param-objectspace-planes-min_measure_m2");
+    const field = page.locator("#param-objectspace-planes-min_area_m2");
     await field.fill("9");
     await field.press("Enter");
     await expect(stage(page, "clusters")).toHaveAttribute("data-status", "done");

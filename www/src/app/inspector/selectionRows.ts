@@ -221,9 +221,13 @@ function pairRows(index: number): Row[] {
     ...(candidate === undefined
       ? []
       : [
-          ["Outline covered", `${Math.round(100 * candidate.support)} %`] as const,
+          ["Outline covered", `${Math.round(100 * candidate.features.outline_on_lines)} %`] as const,
           ["Correlation inside", candidate.correlation.toFixed(2)] as const,
-          ["Measure M", `${candidate.measure.toFixed(1)} m²`] as const,
+          ["Views for the plane", `${candidate.features.plane_nats_per_m2.toFixed(1)} nats/m²`] as const,
+          [
+            "... more than beside it",
+            `${candidate.features.displaced_plane_margin_nats_per_m2.toFixed(1)} nats/m²`,
+          ] as const,
         ]),
     ["Facets", facets.map(linkToFacet)],
   ];

@@ -122,7 +122,7 @@ describe("firstStageOf", () => {
 
   it("tells parameters of one group apart, and leaves the other method alone", () => {
     const rectangles = stagesOf("rectangles");
-    expect(firstStageOf("objectspace.planes.min_measure_m2", rectangles)).toBe(3);
+    expect(firstStageOf("objectspace.planes.min_area_m2", rectangles)).toBe(3);
     expect(firstStageOf("objectspace.planes.min_height_m", rectangles)).toBe(1);
     expect(firstStageOf("sweep.min_similarity", rectangles)).toBe(5);
   });
