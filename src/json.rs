@@ -48,7 +48,11 @@ pub(crate) fn read<T: DeserializeOwned>(text: &str) -> Result<T, JsonError> {
     // Parameters stand alone or in a project.
     for params in ["", "/params"] {
         for [part, group, name] in RETIRED {
-            let part = if part.is_empty() { "".into() } else { format!("/{part}") };
+            let part = if part.is_empty() {
+                "".into()
+            } else {
+                format!("/{part}")
+            };
             let group = value.pointer_mut(&format!("{params}{part}/{group}"));
             if let Some(fields) = group.and_then(serde_json::Value::as_object_mut) {
                 fields.remove(name);

@@ -57,8 +57,7 @@ SIGNS = {
         'excess_green': -1, 'ln_area_m2': 1, 'ln_1_plus_lines': 1, 'ln_1_plus_half_planes': 1, 'cos_slope': 0,
     },
     'rectangles': {
-        'plane_nats_per_m2': 1, 'displaced_plane_margin_nats_per_m2': 1, 'outline_on_lines': 1, 'ln_area_m2': 0, 'slanted_ends': -1,
-        'cos_slope': 0, 'height_m': 0,
+        'plane_nats_per_m2': 1, 'displaced_plane_margin_nats_per_m2': 1, 'outline_on_lines': 1, 'cos_slope': 0,
     },
     'buildings': {'height_m': 1, 'roughness_px': -1, 'excess_green': 0, 'correlation': 0, 'cos_slope': 0, 'ln_area_m2': 0},
     'vegetation': {'height_m': 0, 'roughness_px': 1, 'excess_green': 1, 'correlation': 0, 'cos_slope': 0, 'ln_area_m2': 0},

@@ -123,8 +123,7 @@ impl Candidates {
             patches: ring(&surface.patches),
             ..surface.clone()
         };
-        let surfaces =
-            (self.surfaces.iter()).filter(|s| holds(&mean_point(&s.patches)));
+        let surfaces = (self.surfaces.iter()).filter(|s| holds(&mean_point(&s.patches)));
         let facets_of = |facets: &[JudgedFacet]| -> Vec<JudgedFacet> {
             let inside = facets.iter().filter(|f| holds(&mean_point(&f.outline)));
             inside.map(facet).collect()

@@ -20,9 +20,8 @@ pub fn evidence_json(scene: &Scene, candidates: &Candidates) -> Vec<u8> {
         })
     };
     let lines_of = |lines: &[JudgedLine]| lines.iter().map(line).collect::<Vec<_>>();
-    let facets_of = |facets: &[JudgedFacet]| -> Vec<_> {
-        facets.iter().map(|f| facet(scene, f)).collect()
-    };
+    let facets_of =
+        |facets: &[JudgedFacet]| -> Vec<_> { facets.iter().map(|f| facet(scene, f)).collect() };
     let surfaces = candidates.surfaces.iter().map(|s| {
         let patches = s.patches.iter().map(|p| world(scene, p));
         json!({

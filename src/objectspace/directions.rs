@@ -234,7 +234,11 @@ fn histogram(cuts: &[[f64; 2]]) -> Vec<f64> {
 /// Difference of two azimuths up to right angles, radians, -pi/4 to pi/4.
 fn difference(a: f64, b: f64) -> f64 {
     let d = (a - b).rem_euclid(FRAC_PI_2);
-    if d > 0.5 * FRAC_PI_2 { d - FRAC_PI_2 } else { d }
+    if d > 0.5 * FRAC_PI_2 {
+        d - FRAC_PI_2
+    } else {
+        d
+    }
 }
 
 /// The mean of the azimuths around a peak, far ones weighted down.

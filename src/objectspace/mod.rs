@@ -36,7 +36,9 @@ pub use adopt::adopted_lines;
 pub(crate) use clusters::ClusterTrace;
 pub(crate) use oris::Segmentation;
 pub use oris::{ColorImage, Lattice, Moves, RegionLine, region_lines};
-pub use rectangles::{PlaneFeatures, Crossing, PlaneCandidate, PlaneEnd, PlaneRejection, PlaneTrace};
+pub use rectangles::{
+    Crossing, PlaneCandidate, PlaneEnd, PlaneFeatures, PlaneRejection, PlaneTrace,
+};
 pub use stages::{
     FoundLine, RectangleTrace, find_clusters, find_directions, find_rectangles, find_regions,
     image_segments, proposed_planes, world_lines,

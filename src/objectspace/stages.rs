@@ -146,14 +146,18 @@ pub struct RectangleTrace {
 impl RectangleTrace {
     /// Every candidate with what speaks for it and against it.
     pub(crate) fn judged(&self) -> Vec<JudgedFacet> {
-        let judged = self.candidates.iter().enumerate().map(|(k, c)| JudgedFacet {
-            outline: c.ring.clone(),
-            holes: Vec::new(),
-            plane: c.plane,
-            accepted: self.chosen.binary_search(&k).is_ok(),
-            evidence: c.features.evidence(),
-            windows: WindowCounts::default(),
-        });
+        let judged = self
+            .candidates
+            .iter()
+            .enumerate()
+            .map(|(k, c)| JudgedFacet {
+                outline: c.ring.clone(),
+                holes: Vec::new(),
+                plane: c.plane,
+                accepted: self.chosen.binary_search(&k).is_ok(),
+                evidence: c.features.evidence(),
+                windows: WindowCounts::default(),
+            });
         judged.collect()
     }
 }

@@ -231,7 +231,10 @@ fn groups(lines: &[TileLine], link_m: f64) -> Vec<Option<usize>> {
     }
     length.retain(|_, length| *length >= LEAST_LINES_M);
     let number = |of: &[usize; 2]| length.keys().position(|building| building == of);
-    building.iter().map(|b| b.as_ref().and_then(number)).collect()
+    building
+        .iter()
+        .map(|b| b.as_ref().and_then(number))
+        .collect()
 }
 
 /// The first of the lines that each line is linked to: they come near each other in plan and are
@@ -267,7 +270,13 @@ fn windows_of(
 ) -> Vec<Window> {
     let count = group.iter().flatten().max().map_or(0, |m| m + 1);
     let window_of = |g: usize| {
-        let own = || lines.iter().zip(group).filter(move |(_, h)| **h == Some(g)).map(|(l, _)| l);
+        let own = || {
+            lines
+                .iter()
+                .zip(group)
+                .filter(move |(_, h)| **h == Some(g))
+                .map(|(l, _)| l)
+        };
         let ends = own().flat_map(|l| [l.segment.p0.xy(), l.segment.p1.xy()]);
         let [min, max] = bounds(ends);
         let margin = nalgebra::Vector2::new(margin_m, margin_m);

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use super::ends::{Crossing, PlaneEnd};
 use crate::evidence::{Evidence, EvidenceModel};
 use crate::geometry::Plane;
-use crate::math::{larger, ln};
 
 /// A polygon in a plane, with the evidence for it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,12 +36,8 @@ pub struct PlaneFeatures {
     pub outline_on_lines: f64,
     /// Area, square metres.
     pub area_m2: f64,
-    /// Ends that are not at right angles to the lines: each is a parameter more.
-    pub slanted_ends: usize,
     /// Cosine of the slope.
     pub cos_slope: f64,
-    /// Height of the middle above the ground, metres.
-    pub height_m: f64,
 }
 
 impl PlaneFeatures {
@@ -55,10 +50,7 @@ impl PlaneFeatures {
                 self.displaced_plane_margin_nats_per_m2,
             ),
             ("outline_on_lines", self.outline_on_lines),
-            ("ln_area_m2", ln(larger(self.area_m2, 1e-3))),
-            ("slanted_ends", self.slanted_ends as f64),
             ("cos_slope", self.cos_slope),
-            ("height_m", self.height_m),
         ])
     }
 }

@@ -16,8 +16,7 @@
 //!   and by how much more than of planes a little above and below, for smooth surfaces correlate on
 //!   any plane near them;
 //! * geometry, and the contrast of its lines, since only lines with contrast are region boundaries:
-//!   the share of the outline that image lines cover, mean over all views; slanted ends, which have
-//!   a parameter more; area, slope and height.
+//!   the share of the outline that image lines cover, mean over all views; and the slope.
 //!
 //! Of the polygons between two lines those with the largest M are kept as candidates. A pair of
 //! lines may hold several, with gaps between them: U-shapes. A line with an end of a perpendicular,
@@ -58,7 +57,6 @@ use self::strip::PlaneStrip;
 use super::clusters::{ClusterAxes, ClusterLine, overlap};
 use super::image_lines::ImageLine;
 use crate::execution::{SILENT, Sharded, sharded_map};
-use crate::geometry::mean_point;
 use crate::params::PlaneParams;
 use crate::scene::Scene;
 use crate::terrain::Ground;
@@ -262,9 +260,7 @@ impl PlaneSearch<'_> {
                     displaced_plane_margin_nats_per_m2: f64::INFINITY,
                     outline_on_lines: shape.support,
                     area_m2: area_2d(&ring) / plane.normal.z,
-                    slanted_ends: shape.slants,
                     cos_slope: plane.normal.z,
-                    height_m: self.height_above_ground(&ring),
                 };
                 let may_live = features.area_m2 >= self.params.min_area_m2
                     && features.evidence().accepts(self.params.least_nats);
@@ -296,11 +292,5 @@ impl PlaneSearch<'_> {
         found.sort_by(|a, b| b.measure().total_cmp(&a.measure()));
         found.truncate(self.params.max_candidates);
         found
-    }
-
-    /// Height of the middle of a ring above the ground, metres.
-    fn height_above_ground(&self, ring: &[Point3<f64>]) -> f64 {
-        let middle = mean_point(ring);
-        middle.z - self.ground.z_at(&middle.xy())
     }
 }

@@ -85,7 +85,11 @@ impl<'a> PlaneConsistency<'a> {
 
     /// What the windows say of the better one of the planes above and below inside a ring, nats for
     /// a square metre in plan.
-    pub(super) fn best_displaced_nats(&self, displaced: &DisplacedMaps, ring: &[Point3<f64>]) -> f64 {
+    pub(super) fn best_displaced_nats(
+        &self,
+        displaced: &DisplacedMaps,
+        ring: &[Point3<f64>],
+    ) -> f64 {
         let cells = self.cells(ring);
         let nats = displaced.0.each_ref().map(|map| mean_nats(map, &cells));
         larger(nats[0], nats[1])

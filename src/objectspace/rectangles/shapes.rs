@@ -24,8 +24,6 @@ pub(crate) struct StripPolygon {
     corners: Vec<[f64; 2]>,
     /// Share of it that image lines cover, mean over the views.
     pub support: f64,
-    /// Ends that are not at right angles.
-    pub slants: usize,
 }
 
 impl StripPolygon {
@@ -33,11 +31,7 @@ impl StripPolygon {
     fn new(corners: Vec<[f64; 2]>, sides: &[[f64; 2]], params: &PlaneParams) -> Option<Self> {
         let length: f64 = sides.iter().map(|s| s[0]).sum();
         let support = sides.iter().map(|s| s[0] * s[1]).sum::<f64>() / length;
-        (support >= params.min_support).then_some(Self {
-            corners,
-            support,
-            slants: 0,
-        })
+        (support >= params.min_support).then_some(Self { corners, support })
     }
 
     /// Its corners in the world, counter-clockwise seen from above.
@@ -93,11 +87,7 @@ fn quadrilateral(
         [q[1], strip.width],
         [q[0], strip.width],
     ];
-    let slants = [left, right].iter().filter(|e| e.at[0] != e.at[1]).count();
-    Some(StripPolygon {
-        slants,
-        ..StripPolygon::new(corners, &sides, params)?
-    })
+    StripPolygon::new(corners, &sides, params)
 }
 
 /// The triangle over a line with its tip at `top` on the other border of the strip, between the
