@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Rotation3};
 
-use super::OrientOptions;
+use super::options::OrientOptions;
 use super::photo::Photo;
 use crate::orientation::{Anchor, geocentric_of, rotation_from_yaw_pitch_roll};
 use crate::structure_from_motion::frame::StatedPose;

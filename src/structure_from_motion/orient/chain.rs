@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use super::adjustment::{block, calibrate_center, prior};
 use super::cameras::{Cameras, stated_poses};
+use super::options::{OrientOptions, Oriented};
 use super::photo::{Photo, ReadPhoto};
 use super::refusals::{not_joined, refusal, too_few, unconnected};
 use super::snapshot::Snapshot;
-use super::{OrientOptions, Oriented};
 use crate::error::Result;
 use crate::execution::Listener;
 use crate::execution::{

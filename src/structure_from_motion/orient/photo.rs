@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::OrientOptions;
+use super::options::OrientOptions;
 use crate::orientation::InputFile;
 use crate::raster::load_image;
 use crate::structure_from_motion::features::{Features, Keypoint, detect_features};

@@ -6,12 +6,12 @@ use super::report::OrientReport;
 use super::sparse_model::SparseModel;
 
 /// Points of an epipolar curve.
-const CURVE_POINTS: usize = 33;
+const CURVE_POINTS: usize = 49;
 
 /// Depths of an epipolar curve, as shares of the least and the largest depth of the points that the
 /// photograph sees.
-const NEARER: f64 = 0.8;
-const FARTHER: f64 = 1.25;
+const NEARER: f64 = 0.3;
+const FARTHER: f64 = 6.0;
 
 impl SparseModel {
     /// Enlarges the model about the zero of its frame.

@@ -13,6 +13,7 @@ import {
   pairs,
   progress,
   readPhotographs,
+  reconstructWithIt,
   report,
   STEPS,
   type Step,
@@ -45,23 +46,41 @@ export function OrientationPanel() {
   const at = progress.value;
   return (
     <section class="orienting" data-testid="orienting" aria-label="Computing the orientation">
-      <div class="row spread">
+      <div class="row spread head">
         <h2>{titleText()}</h2>
         {at !== null && at.step !== "done" && (
           <button type="button" onClick={({ detail }) => void (detail < 2 && cancel())}>
             Cancel
           </button>
         )}
+        {at?.step === "done" && (
+          <button
+            type="button"
+            class="primary"
+            disabled={isBusy.value}
+            onClick={() => void reconstructWithIt()}
+          >
+            Reconstruct with it
+          </button>
+        )}
       </div>
       {at === null && <Again />}
-      <ol class="chain">
+      {at !== null && at.step !== "done" && (
+        <progress
+          class="whole"
+          max={STEPS.length - 1}
+          value={STEPS.indexOf(at.step) + at.fraction}
+          aria-label={LESSON[at.step].title}
+        />
+      )}
+      {block.value !== null && <OrientationSpace />}
+      {report.value !== null && <OrientationResult report={report.value} />}
+      {pairs.value.length > 0 && <PairFigure />}
+      <ol class="chain" aria-label="How the orientation is computed">
         {STEPS.filter((step) => step !== "done").map((step) => (
           <ChainStep key={step} step={step} />
         ))}
       </ol>
-      {block.value !== null && <OrientationSpace />}
-      {report.value !== null && <OrientationResult report={report.value} />}
-      {pairs.value.length > 0 && <PairFigure />}
     </section>
   );
 }

@@ -1,10 +1,10 @@
 /** What came of it: how exact, what the frame rests on, which photographs are missing and why; and how to go on. */
 import { useSignal } from "@preact/signals";
 import type { OrientationReport } from "../../shared/orientation";
-import { counted } from "../parts/counted";
+import { grouped } from "../parts/numberText";
 import { TextField } from "../parts/TextField";
-import { isBusy } from "../state/activity";
-import { block, reconstructWithIt, saveOrientation, setScale } from "./orientation";
+import { OverlapPlan } from "./OverlapPlan";
+import { block, saveOrientation, setScale } from "./orientation";
 
 const FILES: readonly (readonly [string, string])[] = [
   ["cameras.txt", "focal length, distortion"],
@@ -19,12 +19,12 @@ export function OrientationResult({ report }: { report: OrientationReport }) {
   const [camera] = report.cameras;
   return (
     <section class="result" data-testid="orientation-report" aria-label="Report of the orientation">
-      <dl class="facts numbers">
+      <dl class="orientation-facts numbers">
         <Fact name="Photographs">
           {report.photos.length} of {all}
         </Fact>
         <Fact name="Reprojection error (rms)">{report.rms_px.toFixed(2)} px</Fact>
-        <Fact name="Points">{counted(report.points, "points")}</Fact>
+        <Fact name="Points">{grouped(report.points)}</Fact>
         <Fact name="Rays of a point">{report.rays_a_point.toFixed(1)}</Fact>
         {camera !== undefined && <Fact name="Focal length">{focalText(camera)}</Fact>}
       </dl>
@@ -49,16 +49,7 @@ export function OrientationResult({ report }: { report: OrientationReport }) {
         </>
       )}
       <Scale report={report} />
-      <p class="row">
-        <button
-          type="button"
-          class="primary"
-          disabled={isBusy.value}
-          onClick={() => void reconstructWithIt()}
-        >
-          Reconstruct with this orientation
-        </button>
-      </p>
+      <OverlapPlan report={report} />
       <Photographs report={report} />
       <h3>Files of the orientation (COLMAP)</h3>
       <ul class="downloads">

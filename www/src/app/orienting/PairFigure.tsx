@@ -4,21 +4,29 @@ import { useEffect, useRef } from "preact/hooks";
 import { PALETTE } from "../../shared/palette";
 import { counted } from "../parts/counted";
 import { files } from "../state/project";
-import { epipolarCurve, pairs, readPhotographs, report, shownPair, showPair } from "./orientation";
+import {
+  epipolarCurve,
+  pairs,
+  readPhotographs,
+  report,
+  type ShownPair,
+  shownPair,
+  showPair,
+} from "./orientation";
 import { nearestMatch } from "./pairGeometry";
 
 /** Width of the pictures, pixels. */
 const PICTURE_PX = 900;
-const DOT_PX = 2.5;
+const DOT_PX = 2;
 
 const KINDS = {
-  general: "essential matrix",
-  planar: "a plane explains the matches as well",
-  rotation: "the camera only turned: no depth",
+  general: "An essential matrix explains the matches",
+  planar: "A plane explains the matches as well as an essential matrix",
+  rotation: "The camera only turned, which shows no depth",
 };
 
 export function PairFigure() {
-  const chosen = useSignal(0);
+  const chosen = useSignal(middleOf(shownPair.value));
   const curve = useSignal<Float32Array | null>(null);
   const pair = pairs.value[shownPair.value?.place ?? 0];
   const matches = shownPair.value?.matches ?? new Float32Array();
@@ -52,8 +60,9 @@ export function PairFigure() {
             value={String(shownPair.value?.place ?? 0)}
             disabled={report.value === null}
             onChange={(event) => {
-              chosen.value = 0;
-              void showPair(Number(event.currentTarget.value));
+              void showPair(Number(event.currentTarget.value)).then(() => {
+                chosen.value = middleOf(shownPair.value);
+              });
             }}
           >
             {pairs.value.map((one, place) => (
@@ -65,7 +74,7 @@ export function PairFigure() {
         </label>
       </div>
       <p class="muted">
-        {KINDS[pair.kind]}, rays meet at {pair.angle_deg.toFixed(1)}° (median). Pick a match x on the left:{" "}
+        {KINDS[pair.kind]}; rays meet at {pair.angle_deg.toFixed(1)}° (median). Pick a match x on the left:{" "}
         {report.value === null
           ? "its epipolar line appears on the right once the cameras are known."
           : "its partner x′ lies on the epipolar line l′ on the right, the image of the ray through x."}
@@ -103,6 +112,11 @@ export function PairFigure() {
       </label>
     </section>
   );
+}
+
+/** Keypoints are in the order of their strength: any of the others may stand at the edge as well. */
+function middleOf(shown: ShownPair | null): number {
+  return Math.floor((shown?.matches.length ?? 0) / 8);
 }
 
 interface PictureProps {

@@ -1,5 +1,6 @@
 /** Photographs and pairs are dealt to workers, and what one has read is given to all. */
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { drawnPlan } from "../../../src/app/orienting/overlapGeometry";
 import { nearestMatch } from "../../../src/app/orienting/pairGeometry";
 import { OrientationRun, type OrientEvents } from "../../../src/core/orientation";
 import type { OrientReply, OrientRequest } from "../../../src/shared/orientation";
@@ -104,6 +105,26 @@ describe("an orientation by several workers", () => {
     expect(await ending).toBe("cancelled");
     expect(FakeWorker.made.every(({ isEnded }) => isEnded)).toBe(true);
     expect(() => run.ask("block")).toThrow("Cancelled.");
+  });
+});
+
+describe("the plan of the cameras", () => {
+  it("fits its drawing, north up", () => {
+    const places = drawnPlan(
+      [
+        [0, 0, 5],
+        [40, 0, 5],
+        [0, 20, 5],
+      ],
+      100,
+      10,
+    );
+    expect(places).toEqual([
+      [10, 70],
+      [90, 70],
+      [10, 30],
+    ]);
+    expect(drawnPlan([[3, 3, 3]], 100, 10)).toEqual([[50, 50]]);
   });
 });
 
