@@ -1,6 +1,6 @@
 // Runs scenes, the first two by every method, through the wasm Session in Node and through the native command line, and compares
-// every file byte for byte (report.json without its part `seconds`). So is the orientation of the demo's photographs, by two orienters
-// that divide the pairs. What model.glb is wrong in, the validator of glTF's makers says.
+// every file byte for byte (report.json without its part `seconds`). So is the orientation of drawn photographs alone, by two
+// orienters that divide the pairs. What model.glb is wrong in, the validator of glTF's makers says.
 //
 //   node tests/identical.mjs BINARY [SCENE]     by default the demo's, and the synthetic scenes of the tests, which the
 //                                               example `synthetic` beside the binary writes
@@ -30,7 +30,7 @@ try {
         const methods = place < 2 ? ["lines", "rectangles", "combined"] : ["combined"];
         for (const method of methods) bad.push(...(await compare(scene, method)));
     }
-    if (!given) bad.push(...(await compareOrientation(join(root, "www/public/demo/images"))));
+    if (!given) bad.push(...(await compareOrientation(join(root, "www/test/fixtures/drone"))));
 } finally {
     rmSync(synthetic, { recursive: true });
 }
@@ -67,7 +67,7 @@ async function compare(scene, method) {
 async function compareOrientation(photographs) {
     const out = mkdtempSync(join(tmpdir(), "ridgeline-"));
     try {
-        run(binary, ["orient", photographs, "--out", out, "--features", "1000", "--working-size", "600"]);
+        run(binary, ["orient", photographs, "--out", out]);
         const native = new Map(readdirSync(out).map((name) => [name, readFileSync(join(out, name))]));
         const wasm = await orientInWasm(photographs);
         const names = [...new Set([...native.keys(), ...wasm.keys()])].sort();
@@ -86,9 +86,8 @@ async function compareOrientation(photographs) {
 // As the page does it with two workers.
 async function orientInWasm(photographs) {
     const start = performance.now();
-    const options = { workingPx: 600, mostFeatures: 1000 };
     const orienters = [];
-    for (let i = 0; i < 2; i += 1) orienters.push((await openOrienter(options)).orienter);
+    for (let i = 0; i < 2; i += 1) orienters.push((await openOrienter({})).orienter);
     const [first] = orienters;
     for (const [i, name] of readdirSync(photographs).sort().reverse().entries()) {
         const read = orienters[i % 2].readPhoto(name, readFileSync(join(photographs, name)));

@@ -7,6 +7,7 @@ import {
   houseFiles,
   lookOf,
   type Upload,
+  upload,
   waitForStage,
   watch,
 } from "./helpers";
@@ -69,7 +70,7 @@ test("photographs that show nothing in common are named, with what to do", async
   const [demo] = demoImages(1) as [Upload];
   const [house] = houseFiles() as [Upload];
   await page.goto("/");
-  await give(page, [drone, demo, house]);
+  await give(page, [drone, demo, upload("house.jpg", house.buffer)]);
   await page.getByRole("button", { name: COMPUTE }).click();
   const alert = page.getByRole("alert");
   await expect(alert).toContainText("no two photographs show enough of the same");
