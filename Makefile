@@ -33,9 +33,11 @@ WASM32 := $(STAMPS)/wasm32-$(shell rustc --version | cut -d ' ' -f 2)
 NPM := www/node_modules/.installed-$(shell cksum < www/package-lock.json | tr ' ' '-')
 RUST_SOURCES := $(shell find src -name '*.rs') Cargo.toml Cargo.lock .cargo/config.toml
 WWW_SOURCES := $(shell find www -type f -not -name '*.tsbuildinfo' -not -path 'www/node_modules/*' \
-	-not -path 'www/dist/*' -not -path 'www/src/pkg/*' -not -path 'www/public/entrance/*' -not -path 'www/test*' -not -path 'www/screenshots/*' \
+	-not -path 'www/dist/*' -not -path 'www/src/pkg*' -not -path 'www/public/entrance/*' -not -path 'www/test*' -not -path 'www/screenshots/*' \
 	-not -path 'www/playwright-report/*')
 PACKAGE := www/src/pkg/ridgeline_bg.wasm
+# The page's second module: the same crate without the rooms above src/structure_from_motion.
+ORIENTATION := www/src/pkg-orient/orientation_bg.wasm
 ENTRANCE := www/public/entrance/model.glb
 SITE := www/dist/index.html
 PORT ?= 4173
@@ -50,10 +52,10 @@ build: $(SITE)
 test: setup $(WASM_PACK) $(STAMPS)/chromium
 	tests/all.sh
 
-lint: $(WASM32) $(NPM) $(PACKAGE)
+lint: $(WASM32) $(NPM) $(PACKAGE) $(ORIENTATION)
 	tests/all.sh lint
 
-identical: native $(PACKAGE)
+identical: native $(PACKAGE) $(ORIENTATION)
 	cargo build --release --example synthetic
 	node tests/identical.mjs target/release/ridgeline
 
@@ -87,7 +89,7 @@ native:
 setup: $(SITE)
 
 clean:
-	rm -rf target www/dist www/src/pkg www/public/entrance www/node_modules
+	rm -rf target www/dist www/src/pkg www/src/pkg-orient www/public/entrance www/node_modules
 
 # ---- the wasm package and the site -------------------------------------------------------------
 
@@ -105,11 +107,16 @@ $(PACKAGE): $(RUST_SOURCES) $(WASM32) $(WASM_BINDGEN) $(NPM) $(CHOSEN)
 	cargo build --lib --profile $(PROFILE) --target wasm32-unknown-unknown
 	wasm-bindgen target/wasm32-unknown-unknown/$(PROFILE)/ridgeline.wasm $(@D) ridgeline
 
+# After the other one, because cargo puts both in the same place.
+$(ORIENTATION): $(PACKAGE)
+	cargo build --lib --no-default-features --profile $(PROFILE) --target wasm32-unknown-unknown
+	wasm-bindgen target/wasm32-unknown-unknown/$(PROFILE)/ridgeline.wasm $(@D) orientation
+
 # What the page shows before anything is computed in the browser: the demo scene's model, made by the page's own core.
 $(ENTRANCE): $(PACKAGE) www/scripts/entrance.mjs tests/session.mjs $(shell find www/public/demo -type f)
 	node www/scripts/entrance.mjs
 
-$(SITE): $(PACKAGE) $(ENTRANCE) $(NPM) $(WWW_SOURCES)
+$(SITE): $(PACKAGE) $(ORIENTATION) $(ENTRANCE) $(NPM) $(WWW_SOURCES)
 	cd www && npm run build
 	touch $@
 

@@ -60,9 +60,16 @@ www() { (cd www && npm run --silent "$@"); }
 
 formatted() { cargo fmt --all --check && cargo fmt --all --check --manifest-path tools/Cargo.toml; }
 
+# With the page's profile, which has its derives compiled already; both modules of the page.
+clippy_wasm32() {
+    local of_page=(--quiet --profile page --target wasm32-unknown-unknown)
+    cargo clippy --lib --bins --tests "${of_page[@]}" -- -D warnings
+    local first=$?
+    cargo clippy --lib --no-default-features "${of_page[@]}" -- -D warnings && return $first
+}
+
 step format check formatted
-# With the page's profile, which has its derives compiled already.
-start clippy-wasm32 cargo clippy --lib --bins --tests --quiet --profile page --target wasm32-unknown-unknown -- -D warnings
+start clippy-wasm32 clippy_wasm32
 step clippy-native check cargo clippy --all-targets --quiet -- -D warnings
 step typecheck check www typecheck
 step biome check www lint

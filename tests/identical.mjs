@@ -1,5 +1,6 @@
 // Runs scenes, the first two by every method, through the wasm Session in Node and through the native command line, and compares
-// every file byte for byte (report.json without its part `seconds`). What model.glb is wrong in, the validator of glTF's makers says.
+// every file byte for byte (report.json without its part `seconds`). So is the orientation of drawn photographs alone, by two
+// orienters that divide the pairs. What model.glb is wrong in, the validator of glTF's makers says.
 //
 //   node tests/identical.mjs BINARY [SCENE]     by default the demo's, and the synthetic scenes of the tests, which the
 //                                               example `synthetic` beside the binary writes
@@ -11,7 +12,7 @@ import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { basename, dirname, join } from "node:path";
-import { addFiles, openSession, root } from "./session.mjs";
+import { addFiles, openOrienter, openSession, root } from "./session.mjs";
 
 const [binary, given] = process.argv.slice(2);
 if (!binary) {
@@ -29,6 +30,7 @@ try {
         const methods = place < 2 ? ["lines", "rectangles", "combined"] : ["combined"];
         for (const method of methods) bad.push(...(await compare(scene, method)));
     }
+    if (!given) bad.push(...(await compareOrientation(join(root, "www/test/fixtures/drone"))));
 } finally {
     rmSync(synthetic, { recursive: true });
 }
@@ -59,6 +61,47 @@ async function compare(scene, method) {
         console.log(`${basename(scene)}, ${method}: ${verdict.padEnd(10)} ${name} (${native.get(name)?.length ?? "missing"} bytes)`);
     }
     return [...differing, ...(await wrongIn(native.get("model.glb")))];
+}
+
+// The same for photographs alone.
+async function compareOrientation(photographs) {
+    const out = mkdtempSync(join(tmpdir(), "ridgeline-"));
+    try {
+        run(binary, ["orient", photographs, "--out", out]);
+        const native = new Map(readdirSync(out).map((name) => [name, readFileSync(join(out, name))]));
+        const wasm = await orientInWasm(photographs);
+        const names = [...new Set([...native.keys(), ...wasm.keys()])].sort();
+        if (!names.includes("images.txt")) throw new Error("no orientation was written");
+        const differing = names.filter((name) => !same(name, native.get(name), wasm.get(name)));
+        for (const name of names) {
+            const verdict = differing.includes(name) ? "DIFFERS" : "identical";
+            console.log(`${basename(photographs)}, orient: ${verdict.padEnd(10)} ${name} (${native.get(name)?.length ?? "missing"} bytes)`);
+        }
+        return differing;
+    } finally {
+        rmSync(out, { recursive: true });
+    }
+}
+
+// As the page does it with two workers.
+async function orientInWasm(photographs) {
+    const start = performance.now();
+    const orienters = [];
+    for (let i = 0; i < 2; i += 1) orienters.push((await openOrienter({})).orienter);
+    const [first] = orienters;
+    for (const [i, name] of readdirSync(photographs).sort().reverse().entries()) {
+        const read = orienters[i % 2].readPhoto(name, readFileSync(join(photographs, name)));
+        for (const orienter of orienters) orienter.takePhoto(read);
+    }
+    for (const map of first.shardMaps()) {
+        const shards = orienters.map((orienter, i) => orienter.runShard(map, i, orienters.length, () => {}));
+        for (const orienter of orienters) orienter.mergeShards(map, shards);
+    }
+    first.connect(() => {});
+    let cameras = 0;
+    first.orient(() => {}, (views) => { cameras = Math.max(cameras, views.length); });
+    console.log(`wasm orient ${((performance.now() - start) / 1000).toFixed(2).padStart(11)} s  ${cameras} cameras`);
+    return new Map(first.exportNames().map((name) => [name, Buffer.from(first.exportFile(name))]));
 }
 
 // Errors and warnings of the validator, one line each.

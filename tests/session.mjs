@@ -17,6 +17,15 @@ export async function openSession(folder = join(root, "www/src/pkg")) {
     return { session: new Session(), memory };
 }
 
+// An orienter of the page's second module, by its options.
+export async function openOrienter(options, folder = join(root, "www/src/pkg-orient")) {
+    instances += 1;
+    const glue = `${pathToFileURL(join(folder, "orientation.js")).href}?${instances}`;
+    const { initSync, Orienter } = await import(glue);
+    const { memory } = initSync({ module: readFileSync(join(folder, "orientation_bg.wasm")) });
+    return { orienter: new Orienter(options), memory };
+}
+
 // Adds the files that the command line would read: it leaves out other kinds (src/cli/walk.rs).
 export function addFiles(session, scene) {
     const wanted = /\.(jpe?g|png|tiff?|txt|p|json|xml|out|nvm|csv|ori|prj|geojson|camera|bin|xyz|zip)$/i;

@@ -34,6 +34,9 @@ function contentSecurityPolicy(): Plugin {
   };
 }
 
+/** What computes the orientation of photographs: fetched by those who need it. */
+const ON_DEMAND = /\/orientation[^/]*$/i;
+
 /**
  * Writes `sw.js`: everything of the site is fetched once and served from the cache afterwards, under a name that changes with
  * the content, so that a new version replaces the old one whole.
@@ -55,11 +58,14 @@ function offline(): Plugin {
       for (const path of paths) {
         hash.update(relative(outDir, path)).update(readFileSync(path));
       }
-      const files = paths.map((path) => `./${relative(outDir, path).replaceAll("\\", "/")}`);
+      const all = paths.map((path) => `./${relative(outDir, path).replaceAll("\\", "/")}`);
+      const later = all.filter((path) => ON_DEMAND.test(path));
+      const files = all.filter((path) => !later.includes(path));
       const template = readFileSync(new URL("offline/sw.js", import.meta.url), "utf8");
       const written = template
         .replace("__VERSION__", hash.digest("hex").slice(0, 16))
-        .replace('["__FILES__"]', JSON.stringify(["./", ...files]));
+        .replace('["__FILES__"]', JSON.stringify(["./", ...files]))
+        .replace('["__LATER__"]', JSON.stringify(later));
       writeFileSync(join(outDir, "sw.js"), written);
     },
   };

@@ -44,9 +44,18 @@ const FINAL_ROUNDS: usize = 3;
 /// Median length of a residual of two normal components, in their standard deviation.
 const RAYLEIGH_MEDIAN: f64 = 1.177_41;
 
+/// What sees a block grow.
+pub(super) type OnGrowth<'a> = &'a mut dyn FnMut(&Block);
+
 /// Registers as many photographs as possible. The block receives poses, points and calibrated
-/// cameras; without a usable first pair it stays empty. `prior` is that of the adjustment.
-pub(super) fn register(block: &mut Block, pairs: &[VerifiedPair], prior: [f64; PARAMETERS]) {
+/// cameras; without a usable first pair it stays empty. `prior` is that of the adjustment;
+/// `on_growth` sees the block with every photograph that joins.
+pub(super) fn register(
+    block: &mut Block,
+    pairs: &[VerifiedPair],
+    prior: [f64; PARAMETERS],
+    on_growth: OnGrowth,
+) {
     let means = block.cameras.clone();
     let of_photo = tracks_of_photos(block);
     let joinable = joinable(block.photos.len(), pairs);
@@ -62,7 +71,7 @@ pub(super) fn register(block: &mut Block, pairs: &[VerifiedPair], prior: [f64; P
         if !growing.start(&mut attempt, pair) {
             continue;
         }
-        growing.grow(&mut attempt);
+        growing.grow(&mut attempt, on_growth);
         let count = |b: &Block| b.registered().len();
         let is_better = best.as_ref().is_none_or(|b| count(&attempt) > count(b));
         if is_better {
@@ -169,7 +178,7 @@ impl Growing<'_> {
     }
 
     /// Adds photographs as long as one sees points enough.
-    fn grow(&self, block: &mut Block) {
+    fn grow(&self, block: &mut Block, on_growth: OnGrowth) {
         let mut adjusted = block.registered().len();
         loop {
             let mut added = self.next(block);
@@ -187,6 +196,7 @@ impl Growing<'_> {
             if !added {
                 break;
             }
+            on_growth(block);
         }
     }
 

@@ -45,8 +45,12 @@ pub use features::FeatureOptions;
 pub use frame::FrameBasis;
 pub use intrinsics::Intrinsics;
 pub use metadata::PhotoMetadata;
-pub use orient::{OrientOptions, Oriented, orient};
+pub use orient::{
+    OnBlock, OrientChain, OrientOptions, Oriented, PairSummary, ReadPhoto, Snapshot, SnapshotPhoto,
+    orient,
+};
 pub use output::{
     CameraReport, LeftOut, NotJoined, OrientReport, OrientedPhoto, PhotoReport, SparseModel,
     SparsePoint,
 };
+pub use two_view::PairKind;

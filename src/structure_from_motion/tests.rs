@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Point3};
 use super::similarity::Similarity;
 use super::*;
 use crate::camera::Camera;
+use crate::execution::MergedShards;
 use crate::orientation::{InputFile, rotation_from_omega_phi_kappa};
 use crate::scene::Scene;
 use crate::synthetic::{drone_scene, to_files, tower_scene_of};
@@ -95,6 +96,36 @@ fn photographs_alone_are_oriented_and_go_on_to_a_scene() {
         let turn = (pose.rotation.matrix() - view.camera.r).norm().to_degrees();
         assert!(turn < 0.3, "{}: {turn} degrees", photo.path);
     }
+    // The ray of a point is seen through the point in every other photograph.
+    let model = &oriented.model;
+    let [(slot, ray), (other, other_ray)] = model.points[0].rays[..2] else {
+        panic!("a point has two rays")
+    };
+    let [(pixel, _), (seen, _)] = [
+        &model.photos[slot].rays[ray],
+        &model.photos[other].rays[other_ray],
+    ];
+    let curve = model.epipolar_curve(slot, other, &(*pixel).into());
+    let seen = nalgebra::Point2::from(*seen);
+    let beside = (curve.windows(2)).map(|ends| {
+        let along = ends[1] - ends[0];
+        let t = ((seen - ends[0]).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        (ends[0] + along * t - seen).norm()
+    });
+    assert!(beside.fold(f64::INFINITY, f64::min) < 1.5);
+    // A known length sets the scale.
+    let mut measured = oriented.clone();
+    assert!(!measured.set_length(0.0, 3.0, "nothing"));
+    let [a, b] = [0, 1].map(|i| found[i]);
+    assert!(measured.set_length((b - a).norm(), 12.5, "the distance of two cameras"));
+    let [a, b] = [0, 1].map(|i| measured.model.photos[i].pose.center);
+    assert!(((b - a).norm() - 12.5).abs() < 1e-9 && measured.report.is_metric);
+    assert!(measured.report.frame.ends_with("two cameras, 12.5 m"));
+    assert!(
+        measured.report.warnings.is_empty(),
+        "{:?}",
+        measured.report.warnings
+    );
     // What is written is read on: photographs, and the model beside them.
     files.truncate(9);
     let written = oriented.files().into_iter();
@@ -149,5 +180,44 @@ fn what_cannot_be_oriented_is_refused_with_advice() {
     assert!(
         apart.contains("no two photographs show enough of the same"),
         "{apart}"
+    );
+}
+
+#[test]
+fn divided_between_instances_the_result_is_the_same() {
+    let files = photographs(&drone_scene(SIZE_PX).0);
+    let options = OrientOptions {
+        features: FeatureOptions {
+            most: 400,
+            ..FeatureOptions::default()
+        },
+        ..OrientOptions::default()
+    };
+    let whole = orient(&files, &options).unwrap();
+    // Photographs come in any order, as bytes; pairs are dealt to two.
+    let mut chain = OrientChain::new(options.clone());
+    for file in files.iter().rev() {
+        let read = ReadPhoto::read(file, &options).to_bytes();
+        assert!(ReadPhoto::from_bytes(&read[..read.len() - 1]).is_none());
+        chain.add(ReadPhoto::from_bytes(&read).unwrap());
+    }
+    let mut merged = MergedShards::default();
+    for map in OrientChain::shard_maps() {
+        for index in 0..2 {
+            let shard = chain.run_shard(map, [index, 2], merged.clone(), &crate::silent());
+            assert!(merged.merge(map, &shard));
+        }
+    }
+    chain.connect(merged).unwrap();
+    let pairs = chain.pairs();
+    assert_eq!(chain.pair_matches(0).len(), pairs[0].matches);
+    let mut grown = Vec::new();
+    let divided = chain.orient(Some(&mut |snapshot: Snapshot| {
+        grown.push((snapshot.photos.len(), snapshot.points.len()));
+    }));
+    assert_eq!(divided.unwrap().files(), whole.files());
+    assert!(
+        grown.len() > 3 && grown.is_sorted_by_key(|g| g.0),
+        "{grown:?}"
     );
 }

@@ -9,7 +9,7 @@ use super::incremental::VerifiedPair;
 use super::intrinsics::Intrinsics;
 use super::matching::{Candidate, mutual_matches};
 use super::two_view::{TwoViewGeometry, two_view_geometry};
-use crate::execution::map_part;
+use crate::execution::{Sharded, sharded_map};
 
 /// Fewest matches for which a geometry is sought.
 const FEWEST_MATCHES: usize = 24;
@@ -40,16 +40,18 @@ pub(super) fn match_pairs(
     photos: &[MatchedPhoto],
     candidates: &[Candidate],
     part: Range<f64>,
-) -> Vec<MatchedPair> {
-    let found = map_part(candidates, part, |_, c| {
+) -> Sharded<Vec<MatchedPair>> {
+    let found = sharded_map("matches", candidates, part, |_, c| {
         let [a, b] = [c.first, c.second].map(|i| photos[i].features);
-        MatchedPair {
-            photos: [c.first, c.second],
-            matches: mutual_matches(a, b),
-        }
+        mutual_matches(a, b)
+    })?;
+    let pairs = (candidates.iter().zip(found)).map(|(c, matches)| MatchedPair {
+        photos: [c.first, c.second],
+        matches,
     });
-    let is_enough = |pair: &MatchedPair| pair.matches.len() >= FEWEST_MATCHES;
-    found.into_iter().filter(is_enough).collect()
+    Ok(pairs
+        .filter(|p| p.matches.len() >= FEWEST_MATCHES)
+        .collect())
 }
 
 /// The geometry of all pairs; those without one are left out.
@@ -58,16 +60,19 @@ pub(super) fn verify(
     cameras: &[Intrinsics],
     pairs: &[MatchedPair],
     part: Range<f64>,
-) -> Vec<VerifiedPair> {
-    let found = map_part(pairs, part, |_, pair| {
-        let geometry = geometry(photos, cameras, pair)?;
+) -> Sharded<Vec<VerifiedPair>> {
+    let found = sharded_map("pairs", pairs, part, |_, pair| {
+        geometry(photos, cameras, pair)
+    })?;
+    let verified = (pairs.iter().zip(found)).filter_map(|(pair, geometry)| {
+        let geometry = geometry?;
         Some(VerifiedPair {
             photos: pair.photos,
             matches: geometry.inliers.iter().map(|&i| pair.matches[i]).collect(),
             geometry,
         })
     });
-    found.into_iter().flatten().collect()
+    Ok(verified.collect())
 }
 
 fn geometry(
@@ -99,7 +104,7 @@ pub(super) fn guess_focal(
     cameras: &mut [Intrinsics],
     is_guessed: &[bool],
     pairs: &[MatchedPair],
-) {
+) -> Sharded<()> {
     let mut judges: Vec<&MatchedPair> = (pairs.iter())
         .filter(|p| p.photos.iter().any(|&i| is_guessed[photos[i].camera]))
         .collect();
@@ -127,18 +132,23 @@ pub(super) fn guess_focal(
             })
             .collect()
     };
-    let mut best: Option<(f64, Vec<Intrinsics>)> = None;
-    for share in GUESSES {
-        let tried = with(share);
-        let scores = map_part(&judges, crate::execution::SILENT, |_, pair| {
-            geometry(photos, &tried, pair).map_or(0.0, |g| g.score)
-        });
-        let score: f64 = scores.iter().sum();
-        if best.as_ref().is_none_or(|(most, _)| score > *most) {
-            best = Some((score, tried));
+    let tried: Vec<(usize, &MatchedPair)> = (0..GUESSES.len())
+        .flat_map(|guess| judges.iter().map(move |&pair| (guess, pair)))
+        .collect();
+    let under: Vec<Vec<Intrinsics>> = GUESSES.map(with).into();
+    let scores = sharded_map("focal lengths", &tried, 0.6..0.65, |_, &(guess, pair)| {
+        geometry(photos, &under[guess], pair).map_or(0.0, |g| g.score)
+    })?;
+    let mut best: Option<(f64, usize)> = None;
+    for guess in 0..GUESSES.len() {
+        let of_guess = tried.iter().zip(&scores).filter(|((g, _), _)| *g == guess);
+        let score: f64 = of_guess.map(|(_, score)| *score).sum();
+        if best.is_none_or(|(most, _)| score > most) {
+            best = Some((score, guess));
         }
     }
-    if let Some((_, tried)) = best {
-        cameras.clone_from_slice(&tried);
+    if let Some((_, guess)) = best {
+        cameras.clone_from_slice(&under[guess]);
     }
+    Ok(())
 }

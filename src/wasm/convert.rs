@@ -1,14 +1,16 @@
 //! Between Rust's values and JavaScript's.
 
-use js_sys::{Float32Array, Float64Array, Reflect};
+use std::sync::Arc;
+
+use js_sys::{Function, Reflect};
 use nalgebra::Matrix3x4;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::{JsError, JsValue};
 
+use crate::camera::Camera;
 use crate::error::Error;
-use crate::geometry::Segment2;
-use crate::lines3d::Line3d;
+use crate::execution::Listener;
 
 /// A JavaScript `Error` with the refusal's message, called "InputError": the page shows it as
 /// advice, and anything else as a fault of the program. Its `code` is the kind of refusal, its
@@ -50,28 +52,44 @@ pub(crate) fn from_js<T: DeserializeOwned>(value: &JsValue, what: &str) -> Resul
     crate::json::read(&text).map_err(|e| named_error("InputError", &format!("{what}: {e}")))
 }
 
-/// (x0, y0, x1, y1) per segment, pixels.
-pub(crate) fn segment_array<'a>(segments: impl Iterator<Item = &'a Segment2>) -> Float32Array {
-    let numbers: Vec<f32> = segments.flat_map(end_points_px).collect();
-    Float32Array::from(&numbers[..])
+/// A view of the scene; its centre in metres, local frame, and its 3 x 4 matrix from there to
+/// pixels, row by row.
+#[derive(Serialize, tsify::Tsify)]
+pub(crate) struct ViewInfo {
+    name: String,
+    width: u32,
+    height: u32,
+    center: [f64; 3],
+    projection: Vec<f64>,
 }
 
-/// The end points in single precision.
-pub(crate) fn end_points_px(s: &Segment2) -> [f32; 4] {
-    [s.p0.x, s.p0.y, s.p1.x, s.p1.y].map(|v| v as f32)
+impl ViewInfo {
+    pub(crate) fn new(name: &str, camera: &Camera) -> Self {
+        Self {
+            name: name.to_owned(),
+            width: camera.width,
+            height: camera.height,
+            center: camera.center.coords.into(),
+            projection: row_major(&camera.projection_matrix()),
+        }
+    }
+}
+
+/// Tells the page how far the work is.
+pub(crate) fn listener_of(on_progress: &Function) -> Listener {
+    let on_progress = on_progress.clone();
+    Arc::new(move |fraction| {
+        // A listener that throws is the page's own fault, and no reason to lose the stage.
+        let _ = on_progress.call1(&JsValue::NULL, &fraction.into());
+    })
+}
+
+/// Bytes that are not what they are taken for.
+pub(crate) fn foreign(what: &str) -> JsValue {
+    named_error("TypeError", &format!("these bytes are not {what}"))
 }
 
 /// The twelve numbers of a 3 x 4 matrix, row by row.
-pub(crate) fn row_major(matrix: &Matrix3x4<f64>) -> Vec<f64> {
+fn row_major(matrix: &Matrix3x4<f64>) -> Vec<f64> {
     matrix.transpose().iter().copied().collect()
-}
-
-/// (x, y, z) of both end points per line, metres, local frame.
-pub(crate) fn line_array(lines: &[Line3d]) -> Float64Array {
-    let numbers: Vec<f64> = lines
-        .iter()
-        .flat_map(|l| [l.segment.p0, l.segment.p1])
-        .flat_map(|p| [p.x, p.y, p.z])
-        .collect();
-    Float64Array::from(&numbers[..])
 }

@@ -7,7 +7,9 @@ use js_sys::{Float32Array, Float64Array};
 use serde::Serialize;
 use wasm_bindgen::prelude::*;
 
-use super::convert::{end_points_px, named_error, to_js};
+use super::arrays::end_points_px;
+use super::convert::{named_error, to_js};
+
 use super::session::Session;
 use crate::buildings::{RefineTrace, RoofGap, UnrefinedFacets};
 use crate::evidence::Evidence;

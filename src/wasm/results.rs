@@ -5,7 +5,8 @@ use nalgebra::Point3;
 use serde::Serialize;
 use wasm_bindgen::prelude::*;
 
-use super::convert::{end_points_px, line_array, named_error, segment_array, to_js};
+use super::arrays::{end_points_px, line_array, segment_array};
+use super::convert::{named_error, to_js};
 use super::figures::{Picture, lines_of, segments_of};
 use super::session::{Session, not_loaded};
 use crate::dense::{DensePlane, DenseTrace};

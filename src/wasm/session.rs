@@ -1,13 +1,11 @@
 //! A project in the page: files in, stages one by one, results out.
 
-use std::sync::Arc;
-
 use js_sys::Function;
 use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
-use super::convert::{from_js, input_error, named_error, row_major, to_js};
-use crate::execution::{Listener, MergedShards};
+use super::convert::{ViewInfo, from_js, input_error, listener_of, named_error, to_js};
+use crate::execution::MergedShards;
 use crate::orientation::InputFile;
 use crate::params::Params;
 use crate::pipeline::{PackedView, Run, Stage};
@@ -82,17 +80,6 @@ struct SceneInfo {
     origin: [f64; 3],
     warnings: Vec<String>,
     agreement: Option<crate::agreement::AgreementReport>,
-}
-
-/// A view of the scene; its centre in metres, local frame, and its 3 x 4 matrix from there to
-/// pixels, row by row.
-#[derive(Serialize, tsify::Tsify)]
-struct ViewInfo {
-    name: String,
-    width: u32,
-    height: u32,
-    center: [f64; 3],
-    projection: Vec<f64>,
 }
 
 #[wasm_bindgen]
@@ -220,13 +207,7 @@ impl Session {
     #[wasm_bindgen(unchecked_return_type = "SceneInfo")]
     pub fn scene(&self) -> Result<JsValue, JsValue> {
         let scene = self.loaded()?.scene();
-        let views = scene.views.iter().map(|view| ViewInfo {
-            name: view.name.clone(),
-            width: view.camera.width,
-            height: view.camera.height,
-            center: view.camera.center.coords.into(),
-            projection: row_major(&view.camera.projection_matrix()),
-        });
+        let views = (scene.views.iter()).map(|view| ViewInfo::new(&view.name, &view.camera));
         to_js(&SceneInfo {
             views: views.collect(),
             origin: scene.origin.into(),
@@ -291,15 +272,6 @@ impl Session {
 pub(crate) fn stage_of(name: &str) -> Result<Stage, JsValue> {
     Stage::from_name(name)
         .ok_or_else(|| named_error("RangeError", &format!("no stage is called '{name}'")))
-}
-
-/// Tells the page how far a stage is.
-pub(crate) fn listener_of(on_progress: &Function) -> Listener {
-    let on_progress = on_progress.clone();
-    Arc::new(move |fraction| {
-        // A listener that throws is the page's own fault, and no reason to lose the stage.
-        let _ = on_progress.call1(&JsValue::NULL, &fraction.into());
-    })
 }
 
 pub(crate) fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {

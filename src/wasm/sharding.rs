@@ -4,8 +4,8 @@
 use js_sys::{Function, Uint8Array};
 use wasm_bindgen::prelude::*;
 
-use super::convert::named_error;
-use super::session::{Session, listener_of, stage_of};
+use super::convert::{foreign, listener_of, named_error};
+use super::session::{Session, stage_of};
 use crate::execution::MergedShards;
 use crate::pipeline::{PackedView, Run};
 
@@ -111,8 +111,4 @@ impl Session {
         }
         Ok(())
     }
-}
-
-fn foreign(what: &str) -> JsValue {
-    named_error("TypeError", &format!("these bytes are not {what}"))
 }

@@ -3,8 +3,8 @@
 use js_sys::Function;
 use wasm_bindgen::prelude::*;
 
-use super::convert::{input_error, named_error, to_js};
-use super::session::{Session, listener_of, load_options};
+use super::convert::{input_error, listener_of, named_error, to_js};
+use super::session::{Session, load_options};
 use crate::execution::MergedShards;
 use crate::tiles::Area;
 

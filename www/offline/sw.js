@@ -1,9 +1,10 @@
 /**
  * Serves the site from a cache, so that it works offline after the first load. The build fills in the version and the list of
- * files; nothing but files of this site is ever fetched or kept.
+ * files; nothing but files of this site is ever fetched or kept. What few visitors need (LATER) is kept when it is fetched first.
  */
 const CACHE = "ridgeline-__VERSION__";
 const FILES = ["__FILES__"];
+const LATER = ["__LATER__"];
 
 self.addEventListener("install", (event) => {
   const fill = async () => {
@@ -32,7 +33,14 @@ self.addEventListener("fetch", (event) => {
   const answer = async () => {
     const cache = await caches.open(CACHE);
     const known = await cache.match(request, { ignoreSearch: true, ignoreVary: true });
-    return known ?? fetch(request);
+    if (known !== undefined) {
+      return known;
+    }
+    const response = await fetch(request);
+    if (response.ok && LATER.some((path) => new URL(path, self.registration.scope).href === request.url)) {
+      await cache.put(request, response.clone());
+    }
+    return response;
   };
   event.respondWith(answer());
 });

@@ -1,4 +1,5 @@
-// Sizes of what a first visit fetches, compressed as static hosts serve it; fails where there is too much of it.
+// Sizes of what a first visit fetches, compressed as static hosts serve it; fails where there is too much of it. What computes
+// the orientation of photographs is fetched on demand, and has a limit of its own.
 //
 //   npm run size        after `npm run build`
 //
@@ -11,6 +12,8 @@ import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 
 const MOST_WASM = 1_600_000;
 const MOST_IN_ALL = 1_900_000;
+const MOST_ON_DEMAND = 500_000;
+const ON_DEMAND = /\/orientation[^/]*$/i;
 
 const dist = fileURLToPath(new URL("../dist/", import.meta.url));
 const files = readdirSync(dist, { recursive: true, withFileTypes: true })
@@ -25,19 +28,28 @@ const rows = files.map((path) => {
   const bytes = readFileSync(join(dist, path));
   return { path, raw: bytes.length, gzip: gzipSync(bytes, { level: 9 }).length, brotli: brotli(bytes) };
 });
-const sum = (kind) => rows.reduce((total, row) => total + row[kind], 0);
-const total = { path: "in all", raw: sum("raw"), gzip: sum("gzip"), brotli: sum("brotli") };
-const wasm = rows.find(({ path }) => path.endsWith(".wasm"));
+const sumOf = (path, some) => {
+  const sum = (kind) => some.reduce((total, row) => total + row[kind], 0);
+  return { path, raw: sum("raw"), gzip: sum("gzip"), brotli: sum("brotli") };
+};
+const isLater = ({ path }) => ON_DEMAND.test(path);
+const first = rows.filter((row) => !isLater(row));
+const total = sumOf("in all", first);
+const later = sumOf("on demand", rows.filter(isLater));
+const wasm = first.find(({ path }) => path.endsWith(".wasm"));
 
 const kB = (bytes) => `${(bytes / 1000).toFixed(1)} kB`.padStart(12);
 console.log(`${"".padEnd(40)}${"raw".padStart(12)}${"gzip".padStart(12)}${"brotli".padStart(12)}`);
-for (const { path, raw, gzip, brotli: br } of [...rows, total]) {
+for (const { path, raw, gzip, brotli: br } of [...first, total, ...rows.filter(isLater), later]) {
   console.log(`${path.padEnd(40)}${kB(raw)}${kB(gzip)}${kB(br)}`);
 }
 
 const problems = [
   wasm === undefined && "there is no wasm: run `npm run build` first",
   wasm && wasm.brotli > MOST_WASM && `the wasm is larger than ${MOST_WASM / 1000} kB (brotli)`,
+  later.raw === 0 && "nothing computes orientations",
+  later.gzip > MOST_ON_DEMAND &&
+    `what is fetched on demand is larger than ${MOST_ON_DEMAND / 1000} kB (gzip)`,
   total.brotli > MOST_IN_ALL && `the first load is larger than ${MOST_IN_ALL / 1000} kB (brotli)`,
 ].filter(Boolean);
 for (const problem of problems) {

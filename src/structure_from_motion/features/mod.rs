@@ -23,12 +23,14 @@ mod spread;
 
 pub(super) use descriptor::Descriptor;
 
+use serde::{Deserialize, Serialize};
+
 use crate::raster::Gray;
 
 use self::scale_space::ScaleSpace;
 
 /// A keypoint.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Keypoint {
     /// Column and row in the photograph, pixels (centre of the top-left one at (0.5, 0.5)).
     pub position: [f64; 2],

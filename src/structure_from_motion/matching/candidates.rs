@@ -5,7 +5,7 @@
 use nalgebra::Point3;
 
 use super::matches_of;
-use crate::execution::{map, map_part};
+use crate::execution::{Sharded, map, sharded_map};
 use crate::structure_from_motion::features::{Descriptor, Features};
 
 /// Keypoints of a photograph in the quick match.
@@ -34,10 +34,10 @@ pub(in super::super) struct Candidate {
 
 /// The pairs to match, in the order of their indices. Positions are metric, where stated.
 pub(in super::super) fn candidate_pairs(
-    features: &[Features],
+    features: &[&Features],
     positions: &[Option<Point3<f64>>],
     part: std::ops::Range<f64>,
-) -> Vec<Candidate> {
+) -> Sharded<Vec<Candidate>> {
     let n = features.len();
     let near = near_ones(positions);
     let is_near = |i: usize, j: usize, among: usize| match (&near[i], &near[j]) {
@@ -58,9 +58,9 @@ pub(in super::super) fn candidate_pairs(
         })
         .filter(|c| is_near(c.first, c.second, NEAREST))
         .collect();
-    let counts = map_part(&asked, part, |_, c| {
+    let counts: Vec<usize> = sharded_map("overlaps", &asked, part, |_, c| {
         matches_of(&quick[c.first], &quick[c.second]).len()
-    });
+    })?;
     let mut partners: Vec<Vec<(usize, usize)>> = vec![Vec::new(); n];
     for (c, &count) in asked.iter().zip(&counts) {
         if count >= FEWEST_QUICK {
@@ -73,14 +73,12 @@ pub(in super::super) fn candidate_pairs(
         list.truncate(PARTNERS);
     }
     let wants = |i: usize, j: usize| partners[i].iter().any(|p| p.1 == j);
-    asked
-        .into_iter()
-        .filter(|c| {
-            wants(c.first, c.second)
-                || wants(c.second, c.first)
-                || is_near(c.first, c.second, IN_ANY_CASE)
-        })
-        .collect()
+    let wanted = asked.into_iter().filter(|c| {
+        wants(c.first, c.second)
+            || wants(c.second, c.first)
+            || is_near(c.first, c.second, IN_ANY_CASE)
+    });
+    Ok(wanted.collect())
 }
 
 /// For each photograph with a position the others with one, the nearest first.

@@ -8,10 +8,12 @@
 mod tiff_tags;
 mod xmp;
 
+use serde::{Deserialize, Serialize};
+
 use self::tiff_tags::Tags;
 
 /// What is stated of a photograph.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PhotoMetadata {
     /// Maker and model of the camera; empty where not stated.
     pub camera: String,

@@ -240,5 +240,5 @@ fn frame_words(basis: &FrameBasis) -> (String, Option<crate::orientation::Anchor
     }
 }
 
-const ARBITRARY_SCALE: &str = "the scale is arbitrary (as if taken from 100 m above the ground): \
+pub(super) const ARBITRARY_SCALE: &str = "the scale is arbitrary (as if taken from 100 m above the ground): \
                                measure one length to set it";

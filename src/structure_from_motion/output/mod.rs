@@ -2,8 +2,10 @@
 
 mod assemble;
 mod report;
+mod scale;
 mod sparse_model;
 
+use assemble::ARBITRARY_SCALE;
 pub(super) use assemble::{Names, report, sparse_model};
 pub use report::{CameraReport, LeftOut, NotJoined, OrientReport, PhotoReport};
 pub use sparse_model::{OrientedPhoto, SparseModel, SparsePoint};

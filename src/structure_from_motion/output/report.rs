@@ -56,6 +56,7 @@ impl NotJoined {
 
 /// An oriented photograph.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct PhotoReport {
     /// Its path.
     pub file: String,
@@ -75,6 +76,7 @@ pub struct PhotoReport {
 
 /// A calibrated camera.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct CameraReport {
     /// As EXIF names it.
     pub name: String,

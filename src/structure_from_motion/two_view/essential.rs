@@ -1,6 +1,7 @@
 //! The robust essential matrix of a pair, and the relative pose in it.
 
 use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, Vector3};
+use serde::{Deserialize, Serialize};
 
 use super::five_point::essential_matrices;
 use crate::geometry::rotation_from_axis_angle;
@@ -9,7 +10,7 @@ use crate::structure_from_motion::random::Random;
 use crate::structure_from_motion::robust::Estimator;
 
 /// The second camera relative to the first: `x_second = R x_first + t`, |t| = 1.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(in super::super) struct RelativePose {
     /// R.
     pub rotation: Rotation3<f64>,

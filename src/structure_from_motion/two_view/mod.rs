@@ -18,6 +18,7 @@ mod homography;
 pub(super) use essential::RelativePose;
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 use self::essential::EssentialProblem;
 use self::homography::{HomographyProblem, RotationProblem};
@@ -34,8 +35,9 @@ const FEWEST_INLIERS: usize = 20;
 const PARALLAX_NATS: f64 = 0.1;
 
 /// What relates two photographs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum PairKind {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PairKind {
     /// An essential matrix.
     General,
     /// The homography of a plane explains the matches better still: depths differ little.
@@ -45,7 +47,7 @@ pub(super) enum PairKind {
 }
 
 /// The geometry of a pair.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct TwoViewGeometry {
     /// Which kind explains it best.
     pub kind: PairKind,

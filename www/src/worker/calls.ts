@@ -95,7 +95,7 @@ async function setFiles(session: CoreSession, files: readonly InputFile[]): Prom
 }
 
 /** A file may have vanished since it was dropped: the browser's own message does not name it. */
-async function readBlob(path: string, blob: Blob): Promise<ArrayBuffer> {
+export async function readBlob(path: string, blob: Blob): Promise<ArrayBuffer> {
   try {
     return await blob.arrayBuffer();
   } catch {

@@ -11,6 +11,7 @@ export interface Upload {
 
 const DEMO = new URL("../../public/demo/", import.meta.url);
 const HOUSE = new URL("../fixtures/house/", import.meta.url);
+const DRONE = new URL("../fixtures/drone/", import.meta.url);
 const FIXTURES = new URL("../../../tests/fixtures/", import.meta.url);
 
 export function upload(name: string, buffer: Buffer): Upload {
@@ -42,6 +43,11 @@ export const HOUSE_FORMATS = readdirSync(new URL("orientation/", HOUSE)).sort();
 /** A small scene of its own, with its orientation as 3 x 4 matrices or in another format. */
 export function houseFiles(format = "projection"): Upload[] {
   return [...filesIn(HOUSE, /\.jpg$/), ...filesIn(new URL(`orientation/${format}/`, HOUSE), /./)];
+}
+
+/** Photographs of drawn houses as a drone takes them, without orientation. */
+export function dronePhotographs(): Upload[] {
+  return filesIn(DRONE, /\.jpg$/);
 }
 
 /** The 48 pixels wide scene of the readers' tests, with its orientation as VisualSFM writes it. */

@@ -24,6 +24,7 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
       "app/settings",
       "app/session",
       "app/project",
+      "app/orienting",
       "app/photographs",
       "app/selection",
       "app/inspector",
@@ -53,12 +54,12 @@ function floors(base: readonly string[], names: readonly string[]): Record<strin
 }
 
 /** What the build makes, and no room of the house. */
-const BUILT = "pkg";
+const BUILT = ["pkg/", "pkg-orient/"];
 
 const files = readdirSync(SOURCES, { recursive: true, withFileTypes: true })
   .filter((entry) => entry.isFile())
   .map((entry) => relative(SOURCES, join(entry.parentPath, entry.name)))
-  .filter((path) => !path.startsWith(BUILT))
+  .filter((path) => !BUILT.some((folder) => path.startsWith(folder)))
   .sort();
 const modules = files.filter((path) => /\.tsx?$/.test(path));
 
@@ -67,7 +68,7 @@ const imports = new Map(modules.map((path) => [path, importsOf(path)]));
 
 function importsOf(path: string): string[] {
   const text = readFileSync(join(SOURCES, path), "utf8");
-  return [...text.matchAll(/(?:^import|^export|^\}) ?[^;"]*"(\.[^"]+)"/gm)]
+  return [...text.matchAll(/(?:^import|^export|^\}|\bimport\() ?[^;"]*"(\.[^"]+)"/gm)]
     .map(([, named]) => join(dirname(path), named as string))
     .flatMap((named) => {
       const found = [named, `${named}.ts`, `${named}.tsx`, named.replace(/\.js$/, ".ts")].find((one) =>

@@ -2,11 +2,37 @@
 import { counted } from "../parts/counted";
 import "./photographsOnly.css";
 import { signal, useSignalEffect } from "@preact/signals";
-import { type ComponentChildren, Fragment } from "preact";
+import { type ComponentChildren, type ComponentType, Fragment } from "preact";
+import { isBusy } from "../state/activity";
+import { notify } from "../state/notices";
 import { files, inspection } from "../state/project";
 import { type PhotographFacts, planOf, readFacts, scaleBarM } from "./photographFacts";
 
 const facts = signal<readonly PhotographFacts[]>([]);
+
+/** What computes and shows the orientation, once it was fetched: most projects come with theirs. */
+const panel = signal<ComponentType | null>(null);
+
+async function compute(): Promise<void> {
+  try {
+    const [{ OrientationPanel }, { computeOrientation }] = await Promise.all([
+      import("../orienting/OrientationPanel"),
+      import("../orienting/orientation"),
+    ]);
+    panel.value = OrientationPanel;
+    await computeOrientation();
+  } catch {
+    notify({
+      severity: "warning",
+      title: "This part of the page could not be fetched",
+      text: "The orientation is computed by a part of the page that is fetched when it is first needed.",
+      advice: "Connect to the network once, and try again.",
+    });
+  }
+}
+
+/** Begins anew with other photographs. */
+const begun = signal<readonly unknown[] | null>(null);
 
 export function PhotographsOnly() {
   useSignalEffect(() => {
@@ -23,6 +49,7 @@ export function PhotographsOnly() {
     };
   });
   const count = inspection.value?.images.length ?? 0;
+  const Panel = panel.value;
   return (
     <section
       class="photographs-only"
@@ -31,17 +58,44 @@ export function PhotographsOnly() {
       // biome-ignore lint/a11y/noNoninteractiveTabindex: it scrolls by key.
       tabIndex={0}
     >
-      <h2>{counted(count, "photographs")}, and no orientation yet</h2>
-      <p>
-        A model needs to know, for each photograph, where the camera stood, where it looked, and its focal
-        length. Programs for photogrammetry compute that from the photographs; add the file that they write to
-        this project.
-      </p>
-      <Recipes />
+      {Panel !== null && begun.value === files.value ? (
+        <Panel />
+      ) : (
+        <>
+          <h2>{counted(count, "photographs")}, and no orientation yet</h2>
+          <p>
+            A model needs to know, for each photograph, where the camera stood, where it looked, and its focal
+            length. That follows from what overlapping photographs show in common.
+          </p>
+          <p class="row">
+            <button
+              type="button"
+              class="primary"
+              disabled={isBusy.value || count < FEWEST}
+              onClick={() => {
+                begun.value = files.value;
+                void compute();
+              }}
+            >
+              Compute the orientation
+            </button>
+            <span class="muted">
+              {count < FEWEST
+                ? "Three photographs that overlap are needed."
+                : "In this browser: seconds for a few photographs, minutes for many."}
+            </span>
+          </p>
+          <p>Or add the file that a program for photogrammetry has written:</p>
+          <Recipes />
+        </>
+      )}
       <WhatIsKnown />
     </section>
   );
 }
+
+/** Fewest photographs of a block. */
+const FEWEST = 3;
 
 function Recipes() {
   return (

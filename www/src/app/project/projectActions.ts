@@ -58,18 +58,23 @@ export async function addFiles(added: InputFile[]): Promise<void> {
     return;
   }
   await actions.perform({ kind: "change", phase: "load", words: "Reading files" }, async () => {
-    removals = [];
-    const byPath = new Map(files.value.map((file) => [file.path, file]));
-    for (const file of added) {
-      byPath.set(file.path, file);
-    }
-    if (projectName.value === "") {
-      nameProject(OWN_FILES);
-    }
-    setProject([...byPath.values()]);
-    await loadProject(adoptProject);
-    await adoptResults();
+    await addFilesIn(added);
   });
+}
+
+/** The same as part of another action. */
+export async function addFilesIn(added: readonly InputFile[]): Promise<void> {
+  removals = [];
+  const byPath = new Map(files.value.map((file) => [file.path, file]));
+  for (const file of added) {
+    byPath.set(file.path, file);
+  }
+  if (projectName.value === "") {
+    nameProject(OWN_FILES);
+  }
+  setProject([...byPath.values()]);
+  await loadProject(adoptProject);
+  await adoptResults();
 }
 
 /** Begins a new project with these files: nothing of the present one stays. */

@@ -1,0 +1,289 @@
+//! The chain step by step, for callers that read photographs one after the other, show how far it
+//! is, or divide the work between instances of the core.
+
+use nalgebra::{Point2, Point3};
+use serde::Serialize;
+
+use super::adjustment::{block, calibrate_center, prior};
+use super::cameras::{Cameras, stated_poses};
+use super::options::{OrientOptions, Oriented};
+use super::photo::{Photo, ReadPhoto};
+use super::refusals::{not_joined, refusal, too_few, unconnected};
+use super::snapshot::Snapshot;
+use crate::error::Result;
+use crate::execution::Listener;
+use crate::execution::{
+    MergedShards, Origin, ShardTask, Sharded, run_merged, run_shard, with_listener,
+};
+use crate::orientation::Anchor;
+use crate::structure_from_motion::block::Block;
+use crate::structure_from_motion::bundle::covariance;
+use crate::structure_from_motion::features::Features;
+use crate::structure_from_motion::frame::{StatedPose, to_frame};
+use crate::structure_from_motion::incremental::{VerifiedPair, register};
+use crate::structure_from_motion::intrinsics::Intrinsics;
+use crate::structure_from_motion::matching::candidate_pairs;
+use crate::structure_from_motion::output::{LeftOut, Names, report, sparse_model};
+use crate::structure_from_motion::two_view::PairKind;
+use crate::structure_from_motion::verification::{MatchedPhoto, guess_focal, match_pairs, verify};
+
+/// Fewest photographs of a block.
+const FEWEST_PHOTOS: usize = 3;
+
+/// Standard deviation of a keypoint before it is measured, pixels of the working size.
+const KEYPOINT_SIGMA: f64 = 1.0;
+
+/// The maps that instances may divide, in their order.
+const MAPS: &[&str] = &["overlaps", "matches", "focal lengths", "pairs"];
+
+/// A pair of photographs whose matches agree with one geometry.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+pub struct PairSummary {
+    /// Path of the first photograph.
+    pub first: String,
+    /// That of the second.
+    pub second: String,
+    /// Which geometry explains the matches best.
+    #[cfg_attr(
+        target_arch = "wasm32",
+        tsify(type = "\"general\" | \"planar\" | \"rotation\"")
+    )]
+    pub kind: PairKind,
+    /// Matches that agree with it.
+    pub matches: usize,
+    /// Median angle between their rays, degrees.
+    pub angle_deg: f64,
+}
+
+/// Is shown the block whenever it has grown.
+pub type OnBlock<'a> = &'a mut dyn FnMut(Snapshot);
+
+/// What the pairs of the photographs say.
+struct Connected {
+    cameras: Cameras,
+    stated: Vec<StatedPose>,
+    anchor: Option<Anchor>,
+    verified: Vec<VerifiedPair>,
+}
+
+/// Photographs on their way to an orientation: [`add`](Self::add) each,
+/// [`connect`](Self::connect), [`orient`](Self::orient).
+pub struct OrientChain {
+    options: OrientOptions,
+    /// By path.
+    photos: Vec<Photo>,
+    left_out: Vec<LeftOut>,
+    connected: Option<Connected>,
+}
+
+impl OrientChain {
+    /// Without photographs yet.
+    pub fn new(options: OrientOptions) -> Self {
+        Self {
+            options,
+            photos: Vec::new(),
+            left_out: Vec::new(),
+            connected: None,
+        }
+    }
+
+    /// How photographs are to be read.
+    pub fn options(&self) -> &OrientOptions {
+        &self.options
+    }
+
+    /// Takes a photograph in; one of the same path is replaced.
+    pub fn add(&mut self, photo: ReadPhoto) {
+        self.connected = None;
+        self.photos.retain(|p| p.path != photo.path());
+        self.left_out.retain(|p| p.file != photo.path());
+        match photo.0 {
+            Ok(photo) => {
+                let place = self.photos.partition_point(|p| p.path < photo.path);
+                self.photos.insert(place, photo);
+            }
+            Err(left) => self.left_out.push(left),
+        }
+    }
+
+    /// Refuses fewer photographs than a block has.
+    ///
+    /// # Errors
+    /// Where there are fewer than three.
+    pub(super) fn has_enough(&self, images: usize) -> Result<()> {
+        if images < FEWEST_PHOTOS {
+            return Err(refusal(
+                format!("{images} photographs"),
+                "give three or more that overlap",
+            ));
+        }
+        Ok(())
+    }
+
+    /// The maps that instances with the same photographs may divide between them before
+    /// [`connect`](Self::connect), in their order.
+    pub fn shard_maps() -> &'static [&'static str] {
+        MAPS
+    }
+
+    /// The shard of instance `index` of so many of a map, with the merged shards of the maps before
+    /// it; empty where there is no such map.
+    pub fn run_shard(
+        &self,
+        map: &str,
+        [index, of]: [usize; 2],
+        merged: MergedShards,
+        listener: &Listener,
+    ) -> Vec<u8> {
+        let Some(task) = ShardTask::new(MAPS, map, index, of) else {
+            return Vec::new();
+        };
+        with_listener(listener.clone(), || {
+            run_shard(task, self.origin(), merged, || self.connected())
+        })
+    }
+
+    /// Finds the pairs that show the same, and their geometry; with the merged shards of the maps
+    /// where instances have divided them.
+    ///
+    /// # Errors
+    /// Where fewer than three photographs are of use.
+    pub fn connect(&mut self, merged: MergedShards) -> Result<()> {
+        self.has_enough(self.photos.len() + self.left_out.len())?;
+        if self.photos.len() < FEWEST_PHOTOS {
+            self.left_out.sort_by(|a, b| a.file.cmp(&b.file));
+            return Err(too_few(&self.left_out));
+        }
+        self.connected = Some(run_merged(self.origin(), merged, || self.connected()));
+        Ok(())
+    }
+
+    /// What shards are made of: paths and numbers of keypoints tell photographs apart.
+    fn origin(&self) -> Origin {
+        let named = self.photos.iter().flat_map(|p| {
+            let keypoints = p.features.keypoints.len() as u32;
+            (p.path.bytes()).chain(keypoints.to_le_bytes())
+        });
+        Origin::of(&named.collect::<Vec<u8>>())
+    }
+
+    fn connected(&self) -> Sharded<Connected> {
+        let mut cameras = Cameras::of(&self.photos, &self.options);
+        let (stated, anchor) = stated_poses(&self.photos);
+        let positions: Vec<Option<Point3<f64>>> = stated.iter().map(|s| s.position).collect();
+        let features: Vec<&Features> = self.photos.iter().map(|p| &p.features).collect();
+        let candidates = candidate_pairs(&features, &positions, 0.4..0.45)?;
+        let matched = self.matched(&cameras);
+        let pairs = match_pairs(&matched, &candidates, 0.45..0.6)?;
+        let guessed = &cameras.is_guessed;
+        guess_focal(&matched, &mut cameras.intrinsics, guessed, &pairs)?;
+        let verified = verify(&matched, &cameras.intrinsics, &pairs, 0.65..0.7)?;
+        Ok(Connected {
+            cameras,
+            stated,
+            anchor,
+            verified,
+        })
+    }
+
+    fn matched(&self, cameras: &Cameras) -> Vec<MatchedPhoto<'_>> {
+        (self.photos.iter().enumerate())
+            .map(|(i, photo)| MatchedPhoto {
+                features: &photo.features,
+                camera: cameras.of_photo[i],
+                sigma_px: KEYPOINT_SIGMA * photo.working_pixel(&self.options),
+            })
+            .collect()
+    }
+
+    /// The connected pairs, those with the most matches first.
+    pub fn pairs(&self) -> Vec<PairSummary> {
+        let path = |i: usize| self.photos[i].path.clone();
+        (self.ranked().iter())
+            .map(|pair| PairSummary {
+                first: path(pair.photos[0]),
+                second: path(pair.photos[1]),
+                kind: pair.geometry.kind,
+                matches: pair.matches.len(),
+                angle_deg: pair.geometry.angle.to_degrees(),
+            })
+            .collect()
+    }
+
+    /// Matches of a pair by its place in [`pairs`](Self::pairs): keypoints of both photographs,
+    /// pixels.
+    pub fn pair_matches(&self, place: usize) -> Vec<[Point2<f64>; 2]> {
+        let ranked = self.ranked();
+        let Some(pair) = ranked.get(place) else {
+            return Vec::new();
+        };
+        let [first, second] = pair.photos.map(|p| &self.photos[p].features.keypoints);
+        (pair.matches.iter())
+            .map(|&(i, j)| [first[i].position.into(), second[j].position.into()])
+            .collect()
+    }
+
+    fn ranked(&self) -> Vec<&VerifiedPair> {
+        let verified = self.connected.iter().flat_map(|c| &c.verified);
+        let mut ranked: Vec<&VerifiedPair> = verified.collect();
+        ranked.sort_by(|a, b| {
+            let by_matches = b.matches.len().cmp(&a.matches.len());
+            by_matches.then(a.photos.cmp(&b.photos))
+        });
+        ranked
+    }
+
+    /// Registers and adjusts the connected photographs and brings them into their frame; `on_block`
+    /// sees the block grow.
+    ///
+    /// # Errors
+    /// Where fewer than three photographs join; the message says why.
+    pub fn orient(&self, mut on_block: Option<OnBlock>) -> Result<Oriented> {
+        let Some(connected) = &self.connected else {
+            let photographs = self.photos.len() + self.left_out.len();
+            return Err(refusal(
+                format!("the pairs of the {photographs} photographs are not known yet"),
+                "find them first",
+            ));
+        };
+        let Connected {
+            cameras,
+            stated,
+            anchor,
+            verified,
+        } = connected;
+        let means: &[Intrinsics] = &cameras.intrinsics;
+        let is_guessed = &cameras.is_guessed;
+        let mut block = block(&self.photos, &self.matched(cameras), means, verified);
+        let mut show = |block: &Block| {
+            if let Some(on_block) = &mut on_block {
+                on_block(Snapshot::of(block, &self.photos, stated, *anchor));
+            }
+        };
+        register(&mut block, verified, prior(is_guessed, 0.0), &mut show);
+        let registered = block.registered().len();
+        let mut left_out = self.left_out.clone();
+        left_out.extend(not_joined(&self.photos, &block, verified));
+        left_out.sort_by(|a, b| a.file.cmp(&b.file));
+        if registered < FEWEST_PHOTOS {
+            return Err(unconnected(verified, &left_out));
+        }
+        let is_held = self.options.holds_center;
+        let adjusted = calibrate_center(&mut block, means, is_guessed, is_held);
+        let basis = to_frame(&mut block, stated, *anchor);
+        // The covariance belongs to the frame.
+        let covariance = adjusted.and_then(|options| covariance(&block, means, &options));
+        let names = Names {
+            paths: self.photos.iter().map(|p| p.path.as_str()).collect(),
+            colours: self.photos.iter().map(|p| p.colours.as_slice()).collect(),
+            cameras: cameras.names.clone(),
+            means,
+            is_guessed,
+            stated,
+        };
+        let model = sparse_model(&block, &names);
+        let report = report(&block, &names, &basis, covariance.as_ref(), left_out);
+        Ok(Oriented { model, report })
+    }
+}

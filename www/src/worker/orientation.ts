@@ -1,0 +1,98 @@
+/** A worker of the orientation: one instance of the core's second module. Requests are answered one after the other. */
+/// <reference lib="webworker" />
+import init, { Orienter } from "../pkg-orient/orientation.js";
+import type { OrientCalls, OrientedBlock, OrientReply, OrientRequest } from "../shared/orientation";
+import { readBlob } from "./calls";
+import { failureOf } from "./failures";
+
+declare const self: DedicatedWorkerGlobalScope;
+
+let orienter: Orienter | undefined;
+let queue: Promise<void> = Promise.resolve();
+
+self.onmessage = (event: MessageEvent<OrientRequest>) => {
+  queue = queue.then(() => reply(event.data));
+};
+
+/** What the core wrote to the console last: a panic's message. */
+let lastWords: string | null = null;
+const write = console.error.bind(console);
+console.error = (...words: unknown[]) => {
+  lastWords = String(words[0]);
+  write(...words);
+};
+
+async function reply(request: OrientRequest): Promise<void> {
+  lastWords = null;
+  try {
+    const result = await perform(request);
+    post({ type: "done", id: request.id, result }, buffersOf(result));
+  } catch (error) {
+    post({ type: "failed", id: request.id, ...failureOf(error, lastWords) });
+  }
+}
+
+async function perform(request: OrientRequest): Promise<unknown> {
+  if (request.type === "open") {
+    await init({ module_or_path: request.wasmUrl });
+    orienter = new Orienter(request.options);
+    return undefined;
+  }
+  if (orienter === undefined) {
+    throw new Error("The core is not ready. Reload the page.");
+  }
+  const own = callsOf(orienter);
+  const target: object = request.name in own ? own : orienter;
+  const method: unknown = Reflect.get(target, request.name);
+  if (typeof method !== "function") {
+    throw new Error(`There is no call '${request.name}'.`);
+  }
+  return Reflect.apply(method, target, request.args);
+}
+
+type Own = Pick<OrientCalls, "readFile" | "runShard" | "connect" | "orient" | "block">;
+
+function callsOf(core: Orienter): Own {
+  return {
+    readFile: async (path, blob) => core.readPhoto(path, new Uint8Array(await readBlob(path, blob))),
+    runShard: (map, index, of) => core.runShard(map, index, of, reached),
+    connect: () => core.connect(reached),
+    orient: () =>
+      core.orient(reached, (views, points, colours) => {
+        const block = { views, points, colours };
+        post({ type: "block", block }, buffersOf(block));
+      }),
+    block: () => ({
+      views: core.views(),
+      points: core.points() as OrientedBlock["points"],
+      colours: core.colours() as OrientedBlock["colours"],
+    }),
+  };
+}
+
+/** Progress is a message at most every so often: the page cannot draw more. */
+const PROGRESS_INTERVAL_MS = 40;
+let last = 0;
+
+function reached(fraction: number): void {
+  const now = performance.now();
+  if (now - last >= PROGRESS_INTERVAL_MS) {
+    last = now;
+    post({ type: "progress", fraction });
+  }
+}
+
+/** Arrays that the core hands out are copies of its memory, so their buffers may move. */
+function buffersOf(result: unknown): Transferable[] {
+  if (ArrayBuffer.isView(result)) {
+    return [result.buffer as ArrayBuffer];
+  }
+  if (typeof result === "object" && result !== null && "points" in result && "colours" in result) {
+    return [...buffersOf(result.points), ...buffersOf(result.colours)];
+  }
+  return [];
+}
+
+function post(message: OrientReply, transfer: Transferable[] = []): void {
+  self.postMessage(message, transfer);
+}
