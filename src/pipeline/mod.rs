@@ -265,7 +265,7 @@ impl Run {
         let r = &self.results;
         let (model, textured) = (r.roof_model()?, &r.model.as_ref()?.value);
         Some(match self.params.method {
-            Method::Lines | Method::Combined => Outputs {
+            Method::Lines | Method::Combined | Method::Coplanar => Outputs {
                 segments: Cow::Borrowed(&r.segments.as_ref()?.value),
                 lines: Cow::Owned(r.all_lines()?),
                 half_planes: &r.half_planes.as_ref()?.value,
@@ -361,7 +361,7 @@ mod tests {
     #[test]
     fn stages_need_what_runs_before_them() {
         for stage in Stage::ALL {
-            for method in [Method::Lines, Method::Rectangles, Method::Combined] {
+            for method in Method::ALL {
                 assert!(stage.needs(method).all(|needed| needed < *stage));
             }
             assert_eq!(Stage::from_name(stage.name()), Some(*stage));

@@ -40,6 +40,7 @@ const LAYER_TITLES: Record<LayerName, string> = {
   lines: "3D lines",
   uncertainty: "Uncertainty",
   fans: "Half-planes",
+  coplanar: "Coplanar sets",
   dense: "Dense planes",
   groups: "Groups",
   facets: "Facets",
@@ -49,7 +50,7 @@ const LAYER_TITLES: Record<LayerName, string> = {
 };
 
 /** Layers that method "rectangles" does not fill. */
-const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "dense", "groups"];
+const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "coplanar", "dense", "groups"];
 
 /** The viewer while it exists; the effects below wait for it. */
 const viewer = signal<Viewer | null>(null);
@@ -274,12 +275,14 @@ function pointsNow(): Vector3[] {
 }
 
 function layerIsEmpty(name: Tab): boolean {
-  const { halfPlanes, dense, grouping, facets } = results.value;
+  const { halfPlanes, coplanar, dense, grouping, facets } = results.value;
   switch (name) {
     case "lines":
       return lines.value === null;
     case "halfplanes":
       return halfPlanes === null;
+    case "coplanar":
+      return coplanar === null;
     case "dense":
       return dense === null;
     case "groups":

@@ -117,6 +117,28 @@ export function groupParts(
       };
 }
 
+export interface CoplanarSetParts {
+  lines: number;
+  /** Sides without a line that were made square or mirrored. */
+  moved: number;
+  /** Reprojection error of the wireframe before and after its adjustment, px. */
+  before: number;
+  after: number;
+}
+
+/** What a set of coplanar lines is; null where there is none. */
+export function coplanarSetParts(
+  { coplanar }: Pick<Results, "coplanar">,
+  index: number,
+): CoplanarSetParts | null {
+  const [set, trace] = [coplanar?.sets[index], coplanar?.trace.sets[index]];
+  if (set === undefined || trace === undefined) {
+    return null;
+  }
+  const [before, after] = trace.reprojection_px;
+  return { lines: set.lines.length, moved: trace.closing.length, before, after };
+}
+
 export interface DensePlaneParts {
   name: ClassName;
   probability: number;
