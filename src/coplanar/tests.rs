@@ -96,9 +96,10 @@ fn segments(scene: &Scene, lines: &[Line3d]) -> Vec<Vec<ImageSegment>> {
     scene.view_ids().map(in_view).collect()
 }
 
+/// The sets of some lines, where the photographs show all edges of the gable.
 fn found(lines: &[Line3d]) -> (Vec<CoplanarSet>, CoplanarTrace) {
     let scene = gable();
-    let segments = segments(&scene, lines);
+    let segments = segments(&scene, &gable_lines(0.0, true));
     let (lines_params, roof) = (Lines3dParams::default(), RoofParams::default());
     coplanar_sets(&scene, lines, &segments, &lines_params, &roof)
 }
