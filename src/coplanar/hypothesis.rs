@@ -38,8 +38,9 @@ pub(super) fn log_end_error(error_m: f64) -> f64 {
     -error_m.abs() / END_M - ln(2.0 * END_M)
 }
 
-/// Mean distance of a line's end from the corner that it should reach, metres.
-pub(super) const END_M: f64 = 0.5;
+/// Mean distance of a line's end from the corner that it should reach, metres. Measured: 1250 ends
+/// on true edges of the sixteen fitting scenes.
+pub(super) const END_M: f64 = 0.45;
 
 /// Logarithm of the odds of a probability.
 pub(super) fn log_odds(probability: f64) -> f64 {

@@ -2,8 +2,8 @@
 //! tests all run a reconstruction through [`Run`].
 //!
 //! ```text
-//! B99:  segments -> matches -> adjustment -> lines -> halfplanes -> facets -> model
-//!                      ^           |
+//! B99:  segments -> matches -> adjustment -> lines -> coplanar -> halfplanes -> dense -> facets
+//!                      ^           |                                          -> model
 //!                      +-----------+ where views moved
 //! W96:  regions -> directions -> clusters -> rectangles -> model
 //! both: segments to adjustment, those of W96, then the others of B99, which take in its lines and

@@ -263,7 +263,9 @@ export const LESSONS: readonly LessonStep[] = [
     },
     hint: () => {
       const found = pickedSet();
-      return found === null || found.moved > 0 ? null : "Every side of this one lies on a line: look for another.";
+      return found === null || found.moved > 0
+        ? null
+        : "Every side of this one lies on a line: look for another.";
     },
     method: "coplanar",
     tab: "coplanar",

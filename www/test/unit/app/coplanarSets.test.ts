@@ -150,7 +150,12 @@ describe("sets of coplanar lines", () => {
   });
 
   it("are a step of the tour where a side was moved", () => {
-    expect(coplanarSetParts({ coplanar: COPLANAR }, 0)).toEqual({ lines: 2, moved: 1, before: 0.5, after: 0.2 });
+    expect(coplanarSetParts({ coplanar: COPLANAR }, 0)).toEqual({
+      lines: 2,
+      moved: 1,
+      before: 0.5,
+      after: 0.2,
+    });
     expect(coplanarSetParts({ coplanar: COPLANAR }, 1)?.moved).toBe(0);
     expect(coplanarSetParts({ coplanar: COPLANAR }, 5)).toBeNull();
   });
