@@ -64,9 +64,16 @@ pub struct WeighedRelation {
     pub nats: f64,
 }
 
+/// An image edge of a line on a side.
+struct SideEdge<'a> {
+    side: usize,
+    whitened: WhitenedObservation,
+    measured: Observation<'a>,
+}
+
 /// A summand of the cost.
 enum Term<'a> {
-    Edge(usize, WhitenedObservation, Observation<'a>),
+    Edge(Box<SideEdge<'a>>),
     Corner(usize, Point2<f64>),
     Height(Point3<f64>, f64),
     Relation(Relation),
@@ -101,7 +108,12 @@ impl<'a> Wireframe<'a> {
         params: &Lines3dParams,
     ) -> (Self, WireframeState) {
         let mut terms: Vec<Term> = (edges.into_iter())
-            .map(|(side, o)| Term::Edge(side, WhitenedObservation::new(&o, params), o))
+            .map(|(side, measured)| SideEdge {
+                side,
+                whitened: WhitenedObservation::new(&measured, params),
+                measured,
+            })
+            .map(|edge| Term::Edge(Box::new(edge)))
             .collect();
         terms.extend(
             outline
@@ -157,10 +169,9 @@ impl<'a> Wireframe<'a> {
     pub(super) fn reprojection(&self, state: &WireframeState) -> (f64, usize) {
         let (mut sum, mut count) = (0.0, 0usize);
         for term in &self.terms {
-            let Term::Edge(side, _, o) = term else {
-                continue;
-            };
-            let Some(image) = ProjectedLine::new(o.camera, &self.side(state, *side)) else {
+            let Term::Edge(edge) = term else { continue };
+            let o = &edge.measured;
+            let Some(image) = ProjectedLine::new(o.camera, &self.side(state, edge.side)) else {
                 continue;
             };
             for end in [o.segment.p0, o.segment.p1] {
@@ -237,15 +248,15 @@ impl<'a> Wireframe<'a> {
     fn linearised(&self, term: &Term, state: &WireframeState) -> Option<(Vector2<f64>, [Row; 2])> {
         let none = Row::new();
         Some(match term {
-            Term::Edge(side, observation, _) => {
-                let line = self.side(state, *side);
+            Term::Edge(edge) => {
+                let line = self.side(state, edge.side);
                 let across = line_frame(&line.direction());
-                let (r, j) = observation.residual(&line, &across)?;
+                let (r, j) = edge.whitened.residual(&line, &across)?;
                 let row = |i: usize| {
                     let ends = [0, 1].map(|end| {
                         let by_point =
                             across[0] * j[(2 * end, i)] + across[1] * j[(2 * end + 1, i)];
-                        self.through_corner(state, side + end, &by_point)
+                        self.through_corner(state, edge.side + end, &by_point)
                     });
                     ends.concat()
                 };

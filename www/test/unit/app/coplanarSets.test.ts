@@ -15,6 +15,7 @@ import {
   type CoplanarSets,
   coplanarSetsOf,
   type Facet,
+  type FacetTrace,
   isMadeFrom,
   isRejected,
 } from "../../../src/shared/records";
@@ -73,10 +74,19 @@ const COPLANAR: CoplanarSets = {
     ],
   },
 };
-const FACET = { half_planes: [], proposals: [{ coplanar_set: 0 }], outer: [], holes: [] } as unknown as Facet;
+const FACET = {
+  plane: { normal: [0, 0, 1], d: -5 },
+  half_planes: [],
+  proposals: [{ coplanar_set: 0 }],
+  similarity: 0.8,
+  real_ratio: 1,
+  outer: [],
+  holes: [],
+} as unknown as Facet;
 
 function show(): void {
-  const main = { ...NO_RESULTS, coplanar: COPLANAR, facets: [FACET] };
+  const grouping = { groups: [], rejected: [] } as unknown as FacetTrace;
+  const main = { ...NO_RESULTS, coplanar: COPLANAR, grouping, facets: [FACET] };
   restoreResults({ main, regions: NO_RESULTS });
 }
 
