@@ -35,20 +35,17 @@ impl StageDefinition for HalfPlanes {
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let lines = &required(&before.lines).value;
         let ground = Ground::estimate(scene, lines)?;
-        if params.method == Method::Coplanar {
-            // Coplanar lines alone: none is swept.
-            return Ok(Found {
-                value: Vec::new(),
-                ground,
-                trace: SweepTrace::default(),
-            });
-        }
+        // Of coplanar lines alone none is swept.
+        let swept = match params.method {
+            Method::Coplanar => &[],
+            _ => &lines[..],
+        };
         let sets = &required(&before.coplanar).value;
         let explained = |id: LineId, side| {
             let line = &lines[id.index()];
             sets.iter().any(|set| set.explains(id, line, side))
         };
-        let (value, trace) = sweep_half_planes(scene, lines, &ground, &explained, &params.sweep)?;
+        let (value, trace) = sweep_half_planes(scene, swept, &ground, &explained, &params.sweep)?;
         Ok(Found {
             value,
             ground,

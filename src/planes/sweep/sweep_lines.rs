@@ -25,7 +25,10 @@ pub fn sweep_half_planes(
     explained: &(dyn Fn(LineId, Side) -> bool + Sync),
     params: &SweepParams,
 ) -> Sharded<(Vec<HalfPlane>, SweepTrace)> {
-    let points = PointsOfInterest::detect_all(scene, params);
+    let points = match lines {
+        [] => Vec::new(),
+        _ => PointsOfInterest::detect_all(scene, params),
+    };
     let sides: Vec<(usize, Side)> = (0..lines.len())
         .flat_map(|i| [(i, Side::Left), (i, Side::Right)])
         .collect();
