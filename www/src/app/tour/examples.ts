@@ -1,6 +1,6 @@
 /** What the tour's steps are about, chosen by the results: a step's claim holds for what it shows. */
 import { LINE_STRIDE, STRETCH_STRIDE } from "../../shared/flatArrays";
-import { densePlanesOf, isMadeFrom, type Side, type SideTrace } from "../../shared/records";
+import { coplanarSetsOf, densePlanesOf, isMadeFrom, type Side, type SideTrace } from "../../shared/records";
 import { type ClassName, likeliestClass } from "../../shared/surfaceClass";
 import type { Results } from "../state/results";
 
@@ -124,11 +124,13 @@ export interface CoplanarSetParts {
   /** Reprojection error of the wireframe before and after its adjustment, px. */
   before: number;
   after: number;
+  /** The facets that it proposed. */
+  facets: number[];
 }
 
 /** What a set of coplanar lines is; null where there is none. */
 export function coplanarSetParts(
-  { coplanar }: Pick<Results, "coplanar">,
+  { coplanar, facets }: Pick<Results, "coplanar" | "facets">,
   index: number,
 ): CoplanarSetParts | null {
   const [set, trace] = [coplanar?.sets[index], coplanar?.trace.sets[index]];
@@ -136,7 +138,13 @@ export function coplanarSetParts(
     return null;
   }
   const [before, after] = trace.reprojection_px;
-  return { lines: set.lines.length, moved: trace.closing.length, before, after };
+  return {
+    lines: set.lines.length,
+    moved: trace.closing.length,
+    before,
+    after,
+    facets: (facets ?? []).flatMap((facet, i) => (coplanarSetsOf(facet).includes(index) ? [i] : [])),
+  };
 }
 
 export interface DensePlaneParts {

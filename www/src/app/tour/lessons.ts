@@ -254,7 +254,8 @@ export const LESSONS: readonly LessonStep[] = [
   {
     title: "Coplanar lines",
     text: "Another partner of the project looked for faces, not for half-planes: lines that lie in one plane are grouped, the convex hull of their ends is closed to a polygon by right angles and symmetry, and the photographs verify it.",
-    question: "Pick a polygon in which a side without a line was made square or mirrored.",
+    question:
+      "Pick a polygon of a facet of the model in which a side without a line was made square or mirrored.",
     answer: () => {
       const found = pickedSet();
       return found === null
@@ -263,13 +264,19 @@ export const LESSONS: readonly LessonStep[] = [
     },
     hint: () => {
       const found = pickedSet();
-      return found === null || found.moved > 0
-        ? null
-        : "Every side of this one lies on a line: look for another.";
+      if (found === null) {
+        return null;
+      }
+      return found.moved === 0
+        ? "Every side of this one lies on a line: look for another."
+        : "No facet of the model has this polygon: it may lie on the ground.";
     },
     method: "coplanar",
     tab: "coplanar",
-    isFound: () => (pickedSet()?.moved ?? 0) > 0,
+    isFound: () => {
+      const found = pickedSet();
+      return found !== null && found.moved > 0 && found.facets.length > 0;
+    },
   },
   {
     title: "Another way: object space",

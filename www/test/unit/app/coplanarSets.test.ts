@@ -128,9 +128,9 @@ describe("sets of coplanar lines", () => {
     expect(shapesOf({ kind: "coplanar", index: 9 })).toEqual([]);
   });
 
-  it("are picked in plan: of several the one with the most nats", () => {
-    expect(shownSets(COPLANAR, null)).toEqual([0, 2]);
-    expect(shownSets(COPLANAR, 1)).toEqual([0, 1, 2]);
+  it("are picked in plan: of several the smallest, and the largest lie below", () => {
+    expect(shownSets(COPLANAR, null)).toEqual([2, 0]);
+    expect(shownSets(COPLANAR, 1)).toEqual([2, 0, 1]);
     expect(setAt(COPLANAR, [1, 1])).toBe(0);
     expect(setAt(COPLANAR, [5, 5])).toBe(2);
     expect(setAt(COPLANAR, [9, 1])).toBeNull();
@@ -160,13 +160,14 @@ describe("sets of coplanar lines", () => {
   });
 
   it("are a step of the tour where a side was moved", () => {
-    expect(coplanarSetParts({ coplanar: COPLANAR }, 0)).toEqual({
+    expect(coplanarSetParts({ coplanar: COPLANAR, facets: [FACET] }, 0)).toEqual({
       lines: 2,
       moved: 1,
       before: 0.5,
       after: 0.2,
+      facets: [0],
     });
-    expect(coplanarSetParts({ coplanar: COPLANAR }, 1)?.moved).toBe(0);
-    expect(coplanarSetParts({ coplanar: COPLANAR }, 5)).toBeNull();
+    expect(coplanarSetParts({ coplanar: COPLANAR, facets: [FACET] }, 1)?.moved).toBe(0);
+    expect(coplanarSetParts({ coplanar: COPLANAR, facets: [FACET] }, 5)).toBeNull();
   });
 });
