@@ -47,4 +47,6 @@ pub enum ProposalOrigin {
     Rectangle(u32),
     /// A plane of dense matching: index into the list of [`crate::dense::DensePlane`].
     DensePlane(u32),
+    /// A set of coplanar lines: index into the list of [`crate::coplanar::CoplanarSet`].
+    CoplanarSet(u32),
 }

@@ -46,6 +46,7 @@
 //!    -> lines3d                  3D lines with covariance                     B99 3.2, figure 4
 //!    -> adjustment               single views adjusted to these, and matched again
 //!    -> terrain                  the ground
+//!    -> coplanar                 sets of coplanar lines and their polygons     B99 2, 5
 //!    -> planes                   Sim(theta), half-planes, plane hypotheses    B99 4.1, 4.2
 //!    -> dense                    planes from dense matching                   B99 2
 //!    -> facets                   borders, labelling, verification             B99 4.3
@@ -74,6 +75,8 @@ pub mod agreement;
 #[cfg(feature = "reconstruction")]
 pub mod buildings;
 pub mod camera;
+#[cfg(feature = "reconstruction")]
+pub mod coplanar;
 #[cfg(feature = "reconstruction")]
 pub mod dense;
 mod error;

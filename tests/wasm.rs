@@ -160,7 +160,15 @@ fn both_methods_share_their_planes() {
         if stage == "facets" {
             let shard = |helper: &mut Session| helper.run_shard(stage, "planes", 0, 1, &silent);
             assert!(shard(helper).unwrap().is_empty(), "nothing is known yet");
-            for earlier in ["rectangles", "segments", "lines", "halfplanes", "dense"] {
+            let earlier = [
+                "rectangles",
+                "segments",
+                "lines",
+                "coplanar",
+                "halfplanes",
+                "dense",
+            ];
+            for earlier in earlier {
                 let found = first.hand_over(earlier).unwrap();
                 helper.take_over(earlier, found).unwrap();
             }

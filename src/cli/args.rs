@@ -135,6 +135,8 @@ pub(super) enum MethodArgument {
     Rectangles,
     /// Both: their lines and planes compete for one model. Regions take most of its time.
     Combined,
+    /// Sets of coplanar lines and their polygons (Baillard et al. 1999, section 2).
+    Coplanar,
 }
 
 impl From<MethodArgument> for ridgeline::params::Method {
@@ -143,6 +145,7 @@ impl From<MethodArgument> for ridgeline::params::Method {
             MethodArgument::Lines => Self::Lines,
             MethodArgument::Rectangles => Self::Rectangles,
             MethodArgument::Combined => Self::Combined,
+            MethodArgument::Coplanar => Self::Coplanar,
         }
     }
 }

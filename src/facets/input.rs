@@ -18,4 +18,7 @@ pub struct FacetInput<'a> {
     pub ground: &'a Ground,
     /// Planes that other sources propose.
     pub proposals: &'a [ProposedPlane],
+    /// Are half-planes and pairs of lines grouped beside them? Not where sets of coplanar lines
+    /// are all that there is.
+    pub line_pairs: bool,
 }

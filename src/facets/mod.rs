@@ -28,6 +28,7 @@ mod islands;
 mod reconstruct;
 mod verification;
 
+pub(crate) use borders::ON_LINE;
 pub use borders::{Border, BorderKind};
 pub use input::FacetInput;
 pub use reconstruct::{FacetTrace, reconstruct_facets};

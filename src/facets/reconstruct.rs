@@ -64,6 +64,7 @@ pub fn reconstruct_facets(
         half_planes,
         ground,
         proposals,
+        line_pairs,
     } = *evidence;
     let neighbours = line_neighbours(lines);
     let input = GroupingInput {
@@ -72,7 +73,10 @@ pub fn reconstruct_facets(
         neighbours: &neighbours,
         proposals,
     };
-    let mut groups: Vec<PlaneGroup> = group_planes(&input, params);
+    let mut groups: Vec<PlaneGroup> = match line_pairs {
+        true => group_planes(&input, params),
+        false => Vec::new(),
+    };
     groups.retain(|g| !is_wall(&g.plane) && !lies_on_ground(&input, g, ground, params));
     let half_planes = with_propagated(&input, &groups, ground, params);
     let input = GroupingInput {
@@ -378,6 +382,7 @@ mod tests {
             half_planes: &[],
             ground: &Ground::level(0.0),
             proposals,
+            line_pairs: true,
         };
         reconstruct_facets(&scene, &evidence, &RoofParams::default())
             .unwrap()

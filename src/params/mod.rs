@@ -4,6 +4,7 @@
 
 mod adjustment;
 mod buildings;
+mod coplanar;
 mod dense;
 mod lines;
 mod objectspace;
@@ -11,6 +12,7 @@ mod planes;
 
 pub use self::adjustment::*;
 pub use self::buildings::*;
+pub use self::coplanar::*;
 pub use self::dense::*;
 pub use self::lines::*;
 pub use self::objectspace::*;
@@ -33,6 +35,8 @@ pub struct Params {
     pub adjustment: AdjustmentParams,
     /// 3D lines.
     pub lines3d: Lines3dParams,
+    /// Coplanar grouping.
+    pub coplanar: CoplanarParams,
     /// Half-plane sweep.
     pub sweep: SweepParams,
     /// Dense matching.
@@ -57,6 +61,8 @@ pub enum Method {
     Rectangles,
     /// Lines and planes of both compete for one model.
     Combined,
+    /// Sets of coplanar lines and their polygons (B99 2: Leuven).
+    Coplanar,
 }
 
 impl Params {
@@ -70,12 +76,21 @@ impl Params {
 }
 
 impl Method {
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::Lines,
+        Self::Rectangles,
+        Self::Combined,
+        Self::Coplanar,
+    ];
+
     /// The name in files, on the command line and on the page.
     pub fn name(self) -> &'static str {
         match self {
             Self::Lines => "lines",
             Self::Rectangles => "rectangles",
             Self::Combined => "combined",
+            Self::Coplanar => "coplanar",
         }
     }
 }

@@ -2,8 +2,8 @@
 //! tests all run a reconstruction through [`Run`].
 //!
 //! ```text
-//! B99:  segments -> matches -> adjustment -> lines -> halfplanes -> facets -> model
-//!                      ^           |
+//! B99:  segments -> matches -> adjustment -> lines -> coplanar -> halfplanes -> dense -> facets
+//!                      ^           |                                          -> model
 //!                      +-----------+ where views moved
 //! W96:  regions -> directions -> clusters -> rectangles -> model
 //! both: segments to adjustment, those of W96, then the others of B99, which take in its lines and
@@ -267,7 +267,7 @@ impl Run {
         let r = &self.results;
         let (model, textured) = (r.roof_model()?, &r.model.as_ref()?.value);
         Some(match self.params.method {
-            Method::Lines | Method::Combined => Outputs {
+            Method::Lines | Method::Combined | Method::Coplanar => Outputs {
                 segments: Cow::Borrowed(&r.segments.as_ref()?.value),
                 lines: Cow::Owned(r.all_lines()?),
                 half_planes: &r.half_planes.as_ref()?.value,
@@ -363,7 +363,7 @@ mod tests {
     #[test]
     fn stages_need_what_runs_before_them() {
         for stage in Stage::ALL {
-            for method in [Method::Lines, Method::Rectangles, Method::Combined] {
+            for method in Method::ALL {
                 assert!(stage.needs(method).all(|needed| needed < *stage));
             }
             assert_eq!(Stage::from_name(stage.name()), Some(*stage));

@@ -26,7 +26,7 @@ mod sweep;
 #[cfg(test)]
 pub(crate) use grouping::region_beside;
 pub(crate) use grouping::{
-    GroupingInput, MARGIN, PlanRegion, add_proposals, group_planes, group_propagated,
+    GroupingInput, MARGIN, PlanRegion, add_proposals, convex_hull, group_planes, group_propagated,
     line_neighbours, with_propagated,
 };
 pub use grouping::{Member, PlaneGroup, ProposedPlane};

@@ -9,6 +9,7 @@ use super::arrays::{end_points_px, line_array, segment_array};
 use super::convert::{named_error, to_js};
 use super::figures::{Picture, lines_of, segments_of};
 use super::session::{Session, not_loaded};
+use crate::coplanar::{CoplanarSet, CoplanarTrace};
 use crate::dense::{DensePlane, DenseTrace};
 use crate::lines3d::SupportKind;
 use crate::objectspace::{Window, WindowTrace};
@@ -19,6 +20,13 @@ use crate::texture::texture_ground;
 struct Directions<'a> {
     windows: &'a [Window],
     trace: &'a WindowTrace,
+}
+
+/// What `coplanar` returns.
+#[derive(Serialize, tsify::Tsify)]
+struct CoplanarSets<'a> {
+    sets: &'a [CoplanarSet],
+    trace: &'a CoplanarTrace,
 }
 
 /// What `dense` returns.
@@ -95,6 +103,16 @@ impl Session {
     pub fn half_planes(&self) -> Result<JsValue, JsValue> {
         let found = self.loaded()?.results().half_planes.as_ref();
         to_js(&found.map_or(&[][..], |h| &h.value))
+    }
+
+    /// The sets of coplanar lines with their polygons, `{sets, trace}`; `null` before that stage.
+    #[wasm_bindgen(unchecked_return_type = "CoplanarSets | null")]
+    pub fn coplanar(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().coplanar.as_ref();
+        to_js(&found.map(|c| CoplanarSets {
+            sets: &c.value,
+            trace: &c.trace,
+        }))
     }
 
     /// The planes of dense matching, with all patches and what speaks for the class of each plane,

@@ -138,7 +138,7 @@ fn middle(heights: [f64; 2]) -> f64 {
 /// that angle.
 const SAME_COSINE: f64 = 0.994_521_895_368_273_3;
 /// Share of the cost of a border on a reconstructed line in one of its planes, ...
-const ON_LINE: f64 = 0.1;
+pub(crate) const ON_LINE: f64 = 0.1;
 /// ... and where two planes meet without one. Measured: 0.1 breaks roofs into more pieces.
 const CREASE: f64 = 0.3;
 /// Sine of the least slope that has a top (6 degrees).

@@ -259,13 +259,18 @@ fn closing_lines(
     found
 }
 
-/// The sides of the rectangles, which are where crossing image lines end the plane, and of those
-/// planes of dense matching that have no line.
+/// The sides of the rectangles, which are where crossing image lines end the plane, of coplanar
+/// lines without a half-plane, and of those planes of dense matching that have no line.
 fn proposed_sides(input: &GroupingInput, hypotheses: &[PlaneHypothesis]) -> Vec<Border> {
     let proposed = hypotheses.iter().flat_map(|h| {
         let has_lines = !h.group.members.is_empty();
+        let is_swept = !h.group.half_planes().is_empty();
         let proposed = h.group.proposed(input);
-        proposed.filter(move |p| !has_lines || matches!(p.origin, ProposalOrigin::Rectangle(_)))
+        proposed.filter(move |p| match p.origin {
+            ProposalOrigin::Rectangle(_) => true,
+            ProposalOrigin::CoplanarSet(_) => !is_swept,
+            ProposalOrigin::DensePlane(_) => !has_lines,
+        })
     });
     let sides = proposed.flat_map(|r| {
         r.sides().map(|[a, b]| Border {

@@ -2,13 +2,13 @@
 //! contradict.
 
 use super::{Findings, Outcome, Results, Stage, StageDefinition};
-use super::{required, warn_if};
+use super::{is_any, required, warn_if};
 use crate::buildings::{RoofTrace, reconstruct_roofs, verify_lines};
 use crate::execution::Sharded;
 use crate::facets::FacetInput;
 use crate::model::RoofModel;
 use crate::objectspace::proposed_planes;
-use crate::params::Params;
+use crate::params::{Method, Params};
 use crate::planes::ProposedPlane;
 use crate::scene::Scene;
 
@@ -27,6 +27,7 @@ impl StageDefinition for Facets {
     const NEEDS: &'static [Stage] = &[
         Stage::Segments,
         Stage::Lines,
+        Stage::Coplanar,
         Stage::HalfPlanes,
         Stage::Rectangles,
         Stage::Dense,
@@ -37,15 +38,20 @@ impl StageDefinition for Facets {
         let half_planes = required(&before.half_planes);
         let rectangles = before.rectangles.as_ref();
         let rectangles = rectangles.map_or_else(Vec::new, |found| proposed_planes(&found.trace));
-        let dense = required(&before.dense).value.iter().enumerate();
-        let dense = dense.map(|(i, plane)| plane.proposed(i));
-        let proposals: Vec<ProposedPlane> = rectangles.into_iter().chain(dense).collect();
+        let dense = before.dense.iter().flat_map(|found| &found.value);
+        let dense = dense.enumerate().map(|(i, plane)| plane.proposed(i));
+        let sets = required(&before.coplanar).value.iter().enumerate();
+        let verified = sets.filter(|(_, set)| set.is_verified());
+        let coplanar = verified.map(|(i, set)| set.proposed(i));
+        let proposals: Vec<ProposedPlane> =
+            (rectangles.into_iter().chain(coplanar).chain(dense)).collect();
         let evidence = FacetInput {
             segments: &required(&before.segments).value,
             lines: &required(&before.lines).value,
             half_planes: &half_planes.value,
             ground: &half_planes.ground,
             proposals: &proposals,
+            line_pairs: params.method != Method::Coplanar,
         };
         let (model, mut trace) = reconstruct_roofs(scene, &evidence, &params.roof)?;
         trace.lines = verify_lines(scene, evidence.lines, &model, evidence.ground, params);
@@ -56,14 +62,15 @@ impl StageDefinition for Facets {
         let facets = &found.value.facets;
         let none = "no roof facet was found: the model is empty";
         let half_planes = before.half_planes.as_ref();
-        let has_half_planes = half_planes.is_some_and(|found| !found.value.is_empty());
+        let has_planes =
+            half_planes.is_some_and(|found| !found.value.is_empty()) || is_any(&before.coplanar);
         Findings {
             counts: vec![
                 ("facets", facets.len()),
                 ("buildings", found.value.buildings.len()),
                 ("contradicted lines", found.trace.lines.contradicted.len()),
             ],
-            warnings: warn_if(facets.is_empty() && has_half_planes, none),
+            warnings: warn_if(facets.is_empty() && has_planes, none),
         }
     }
 }

@@ -3,7 +3,8 @@
 use super::{Findings, Results, Stage, StageDefinition};
 use super::{from_bytes, is_any, required, to_bytes, warn_if};
 use crate::execution::Sharded;
-use crate::params::Params;
+use crate::ids::LineId;
+use crate::params::{Method, Params};
 use crate::planes::{HalfPlane, SweepTrace, sweep_half_planes};
 use crate::scene::Scene;
 use crate::terrain::Ground;
@@ -28,13 +29,23 @@ impl StageDefinition for HalfPlanes {
     const TITLE: &'static str = "Half-planes";
     const SECTION: &'static str = "B99 4.1";
     const READS: &'static [&'static str] = &["sweep"];
-    const NEEDS: &'static [Stage] = &[Stage::Lines];
+    const NEEDS: &'static [Stage] = &[Stage::Lines, Stage::Coplanar];
     const SHARD_MAPS: &'static [&'static str] = &["ground", "sides"];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let lines = &required(&before.lines).value;
         let ground = Ground::estimate(scene, lines)?;
-        let (value, trace) = sweep_half_planes(scene, lines, &ground, &params.sweep)?;
+        // Of coplanar lines alone none is swept.
+        let swept = match params.method {
+            Method::Coplanar => &[],
+            _ => &lines[..],
+        };
+        let sets = &required(&before.coplanar).value;
+        let explained = |id: LineId, side| {
+            let line = &lines[id.index()];
+            sets.iter().any(|set| set.explains(id, line, side))
+        };
+        let (value, trace) = sweep_half_planes(scene, swept, &ground, &explained, &params.sweep)?;
         Ok(Found {
             value,
             ground,
@@ -43,6 +54,7 @@ impl StageDefinition for HalfPlanes {
     }
 
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
+        let was_swept = !found.trace.sides.is_empty();
         let correlations = usize::try_from(found.trace.correlations).unwrap_or(usize::MAX);
         let none = "no half-plane was accepted; the surfaces may have too little texture: try a \
                     lower sweep.min_similarity";
@@ -52,7 +64,7 @@ impl StageDefinition for HalfPlanes {
                 ("half-planes", found.value.len()),
                 ("correlations", correlations),
             ],
-            warnings: warn_if(is_empty && is_any(&before.lines), none),
+            warnings: warn_if(is_empty && was_swept && is_any(&before.lines), none),
         }
     }
 

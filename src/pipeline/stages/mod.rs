@@ -12,6 +12,7 @@
 
 mod adjustment;
 mod clusters;
+mod coplanar;
 mod dense;
 mod directions;
 mod facets;
@@ -90,8 +91,9 @@ macro_rules! stage_table {
     };
 }
 const RECTANGLES: &[Method] = &[Method::Rectangles, Method::Combined];
-const LINES: &[Method] = &[Method::Lines, Method::Combined];
-const ALL: &[Method] = &[Method::Lines, Method::Rectangles, Method::Combined];
+const DENSE: &[Method] = &[Method::Lines, Method::Combined];
+const LINES: &[Method] = &[Method::Lines, Method::Combined, Method::Coplanar];
+const ALL: &[Method] = &Method::ALL;
 
 // The order of the stages, the file of each, and the methods that it belongs to.
 stage_table! {
@@ -111,10 +113,12 @@ stage_table! {
     Rectangles in rectangles: RECTANGLES,
     /// 3D lines (B99 3.2).
     Lines in lines: LINES,
+    /// Coplanar lines and their polygons (B99 2, 5).
+    Coplanar in coplanar: LINES,
     /// The ground, and half-planes at the 3D lines (B99 4.1).
     HalfPlanes in half_planes: LINES,
     /// Planes from dense matching (B99 2).
-    Dense in dense: LINES,
+    Dense in dense: DENSE,
     /// Roof facets and the closed buildings below them (B99 4.2, 4.3).
     Facets in facets: LINES,
     /// The textured model.

@@ -142,15 +142,21 @@ impl PlanRegion {
     }
 }
 
-/// The corners of the convex hull, in order; none of points that cannot be triangulated.
-fn convex_hull(points: impl Iterator<Item = Point2<f64>>) -> Vec<Point2<f64>> {
+/// The corners of the convex hull, counter-clockwise; none of points that cannot be triangulated.
+pub(crate) fn convex_hull(points: impl Iterator<Item = Point2<f64>>) -> Vec<Point2<f64>> {
     let mut triangles = ConstrainedDelaunayTriangulation::<spade::Point2<f64>>::new();
     let inserted = points.map(|p| triangles.insert(spade::Point2::new(p.x, p.y)));
     if inserted.filter(Result::is_err).count() > 0 {
         return Vec::new();
     }
     let corners = triangles.convex_hull().map(|edge| edge.from().position());
-    corners.map(|p| Point2::new(p.x, p.y)).collect()
+    let mut ring: Vec<Point2<f64>> = corners.map(|p| Point2::new(p.x, p.y)).collect();
+    let next = ring.iter().cycle().skip(1);
+    let twice = |(a, b): (&Point2<f64>, &Point2<f64>)| (a - ring[0]).perp(&(b - ring[0]));
+    if ring.iter().zip(next).map(twice).sum::<f64>() < 0.0 {
+        ring.reverse();
+    }
+    ring
 }
 
 /// Does a convex ring, in either order, hold a point?

@@ -46,6 +46,7 @@ export const METHOD_COLOURS = {
   lines: CATEGORIES[0],
   rectangles: CATEGORIES[1],
   combined: CATEGORIES[2],
+  coplanar: CATEGORIES[3],
 } as const;
 
 /** What a surface of dense matching is; told apart without red and green, and from the grey of what is in no plane. */

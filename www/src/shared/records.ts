@@ -7,9 +7,9 @@ import type { Facet, PlaneGroup, SideRecord } from "../pkg/ridgeline.js";
 
 export type * from "../pkg/ridgeline.js";
 
-/** Was the side swept, and given up? Lines on the ground are not swept. */
+/** Was the side swept, and given up? Lines on the ground are not swept, nor what coplanar lines explain. */
 export function isRejected({ rejection }: SideRecord): boolean {
-  return rejection !== null && rejection !== "on_ground";
+  return rejection !== null && rejection !== "on_ground" && rejection !== "explained";
 }
 
 /** What else may propose planes, of which a result knows nothing where an older core found it. */
@@ -25,6 +25,11 @@ export function densePlanesOf({ proposals = [] }: Proposed): number[] {
   return proposals.flatMap((one) => ("dense_plane" in one ? [one.dense_plane] : []));
 }
 
+/** Sets of coplanar lines that proposed a plane. */
+export function coplanarSetsOf({ proposals = [] }: Proposed): number[] {
+  return proposals.flatMap((one) => ("coplanar_set" in one ? [one.coplanar_set] : []));
+}
+
 /** Whether a facet was made from a group: they share a half-plane or a proposal. */
 export function isMadeFrom(
   { half_planes = [], ...facet }: Pick<Facet, "half_planes" | "proposals">,
@@ -34,6 +39,7 @@ export function isMadeFrom(
   return (
     members.some(({ half_plane }) => half_plane !== null && half_planes.includes(half_plane)) ||
     shares(rectanglesOf) ||
-    shares(densePlanesOf)
+    shares(densePlanesOf) ||
+    shares(coplanarSetsOf)
   );
 }

@@ -11,6 +11,8 @@ export type Selection =
   | { kind: "halfplane"; index: number }
   /** A plane of dense matching. */
   | { kind: "dense"; index: number }
+  /** A set of coplanar lines. */
+  | { kind: "coplanar"; index: number }
   | { kind: "group"; index: number }
   | { kind: "facet"; index: number }
   /** A facet that was rejected. */

@@ -8,7 +8,7 @@ onePage(
   async (opened) => {
     page = opened;
     await page.getByRole("button", { name: "Tour", exact: true }).click();
-    await expect(lesson()).toContainText("Step 1 of 10");
+    await expect(lesson()).toContainText("Step 1 of 11");
     await waitForStage(page, "model");
   },
   async () => {
@@ -31,7 +31,7 @@ async function isAsked(step: number, tab: string): Promise<void> {
   if (step > 1) {
     await lesson().getByRole("button", { name: "Next" }).click();
   }
-  await expect(lesson()).toContainText(`Step ${step} of 10`);
+  await expect(lesson()).toContainText(`Step ${step} of 11`);
   await expect(page.getByRole("tab", { name: tab, exact: true })).toHaveAttribute("aria-selected", "true", {
     timeout: 120_000,
   });
@@ -214,8 +214,26 @@ test("9: model and photograph over each other", async () => {
   await expect(page.getByTestId("photograph")).toHaveCSS("opacity", "0.5");
 });
 
-test("10: a line of the other method, which the inspector does not call matched", async () => {
-  await isAsked(10, "Clusters");
+test("10: a polygon of a facet, with a side that no line made, and no other", async () => {
+  await isAsked(10, "Coplanar sets");
+  const next = page.getByRole("button", { name: "Next item" });
+  const sides = inspector().locator("div", { hasText: /^Sides without a line/ });
+  for (let i = 0; i < 60 && !(await isAnswered()); i += 1) {
+    await next.click();
+    await expect(picked()).toHaveText(`Coplanar set ${i}`);
+    const facets = inspector()
+      .locator("div", { hasText: /^Facets/ })
+      .last()
+      .getByRole("button");
+    const isRight = (await sides.count()) > 0 && (await facets.count()) > 0;
+    await expect(answer()).toHaveCount(isRight ? 1 : 0);
+  }
+  await expect(answer()).toBeVisible();
+  await expect(page.getByTestId("coplanar-plan").locator(".chosen-ring")).toHaveCount(1);
+});
+
+test("11: a line of the other method, which the inspector does not call matched", async () => {
+  await isAsked(11, "Clusters");
   await page.locator(".cluster").first().click({ force: true });
   await expect(picked()).toHaveText(/^3D line \d+$/);
   await expect(answer()).toBeVisible();

@@ -8,6 +8,7 @@ import { stagesOf } from "../../src/app/session/stageCatalogue";
 import type { GroundTexture, WarpedPicture } from "../../src/shared/calls";
 import type { ParamTree } from "../../src/shared/paramTree";
 import type {
+  CoplanarSets,
   Correspondence,
   DensePlane,
   DensePlanes,
@@ -140,6 +141,7 @@ export class Session implements CoreSession {
       adjustment: { enabled: true },
       lines3d: {},
       sweep: { max_theta_deg: 75, min_similarity: 0.4, min_curvature: 4, min_amplitude: 0.2 },
+      coplanar: { enabled: false },
       dense: { enabled: true },
       roof: {},
       texture: { max_atlas_px: 4096 },
@@ -231,6 +233,10 @@ export class Session implements CoreSession {
 
   halfPlanes(): HalfPlane[] {
     return HALF_PLANES;
+  }
+
+  coplanar(): CoplanarSets {
+    return { sets: [], trace: { sets: [] } };
   }
 
   dense(): DensePlanes {

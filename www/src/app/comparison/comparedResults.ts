@@ -14,6 +14,7 @@ const METHOD_TITLES: Record<Method, string> = {
   lines: "Lines",
   rectangles: "Rectangles",
   combined: "Combined",
+  coplanar: "Coplanar",
 };
 
 /** What the present facets were found with, or the next ones will be. */

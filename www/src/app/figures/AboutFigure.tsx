@@ -209,6 +209,41 @@ const FIGURES: Record<Tab, Figure> = {
     ),
     hint: "Pick a line or a fan, then drag θ: the windows below are alike only at the right angle.",
   },
+  coplanar: {
+    title: "Coplanar sets",
+    source: "B99 2 (Leuven; Moons et al. 1998), 5",
+    text: "Lines in one plane are a face of the roof before anything is compared on it. Neighbouring lines are grouped where their ends, as uncertain as they are, more likely lie in one plane than not; the convex hull of the ends is the first polygon. A side without a line may be square to its neighbours or mirror the one across: such a relation c, measured with a variance s², is likelier true than not where its nats are positive; w is the range that c could have, P the share of true roofs on which it holds. Then the image edges of all views move plane and corners until the reprojection error is least, and the views verify what is inside.",
+    equation: (
+      <mrow>
+        <mo>ln</mo>
+        <Open />
+        <mi>w</mi>
+        <mi>φ</mi>
+        <Open />
+        <mi>c</mi>
+        <mo>;</mo>
+        <msup>
+          <mi>s</mi>
+          <mn>2</mn>
+        </msup>
+        <Close />
+        <Close />
+        <mo>+</mo>
+        <mo>ln</mo>
+        <mfrac>
+          <mi>P</mi>
+          <mrow>
+            <mn>1</mn>
+            <mo>−</mo>
+            <mi>P</mi>
+          </mrow>
+        </mfrac>
+        <mo>&gt;</mo>
+        <mn>0</mn>
+      </mrow>
+    ),
+    hint: "Pick a polygon: its hull, its lines and its place in every photograph appear, and the inspector weighs each relation.",
+  },
   dense: {
     title: "Dense planes",
     source: "B99 2 (ENST); Barnes et al. 2009; Bleyer et al. 2011; Isack and Boykov 2012",

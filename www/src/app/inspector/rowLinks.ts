@@ -34,6 +34,7 @@ export const linkToHalfPlane = linkTo("halfplane");
 export const linkToFacet = linkTo("facet");
 export const linkToRefinement = linkTo("refinement");
 export const linkToDense = linkTo("dense");
+export const linkToCoplanar = linkTo("coplanar");
 export const linkToGroup = linkTo("group");
 
-type IndexedKind = "line" | "halfplane" | "facet" | "refinement" | "dense" | "group";
+type IndexedKind = "line" | "halfplane" | "facet" | "refinement" | "dense" | "coplanar" | "group";

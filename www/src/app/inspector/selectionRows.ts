@@ -2,6 +2,7 @@
 
 import { LINE_STRIDE, SEGMENT_STRIDE } from "../../shared/flatArrays";
 import {
+  coplanarSetsOf,
   densePlanesOf,
   type Facet,
   isMadeFrom,
@@ -24,12 +25,14 @@ import { params } from "../state/parameters";
 import { results } from "../state/results";
 import { scene } from "../state/scene";
 import { selectionDetail } from "../state/selectionDetail";
+import { coplanarSetRows } from "./coplanarSetRows";
 import { densePlaneRows } from "./densePlaneRows";
 import { evidenceOfLine, probabilityRow } from "./evidenceRows";
 import { refinedRow, refinementRows, relationRows } from "./refinementRows";
 import { rejectedClusterRows, rejectedFacetRows, rejectedSegmentRows } from "./rejectedRows";
 import {
   indicesOf,
+  linkToCoplanar,
   linkToDense,
   linkToFacet,
   linkToGroup,
@@ -51,6 +54,8 @@ export function titleOf(picked: Selection): string {
       return `3D line ${picked.line}, ${picked.side} side`;
     case "dense":
       return `Dense plane ${picked.index}`;
+    case "coplanar":
+      return `Coplanar set ${picked.index}`;
     case "group":
       return `Group ${picked.index}`;
     case "region":
@@ -88,6 +93,8 @@ export function rowsOf(picked: Selection): Row[] {
       return sideRows(picked.line, picked.side);
     case "dense":
       return densePlaneRows(picked.index);
+    case "coplanar":
+      return coplanarSetRows(picked.index);
     case "group":
       return groupRows(picked.index);
     case "region":
@@ -172,11 +179,13 @@ function groupRows(index: number): Row[] {
   ];
 }
 
-/** The planes of dense matching that proposed this one, and how many candidates of the other method. */
+/** The planes of dense matching and the coplanar sets that proposed this one, and how many candidates of the other method. */
 function proposalRows(proposed: Pick<PlaneGroup, "proposals">): Row[] {
   const [dense, rectangles] = [densePlanesOf(proposed), rectanglesOf(proposed).length];
+  const sets = coplanarSetsOf(proposed);
   return [
     ...(dense.length === 0 ? [] : [["Dense planes", dense.map(linkToDense)] as const]),
+    ...(sets.length === 0 ? [] : [["Coplanar sets", sets.map(linkToCoplanar)] as const]),
     ...(rectangles === 0 ? [] : [["Rectangles", `${rectangles} in its plane (W96 3.6)`] as const]),
   ];
 }

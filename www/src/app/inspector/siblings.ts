@@ -27,6 +27,8 @@ export function siblingsOf(picked: Selection | null): readonly Selection[] {
       return itemsOfTab("halfplanes");
     case "dense":
       return itemsOfTab("dense");
+    case "coplanar":
+      return itemsOfTab("coplanar");
     case "group":
       return itemsOfTab("groups");
     case "facet":
@@ -59,7 +61,7 @@ export function placeAmong(items: readonly Selection[], picked: Selection | null
 }
 
 function itemsOfTab(name: Tab): readonly Selection[] {
-  const { lines, dense, grouping, facets, refinement, rectangles } = results.value;
+  const { lines, coplanar, dense, grouping, facets, refinement, rectangles } = results.value;
   const view = Math.max(0, shownView.value);
   switch (name) {
     case "images":
@@ -77,6 +79,8 @@ function itemsOfTab(name: Tab): readonly Selection[] {
       return sides();
     case "dense":
       return numbered(dense?.planes.length, (index) => ({ kind: "dense", index }));
+    case "coplanar":
+      return numbered(coplanar?.sets.length, (index) => ({ kind: "coplanar", index }));
     case "groups":
       return numbered(grouping?.groups.length, (index) => ({ kind: "group", index }));
     case "refinement":

@@ -16,6 +16,11 @@ const ENTRIES: Partial<Record<Tab, readonly Entry[]>> = {
     ["merged", "merged"],
     ["grown", "grown"],
   ],
+  coplanar: [
+    ["grown", "dashed: hull of the lines"],
+    ["set", "polygon; one colour a set"],
+    ["unmatched", "thin: not verified"],
+  ],
   groups: [
     ["bar", "line found in a plane"],
     ["unmatched", "thin: no facet"],

@@ -26,6 +26,8 @@ export function shapesOf(picked: Selection | null): Shape[] {
     }
     case "dense":
       return areas([densePlaneRing(picked.index)]);
+    case "coplanar":
+      return coplanarShape(picked.index);
     case "group":
       return groupShape(picked.index);
     case "facet":
@@ -66,7 +68,7 @@ export function lineEnds(index: number): Vec3[] {
 
 /** The 3D lines that belong to a selection. */
 export function linesOfSelection(picked: Selection | null): readonly number[] {
-  const { halfPlanes, facets, rectangles, matching } = results.peek();
+  const { halfPlanes, coplanar, facets, rectangles, matching } = results.peek();
   switch (picked?.kind) {
     case "line":
       return [picked.index];
@@ -74,6 +76,8 @@ export function linesOfSelection(picked: Selection | null): readonly number[] {
       return [picked.line];
     case "halfplane":
       return [halfPlanes?.[picked.index]?.line ?? -1].filter((line) => line >= 0);
+    case "coplanar":
+      return coplanar?.sets[picked.index]?.lines ?? [];
     case "group":
       return groupLines(picked.index);
     case "facet":
@@ -110,6 +114,12 @@ function groupShape(index: number): Shape[] {
   const lines = linesShape(groupLines(index));
   const group = results.value.grouping?.groups[index];
   return lines.length > 0 || group === undefined ? lines : areas(densePlanesOf(group).map(densePlaneRing));
+}
+
+/** A set's polygon, over the hull that it was made from. */
+function coplanarShape(index: number): Shape[] {
+  const set = results.value.coplanar?.sets[index];
+  return set === undefined ? [] : [{ points: set.hull, role: "before" }, ...areas([set.polygon])];
 }
 
 function densePlaneRing(index: number): readonly Vec3[] {

@@ -37,6 +37,7 @@ const FETCHED: Record<StageName, () => Promise<Partial<Results>>> = {
     halfPlanes: await engine.call("halfPlanes"),
     sides: await engine.call("sides"),
   }),
+  coplanar: async () => ({ coplanar: await engine.call("coplanar") }),
   dense: async () => ({ dense: await engine.call("dense") }),
   facets: async () => ({
     facets: await engine.call("facets"),

@@ -124,6 +124,7 @@ export function parseSelection(text: string | null): Selection | null {
     case "line":
     case "halfplane":
     case "dense":
+    case "coplanar":
     case "group":
     case "refinement":
     case "facet":

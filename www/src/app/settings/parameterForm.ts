@@ -35,6 +35,7 @@ const TITLES: Record<string, string> = {
   matching: "Matching",
   adjustment: "Adjustment of the views",
   lines3d: "3D lines",
+  coplanar: "Coplanar sets",
   sweep: "Half-plane sweep",
   dense: "Dense planes",
   roof: "Grouping and facets",
@@ -54,7 +55,8 @@ const CHOICES: Record<string, readonly string[]> = {
 
 /** The groups that a method reads; "combined" reads all. */
 const GROUPS_OF_METHOD: Record<string, readonly string[]> = {
-  lines: ["segments", "matching", "adjustment", "lines3d", "sweep", "dense", "roof", "texture"],
+  lines: ["segments", "matching", "adjustment", "lines3d", "coplanar", "sweep", "dense", "roof", "texture"],
+  coplanar: ["segments", "matching", "adjustment", "lines3d", "roof", "texture"],
   rectangles: ["objectspace", "texture"],
 };
 

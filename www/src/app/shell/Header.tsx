@@ -21,6 +21,7 @@ const METHODS: readonly (readonly [Method, string, string])[] = [
     "Combined",
     "The lines and planes of both compete for one model; regions take most of its time",
   ],
+  ["coplanar", "Coplanar", "Sets of coplanar lines and their polygons (Baillard et al. 1999, section 2)"],
 ];
 
 export function Header() {

@@ -24,6 +24,7 @@ const METHOD_TITLES: Record<Method, string> = {
   lines: "Lines (B99)",
   rectangles: "Rectangles (W96)",
   combined: "Both",
+  coplanar: "Coplanar lines (B99 2)",
 };
 
 /** The method that proposed a facet's plane; where both ran, both may have. */
@@ -63,7 +64,7 @@ export function ModeSwitches() {
 const made = computed(() => {
   const methods = (mainResults.value.facets ?? []).map((facet) => methodOfFacet(facet, method.value));
   const names = (Object.keys(METHOD_TITLES) as Method[]).filter(
-    (name) => name !== "combined" || method.value === name,
+    (name) => (name !== "combined" && name !== "coplanar") || method.value === name,
   );
   return names.map((name) => [name, methods.filter((one) => one === name).length] as const);
 });

@@ -5,10 +5,10 @@ import { useEffect, useRef } from "preact/hooks";
 import { Box3, Vector3 } from "three";
 import { THEME_COLOURS } from "../../shared/palette";
 import type { Vec3 } from "../../shared/records";
-import { GRID_STEP_M } from "../../viewer/layers/grid";
 import { warmupLayers } from "../../viewer/layers/shaderWarmup";
 import { enlargement } from "../../viewer/layers/uncertainty";
 import { cornersOf, cornersOfFacets, endsOfLines, withCameras } from "../../viewer/scene/bounds";
+import { GRID_STEP_M } from "../../viewer/scene/grid";
 import { Viewer } from "../../viewer/viewer";
 import { presentTitle } from "../comparison/comparedResults";
 import { Legend } from "../parts/Legend";
@@ -40,6 +40,7 @@ const LAYER_TITLES: Record<LayerName, string> = {
   lines: "3D lines",
   uncertainty: "Uncertainty",
   fans: "Half-planes",
+  coplanar: "Coplanar sets",
   dense: "Dense planes",
   groups: "Groups",
   facets: "Facets",
@@ -49,7 +50,7 @@ const LAYER_TITLES: Record<LayerName, string> = {
 };
 
 /** Layers that method "rectangles" does not fill. */
-const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "dense", "groups"];
+const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "coplanar", "dense", "groups"];
 
 /** The viewer while it exists; the effects below wait for it. */
 const viewer = signal<Viewer | null>(null);
@@ -274,12 +275,14 @@ function pointsNow(): Vector3[] {
 }
 
 function layerIsEmpty(name: Tab): boolean {
-  const { halfPlanes, dense, grouping, facets } = results.value;
+  const { halfPlanes, coplanar, dense, grouping, facets } = results.value;
   switch (name) {
     case "lines":
       return lines.value === null;
     case "halfplanes":
       return halfPlanes === null;
+    case "coplanar":
+      return coplanar === null;
     case "dense":
       return dense === null;
     case "groups":

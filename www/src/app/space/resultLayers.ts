@@ -4,6 +4,7 @@ import { Vector3 } from "three";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import type { Facet, FacetTrace, Vec3 } from "../../shared/records";
 import { buildCameras } from "../../viewer/layers/cameras";
+import { buildCoplanar } from "../../viewer/layers/coplanar";
 import { buildDense } from "../../viewer/layers/dense";
 import { buildFacets } from "../../viewer/layers/facets";
 import { buildFans, buildTurning } from "../../viewer/layers/fans";
@@ -32,6 +33,7 @@ export const LAYERS = [
   "lines",
   "uncertainty",
   "fans",
+  "coplanar",
   "dense",
   "groups",
   "facets",
@@ -48,6 +50,7 @@ const chosen = signal<Record<Tab, readonly LayerName[]>>({
   matches: [],
   lines: ["lines"],
   halfplanes: ["lines", "fans"],
+  coplanar: ["coplanar"],
   dense: ["dense"],
   groups: ["groups"],
   facets: ["facets"],
@@ -89,6 +92,10 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
     const { lines, halfPlanes, sides } = results.value;
     const has = lines !== null && halfPlanes !== null;
     return has ? [() => buildFans(halfPlanes, lines, sides), halfPlanes, lines] : null;
+  },
+  coplanar: () => {
+    const { lines, coplanar } = results.value;
+    return lines && coplanar && [() => buildCoplanar(coplanar, lines), coplanar, lines];
   },
   dense: () => {
     const { dense } = results.value;

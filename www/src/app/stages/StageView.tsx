@@ -3,6 +3,7 @@ import "./stages.css";
 import type { ComponentType } from "preact";
 import { useRef } from "preact/hooks";
 import { ClusterLab } from "../figures/ClusterLab";
+import { CoplanarLab } from "../figures/CoplanarLab";
 import { DenseLab } from "../figures/DenseLab";
 import { DirectionLab } from "../figures/DirectionLab";
 import { FacetLab } from "../figures/FacetPlan";
@@ -26,6 +27,7 @@ const TITLES: Record<Tab, string> = {
   matches: "Matches",
   lines: "3D lines",
   halfplanes: "Half-planes",
+  coplanar: "Coplanar sets",
   dense: "Dense planes",
   groups: "Groups",
   facets: "Facets",
@@ -45,6 +47,7 @@ const LABS: Partial<Record<Tab, ComponentType>> = {
   matches: PointLab,
   lines: LineLab,
   halfplanes: SimLab,
+  coplanar: CoplanarLab,
   dense: DenseLab,
   groups: GroupLab,
   facets: FacetLab,

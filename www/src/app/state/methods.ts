@@ -18,6 +18,8 @@ export const TABS: Readonly<Record<Method, readonly Tab[]>> = {
   lines: ["images", ...tabsOf("lines")],
   rectangles: ["images", ...tabsOf("rectangles")],
   combined: ["images", ...tabsOf("combined")],
+  // It sweeps no half-plane; of that stage it has the ground.
+  coplanar: ["images", ...tabsOf("coplanar").filter((tab) => tab !== "halfplanes")],
 };
 
 /** Tabs about the stages of method "rectangles" alone. */

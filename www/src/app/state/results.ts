@@ -4,6 +4,7 @@ import type { GroundTexture } from "../../shared/calls";
 import type { ParamTree } from "../../shared/paramTree";
 import type {
   ClusterTrace,
+  CoplanarSets,
   DensePlanes,
   Directions,
   Facet,
@@ -26,6 +27,7 @@ export interface Results {
   supports: Float32Array[];
   lines: Float64Array | null;
   halfPlanes: HalfPlane[] | null;
+  coplanar: CoplanarSets | null;
   dense: DensePlanes | null;
   facets: Facet[] | null;
   /** The parameters that the facets were found with. */
@@ -50,6 +52,7 @@ export const NO_RESULTS: Results = {
   supports: [],
   lines: null,
   halfPlanes: null,
+  coplanar: null,
   dense: null,
   facets: null,
   madeWith: null,

@@ -1,6 +1,6 @@
 /** What the tour's steps are about, chosen by the results: a step's claim holds for what it shows. */
 import { LINE_STRIDE, STRETCH_STRIDE } from "../../shared/flatArrays";
-import { densePlanesOf, isMadeFrom, type Side, type SideTrace } from "../../shared/records";
+import { coplanarSetsOf, densePlanesOf, isMadeFrom, type Side, type SideTrace } from "../../shared/records";
 import { type ClassName, likeliestClass } from "../../shared/surfaceClass";
 import type { Results } from "../state/results";
 
@@ -115,6 +115,36 @@ export function groupParts(
         lines: new Set(found.members.map(({ line }) => line)).size,
         facets: (facets ?? []).flatMap((facet, i) => (isMadeFrom(facet, found) ? [i] : [])),
       };
+}
+
+export interface CoplanarSetParts {
+  lines: number;
+  /** Sides without a line that were made square or mirrored. */
+  moved: number;
+  /** Reprojection error of the wireframe before and after its adjustment, px. */
+  before: number;
+  after: number;
+  /** The facets that it proposed. */
+  facets: number[];
+}
+
+/** What a set of coplanar lines is; null where there is none. */
+export function coplanarSetParts(
+  { coplanar, facets }: Pick<Results, "coplanar" | "facets">,
+  index: number,
+): CoplanarSetParts | null {
+  const [set, trace] = [coplanar?.sets[index], coplanar?.trace.sets[index]];
+  if (set === undefined || trace === undefined) {
+    return null;
+  }
+  const [before, after] = trace.reprojection_px;
+  return {
+    lines: set.lines.length,
+    moved: trace.closing.length,
+    before,
+    after,
+    facets: (facets ?? []).flatMap((facet, i) => (coplanarSetsOf(facet).includes(index) ? [i] : [])),
+  };
 }
 
 export interface DensePlaneParts {

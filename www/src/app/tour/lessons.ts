@@ -1,4 +1,4 @@
-/** The guided tour: nine steps through B99 and one through W96, in the views themselves, on the demo scene. */
+/** The guided tour: ten steps through B99 and one through W96, in the views themselves, on the demo scene. */
 import { isRejected } from "../../shared/records";
 import { counted } from "../parts/counted";
 import { degreesOf, percentText } from "../parts/numberText";
@@ -27,6 +27,8 @@ import {
 } from "../state/viewState";
 import {
   agreesNowhere,
+  type CoplanarSetParts,
+  coplanarSetParts,
   type DensePlaneParts,
   densePlaneParts,
   facetOfSegment,
@@ -250,6 +252,33 @@ export const LESSONS: readonly LessonStep[] = [
     isFound: () => throughView.value !== null,
   },
   {
+    title: "Coplanar lines",
+    text: "Another partner of the project looked for faces, not for half-planes: lines that lie in one plane are grouped, the convex hull of their ends is closed to a polygon by right angles and symmetry, and the photographs verify it.",
+    question:
+      "Pick a polygon of a facet of the model in which a side without a line was made square or mirrored.",
+    answer: () => {
+      const found = pickedSet();
+      return found === null
+        ? ""
+        : `${counted(found.lines, "lines")} lie in one plane. Its corners moved until the image edges were off by ${found.after.toFixed(2)} px instead of ${found.before.toFixed(2)} px (RMS).`;
+    },
+    hint: () => {
+      const found = pickedSet();
+      if (found === null) {
+        return null;
+      }
+      return found.moved === 0
+        ? "Every side of this one lies on a line: look for another."
+        : "No facet of the model has this polygon: it may lie on the ground.";
+    },
+    method: "coplanar",
+    tab: "coplanar",
+    isFound: () => {
+      const found = pickedSet();
+      return found !== null && found.moved > 0 && found.facets.length > 0;
+    },
+  },
+  {
     title: "Another way: object space",
     text: "Wiman and Axelsson match nothing between images. Each image line of a main direction is a line in the plane across it; where lines of several views meet, there is an edge in space.",
     question: "Pick a ring in the cluster plane, and see its line in every view.",
@@ -344,6 +373,11 @@ function pickedGroup(): { lines: number; facets: number[] } {
 function pickedDensePlane(): DensePlaneParts | null {
   const picked = selection.value;
   return picked?.kind === "dense" ? densePlaneParts(results.value, picked.index) : null;
+}
+
+function pickedSet(): CoplanarSetParts | null {
+  const picked = selection.value;
+  return picked?.kind === "coplanar" ? coplanarSetParts(results.value, picked.index) : null;
 }
 
 function denseWords({ patches, rmsM, facets }: DensePlaneParts): string {

@@ -6,10 +6,10 @@ import { Mesh, MeshBasicMaterial, type Object3D, Sphere, SphereGeometry, Texture
 import type { GroundTexture } from "../../shared/calls";
 import { PALETTE } from "../../shared/palette";
 import type { Facet, FacetTrace, HalfPlane, LineRecord, SideRecord } from "../../shared/records";
+import { buildGrid } from "../scene/grid";
 import { disposeObject, type Layer, unpicked } from "../scene/layer";
 import { buildFacets } from "./facets";
 import { buildFans } from "./fans";
-import { buildGrid } from "./grid";
 import { buildGround } from "./ground";
 import { buildGroups } from "./groups";
 import { buildHighlight } from "./highlight";

@@ -1,6 +1,6 @@
 /** The grid on the ground below what is shown. */
 import { GridHelper, type LineBasicMaterial, type Sphere } from "three";
-import { disposeObject, type Layer, unpicked } from "../scene/layer";
+import { disposeObject, type Layer, unpicked } from "./layer";
 
 export const GRID_STEP_M = 10;
 /** Farther out it would be a grey haze. */

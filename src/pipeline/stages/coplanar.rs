@@ -1,0 +1,50 @@
+//! Coplanar lines and their polygons (B99 2: Leuven; 5).
+
+use super::{Findings, Outcome, Results, Stage, StageDefinition};
+use super::{is_any, required, to_bytes, untraced, warn_if};
+use crate::coplanar::{CoplanarSet, CoplanarTrace, coplanar_sets};
+use crate::execution::Sharded;
+use crate::params::{Method, Params};
+use crate::scene::Scene;
+
+/// Sets of coplanar lines with their polygons, verified or not.
+pub(super) type Found = Outcome<Vec<CoplanarSet>, CoplanarTrace>;
+
+pub(super) struct Coplanar;
+
+impl StageDefinition for Coplanar {
+    type Found = Found;
+
+    const NAME: &'static str = "coplanar";
+    const TITLE: &'static str = "Coplanar sets";
+    const SECTION: &'static str = "B99 2, 5";
+    const READS: &'static [&'static str] = &["coplanar", "lines3d", "roof.border_nats_per_m"];
+    const NEEDS: &'static [Stage] = &[Stage::Segments, Stage::Lines];
+
+    fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
+        if !params.coplanar.enabled && params.method != Method::Coplanar {
+            return Ok((Vec::new(), CoplanarTrace::default()).into());
+        }
+        let segments = &required(&before.segments).value;
+        let lines = &required(&before.lines).value;
+        Ok(coplanar_sets(scene, lines, segments, &params.lines3d, &params.roof).into())
+    }
+
+    fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
+        let verified = found.value.iter().filter(|set| set.is_verified()).count();
+        let none = "no two lines span a plane that the views agree on";
+        let is_empty = !found.trace.sets.is_empty() && verified == 0;
+        Findings {
+            counts: vec![("sets", found.value.len()), ("verified sets", verified)],
+            warnings: warn_if(is_empty && is_any(&before.lines), none),
+        }
+    }
+
+    fn pack(found: &Found) -> Vec<u8> {
+        to_bytes(&found.value)
+    }
+
+    fn unpack(bytes: &[u8]) -> Option<Found> {
+        untraced(bytes)
+    }
+}

@@ -1,0 +1,102 @@
+/** B99 2: sets of coplanar lines in plan, with their hulls before and their polygons after symmetry. */
+import "./figures.css";
+import { useState } from "preact/hooks";
+import { category } from "../../shared/palette";
+import type { CoplanarSets, Vec3 } from "../../shared/records";
+import { isVerified } from "../../viewer/layers/coplanar";
+import { Filmstrip } from "../images/Filmstrip";
+import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../parts/charts";
+import { counted } from "../parts/counted";
+import { results } from "../state/results";
+import { select, selection } from "../state/viewState";
+import { type CoplanarOutlines, setAt, shownSets } from "./coplanarPlan";
+import { equalScales } from "./densePlan";
+
+const CHOICES: readonly (readonly [CoplanarOutlines, string])[] = [
+  ["hull", "Hulls before"],
+  ["polygon", "Polygons after"],
+  ["both", "Both"],
+];
+
+export function CoplanarLab() {
+  const { coplanar } = results.value;
+  const [shows, show] = useState<CoplanarOutlines>("both");
+  if (coplanar === null) {
+    return <p class="lab-hint muted">Run the stage: the sets of coplanar lines appear here, in plan.</p>;
+  }
+  if (coplanar.sets.length === 0) {
+    return (
+      <p class="lab-hint muted">
+        No two lines were grouped. Beside half-planes the stage is switched off: choose the method Coplanar,
+        or switch it on in the parameters.
+      </p>
+    );
+  }
+  return (
+    <div class="split-lab even">
+      <div class="chart-lab" data-testid="coplanar-lab">
+        <fieldset class="choice">
+          <legend class="visually-hidden">Outlines in the plan</legend>
+          {CHOICES.map(([one, title]) => (
+            <button key={one} type="button" aria-pressed={shows === one} onClick={() => show(one)}>
+              {title}
+            </button>
+          ))}
+        </fieldset>
+        <Fit>{(frame) => <Plan frame={frame} coplanar={coplanar} shows={shows} />}</Fit>
+      </div>
+      <Filmstrip />
+    </div>
+  );
+}
+
+interface PlanProps {
+  frame: Frame;
+  coplanar: CoplanarSets;
+  shows: CoplanarOutlines;
+}
+
+function Plan({ frame, coplanar, shows }: PlanProps) {
+  const picked = selection.value?.kind === "coplanar" ? selection.value.index : null;
+  const shown = shownSets(coplanar, picked);
+  const corners = coplanar.sets.filter(isVerified).flatMap(({ hull, polygon }) => [...hull, ...polygon]);
+  const [x, y] = equalScales(
+    frame,
+    corners.map(([px, py]) => [px, py]),
+    1,
+  );
+  const [toX, toY] = axesOf(frame, x, y);
+  const path = (ring: readonly Vec3[]) => closedPathOf(ring.map(([px, py]) => [toX(px), toY(py)] as const));
+  const verified = coplanar.sets.filter(isVerified).length;
+  return (
+    <Chart
+      frame={frame}
+      x={x}
+      y={y}
+      xTitle="x (m)"
+      yTitle="y (m)"
+      label={`Plan of ${counted(coplanar.sets.length, "coplanar sets")}; verified by the photographs: ${verified}`}
+      testid="coplanar-plan"
+      onClick={(...at) => {
+        const index = setAt(coplanar, at);
+        select(index === null ? null : { kind: "coplanar", index });
+      }}
+    >
+      {shows !== "hull" &&
+        shown.map((index) => (
+          <path
+            key={`polygon ${index}`}
+            class="coplanar-polygon"
+            stroke={category(index)}
+            fill={category(index)}
+            d={path(coplanar.sets[index]?.polygon ?? [])}
+          />
+        ))}
+      {shows !== "polygon" &&
+        shown.map((index) => (
+          <path key={`hull ${index}`} class="coplanar-hull" d={path(coplanar.sets[index]?.hull ?? [])} />
+        ))}
+      {picked !== null && <path class="chosen-ring" d={path(coplanar.sets[picked]?.polygon ?? [])} />}
+    </Chart>
+  );
+}

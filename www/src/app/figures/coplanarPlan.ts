@@ -1,0 +1,35 @@
+/** What the plan of coplanar sets shows, and what is picked there. */
+import type { CoplanarSets, Vec2, Vec3 } from "../../shared/records";
+import { isVerified } from "../../viewer/layers/coplanar";
+
+/** The hull of the lines' ends, the polygon that was made of it, or one over the other. */
+export type CoplanarOutlines = "hull" | "polygon" | "both";
+
+/** The verified sets, and that which is picked; the largest first, for the ground is one that holds all others. */
+export function shownSets({ sets }: CoplanarSets, picked: number | null): number[] {
+  const shown = sets.flatMap((set, index) => (isVerified(set) || index === picked ? [index] : []));
+  const area = (index: number) => areaOf(sets[index]?.polygon ?? []);
+  return shown.sort((a, b) => area(b) - area(a));
+}
+
+/** The smallest verified set at a place of the plan; null where there is none. */
+export function setAt(coplanar: CoplanarSets, at: Vec2): number | null {
+  const over = shownSets(coplanar, null).filter((index) => holds(coplanar.sets[index]?.polygon ?? [], at));
+  return over.at(-1) ?? null;
+}
+
+function areaOf(ring: readonly Vec3[]): number {
+  const twice = ring.map(([ax, ay], i) => {
+    const [bx, by] = ring[(i + 1) % ring.length] as Vec3;
+    return ax * by - bx * ay;
+  });
+  return twice.reduce((sum, one) => sum + one / 2, 0);
+}
+
+/** Is a place inside a convex ring, counter-clockwise? */
+function holds(ring: readonly Vec3[], [x, y]: Vec2): boolean {
+  return ring.every(([ax, ay], i) => {
+    const [bx, by] = ring[(i + 1) % ring.length] as Vec3;
+    return (bx - ax) * (y - ay) - (by - ay) * (x - ax) >= 0;
+  });
+}

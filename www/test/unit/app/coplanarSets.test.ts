@@ -1,0 +1,173 @@
+/** What the page says of sets of coplanar lines, and of what they proposed. */
+import { afterEach, describe, expect, it } from "vitest";
+import { setAt, shownSets } from "../../../src/app/figures/coplanarPlan";
+import type { Related, Row } from "../../../src/app/inspector/rowLinks";
+import { rowsOf, titleOf } from "../../../src/app/inspector/selectionRows";
+import { presentEntries } from "../../../src/app/parts/Legend";
+import { linesOfSelection, shapesOf } from "../../../src/app/selection/selectionShapes";
+import { formatSelection, parseSelection } from "../../../src/app/settings/addressLink";
+import { TABS } from "../../../src/app/state/methods";
+import { NO_RESULTS, restoreResults } from "../../../src/app/state/results";
+import { showTab } from "../../../src/app/state/viewState";
+import { coplanarSetParts } from "../../../src/app/tour/examples";
+import {
+  type CoplanarSet,
+  type CoplanarSets,
+  coplanarSetsOf,
+  type Facet,
+  type FacetTrace,
+  isMadeFrom,
+  isRejected,
+} from "../../../src/shared/records";
+
+const square = (x: number, side: number): CoplanarSet["polygon"] => [
+  [x, 0, 5],
+  [x + side, 0, 5],
+  [x + side, side, 5],
+  [x, side, 5],
+];
+const set = (of: Partial<CoplanarSet>): CoplanarSet => ({
+  lines: [3, 4],
+  plane: { normal: [0, 0, 1], d: -5 },
+  covariance: [
+    [4e-4, 0, 0],
+    [0, 1e-4, 0],
+    [0, 0, 1e-4],
+  ],
+  hull: square(0, 3),
+  polygon: square(0, 4),
+  coplanar_nats: 4,
+  inside_nats: 30,
+  outline_nats: -12,
+  ...of,
+});
+const trace = (closing: CoplanarSets["trace"]["sets"][number]["closing"]) => ({
+  closing,
+  relations: [
+    { kind: "square" as const, at: [0, 0, 5] as [number, number, number], nats: 2.5 },
+    { kind: "symmetric" as const, at: [2, 2, 5] as [number, number, number], nats: -3 },
+  ],
+  reprojection_px: [0.5, 0.2] as [number, number],
+  edges: 8,
+});
+/** The second is not verified; the third lies over the first, and says less. */
+const COPLANAR: CoplanarSets = {
+  sets: [
+    set({}),
+    set({ inside_nats: 5, polygon: square(8, 4) }),
+    set({ lines: [7], inside_nats: 14, polygon: square(0, 6) }),
+  ],
+  trace: {
+    sets: [
+      trace([
+        {
+          segment: [
+            [0, 0, 5],
+            [0, 4, 5],
+          ],
+          kind: "square",
+          nats: 1.5,
+        },
+      ]),
+      trace([]),
+      trace([]),
+    ],
+  },
+};
+const FACET = {
+  plane: { normal: [0, 0, 1], d: -5 },
+  half_planes: [],
+  proposals: [{ coplanar_set: 0 }],
+  similarity: 0.8,
+  real_ratio: 1,
+  outer: [],
+  holes: [],
+} as unknown as Facet;
+
+function show(): void {
+  const grouping = { groups: [], rejected: [] } as unknown as FacetTrace;
+  const main = { ...NO_RESULTS, coplanar: COPLANAR, grouping, facets: [FACET] };
+  restoreResults({ main, regions: NO_RESULTS });
+}
+
+afterEach(() => {
+  showTab("images");
+  restoreResults({ main: NO_RESULTS, regions: NO_RESULTS });
+});
+
+const valueIn = (rows: readonly Row[], label: string) => rows.find(([name]) => name === label)?.[1];
+const barsIn = (rows: readonly Row[], label: string) => {
+  const value = valueIn(rows, label);
+  return typeof value === "object" && "bars" in value ? value.bars.map(({ nats }) => nats) : [];
+};
+
+describe("sets of coplanar lines", () => {
+  it("are told with their nats, their relations and what became of them", () => {
+    show();
+    expect(titleOf({ kind: "coplanar", index: 0 })).toBe("Coplanar set 0");
+    const rows = rowsOf({ kind: "coplanar", index: 0 });
+    expect(valueIn(rows, "Verified")).toBe("yes");
+    expect(barsIn(rows, "For and against it (nats)")).toEqual([4, 30, -12]);
+    expect(barsIn(rows, "Sides without a line (nats)")).toEqual([1.5]);
+    expect(barsIn(rows, "Relations (nats)")).toEqual([2.5, -3]);
+    expect(valueIn(rows, "Reprojection error")).toBe("0.50 px, then 0.20 px");
+    const names = (label: string) => (valueIn(rows, label) as Related[]).map(({ name }) => name);
+    expect(names("3D lines")).toEqual(["3", "4"]);
+    expect(names("Facets")).toEqual(["0"]);
+    expect(valueIn(rowsOf({ kind: "coplanar", index: 1 }), "Verified")).toBe("no");
+    expect(rowsOf({ kind: "coplanar", index: 9 })).toEqual([]);
+    expect(valueIn(rowsOf({ kind: "facet", index: 0 }), "Coplanar sets")).toMatchObject([{ name: "0" }]);
+  });
+
+  it("light up with the hull that was there before", () => {
+    show();
+    const shapes = shapesOf({ kind: "coplanar", index: 0 });
+    expect(shapes.map(({ role }) => role)).toEqual(["before", "area"]);
+    expect(shapes[1]?.points).toEqual(square(0, 4));
+    expect(linesOfSelection({ kind: "coplanar", index: 0 })).toEqual([3, 4]);
+    expect(shapesOf({ kind: "coplanar", index: 9 })).toEqual([]);
+  });
+
+  it("are picked in plan: of several the smallest, and the largest lie below", () => {
+    expect(shownSets(COPLANAR, null)).toEqual([2, 0]);
+    expect(shownSets(COPLANAR, 1)).toEqual([2, 0, 1]);
+    expect(setAt(COPLANAR, [1, 1])).toBe(0);
+    expect(setAt(COPLANAR, [5, 5])).toBe(2);
+    expect(setAt(COPLANAR, [9, 1])).toBeNull();
+  });
+
+  it("are named in links, and propose planes", () => {
+    expect(parseSelection(formatSelection({ kind: "coplanar", index: 3 }))).toEqual({
+      kind: "coplanar",
+      index: 3,
+    });
+    expect(coplanarSetsOf(FACET)).toEqual([0]);
+    expect(isMadeFrom(FACET, { members: [], proposals: [{ coplanar_set: 0 }] })).toBe(true);
+    expect(isMadeFrom(FACET, { members: [], proposals: [{ coplanar_set: 1 }] })).toBe(false);
+  });
+
+  it("need no sweep where they explain a side", () => {
+    expect(isRejected({ line: 0, side: "left", rejection: "explained" })).toBe(false);
+    expect(isRejected({ line: 0, side: "left", rejection: "low_peak" })).toBe(true);
+  });
+
+  it("have a tab and a legend", () => {
+    show();
+    showTab("coplanar");
+    expect(presentEntries().map(([colour]) => colour)).toEqual(["grown", "set", "unmatched"]);
+    expect(TABS.coplanar).toContain("coplanar");
+    expect(TABS.coplanar).not.toContain("halfplanes");
+  });
+
+  it("are a step of the tour where a side was moved", () => {
+    expect(coplanarSetParts({ coplanar: COPLANAR, facets: [FACET] }, 0)).toEqual({
+      lines: 2,
+      moved: 1,
+      before: 0.5,
+      after: 0.2,
+      facets: [0],
+    });
+    expect(coplanarSetParts({ coplanar: COPLANAR, facets: [FACET] }, 1)?.moved).toBe(0);
+    expect(coplanarSetParts({ coplanar: COPLANAR, facets: [FACET] }, 5)).toBeNull();
+  });
+});
