@@ -203,6 +203,7 @@ fn planted_candidates() -> Candidates {
             evidence: evidence.clone(),
             windows: WindowCounts::default(),
         }],
+        rectangles: Vec::new(),
         surfaces: vec![JudgedSurface {
             patches: outline.to_vec(),
             building: evidence.clone(),
