@@ -7,9 +7,9 @@ use super::format::{rounded, to_bytes, world};
 use crate::evidence::{Candidates, Evidence, JudgedFacet, JudgedLine, WindowHistogram};
 use crate::scene::Scene;
 
-/// `evidence.json`: every matched line, every line in the finished model, every facet that was
-/// weighed, every plane between parallel lines, every surface of dense matching, and the classes in which the windows of the facets are
-/// counted. World frame of the input.
+/// `evidence.json`: every matched line, every line in the finished model, every facet and every
+/// plane between parallel lines that was weighed, every surface of dense matching, and the classes
+/// in which the windows of the facets are counted. World frame of the input.
 pub fn evidence_json(scene: &Scene, candidates: &Candidates) -> Vec<u8> {
     let line = |line: &JudgedLine| {
         json!({

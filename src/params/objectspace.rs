@@ -51,8 +51,8 @@ pub struct PlaneParams {
     /// against each other by this, px. Assumption: more than the error of a true plane, less than
     /// the windows.
     pub beside_px: f64,
-    /// Natural logarithm of the odds from which on a plane is a candidate ([`crate::evidence`]): even
-    /// ones, where W96 accepts any best plane and proposes "thresholding the measure". `make
+    /// Natural logarithm of the odds from which on a plane is a candidate ([`crate::evidence`]):
+    /// even ones, where W96 accepts any best plane and proposes "thresholding the measure". `make
     /// calibrate` sees every candidate by a very low one.
     pub least_nats: f64,
     /// Smallest plane, square metres. Assumption.
