@@ -27,10 +27,15 @@ impl JsonError {
 }
 
 /// Parameters of older files that nothing reads any more, by the keys that lead to them.
-const RETIRED: [[&str; 3]; 11] = [
+const RETIRED: [[&str; 3]; 16] = [
     ["", "roof", "border_cost_m"],
     ["", "roof", "half_plane_gain_m"],
     ["", "roof", "min_real_ratio"],
+    ["roof", "refine", "edge_gain_m"],
+    ["roof", "refine", "min_correlation"],
+    ["roof", "refine", "part_gain_m"],
+    ["roof", "refine", "part_gain_share"],
+    ["roof", "refine", "border_cost_m"],
     ["objectspace", "planes", "least_support"],
     ["objectspace", "planes", "least_correlation"],
     ["objectspace", "planes", "min_rise"],

@@ -49,9 +49,9 @@ pub fn reconstruct_roofs(
     let below = |members: &[&Facet]| ground.below(members);
     // Refinement needs facets that share vertices, and moves them; so the solids are made again.
     let (delineated, solids) = close_buildings(&facets, below);
-    let (separated, gaps) = cut_back_at_gaps(scene, &delineated, &params.refine);
+    let (separated, gaps) = cut_back_at_gaps(scene, &delineated, params);
     let (delineated, again) = close_buildings(&separated, below);
-    let (refined, refinement) = refine_roofs(scene, lines, &delineated, &params.refine);
+    let (refined, refinement) = refine_roofs(scene, lines, &delineated, params);
     let (model, closed) = close_buildings(&refined, below);
     let unrefined = UnrefinedFacets {
         facets: delineated.facets,

@@ -26,11 +26,6 @@ pub struct RefineParams {
     /// Least step across a side in a profile of one pixel, grey range 1; it falls with the root of
     /// the profiles. Assumption: four standard deviations of noise.
     pub least_contrast: f64,
-    /// Gain of a border on the strongest edge, square metres for a metre. Assumption: its gain in
-    /// the labelling.
-    pub edge_gain_m: f64,
-    /// Correlation at which a plane is as good as no plane. Assumption: as in the labelling.
-    pub min_correlation: f64,
     /// The outline is also tested without sides shorter than this between longer ones, metres.
     /// Assumption: half a correlation window; what is nearer cannot be resolved.
     pub jog_m: f64,
@@ -72,15 +67,6 @@ pub struct RefineParams {
     pub part_m: f64,
     /// ... but over no less than this, metres. Assumption: overhangs and gutters.
     pub least_part_m: f64,
-    /// Least gain for ending it earlier, square metres for a metre of side. Assumption: the error
-    /// of a correlation (0.05) over a metre.
-    pub part_gain_m: f64,
-    /// ... and for a square metre that is given up. Assumption: twice the error of a correlation;
-    /// shadow at the foot of a wall costs a roof hardly that.
-    pub part_gain_share: f64,
-    /// What a border costs that no edge supports, square metres for a metre. Assumption: as in the
-    /// labelling.
-    pub border_cost_m: f64,
     /// How much the mean correlation inside the facets may fall. Assumption: its error.
     pub similarity_loss: f64,
 }
@@ -95,8 +81,6 @@ impl Default for RefineParams {
             min_side_px: 15.0,
             min_views: 3,
             least_contrast: 0.04,
-            edge_gain_m: 0.2,
-            min_correlation: 0.45,
             jog_m: 0.5,
             floor_px: 0.25,
             loss_sigmas: 2.0,
@@ -113,9 +97,6 @@ impl Default for RefineParams {
             max_unknowns: 6000,
             part_m: 3.0,
             least_part_m: 0.4,
-            part_gain_m: 0.05,
-            part_gain_share: 0.1,
-            border_cost_m: 0.25,
             similarity_loss: 0.01,
         }
     }

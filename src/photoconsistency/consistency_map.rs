@@ -66,18 +66,10 @@ impl ConsistencyMap {
 /// on planes a metre beside the true ones.
 const CHANCE: f64 = 0.3;
 
-/// The same of all pairs. Measured: 0.1 to 0.3.
-const CHANCE_OVERALL: f64 = 0.2;
-
 /// Correlation at which a plane is as good as no plane, for a texture `weight`: `textured` where
 /// the texture is strong, chance where there is none.
 pub(crate) fn least_correlation(weight: f64, textured: f64) -> f64 {
     CHANCE + (textured - CHANCE) * weight
-}
-
-/// The same for the mean of all pairs.
-pub(crate) fn least_overall(weight: f64, textured: f64) -> f64 {
-    CHANCE_OVERALL + (textured - CHANCE_OVERALL) * weight
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use crate::ids::ViewId;
 use crate::lines2d::{SegmentKind, measure_edge};
 use crate::lines3d::Line3d;
 use crate::model::Occluders;
-use crate::params::RefineParams;
+use crate::params::{RefineParams, RoofParams};
 use crate::raster::Channel;
 use crate::scene::Scene;
 
@@ -43,27 +43,28 @@ pub(super) fn measure_sides(
     state: &WireframeState,
     search: &[bool],
     lines: &[Line3d],
-    params: &RefineParams,
+    params: &RoofParams,
 ) -> Vec<EdgeObservation> {
+    let refine = &params.refine;
     let pixel_m = pixel(scene, wireframe, state);
     let reach_of = |side: &WireframeSide| match search[side.face] && side.kind != SideKind::Crease {
-        true => params.search_m,
-        false => params.reach_px * pixel_m,
+        true => refine.search_m,
+        false => refine.reach_px * pixel_m,
     };
     let profiles = crate::execution::map(&wireframe.sides, |_, side| {
         (side.kind != SideKind::Foot).then_some(())?;
         let extent = Extent {
-            seen_m: params.search_m,
+            seen_m: refine.search_m,
             compared_m: reach_of(side),
             pixel_m,
         };
-        SideProfiles::new(scene, occluders, wireframe, state, side, extent, params)
+        SideProfiles::new(scene, occluders, wireframe, state, side, extent, refine)
     });
     let gains = crate::execution::map(&profiles, |i, profiles| {
         let (profiles, side) = (profiles.as_ref()?, &wireframe.sides[i]);
         let known_to_m = match is_on_line(&wireframe.segment(state, side), lines) {
-            true => params.matched_m,
-            false => params.search_m,
+            true => refine.matched_m,
+            false => refine.search_m,
         };
         profiles.shift_gains(reach_of(side), known_to_m, params)
     });
@@ -76,7 +77,7 @@ pub(super) fn measure_sides(
         };
         gains[i].as_ref()?;
         let step = best_step(&together)?;
-        Some(profiles.as_ref()?.measure(scene, i, step, params))
+        Some(profiles.as_ref()?.measure(scene, i, step, refine))
     };
     crate::execution::map(&profiles, of_side)
         .into_iter()
@@ -309,7 +310,7 @@ mod tests {
         let occluders = Occluders::new(&[]);
         // Distance of the measured edges from the eave, in plan, metres.
         let off_by = |lines: &[Line3d]| {
-            let params = RefineParams::default();
+            let params = RoofParams::default();
             let search = [true, true];
             let found = measure_sides(
                 &scene, &occluders, &wireframe, &state, &search, lines, &params,

@@ -14,7 +14,7 @@ use super::profiles::{CutBackGain, Extent, SideProfiles};
 use super::wireframe::{SideKind, Wireframe, WireframeState};
 use crate::geometry::Segment3;
 use crate::model::{Facet, Occluders, RoofModel, is_simple};
-use crate::params::RefineParams;
+use crate::params::RoofParams;
 use crate::scene::Scene;
 
 /// A facet that ends before the neighbour up to which it was delineated.
@@ -26,7 +26,7 @@ pub struct RoofGap {
     /// Width of the gap in plan, metres.
     pub width_m: f64,
     /// Energy of the labelling gained by the cut, square metres.
-    pub gain_m2: f64,
+    pub gain_nats: f64,
 }
 
 /// The facets of a closed model, cut back where they end before a higher or lower neighbour; the
@@ -34,11 +34,11 @@ pub struct RoofGap {
 pub fn cut_back_at_gaps(
     scene: &Scene,
     model: &RoofModel,
-    params: &RefineParams,
+    params: &RoofParams,
 ) -> (Vec<Facet>, Vec<RoofGap>) {
     let mut facets = model.facets.clone();
     let mut gaps = Vec::new();
-    if !params.refine {
+    if !params.refine.refine {
         return (facets, gaps);
     }
     let occluders = Occluders::new(&model.facets);
@@ -67,7 +67,7 @@ pub fn cut_back_at_gaps(
             gaps.extend(own.into_iter().map(|cut| RoofGap {
                 side: wireframe.segment(&state, &wireframe.sides[cut.side]),
                 width_m: cut.width_m,
-                gain_m2: cut.gain_m2,
+                gain_nats: cut.gain_nats,
             }));
         }
     }
@@ -79,14 +79,13 @@ struct WallSideGains {
     /// By steps back from the side.
     gain: Vec<CutBackGain>,
     step_m: f64,
-    length_m: f64,
 }
 
 /// A side that moves back.
 struct CutBack {
     side: usize,
     width_m: f64,
-    gain_m2: f64,
+    gain_nats: f64,
 }
 
 /// The sides at walls whose cut lowers the energy; collinear sides are decided together.
@@ -95,26 +94,33 @@ fn cut_backs(
     occluders: &Occluders,
     wireframe: &Wireframe,
     state: &WireframeState,
-    params: &RefineParams,
+    params: &RoofParams,
 ) -> Vec<CutBack> {
     let at_wall = |kind| matches!(kind, SideKind::Step | SideKind::Foot);
     let pixel_m = pixel(scene, wireframe, state);
     let side_gains = crate::execution::map(&wireframe.sides, |_, side| {
         let extent = Extent {
-            seen_m: params.part_m,
-            compared_m: params.part_m,
+            seen_m: params.refine.part_m,
+            compared_m: params.refine.part_m,
             pixel_m,
         };
         at_wall(side.kind).then_some(())?;
-        let profiles = SideProfiles::new(scene, occluders, wireframe, state, side, extent, params)?;
+        let profiles = SideProfiles::new(
+            scene,
+            occluders,
+            wireframe,
+            state,
+            side,
+            extent,
+            &params.refine,
+        )?;
         Some(WallSideGains {
             gain: profiles.cut_back_gains(params)?,
             step_m: profiles.step_m(),
-            length_m: wireframe.segment(state, side).length(),
         })
     });
     let mut cut_backs = Vec::new();
-    for run in aligned_runs(wireframe, state, params.jog_m, at_wall) {
+    for run in aligned_runs(wireframe, state, params.refine.jog_m, at_wall) {
         let measured: Vec<_> = (run.iter())
             .filter_map(|&i| Some((i, side_gains[i].as_ref()?)))
             .collect();
@@ -125,25 +131,19 @@ fn cut_backs(
         let sum = |of: fn(&CutBackGain) -> f64, back: usize| -> f64 {
             measured.iter().map(|(_, w)| of(&w.gain[back])).sum()
         };
-        let gain = |back: usize| sum(|w| w.energy_m2, back);
+        let gain = |back: usize| sum(|w| w.nats, back);
         let step_m = measured[0].1.step_m;
-        let length_m: f64 = measured.iter().map(|(_, w)| w.length_m).sum();
-        let first = (params.least_part_m / step_m).ceil() as usize;
+        let first = (params.refine.least_part_m / step_m).ceil() as usize;
         let best = (first..steps).max_by(|&i, &j| gain(i).total_cmp(&gain(j)).then(j.cmp(&i)));
         // Without agreement on what remains the views say nothing about this plane.
-        let least = params.part_gain_m * length_m;
-        let clear = |&b: &usize| {
-            let given_up_m2 = (b + 1) as f64 * step_m * length_m;
-            gain(b) > least.max(params.part_gain_share * given_up_m2)
-                && sum(|w| w.remaining_m2, b) > least
-        };
+        let clear = |&b: &usize| gain(b) > 0.0 && sum(|w| w.remaining_nats, b) > 0.0;
         let Some(back) = best.filter(clear) else {
             continue;
         };
         cut_backs.extend(measured.iter().map(|&(side, _)| CutBack {
             side,
             width_m: (back + 1) as f64 * step_m,
-            gain_m2: gain(back),
+            gain_nats: gain(back),
         }));
     }
     cut_backs
@@ -159,7 +159,11 @@ fn apply_cut_backs<'c>(
     face: usize,
     mut cut_backs: Vec<&'c CutBack>,
 ) -> Option<(Vec<CutBackCorner>, Vec<&'c CutBack>)> {
-    cut_backs.sort_by(|a, b| b.gain_m2.total_cmp(&a.gain_m2).then(a.side.cmp(&b.side)));
+    cut_backs.sort_by(|a, b| {
+        b.gain_nats
+            .total_cmp(&a.gain_nats)
+            .then(a.side.cmp(&b.side))
+    });
     let (mut ring, mut taken) = (None, Vec::new());
     for cut in cut_backs {
         taken.push(cut);
@@ -322,7 +326,7 @@ mod tests {
         ];
         let (model, _) = close_buildings(&facets, |_| truth.ground_z);
         assert_eq!(model.buildings.len(), 1);
-        let (parted, gaps) = cut_back_at_gaps(&scene, &model, &RefineParams::default());
+        let (parted, gaps) = cut_back_at_gaps(&scene, &model, &RoofParams::default());
         let first: Vec<f64> = (gaps.iter().map(|p| p.width_m))
             .filter(|w| (w - 1.2).abs() < 0.2)
             .collect();

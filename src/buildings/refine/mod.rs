@@ -63,7 +63,7 @@ use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
 use crate::math::median;
 use crate::model::{Building, Facet, FacetUncertainty, Occluders, RoofModel};
-use crate::params::RefineParams;
+use crate::params::{RefineParams, RoofParams};
 use crate::scene::Scene;
 
 /// The refinement of one building.
@@ -102,12 +102,12 @@ pub fn refine_roofs(
     scene: &Scene,
     lines: &[Line3d],
     model: &RoofModel,
-    params: &RefineParams,
+    params: &RoofParams,
 ) -> (Vec<Facet>, RefineTrace) {
     let occluders = Occluders::new(&model.facets);
     let mut facets = model.facets.clone();
     let mut trace = RefineTrace::default();
-    if !params.refine {
+    if !params.refine.refine {
         return (facets, trace);
     }
     let refined = crate::execution::map(&model.buildings, |i, building| {
@@ -161,7 +161,7 @@ struct BuildingRefiner<'a> {
     occluders: &'a Occluders<'a>,
     building: &'a Building,
     old: &'a [&'a Facet],
-    params: &'a RefineParams,
+    params: &'a RoofParams,
 }
 
 impl BuildingRefiner<'_> {
@@ -171,7 +171,7 @@ impl BuildingRefiner<'_> {
         const ATTEMPTS: usize = 4;
         let (wireframe, state) = Wireframe::new(self.old);
         report.sides = wireframe.sides.len();
-        if wireframe.size() > self.params.max_unknowns {
+        if wireframe.size() > self.params.refine.max_unknowns {
             let unknowns = wireframe.size();
             return Err(RefineRejection::TooLarge { unknowns });
         }
@@ -199,7 +199,7 @@ impl BuildingRefiner<'_> {
     /// The facets, each with the simpler outline where the images show at least the same share of
     /// it, and all straightened.
     fn simplified(&self, wireframe: &Wireframe, state: &WireframeState) -> Vec<Facet> {
-        let jog_m = self.params.jog_m;
+        let jog_m = self.params.refine.jog_m;
         let facets = outline::simplified(self.old, jog_m);
         if facets.iter().eq(self.old.iter().copied()) {
             return outline::straightened(&facets, 0.5 * jog_m);
@@ -264,17 +264,22 @@ impl BuildingRefiner<'_> {
         }
         let all: Vec<&Facet> = facets.iter().collect();
         let (wireframe, state) = Wireframe::new(&all);
-        if wireframe.size() > self.params.max_unknowns {
+        if wireframe.size() > self.params.refine.max_unknowns {
             return facets;
         }
         let near = vec![false; facets.len()];
         let observations = self.edge_observations(&wireframe, &state, &near);
-        if observations.len() < self.params.min_observations {
+        if observations.len() < self.params.refine.min_observations {
             return facets;
         }
-        let mut problem =
-            AdjustmentProblem::new(self.scene, &wireframe, &state, observations, self.params);
-        let heights = height_terms(&wireframe, &state, &all, self.lines, self.params);
+        let mut problem = AdjustmentProblem::new(
+            self.scene,
+            &wireframe,
+            &state,
+            observations,
+            &self.params.refine,
+        );
+        let heights = height_terms(&wireframe, &state, &all, self.lines, &self.params.refine);
         problem.terms.extend(heights);
         let pattern = problem.pattern();
         match problem.unsolved(&state, &pattern) {
@@ -291,7 +296,7 @@ impl BuildingRefiner<'_> {
             scene: self.scene,
             old: self.old,
             ground_z: self.building.ground_z,
-            params: self.params,
+            params: &self.params.refine,
         }
     }
 
@@ -303,7 +308,7 @@ impl BuildingRefiner<'_> {
         open: &[bool],
         report: &mut BuildingRefinement,
     ) -> Result<Vec<Facet>, (RefineRejection, Vec<usize>)> {
-        let params = self.params;
+        let params = &self.params.refine;
         let rejected = |why| (why, Vec::new());
         let from: Vec<&Facet> = (0..open.len())
             .map(|i| if open[i] { &simple[i] } else { self.old[i] })
@@ -454,7 +459,7 @@ mod tests {
 
     /// Refines and closes; gives the model and what happened to its only building.
     fn refine(scene: &Scene, model: &RoofModel) -> (RoofModel, BuildingRefinement) {
-        let (facets, trace) = refine_roofs(scene, &[], model, &RefineParams::default());
+        let (facets, trace) = refine_roofs(scene, &[], model, &RoofParams::default());
         let ground = model.buildings[0].ground_z;
         let (closed, solids) = close_buildings(&facets, |_| ground);
         assert_eq!(solids.rejected, []);
@@ -546,7 +551,7 @@ mod tests {
             view.gray.data.fill(0.5);
         }
         let model = changed(&truth, displaced);
-        let (facets, trace) = refine_roofs(&scene, &[], &model, &RefineParams::default());
+        let (facets, trace) = refine_roofs(&scene, &[], &model, &RoofParams::default());
         assert_eq!(facets, model.facets);
         let refused = trace.buildings[0].refused;
         assert_eq!(
@@ -584,7 +589,7 @@ mod tests {
         };
         let zigzag = [corner(0.3, 0.2), corner(0.6, -0.2)];
         facet.outer.splice(eave + 1..eave + 1, zigzag);
-        let (facets, trace) = refine_roofs(&scene, &[], &model, &RefineParams::default());
+        let (facets, trace) = refine_roofs(&scene, &[], &model, &RoofParams::default());
         assert!(trace.buildings[0].refused.is_some());
         assert_eq!(facets, straight);
     }

@@ -3,17 +3,19 @@
 //!
 //! On the roof the rows of all views agree; an edge of the roof is at the same step in all views,
 //! and whatever lies on the ground or on a wall is displaced. The gain of each step as the place of
-//! the side is an energy in the terms of the labelling.
+//! the side is the energy of the labelling, in nats: windows a metre apart are independent, borders cost by
+//! the metre.
 
 use nalgebra::Vector2;
 
 use super::wireframe::{Wireframe, WireframeSide, WireframeState};
+use crate::evidence::WindowEvidenceTable;
+use crate::facets::ON_LINE;
 use crate::geometry::Segment3;
 use crate::ids::ViewId;
 use crate::math;
 use crate::model::Occluders;
-use crate::params::RefineParams;
-use crate::photoconsistency::least_overall;
+use crate::params::{RefineParams, RoofParams};
 use crate::scene::Scene;
 
 /// Half the base of the difference across a side, in steps of half a pixel: one pixel.
@@ -29,7 +31,7 @@ const MIN_SEEN: f64 = 0.5;
 pub(crate) struct ShiftGains {
     /// First step that is allowed, from the side.
     pub first: isize,
-    /// For each step from there: the energy gained, square metres for the whole side.
+    /// For each step from there: the energy gained, nats for the whole side.
     pub gain: Vec<f64>,
     /// For each step from there: how clearly the views share an edge, 1 for the clearest, times the
     /// side's length.
@@ -49,13 +51,13 @@ pub(crate) struct SideProfile {
     pub differences: Vec<f64>,
 }
 
-/// Energy of the labelling gained by ending a facet at a step before its side, square metres.
+/// Energy of the labelling gained by ending a facet at a step before its side, nats.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CutBackGain {
     /// Gain: the views do not agree on what is cut off, less the cost of the border there.
-    pub energy_m2: f64,
-    /// Agreement of the views on what remains, as far as the profile reaches.
-    pub remaining_m2: f64,
+    pub nats: f64,
+    /// What the views say of what remains, as far as the profile reaches.
+    pub remaining_nats: f64,
 }
 
 /// The profiles of all views across a side.
@@ -200,14 +202,14 @@ impl SideProfiles {
         &self,
         reach_m: f64,
         known_to_m: f64,
-        params: &RefineParams,
+        params: &RoofParams,
     ) -> Option<ShiftGains> {
-        (self.views.len() >= params.min_views).then_some(())?;
+        (self.views.len() >= params.refine.min_views).then_some(())?;
         let middle = self.middle();
         let steps = ((reach_m / self.step_m()) as usize + 1).min(middle - 1);
         let (first, last) = (middle - steps, middle + steps);
         let shared: Vec<f64> = (first..=last).map(|k| self.shared(k)).collect();
-        let least = params.least_contrast / (self.samples as f64).sqrt();
+        let least = params.refine.least_contrast / (self.samples as f64).sqrt();
         let strongest = shared.iter().copied().fold(0.0, f64::max);
         (strongest >= least).then_some(())?;
         let length = self.segment.length();
@@ -219,11 +221,12 @@ impl SideProfiles {
             }
         };
         let edge: Vec<f64> = shared.iter().map(edge).collect();
+        let on_edge = (1.0 - ON_LINE) * params.border_nats_per_m;
         let mut inside = 0.0;
         let gain = (first..=last).map(|k| {
-            inside += self.agreement(k, params) * self.step_m() * length;
+            inside += self.nats_per_m2(k) * self.step_m() * length;
             let moved = (k as f64 - middle as f64) * self.step_m() / known_to_m;
-            inside + params.edge_gain_m * (edge[k - first] - moved * moved * length)
+            inside + on_edge * edge[k - first] - 0.5 * moved * moved * length
         });
         Some(ShiftGains {
             first: -(steps as isize),
@@ -234,15 +237,15 @@ impl SideProfiles {
 
     /// Energy gained by ending the facet at each step back from the side; `None` where too few
     /// views see the side.
-    pub(crate) fn cut_back_gains(&self, params: &RefineParams) -> Option<Vec<CutBackGain>> {
-        (self.views.len() >= params.min_views).then_some(())?;
+    pub(crate) fn cut_back_gains(&self, params: &RoofParams) -> Option<Vec<CutBackGain>> {
+        (self.views.len() >= params.refine.min_views).then_some(())?;
         let middle = self.middle();
         let shared: Vec<f64> = (0..=middle).map(|k| self.shared(k)).collect();
-        let least = params.least_contrast / (self.samples as f64).sqrt();
+        let least = params.refine.least_contrast / (self.samples as f64).sqrt();
         let strongest = shared.iter().copied().fold(least, f64::max);
         let length = self.segment.length();
         let agreement: Vec<f64> = (0..middle)
-            .map(|k| self.agreement(k, params) * self.step_m())
+            .map(|k| self.nats_per_m2(k) * self.step_m())
             .collect();
         let mut inside: f64 = agreement.iter().sum();
         let mut strip = 0.0;
@@ -250,31 +253,36 @@ impl SideProfiles {
         for k in (0..middle).rev() {
             strip += agreement[k];
             inside -= agreement[k];
-            let edge = params.edge_gain_m * shared[k] / strongest;
+            let border = 1.0 - (1.0 - ON_LINE) * shared[k] / strongest;
             gains.push(CutBackGain {
-                energy_m2: length * (edge - params.border_cost_m - strip),
-                remaining_m2: length * inside,
+                nats: -length * (params.border_nats_per_m * border + strip),
+                remaining_nats: length * inside,
             });
         }
         Some(gains)
     }
 
-    /// Mean correlation of the rows of all pairs of views at a step, less the correlation at which
-    /// a plane is as good as none, and weighted by texture: a row has no width, so unlike a window
-    /// it does not reach over the edge.
-    fn agreement(&self, k: usize, params: &RefineParams) -> f64 {
-        let (mut sum, mut pairs) = (0.0, 0.0f64);
+    /// What the rows of the views at a step say of the plane, nats for a square metre, by the table
+    /// of the windows: a row has no width, so unlike a window it does not reach over the edge.
+    fn nats_per_m2(&self, k: usize) -> f64 {
+        let (mut sum, mut weights, mut pairs) = (0.0, 0.0, 0.0f64);
         for (i, a) in self.views.iter().enumerate() {
             for b in &self.views[i + 1..] {
                 let [saa, sbb, sab] = covariances(&a.rows[k], &b.rows[k]);
                 let (texture, variance) = ((saa * sbb).sqrt(), a.noise * b.noise);
                 let correlation = if texture > 0.0 { sab / texture } else { 0.0 };
                 let weight = texture / (texture + variance);
-                sum += weight * (correlation - least_overall(weight, params.min_correlation));
+                sum += weight * correlation;
+                weights += weight;
                 pairs += 1.0;
             }
         }
-        sum / pairs.max(1.0)
+        if weights <= 0.0 {
+            return 0.0;
+        }
+        let (weight, correlation) = (weights / pairs, sum / weights);
+        let table = WindowEvidenceTable::fitted();
+        table.nats_of(weight as f32, correlation as f32) + weight * table.prior
     }
 
     /// The step at the side itself.
@@ -363,10 +371,9 @@ mod tests {
     }
 
     #[test]
-    fn less_is_asked_of_weak_texture() {
-        let params = RefineParams::default();
+    fn moderate_correlation_speaks_against_a_plane_where_there_is_texture_alone() {
         let (weak, strong) = (two_views(0.004), two_views(0.4));
-        assert!(weak.agreement(0, &params) > 0.0, "more than chance");
-        assert!(strong.agreement(0, &params) < 0.0, "no roof");
+        assert!(weak.nats_per_m2(0) > 0.0, "more than chance");
+        assert!(strong.nats_per_m2(0) < 0.0, "no roof");
     }
 }
