@@ -27,10 +27,11 @@ impl JsonError {
 }
 
 /// Parameters of older files that nothing reads any more, by the keys that lead to them.
-const RETIRED: [[&str; 3]; 16] = [
+const RETIRED: [[&str; 3]; 17] = [
     ["", "roof", "border_cost_m"],
     ["", "roof", "half_plane_gain_m"],
     ["", "roof", "min_real_ratio"],
+    ["", "roof", "min_correlation"],
     ["roof", "refine", "edge_gain_m"],
     ["roof", "refine", "min_correlation"],
     ["roof", "refine", "part_gain_m"],

@@ -136,9 +136,6 @@ pub struct RoofParams {
     /// Lines are extended by at least this much at both ends to meet others, metres (B99 figure
     /// 22). Assumption.
     pub extension_m: f64,
-    /// Correlation at which a plane is as good as no plane. Assumption: half-way between what true
-    /// planes and chance reach; B99 accepts half-planes from `Sim = 0.4` on.
-    pub min_correlation: f64,
     /// Cost of a metre of facet border that no line supports, nats; a square metre on which the
     /// views agree has about five. Measured: half and twice as much find as many facets.
     pub border_nats_per_m: f64,
@@ -162,7 +159,6 @@ impl Default for RoofParams {
             min_facet_depth_m: 5.0,
             max_facet_depth_m: 15.0,
             extension_m: 1.5,
-            min_correlation: 0.45,
             border_nats_per_m: 1.25,
             min_area_m2: 1.5,
             min_height_m: 1.2,

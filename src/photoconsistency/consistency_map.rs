@@ -62,26 +62,9 @@ impl ConsistencyMap {
     }
 }
 
-/// Chance correlation of unrelated windows, in the better half of the pairs. Measured: 0.2 to 0.4
-/// on planes a metre beside the true ones.
-const CHANCE: f64 = 0.3;
-
-/// Correlation at which a plane is as good as no plane, for a texture `weight`: `textured` where
-/// the texture is strong, chance where there is none.
-pub(crate) fn least_correlation(weight: f64, textured: f64) -> f64 {
-    CHANCE + (textured - CHANCE) * weight
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn less_is_asked_of_weak_texture() {
-        assert_eq!(least_correlation(1.0, 0.45), 0.45);
-        assert_eq!(least_correlation(0.0, 0.45), CHANCE);
-        assert!(least_correlation(0.3, 0.45) < least_correlation(0.6, 0.45));
-    }
 
     #[test]
     fn the_best_of_the_named_maps_is_taken_with_its_weight() {

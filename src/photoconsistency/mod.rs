@@ -31,7 +31,6 @@ mod windows;
 
 pub(crate) use box_sum::{BoxSum, HALF_WINDOW, RowSum, WINDOW, WINDOW_CELLS};
 pub(crate) use consistency_map::ConsistencyMap;
-pub(crate) use consistency_map::least_correlation;
 pub(crate) use line_side_strip::{LineSideStrip, StripPatch};
 pub(crate) use plan_grid::{PlanGrid, orthophoto};
 pub(crate) use plane_consistency::{consistency_map, consistency_map_behind};

@@ -12,8 +12,8 @@
 //! * Weak texture: where the grey values vary no more than the noise, correlation is no evidence
 //!   for or against; each position carries the weight `s^2 / (s^2 + n^2)` with s the standard
 //!   deviation within the window and n that of the noise. It is also about what the views of a true
-//!   plane correlate by beyond chance, so the threshold falls with it
-//!   ([`super::consistency_map::least_correlation`]).
+//!   plane correlate by beyond chance; what a correlation says at a weight is a fitted table
+//!   ([`crate::evidence`]).
 
 use nalgebra::Point3;
 

@@ -6,14 +6,13 @@ use super::grouping::{GroupingInput, PlanRegion, PlaneGroup};
 use super::line_sides::{NEXT_TO, across, beside, crosses_surface};
 use super::plane_lines::{PlaneLine, lines_in_plane, rays_through_ends};
 use super::single_view::{SingleViewEvidence, single_view_evidence};
+use crate::evidence::WindowEvidenceTable;
 use crate::execution::{Sharded, sharded_map};
 use crate::geometry::{Segment3, bounds};
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Side;
 use crate::params::RoofParams;
-use crate::photoconsistency::{
-    ConsistencyMap, PlanGrid, WINDOW, consistency_map, least_correlation,
-};
+use crate::photoconsistency::{ConsistencyMap, PlanGrid, WINDOW, consistency_map};
 use crate::scene::Scene;
 
 /// A plane with its evidence.
@@ -43,16 +42,14 @@ pub(crate) fn plane_hypotheses(
 ) -> Sharded<Vec<PlaneHypothesis>> {
     let rays = rays_through_ends(scene, segments);
     let built = sharded_map("planes", &groups, 0.2..0.6, |_, group| {
-        if group.is_propagated(input)
-            && !confirmed_beside_lines(input, group, reduced, step, params)
-        {
+        if group.is_propagated(input) && !confirmed_beside_lines(input, group, reduced, step) {
             return None;
         }
         let region = PlanRegion::new(input, group, params);
         let [min, max] = region.bounds();
         let map = consistency_map(reduced, &group.plane, &PlanGrid::covering(min, max, step));
         let proposed_by_lines = group.half_planes().is_empty() && group.proposals.is_empty();
-        if proposed_by_lines && !supported(input, group, &map, params) {
+        if proposed_by_lines && !supported(input, group, &map) {
             return None;
         }
         let single_view = single_view_evidence(scene, &group.plane, &region, &map);
@@ -79,29 +76,23 @@ pub(crate) fn plane_hypotheses(
 
 /// Where there is texture, are the views consistent with the plane beside at least two of its
 /// lines?
-fn supported(
-    input: &GroupingInput,
-    group: &PlaneGroup,
-    map: &ConsistencyMap,
-    params: &RoofParams,
-) -> bool {
-    let excesses = group.members.iter().filter_map(|m| {
+fn supported(input: &GroupingInput, group: &PlaneGroup, map: &ConsistencyMap) -> bool {
+    let lines = group.members.iter().filter_map(|m| {
         let line = &input.lines[m.line.index()].segment;
-        let seen = beside(map, line, m.side?, NEXT_TO);
-        let (excess, weight) = excess_and_weight(&seen, params);
-        (weight > 0.0).then_some((excess, weight))
+        let (nats, weight) = nats_and_weight(&beside(map, line, m.side?, NEXT_TO));
+        (weight > 0.0).then_some(nats)
     });
-    let excesses: Vec<(f64, f64)> = excesses.collect();
-    let agreeing = excesses.iter().filter(|(e, w)| *e >= -SCATTER * w);
-    agreeing.clone().count() >= 2 && agreeing.map(|(e, _)| e).sum::<f64>() >= 0.0
+    lines.filter(|nats| *nats > 0.0).count() >= 2
 }
 
-/// Sums over some positions of weight x (correlation - least correlation), and of the weight.
-fn excess_and_weight(seen: &[(f32, f32)], params: &RoofParams) -> (f64, f64) {
-    seen.iter().fold((0.0, 0.0), |(excess, weight), (c, w)| {
-        let (c, w) = (f64::from(*c), f64::from(*w));
-        let least = least_correlation(w, params.min_correlation);
-        (excess + w * (c - least), weight + w)
+/// Sums over some positions of what the windows say of the plane, with the odds of a plane beside
+/// its lines, nats, and of their weights.
+fn nats_and_weight(seen: &[(f32, f32)]) -> (f64, f64) {
+    let table = WindowEvidenceTable::fitted();
+    seen.iter().fold((0.0, 0.0), |(nats, weights), (c, w)| {
+        let weight = f64::from(*w);
+        let of_window = table.nats_of(*w, *c) + weight * table.prior;
+        (nats + of_window, weights + weight)
     })
 }
 
@@ -112,9 +103,8 @@ fn confirmed_beside_lines(
     group: &PlaneGroup,
     reduced: &Scene,
     step: f64,
-    params: &RoofParams,
 ) -> bool {
-    let (mut excess, mut weight, mut positions) = (0.0, 0.0, 0);
+    let (mut nats, mut weight, mut positions) = (0.0, 0.0, 0);
     for m in group.members.iter().filter(|m| m.half_plane.is_some()) {
         let (line, Some(side)) = (&input.lines[m.line.index()].segment, m.side) else {
             continue;
@@ -123,12 +113,12 @@ fn confirmed_beside_lines(
         let map = consistency_map(reduced, &group.plane, &grid);
         for row in [NEXT_TO, 2.0 * NEXT_TO, 3.0 * NEXT_TO] {
             let seen = beside(&map, line, side, row);
-            let (of_row, its_weight) = excess_and_weight(&seen, params);
-            (excess, weight) = (excess + of_row, weight + its_weight);
+            let (of_row, its_weight) = nats_and_weight(&seen);
+            (nats, weight) = (nats + of_row, weight + its_weight);
             positions += seen.len();
         }
     }
-    excess > -SCATTER * weight && weight < WEAK * positions as f64
+    nats > 0.0 && weight < WEAK * positions as f64
 }
 
 /// The plan beside a line that [`confirmed_beside_lines`] samples, with half a window around.
@@ -145,8 +135,6 @@ fn grid_beside(line: &Segment3, side: Side, step: f64) -> PlanGrid {
 /// planes of rendered scenes that became facets, false ones have 0.84 and more, 10 of 12 true ones
 /// less than 0.81; beside their lines the limit must be lower still.
 const WEAK: f64 = 0.65;
-/// Scatter of the mean correlation beside a line. Assumption: some ten independent windows.
-const SCATTER: f64 = 0.05;
 
 #[cfg(test)]
 mod tests {
@@ -189,7 +177,7 @@ mod tests {
                 }],
                 proposals: Vec::new(),
             };
-            confirmed_beside_lines(&input, &group, &scene, 0.1, &RoofParams::default())
+            confirmed_beside_lines(&input, &group, &scene, 0.1)
         };
         assert!(confirmed_at(-0.4, 0.15), "drowned in noise, but there");
         assert!(!confirmed_at(-0.4, 0.01), "the sweep would have found it");
