@@ -1,10 +1,11 @@
-//! The photo-consistency map of a plane, and the correlation that windows reach by chance.
+//! The photo-consistency map of a plane.
 
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
 use super::plan_grid::PlanGrid;
+use crate::evidence::WindowEvidenceTable;
 
 /// Most views compared: pairs grow with the square and six views saturate the measure.
 pub(crate) const MAX_VIEWS: usize = 6;
@@ -48,6 +49,11 @@ impl ConsistencyMap {
             best.common_weight[k] = map.common_weight[k];
         }
         Some(best)
+    }
+
+    /// What the window at cell `k` says of the plane, nats.
+    pub(crate) fn nats(&self, k: usize) -> f64 {
+        WindowEvidenceTable::fitted().nats(self.weight[k], self.correlation[k])
     }
 
     /// Texture weight of the window at cell `k`, 0 to 1; 0 where fewer than two views see the

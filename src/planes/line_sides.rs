@@ -2,26 +2,27 @@
 
 use nalgebra::{Point2, Vector2};
 
+use crate::evidence::WindowEvidenceTable;
 use crate::geometry::Segment3;
 use crate::lines3d::Side;
 use crate::photoconsistency::{ConsistencyMap, PlanGrid};
 
 /// Distance from a line at which its sides are sampled, cells: farther than half a window.
 pub(super) const NEXT_TO: f64 = 8.0;
-/// Correlation and texture weight from which on a position clearly shows the plane's surface.
-pub(super) const ON_SURFACE: f32 = 0.65;
-/// See [`ON_SURFACE`].
-pub(super) const TEXTURED: f32 = 0.3;
+/// What a window says of a plane, nats, whose surface it clearly shows, ln 3: three times likelier
+/// than not. Of one that clearly shows another surface it is as much below zero.
+pub(super) const CLEAR_NATS: f64 = 1.1;
 
 /// Does the plane's surface clearly continue on both sides of the line? Rows of tiles do that,
 /// borders do not.
 pub(crate) fn crosses_surface(map: &ConsistencyMap, line: &Segment3) -> bool {
+    let table = WindowEvidenceTable::fitted();
     [Side::Left, Side::Right].into_iter().all(|side| {
         let seen = beside(map, line, side, NEXT_TO);
         let on = seen
             .iter()
-            .filter(|(c, w)| *c >= ON_SURFACE && *w >= TEXTURED)
-            .count();
+            .filter(|(c, w)| table.nats_of(*w, *c) >= CLEAR_NATS);
+        let on = on.count();
         !seen.is_empty() && on * 5 >= seen.len() * 4
     })
 }

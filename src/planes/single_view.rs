@@ -11,7 +11,7 @@ use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 
 use super::grouping::PlanRegion;
-use super::line_sides::{ON_SURFACE, TEXTURED, places_beside};
+use super::line_sides::{CLEAR_NATS, places_beside};
 use crate::geometry::{Plane, Segment3};
 use crate::lines3d::Side;
 use crate::math::median;
@@ -26,8 +26,6 @@ const SAMPLES: usize = 24;
 /// Least area seen consistently by several views from which the appearance is estimated, square
 /// metres. Assumption: some windows.
 const LEAST_REFERENCE_M2: f64 = 2.0;
-/// Correlation below which a textured position is not on the plane. Assumption: chance correlation.
-const OFF_SURFACE: f32 = 0.3;
 /// Squared Mahalanobis distance at which an appearance is neutral: three standard deviations.
 const GATE: f64 = 9.0;
 /// Least standard deviation of an appearance, in grey values of range 1: the light differs along a
@@ -75,10 +73,9 @@ impl SingleViewEvidence {
     /// The evidence for the surface at a position, from -1, another surface, to 1, by one view or
     /// by several.
     fn surface_at(&self, map: &ConsistencyMap, k: usize) -> f64 {
-        let textured = map.weight(k) >= TEXTURED;
-        match map.correlation(k) {
-            on if textured && on >= ON_SURFACE => 1.0,
-            off if textured && off < OFF_SURFACE => -1.0,
+        match map.nats(k) {
+            on if on >= CLEAR_NATS => 1.0,
+            off if off <= -CLEAR_NATS => -1.0,
             _ => self.at(k),
         }
     }
@@ -136,9 +133,7 @@ pub(crate) fn single_view_evidence(
 fn reference_cells(region: &PlanRegion, map: &ConsistencyMap) -> Vec<usize> {
     let grid = &map.grid;
     let on = |k: &usize| {
-        map.weight(*k) >= TEXTURED
-            && map.correlation(*k) >= ON_SURFACE
-            && region.contains(&grid.center(k % grid.width, k / grid.width))
+        map.nats(*k) >= CLEAR_NATS && region.contains(&grid.center(k % grid.width, k / grid.width))
     };
     (0..grid.width * grid.height).filter(on).collect()
 }
@@ -235,7 +230,7 @@ impl SurfaceAppearance {
             surface = Self::from_samples(alike)?;
         }
         let off = (0..map.grid.width * map.grid.height)
-            .filter(|&k| map.weight(k) >= TEXTURED && map.correlation(k) < OFF_SURFACE)
+            .filter(|&k| map.nats(k) <= -CLEAR_NATS)
             .filter_map(|k| appearances.at(k));
         let (alike, all) = off.fold((0.0, 0.0), |(alike, all), appearance| {
             (alike + surface.likeness(&appearance).max(0.0), all + 1.0)
