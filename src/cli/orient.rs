@@ -5,11 +5,15 @@ use std::sync::Arc;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::execution::progress::{Listener, with_listener};
+use ridgeline::orientation::InputFile;
 use ridgeline::structure_from_motion::{FeatureOptions, OrientOptions, orient as orient_photos};
 
 use super::args::OrientArgs;
 use super::failure::Failure;
 use super::{files, input};
+
+/// What a list of ground control points is called among photographs.
+const GCP_LIST: &str = "gcp_list.txt";
 
 /// Steps of the progress bar.
 const BAR_STEPS: f64 = 1000.0;
@@ -23,7 +27,17 @@ pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
         ))
     })?;
     input::set_threads(args.threads);
-    let (photographs, seen) = files::read_scene(&args.photos, &args.out)?;
+    let (mut photographs, seen) = files::read_scene(&args.photos, &args.out)?;
+    if let Some(path) = &args.gcp {
+        let list = fs::read(path).map_err(|e| {
+            Failure::Input(format!(
+                "{}: cannot be read: {e}; give --gcp a list of ground control points",
+                path.display()
+            ))
+        })?;
+        photographs.retain(|file| !file.name().eq_ignore_ascii_case(GCP_LIST));
+        photographs.push(InputFile::new(GCP_LIST, list));
+    }
     for notice in seen.notices() {
         eprintln!("warning: {notice}");
     }
@@ -51,8 +65,9 @@ pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
     eprintln!("{seen}");
     files::write_all(&args.out, &oriented.files())?;
     print!("{}", oriented.report.to_text());
+    let epsg = (oriented.report.epsg).map_or_else(String::new, |code| format!(" --epsg {code}"));
     println!(
-        "written to {}; go on with: ridgeline reconstruct {} --orientation {}",
+        "written to {}; go on with: ridgeline reconstruct {} --orientation {}{epsg}",
         args.out.display(),
         args.photos.display(),
         args.out.display()

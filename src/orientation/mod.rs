@@ -47,7 +47,6 @@ mod image_orientation;
 mod input_file;
 #[cfg(feature = "reconstruction")]
 mod metric_frame;
-#[cfg(feature = "reconstruction")]
 mod reference;
 #[cfg(feature = "reconstruction")]
 mod sets;
@@ -72,7 +71,8 @@ pub(crate) use input_file::stem;
 #[cfg(feature = "reconstruction")]
 pub use metric_frame::to_metric_frame;
 #[cfg(feature = "reconstruction")]
-pub use reference::{StatedReference, epsg_of};
+pub use reference::StatedReference;
+pub use reference::epsg_of;
 #[cfg(feature = "reconstruction")]
 pub use sets::{OrientationSet, orientation_sets};
 #[cfg(feature = "reconstruction")]

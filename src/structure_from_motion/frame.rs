@@ -1,5 +1,7 @@
 //! Metres and Z up: the block in a frame of the world, and what that rests on.
 //!
+//! Ground control points come before all of this ([`super::ground_control`]).
+//!
 //! 1. Stated positions (GPS), three or more that differ by more than their noise: a robust
 //!    similarity to them. Heights of consumer receivers are off by tens of metres, all by the same,
 //!    which no photograph contradicts. Along a single strip the turn about the strip is open, and
@@ -10,6 +12,7 @@
 use nalgebra::{Matrix3, Point3, Rotation3, SymmetricEigen, Vector3};
 
 use super::block::Block;
+use super::ground_control::ControlResidual;
 use super::linear::rotation_between;
 use super::random::Random;
 use super::similarity::Similarity;
@@ -28,6 +31,21 @@ pub(super) struct StatedPose {
 /// What the frame of the world rests on.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FrameBasis {
+    /// Ground control points.
+    Control {
+        /// The reference system as it is stated.
+        system: String,
+        /// Its EPSG code, where coordinates are on a map.
+        epsg: Option<u32>,
+        /// Zero of the coordinates on the Earth, for longitudes and latitudes.
+        anchor: Option<Anchor>,
+        /// Coordinates on the map of the frame's zero, metres.
+        offset: [f64; 3],
+        /// The points.
+        points: Vec<ControlResidual>,
+        /// Root mean square residual of the agreeing ones, in plan and in height, metres.
+        rms_m: [f64; 2],
+    },
     /// Stated positions.
     Positions {
         /// Zero of the coordinates on the Earth.
@@ -187,16 +205,16 @@ fn robust_similarity(from: &[Point3<f64>], to: &[Point3<f64>]) -> Option<(Simila
 }
 
 /// How far points spread along their main axes.
-struct Spread {
+pub(super) struct Spread {
     /// Standard deviations, the largest first.
-    lengths: [f64; 3],
+    pub lengths: [f64; 3],
     /// Direction of the largest one.
     axis: Vector3<f64>,
     /// Direction of the least one.
     normal: Vector3<f64>,
 }
 
-fn spread(points: &[Point3<f64>]) -> Spread {
+pub(super) fn spread(points: &[Point3<f64>]) -> Spread {
     let middle = mean_point(points);
     let square = points.iter().fold(Matrix3::zeros(), |sum, p| {
         let d = p - middle;

@@ -24,6 +24,9 @@ pub struct Intrinsics {
 /// Parameters of [`Intrinsics`], in the order of the adjustment: f, k1, k2, cx, cy.
 pub(super) const PARAMETERS: usize = 5;
 
+/// Prior standard deviation of a stated focal length, a share of it.
+pub(super) const STATED_FOCAL_PRIOR: f64 = 0.05;
+
 impl Intrinsics {
     /// A camera without distortion, its principal point in the middle.
     pub fn new(focal: f64, size: [u32; 2]) -> Self {

@@ -7,7 +7,7 @@
 //!    -> verification   two_view: essential matrix, homography or rotation of each pair
 //!    -> tracks         matches joined over all photographs
 //!    -> incremental    a first pair; resection, triangulation, bundle, outliers, photo by photo
-//!    -> frame          metres and Z up
+//!    -> frame          metres and Z up; by ground_control where points are known
 //!    -> output         COLMAP's text model, the report
 //!
 //! block          photographs, cameras, tracks: what the steps above change
@@ -22,6 +22,7 @@ mod block;
 mod bundle;
 mod features;
 mod frame;
+mod ground_control;
 mod incremental;
 mod intrinsics;
 mod linear;
@@ -43,6 +44,7 @@ mod verification;
 pub use block::Pose;
 pub use features::FeatureOptions;
 pub use frame::FrameBasis;
+pub use ground_control::{ControlPoint, ControlResidual, GroundControl};
 pub use intrinsics::Intrinsics;
 pub use metadata::PhotoMetadata;
 pub use orient::{

@@ -135,6 +135,111 @@ fn photographs_alone_are_oriented_and_go_on_to_a_scene() {
     assert_eq!(loaded.views.len(), 9);
 }
 
+/// A JPEG whose header asks for a turn or a mirror.
+fn with_exif_orientation(jpeg: &[u8], orientation: u8) -> Vec<u8> {
+    let mut exif = b"Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0".to_vec();
+    exif.extend([orientation, 0, 0, 0, 0, 0, 0, 0]);
+    let length = (exif.len() + 2) as u16;
+    let segment = [&[0xff, 0xe1][..], &length.to_be_bytes(), &exif].concat();
+    [&jpeg[..2], &segment, &jpeg[2..]].concat()
+}
+
+#[test]
+fn a_list_of_control_points_beside_the_photographs_gives_the_map() {
+    let (scene, _) = drone_scene(SIZE_PX);
+    let mut files = photographs(&scene);
+    let map = nalgebra::Vector3::new(432_150.0, 5_412_340.0, 0.0);
+    let mut list = "WGS84 UTM 32N\n".to_owned();
+    let places = [
+        [-9.0, -8.0, 0.0],
+        [9.0, -7.0, 0.0],
+        [8.0, 9.0, 0.0],
+        [-8.0, 7.0, 3.0],
+    ];
+    for [x, y, z] in places {
+        for (view, file) in scene.views.iter().zip(&files) {
+            let seen = view.camera.project(&Point3::new(x, y, z)).unwrap();
+            let name = file.name();
+            let [e, n] = [x + map.x, y + map.y];
+            list += &format!("{e} {n} {z} {} {} {name}\n", seen.x, seen.y);
+        }
+    }
+    files.push(InputFile::new("gcp_list.txt", list.into_bytes()));
+    let oriented = orient(&files, &options()).unwrap();
+    let report = &oriented.report;
+    assert!(
+        report.is_metric && report.epsg == Some(32632),
+        "{}",
+        report.to_text()
+    );
+    assert_eq!(report.control.len(), 4);
+    assert!(
+        report.frame.contains("4 of 4 ground control points"),
+        "{}",
+        report.to_text()
+    );
+    for (photo, view) in oriented.model.photos.iter().zip(&scene.views) {
+        let on_map = photo.pose.center + oriented.model.offset;
+        let off = (on_map - (view.camera.center + map)).norm();
+        // A ground pixel is 0.17 m; heights follow the focal length, which nothing states.
+        assert!(off < 0.5, "{}: {off} m", photo.path);
+    }
+    let images = String::from_utf8(oriented.files()[1].1.clone()).unwrap();
+    let third = images.lines().nth(2).unwrap();
+    let far = third
+        .split(' ')
+        .skip(5)
+        .take(3)
+        .map(|t| t.parse::<f64>().unwrap().abs());
+    assert!(far.fold(0.0, f64::max) > 5e6, "{third}");
+}
+
+#[test]
+fn a_stated_focal_length_that_the_photographs_contradict_is_named() {
+    let files = photographs(&drone_scene(SIZE_PX).0);
+    let stated = |focal_px: f64| OrientOptions {
+        focal_px: Some(focal_px),
+        ..options()
+    };
+    let warned = |focal: f64| {
+        let report = orient(&files, &stated(focal)).unwrap().report;
+        let mut warnings = report.warnings.into_iter();
+        warnings.any(|w| w.contains("contradict the stated focal length"))
+    };
+    assert!(!warned(0.9 * f64::from(SIZE_PX)));
+    assert!(warned(1.2 * f64::from(SIZE_PX)));
+}
+
+#[test]
+fn a_turned_photograph_is_worked_on_as_it_is_stored() {
+    let (scene, _) = drone_scene(SIZE_PX);
+    let rgb = &scene.views[0].rgb;
+    let cut = image::imageops::crop_imm(rgb, 0, 0, 300, 200).to_image();
+    let mut jpeg = std::io::Cursor::new(Vec::new());
+    cut.write_to(&mut jpeg, image::ImageFormat::Jpeg).unwrap();
+    let jpeg = jpeg.into_inner();
+    let read = |bytes: Vec<u8>| ReadPhoto::read(&InputFile::new("a.jpg", bytes), &options());
+    let plain = read(jpeg.clone());
+    assert_eq!(plain.size(), Some([300, 200]));
+    for turn in [3, 6, 8] {
+        let turned = read(with_exif_orientation(&jpeg, turn));
+        assert_eq!(turned.to_bytes(), plain.to_bytes(), "{turn}");
+    }
+    let mirrored = read(with_exif_orientation(&jpeg, 2)).problem().unwrap();
+    assert!(mirrored.contains("mirror"), "{mirrored}");
+}
+
+#[test]
+fn four_photographs_tell_the_focal_length() {
+    let (scene, _) = drone_scene(SIZE_PX);
+    let mut files = photographs(&scene);
+    files.truncate(4);
+    let oriented = orient(&files, &options()).unwrap();
+    assert_eq!(oriented.report.photos.len(), 4);
+    let focal = oriented.model.cameras[0].focal / f64::from(SIZE_PX);
+    assert!((focal - 0.9).abs() < 0.02, "{focal}");
+}
+
 #[test]
 fn a_camera_that_only_turns_is_refused_by_name() {
     let size = SIZE_PX;

@@ -54,25 +54,31 @@ pub(super) fn match_pairs(
         .collect())
 }
 
-/// The geometry of all pairs; those without one are left out.
+/// The geometry of all pairs, under each of several hypotheses of the cameras; pairs without one
+/// are left out.
 pub(super) fn verify(
     photos: &[MatchedPhoto],
-    cameras: &[Intrinsics],
+    under: &[Vec<Intrinsics>],
     pairs: &[MatchedPair],
     part: Range<f64>,
-) -> Sharded<Vec<VerifiedPair>> {
-    let found = sharded_map("pairs", pairs, part, |_, pair| {
-        geometry(photos, cameras, pair)
+) -> Sharded<Vec<Vec<VerifiedPair>>> {
+    let sought: Vec<(usize, &MatchedPair)> = (0..under.len())
+        .flat_map(|place| pairs.iter().map(move |pair| (place, pair)))
+        .collect();
+    let found = sharded_map("pairs", &sought, part, |_, &(place, pair)| {
+        geometry(photos, &under[place], pair)
     })?;
-    let verified = (pairs.iter().zip(found)).filter_map(|(pair, geometry)| {
-        let geometry = geometry?;
-        Some(VerifiedPair {
-            photos: pair.photos,
-            matches: geometry.inliers.iter().map(|&i| pair.matches[i]).collect(),
-            geometry,
-        })
-    });
-    Ok(verified.collect())
+    let mut verified: Vec<Vec<VerifiedPair>> = under.iter().map(|_| Vec::new()).collect();
+    for (&(place, pair), geometry) in sought.iter().zip(found) {
+        if let Some(geometry) = geometry {
+            verified[place].push(VerifiedPair {
+                photos: pair.photos,
+                matches: geometry.inliers.iter().map(|&i| pair.matches[i]).collect(),
+                geometry,
+            });
+        }
+    }
+    Ok(verified)
 }
 
 fn geometry(
@@ -97,14 +103,15 @@ fn geometry(
     two_view_geometry(&rays, sigma, range, seed)
 }
 
-/// The focal length (a share of the longer side) under which the pairs with the most matches are
-/// likeliest, for the cameras that are marked.
+/// The cameras under each guess of the focal length of those that are marked, a share of the longer
+/// side; those under which the pairs with the most matches are likeliest first. Without a mark, the
+/// cameras as they are.
 pub(super) fn guess_focal(
     photos: &[MatchedPhoto],
-    cameras: &mut [Intrinsics],
+    cameras: &[Intrinsics],
     is_guessed: &[bool],
     pairs: &[MatchedPair],
-) -> Sharded<()> {
+) -> Sharded<Vec<Vec<Intrinsics>>> {
     let mut judges: Vec<&MatchedPair> = (pairs.iter())
         .filter(|p| p.photos.iter().any(|&i| is_guessed[photos[i].camera]))
         .collect();
@@ -139,16 +146,15 @@ pub(super) fn guess_focal(
     let scores = sharded_map("focal lengths", &tried, 0.6..0.65, |_, &(guess, pair)| {
         geometry(photos, &under[guess], pair).map_or(0.0, |g| g.score)
     })?;
-    let mut best: Option<(f64, usize)> = None;
-    for guess in 0..GUESSES.len() {
-        let of_guess = tried.iter().zip(&scores).filter(|((g, _), _)| *g == guess);
-        let score: f64 = of_guess.map(|(_, score)| *score).sum();
-        if best.is_none_or(|(most, _)| score > most) {
-            best = Some((score, guess));
-        }
+    if judges.is_empty() {
+        return Ok(vec![cameras.to_vec()]);
     }
-    if let Some((_, guess)) = best {
-        cameras.clone_from_slice(&under[guess]);
-    }
-    Ok(())
+    let mut ranked: Vec<(f64, Vec<Intrinsics>)> = (under.into_iter().enumerate())
+        .map(|(guess, cameras)| {
+            let of_guess = tried.iter().zip(&scores).filter(|((g, _), _)| *g == guess);
+            (of_guess.map(|(_, score)| *score).sum(), cameras)
+        })
+        .collect();
+    ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+    Ok(ranked.into_iter().map(|(_, cameras)| cameras).collect())
 }

@@ -6,6 +6,7 @@
 //! normal_equations      linearised observations; points eliminated by the Schur complement
 //! cholesky              the solution of the reduced system
 //! levenberg_marquardt   the steps
+//! truncated             the cost of all observations, to compare blocks
 //! covariance            of the unknowns, in the datum of the projection centres
 //! ```
 //!
@@ -17,10 +18,12 @@ mod covariance;
 mod levenberg_marquardt;
 mod normal_equations;
 mod options;
+mod truncated;
 
 pub(super) use covariance::{Covariance, covariance};
 pub(super) use levenberg_marquardt::adjust;
 pub(super) use options::BundleOptions;
+pub(super) use truncated::truncated_cost;
 
 #[cfg(test)]
 pub(super) mod tests;

@@ -133,11 +133,7 @@ pub(super) fn cost(block: &Block, layout: &Layout, priors: &[Prior]) -> f64 {
             let Some(point) = &track.point else { continue };
             for o in track.used() {
                 let r = block.residual(o, point);
-                sum += if r.is_finite() {
-                    LOSS * LOSS * math::ln(1.0 + r * r / (LOSS * LOSS))
-                } else {
-                    BEHIND
-                };
+                sum += if r.is_finite() { loss(r) } else { BEHIND };
             }
         }
         sum
@@ -156,6 +152,11 @@ pub(super) fn cost(block: &Block, layout: &Layout, priors: &[Prior]) -> f64 {
         }
     }
     total
+}
+
+/// Cauchy's loss of a residual in standard deviations.
+pub(super) fn loss(r: f64) -> f64 {
+    LOSS * LOSS * math::ln(1.0 + r * r / (LOSS * LOSS))
 }
 
 /// The reduced system of a block; held parameters keep a step of zero.

@@ -65,11 +65,15 @@ fn is_positive(value: &f64) -> bool {
 /// else by the field of view on film.
 fn focal_px(tags: &Tags, calibrated: Option<f64>, [width, height]: [u32; 2]) -> Option<f64> {
     let (width, height) = (f64::from(width), f64::from(height));
-    let recorded = tags.width.filter(is_positive);
-    // A reduced copy keeps the number of the original.
-    let of_maker = calibrated.filter(|_| recorded == Some(width));
+    // A reduced copy keeps the numbers of the original, and one that a program has turned those
+    // from before: the longer sides are comparable, the widths may not be.
+    let of_recorded = match [tags.width, tags.height].map(|side| side.filter(is_positive)) {
+        [Some(w), Some(h)] => Some(width.max(height) / w.max(h)),
+        [recorded, _] => recorded.map(|w| width / w),
+    };
+    let of_maker = calibrated.filter(|_| of_recorded == Some(1.0));
     let of_pixels = match (tags.focal_mm, tags.pixels_per_mm) {
-        (Some(mm), Some(density)) => recorded.map(|recorded| mm * density * width / recorded),
+        (Some(mm), Some(density)) => of_recorded.map(|scale| mm * density * scale),
         _ => None,
     };
     let diagonal = (width * width + height * height).sqrt();
@@ -135,6 +139,23 @@ mod tests {
             assert_eq!(height, 5.5);
             assert_eq!(stated.yaw_pitch_roll, Some([91.5, -89.9, 0.0]));
         }
+    }
+
+    #[test]
+    fn a_turned_or_reduced_copy_keeps_the_field_of_view() {
+        let tags = Tags {
+            focal_mm: Some(8.8),
+            pixels_per_mm: Some(400.0),
+            width: Some(4000.0),
+            height: Some(3000.0),
+            ..Tags::default()
+        };
+        let of = |calibrated, size| focal_px(&tags, calibrated, size).unwrap().round();
+        assert_eq!(of(None, [4000, 3000]), 3520.0);
+        assert_eq!(of(None, [3000, 4000]), 3520.0);
+        assert_eq!(of(None, [1500, 2000]), 1760.0);
+        assert_eq!(of(Some(3500.0), [3000, 4000]), 3500.0);
+        assert_eq!(of(Some(3500.0), [2000, 1500]), 1760.0);
     }
 
     #[test]

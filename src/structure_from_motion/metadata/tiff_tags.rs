@@ -8,9 +8,10 @@ pub(super) struct Tags {
     pub focal_mm: Option<f64>,
     /// The focal length that has the same field of view on 35 mm film.
     pub focal_35mm: Option<f64>,
-    /// Pixels of the sensor, at the width that the camera recorded.
+    /// Pixels of the sensor, at the width and height that the camera recorded.
     pub pixels_per_mm: Option<f64>,
     pub width: Option<f64>,
+    pub height: Option<f64>,
     /// Longitude, latitude, height.
     pub position: Option<[f64; 3]>,
 }
@@ -62,6 +63,7 @@ impl Tags {
                 0xa405 => tags.focal_35mm = number.filter(|mm| *mm > 0.0),
                 0xa20e => tags.pixels_per_mm = number,
                 0xa002 => tags.width = number,
+                0xa003 => tags.height = number,
                 0xa210 => unit_mm = if number == Some(3.0) { 10.0 } else { 25.4 },
                 _ => {}
             }

@@ -8,7 +8,7 @@ use crate::structure_from_motion::block::{Block, BlockPhoto};
 use crate::structure_from_motion::bundle::{BundleOptions, Covariance, adjust, covariance};
 use crate::structure_from_motion::features::Keypoint;
 use crate::structure_from_motion::incremental::VerifiedPair;
-use crate::structure_from_motion::intrinsics::Intrinsics;
+use crate::structure_from_motion::intrinsics::{Intrinsics, STATED_FOCAL_PRIOR};
 use crate::structure_from_motion::tracks::{PairMatches, join};
 use crate::structure_from_motion::verification::MatchedPhoto;
 
@@ -19,8 +19,7 @@ const FINE_SCALE: f64 = 1.6;
 /// any.
 const RADIAL_PRIOR: [f64; 2] = [0.05, 0.03];
 
-/// That of f as a share, where it is stated and where it is guessed.
-const STATED_FOCAL_PRIOR: f64 = 0.05;
+/// That of f as a share, where it is guessed.
 const GUESSED_FOCAL_PRIOR: f64 = 0.5;
 
 /// The principal point is free where the block determines it to this share of the longer side.
@@ -50,7 +49,7 @@ pub(super) fn block(
     photos: &[Photo],
     matched: &[MatchedPhoto],
     cameras: &[Intrinsics],
-    verified: &[VerifiedPair],
+    verified: &[&VerifiedPair],
 ) -> Block {
     let counts: Vec<usize> = photos.iter().map(|p| p.features.keypoints.len()).collect();
     let pairs: Vec<PairMatches> = (verified.iter())

@@ -4,8 +4,9 @@
 use nalgebra::{Point2, Point3};
 use serde::Serialize;
 
-use super::adjustment::{block, calibrate_center, prior};
+use super::adjustment::{calibrate_center, prior};
 use super::cameras::{Cameras, stated_poses};
+use super::hypotheses::{Hypothesis, guesses, register_likeliest};
 use super::options::{OrientOptions, Oriented};
 use super::photo::{Photo, ReadPhoto};
 use super::refusals::{not_joined, refusal, too_few, unconnected};
@@ -20,8 +21,8 @@ use crate::structure_from_motion::block::Block;
 use crate::structure_from_motion::bundle::covariance;
 use crate::structure_from_motion::features::Features;
 use crate::structure_from_motion::frame::{StatedPose, to_frame};
-use crate::structure_from_motion::incremental::{VerifiedPair, register};
-use crate::structure_from_motion::intrinsics::Intrinsics;
+use crate::structure_from_motion::ground_control::{GroundControl, to_control};
+use crate::structure_from_motion::incremental::VerifiedPair;
 use crate::structure_from_motion::matching::candidate_pairs;
 use crate::structure_from_motion::output::{LeftOut, Names, report, sparse_model};
 use crate::structure_from_motion::two_view::PairKind;
@@ -64,7 +65,8 @@ struct Connected {
     cameras: Cameras,
     stated: Vec<StatedPose>,
     anchor: Option<Anchor>,
-    verified: Vec<VerifiedPair>,
+    /// One, or several where the focal length is guessed; the likeliest by the pairs first.
+    hypotheses: Vec<Hypothesis>,
 }
 
 /// Photographs on their way to an orientation: [`add`](Self::add) each,
@@ -75,6 +77,7 @@ pub struct OrientChain {
     photos: Vec<Photo>,
     left_out: Vec<LeftOut>,
     connected: Option<Connected>,
+    control: Option<GroundControl>,
 }
 
 impl OrientChain {
@@ -85,7 +88,13 @@ impl OrientChain {
             photos: Vec::new(),
             left_out: Vec::new(),
             connected: None,
+            control: None,
         }
+    }
+
+    /// Takes ground control points, which give the frame of what [`orient`](Self::orient) returns.
+    pub fn set_control(&mut self, control: Option<GroundControl>) {
+        self.control = control;
     }
 
     /// How photographs are to be read.
@@ -169,7 +178,7 @@ impl OrientChain {
     }
 
     fn connected(&self) -> Sharded<Connected> {
-        let mut cameras = Cameras::of(&self.photos, &self.options);
+        let cameras = Cameras::of(&self.photos, &self.options);
         let (stated, anchor) = stated_poses(&self.photos);
         let positions: Vec<Option<Point3<f64>>> = stated.iter().map(|s| s.position).collect();
         let features: Vec<&Features> = self.photos.iter().map(|p| &p.features).collect();
@@ -177,13 +186,17 @@ impl OrientChain {
         let matched = self.matched(&cameras);
         let pairs = match_pairs(&matched, &candidates, 0.45..0.6)?;
         let guessed = &cameras.is_guessed;
-        guess_focal(&matched, &mut cameras.intrinsics, guessed, &pairs)?;
-        let verified = verify(&matched, &cameras.intrinsics, &pairs, 0.65..0.7)?;
+        let mut under = guess_focal(&matched, &cameras.intrinsics, guessed, &pairs)?;
+        under.truncate(guesses(self.photos.len(), guessed));
+        let verified = verify(&matched, &under, &pairs, 0.65..0.7)?;
+        let hypotheses = under.into_iter().zip(verified);
         Ok(Connected {
             cameras,
             stated,
             anchor,
-            verified,
+            hypotheses: hypotheses
+                .map(|(cameras, verified)| Hypothesis { cameras, verified })
+                .collect(),
         })
     }
 
@@ -225,8 +238,8 @@ impl OrientChain {
     }
 
     fn ranked(&self) -> Vec<&VerifiedPair> {
-        let verified = self.connected.iter().flat_map(|c| &c.verified);
-        let mut ranked: Vec<&VerifiedPair> = verified.collect();
+        let first = self.connected.iter().filter_map(|c| c.hypotheses.first());
+        let mut ranked: Vec<&VerifiedPair> = first.flat_map(|h| &h.verified).collect();
         ranked.sort_by(|a, b| {
             let by_matches = b.matches.len().cmp(&a.matches.len());
             by_matches.then(a.photos.cmp(&b.photos))
@@ -251,17 +264,25 @@ impl OrientChain {
             cameras,
             stated,
             anchor,
-            verified,
+            hypotheses,
         } = connected;
-        let means: &[Intrinsics] = &cameras.intrinsics;
         let is_guessed = &cameras.is_guessed;
-        let mut block = block(&self.photos, &self.matched(cameras), means, verified);
         let mut show = |block: &Block| {
             if let Some(on_block) = &mut on_block {
                 on_block(Snapshot::of(block, &self.photos, stated, *anchor));
             }
         };
-        register(&mut block, verified, prior(is_guessed, 0.0), &mut show);
+        let (mut block, place) = register_likeliest(
+            &self.photos,
+            &self.matched(cameras),
+            hypotheses,
+            prior(is_guessed, 0.0),
+            &mut show,
+        );
+        let Hypothesis {
+            cameras: means,
+            verified,
+        } = &hypotheses[place];
         let registered = block.registered().len();
         let mut left_out = self.left_out.clone();
         left_out.extend(not_joined(&self.photos, &block, verified));
@@ -271,19 +292,27 @@ impl OrientChain {
         }
         let is_held = self.options.holds_center;
         let adjusted = calibrate_center(&mut block, means, is_guessed, is_held);
-        let basis = to_frame(&mut block, stated, *anchor);
+        let paths: Vec<&str> = self.photos.iter().map(|p| p.path.as_str()).collect();
+        let (basis, no_control) = match &self.control {
+            Some(control) => match to_control(&mut block, &paths, control) {
+                Ok(basis) => (basis, None),
+                Err(why) => (to_frame(&mut block, stated, *anchor), Some(why)),
+            },
+            None => (to_frame(&mut block, stated, *anchor), None),
+        };
         // The covariance belongs to the frame.
         let covariance = adjusted.and_then(|options| covariance(&block, means, &options));
         let names = Names {
-            paths: self.photos.iter().map(|p| p.path.as_str()).collect(),
+            paths,
             colours: self.photos.iter().map(|p| p.colours.as_slice()).collect(),
             cameras: cameras.names.clone(),
             means,
             is_guessed,
             stated,
         };
-        let model = sparse_model(&block, &names);
-        let report = report(&block, &names, &basis, covariance.as_ref(), left_out);
+        let model = sparse_model(&block, &names, &basis);
+        let mut report = report(&block, &names, &basis, covariance.as_ref(), left_out);
+        report.warnings.extend(no_control);
         Ok(Oriented { model, report })
     }
 }

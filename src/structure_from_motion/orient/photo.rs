@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::options::OrientOptions;
 use crate::orientation::InputFile;
-use crate::raster::load_image;
+use crate::raster::{image_header, load_image};
 use crate::structure_from_motion::features::{Features, Keypoint, detect_features};
 use crate::structure_from_motion::metadata::PhotoMetadata;
 use crate::structure_from_motion::output::{LeftOut, NotJoined};
@@ -32,11 +32,24 @@ impl Photo {
     }
 }
 
-/// Decodes a photograph and finds its features.
+/// EXIF orientations of photographs that are stored as in a mirror. A turn by quarters is another
+/// matter: the orientation is that of the pixels as they are stored, which show the same.
+const MIRRORED: [u8; 4] = [2, 4, 5, 7];
+
+/// Decodes a photograph and finds its features, in the pixels as they are stored.
 fn read(file: &InputFile, options: &OrientOptions) -> Result<Photo, NotJoined> {
-    let photograph = load_image(&file.path, &file.bytes).map_err(|e| NotJoined::Unreadable {
-        problem: e.to_string(),
-    })?;
+    let unreadable = |problem: String| NotJoined::Unreadable { problem };
+    let decoded = load_image(&file.path, &file.bytes);
+    let photograph = decoded.map_err(|e| unreadable(e.to_string()))?;
+    let is_mirrored = image_header(&file.path, &file.bytes)
+        .is_ok_and(|header| MIRRORED.contains(&header.orientation));
+    if is_mirrored {
+        return Err(unreadable(
+            "stored as in a mirror, as its EXIF orientation says; save it the right way round and \
+             without that tag"
+                .to_owned(),
+        ));
+    }
     let size = [photograph.rgb.width(), photograph.rgb.height()];
     let features = detect_features(&photograph.gray, &options.features);
     let keypoints = features.keypoints.len();

@@ -1,16 +1,21 @@
 //! The sparse model and the report of a finished block.
 
-use nalgebra::{Matrix3, Point3, SymmetricEigen};
+use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 
 use super::report::{CameraReport, LeftOut, OrientReport, PhotoReport};
 use super::sparse_model::{OrientedPhoto, SparseModel, SparsePoint};
+use crate::math;
 use crate::structure_from_motion::block::{Block, Track};
 use crate::structure_from_motion::bundle::Covariance;
 use crate::structure_from_motion::frame::{FrameBasis, StatedPose};
-use crate::structure_from_motion::intrinsics::Intrinsics;
+use crate::structure_from_motion::ground_control::ControlResidual;
+use crate::structure_from_motion::intrinsics::{Intrinsics, STATED_FOCAL_PRIOR};
 
 /// Fewest shared points of photographs that count as overlapping.
 const FEWEST_SHARED: usize = 15;
+
+/// Standard deviations from which a stated focal length is contradicted.
+const FAR: f64 = 3.0;
 
 /// Least mean number of rays without a warning.
 const FEW_RAYS: f64 = 2.5;
@@ -44,7 +49,11 @@ fn residuals<'a>(
 }
 
 /// The model of what has an orientation.
-pub(in super::super) fn sparse_model(block: &Block, names: &Names) -> SparseModel {
+pub(in super::super) fn sparse_model(
+    block: &Block,
+    names: &Names,
+    basis: &FrameBasis,
+) -> SparseModel {
     let registered = block.registered();
     let mut slots = vec![usize::MAX; block.photos.len()];
     let mut photos: Vec<OrientedPhoto> = Vec::new();
@@ -83,6 +92,10 @@ pub(in super::super) fn sparse_model(block: &Block, names: &Names) -> SparseMode
         cameras: block.cameras.clone(),
         photos,
         points,
+        offset: match basis {
+            FrameBasis::Control { offset, .. } => (*offset).into(),
+            _ => Vector3::zeros(),
+        },
     }
 }
 
@@ -144,15 +157,29 @@ pub(in super::super) fn report(
              more overlap"
         ));
     }
+    let cameras = cameras(block, names, covariance);
+    warnings.extend(cameras.iter().filter_map(contradiction));
+    let (epsg, offset, control) = match basis {
+        FrameBasis::Control {
+            epsg,
+            offset,
+            points,
+            ..
+        } => (*epsg, *offset, points.clone()),
+        _ => (None, [0.0; 3], Vec::new()),
+    };
     OrientReport {
         frame,
         anchor,
-        is_metric: anchor.is_some(),
+        epsg,
+        offset,
+        is_metric: anchor.is_some() || !control.is_empty(),
+        control,
         points,
         rays: total,
         rays_a_point,
         rms_px: (squares.iter().sum::<f64>() / total.max(1) as f64).sqrt(),
-        cameras: cameras(block, names, covariance),
+        cameras,
         photos,
         left_out,
         overlap,
@@ -179,6 +206,21 @@ fn cameras(block: &Block, names: &Names, covariance: Option<&Covariance>) -> Vec
         .collect()
 }
 
+/// A stated focal length far outside its own spread and that of the adjustment.
+fn contradiction(camera: &CameraReport) -> Option<String> {
+    let ([focal, ..], [sigma, ..]) = (camera.parameters, camera.sigmas?);
+    let stated = camera.stated_focal_px;
+    let spread = math::hypot(STATED_FOCAL_PRIOR * stated, sigma);
+    let is_far = camera.is_stated && (focal - stated).abs() > FAR * spread;
+    is_far.then(|| {
+        format!(
+            "the photographs contradict the stated focal length of {stated:.0} px: they say \
+             {focal:.0} +- {sigma:.0} px; state that, or check whether the header belongs to the \
+             photographs"
+        )
+    })
+}
+
 fn from_stated(block: &Block, names: &Names, basis: &FrameBasis, photo: usize) -> Option<[f64; 3]> {
     if !matches!(basis, FrameBasis::Positions { .. }) {
         return None;
@@ -201,6 +243,29 @@ fn largest_deviation(covariance: &Matrix3<f64>) -> f64 {
 
 fn frame_words(basis: &FrameBasis) -> (String, Option<crate::orientation::Anchor>, Vec<String>) {
     match basis {
+        FrameBasis::Control {
+            system,
+            anchor,
+            offset: [east, north, _],
+            points,
+            rms_m: [plan, height],
+            ..
+        } => {
+            let agreeing = points.iter().filter(|p| p.agrees).count();
+            let frame = match anchor {
+                Some(anchor) => format!(
+                    "metres, x east, y north, z up from longitude {:.3}, latitude {:.3}",
+                    anchor.lon_deg, anchor.lat_deg
+                ),
+                None => format!("{system}, x from {east} and y from {north} m"),
+            };
+            let words = format!(
+                "{frame}: {agreeing} of {} ground control points, rms {plan:.3} m in plan, \
+                 {height:.3} m in height",
+                points.len()
+            );
+            (words, *anchor, control_warnings(points))
+        }
         FrameBasis::Positions {
             anchor,
             agreeing,
@@ -238,6 +303,35 @@ fn frame_words(basis: &FrameBasis) -> (String, Option<crate::orientation::Anchor
             vec![ARBITRARY_SCALE.to_owned()],
         ),
     }
+}
+
+/// Which points or marks are wrong, and what to do.
+fn control_warnings(points: &[ControlResidual]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for p in points {
+        if let (Some([x, y, z]), false) = (p.residual_m, p.agrees) {
+            warnings.push(format!(
+                "ground control point {} is {x:.2}, {y:.2}, {z:.2} m (x, y, z) from where the others \
+                 put it: check its coordinates and marks",
+                p.name
+            ));
+        }
+        if p.residual_m.is_none() {
+            warnings.push(format!(
+                "ground control point {} is not used: mark it in two or more oriented photographs \
+                 ({} of its marks are in such)",
+                p.name, p.marks[0]
+            ));
+        }
+        if !p.wrong_marks.is_empty() {
+            warnings.push(format!(
+                "ground control point {} is marked elsewhere in {} than in the other photographs",
+                p.name,
+                p.wrong_marks.join(", ")
+            ));
+        }
+    }
+    warnings
 }
 
 pub(super) const ARBITRARY_SCALE: &str = "the scale is arbitrary (as if taken from 100 m above the ground): \

@@ -4,6 +4,8 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
+use crate::structure_from_motion::ground_control::ControlResidual;
+
 /// Why a photograph has no orientation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "reason", rename_all = "snake_case")]
@@ -109,8 +111,14 @@ pub struct OrientReport {
     pub frame: String,
     /// Longitude, latitude (degrees) and height (metres) of the frame's zero, where known.
     pub anchor: Option<crate::orientation::Anchor>,
+    /// EPSG code of the frame's map, where it is known.
+    pub epsg: Option<u32>,
+    /// What files in the frame's map add to the coordinates of the model, metres.
+    pub offset: [f64; 3],
     /// Is the scale that of the world?
     pub is_metric: bool,
+    /// Ground control points, where they give the frame.
+    pub control: Vec<ControlResidual>,
     /// World points.
     pub points: usize,
     /// Rays to them.
@@ -178,6 +186,7 @@ impl OrientReport {
                 p.file, p.rays, p.partners, p.rms_px
             );
         }
+        text += &control_words(&self.control);
         for left in &self.left_out {
             let _ = writeln!(text, "not oriented: {}: {}", left.file, left.reason.words());
         }
@@ -186,6 +195,36 @@ impl OrientReport {
         }
         text
     }
+}
+
+/// A table of the residuals at ground control points; empty without them.
+fn control_words(control: &[ControlResidual]) -> String {
+    let Some(widest) = control.iter().map(|p| p.name.chars().count()).max() else {
+        return String::new();
+    };
+    let width = widest.max("control point".len());
+    let mut text = format!(
+        "{:<width$}  marks  from stated x, y, z (m)     sigma\n",
+        "control point"
+    );
+    for p in control {
+        let [marks, agreeing] = p.marks;
+        let of = p.residual_m.zip(p.sigma_m).map_or_else(
+            || "not seen by two rays that meet".to_owned(),
+            |([x, y, z], sigma)| format!("{x:>9.3}{y:>9.3}{z:>9.3}{sigma:>10.3}"),
+        );
+        let verdict = if p.residual_m.is_some() && !p.agrees {
+            "  wrong"
+        } else {
+            ""
+        };
+        let _ = writeln!(
+            text,
+            "{:<width$}{agreeing:>4}/{marks:<2}{of}{verdict}",
+            p.name
+        );
+    }
+    text
 }
 
 impl CameraReport {

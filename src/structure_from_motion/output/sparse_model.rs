@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use nalgebra::{Point3, UnitQuaternion};
+use nalgebra::{Point3, UnitQuaternion, Vector3};
 
 use crate::structure_from_motion::block::Pose;
 use crate::structure_from_motion::intrinsics::Intrinsics;
@@ -42,6 +42,8 @@ pub struct SparseModel {
     pub photos: Vec<OrientedPhoto>,
     /// The points.
     pub points: Vec<SparsePoint>,
+    /// What the files add to all positions, metres: coordinates on a map keep their digits so.
+    pub offset: Vector3<f64>,
 }
 
 impl SparseModel {
@@ -73,7 +75,7 @@ impl SparseModel {
             .to_owned();
         for (i, photo) in self.photos.iter().enumerate() {
             let q = UnitQuaternion::from_rotation_matrix(&photo.pose.rotation);
-            let t = -(photo.pose.rotation * photo.pose.center.coords);
+            let t = -(photo.pose.rotation * (photo.pose.center.coords + self.offset));
             let _ = writeln!(
                 text,
                 "{} {} {} {} {} {} {} {} {} {}",
@@ -101,7 +103,7 @@ impl SparseModel {
         let mut text =
             "# POINT3D_ID X Y Z R G B ERROR TRACK[] as IMAGE_ID POINT2D_IDX\n".to_owned();
         for (i, point) in self.points.iter().enumerate() {
-            let (p, [r, g, b]) = (point.position, point.rgb);
+            let (p, [r, g, b]) = (point.position + self.offset, point.rgb);
             let _ = write!(
                 text,
                 "{} {:.5} {:.5} {:.5} {r} {g} {b} {:.4}",

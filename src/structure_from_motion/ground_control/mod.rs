@@ -1,0 +1,13 @@
+//! Ground control: points with known coordinates give the frame.
+//!
+//! ```text
+//! gcp_list   OpenDroneMap's list
+//! fit        the points by their images, and the similarity to their coordinates
+//! ```
+
+mod fit;
+mod gcp_list;
+
+pub use fit::ControlResidual;
+pub(super) use fit::to_control;
+pub use gcp_list::{ControlPoint, GroundControl};
