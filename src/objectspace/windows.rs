@@ -345,7 +345,7 @@ mod tests {
     #[test]
     fn lines_of_one_house_are_one_group() {
         // A rectangle, another one 8 m away, one turned by 30 degrees that touches the first, and a
-        // line alone.
+        // line alone, which has no direction to share.
         let mut lines = vec![
             line(0.0, 0.0, 9.0, 0.0),
             line(9.0, 0.2, 9.0, 6.0),
@@ -353,11 +353,21 @@ mod tests {
         ];
         lines.extend([line(18.0, 0.0, 26.0, 0.0), line(18.0, 0.3, 18.0, 6.0)]);
         lines.push(line(9.0, 6.0, 15.93, 10.0));
+        lines.push(line(9.0, 6.0, 7.0, 9.464));
         lines.push(line(50.0, 0.0, 53.0, 0.0));
         let found = groups(&lines, 2.0);
         assert_eq!(
             found,
-            [Some(0), Some(0), Some(0), Some(1), Some(1), Some(2), None]
+            [
+                Some(0),
+                Some(0),
+                Some(0),
+                Some(1),
+                Some(1),
+                Some(2),
+                Some(2),
+                None
+            ]
         );
         let windows = windows_of(&lines, &found, [0.0, 10.0], 1.0);
         assert_eq!(

@@ -80,19 +80,16 @@ fn supported(input: &GroupingInput, group: &PlaneGroup, map: &ConsistencyMap) ->
     let lines = group.members.iter().filter_map(|m| {
         let line = &input.lines[m.line.index()].segment;
         let (nats, weight) = nats_and_weight(&beside(map, line, m.side?, NEXT_TO));
-        (weight > 0.0).then_some(nats)
+        (weight > 0.0).then_some(nats + weight * WindowEvidenceTable::fitted().prior)
     });
     lines.filter(|nats| *nats > 0.0).count() >= 2
 }
 
-/// Sums over some positions of what the windows say of the plane, with the odds of a plane beside
-/// its lines, nats, and of their weights.
+/// Sums over some positions of what the windows say of the plane, nats, and of their weights.
 fn nats_and_weight(seen: &[(f32, f32)]) -> (f64, f64) {
     let table = WindowEvidenceTable::fitted();
-    seen.iter().fold((0.0, 0.0), |(nats, weights), (c, w)| {
-        let weight = f64::from(*w);
-        let of_window = table.nats_of(*w, *c) + weight * table.prior;
-        (nats + of_window, weights + weight)
+    seen.iter().fold((0.0, 0.0), |(nats, weight), (c, w)| {
+        (nats + table.nats_of(*w, *c), weight + f64::from(*w))
     })
 }
 

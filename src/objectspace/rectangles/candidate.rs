@@ -36,6 +36,8 @@ pub struct PlaneFeatures {
     pub outline_on_lines: f64,
     /// Area, square metres.
     pub area_m2: f64,
+    /// Share of it in which the windows speak against the plane, as in the gap between two roofs.
+    pub share_against: f64,
     /// Cosine of the slope.
     pub cos_slope: f64,
 }
@@ -59,7 +61,8 @@ impl PlaneCandidate {
     /// The measure M, square metres: the area that is likely roof less the area that is likely not.
     pub fn measure(&self) -> f64 {
         let probability = self.features.evidence().probability();
-        self.features.area_m2 * (2.0 * probability - 1.0)
+        let net_m2 = self.features.area_m2 * (1.0 - 2.0 * self.features.share_against);
+        net_m2 * (2.0 * probability - 1.0)
     }
 }
 

@@ -5,11 +5,12 @@
 //! radiometric criteria up in one measure without writing it down. Here it is
 //!
 //! ```text
-//! M = area (2 p - 1)      square metres
+//! M = (area - 2 area against) (2 p - 1)      square metres
 //! ```
 //!
 //! the area that is likely roof less the area that is likely not, where p is the probability of the
-//! candidate by the model of evidence ([`PlaneFeatures`]):
+//! candidate by the model of evidence ([`PlaneFeatures`]), and windows speak against the plane in a
+//! gap between two roofs:
 //!
 //! * radiometry, the paper's criterion that "the area ... inside the 3D plane should be
 //!   radiometrically homogeneous over all images": what the correlation windows say of the plane,
@@ -260,6 +261,7 @@ impl PlaneSearch<'_> {
                     displaced_plane_margin_nats_per_m2: f64::INFINITY,
                     outline_on_lines: shape.support,
                     area_m2: area_2d(&ring) / plane.normal.z,
+                    share_against: on.share_against,
                     cos_slope: plane.normal.z,
                 };
                 let may_live = features.area_m2 >= self.params.min_area_m2
