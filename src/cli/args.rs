@@ -92,8 +92,8 @@ pub(super) struct OrientArgs {
     /// adjustment refines it.
     #[arg(long, value_name = "PX", value_parser = parse_positive)]
     pub focal: Option<f64>,
-    /// Ground control points as OpenDroneMap's gcp_list.txt, which give the frame; by default a file
-    /// of that name among the photographs.
+    /// Ground control points as OpenDroneMap's gcp_list.txt, which give the frame; by default a
+    /// file of that name among the photographs.
     #[arg(long, value_name = "FILE")]
     pub gcp: Option<PathBuf>,
     /// Keep the principal point in the middle, also where the photographs determine it.

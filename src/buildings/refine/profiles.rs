@@ -3,8 +3,8 @@
 //!
 //! On the roof the rows of all views agree; an edge of the roof is at the same step in all views,
 //! and whatever lies on the ground or on a wall is displaced. The gain of each step as the place of
-//! the side is the energy of the labelling, in nats: windows a metre apart are independent, borders cost by
-//! the metre.
+//! the side is the energy of the labelling, in nats: windows a metre apart are independent, borders
+//! cost by the metre.
 
 use nalgebra::Vector2;
 

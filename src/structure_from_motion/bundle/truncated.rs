@@ -6,7 +6,8 @@ use crate::structure_from_motion::block::Block;
 use crate::structure_from_motion::triangulation::MOST_SIGMAS;
 
 /// Robust sum of squares of all observations in registered photographs, standard deviations a
-/// `factor` less than those of the block; one that is no ray of a point costs as much as an outlier.
+/// `factor` less than those of the block; one that is no ray of a point costs as much as an
+/// outlier.
 pub(in super::super) fn truncated_cost(block: &Block, factor: f64) -> f64 {
     let mut sum = 0.0;
     for track in &block.tracks {

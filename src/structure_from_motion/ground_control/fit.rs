@@ -1,9 +1,9 @@
 //! The block brought to ground control points: each from its images, then a similarity.
 
 use nalgebra::{Matrix3, Point3, Vector3};
-use serde::Serialize;
 
 use super::gcp_list::{ControlPoint, GroundControl};
+use super::residual::ControlResidual;
 use crate::math;
 use crate::structure_from_motion::block::{Block, Observation};
 use crate::structure_from_motion::frame::{FrameBasis, spread};
@@ -36,26 +36,6 @@ const LOSS: f64 = 2.0;
 
 /// Median length of a residual of three normal components, in their standard deviation.
 const MAXWELL_MEDIAN: f64 = 1.538_17;
-
-/// How well a ground control point agrees with the block.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
-pub struct ControlResidual {
-    /// Its name.
-    pub name: String,
-    /// Coordinates as they are stated.
-    pub stated: [f64; 3],
-    /// Photographs that show it, and those among them whose marks agree.
-    pub marks: [usize; 2],
-    /// Photographs whose marks disagree with the others.
-    pub wrong_marks: Vec<String>,
-    /// The block's place minus the stated one, x y z: metres; absent where two marks do not meet.
-    pub residual_m: Option<[f64; 3]>,
-    /// Standard deviation of a component of that, metres.
-    pub sigma_m: Option<f64>,
-    /// Does it agree with the other points?
-    pub agrees: bool,
-}
 
 /// A point as the block sees it.
 struct Seen {
