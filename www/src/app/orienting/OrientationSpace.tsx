@@ -3,7 +3,7 @@ import { signal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { THEME_COLOURS } from "../../shared/palette";
 import { buildCameras } from "../../viewer/layers/cameras";
-import { GRID_STEP_M } from "../../viewer/layers/grid";
+import { GRID_STEP_M } from "../../viewer/scene/grid";
 import { withCameras } from "../../viewer/scene/bounds";
 import { buildSparsePoints, usualPoints } from "../../viewer/sparsePoints";
 import { Viewer } from "../../viewer/viewer";
