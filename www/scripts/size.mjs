@@ -12,7 +12,8 @@ import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 
 const MOST_WASM = 1_600_000;
 const MOST_IN_ALL = 1_900_000;
-const MOST_ON_DEMAND = 500_000;
+// Of the second module alone, as the larger of two compressions.
+const MOST_SECOND_WASM = 500_000;
 const ON_DEMAND = /\/orientation[^/]*$/i;
 
 const dist = fileURLToPath(new URL("../dist/", import.meta.url));
@@ -37,6 +38,7 @@ const first = rows.filter((row) => !isLater(row));
 const total = sumOf("in all", first);
 const later = sumOf("on demand", rows.filter(isLater));
 const wasm = first.find(({ path }) => path.endsWith(".wasm"));
+const second = rows.find((row) => isLater(row) && row.path.endsWith(".wasm"));
 
 const kB = (bytes) => `${(bytes / 1000).toFixed(1)} kB`.padStart(12);
 console.log(`${"".padEnd(40)}${"raw".padStart(12)}${"gzip".padStart(12)}${"brotli".padStart(12)}`);
@@ -47,9 +49,10 @@ for (const { path, raw, gzip, brotli: br } of [...first, total, ...rows.filter(i
 const problems = [
   wasm === undefined && "there is no wasm: run `npm run build` first",
   wasm && wasm.brotli > MOST_WASM && `the wasm is larger than ${MOST_WASM / 1000} kB (brotli)`,
-  later.raw === 0 && "nothing computes orientations",
-  later.gzip > MOST_ON_DEMAND &&
-    `what is fetched on demand is larger than ${MOST_ON_DEMAND / 1000} kB (gzip)`,
+  second === undefined && "nothing computes orientations",
+  second &&
+    second.gzip > MOST_SECOND_WASM &&
+    `the second wasm is larger than ${MOST_SECOND_WASM / 1000} kB (gzip)`,
   total.brotli > MOST_IN_ALL && `the first load is larger than ${MOST_IN_ALL / 1000} kB (brotli)`,
 ].filter(Boolean);
 for (const problem of problems) {
