@@ -18,7 +18,7 @@ use crate::linematch::scene_heights;
 use crate::lines2d::ImageSegment;
 use crate::lines3d::{Line3d, LineSupport, SupportKind};
 use crate::model::{Facet, RoofModel};
-use crate::params::ObjectSpaceParams;
+use crate::params::{ObjectSpaceParams, Params};
 use crate::planes::ProposedPlane;
 use crate::scene::Scene;
 use crate::solids::{SolidTrace, close_buildings};
@@ -168,7 +168,7 @@ pub fn find_rectangles(
     lines: &[Vec<RegionLine>],
     windows: &[Window],
     found: &[FoundLine],
-    params: &ObjectSpaceParams,
+    params: &Params,
 ) -> Sharded<(RoofModel, RectangleTrace)> {
     let image_lines = image_lines(scene, lines);
     let segments: Vec<Segment3> = found.iter().map(|f| f.line.segment).collect();
@@ -181,7 +181,8 @@ pub fn find_rectangles(
         lines: &all,
         ground: &ground,
         solids: &[],
-        params: &params.planes,
+        params: &params.objectspace.planes,
+        border_nats_per_m: params.roof.border_nats_per_m,
     };
     let mut trace = RectangleTrace::default();
     let axes =
@@ -282,7 +283,7 @@ pub fn proposed_planes(trace: &RectangleTrace) -> Vec<ProposedPlane> {
     let mut order: Vec<usize> = (0..trace.candidates.len()).collect();
     let chosen = |k: &usize| trace.chosen.binary_search(k).is_ok();
     order.sort_by(|a, b| {
-        let measure = |k: &usize| trace.candidates[*k].measure();
+        let measure = |k: &usize| trace.candidates[*k].measure_nats;
         let chosen_first = chosen(b).cmp(&chosen(a));
         chosen_first.then(measure(b).total_cmp(&measure(a)))
     });

@@ -21,6 +21,8 @@ pub struct PlaneCandidate {
     pub correlation: f64,
     /// What its evidence is measured from.
     pub features: PlaneFeatures,
+    /// The measure M: the energy of the labelling without the plane less that with it, nats.
+    pub measure_nats: f64,
 }
 
 /// What is measured of a plane candidate.
@@ -34,10 +36,6 @@ pub struct PlaneFeatures {
     pub displaced_plane_margin_nats_per_m2: f64,
     /// Share of the outline that image lines cover, mean over the views.
     pub outline_on_lines: f64,
-    /// Area, square metres.
-    pub area_m2: f64,
-    /// Share of it in which the windows speak against the plane, as in the gap between two roofs.
-    pub share_against: f64,
     /// Cosine of the slope.
     pub cos_slope: f64,
 }
@@ -54,15 +52,6 @@ impl PlaneFeatures {
             ("outline_on_lines", self.outline_on_lines),
             ("cos_slope", self.cos_slope),
         ])
-    }
-}
-
-impl PlaneCandidate {
-    /// The measure M, square metres: the area that is likely roof less the area that is likely not.
-    pub fn measure(&self) -> f64 {
-        let probability = self.features.evidence().probability();
-        let net_m2 = self.features.area_m2 * (1.0 - 2.0 * self.features.share_against);
-        net_m2 * (2.0 * probability - 1.0)
     }
 }
 

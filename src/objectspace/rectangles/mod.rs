@@ -5,12 +5,13 @@
 //! radiometric criteria up in one measure without writing it down. Here it is
 //!
 //! ```text
-//! M = (area - 2 area against) (2 p - 1)      square metres
+//! M = sum over the area of  what the windows say of the plane, and the odds of a plane
+//!   - sum over the sides of  length (what a border costs, less where image lines support it)
 //! ```
 //!
-//! the area that is likely roof less the area that is likely not, where p is the probability of the
-//! candidate by the model of evidence ([`PlaneFeatures`]), and windows speak against the plane in a
-//! gap between two roofs:
+//! in nats: by how much the energy of the labelling ([`crate::facets`]) is lower with the plane
+//! than without it. A gap between two roofs speaks against a plane over both. Whether a polygon is
+//! likelier true than false is asked of the model of evidence ([`PlaneFeatures`]):
 //!
 //! * radiometry, the paper's criterion that "the area ... inside the 3D plane should be
 //!   radiometrically homogeneous over all images": what the correlation windows say of the plane,
@@ -19,7 +20,7 @@
 //! * geometry, and the contrast of its lines, since only lines with contrast are region boundaries:
 //!   the share of the outline that image lines cover, mean over all views; and the slope.
 //!
-//! Of the polygons between two lines those with the largest M are kept as candidates. A pair of
+//! Of the polygons between two lines those with the largest M and the likeliest ones are kept. A pair of
 //! lines may hold several, with gaps between them: U-shapes. A line with an end of a perpendicular,
 //! higher one makes a triangle: the end of a hip below its ridge.
 //!
@@ -52,12 +53,14 @@ use nalgebra::Point3;
 
 use self::ends::{crossings, ends, slanted_ends};
 use self::occluding_solids::partly_hidden;
-use self::plane_evidence::{PlaneConsistency, area_2d};
+use self::plane_evidence::{PlaneAgreement, PlaneConsistency, area_2d};
 use self::shapes::{StripLine, StripPolygon, quadrilaterals, triangle};
 use self::strip::PlaneStrip;
 use super::clusters::{ClusterAxes, ClusterLine, overlap};
 use super::image_lines::ImageLine;
+use crate::evidence::WindowEvidenceTable;
 use crate::execution::{SILENT, Sharded, sharded_map};
+use crate::facets::ON_LINE;
 use crate::params::PlaneParams;
 use crate::scene::Scene;
 use crate::terrain::Ground;
@@ -71,6 +74,8 @@ pub(crate) struct PlaneSearch<'a> {
     /// Buildings below planes found before, which may hide other planes.
     pub solids: &'a [OccludingSolid],
     pub params: &'a PlaneParams,
+    /// What a border costs that nothing supports, nats a metre.
+    pub border_nats_per_m: f64,
 }
 
 impl PlaneSearch<'_> {
@@ -250,7 +255,7 @@ impl PlaneSearch<'_> {
         let Some(consistency) = PlaneConsistency::new(self.scene, plane, &rings, &solids) else {
             return Vec::new();
         };
-        let promising: Vec<(Vec<Point3<f64>>, PlaneFeatures, f64)> = shapes
+        let promising: Vec<PlaneCandidate> = shapes
             .into_iter()
             .zip(rings)
             .filter_map(|(shape, ring)| {
@@ -260,39 +265,51 @@ impl PlaneSearch<'_> {
                     // The best that the comparison with displaced planes can say.
                     displaced_plane_margin_nats_per_m2: f64::INFINITY,
                     outline_on_lines: shape.support,
-                    area_m2: area_2d(&ring) / plane.normal.z,
-                    share_against: on.share_against,
                     cos_slope: plane.normal.z,
                 };
-                let may_live = features.area_m2 >= self.params.min_area_m2
+                let area_m2 = area_2d(&ring);
+                let may_live = area_m2 / plane.normal.z >= self.params.min_area_m2
                     && features.evidence().accepts(self.params.least_nats);
-                may_live.then_some((ring, features, on.correlation))
+                may_live.then(|| PlaneCandidate {
+                    plane: *plane,
+                    ring,
+                    lines: Vec::new(),
+                    correlation: on.correlation,
+                    features,
+                    measure_nats: self.measure_nats(area_m2, &on, &shape),
+                })
             })
             .collect();
         if promising.is_empty() {
             return Vec::new();
         }
         let displaced = consistency.displaced(self.params.beside_px);
-        let mut found: Vec<PlaneCandidate> = promising
-            .into_iter()
-            .filter_map(|(ring, features, correlation)| {
-                let beside = consistency.best_displaced_nats(&displaced, &ring);
-                let features = PlaneFeatures {
-                    displaced_plane_margin_nats_per_m2: features.plane_nats_per_m2 - beside,
-                    ..features
-                };
-                let lives = features.evidence().accepts(self.params.least_nats);
-                lives.then_some(PlaneCandidate {
-                    plane: *plane,
-                    ring,
-                    lines: Vec::new(),
-                    correlation,
-                    features,
-                })
-            })
-            .collect();
-        found.sort_by(|a, b| b.measure().total_cmp(&a.measure()));
-        found.truncate(self.params.max_candidates);
-        found
+        let compared = promising.into_iter().map(|mut candidate| {
+            let beside = consistency.best_displaced_nats(&displaced, &candidate.ring);
+            let features = &mut candidate.features;
+            features.displaced_plane_margin_nats_per_m2 = features.plane_nats_per_m2 - beside;
+            (candidate.features.evidence().nats(), candidate)
+        });
+        let lives = |(nats, _): &(f64, PlaneCandidate)| *nats >= self.params.least_nats;
+        self.best(compared.filter(lives).collect())
+    }
+
+    /// Those with the largest measure and the likeliest ones: one that reaches a little too far may
+    /// have a larger measure than the right one beside it.
+    fn best(&self, mut found: Vec<(f64, PlaneCandidate)>) -> Vec<PlaneCandidate> {
+        let most = self.params.max_candidates.min(found.len());
+        found.sort_by(|(_, a), (_, b)| b.measure_nats.total_cmp(&a.measure_nats));
+        let mut others = found.split_off(most);
+        others.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        others.truncate(most);
+        found.append(&mut others);
+        found.into_iter().map(|(_, candidate)| candidate).collect()
+    }
+
+    /// The measure M, nats, of a polygon of an area in plan.
+    fn measure_nats(&self, area_m2: f64, on: &PlaneAgreement, shape: &StripPolygon) -> f64 {
+        let inside = on.nats_per_m2 + on.weight * WindowEvidenceTable::fitted().prior;
+        let unsupported = 1.0 - (1.0 - ON_LINE) * shape.support;
+        area_m2 * inside - self.border_nats_per_m * shape.length_m * unsupported
     }
 }

@@ -38,8 +38,8 @@ pub(crate) struct PlaneAgreement {
     /// What the windows say of the plane, nats for a square metre in plan: windows a metre apart
     /// are independent.
     pub nats_per_m2: f64,
-    /// Share of the windows that speak against the plane.
-    pub share_against: f64,
+    /// Texture weight of the windows, 0 to 1.
+    pub weight: f64,
 }
 
 /// The comparison of the views on planes above and below.
@@ -82,7 +82,7 @@ impl<'a> PlaneConsistency<'a> {
         PlaneAgreement {
             correlation: if weights > 0.0 { sum / weights } else { 0.0 },
             nats_per_m2: mean_nats(&self.map, &cells),
-            share_against: share_against(&self.map, &cells),
+            weight: weights / cells.len().max(1) as f64,
         }
     }
 
@@ -137,16 +137,6 @@ fn mean_nats(map: &ConsistencyMap, cells: &[usize]) -> f64 {
         .iter()
         .map(|&k| table.nats_of(map.common_weight(k), map.correlation(k)));
     nats.sum::<f64>() / cells.len().max(1) as f64
-}
-
-/// Share of some cells whose windows speak against the plane of a map.
-fn share_against(map: &ConsistencyMap, cells: &[usize]) -> f64 {
-    let table = WindowEvidenceTable::fitted();
-    let against = cells.iter().filter(|&&k| {
-        let weight = map.common_weight(k);
-        table.nats_of(weight, map.correlation(k)) + f64::from(weight) * table.prior < 0.0
-    });
-    against.count() as f64 / cells.len().max(1) as f64
 }
 
 fn compare(

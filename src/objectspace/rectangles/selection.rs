@@ -31,7 +31,7 @@ pub(crate) fn best_set(candidates: &[PlaneCandidate]) -> Vec<usize> {
             }
         }
     }
-    let weights: Vec<f64> = candidates.iter().map(PlaneCandidate::measure).collect();
+    let weights: Vec<f64> = candidates.iter().map(|c| c.measure_nats).collect();
     let mut chosen = Vec::new();
     for conflict_group in conflict_groups(&conflicts) {
         if conflict_group.len() <= EXACT {

@@ -22,6 +22,8 @@ pub(crate) struct StripLine {
 pub(crate) struct StripPolygon {
     /// (u, w) of the corners.
     corners: Vec<[f64; 2]>,
+    /// Length of the outline, metres.
+    pub length_m: f64,
     /// Share of it that image lines cover, mean over the views.
     pub support: f64,
 }
@@ -29,9 +31,13 @@ pub(crate) struct StripPolygon {
 impl StripPolygon {
     /// With sides of given (length, support); `None` where too little of them is seen.
     fn new(corners: Vec<[f64; 2]>, sides: &[[f64; 2]], params: &PlaneParams) -> Option<Self> {
-        let length: f64 = sides.iter().map(|s| s[0]).sum();
-        let support = sides.iter().map(|s| s[0] * s[1]).sum::<f64>() / length;
-        (support >= params.min_support).then_some(Self { corners, support })
+        let length_m: f64 = sides.iter().map(|s| s[0]).sum();
+        let support = sides.iter().map(|s| s[0] * s[1]).sum::<f64>() / length_m;
+        (support >= params.min_support).then_some(Self {
+            corners,
+            length_m,
+            support,
+        })
     }
 
     /// Its corners in the world, counter-clockwise seen from above.

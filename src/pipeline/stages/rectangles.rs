@@ -19,7 +19,7 @@ impl StageDefinition for Rectangles {
     const NAME: &'static str = "rectangles";
     const TITLE: &'static str = "Rectangles";
     const SECTION: &'static str = "W96 3.6";
-    const READS: &'static [&'static str] = &["objectspace.planes"];
+    const READS: &'static [&'static str] = &["objectspace.planes", "roof.border_nats_per_m"];
     const NEEDS: &'static [Stage] = &[Stage::Regions, Stage::Directions, Stage::Clusters];
     const SHARD_MAPS: &'static [&'static str] = &["ground", "planes", "behind"];
 
@@ -27,7 +27,7 @@ impl StageDefinition for Rectangles {
         let lines = &required(&before.regions).value;
         let windows = &required(&before.directions).value;
         let clusters = &required(&before.clusters).value;
-        Ok(find_rectangles(scene, lines, windows, clusters, &params.objectspace)?.into())
+        Ok(find_rectangles(scene, lines, windows, clusters, params)?.into())
     }
 
     fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
