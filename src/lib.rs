@@ -66,76 +66,48 @@
 //! worker or many.
 
 #![warn(unreachable_pub)]
-// The page's second module has the lower rooms only, and not all of them is for it.
+// Of the page's second module most is dead, and left out when it is linked.
 #![cfg_attr(not(feature = "reconstruction"), allow(dead_code, unused_imports))]
 
-#[cfg(feature = "reconstruction")]
 mod adjustment;
 pub mod agreement;
-#[cfg(feature = "reconstruction")]
 pub mod buildings;
 pub mod camera;
-#[cfg(feature = "reconstruction")]
 pub mod coplanar;
-#[cfg(feature = "reconstruction")]
 pub mod dense;
 mod error;
-#[cfg(feature = "reconstruction")]
 pub mod evidence;
 pub mod execution;
-#[cfg(feature = "reconstruction")]
 pub mod export;
-#[cfg(feature = "reconstruction")]
 pub mod facets;
-#[cfg(feature = "reconstruction")]
 pub mod figures;
 pub mod geometry;
-#[cfg(feature = "reconstruction")]
 pub mod ids;
 mod json;
-#[cfg(feature = "reconstruction")]
 mod labelling;
-#[cfg(feature = "reconstruction")]
 pub mod linematch;
-#[cfg(feature = "reconstruction")]
 pub mod lines2d;
-#[cfg(feature = "reconstruction")]
 pub mod lines3d;
 mod math;
-#[cfg(feature = "reconstruction")]
 pub mod model;
-#[cfg(feature = "reconstruction")]
 pub mod objectspace;
 pub mod orientation;
-#[cfg(feature = "reconstruction")]
 pub mod orientation_check;
-#[cfg(feature = "reconstruction")]
 pub mod params;
-#[cfg(feature = "reconstruction")]
 mod photoconsistency;
-#[cfg(feature = "reconstruction")]
 pub mod pipeline;
-#[cfg(feature = "reconstruction")]
 mod plan_index;
-#[cfg(feature = "reconstruction")]
 pub mod planes;
 pub mod raster;
-#[cfg(feature = "reconstruction")]
 pub mod scene;
-#[cfg(feature = "reconstruction")]
 pub mod scene_loader;
-#[cfg(feature = "reconstruction")]
 pub mod solids;
 pub mod structure_from_motion;
-#[cfg(feature = "reconstruction")]
 pub mod synthetic;
-#[cfg(feature = "reconstruction")]
 pub mod terrain;
 #[cfg(test)]
 mod testing;
-#[cfg(feature = "reconstruction")]
 pub mod texture;
-#[cfg(feature = "reconstruction")]
 pub mod tiles;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;
@@ -143,11 +115,7 @@ pub mod wasm;
 pub use crate::error::{Error, Result};
 pub use crate::execution::progress::{Listener, silent};
 pub use crate::orientation::InputFile;
-#[cfg(feature = "reconstruction")]
 pub use crate::params::{Method, Params};
-#[cfg(feature = "reconstruction")]
 pub use crate::pipeline::{Results, Run, Stage, StageSummary};
-#[cfg(feature = "reconstruction")]
 pub use crate::scene::{Scene, View};
-#[cfg(feature = "reconstruction")]
 pub use crate::scene_loader::{LoadOptions, inspect_files, load_scene};

@@ -35,22 +35,15 @@
 //! right, y down, z forward, `cam_from_world`, and (0.5, 0.5) at the centre of the top-left pixel.
 
 mod angles;
-#[cfg(feature = "reconstruction")]
 pub(crate) mod detect;
-#[cfg(feature = "reconstruction")]
 mod format;
-#[cfg(feature = "reconstruction")]
 mod formats;
 mod geodesy;
-#[cfg(feature = "reconstruction")]
 mod image_orientation;
 mod input_file;
-#[cfg(feature = "reconstruction")]
 mod metric_frame;
 mod reference;
-#[cfg(feature = "reconstruction")]
 mod sets;
-#[cfg(feature = "reconstruction")]
 mod unread;
 
 pub(crate) use angles::EXACT as EXACT_ROTATION;
@@ -58,22 +51,14 @@ pub use angles::{
     AngleUnit, omega_phi_kappa_from_rotation, rotation_from_omega_phi_kappa,
     rotation_from_yaw_pitch_roll,
 };
-#[cfg(feature = "reconstruction")]
 pub use detect::{FileKind, detect};
-#[cfg(feature = "reconstruction")]
 pub use format::Format;
 pub use geodesy::Anchor;
 pub(crate) use geodesy::geocentric_of;
-#[cfg(feature = "reconstruction")]
 pub use image_orientation::{Crop, Orientation};
 pub use input_file::InputFile;
 pub(crate) use input_file::stem;
-#[cfg(feature = "reconstruction")]
 pub use metric_frame::to_metric_frame;
-#[cfg(feature = "reconstruction")]
-pub use reference::StatedReference;
-pub use reference::epsg_of;
-#[cfg(feature = "reconstruction")]
+pub use reference::{StatedReference, epsg_of};
 pub use sets::{OrientationSet, orientation_sets};
-#[cfg(feature = "reconstruction")]
 pub(crate) use unread::{UnreadFormat, of as unread_format};

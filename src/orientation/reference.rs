@@ -1,10 +1,8 @@
 //! The coordinate reference system that files name, as its EPSG code.
 
-#[cfg(feature = "reconstruction")]
 use super::geodesy::Anchor;
 
 /// What the files of an orientation say about the system of their coordinates.
-#[cfg(feature = "reconstruction")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum StatedReference {
     /// Nothing.
@@ -18,7 +16,6 @@ pub enum StatedReference {
 }
 
 /// EPSG code of the system of an INPHO project.
-#[cfg(feature = "reconstruction")]
 pub(crate) fn of_inpho(text: &str) -> StatedReference {
     let after = text.split("$COORDINATE_SYSTEM").nth(1);
     let part = after.and_then(|after| after.split('$').next());

@@ -25,7 +25,7 @@ pub struct RoofGap {
     pub side: Segment3,
     /// Width of the gap in plan, metres.
     pub width_m: f64,
-    /// Energy of the labelling gained by the cut, square metres.
+    /// Energy of the labelling gained by the cut, nats.
     pub gain_nats: f64,
 }
 
