@@ -60,7 +60,8 @@ identical: native $(PACKAGE) $(ORIENTATION)
 	node tests/identical.mjs target/release/ridgeline
 
 golden:
-	RIDGELINE_REWRITE=1 cargo test --release --test pipeline golden
+	RIDGELINE_REWRITE=1 cargo test --test pipeline golden
+	RIDGELINE_REWRITE=1 cargo test --lib page_table
 
 score: native
 	python3 tests/score_table.py --binary target/release/ridgeline --scenes "$${SCENES:-../shared/scenes}"

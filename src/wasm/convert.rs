@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use js_sys::{Function, Reflect};
+use js_sys::{Function, Reflect, Uint8Array};
 use nalgebra::Matrix3x4;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -10,7 +10,7 @@ use wasm_bindgen::{JsError, JsValue};
 
 use crate::camera::Camera;
 use crate::error::Error;
-use crate::execution::Listener;
+use crate::execution::{Listener, MergedShards};
 
 /// A JavaScript `Error` with the refusal's message, called "InputError": the page shows it as
 /// advice, and anything else as a fault of the program. Its `code` is the kind of refusal, its
@@ -82,6 +82,21 @@ pub(crate) fn listener_of(on_progress: &Function) -> Listener {
         // A listener that throws is the page's own fault, and no reason to lose the stage.
         let _ = on_progress.call1(&JsValue::NULL, &fraction.into());
     })
+}
+
+/// Adds the shards of a map, in the order of their index; none is kept where one of them is foreign.
+pub(crate) fn merge_all(
+    merged: &mut MergedShards,
+    map: &str,
+    shards: &[Uint8Array],
+) -> Result<(), JsValue> {
+    for shard in shards {
+        if !merged.merge(map, &shard.to_vec()) {
+            *merged = MergedShards::default();
+            return Err(foreign("a shard of a map"));
+        }
+    }
+    Ok(())
 }
 
 /// Bytes that are not what they are taken for.

@@ -9,7 +9,9 @@ use nalgebra::{Matrix3, Point2};
 use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
-use super::convert::{ViewInfo, foreign, from_js, input_error, listener_of, named_error, to_js};
+use super::convert::{
+    ViewInfo, foreign, from_js, input_error, listener_of, merge_all, named_error, to_js,
+};
 use crate::camera::Camera;
 use crate::execution::{MergedShards, with_listener};
 use crate::orientation::InputFile;
@@ -165,13 +167,7 @@ impl Orienter {
     /// Takes the shards of a map from all orienters, in the order of their index.
     #[wasm_bindgen(js_name = mergeShards)]
     pub fn merge_shards(&mut self, map: &str, shards: Vec<Uint8Array>) -> Result<(), JsValue> {
-        for shard in shards {
-            if !self.merged.merge(map, &shard.to_vec()) {
-                self.merged = MergedShards::default();
-                return Err(foreign("a shard of a map"));
-            }
-        }
-        Ok(())
+        merge_all(&mut self.merged, map, &shards)
     }
 
     /// Finds the pairs that show the same, with the merged shards of the maps; returns them, those

@@ -4,7 +4,7 @@
 use js_sys::{Function, Uint8Array};
 use wasm_bindgen::prelude::*;
 
-use super::convert::{foreign, listener_of, named_error};
+use super::convert::{foreign, listener_of, merge_all, named_error};
 use super::session::{Session, stage_of};
 use crate::execution::MergedShards;
 use crate::pipeline::{PackedView, Run};
@@ -103,12 +103,6 @@ impl Session {
     /// Takes the shards of a map from all sessions, in the order of their index.
     #[wasm_bindgen(js_name = mergeShards)]
     pub fn merge_shards(&mut self, map: &str, shards: Vec<Uint8Array>) -> Result<(), JsValue> {
-        for shard in shards {
-            if !self.merged.merge(map, &shard.to_vec()) {
-                self.merged = MergedShards::default();
-                return Err(foreign("a shard of a map"));
-            }
-        }
-        Ok(())
+        merge_all(&mut self.merged, map, &shards)
     }
 }

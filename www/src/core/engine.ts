@@ -4,7 +4,7 @@
  */
 import wasmUrl from "../pkg/ridgeline_bg.wasm?url";
 import type { Args, CallName, Result } from "../shared/calls";
-import type { FailureKind, Reply, Request } from "../shared/messages";
+import type { FailureKind, Outcome, Reply, Request } from "../shared/messages";
 import type { AgreementReport } from "../shared/records";
 
 /** Changes with every other core that is built: what one found, another may not find. */
@@ -35,18 +35,59 @@ export function isFatal(kind: EngineError["kind"]): boolean {
   return kind === "crash" || kind === "memory";
 }
 
-interface Pending {
+/** A request as it is made, before it is sent. */
+type Unnumbered<R> = R extends unknown ? Omit<R, "id"> : never;
+
+interface Waiting {
   resolve: (value: never) => void;
   reject: (error: EngineError) => void;
 }
 
-/** A request as it is made, before it is sent. */
-type Unnumbered<R> = R extends unknown ? Omit<R, "id"> : never;
+/** The requests of a worker that wait for their answers. */
+export class PendingCalls {
+  readonly #waiting = new Map<number, Waiting>();
+  #lastId = 0;
+
+  get size(): number {
+    return this.#waiting.size;
+  }
+
+  /** The promise of the answer to the request that `send` sends with its number. */
+  ask<T>(send: (id: number) => void): Promise<T> {
+    this.#lastId += 1;
+    const id = this.#lastId;
+    return new Promise((resolve, reject) => {
+      this.#waiting.set(id, { resolve, reject });
+      send(id);
+    });
+  }
+
+  /** Keeps the promise of an answer; returns the error after which the worker is of no more use. */
+  settle(outcome: Outcome): EngineError | null {
+    const waiting = this.#waiting.get(outcome.id);
+    this.#waiting.delete(outcome.id);
+    if (outcome.type === "done") {
+      waiting?.resolve(outcome.result as never);
+      return null;
+    }
+    const error = new EngineError(outcome.message, outcome.kind, outcome.orientationCheck);
+    waiting?.reject(error);
+    return isFatal(outcome.kind) ? error : null;
+  }
+
+  /** All that wait fail with `reason`. */
+  rejectAll(reason: EngineError): void {
+    const waiting = [...this.#waiting.values()];
+    this.#waiting.clear();
+    for (const { reject } of waiting) {
+      reject(reason);
+    }
+  }
+}
 
 export class Engine {
   #worker: Worker | undefined;
-  #pending = new Map<number, Pending>();
-  #lastId = 0;
+  readonly #pending = new PendingCalls();
   readonly #onProgress: (stage: string, fraction: number) => void;
   readonly #mayAsk: () => boolean;
 
@@ -95,23 +136,14 @@ export class Engine {
     if (worker === undefined || !this.#mayAsk()) {
       return Promise.reject(new EngineError("No worker is running.", "cancelled"));
     }
-    this.#lastId += 1;
-    const id = this.#lastId;
-    return new Promise((resolve, reject) => {
-      this.#pending.set(id, { resolve, reject });
-      worker.postMessage({ ...request, id }, [...transfer]);
-    });
+    return this.#pending.ask((id) => worker.postMessage({ ...request, id }, [...transfer]));
   }
 
   /** Ends the worker at once, whatever it is doing; every open call fails with `reason`. */
   close(reason = new EngineError("Cancelled.", "cancelled")): void {
     this.#worker?.terminate();
     this.#worker = undefined;
-    const pending = [...this.#pending.values()];
-    this.#pending.clear();
-    for (const { reject } of pending) {
-      reject(reason);
-    }
+    this.#pending.rejectAll(reason);
   }
 
   #receive(reply: Reply): void {
@@ -119,16 +151,9 @@ export class Engine {
       this.#onProgress(reply.stage, reply.fraction);
       return;
     }
-    const pending = this.#pending.get(reply.id);
-    this.#pending.delete(reply.id);
-    if (reply.type === "done") {
-      pending?.resolve(reply.result as never);
-      return;
-    }
-    const error = new EngineError(reply.message, reply.kind, reply.orientationCheck);
-    pending?.reject(error);
-    if (isFatal(reply.kind)) {
-      this.close(error);
+    const fatal = this.#pending.settle(reply);
+    if (fatal !== null) {
+      this.close(fatal);
     }
   }
 }

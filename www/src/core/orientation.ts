@@ -16,7 +16,7 @@ import type {
   PairSummary,
   PhotoFeatures,
 } from "../shared/orientation";
-import { EngineError, isFatal } from "./engine";
+import { EngineError, PendingCalls } from "./engine";
 
 type Args<K extends OrientCallName> = Parameters<OrientCalls[K]>;
 type Result<K extends OrientCallName> = Awaited<ReturnType<OrientCalls[K]>>;
@@ -33,16 +33,10 @@ export interface OrientEvents {
   onBlock(block: OrientedBlock): void;
 }
 
-interface Pending {
-  resolve: (value: never) => void;
-  reject: (error: EngineError) => void;
-}
-
 /** A worker's other end: calls as promises. */
 class OrientWorker {
   readonly #worker: Worker;
-  readonly #pending = new Map<number, Pending>();
-  #lastId = 0;
+  readonly #pending = new PendingCalls();
   onProgress: (fraction: number) => void = () => undefined;
   onBlock: (block: OrientedBlock) => void = () => undefined;
 
@@ -65,21 +59,12 @@ class OrientWorker {
   }
 
   #send<T>(request: (id: number) => OrientRequest): Promise<T> {
-    this.#lastId += 1;
-    const id = this.#lastId;
-    return new Promise((resolve, reject) => {
-      this.#pending.set(id, { resolve, reject });
-      this.#worker.postMessage(request(id));
-    });
+    return this.#pending.ask((id) => this.#worker.postMessage(request(id)));
   }
 
   close(reason: EngineError): void {
     this.#worker.terminate();
-    const pending = [...this.#pending.values()];
-    this.#pending.clear();
-    for (const { reject } of pending) {
-      reject(reason);
-    }
+    this.#pending.rejectAll(reason);
   }
 
   #receive(reply: OrientReply): void {
@@ -91,16 +76,9 @@ class OrientWorker {
       this.onBlock(reply.block);
       return;
     }
-    const pending = this.#pending.get(reply.id);
-    this.#pending.delete(reply.id);
-    if (reply.type === "done") {
-      pending?.resolve(reply.result as never);
-      return;
-    }
-    const error = new EngineError(reply.message, reply.kind);
-    pending?.reject(error);
-    if (isFatal(reply.kind)) {
-      this.close(error);
+    const fatal = this.#pending.settle(reply);
+    if (fatal !== null) {
+      this.close(fatal);
     }
   }
 }

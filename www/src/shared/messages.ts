@@ -20,8 +20,10 @@ export interface Failure {
   orientationCheck: AgreementReport | null;
 }
 
-/** Worker to page. */
-export type Reply =
+/** What a call came to. */
+export type Outcome =
   | { type: "done"; id: number; result: unknown }
-  | ({ type: "failed"; id: number } & Failure)
-  | { type: "progress"; stage: string; fraction: number };
+  | ({ type: "failed"; id: number } & Failure);
+
+/** Worker to page. */
+export type Reply = Outcome | { type: "progress"; stage: string; fraction: number };

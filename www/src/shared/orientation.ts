@@ -7,7 +7,7 @@ import type {
   ViewInfo,
 } from "../pkg-orient/orientation.js";
 import type { Bytes } from "./calls";
-import type { Failure } from "./messages";
+import type { Outcome } from "./messages";
 
 export type * from "../pkg-orient/orientation.js";
 
@@ -42,7 +42,6 @@ export type OrientRequest =
 
 /** Worker to page. */
 export type OrientReply =
-  | { type: "done"; id: number; result: unknown }
-  | ({ type: "failed"; id: number } & Failure)
+  | Outcome
   | { type: "progress"; fraction: number }
   | { type: "block"; block: OrientedBlock };

@@ -52,7 +52,7 @@ export const STAGES = [
     title: "Rectangles",
     section: "W96 3.6",
     methods: ["rectangles", "combined"],
-    reads: ["objectspace.planes"],
+    reads: ["objectspace.planes", "roof.border_nats_per_m"],
   },
   {
     name: "lines",

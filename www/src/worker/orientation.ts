@@ -2,41 +2,19 @@
 /// <reference lib="webworker" />
 import init, { Orienter } from "../pkg-orient/orientation.js";
 import type { OrientCalls, OrientedBlock, OrientReply, OrientRequest } from "../shared/orientation";
-import { readBlob } from "./calls";
-import { failureOf } from "./failures";
+import { type Answer, readBlob } from "./calls";
+import { serve } from "./serve";
 
 declare const self: DedicatedWorkerGlobalScope;
 
 let orienter: Orienter | undefined;
-let queue: Promise<void> = Promise.resolve();
+serve<OrientRequest>(perform, post);
 
-self.onmessage = (event: MessageEvent<OrientRequest>) => {
-  queue = queue.then(() => reply(event.data));
-};
-
-/** What the core wrote to the console last: a panic's message. */
-let lastWords: string | null = null;
-const write = console.error.bind(console);
-console.error = (...words: unknown[]) => {
-  lastWords = String(words[0]);
-  write(...words);
-};
-
-async function reply(request: OrientRequest): Promise<void> {
-  lastWords = null;
-  try {
-    const result = await perform(request);
-    post({ type: "done", id: request.id, result }, buffersOf(result));
-  } catch (error) {
-    post({ type: "failed", id: request.id, ...failureOf(error, lastWords) });
-  }
-}
-
-async function perform(request: OrientRequest): Promise<unknown> {
+async function perform(request: OrientRequest): Promise<Answer> {
   if (request.type === "open") {
     await init({ module_or_path: request.wasmUrl });
     orienter = new Orienter(request.options);
-    return undefined;
+    return { result: undefined, transfer: [] };
   }
   if (orienter === undefined) {
     throw new Error("The core is not ready. Reload the page.");
@@ -47,7 +25,8 @@ async function perform(request: OrientRequest): Promise<unknown> {
   if (typeof method !== "function") {
     throw new Error(`There is no call '${request.name}'.`);
   }
-  return Reflect.apply(method, target, request.args);
+  const result: unknown = await Reflect.apply(method, target, request.args);
+  return { result, transfer: buffersOf(result) };
 }
 
 type Own = Pick<OrientCalls, "readFile" | "runShard" | "connect" | "orient" | "block">;
