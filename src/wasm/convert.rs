@@ -84,7 +84,7 @@ pub(crate) fn listener_of(on_progress: &Function) -> Listener {
     })
 }
 
-/// Adds the shards of a map, in the order of their index; none is kept where one of them is foreign.
+/// Adds the shards of a map, in the order of their index; none is kept where one is foreign.
 pub(crate) fn merge_all(
     merged: &mut MergedShards,
     map: &str,

@@ -20,9 +20,9 @@
 //! * geometry, and the contrast of its lines, since only lines with contrast are region boundaries:
 //!   the share of the outline that image lines cover, mean over all views; and the slope.
 //!
-//! Of the polygons between two lines those with the largest M and the likeliest ones are kept. A pair of
-//! lines may hold several, with gaps between them: U-shapes. A line with an end of a perpendicular,
-//! higher one makes a triangle: the end of a hip below its ridge.
+//! Of the polygons between two lines those with the largest M and the likeliest ones are kept. A
+//! pair of lines may hold several, with gaps between them: U-shapes. A line with an end of a
+//! perpendicular, higher one makes a triangle: the end of a hip below its ridge.
 //!
 //! ```text
 //! strip             the plane between two parallel lines
