@@ -39,6 +39,9 @@ pub(super) struct InputArgs {
     /// Reconstruct only this part of the ground plan, metres in the frame of the orientation.
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_roi, allow_hyphen_values = true)]
     pub roi: Option<[f64; 4]>,
+    /// Use at most so many views of that part, those that say most about it (12 if not given).
+    #[arg(long, value_name = "N", requires = "roi", value_parser = clap::value_parser!(u16).range(3..))]
+    pub max_views: Option<u16>,
     /// Reference system of the orientation's world, as EPSG:25832; it is named in the results.
     #[arg(long, value_name = "EPSG:N", value_parser = parse_crs)]
     pub crs: Option<u32>,

@@ -52,6 +52,7 @@ pub(super) fn open(
             .or(stated.orientation),
         views: args.views.clone().or(stated.views),
         roi: args.roi.or(stated.roi),
+        max_views: args.max_views.map(usize::from).or(stated.max_views),
         ground_z: args.ground_z.or(stated.ground_z),
         epsg: args.crs.or(stated.epsg),
         memory_mb: args.memory.or(stated.memory_mb),

@@ -186,6 +186,7 @@ fn scene_of(places: &[(f64, f64, f64)], photograph: impl Fn(&Camera) -> Gray) ->
         views,
         origin: Vector3::zeros(),
         ground_z: None,
+        region: None,
         warnings: Vec::new(),
         survey: crate::scene::Survey::default(),
     }

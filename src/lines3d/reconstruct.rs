@@ -10,6 +10,7 @@ use super::plane_intersection::line_of_planes;
 use super::projection::ProjectedLine;
 use super::track::{LineSupport, LineTrack};
 use crate::geometry::Segment3;
+use crate::math::{larger, smaller};
 use crate::params::Lines3dParams;
 use crate::scene::Scene;
 
@@ -33,6 +34,8 @@ pub enum LineOutcome {
     },
     /// No stretch that a view supports.
     NoExtent,
+    /// No part of it lies in the region of interest.
+    OutsideRegion,
 }
 
 /// The trace of [`reconstruct_lines`].
@@ -71,6 +74,27 @@ pub fn reconstruct_lines(
     (lines, trace)
 }
 
+/// Does some part of a stretch lie in a rectangle x0, y0, x1, y1 of the plan?
+fn reaches_into(segment: &Segment3, [x0, y0, x1, y1]: [f64; 4]) -> bool {
+    let along = segment.p1 - segment.p0;
+    let (mut from, mut to) = (0.0, 1.0);
+    for (at, step, low, high) in [
+        (segment.p0.x, along.x, x0, x1),
+        (segment.p0.y, along.y, y0, y1),
+    ] {
+        if step == 0.0 {
+            if at < low || at > high {
+                return false;
+            }
+            continue;
+        }
+        let (a, b) = ((low - at) / step, (high - at) / step);
+        from = larger(from, a.min(b));
+        to = smaller(to, a.max(b));
+    }
+    from <= to
+}
+
 /// One line and its residual, or why there is none.
 fn reconstruct(
     scene: &Scene,
@@ -88,6 +112,12 @@ fn reconstruct(
     let (t0, t1) = extent_of(scene, &fit.line, &track.supports).ok_or(LineOutcome::NoExtent)?;
     let (d, length) = (fit.line.direction(), fit.line.length());
     let segment = Segment3::new(fit.line.p0 + d * t0, fit.line.p0 + d * t1);
+    if scene
+        .region
+        .is_some_and(|region| !reaches_into(&segment, region))
+    {
+        return Err(LineOutcome::OutsideRegion);
+    }
     let (f0, f1) = (t0 / length, t1 / length);
     let sigma_m = fit.sigma_at(f0).max(fit.sigma_at(f1));
     let camera = scene.camera(track.supports[0].view);
@@ -136,6 +166,23 @@ mod tests {
     use crate::lines2d::{GuidedEdge, SegmentKind};
     use crate::lines3d::planted;
     use nalgebra::Matrix2;
+
+    #[test]
+    fn lines_reach_into_a_region_where_a_part_of_them_lies_in_it() {
+        let region = [0.0, 0.0, 4.0, 2.0];
+        let line = |a: [f64; 2], b: [f64; 2]| {
+            let point = |[x, y]: [f64; 2]| nalgebra::Point3::new(x, y, 5.0);
+            reaches_into(&Segment3::new(point(a), point(b)), region)
+        };
+        assert!(line([1.0, 1.0], [9.0, 9.0]), "an end");
+        assert!(line([-1.0, 1.0], [5.0, 1.5]), "across");
+        assert!(line([2.0, -1.0], [2.0, 3.0]), "across, along an axis");
+        assert!(
+            !line([5.0, 0.0], [5.0, 2.0]) && !line([-1.0, -1.0], [9.0, -1.0]),
+            "beside"
+        );
+        assert!(!line([3.0, 4.0], [6.0, 1.0]), "past a corner");
+    }
 
     fn certain() -> Evidence {
         Evidence {

@@ -73,6 +73,8 @@ impl Run {
             origin: first.map(|v| v.origin).unwrap_or_default(),
             ground_z: first.and_then(|v| v.ground_z),
             views: views.into_iter().map(PackedView::unpack).collect(),
+            // Lines outside are left out by the instance that runs the stage, before any shard.
+            region: None,
             warnings: Vec::new(),
             survey: Survey::default(),
         };

@@ -37,6 +37,7 @@ pub(crate) fn scene(surfaces: &[TexturedPlane]) -> Scene {
         views,
         origin: Vector3::zeros(),
         ground_z: None,
+        region: None,
         warnings: Vec::new(),
         survey: crate::scene::Survey::default(),
     }

@@ -62,6 +62,9 @@ pub struct Scene {
     pub origin: Vector3<f64>,
     /// Height of the ground in the local frame, metres, when the user gave it.
     pub ground_z: Option<f64>,
+    /// Region of interest in plan, x0, y0, x1, y1, metres, local frame: what lies outside is not
+    /// searched.
+    pub region: Option<[f64; 4]>,
     /// Warnings of the readers (duplicate orientation, ignored files, ...).
     pub warnings: Vec<String>,
     /// Reference system and quality of the orientation.
@@ -98,6 +101,7 @@ impl Scene {
             views: views.collect(),
             origin: self.origin,
             ground_z: self.ground_z,
+            region: self.region,
             warnings: Vec::new(),
             survey: Survey::default(),
         }

@@ -61,6 +61,7 @@ pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
         ground_z: options
             .ground_z
             .map(|z| z - plan.origin.z - checked.origin_change.z),
+        region: None,
         warnings: (plan.warnings.into_iter().chain(placement_warnings))
             .chain(checked.warnings)
             .collect(),
@@ -70,8 +71,13 @@ pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
             ..plan.survey
         },
     };
+    let local = |[x0, y0, x1, y1]: [f64; 4]| {
+        let [x, y] = [scene.origin.x, scene.origin.y];
+        [x0 - x, y0 - y, x1 - x, y1 - y]
+    };
+    scene.region = options.roi.map(local);
     if let (Some(roi), true) = (options.roi, plan.is_cut_later) {
-        region::cut_scene(&mut scene, roi)?;
+        region::cut_scene(&mut scene, roi, options.max_views)?;
     }
     Ok(scene)
 }
@@ -101,6 +107,7 @@ pub fn whole_views(files: &[InputFile], options: &LoadOptions) -> Result<Scene> 
         views: plan.views.iter().map(view).collect(),
         origin: plan.origin,
         ground_z: options.ground_z.map(|z| z - plan.origin.z),
+        region: None,
         warnings: [plan.warnings, plan.placement_warnings].concat(),
         survey: plan.survey,
     })

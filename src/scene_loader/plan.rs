@@ -423,7 +423,7 @@ impl Plan {
         let cut_now = !self.is_cut_later;
         if let (Some(roi), Some(heights), true) = (options.roi, found.heights, cut_now) {
             let roi = RegionOfInterest::new(roi, &self.origin, heights);
-            match roi.and_then(|roi| roi.cut(files, &mut views)) {
+            match roi.and_then(|roi| roi.cut(files, &mut views, options.max_views)) {
                 Ok(warnings) => self.warnings.extend(warnings),
                 Err(error) => self.errors.push(error),
             }

@@ -333,6 +333,37 @@ fn a_region_of_interest_cuts_images_and_keeps_projections() {
     );
 }
 
+#[test]
+fn of_many_views_of_a_region_the_most_telling_ones_are_read() {
+    let (scene, truth) = gable_scene(200);
+    let files = inputs(to_files(&scene));
+    let loaded = |max_views| {
+        let options = LoadOptions {
+            roi: Some([-1.0, -1.0, 1.0, 1.0]),
+            ground_z: Some(truth.ground_z),
+            max_views,
+            ..all()
+        };
+        load_scene(&files, &options).unwrap()
+    };
+    let said = |scene: &Scene| scene.warnings.join(" ").contains("6 views show the region");
+    let (whole, chosen) = (loaded(None), loaded(Some(4)));
+    assert_eq!([whole.views.len(), chosen.views.len()], [6, 4]);
+    assert_eq!([&whole, &chosen].map(said), [false, true]);
+    // One strip alone would leave the other direction undetermined.
+    let spread = |axis: usize| {
+        let along: Vec<f64> = chosen.views.iter().map(|v| v.camera.center[axis]).collect();
+        along.iter().fold(f64::MIN, |a, b| a.max(*b))
+            - along.iter().fold(f64::MAX, |a, b| a.min(*b))
+    };
+    assert!(
+        spread(0) > 10.0 && spread(1) > 10.0,
+        "{} {}",
+        spread(0),
+        spread(1)
+    );
+}
+
 /// The photograph that a lens takes where the pinhole takes `ideal`: found by iteration, the other
 /// way round than the loader.
 fn distorted(view: &View, lens: &Distortion) -> image::RgbImage {

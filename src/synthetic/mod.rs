@@ -103,6 +103,7 @@ fn scene_seen_by(
         views,
         origin: Vector3::zeros(),
         ground_z: None,
+        region: None,
         warnings: Vec::new(),
         survey: crate::scene::Survey::default(),
     };

@@ -379,6 +379,7 @@ mod tests {
             views: Vec::new(),
             origin: Vector3::zeros(),
             ground_z: None,
+            region: None,
             warnings: Vec::new(),
             survey: Survey::default(),
         };

@@ -50,6 +50,9 @@ struct JsLoadOptions {
     /// x0, y0, x1, y1, metres, in the frame of the orientation.
     #[tsify(optional)]
     roi: Option<[f64; 4]>,
+    /// Most views of the region of interest; 12 when absent.
+    #[tsify(optional)]
+    max_views: Option<usize>,
     /// Height of the ground, metres, in the frame of the orientation.
     #[tsify(optional)]
     ground_z: Option<f64>,
@@ -281,6 +284,7 @@ pub(crate) fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
         orientation: options.orientation,
         views: options.views,
         roi: options.roi,
+        max_views: options.max_views,
         ground_z: options.ground_z,
         epsg: options.epsg,
         memory_mb: None,
@@ -295,6 +299,7 @@ impl From<&LoadOptions> for JsLoadOptions {
             orientation: options.orientation.clone(),
             views: options.views.clone(),
             roi: options.roi,
+            max_views: options.max_views,
             ground_z: options.ground_z,
             epsg: options.epsg,
             apply_fix: options.apply_fix,

@@ -144,6 +144,7 @@ pub fn scene() -> Scene {
         views: vec![map_view("a.jpg", 5.0, 5.0), map_view("b.jpg", 8.0, 5.0)],
         origin: ORIGIN,
         ground_z: None,
+        region: None,
         warnings: Vec::new(),
         survey: ridgeline::scene::Survey::default(),
     }

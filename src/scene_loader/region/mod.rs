@@ -4,6 +4,8 @@
 //! so the part is the bounding box of the region at the lowest and at the highest possible height,
 //! and a margin.
 
+mod view_choice;
+
 use nalgebra::{Point2, Point3, Vector3};
 
 use super::checks::camera_checks;
@@ -21,6 +23,13 @@ const TALLEST_M: f64 = 60.0;
 
 /// Margin around the box, pixels, so that filters and windows at its border are complete.
 const MARGIN_PX: f64 = 40.0;
+
+/// Most views of a region where no number is stated. Assumption: a dozen see every roof from all
+/// sides; time grows with their number and accuracy with its root.
+const MOST_VIEWS: usize = 12;
+
+/// Points along a side of the region at which views are compared.
+const COMPARED_AT: u32 = 5;
 
 /// Smallest part that is kept, pixels along a side.
 const SMALLEST_PX: u32 = 64;
@@ -48,11 +57,13 @@ impl RegionOfInterest {
         })
     }
 
-    /// Cuts the region out of each view; views that do not show it are left out with a warning.
+    /// Cuts the region out of each view; views that do not show it are left out with a warning, and
+    /// those that add least to at most so many others.
     pub(crate) fn cut(
         &self,
         files: &[InputFile],
         views: &mut Vec<PlannedView>,
+        most: Option<usize>,
     ) -> Result<Vec<String>> {
         let cameras: Vec<Camera> = views.iter().map(|v| v.whole.clone()).collect();
         let mut blind = Vec::new();
@@ -66,14 +77,31 @@ impl RegionOfInterest {
         if views.len() < 3 {
             return Err(self.unseen(views.len(), &cameras));
         }
-        Ok(if blind.is_empty() {
-            Vec::new()
-        } else {
-            vec![format!(
-                "views that do not show the region of interest, left out: {}",
-                listed(blind.iter())
-            )]
-        })
+        let showing = views.len();
+        let whole: Vec<Camera> = views.iter().map(|v| v.whole.clone()).collect();
+        keep(views, &self.most_telling(&whole, most));
+        let mut warnings = Vec::new();
+        if !blind.is_empty() {
+            let names = listed(blind.iter());
+            warnings.push(format!(
+                "views that do not show the region of interest, left out: {names}"
+            ));
+        }
+        warnings.extend(notice_of_choice(showing, views.len()));
+        Ok(warnings)
+    }
+
+    /// Indices of the cameras that say most about the region, in their order.
+    fn most_telling(&self, cameras: &[Camera], most: Option<usize>) -> Vec<usize> {
+        let t = |i: u32| (f64::from(i) + 0.5) / f64::from(COMPARED_AT);
+        let z = 0.5 * (self.low.z + self.high.z);
+        let place = |i: u32| {
+            let (u, v) = (t(i % COMPARED_AT), t(i / COMPARED_AT));
+            let at = |axis: usize, t: f64| self.low[axis] + t * (self.high[axis] - self.low[axis]);
+            Point3::new(at(0, u), at(1, v), z)
+        };
+        let places: Vec<Point3<f64>> = (0..COMPARED_AT * COMPARED_AT).map(place).collect();
+        view_choice::most_telling(cameras, &places, TALLEST_M, most.unwrap_or(MOST_VIEWS))
     }
 
     /// Column, row, width, height of the part of a view that may show the region; `None` where it
@@ -200,8 +228,21 @@ impl RegionOfInterest {
     }
 }
 
-/// Cuts the region out of a scene whose views are decoded.
-pub(crate) fn cut_scene(scene: &mut Scene, roi: [f64; 4]) -> Result<()> {
+/// Keeps the elements at these indices, which rise.
+fn keep<T>(all: &mut Vec<T>, indices: &[usize]) {
+    let mut index = 0..;
+    all.retain(|_| (index.next()).is_some_and(|i| indices.binary_search(&i).is_ok()));
+}
+
+/// What is said of views that show the region and are not used.
+fn notice_of_choice(showing: usize, used: usize) -> Option<String> {
+    (used < showing).then(|| {
+        format!("{showing} views show the region of interest; the {used} that say most about it are used")
+    })
+}
+
+/// Cuts the region out of a scene whose views are decoded, and keeps at most so many of them.
+pub(crate) fn cut_scene(scene: &mut Scene, roi: [f64; 4], most: Option<usize>) -> Result<()> {
     let cameras: Vec<Camera> = scene.views.iter().map(|v| v.camera.clone()).collect();
     let named: Vec<(&str, &Camera)> = scene.views.iter().map(|v| (&*v.name, &v.camera)).collect();
     let Some(heights) = camera_checks::check_cameras(&named, scene.ground_z).heights else {
@@ -222,10 +263,16 @@ pub(crate) fn cut_scene(scene: &mut Scene, roi: [f64; 4]) -> Result<()> {
         (view.camera.width, view.camera.height) = (part[2], part[3]);
         true
     });
-    match scene.views.len() {
-        0..3 => Err(region.unseen(scene.views.len(), &cameras)),
-        _ => Ok(()),
+    let showing = scene.views.len();
+    if showing < 3 {
+        return Err(region.unseen(showing, &cameras));
     }
+    let seeing: Vec<Camera> = scene.views.iter().map(|v| v.camera.clone()).collect();
+    keep(&mut scene.views, &region.most_telling(&seeing, most));
+    scene
+        .warnings
+        .extend(notice_of_choice(showing, scene.views.len()));
+    Ok(())
 }
 
 /// The part of the photograph that a part of the pinhole is made of, and the part itself: column,

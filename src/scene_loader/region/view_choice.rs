@@ -1,0 +1,142 @@
+//! The views that say most about a region, where more show it than are wanted.
+//!
+//! A view measures a place across its rays, each of its pixels once more: of a piece of surface
+//! with normal n it has the information (Fisher)
+//!
+//! ```text
+//! cos(n, ray) / s^2  (I - r r^T)       r direction of the ray, s size of a pixel there, metres
+//! ```
+//!
+//! and views together the sum of theirs. The choice is greedy and D-optimal: the next view is the
+//! one that raises the sum of log det over roofs and the walls of all four sides most. A view that
+//! repeats another adds little, one across the first baselines or from the side much.
+
+use nalgebra::{Matrix3, Point3, Vector3};
+
+use crate::camera::Camera;
+use crate::math::ln;
+
+/// A piece of surface that the views are to measure.
+struct Patch {
+    place: Point3<f64>,
+    normal: Vector3<f64>,
+    /// Of the views that are chosen, and before them: metres to the minus two.
+    information: Matrix3<f64>,
+}
+
+/// Indices of at most `most` cameras, in their order, that say most about surfaces at these places,
+/// which are known to within `unknown_m` metres before.
+pub(crate) fn most_telling(
+    cameras: &[Camera],
+    places: &[Point3<f64>],
+    unknown_m: f64,
+    most: usize,
+) -> Vec<usize> {
+    if cameras.len() <= most {
+        return (0..cameras.len()).collect();
+    }
+    let before = Matrix3::identity() / (unknown_m * unknown_m);
+    let normals = [
+        Vector3::z(),
+        Vector3::x(),
+        -Vector3::x(),
+        Vector3::y(),
+        -Vector3::y(),
+    ];
+    let mut patches: Vec<Patch> = (places.iter())
+        .flat_map(|place| normals.map(|normal| (*place, normal)))
+        .map(|(place, normal)| Patch {
+            place,
+            normal,
+            information: before,
+        })
+        .collect();
+    let mut chosen = Vec::new();
+    let mut waiting: Vec<usize> = (0..cameras.len()).collect();
+    while chosen.len() < most {
+        let gains = crate::execution::map(&waiting, |_, &view| gain(&cameras[view], &patches));
+        // Of equal ones the first.
+        let best = (0..gains.len())
+            .rev()
+            .max_by(|&i, &j| gains[i].total_cmp(&gains[j]));
+        let Some(best) = best else { break };
+        let view = waiting.remove(best);
+        for patch in &mut patches {
+            patch.information += information(&cameras[view], patch);
+        }
+        chosen.push(view);
+    }
+    chosen.sort_unstable();
+    chosen
+}
+
+/// By how much a view more raises the sum of log det over all patches, nats.
+fn gain(camera: &Camera, patches: &[Patch]) -> f64 {
+    let of_patch = |patch: &Patch| {
+        let with = patch.information + information(camera, patch);
+        ln(with.determinant()) - ln(patch.information.determinant())
+    };
+    patches.iter().map(of_patch).sum()
+}
+
+/// What a view tells of the position of a piece of surface, metres to the minus two.
+fn information(camera: &Camera, patch: &Patch) -> Matrix3<f64> {
+    let image = camera.project(&patch.place);
+    if !image.is_some_and(|x| camera.contains(&x, 0.0)) {
+        return Matrix3::zeros();
+    }
+    let ray = (camera.center - patch.place).normalize();
+    let pixel_m = camera.ground_pixel(&patch.place);
+    let facing = patch.normal.dot(&ray).max(0.0);
+    (Matrix3::identity() - ray * ray.transpose()) * (facing / (pixel_m * pixel_m))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A camera of 400 x 400 pixels that looks down.
+    fn nadir(x: f64, y: f64, z: f64) -> Camera {
+        Camera {
+            k: Matrix3::new(300.0, 0.0, 200.0, 0.0, 300.0, 200.0, 0.0, 0.0, 1.0),
+            r: Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)),
+            center: Point3::new(x, y, z),
+            width: 400,
+            height: 400,
+        }
+    }
+
+    fn at(x: f64, y: f64) -> Camera {
+        nadir(x, y, 100.0)
+    }
+
+    #[test]
+    fn a_repeated_view_is_left_out_and_a_cross_baseline_taken() {
+        let cameras = [at(0.0, 0.0), at(0.2, 0.0), at(30.0, 0.0), at(0.0, 30.0)];
+        let chosen = most_telling(&cameras, &[Point3::origin()], 60.0, 3);
+        assert_eq!(chosen.len(), 3);
+        assert!(chosen.contains(&2) && chosen.contains(&3), "{chosen:?}");
+    }
+
+    #[test]
+    fn views_that_do_not_show_the_place_come_last() {
+        let cameras = [at(900.0, 0.0), at(0.0, 0.0), at(20.0, 0.0), at(0.0, 20.0)];
+        assert_eq!(
+            most_telling(&cameras, &[Point3::origin()], 60.0, 3),
+            [1, 2, 3]
+        );
+    }
+
+    #[test]
+    fn few_enough_views_are_all_taken() {
+        let cameras = [at(0.0, 0.0), at(900.0, 0.0)];
+        assert_eq!(most_telling(&cameras, &[Point3::origin()], 60.0, 2), [0, 1]);
+    }
+
+    #[test]
+    fn the_nearer_of_two_like_views_is_taken() {
+        let low = nadir(0.0, 0.0, 50.0);
+        let cameras = [at(0.0, 0.0), low];
+        assert_eq!(most_telling(&cameras, &[Point3::origin()], 60.0, 1), [1]);
+    }
+}
