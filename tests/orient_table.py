@@ -6,7 +6,8 @@
 
 FOLDER of scenes holds one folder per scene with images/ and cameras.json (K, R, C; truth/cameras_true.json where that is
 more exact). Their photographs are resampled through a lens with the radial terms K1, K2 (of COLMAP's RADIAL; 0,0 leaves
-them as they are), and the focal length is stated as it is then. MODEL is a folder with another program's cameras.txt and
+them as they are), and the focal length is stated as it is then. Scenes whose photographs are parts of larger ones (principal
+point outside of them) are left out: they show too small an angle to calibrate a camera. MODEL is a folder with another program's cameras.txt and
 images.txt, as text. All differences are those after the similarity of the projection centres with the least squares.
 """
 import argparse
@@ -34,13 +35,14 @@ def main():
     parser.add_argument('--photographs', type=pathlib.Path)
     parser.add_argument('--against', type=pathlib.Path)
     args = parser.parse_args()
+    args.binary = args.binary.resolve()
     print(HEAD + '\n' + '|---' * HEAD.count(' |') + '|')
     if args.photographs:
         row(args.photographs.name, args, args.photographs, colmap_model(args.against), [])
         return
     lens = [float(term) for term in args.lens.split(',')]
     names = args.only.split(',') if args.only else sorted(p.parent.name for p in args.scenes.glob('*/cameras.json'))
-    for name in names:
+    for name in filter(lambda name: is_whole(args.scenes / name), names):
         with tempfile.TemporaryDirectory() as folder:
             known = through_lens(args.scenes / name, pathlib.Path(folder), lens)
             focal = next(iter(known.values()))[0]
@@ -70,6 +72,13 @@ def row(name, args, photographs, known, options):
     print(f'| {name} | {len(known)} | {len(both)} | {report["points"]} | {report["rms_px"]:.2f} | {focal:.1f}{deviation} '
           f'({true_focal:.1f}) | {rms:.3f} | {rms / (depth / true_focal):.2f} | {100 * rms / path:.2f} % | '
           f'{np.median(angles):.3f}, {max(angles):.3f} |', flush=True)
+
+
+def is_whole(scene):
+    """Is the principal point of all photographs in their middle half?"""
+    views = json.loads((scene / 'cameras.json').read_text())['views']
+    sides = [(view['K'][axis][2] / view[side]) for view in views for axis, side in enumerate(('width', 'height'))]
+    return all(0.25 < share < 0.75 for share in sides)
 
 
 def through_lens(scene, out, lens):

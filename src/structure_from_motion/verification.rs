@@ -6,7 +6,7 @@ use nalgebra::{Point2, Vector3};
 
 use super::features::Features;
 use super::incremental::VerifiedPair;
-use super::intrinsics::{FOCAL_GUESSES, Intrinsics, STATED_FOCAL_ODDS};
+use super::intrinsics::{FOCAL_GUESSES, Intrinsics, STATED_FOCAL_ODDS, stated_focal_nats};
 use super::matching::{Candidate, mutual_matches};
 use super::two_view::{TwoViewGeometry, two_view_geometry};
 use crate::execution::{Sharded, sharded_map};
@@ -113,8 +113,8 @@ pub(super) struct Guess {
 
 /// The cameras under each guess of the focal length of those that are marked; those under which the
 /// pairs with the most matches are likeliest first. Without a mark the cameras as they are stated
-/// come first, and the likeliest guess of all of them after it where the pairs prefer the mean of
-/// the guesses.
+/// come first, and after them the likeliest guess of all that the headers' spread does not cover,
+/// where the pairs prefer the mean of the guesses.
 pub(super) fn guess_focal(
     photos: &[MatchedPhoto],
     cameras: &[Intrinsics],
@@ -176,7 +176,15 @@ pub(super) fn guess_focal(
     let Some(as_stated) = as_stated else {
         return Ok(under);
     };
-    let best = under.swap_remove(0);
+    // A guess that the header's own spread covers is none: the adjustment gets there.
+    let is_rival = |guess: &Guess| {
+        let focals = guess.cameras.iter().zip(cameras);
+        let mut nats = focals.map(|(c, stated)| stated_focal_nats(c.focal, stated.focal, 0.0));
+        nats.any(|nats| nats < 0.0)
+    };
+    let Some(best) = under.into_iter().find(is_rival) else {
+        return Ok(vec![as_stated]);
+    };
     // One of so many guesses: the likelihood of any is their mean, of which the best is all.
     let of_any = best.nats - math::ln(FOCAL_GUESSES.len() as f64);
     Ok(match of_any > as_stated.nats + STATED_FOCAL_ODDS {
