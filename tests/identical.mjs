@@ -1,6 +1,6 @@
 // Runs scenes, the first two by every method, through the wasm Session in Node and through the native command line, and compares
-// every file byte for byte (report.json without its part `seconds`). So is the orientation of drawn photographs alone, by two
-// orienters that divide the pairs. What model.glb is wrong in, the validator of glTF's makers says.
+// every file byte for byte (report.json without its part `seconds`). So is the orientation of drawn photographs with
+// ground control points, by two orienters that divide the pairs. What model.glb is wrong in, the validator of glTF's makers says.
 //
 //   node tests/identical.mjs BINARY [SCENE]     by default the demo's, and the synthetic scenes of the tests, which the
 //                                               example `synthetic` beside the binary writes
@@ -89,7 +89,11 @@ async function orientInWasm(photographs) {
     const orienters = [];
     for (let i = 0; i < 2; i += 1) orienters.push((await openOrienter({})).orienter);
     const [first] = orienters;
-    for (const [i, name] of readdirSync(photographs).sort().reverse().entries()) {
+    const names = readdirSync(photographs).sort();
+    for (const list of names.filter((name) => name === "gcp_list.txt")) {
+        first.setControl(list, readFileSync(join(photographs, list)));
+    }
+    for (const [i, name] of names.filter((name) => name !== "gcp_list.txt").reverse().entries()) {
         const read = orienters[i % 2].readPhoto(name, readFileSync(join(photographs, name)));
         for (const orienter of orienters) orienter.takePhoto(read);
     }

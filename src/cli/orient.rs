@@ -6,14 +6,13 @@ use std::sync::Arc;
 use indicatif::{ProgressBar, ProgressStyle};
 use ridgeline::execution::progress::{Listener, with_listener};
 use ridgeline::orientation::InputFile;
-use ridgeline::structure_from_motion::{FeatureOptions, OrientOptions, orient as orient_photos};
+use ridgeline::structure_from_motion::{
+    FeatureOptions, GroundControl, OrientOptions, orient as orient_photos,
+};
 
 use super::args::OrientArgs;
 use super::failure::Failure;
 use super::{files, input};
-
-/// What a list of ground control points is called among photographs.
-const GCP_LIST: &str = "gcp_list.txt";
 
 /// Steps of the progress bar.
 const BAR_STEPS: f64 = 1000.0;
@@ -35,8 +34,8 @@ pub(super) fn orient(args: &OrientArgs) -> Result<(), Failure> {
                 path.display()
             ))
         })?;
-        photographs.retain(|file| !file.name().eq_ignore_ascii_case(GCP_LIST));
-        photographs.push(InputFile::new(GCP_LIST, list));
+        photographs.retain(|file| !file.name().eq_ignore_ascii_case(GroundControl::FILE));
+        photographs.push(InputFile::new(GroundControl::FILE, list));
     }
     for notice in seen.notices() {
         eprintln!("warning: {notice}");

@@ -129,6 +129,10 @@ impl FileKind {
 /// Data lines that are inspected: a list may begin with a damaged one.
 const HEAD_LINES: usize = 6;
 
+/// What a list of ground control points is called, as OpenDroneMap's: its lines would pass for
+/// those of other lists, and it orients no image by itself.
+pub(crate) const GCP_LIST: &str = "gcp_list.txt";
+
 /// Recognises a file.
 pub fn detect(file: &InputFile) -> FileKind {
     if crate::raster::unread_image_format(&file.path, &file.bytes).is_some_and(|f| f.is_image) {
@@ -136,6 +140,9 @@ pub fn detect(file: &InputFile) -> FileKind {
     }
     if crate::raster::image_format(&file.bytes).is_some() {
         return FileKind::Image;
+    }
+    if file.name().eq_ignore_ascii_case(GCP_LIST) {
+        return FileKind::Ignored;
     }
     if let Some(text) = file.head(HEAD_BYTES) {
         if text

@@ -8,6 +8,8 @@
 
 use nalgebra::{Matrix2, Matrix2x5, Point2, Vector2};
 
+use crate::math;
+
 /// Interior orientation of the photographs of one camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Intrinsics {
@@ -26,6 +28,25 @@ pub(super) const PARAMETERS: usize = 5;
 
 /// Prior standard deviation of a stated focal length, a share of it.
 pub(super) const STATED_FOCAL_PRIOR: f64 = 0.05;
+
+/// Focal lengths that are tried where none is stated, as shares of the longer side.
+pub(super) const FOCAL_GUESSES: [f64; 8] = [0.6, 0.72, 0.86, 1.0, 1.2, 1.5, 2.0, 2.8];
+
+/// That a header belongs to its photograph, nats. Assumption: of a hundred one does not, because
+/// the photograph was cut or the header is that of another one.
+pub(super) const STATED_FOCAL_ODDS: f64 = 4.6;
+
+/// How much likelier a focal length is where the stated one belongs to the photographs than where
+/// it does not, nats: the density of its logarithm under the spread of what is stated (and of
+/// itself, a share), over that of any lens between the shortest and the longest that are tried.
+pub(super) fn stated_focal_nats(focal: f64, stated: f64, spread: f64) -> f64 {
+    let sigma = math::hypot(STATED_FOCAL_PRIOR, spread);
+    let z = math::ln(focal / stated) / sigma;
+    let [shortest, .., longest] = FOCAL_GUESSES;
+    let any = math::ln(longest / shortest);
+    let density = math::ln(any / (sigma * (2.0 * std::f64::consts::PI).sqrt())) - 0.5 * z * z;
+    STATED_FOCAL_ODDS + density
+}
 
 impl Intrinsics {
     /// A camera without distortion, its principal point in the middle.

@@ -52,7 +52,7 @@ pub use orient::{
     orient,
 };
 pub use output::{
-    CameraReport, LeftOut, NotJoined, OrientReport, OrientedPhoto, PhotoReport, SparseModel,
-    SparsePoint,
+    CameraReport, LeftOut, MeasuredLength, NotJoined, NotMeasured, OrientReport, OrientedPhoto,
+    PhotoReport, SparseModel, SparsePoint,
 };
 pub use two_view::PairKind;

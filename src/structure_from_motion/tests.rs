@@ -1,6 +1,6 @@
 //! The whole chain on rendered photographs.
 
-use nalgebra::{Matrix3, Point3};
+use nalgebra::{Matrix3, Point2, Point3};
 
 use super::similarity::Similarity;
 use super::*;
@@ -115,9 +115,9 @@ fn photographs_alone_are_oriented_and_go_on_to_a_scene() {
     assert!(beside.fold(f64::INFINITY, f64::min) < 1.5);
     // A known length sets the scale.
     let mut measured = oriented.clone();
-    assert!(!measured.set_length(0.0, 3.0, "nothing"));
+    assert!(measured.set_length(0.0, 3.0, "nothing").is_err());
     let [a, b] = [0, 1].map(|i| found[i]);
-    assert!(measured.set_length((b - a).norm(), 12.5, "the distance of two cameras"));
+    (measured.set_length((b - a).norm(), 12.5, "the distance of two cameras")).unwrap();
     let [a, b] = [0, 1].map(|i| measured.model.photos[i].pose.center);
     assert!(((b - a).norm() - 12.5).abs() < 1e-9 && measured.report.is_metric);
     assert!(measured.report.frame.ends_with("two cameras, 12.5 m"));
@@ -184,6 +184,15 @@ fn a_list_of_control_points_beside_the_photographs_gives_the_map() {
         // A ground pixel is 0.17 m; heights follow the focal length, which nothing states.
         assert!(off < 0.5, "{}: {off} m", photo.path);
     }
+    // A length would take the coordinates of the map away.
+    let mut scaled = oriented.clone();
+    let refused = scaled.set_length(2.0, 3.0, "a length").unwrap_err();
+    assert!(
+        refused
+            .to_string()
+            .contains("ground control points give the scale")
+    );
+    assert_eq!(scaled.files(), oriented.files());
     let images = String::from_utf8(oriented.files()[1].1.clone()).unwrap();
     let third = images.lines().nth(2).unwrap();
     let far = third
@@ -195,19 +204,77 @@ fn a_list_of_control_points_beside_the_photographs_gives_the_map() {
 }
 
 #[test]
-fn a_stated_focal_length_that_the_photographs_contradict_is_named() {
+fn a_stated_focal_length_that_the_photographs_contradict_is_named_and_mended() {
     let files = photographs(&drone_scene(SIZE_PX).0);
+    let truth = 0.9 * f64::from(SIZE_PX);
     let stated = |focal_px: f64| OrientOptions {
         focal_px: Some(focal_px),
         ..options()
     };
-    let warned = |focal: f64| {
-        let report = orient(&files, &stated(focal)).unwrap().report;
-        let mut warnings = report.warnings.into_iter();
-        warnings.any(|w| w.contains("contradict the stated focal length"))
-    };
-    assert!(!warned(0.9 * f64::from(SIZE_PX)));
-    assert!(warned(1.2 * f64::from(SIZE_PX)));
+    let is_named = |words: &str| words.contains("contradict the stated focal length");
+    for (factor, is_wrong) in [
+        (1.0, false),
+        (1.04, false),
+        (1.3, true),
+        (0.4, true),
+        (3.0, true),
+    ] {
+        let report = orient(&files, &stated(factor * truth)).unwrap().report;
+        let named = report.warnings.iter().any(|w| is_named(w));
+        assert_eq!(named, is_wrong, "{factor}: {}", report.to_text());
+        assert_eq!(report.photos.len(), 9, "{factor}");
+        let focal = report.cameras[0].parameters[0];
+        assert!((focal / truth - 1.0).abs() < 0.02, "{factor}: {focal}");
+        assert!((report.cameras[0].stated_focal_px - factor * truth).abs() < 1e-9);
+    }
+    // Where too few photographs join to say which it is, they are refused.
+    let mut few = files[..2].to_vec();
+    few.push(InputFile::new(
+        "images/stranger.png",
+        png(SIZE_PX, |x, y| ((x / 3 * 7919) ^ (y / 3 * 104_729)) as u8),
+    ));
+    let message = |focal: f64| orient(&few, &stated(focal)).unwrap_err().to_string();
+    assert!(!is_named(&message(truth)), "{}", message(truth));
+    let wrong = message(3.0 * truth);
+    assert!(
+        is_named(&wrong) && wrong.contains("state the focal length in pixels"),
+        "{wrong}"
+    );
+}
+
+#[test]
+fn a_length_is_measured_between_places_that_are_marked_in_photographs() {
+    let (scene, _) = drone_scene(SIZE_PX);
+    let mut oriented = orient(&photographs(&scene), &options()).unwrap();
+    let ends = [Point3::new(-8.0, -6.0, 0.0), Point3::new(7.0, 5.0, 3.0)];
+    let marks = ends.map(|end| {
+        let seen = scene.views.iter().zip(&oriented.model.photos).step_by(3);
+        let mark = |(view, photo): (&crate::scene::View, &OrientedPhoto)| {
+            let pixel = view.camera.project(&end).unwrap();
+            (photo.path.clone(), Point2::new(pixel.x, pixel.y))
+        };
+        seen.map(mark).collect::<Vec<_>>()
+    });
+    let model = &oriented.model;
+    let found = model.measure_length([&marks[0], &marks[1]]).unwrap();
+    assert!(found.rms_px < 0.5, "{found:?}");
+    let few = model.measure_length([&marks[0], &marks[1][..1]]);
+    assert_eq!(few, Err(NotMeasured::FewMarks));
+    let same = [marks[0][0].clone(), marks[0][0].clone()];
+    let parallel = model.measure_length([&marks[0], &same]);
+    assert_eq!(parallel, Err(NotMeasured::NoMeeting));
+    // The scale of the world follows: the cameras stand as far apart as they were.
+    let truth = (ends[1] - ends[0]).norm();
+    (oriented.set_length(found.length, truth, "a length measured in the photographs")).unwrap();
+    let apart = |a: Point3<f64>, b: Point3<f64>| (b - a).norm();
+    let photos = &oriented.model.photos;
+    let (first, last) = (photos[0].pose.center, photos[8].pose.center);
+    let [a, b] = [0, 8].map(|i| scene.views[i].camera.center);
+    assert!((apart(first, last) / apart(a, b) - 1.0).abs() < 0.01);
+    assert!(
+        found.sigma > 0.0 && found.sigma < 0.05 * found.length,
+        "{found:?}"
+    );
 }
 
 #[test]

@@ -108,12 +108,12 @@ pub(super) fn largest_angle(block: &Block, used: &[Observation], point: &Point3<
     largest
 }
 
-fn angle(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+pub(super) fn angle(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
     math::atan2(a.cross(b).norm(), a.dot(b))
 }
 
 /// The point with the least sum of squared distances from rays.
-fn nearest_point(
+pub(super) fn nearest_point(
     rays: impl IntoIterator<Item = (Point3<f64>, Vector3<f64>)>,
 ) -> Option<Point3<f64>> {
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());

@@ -6,16 +6,14 @@ use nalgebra::{Point2, Vector3};
 
 use super::features::Features;
 use super::incremental::VerifiedPair;
-use super::intrinsics::Intrinsics;
+use super::intrinsics::{FOCAL_GUESSES, Intrinsics, STATED_FOCAL_ODDS, stated_focal_nats};
 use super::matching::{Candidate, mutual_matches};
 use super::two_view::{TwoViewGeometry, two_view_geometry};
 use crate::execution::{Sharded, sharded_map};
+use crate::math;
 
 /// Fewest matches for which a geometry is sought.
 const FEWEST_MATCHES: usize = 24;
-
-/// Focal lengths that are tried where none is stated, as shares of the longer side.
-const GUESSES: [f64; 8] = [0.6, 0.72, 0.86, 1.0, 1.2, 1.5, 2.0, 2.8];
 
 /// Pairs that judge them.
 const JUDGES: usize = 10;
@@ -58,7 +56,7 @@ pub(super) fn match_pairs(
 /// are left out.
 pub(super) fn verify(
     photos: &[MatchedPhoto],
-    under: &[Vec<Intrinsics>],
+    under: &[&[Intrinsics]],
     pairs: &[MatchedPair],
     part: Range<f64>,
 ) -> Sharded<Vec<Vec<VerifiedPair>>> {
@@ -66,7 +64,7 @@ pub(super) fn verify(
         .flat_map(|place| pairs.iter().map(move |pair| (place, pair)))
         .collect();
     let found = sharded_map("pairs", &sought, part, |_, &(place, pair)| {
-        geometry(photos, &under[place], pair)
+        geometry(photos, under[place], pair)
     })?;
     let mut verified: Vec<Vec<VerifiedPair>> = under.iter().map(|_| Vec::new()).collect();
     for (&(place, pair), geometry) in sought.iter().zip(found) {
@@ -103,17 +101,30 @@ fn geometry(
     two_view_geometry(&rays, sigma, range, seed)
 }
 
-/// The cameras under each guess of the focal length of those that are marked, a share of the longer
-/// side; those under which the pairs with the most matches are likeliest first. Without a mark, the
-/// cameras as they are.
+/// Cameras before their adjustment, and what the pairs say of them.
+#[derive(Clone, Debug)]
+pub(super) struct Guess {
+    pub cameras: Vec<Intrinsics>,
+    /// Whose focal length is none that is stated?
+    pub is_guessed: Vec<bool>,
+    /// Likelihood of the pairs that judge, nats; 0 where none does.
+    pub nats: f64,
+}
+
+/// The cameras under each guess of the focal length of those that are marked; those under which the
+/// pairs with the most matches are likeliest first. Without a mark the cameras as they are stated
+/// come first, and after them the likeliest guess of all that the headers' spread does not cover,
+/// where the pairs prefer the mean of the guesses.
 pub(super) fn guess_focal(
     photos: &[MatchedPhoto],
     cameras: &[Intrinsics],
     is_guessed: &[bool],
     pairs: &[MatchedPair],
-) -> Sharded<Vec<Vec<Intrinsics>>> {
+) -> Sharded<Vec<Guess>> {
+    let all_stated = !is_guessed.contains(&true);
+    let tried_of: Vec<bool> = is_guessed.iter().map(|&g| g || all_stated).collect();
     let mut judges: Vec<&MatchedPair> = (pairs.iter())
-        .filter(|p| p.photos.iter().any(|&i| is_guessed[photos[i].camera]))
+        .filter(|p| p.photos.iter().any(|&i| tried_of[photos[i].camera]))
         .collect();
     judges.sort_by(|a, b| {
         b.matches
@@ -123,38 +134,61 @@ pub(super) fn guess_focal(
     });
     // The pairs with the most matches hardly differ in their place: every third says more.
     let judges: Vec<&MatchedPair> = judges.into_iter().step_by(3).take(JUDGES).collect();
-    let with = |share: f64| -> Vec<Intrinsics> {
-        (cameras.iter().zip(is_guessed))
-            .map(|(camera, &guessed)| {
-                let longest = f64::from(camera.size[0].max(camera.size[1]));
-                let focal = if guessed {
-                    share * longest
-                } else {
-                    camera.focal
-                };
-                Intrinsics {
-                    focal,
-                    ..camera.clone()
-                }
-            })
-            .collect()
+    let with = |share: f64| -> Guess {
+        let focal = |camera: &Intrinsics| share * f64::from(camera.size[0].max(camera.size[1]));
+        let under = (cameras.iter().zip(&tried_of)).map(|(camera, &is_tried)| Intrinsics {
+            focal: if is_tried {
+                focal(camera)
+            } else {
+                camera.focal
+            },
+            ..camera.clone()
+        });
+        Guess {
+            cameras: under.collect(),
+            is_guessed: tried_of.clone(),
+            nats: 0.0,
+        }
     };
-    let tried: Vec<(usize, &MatchedPair)> = (0..GUESSES.len())
+    let stated = Guess {
+        cameras: cameras.to_vec(),
+        is_guessed: is_guessed.to_vec(),
+        nats: 0.0,
+    };
+    let mut under: Vec<Guess> = FOCAL_GUESSES.map(with).into();
+    if all_stated {
+        under.push(stated.clone());
+    }
+    let tried: Vec<(usize, &MatchedPair)> = (0..under.len())
         .flat_map(|guess| judges.iter().map(move |&pair| (guess, pair)))
         .collect();
-    let under: Vec<Vec<Intrinsics>> = GUESSES.map(with).into();
     let scores = sharded_map("focal lengths", &tried, 0.6..0.65, |_, &(guess, pair)| {
-        geometry(photos, &under[guess], pair).map_or(0.0, |g| g.score)
+        geometry(photos, &under[guess].cameras, pair).map_or(0.0, |g| g.score)
     })?;
     if judges.is_empty() {
-        return Ok(vec![cameras.to_vec()]);
+        return Ok(vec![stated]);
     }
-    let mut ranked: Vec<(f64, Vec<Intrinsics>)> = (under.into_iter().enumerate())
-        .map(|(guess, cameras)| {
-            let of_guess = tried.iter().zip(&scores).filter(|((g, _), _)| *g == guess);
-            (of_guess.map(|(_, score)| *score).sum(), cameras)
-        })
-        .collect();
-    ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
-    Ok(ranked.into_iter().map(|(_, cameras)| cameras).collect())
+    for ((guess, _), score) in tried.iter().zip(scores) {
+        under[*guess].nats += score;
+    }
+    let as_stated = all_stated.then(|| under.pop()).flatten();
+    under.sort_by(|a, b| b.nats.total_cmp(&a.nats));
+    let Some(as_stated) = as_stated else {
+        return Ok(under);
+    };
+    // A guess that the header's own spread covers is none: the adjustment gets there.
+    let is_rival = |guess: &Guess| {
+        let focals = guess.cameras.iter().zip(cameras);
+        let mut nats = focals.map(|(c, stated)| stated_focal_nats(c.focal, stated.focal, 0.0));
+        nats.any(|nats| nats < 0.0)
+    };
+    let Some(best) = under.into_iter().find(is_rival) else {
+        return Ok(vec![as_stated]);
+    };
+    // One of so many guesses: the likelihood of any is their mean, of which the best is all.
+    let of_any = best.nats - math::ln(FOCAL_GUESSES.len() as f64);
+    Ok(match of_any > as_stated.nats + STATED_FOCAL_ODDS {
+        true => vec![as_stated, best],
+        false => vec![as_stated],
+    })
 }

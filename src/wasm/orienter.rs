@@ -16,8 +16,8 @@ use crate::camera::Camera;
 use crate::execution::{MergedShards, with_listener};
 use crate::orientation::InputFile;
 use crate::structure_from_motion::{
-    CameraReport, FeatureOptions, Intrinsics, OrientChain, OrientOptions, OrientReport, Oriented,
-    PairSummary, PhotoReport, Pose, ReadPhoto, Snapshot,
+    CameraReport, ControlResidual, FeatureOptions, GroundControl, Intrinsics, OrientChain,
+    OrientOptions, OrientReport, Oriented, PairSummary, PhotoReport, Pose, ReadPhoto, Snapshot,
 };
 
 /// Photographs on their way to an orientation.
@@ -78,6 +78,10 @@ struct OrientationReport<'a> {
     frame: &'a str,
     /// Is the scale that of the world?
     is_metric: bool,
+    /// Its EPSG code, where that is known.
+    epsg: Option<u32>,
+    /// Ground control points, where they give the frame.
+    control: &'a [ControlResidual],
     /// World points.
     points: usize,
     /// Mean number of rays of a point.
@@ -142,6 +146,15 @@ impl Orienter {
         self.chain.add(photo);
         self.merged = MergedShards::default();
         to_js(&about)
+    }
+
+    /// Takes a list of ground control points, which give the frame of what `orient` returns.
+    #[wasm_bindgen(js_name = setControl)]
+    pub fn set_control(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), JsValue> {
+        let list = InputFile::new(path, bytes);
+        let control = GroundControl::read(path, &list.text()).map_err(|e| input_error(&e))?;
+        self.chain.set_control(Some(control));
+        Ok(())
     }
 
     /// The maps that orienters may divide between them before `connect`, in their order.
@@ -234,11 +247,28 @@ impl Orienter {
         words: &str,
     ) -> Result<JsValue, JsValue> {
         let oriented = self.oriented.as_mut().ok_or_else(not_oriented)?;
-        if !oriented.set_length(measured, metres, words) {
-            return Err(named_error("InputError", "a length has to be more than 0"));
-        }
+        (oriented.set_length(measured, metres, words)).map_err(|e| input_error(&e))?;
         self.files = None;
         self.report()
+    }
+
+    /// The length between two places that are marked in photographs; or why there is none, in
+    /// words. Of each mark the path of its photograph, and its x and y, pixels; those of the first
+    /// place are the first `first`.
+    #[wasm_bindgen(js_name = measureLength, unchecked_return_type = "MeasuredLength | string")]
+    pub fn measure_length(
+        &self,
+        files: Vec<String>,
+        pixels: &[f64],
+        first: usize,
+    ) -> Result<JsValue, JsValue> {
+        let pixels = pixels.chunks_exact(2).map(|xy| Point2::new(xy[0], xy[1]));
+        let marks: Vec<(String, Point2<f64>)> = files.into_iter().zip(pixels).collect();
+        let (first, second) = marks.split_at(first.min(marks.len()));
+        match (self.oriented()?.model).measure_length([first, second]) {
+            Ok(length) => to_js(&length),
+            Err(why) => Ok(JsValue::from_str(why.words())),
+        }
     }
 
     /// The oriented photographs, without the distortion of their lenses.
@@ -312,6 +342,8 @@ impl Orienter {
         to_js(&OrientationReport {
             frame: &report.frame,
             is_metric: report.is_metric,
+            epsg: report.epsg,
+            control: &report.control,
             points: report.points,
             rays_a_point: report.rays_a_point,
             rms_px: report.rms_px,

@@ -14,7 +14,7 @@ use crate::structure_from_motion::triangulation::{MOST_SIGMAS, triangulate};
 
 /// Standard deviation of a point that a person marks in a photograph, pixels. Assumption: the list
 /// does not state any.
-const MARK_SIGMA_PX: f64 = 1.0;
+pub(in super::super) const MARK_SIGMA_PX: f64 = 1.0;
 
 /// That of a surveyed coordinate, metres. Assumption: a satellite receiver with corrections.
 const COORDINATE_SIGMA_M: f64 = 0.03;

@@ -10,7 +10,7 @@
 use nalgebra::{Point2, Point3, Vector3};
 
 use crate::error::{Error, Result};
-use crate::orientation::{Anchor, InputFile, epsg_of, geocentric_of};
+use crate::orientation::{Anchor, GCP_LIST, InputFile, epsg_of, geocentric_of};
 
 /// A point with known coordinates.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,9 +43,6 @@ pub struct GroundControl {
 /// Coordinates on a map are counted from a multiple of this, metres.
 const GRID_M: f64 = 100.0;
 
-/// The name of the file.
-const NAME: &str = "gcp_list.txt";
-
 const SYSTEM: &str =
     "a reference system in the first line: EPSG:25832, WGS84 UTM 32N, or +proj=... in metres";
 const COLUMNS: &str = "geo_x geo_y geo_z im_x im_y image_name [gcp_name]";
@@ -58,12 +55,17 @@ struct System {
 }
 
 impl GroundControl {
+    /// What a list is called among photographs.
+    pub const FILE: &str = GCP_LIST;
+
     /// The `gcp_list.txt` among the files, where there is one.
     ///
     /// # Errors
     /// Where it cannot be read; the message names the line.
     pub fn among(files: &[InputFile]) -> Result<Option<Self>> {
-        let found = files.iter().find(|f| f.name().eq_ignore_ascii_case(NAME));
+        let found = files
+            .iter()
+            .find(|f| f.name().eq_ignore_ascii_case(Self::FILE));
         found.map(|f| Self::read(&f.path, &f.text())).transpose()
     }
 

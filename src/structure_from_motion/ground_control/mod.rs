@@ -10,6 +10,6 @@ mod fit;
 mod gcp_list;
 mod residual;
 
-pub(super) use fit::to_control;
+pub(super) use fit::{MARK_SIGMA_PX, to_control};
 pub use gcp_list::{ControlPoint, GroundControl};
 pub use residual::ControlResidual;

@@ -4,12 +4,14 @@
 use nalgebra::{Point2, Point3};
 use serde::Serialize;
 
-use super::adjustment::{calibrate_center, prior};
+use super::adjustment::calibrate_center;
 use super::cameras::{Cameras, stated_poses};
 use super::hypotheses::{Hypothesis, guesses, register_likeliest};
 use super::options::{OrientOptions, Oriented};
 use super::photo::{Photo, ReadPhoto};
-use super::refusals::{not_joined, refusal, too_few, unconnected};
+use super::refusals::{
+    contradicted_focal, not_joined, refusal, too_few, unconnected, undetermined_focal,
+};
 use super::snapshot::Snapshot;
 use crate::error::Result;
 use crate::execution::Listener;
@@ -23,10 +25,13 @@ use crate::structure_from_motion::features::Features;
 use crate::structure_from_motion::frame::{StatedPose, to_frame};
 use crate::structure_from_motion::ground_control::{GroundControl, to_control};
 use crate::structure_from_motion::incremental::VerifiedPair;
+use crate::structure_from_motion::intrinsics::Intrinsics;
 use crate::structure_from_motion::matching::candidate_pairs;
 use crate::structure_from_motion::output::{LeftOut, Names, report, sparse_model};
 use crate::structure_from_motion::two_view::PairKind;
-use crate::structure_from_motion::verification::{MatchedPhoto, guess_focal, match_pairs, verify};
+use crate::structure_from_motion::verification::{
+    Guess, MatchedPhoto, guess_focal, match_pairs, verify,
+};
 
 /// Fewest photographs of a block.
 const FEWEST_PHOTOS: usize = 3;
@@ -188,14 +193,15 @@ impl OrientChain {
         let guessed = &cameras.is_guessed;
         let mut under = guess_focal(&matched, &cameras.intrinsics, guessed, &pairs)?;
         under.truncate(guesses(self.photos.len(), guessed));
-        let verified = verify(&matched, &under, &pairs, 0.65..0.7)?;
+        let of_guesses: Vec<&[Intrinsics]> = under.iter().map(|g| &g.cameras[..]).collect();
+        let verified = verify(&matched, &of_guesses, &pairs, 0.65..0.7)?;
         let hypotheses = under.into_iter().zip(verified);
         Ok(Connected {
             cameras,
             stated,
             anchor,
             hypotheses: hypotheses
-                .map(|(cameras, verified)| Hypothesis { cameras, verified })
+                .map(|(guess, verified)| Hypothesis { guess, verified })
                 .collect(),
         })
     }
@@ -266,29 +272,28 @@ impl OrientChain {
             anchor,
             hypotheses,
         } = connected;
-        let is_guessed = &cameras.is_guessed;
         let mut show = |block: &Block| {
             if let Some(on_block) = &mut on_block {
                 on_block(Snapshot::of(block, &self.photos, stated, *anchor));
             }
         };
-        let (mut block, place) = register_likeliest(
-            &self.photos,
-            &self.matched(cameras),
-            hypotheses,
-            prior(is_guessed, 0.0),
-            &mut show,
-        );
-        let Hypothesis {
+        let (mut block, place) =
+            register_likeliest(&self.photos, &self.matched(cameras), hypotheses, &mut show);
+        let Hypothesis { guess, verified } = &hypotheses[place];
+        let Guess {
             cameras: means,
-            verified,
-        } = &hypotheses[place];
+            is_guessed,
+            ..
+        } = guess;
         let registered = block.registered().len();
         let mut left_out = self.left_out.clone();
         left_out.extend(not_joined(&self.photos, &block, verified));
         left_out.sort_by(|a, b| a.file.cmp(&b.file));
         if registered < FEWEST_PHOTOS {
-            return Err(unconnected(verified, &left_out));
+            let guesses: Vec<&Guess> = hypotheses.iter().map(|h| &h.guess).collect();
+            return Err(
+                contradicted_focal(&guesses).unwrap_or_else(|| unconnected(verified, &left_out))
+            );
         }
         let is_held = self.options.holds_center;
         let adjusted = calibrate_center(&mut block, means, is_guessed, is_held);
@@ -302,12 +307,22 @@ impl OrientChain {
         };
         // The covariance belongs to the frame.
         let covariance = adjusted.and_then(|options| covariance(&block, means, &options));
+        // What the headers state, and guesses where they state nothing.
+        let before: Vec<Intrinsics> = (cameras.is_guessed.iter().enumerate())
+            .map(|(i, &is_guessed)| match is_guessed {
+                true => means[i].clone(),
+                false => cameras.intrinsics[i].clone(),
+            })
+            .collect();
+        if place > 0 && !cameras.is_guessed.contains(&true) {
+            undetermined_focal(&block.cameras, &before, covariance.as_ref())?;
+        }
         let names = Names {
             paths,
             colours: self.photos.iter().map(|p| p.colours.as_slice()).collect(),
             cameras: cameras.names.clone(),
-            means,
-            is_guessed,
+            means: &before,
+            is_guessed: &cameras.is_guessed,
             stated,
         };
         let model = sparse_model(&block, &names, &basis);

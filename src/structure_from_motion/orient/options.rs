@@ -1,5 +1,9 @@
 //! What is asked for, and what comes out.
 
+use nalgebra::{Point3, Vector3};
+
+use crate::error::{Error, Result};
+use crate::geometry::mean_point;
 use crate::structure_from_motion::features::FeatureOptions;
 use crate::structure_from_motion::output::{OrientReport, SparseModel};
 
@@ -37,15 +41,36 @@ impl Oriented {
     }
 
     /// Sets the scale by a known length: what measures `measured` in the frame becomes `metres`;
-    /// `words` say what it is. `false`, and nothing happens, where one of them is no length.
-    pub fn set_length(&mut self, measured: f64, metres: f64, words: &str) -> bool {
+    /// `words` say what it is. Where stated positions give the frame, their mean stays in its
+    /// place, and so do the coordinates on the Earth.
+    ///
+    /// # Errors
+    /// Where one of them is no length, or ground control points give the scale; nothing happens.
+    pub fn set_length(&mut self, measured: f64, metres: f64, words: &str) -> Result<()> {
         let factor = metres / measured;
         let is_length = |length: f64| length.is_finite() && length > 0.0;
         if !is_length(measured) || !is_length(metres) || !is_length(factor) {
-            return false;
+            return Err(Error::Scene {
+                problem: format!("{measured} in the frame, {metres} m in the world: no length"),
+                advice: "measure two places that are apart".to_owned(),
+            });
         }
-        self.model.scale(factor);
-        self.report.scale(factor, &format!("{words}, {metres} m"));
-        true
+        if !self.report.control.is_empty() {
+            return Err(Error::Scene {
+                problem: "the ground control points give the scale".to_owned(),
+                advice: "correct them, or leave them out".to_owned(),
+            });
+        }
+        let centers: Vec<Point3<f64>> = self.model.photos.iter().map(|p| p.pose.center).collect();
+        let fixed = match self.report.anchor {
+            Some(_) => mean_point(&centers),
+            None => Point3::origin(),
+        };
+        self.model.scale(factor, &fixed);
+        let moved: Vec<Vector3<f64>> = (self.model.photos.iter().zip(&centers))
+            .map(|(photo, before)| photo.pose.center - before)
+            .collect();
+        (self.report).scale(factor, &moved, &format!("{words}, {metres} m"));
+        Ok(())
     }
 }

@@ -1,11 +1,14 @@
 //! Why photographs, or all of them together, have no orientation.
 
 use super::photo::Photo;
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::structure_from_motion::block::Block;
+use crate::structure_from_motion::bundle::Covariance;
 use crate::structure_from_motion::incremental::VerifiedPair;
+use crate::structure_from_motion::intrinsics::{Intrinsics, STATED_FOCAL_PRIOR};
 use crate::structure_from_motion::output::{LeftOut, NotJoined};
 use crate::structure_from_motion::two_view::PairKind;
+use crate::structure_from_motion::verification::Guess;
 
 /// Why the photographs that were read have no orientation.
 pub(super) fn not_joined(
@@ -77,4 +80,53 @@ pub(super) fn unconnected(verified: &[VerifiedPair], left_out: &[LeftOut]) -> Er
         "take photographs that overlap by two thirds, so that every place is in three of them, or \
          state the focal length in pixels",
     )
+}
+
+/// What to do about a stated focal length that is not that of the photographs.
+const OTHER_FOCAL: &str = "state the focal length in pixels, or leave out photographs that were \
+    cut, or whose headers belong to other ones";
+
+/// Of photographs that do not join: a stated focal length and a likelier one.
+pub(super) fn contradicted_focal(guesses: &[&Guess]) -> Option<Error> {
+    let [stated, other] = guesses else {
+        return None;
+    };
+    if stated.is_guessed.contains(&true) {
+        return None;
+    }
+    let [f, likelier] = [stated, other].map(|g| g.cameras.first().map_or(0.0, |c| c.focal));
+    Some(refusal(
+        format!(
+            "the photographs contradict the stated focal length of {f:.0} px: their pairs are {:.0} \
+             nats likelier under {likelier:.0} px, and join under neither",
+            other.nats - stated.nats
+        ),
+        OTHER_FOCAL,
+    ))
+}
+
+/// Refuses a block that contradicts what is stated of its cameras, and knows less of their focal
+/// lengths than a header would say.
+///
+/// # Errors
+/// Where the focal length of a camera is not determined.
+pub(super) fn undetermined_focal(
+    found: &[Intrinsics],
+    stated: &[Intrinsics],
+    covariance: Option<&Covariance>,
+) -> Result<()> {
+    for (i, (found, stated)) in found.iter().zip(stated).enumerate() {
+        let sigma = covariance.map_or(f64::INFINITY, |c| c.cameras[i][0]);
+        if sigma > STATED_FOCAL_PRIOR * found.focal {
+            return Err(refusal(
+                format!(
+                    "the photographs contradict the stated focal length of {:.0} px, and do not say \
+                     which it is ({:.0} +- {sigma:.0} px)",
+                    stated.focal, found.focal
+                ),
+                OTHER_FOCAL,
+            ));
+        }
+    }
+    Ok(())
 }

@@ -4,18 +4,14 @@ use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 
 use super::report::{CameraReport, LeftOut, OrientReport, PhotoReport};
 use super::sparse_model::{OrientedPhoto, SparseModel, SparsePoint};
-use crate::math;
 use crate::structure_from_motion::block::{Block, Track};
 use crate::structure_from_motion::bundle::Covariance;
 use crate::structure_from_motion::frame::{FrameBasis, StatedPose};
 use crate::structure_from_motion::ground_control::ControlResidual;
-use crate::structure_from_motion::intrinsics::{Intrinsics, STATED_FOCAL_PRIOR};
+use crate::structure_from_motion::intrinsics::{Intrinsics, stated_focal_nats};
 
 /// Fewest shared points of photographs that count as overlapping.
 const FEWEST_SHARED: usize = 15;
-
-/// Standard deviations from which a stated focal length is contradicted.
-const FAR: f64 = 3.0;
 
 /// Least mean number of rays without a warning.
 const FEW_RAYS: f64 = 2.5;
@@ -206,17 +202,17 @@ fn cameras(block: &Block, names: &Names, covariance: Option<&Covariance>) -> Vec
         .collect()
 }
 
-/// A stated focal length far outside its own spread and that of the adjustment.
+/// A stated focal length under which the adjusted one is less likely than under any other.
 fn contradiction(camera: &CameraReport) -> Option<String> {
     let ([focal, ..], [sigma, ..]) = (camera.parameters, camera.sigmas?);
     let stated = camera.stated_focal_px;
-    let spread = math::hypot(STATED_FOCAL_PRIOR * stated, sigma);
-    let is_far = camera.is_stated && (focal - stated).abs() > FAR * spread;
-    is_far.then(|| {
+    let nats = stated_focal_nats(focal, stated, sigma / focal);
+    (camera.is_stated && nats < 0.0).then(|| {
         format!(
             "the photographs contradict the stated focal length of {stated:.0} px: they say \
-             {focal:.0} +- {sigma:.0} px; state that, or check whether the header belongs to the \
-             photographs"
+             {focal:.0} +- {sigma:.0} px, which is {:.0} nats likelier and was taken; check whether \
+             the header belongs to the photographs, and whether they were cut",
+            -nats
         )
     })
 }

@@ -1,11 +1,13 @@
 //! What comes out: the sparse model, and the report on it.
 
 mod assemble;
+mod measure;
 mod report;
 mod scale;
 mod sparse_model;
 
 use assemble::ARBITRARY_SCALE;
 pub(super) use assemble::{Names, report, sparse_model};
+pub use measure::{MeasuredLength, NotMeasured};
 pub use report::{CameraReport, LeftOut, NotJoined, OrientReport, PhotoReport};
 pub use sparse_model::{OrientedPhoto, SparseModel, SparsePoint};

@@ -1,6 +1,6 @@
 //! The scale of a block, and curves that belong to its cameras: what is asked of a finished model.
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Point3, Vector3};
 
 use super::report::OrientReport;
 use super::sparse_model::SparseModel;
@@ -14,13 +14,14 @@ const NEARER: f64 = 0.3;
 const FARTHER: f64 = 6.0;
 
 impl SparseModel {
-    /// Enlarges the model about the zero of its frame.
-    pub(in super::super) fn scale(&mut self, factor: f64) {
+    /// Enlarges the model about a point of its frame.
+    pub(in super::super) fn scale(&mut self, factor: f64, fixed: &Point3<f64>) {
+        let enlarge = |p: &mut Point3<f64>| *p = fixed + (*p - fixed) * factor;
         for photo in &mut self.photos {
-            photo.pose.center *= factor;
+            enlarge(&mut photo.pose.center);
         }
         for point in &mut self.points {
-            point.position *= factor;
+            enlarge(&mut point.position);
         }
     }
 
@@ -61,18 +62,18 @@ impl SparseModel {
 }
 
 impl OrientReport {
-    /// After [`SparseModel::scale`]: lengths follow, and the frame says what its scale rests on.
-    pub(in super::super) fn scale(&mut self, factor: f64, words: &str) {
-        for photo in &mut self.photos {
+    /// After [`SparseModel::scale`], which has `moved` each photograph: lengths follow, and the
+    /// frame says what its scale rests on.
+    pub(in super::super) fn scale(&mut self, factor: f64, moved: &[Vector3<f64>], words: &str) {
+        for (photo, moved) in self.photos.iter_mut().zip(moved) {
             photo.sigma_m = photo.sigma_m.map(|sigma| sigma.map(|s| s * factor));
-            photo.from_stated_m = None;
+            photo.from_stated_m = (photo.from_stated_m).map(|d| (Vector3::from(d) + moved).into());
         }
         self.frame = match self.frame.split_once("; scale from ") {
             Some((before, _)) => format!("{before}; scale from {words}"),
             None => format!("{}; scale from {words}", self.frame),
         };
         self.is_metric = true;
-        self.anchor = None;
         self.warnings.retain(|w| w != super::ARBITRARY_SCALE);
     }
 }

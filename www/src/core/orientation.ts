@@ -88,15 +88,23 @@ export class OrientationRun {
   #workers: OrientWorker[] = [];
   #isClosed = false;
 
-  /** Orients photographs with so many workers. */
+  /**
+   * Orients photographs with so many workers.
+   * @param control a list of ground control points, which give the frame
+   */
   async orient(
     photographs: readonly InputFile[],
+    control: InputFile | null,
     workers: number,
     options: OrientOptions,
     events: OrientEvents,
   ): Promise<OrientationReport> {
     this.#workers = Array.from({ length: Math.min(workers, photographs.length) }, () => new OrientWorker());
     await Promise.all(this.#workers.map((worker) => worker.open(options)));
+    if (control !== null) {
+      // First of all: a list that cannot be read is known before anything is computed.
+      await this.#first().call("readControl", control.path, control.blob);
+    }
     await this.#read(photographs, events);
     await this.#pair(events);
     const first = this.#first();

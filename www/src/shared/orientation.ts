@@ -1,5 +1,6 @@
 /** What the page and a worker of the orientation say to each other; records are those of the core's second module. */
 import type {
+  MeasuredLength,
   OrientationReport,
   Orienter,
   OrientOptions,
@@ -10,6 +11,13 @@ import type { Bytes } from "./calls";
 import type { Outcome } from "./messages";
 
 export type * from "../pkg-orient/orientation.js";
+
+/** Where a photograph shows an end of a length, pixels. */
+export interface LengthMark {
+  file: string;
+  x: number;
+  y: number;
+}
 
 /** A block while it grows, or a finished one. */
 export interface OrientedBlock {
@@ -23,13 +31,15 @@ export interface OrientedBlock {
 /** The calls that are not the orienter's own methods: they read files or report progress. */
 interface OwnCalls {
   readFile(path: string, blob: Blob): Promise<Bytes>;
+  readControl(path: string, blob: Blob): Promise<void>;
   runShard(map: string, index: number, of: number): Bytes;
+  measureLength(ends: [LengthMark[], LengthMark[]]): MeasuredLength | string;
   connect(): PairSummary[];
   orient(): OrientationReport;
   block(): OrientedBlock;
 }
 
-type Inner = "free" | "readPhoto" | "views" | "points" | "colours" | typeof Symbol.dispose;
+type Inner = "free" | "readPhoto" | "setControl" | "views" | "points" | "colours" | typeof Symbol.dispose;
 
 /** Every call that the worker answers. */
 export type OrientCalls = Omit<Orienter, keyof OwnCalls | Inner> & OwnCalls;

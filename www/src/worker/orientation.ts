@@ -29,12 +29,22 @@ async function perform(request: OrientRequest): Promise<Answer> {
   return { result, transfer: buffersOf(result) };
 }
 
-type Own = Pick<OrientCalls, "readFile" | "runShard" | "connect" | "orient" | "block">;
+type Own = Pick<
+  OrientCalls,
+  "readFile" | "readControl" | "measureLength" | "runShard" | "connect" | "orient" | "block"
+>;
 
 function callsOf(core: Orienter): Own {
   return {
     readFile: async (path, blob) => core.readPhoto(path, new Uint8Array(await readBlob(path, blob))),
+    readControl: async (path, blob) => core.setControl(path, new Uint8Array(await readBlob(path, blob))),
     runShard: (map, index, of) => core.runShard(map, index, of, reached),
+    measureLength: ([first, second]) => {
+      const marks = [...first, ...second];
+      const pixels = new Float64Array(marks.flatMap(({ x, y }) => [x, y]));
+      const files = marks.map(({ file }) => file);
+      return core.measureLength(files, pixels, first.length);
+    },
     connect: () => core.connect(reached),
     orient: () =>
       core.orient(reached, (views, points, colours) => {

@@ -50,6 +50,11 @@ export function dronePhotographs(): Upload[] {
   return filesIn(DRONE, /\.jpg$/);
 }
 
+/** Points with known coordinates in those photographs, as OpenDroneMap's list; one is two metres off. */
+export function droneControl(): Upload {
+  return upload("gcp_list.txt", readFileSync(new URL("gcp_list.txt", DRONE)));
+}
+
 /** The 48 pixels wide scene of the readers' tests, with its orientation as VisualSFM writes it. */
 export function visualSfmFiles(): Upload[] {
   return [...filesIn(new URL("images/", FIXTURES), /./), ...filesIn(new URL("nvm/", FIXTURES), /./)];

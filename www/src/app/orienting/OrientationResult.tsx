@@ -1,10 +1,11 @@
 /** What came of it: how exact, what the frame rests on, which photographs are missing and why; and how to go on. */
-import { useSignal } from "@preact/signals";
 import type { OrientationReport } from "../../shared/orientation";
 import { grouped } from "../parts/numberText";
-import { TextField } from "../parts/TextField";
+import { ControlPoints } from "./ControlPoints";
+import { KnownLength } from "./KnownLength";
 import { OverlapPlan } from "./OverlapPlan";
-import { block, saveOrientation, setScale } from "./orientation";
+import { saveOrientation, saveOrientationFiles } from "./orientation";
+import { nameOf } from "./photographPicture";
 
 const FILES: readonly (readonly [string, string])[] = [
   ["cameras.txt", "focal length, distortion"],
@@ -48,10 +49,16 @@ export function OrientationResult({ report }: { report: OrientationReport }) {
           </ul>
         </>
       )}
-      <Scale report={report} />
+      <ControlPoints control={report.control} />
+      <KnownLength report={report} />
       <OverlapPlan report={report} />
       <Photographs report={report} />
       <h3>Files of the orientation (COLMAP)</h3>
+      <p>
+        <button type="button" onClick={() => void saveOrientationFiles()}>
+          Save all in one .zip
+        </button>
+      </p>
       <ul class="downloads">
         {FILES.map(([name, what]) => (
           <li key={name}>
@@ -78,81 +85,6 @@ function Fact({ name, children }: { name: string; children: preact.ComponentChil
 function focalText({ parameters: [focal], sigmas, is_stated }: OrientationReport["cameras"][number]): string {
   const deviation = sigmas === null ? "" : ` ± ${sigmas[0].toFixed(1)}`;
   return `${focal.toFixed(1)}${deviation} px, ${is_stated ? "stated before" : "guessed before"}`;
-}
-
-function nameOf(path: string): string {
-  return path.slice(path.lastIndexOf("/") + 1);
-}
-
-/** What a known length is of: the cameras above the ground, or two cameras apart. */
-const HEIGHT = "height";
-
-/** A length that a person knows sets the scale. */
-function Scale({ report }: { report: OrientationReport }) {
-  const what = useSignal(HEIGHT);
-  const isInvalid = useSignal(false);
-  const isKnown = report.is_metric && !report.frame.includes("scale from");
-  if (isKnown) {
-    return null;
-  }
-  const measured = what.value === HEIGHT ? heightNow() : distanceNow(what.value);
-  const take = (text: string) => {
-    const metres = Number(text.replace(",", "."));
-    isInvalid.value = !(Number.isFinite(metres) && metres > 0);
-    if (!isInvalid.value) {
-      void setScale(measured, metres, wordsOf(what.value));
-    }
-    return !isInvalid.value;
-  };
-  return (
-    <fieldset class="known-length">
-      <legend>A length that you know sets the scale</legend>
-      <label>
-        <span class="visually-hidden">What is known</span>
-        <select value={what.value} onChange={(event) => (what.value = event.currentTarget.value)}>
-          <option value={HEIGHT}>Mean height of the cameras above the points</option>
-          {neighbours(report).map(([a, b]) => (
-            <option key={`${a} ${b}`} value={`${a} ${b}`}>
-              From camera {nameOf(report.photos[a]?.file ?? "")} to camera{" "}
-              {nameOf(report.photos[b]?.file ?? "")}
-            </option>
-          ))}
-        </select>
-      </label>
-      <label for="known-length">metres</label>
-      <TextField
-        id="known-length"
-        value={measured.toFixed(2)}
-        inputMode="decimal"
-        isInvalid={isInvalid.value}
-        onTake={take}
-      />
-      <span id="known-length-note" class="muted">
-        {isInvalid.value ? "A number above 0." : "Enter takes it."}
-      </span>
-    </fieldset>
-  );
-}
-
-/** Pairs of photographs one after the other: what lies between two of them is known soonest. */
-function neighbours({ photos }: OrientationReport): [number, number][] {
-  return photos.slice(1).map((_, i): [number, number] => [i, i + 1]);
-}
-
-function wordsOf(what: string): string {
-  return what === HEIGHT ? "the height of the cameras above the points" : "the distance of two cameras";
-}
-
-function heightNow(): number {
-  const { views = [], points = new Float32Array() } = block.value ?? {};
-  const mean = (values: readonly number[]) => values.reduce((sum, value) => sum + value, 0) / values.length;
-  const heights = Array.from({ length: points.length / 3 }, (_, i) => points[3 * i + 2] as number);
-  return mean(views.map(({ center }) => center[2])) - mean(heights);
-}
-
-function distanceNow(what: string): number {
-  const [a, b] = what.split(" ").map((place) => block.value?.views[Number(place)]?.center);
-  return a === undefined || b === undefined ? 0 : Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
 function Photographs({ report }: { report: OrientationReport }) {

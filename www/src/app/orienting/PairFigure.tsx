@@ -3,7 +3,6 @@ import { useSignal, useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { PALETTE } from "../../shared/palette";
 import { counted } from "../parts/counted";
-import { files } from "../state/project";
 import {
   epipolarCurve,
   pairs,
@@ -14,9 +13,8 @@ import {
   showPair,
 } from "./orientation";
 import { nearestMatch } from "./pairGeometry";
+import { drawCurve, nameOf, PICTURE_PX, pictureOf } from "./photographPicture";
 
-/** Width of the pictures, pixels. */
-const PICTURE_PX = 900;
 const DOT_PX = 2;
 
 const KINDS = {
@@ -134,9 +132,8 @@ function Picture({ path, matches, side, chosen, curve, onPick }: PictureProps) {
   const size = readPhotographs.value.find(({ file }) => file === path)?.size ?? null;
   useEffect(() => {
     let isCurrent = true;
-    const blob = files.value.find((file) => file.path === path)?.blob;
     bitmap.value = null;
-    void decode(blob).then((found) => {
+    void pictureOf(path).then((found) => {
       if (isCurrent) {
         bitmap.value = found;
       }
@@ -175,21 +172,6 @@ function Picture({ path, matches, side, chosen, curve, onPick }: PictureProps) {
   );
 }
 
-/** Pixels as they are stored: the orientation is that of the file, however a header has it turned. */
-async function decode(blob: Blob | undefined): Promise<ImageBitmap | null> {
-  try {
-    return blob === undefined
-      ? null
-      : await createImageBitmap(blob, {
-          resizeWidth: PICTURE_PX,
-          resizeQuality: "medium",
-          imageOrientation: "none",
-        });
-  } catch {
-    return null;
-  }
-}
-
 function draw(
   canvas: HTMLCanvasElement,
   bitmap: ImageBitmap | null,
@@ -220,23 +202,10 @@ function draw(
     dot(match, DOT_PX, PALETTE.matched);
   }
   if (curve !== null) {
-    const path = new Path2D();
-    for (let i = 0; i + 1 < curve.length; i += 2) {
-      path.lineTo((curve[i] as number) * scale, (curve[i + 1] as number) * scale);
-    }
-    context.lineWidth = 5;
-    context.strokeStyle = PALETTE.casing;
-    context.stroke(path);
-    context.lineWidth = 2.5;
-    context.strokeStyle = PALETTE.beam;
-    context.stroke(path);
+    drawCurve(context, curve, scale, [PALETTE.casing, PALETTE.beam]);
   }
   if (4 * chosen < matches.length) {
     dot(chosen, 8, PALETTE.casing);
     dot(chosen, 6, PALETTE.selected);
   }
-}
-
-function nameOf(path: string): string {
-  return path.slice(path.lastIndexOf("/") + 1);
 }

@@ -3,14 +3,22 @@ import { batch, effect, type ReadonlySignal, signal } from "@preact/signals";
 import { EngineError } from "../../core/engine";
 import { OrientationRun } from "../../core/orientation";
 import type { InputFile } from "../../shared/calls";
-import type { OrientationReport, OrientedBlock, PairSummary, PhotoFeatures } from "../../shared/orientation";
+import type {
+  LengthMark,
+  MeasuredLength,
+  OrientationReport,
+  OrientedBlock,
+  PairSummary,
+  PhotoFeatures,
+} from "../../shared/orientation";
 import { counted } from "../parts/counted";
 import { saveFile } from "../parts/saveFile";
+import { zipped } from "../parts/zipped";
 import { addFilesIn } from "../project/projectActions";
 import { actions } from "../session/session";
 import { runEverything } from "../session/stageRuns";
 import { announce } from "../state/notices";
-import { files, inspection } from "../state/project";
+import { files, inspection, replaceRunOptions, runOptions } from "../state/project";
 
 /** What is being done, in order. */
 export const STEPS = ["keypoints", "matches", "pairs", "registration", "done"] as const;
@@ -91,10 +99,11 @@ export async function computeOrientation(): Promise<void> {
     end.addEventListener("abort", reset);
     const paths = new Set(inspection.value?.images.map(({ path }) => path));
     const photographs = files.value.filter(({ path }) => paths.has(path));
+    const control = files.value.find(({ path }) => CONTROL.test(path)) ?? null;
     const started = new OrientationRun();
     run = started;
     try {
-      await orientIn(started, photographs);
+      await orientIn(started, photographs, control);
     } catch (error) {
       // What ended it may be another run already.
       if (run === started) {
@@ -105,13 +114,21 @@ export async function computeOrientation(): Promise<void> {
   });
 }
 
-async function orientIn(started: OrientationRun, photographs: readonly InputFile[]): Promise<void> {
+/** A list of ground control points, as OpenDroneMap's. */
+const CONTROL = /(?:^|\/)gcp_list\.txt$/i;
+
+async function orientIn(
+  started: OrientationRun,
+  photographs: readonly InputFile[],
+  control: InputFile | null,
+): Promise<void> {
   const reach = (step: Step, fraction: number) => {
     present.progress.value = { step, fraction, photographs: photographs.length };
   };
   reach("keypoints", 0);
   const options = statedFocalPx.value === null ? {} : { focalPx: statedFocalPx.value };
-  const found = await started.orient(photographs, workersFor(navigator.hardwareConcurrency ?? 1), options, {
+  const workers = workersFor(navigator.hardwareConcurrency ?? 1);
+  const found = await started.orient(photographs, control, workers, options, {
     onPhoto: (photograph, done) => {
       present.read.value = [...present.read.value, photograph];
       reach("keypoints", done / photographs.length);
@@ -173,6 +190,11 @@ export function epipolarCurve(
   return answered((of) => of.ask("epipolarCurve", first, second, x, y));
 }
 
+/** The length between two places that are marked in photographs; or why there is none, in words. */
+export function measureLength(ends: [LengthMark[], LengthMark[]]): Promise<MeasuredLength | string | null> {
+  return answered((of) => of.ask("measureLength", ends));
+}
+
 /** Sets the scale: what measures `measured` now becomes `metres`. */
 export async function setScale(measured: number, metres: number, words: string): Promise<void> {
   const found = await answered((of) => of.ask("setLength", measured, metres, words));
@@ -206,6 +228,14 @@ export async function saveOrientation(name: string): Promise<void> {
   }
 }
 
+/** Saves all of them as one archive. */
+export async function saveOrientationFiles(): Promise<void> {
+  const written = await orientationFiles();
+  if (written.length > 0) {
+    saveFile("orientation.zip", await zipped(written));
+  }
+}
+
 /** Of these the project is made; the report is for people. */
 const COLMAP = /^(?:cameras|images|points3D)\.txt$/;
 
@@ -219,7 +249,11 @@ export async function reconstructWithIt(): Promise<void> {
     return;
   }
   const action = { kind: "change", name: "orientation", phase: "load", words: "Reading files" } as const;
+  const epsg = report.value?.epsg ?? null;
   await actions.perform(action, async (turn) => {
+    if (epsg !== null) {
+      replaceRunOptions({ ...runOptions.value, epsg });
+    }
     await addFilesIn(added);
     await runEverything(turn);
   });
