@@ -20,7 +20,7 @@
 use nalgebra::{Matrix2, Point2, Vector2};
 use serde::Serialize;
 
-use super::sectors::{self, ImageRegion};
+use super::sectors::{self, GraphRegion};
 use crate::coplanar::log_normal;
 use crate::evidence::UncertaintyTable;
 use crate::ids::SegmentId;
@@ -36,7 +36,7 @@ pub struct ImageGraph {
     /// The corners.
     pub corners: Vec<ImageCorner>,
     /// The regions.
-    pub regions: Vec<ImageRegion>,
+    pub regions: Vec<GraphRegion>,
 }
 
 /// Where two or more segments meet.

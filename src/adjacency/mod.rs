@@ -26,7 +26,7 @@ mod tests;
 mod transfer;
 
 pub use graph::{CornerEdge, ImageCorner, ImageGraph};
-pub use sectors::ImageRegion;
+pub use sectors::GraphRegion;
 pub use space_corner::{SpaceCorner, SpaceEdge};
 pub use transfer::CornerPlane;
 

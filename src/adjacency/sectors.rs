@@ -11,7 +11,7 @@ use crate::scene::View;
 /// What lies between edges.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
-pub struct ImageRegion {
+pub struct GraphRegion {
     /// Its corners, each with the place of the edge that it follows clockwise.
     pub sectors: Vec<[u32; 2]>,
     /// Mean colour beside the corners: lightness, red - blue, green - half of both; 0 to 1. `None`
@@ -50,12 +50,12 @@ pub(super) fn with_regions(view: &View, mut corners: Vec<ImageCorner>) -> ImageG
         class[a.max(b)] = a.min(b);
     }
     let mut numbers = vec![u32::MAX; sectors.len()];
-    let mut regions: Vec<ImageRegion> = Vec::new();
+    let mut regions: Vec<GraphRegion> = Vec::new();
     for (i, &[c, k]) in sectors.iter().enumerate() {
         let class = root(&class, i);
         if numbers[class] == u32::MAX {
             numbers[class] = regions.len() as u32;
-            regions.push(ImageRegion::default());
+            regions.push(GraphRegion::default());
         }
         corners[c as usize].edges[k as usize].region = numbers[class];
         regions[numbers[class] as usize].sectors.push([c, k]);

@@ -291,7 +291,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
     fn two_ends_meet_where_their_lines_cross(
-        from in 0.0..6.28f64, opening in 0.4..2.7f64, gaps in prop::array::uniform2(0.0..2.0f64),
+        from in 0.0..std::f64::consts::TAU, opening in 0.4..2.7f64, gaps in prop::array::uniform2(0.0..2.0f64),
         turned in prop::array::uniform2(any::<bool>()),
     ) {
         let at = Point2::new(125.0, 125.0);
