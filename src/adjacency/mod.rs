@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! graph          the corners, edges and regions of an image
+//! corners        corners where ends of segments meet
 //! sectors        regions: what lies between two edges of a corner, and goes on along them
 //! matching       corners matched over the views as wholes
 //! space_corner   a corner in space with its edges, by least squares, in nats
@@ -17,6 +18,7 @@
 //! Invariant: it proposes planes only, and no distance in pixels and no correlation decides: odds
 //! do. No matched line is needed.
 
+mod corners;
 mod graph;
 mod matching;
 mod sectors;
@@ -25,8 +27,7 @@ mod space_corner;
 mod tests;
 mod transfer;
 
-pub use graph::{CornerEdge, ImageCorner, ImageGraph};
-pub use sectors::GraphRegion;
+pub use graph::{CornerEdge, GraphRegion, ImageCorner, ImageGraph};
 pub use space_corner::{SpaceCorner, SpaceEdge};
 pub use transfer::CornerPlane;
 
@@ -66,7 +67,7 @@ pub fn corner_planes(
         .collect();
     let pixel = crate::math::median(&mut pixels).unwrap_or(FINEST_STEP);
     let graphs = crate::execution::map(segments, |v, segments| {
-        graph::image_graph(&scene.views[v], segments, END_M / pixel)
+        corners::image_graph(&scene.views[v], segments, END_M / pixel)
     });
     let ends = || lines.iter().flat_map(|l| [l.segment.p0.z, l.segment.p1.z]);
     let low = ends().fold(f64::INFINITY, f64::min);

@@ -2,24 +2,10 @@
 //! edge to the corner at its other end.
 
 use nalgebra::{Point2, Vector2, Vector3};
-use serde::Serialize;
 
-use super::graph::{ImageCorner, ImageGraph};
+use super::graph::{GraphRegion, ImageCorner, ImageGraph};
 use crate::math::{atan2, sin_cos};
 use crate::scene::View;
-
-/// What lies between edges.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
-pub struct GraphRegion {
-    /// Its corners, each with the place of the edge that it follows clockwise.
-    pub sectors: Vec<[u32; 2]>,
-    /// Mean colour beside the corners: lightness, red - blue, green - half of both; 0 to 1. `None`
-    /// outside the image.
-    pub color: Option<[f64; 3]>,
-    /// The regions across its edges, ascending.
-    pub neighbours: Vec<u32>,
-}
 
 /// Directions and distances at which a sector is sampled.
 const DIRECTIONS: usize = 5;

@@ -304,7 +304,7 @@ proptest! {
         let segments =
             [edge(from, gaps[0], turned[0]), edge(from + opening, gaps[1], turned[1])];
         let view = &hip_view();
-        let graph = graph::image_graph(view, &segments, GAP_PX);
+        let graph = corners::image_graph(view, &segments, GAP_PX);
         prop_assert_eq!(graph.corners.len(), 1);
         let corner = &graph.corners[0];
         let off = corner.at - at;

@@ -141,8 +141,7 @@ pub(super) enum MethodArgument {
     Combined,
     /// Sets of coplanar lines and their polygons (Baillard et al. 1999, section 2).
     Coplanar,
-    /// Corners with their edges and regions, matched over the views as wholes (Baillard et al. 1999,
-    /// section 2).
+    /// Corners with their edges and regions, matched as wholes (Baillard et al. 1999, section 2).
     Adjacency,
 }
 

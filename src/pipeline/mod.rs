@@ -18,6 +18,8 @@
 //! parameters and to the current results before it; what is out of date is dropped, never shown.
 
 mod adjustment;
+#[cfg(test)]
+mod page_table;
 mod report;
 mod sharding;
 mod stages;

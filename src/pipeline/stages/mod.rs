@@ -21,8 +21,6 @@ mod half_planes;
 mod lines;
 mod matches;
 mod model;
-#[cfg(test)]
-mod page_table;
 mod rectangles;
 mod regions;
 mod segments;
@@ -201,8 +199,8 @@ pub(super) struct Row {
     name: &'static str,
     title: &'static str,
     section: &'static str,
-    methods: &'static [Method],
-    reads: &'static [&'static str],
+    pub methods: &'static [Method],
+    pub reads: &'static [&'static str],
     needs: &'static [Stage],
     shard_maps: &'static [&'static str],
     shards_read_colours: bool,
