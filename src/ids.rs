@@ -49,4 +49,6 @@ pub enum ProposalOrigin {
     DensePlane(u32),
     /// A set of coplanar lines: index into the list of [`crate::coplanar::CoplanarSet`].
     CoplanarSet(u32),
+    /// A plane of corners: index into the list of [`crate::adjacency::CornerPlane`].
+    CornerPlane(u32),
 }

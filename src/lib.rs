@@ -47,6 +47,7 @@
 //!    -> adjustment               single views adjusted to these, and matched again
 //!    -> terrain                  the ground
 //!    -> coplanar                 sets of coplanar lines and their polygons     B99 2, 5
+//!    -> adjacency                corners with edges and regions; their planes  B99 2
 //!    -> planes                   Sim(theta), half-planes, plane hypotheses    B99 4.1, 4.2
 //!    -> dense                    planes from dense matching                   B99 2
 //!    -> facets                   borders, labelling, verification             B99 4.3
@@ -69,6 +70,7 @@
 // Of the page's second module most is dead, and left out when it is linked.
 #![cfg_attr(not(feature = "reconstruction"), allow(dead_code, unused_imports))]
 
+pub mod adjacency;
 mod adjustment;
 pub mod agreement;
 pub mod buildings;

@@ -26,8 +26,8 @@ const synthetic = mkdtempSync(join(tmpdir(), "ridgeline-"));
 try {
     const scenes = given ? [given] : [join(root, "www/public/demo"), ...writeSynthetic()];
     for (const [place, scene] of scenes.entries()) {
-        // Method "combined" has the stages of the others; by itself "coplanar" does more in its own.
-        const methods = place < 2 ? ["lines", "rectangles", "combined", "coplanar"] : ["combined"];
+        // Method "combined" has the stages of the others; by themselves "coplanar" and "adjacency" do more in their own.
+        const methods = place < 2 ? ["lines", "rectangles", "combined", "coplanar", "adjacency"] : ["combined"];
         for (const method of methods) bad.push(...(await compare(scene, method)));
     }
     if (!given) bad.push(...(await compareOrientation(join(root, "www/test/fixtures/drone"))));

@@ -27,15 +27,16 @@ use ridgeline::synthetic::{SyntheticTruth, l_scene, to_files};
 /// Accuracy that six views at 8.5 cm ground pixel allow, metres.
 const NEAR_M: f64 = 0.25;
 
-const METHODS: [(Method, &str); 4] = [
+const METHODS: [(Method, &str); 5] = [
     (Method::Lines, "lines"),
     (Method::Rectangles, "rectangles"),
     (Method::Combined, "combined"),
     (Method::Coplanar, "coplanar"),
+    (Method::Adjacency, "adjacency"),
 ];
 
-/// Coplanar lines alone are looked at in a few scenes: time.
-const COPLANAR_SCENES: [&str; 3] = ["gable", "hip", "l"];
+/// Coplanar lines alone and corners alone are looked at in a few scenes: time.
+const FEW_SCENES: [&str; 3] = ["gable", "hip", "l"];
 
 fn finished() -> (Run, SyntheticTruth) {
     let (scene, truth) = l_scene(SIZE_PX);
@@ -105,7 +106,7 @@ fn every_scene_is_found_as_its_golden_says() {
         let expected = std::fs::read_to_string(&path).unwrap_or_default();
         let mut found = golden::heading(name);
         for (method, title) in METHODS {
-            if method == Method::Coplanar && !COPLANAR_SCENES.contains(&name) {
+            if !method.pairs_lines() && !FEW_SCENES.contains(&name) {
                 continue;
             }
             let scene = load_scene(&input, &LoadOptions::default()).unwrap();
@@ -271,8 +272,8 @@ fn instances_that_divide_a_run_give_the_bytes_of_one() {
         };
         let mut alone = Run::new(scene.clone(), params.clone());
         alone.run_all();
-        // Coplanar lines alone have no shards of their own.
-        let most = if method == Method::Coplanar { 2 } else { 3 };
+        // Coplanar lines and corners alone have no shards of their own.
+        let most = if method.pairs_lines() { 3 } else { 2 };
         for of in 2..=most {
             assert!(divided(scene.clone(), &params, of).files(&[]) == alone.files(&[]));
         }
@@ -395,7 +396,7 @@ fn new_parameters_drop_what_they_change() {
 fn both_methods_find_one_model() {
     let stages = Stage::of(Method::Combined);
     assert!(stages.is_sorted() && stages == Stage::ALL);
-    for method in [Method::Lines, Method::Rectangles, Method::Coplanar] {
+    for method in Method::ALL {
         assert!(Stage::of(method).iter().all(|stage| stages.contains(stage)));
         assert!(Stage::of(method).is_sorted());
     }

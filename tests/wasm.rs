@@ -165,6 +165,7 @@ fn both_methods_share_their_planes() {
                 "segments",
                 "lines",
                 "coplanar",
+                "adjacency",
                 "halfplanes",
                 "dense",
             ];

@@ -144,6 +144,8 @@ pub(super) enum MethodArgument {
     Combined,
     /// Sets of coplanar lines and their polygons (Baillard et al. 1999, section 2).
     Coplanar,
+    /// Corners with their edges and regions, matched as wholes (Baillard et al. 1999, section 2).
+    Adjacency,
 }
 
 impl From<MethodArgument> for ridgeline::params::Method {
@@ -153,6 +155,7 @@ impl From<MethodArgument> for ridgeline::params::Method {
             MethodArgument::Rectangles => Self::Rectangles,
             MethodArgument::Combined => Self::Combined,
             MethodArgument::Coplanar => Self::Coplanar,
+            MethodArgument::Adjacency => Self::Adjacency,
         }
     }
 }

@@ -16,34 +16,34 @@ use crate::math::ln;
 
 /// Share of the corners of roof facets that are square in plan. Measured: 904 of 1274 in the
 /// sixteen fitting scenes.
-pub(super) const SQUARE: f64 = 0.71;
+pub(crate) const SQUARE: f64 = 0.71;
 /// Share of their sides that are level. Measured: 706 of 1274.
-pub(super) const LEVEL: f64 = 0.55;
+pub(crate) const LEVEL: f64 = 0.55;
 /// Share of the level ridges with equal slopes on both sides. Measured: 76 of 76.
-pub(super) const SYMMETRIC: f64 = 0.987;
+pub(crate) const SYMMETRIC: f64 = 0.987;
 
 /// Logarithm of the odds of a relation c = 0 of which `c` was measured with a variance, where c
 /// could be anything within a range, and which holds with a probability before it is measured.
-pub(super) fn relation_nats(c: f64, variance: f64, range: f64, probability: f64) -> f64 {
+pub(crate) fn relation_nats(c: f64, variance: f64, range: f64, probability: f64) -> f64 {
     log_normal(c, variance) + ln(range) + log_odds(probability)
 }
 
 /// Logarithm of the normal density of a value around 0.
-pub(super) fn log_normal(c: f64, variance: f64) -> f64 {
+pub(crate) fn log_normal(c: f64, variance: f64) -> f64 {
     -0.5 * (c * c / variance + ln(TAU * variance))
 }
 
 /// Logarithm of the density of the error of a line's end along the line (Laplace's distribution).
-pub(super) fn log_end_error(error_m: f64) -> f64 {
+pub(crate) fn log_end_error(error_m: f64) -> f64 {
     -error_m.abs() / END_M - ln(2.0 * END_M)
 }
 
 /// Mean distance of a line's end from the corner that it should reach, metres. Measured: 1250 ends
 /// on true edges of the sixteen fitting scenes.
-pub(super) const END_M: f64 = 0.45;
+pub(crate) const END_M: f64 = 0.45;
 
 /// Logarithm of the odds of a probability.
-pub(super) fn log_odds(probability: f64) -> f64 {
+pub(crate) fn log_odds(probability: f64) -> f64 {
     ln(probability / (1.0 - probability))
 }
 

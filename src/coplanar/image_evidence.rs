@@ -24,7 +24,7 @@ const SPACING_M: f64 = 1.0;
 const BESIDE_M: f64 = 1.0;
 
 /// The photographs, ready to be asked.
-pub(super) struct ImageEvidence<'s> {
+pub(crate) struct ImageEvidence<'s> {
     scene: &'s Scene,
     matcher: WindowMatcher<'s>,
     segments: &'s [Vec<ImageSegment>],
@@ -37,7 +37,7 @@ pub(super) struct ImageEvidence<'s> {
 
 impl<'s> ImageEvidence<'s> {
     /// Of a scene with its segments; `reduced` has pixels about `step_m` metres wide.
-    pub(super) fn new(
+    pub(crate) fn new(
         scene: &'s Scene,
         reduced: &'s Scene,
         step_m: f64,
@@ -59,7 +59,7 @@ impl<'s> ImageEvidence<'s> {
 
     /// What the windows wholly inside a convex ring (counter-clockwise in plan), but not inside
     /// another one, say of a plane.
-    pub(super) fn inside(&self, plane: &Plane, ring: &[Point2<f64>], but: &[Point2<f64>]) -> f64 {
+    pub(crate) fn inside(&self, plane: &Plane, ring: &[Point2<f64>], but: &[Point2<f64>]) -> f64 {
         let [low, high] = bounds(ring.iter().copied());
         let first = |v: f64| (v / SPACING_M).floor() as i64;
         let table = WindowEvidenceTable::fitted();
@@ -81,7 +81,7 @@ impl<'s> ImageEvidence<'s> {
     }
 
     /// What the border of a polygon costs, nats, at most 0.
-    pub(super) fn outline(&self, corners: &[Point3<f64>]) -> f64 {
+    pub(crate) fn outline(&self, corners: &[Point3<f64>]) -> f64 {
         let cost = |(a, b): (&Point3<f64>, &Point3<f64>)| {
             let side = Segment3::new(*a, *b);
             let shown = self.shown(&side);
@@ -93,7 +93,7 @@ impl<'s> ImageEvidence<'s> {
 
     /// Share of a side along which the views show an edge, 0 to 1: the mean over the better half of
     /// the views that can show it, for the others may be hidden from it.
-    pub(super) fn shown(&self, side: &Segment3) -> f64 {
+    pub(crate) fn shown(&self, side: &Segment3) -> f64 {
         let mut shares: Vec<f64> = (self.scene.view_ids())
             .filter_map(|view| self.shown_in(view, side))
             .collect();

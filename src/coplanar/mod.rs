@@ -25,17 +25,19 @@ mod tests;
 mod uncertain_plane;
 mod wireframe;
 
+pub(crate) use hypothesis::{END_M, log_normal, log_odds};
+pub(crate) use image_evidence::ImageEvidence;
 pub use outline::{ClosingKind, ClosingSide};
+pub(crate) use uncertain_plane::{LineEnd, UncertainPlane};
 pub use wireframe::{CoplanarRelationKind, WeighedRelation};
 
-use nalgebra::{Matrix3, Point3};
+use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
 
 use self::hypothesis::{LEVEL, SYMMETRIC, relation_nats};
-use self::image_evidence::ImageEvidence;
 use self::outline::Outline;
 use self::sets::{LineSet, LineSpace, coplanar_line_sets};
-use self::uncertain_plane::{UncertainPlane, ends_of};
+use self::uncertain_plane::ends_of;
 use self::wireframe::{Adjusted, Wireframe};
 use crate::geometry::{Plane, mean_point};
 use crate::ids::{LineId, ProposalOrigin};
@@ -46,7 +48,7 @@ use crate::planes::ProposedPlane;
 use crate::scene::Scene;
 
 /// Finest distance of the positions of a window, metres, as in the labelling of facets.
-const FINEST_STEP: f64 = 0.06;
+pub(crate) const FINEST_STEP: f64 = 0.06;
 /// Sides shorter than this are none, metres.
 const LEAST_SIDE: f64 = 0.05;
 
@@ -194,7 +196,11 @@ fn polygon(
     let found = CoplanarSet {
         lines: set.lines.clone(),
         plane,
-        covariance: in_the_middle(&set.plane, &covariance, &mean_point(&polygon)),
+        covariance: UncertainPlane {
+            covariance,
+            ..set.plane
+        }
+        .covariance_at(&mean_point(&polygon).xy()),
         hull: hull.iter().map(|p| lines_plane.lift(p.x, p.y)).collect(),
         coplanar_nats: set.nats,
         inside_nats: images.inside(&plane, &in_plan, &[]),
@@ -288,15 +294,4 @@ fn is_level(space: &LineSpace, id: LineId) -> bool {
     let rise = line.segment.p1.z - line.segment.p0.z;
     let variance = a + b + space.pixel_m * space.pixel_m;
     relation_nats(rise, variance, line.segment.length(), LEVEL) > 0.0
-}
-
-/// The covariance of a plane's height and gradient, from where it is counted to a place.
-fn in_the_middle(
-    plane: &UncertainPlane,
-    covariance: &Matrix3<f64>,
-    middle: &Point3<f64>,
-) -> [[f64; 3]; 3] {
-    let d = middle.xy() - plane.origin;
-    let moved = Matrix3::new(1.0, d.x, d.y, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
-    (moved * covariance * moved.transpose()).transpose().into()
 }

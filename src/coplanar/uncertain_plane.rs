@@ -14,7 +14,7 @@ use crate::math::ln;
 
 /// The end of a line: its place, metres, and the covariance of that across the line, m^2.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LineEnd {
+pub(crate) struct LineEnd {
     /// The place.
     pub at: Point3<f64>,
     /// 3 x 3, zero along the line.
@@ -22,7 +22,7 @@ pub(super) struct LineEnd {
 }
 
 /// Both ends of a line.
-pub(super) fn ends_of(line: &Line3d) -> [LineEnd; 2] {
+pub(crate) fn ends_of(line: &Line3d) -> [LineEnd; 2] {
     let [start, end] = line.covariance;
     [(line.segment.p0, start), (line.segment.p1, end)]
         .map(|(at, covariance)| LineEnd { at, covariance })
@@ -30,7 +30,7 @@ pub(super) fn ends_of(line: &Line3d) -> [LineEnd; 2] {
 
 /// A plane over the plan with the covariance of its three numbers.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct UncertainPlane {
+pub(crate) struct UncertainPlane {
     /// Where its height and gradient are counted from, metres.
     pub origin: Point2<f64>,
     /// Height there, rise along x, rise along y.
@@ -42,7 +42,7 @@ pub(super) struct UncertainPlane {
 impl UncertainPlane {
     /// Weighted least squares to two ends or more that do not lie on a line in plan; `pixel_m` is
     /// the size of a ground pixel, of which a part is the least error that is credible.
-    pub(super) fn fit(ends: &[LineEnd], pixel_m: f64) -> Option<Self> {
+    pub(crate) fn fit(ends: &[LineEnd], pixel_m: f64) -> Option<Self> {
         /// The weights change little after the second fit.
         const ROUNDS: usize = 3;
         let origin =
@@ -70,25 +70,34 @@ impl UncertainPlane {
     }
 
     /// The plane.
-    pub(super) fn plane(&self) -> Plane {
+    pub(crate) fn plane(&self) -> Plane {
         let normal = Vector3::new(-self.coefficients.y, -self.coefficients.z, 1.0);
         let through = Point3::new(self.origin.x, self.origin.y, self.coefficients.x);
         Plane::from_point_normal(&through, &normal).expect("z of the normal is 1")
     }
 
     /// Height at a plan position, metres.
-    pub(super) fn height(&self, p: &Point2<f64>) -> f64 {
+    pub(crate) fn height(&self, p: &Point2<f64>) -> f64 {
         self.coefficients.dot(&self.gradient(p))
     }
 
     /// Variance of the height of a point of the plane, m^2.
-    pub(super) fn variance(&self, p: &Point2<f64>) -> f64 {
+    pub(crate) fn variance(&self, p: &Point2<f64>) -> f64 {
         let g = self.gradient(p);
         g.dot(&(self.covariance * g))
     }
 
+    /// Covariance of the height at a plan position and of the gradient, 3 x 3.
+    pub(crate) fn covariance_at(&self, p: &Point2<f64>) -> [[f64; 3]; 3] {
+        let d = p - self.origin;
+        let moved = Matrix3::new(1.0, d.x, d.y, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+        (moved * self.covariance * moved.transpose())
+            .transpose()
+            .into()
+    }
+
     /// Rise along the steepest direction, metres a metre, its direction, and its variance.
-    pub(super) fn slope(&self) -> (f64, Vector2<f64>, f64) {
+    pub(crate) fn slope(&self) -> (f64, Vector2<f64>, f64) {
         let rise = self.coefficients.yz();
         let slope = rise.norm();
         let along = rise / slope.max(1e-9);
@@ -99,7 +108,7 @@ impl UncertainPlane {
     /// Logarithm of the odds that both ends of a line lie in the plane rather than anywhere within
     /// `range_m` of height. A line that does not lie in it may still run along it: half of those
     /// do, so that the second end says little more than the first unless it contradicts.
-    pub(super) fn nats_of_line(&self, line: &Line3d, pixel_m: f64, range_m: f64) -> f64 {
+    pub(crate) fn nats_of_line(&self, line: &Line3d, pixel_m: f64, range_m: f64) -> f64 {
         let ends = ends_of(line);
         let [g0, g1] = ends.map(|end| self.gradient(&end.at.xy()));
         let [v0, v1] = ends.map(|end| self.variance_of(&end, pixel_m));
@@ -118,14 +127,14 @@ impl UncertainPlane {
     }
 
     /// Logarithm of the odds that a point lies in the plane rather than anywhere within `range_m`.
-    pub(super) fn nats_of_end(&self, end: &LineEnd, pixel_m: f64, range_m: f64) -> f64 {
+    pub(crate) fn nats_of_end(&self, end: &LineEnd, pixel_m: f64, range_m: f64) -> f64 {
         let p = end.at.xy();
         let variance = self.variance_of(end, pixel_m) + self.variance(&p);
         log_normal(end.at.z - self.height(&p), variance) + ln(range_m)
     }
 
     /// Standard deviation of the height of an end above the plane, metres: its own.
-    pub(super) fn sigma_of(&self, end: &LineEnd, pixel_m: f64) -> f64 {
+    pub(crate) fn sigma_of(&self, end: &LineEnd, pixel_m: f64) -> f64 {
         self.variance_of(end, pixel_m).sqrt()
     }
 

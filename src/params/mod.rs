@@ -2,6 +2,7 @@
 //!
 //! Each field quotes its section; where the paper gives no value, "Assumption:" gives the reason.
 
+mod adjacency;
 mod adjustment;
 mod buildings;
 mod coplanar;
@@ -10,6 +11,7 @@ mod lines;
 mod objectspace;
 mod planes;
 
+pub use self::adjacency::*;
 pub use self::adjustment::*;
 pub use self::buildings::*;
 pub use self::coplanar::*;
@@ -37,6 +39,8 @@ pub struct Params {
     pub lines3d: Lines3dParams,
     /// Coplanar grouping.
     pub coplanar: CoplanarParams,
+    /// Feature adjacency graphs.
+    pub adjacency: AdjacencyParams,
     /// Half-plane sweep.
     pub sweep: SweepParams,
     /// Dense matching.
@@ -63,6 +67,8 @@ pub enum Method {
     Combined,
     /// Sets of coplanar lines and their polygons (B99 2: Leuven).
     Coplanar,
+    /// Corners with their edges and regions, matched as wholes (B99 2: Bonn).
+    Adjacency,
 }
 
 impl Params {
@@ -77,12 +83,19 @@ impl Params {
 
 impl Method {
     /// All of them.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::Lines,
         Self::Rectangles,
         Self::Combined,
         Self::Coplanar,
+        Self::Adjacency,
     ];
+
+    /// Are lines swept and grouped in pairs? Not where another source of planes is all that there
+    /// is.
+    pub fn pairs_lines(self) -> bool {
+        !matches!(self, Self::Coplanar | Self::Adjacency)
+    }
 
     /// The name in files, on the command line and on the page.
     pub fn name(self) -> &'static str {
@@ -91,6 +104,7 @@ impl Method {
             Self::Rectangles => "rectangles",
             Self::Combined => "combined",
             Self::Coplanar => "coplanar",
+            Self::Adjacency => "adjacency",
         }
     }
 }

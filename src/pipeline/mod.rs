@@ -2,8 +2,8 @@
 //! tests all run a reconstruction through [`Run`].
 //!
 //! ```text
-//! B99:  segments -> matches -> adjustment -> lines -> coplanar -> halfplanes -> dense -> facets
-//!                      ^           |                                          -> model
+//! B99:  segments -> matches -> adjustment -> lines -> coplanar -> adjacency -> halfplanes
+//!                      ^           |            -> dense -> facets -> model
 //!                      +-----------+ where views moved
 //! W96:  regions -> directions -> clusters -> rectangles -> model
 //! both: segments to adjustment, those of W96, then the others of B99, which take in its lines and
@@ -18,6 +18,8 @@
 //! parameters and to the current results before it; what is out of date is dropped, never shown.
 
 mod adjustment;
+#[cfg(test)]
+mod page_table;
 mod report;
 mod sharding;
 mod stages;
@@ -267,7 +269,7 @@ impl Run {
         let r = &self.results;
         let (model, textured) = (r.roof_model()?, &r.model.as_ref()?.value);
         Some(match self.params.method {
-            Method::Lines | Method::Combined | Method::Coplanar => Outputs {
+            Method::Lines | Method::Combined | Method::Coplanar | Method::Adjacency => Outputs {
                 segments: Cow::Borrowed(&r.segments.as_ref()?.value),
                 lines: Cow::Owned(r.all_lines()?),
                 half_planes: &r.half_planes.as_ref()?.value,

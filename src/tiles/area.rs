@@ -165,7 +165,7 @@ fn part(
     let (textured, _) = texture_model(scene, &model, &params.texture);
     let found = "the stages have run";
     let (segments, lines, half_planes) = match params.method {
-        Method::Lines | Method::Combined | Method::Coplanar => (
+        Method::Lines | Method::Combined | Method::Coplanar | Method::Adjacency => (
             results.segments.as_ref().expect(found).value.clone(),
             results.all_lines().expect(found),
             results.half_planes.as_ref().expect(found).value.clone(),

@@ -9,6 +9,7 @@ use super::arrays::{end_points_px, line_array, segment_array};
 use super::convert::{named_error, to_js};
 use super::figures::{Picture, lines_of, segments_of};
 use super::session::{Session, not_loaded};
+use crate::adjacency::{AdjacencyTrace, CornerPlane};
 use crate::coplanar::{CoplanarSet, CoplanarTrace};
 use crate::dense::{DensePlane, DenseTrace};
 use crate::lines3d::SupportKind;
@@ -27,6 +28,13 @@ struct Directions<'a> {
 struct CoplanarSets<'a> {
     sets: &'a [CoplanarSet],
     trace: &'a CoplanarTrace,
+}
+
+/// What `adjacency` returns.
+#[derive(Serialize, tsify::Tsify)]
+struct AdjacencyGraphs<'a> {
+    planes: &'a [CornerPlane],
+    trace: &'a AdjacencyTrace,
 }
 
 /// What `dense` returns.
@@ -112,6 +120,17 @@ impl Session {
         to_js(&found.map(|c| CoplanarSets {
             sets: &c.value,
             trace: &c.trace,
+        }))
+    }
+
+    /// The graphs of all views, the corners in space and the planes that they propose,
+    /// `{planes, trace}`; `null` before that stage.
+    #[wasm_bindgen(unchecked_return_type = "AdjacencyGraphs | null")]
+    pub fn adjacency(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().adjacency.as_ref();
+        to_js(&found.map(|a| AdjacencyGraphs {
+            planes: &a.value,
+            trace: &a.trace,
         }))
     }
 

@@ -269,7 +269,7 @@ fn proposed_sides(input: &GroupingInput, hypotheses: &[PlaneHypothesis]) -> Vec<
         proposed.filter(move |p| match p.origin {
             ProposalOrigin::Rectangle(_) => true,
             ProposalOrigin::CoplanarSet(_) => !is_swept,
-            ProposalOrigin::DensePlane(_) => !has_lines,
+            ProposalOrigin::CornerPlane(_) | ProposalOrigin::DensePlane(_) => !has_lines,
         })
     });
     let sides = proposed.flat_map(|r| {

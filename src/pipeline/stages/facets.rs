@@ -8,7 +8,7 @@ use crate::execution::Sharded;
 use crate::facets::FacetInput;
 use crate::model::RoofModel;
 use crate::objectspace::proposed_planes;
-use crate::params::{Method, Params};
+use crate::params::Params;
 use crate::planes::ProposedPlane;
 use crate::scene::Scene;
 
@@ -28,6 +28,7 @@ impl StageDefinition for Facets {
         Stage::Segments,
         Stage::Lines,
         Stage::Coplanar,
+        Stage::Adjacency,
         Stage::HalfPlanes,
         Stage::Rectangles,
         Stage::Dense,
@@ -40,18 +41,27 @@ impl StageDefinition for Facets {
         let rectangles = rectangles.map_or_else(Vec::new, |found| proposed_planes(&found.trace));
         let dense = before.dense.iter().flat_map(|found| &found.value);
         let dense = dense.enumerate().map(|(i, plane)| plane.proposed(i));
-        let sets = required(&before.coplanar).value.iter().enumerate();
+        let sets = before
+            .coplanar
+            .iter()
+            .flat_map(|found| &found.value)
+            .enumerate();
         let verified = sets.filter(|(_, set)| set.is_verified());
         let coplanar = verified.map(|(i, set)| set.proposed(i));
-        let proposals: Vec<ProposedPlane> =
-            (rectangles.into_iter().chain(coplanar).chain(dense)).collect();
+        let of_corners = before.adjacency.iter().flat_map(|found| &found.value);
+        let verified = of_corners
+            .enumerate()
+            .filter(|(_, plane)| plane.is_verified());
+        let corners = verified.map(|(i, plane)| plane.proposed(i));
+        let others = rectangles.into_iter().chain(coplanar).chain(corners);
+        let proposals: Vec<ProposedPlane> = others.chain(dense).collect();
         let evidence = FacetInput {
             segments: &required(&before.segments).value,
             lines: &required(&before.lines).value,
             half_planes: &half_planes.value,
             ground: &half_planes.ground,
             proposals: &proposals,
-            line_pairs: params.method != Method::Coplanar,
+            line_pairs: params.method.pairs_lines(),
         };
         let (model, mut trace) = reconstruct_roofs(scene, &evidence, &params.roof)?;
         trace.lines = verify_lines(scene, evidence.lines, &model, evidence.ground, params);
@@ -62,8 +72,9 @@ impl StageDefinition for Facets {
         let facets = &found.value.facets;
         let none = "no roof facet was found: the model is empty";
         let half_planes = before.half_planes.as_ref();
-        let has_planes =
-            half_planes.is_some_and(|found| !found.value.is_empty()) || is_any(&before.coplanar);
+        let has_planes = half_planes.is_some_and(|found| !found.value.is_empty())
+            || is_any(&before.coplanar)
+            || is_any(&before.adjacency);
         Findings {
             counts: vec![
                 ("facets", facets.len()),

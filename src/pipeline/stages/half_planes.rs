@@ -4,7 +4,7 @@ use super::{Findings, Results, Stage, StageDefinition};
 use super::{from_bytes, is_any, required, to_bytes, warn_if};
 use crate::execution::Sharded;
 use crate::ids::LineId;
-use crate::params::{Method, Params};
+use crate::params::Params;
 use crate::planes::{HalfPlane, SweepTrace, sweep_half_planes};
 use crate::scene::Scene;
 use crate::terrain::Ground;
@@ -35,12 +35,12 @@ impl StageDefinition for HalfPlanes {
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let lines = &required(&before.lines).value;
         let ground = Ground::estimate(scene, lines)?;
-        // Of coplanar lines alone none is swept.
-        let swept = match params.method {
-            Method::Coplanar => &[],
-            _ => &lines[..],
+        let swept = if params.method.pairs_lines() {
+            &lines[..]
+        } else {
+            &[]
         };
-        let sets = &required(&before.coplanar).value;
+        let sets = before.coplanar.as_ref().map_or(&[][..], |c| &c.value);
         let explained = |id: LineId, side| {
             let line = &lines[id.index()];
             sets.iter().any(|set| set.explains(id, line, side))

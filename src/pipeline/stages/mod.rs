@@ -10,6 +10,7 @@
 //!
 //! Invariant: no file of a stage knows another one; they meet in [`Results`].
 
+mod adjacency;
 mod adjustment;
 mod clusters;
 mod coplanar;
@@ -20,8 +21,6 @@ mod half_planes;
 mod lines;
 mod matches;
 mod model;
-#[cfg(test)]
-mod page_table;
 mod rectangles;
 mod regions;
 mod segments;
@@ -92,7 +91,14 @@ macro_rules! stage_table {
 }
 const RECTANGLES: &[Method] = &[Method::Rectangles, Method::Combined];
 const DENSE: &[Method] = &[Method::Lines, Method::Combined];
-const LINES: &[Method] = &[Method::Lines, Method::Combined, Method::Coplanar];
+const COPLANAR: &[Method] = &[Method::Lines, Method::Combined, Method::Coplanar];
+const ADJACENCY: &[Method] = &[Method::Lines, Method::Combined, Method::Adjacency];
+const LINES: &[Method] = &[
+    Method::Lines,
+    Method::Combined,
+    Method::Coplanar,
+    Method::Adjacency,
+];
 const ALL: &[Method] = &Method::ALL;
 
 // The order of the stages, the file of each, and the methods that it belongs to.
@@ -114,7 +120,9 @@ stage_table! {
     /// 3D lines (B99 3.2).
     Lines in lines: LINES,
     /// Coplanar lines and their polygons (B99 2, 5).
-    Coplanar in coplanar: LINES,
+    Coplanar in coplanar: COPLANAR,
+    /// Corners matched over the views, and the planes that they propose (B99 2).
+    Adjacency in adjacency: ADJACENCY,
     /// The ground, and half-planes at the 3D lines (B99 4.1).
     HalfPlanes in half_planes: LINES,
     /// Planes from dense matching (B99 2).
@@ -191,8 +199,8 @@ pub(super) struct Row {
     name: &'static str,
     title: &'static str,
     section: &'static str,
-    methods: &'static [Method],
-    reads: &'static [&'static str],
+    pub methods: &'static [Method],
+    pub reads: &'static [&'static str],
     needs: &'static [Stage],
     shard_maps: &'static [&'static str],
     shards_read_colours: bool,

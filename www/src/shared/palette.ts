@@ -47,6 +47,7 @@ export const METHOD_COLOURS = {
   rectangles: CATEGORIES[1],
   combined: CATEGORIES[2],
   coplanar: CATEGORIES[3],
+  adjacency: CATEGORIES[4],
 } as const;
 
 /** What a surface of dense matching is; told apart without red and green, and from the grey of what is in no plane. */

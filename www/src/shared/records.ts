@@ -30,6 +30,11 @@ export function coplanarSetsOf({ proposals = [] }: Proposed): number[] {
   return proposals.flatMap((one) => ("coplanar_set" in one ? [one.coplanar_set] : []));
 }
 
+/** Planes of corners that proposed a plane. */
+export function cornerPlanesOf({ proposals = [] }: Proposed): number[] {
+  return proposals.flatMap((one) => ("corner_plane" in one ? [one.corner_plane] : []));
+}
+
 /** Whether a facet was made from a group: they share a half-plane or a proposal. */
 export function isMadeFrom(
   { half_planes = [], ...facet }: Pick<Facet, "half_planes" | "proposals">,
@@ -40,6 +45,7 @@ export function isMadeFrom(
     members.some(({ half_plane }) => half_plane !== null && half_planes.includes(half_plane)) ||
     shares(rectanglesOf) ||
     shares(densePlanesOf) ||
-    shares(coplanarSetsOf)
+    shares(coplanarSetsOf) ||
+    shares(cornerPlanesOf)
   );
 }

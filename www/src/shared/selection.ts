@@ -13,6 +13,8 @@ export type Selection =
   | { kind: "dense"; index: number }
   /** A set of coplanar lines. */
   | { kind: "coplanar"; index: number }
+  /** A corner in space with its edges and regions. */
+  | { kind: "corner"; index: number }
   | { kind: "group"; index: number }
   | { kind: "facet"; index: number }
   /** A facet that was rejected. */

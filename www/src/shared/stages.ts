@@ -1,6 +1,6 @@
 /** The stages and methods of the core. Written by `make golden` from src/pipeline/stages. */
 
-export const METHODS = ["lines", "rectangles", "combined", "coplanar"] as const;
+export const METHODS = ["lines", "rectangles", "combined", "coplanar", "adjacency"] as const;
 export type Method = (typeof METHODS)[number];
 
 /** In their order; each with the methods that have it, and the parameters that it reads. */
@@ -9,21 +9,21 @@ export const STAGES = [
     name: "segments",
     title: "Segments",
     section: "B99 3.2",
-    methods: ["lines", "combined", "coplanar"],
+    methods: ["lines", "combined", "coplanar", "adjacency"],
     reads: ["segments"],
   },
   {
     name: "matches",
     title: "Matches",
     section: "B99 3.1–3.4",
-    methods: ["lines", "combined", "coplanar"],
+    methods: ["lines", "combined", "coplanar", "adjacency"],
     reads: ["matching", "lines3d", "adjustment"],
   },
   {
     name: "adjustment",
     title: "Adjustment",
     section: "views to their lines",
-    methods: ["lines", "combined", "coplanar"],
+    methods: ["lines", "combined", "coplanar", "adjacency"],
     reads: ["adjustment", "lines3d"],
   },
   {
@@ -58,7 +58,7 @@ export const STAGES = [
     name: "lines",
     title: "3D lines",
     section: "B99 3.2, fig. 4",
-    methods: ["lines", "combined", "coplanar"],
+    methods: ["lines", "combined", "coplanar", "adjacency"],
     reads: ["lines3d"],
   },
   {
@@ -69,10 +69,17 @@ export const STAGES = [
     reads: ["coplanar", "lines3d", "roof.border_nats_per_m"],
   },
   {
+    name: "adjacency",
+    title: "Adjacency graphs",
+    section: "B99 2",
+    methods: ["lines", "combined", "adjacency"],
+    reads: ["adjacency", "roof.border_nats_per_m"],
+  },
+  {
     name: "halfplanes",
     title: "Half-planes",
     section: "B99 4.1",
-    methods: ["lines", "combined", "coplanar"],
+    methods: ["lines", "combined", "coplanar", "adjacency"],
     reads: ["sweep"],
   },
   {
@@ -86,14 +93,14 @@ export const STAGES = [
     name: "facets",
     title: "Facets",
     section: "B99 4.2, 4.3",
-    methods: ["lines", "combined", "coplanar"],
+    methods: ["lines", "combined", "coplanar", "adjacency"],
     reads: ["roof"],
   },
   {
     name: "model",
     title: "Model",
     section: "walls, texture, files",
-    methods: ["lines", "rectangles", "combined", "coplanar"],
+    methods: ["lines", "rectangles", "combined", "coplanar", "adjacency"],
     reads: ["texture"],
   },
 ] as const;

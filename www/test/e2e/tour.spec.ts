@@ -8,7 +8,7 @@ onePage(
   async (opened) => {
     page = opened;
     await page.getByRole("button", { name: "Tour", exact: true }).click();
-    await expect(lesson()).toContainText("Step 1 of 11");
+    await expect(lesson()).toContainText("Step 1 of 12");
     await waitForStage(page, "model");
   },
   async () => {
@@ -31,7 +31,7 @@ async function isAsked(step: number, tab: string): Promise<void> {
   if (step > 1) {
     await lesson().getByRole("button", { name: "Next" }).click();
   }
-  await expect(lesson()).toContainText(`Step ${step} of 11`);
+  await expect(lesson()).toContainText(`Step ${step} of 12`);
   await expect(page.getByRole("tab", { name: tab, exact: true })).toHaveAttribute("aria-selected", "true", {
     timeout: 120_000,
   });
@@ -232,8 +232,25 @@ test("10: a polygon of a facet, with a side that no line made, and no other", as
   await expect(page.getByTestId("coplanar-plan").locator(".chosen-ring")).toHaveCount(1);
 });
 
-test("11: a line of the other method, which the inspector does not call matched", async () => {
-  await isAsked(11, "Clusters");
+test("11: a corner that proposes planes, and no other", async () => {
+  await isAsked(11, "Adjacency");
+  await expect(page.getByTestId("adjacency-lab").locator("canvas")).toBeVisible();
+  const next = page.getByRole("button", { name: "Next item" });
+  const planes = inspector()
+    .locator("div", { hasText: /^Planes that it proposes/ })
+    .last();
+  for (let i = 0; i < 60 && !(await isAnswered()); i += 1) {
+    await next.click();
+    await expect(picked()).toHaveText(`Corner ${i}`);
+    const [, verified = 0] = numbersIn(await planes.textContent());
+    await expect(answer()).toHaveCount(verified > 1 ? 1 : 0);
+  }
+  await expect(answer()).toBeVisible();
+  await expect(page.getByTestId("filmstrip").locator("canvas").first()).toBeVisible();
+});
+
+test("12: a line of the other method, which the inspector does not call matched", async () => {
+  await isAsked(12, "Clusters");
   await page.locator(".cluster").first().click({ force: true });
   await expect(picked()).toHaveText(/^3D line \d+$/);
   await expect(answer()).toBeVisible();

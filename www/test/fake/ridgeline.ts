@@ -8,6 +8,7 @@ import { stagesOf } from "../../src/app/session/stageCatalogue";
 import type { GroundTexture, WarpedPicture } from "../../src/shared/calls";
 import type { ParamTree } from "../../src/shared/paramTree";
 import type {
+  AdjacencyGraphs,
   CoplanarSets,
   Correspondence,
   DensePlane,
@@ -142,6 +143,7 @@ export class Session implements CoreSession {
       lines3d: {},
       sweep: { max_theta_deg: 75, min_similarity: 0.4, min_curvature: 4, min_amplitude: 0.2 },
       coplanar: { enabled: false },
+      adjacency: { enabled: false },
       dense: { enabled: true },
       roof: {},
       texture: { max_atlas_px: 4096 },
@@ -237,6 +239,10 @@ export class Session implements CoreSession {
 
   coplanar(): CoplanarSets {
     return { sets: [], trace: { sets: [] } };
+  }
+
+  adjacency(): AdjacencyGraphs {
+    return { planes: [], trace: { graphs: [], corners: [] } };
   }
 
   dense(): DensePlanes {

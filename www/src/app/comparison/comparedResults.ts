@@ -15,6 +15,7 @@ const METHOD_TITLES: Record<Method, string> = {
   rectangles: "Rectangles",
   combined: "Combined",
   coplanar: "Coplanar",
+  adjacency: "Adjacency",
 };
 
 /** What the present facets were found with, or the next ones will be. */

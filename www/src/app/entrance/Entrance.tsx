@@ -36,7 +36,7 @@ export function Entrance() {
           <button type="button" class="primary" onClick={startTour}>
             How?
           </button>
-          <span class="muted">A tour in ten steps, on the example.</span>
+          <span class="muted">A tour in twelve steps, on the example.</span>
         </p>
         <DropZone />
       </section>

@@ -244,6 +244,51 @@ const FIGURES: Record<Tab, Figure> = {
     ),
     hint: "Pick a polygon: its hull, its lines and its place in every photograph appear, and the inspector weighs each relation.",
   },
+  adjacency: {
+    title: "Adjacency graphs",
+    source: "B99 2 (Bonn; Fischer et al. 1998)",
+    text: "Ends of segments that more likely meet than lie beside each other by chance make corners; their edges, in order around each, part the image into regions. A corner is matched over the views as a whole: N is what the distance from its epipolar line or its predicted place says (covariance S), what the directions of its edges say, and the colours of its regions, each against the density ρ of such things by chance. Two edges in space with a region between them propose its plane; corners that an edge joins confirm each other.",
+    equation: (
+      <mrow>
+        <mi>N</mi>
+        <mo>=</mo>
+        <munder>
+          <mo>∑</mo>
+          <mi>j</mi>
+        </munder>
+        <mo>ln</mo>
+        <mfrac>
+          <mrow>
+            <mi>φ</mi>
+            <Open />
+            <msub>
+              <V>x</V>
+              <mi>j</mi>
+            </msub>
+            <mo>−</mo>
+            <msub>
+              <mi>P</mi>
+              <mi>j</mi>
+            </msub>
+            <V>X</V>
+            <mo>;</mo>
+            <msub>
+              <mi>S</mi>
+              <mi>j</mi>
+            </msub>
+            <Close />
+          </mrow>
+          <msub>
+            <mi>ρ</mi>
+            <mi>j</mi>
+          </msub>
+        </mfrac>
+        <mo>&gt;</mo>
+        <mn>0</mn>
+      </mrow>
+    ),
+    hint: "Pick a large dot in the image: its edges light up in all views, with the planes of the regions between them.",
+  },
   dense: {
     title: "Dense planes",
     source: "B99 2 (ENST); Barnes et al. 2009; Bleyer et al. 2011; Isack and Boykov 2012",

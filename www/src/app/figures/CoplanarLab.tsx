@@ -5,12 +5,13 @@ import { category } from "../../shared/palette";
 import type { CoplanarSets, Vec3 } from "../../shared/records";
 import { isVerified } from "../../viewer/layers/coplanar";
 import { Filmstrip } from "../images/Filmstrip";
+import { Choice } from "../parts/Choice";
 import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../parts/charts";
 import { counted } from "../parts/counted";
+import { type CoplanarOutlines, setAt, shownSets } from "../selection/coplanarPlan";
+import { equalScales } from "../selection/densePlan";
 import { results } from "../state/results";
 import { select, selection } from "../state/viewState";
-import { type CoplanarOutlines, setAt, shownSets } from "./coplanarPlan";
-import { equalScales } from "./densePlan";
 
 const CHOICES: readonly (readonly [CoplanarOutlines, string])[] = [
   ["hull", "Hulls before"],
@@ -35,14 +36,7 @@ export function CoplanarLab() {
   return (
     <div class="split-lab even">
       <div class="chart-lab" data-testid="coplanar-lab">
-        <fieldset class="choice">
-          <legend class="visually-hidden">Outlines in the plan</legend>
-          {CHOICES.map(([one, title]) => (
-            <button key={one} type="button" aria-pressed={shows === one} onClick={() => show(one)}>
-              {title}
-            </button>
-          ))}
-        </fieldset>
+        <Choice legend="Outlines in the plan" choices={CHOICES} chosen={shows} choose={show} />
         <Fit>{(frame) => <Plan frame={frame} coplanar={coplanar} shows={shows} />}</Fit>
       </div>
       <Filmstrip />

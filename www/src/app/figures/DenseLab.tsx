@@ -3,11 +3,17 @@ import "./figures.css";
 import { useState } from "preact/hooks";
 import type { DensePlanes, Vec2 } from "../../shared/records";
 import { Filmstrip } from "../images/Filmstrip";
+import { Choice } from "../parts/Choice";
 import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../parts/charts";
 import { counted } from "../parts/counted";
+import { areasOf, equalScales, type PlanColours, planeAt, squaresAt } from "../selection/densePlan";
 import { results } from "../state/results";
 import { select, selection } from "../state/viewState";
-import { areasOf, equalScales, type PlanColours, planeAt, squaresAt } from "./densePlan";
+
+const CHOICES: readonly (readonly [PlanColours, string])[] = [
+  ["class", "Classes"],
+  ["building", "Probability of building"],
+];
 
 export function DenseLab() {
   const { dense } = results.value;
@@ -21,14 +27,7 @@ export function DenseLab() {
   return (
     <div class="split-lab even">
       <div class="chart-lab" data-testid="dense-lab">
-        <fieldset class="choice">
-          <legend class="visually-hidden">Colours of the plan</legend>
-          {(["class", "building"] as const).map((one) => (
-            <button key={one} type="button" aria-pressed={shows === one} onClick={() => show(one)}>
-              {one === "class" ? "Classes" : "Probability of building"}
-            </button>
-          ))}
-        </fieldset>
+        <Choice legend="Colours of the plan" choices={CHOICES} chosen={shows} choose={show} />
         <Fit>{(frame) => <Plan frame={frame} dense={dense} shows={shows} />}</Fit>
       </div>
       <Filmstrip />

@@ -6,6 +6,7 @@ import type { Selection } from "../../shared/selection";
 import { type Place, PressWatch } from "../../viewer/tools/press";
 import { textScale } from "../state/textScale";
 import { drawView, type Overlay } from "./drawing";
+import { cornerAt } from "./graphOverlay";
 import type { Mark } from "./selectionMarks";
 import {
   fitImage,
@@ -153,9 +154,13 @@ function around(marks: readonly Mark[], image: Size, box: Size): Viewport | null
   return box.width === 0 ? null : fitPoints(points, box, MARGIN_PX, MAX_FOLLOW_SCALE);
 }
 
-/** The nearest line or segment, in the order that the overlay asks for; else what was rejected, or the region below. */
+/** The nearest corner of a graph; else the nearest line or segment, in the order that the overlay asks for; else what was rejected, or the region below. */
 function pickAt(overlay: Overlay, view: number, at: Point, reach: number): Selection | null {
   const { segments, supports, rejected, regions, segmentsFirst } = overlay;
+  const corner = overlay.graph == null ? null : cornerAt(overlay.graph, [at.x, at.y], reach);
+  if (corner !== null) {
+    return { kind: "corner", index: corner };
+  }
   const line = (): Selection | null => {
     const support = supports === null ? -1 : nearestSegment(supports, SUPPORT_STRIDE, at, reach);
     return support < 0 ? null : { kind: "line", index: supports?.[support * SUPPORT_STRIDE + 5] as number };

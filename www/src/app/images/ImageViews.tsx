@@ -104,19 +104,23 @@ function regionsOf(segmentation: (typeof results.value.regions)[number] | undefi
   return made;
 }
 
-function ViewPicker() {
+/** One button a view, and before them one for all, unless there is no room for them. */
+export function ViewPicker({ withAll = true }: { withAll?: boolean }) {
   const views = scene.value?.views ?? [];
+  const shown = withAll ? shownView.value : Math.max(0, shownView.value);
   const choose = (view: number) => () => {
     showView(view);
   };
   return (
     <fieldset class="choice">
       <legend class="visually-hidden">View</legend>
-      <button type="button" aria-pressed={shownView.value === ALL} onClick={choose(ALL)}>
-        All
-      </button>
+      {withAll && (
+        <button type="button" aria-pressed={shownView.value === ALL} onClick={choose(ALL)}>
+          All
+        </button>
+      )}
       {views.map(({ name }, view) => (
-        <button key={name} type="button" aria-pressed={shownView.value === view} onClick={choose(view)}>
+        <button key={name} type="button" aria-pressed={shown === view} onClick={choose(view)}>
           {name}
         </button>
       ))}

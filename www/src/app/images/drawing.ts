@@ -1,10 +1,11 @@
 /** Draws one view's image and overlay on a canvas. It computes nothing but where things lie on the screen. */
 
 import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_KINDS, SUPPORT_STRIDE } from "../../shared/flatArrays";
-import { PALETTE } from "../../shared/palette";
+import { category, PALETTE } from "../../shared/palette";
 import type { Vec2 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { textScale } from "../state/textScale";
+import type { GraphOverlay } from "./graphOverlay";
 import type { Mark } from "./selectionMarks";
 import type { Viewport } from "./viewport";
 
@@ -19,6 +20,8 @@ export interface Overlay {
   regions?: readonly { rings: readonly (readonly Vec2[])[]; colour: string }[] | null;
   /** What a click finds first where both lie: lines, unless this is set. */
   segmentsFirst?: boolean;
+  /** An adjacency graph: its corners, edges and regions. */
+  graph?: GraphOverlay | null;
   /** A colour for each segment; the palette's where there is none. */
   colours?: readonly (string | null)[] | null;
 }
@@ -79,6 +82,9 @@ export function drawView(
       const isKind = (at: number) => supports[at + 4] === code;
       strokeAll(context, supports, SUPPORT_STRIDE, isKind, PALETTE[kind], LINE_PX * unit, 1);
     });
+  }
+  if (overlay.graph != null) {
+    drawGraph(context, overlay.graph, unit);
   }
   context.globalAlpha = 1;
   for (const mark of marks) {
@@ -203,6 +209,39 @@ function fillRegions(
   context.strokeStyle = PALETTE.beam;
   context.lineWidth = 0.75 * unit;
   context.stroke(outlines);
+}
+
+/** Sectors in the colours of their regions, edges and corners in those of what was found in other views. */
+function drawGraph(
+  context: CanvasRenderingContext2D,
+  { sectors, edges, corners }: GraphOverlay,
+  unit: number,
+): void {
+  const before = context.globalAlpha;
+  for (const { ring, region } of sectors) {
+    const path = new Path2D();
+    trace(path, ring);
+    path.closePath();
+    context.globalAlpha = before * 0.55;
+    context.fillStyle = category(region);
+    context.fill(path);
+  }
+  context.globalAlpha = before;
+  for (const isMatched of [false, true]) {
+    const path = new Path2D();
+    for (const { ends } of edges.filter((edge) => edge.isMatched === isMatched)) {
+      trace(path, ends);
+    }
+    context.strokeStyle = isMatched ? PALETTE.matched : PALETTE.unmatched;
+    context.lineWidth = (isMatched ? LINE_PX : THIN_PX) * unit;
+    context.stroke(path);
+  }
+  for (const { at, space } of corners) {
+    context.beginPath();
+    context.arc(at[0], at[1], (space === null ? 2 : 3.5) * unit, 0, 2 * Math.PI);
+    context.fillStyle = space === null ? PALETTE.unmatched : PALETTE.matched;
+    context.fill();
+  }
 }
 
 function strokeAll(

@@ -35,6 +35,7 @@ export const linkToFacet = linkTo("facet");
 export const linkToRefinement = linkTo("refinement");
 export const linkToDense = linkTo("dense");
 export const linkToCoplanar = linkTo("coplanar");
+export const linkToCorner = linkTo("corner");
 export const linkToGroup = linkTo("group");
 
-type IndexedKind = "line" | "halfplane" | "facet" | "refinement" | "dense" | "coplanar" | "group";
+type IndexedKind = "line" | "halfplane" | "facet" | "refinement" | "dense" | "coplanar" | "corner" | "group";

@@ -3,6 +3,7 @@
 import { LINE_STRIDE, SEGMENT_STRIDE } from "../../shared/flatArrays";
 import {
   coplanarSetsOf,
+  cornerPlanesOf,
   densePlanesOf,
   type Facet,
   isMadeFrom,
@@ -26,6 +27,7 @@ import { results } from "../state/results";
 import { scene } from "../state/scene";
 import { selectionDetail } from "../state/selectionDetail";
 import { coplanarSetRows } from "./coplanarSetRows";
+import { cornerRows } from "./cornerRows";
 import { densePlaneRows } from "./densePlaneRows";
 import { evidenceOfLine, probabilityRow } from "./evidenceRows";
 import { refinedRow, refinementRows, relationRows } from "./refinementRows";
@@ -33,6 +35,7 @@ import { rejectedClusterRows, rejectedFacetRows, rejectedSegmentRows } from "./r
 import {
   indicesOf,
   linkToCoplanar,
+  linkToCorner,
   linkToDense,
   linkToFacet,
   linkToGroup,
@@ -56,6 +59,8 @@ export function titleOf(picked: Selection): string {
       return `Dense plane ${picked.index}`;
     case "coplanar":
       return `Coplanar set ${picked.index}`;
+    case "corner":
+      return `Corner ${picked.index}`;
     case "group":
       return `Group ${picked.index}`;
     case "region":
@@ -95,6 +100,8 @@ export function rowsOf(picked: Selection): Row[] {
       return densePlaneRows(picked.index);
     case "coplanar":
       return coplanarSetRows(picked.index);
+    case "corner":
+      return cornerRows(picked.index);
     case "group":
       return groupRows(picked.index);
     case "region":
@@ -179,13 +186,18 @@ function groupRows(index: number): Row[] {
   ];
 }
 
-/** The planes of dense matching and the coplanar sets that proposed this one, and how many candidates of the other method. */
+/** The planes of dense matching, the coplanar sets and the corners that proposed this one, and how many candidates of the other method. */
 function proposalRows(proposed: Pick<PlaneGroup, "proposals">): Row[] {
   const [dense, rectangles] = [densePlanesOf(proposed), rectanglesOf(proposed).length];
   const sets = coplanarSetsOf(proposed);
+  const regions = cornerPlanesOf(proposed).flatMap(
+    (plane) => results.value.adjacency?.planes[plane]?.regions ?? [],
+  );
+  const corners = [...new Set(regions.map(([corner]) => corner))];
   return [
     ...(dense.length === 0 ? [] : [["Dense planes", dense.map(linkToDense)] as const]),
     ...(sets.length === 0 ? [] : [["Coplanar sets", sets.map(linkToCoplanar)] as const]),
+    ...(corners.length === 0 ? [] : [["Proposed by corners", corners.map(linkToCorner)] as const]),
     ...(rectangles === 0 ? [] : [["Rectangles", `${rectangles} in its plane (W96 3.6)`] as const]),
   ];
 }

@@ -29,6 +29,8 @@ export function siblingsOf(picked: Selection | null): readonly Selection[] {
       return itemsOfTab("dense");
     case "coplanar":
       return itemsOfTab("coplanar");
+    case "corner":
+      return itemsOfTab("adjacency");
     case "group":
       return itemsOfTab("groups");
     case "facet":
@@ -61,7 +63,7 @@ export function placeAmong(items: readonly Selection[], picked: Selection | null
 }
 
 function itemsOfTab(name: Tab): readonly Selection[] {
-  const { lines, coplanar, dense, grouping, facets, refinement, rectangles } = results.value;
+  const { lines, coplanar, adjacency, dense, grouping, facets, refinement, rectangles } = results.value;
   const view = Math.max(0, shownView.value);
   switch (name) {
     case "images":
@@ -81,6 +83,8 @@ function itemsOfTab(name: Tab): readonly Selection[] {
       return numbered(dense?.planes.length, (index) => ({ kind: "dense", index }));
     case "coplanar":
       return numbered(coplanar?.sets.length, (index) => ({ kind: "coplanar", index }));
+    case "adjacency":
+      return numbered(adjacency?.trace.corners.length, (index) => ({ kind: "corner", index }));
     case "groups":
       return numbered(grouping?.groups.length, (index) => ({ kind: "group", index }));
     case "refinement":

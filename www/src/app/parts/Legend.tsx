@@ -21,6 +21,11 @@ const ENTRIES: Partial<Record<Tab, readonly Entry[]>> = {
     ["set", "polygon; one colour a set"],
     ["unmatched", "thin: not verified"],
   ],
+  adjacency: [
+    ["matched", "edge of a corner in space"],
+    ["unmatched", "edge seen in one view"],
+    ["set", "region; plane of regions"],
+  ],
   groups: [
     ["bar", "line found in a plane"],
     ["unmatched", "thin: no facet"],

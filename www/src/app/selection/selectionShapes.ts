@@ -3,6 +3,7 @@
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import { densePlanesOf, type HalfPlane, type Segment3, type Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
+import { edgesOf, isVerified } from "../../viewer/layers/adjacency";
 import { fanCorners } from "../../viewer/layers/fans";
 import { outlinesOf } from "../../viewer/layers/refinement";
 import { results } from "../state/results";
@@ -28,6 +29,8 @@ export function shapesOf(picked: Selection | null): Shape[] {
       return areas([densePlaneRing(picked.index)]);
     case "coplanar":
       return coplanarShape(picked.index);
+    case "corner":
+      return cornerShape(picked.index);
     case "group":
       return groupShape(picked.index);
     case "facet":
@@ -120,6 +123,22 @@ function groupShape(index: number): Shape[] {
 function coplanarShape(index: number): Shape[] {
   const set = results.value.coplanar?.sets[index];
   return set === undefined ? [] : [{ points: set.hull, role: "before" }, ...areas([set.polygon])];
+}
+
+/** The edges of a corner, and the planes of the regions between them that the photographs verify. */
+function cornerShape(index: number): Shape[] {
+  const { planes, trace } = results.value.adjacency ?? { planes: [], trace: null };
+  const corner = trace?.corners[index];
+  if (trace === null || corner === undefined) {
+    return [];
+  }
+  const own = planes.filter(
+    (plane) => isVerified(plane) && plane.regions.some(([proposer]) => proposer === index),
+  );
+  return [
+    ...areas(own.map(({ polygon }) => polygon)),
+    ...edgesOf(corner, trace.corners).flatMap(([from, to]) => openLine([from, to])),
+  ];
 }
 
 function densePlaneRing(index: number): readonly Vec3[] {

@@ -38,6 +38,7 @@ const FETCHED: Record<StageName, () => Promise<Partial<Results>>> = {
     sides: await engine.call("sides"),
   }),
   coplanar: async () => ({ coplanar: await engine.call("coplanar") }),
+  adjacency: async () => ({ adjacency: await engine.call("adjacency") }),
   dense: async () => ({ dense: await engine.call("dense") }),
   facets: async () => ({
     facets: await engine.call("facets"),

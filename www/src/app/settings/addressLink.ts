@@ -125,6 +125,7 @@ export function parseSelection(text: string | null): Selection | null {
     case "halfplane":
     case "dense":
     case "coplanar":
+    case "corner":
     case "group":
     case "refinement":
     case "facet":

@@ -36,6 +36,7 @@ const TITLES: Record<string, string> = {
   adjustment: "Adjustment of the views",
   lines3d: "3D lines",
   coplanar: "Coplanar sets",
+  adjacency: "Adjacency graphs",
   sweep: "Half-plane sweep",
   dense: "Dense planes",
   roof: "Grouping and facets",
@@ -55,8 +56,20 @@ const CHOICES: Record<string, readonly string[]> = {
 
 /** The groups that a method reads; "combined" reads all. */
 const GROUPS_OF_METHOD: Record<string, readonly string[]> = {
-  lines: ["segments", "matching", "adjustment", "lines3d", "coplanar", "sweep", "dense", "roof", "texture"],
+  lines: [
+    "segments",
+    "matching",
+    "adjustment",
+    "lines3d",
+    "coplanar",
+    "adjacency",
+    "sweep",
+    "dense",
+    "roof",
+    "texture",
+  ],
   coplanar: ["segments", "matching", "adjustment", "lines3d", "roof", "texture"],
+  adjacency: ["segments", "matching", "adjustment", "lines3d", "roof", "texture"],
   rectangles: ["objectspace", "texture"],
 };
 

@@ -22,6 +22,11 @@ const METHODS: readonly (readonly [Method, string, string])[] = [
     "The lines and planes of both compete for one model; regions take most of its time",
   ],
   ["coplanar", "Coplanar", "Sets of coplanar lines and their polygons (Baillard et al. 1999, section 2)"],
+  [
+    "adjacency",
+    "Adjacency",
+    "Corners with their edges and regions, matched as wholes (Baillard et al. 1999, section 2)",
+  ],
 ];
 
 export function Header() {

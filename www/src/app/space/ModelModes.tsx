@@ -25,6 +25,7 @@ const METHOD_TITLES: Record<Method, string> = {
   rectangles: "Rectangles (W96)",
   combined: "Both",
   coplanar: "Coplanar lines (B99 2)",
+  adjacency: "Corners (B99 2)",
 };
 
 /** The method that proposed a facet's plane; where both ran, both may have. */
@@ -64,7 +65,7 @@ export function ModeSwitches() {
 const made = computed(() => {
   const methods = (mainResults.value.facets ?? []).map((facet) => methodOfFacet(facet, method.value));
   const names = (Object.keys(METHOD_TITLES) as Method[]).filter(
-    (name) => (name !== "combined" && name !== "coplanar") || method.value === name,
+    (name) => name === "lines" || name === "rectangles" || method.value === name,
   );
   return names.map((name) => [name, methods.filter((one) => one === name).length] as const);
 });

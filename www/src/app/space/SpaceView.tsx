@@ -5,10 +5,10 @@ import { useEffect, useRef } from "preact/hooks";
 import { Box3, Vector3 } from "three";
 import { THEME_COLOURS } from "../../shared/palette";
 import type { Vec3 } from "../../shared/records";
-import { warmupLayers } from "../../viewer/layers/shaderWarmup";
 import { enlargement } from "../../viewer/layers/uncertainty";
 import { cornersOf, cornersOfFacets, endsOfLines, withCameras } from "../../viewer/scene/bounds";
 import { GRID_STEP_M } from "../../viewer/scene/grid";
+import { warmupLayers } from "../../viewer/shaderWarmup";
 import { Viewer } from "../../viewer/viewer";
 import { presentTitle } from "../comparison/comparedResults";
 import { Legend } from "../parts/Legend";
@@ -41,6 +41,7 @@ const LAYER_TITLES: Record<LayerName, string> = {
   uncertainty: "Uncertainty",
   fans: "Half-planes",
   coplanar: "Coplanar sets",
+  adjacency: "Corners",
   dense: "Dense planes",
   groups: "Groups",
   facets: "Facets",
@@ -50,7 +51,7 @@ const LAYER_TITLES: Record<LayerName, string> = {
 };
 
 /** Layers that method "rectangles" does not fill. */
-const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "coplanar", "dense", "groups"];
+const LAYERS_OF_LINES: readonly LayerName[] = ["fans", "coplanar", "adjacency", "dense", "groups"];
 
 /** The viewer while it exists; the effects below wait for it. */
 const viewer = signal<Viewer | null>(null);
@@ -275,7 +276,7 @@ function pointsNow(): Vector3[] {
 }
 
 function layerIsEmpty(name: Tab): boolean {
-  const { halfPlanes, coplanar, dense, grouping, facets } = results.value;
+  const { halfPlanes, coplanar, adjacency, dense, grouping, facets } = results.value;
   switch (name) {
     case "lines":
       return lines.value === null;
@@ -283,6 +284,8 @@ function layerIsEmpty(name: Tab): boolean {
       return halfPlanes === null;
     case "coplanar":
       return coplanar === null;
+    case "adjacency":
+      return adjacency === null;
     case "dense":
       return dense === null;
     case "groups":

@@ -3,6 +3,7 @@ import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import { Vector3 } from "three";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import type { Facet, FacetTrace, Vec3 } from "../../shared/records";
+import { buildAdjacency } from "../../viewer/layers/adjacency";
 import { buildCameras } from "../../viewer/layers/cameras";
 import { buildCoplanar } from "../../viewer/layers/coplanar";
 import { buildDense } from "../../viewer/layers/dense";
@@ -34,6 +35,7 @@ export const LAYERS = [
   "uncertainty",
   "fans",
   "coplanar",
+  "adjacency",
   "dense",
   "groups",
   "facets",
@@ -51,6 +53,7 @@ const chosen = signal<Record<Tab, readonly LayerName[]>>({
   lines: ["lines"],
   halfplanes: ["lines", "fans"],
   coplanar: ["coplanar"],
+  adjacency: ["adjacency"],
   dense: ["dense"],
   groups: ["groups"],
   facets: ["facets"],
@@ -96,6 +99,10 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   coplanar: () => {
     const { lines, coplanar } = results.value;
     return lines && coplanar && [() => buildCoplanar(coplanar, lines), coplanar, lines];
+  },
+  adjacency: () => {
+    const { adjacency } = results.value;
+    return adjacency && [() => buildAdjacency(adjacency), adjacency];
   },
   dense: () => {
     const { dense } = results.value;

@@ -2,6 +2,7 @@
 import "./stages.css";
 import type { ComponentType } from "preact";
 import { useRef } from "preact/hooks";
+import { AdjacencyLab } from "../figures/AdjacencyLab";
 import { ClusterLab } from "../figures/ClusterLab";
 import { CoplanarLab } from "../figures/CoplanarLab";
 import { DenseLab } from "../figures/DenseLab";
@@ -28,6 +29,7 @@ const TITLES: Record<Tab, string> = {
   lines: "3D lines",
   halfplanes: "Half-planes",
   coplanar: "Coplanar sets",
+  adjacency: "Adjacency",
   dense: "Dense planes",
   groups: "Groups",
   facets: "Facets",
@@ -48,6 +50,7 @@ const LABS: Partial<Record<Tab, ComponentType>> = {
   lines: LineLab,
   halfplanes: SimLab,
   coplanar: CoplanarLab,
+  adjacency: AdjacencyLab,
   dense: DenseLab,
   groups: GroupLab,
   facets: FacetLab,

@@ -18,8 +18,9 @@ export const TABS: Readonly<Record<Method, readonly Tab[]>> = {
   lines: ["images", ...tabsOf("lines")],
   rectangles: ["images", ...tabsOf("rectangles")],
   combined: ["images", ...tabsOf("combined")],
-  // It sweeps no half-plane; of that stage it has the ground.
+  // These sweep no half-plane; of that stage they have the ground.
   coplanar: ["images", ...tabsOf("coplanar").filter((tab) => tab !== "halfplanes")],
+  adjacency: ["images", ...tabsOf("adjacency").filter((tab) => tab !== "halfplanes")],
 };
 
 /** Tabs about the stages of method "rectangles" alone. */

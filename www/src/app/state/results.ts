@@ -3,6 +3,7 @@ import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import type { GroundTexture } from "../../shared/calls";
 import type { ParamTree } from "../../shared/paramTree";
 import type {
+  AdjacencyGraphs,
   ClusterTrace,
   CoplanarSets,
   DensePlanes,
@@ -28,6 +29,7 @@ export interface Results {
   lines: Float64Array | null;
   halfPlanes: HalfPlane[] | null;
   coplanar: CoplanarSets | null;
+  adjacency: AdjacencyGraphs | null;
   dense: DensePlanes | null;
   facets: Facet[] | null;
   /** The parameters that the facets were found with. */
@@ -53,6 +55,7 @@ export const NO_RESULTS: Results = {
   lines: null,
   halfPlanes: null,
   coplanar: null,
+  adjacency: null,
   dense: null,
   facets: null,
   madeWith: null,

@@ -2,6 +2,7 @@
 import { LINE_STRIDE, STRETCH_STRIDE } from "../../shared/flatArrays";
 import { coplanarSetsOf, densePlanesOf, isMadeFrom, type Side, type SideTrace } from "../../shared/records";
 import { type ClassName, likeliestClass } from "../../shared/surfaceClass";
+import { isVerified } from "../../viewer/layers/adjacency";
 import type { Results } from "../state/results";
 
 const DEGREE = Math.PI / 180;
@@ -145,6 +146,24 @@ export function coplanarSetParts(
     after,
     facets: (facets ?? []).flatMap((facet, i) => (coplanarSetsOf(facet).includes(index) ? [i] : [])),
   };
+}
+
+export interface CornerParts {
+  views: number;
+  edges: number;
+  /** Planes of its regions that the photographs verify. */
+  planes: number;
+}
+
+/** What a corner in space is; null where there is none. */
+export function cornerParts({ adjacency }: Pick<Results, "adjacency">, index: number): CornerParts | null {
+  const corner = adjacency?.trace.corners[index];
+  const own = adjacency?.planes.filter(
+    (plane) => isVerified(plane) && plane.regions.some(([proposer]) => proposer === index),
+  );
+  return corner === undefined
+    ? null
+    : { views: corner.images.length, edges: corner.edges.length, planes: own?.length ?? 0 };
 }
 
 export interface DensePlaneParts {

@@ -1,4 +1,4 @@
-/** The guided tour: ten steps through B99 and one through W96, in the views themselves, on the demo scene. */
+/** The guided tour: eleven steps through B99 and one through W96, in the views themselves, on the demo scene. */
 import { isRejected } from "../../shared/records";
 import { counted } from "../parts/counted";
 import { degreesOf, percentText } from "../parts/numberText";
@@ -28,7 +28,9 @@ import {
 import {
   agreesNowhere,
   type CoplanarSetParts,
+  type CornerParts,
   coplanarSetParts,
+  cornerParts,
   type DensePlaneParts,
   densePlaneParts,
   facetOfSegment,
@@ -279,6 +281,26 @@ export const LESSONS: readonly LessonStep[] = [
     },
   },
   {
+    title: "Corners as wholes",
+    text: "A third partner matched no lines at all, but corners with everything that belongs to them: the edges that meet there and the regions between. What borders what in the images borders it in space too, so that one corner proposes several planes at once.",
+    question: "Pick a corner that proposes two planes or more, verified by the photographs.",
+    answer: () => {
+      const found = pickedCorner();
+      return found === null
+        ? ""
+        : `${counted(found.views, "views")} show it with ${counted(found.edges, "edges")}. The regions between these lie in ${counted(found.planes, "planes")}: no line was matched, and no plane sought.`;
+    },
+    hint: () => {
+      const found = pickedCorner();
+      return found === null || found.planes > 1
+        ? null
+        : "One plane or none: look for a corner where three edges meet.";
+    },
+    method: "adjacency",
+    tab: "adjacency",
+    isFound: () => (pickedCorner()?.planes ?? 0) > 1,
+  },
+  {
     title: "Another way: object space",
     text: "Wiman and Axelsson match nothing between images. Each image line of a main direction is a line in the plane across it; where lines of several views meet, there is an edge in space.",
     question: "Pick a ring in the cluster plane, and see its line in every view.",
@@ -378,6 +400,11 @@ function pickedDensePlane(): DensePlaneParts | null {
 function pickedSet(): CoplanarSetParts | null {
   const picked = selection.value;
   return picked?.kind === "coplanar" ? coplanarSetParts(results.value, picked.index) : null;
+}
+
+function pickedCorner(): CornerParts | null {
+  const picked = selection.value;
+  return picked?.kind === "corner" ? cornerParts(results.value, picked.index) : null;
 }
 
 function denseWords({ patches, rmsM, facets }: DensePlaneParts): string {

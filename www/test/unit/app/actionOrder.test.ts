@@ -295,7 +295,17 @@ describe("a run", () => {
     await untilIdle();
     const times = (wanted: string) => ran.filter((name) => name === wanted).length;
     expect(["segments", "matches", "adjustment", "lines"].map(times)).toEqual([1, 3, 3, 1]);
-    const last = ["matches", "adjustment", "lines", "coplanar", "halfplanes", "dense", "facets", "model"];
+    const last = [
+      "matches",
+      "adjustment",
+      "lines",
+      "coplanar",
+      "adjacency",
+      "halfplanes",
+      "dense",
+      "facets",
+      "model",
+    ];
     expect(ran.slice(-last.length)).toEqual(last);
     expect(new Set(page.stages.value.map(({ status }) => status))).toEqual(new Set(["done"]));
   });

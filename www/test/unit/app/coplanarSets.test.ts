@@ -1,9 +1,9 @@
 /** What the page says of sets of coplanar lines, and of what they proposed. */
 import { afterEach, describe, expect, it } from "vitest";
-import { setAt, shownSets } from "../../../src/app/figures/coplanarPlan";
 import type { Related, Row } from "../../../src/app/inspector/rowLinks";
 import { rowsOf, titleOf } from "../../../src/app/inspector/selectionRows";
 import { presentEntries } from "../../../src/app/parts/Legend";
+import { setAt, shownSets } from "../../../src/app/selection/coplanarPlan";
 import { linesOfSelection, shapesOf } from "../../../src/app/selection/selectionShapes";
 import { formatSelection, parseSelection } from "../../../src/app/settings/addressLink";
 import { TABS } from "../../../src/app/state/methods";

@@ -1,11 +1,11 @@
 /** What the page says of the planes of dense matching, and of what they proposed. */
 import { afterEach, describe, expect, it } from "vitest";
-import { areasOf, equalScales, planeAt, squaresAt } from "../../../src/app/figures/densePlan";
 import { slopeSigma } from "../../../src/app/inspector/densePlaneRows";
 import type { Related, Row } from "../../../src/app/inspector/rowLinks";
 import { rowsOf, titleOf } from "../../../src/app/inspector/selectionRows";
 import { frameOf } from "../../../src/app/parts/charts";
 import { presentEntries } from "../../../src/app/parts/Legend";
+import { areasOf, equalScales, planeAt, squaresAt } from "../../../src/app/selection/densePlan";
 import { shapesOf } from "../../../src/app/selection/selectionShapes";
 import { formatSelection, parseSelection } from "../../../src/app/settings/addressLink";
 import { methodOfFacet } from "../../../src/app/space/ModelModes";

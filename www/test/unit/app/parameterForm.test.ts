@@ -114,9 +114,9 @@ describe("firstStageOf", () => {
   const stages = stagesOf("lines");
 
   it("finds the stage that a group changes first", () => {
-    expect(firstStageOf("sweep", stages)).toBe(5);
-    expect(firstStageOf("dense", stages)).toBe(6);
-    expect(firstStageOf("texture", stages)).toBe(8);
+    expect(firstStageOf("sweep", stages)).toBe(6);
+    expect(firstStageOf("dense", stages)).toBe(7);
+    expect(firstStageOf("texture", stages)).toBe(9);
     expect(firstStageOf("adjustment", stages)).toBe(stages.indexOf("matches"));
   });
 

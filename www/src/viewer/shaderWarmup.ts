@@ -3,19 +3,19 @@
  * fills its layer, and asking for it waits for the graphics beside the running pipeline.
  */
 import { Mesh, MeshBasicMaterial, type Object3D, Sphere, SphereGeometry, Texture, Vector3 } from "three";
-import type { GroundTexture } from "../../shared/calls";
-import { PALETTE } from "../../shared/palette";
-import type { Facet, FacetTrace, HalfPlane, LineRecord, SideRecord } from "../../shared/records";
-import { buildGrid } from "../scene/grid";
-import { disposeObject, type Layer, unpicked } from "../scene/layer";
-import { buildFacets } from "./facets";
-import { buildFans } from "./fans";
-import { buildGround } from "./ground";
-import { buildGroups } from "./groups";
-import { buildHighlight } from "./highlight";
-import { buildLines } from "./lines";
-import { edgeLines } from "./model";
-import { buildOutlines } from "./outlines";
+import type { GroundTexture } from "../shared/calls";
+import { PALETTE } from "../shared/palette";
+import type { Facet, FacetTrace, HalfPlane, LineRecord, SideRecord } from "../shared/records";
+import { buildFacets } from "./layers/facets";
+import { buildFans } from "./layers/fans";
+import { buildGround } from "./layers/ground";
+import { buildGroups } from "./layers/groups";
+import { buildHighlight } from "./layers/highlight";
+import { buildLines } from "./layers/lines";
+import { edgeLines } from "./layers/model";
+import { buildOutlines } from "./layers/outlines";
+import { buildGrid } from "./scene/grid";
+import { disposeObject, type Layer, unpicked } from "./scene/layer";
 
 const LINES = Float64Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0);
 const GROUND: GroundTexture = {

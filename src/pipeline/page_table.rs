@@ -3,12 +3,13 @@
 
 use std::fmt::Debug;
 
-use super::{ALL, Stage};
+use super::Stage;
+use crate::params::Method;
 
 const PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/www/src/shared/stages.ts");
 
 fn page_table() -> String {
-    let method_names: Vec<&str> = ALL.iter().map(|method| method.name()).collect();
+    let method_names: Vec<&str> = Method::ALL.iter().map(|method| method.name()).collect();
     let rows: Vec<String> = Stage::ALL.iter().map(|stage| row(*stage)).collect();
     format!(
         "/** The stages and methods of the core. Written by `make golden` from src/pipeline/stages. */\n\n\

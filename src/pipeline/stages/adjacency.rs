@@ -1,0 +1,56 @@
+//! Corners matched over the views, and the planes that they propose (B99 2: Bonn).
+
+use super::{Findings, Outcome, Results, Stage, StageDefinition};
+use super::{is_any, required, to_bytes, untraced, warn_if};
+use crate::adjacency::{AdjacencyTrace, CornerPlane, corner_planes};
+use crate::execution::Sharded;
+use crate::params::{Method, Params};
+use crate::scene::Scene;
+
+/// Planes of corners, verified or not; the graphs and the corners are in the trace.
+pub(super) type Found = Outcome<Vec<CornerPlane>, AdjacencyTrace>;
+
+pub(super) struct Adjacency;
+
+impl StageDefinition for Adjacency {
+    type Found = Found;
+
+    const NAME: &'static str = "adjacency";
+    const TITLE: &'static str = "Adjacency graphs";
+    const SECTION: &'static str = "B99 2";
+    const READS: &'static [&'static str] = &["adjacency", "roof.border_nats_per_m"];
+    const NEEDS: &'static [Stage] = &[Stage::Segments, Stage::Lines];
+
+    fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
+        if !params.adjacency.enabled && params.method != Method::Adjacency {
+            return Ok((Vec::new(), AdjacencyTrace::default()).into());
+        }
+        let segments = &required(&before.segments).value;
+        let lines = &required(&before.lines).value;
+        Ok(corner_planes(scene, lines, segments, &params.roof).into())
+    }
+
+    fn summary(_: &Scene, found: &Found, before: &Results) -> Findings {
+        let verified = found.value.iter().filter(|p| p.is_verified()).count();
+        let in_images = found.trace.graphs.iter().map(|g| g.corners.len()).sum();
+        let none = "no corner of the images was found again in two other views";
+        let is_empty = in_images > 0 && found.trace.corners.is_empty();
+        Findings {
+            counts: vec![
+                ("planes of corners", found.value.len()),
+                ("verified planes", verified),
+                ("corners in space", found.trace.corners.len()),
+                ("corners in images", in_images),
+            ],
+            warnings: warn_if(is_empty && is_any(&before.lines), none),
+        }
+    }
+
+    fn pack(found: &Found) -> Vec<u8> {
+        to_bytes(&found.value)
+    }
+
+    fn unpack(bytes: &[u8]) -> Option<Found> {
+        untraced(bytes)
+    }
+}
