@@ -108,9 +108,11 @@ $(PACKAGE): $(RUST_SOURCES) $(WASM32) $(WASM_BINDGEN) $(NPM) $(CHOSEN)
 	cargo build --lib --profile $(PROFILE) --target wasm32-unknown-unknown
 	wasm-bindgen target/wasm32-unknown-unknown/$(PROFILE)/ridgeline.wasm $(@D) ridgeline
 
-# After the other one, because cargo puts both in the same place.
+# After the other one, because cargo puts both in the same place. In few pieces the unused half of the crate is left out
+# more thoroughly: a visitor waits for this module.
+SMALL := --config 'profile.page.package.ridgeline.codegen-units=2'
 $(ORIENTATION): $(PACKAGE)
-	cargo build --lib --no-default-features --profile $(PROFILE) --target wasm32-unknown-unknown
+	cargo build --lib --no-default-features --profile $(PROFILE) --target wasm32-unknown-unknown $(SMALL)
 	wasm-bindgen target/wasm32-unknown-unknown/$(PROFILE)/ridgeline.wasm $(@D) orientation
 
 # What the page shows before anything is computed in the browser: the demo scene's model, made by the page's own core.
