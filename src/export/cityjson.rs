@@ -136,6 +136,8 @@ fn semantic_surface(model: &RoofModel, surface: Surface) -> Value {
                 "realLineRatio": rounded(facet.real_ratio, 4),
                 "probability": rounded(facet.probability, 4),
             });
+            let of_corner = |p| rounded(model.probability_of_corner(facet.building, p), 4);
+            surface["cornerProbability"] = facet.outer.iter().map(of_corner).collect();
             if let Some(known) = &facet.uncertainty {
                 let corners = facet.outer.iter().filter_map(|p| known.at(p));
                 let corners = corners.map(|sigma| [0, 1, 2].map(|k| rounded(sigma[k], 4)));

@@ -115,3 +115,18 @@ pub struct RoofModel {
     /// The buildings.
     pub buildings: Vec<Building>,
 }
+
+impl RoofModel {
+    /// Probability of a corner of a facet, 0 to 1: that all facets of the building which have it
+    /// are faces of a roof, each taken by itself.
+    pub fn probability_of_corner(&self, building: BuildingId, corner: &Point3<f64>) -> f64 {
+        let has_it = |facet: &&Facet| {
+            let rings = std::iter::once(&facet.outer).chain(&facet.holes);
+            let mut corners = rings.flatten();
+            facet.building == building && corners.any(|p| (p - corner).norm() < WELD_M)
+        };
+        (self.facets.iter().filter(has_it))
+            .map(|facet| facet.probability)
+            .product()
+    }
+}

@@ -36,6 +36,29 @@ fn cityjson_is_valid_and_holds_the_model_in_the_world_frame() {
     }
 }
 
+#[test]
+fn a_corner_is_as_likely_as_all_facets_that_meet_there() {
+    let (_, mut model, _) = planted_models().remove(0);
+    for (facet, probability) in model.facets.iter_mut().zip([0.9, 0.6]) {
+        facet.probability = probability;
+    }
+    let json: Value =
+        serde_json::from_slice(&files_of(&scene(), &model)["model.city.json"]).unwrap();
+    let surfaces = &json["CityObjects"]["building-0"]["geometry"][0]["semantics"]["surfaces"];
+    let of_facet = |facet: u64| -> Vec<f64> {
+        let mut surfaces = surfaces.as_array().unwrap().iter();
+        let surface = surfaces.find(|s| s["facet"] == facet).unwrap();
+        let corners = surface["cornerProbability"].as_array().unwrap();
+        corners.iter().map(|p| p.as_f64().unwrap()).collect()
+    };
+    // Two ends of the ridge, which both slopes share, and two of the eave.
+    for (facet, own) in [(0, 0.9), (1, 0.6)] {
+        let mut corners = of_facet(facet);
+        corners.sort_by(f64::total_cmp);
+        assert_eq!(corners, [0.54, 0.54, own, own]);
+    }
+}
+
 /// Per building, per face, per ring the corners in the world frame, less [`ORIGIN`].
 type Faces = Vec<Vec<Vec<Vector3<f64>>>>;
 
