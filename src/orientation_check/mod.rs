@@ -11,6 +11,7 @@
 //! subpixel           matches to a fraction of a pixel; an offset of half a pixel
 //! shift_adjustment   least squares over tracks of matches
 //! shifts             how far each view is shifted against the others
+//! heights            between which heights the matches lie
 //! finding            what was found, and its report
 //! ```
 //!
@@ -25,6 +26,7 @@ mod epipolar;
 mod epipolar_check;
 mod error_hypothesis;
 mod finding;
+mod heights;
 mod hypothesis_search;
 mod interest_points;
 mod shift_adjustment;
@@ -35,6 +37,7 @@ mod view;
 pub use angle_readings::{AngleReadings, cameras_in, try_angle_readings};
 pub use error_hypothesis::{AngleOrder, ErrorHypothesis, RotationSequence};
 pub use finding::{CheckFinding, OrientationCheck};
+pub use heights::surface_heights;
 pub use view::CheckedView;
 
 use nalgebra::Vector2;

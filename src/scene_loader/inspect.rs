@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::candidate::OrientationCandidate;
+use super::ground::plan_scene;
 use super::input::LoadOptions;
-use super::plan::Plan;
 use crate::orientation::{FileKind, InputFile};
 
 /// Everything that is known about a set of files without decoding an image.
@@ -60,7 +60,7 @@ pub struct ImageReport {
 
 /// Recognises files and plans a scene.
 pub fn inspect_files(files: &[InputFile], options: &LoadOptions) -> Inspection {
-    let plan = Plan::new(files, options);
+    let plan = plan_scene(files, options);
     let described = files
         .iter()
         .zip(&plan.kinds)

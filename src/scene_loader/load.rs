@@ -1,9 +1,8 @@
 //! Loading a scene: plan, decoding, orientation check, corrections.
 
-use nalgebra::Vector3;
-
 use super::checks::check_and_correct;
 use super::decode::decode_all;
+use super::ground::plan_scene;
 use super::input::LoadOptions;
 use super::plan::Plan;
 use super::planned_view::PlannedView;
@@ -18,14 +17,14 @@ use crate::scene::{Scene, Survey, View};
 /// Reads a scene. The first refusal is returned; [`inspect_files`](super::inspect_files) lists them
 /// all.
 pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
-    let plan = Plan::new(files, options);
+    let plan = plan_scene(files, options);
     let refusal = plan.errors.into_iter().next();
     if let Some(error) = refusal.clone().filter(|_| !plan.is_implausible) {
         return Err(error);
     }
     let mut views = decode_all(files, &plan.views)?;
     let checked: Vec<CheckedView> = (plan.views.iter().zip(&views))
-        .map(|(planned, view)| checked_view(planned, view, plan.origin))
+        .map(|(planned, view)| planned.checked(view, plan.origin))
         .collect();
     let checked = check_and_correct(checked, refusal, options);
     if let (Some(error), false) = (plan.unless_agreed, options.ignore_check)
@@ -95,7 +94,7 @@ pub fn whole_views(files: &[InputFile], options: &LoadOptions) -> Result<Scene> 
         memory_mb: Some(u32::MAX),
         ..options.clone()
     };
-    let plan = Plan::new(files, &options);
+    let plan = Plan::new(files, &options, None);
     if let Some(error) = plan.errors.into_iter().next() {
         return Err(error);
     }
@@ -111,22 +110,4 @@ pub fn whole_views(files: &[InputFile], options: &LoadOptions) -> Result<Scene> 
         warnings: [plan.warnings, plan.placement_warnings].concat(),
         survey: plan.survey,
     })
-}
-
-/// What the orientation check needs of a view.
-fn checked_view<'a>(
-    planned: &PlannedView,
-    view: &'a View,
-    origin: Vector3<f64>,
-) -> CheckedView<'a> {
-    CheckedView {
-        name: &view.name,
-        camera: view.camera.clone(),
-        gray: &view.gray,
-        origin,
-        angles: planned.angles,
-        readings: planned.readings.clone(),
-        // The crop that the file states is that of the whole image.
-        crop: planned.crop.filter(|_| planned.part.is_none()),
-    }
 }

@@ -13,6 +13,7 @@
 //! memory             memory that a run takes
 //! inspect            the plan as a table
 //! decode             views: of large frames the parts only, distortion removed
+//! ground             the heights of a region that more views show than are used; the plan by them
 //! load               all of it
 //! ```
 //!
@@ -25,6 +26,7 @@ mod assignment;
 mod candidate;
 mod checks;
 mod decode;
+mod ground;
 mod input;
 mod inspect;
 mod load;

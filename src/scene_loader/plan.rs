@@ -49,6 +49,8 @@ pub(crate) struct Plan {
     pub placement_warnings: Vec<String>,
     /// Is the region of interest cut from the loaded scene, since the cameras may change before?
     pub is_cut_later: bool,
+    /// Do more views show the region of interest than are used?
+    pub is_chosen: bool,
     /// Refusals, the one to report first in front.
     pub errors: Vec<Error>,
     /// Do only the positions of the cameras give reason to refuse the scene? Then the images may
@@ -59,8 +61,13 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// Plans a scene; reasons to refuse it are collected in `errors`.
-    pub(crate) fn new(files: &[InputFile], options: &LoadOptions) -> Self {
+    /// Plans a scene whose ground lies between these heights, metres, local frame, or as far as the
+    /// cameras tell; reasons to refuse it are collected in `errors`.
+    pub(crate) fn new(
+        files: &[InputFile],
+        options: &LoadOptions,
+        ground: Option<[f64; 2]>,
+    ) -> Self {
         let mut plan = Self {
             kinds: files.iter().map(detect).collect(),
             images: Vec::new(),
@@ -73,6 +80,7 @@ impl Plan {
             warnings: Vec::new(),
             placement_warnings: Vec::new(),
             is_cut_later: false,
+            is_chosen: false,
             errors: Vec::new(),
             is_implausible: false,
             unless_agreed: None,
@@ -80,7 +88,7 @@ impl Plan {
         plan.find_images(files, options);
         if let Some(orientations) = plan.choose_orientation(files, options) {
             plan.match_orientations(files, orientations, options.views.is_some());
-            plan.form_views(files, options);
+            plan.form_views(files, options, ground);
         } else {
             let unreadable = plan.images.iter().filter_map(|i| i.unreadable.clone());
             plan.errors.splice(0..0, unreadable.collect::<Vec<_>>());
@@ -354,7 +362,7 @@ impl Plan {
     }
 
     /// Forms views in the local frame and checks them together.
-    fn form_views(&mut self, files: &[InputFile], options: &LoadOptions) {
+    fn form_views(&mut self, files: &[InputFile], options: &LoadOptions, ground: Option<[f64; 2]>) {
         let mut views = Vec::new();
         let mut scaled: BTreeMap<String, Vec<&str>> = BTreeMap::new();
         for image in &self.images {
@@ -421,10 +429,13 @@ impl Plan {
         };
         self.is_cut_later = options.apply_fix || is_undecided && whole_fits();
         let cut_now = !self.is_cut_later;
-        if let (Some(roi), Some(heights), true) = (options.roi, found.heights, cut_now) {
+        if let (Some(roi), Some(heights), true) = (options.roi, ground.or(found.heights), cut_now) {
             let roi = RegionOfInterest::new(roi, &self.origin, heights);
             match roi.and_then(|roi| roi.cut(files, &mut views, options.max_views)) {
-                Ok(warnings) => self.warnings.extend(warnings),
+                Ok(cut) => {
+                    self.warnings.extend(cut.warnings);
+                    self.is_chosen = cut.is_chosen;
+                }
                 Err(error) => self.errors.push(error),
             }
         }

@@ -1,12 +1,14 @@
 //! A view and its image before the pixels are decoded.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::checks::camera_checks;
 use crate::camera::{Camera, Distortion};
 use crate::error::{Error, Result};
 use crate::orientation::{AngleUnit, Crop, Orientation};
+use crate::orientation_check::CheckedView;
 use crate::raster::{ImageHeader, Turn};
+use crate::scene::View;
 
 /// An image and the orientation found for it.
 pub(crate) struct PlannedImage {
@@ -43,6 +45,20 @@ impl PlannedView {
             self.part
                 .unwrap_or([0, 0, self.whole.width, self.whole.height]);
         u64::from(width) * u64::from(height)
+    }
+
+    /// What the orientation check needs of the view that was decoded by this plan.
+    pub(crate) fn checked<'a>(&self, view: &'a View, origin: Vector3<f64>) -> CheckedView<'a> {
+        CheckedView {
+            name: &view.name,
+            camera: view.camera.clone(),
+            gray: &view.gray,
+            origin,
+            angles: self.angles,
+            readings: self.readings.clone(),
+            // The crop that the file states is that of the whole image.
+            crop: self.crop.filter(|_| self.part.is_none()),
+        }
     }
 
     /// The camera of the part that is used.

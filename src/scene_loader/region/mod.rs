@@ -34,6 +34,13 @@ const COMPARED_AT: u32 = 5;
 /// Smallest part that is kept, pixels along a side.
 const SMALLEST_PX: u32 = 64;
 
+/// What is said of the views that are not used.
+pub(crate) struct CutNotice {
+    /// Do more views show the region than are used?
+    pub is_chosen: bool,
+    pub warnings: Vec<String>,
+}
+
 /// A box in the local frame.
 #[derive(Debug)]
 pub(crate) struct RegionOfInterest {
@@ -64,7 +71,7 @@ impl RegionOfInterest {
         files: &[InputFile],
         views: &mut Vec<PlannedView>,
         most: Option<usize>,
-    ) -> Result<Vec<String>> {
+    ) -> Result<CutNotice> {
         let cameras: Vec<Camera> = views.iter().map(|v| v.whole.clone()).collect();
         let mut blind = Vec::new();
         views.retain_mut(|view| {
@@ -88,7 +95,10 @@ impl RegionOfInterest {
             ));
         }
         warnings.extend(notice_of_choice(showing, views.len()));
-        Ok(warnings)
+        Ok(CutNotice {
+            is_chosen: views.len() < showing,
+            warnings,
+        })
     }
 
     /// Indices of the cameras that say most about the region, in their order.
