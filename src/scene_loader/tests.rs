@@ -346,7 +346,7 @@ fn of_many_views_of_a_region_the_most_telling_ones_are_read() {
         };
         load_scene(&files, &options).unwrap()
     };
-    let said = |scene: &Scene| scene.warnings.join(" ").contains("views that say most");
+    let said = |scene: &Scene| scene.warnings.join(" ").contains("that say most");
     let given = Some(truth.ground_z);
     let (whole, chosen, measured) = (
         loaded(None, given),

@@ -1,25 +1,24 @@
 //! The views that say most about a region, where more show it than are wanted.
 //!
-//! A view measures a place across its rays, each of its pixels once more: of a piece of surface
-//! with normal n it has the information (Fisher)
+//! A view measures a place across its rays, each of its pixels once more: of a piece of level
+//! surface it has the information (Fisher)
 //!
 //! ```text
-//! cos(n, ray) / s^2  (I - r r^T)       r direction of the ray, s size of a pixel there, metres
+//! cos(zenith distance of the ray) / s^2  (I - r r^T)     r its direction, s size of a pixel there
 //! ```
 //!
 //! and views together the sum of theirs. The choice is greedy and D-optimal: the next view is the
-//! one that raises the sum of log det over roofs and the walls of all four sides most. A view that
-//! repeats another adds little, one across the first baselines or from the side much.
+//! one that raises the sum of log det over the region most. A view that repeats another adds
+//! little, one across the first baselines or from the side much.
 
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Matrix3, Point3};
 
 use crate::camera::Camera;
 use crate::math::ln;
 
-/// A piece of surface that the views are to measure.
+/// A piece of level surface that the views are to measure.
 struct Patch {
     place: Point3<f64>,
-    normal: Vector3<f64>,
     /// Of the views that are chosen, and before them: metres to the minus two.
     information: Matrix3<f64>,
 }
@@ -36,21 +35,11 @@ pub(crate) fn most_telling(
         return (0..cameras.len()).collect();
     }
     let before = Matrix3::identity() / (unknown_m * unknown_m);
-    let normals = [
-        Vector3::z(),
-        Vector3::x(),
-        -Vector3::x(),
-        Vector3::y(),
-        -Vector3::y(),
-    ];
-    let mut patches: Vec<Patch> = (places.iter())
-        .flat_map(|place| normals.map(|normal| (*place, normal)))
-        .map(|(place, normal)| Patch {
-            place,
-            normal,
-            information: before,
-        })
-        .collect();
+    let patch = |place: &Point3<f64>| Patch {
+        place: *place,
+        information: before,
+    };
+    let mut patches: Vec<Patch> = places.iter().map(patch).collect();
     let mut chosen = Vec::new();
     let mut waiting: Vec<usize> = (0..cameras.len()).collect();
     while chosen.len() < most {
@@ -87,13 +76,14 @@ fn information(camera: &Camera, patch: &Patch) -> Matrix3<f64> {
     }
     let ray = (camera.center - patch.place).normalize();
     let pixel_m = camera.ground_pixel(&patch.place);
-    let facing = patch.normal.dot(&ray).max(0.0);
+    let facing = ray.z.max(0.0);
     (Matrix3::identity() - ray * ray.transpose()) * (facing / (pixel_m * pixel_m))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Vector3;
 
     /// A camera of 400 x 400 pixels that looks down.
     fn nadir(x: f64, y: f64, z: f64) -> Camera {
