@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Runs cluster/Snakefile on a small block: killed on the way and resumed, it gives the bytes of undisturbed commands.
+"""Runs cluster/Snakefile on a small block. Each tile is killed when it is first tried, and once Snakemake with all its
+jobs; tried again with more memory, and resumed, it gives the bytes of undisturbed commands.
 
     python3 tests/cluster.py --binary target/debug/ridgeline [--snakemake "python3 -m snakemake"]
 
@@ -55,8 +56,15 @@ def main():
         subprocess.run([binary.parent / "examples" / "synthetic", folder], check=True)
         scene = folder / "l"
         parts, model = by_hand(binary, scene, folder / "by_hand")
-        config = [f"scene={scene}", f"tile={TILE_M}", f"options={OPTIONS}", f"ridgeline={binary}"]
-        command = [*engine, "-s", ROOT / "cluster/Snakefile", "-c2", "--quiet", "all", "--nolock", "--config", *config]
+        # Every tile is killed when it is first tried, as for want of memory.
+        program = folder / "ridgeline"
+        program.write_text(
+            f'#!/bin/bash\nif [ "$1" = tile ] && mkdir "{folder}/tried-$3" 2> /dev/null; then kill -9 $$; fi\n'
+            f'exec "{binary}" "$@"\n'
+        )
+        program.chmod(0o755)
+        config = [f"scene={scene}", f"tile={TILE_M}", f"options={OPTIONS}", f"ridgeline={program}"]
+        command = [*engine, "-s", ROOT / "cluster/Snakefile", "-c2", "--nolock", "--config", *config]
         work = folder / "work"
         work.mkdir()
         start = time.monotonic()
@@ -71,6 +79,10 @@ def main():
             engine_run.wait()
         if not was_running:
             sys.exit(f"Snakemake ended too soon:\n{(folder / 'log').read_text()}")
+        # The first try asked for the least, 200 MB, the second one for twice that.
+        first_log = (folder / "log").read_text()
+        if "mem_mb=200," not in first_log or "mem_mb=400," not in first_log:
+            sys.exit(f"no second try with more memory:\n{first_log}")
         command.insert(-len(config) - 1, "--rerun-incomplete")
         resumed = subprocess.run(command, cwd=work, capture_output=True, text=True)
         if resumed.returncode:
@@ -82,7 +94,7 @@ def main():
         # The two plans name their scene by the same path, so that the parts are the same, too.
         if differing:
             sys.exit(f"other bytes: {differing}")
-        print(f"Snakemake {found.stdout.strip()}, killed and resumed: {len(parts)} parts and {len(model)} files as by hand, "
+        print(f"Snakemake {found.stdout.strip()}, killed and resumed, every tile tried twice: {len(parts)} parts and {len(model)} files as by hand, "
               f"{time.monotonic() - start:.0f} s")
 
 

@@ -20,7 +20,7 @@ pub(super) enum Command {
     Check(Box<CheckArgs>),
     /// Compute the orientation of photographs that have none, as COLMAP's text model.
     Orient(Box<OrientArgs>),
-    /// Divide a large area into tiles for many processes or machines, without decoding an image.
+    /// Divide a large area into tiles, to be made by many processes or machines.
     Plan(Box<PlanArgs>),
     /// Make the part of one tile of a plan: a file in PLAN/parts.
     Tile(TileArgs),

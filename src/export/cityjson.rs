@@ -1,4 +1,5 @@
-//! CityJSON 2.0, as one file and as a sequence of features: one Building with an LoD 2.2 Solid per building of the model.
+//! CityJSON 2.0, as one file and as a sequence of features: one Building with an LoD 2.2 Solid per
+//! building of the model.
 //!
 //! Coordinates are those of the input's world frame, as whole numbers of 0.1 mm from the scene
 //! origin (coarser steps would bend planar roofs). The texture is the file [`ATLAS_FILE`] beside

@@ -3,7 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `model.city.json` | CityJSON 2.0, world frame of the input; names the atlas file |
-//! | `model.city.jsonl` | CityJSONSeq, a building a line (where parts of many processes are joined) |
+//! | `model.city.jsonl` | CityJSONSeq, a building a line (`tiles::BlockPlan` only) |
 //! | `model_atlas.jpg` | the texture atlas of `model.city.json` |
 //! | `model.glb` | glTF 2.0, Y up, near-origin coordinates, the atlas inside |
 //! | `model.obj`, `model.mtl` | triangles and the same atlas, world frame |

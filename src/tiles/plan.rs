@@ -88,8 +88,8 @@ impl BlockPlan {
     /// Name of a plan's file in its folder.
     pub const FILE: &str = "tiles.json";
 
-    /// Divides the region of interest into tiles of about `tile_m` metres; without a region the area
-    /// that three views show. No image is decoded.
+    /// Divides the region of interest into tiles of about `tile_m` metres; without a region the
+    /// area that three views show. No image is decoded.
     pub fn new(
         source: BlockSource,
         files: &[InputFile],
