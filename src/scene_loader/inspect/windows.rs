@@ -3,9 +3,9 @@
 use nalgebra::{Point2, Point3};
 use serde::{Deserialize, Serialize};
 
-use super::checks::camera_checks;
-use super::input::LoadOptions;
-use super::plan::Plan;
+use super::super::checks::camera_checks;
+use super::super::input::LoadOptions;
+use super::super::plan::Plan;
 use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::orientation::InputFile;
@@ -31,12 +31,13 @@ pub struct ViewWindow {
 }
 
 /// The views of the region of interest, and the memory that a run on them takes at its peak,
-/// megabytes.
+/// megabytes, as far as the cameras tell: a run that has to choose among many views over ground of
+/// unknown height measures that first, and may choose others.
 pub fn region_windows(
     files: &[InputFile],
     options: &LoadOptions,
 ) -> Result<(Vec<ViewWindow>, u64)> {
-    let plan = Plan::new(files, options);
+    let plan = Plan::new(files, options, None);
     if let (Some(error), false) = (plan.errors.into_iter().next(), plan.is_implausible) {
         return Err(error);
     }
@@ -56,7 +57,7 @@ pub fn shown_area(files: &[InputFile], options: &LoadOptions) -> Result<[f64; 4]
         memory_mb: Some(u32::MAX),
         ..options.clone()
     };
-    let plan = Plan::new(files, &whole);
+    let plan = Plan::new(files, &whole, None);
     if let Some(error) = plan.errors.into_iter().next() {
         return Err(error);
     }
