@@ -85,6 +85,7 @@ if [ "${1:-all}" = all ]; then
     step identical check finished identical
     # Named, so that the comparison with it is not skipped.
     export RIDGELINE=$PWD/target/debug/ridgeline
+    step cluster check "${PYTHON:-python3}" tests/cluster.py --binary target/debug/ridgeline
     step page playwright www test:e2e
 fi
 

@@ -20,6 +20,12 @@ pub(super) enum Command {
     Check(Box<CheckArgs>),
     /// Compute the orientation of photographs that have none, as COLMAP's text model.
     Orient(Box<OrientArgs>),
+    /// Divide a large area into tiles, to be made by many processes or machines.
+    Plan(Box<PlanArgs>),
+    /// Make the part of one tile of a plan: a file in PLAN/parts.
+    Tile(TileArgs),
+    /// Join the parts of all tiles of a plan into one model.
+    Join(JoinArgs),
     /// Print all parameters with their defaults, as JSON for --params.
     Params,
 }
@@ -132,6 +138,46 @@ pub(super) struct ReconstructArgs {
     /// SCENE takes.
     #[arg(long, value_name = "FILE.zip")]
     pub project: Option<PathBuf>,
+}
+
+/// The arguments of `plan`.
+#[derive(Args)]
+pub(super) struct PlanArgs {
+    #[command(flatten)]
+    pub input: InputArgs,
+    /// Size of a tile, metres, about; each is reconstructed with a margin of 30 m. Without --roi
+    /// the area is what three or more views show.
+    #[arg(long, value_name = "M", value_parser = parse_finite)]
+    pub tile: f64,
+    /// Folder for tiles.json and the parts; made if missing.
+    #[arg(long, value_name = "PLAN")]
+    pub out: PathBuf,
+    /// How roofs are found; by default as the parameters say: lines.
+    #[arg(long, value_enum)]
+    pub method: Option<MethodArgument>,
+}
+
+/// The arguments of `tile`.
+#[derive(Args)]
+pub(super) struct TileArgs {
+    /// Folder of a plan.
+    pub plan: PathBuf,
+    /// Number of the tile, from 1 to the number of tiles in PLAN/tiles.json.
+    #[arg(value_name = "K")]
+    pub tile: u32,
+    /// Number of threads; by default one per core. It never changes the result.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// The arguments of `join`.
+#[derive(Args)]
+pub(super) struct JoinArgs {
+    /// Folder of a plan whose parts are all made.
+    pub plan: PathBuf,
+    /// Folder for the results; made if missing.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -1,7 +1,7 @@
 //! Reading a scene's folder and writing the results.
 
 use std::fs;
-use std::io;
+use std::io::{self, Write as _};
 use std::path::Path;
 
 use ridgeline::orientation::InputFile;
@@ -75,6 +75,39 @@ pub(super) fn write_one(path: &Path, bytes: Vec<u8>) -> Result<(), Failure> {
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned());
     let name = name.ok_or_else(|| Failure::Input(format!("{}: names no file", path.display())))?;
     write_all(folder, &[(name, bytes)])
+}
+
+/// Writes a file so that it is there whole or not at all, also when the process is killed or the
+/// machine stops: under a temporary name of this process, to the disk, then renamed.
+pub(super) fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let failure = |e: io::Error| Failure::Output(format!("{}: cannot write: {e}", path.display()));
+    let folder = path.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(failure)?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let prefix = format!(".{name}.");
+    let temporary = folder.join(format!("{prefix}{}", std::process::id()));
+    let write = || {
+        let mut file = fs::File::create(&temporary)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        fs::rename(&temporary, path)
+    };
+    write().map_err(|e| {
+        // What cannot be removed was never written.
+        let _ = fs::remove_file(&temporary);
+        failure(e)
+    })?;
+    // The name is on the disk when the folder is; not every system lets folders be opened.
+    if let Ok(folder) = fs::File::open(folder) {
+        let _ = folder.sync_all();
+    }
+    // What killed processes have left of this file.
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if entry.file_name().to_string_lossy().starts_with(&prefix) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+    Ok(())
 }
 
 fn is_archive(path: &Path) -> bool {

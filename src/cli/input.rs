@@ -5,7 +5,7 @@ use std::path::Path;
 
 use ridgeline::orientation::InputFile;
 use ridgeline::params::Params;
-use ridgeline::scene_loader::{LoadOptions, open_project};
+use ridgeline::scene_loader::{LoadOptions, Project, open_project};
 
 use super::args::InputArgs;
 use super::failure::Failure;
@@ -32,19 +32,12 @@ pub(super) fn open(
     results: &Path,
 ) -> Result<OpenedScene, Failure> {
     set_threads(args.threads);
-    let (mut files, seen) = files::read_scene(&args.scene, results)?;
-    for notice in seen.notices() {
-        eprintln!("warning: {notice}");
-    }
-    let beside = args.orientation.as_deref().map(Path::new);
-    let beside = beside.filter(|path| path.is_dir() && !lies_in(path, &args.scene));
-    let beside = match beside {
-        Some(path) => Some(add_orientation(&mut files, path)?),
-        None => None,
-    };
-    let seen = format!("{} holds {seen}", args.scene.display());
-    let (files, project) = open_project(files).map_err(|e| refusal(&e, &seen))?;
-    let project = project.unwrap_or_default();
+    let ReadFiles {
+        files,
+        project,
+        beside,
+        seen,
+    } = read_files(&args.scene, args.orientation.as_deref(), results)?;
     let stated = project.options;
     let options = LoadOptions {
         orientation: beside
@@ -63,6 +56,43 @@ pub(super) fn open(
         files,
         options,
         params: with_switches(params.unwrap_or(project.params), args),
+        seen,
+    })
+}
+
+/// The files of a scene.
+pub(super) struct ReadFiles {
+    pub files: Vec<InputFile>,
+    /// What they say of a run, where they are those of a project.
+    project: Project,
+    /// Where the files of an orientation beside the scene were put.
+    beside: Option<String>,
+    /// Kinds and numbers of the files, in a sentence.
+    pub seen: String,
+}
+
+/// Reads a scene, and the orientation where that lies in another folder.
+pub(super) fn read_files(
+    scene: &Path,
+    orientation: Option<&str>,
+    results: &Path,
+) -> Result<ReadFiles, Failure> {
+    let (mut files, seen) = files::read_scene(scene, results)?;
+    for notice in seen.notices() {
+        eprintln!("warning: {notice}");
+    }
+    let beside = orientation.map(Path::new);
+    let beside = beside.filter(|path| path.is_dir() && !lies_in(path, scene));
+    let beside = match beside {
+        Some(path) => Some(add_orientation(&mut files, path)?),
+        None => None,
+    };
+    let seen = format!("{} holds {seen}", scene.display());
+    let (files, project) = open_project(files).map_err(|e| refusal(&e, &seen))?;
+    Ok(ReadFiles {
+        files,
+        project: project.unwrap_or_default(),
+        beside,
         seen,
     })
 }

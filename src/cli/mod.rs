@@ -7,6 +7,7 @@
 //! check           the orientation check alone
 //! orient          photographs alone: their orientation
 //! tiles, table    a region tile by tile; the summary of a run
+//! block           a large area on many machines: plan, tile, join
 //! reconstruct     the whole reconstruction
 //! ```
 //!
@@ -14,6 +15,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)] // The only place that writes to a terminal.
 
 mod args;
+mod block;
 mod check;
 mod failure;
 mod files;
@@ -36,6 +38,9 @@ use self::failure::Failure;
 pub fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Reconstruct(args) => reconstruct::reconstruct(&args),
+        Command::Plan(args) => block::plan(&args),
+        Command::Tile(args) => block::tile(&args),
+        Command::Join(args) => block::join(&args),
         Command::Check(args) => check::check(&args),
         Command::Orient(args) => orient::orient(&args),
         Command::Params => print_params(),

@@ -2,13 +2,13 @@
 //! calibration read why each of them lives or not.
 
 use nalgebra::{Point3, Vector3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Evidence;
 use crate::geometry::{Plane, Segment3, mean_point};
 
 /// The candidates of a run.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Candidates {
     /// Every matched line, by its views alone.
     pub lines: Vec<JudgedLine>,
@@ -23,7 +23,7 @@ pub struct Candidates {
 }
 
 /// A surface of which was weighed what it is.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JudgedSurface {
     /// The middles of its patches, metres, local frame.
     pub patches: Vec<Point3<f64>>,
@@ -34,7 +34,7 @@ pub struct JudgedSurface {
 }
 
 /// A line that was weighed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JudgedLine {
     /// End points, metres, local frame.
     pub segment: Segment3,
@@ -43,7 +43,7 @@ pub struct JudgedLine {
 }
 
 /// A facet that was weighed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct JudgedFacet {
     /// Its outline, metres, local frame.
@@ -62,7 +62,7 @@ pub struct JudgedFacet {
 }
 
 /// The correlation windows inside a facet, counted on its plane and on its plane moved up and down.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WindowCounts {
     /// On its plane.
     pub on: WindowHistogram,
@@ -71,9 +71,9 @@ pub struct WindowCounts {
 }
 
 /// Numbers of windows by texture weight and correlation.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WindowHistogram {
-    counts: [[u32; Self::CORRELATIONS]; Self::WEIGHTS_BELOW.len()],
+    counts: [[u32; WindowHistogram::CORRELATIONS]; WindowHistogram::WEIGHTS_BELOW.len()],
 }
 
 impl WindowHistogram {

@@ -27,7 +27,8 @@ pub(crate) use windows::WindowEvidenceTable;
 
 use std::sync::OnceLock;
 
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// What one feature of a candidate says.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -41,8 +42,32 @@ pub struct EvidenceTerm {
     pub nats: f64,
 }
 
+/// From bytes the name must be that of a feature of the tables.
+impl<'de> Deserialize<'de> for EvidenceTerm {
+    fn deserialize<D: Deserializer<'de>>(bytes: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        struct NamedTerm {
+            feature: String,
+            value: f64,
+            nats: f64,
+        }
+        let NamedTerm {
+            feature: name,
+            value,
+            nats,
+        } = NamedTerm::deserialize(bytes)?;
+        let feature = EvidenceModel::feature_called(&name)
+            .ok_or_else(|| D::Error::custom(format!("no feature is called {name}")))?;
+        Ok(Self {
+            feature,
+            value,
+            nats,
+        })
+    }
+}
+
 /// All that speaks for a candidate and against it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Evidence {
     /// Natural logarithm of the odds before anything was measured.
@@ -125,6 +150,20 @@ impl EvidenceModel {
     pub(crate) fn of_vegetation() -> &'static Self {
         static MODEL: OnceLock<EvidenceModel> = OnceLock::new();
         MODEL.get_or_init(|| Self::read(include_str!("vegetation.json")))
+    }
+
+    /// The name of a feature as the tables have it.
+    fn feature_called(name: &str) -> Option<&'static str> {
+        let models = [
+            Self::of_lines(),
+            Self::of_model_lines(),
+            Self::of_facets(),
+            Self::of_rectangles(),
+            Self::of_buildings(),
+            Self::of_vegetation(),
+        ];
+        let mut features = models.into_iter().flat_map(|model| &model.features);
+        features.find_map(|table| (table.name == name).then_some(&*table.name))
     }
 
     fn read(json: &str) -> Self {

@@ -1,4 +1,5 @@
-//! CityJSON 2.0: one Building with an LoD 2.2 Solid per building of the model.
+//! CityJSON 2.0, as one file and as a sequence of features: one Building with an LoD 2.2 Solid per
+//! building of the model.
 //!
 //! Coordinates are those of the input's world frame, as whole numbers of 0.1 mm from the scene
 //! origin (coarser steps would bend planar roofs). The texture is the file [`ATLAS_FILE`] beside
@@ -25,6 +26,41 @@ pub fn city_json(scene: &Scene, model: &RoofModel, textured: &TexturedModel) -> 
         let object = building_object(scene, model, building, textures, &mut shared);
         objects.insert(format!("building-{i}"), object);
     }
+    let mut file = head(scene, &shared.vertices);
+    file["CityObjects"] = Value::Object(objects);
+    file["vertices"] = json!(shared.vertices);
+    if !shared.vertices.is_empty() {
+        file["appearance"] = shared.appearance();
+    }
+    to_bytes(&file)
+}
+
+/// The model as a sequence of CityJSON features, one a line: first what they share, then each
+/// building with its own corners and texture coordinates. Programs read it building by building.
+pub fn city_json_seq(scene: &Scene, model: &RoofModel, textured: &TexturedModel) -> Vec<u8> {
+    let mut vertices = Vec::new();
+    let mut features = Vec::new();
+    for (i, (building, textures)) in model.buildings.iter().zip(&textured.faces).enumerate() {
+        let id = format!("building-{i}");
+        let mut own = Shared::default();
+        let object = building_object(scene, model, building, textures, &mut own);
+        features.push(json!({
+            "type": "CityJSONFeature",
+            "id": id,
+            "CityObjects": { id.as_str(): object },
+            "vertices": own.vertices,
+            "appearance": own.appearance(),
+        }));
+        vertices.append(&mut own.vertices);
+    }
+    let lines = std::iter::once(head(scene, &vertices)).chain(features);
+    lines
+        .flat_map(|line| [to_bytes(&line), b"\n".to_vec()].concat())
+        .collect()
+}
+
+/// A file without objects: version, transform and metadata. The vertices are those of all objects.
+fn head(scene: &Scene, vertices: &[[i64; 3]]) -> Value {
     let mut file = json!({
         "type": "CityJSON",
         "version": "2.0",
@@ -32,20 +68,12 @@ pub fn city_json(scene: &Scene, model: &RoofModel, textured: &TexturedModel) -> 
             "scale": [SCALE_M, SCALE_M, SCALE_M],
             "translate": scene.origin.as_slice(),
         },
-        "CityObjects": objects,
-        "vertices": shared.vertices,
+        "CityObjects": {},
+        "vertices": [],
     });
     let mut metadata = Map::new();
-    if !shared.vertices.is_empty() {
-        metadata.insert(
-            "geographicalExtent".into(),
-            json!(extent(scene, &shared.vertices)),
-        );
-        file["appearance"] = json!({
-            "default-theme-texture": THEME,
-            "textures": [{ "type": "JPG", "image": ATLAS_FILE, "wrapMode": "none" }],
-            "vertices-texture": shared.uv,
-        });
+    if !vertices.is_empty() {
+        metadata.insert("geographicalExtent".into(), json!(extent(scene, vertices)));
     }
     match scene.survey.epsg {
         Some(epsg) => {
@@ -64,14 +92,24 @@ pub fn city_json(scene: &Scene, model: &RoofModel, textured: &TexturedModel) -> 
     if !metadata.is_empty() {
         file["metadata"] = Value::Object(metadata);
     }
-    to_bytes(&file)
+    file
 }
 
-/// The lists that all buildings share.
+/// The lists that all buildings of a file or line share.
 #[derive(Default)]
 struct Shared {
     vertices: Vec<[i64; 3]>,
     uv: Vec<[f64; 2]>,
+}
+
+impl Shared {
+    fn appearance(&self) -> Value {
+        json!({
+            "default-theme-texture": THEME,
+            "textures": [{ "type": "JPG", "image": ATLAS_FILE, "wrapMode": "none" }],
+            "vertices-texture": self.uv,
+        })
+    }
 }
 
 fn building_object(

@@ -3,6 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `model.city.json` | CityJSON 2.0, world frame of the input; names the atlas file |
+//! | `model.city.jsonl` | CityJSONSeq, a building a line (`tiles::BlockPlan` only) |
 //! | `model_atlas.jpg` | the texture atlas of `model.city.json` |
 //! | `model.glb` | glTF 2.0, Y up, near-origin coordinates, the atlas inside |
 //! | `model.obj`, `model.mtl` | triangles and the same atlas, world frame |
@@ -26,7 +27,7 @@ mod mesh;
 mod plans;
 mod triangulate;
 
-pub use cityjson::city_json;
+pub use cityjson::{city_json, city_json_seq};
 pub use evidence::evidence_json;
 pub use format::{ATLAS_FILE, MATERIAL_FILE};
 pub use glb::glb;

@@ -1,7 +1,7 @@
 //! Facets, buildings and their closed solids.
 
 use nalgebra::{Point2, Point3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::uncertainty::FacetUncertainty;
 use crate::geometry::{Plane, bounds};
@@ -15,7 +15,7 @@ pub const WELD_M: f64 = 1e-3;
 ///
 /// Invariants: every ring is simple; the outer one runs counter-clockwise seen from above, holes
 /// clockwise; all corners lie in the plane within 1e-6 m; `plane.normal.z > 0`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Facet {
     /// The building that it covers.
@@ -65,7 +65,7 @@ impl Facet {
 }
 
 /// What a face of a solid is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Surface {
     /// A roof facet.
@@ -77,7 +77,7 @@ pub enum Surface {
 }
 
 /// A planar face of a solid; rings index into [`Solid::vertices`].
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolidFace {
     /// What it is.
     pub surface: Surface,
@@ -88,7 +88,7 @@ pub struct SolidFace {
 /// A closed polyhedron. Invariants: every edge of a ring is run through once in each direction by
 /// the rings of all faces together (closed, oriented 2-manifold); faces are planar within
 /// [`super::PLANAR_M`].
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Solid {
     /// Corners, metres, local frame.
     pub vertices: Vec<Point3<f64>>,
@@ -97,7 +97,7 @@ pub struct Solid {
 }
 
 /// A building: facets that touch in plan, closed by walls and a ground face.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Building {
     /// Its roof facets.
     pub facets: Vec<FacetId>,
@@ -108,7 +108,7 @@ pub struct Building {
 }
 
 /// The result of every method.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RoofModel {
     /// All facets of all buildings.
     pub facets: Vec<Facet>,

@@ -1,11 +1,11 @@
 //! How well the geometry of a model is known.
 
 use nalgebra::{Point3, Vector3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Standard deviations of a facet, from the adjustment of its building to the image edges of all
 /// views.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct FacetUncertainty {
     /// Of its height in its middle, metres.
@@ -17,7 +17,7 @@ pub struct FacetUncertainty {
 }
 
 /// Standard deviations of a corner.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct CornerUncertainty {
     /// The corner, metres, local frame.

@@ -11,7 +11,7 @@
 //! notices            what is said of images: bands and turns, formats that are not read
 //! region             part of each image that shows the region of interest
 //! memory             memory that a run takes
-//! inspect            the plan as a table
+//! inspect            the plan as a table; what is read of each view, the area that views show
 //! decode             views: of large frames the parts only, distortion removed
 //! ground             the heights of a region that more views show than are used; the plan by them
 //! load               all of it
@@ -43,7 +43,9 @@ mod tests;
 pub use archive::unpack;
 pub use candidate::OrientationCandidate;
 pub use input::LoadOptions;
-pub use inspect::{FileReport, ImageReport, Inspection, inspect_files};
+pub use inspect::{
+    FileReport, ImageReport, Inspection, ViewWindow, inspect_files, region_windows, shown_area,
+};
 pub use load::{load_scene, whole_views};
 #[cfg(target_arch = "wasm32")]
 pub(crate) use project::SHOWN;

@@ -28,7 +28,7 @@ mod patch;
 pub use ground::{GroundTexture, texture_ground};
 pub use paint::ViewOfFace;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use self::atlas::{Packing, pack};
 use self::exposure::exposures;
@@ -51,7 +51,7 @@ const NEUTRAL: [f32; 3] = [128.0; 3];
 const PLASTER: [f32; 3] = [205.0, 200.0, 190.0];
 
 /// The texture of one face of a solid.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FaceTexture {
     /// The view that most of the texture comes from; `None` for a face that no view shows, which
     /// has the mean colour of its kind.

@@ -5,10 +5,10 @@
 
 use std::sync::Arc;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::join::{TilePart, join};
+use super::join::{Joined, TilePart, join};
 use super::tile::{Tile, plan_tiles};
 use crate::error::{Error, Result};
 use crate::execution::Listener;
@@ -34,7 +34,7 @@ pub struct Area {
 }
 
 /// The outcome of a tile.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct TileReport {
     /// The part of the area that it is responsible for: x0, y0, x1, y1, metres.
@@ -51,24 +51,9 @@ impl Area {
         params: &Params,
         tile_m: f64,
     ) -> Result<Self> {
-        let error_of = |problem: &str, advice: &str| Error::Scene {
-            problem: problem.to_owned(),
-            advice: advice.to_owned(),
-        };
-        let area = options.roi.ok_or_else(|| {
-            error_of(
-                "tiles need to know the area",
-                "give the region of interest (--roi x0,y0,x1,y1)",
-            )
-        })?;
-        if options.apply_fix {
-            return Err(error_of(
-                "tiles take the orientation as it is",
-                "correct it first (without tiles, --apply-fix names the mistake)",
-            ));
-        }
+        let tiles = tiles_of(options, tile_m)?;
         Ok(Self {
-            tiles: plan_tiles(area, tile_m)?,
+            tiles,
             whole: whole_views(files, options)?,
             options: options.clone(),
             params: params.clone(),
@@ -92,26 +77,21 @@ impl Area {
     /// out. `progress` hears fractions of this tile's work.
     pub fn step(&mut self, files: &[InputFile], progress: &Listener) -> Option<&TileReport> {
         let tile = *self.tiles.get(self.reports.len())?;
-        let options = LoadOptions {
-            roi: Some(tile.region),
-            ..self.options.clone()
-        };
-        let outcome = match load_scene(files, &options) {
-            Ok(scene) => {
-                let part = part(scene, &self.params, &tile, &self.whole, progress);
-                let outcome = counted(part.model.buildings.len(), "buildings");
-                self.parts.push(part);
-                outcome
-            }
+        let (report, part) = work_off(
+            files,
+            &self.options,
+            &self.params,
+            &tile,
+            &self.whole,
+            progress,
+        );
+        match part {
+            Ok(part) => self.parts.push(part),
             Err(error) => {
-                let outcome = error.to_string();
                 self.first_error.get_or_insert(error);
-                outcome
             }
-        };
-        progress(1.0);
-        let core = tile.core;
-        self.reports.push(TileReport { core, outcome });
+        }
+        self.reports.push(report);
         self.reports.last()
     }
 
@@ -122,22 +102,76 @@ impl Area {
             return Err(error);
         }
         let joined = join(self.whole, &self.parts);
-        let mut files = joined.files(&self.params.texture);
-        let report = json!({
-            "version": env!("CARGO_PKG_VERSION"),
-            "origin": joined.scene.origin.as_slice(),
-            "coordinates": joined.scene.survey.describe(),
-            "buildings": joined.model.buildings.len(),
-            "facets": joined.model.facets.len(),
-            "tiles": self.reports,
-            "seconds": seconds,
-            "warnings": joined.scene.warnings,
-            "params": self.params,
-        });
-        let report = serde_json::to_vec_pretty(&report).expect("a report has string keys only");
-        files.push(("report.json".to_owned(), report));
-        Ok(files)
+        Ok(model_files(&joined, &self.params, &self.reports, seconds))
     }
+}
+
+/// The tiles of the region of interest; refused where the options do not go with tiles.
+pub(super) fn tiles_of(options: &LoadOptions, tile_m: f64) -> Result<Vec<Tile>> {
+    let error_of = |problem: &str, advice: &str| Error::Scene {
+        problem: problem.to_owned(),
+        advice: advice.to_owned(),
+    };
+    let area = options.roi.ok_or_else(|| {
+        error_of(
+            "tiles need to know the area",
+            "give the region of interest (--roi x0,y0,x1,y1)",
+        )
+    })?;
+    if options.apply_fix {
+        return Err(error_of(
+            "tiles take the orientation as it is",
+            "correct it first (without tiles, --apply-fix names the mistake)",
+        ));
+    }
+    plan_tiles(area, tile_m)
+}
+
+/// Works off a tile; the part is an error where the views do not show the tile.
+pub(super) fn work_off(
+    files: &[InputFile],
+    options: &LoadOptions,
+    params: &Params,
+    tile: &Tile,
+    whole: &Scene,
+    progress: &Listener,
+) -> (TileReport, Result<TilePart>) {
+    let options = LoadOptions {
+        roi: Some(tile.region),
+        ..options.clone()
+    };
+    let part = load_scene(files, &options).map(|scene| part(scene, params, tile, whole, progress));
+    let outcome = match &part {
+        Ok(part) => counted(part.model.buildings.len(), "buildings"),
+        Err(error) => error.to_string(),
+    };
+    progress(1.0);
+    let core = tile.core;
+    (TileReport { core, outcome }, part)
+}
+
+/// The files of the model of all tiles, with a report.
+pub(super) fn model_files(
+    joined: &Joined,
+    params: &Params,
+    reports: &[TileReport],
+    seconds: &[f64],
+) -> Vec<(String, Vec<u8>)> {
+    let mut files = joined.files(&params.texture);
+    let report = json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "origin": joined.scene.origin.as_slice(),
+        "coordinates": joined.scene.survey.describe(),
+        "buildings": joined.model.buildings.len(),
+        "facets": joined.model.facets.len(),
+        "tiles": reports,
+        "seconds": seconds,
+        "warnings": joined.scene.warnings,
+        "params": params,
+    });
+    let report = serde_json::to_vec_pretty(&report).expect("a report has string keys only");
+    files.push(("report.json".to_owned(), report));
+    files
 }
 
 /// What one tile shows.

@@ -4,7 +4,9 @@ use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;
 use nalgebra::{Point3, Vector2, Vector3};
+use serde::{Deserialize, Serialize};
 
+use super::fields;
 use super::model_parts::{append, middle, moved, moved_plane};
 use super::tile::Tile;
 use crate::evidence::Candidates;
@@ -24,7 +26,7 @@ use crate::texture::TexturedModel;
 const SAME_BUILDING: f64 = 0.2;
 
 /// What was found in a tile.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct TilePart {
     /// The tile.
     pub tile: Tile,
@@ -40,10 +42,12 @@ pub struct TilePart {
     /// Half-planes at these.
     pub half_planes: Vec<HalfPlane>,
     /// The lines and facets that were weighed.
+    #[serde(with = "fields::candidates")]
     pub candidates: Candidates,
     /// The buildings that it may be responsible for.
     pub model: RoofModel,
     /// Their textures.
+    #[serde(with = "fields::textured")]
     pub textured: TexturedModel,
 }
 

@@ -5,6 +5,9 @@
 //! model_parts  buildings of a model in another model and frame
 //! join         one model: each building once, ids renumbered, whole images, one atlas
 //! area         one tile after the other
+//! fields       what the bytes of a part hold beyond what its types write by themselves
+//! part_file    a part as a file: whose it is, and whether it is whole
+//! plan         the tiles of a block as a file, for many machines
 //! ```
 //!
 //! Invariant: a building is reconstructed whole in the tile that holds its middle, as long as it
@@ -13,12 +16,16 @@
 //! their eaves.
 
 mod area;
+mod fields;
 #[cfg(test)]
 mod fixture;
 mod join;
 mod model_parts;
+mod part_file;
+mod plan;
 mod tile;
 
 pub use area::{Area, TileReport};
 pub use join::{Joined, TilePart, join};
+pub use plan::{BlockPlan, BlockSource, InputStamp, PlannedTile};
 pub use tile::{MARGIN_M, Tile, plan_tiles};

@@ -1,7 +1,7 @@
 //! Tiles: cores that cover an area without gap or overlap, and regions with a margin around them.
 
 use nalgebra::{Point2, Vector3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::model_parts::{middle, subset};
 use crate::error::{Error, Result};
@@ -19,7 +19,7 @@ const SLACK_M: f64 = 3.0;
 const MOST_TILES: f64 = 100_000.0;
 
 /// A part of the area: x0, y0, x1, y1 in metres, world frame of the input.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tile {
     /// What the tile is responsible for.
     pub core: [f64; 4],

@@ -1,4 +1,9 @@
 //! What was recognised among the files, as a table for the user before anything is computed.
+//! `windows` has what is read of each view, and the area that views show.
+
+mod windows;
+
+pub use windows::{ViewWindow, region_windows, shown_area};
 
 use serde::Serialize;
 

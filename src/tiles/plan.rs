@@ -1,0 +1,333 @@
+//! The tiles of a block as a file, so that many processes, on as many computers as there are, make
+//! one part each, and one joins them.
+//!
+//! The plan names every input file with its length and sum, so that a part made from anything else
+//! is refused by the file's name; a part names the plan by the sum of the plan's file.
+//!
+//! Invariant: the same plan and inputs give the same bytes of a part, and all parts the model that
+//! [`Area`](super::Area) makes in one process.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::area::{model_files, tiles_of, work_off};
+use super::join::{Joined, join};
+use super::part_file::{PartKey, TileOutcome};
+use super::tile::Tile;
+use crate::error::{Error, Result};
+use crate::execution::Listener;
+use crate::export::city_json_seq;
+use crate::orientation::InputFile;
+use crate::params::Params;
+use crate::scene_loader::{LoadOptions, ViewWindow, region_windows, shown_area, whole_views};
+
+/// Where the files of a block came from, as it was stated: to find them again.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BlockSource {
+    /// The folder or archive.
+    pub scene: String,
+    /// The orientation that was chosen, or the folder beside the scene that holds it.
+    pub orientation: Option<String>,
+}
+
+/// An input file as it was when the plan was made.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InputStamp {
+    /// Its path in the scene.
+    pub file: String,
+    /// Its length.
+    pub bytes: u64,
+    /// CRC-32 of its bytes. It tells accidents, not forgers; every change within 32 neighbouring
+    /// bits is found, of others all but one in four thousand million.
+    pub crc32: u32,
+}
+
+/// A tile of a plan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlannedTile {
+    /// Its number, from 1.
+    pub tile: u32,
+    /// What it is responsible for: x0, y0, x1, y1, metres, world frame of the input.
+    pub core: [f64; 4],
+    /// What it looks at.
+    pub region: [f64; 4],
+    /// Memory that it takes at its peak, about, megabytes.
+    pub memory_mb: u64,
+    /// The views that it reads, and which part of each; none where it is left out.
+    pub views: Vec<ViewWindow>,
+    /// Why it is left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<String>,
+}
+
+/// A block divided into tiles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BlockPlan {
+    /// Version of the program that made it.
+    pub ridgeline: String,
+    /// Where the files came from.
+    pub source: BlockSource,
+    /// Size of a tile as it was asked for, metres.
+    pub tile_m: f64,
+    /// Options of loading, with the region of interest.
+    pub options: LoadOptions,
+    /// Parameters of the stages.
+    pub params: Params,
+    /// The input files.
+    pub inputs: Vec<InputStamp>,
+    /// The tiles.
+    pub tiles: Vec<PlannedTile>,
+}
+
+impl BlockPlan {
+    /// Name of a plan's file in its folder.
+    pub const FILE: &str = "tiles.json";
+
+    /// Divides the region of interest into tiles of about `tile_m` metres; without a region the
+    /// area that three views show. No image is decoded.
+    pub fn new(
+        source: BlockSource,
+        files: &[InputFile],
+        options: &LoadOptions,
+        params: &Params,
+        tile_m: f64,
+    ) -> Result<Self> {
+        let mut options = options.clone();
+        let roi = options
+            .roi
+            .map_or_else(|| shown_area(files, &options), Ok)?;
+        options.roi = Some(roi);
+        let tiles = tiles_of(&options, tile_m)?;
+        whole_views(files, &options)?;
+        let planned = crate::execution::map(&tiles, |i, tile| planned(files, &options, i, tile));
+        Ok(Self {
+            ridgeline: env!("CARGO_PKG_VERSION").to_owned(),
+            source,
+            tile_m,
+            options,
+            params: params.clone(),
+            inputs: files.iter().map(stamp).collect(),
+            tiles: planned,
+        })
+    }
+
+    /// The plan as a file.
+    pub fn to_json(&self) -> Result<Vec<u8>> {
+        let mut text = serde_json::to_vec_pretty(self).expect("a plan has string keys only");
+        text.push(b'\n');
+        // What is read is what counts, and long decimal fractions may be read otherwise in their
+        // last bit.
+        match Self::from_json(&text) {
+            Ok(back) if back == *self => Ok(text),
+            _ => Err(Error::Scene {
+                problem: "the plan does not come back from its file as it was".to_owned(),
+                advice: "round the numbers of the region of interest and of the parameters to \
+                         fifteen digits"
+                    .to_owned(),
+            }),
+        }
+    }
+
+    /// A plan from its file.
+    pub fn from_json(text: &[u8]) -> Result<Self> {
+        let refuse = |problem: String, advice: &str| Error::File {
+            file: Self::FILE.to_owned(),
+            problem,
+            advice: advice.to_owned(),
+        };
+        let plan: Self = serde_json::from_slice(text).map_err(|e| {
+            refuse(
+                format!("the plan cannot be read: {e}"),
+                "make it again (ridgeline plan)",
+            )
+        })?;
+        if plan.ridgeline != env!("CARGO_PKG_VERSION") {
+            return Err(refuse(
+                format!(
+                    "the plan is of ridgeline {}, this is {}",
+                    plan.ridgeline,
+                    env!("CARGO_PKG_VERSION")
+                ),
+                "use the same version for all steps, or make the plan again",
+            ));
+        }
+        Ok(plan)
+    }
+
+    /// Path of the part of a tile below the plan's folder; refused where there is no such tile.
+    pub fn part_path(&self, tile: u32) -> Result<String> {
+        self.planned(tile)?;
+        Ok(PartKey { plan: 0, tile }.path())
+    }
+
+    /// The outcome of a tile in words, where these bytes are its part of this plan, whole.
+    pub fn outcome_of(&self, text: &[u8], tile: u32, part: &[u8]) -> Option<String> {
+        let outcome = key(text, tile).unpack(part).ok()?;
+        Some(outcome.report.outcome)
+    }
+
+    /// Works off a tile: its part as a file, and the outcome in words. `text` is the plan's file.
+    pub fn work_off(
+        &self,
+        text: &[u8],
+        tile: u32,
+        files: Vec<InputFile>,
+        progress: &Listener,
+    ) -> Result<(Vec<u8>, String)> {
+        let planned = self.planned(tile)?;
+        let files = self.unchanged(files)?;
+        let whole = whole_views(&files, &self.options)?;
+        let place = Tile {
+            core: planned.core,
+            region: planned.region,
+        };
+        let (options, params) = (&self.options, &self.params);
+        let (report, part) = work_off(&files, options, params, &place, &whole, progress);
+        let words = report.outcome.clone();
+        let outcome = TileOutcome {
+            report,
+            part: part.ok(),
+        };
+        Ok((key(text, tile).pack(&outcome), words))
+    }
+
+    /// One model of all parts, as files. `part` has the bytes of a tile's part, if there is one;
+    /// missing, damaged and foreign ones are refused by name.
+    pub fn join(
+        &self,
+        text: &[u8],
+        files: Vec<InputFile>,
+        part: impl Fn(u32) -> Option<Vec<u8>>,
+    ) -> Result<Vec<(String, Vec<u8>)>> {
+        let bytes: Vec<Option<Vec<u8>>> = self.tiles.iter().map(|t| part(t.tile)).collect();
+        let missing: Vec<u32> = (self.tiles.iter().zip(&bytes))
+            .filter(|(_, bytes)| bytes.is_none())
+            .map(|(planned, _)| planned.tile)
+            .collect();
+        if let Some(first) = missing.first() {
+            return Err(missing_parts(&missing, *first));
+        }
+        let files = self.unchanged(files)?;
+        let whole = whole_views(&files, &self.options)?;
+        let mut reports = Vec::new();
+        let mut parts = Vec::new();
+        for (planned, bytes) in self.tiles.iter().zip(bytes.iter().flatten()) {
+            let outcome = key(text, planned.tile).unpack(bytes)?;
+            reports.push(outcome.report);
+            parts.extend(outcome.part);
+        }
+        if let (true, Some(first)) = (parts.is_empty(), reports.first()) {
+            return Err(Error::Scene {
+                problem: format!("no tile could be read; the first one: {}", first.outcome),
+                advice: "plan again with another region, other views or another orientation"
+                    .to_owned(),
+            });
+        }
+        let joined = join(whole, &parts);
+        let mut files = model_files(&joined, &self.params, &reports, &[]);
+        let Joined {
+            scene,
+            model,
+            textured,
+            ..
+        } = &joined;
+        let features = city_json_seq(scene, model, textured);
+        files.push(("model.city.jsonl".to_owned(), features));
+        Ok(files)
+    }
+
+    fn planned(&self, tile: u32) -> Result<&PlannedTile> {
+        let found = self.tiles.iter().find(|planned| planned.tile == tile);
+        found.ok_or_else(|| Error::Scene {
+            problem: format!("the plan has no tile {tile}"),
+            advice: format!("choose one from 1 to {}", self.tiles.len()),
+        })
+    }
+
+    /// The files of the plan among these; refused by name where one is missing or has changed. What
+    /// has come since is left out: results, for example.
+    fn unchanged(&self, files: Vec<InputFile>) -> Result<Vec<InputFile>> {
+        let mut files: BTreeMap<String, InputFile> = (files.into_iter())
+            .map(|file| (file.path.clone(), file))
+            .collect();
+        let mut same = |planned: &InputStamp| {
+            let refuse = |problem: &str| Error::File {
+                file: planned.file.clone(),
+                problem: problem.to_owned(),
+                advice: "put back what the plan was made from, or plan again (ridgeline plan)"
+                    .to_owned(),
+            };
+            let found = files.remove(&planned.file);
+            let file =
+                found.ok_or_else(|| refuse("the file is missing since the plan was made"))?;
+            match stamp(&file) == *planned {
+                true => Ok(file),
+                false => Err(refuse("the file has changed since the plan was made")),
+            }
+        };
+        self.inputs.iter().map(&mut same).collect()
+    }
+}
+
+fn stamp(file: &InputFile) -> InputStamp {
+    InputStamp {
+        file: file.path.clone(),
+        bytes: file.bytes.len() as u64,
+        crc32: crc32fast::hash(&file.bytes),
+    }
+}
+
+fn key(plan: &[u8], tile: u32) -> PartKey {
+    let plan = crc32fast::hash(plan);
+    PartKey { plan, tile }
+}
+
+fn planned(files: &[InputFile], options: &LoadOptions, index: usize, tile: &Tile) -> PlannedTile {
+    let options = LoadOptions {
+        roi: Some(tile.region),
+        ..options.clone()
+    };
+    let (views, memory_mb, left_out) = match region_windows(files, &options) {
+        Ok((views, memory_mb)) => (views, memory_mb, None),
+        Err(error) => (Vec::new(), 0, Some(error.to_string())),
+    };
+    PlannedTile {
+        tile: u32::try_from(index + 1).expect("fewer than 2^32 tiles"),
+        core: tile.core,
+        region: tile.region,
+        memory_mb,
+        views,
+        left_out,
+    }
+}
+
+/// The refusal of parts that are not there.
+fn missing_parts(missing: &[u32], first: u32) -> Error {
+    const MOST_NAMED: usize = 10;
+    let path = |tile: &u32| {
+        PartKey {
+            plan: 0,
+            tile: *tile,
+        }
+        .path()
+    };
+    let mut names: Vec<String> = missing.iter().take(MOST_NAMED).map(path).collect();
+    if missing.len() > MOST_NAMED {
+        names.push(format!("and {} more", missing.len() - MOST_NAMED));
+    }
+    let are = if missing.len() == 1 {
+        "the part is"
+    } else {
+        "the parts are"
+    };
+    Error::File {
+        file: names.join(", "),
+        problem: format!("{are} missing"),
+        advice: format!("make what is missing (ridgeline tile PLAN {first})"),
+    }
+}
