@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use common::{synthetic_files, zipped};
+use common::{names_in, synthetic_files, zipped};
 
 /// What a run writes.
 const OUTPUTS: [&str; 14] = [
@@ -111,15 +111,6 @@ impl Scene {
         let written = self.out().is_dir().then(|| names_in(&self.out()));
         assert_eq!(written.unwrap_or_default(), [""; 0]);
     }
-}
-
-fn names_in(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<_> = entries
-        .map(|e| e.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
 
 #[test]

@@ -2,12 +2,15 @@
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
 use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Output};
 
+use common::{contents_of, names_in};
 use nalgebra::{Point3, Vector3};
 use ridgeline::Scene;
 
@@ -66,15 +69,6 @@ fn run<'a>(arguments: impl IntoIterator<Item = &'a OsStr>) -> Output {
     command.args(arguments).output().unwrap()
 }
 
-fn names_in(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<_> = entries
-        .map(|e| e.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
-}
-
 #[test]
 fn photographs_alone_are_oriented_into_a_folder_that_is_read_on() {
     let photographs = Photographs::new();
@@ -97,20 +91,14 @@ fn photographs_alone_are_oriented_into_a_folder_that_is_read_on() {
         "points3D.txt",
     ];
     assert_eq!(names_in(&photographs.out()), expected);
-    let files = names_in(&photographs.out())
-        .into_iter()
-        .map(|name| fs::read(photographs.out().join(name)).unwrap());
-    let first: Vec<Vec<u8>> = files.collect();
+    let first = contents_of(&photographs.out());
     assert!(
         photographs
             .orient(&["--features", "800", "--focal", "216", "--threads", "1"])
             .status
             .success()
     );
-    let again = names_in(&photographs.out())
-        .into_iter()
-        .map(|name| fs::read(photographs.out().join(name)).unwrap());
-    assert_eq!(again.collect::<Vec<_>>(), first);
+    assert_eq!(contents_of(&photographs.out()), first);
     let output = photographs.check();
     let printed = String::from_utf8_lossy(&output.stdout);
     assert!(
@@ -182,16 +170,10 @@ fn control_points_give_the_map_and_a_wrong_one_is_named() {
     assert_eq!(warnings.count(), 1, "{printed}");
     // Beside the photographs, under the name that OpenDroneMap gives it, it says the same, and is
     // no orientation by itself.
-    let with_option: Vec<Vec<u8>> = (names_in(&photographs.out()).iter())
-        .map(|name| fs::read(photographs.out().join(name)).unwrap())
-        .collect();
+    let with_option = contents_of(&photographs.out());
     fs::write(photographs.photos().join("gcp_list.txt"), &text).unwrap();
     assert!(photographs.orient(&options).status.success());
-    let beside = names_in(&photographs.out());
-    let beside = beside
-        .iter()
-        .map(|name| fs::read(photographs.out().join(name)).unwrap());
-    assert_eq!(beside.collect::<Vec<_>>(), with_option);
+    assert_eq!(contents_of(&photographs.out()), with_option);
     let output = photographs.check();
     let printed = String::from_utf8_lossy(&output.stdout);
     assert!(

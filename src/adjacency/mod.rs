@@ -62,10 +62,7 @@ pub fn corner_planes(
     let Some(middle) = lines.get(lines.len() / 2).map(|l| l.at(0.5)) else {
         return Default::default();
     };
-    let mut pixels: Vec<f64> = (scene.views.iter())
-        .map(|v| v.camera.ground_pixel(&middle))
-        .collect();
-    let pixel = crate::math::median(&mut pixels).unwrap_or(FINEST_STEP);
+    let pixel = scene.median_ground_pixel(&middle).unwrap_or(FINEST_STEP);
     let graphs = crate::execution::map(segments, |v, segments| {
         corners::image_graph(&scene.views[v], segments, END_M / pixel)
     });

@@ -6,11 +6,9 @@ use proptest::prelude::*;
 use super::*;
 use crate::geometry::{Plane, Segment2};
 use crate::lines2d::SegmentKind;
-use crate::planes::rendered_planes::{TexturedPlane, scene};
+use crate::planes::rendered_planes::{PITCH, RIDGE_Z, level_ground, scene, slope_from, textured};
 use crate::testing::{line, uniform};
 
-const RIDGE_Z: f64 = 6.0;
-const PITCH: f64 = 0.7;
 /// Half the length and half the depth of the roof, half the length of its ridge, metres.
 const HALF: [f64; 3] = [6.0, 4.0, 2.0];
 /// Mean distance of an end from its corner, pixels.
@@ -18,8 +16,7 @@ const GAP_PX: f64 = 3.0;
 
 /// The slope that falls along a direction.
 fn slope(x: f64, y: f64) -> Plane {
-    let at = Point3::new(HALF[2] * x, 0.0, RIDGE_Z);
-    Plane::from_point_normal(&at, &Vector3::new(x * PITCH, y * PITCH, 1.0)).unwrap()
+    slope_from([HALF[2] * x, 0.0], [x, y])
 }
 
 fn is_roof(x: f64, y: f64) -> bool {
@@ -33,15 +30,6 @@ fn is_end(x: f64, y: f64) -> bool {
 
 /// Four slopes on level ground.
 fn hip() -> Scene {
-    let textured = |plane, exists| TexturedPlane {
-        plane,
-        exists,
-        texture: 0.3,
-    };
-    let ground = Plane {
-        normal: Vector3::z(),
-        d: 0.0,
-    };
     scene(&[
         textured(slope(0.0, 1.0), |x, y| {
             is_roof(x, y) && !is_end(x, y) && y >= 0.0
@@ -55,7 +43,7 @@ fn hip() -> Scene {
         textured(slope(-1.0, 0.0), |x, y| {
             is_roof(x, y) && is_end(x, y) && x < 0.0
         }),
-        textured(ground, |_, _| true),
+        level_ground(),
     ])
 }
 

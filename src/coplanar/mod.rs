@@ -139,10 +139,7 @@ pub fn coplanar_sets(
     let Some(middle) = lines.get(lines.len() / 2).map(|l| l.at(0.5)) else {
         return Default::default();
     };
-    let mut pixels: Vec<f64> = (scene.views.iter())
-        .map(|v| v.camera.ground_pixel(&middle))
-        .collect();
-    let pixel = crate::math::median(&mut pixels).unwrap_or(FINEST_STEP);
+    let pixel = scene.median_ground_pixel(&middle).unwrap_or(FINEST_STEP);
     let step = pixel.max(FINEST_STEP);
     let reduced = scene.reduced(((step / pixel).round() as usize).max(1));
     let images = ImageEvidence::new(scene, &reduced, step, segments, roof);

@@ -11,17 +11,14 @@ use super::*;
 use crate::geometry::{Segment2, Segment3};
 use crate::lines2d::{GuidedEdge, SegmentKind};
 use crate::lines3d::{LineSupport, SupportKind};
-use crate::planes::rendered_planes::{TexturedPlane, scene};
+use crate::planes::rendered_planes::{PITCH, RIDGE_Z, level_ground, scene, slope_from, textured};
 use crate::testing::{line, uniform};
 
-const RIDGE_Z: f64 = 6.0;
-const PITCH: f64 = 0.7;
 /// Half the length and half the depth of the roof, metres.
 const HALF: [f64; 2] = [6.0, 4.0];
 
 fn slope(to_the_north: f64) -> Plane {
-    let normal = Vector3::new(0.0, to_the_north * PITCH, 1.0);
-    Plane::from_point_normal(&Point3::new(0.0, 0.0, RIDGE_Z), &normal).unwrap()
+    slope_from([0.0, 0.0], [0.0, to_the_north])
 }
 
 fn at(x: f64, y: f64) -> Point3<f64> {
@@ -30,15 +27,6 @@ fn at(x: f64, y: f64) -> Point3<f64> {
 
 /// Two slopes on level ground.
 fn gable() -> Scene {
-    let textured = |plane, exists| TexturedPlane {
-        plane,
-        exists,
-        texture: 0.3,
-    };
-    let ground = Plane {
-        normal: Vector3::z(),
-        d: 0.0,
-    };
     scene(&[
         textured(slope(1.0), |x, y| {
             x.abs() < HALF[0] && (0.0..HALF[1]).contains(&y)
@@ -46,7 +34,7 @@ fn gable() -> Scene {
         textured(slope(-1.0), |x, y| {
             x.abs() < HALF[0] && (-HALF[1]..0.0).contains(&y)
         }),
-        textured(ground, |_, _| true),
+        level_ground(),
     ])
 }
 

@@ -213,35 +213,22 @@ fn least_rectangle(points: &[Point2<f64>], margin: f64, plane: &Plane) -> [Point
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::planes::rendered_planes::{TexturedPlane, scene};
+    use crate::planes::rendered_planes::{RIDGE_Z, level_ground, scene, slope_from, textured};
     use crate::testing::line;
     use nalgebra::Vector3;
 
-    const RIDGE_Z: f64 = 6.0;
-    const PITCH: f64 = 0.7;
-
     fn slope(to_the_north: f64) -> Plane {
-        let normal = Vector3::new(0.0, to_the_north * PITCH, 1.0);
-        Plane::from_point_normal(&Point3::new(0.0, 0.0, RIDGE_Z), &normal).unwrap()
+        slope_from([0.0, 0.0], [0.0, to_the_north])
     }
 
     /// The planes of a gable roof of 14 m by 10 m on level ground.
     fn found() -> (Vec<DensePlane>, DenseTrace) {
-        let textured = |plane, exists| TexturedPlane {
-            plane,
-            exists,
-            texture: 0.3,
-        };
-        let ground = Plane {
-            normal: Vector3::z(),
-            d: 0.0,
-        };
         let views = scene(&[
             textured(slope(1.0), |x, y| x.abs() < 7.0 && (0.0..5.0).contains(&y)),
             textured(slope(-1.0), |x, y| {
                 x.abs() < 7.0 && (-5.0..0.0).contains(&y)
             }),
-            textured(ground, |_, _| true),
+            level_ground(),
         ]);
         let ridge = line(
             Point3::new(-7.0, 0.0, RIDGE_Z),

@@ -15,6 +15,35 @@ pub(crate) struct TexturedPlane {
     pub texture: f64,
 }
 
+/// A part of a plane with the texture of a roof.
+pub(crate) fn textured(plane: Plane, exists: fn(f64, f64) -> bool) -> TexturedPlane {
+    TexturedPlane {
+        plane,
+        exists,
+        texture: 0.3,
+    }
+}
+
+/// Level ground at the height 0.
+pub(crate) fn level_ground() -> TexturedPlane {
+    let plane = Plane {
+        normal: Vector3::z(),
+        d: 0.0,
+    };
+    textured(plane, |_, _| true)
+}
+
+/// Height of the top of the roofs of tests, metres, and the descent of their slopes.
+pub(crate) const RIDGE_Z: f64 = 6.0;
+pub(crate) const PITCH: f64 = 0.7;
+
+/// A slope through a place at the height of the ridge, which falls along this direction in plan.
+pub(crate) fn slope_from(top: [f64; 2], falls_along: [f64; 2]) -> Plane {
+    let [x, y] = falls_along;
+    let top = Point3::new(top[0], top[1], RIDGE_Z);
+    Plane::from_point_normal(&top, &Vector3::new(x * PITCH, y * PITCH, 1.0)).unwrap()
+}
+
 /// Four views, 250 x 250 px of 0.1 m, in two strips flown in opposite directions.
 pub(crate) fn scene(surfaces: &[TexturedPlane]) -> Scene {
     let stations = [

@@ -6,7 +6,7 @@ mod survey;
 pub(crate) use excess_green::excess_green;
 pub use survey::{Survey, ViewAdjustment, ViewShift};
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 
 use crate::camera::Camera;
 use crate::ids::ViewId;
@@ -105,6 +105,13 @@ impl Scene {
             warnings: Vec::new(),
             survey: Survey::default(),
         }
+    }
+
+    /// Median over the views of the size of a pixel at a place, metres; `None` without views.
+    pub(crate) fn median_ground_pixel(&self, place: &Point3<f64>) -> Option<f64> {
+        let of_view = |v: &View| v.camera.ground_pixel(place);
+        let mut pixels: Vec<f64> = self.views.iter().map(of_view).collect();
+        crate::math::median(&mut pixels)
     }
 
     /// All view ids in order.

@@ -4,7 +4,9 @@
 pub mod golden;
 pub mod scenes;
 
+use std::fs;
 use std::io::Write as _;
+use std::path::Path;
 
 pub use scenes::SIZE_PX;
 
@@ -12,6 +14,23 @@ pub use scenes::SIZE_PX;
 pub fn synthetic_files() -> Vec<(String, Vec<u8>)> {
     let (scene, _) = ridgeline::synthetic::l_scene(SIZE_PX);
     ridgeline::synthetic::to_files(&scene)
+}
+
+/// The names in a folder, in order.
+pub fn names_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.expect("it stays as it is").file_name())
+        .map(|name| name.into_string().expect("names are UTF-8"))
+        .collect();
+    names.sort();
+    names
+}
+
+/// The bytes of all files of a folder, in the order of their names.
+pub fn contents_of(folder: &Path) -> Vec<Vec<u8>> {
+    let read = |name: &String| fs::read(folder.join(name)).expect("a file");
+    names_in(folder).iter().map(read).collect()
 }
 
 /// These files as an archive.
