@@ -248,10 +248,9 @@ fn bad_arguments_are_explained() {
         &["--project", "no/such/folder/a.zip"],
         &["no/such/folder/a.zip", "cannot be written"],
     );
-    scene.is_refused(&["--tile", "50"], &["--roi"]);
     scene.is_refused(
         &["--tile", "5", "--roi", "-10,-10,10,10"],
-        &["tiles of 30 m or more"],
+        &["tiles of 60 m or more"],
     );
     let params = scene.0.path().join("params.json");
     fs::write(&params, r#"{"sweep": {"min_simularity": 0.5}}"#).unwrap();
@@ -503,7 +502,7 @@ fn earlier_results_within_the_scene_are_not_part_of_it() {
 #[test]
 fn tiles_give_the_model_of_the_whole() {
     let scene = Scene::new();
-    let output = scene.run(&["--roi", "-31,-31,31,31", "--tile", "31", "--ground-z", "0"]);
+    let output = scene.run(&["--roi", "-31,-31,31,31", "--tile", "60", "--ground-z", "0"]);
     let printed = String::from_utf8_lossy(&output.stdout);
     assert!(
         output.status.success(),

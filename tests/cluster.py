@@ -18,8 +18,8 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 # Two tiles of the planted house, and one that nothing shows.
-OPTIONS = "--roi=-31,-31,170,31 --ground-z 0"
-TILE_M = "67"
+OPTIONS = "--roi=-31,-31,200,31 --ground-z 0"
+TILE_M = "120"
 
 
 def files_in(folder):

@@ -15,9 +15,9 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-/// Four tiles from west to east: the house stands in the first, the second sees a part of it, the
-/// others see nothing.
-const AREA: [&str; 4] = ["--roi", "-31,-31,200,31", "--ground-z", "0"];
+/// Four tiles of four squares, from west to east: the house stands where the squares of the first
+/// one meet, the others see nothing of it.
+const AREA: [&str; 4] = ["--roi", "-31,-31,310,31", "--ground-z", "0"];
 const TILES: u32 = 4;
 
 fn ridgeline() -> Command {
@@ -41,7 +41,7 @@ impl Block {
             fs::create_dir_all(path.parent().unwrap()).unwrap();
             fs::write(path, bytes).unwrap();
         }
-        let output = block.plan("62", &block.folder());
+        let output = block.plan("120", &block.folder());
         assert!(output.status.success(), "{}", words(&output));
         block
     }
@@ -169,11 +169,14 @@ fn report(bytes: &[u8]) -> Value {
 #[test]
 fn parts_of_many_processes_are_the_model_of_one() {
     let block = Block::planned();
-    let mut command = block.command();
-    command.args(["reconstruct", "scene", "--tile", "62", "--out", "whole"]);
-    let output = command.args(AREA).output().unwrap();
-    assert!(output.status.success(), "{}", words(&output));
-    let mut whole = files_in(&block.0.path().join("whole"));
+    let whole_of = |tile_m: &str| {
+        let mut command = block.command();
+        command.args(["reconstruct", "scene", "--tile", tile_m, "--out", tile_m]);
+        let output = command.args(AREA).output().unwrap();
+        assert!(output.status.success(), "{}", words(&output));
+        files_in(&block.0.path().join(tile_m))
+    };
+    let mut whole = whole_of("120");
     let mut joined = reference().model.clone();
     joined.remove("model.city.jsonl").unwrap();
     let [one, other] = [&mut whole, &mut joined].map(|f| report(&f.remove("report.json").unwrap()));
@@ -183,6 +186,11 @@ fn parts_of_many_processes_are_the_model_of_one() {
     for (name, bytes) in &whole {
         assert!(bytes == &joined[name], "{name} differs");
     }
+    // The model does not depend on the tiles.
+    let mut other = whole_of("60");
+    let report = report(&other.remove("report.json").unwrap());
+    assert!(report["tiles"].as_array().unwrap().len() > 4);
+    assert!(whole == other, "{:?}", other.keys());
 }
 
 #[test]
@@ -190,9 +198,9 @@ fn a_plan_says_what_each_tile_reads() {
     let plan: Value = serde_json::from_slice(&reference().plan).unwrap();
     let tiles = plan["tiles"].as_array().unwrap();
     assert_eq!(tiles.len(), TILES as usize);
-    let house = &tiles[0];
-    assert_eq!(house["core"][0], -31.0);
-    assert_eq!(house["region"][0], -61.0);
+    let house = &tiles[0]["cells"][0];
+    assert_eq!(house["place"]["core"][0], -31.0);
+    assert_eq!(house["place"]["region"][0], -90.0);
     let views = house["views"].as_array().unwrap();
     assert!(views.len() >= 3 && house["memory_mb"].as_u64().unwrap() > 20);
     let (width, name) = (&views[0]["window"][2], &views[0]["view"]);
@@ -201,7 +209,7 @@ fn a_plan_says_what_each_tile_reads() {
     let path = format!("images/{}", name.as_str().unwrap());
     assert!(inputs.iter().any(|input| input["file"] == path), "{path}");
     // The views do not show the last tile: it says so, and its part is there nevertheless.
-    let last = &tiles[3];
+    let last = &tiles[3]["cells"][0];
     assert!(last["left_out"].as_str().unwrap().contains("is seen by"));
     assert!(reference().parts[3].len() < 1000);
 }
@@ -210,7 +218,7 @@ fn a_plan_says_what_each_tile_reads() {
 fn without_a_region_the_area_is_what_three_views_show() {
     let block = Block::planned();
     let mut command = block.command();
-    command.args(["plan", "scene", "--tile", "50", "--out", "all"]);
+    command.args(["plan", "scene", "--tile", "60", "--out", "all"]);
     let output = command.output().unwrap();
     assert!(output.status.success(), "{}", words(&output));
     let text = fs::read(block.0.path().join("all/tiles.json")).unwrap();
@@ -229,7 +237,7 @@ fn the_same_inputs_give_the_same_bytes() {
     let time = || fs::metadata(&path).unwrap().modified().unwrap();
     let before = time();
     sleep(Duration::from_millis(20));
-    assert!(block.plan("62", &block.folder()).status.success());
+    assert!(block.plan("120", &block.folder()).status.success());
     assert_eq!(time(), before);
     let mut command = block.tile_command(1);
     assert!(command.args(["--threads", "1"]).status().unwrap().success());
@@ -303,7 +311,7 @@ fn missing_truncated_and_foreign_parts_are_refused_by_name() {
     fs::write(block.part(2), two).unwrap();
     // The third tile is empty in another plan, too.
     let other = Block::planned();
-    assert!(other.plan("63", &other.folder()).status.success());
+    assert!(other.plan("121", &other.folder()).status.success());
     assert!(other.tile(3).status.success());
     let foreign = fs::read(other.part(3)).unwrap();
     assert!(foreign.len() == three.len() && foreign != *three);

@@ -48,6 +48,10 @@ pub(super) struct InputArgs {
     /// Use at most so many views of that part, those that say most about it (12 if not given).
     #[arg(long, value_name = "N", requires = "roi", value_parser = clap::value_parser!(u16).range(3..))]
     pub max_views: Option<u16>,
+    /// Reduce photographs by this whole factor first; by default large ones as long as their pixels
+    /// stay finer than 5 cm on the ground. 1 uses them in full.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64))]
+    pub reduce: Option<u16>,
     /// Reference system of the orientation's world, as EPSG:25832; it is named in the results.
     #[arg(long, value_name = "EPSG:N", value_parser = parse_crs)]
     pub crs: Option<u32>,
@@ -130,8 +134,9 @@ pub(super) struct ReconstructArgs {
     /// How roofs are found; by default as the parameters say: lines.
     #[arg(long, value_enum)]
     pub method: Option<MethodArgument>,
-    /// Reconstruct the region in overlapping tiles of about this size, metres, one after the other,
-    /// into one model.
+    /// Reconstruct the region in tiles of about this size, metres (60 or more), one after the other,
+    /// into one model; without --roi the area that three or more views show. A whole flight of more
+    /// than 12 views goes this way by itself.
     #[arg(long, value_name = "M", value_parser = parse_finite, conflicts_with = "project")]
     pub tile: Option<f64>,
     /// Write a project file too: images, orientation, parameters and results in one .zip, which
@@ -145,8 +150,8 @@ pub(super) struct ReconstructArgs {
 pub(super) struct PlanArgs {
     #[command(flatten)]
     pub input: InputArgs,
-    /// Size of a tile, metres, about; each is reconstructed with a margin of 30 m. Without --roi
-    /// the area is what three or more views show.
+    /// Size of a tile, metres (60 or more), about: how much one process does. The model does not
+    /// depend on it. Without --roi the area is what three or more views show.
     #[arg(long, value_name = "M", value_parser = parse_finite)]
     pub tile: f64,
     /// Folder for tiles.json and the parts; made if missing.

@@ -38,7 +38,7 @@ pub(super) fn plan(args: &PlanArgs) -> Result<(), Failure> {
     if fs::read(&path).ok().as_deref() != Some(&text) {
         files::write_durably(&path, &text)?;
     }
-    let shown = plan.tiles.iter().filter(|t| t.left_out.is_none()).count();
+    let shown = plan.tiles.iter().filter(|t| t.memory_mb > 0).count();
     let most = plan.tiles.iter().map(|t| t.memory_mb).max().unwrap_or(0);
     println!(
         "{} tiles, {shown} that the views show, at most {most} MB of memory each",

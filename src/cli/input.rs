@@ -46,6 +46,7 @@ pub(super) fn open(
         views: args.views.clone().or(stated.views),
         roi: args.roi.or(stated.roi),
         max_views: args.max_views.map(usize::from).or(stated.max_views),
+        reduce: args.reduce.map(u32::from).or(stated.reduce),
         ground_z: args.ground_z.or(stated.ground_z),
         epsg: args.crs.or(stated.epsg),
         memory_mb: args.memory.or(stated.memory_mb),

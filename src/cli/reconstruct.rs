@@ -9,7 +9,8 @@ use ridgeline::agreement::Finding;
 use ridgeline::execution::progress::Listener;
 use ridgeline::pipeline::{Run, Stage, counted};
 use ridgeline::scene::Scene;
-use ridgeline::scene_loader::{Project, inspect_files, load_scene};
+use ridgeline::scene_loader::{MOST_VIEWS, Project, inspect_files, load_scene, settled};
+use ridgeline::tiles::CELL_M;
 
 use super::args::ReconstructArgs;
 use super::failure::Failure;
@@ -39,7 +40,12 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
     if let Some(tile_m) = args.tile {
         return tiles::reconstruct_tiles(&input, &options, &params, tile_m, &args.out, &seen);
     }
+    let options = settled(&input, &options);
     let inspection = inspect_files(&input, &options);
+    let is_flight = options.roi.is_none() && inspection.views > MOST_VIEWS;
+    if is_flight && !options.apply_fix && args.project.is_none() {
+        return tiles::reconstruct_tiles(&input, &options, &params, CELL_M, &args.out, &seen);
+    }
     if inspection.errors.is_empty() {
         println!(
             "{}, about {} MB of memory",

@@ -26,6 +26,7 @@ pub(super) fn reconstruct_tiles(
     let mut area = Area::plan(input, options, params, tile_m).map_err(refuse)?;
     eprintln!("{seen}");
     let count = area.tiles().len();
+    println!("{}", area.in_words());
     let mut seconds = Vec::new();
     loop {
         let start = Instant::now();
@@ -34,14 +35,25 @@ pub(super) fn reconstruct_tiles(
         };
         let time = start.elapsed().as_secs_f64();
         seconds.push(time);
+        let done = seconds.len();
+        let left = seconds.iter().sum::<f64>() / done as f64 * (count - done) as f64;
         println!(
-            "tile {} of {count}: {} ({time:.1} s)",
-            seconds.len(),
-            tile.outcome
+            "tile {done} of {count}: {} ({time:.1} s{})",
+            tile.outcome,
+            left_in_words(left)
         );
     }
     let written = area.finish(&seconds).map_err(refuse)?;
     files::write_all(out, &written)?;
     println!("written to {}", out.display());
     Ok(())
+}
+
+/// How long a run still takes, about.
+fn left_in_words(seconds: f64) -> String {
+    match (seconds / 60.0).ceil() {
+        minutes if minutes <= 0.0 => String::new(),
+        minutes if minutes <= 1.0 => "; less than a minute left".to_owned(),
+        minutes => format!("; about {minutes:.0} minutes left"),
+    }
 }

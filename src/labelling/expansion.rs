@@ -132,12 +132,12 @@ const BLOCKED: f64 = 1e6;
 
 /// Which cells a plane may cover, and which edges a cell has.
 struct CellGraph {
-    /// The cells of each plane, ascending, with what it costs there.
+    /// The cells that each plane may cover at all, ascending, with what it costs there.
     cells_of_plane: Vec<Vec<(usize, f64)>>,
     /// The planes' cells and the cells beside them: where a change concerns the plane.
-    surroundings_of_plane: Vec<Vec<usize>>,
+    surroundings_of_plane: Vec<Vec<u32>>,
     /// All cells, and the same with what no plane costs there.
-    all: Vec<usize>,
+    all: Vec<u32>,
     cells_of_no_plane: Vec<(usize, f64)>,
     edges_of_cell: Vec<Vec<usize>>,
     /// The most that a cell's borders can cost.
@@ -146,39 +146,46 @@ struct CellGraph {
 
 impl CellGraph {
     fn new<B: PairwiseCosts>(energy: &Energy<B>, planes: u32) -> Self {
-        let mut cells_of_plane = vec![Vec::new(); planes as usize];
-        for (cell, candidates) in energy.unary.iter().enumerate() {
-            for (plane, cost) in candidates {
-                cells_of_plane[*plane as usize].push((cell, *cost));
-            }
-        }
         let mut edges_of_cell = vec![Vec::new(); energy.unary.len()];
         for (i, e) in energy.edges.iter().enumerate() {
             edges_of_cell[e[0]].push(i);
             edges_of_cell[e[1]].push(i);
         }
-        let surroundings_of_plane = cells_of_plane
-            .iter()
-            .map(|cells| {
-                let beside = cells
-                    .iter()
-                    .flat_map(|&(c, _)| &edges_of_cell[c])
-                    .flat_map(|&e| energy.edges[e]);
-                let own = cells.iter().map(|c| c.0);
-                let mut around: Vec<usize> = own.chain(beside).collect();
-                around.sort_unstable();
-                around.dedup();
-                around
-            })
+        let bound = |edges: &Vec<usize>| edges.iter().map(|&e| energy.borders.upper_bound(e)).sum();
+        let border_bound: Vec<f64> = edges_of_cell.iter().map(bound).collect();
+        // Where a plane costs more than all borders of the cell, no plane is always better.
+        let may_cover = |cell: usize, cost: f64| cost <= border_bound[cell];
+        let mut cells_of_plane = vec![Vec::new(); planes as usize];
+        for (cell, candidates) in energy.unary.iter().enumerate() {
+            for &(plane, cost) in candidates.iter().filter(|c| may_cover(cell, c.1)) {
+                cells_of_plane[plane as usize].push((cell, cost));
+            }
+        }
+        // Cells and those beside them, each once: a plane of a large region has many.
+        let mut listed_for = vec![NO_PLANE; energy.unary.len()];
+        let mut surroundings = |plane: usize, cells: &[(usize, f64)]| {
+            let beside =
+                (cells.iter().flat_map(|&(c, _)| &edges_of_cell[c])).flat_map(|&e| energy.edges[e]);
+            let own = cells.iter().map(|c| c.0);
+            let mut around = Vec::with_capacity(cells.len());
+            for cell in own.chain(beside) {
+                if listed_for[cell] != plane as u32 {
+                    listed_for[cell] = plane as u32;
+                    around.push(cell as u32);
+                }
+            }
+            around.shrink_to_fit();
+            around
+        };
+        let surroundings_of_plane = (cells_of_plane.iter().enumerate())
+            .map(|(plane, cells)| surroundings(plane, cells))
             .collect();
         Self {
             cells_of_plane,
             surroundings_of_plane,
-            all: (0..energy.unary.len()).collect(),
+            all: (0..energy.unary.len() as u32).collect(),
             cells_of_no_plane: (0..energy.unary.len()).map(|c| (c, 0.0)).collect(),
-            border_bound: (edges_of_cell.iter())
-                .map(|edges| edges.iter().map(|&e| energy.borders.upper_bound(e)).sum())
-                .collect(),
+            border_bound,
             edges_of_cell,
         }
     }
@@ -198,7 +205,7 @@ impl CellGraph {
         }
     }
 
-    fn surroundings_of(&self, plane: u32) -> &[usize] {
+    fn surroundings_of(&self, plane: u32) -> &[u32] {
         self.surroundings_of_plane
             .get(plane as usize)
             .unwrap_or(&self.all)
@@ -230,7 +237,7 @@ impl ExpansionHistory {
         graph
             .surroundings_of(plane)
             .iter()
-            .any(|&c| self.changed[c] > last)
+            .any(|&c| self.changed[c as usize] > last)
     }
 
     fn changed(&mut self, cells: &[usize]) {

@@ -11,7 +11,7 @@ use crate::scene::View;
 /// Decodes all views, at the same time where that does not take much more memory.
 pub(crate) fn decode_all(files: &[InputFile], planned: &[PlannedView]) -> Result<Vec<View>> {
     const MOST_PIXELS: u64 = 100_000_000;
-    let whole = |v: &PlannedView| u64::from(v.whole.width) * u64::from(v.whole.height);
+    let whole = |v: &PlannedView| v.size.map(u64::from).iter().product::<u64>();
     if planned.iter().map(whole).sum::<u64>() <= MOST_PIXELS {
         let views = crate::execution::map(planned, |_, view| decode(&files[view.file], view));
         views.into_iter().collect()
@@ -32,11 +32,13 @@ fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
         Some(lens) => region::source_of(part, whole, lens),
         None => part,
     };
+    let unreduced = source.map(|pixels| pixels * planned.reduction);
+    let [full_width, full_height] = planned.size;
     let stored = match planned.turn {
-        Some(turn) => turn.stored_window(source, [whole.height, whole.width]),
-        None => source,
+        Some(turn) => turn.stored_window(unreduced, [full_height, full_width]),
+        None => unreduced,
     };
-    let mut photograph = match source == all {
+    let mut photograph = match unreduced == [0, 0, full_width, full_height] {
         true => load_image(&file.path, &file.bytes)?,
         false => load_window(&file.path, &file.bytes, stored)?,
     };
@@ -49,6 +51,9 @@ fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
     }
     if let Some(turn) = planned.turn {
         photograph = turn.apply(&photograph);
+    }
+    if planned.reduction > 1 {
+        photograph = photograph.reduced(planned.reduction);
     }
     let [column, row, width, height] = part;
     if let Some(lens) = &planned.distortion {

@@ -19,6 +19,9 @@ pub struct LoadOptions {
     pub ground_z: Option<f64>,
     /// EPSG code of the world's reference system; the files' own when absent.
     pub epsg: Option<u32>,
+    /// Photographs are reduced by this whole factor; as far as roofs allow when absent (see
+    /// [`load_scene`](super::load_scene)).
+    pub reduce: Option<u32>,
     /// Memory that may be taken, megabytes; 1500 in the browser and 32768 elsewhere when absent.
     pub memory_mb: Option<u32>,
     /// Correct the error in the orientation that the images reveal, instead of refusing the scene.

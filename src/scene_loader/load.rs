@@ -2,9 +2,8 @@
 
 use super::checks::check_and_correct;
 use super::decode::decode_all;
-use super::ground::plan_scene;
+use super::ground::{plan_scene, settled, whole_plan};
 use super::input::LoadOptions;
-use super::plan::Plan;
 use super::planned_view::PlannedView;
 use super::region;
 use crate::agreement::{AgreementReport, Finding};
@@ -89,12 +88,7 @@ fn agrees(report: &AgreementReport) -> bool {
 /// The views as whole images, without their pixels: names, cameras and reference system. Region of
 /// interest and memory limit are ignored.
 pub fn whole_views(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
-    let options = LoadOptions {
-        roi: None,
-        memory_mb: Some(u32::MAX),
-        ..options.clone()
-    };
-    let plan = Plan::new(files, &options, None);
+    let plan = whole_plan(files, &settled(files, options));
     if let Some(error) = plan.errors.into_iter().next() {
         return Err(error);
     }

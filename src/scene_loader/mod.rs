@@ -42,11 +42,13 @@ mod tests;
 
 pub use archive::unpack;
 pub use candidate::OrientationCandidate;
+pub use ground::settled;
 pub use input::LoadOptions;
 pub use inspect::{
-    FileReport, ImageReport, Inspection, ViewWindow, inspect_files, region_windows, shown_area,
+    FileReport, ImageReport, Inspection, ShownArea, ViewWindow, inspect_files, region_windows,
 };
 pub use load::{load_scene, whole_views};
 #[cfg(target_arch = "wasm32")]
 pub(crate) use project::SHOWN;
 pub use project::{Project, open_project};
+pub use region::MOST_VIEWS;

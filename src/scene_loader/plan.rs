@@ -385,7 +385,10 @@ impl Plan {
                 None => planned_view(path, image.file, header, orientation),
             };
             match view {
-                Ok(view) => views.push(view),
+                Ok(mut view) => {
+                    view.reduce(options.reduce.unwrap_or(1));
+                    views.push(view);
+                }
                 Err(error) => self.errors.push(error),
             }
         }
@@ -407,6 +410,7 @@ impl Plan {
             return;
         }
         self.warnings.extend(notice_of_fisheyes(&views));
+        self.warnings.extend(notice_of_reduction(options));
         self.origin = camera_checks::scene_origin(views.iter().map(|v| &v.whole));
         for view in &mut views {
             view.whole.center -= self.origin;
@@ -445,6 +449,21 @@ impl Plan {
         self.errors.extend(too_large);
         self.views = views;
     }
+}
+
+/// By how much photographs are reduced.
+fn notice_of_reduction(options: &LoadOptions) -> Option<String> {
+    let factor = options.reduce.filter(|&factor| factor > 1)?;
+    Some(format!(
+        "photographs are used at {} of their width and height, as fine as roofs need (--reduce 1 \
+         uses them in full)",
+        match factor {
+            2 => "half".to_owned(),
+            3 => "a third".to_owned(),
+            4 => "a quarter".to_owned(),
+            more => format!("1/{more}"),
+        }
+    ))
 }
 
 /// What part of fisheye photographs is used.

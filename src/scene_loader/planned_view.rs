@@ -20,10 +20,15 @@ pub(crate) struct PlannedImage {
 }
 
 /// A view before its pixels are decoded.
+#[derive(Clone)]
 pub(crate) struct PlannedView {
     pub file: usize,
     /// The name that it goes by: that of the file, with folders where names repeat.
     pub name: String,
+    /// Width and height of the whole image as it is, turned.
+    pub size: [u32; 2],
+    /// By what whole factor it is reduced; all that follows is in the pixels of the reduced image.
+    pub reduction: u32,
     /// Camera of the whole image, local frame.
     pub whole: Camera,
     pub distortion: Option<Distortion>,
@@ -57,8 +62,19 @@ impl PlannedView {
             angles: self.angles,
             readings: self.readings.clone(),
             // The crop that the file states is that of the whole image.
-            crop: self.crop.filter(|_| self.part.is_none()),
+            crop: (self.crop).filter(|_| self.part.is_none() && self.reduction == 1),
         }
+    }
+
+    /// The view of an image that is reduced by a whole factor more. Rows and columns that are left
+    /// over are dropped; the corner of the image is that of its first pixel, so that coordinates
+    /// are divided.
+    pub(crate) fn reduce(&mut self, factor: u32) {
+        self.reduction *= factor;
+        let divide = Vector3::new(1.0 / f64::from(factor), 1.0 / f64::from(factor), 1.0);
+        self.whole.k = Matrix3::from_diagonal(&divide) * self.whole.k;
+        self.whole.width = self.size[0] / self.reduction;
+        self.whole.height = self.size[1] / self.reduction;
     }
 
     /// The camera of the part that is used.
@@ -142,6 +158,8 @@ pub(super) fn planned_view(
     Ok(PlannedView {
         file,
         name: String::new(),
+        size: [width, height],
+        reduction: 1,
         whole: camera,
         distortion,
         angles: orientation.angles,

@@ -1,6 +1,6 @@
 //! A large area, worked off tile by tile: the command line and the page both go this way.
 //!
-//! Only one tile is in memory at a time, beside what earlier ones found: its views are read anew
+//! Only one cell is in memory at a time, beside what earlier ones found: its views are read anew
 //! from the files.
 
 use std::sync::Arc;
@@ -8,8 +8,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::join::{Joined, TilePart, join};
-use super::tile::{Tile, plan_tiles};
+use super::join::{CellPart, Joined, join};
+use super::tile::{Cell, Tile, plan_tiles};
 use crate::error::{Error, Result};
 use crate::execution::Listener;
 use crate::ids::ViewId;
@@ -18,7 +18,7 @@ use crate::orientation::InputFile;
 use crate::params::{Method, Params};
 use crate::pipeline::{Run, Stage, counted};
 use crate::scene::{Scene, View};
-use crate::scene_loader::{LoadOptions, load_scene, whole_views};
+use crate::scene_loader::{LoadOptions, ShownArea, load_scene, settled, whole_views};
 use crate::texture::texture_model;
 
 /// An area, its tiles, and what those that are done have found.
@@ -28,7 +28,7 @@ pub struct Area {
     options: LoadOptions,
     params: Params,
     tiles: Vec<Tile>,
-    parts: Vec<TilePart>,
+    parts: Vec<CellPart>,
     reports: Vec<TileReport>,
     first_error: Option<Error>,
 }
@@ -44,18 +44,19 @@ pub struct TileReport {
 }
 
 impl Area {
-    /// Divides the region of interest into tiles of about `tile_m` metres.
+    /// Divides the region of interest into tiles of about `tile_m` metres; without a region the area
+    /// that three views show.
     pub fn plan(
         files: &[InputFile],
         options: &LoadOptions,
         params: &Params,
         tile_m: f64,
     ) -> Result<Self> {
-        let tiles = tiles_of(options, tile_m)?;
+        let (options, tiles) = tiles_of(files, options, tile_m)?;
         Ok(Self {
             tiles,
-            whole: whole_views(files, options)?,
-            options: options.clone(),
+            whole: whole_views(files, &options)?,
+            options,
             params: params.clone(),
             parts: Vec::new(),
             reports: Vec::new(),
@@ -68,6 +69,18 @@ impl Area {
         &self.tiles
     }
 
+    /// Views, area and tiles, in a sentence.
+    pub fn in_words(&self) -> String {
+        let [x0, y0, x1, y1] = self.options.roi.expect("an area has one");
+        format!(
+            "{}; area {x0:.0},{y0:.0},{x1:.0},{y1:.0} ({:.0} x {:.0} m) in {}",
+            counted(self.whole.views.len(), "views"),
+            x1 - x0,
+            y1 - y0,
+            counted(self.tiles.len(), "tiles")
+        )
+    }
+
     /// The reports of the tiles that are done.
     pub fn reports(&self) -> &[TileReport] {
         &self.reports
@@ -76,22 +89,14 @@ impl Area {
     /// Works off the next tile; `None` when all are done. A tile that the views do not show is left
     /// out. `progress` hears fractions of this tile's work.
     pub fn step(&mut self, files: &[InputFile], progress: &Listener) -> Option<&TileReport> {
-        let tile = *self.tiles.get(self.reports.len())?;
-        let (report, part) = work_off(
-            files,
-            &self.options,
-            &self.params,
-            &tile,
-            &self.whole,
-            progress,
-        );
-        match part {
-            Ok(part) => self.parts.push(part),
-            Err(error) => {
-                self.first_error.get_or_insert(error);
-            }
+        let tile = self.tiles.get(self.reports.len())?;
+        let (options, params, whole) = (&self.options, &self.params, &self.whole);
+        let worked = work_off(files, options, params, tile, whole, progress);
+        self.parts.extend(worked.parts);
+        if let Some(error) = worked.first_error {
+            self.first_error.get_or_insert(error);
         }
-        self.reports.push(report);
+        self.reports.push(worked.report);
         self.reports.last()
     }
 
@@ -101,33 +106,48 @@ impl Area {
         if let (true, Some(error)) = (self.parts.is_empty(), self.first_error) {
             return Err(error);
         }
-        let joined = join(self.whole, &self.parts);
+        let joined = join_cells(self.whole, self.parts);
         Ok(model_files(&joined, &self.params, &self.reports, seconds))
     }
 }
 
-/// The tiles of the region of interest; refused where the options do not go with tiles.
-pub(super) fn tiles_of(options: &LoadOptions, tile_m: f64) -> Result<Vec<Tile>> {
-    let error_of = |problem: &str, advice: &str| Error::Scene {
-        problem: problem.to_owned(),
-        advice: advice.to_owned(),
-    };
-    let area = options.roi.ok_or_else(|| {
-        error_of(
-            "tiles need to know the area",
-            "give the region of interest (--roi x0,y0,x1,y1)",
-        )
-    })?;
+/// The tiles of the region of interest, or of the area that the views show, and the options with
+/// all that is decided once for the whole area; refused where the options do not go with tiles.
+pub(super) fn tiles_of(
+    files: &[InputFile],
+    options: &LoadOptions,
+    tile_m: f64,
+) -> Result<(LoadOptions, Vec<Tile>)> {
     if options.apply_fix {
-        return Err(error_of(
-            "tiles take the orientation as it is",
-            "correct it first (without tiles, --apply-fix names the mistake)",
-        ));
+        return Err(Error::Scene {
+            problem: "tiles take the orientation as it is".to_owned(),
+            advice: "correct it first (without tiles, --apply-fix names the mistake)".to_owned(),
+        });
     }
-    plan_tiles(area, tile_m)
+    let mut options = settled(files, options);
+    if let Some(roi) = options.roi {
+        return Ok((options, plan_tiles(roi, tile_m)?));
+    }
+    let shown = ShownArea::new(files, &options)?;
+    options.roi = Some(shown.bounds);
+    let mut tiles = plan_tiles(shown.bounds, tile_m)?;
+    for tile in &mut tiles {
+        tile.cells.retain(|cell| shown.meets(cell.core));
+    }
+    tiles.retain(|tile| !tile.cells.is_empty());
+    Ok((options, tiles))
 }
 
-/// Works off a tile; the part is an error where the views do not show the tile.
+/// What became of a tile.
+pub(super) struct WorkedTile {
+    pub report: TileReport,
+    /// What was found in the cells that the views show.
+    pub parts: Vec<CellPart>,
+    /// Why the first of the others was left out.
+    pub first_error: Option<Error>,
+}
+
+/// Works off the cells of a tile, one after the other.
 pub(super) fn work_off(
     files: &[InputFile],
     options: &LoadOptions,
@@ -135,19 +155,46 @@ pub(super) fn work_off(
     tile: &Tile,
     whole: &Scene,
     progress: &Listener,
-) -> (TileReport, Result<TilePart>) {
-    let options = LoadOptions {
-        roi: Some(tile.region),
-        ..options.clone()
+) -> WorkedTile {
+    let mut parts = Vec::new();
+    let mut first_error = None;
+    let count = tile.cells.len() as f64;
+    for (i, cell) in tile.cells.iter().enumerate() {
+        let options = LoadOptions {
+            roi: Some(cell.region),
+            ..options.clone()
+        };
+        let of_tile = Listener::clone(progress);
+        let listener: Listener = Arc::new(move |fraction| of_tile((i as f64 + fraction) / count));
+        match load_scene(files, &options) {
+            Ok(scene) => parts.push(part(scene, params, cell, whole, &listener)),
+            Err(error) => {
+                first_error.get_or_insert(error);
+            }
+        }
+        listener(1.0);
+    }
+    let buildings = parts.iter().map(|part| part.model.buildings.len()).sum();
+    let outcome = match &first_error {
+        Some(error) if parts.is_empty() => error.to_string(),
+        _ => counted(buildings, "buildings"),
     };
-    let part = load_scene(files, &options).map(|scene| part(scene, params, tile, whole, progress));
-    let outcome = match &part {
-        Ok(part) => counted(part.model.buildings.len(), "buildings"),
-        Err(error) => error.to_string(),
-    };
-    progress(1.0);
     let core = tile.core;
-    (TileReport { core, outcome }, part)
+    WorkedTile {
+        report: TileReport { core, outcome },
+        parts,
+        first_error,
+    }
+}
+
+/// Joins the parts of all cells in the order of the grid, whatever the tiles were.
+pub(super) fn join_cells(whole: Scene, mut parts: Vec<CellPart>) -> Joined {
+    let place = |part: &CellPart| part.cell.core;
+    parts.sort_by(|a, b| {
+        let ([ax, ay, ..], [bx, by, ..]) = (place(a), place(b));
+        ay.total_cmp(&by).then(ax.total_cmp(&bx))
+    });
+    join(whole, &parts)
 }
 
 /// The files of the model of all tiles, with a report.
@@ -174,14 +221,14 @@ pub(super) fn model_files(
     files
 }
 
-/// What one tile shows.
+/// What one cell shows.
 fn part(
     scene: Scene,
     params: &Params,
-    tile: &Tile,
+    cell: &Cell,
     whole: &Scene,
     progress: &Listener,
-) -> TilePart {
+) -> CellPart {
     let views = places(&scene, whole);
     let mut run = Run::new(scene, params.clone());
     let stages: Vec<Stage> = (run.stages().into_iter())
@@ -189,13 +236,13 @@ fn part(
         .collect();
     for (i, &stage) in stages.iter().enumerate() {
         let (done, all) = (i as f64, stages.len() as f64);
-        let of_tile = Listener::clone(progress);
-        let listener: Listener = Arc::new(move |fraction| of_tile((done + fraction) / all));
+        let of_cell = Listener::clone(progress);
+        let listener: Listener = Arc::new(move |fraction| of_cell((done + fraction) / all));
         run.step(stage, &listener);
     }
     let (scene, results) = (run.scene(), run.results());
     let all = results.roof_model().expect("the stages have run");
-    let model = tile.keep(all, &scene.origin);
+    let model = cell.keep(all, &scene.origin);
     let (textured, _) = texture_model(scene, &model, &params.texture);
     let found = "the stages have run";
     let (segments, lines, half_planes) = match params.method {
@@ -211,8 +258,8 @@ fn part(
             (segments, world_lines(scene, lines, clusters), Vec::new())
         }
     };
-    TilePart {
-        tile: *tile,
+    CellPart {
+        cell: *cell,
         origin: scene.origin,
         views,
         segments,

@@ -1,4 +1,4 @@
-//! The parts of all tiles as one.
+//! The parts of all cells as one.
 
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fields;
 use super::model_parts::{append, middle, moved, moved_plane};
-use super::tile::Tile;
+use super::tile::Cell;
 use crate::evidence::Candidates;
 use crate::export::{ExportInput, export_all};
 use crate::geometry::Segment2;
@@ -22,14 +22,14 @@ use crate::scene::Scene;
 use crate::texture::TexturedModel;
 
 /// Two buildings that share more of the smaller one's footprint are the same building, found in two
-/// tiles.
+/// cells.
 const SAME_BUILDING: f64 = 0.2;
 
-/// What was found in a tile.
+/// What was found in a cell.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct TilePart {
-    /// The tile.
-    pub tile: Tile,
+pub struct CellPart {
+    /// The cell.
+    pub cell: Cell,
     /// Origin of its local frame.
     pub origin: Vector3<f64>,
     /// Of each of its views: the view of the whole scene, and column, row, width and height of its
@@ -51,7 +51,7 @@ pub struct TilePart {
     pub textured: TexturedModel,
 }
 
-/// One model of all tiles.
+/// One model of all cells.
 #[derive(Clone, Debug)]
 pub struct Joined {
     /// Names and cameras of the whole images, without pixels.
@@ -97,8 +97,8 @@ impl Joined {
     }
 }
 
-/// Joins the parts; `scene` has the views of all of them.
-pub fn join(scene: Scene, parts: &[TilePart]) -> Joined {
+/// Joins the parts of the cells of an area; `scene` has the views of all of them.
+pub fn join(scene: Scene, parts: &[CellPart]) -> Joined {
     let mut joined = Joined {
         segments: vec![Vec::new(); scene.views.len()],
         scene,
@@ -123,13 +123,13 @@ pub fn join(scene: Scene, parts: &[TilePart]) -> Joined {
     joined
 }
 
-/// For each part, the buildings to take: each building once, from the tile in whose core its middle
+/// For each part, the buildings to take: each building once, from the cell in whose core its middle
 /// lies deepest.
-fn choose(parts: &[TilePart]) -> Vec<Vec<usize>> {
+fn choose(parts: &[CellPart]) -> Vec<Vec<usize>> {
     let mut candidates: Vec<(f64, usize, usize)> = Vec::new();
     for (p, part) in parts.iter().enumerate() {
         for (b, building) in part.model.buildings.iter().enumerate() {
-            let depth = part.tile.depth(&(middle(building) + part.origin.xy()));
+            let depth = part.cell.depth(&(middle(building) + part.origin.xy()));
             candidates.push((depth, p, b));
         }
     }
@@ -186,7 +186,7 @@ fn area(ring: &[[f64; 2]]) -> f64 {
 }
 
 /// Puts the atlases below each other; the place of each: first row.
-fn join_atlases(parts: &[TilePart], to: &mut TexturedModel) -> Vec<u32> {
+fn join_atlases(parts: &[CellPart], to: &mut TexturedModel) -> Vec<u32> {
     let sizes = || parts.iter().map(|p| p.textured.atlas.dimensions());
     let width = sizes().map(|s| s.0).max().unwrap_or(0);
     let height = sizes().map(|s| s.1).sum();
@@ -202,7 +202,7 @@ fn join_atlases(parts: &[TilePart], to: &mut TexturedModel) -> Vec<u32> {
 }
 
 /// Adds the segments of the stretches of images that no earlier part has shown.
-fn join_segments(part: &TilePart, to: &mut [Vec<ImageSegment>], covered: &mut [Vec<[f64; 4]>]) {
+fn join_segments(part: &CellPart, to: &mut [Vec<ImageSegment>], covered: &mut [Vec<[f64; 4]>]) {
     for (&(view, place), segments) in part.views.iter().zip(&part.segments) {
         let seen = &mut covered[view.index()];
         for segment in segments {
@@ -230,7 +230,7 @@ struct NewIds {
     half_planes: Vec<Option<HalfPlaneId>>,
 }
 
-fn join_lines(part: &TilePart, buildings: &[usize], joined: &mut Joined) -> NewIds {
+fn join_lines(part: &CellPart, buildings: &[usize], joined: &mut Joined) -> NewIds {
     let by = joined.scene.origin - part.origin;
     let facets = buildings
         .iter()
@@ -244,7 +244,7 @@ fn join_lines(part: &TilePart, buildings: &[usize], joined: &mut Joined) -> NewI
         half_planes: Vec::new(),
     };
     for (i, line) in part.lines.iter().enumerate() {
-        if !(needed[i] || part.tile.holds(&(line.at(0.5).xy() + part.origin.xy()))) {
+        if !(needed[i] || part.cell.holds(&(line.at(0.5).xy() + part.origin.xy()))) {
             continue;
         }
         ids.lines[i] = Some(LineId::from_index(joined.lines.len()));
@@ -284,16 +284,16 @@ fn join_lines(part: &TilePart, buildings: &[usize], joined: &mut Joined) -> NewI
 }
 
 /// Adds the candidates of a part's core, which no other part has.
-fn join_candidates(part: &TilePart, joined: &mut Joined) {
+fn join_candidates(part: &CellPart, joined: &mut Joined) {
     let by = joined.scene.origin - part.origin;
-    let in_core = |p: &Point3<f64>| part.tile.holds(&(p.xy() + part.origin.xy()));
+    let in_core = |p: &Point3<f64>| part.cell.holds(&(p.xy() + part.origin.xy()));
     let moved = part.candidates.moved(&by, in_core);
     joined.candidates.lines.extend(moved.lines);
     joined.candidates.facets.extend(moved.facets);
 }
 
 fn join_buildings(
-    part: &TilePart,
+    part: &CellPart,
     buildings: &[usize],
     ids: &NewIds,
     top: u32,
@@ -339,7 +339,7 @@ mod tests {
     use crate::texture::FaceTexture;
     use crate::tiles::fixture::house;
 
-    fn part(tile: Tile, origin: [f64; 3], houses: &[[f64; 2]]) -> TilePart {
+    fn part(cell: Cell, origin: [f64; 3], houses: &[[f64; 2]]) -> CellPart {
         let origin = Vector3::from(origin);
         let mut model = RoofModel::default();
         for h in houses {
@@ -359,8 +359,8 @@ mod tests {
             atlas: image::RgbImage::new(8, 4),
             faces,
         };
-        TilePart {
-            tile,
+        CellPart {
+            cell,
             origin,
             views: Vec::new(),
             segments: Vec::new(),
@@ -374,11 +374,15 @@ mod tests {
 
     #[test]
     fn a_house_on_the_seam_is_taken_once() {
-        let tiles = crate::tiles::plan_tiles([0.0, 0.0, 100.0, 50.0], 50.0).unwrap();
-        // One house in each core; one on the seam at x = 50, seen a little differently from both
+        let tiles = crate::tiles::plan_tiles([0.0, 0.0, 120.0, 50.0], 60.0).unwrap();
+        // One house in each core; one on the seam at x = 60, seen a little differently from both
         // sides.
-        let west = part(tiles[0], [0.0; 3], &[[20.0, 20.0], [49.9, 25.0]]);
-        let east = part(tiles[1], [100.0, 0.0, 5.0], &[[50.2, 25.0], [80.0, 20.0]]);
+        let west = part(tiles[0].cells[0], [0.0; 3], &[[20.0, 20.0], [59.9, 25.0]]);
+        let east = part(
+            tiles[1].cells[0],
+            [100.0, 0.0, 5.0],
+            &[[60.2, 25.0], [80.0, 20.0]],
+        );
         let scene = Scene {
             views: Vec::new(),
             origin: Vector3::zeros(),
@@ -397,8 +401,8 @@ mod tests {
             .map(|b| (middle(b).x * 10.0).round() as i64)
             .collect();
         middles.sort_unstable();
-        assert_eq!(middles, [200, 502, 800]);
-        // Heights follow the frame: the eastern tile's zero is 5 m higher.
+        assert_eq!(middles, [200, 602, 800]);
+        // Heights follow the frame: the eastern cell's zero is 5 m higher.
         let lowest = |b: &Building| {
             b.solid
                 .vertices

@@ -16,13 +16,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::area::TileReport;
-use super::join::TilePart;
+use super::join::CellPart;
 use crate::error::{Error, Result};
 
 const MAGIC: &[u8; 15] = b"ridgeline part\n";
 
-/// Layout of the bytes: to be raised whenever a type in [`TilePart`] changes.
-const LAYOUT: u32 = 1;
+/// Layout of the bytes: to be raised whenever a type in [`CellPart`] changes.
+const LAYOUT: u32 = 2;
 
 /// Bytes before the outcome.
 const HEADER: usize = MAGIC.len() + 4 * 4 + 8;
@@ -32,8 +32,8 @@ const HEADER: usize = MAGIC.len() + 4 * 4 + 8;
 pub(super) struct TileOutcome {
     /// In words.
     pub report: TileReport,
-    /// What was found; `None` where the views do not show the tile.
-    pub part: Option<TilePart>,
+    /// What was found in the cells that the views show.
+    pub parts: Vec<CellPart>,
 }
 
 /// Plan and tile that a part belongs to.
@@ -128,10 +128,10 @@ mod tests {
         };
         let bytes = KEY.pack(&TileOutcome {
             report: report.clone(),
-            part: None,
+            parts: Vec::new(),
         });
         let back = KEY.unpack(&bytes).unwrap();
-        assert!(back.report == report && back.part.is_none());
+        assert!(back.report == report && back.parts.is_empty());
         for length in 0..bytes.len() {
             let message = refusal(KEY, &bytes[..length]);
             assert!(

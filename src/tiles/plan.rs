@@ -11,16 +11,16 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::area::{model_files, tiles_of, work_off};
-use super::join::{Joined, join};
+use super::area::{join_cells, model_files, tiles_of, work_off};
+use super::join::Joined;
 use super::part_file::{PartKey, TileOutcome};
-use super::tile::Tile;
+use super::tile::{Cell, Tile};
 use crate::error::{Error, Result};
 use crate::execution::Listener;
 use crate::export::city_json_seq;
 use crate::orientation::InputFile;
 use crate::params::Params;
-use crate::scene_loader::{LoadOptions, ViewWindow, region_windows, shown_area, whole_views};
+use crate::scene_loader::{LoadOptions, ViewWindow, region_windows, whole_views};
 
 /// Where the files of a block came from, as it was stated: to find them again.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -53,8 +53,18 @@ pub struct PlannedTile {
     pub tile: u32,
     /// What it is responsible for: x0, y0, x1, y1, metres, world frame of the input.
     pub core: [f64; 4],
-    /// What it looks at.
-    pub region: [f64; 4],
+    /// Memory that it takes at its peak, about, megabytes; 0 where the views show none of it.
+    pub memory_mb: u64,
+    /// The squares that are reconstructed one after the other.
+    pub cells: Vec<PlannedCell>,
+}
+
+/// A cell of a tile.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlannedCell {
+    /// What it is responsible for, and what it looks at.
+    pub place: Cell,
     /// Memory that it takes at its peak, about, megabytes.
     pub memory_mb: u64,
     /// The views that it reads, and which part of each; none where it is left out.
@@ -89,7 +99,7 @@ impl BlockPlan {
     pub const FILE: &str = "tiles.json";
 
     /// Divides the region of interest into tiles of about `tile_m` metres; without a region the
-    /// area that three views show. No image is decoded.
+    /// area that three views show. A few photographs are decoded, which show where the ground is.
     pub fn new(
         source: BlockSource,
         files: &[InputFile],
@@ -97,12 +107,7 @@ impl BlockPlan {
         params: &Params,
         tile_m: f64,
     ) -> Result<Self> {
-        let mut options = options.clone();
-        let roi = options
-            .roi
-            .map_or_else(|| shown_area(files, &options), Ok)?;
-        options.roi = Some(roi);
-        let tiles = tiles_of(&options, tile_m)?;
+        let (options, tiles) = tiles_of(files, options, tile_m)?;
         whole_views(files, &options)?;
         let planned = crate::execution::map(&tiles, |i, tile| planned(files, &options, i, tile));
         Ok(Self {
@@ -184,14 +189,14 @@ impl BlockPlan {
         let whole = whole_views(&files, &self.options)?;
         let place = Tile {
             core: planned.core,
-            region: planned.region,
+            cells: planned.cells.iter().map(|cell| cell.place).collect(),
         };
         let (options, params) = (&self.options, &self.params);
-        let (report, part) = work_off(&files, options, params, &place, &whole, progress);
-        let words = report.outcome.clone();
+        let worked = work_off(&files, options, params, &place, &whole, progress);
+        let words = worked.report.outcome.clone();
         let outcome = TileOutcome {
-            report,
-            part: part.ok(),
+            report: worked.report,
+            parts: worked.parts,
         };
         Ok((key(text, tile).pack(&outcome), words))
     }
@@ -219,7 +224,7 @@ impl BlockPlan {
         for (planned, bytes) in self.tiles.iter().zip(bytes.iter().flatten()) {
             let outcome = key(text, planned.tile).unpack(bytes)?;
             reports.push(outcome.report);
-            parts.extend(outcome.part);
+            parts.extend(outcome.parts);
         }
         if let (true, Some(first)) = (parts.is_empty(), reports.first()) {
             return Err(Error::Scene {
@@ -228,7 +233,7 @@ impl BlockPlan {
                     .to_owned(),
             });
         }
-        let joined = join(whole, &parts);
+        let joined = join_cells(whole, parts);
         let mut files = model_files(&joined, &self.params, &reports, &[]);
         let Joined {
             scene,
@@ -288,18 +293,28 @@ fn key(plan: &[u8], tile: u32) -> PartKey {
 }
 
 fn planned(files: &[InputFile], options: &LoadOptions, index: usize, tile: &Tile) -> PlannedTile {
+    let cells: Vec<PlannedCell> = (tile.cells.iter())
+        .map(|cell| planned_cell(files, options, cell))
+        .collect();
+    PlannedTile {
+        tile: u32::try_from(index + 1).expect("fewer than 2^32 tiles"),
+        core: tile.core,
+        memory_mb: cells.iter().map(|cell| cell.memory_mb).max().unwrap_or(0),
+        cells,
+    }
+}
+
+fn planned_cell(files: &[InputFile], options: &LoadOptions, cell: &Cell) -> PlannedCell {
     let options = LoadOptions {
-        roi: Some(tile.region),
+        roi: Some(cell.region),
         ..options.clone()
     };
     let (views, memory_mb, left_out) = match region_windows(files, &options) {
         Ok((views, memory_mb)) => (views, memory_mb, None),
         Err(error) => (Vec::new(), 0, Some(error.to_string())),
     };
-    PlannedTile {
-        tile: u32::try_from(index + 1).expect("fewer than 2^32 tiles"),
-        core: tile.core,
-        region: tile.region,
+    PlannedCell {
+        place: *cell,
         memory_mb,
         views,
         left_out,

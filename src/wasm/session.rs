@@ -53,6 +53,9 @@ struct JsLoadOptions {
     /// Most views of the region of interest; 12 when absent.
     #[tsify(optional)]
     max_views: Option<usize>,
+    /// Whole factor by which photographs are reduced; large ones as far as roofs allow when absent.
+    #[tsify(optional)]
+    reduce: Option<u32>,
     /// Height of the ground, metres, in the frame of the orientation.
     #[tsify(optional)]
     ground_z: Option<f64>,
@@ -285,6 +288,7 @@ pub(crate) fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
         views: options.views,
         roi: options.roi,
         max_views: options.max_views,
+        reduce: options.reduce,
         ground_z: options.ground_z,
         epsg: options.epsg,
         memory_mb: None,
@@ -300,6 +304,7 @@ impl From<&LoadOptions> for JsLoadOptions {
             views: options.views.clone(),
             roi: options.roi,
             max_views: options.max_views,
+            reduce: options.reduce,
             ground_z: options.ground_z,
             epsg: options.epsg,
             apply_fix: options.apply_fix,

@@ -3,7 +3,7 @@
 
 mod windows;
 
-pub use windows::{ViewWindow, region_windows, shown_area};
+pub use windows::{ShownArea, ViewWindow, region_windows};
 
 use serde::Serialize;
 

@@ -26,7 +26,7 @@ const MARGIN_PX: f64 = 40.0;
 
 /// Most views of a region where no number is stated. Assumption: a dozen see every roof from all
 /// sides; time grows with their number and accuracy with its root.
-const MOST_VIEWS: usize = 12;
+pub const MOST_VIEWS: usize = 12;
 
 /// Points along a side of the region at which views are compared.
 const COMPARED_AT: u32 = 5;
