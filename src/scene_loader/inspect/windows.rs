@@ -96,13 +96,10 @@ fn shown_places(cameras: &[&Camera], z: f64) -> Vec<Point3<f64>> {
         camera.ground_pixel(p) < coarsest
             && (camera.project(p)).is_some_and(|image| camera.contains(&image, 0.0))
     };
-    // A circle around the camera holds what it shows finely enough.
-    let reach = cameras.iter().map(|camera| {
-        let farthest = coarsest * camera.k[(0, 0)].abs();
-        let (x, y) = (camera.center.x, camera.center.y);
-        [x - farthest, y - farthest, x + farthest, y + farthest]
-    });
-    let Some([x0, y0, x1, y1]) = reach.reduce(around) else {
+    let boxes = cameras
+        .iter()
+        .map(|camera| box_of_shown(camera, z, coarsest));
+    let Some([x0, y0, x1, y1]) = boxes.reduce(around) else {
         return Vec::new();
     };
     let step = larger(x1 - x0, y1 - y0) / f64::from(PLACES);
@@ -117,6 +114,26 @@ fn shown_places(cameras: &[&Camera], z: f64) -> Vec<Point3<f64>> {
         places.filter(is_shown).collect()
     };
     crate::execution::map(&rows, row).concat()
+}
+
+/// A box around all that a camera shows of the ground at this height in pixels finer than
+/// `coarsest` metres.
+fn box_of_shown(camera: &Camera, z: f64, coarsest: f64) -> [f64; 4] {
+    let (w, h) = (f64::from(camera.width), f64::from(camera.height));
+    let corners = [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)].map(|(u, v)| {
+        let found = camera.at_height(&Point2::new(u, v), z);
+        found.filter(|p| camera.ground_pixel(p) < coarsest)
+    });
+    let near: Vec<Point2<f64>> = corners.iter().flatten().map(|p| p.xy()).collect();
+    match enclosing(&near) {
+        Some(all) if near.len() == corners.len() => all,
+        // Where a corner shows something farther away, the image may reach in any direction.
+        _ => {
+            let farthest = coarsest * camera.k[(0, 0)].abs();
+            let (x, y) = (camera.center.x, camera.center.y);
+            [x - farthest, y - farthest, x + farthest, y + farthest]
+        }
+    }
 }
 
 /// Least and largest x and y; `None` of nothing.
