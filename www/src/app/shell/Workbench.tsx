@@ -10,6 +10,7 @@ import { StageRail } from "../stages/StageRail";
 import { StageView } from "../stages/StageView";
 import { images } from "../state/scene";
 import { lessonStep } from "../state/tour";
+import { tab } from "../state/viewState";
 import { Lesson } from "../tour/Lesson";
 import { Notices } from "./Notices";
 
@@ -27,7 +28,7 @@ export function Workbench() {
         <StageRail />
       </main>
       <aside class="column details" aria-label="Details">
-        {lessonStep.value !== null ? <Lesson /> : images.value.length > 0 && <AboutFigure />}
+        {lessonStep.value !== null ? <Lesson /> : images.value.length > 0 && <AboutFigure tab={tab.value} />}
         <Comparison />
         <Inspector />
         <Parameters />

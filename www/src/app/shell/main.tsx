@@ -8,9 +8,11 @@ import { setOpening } from "../screen/opening";
 import { askAboutSelection } from "../selection/selectionQueries";
 import { start } from "../session/session";
 import { followState } from "../settings/addressLink";
+import { restoreTextScale } from "../state/textScale";
 import { App } from "./App";
 import { isAwaited, restoreOpeningState } from "./openingState";
 
+restoreTextScale();
 const root = document.getElementById("app");
 if (root !== null) {
   render(<App />, root);
