@@ -38,12 +38,17 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
       "app/shell",
     ],
   ),
+  ...floors(
+    ["shared", "core", "app/state", "app/parts", "app/session", "app/selection", "app/images", "app/figures"],
+    ["element/takeAlong", "element"],
+  ),
 };
 
 /** What the package's exports and workers start from. */
-const PACKAGE_ENTRIES = ["browser", "browserWorker", "node", "nodeWorker"].map(
-  (name) => `package/${name}.ts`,
-);
+const PACKAGE_ENTRIES = [
+  ...["browser", "browserWorker", "node", "nodeWorker"].map((name) => `package/${name}.ts`),
+  ...["figure", "anywidget"].map((name) => `element/${name}.ts`),
+];
 
 /** So many files are found at a glance. */
 const MOST_FILES = 15;

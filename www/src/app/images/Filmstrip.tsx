@@ -5,6 +5,7 @@ import type { Figure } from "../../shared/figure";
 import type { Selection } from "../../shared/selection";
 import { textScale } from "../state/textScale";
 import { drawView } from "./drawing";
+import { paint } from "./pen";
 import { type Mark, marksOf } from "./selectionMarks";
 import { fitPoints, type Size } from "./viewport";
 
@@ -52,12 +53,13 @@ interface PictureProps {
 function Picture({ image, name, marks }: PictureProps) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
-    const context = canvas.current?.getContext("2d");
-    if (context != null && image !== undefined) {
+    if (canvas.current !== null && image !== undefined) {
       const points = marks.flatMap((mark) => mark.points);
       const box = { width: WIDTH_PX, height: HEIGHT_PX };
       const viewport = fitPoints(points, box, MARGIN_PX, MAX_SCALE) ?? { scale: 1, x: 0, y: 0 };
-      drawView(context, image, viewport, ratio(), { segments: null, supports: null }, null, marks);
+      paint(canvas.current, { viewport, box }, ratio(), (pen, of) =>
+        drawView(pen, of, image, { segments: null, supports: null }, null, marks),
+      );
     }
   });
   return (

@@ -7,6 +7,7 @@ import { type Place, PressWatch } from "../../viewer/tools/press";
 import { textScale } from "../state/textScale";
 import { drawView, type Overlay } from "./drawing";
 import { cornerAt } from "./graphOverlay";
+import { paint } from "./pen";
 import type { Mark } from "./selectionMarks";
 import {
   fitImage,
@@ -60,11 +61,12 @@ export function ImageCanvas({ view, name, image, overlay, selection, marks, foll
     }
   }, [selection, follows]);
   useEffect(() => {
-    const context = canvas.current?.getContext("2d");
-    if (context && box.width > 0) {
+    if (canvas.current !== null && box.width > 0) {
       const ratio = window.devicePixelRatio;
-      resizeBacking(context.canvas, box, ratio);
-      drawView(context, image, viewport, ratio, overlay, selection, marks);
+      resizeBacking(canvas.current, box, ratio);
+      paint(canvas.current, { viewport, box }, ratio, (pen, of) =>
+        drawView(pen, of, image, overlay, selection, marks),
+      );
     }
   });
 

@@ -1,5 +1,5 @@
 /** Starts the page. */
-import "./base.css";
+import "../parts/base.css";
 import "../parts/parts.css";
 import "../parts/charts.css";
 import { render } from "preact";
