@@ -60,6 +60,7 @@ export class RidgelineFigure extends HTMLElement {
   connectedCallback(): void {
     this.#shadow.adoptedStyleSheets = [styleSheet()];
     render(<Root seen={this.#seen} problem={this.#problem} />, this.#shadow);
+    this.#shadow.addEventListener("keydown", keepOwnKeys);
     this.#observer = new IntersectionObserver((entries) => {
       if (entries.some(({ isIntersecting }) => isIntersecting) && !this.#isVisible) {
         this.#isVisible = true;
@@ -263,6 +264,17 @@ export class RidgelineFigure extends HTMLElement {
     this.#seen.value = null;
     this.#scene?.leave();
     this.#scene = null;
+  }
+}
+
+const OWN_KEYS = /^(Arrow|Home|End|Page|Enter$|[-+=0 ]$)/;
+
+/** What moves a figure does not move the slides around it. */
+function keepOwnKeys(event: Event): void {
+  const isOnControl =
+    event.target instanceof Element && event.target.matches("input, select, canvas, button, [tabindex]");
+  if (isOnControl && OWN_KEYS.test((event as KeyboardEvent).key)) {
+    event.stopPropagation();
   }
 }
 

@@ -146,8 +146,12 @@ function viewsOfSegment({ selection, detail: { story, candidate } }: Figure): [n
   return [own, other, predicted?.view ?? third];
 }
 
-/** A long segment that is a match in many views: of the first view, the one with the best. */
-function longSegment({ results: { supports, segments } }: Figure): Selection | null {
+/** Of the first view, pixels over its width: a longer segment is rather a kerb than the side of a roof. */
+const LONGEST = 0.25;
+
+/** The longest segment of the first view that is part of a match, of those that may be sides of roofs. */
+function longSegment({ scene, results: { supports, segments } }: Figure): Selection | null {
+  const longest = LONGEST * (scene?.views[0]?.width ?? Number.POSITIVE_INFINITY);
   const own = segments[0];
   const matched = supports[0];
   if (own === undefined || own.length < 4) {
@@ -158,7 +162,7 @@ function longSegment({ results: { supports, segments } }: Figure): Selection | n
     const [x0, y0, x1, y1] = own.subarray(4 * i, 4 * i + 4) as unknown as [number, number, number, number];
     const length = Math.hypot(x1 - x0, y1 - y0);
     const isMatched = matched !== undefined && isAmong(matched, [x0, y0]);
-    if (isMatched && length > best.length) {
+    if (isMatched && length > best.length && length <= longest) {
       best = { index: i, length };
     }
   }

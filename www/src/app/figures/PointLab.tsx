@@ -61,7 +61,7 @@ export function PointLab({ figure }: { figure: Figure }) {
       </div>
       {story.candidates.length > 0 && (
         <div class="correspond">
-          <label>
+          <label data-control>
             <span>Point x along the segment</span>
             <input
               type="range"

@@ -42,7 +42,12 @@ export function SimLab({ figure }: { figure: Figure }) {
           <output class="numbers" data-testid="theta">
             {(theta / DEGREE).toFixed(1)}°
           </output>
-          <button type="button" class="quiet" onClick={() => turnTo(bestTheta(side, figure.results))}>
+          <button
+            type="button"
+            class="quiet"
+            data-control
+            onClick={() => turnTo(bestTheta(side, figure.results))}
+          >
             Best
           </button>
         </label>
@@ -81,6 +86,7 @@ function SideHead({ figure, side }: OfSide) {
         <button
           type="button"
           class="quiet other-side"
+          data-control
           onClick={() => {
             figure.act.select({ kind: "side", line: side.line, side: other });
           }}

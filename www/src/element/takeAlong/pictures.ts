@@ -27,6 +27,9 @@ const STYLES = [
 
 const CONTROLS = "input, select, summary, [data-control], .visually-hidden";
 
+/** Of paper around what is drawn, CSS pixels. */
+const MARGIN = 12;
+
 /** 16 cm at 300 dots per inch. */
 const PRINT_WIDTH_PX = 1890;
 const LARGEST_SCALE = 6;
@@ -36,13 +39,16 @@ const PRINT_DENSITY = 11_811;
 /** What an element shows, as a whole SVG file. */
 export function svgOf(root: HTMLElement, title: string): string {
   const frame = root.getBoundingClientRect();
-  const origin: Origin = { x: frame.left, y: frame.top };
+  // On a slide a figure may be shown larger or smaller than it is laid out.
+  const shrink = root.offsetWidth / frame.width || 1;
+  const origin: Origin = { x: frame.left, y: frame.top, shrink };
   const paper = getComputedStyle(root).backgroundColor;
-  const [width, height] = [at(frame.width), at(frame.height)];
+  const [width, height] = [frame.width, frame.height].map((side) => at(side * shrink + 2 * MARGIN));
+  const box = `viewBox="${-MARGIN} ${-MARGIN} ${width} ${height}"`;
   return (
-    `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}">` +
+    `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" ${box}>` +
     `<title>${escaped(title)}</title>` +
-    `<rect width="${width}" height="${height}" fill="${hex(paper)}"/>` +
+    `<rect x="${-MARGIN}" y="${-MARGIN}" width="${width}" height="${height}" fill="${hex(paper)}"/>` +
     `${childrenOf(root, origin)}</svg>`
   );
 }
@@ -70,6 +76,8 @@ export async function pngOf(svg: string): Promise<Blob> {
 interface Origin {
   x: number;
   y: number;
+  /** From what is seen to what was laid out. */
+  shrink: number;
 }
 
 function childrenOf(parent: Element, origin: Origin): string {
@@ -96,11 +104,24 @@ function elementOf(element: Element, origin: Origin): string {
   if (element instanceof HTMLCanvasElement) {
     return pictureOf(element, box, origin);
   }
-  return backgroundOf(style, box, origin) + childrenOf(element, origin);
+  const inside = childrenOf(element, origin);
+  const frame = frameOf(box, origin);
+  // What a scrolled or shortened part hides.
+  const isCut = style.overflowX !== "visible" && inside !== "";
+  const cut = isCut
+    ? `<svg ${frame} viewBox="${viewBoxOf(frame)}" overflow="hidden">${inside}</svg>`
+    : inside;
+  return backgroundOf(style, box, origin) + cut;
 }
 
 function frameOf({ left, top, width, height }: DOMRect, origin: Origin): string {
-  return `x="${at(left - origin.x)}" y="${at(top - origin.y)}" width="${at(width)}" height="${at(height)}"`;
+  const own = (seen: number) => at(seen * origin.shrink);
+  return `x="${own(left - origin.x)}" y="${own(top - origin.y)}" width="${own(width)}" height="${own(height)}"`;
+}
+
+/** That of a part of a file which keeps the coordinates of the whole. */
+function viewBoxOf(frame: string): string {
+  return [...frame.matchAll(/"([^"]*)"/g)].map(([, number]) => number).join(" ");
 }
 
 function chartOf(chart: SVGSVGElement, box: DOMRect, origin: Origin): string {
@@ -171,8 +192,8 @@ function textOf(node: Text, origin: Origin): string {
   return lines
     .map(({ text, box }) => {
       // The middle of a line box is a third of the size above the base line.
-      const base = box.top + box.height / 2 + 0.35 * size - origin.y;
-      return `<text x="${at(box.left - origin.x)}" y="${at(base)}" ${font}>${escaped(text.trimEnd())}</text>`;
+      const base = (box.top + box.height / 2 - origin.y) * origin.shrink + 0.35 * size;
+      return `<text x="${at((box.left - origin.x) * origin.shrink)}" y="${at(base)}" ${font}>${escaped(text.trimEnd())}</text>`;
     })
     .join("");
 }
