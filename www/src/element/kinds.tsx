@@ -14,6 +14,7 @@ import { SimLab } from "../app/figures/SimLab";
 import { ViewPicker } from "../app/images/ViewPicker";
 import type { Tab } from "../app/state/methods";
 import type { Figure } from "../shared/figure";
+import { isVerifiedSet } from "../shared/proposed";
 import type { Selection } from "../shared/selection";
 import type { Method, StageName } from "../shared/stages";
 import { ImageRow } from "./ImageRow";
@@ -69,12 +70,12 @@ export const KINDS = {
   "correlation-windows": lab("matches", "lines", "matches", PointLab, windowRows, longSegment),
   "line-accuracy": lab("lines", "lines", "lines", LineLab, lineRows, bestLine),
   "theta-sweep": lab("halfplanes", "lines", "halfplanes", SimLab, similarityRows, sharpestHalfPlane),
-  groups: lab("groups", "lines", "facets", GroupLab, groupRows),
-  "facet-plan": lab("facets", "lines", "facets", FacetLab, facetRows),
-  refinement: lab("refinement", "lines", "facets", RefinementLab, relationRows),
-  "dense-planes": lab("dense", "lines", "dense", DenseLab, denseRows),
-  "coplanar-sets": lab("coplanar", "coplanar", "coplanar", CoplanarLab, coplanarRows),
-  adjacency: lab("adjacency", "adjacency", "adjacency", AdjacencyLab, cornerRows),
+  groups: lab("groups", "lines", "facets", GroupLab, groupRows, largestGroup),
+  "facet-plan": lab("facets", "lines", "facets", FacetLab, facetRows, firstFacet),
+  refinement: lab("refinement", "lines", "facets", RefinementLab, relationRows, busiestBuilding),
+  "dense-planes": lab("dense", "lines", "dense", DenseLab, denseRows, largestBuilding),
+  "coplanar-sets": lab("coplanar", "coplanar", "coplanar", CoplanarLab, coplanarRows, clearestSet),
+  adjacency: lab("adjacency", "adjacency", "adjacency", AdjacencyLab, cornerRows, richestCorner),
   regions: lab("regions", "rectangles", "regions", withImages("regions"), regionRows),
   "main-directions": lab("directions", "rectangles", "directions", Directions, directionRows),
   clusters: lab("clusters", "rectangles", "clusters", ClusterLab, clusterRows),
@@ -190,13 +191,53 @@ function bestLine({ results: { records } }: Figure): Selection | null {
   return order[0] === undefined ? null : { kind: "line", index: order[0].index };
 }
 
+/** The place of the highest score that is more than nothing; -1 where there is none. */
+function highest<T>(all: readonly T[] | undefined, score: (one: T) => number): number {
+  const scores = all?.map(score) ?? [];
+  const most = Math.max(0, ...scores);
+  return most === 0 ? -1 : scores.indexOf(most);
+}
+
+function largestGroup({ results: { grouping } }: Figure): Selection | null {
+  const index = highest(
+    grouping?.groups,
+    ({ members }) => members.filter(({ half_plane }) => half_plane !== null).length,
+  );
+  return index < 0 ? null : { kind: "group", index };
+}
+
+function firstFacet({ results: { facets } }: Figure): Selection | null {
+  return facets === null || facets.length === 0 ? null : { kind: "facet", index: 0 };
+}
+
+/** The building with the most relations. */
+function busiestBuilding({ results: { refinement } }: Figure): Selection | null {
+  const index = highest(refinement?.trace.buildings, ({ relations }) => relations.length);
+  return index < 0 ? null : { kind: "refinement", index };
+}
+
+function largestBuilding({ results: { dense } }: Figure): Selection | null {
+  const index = highest(dense?.planes, (plane) => plane.class.building * plane.patches.length);
+  return index < 0 ? null : { kind: "dense", index };
+}
+
+/** Of the sets that the photographs verify, that of which they say most for its outline. */
+function clearestSet({ results: { coplanar } }: Figure): Selection | null {
+  const index = highest(coplanar?.sets, (set) => (isVerifiedSet(set) ? Math.max(0, set.outline_nats) : 0));
+  return index < 0 ? null : { kind: "coplanar", index };
+}
+
+/** The corner with the most edges in the most views. */
+function richestCorner({ results: { adjacency } }: Figure): Selection | null {
+  const index = highest(adjacency?.trace.corners, ({ edges, images }) => edges.length * images.length);
+  return index < 0 ? null : { kind: "corner", index };
+}
+
 /** The half-plane with the highest and sharpest peak. */
 function sharpestHalfPlane({ results: { halfPlanes } }: Figure): Selection | null {
-  const score = (i: number) => {
-    const { probability = 0, amplitude = 0, similarity = 0, theta = 0 } = halfPlanes?.[i] ?? {};
+  const index = highest(halfPlanes ?? [], ({ probability, amplitude, similarity, theta }) => {
     // A slope shows more than a level roof, on which all angles begin.
     return probability * amplitude * similarity * (Math.abs(theta) > 0.2 ? 2 : 1);
-  };
-  const best = halfPlanes?.reduce((found, _, i) => (score(i) > score(found) ? i : found), 0);
-  return best === undefined || halfPlanes?.length === 0 ? null : { kind: "halfplane", index: best };
+  });
+  return index < 0 ? null : { kind: "halfplane", index };
 }

@@ -7,7 +7,7 @@ import chartsCss from "../app/parts/charts.css?inline";
 import partsCss from "../app/parts/parts.css?inline";
 import elementCss from "./element.css?inline";
 
-const DARK = /:root\[data-theme="dark"\]\s*\{([^}]*)\}/;
+const DARK = /:root\[data-theme="?dark"?\]\s*\{([^}]*)\}/;
 
 /** Inside a shadow tree the host is the root; a page's `rem` is not the figure's. */
 function forHost(css: string): string {

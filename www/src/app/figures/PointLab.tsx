@@ -21,7 +21,7 @@ export function PointLab({ figure }: { figure: Figure }) {
   return (
     <div class="point-lab" data-testid="point-lab">
       <div class="candidates">
-        <h3>{outcomeWords(story.outcome)}</h3>
+        <p class="lab-head">{outcomeWords(story.outcome)}</p>
         {story.candidates.length === 0 ? (
           <p class="muted">No segment in any beam scored above the threshold.</p>
         ) : (

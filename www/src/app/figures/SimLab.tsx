@@ -72,7 +72,7 @@ function SideHead({ figure, side }: OfSide) {
   const isPicked = sideOf(figure.selection, figure.results)?.line === side.line;
   return (
     <div class="row spread">
-      <h3>
+      <p class="lab-head">
         Line {side.line}, {side.side} side
         <span class="muted" data-testid="plane-probability">
           {" "}
@@ -81,7 +81,7 @@ function SideHead({ figure, side }: OfSide) {
         {side.rejection !== null && (
           <span class="rejection"> · {REJECTION_WORDS[side.rejection] ?? side.rejection}</span>
         )}
-      </h3>
+      </p>
       {isPicked && (
         <button
           type="button"
