@@ -1,10 +1,10 @@
 /** What stands around a figure: how far it is, what went wrong, its title and paper, and what can be taken along. */
 import { useEffect, useRef, useState } from "preact/hooks";
 import { AboutFigure, FIGURES } from "../app/figures/AboutFigure";
+import { TakeAlong } from "../app/takeAlong/TakeAlong";
 import type { FigureStore } from "./figureStore";
-import type { Kind } from "./kinds";
+import { type Kind, rowsOf } from "./kinds";
 import type { SharedScene } from "./sharedScene";
-import { TakeAlong } from "./TakeAlong";
 
 /** Narrower than this, CSS pixels, parts stand below each other, or close together. */
 const PHONE_PX = 560;
@@ -54,10 +54,9 @@ export function FigureFrame({ seen }: { seen: Seen }) {
               {title} · {source}
             </span>
             <TakeAlong
-              kind={kind}
+              tab={kind.tab}
               name={name}
-              figure={figure}
-              state={store.state.value}
+              rows={() => rowsOf(kind, store.figure.peek())}
               body={() => body.current}
               link={link}
             />

@@ -5,6 +5,9 @@
 import { effect, signal } from "@preact/signals";
 import { render } from "preact";
 import { FIGURES } from "../app/figures/AboutFigure";
+import { citationOf } from "../app/takeAlong/citation";
+import { pngOf, svgOf } from "../app/takeAlong/pictures";
+import { csvOf, type Row } from "../app/takeAlong/tables";
 import type { CoreSource } from "../core/workerEngine";
 import type { InputFile } from "../shared/calls";
 import { FigureFrame, type Seen } from "./FigureFrame";
@@ -17,13 +20,10 @@ import {
   stateInAddress,
 } from "./figureState";
 import { FigureStore } from "./figureStore";
-import { KIND_NAMES, kindOf } from "./kinds";
+import { KIND_NAMES, kindOf, rowsOf } from "./kinds";
 import { fetchScene, sceneUrl } from "./sceneFiles";
 import { type SharedScene, sceneOf } from "./sharedScene";
 import { styleSheet } from "./styles";
-import { citationOf } from "./takeAlong/citation";
-import { pngOf, svgOf } from "./takeAlong/pictures";
-import { csvOf, type Row } from "./takeAlong/tables";
 
 /** Where the files of the package are. */
 export interface FigurePlace extends CoreSource {
@@ -126,7 +126,7 @@ export class RidgelineFigure extends HTMLElement {
   /** The numbers behind it, a record a row. */
   rows(): Row[] {
     const { kind, store } = this.#ready();
-    return kind.rows(store.figure.peek());
+    return rowsOf(kind, store.figure.peek());
   }
 
   toCsv(): string {

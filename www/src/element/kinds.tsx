@@ -1,4 +1,4 @@
-/** The kinds of figures: what each is drawn with, the stages that it needs, what is picked first, and the numbers behind it. */
+/** The kinds of figures: what each is drawn with, the stages that it needs, and what is picked first. */
 import type { ComponentType } from "preact";
 import { AdjacencyLab } from "../app/figures/AdjacencyLab";
 import { ClusterLab } from "../app/figures/ClusterLab";
@@ -13,29 +13,12 @@ import { RefinementLab } from "../app/figures/RefinementLab";
 import { SimLab } from "../app/figures/SimLab";
 import { ViewPicker } from "../app/images/ViewPicker";
 import type { Tab } from "../app/state/methods";
+import { ROWS, type Row, windowRows } from "../app/takeAlong/tables";
 import type { Figure } from "../shared/figure";
 import { isVerifiedSet } from "../shared/proposed";
 import type { Selection } from "../shared/selection";
 import type { Method, StageName } from "../shared/stages";
 import { ImageRow } from "./ImageRow";
-import {
-  candidateRows,
-  clusterRows,
-  coplanarRows,
-  cornerRows,
-  denseRows,
-  directionRows,
-  facetRows,
-  groupRows,
-  lineRows,
-  type Row,
-  rectangleRows,
-  regionRows,
-  relationRows,
-  segmentRows,
-  similarityRows,
-  windowRows,
-} from "./takeAlong/tables";
 
 export interface Kind {
   /** The page's own figure, whose text and paper it has. */
@@ -46,7 +29,8 @@ export interface Kind {
   View: ComponentType<{ figure: Figure }>;
   /** What is picked until a reader picks. */
   begin: (figure: Figure) => Selection | null;
-  rows: (figure: Figure) => Row[];
+  /** The numbers behind it, where they are not those of its tab. */
+  rows?: (figure: Figure) => Row[];
 }
 
 const NOTHING = () => null;
@@ -56,35 +40,39 @@ function lab(
   method: Method,
   stage: StageName,
   View: Kind["View"],
-  rows: Kind["rows"],
   begin: Kind["begin"] = NOTHING,
 ): Kind {
-  return { tab, method, stage, View, rows, begin };
+  return { tab, method, stage, View, begin };
 }
 
 /** By the name that `kind` has in HTML. */
 export const KINDS = {
-  segments: lab("segments", "lines", "segments", withImages("segments"), segmentRows),
-  "epipolar-beam": lab("matches", "lines", "matches", Beam, candidateRows, longSegment),
-  "point-transfer": lab("matches", "lines", "matches", Transfer, candidateRows, longSegment),
-  "correlation-windows": lab("matches", "lines", "matches", PointLab, windowRows, longSegment),
-  "line-accuracy": lab("lines", "lines", "lines", LineLab, lineRows, bestLine),
-  "theta-sweep": lab("halfplanes", "lines", "halfplanes", SimLab, similarityRows, sharpestHalfPlane),
-  groups: lab("groups", "lines", "facets", GroupLab, groupRows, largestGroup),
-  "facet-plan": lab("facets", "lines", "facets", FacetLab, facetRows, firstFacet),
-  refinement: lab("refinement", "lines", "facets", RefinementLab, relationRows, busiestBuilding),
-  "dense-planes": lab("dense", "lines", "dense", DenseLab, denseRows, largestBuilding),
-  "coplanar-sets": lab("coplanar", "coplanar", "coplanar", CoplanarLab, coplanarRows, clearestSet),
-  adjacency: lab("adjacency", "adjacency", "adjacency", AdjacencyLab, cornerRows, richestCorner),
-  regions: lab("regions", "rectangles", "regions", withImages("regions"), regionRows),
-  "main-directions": lab("directions", "rectangles", "directions", Directions, directionRows),
-  clusters: lab("clusters", "rectangles", "clusters", ClusterLab, clusterRows),
-  rectangles: lab("rectangles", "rectangles", "rectangles", RectangleLab, rectangleRows),
+  segments: lab("segments", "lines", "segments", withImages("segments")),
+  "epipolar-beam": lab("matches", "lines", "matches", Beam, longSegment),
+  "point-transfer": lab("matches", "lines", "matches", Transfer, longSegment),
+  "correlation-windows": { ...lab("matches", "lines", "matches", PointLab, longSegment), rows: windowRows },
+  "line-accuracy": lab("lines", "lines", "lines", LineLab, bestLine),
+  "theta-sweep": lab("halfplanes", "lines", "halfplanes", SimLab, sharpestHalfPlane),
+  groups: lab("groups", "lines", "facets", GroupLab, largestGroup),
+  "facet-plan": lab("facets", "lines", "facets", FacetLab, firstFacet),
+  refinement: lab("refinement", "lines", "facets", RefinementLab, busiestBuilding),
+  "dense-planes": lab("dense", "lines", "dense", DenseLab, largestBuilding),
+  "coplanar-sets": lab("coplanar", "coplanar", "coplanar", CoplanarLab, clearestSet),
+  adjacency: lab("adjacency", "adjacency", "adjacency", AdjacencyLab, richestCorner),
+  regions: lab("regions", "rectangles", "regions", withImages("regions")),
+  "main-directions": lab("directions", "rectangles", "directions", Directions),
+  clusters: lab("clusters", "rectangles", "clusters", ClusterLab),
+  rectangles: lab("rectangles", "rectangles", "rectangles", RectangleLab),
 } as const satisfies Record<string, Kind>;
 
 export type KindName = keyof typeof KINDS;
 
 export const KIND_NAMES = Object.keys(KINDS) as readonly KindName[];
+
+/** The numbers behind a figure, a record a row. */
+export function rowsOf({ tab, rows = ROWS[tab] }: Kind, figure: Figure): Row[] {
+  return rows(figure);
+}
 
 export function kindOf(name: string | null): Kind | null {
   return KIND_NAMES.includes(name as KindName) ? KINDS[name as KindName] : null;

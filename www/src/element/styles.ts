@@ -5,6 +5,7 @@ import imagesCss from "../app/images/images.css?inline";
 import baseCss from "../app/parts/base.css?inline";
 import chartsCss from "../app/parts/charts.css?inline";
 import partsCss from "../app/parts/parts.css?inline";
+import takeAlongCss from "../app/takeAlong/takeAlong.css?inline";
 import elementCss from "./element.css?inline";
 
 const DARK = /:root\[data-theme="?dark"?\]\s*\{([^}]*)\}/;
@@ -27,7 +28,7 @@ let made: CSSStyleSheet | null = null;
 export function styleSheet(): CSSStyleSheet {
   if (made === null) {
     made = new CSSStyleSheet();
-    const all = [baseCss, partsCss, chartsCss, imagesCss, figuresCss, elementCss];
+    const all = [baseCss, partsCss, chartsCss, imagesCss, figuresCss, takeAlongCss, elementCss];
     made.replaceSync(all.map(forHost).join("\n"));
   }
   return made;

@@ -183,9 +183,9 @@ test("what is taken along is what it says: SVG with lines over photographs, PNG 
   );
   expect(size[0]).toBe(png.readUInt32BE(16));
 
-  const { rows, state, figure } = JSON.parse((await saved("JSON")).toString("utf8"));
+  const { rows, link, figure } = JSON.parse((await saved("JSON")).toString("utf8"));
   expect(figure).toBe("epipolar-beam");
-  expect(state.select).toMatch(/^segment:0\.\d+$/);
+  expect(decodeURIComponent(decodeURIComponent(link))).toMatch(/#figure1=select=segment:0\.\d+/);
   const lines = (await saved("CSV")).toString("utf8").trimEnd().split("\r\n");
   expect(lines).toHaveLength(rows.length + 1);
   expect(lines[0]?.split(",").slice(0, 4)).toEqual(["candidate", "view", "segment", "score"]);

@@ -6,6 +6,7 @@ import { Downloads } from "../project/Downloads";
 import { Parameters } from "../project/Parameters";
 import { Project } from "../project/Project";
 import { showsEntrance } from "../screen/opening";
+import { PageTakeAlong } from "../stages/PageTakeAlong";
 import { StageRail } from "../stages/StageRail";
 import { StageView } from "../stages/StageView";
 import { images } from "../state/scene";
@@ -29,6 +30,7 @@ export function Workbench() {
       </main>
       <aside class="column details" aria-label="Details">
         {lessonStep.value !== null ? <Lesson /> : images.value.length > 0 && <AboutFigure tab={tab.value} />}
+        {lessonStep.value === null && images.value.length > 0 && <PageTakeAlong />}
         <Comparison />
         <Inspector />
         <Parameters />

@@ -2,7 +2,7 @@
  * A figure as an SVG file, as it stands on the page: charts and marks as lines, text as text, photographs and windows as embedded
  * pictures; and the same as a PNG in print size. Controls are left out.
  */
-import { paintingOf } from "../../app/images/pen";
+import { paintingOf } from "../images/pen";
 import { at, escaped, hex, SvgPen } from "./svgPen";
 
 /** What a style sheet says of a chart, and a file has to say itself. */
@@ -25,7 +25,7 @@ const STYLES = [
   "visibility",
 ] as const;
 
-const CONTROLS = "input, select, summary, [data-control], .visually-hidden";
+const CONTROLS = "input, select, summary, .choice, .toolbar, [data-control], .visually-hidden";
 
 /** Of paper around what is drawn, CSS pixels. */
 const MARGIN = 12;
@@ -159,7 +159,8 @@ function pictureOf(canvas: HTMLCanvasElement, box: DOMRect, origin: Origin): str
 }
 
 function backgroundOf(style: CSSStyleDeclaration, box: DOMRect, origin: Origin): string {
-  const colour = style.backgroundColor;
+  // Of a gradient the first colour: swatches of dashed lines have one.
+  const colour = /rgba?\([^)]*\)/.exec(style.backgroundImage)?.[0] ?? style.backgroundColor;
   if (colour === "transparent" || /[,/]\s*0\)$/.test(colour)) {
     return "";
   }

@@ -1,6 +1,6 @@
 /** Whom to cite for a figure: the paper, and the section where it stands. */
-import { FIGURES } from "../../app/figures/AboutFigure";
-import type { Tab } from "../../app/state/methods";
+import { FIGURES } from "../figures/AboutFigure";
+import type { Tab } from "../state/methods";
 
 const PAPERS = {
   B99: (note: string) => `@inproceedings{Baillard1999,

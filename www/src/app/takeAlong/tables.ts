@@ -3,13 +3,49 @@ import type { Figure } from "../../shared/figure";
 import { isVerifiedSet } from "../../shared/proposed";
 import type { Vec3 } from "../../shared/records";
 import { likeliestClass } from "../../shared/surfaceClass";
+import type { Tab } from "../state/methods";
 
 export type Row = Record<string, string | number | boolean | null>;
+
+/** What each view of a stage shows as numbers. */
+export const ROWS: Record<Tab, (figure: Figure) => Row[]> = {
+  images: viewRows,
+  segments: segmentRows,
+  matches: candidateRows,
+  lines: lineRows,
+  halfplanes: similarityRows,
+  coplanar: coplanarRows,
+  adjacency: cornerRows,
+  dense: denseRows,
+  groups: groupRows,
+  facets: facetRows,
+  refinement: relationRows,
+  regions: regionRows,
+  directions: directionRows,
+  clusters: clusterRows,
+  rectangles: rectangleRows,
+  model: facetRows,
+};
 
 const degrees = (radians: number) => (radians * 180) / Math.PI;
 const nameOf = ({ scene }: Figure, view: number) => scene?.views[view]?.name ?? String(view);
 
-export function segmentRows(figure: Figure): Row[] {
+/** The cameras: centre, and the projection matrix row by row. */
+function viewRows({ scene }: Figure): Row[] {
+  return (scene?.views ?? []).map(({ name, width, height, center: [x, y, z], projection }) => ({
+    view: name,
+    width,
+    height,
+    x,
+    y,
+    z,
+    ...Object.fromEntries(
+      [...projection].map((value, i) => [`p${Math.floor(i / 4) + 1}${(i % 4) + 1}`, value]),
+    ),
+  }));
+}
+
+function segmentRows(figure: Figure): Row[] {
   return figure.results.segments.flatMap((own, view) =>
     Array.from({ length: own.length / 4 }, (_, segment): Row => {
       const [x0 = 0, y0 = 0, x1 = 0, y1 = 0] = own.subarray(4 * segment, 4 * segment + 4);
@@ -19,7 +55,7 @@ export function segmentRows(figure: Figure): Row[] {
 }
 
 /** Candidates of the picked segment, and where each predicts it in third views. */
-export function candidateRows(figure: Figure): Row[] {
+function candidateRows(figure: Figure): Row[] {
   const { story } = figure.detail;
   return (story?.candidates ?? []).flatMap(({ view, segment, score, line, predictions }, candidate) => {
     const own: Row = { candidate, view: nameOf(figure, view), segment, score, match: line };
@@ -46,7 +82,7 @@ export function windowRows({ detail: { correspondence } }: Figure): Row[] {
   }));
 }
 
-export function lineRows({ results: { records, lines } }: Figure): Row[] {
+function lineRows({ results: { records, lines } }: Figure): Row[] {
   return records.map(({ origin, probability, sigma_m, supports }, line) => ({
     line,
     origin,
@@ -58,7 +94,7 @@ export function lineRows({ results: { records, lines } }: Figure): Row[] {
 }
 
 /** Sim(theta) of the picked side, and of each view by itself. */
-export function similarityRows(figure: Figure): Row[] {
+function similarityRows(figure: Figure): Row[] {
   const { thetas, similarity, views } = figure.detail.side?.curve ?? {
     thetas: [],
     similarity: [],
@@ -71,7 +107,7 @@ export function similarityRows(figure: Figure): Row[] {
   }));
 }
 
-export function groupRows({ results: { grouping } }: Figure): Row[] {
+function groupRows({ results: { grouping } }: Figure): Row[] {
   return (grouping?.groups ?? []).map(({ plane, members }, group) => ({
     group,
     ...planeOf(plane),
@@ -81,7 +117,7 @@ export function groupRows({ results: { grouping } }: Figure): Row[] {
 }
 
 /** Corners of the facets, in their order. */
-export function facetRows({ results: { facets } }: Figure): Row[] {
+function facetRows({ results: { facets } }: Figure): Row[] {
   return (facets ?? []).flatMap(({ outer, plane, similarity, real_ratio, probability }, facet) =>
     outer.map(([x, y, z], corner) => ({
       facet,
@@ -97,13 +133,13 @@ export function facetRows({ results: { facets } }: Figure): Row[] {
   );
 }
 
-export function relationRows({ results: { refinement } }: Figure): Row[] {
+function relationRows({ results: { refinement } }: Figure): Row[] {
   return (refinement?.trace.buildings ?? []).flatMap(({ relations }, building) =>
     relations.map(({ kind, deviation_m, chi2, adopted }) => ({ building, kind, deviation_m, chi2, adopted })),
   );
 }
 
-export function denseRows({ results: { dense } }: Figure): Row[] {
+function denseRows({ results: { dense } }: Figure): Row[] {
   return (dense?.planes ?? []).map(({ plane, patches, ...of }, index) => ({
     plane: index,
     ...planeOf(plane),
@@ -113,7 +149,7 @@ export function denseRows({ results: { dense } }: Figure): Row[] {
   }));
 }
 
-export function coplanarRows({ results: { coplanar } }: Figure): Row[] {
+function coplanarRows({ results: { coplanar } }: Figure): Row[] {
   return (coplanar?.sets ?? []).flatMap((set, index) =>
     set.polygon.map(([x, y, z], corner) => ({
       set: index,
@@ -130,7 +166,7 @@ export function coplanarRows({ results: { coplanar } }: Figure): Row[] {
   );
 }
 
-export function cornerRows({ results: { adjacency } }: Figure): Row[] {
+function cornerRows({ results: { adjacency } }: Figure): Row[] {
   return (adjacency?.trace.corners ?? []).map(({ at: [x, y, z], images, edges }, corner) => ({
     corner,
     x,
@@ -141,7 +177,7 @@ export function cornerRows({ results: { adjacency } }: Figure): Row[] {
   }));
 }
 
-export function regionRows(figure: Figure): Row[] {
+function regionRows(figure: Figure): Row[] {
   return figure.results.regions.flatMap(({ regions }, view) =>
     regions.map(({ mean, rings }, region) => ({
       view: nameOf(figure, view),
@@ -153,7 +189,7 @@ export function regionRows(figure: Figure): Row[] {
 }
 
 /** The histogram of azimuths of the building that is shown. */
-export function directionRows({ results: { directions }, plane }: Figure): Row[] {
+function directionRows({ results: { directions }, plane }: Figure): Row[] {
   const found = directions?.trace.histograms[plane];
   return (found?.histogram ?? []).map((weight, bin) => ({
     azimuth_deg: (bin + 0.5) * (found?.bin_deg ?? 1),
@@ -161,7 +197,7 @@ export function directionRows({ results: { directions }, plane }: Figure): Row[]
   }));
 }
 
-export function clusterRows({ results: { clusters }, plane }: Figure): Row[] {
+function clusterRows({ results: { clusters }, plane }: Figure): Row[] {
   const trace = clusters?.[plane];
   const rows = (of: NonNullable<typeof trace>["selected"], selected: boolean) =>
     of.map(([[across_m, height_m], gain_bit]) => ({ across_m, height_m, gain_bit, selected }));
@@ -178,7 +214,7 @@ export function clusterRows({ results: { clusters }, plane }: Figure): Row[] {
       ];
 }
 
-export function rectangleRows({ results: { rectangles } }: Figure): Row[] {
+function rectangleRows({ results: { rectangles } }: Figure): Row[] {
   return (rectangles?.pairs ?? []).map(({ lines: [first, second], rejection, crossings, ends: found }) => ({
     first,
     second,

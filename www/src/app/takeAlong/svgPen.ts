@@ -1,5 +1,5 @@
 /** Draws a picture into an SVG file: the photograph as a JPEG, and lines as lines. */
-import { type Fill, fontOf, type Pen, type PenPath, type Stroke, type Window } from "../../app/images/pen";
+import { type Fill, fontOf, type Pen, type PenPath, type Stroke, type Window } from "../images/pen";
 
 /** So many pixels of a photograph are embedded at most, along a side. */
 const MOST_PX = 2400;

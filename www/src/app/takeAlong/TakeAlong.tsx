@@ -1,19 +1,19 @@
 /** What a reader can take along: the figure as a picture, its numbers, its paper, and a link to its state. */
+import "./takeAlong.css";
 import { useState } from "preact/hooks";
-import { FIGURES } from "../app/figures/AboutFigure";
-import { saveFile } from "../app/parts/saveFile";
-import type { Figure } from "../shared/figure";
-import type { FigureState } from "./figureState";
-import type { Kind } from "./kinds";
-import { citationOf } from "./takeAlong/citation";
-import { pngOf, svgOf } from "./takeAlong/pictures";
-import { csvOf } from "./takeAlong/tables";
+import { FIGURES } from "../figures/AboutFigure";
+import { saveFile } from "../parts/saveFile";
+import type { Tab } from "../state/methods";
+import { citationOf } from "./citation";
+import { pngOf, svgOf } from "./pictures";
+import { csvOf, type Row } from "./tables";
 
 interface Props {
-  kind: Kind;
+  tab: Tab;
+  /** Of the files. */
   name: string;
-  figure: Figure;
-  state: FigureState;
+  /** The numbers behind it. */
+  rows: () => Row[];
   /** What is drawn. */
   body: () => HTMLElement | null;
   /** The address that opens the figure as it is. */
@@ -23,9 +23,9 @@ interface Props {
 /** What is shown below the buttons to be copied. */
 type Shown = { label: string; text: string } | null;
 
-export function TakeAlong({ kind, name, figure, state, body, link }: Props) {
+export function TakeAlong({ tab, name, rows, body, link }: Props) {
   const [shown, show] = useState<Shown>(null);
-  const { title } = FIGURES[kind.tab];
+  const { title } = FIGURES[tab];
   const svg = () => {
     const root = body();
     return root === null ? null : svgOf(root, title);
@@ -41,7 +41,7 @@ export function TakeAlong({ kind, name, figure, state, body, link }: Props) {
       save("png", "image/png", await pngOf(drawn));
     }
   };
-  const data = () => JSON.stringify({ figure: name, state, rows: kind.rows(figure) }, null, 1);
+  const data = () => JSON.stringify({ figure: name, link: link(), rows: rows() }, null, 1);
   return (
     <details class="take">
       <summary>Take along</summary>
@@ -52,13 +52,13 @@ export function TakeAlong({ kind, name, figure, state, body, link }: Props) {
         <button type="button" onClick={() => void savePng()}>
           PNG
         </button>
-        <button type="button" onClick={() => save("csv", "text/csv", csvOf(kind.rows(figure)))}>
+        <button type="button" onClick={() => save("csv", "text/csv", csvOf(rows()))}>
           CSV
         </button>
         <button type="button" onClick={() => save("json", "application/json", data())}>
           JSON
         </button>
-        <button type="button" onClick={() => show({ label: "BibTeX", text: citationOf(kind.tab) })}>
+        <button type="button" onClick={() => show({ label: "BibTeX", text: citationOf(tab) })}>
           Cite
         </button>
         <button type="button" onClick={() => show({ label: "Link", text: link() })}>
