@@ -1,5 +1,5 @@
-// Builds <ridgeline-figure> for the npm package: figure.js with its worker beside it, and anywidget.js, one module that holds its
-// worker. The core is not bundled: it stays beside them, in dist/pkg. Fails where the element is larger than it may be.
+// Builds the elements of the npm package: figure.js with its worker beside it, anywidget.js, one module that holds its worker, and
+// exercise.js. The core is not bundled: it stays beside them, in dist/pkg. Fails where the element is larger than it may be.
 import { readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -51,6 +51,7 @@ export async function buildElement(outDir) {
   const worker = await bundle("src/worker/main.ts", "worker.js", outDir);
   const figure = await bundle("src/element/figure.ts", "figure.js", outDir);
   await bundle("src/element/anywidget.ts", "anywidget.js", outDir, { __WORKER__: JSON.stringify(worker) });
+  await bundle("src/exercise/exercise.ts", "exercise.js", outDir);
   const size = gzipSync(figure, { level: 9 }).length;
   console.log(`figure.js: ${(size / 1000).toFixed(1)} kB (gzip)`);
   if (size > MOST_GZIP) {

@@ -2,13 +2,14 @@
 import { copyFileSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { expect, type Locator, type Page, test } from "@playwright/test";
+import type { RidgelineExercise as Exercise } from "../../package/types/exercise";
 import type { RidgelineFigure as Figure } from "../../package/types/figure";
 import { type PackedProject, packedProject, WWW } from "./packed";
 
 let packed: PackedProject;
 
 test.beforeAll(async () => {
-  packed = await packedProject(["figures.html", "slides.html"], ["reveal.js"]);
+  packed = await packedProject(["figures.html", "slides.html", "exercises.html"], ["reveal.js"]);
   copyFileSync(join(WWW, "test/fixtures/widget.html"), join(packed.folder, "widget.html"));
 });
 
@@ -211,16 +212,13 @@ test("axe finds nothing in light and dark, and nothing is wider than a phone or 
     papers.push(await paperOf(figures.first()));
     for (const width of [320, 1000, 1920]) {
       await page.setViewportSize({ width, height: 900 });
-      await page.waitForTimeout(400);
-      const overflow = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
-      expect(overflow, `${width} px`).toBeLessThanOrEqual(0);
+      await expect
+        .poll(() => page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth), {
+          message: `${width} px`,
+        })
+        .toBeLessThanOrEqual(0);
+      expect(await axeFindings(page), `${colorScheme}, ${width} px`).toEqual([]);
     }
-    const findings = await page.evaluate(async () => {
-      const axe = (window as unknown as { axe: { run(of: Element[]): Promise<AxeResult> } }).axe;
-      const { violations } = await axe.run([...document.querySelectorAll("ridgeline-figure")]);
-      return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join(" | ")}`);
-    });
-    expect(findings, colorScheme).toEqual([]);
   }
   expect(papers[0]).not.toBe(papers[1]);
   // What the author says goes before what the system prefers, and so do colours of the page.
@@ -229,6 +227,16 @@ test("axe finds nothing in light and dark, and nothing is wider than a phone or 
   await page.addStyleTag({ content: "ridgeline-figure { --paper: rgb(1, 2, 3) }" });
   expect(await paperOf(figures.first())).toBe("rgb(1, 2, 3)");
 });
+
+/** What axe finds in the elements of the package, shadow trees and all. */
+function axeFindings(page: Page): Promise<string[]> {
+  return page.evaluate(async () => {
+    const axe = (window as unknown as { axe: { run(of: Element[]): Promise<AxeResult> } }).axe;
+    const own = [...document.querySelectorAll("ridgeline-figure, ridgeline-exercise")];
+    const { violations } = await axe.run(own);
+    return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join(" | ")}`);
+  });
+}
 
 interface AxeResult {
   violations: { id: string; nodes: { html: string }[] }[];
@@ -325,4 +333,71 @@ test("says what is wrong: an unknown kind, a scene that is not there, a file tha
   });
   await ready(first);
   await expect(first.locator(".image-view canvas")).toBeVisible();
+});
+
+test("exercises: right, a named mistake, a wrong form, an error with its line, a loop without end", async ({
+  page,
+}) => {
+  const problems = await open(page, "exercises.html");
+  const exercise = page.locator("ridgeline-exercise[name=triangulate]");
+  const editor = exercise.getByRole("textbox", { name: /function triangulate/ });
+  const status = exercise.getByRole("status");
+  const check = exercise.getByRole("button", { name: "Check" });
+  await page.evaluate(() => {
+    const checked: unknown[] = [];
+    Object.assign(window, { checked });
+    document.addEventListener("ridgeline-checked", ({ detail }) => checked.push(detail));
+  });
+
+  await check.click();
+  await expect(status).toContainText("Return 3 numbers; this is [].");
+
+  await exercise.getByText("A solution").click();
+  await exercise.getByRole("button", { name: "Take it" }).click();
+  // As a person writes: the keyboard alone.
+  await editor.press("Control+Enter");
+  await expect(status).toContainText("Right, in all of 24 planted configurations.");
+
+  const solution = await exercise.evaluate((element: Exercise) => element.code);
+  const write = (code: string) =>
+    exercise.evaluate((element: Exercise, text) => {
+      element.code = text;
+    }, code);
+  await write(solution.replace("at[k] * v - M", "(at[k] + 0.5) * v - M"));
+  await check.click();
+  await expect(status).toContainText("half a pixel");
+
+  await write(`function triangulate(P) {\n  console.log("rows", P.length);\n  return missing;\n}`);
+  await check.click();
+  await expect(status).toContainText("Line 3: ReferenceError: missing is not defined");
+  await expect(status).toContainText("rows 3");
+
+  await write("function triangulate(P {\n  return 1;\n}");
+  await check.click();
+  await expect(status).toContainText(/Line 1: .*SyntaxError/);
+
+  await write("function triangulate() {\n  for (;;);\n}");
+  await check.click();
+  await expect(status).toContainText("No answer after 2 s");
+
+  // Nothing of the page or the network is in its reach.
+  await write("function triangulate() {\n  return [typeof fetch, typeof document, typeof importScripts];\n}");
+  await check.click();
+  await expect(status).toContainText('["undefined","undefined","undefined"]');
+
+  const checked = await page.evaluate(() => (window as unknown as { checked: unknown[] }).checked);
+  expect(checked.slice(0, 3)).toEqual([
+    { name: "triangulate", right: false, mistake: null },
+    { name: "triangulate", right: true, mistake: null },
+    { name: "triangulate", right: false, mistake: "half a pixel" },
+  ]);
+  await page.addScriptTag({ path: join(WWW, "node_modules/axe-core/axe.min.js") });
+  for (const colorScheme of ["light", "dark"] as const) {
+    await page.emulateMedia({ colorScheme });
+    expect(await axeFindings(page), colorScheme).toEqual([]);
+  }
+  await page.setViewportSize({ width: 320, height: 800 });
+  await page.screenshot({ path: test.info().outputPath("exercises.png"), fullPage: true });
+  expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(320);
+  expect(problems).toEqual([]);
 });

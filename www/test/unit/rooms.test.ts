@@ -53,12 +53,14 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
     ],
     ["element"],
   ),
+  ...floors(["element"], ["exercise/judging", "exercise/tasks", "exercise"]),
 };
 
 /** What the package's exports and workers start from. */
 const PACKAGE_ENTRIES = [
   ...["browser", "browserWorker", "node", "nodeWorker"].map((name) => `package/${name}.ts`),
   ...["figure", "anywidget"].map((name) => `element/${name}.ts`),
+  "exercise/exercise.ts",
 ];
 
 /** So many files are found at a glance. */

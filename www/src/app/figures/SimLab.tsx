@@ -169,7 +169,8 @@ function scaled({ density, plane }: SideTrace["curve"]["posterior"]): number[] {
 /** The reference first, then every other view under H(theta), with its own Sim at this angle. */
 function Windows({ figure, picture: { about, rgba }, side }: OfSide & { picture: WarpedPicture }) {
   return (
-    <ul class="windows" data-testid="windows">
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls is reached by key
+    <ul class="windows" data-testid="windows" tabIndex={0} aria-label="Warped views">
       {about.views.map(({ view, similarity, valid }, i) => {
         const place = side.curve.views.findIndex((one) => one.view === view);
         return (

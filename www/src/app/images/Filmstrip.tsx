@@ -27,7 +27,8 @@ export function Filmstrip({ figure, unpicked = null }: { figure: Figure; unpicke
     return <p class="lab-hint muted">Pick something: it lights up here in every view that shows it.</p>;
   }
   return (
-    <ul class="filmstrip" data-testid="filmstrip">
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls is reached by key
+    <ul class="filmstrip" data-testid="filmstrip" tabIndex={0} aria-label="The selection in the views">
       {shown.map(({ info: { name }, view, marks }) => (
         <li key={view}>
           <Picture image={figure.images[view]} name={name} marks={marks} />
