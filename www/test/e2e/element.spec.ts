@@ -210,8 +210,14 @@ test("axe finds nothing in light and dark, and nothing is wider than a phone or 
   for (const colorScheme of ["light", "dark"] as const) {
     await page.emulateMedia({ colorScheme });
     papers.push(await paperOf(figures.first()));
-    for (const width of [320, 1000, 1920]) {
+    for (const [width, layout] of [
+      [320, "phone"],
+      [1000, "wide"],
+      [1920, "wide"],
+    ] as const) {
       await page.setViewportSize({ width, height: 900 });
+      await expect(figures.last().locator(".frame")).toHaveAttribute("data-layout", layout);
+      await expect(figures.first().locator(".frame")).toHaveAttribute("data-layout", layout);
       await expect
         .poll(() => page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth), {
           message: `${width} px`,
@@ -346,7 +352,7 @@ test("exercises: right, a named mistake, a wrong form, an error with its line, a
   await page.evaluate(() => {
     const checked: unknown[] = [];
     Object.assign(window, { checked });
-    document.addEventListener("ridgeline-checked", ({ detail }) => checked.push(detail));
+    document.addEventListener("ridgeline-checked", (event) => checked.push((event as CustomEvent).detail));
   });
 
   await check.click();
