@@ -25,7 +25,7 @@ export const fundamentalFromProjections: Exercise<Input, Matrix> = {
   name: "fundamentalFromProjections",
   title: "The fundamental matrix of two views",
   source: "B99 3.1",
-  text: "Given the 3 × 4 projections P and P′ of two views, return the 3 × 3 matrix F with x′ᵀ F x = 0 for all points x of the first view and x′ of the second that show the same point in space. Its scale is free. (C with P C = 0 is the first centre, e′ = P′ C the epipole, and P⁺ the pseudo-inverse of P.)",
+  text: "Given the 3 × 4 projections P and P′ of two views, return the 3 × 3 matrix F with x′ᵀ F x = 0 for all points x of the one view and x′ of the other that show the same point in space. Its scale is free. (C with P C = 0 is the first centre, e′ = P′ C the epipole, and P⁺ the pseudo-inverse of P.)",
   starter: `/** @param {number[][]} P  3 rows of 4; Q is P'. */
 function fundamentalFromProjections(P, Q) {
   // Three rows of three numbers.
@@ -74,7 +74,7 @@ function fundamentalFromProjections(P, Q) {
   mistakes: [
     {
       name: "transposed",
-      says: "This is Fᵀ: it holds for xᵀ F x′ = 0. Here x of the first view stands on the right, so that F x is a line of the second.",
+      says: "This is Fᵀ: it holds for xᵀ F x′ = 0. Here x, of the view of P, stands on the right, so that F x is a line of the view of P′.",
       variants: [(p, q) => transposed(fundamental(p, q))],
     },
     {
@@ -109,7 +109,7 @@ function fundamentalFromProjections(P, Q) {
     },
     {
       name: "everything is zero",
-      says: "P′ C′ is zero: the centre of a view has no image in that view itself. Take C of the first view.",
+      says: "P′ C′ is zero: the centre of a view has no image in that view itself. Take C, the centre of P.",
       variants: [
         () => [
           [0, 0, 0],

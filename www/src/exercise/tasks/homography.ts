@@ -134,7 +134,7 @@ function homographyOfPlane(K, L, R, t, n, d) {
     },
     {
       name: "cameras exchanged",
-      says: "K and K′ have changed places: K⁻¹ is the first view's and stands on the right, K′ the second's.",
+      says: "K and K′ have changed places: K⁻¹ stands on the right, where pixels of the first photograph come in, and K′ on the left.",
       variants: [(k, l, ...of) => homography(l, k, ...of)],
     },
     {
