@@ -30,6 +30,7 @@ export function ImageRow({ figure, tab, views, follows = false }: Props) {
               selection={selection}
               marks={marksOf(selection, view, figure)}
               follows={follows}
+              inText={figure.inText}
               onPick={act.select}
             />
           )

@@ -105,6 +105,7 @@ export class FigureStore {
       detail: this.#detail.value,
       view: this.#view.value ?? 0,
       plane: this.#plane.value,
+      inText: true,
       act: this.#actions,
     };
   });

@@ -127,6 +127,8 @@ export interface Figure {
   view: number;
   /** Which cluster plane, or histogram, of the rectangles method is shown. */
   plane: number;
+  /** Whether it stands in a text that scrolls: the wheel is then the text's until a photograph has the focus. */
+  inText: boolean;
   act: FigureActions;
 }
 

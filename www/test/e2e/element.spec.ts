@@ -94,6 +94,19 @@ test("attributes and properties turn a figure, and it tells what a reader does, 
 
   const beam = page.locator("ridgeline-figure").first();
   await ready(beam);
+  // The wheel moves the text, until a photograph has the focus.
+  const photograph = beam.locator(".image-view").first();
+  const scale = photograph.locator("figcaption");
+  await photograph.hover();
+  const scaled = await scale.textContent();
+  await page.evaluate(() => window.scrollTo(0, 0));
+  await page.mouse.wheel(0, 60);
+  await expect.poll(() => page.evaluate(() => window.scrollY)).toBeGreaterThan(20);
+  await expect(scale).toHaveText(scaled ?? "");
+  await photograph.locator("canvas").focus();
+  await photograph.hover();
+  await page.mouse.wheel(0, -200);
+  await expect(scale).not.toHaveText(scaled ?? "");
   await beam.getByRole("slider").press("Home");
   await expect.poll(async () => (await stateOf(beam)).point).toEqual([0, 0]);
   // By Tab alone, from the slider to what can be taken along.

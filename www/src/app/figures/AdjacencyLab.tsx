@@ -35,6 +35,7 @@ export function AdjacencyLab({ figure }: { figure: Figure }) {
           selection={selection}
           marks={marksOf(selection, view, figure)}
           follows={false}
+          inText={figure.inText}
           onPick={act.select}
         />
       </div>

@@ -31,6 +31,8 @@ interface Props {
   marks: readonly Mark[];
   /** Zooms to the marks until the reader moves the image. */
   follows: boolean;
+  /** See `Figure`. */
+  inText: boolean;
   onPick: (selection: Selection | null) => void;
 }
 
@@ -40,7 +42,17 @@ const PICK_REACH_PX = 8;
 /** A finger hides what it points at. */
 const TOUCH_REACH_PX = 18;
 
-export function ImageCanvas({ view, name, image, overlay, selection, marks, follows, onPick }: Props) {
+export function ImageCanvas({
+  view,
+  name,
+  image,
+  overlay,
+  selection,
+  marks,
+  follows,
+  inText,
+  onPick,
+}: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   void textScale.value;
   const [box, setBox] = useState<Size>({ width: 0, height: 0 });
@@ -72,6 +84,9 @@ export function ImageCanvas({ view, name, image, overlay, selection, marks, foll
 
   const zoom = (at: Point, factor: number) => setMoved(zoomAt(viewport, at, factor, fitted.scale * 0.5));
   const onWheel = (event: WheelEvent) => {
+    if (inText && !event.ctrlKey && !event.metaKey && !canvas.current?.matches(":focus")) {
+      return;
+    }
     event.preventDefault();
     zoom({ x: event.offsetX, y: event.offsetY }, 1.0015 ** -event.deltaY);
   };

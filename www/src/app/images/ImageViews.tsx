@@ -37,6 +37,7 @@ export function ImageViews({ figure, empty }: { figure: Figure; empty: Component
             selection={selection}
             marks={marksOf(selection, view, figure)}
             follows={followsSelection.value && shown.length > 1}
+            inText={figure.inText}
             onPick={act.select}
           />
         ))}

@@ -86,6 +86,7 @@ export function pageFigure(): Figure {
     detail: selectionDetail.value,
     view: shownView.value,
     plane: shownPlane.value,
+    inText: false,
     act: ACTIONS,
   };
 }

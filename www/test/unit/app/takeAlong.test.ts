@@ -111,6 +111,7 @@ describe("the numbers behind a figure", () => {
       detail: NO_DETAIL,
       view: 0,
       plane: 0,
+      inText: true,
     } as unknown as Figure;
     for (const rows of Object.values(ROWS)) {
       expect(rows(empty)).toEqual([]);
