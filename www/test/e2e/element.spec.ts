@@ -189,11 +189,11 @@ test("what is taken along is what it says: SVG with lines over photographs, PNG 
   const density = png.indexOf("pHYs");
   expect(Math.round(png.readUInt32BE(density + 4) * 0.0254)).toBe(300);
   const size = await page.evaluate(
-    async (bytes) => {
-      const bitmap = await createImageBitmap(new Blob([new Uint8Array(bytes)], { type: "image/png" }));
+    async (address) => {
+      const bitmap = await createImageBitmap(await (await fetch(address)).blob());
       return [bitmap.width, bitmap.height];
     },
-    [...png],
+    `data:image/png;base64,${png.toString("base64")}`,
   );
   expect(size[0]).toBe(png.readUInt32BE(16));
 

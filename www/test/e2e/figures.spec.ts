@@ -173,6 +173,8 @@ test("what a tab shows is taken along: as an SVG file with its photographs, and 
   const rows = (await saved("CSV")).trimEnd().split("\r\n");
   expect(new Set(rows.slice(1).map((row) => row.split(",")[0])).size).toBe(candidates);
   await openTab(page, "Facets");
+  // Tints are styles of single elements, which a file has to say itself.
+  expect(await saved("SVG")).toMatch(/<path[^>]* fill="#[0-9a-f]{6}"/);
   expect((await saved("CSV")).split("\r\n")[0]).toMatch(/^facet,corner,x,y,z,/);
   await panel.getByRole("button", { name: "Cite" }).click();
   await expect(panel.getByRole("textbox", { name: "BibTeX" })).toHaveValue(/Section 4\.3, figures 21 to 23/);

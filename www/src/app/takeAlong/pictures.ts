@@ -150,7 +150,7 @@ function chartOf(chart: SVGSVGElement, box: DOMRect, origin: Origin): string {
 function pictureOf(canvas: HTMLCanvasElement, box: DOMRect, origin: Origin): string {
   const painting = paintingOf(canvas);
   if (painting === undefined) {
-    return `<image ${frameOf(box, origin)} preserveAspectRatio="none" style="image-rendering:pixelated" href="${canvas.toDataURL("image/png")}"/>`;
+    return `<image ${frameOf(box, origin)} preserveAspectRatio="none" image-rendering="pixelated" href="${canvas.toDataURL("image/png")}"/>`;
   }
   const pen = new SvgPen(painting.window);
   painting.draw(pen, painting.window);
