@@ -1,9 +1,10 @@
-// The npm package: compiles src/package, puts the wasm core beside it and packs both.
+// The npm package: compiles src/package, builds the element, puts the wasm core and the demo scene beside them and packs all.
 // Prints the tarball's path. The core is the one in src/pkg (make build for the smallest).
 import { execFileSync } from "node:child_process";
 import { cpSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { buildElement } from "./element.mjs";
 
 const www = join(dirname(fileURLToPath(import.meta.url)), "..");
 const folder = join(www, "package");
@@ -17,6 +18,8 @@ rmSync(join(folder, "dist"), { recursive: true, force: true });
 execFileSync(join(www, "node_modules/.bin/tsc"), ["-p", join(www, "tsconfig.package.json")], {
   stdio: "inherit",
 });
+await buildElement(join(folder, "dist/element"));
+cpSync(join(www, "public/demo"), join(folder, "dist/demo"), { recursive: true });
 cpSync(join(www, "src/pkg"), join(folder, "dist/pkg"), { recursive: true });
 rmSync(join(folder, "dist/pkg/.gitignore"), { force: true });
 // The class of the core can be disposed of: projects for older targets do not know the name.

@@ -1,50 +1,22 @@
 /** The npm package, installed from its tarball into an empty project. */
 import { execFileSync, spawnSync } from "node:child_process";
-import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { createServer, type Server } from "node:http";
-import type { AddressInfo } from "node:net";
-import { tmpdir } from "node:os";
-import { extname, join, normalize } from "node:path";
-import { fileURLToPath } from "node:url";
+import { readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { expect, test } from "@playwright/test";
 import { demoImages, demoOrientation } from "./helpers";
+import { type PackedProject, packedProject, WWW } from "./packed";
 
-const WWW = fileURLToPath(new URL("../..", import.meta.url));
 const DEMO = join(WWW, "public/demo");
-const TYPES: Readonly<Record<string, string>> = {
-  ".html": "text/html",
-  ".js": "text/javascript",
-  ".wasm": "application/wasm",
-};
 
+let packed: PackedProject;
 let project = "";
-let server: Server;
 
-test.beforeAll(() => {
-  const printed = execFileSync("node", ["scripts/package.mjs"], { cwd: WWW, encoding: "utf8" });
-  const tarball = printed.trim().split("\n").at(-1) as string;
-  project = mkdtempSync(join(tmpdir(), "ridgeline-package-"));
-  writeFileSync(join(project, "package.json"), JSON.stringify({ type: "module", private: true }));
-  execFileSync("npm", ["install", "--offline", "--no-audit", "--no-fund", tarball], { cwd: project });
-  const page = "browser.html";
-  copyFileSync(join(project, "node_modules/ridgeline/examples", page), join(project, page));
-  server = createServer((request, response) => {
-    const path = normalize(new URL(request.url ?? "/", "http://localhost").pathname);
-    try {
-      const body = readFileSync(join(project, path));
-      response
-        .writeHead(200, { "content-type": TYPES[extname(path)] ?? "application/octet-stream" })
-        .end(body);
-    } catch {
-      response.writeHead(404).end();
-    }
-  }).listen(0, "127.0.0.1");
+test.beforeAll(async () => {
+  packed = await packedProject(["browser.html"]);
+  project = packed.folder;
 });
 
-test.afterAll(() => {
-  server.close();
-  rmSync(project, { recursive: true, force: true });
-});
+test.afterAll(() => packed.close());
 
 test("reconstructs the demo scene in Node", () => {
   const example = join(project, "node_modules/ridgeline/examples/node.mjs");
@@ -74,8 +46,7 @@ test("rejects what is no scene, and can be cancelled, in Node", () => {
 });
 
 test("reconstructs the demo scene in Chromium", async ({ page }) => {
-  const { port } = server.address() as AddressInfo;
-  await page.goto(`http://127.0.0.1:${port}/browser.html`);
+  await page.goto(`${packed.address}browser.html`);
   await page.setInputFiles("input", [...demoImages(6), ...demoOrientation()]);
   await expect(page.locator("output")).toContainText(/\d{2,} facets, \d+ files/, { timeout: 140_000 });
 });
@@ -86,7 +57,13 @@ test("has types that a strict project takes", () => {
     `import { createWorker, type Reconstruction } from "ridgeline";
      const result: Reconstruction = await createWorker().reconstruct([]);
      export const bytes: Uint8Array | undefined = result.files.get("model.glb");
-     export const slope: number | undefined = result.facets[0]?.plane.normal[2];`,
+     export const slope: number | undefined = result.facets[0]?.plane.normal[2];
+     import "ridgeline/figure";
+     import widget from "ridgeline/anywidget";
+     const figure = document.createElement("ridgeline-figure");
+     figure.state = { theta: 12 };
+     figure.addEventListener("ridgeline-state", ({ detail }) => console.log(detail.theta?.toFixed(1)));
+     export const draw: Function = widget.render;`,
   );
   const options = [
     "--noEmit",

@@ -1,5 +1,5 @@
 import { readdirSync, readFileSync } from "node:fs";
-import { dirname, join, relative } from "node:path";
+import { basename, dirname, join, relative } from "node:path";
 import { fileURLToPath } from "node:url";
 import { describe, expect, it } from "vitest";
 
@@ -32,18 +32,36 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
       "app/images",
       "app/space",
       "app/figures",
+      "app/takeAlong",
       "app/tour",
       "app/stages",
       "app/entrance",
       "app/shell",
     ],
   ),
+  ...floors(
+    [
+      "shared",
+      "core",
+      "app/state",
+      "app/parts",
+      "app/session",
+      "app/selection",
+      "app/images",
+      "app/figures",
+      "app/takeAlong",
+    ],
+    ["element"],
+  ),
+  ...floors(["element"], ["exercise/judging", "exercise/tasks", "exercise"]),
 };
 
 /** What the package's exports and workers start from. */
-const PACKAGE_ENTRIES = ["browser", "browserWorker", "node", "nodeWorker"].map(
-  (name) => `package/${name}.ts`,
-);
+const PACKAGE_ENTRIES = [
+  ...["browser", "browserWorker", "node", "nodeWorker"].map((name) => `package/${name}.ts`),
+  ...["figure", "anywidget"].map((name) => `element/${name}.ts`),
+  "exercise/exercise.ts",
+];
 
 /** So many files are found at a glance. */
 const MOST_FILES = 15;
@@ -150,6 +168,40 @@ describe("the rooms of the page", () => {
     expect(beyond).toEqual([]);
   });
 });
+
+describe("figures in other pages", () => {
+  it("hold nothing of the page's state but the size of text, and nothing that draws space", () => {
+    const reached = new Set<string>();
+    const walk = (path: string) => {
+      if (!reached.has(path)) {
+        reached.add(path);
+        const text = readFileSync(join(SOURCES, path), "utf8");
+        imports
+          .get(path)
+          ?.filter((named) => isRunning(text, basename(named).replace(/\.tsx?$/, "")))
+          .forEach(walk);
+      }
+    };
+    walk("element/figure.ts");
+    expect(reached).toContain("app/figures/SimLab.tsx");
+    const held = [...reached].filter((path) => /^app\/(state|session|project|space|shell)\//.test(path));
+    expect(held.sort()).toEqual([
+      "app/session/stageCatalogue.ts",
+      "app/session/stageResults.ts",
+      "app/state/textScale.ts",
+    ]);
+    const drawing = [...reached].filter((path) =>
+      /from "three"/.test(readFileSync(join(SOURCES, path), "utf8")),
+    );
+    expect(drawing).toEqual([]);
+  });
+});
+
+/** Whether a module of this name is imported for more than its types. */
+function isRunning(text: string, name: string): boolean {
+  const all = [...text.matchAll(/^(?:import|export) (type )?[^;]*"\.[^"]*\/(\w+)"/gm)];
+  return all.some(([, isType, named]) => named === name && isType === undefined);
+}
 
 describe("the page's state", () => {
   it("can be written only by the module that holds it", () => {

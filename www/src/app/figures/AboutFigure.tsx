@@ -2,9 +2,8 @@
 import "./figures.css";
 import type { ComponentChildren } from "preact";
 import type { Tab } from "../state/methods";
-import { tab } from "../state/viewState";
 
-interface Figure {
+export interface FigureText {
   title: string;
   /** Paper, section and figures. */
   source: string;
@@ -36,7 +35,7 @@ const Sim = () => (
   </mrow>
 );
 
-const FIGURES: Record<Tab, Figure> = {
+export const FIGURES: Record<Tab, FigureText> = {
   images: {
     title: "Views",
     source: "B99 2, figure 1; W96 3.2",
@@ -526,8 +525,8 @@ const FIGURES: Record<Tab, Figure> = {
   },
 };
 
-export function AboutFigure() {
-  const { title, source, text, equation, hint } = FIGURES[tab.value];
+export function AboutFigure({ tab }: { tab: Tab }) {
+  const { title, source, text, equation, hint } = FIGURES[tab];
   return (
     <details class="panel about" open data-testid="about">
       <summary>

@@ -1,18 +1,17 @@
 /** B99 2 (Bonn): the adjacency graph over an image; a corner that is picked there lights up in the other views and in space. */
 import "./figures.css";
+import type { Figure } from "../../shared/figure";
 import { Filmstrip } from "../images/Filmstrip";
 import { graphOverlay } from "../images/graphOverlay";
 import { ImageCanvas } from "../images/ImageCanvas";
-import { ViewPicker } from "../images/ImageViews";
 import { marksOf } from "../images/selectionMarks";
-import { results } from "../state/results";
-import { images, scene } from "../state/scene";
-import { select, selection, shownView } from "../state/viewState";
+import { ViewPicker } from "../images/ViewPicker";
 
-export function AdjacencyLab() {
-  const { adjacency } = results.value;
-  const view = Math.max(0, shownView.value);
-  const image = images.value[view];
+export function AdjacencyLab({ figure }: { figure: Figure }) {
+  const { scene, images, selection, results, act } = figure;
+  const { adjacency } = results;
+  const view = Math.max(0, figure.view);
+  const image = images[view];
   if (adjacency === null || image === undefined) {
     return <p class="lab-hint muted">Run the stage: corners, edges and regions of each image appear here.</p>;
   }
@@ -27,19 +26,20 @@ export function AdjacencyLab() {
   return (
     <div class="split-lab even">
       <div class="chart-lab" data-testid="adjacency-lab">
-        <ViewPicker withAll={false} />
+        <ViewPicker views={scene?.views ?? []} shown={view} withAll={false} show={act.showView} />
         <ImageCanvas
           view={view}
-          name={scene.value?.views[view]?.name ?? ""}
+          name={scene?.views[view]?.name ?? ""}
           image={image}
           overlay={{ segments: null, supports: null, graph: graphOverlay(adjacency, view) }}
-          selection={selection.value}
-          marks={marksOf(selection.value, view)}
+          selection={selection}
+          marks={marksOf(selection, view, figure)}
           follows={false}
-          onPick={select}
+          inText={figure.inText}
+          onPick={act.select}
         />
       </div>
-      <Filmstrip />
+      <Filmstrip figure={figure} />
     </div>
   );
 }

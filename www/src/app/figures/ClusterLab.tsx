@@ -1,6 +1,8 @@
 /** W96 3.5: the plane across a main direction, its image lines and its clusters (figures 7 and 8). */
 
 import "./figures.css";
+import { useId } from "preact/hooks";
+import type { Figure, Results } from "../../shared/figure";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import { category } from "../../shared/palette";
 import type { ClusterTrace, Directions, Vec2 } from "../../shared/records";
@@ -8,28 +10,20 @@ import type { Selection } from "../../shared/selection";
 import { axesOf, Chart, Fit, type Frame, pathOf, type Scale } from "../parts/charts";
 import { counted } from "../parts/counted";
 import { degreesOf, grouped } from "../parts/numberText";
-import { results } from "../state/results";
-import { select, selection, shownPlane, showPlane } from "../state/viewState";
 import { PlaneChoice } from "./PlaneChoice";
 
 /** Figures 7 and 8: image lines of one direction in the plane across it, and the clusters that description length chose. */
-export function ClusterLab() {
-  const { clusters } = results.value;
+export function ClusterLab({ figure }: { figure: Figure }) {
+  const { clusters, directions } = figure.results;
   if (clusters === null || clusters.length === 0) {
     return <p class="lab-hint muted">Run the stage: the cluster planes appear here.</p>;
   }
-  const shown = Math.min(shownPlane.value, clusters.length - 1);
+  const shown = Math.min(figure.plane, clusters.length - 1);
   const trace = clusters[shown] as ClusterTrace;
   return (
     <div class="chart-lab" data-testid="cluster-lab">
-      <PlaneChoice
-        names={planeNames(clusters, results.value.directions)}
-        shown={shown}
-        onShow={(i) => {
-          showPlane(i);
-        }}
-      />
-      <Fit>{(frame) => <ClusterPlane frame={frame} plane={shown} trace={trace} />}</Fit>
+      <PlaneChoice names={planeNames(clusters, directions)} shown={shown} onShow={figure.act.showPlane} />
+      <Fit>{(frame) => <ClusterPlane frame={frame} figure={figure} plane={shown} trace={trace} />}</Fit>
       <p class="muted numbers note-line">
         {counted(trace.lines.length, "image lines")}, {counted(trace.proposals[0], "intersections")},{" "}
         {grouped(trace.proposals[1])} evaluated, {grouped(trace.selected.length)} selected
@@ -52,11 +46,20 @@ export function planeNames(
   });
 }
 
-function ClusterPlane({ frame, plane, trace }: { frame: Frame; plane: number; trace: ClusterTrace }) {
+interface PlaneProps {
+  frame: Frame;
+  figure: Figure;
+  plane: number;
+  trace: ClusterTrace;
+}
+
+function ClusterPlane({ frame, figure, plane, trace }: PlaneProps) {
+  const { lines } = figure.results;
+  const clip = useId();
   const [x, y] = rangesOf([...trace.selected, ...trace.refused].map(([at]) => at));
   const [toX, toY] = axesOf(frame, x, y);
   const dot = ([across, height]: Vec2) => ({ cx: toX(across), cy: toY(height) });
-  const chosen = placeOfSelection(plane, trace);
+  const chosen = placeOfSelection(figure, plane, trace);
   return (
     <Chart
       frame={frame}
@@ -69,15 +72,15 @@ function ClusterPlane({ frame, plane, trace }: { frame: Frame; plane: number; tr
       onClick={(across, height) => {
         const distance = ([u, v]: Vec2) =>
           Math.hypot((u - across) / (x.max - x.min), (v - height) / (y.max - y.min));
-        select(
+        figure.act.select(
           nearest(
-            [...linesOf(trace), ...rejectedOf(plane, trace)],
+            [...linesOf(lines, trace), ...rejectedOf(plane, trace)],
             ([one, at]) => distance(at) - (one.kind === "line" ? RING : 0),
           ),
         );
       }}
     >
-      <clipPath id="cluster-clip">
+      <clipPath id={clip}>
         <rect
           x={frame.left}
           y={frame.top}
@@ -85,7 +88,7 @@ function ClusterPlane({ frame, plane, trace }: { frame: Frame; plane: number; tr
           height={frame.height - frame.top - frame.bottom}
         />
       </clipPath>
-      <g clip-path="url(#cluster-clip)">
+      <g clip-path={`url(#${clip})`}>
         {trace.lines.map(([view, [a, b]], i) => (
           <path
             key={i}
@@ -140,11 +143,11 @@ function rangesOf(places: readonly Vec2[]): [Scale, Scale] {
       ];
 }
 
+type Lines = Results["lines"];
+
 /** (across, height) of the middle of a 3D line in the plane of a trace. */
-function placeOf(line: number, { azimuth }: ClusterTrace): Vec2 {
-  const n =
-    results.value.lines?.subarray(line * LINE_STRIDE, (line + 1) * LINE_STRIDE) ??
-    new Float64Array(LINE_STRIDE);
+function placeOf(lines: Lines, line: number, { azimuth }: ClusterTrace): Vec2 {
+  const n = lines?.subarray(line * LINE_STRIDE, (line + 1) * LINE_STRIDE) ?? new Float64Array(LINE_STRIDE);
   const [x, y, z] = [0, 1, 2].map((k) => ((n[k] as number) + (n[k + 3] as number)) / 2) as [
     number,
     number,
@@ -153,8 +156,8 @@ function placeOf(line: number, { azimuth }: ClusterTrace): Vec2 {
   return [-Math.sin(azimuth) * x + Math.cos(azimuth) * y, z];
 }
 
-function isAlong(line: number, { azimuth }: ClusterTrace): boolean {
-  const n = results.value.lines?.subarray(line * LINE_STRIDE, (line + 1) * LINE_STRIDE);
+function isAlong(lines: Lines, line: number, { azimuth }: ClusterTrace): boolean {
+  const n = lines?.subarray(line * LINE_STRIDE, (line + 1) * LINE_STRIDE);
   if (n === undefined) {
     return false;
   }
@@ -168,11 +171,11 @@ const REACH = 0.03;
 const RING = 0.012;
 
 /** The 3D lines of this direction and where they lie in the plane. */
-function linesOf(trace: ClusterTrace): Place[] {
-  const lines = Array.from({ length: (results.value.lines?.length ?? 0) / LINE_STRIDE }, (_, line) => line);
-  return lines
-    .filter((line) => isAlong(line, trace))
-    .map((index): Place => [{ kind: "line", index }, placeOf(index, trace)]);
+function linesOf(lines: Lines, trace: ClusterTrace): Place[] {
+  const all = Array.from({ length: (lines?.length ?? 0) / LINE_STRIDE }, (_, line) => line);
+  return all
+    .filter((line) => isAlong(lines, line, trace))
+    .map((index): Place => [{ kind: "line", index }, placeOf(lines, index, trace)]);
 }
 
 function rejectedOf(plane: number, trace: ClusterTrace): Place[] {
@@ -195,11 +198,14 @@ function nearest(places: readonly Place[], distance: (place: Place) => number): 
 }
 
 /** Where the selected thing lies in this plane; null where it does not. */
-function placeOfSelection(plane: number, trace: ClusterTrace): Vec2 | null {
-  const picked = selection.value;
+function placeOfSelection(
+  { selection: picked, results: { lines } }: Figure,
+  plane: number,
+  trace: ClusterTrace,
+): Vec2 | null {
   switch (picked?.kind) {
     case "line":
-      return isAlong(picked.index, trace) ? placeOf(picked.index, trace) : null;
+      return isAlong(lines, picked.index, trace) ? placeOf(lines, picked.index, trace) : null;
     case "cluster":
       return picked.plane === plane ? (trace.refused[picked.index]?.[0] ?? null) : null;
     default:

@@ -1,17 +1,16 @@
 /** B99 2: sets of coplanar lines in plan, with their hulls before and their polygons after symmetry. */
 import "./figures.css";
 import { useState } from "preact/hooks";
+import type { Figure } from "../../shared/figure";
 import { category } from "../../shared/palette";
+import { isVerifiedSet } from "../../shared/proposed";
 import type { CoplanarSets, Vec3 } from "../../shared/records";
-import { isVerified } from "../../viewer/layers/coplanar";
 import { Filmstrip } from "../images/Filmstrip";
 import { Choice } from "../parts/Choice";
 import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../parts/charts";
 import { counted } from "../parts/counted";
 import { type CoplanarOutlines, setAt, shownSets } from "../selection/coplanarPlan";
 import { equalScales } from "../selection/densePlan";
-import { results } from "../state/results";
-import { select, selection } from "../state/viewState";
 
 const CHOICES: readonly (readonly [CoplanarOutlines, string])[] = [
   ["hull", "Hulls before"],
@@ -19,8 +18,8 @@ const CHOICES: readonly (readonly [CoplanarOutlines, string])[] = [
   ["both", "Both"],
 ];
 
-export function CoplanarLab() {
-  const { coplanar } = results.value;
+export function CoplanarLab({ figure }: { figure: Figure }) {
+  const { coplanar } = figure.results;
   const [shows, show] = useState<CoplanarOutlines>("both");
   if (coplanar === null) {
     return <p class="lab-hint muted">Run the stage: the sets of coplanar lines appear here, in plan.</p>;
@@ -37,23 +36,24 @@ export function CoplanarLab() {
     <div class="split-lab even">
       <div class="chart-lab" data-testid="coplanar-lab">
         <Choice legend="Outlines in the plan" choices={CHOICES} chosen={shows} choose={show} />
-        <Fit>{(frame) => <Plan frame={frame} coplanar={coplanar} shows={shows} />}</Fit>
+        <Fit>{(frame) => <Plan frame={frame} figure={figure} coplanar={coplanar} shows={shows} />}</Fit>
       </div>
-      <Filmstrip />
+      <Filmstrip figure={figure} />
     </div>
   );
 }
 
 interface PlanProps {
   frame: Frame;
+  figure: Figure;
   coplanar: CoplanarSets;
   shows: CoplanarOutlines;
 }
 
-function Plan({ frame, coplanar, shows }: PlanProps) {
-  const picked = selection.value?.kind === "coplanar" ? selection.value.index : null;
+function Plan({ frame, figure, coplanar, shows }: PlanProps) {
+  const picked = figure.selection?.kind === "coplanar" ? figure.selection.index : null;
   const shown = shownSets(coplanar, picked);
-  const corners = coplanar.sets.filter(isVerified).flatMap(({ hull, polygon }) => [...hull, ...polygon]);
+  const corners = coplanar.sets.filter(isVerifiedSet).flatMap(({ hull, polygon }) => [...hull, ...polygon]);
   const [x, y] = equalScales(
     frame,
     corners.map(([px, py]) => [px, py]),
@@ -61,7 +61,7 @@ function Plan({ frame, coplanar, shows }: PlanProps) {
   );
   const [toX, toY] = axesOf(frame, x, y);
   const path = (ring: readonly Vec3[]) => closedPathOf(ring.map(([px, py]) => [toX(px), toY(py)] as const));
-  const verified = coplanar.sets.filter(isVerified).length;
+  const verified = coplanar.sets.filter(isVerifiedSet).length;
   return (
     <Chart
       frame={frame}
@@ -73,7 +73,7 @@ function Plan({ frame, coplanar, shows }: PlanProps) {
       testid="coplanar-plan"
       onClick={(...at) => {
         const index = setAt(coplanar, at);
-        select(index === null ? null : { kind: "coplanar", index });
+        figure.act.select(index === null ? null : { kind: "coplanar", index });
       }}
     >
       {shows !== "hull" &&

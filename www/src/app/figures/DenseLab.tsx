@@ -1,22 +1,21 @@
 /** B99 2: the patches of dense matching in plan, by what their planes are, or by how probably they are buildings. */
 import "./figures.css";
 import { useState } from "preact/hooks";
+import type { Figure } from "../../shared/figure";
 import type { DensePlanes, Vec2 } from "../../shared/records";
 import { Filmstrip } from "../images/Filmstrip";
 import { Choice } from "../parts/Choice";
 import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../parts/charts";
 import { counted } from "../parts/counted";
 import { areasOf, equalScales, type PlanColours, planeAt, squaresAt } from "../selection/densePlan";
-import { results } from "../state/results";
-import { select, selection } from "../state/viewState";
 
 const CHOICES: readonly (readonly [PlanColours, string])[] = [
   ["class", "Classes"],
   ["building", "Probability of building"],
 ];
 
-export function DenseLab() {
-  const { dense } = results.value;
+export function DenseLab({ figure }: { figure: Figure }) {
+  const { dense } = figure.results;
   const [shows, show] = useState<PlanColours>("class");
   if (dense === null) {
     return <p class="lab-hint muted">Run the stage: the planes of dense matching appear here, in plan.</p>;
@@ -28,21 +27,28 @@ export function DenseLab() {
     <div class="split-lab even">
       <div class="chart-lab" data-testid="dense-lab">
         <Choice legend="Colours of the plan" choices={CHOICES} chosen={shows} choose={show} />
-        <Fit>{(frame) => <Plan frame={frame} dense={dense} shows={shows} />}</Fit>
+        <Fit>{(frame) => <Plan frame={frame} figure={figure} dense={dense} shows={shows} />}</Fit>
       </div>
-      <Filmstrip />
+      <Filmstrip figure={figure} />
     </div>
   );
 }
 
-function Plan({ frame, dense, shows }: { frame: Frame; dense: DensePlanes; shows: PlanColours }) {
+interface PlanProps {
+  frame: Frame;
+  figure: Figure;
+  dense: DensePlanes;
+  shows: PlanColours;
+}
+
+function Plan({ frame, figure, dense, shows }: PlanProps) {
   const { patches, spacing_m } = dense.trace;
   const places = patches.map(({ middle }) => middle);
   const [x, y] = equalScales(frame, places, spacing_m);
   const [toX, toY] = axesOf(frame, x, y);
   const side = toX(spacing_m) - toX(0);
   const buildings = dense.planes.filter((plane) => plane.class.building > 0.5).length;
-  const picked = selection.value;
+  const picked = figure.selection;
   const ring = picked?.kind === "dense" ? (dense.planes[picked.index]?.ring ?? []) : [];
   const outline = closedPathOf(ring.map(([px, py]) => [toX(px), toY(py)] as const));
   return (
@@ -56,7 +62,7 @@ function Plan({ frame, dense, shows }: { frame: Frame; dense: DensePlanes; shows
       testid="dense-plan"
       onClick={(...at) => {
         const index = planeAt(dense, at);
-        select(index === null ? null : { kind: "dense", index });
+        figure.act.select(index === null ? null : { kind: "dense", index });
       }}
     >
       {areasOf(dense, shows).map(({ name, opacity, own }) => (

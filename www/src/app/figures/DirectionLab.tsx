@@ -1,22 +1,21 @@
 /** W96 3.4: the histogram of azimuths (figures 4 and 5), and which direction an image line follows. */
 import "./figures.css";
+import type { Figure } from "../../shared/figure";
 import { category } from "../../shared/palette";
 import type { MainDirections } from "../../shared/records";
 import { axesOf, Chart, closedPathOf, Fit, type Frame } from "../parts/charts";
 import { degreesOf } from "../parts/numberText";
-import { results } from "../state/results";
-import { shownPlane, showPlane } from "../state/viewState";
 import { PlaneChoice } from "./PlaneChoice";
 
 const HALF = Math.PI / 2;
 
 /** Figures 4 and 5. The histogram's two perpendicular peaks, found together. */
-export function DirectionLab() {
-  const found = results.value.directions;
+export function DirectionLab({ figure }: { figure: Figure }) {
+  const found = figure.results.directions;
   if (found === null || found.trace.histograms.length === 0) {
     return <p class="lab-hint muted">Run the stage: the histogram of azimuths appears here.</p>;
   }
-  const shown = Math.min(shownPlane.value, found.windows.length - 1);
+  const shown = Math.min(figure.plane, found.windows.length - 1);
   const histogram = found.trace.histograms[shown];
   const pairs = found.windows[shown]?.directions ?? [];
   return (
@@ -24,9 +23,7 @@ export function DirectionLab() {
       <PlaneChoice
         names={found.windows.map((_, i) => `Building ${i}`)}
         shown={shown}
-        onShow={(i) => {
-          showPlane(i);
-        }}
+        onShow={figure.act.showPlane}
       />
       {histogram !== undefined && (
         <Fit>

@@ -1,25 +1,24 @@
 /** B99 figures 21 to 23: the facets in plan, each in the colour of its plane, and the border lines that enclose them. */
 import "./figures.css";
+import type { Figure } from "../../shared/figure";
 import type { Facet, FacetTrace, Vec2 } from "../../shared/records";
-import { normalTint } from "../../viewer/layers/facets";
 import { isOfRoof, middleOf } from "../../viewer/scene/facetPlan";
+import { roofTintHex } from "../../viewer/scene/roofTint";
 import { Filmstrip } from "../images/Filmstrip";
 import { closedPathOf, Fit, type Frame, pathOf } from "../parts/charts";
 import { counted } from "../parts/counted";
 import { facetRejectionWords } from "../parts/reasonText";
-import { results } from "../state/results";
-import { select, selection } from "../state/viewState";
 
 /** Figures 21 to 23: border lines by their kind, what they enclose, and what was rejected. */
-export function FacetLab() {
-  const { grouping, facets } = results.value;
+export function FacetLab({ figure }: { figure: Figure }) {
+  const { grouping, facets } = figure.results;
   if (grouping === null || facets === null) {
     return <p class="lab-hint muted">Run the stage: the border lines in plan appear here.</p>;
   }
   return (
     <div class="split-lab even">
       <figure class="plan">
-        <Fit>{(frame) => <Plan frame={frame} grouping={grouping} facets={facets} />}</Fit>
+        <Fit>{(frame) => <Plan frame={frame} figure={figure} grouping={grouping} facets={facets} />}</Fit>
         <figcaption class="muted numbers">
           <ul class="legend">
             {BORDER_KINDS.map((kind) => [kind, countOf(kind, grouping)] as const)
@@ -37,7 +36,7 @@ export function FacetLab() {
           </ul>
         </figcaption>
       </figure>
-      <Filmstrip />
+      <Filmstrip figure={figure} />
     </div>
   );
 }
@@ -58,7 +57,14 @@ function countOf(kind: (typeof BORDER_KINDS)[number], { borders }: FacetTrace): 
 /** In SVG the attribute has no capital. */
 const FOCUSABLE = { tabindex: 0 };
 
-function Plan({ frame, grouping, facets }: { frame: Frame; grouping: FacetTrace; facets: readonly Facet[] }) {
+interface PlanProps {
+  frame: Frame;
+  figure: Figure;
+  grouping: FacetTrace;
+  facets: readonly Facet[];
+}
+
+function Plan({ frame, figure, grouping, facets }: PlanProps) {
   const outlines = facets.map(({ outer }) => outer);
   // The roofs fill the figure; border lines on the ground reach far beyond them.
   const points: readonly (readonly number[])[] =
@@ -83,16 +89,18 @@ function Plan({ frame, grouping, facets }: { frame: Frame; grouping: FacetTrace;
       {facets.map((facet, i) => (
         <PlanArea
           key={i}
+          figure={figure}
           picks={{ kind: "facet", index: i }}
           name={`Facet ${i}`}
           className="plan-facet"
-          fill={`#${normalTint(facet).getHexString()}`}
+          fill={roofTintHex(facet)}
           d={closedPathOf(facet.outer.map(at))}
         />
       ))}
       {grouping.rejected.map(({ outline, reason }, i) => (
         <PlanArea
           key={i}
+          figure={figure}
           picks={{ kind: "rejectedFacet", index: i }}
           name={`Rejected: ${facetRejectionWords(reason)}`}
           className="plan-rejected"
@@ -125,6 +133,7 @@ function Plan({ frame, grouping, facets }: { frame: Frame; grouping: FacetTrace;
 
 /** An outline that can be picked, by key as well. */
 function PlanArea(of: {
+  figure: Figure;
   picks: { kind: "facet" | "rejectedFacet"; index: number };
   name: string;
   className: string;
@@ -132,10 +141,10 @@ function PlanArea(of: {
   d: string;
 }) {
   const { kind, index } = of.picks;
-  const picked = selection.value;
+  const picked = of.figure.selection;
   const isChosen = picked?.kind === kind && picked.index === index;
   const pick = () => {
-    select(of.picks);
+    of.figure.act.select(of.picks);
   };
   return (
     // biome-ignore lint/a11y/useSemanticElements: SVG has no button

@@ -1,26 +1,26 @@
 /** B99 figure 9: accuracy against the number of views; figures 17 to 23: groups and border lines in plan. */
 import "./figures.css";
+import type { Figure, Results } from "../../shared/figure";
 import { category } from "../../shared/palette";
 import { densePlanesOf, type LineRecord, type PlaneGroup, rectanglesOf } from "../../shared/records";
 import { Filmstrip } from "../images/Filmstrip";
 import { axesOf, Chart, dotsOf, Fit, type Frame, type Scale } from "../parts/charts";
 import { counted } from "../parts/counted";
-import { results } from "../state/results";
-import { select, selection } from "../state/viewState";
 
 /** The 3D lines by number of views, and the picked one in every view. */
-export function LineLab() {
+export function LineLab({ figure }: { figure: Figure }) {
   return (
     <div class="split-lab">
-      <Fit>{(frame) => <Accuracy frame={frame} />}</Fit>
-      <Filmstrip />
+      <Fit>{(frame) => <Accuracy frame={frame} figure={figure} />}</Fit>
+      <Filmstrip figure={figure} />
     </div>
   );
 }
 
 /** Standard deviation of each line against the views that support it; the median of each column as a bar. */
-function Accuracy({ frame }: { frame: Frame }) {
-  const records = matchedRecords();
+function Accuracy({ frame, figure }: { frame: Frame; figure: Figure }) {
+  const records = matchedRecords(figure.results);
+  const picked = figure.selection?.kind === "line" ? figure.selection.index : -1;
   if (records.length === 0) {
     return <p class="lab-hint muted">Run the stage: accuracy against views appears here.</p>;
   }
@@ -51,8 +51,8 @@ function Accuracy({ frame }: { frame: Frame }) {
       label={`Standard deviation of ${counted(records.length, "lines")} against the number of their views`}
       testid="accuracy"
       onClick={(views, sigma) => {
-        const index = nearest(views, sigma, x, y);
-        select({ kind: "line", index });
+        const index = nearest(records, views, sigma, x, y);
+        figure.act.select({ kind: "line", index });
       }}
     >
       <path class="dot-line" d={dotsOf(places)} data-count={places.length} />
@@ -73,7 +73,7 @@ function Accuracy({ frame }: { frame: Frame }) {
         );
       })}
       {places
-        .filter((_, i) => isPicked(i))
+        .filter((_, i) => i === picked)
         .map(([cx, cy]) => (
           <circle key={cx} class="picked-dot" cx={cx} cy={cy} r={5} />
         ))}
@@ -82,12 +82,8 @@ function Accuracy({ frame }: { frame: Frame }) {
 }
 
 /** The matched lines: new ones come after them. */
-function matchedRecords(): LineRecord[] {
-  return results.value.records.filter(({ origin }) => origin === "matched");
-}
-
-function isPicked(line: number): boolean {
-  return selection.value?.kind === "line" && selection.value.index === line;
+function matchedRecords({ records }: Pick<Results, "records">): LineRecord[] {
+  return records.filter(({ origin }) => origin === "matched");
 }
 
 /** Spreads the dots of a column, the same way every time. */
@@ -95,8 +91,7 @@ function scatter(i: number): number {
   return (((i * 0.618034) % 1) - 0.5) * 0.6;
 }
 
-function nearest(views: number, sigma: number, x: Scale, y: Scale): number {
-  const records = matchedRecords();
+function nearest(records: readonly LineRecord[], views: number, sigma: number, x: Scale, y: Scale): number {
   const distance = (i: number) => {
     const { sigma_m = 0, supports = [] } = records[i] ?? {};
     return Math.hypot(
@@ -113,8 +108,9 @@ export function quantile(values: readonly number[], share: number): number {
 }
 
 /** Figures 17 to 20: the groups, largest first. */
-export function GroupLab() {
-  const { grouping } = results.value;
+export function GroupLab({ figure }: { figure: Figure }) {
+  const { grouping } = figure.results;
+  const picked = figure.selection;
   if (grouping === null) {
     return (
       <p class="lab-hint muted">Run the facets stage: its groups of coplanar half-planes appear here.</p>
@@ -127,7 +123,7 @@ export function GroupLab() {
     <div class="split-lab even">
       <ol class="groups" data-testid="groups">
         {order.map(({ group, index }) => {
-          const isChosen = selection.value?.kind === "group" && selection.value.index === index;
+          const isChosen = picked?.kind === "group" && picked.index === index;
           const fans = group.members.filter(({ half_plane }) => half_plane !== null).length;
           const [nx, ny, nz] = group.plane.normal;
           return (
@@ -137,7 +133,7 @@ export function GroupLab() {
                 class="quiet"
                 aria-pressed={isChosen}
                 onClick={() => {
-                  select({ kind: "group", index });
+                  figure.act.select({ kind: "group", index });
                 }}
               >
                 <span class="dot" style={{ background: category(index) }} aria-hidden="true" />
@@ -152,7 +148,7 @@ export function GroupLab() {
           );
         })}
       </ol>
-      <Filmstrip />
+      <Filmstrip figure={figure} />
     </div>
   );
 }

@@ -1,18 +1,16 @@
 /** B99 figures 2 to 4: the candidates of a segment, pointwise correspondence, and the two windows that are compared. */
 import "./figures.css";
 import { useEffect, useRef } from "preact/hooks";
+import { type Figure, viewName } from "../../shared/figure";
 import { counted } from "../parts/counted";
 import { outcomeWords } from "../parts/reasonText";
-import { compareAt } from "../selection/selectionQueries";
-import { scene } from "../state/scene";
-import { selectionDetail } from "../state/selectionDetail";
-import { selection } from "../state/viewState";
 
 const WINDOW_PX = 15;
 
-export function PointLab() {
-  const { story, candidate, at, correspondence } = selectionDetail.value;
-  if (selection.value?.kind !== "segment" || story === null) {
+export function PointLab({ figure }: { figure: Figure }) {
+  const { story, candidate, at, correspondence } = figure.detail;
+  const { compareAt } = figure.act;
+  if (figure.selection?.kind !== "segment" || story === null) {
     return (
       <p class="lab-hint muted">
         Pick a segment: its epipolar beam appears in the other views, with the candidates in it and their
@@ -23,7 +21,7 @@ export function PointLab() {
   return (
     <div class="point-lab" data-testid="point-lab">
       <div class="candidates">
-        <h3>{outcomeWords(story.outcome)}</h3>
+        <p class="lab-head">{outcomeWords(story.outcome)}</p>
         {story.candidates.length === 0 ? (
           <p class="muted">No segment in any beam scored above the threshold.</p>
         ) : (
@@ -39,8 +37,8 @@ export function PointLab() {
               {story.candidates.map((one, i) => (
                 <tr key={`${one.view}.${one.segment}`} aria-selected={i === candidate}>
                   <td>
-                    <button type="button" class="link" onClick={() => void compareAt(i, at)}>
-                      {viewName(one.view)} · {one.segment}
+                    <button type="button" class="link" onClick={() => compareAt(i, at)}>
+                      {viewName(figure, one.view)} · {one.segment}
                     </button>
                   </td>
                   <td class="numbers">
@@ -63,7 +61,7 @@ export function PointLab() {
       </div>
       {story.candidates.length > 0 && (
         <div class="correspond">
-          <label>
+          <label data-control>
             <span>Point x along the segment</span>
             <input
               type="range"
@@ -72,7 +70,7 @@ export function PointLab() {
               step={0.01}
               value={at}
               data-testid="along"
-              onInput={(event) => void compareAt(candidate, Number(event.currentTarget.value), true)}
+              onInput={(event) => compareAt(candidate, Number(event.currentTarget.value))}
             />
           </label>
           {correspondence === null ? (
@@ -121,8 +119,4 @@ function Grey({ values, title }: { values: readonly number[]; title: string }) {
       <figcaption class="muted">{title}</figcaption>
     </figure>
   );
-}
-
-function viewName(view: number): string {
-  return scene.value?.views[view]?.name ?? `view ${view}`;
 }

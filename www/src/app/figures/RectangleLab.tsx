@@ -1,21 +1,20 @@
 /** W96 3.6: the window of a plane between parallel lines, and the histogram of positions (figures 10 and 11). */
 import "./figures.css";
+import type { Figure } from "../../shared/figure";
 import { category } from "../../shared/palette";
 import type { PlaneTrace } from "../../shared/records";
 import { Filmstrip } from "../images/Filmstrip";
 import { axesOf, Chart, Fit, type Frame, histogramOf, type Scale } from "../parts/charts";
 import { counted } from "../parts/counted";
 import { PAIR_WORDS } from "../parts/reasonText";
-import { results } from "../state/results";
-import { select, selection } from "../state/viewState";
 
 /** Figures 10 and 11: the window between two parallel lines, the lines that cross it, and their positions. */
-export function RectangleLab() {
-  const found = results.value.rectangles;
+export function RectangleLab({ figure }: { figure: Figure }) {
+  const found = figure.results.rectangles;
   if (found === null || found.pairs.length === 0) {
     return <p class="lab-hint muted">Run the stage: the windows between parallel lines appear here.</p>;
   }
-  const shown = shownPair();
+  const shown = shownPair(figure);
   const pair = found.pairs[shown] as PlaneTrace;
   const isChosen = (index: number) =>
     found.chosen.some((k) => samePair(found.candidates[k]?.lines, found.pairs[index]?.lines));
@@ -27,7 +26,7 @@ export function RectangleLab() {
           <select
             value={shown}
             onChange={(event) => {
-              select({ kind: "pair", index: Number(event.currentTarget.value) });
+              figure.act.select({ kind: "pair", index: Number(event.currentTarget.value) });
             }}
           >
             {found.pairs.map((one, i) => (
@@ -44,15 +43,14 @@ export function RectangleLab() {
         </label>
         <Fit>{(frame) => <PlaneWindow outer={frame} pair={pair} />}</Fit>
       </div>
-      <Filmstrip unpicked={{ kind: "pair", index: shown }} />
+      <Filmstrip figure={figure} unpicked={{ kind: "pair", index: shown }} />
     </div>
   );
 }
 
 /** The selected pair, or the one of the best plane. */
-function shownPair(): number {
-  const found = results.value.rectangles;
-  const picked = selection.value;
+function shownPair({ results, selection: picked }: Figure): number {
+  const found = results.rectangles;
   if (found === null) {
     return 0;
   }

@@ -1,13 +1,12 @@
 /** B99 2: what refinement made of a building, and the relations that were tested there, each by its chi-square. */
 import "./figures.css";
+import type { Figure } from "../../shared/figure";
 import type { BuildingRefinement, TestedRelation } from "../../shared/records";
 import { Filmstrip } from "../images/Filmstrip";
 import { axesOf, Chart, Fit, type Frame } from "../parts/charts";
 import { counted } from "../parts/counted";
 import { RELATION_WORDS, refinementWords } from "../parts/reasonText";
 import { buildingOfFacet, relationLimit } from "../selection/refinedBuildings";
-import { results } from "../state/results";
-import { select, selection } from "../state/viewState";
 
 const KINDS = ["horizontal", "parallel", "perpendicular", "equal_height", "symmetric"] as const;
 /** The axis is the logarithm of chi-square, between these. */
@@ -16,9 +15,10 @@ const MOST = 3;
 /** Room for the names of the kinds. */
 const NAMES_PX = 96;
 
-export function RefinementLab() {
-  const buildings = results.value.refinement?.trace.buildings ?? [];
-  const shown = buildings[shownBuilding()];
+export function RefinementLab({ figure }: { figure: Figure }) {
+  const buildings = figure.results.refinement?.trace.buildings ?? [];
+  const building = shownBuilding(figure);
+  const shown = buildings[building];
   if (shown === undefined) {
     return <p class="lab-hint muted">Run the facets stage: what refinement tested appears here.</p>;
   }
@@ -28,9 +28,9 @@ export function RefinementLab() {
         <label class="pair-choice">
           Building
           <select
-            value={shownBuilding()}
+            value={building}
             onChange={(event) => {
-              select({ kind: "refinement", index: Number(event.currentTarget.value) });
+              figure.act.select({ kind: "refinement", index: Number(event.currentTarget.value) });
             }}
           >
             {buildings.map((one, i) => (
@@ -40,25 +40,23 @@ export function RefinementLab() {
             ))}
           </select>
         </label>
-        <Fit>{(frame) => <Relations outer={frame} building={shownBuilding()} of={shown} />}</Fit>
+        <Fit>{(frame) => <Relations outer={frame} figure={figure} building={building} of={shown} />}</Fit>
       </div>
-      <Filmstrip />
+      <Filmstrip figure={figure} />
     </div>
   );
 }
 
 /** The building of the selection, or the one with the most relations. */
-export function shownBuilding(): number {
-  const { refinement } = results.value;
-  const picked = selection.value;
-  const { buildings = [] } = refinement?.trace ?? {};
+function shownBuilding({ results, selection: picked }: Figure): number {
+  const { buildings = [] } = results.refinement?.trace ?? {};
   switch (picked?.kind) {
     case "refinement":
       return Math.min(picked.index, buildings.length - 1);
     case "relation":
       return Math.min(picked.building, buildings.length - 1);
     case "facet":
-      return buildingOfFacet(picked.index) ?? 0;
+      return buildingOfFacet(picked.index, results) ?? 0;
     default:
       return buildings.reduce(
         (best, { relations }, i) => (relations.length > (buildings[best]?.relations.length ?? 0) ? i : best),
@@ -67,14 +65,21 @@ export function shownBuilding(): number {
   }
 }
 
+interface RelationsProps {
+  outer: Frame;
+  figure: Figure;
+  building: number;
+  of: BuildingRefinement;
+}
+
 /** A row for each kind of relation; left of the dashed line is adopted. */
-function Relations({ outer, building, of }: { outer: Frame; building: number; of: BuildingRefinement }) {
+function Relations({ outer, figure, building, of }: RelationsProps) {
   const frame = { ...outer, left: NAMES_PX };
   const x = { min: LEAST, max: MOST };
   const y = { min: 0.5, max: KINDS.length + 0.5 };
   const [toX, toY] = axesOf(frame, x, y);
   const row = (kind: TestedRelation["kind"]) => KINDS.length - KINDS.indexOf(kind);
-  const limit = relationLimit();
+  const limit = relationLimit(figure.params);
   if (of.relations.length === 0) {
     return <p class="lab-hint muted">No relation was near enough to be tested here.</p>;
   }
@@ -119,9 +124,9 @@ function Relations({ outer, building, of }: { outer: Frame; building: number; of
           relation={one}
           cx={toX(Math.min(MOST, Math.max(LEAST, Math.log10(Math.max(one.chi2, 1e-9)))))}
           cy={toY(row(one.kind)) + spread(i)}
-          isPicked={isPicked(building, i)}
+          isPicked={isPicked(figure, building, i)}
           onPick={() => {
-            select({ kind: "relation", building, index: i });
+            figure.act.select({ kind: "relation", building, index: i });
           }}
         />
       ))}
@@ -162,8 +167,7 @@ function Dot(of: {
   );
 }
 
-function isPicked(building: number, index: number): boolean {
-  const picked = selection.value;
+function isPicked({ selection: picked }: Figure, building: number, index: number): boolean {
   return picked?.kind === "relation" && picked.building === building && picked.index === index;
 }
 

@@ -2,21 +2,19 @@
 import "./figures.css";
 import { useEffect, useRef } from "preact/hooks";
 import type { WarpedPicture } from "../../shared/calls";
+import { type Figure, viewName } from "../../shared/figure";
 import { category } from "../../shared/palette";
 import type { SideTrace } from "../../shared/records";
 import { axesOf, Chart, closedPathOf, Fit, type Frame, pathOf } from "../parts/charts";
 import { counted } from "../parts/counted";
 import { REJECTION_WORDS } from "../parts/reasonText";
-import { bestTheta, sideOf, turnTo } from "../selection/selectionQueries";
-import { params } from "../state/parameters";
-import { scene } from "../state/scene";
-import { selectionDetail } from "../state/selectionDetail";
-import { select, selection } from "../state/viewState";
+import { bestTheta, sideOf } from "../selection/inquiry";
 
 const DEGREE = Math.PI / 180;
 
-export function SimLab() {
-  const { side, theta, warped } = selectionDetail.value;
+export function SimLab({ figure }: { figure: Figure }) {
+  const { side, theta, warped } = figure.detail;
+  const { turnTo } = figure.act;
   if (side === null) {
     return (
       <p class="lab-hint muted">
@@ -27,8 +25,8 @@ export function SimLab() {
   return (
     <div class="sim-lab" data-testid="sim-lab">
       <div class="sim-chart">
-        <SideHead side={side} />
-        <Fit>{(frame) => <SimChart frame={frame} side={side} theta={theta} />}</Fit>
+        <SideHead figure={figure} side={side} />
+        <Fit>{(frame) => <SimChart frame={frame} figure={figure} side={side} />}</Fit>
         <label class="theta">
           <span>θ</span>
           <input
@@ -39,12 +37,17 @@ export function SimLab() {
             value={theta / DEGREE}
             aria-label="Angle of the half-plane, degrees"
             aria-valuetext={`${(theta / DEGREE).toFixed(1)} degrees`}
-            onInput={(event) => void turnTo(Number(event.currentTarget.value) * DEGREE)}
+            onInput={(event) => turnTo(Number(event.currentTarget.value) * DEGREE)}
           />
           <output class="numbers" data-testid="theta">
             {(theta / DEGREE).toFixed(1)}°
           </output>
-          <button type="button" class="quiet" onClick={() => void turnTo(bestTheta(side))}>
+          <button
+            type="button"
+            class="quiet"
+            data-control
+            onClick={() => turnTo(bestTheta(side, figure.results))}
+          >
             Best
           </button>
         </label>
@@ -52,19 +55,24 @@ export function SimLab() {
       {warped === null ? (
         <p class="lab-hint muted">No view can be compared with another one on this side.</p>
       ) : (
-        <Windows picture={warped} side={side} />
+        <Windows figure={figure} picture={warped} side={side} />
       )}
     </div>
   );
 }
 
+interface OfSide {
+  figure: Figure;
+  side: SideTrace;
+}
+
 /** Which side of which line, the other one at hand, and why it was rejected. */
-function SideHead({ side }: { side: SideTrace }) {
+function SideHead({ figure, side }: OfSide) {
   const other = side.side === "left" ? "right" : "left";
-  const isPicked = sideOf(selection.value)?.line === side.line;
+  const isPicked = sideOf(figure.selection, figure.results)?.line === side.line;
   return (
     <div class="row spread">
-      <h3>
+      <p class="lab-head">
         Line {side.line}, {side.side} side
         <span class="muted" data-testid="plane-probability">
           {" "}
@@ -73,13 +81,14 @@ function SideHead({ side }: { side: SideTrace }) {
         {side.rejection !== null && (
           <span class="rejection"> · {REJECTION_WORDS[side.rejection] ?? side.rejection}</span>
         )}
-      </h3>
+      </p>
       {isPicked && (
         <button
           type="button"
           class="quiet other-side"
+          data-control
           onClick={() => {
-            select({ kind: "side", line: side.line, side: other });
+            figure.act.select({ kind: "side", line: side.line, side: other });
           }}
         >
           Show the {other} side
@@ -89,7 +98,8 @@ function SideHead({ side }: { side: SideTrace }) {
   );
 }
 
-function SimChart({ frame, side, theta }: { frame: Frame; side: SideTrace; theta: number }) {
+function SimChart({ frame, figure, side }: OfSide & { frame: Frame }) {
+  const { theta } = figure.detail;
   const { thetas, similarity, views, posterior } = side.curve;
   const limit = 75;
   const x = { min: -limit, max: limit };
@@ -102,7 +112,7 @@ function SimChart({ frame, side, theta }: { frame: Frame; side: SideTrace; theta
   const ends = [inside.at(-1), inside[0]].flatMap((end) =>
     end === undefined ? [] : [[end[0], toY(0)] as const],
   );
-  const least = params.value["sweep"]?.["min_similarity"];
+  const least = figure.params["sweep"]?.["min_similarity"];
   return (
     <Chart
       frame={frame}
@@ -113,7 +123,7 @@ function SimChart({ frame, side, theta }: { frame: Frame; side: SideTrace; theta
       xTicks={[-60, -30, 0, 30, 60]}
       label={`Sim of theta for ${counted(views.length, "views")}; its maximum is ${Math.max(0, ...similarity).toFixed(2)}`}
       testid="sim-chart"
-      onDrag={(value) => void turnTo(Math.round(2 * value) * 0.5 * DEGREE)}
+      onDrag={(value) => figure.act.turnTo(Math.round(2 * value) * 0.5 * DEGREE)}
     >
       <path class="posterior" data-testid="posterior" d={closedPathOf([...inside, ...ends])}>
         <title>Posterior over θ (B99 5), as high as the probability that a plane is there</title>
@@ -157,17 +167,18 @@ function scaled({ density, plane }: SideTrace["curve"]["posterior"]): number[] {
 }
 
 /** The reference first, then every other view under H(theta), with its own Sim at this angle. */
-function Windows({ picture: { about, rgba }, side }: { picture: WarpedPicture; side: SideTrace }) {
+function Windows({ figure, picture: { about, rgba }, side }: OfSide & { picture: WarpedPicture }) {
   return (
-    <ul class="windows" data-testid="windows">
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls is reached by key
+    <ul class="windows" data-testid="windows" tabIndex={0} aria-label="Warped views">
       {about.views.map(({ view, similarity, valid }, i) => {
         const place = side.curve.views.findIndex((one) => one.view === view);
         return (
           <li key={view} class={valid || similarity === null ? "" : "invalid"}>
             <Window picture={{ about, rgba }} index={i} />
-            <span class="window-name" title={viewName(view)}>
+            <span class="window-name" title={viewName(figure, view)}>
               {place >= 0 && <span class="dot" style={{ background: category(place) }} aria-hidden="true" />}
-              {viewName(view)}
+              {viewName(figure, view)}
             </span>
             <span class="numbers muted">
               {similarity === null ? "reference view" : `Sim ${similarity.toFixed(2)}`}
@@ -201,8 +212,4 @@ function Window({ picture: { about, rgba }, index }: { picture: WarpedPicture; i
     context.globalAlpha = 1;
   }, [rgba, index]);
   return <canvas ref={canvas} width={columns} height={rows} role="img" aria-label="Warped neighbourhood" />;
-}
-
-function viewName(view: number): string {
-  return scene.value?.views[view]?.name ?? `view ${view}`;
 }

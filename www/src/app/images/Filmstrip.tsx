@@ -1,15 +1,13 @@
 /** The selected thing in every view, each picture zoomed to it: "it lights up in every image". */
 import "./images.css";
 import { useEffect, useRef } from "preact/hooks";
+import type { Figure } from "../../shared/figure";
 import type { Selection } from "../../shared/selection";
-import { results } from "../state/results";
-import { images, scene } from "../state/scene";
-import { selectionDetail } from "../state/selectionDetail";
 import { textScale } from "../state/textScale";
-import { selection, showTab, showView } from "../state/viewState";
 import { drawView } from "./drawing";
+import { paint } from "./pen";
 import { type Mark, marksOf } from "./selectionMarks";
-import { fitPoints } from "./viewport";
+import { fitPoints, type Size } from "./viewport";
 
 const WIDTH_PX = 190;
 const HEIGHT_PX = 128;
@@ -18,47 +16,51 @@ const MARGIN_PX = 30;
 const MAX_SCALE = 5;
 
 /** `unpicked` is shown while nothing is selected. */
-export function Filmstrip({ unpicked = null }: { unpicked?: Selection | null }) {
-  void [results.value, selectionDetail.value, textScale.value];
-  const picked = selection.value ?? unpicked;
-  const shown = (scene.value?.views ?? [])
-    .map(({ name }, view) => ({ name, view, marks: marksOf(picked, view) }))
-    .filter(({ view, marks }) => marks.length > 0 && isInside(marks, view));
+export function Filmstrip({ figure, unpicked = null }: { figure: Figure; unpicked?: Selection | null }) {
+  void textScale.value;
+  const picked = figure.selection ?? unpicked;
+  const shown = (figure.scene?.views ?? [])
+    .map((info, view) => ({ info, view, marks: marksOf(picked, view, figure) }))
+    .filter(({ info, marks }) => marks.length > 0 && isInside(marks, info));
+  const { openView } = figure.act;
   if (shown.length === 0) {
     return <p class="lab-hint muted">Pick something: it lights up here in every view that shows it.</p>;
   }
   return (
-    <ul class="filmstrip" data-testid="filmstrip">
-      {shown.map(({ name, view, marks }) => (
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls is reached by key
+    <ul class="filmstrip" data-testid="filmstrip" tabIndex={0} aria-label="The selection in the views">
+      {shown.map(({ info: { name }, view, marks }) => (
         <li key={view}>
-          <Frame view={view} marks={marks} />
-          <button
-            type="button"
-            class="link"
-            title={`Open ${name}`}
-            onClick={() => {
-              showView(view);
-              showTab("images");
-            }}
-          >
-            {name}
-          </button>
+          <Picture image={figure.images[view]} name={name} marks={marks} />
+          {openView === null ? (
+            <span>{name}</span>
+          ) : (
+            <button type="button" class="link" title={`Open ${name}`} onClick={() => openView(view)}>
+              {name}
+            </button>
+          )}
         </li>
       ))}
     </ul>
   );
 }
 
-function Frame({ view, marks }: { view: number; marks: readonly Mark[] }) {
+interface PictureProps {
+  image: ImageBitmap | undefined;
+  name: string;
+  marks: readonly Mark[];
+}
+
+function Picture({ image, name, marks }: PictureProps) {
   const canvas = useRef<HTMLCanvasElement>(null);
-  const image = images.value[view];
   useEffect(() => {
-    const context = canvas.current?.getContext("2d");
-    if (context != null && image !== undefined) {
+    if (canvas.current !== null && image !== undefined) {
       const points = marks.flatMap((mark) => mark.points);
       const box = { width: WIDTH_PX, height: HEIGHT_PX };
       const viewport = fitPoints(points, box, MARGIN_PX, MAX_SCALE) ?? { scale: 1, x: 0, y: 0 };
-      drawView(context, image, viewport, ratio(), { segments: null, supports: null }, null, marks);
+      paint(canvas.current, { viewport, box }, ratio(), (pen, of) =>
+        drawView(pen, of, image, { segments: null, supports: null }, null, marks),
+      );
     }
   });
   return (
@@ -67,7 +69,7 @@ function Frame({ view, marks }: { view: number; marks: readonly Mark[] }) {
       width={WIDTH_PX * ratio()}
       height={HEIGHT_PX * ratio()}
       role="img"
-      aria-label="The selection in this view"
+      aria-label={`The selection in ${name}`}
     />
   );
 }
@@ -84,9 +86,8 @@ function boundsOf(marks: readonly Mark[]): [number, number, number, number] {
 }
 
 /** Does the view show the middle of the marks? */
-function isInside(marks: readonly Mark[], view: number): boolean {
+function isInside(marks: readonly Mark[], { width, height }: Size): boolean {
   const [x0, y0, x1, y1] = boundsOf(marks);
-  const { width = 0, height = 0 } = scene.value?.views[view] ?? {};
   const [x, y] = [(x0 + x1) / 2, (y0 + y1) / 2];
   return x > 0 && y > 0 && x < width && y < height;
 }

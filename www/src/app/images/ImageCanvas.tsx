@@ -7,6 +7,7 @@ import { type Place, PressWatch } from "../../viewer/tools/press";
 import { textScale } from "../state/textScale";
 import { drawView, type Overlay } from "./drawing";
 import { cornerAt } from "./graphOverlay";
+import { paint } from "./pen";
 import type { Mark } from "./selectionMarks";
 import {
   fitImage,
@@ -30,6 +31,8 @@ interface Props {
   marks: readonly Mark[];
   /** Zooms to the marks until the reader moves the image. */
   follows: boolean;
+  /** See `Figure`. */
+  inText: boolean;
   onPick: (selection: Selection | null) => void;
 }
 
@@ -39,7 +42,17 @@ const PICK_REACH_PX = 8;
 /** A finger hides what it points at. */
 const TOUCH_REACH_PX = 18;
 
-export function ImageCanvas({ view, name, image, overlay, selection, marks, follows, onPick }: Props) {
+export function ImageCanvas({
+  view,
+  name,
+  image,
+  overlay,
+  selection,
+  marks,
+  follows,
+  inText,
+  onPick,
+}: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   void textScale.value;
   const [box, setBox] = useState<Size>({ width: 0, height: 0 });
@@ -60,16 +73,20 @@ export function ImageCanvas({ view, name, image, overlay, selection, marks, foll
     }
   }, [selection, follows]);
   useEffect(() => {
-    const context = canvas.current?.getContext("2d");
-    if (context && box.width > 0) {
+    if (canvas.current !== null && box.width > 0) {
       const ratio = window.devicePixelRatio;
-      resizeBacking(context.canvas, box, ratio);
-      drawView(context, image, viewport, ratio, overlay, selection, marks);
+      resizeBacking(canvas.current, box, ratio);
+      paint(canvas.current, { viewport, box }, ratio, (pen, of) =>
+        drawView(pen, of, image, overlay, selection, marks),
+      );
     }
   });
 
   const zoom = (at: Point, factor: number) => setMoved(zoomAt(viewport, at, factor, fitted.scale * 0.5));
   const onWheel = (event: WheelEvent) => {
+    if (inText && !event.ctrlKey && !event.metaKey && !canvas.current?.matches(":focus")) {
+      return;
+    }
     event.preventDefault();
     zoom({ x: event.offsetX, y: event.offsetY }, 1.0015 ** -event.deltaY);
   };

@@ -1,17 +1,19 @@
 /** The colours of image lines by the main direction that they follow. */
+
+import type { Figure } from "../../shared/figure";
 import { category } from "../../shared/palette";
-import { results } from "../state/results";
-import { scene } from "../state/scene";
-import { shownPlane } from "../state/viewState";
 
 /** A right angle: from the first direction to the other. */
 const HALF = Math.PI / 2;
 
 /** The main direction that an image line may follow: its interpretation plane cut with the XY plane (W96 3.4). */
-export function directionColours(view: number): (string | null)[] | null {
-  const info = scene.value?.views[view];
-  const segments = results.value.segments[view];
-  const pair = results.value.directions?.windows[shownPlane.value]?.directions[0];
+export function directionColours(
+  view: number,
+  { scene, results, plane }: Pick<Figure, "scene" | "results" | "plane">,
+): (string | null)[] | null {
+  const info = scene?.views[view];
+  const segments = results.segments[view];
+  const pair = results.directions?.windows[plane]?.directions[0];
   if (info === undefined || segments === undefined || pair === undefined) {
     return null;
   }

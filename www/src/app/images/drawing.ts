@@ -1,4 +1,4 @@
-/** Draws one view's image and overlay on a canvas. It computes nothing but where things lie on the screen. */
+/** Draws one view's image and overlay. It computes nothing but where things lie on the screen. */
 
 import { REJECTED_STRIDE, SEGMENT_STRIDE, SUPPORT_KINDS, SUPPORT_STRIDE } from "../../shared/flatArrays";
 import { category, PALETTE } from "../../shared/palette";
@@ -6,8 +6,8 @@ import type { Vec2 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { textScale } from "../state/textScale";
 import type { GraphOverlay } from "./graphOverlay";
+import type { Pen, PenPath, Window } from "./pen";
 import type { Mark } from "./selectionMarks";
-import type { Viewport } from "./viewport";
 
 export interface Overlay {
   /** x0, y0, x1, y1 per segment. */
@@ -30,107 +30,101 @@ const LINE_PX = 1.75;
 const THIN_PX = 1;
 const SELECTED_PX = 4;
 const DIMMED = 0.35;
-/** From this zoom on, single pixels are what a viewer wants to see. */
-const PIXELATED_FROM = 4;
 
 export function drawView(
-  context: CanvasRenderingContext2D,
+  pen: Pen,
+  window: Window,
   image: ImageBitmap,
-  viewport: Viewport,
-  pixelRatio: number,
   overlay: Overlay,
   selection: Selection | null,
   marks: readonly Mark[],
 ): void {
-  const { canvas } = context;
-  context.setTransform(1, 0, 0, 1, 0, 0);
-  context.clearRect(0, 0, canvas.width, canvas.height);
-  const scale = viewport.scale * pixelRatio;
-  context.setTransform(scale, 0, 0, scale, viewport.x * pixelRatio, viewport.y * pixelRatio);
-  context.imageSmoothingEnabled = viewport.scale < PIXELATED_FROM;
-  context.imageSmoothingQuality = "high";
-  context.drawImage(image, 0, 0);
-  context.lineCap = "round";
-  const unit = textScale.peek() / viewport.scale;
+  pen.image(image);
+  const unit = textScale.peek() / window.viewport.scale;
   const { segments, supports, rejected, regions, colours } = overlay;
-  context.globalAlpha = selection === null ? 1 : DIMMED;
+  const dimmed = selection === null ? 1 : DIMMED;
+  const strokes = (
+    data: Float32Array,
+    stride: number,
+    isWanted: (at: number) => boolean,
+    colour: string,
+    width: number,
+    alpha: number,
+  ) => strokeAll(pen, data, stride, isWanted, { colour, width: width * unit, alpha: alpha * dimmed });
+  const all = () => true;
   if (regions != null) {
-    fillRegions(context, regions, unit);
+    fillRegions(pen, regions, unit, dimmed);
   }
   if (rejected != null) {
-    strokeAll(context, rejected, REJECTED_STRIDE, () => true, PALETTE.rejected, THIN_PX * unit, 0.9);
+    strokes(rejected, REJECTED_STRIDE, all, PALETTE.rejected, THIN_PX, 0.9);
   }
   if (segments !== null && colours != null) {
     const ofColour = (colour: string | null) => (at: number) => colours[at / SEGMENT_STRIDE] === colour;
-    strokeAll(context, segments, SEGMENT_STRIDE, ofColour(null), PALETTE.unmatched, THIN_PX * unit, 0.7);
+    strokes(segments, SEGMENT_STRIDE, ofColour(null), PALETTE.unmatched, THIN_PX, 0.7);
     const isColoured = (at: number) => colours[at / SEGMENT_STRIDE] !== null;
-    strokeAll(context, segments, SEGMENT_STRIDE, isColoured, PALETTE.casing, (LINE_PX + 1.5) * unit, 0.6);
+    strokes(segments, SEGMENT_STRIDE, isColoured, PALETTE.casing, LINE_PX + 1.5, 0.6);
     for (const colour of new Set(colours)) {
       if (colour !== null) {
-        strokeAll(context, segments, SEGMENT_STRIDE, ofColour(colour), colour, LINE_PX * unit, 1);
+        strokes(segments, SEGMENT_STRIDE, ofColour(colour), colour, LINE_PX, 1);
       }
     }
   } else if (segments !== null) {
     const isAlone = supports === null;
-    strokeAll(context, segments, SEGMENT_STRIDE, () => true, PALETTE.casing, (LINE_PX + 1.5) * unit, 0.35);
-    const width = (isAlone ? LINE_PX : THIN_PX) * unit;
-    strokeAll(context, segments, SEGMENT_STRIDE, () => true, PALETTE.unmatched, width, isAlone ? 1 : 0.75);
+    strokes(segments, SEGMENT_STRIDE, all, PALETTE.casing, LINE_PX + 1.5, 0.35);
+    strokes(
+      segments,
+      SEGMENT_STRIDE,
+      all,
+      PALETTE.unmatched,
+      isAlone ? LINE_PX : THIN_PX,
+      isAlone ? 1 : 0.75,
+    );
   }
   if (supports !== null) {
-    strokeAll(context, supports, SUPPORT_STRIDE, () => true, PALETTE.casing, (LINE_PX + 1.75) * unit, 0.5);
+    strokes(supports, SUPPORT_STRIDE, all, PALETTE.casing, LINE_PX + 1.75, 0.5);
     SUPPORT_KINDS.forEach((kind, code) => {
       const isKind = (at: number) => supports[at + 4] === code;
-      strokeAll(context, supports, SUPPORT_STRIDE, isKind, PALETTE[kind], LINE_PX * unit, 1);
+      strokes(supports, SUPPORT_STRIDE, isKind, PALETTE[kind], LINE_PX, 1);
     });
   }
   if (overlay.graph != null) {
-    drawGraph(context, overlay.graph, unit);
+    drawGraph(pen, overlay.graph, unit, dimmed);
   }
-  context.globalAlpha = 1;
   for (const mark of marks) {
-    drawMark(context, mark, unit);
+    drawMark(pen, window, mark, unit);
   }
   if (selection?.kind === "line" && supports !== null) {
     const isChosen = (at: number) => supports[at + 5] === selection.index;
-    strokeAll(context, supports, SUPPORT_STRIDE, isChosen, PALETTE.casing, (SELECTED_PX + 2.5) * unit, 0.9);
-    strokeAll(context, supports, SUPPORT_STRIDE, isChosen, PALETTE.selected, SELECTED_PX * unit, 1);
+    const chosen = (colour: string, width: number, alpha: number) =>
+      strokeAll(pen, supports, SUPPORT_STRIDE, isChosen, { colour, width: width * unit, alpha });
+    chosen(PALETTE.casing, SELECTED_PX + 2.5, 0.9);
+    chosen(PALETTE.selected, SELECTED_PX, 1);
   }
 }
 
 /** A polyline with a dark casing, so that it stands on any photograph. */
-function drawMark(context: CanvasRenderingContext2D, mark: Mark, unit: number): void {
-  const [first] = mark.points;
-  if (first === undefined) {
+function drawMark(pen: Pen, window: Window, mark: Mark, unit: number): void {
+  if (mark.points.length === 0) {
     return;
   }
-  const path = new Path2D();
+  const path = pen.path();
   trace(path, mark.points);
   if (mark.closed) {
     path.closePath();
   }
-  context.lineJoin = "round";
+  const { colour, width } = mark;
   if (mark.fill !== undefined) {
-    context.globalAlpha = mark.fill;
-    context.fillStyle = mark.colour;
-    context.fill(path);
+    pen.fill(path, { colour, alpha: mark.fill });
   }
-  context.globalAlpha = 0.75;
-  context.strokeStyle = PALETTE.casing;
-  context.lineWidth = (mark.width + 2) * unit;
-  context.setLineDash([]);
-  context.stroke(path);
-  context.globalAlpha = 1;
-  context.strokeStyle = mark.colour;
-  context.lineWidth = mark.width * unit;
-  context.setLineDash(mark.dashed ? [7 * unit, 5 * unit] : []);
-  context.stroke(path);
-  context.setLineDash([]);
+  pen.stroke(path, { colour: PALETTE.casing, width: (width + 2) * unit, alpha: 0.75, join: "round" });
+  const dash = mark.dashed ? [7 * unit, 5 * unit] : [];
+  pen.stroke(path, { colour, width: width * unit, alpha: 1, dash, join: "round" });
   if (mark.label !== undefined) {
-    drawLabel(context, mark.label, mark, unit);
+    drawLabel(pen, window, mark.label, mark, unit);
   }
 }
 
-function trace(path: Path2D, points: readonly Vec2[]): void {
+function trace(path: PenPath, points: readonly Vec2[]): void {
   for (const [i, [x, y]] of points.entries()) {
     if (i === 0) {
       path.moveTo(x, y);
@@ -142,23 +136,27 @@ function trace(path: Path2D, points: readonly Vec2[]): void {
 
 /** Beside the right end of what is seen of the mark, or the left one: there it hides none of it. */
 function drawLabel(
-  context: CanvasRenderingContext2D,
+  pen: Pen,
+  window: Window,
   text: string,
   { points, colour, labelSide = "right" }: Mark,
   unit: number,
 ): void {
-  context.font = `600 ${11.5 * unit}px system-ui, "Liberation Sans", sans-serif`;
-  const width = context.measureText(text).width + 8 * unit;
+  const size = 11.5 * unit;
+  const width = pen.widthOf(text, size) + 8 * unit;
   const isLeft = labelSide === "left";
-  const [x, y] = labelPlace(context, points, isLeft, width + 8 * unit, 19 * unit);
+  const [x, y] = labelPlace(window, points, isLeft, width + 8 * unit, 19 * unit);
   const left = isLeft ? x - width - 4 * unit : x + 4 * unit;
   const top = labelSide === "below" ? y + 2 * unit : y - 17 * unit;
-  context.globalAlpha = 0.85;
-  context.fillStyle = PALETTE.casing;
-  context.fillRect(left, top, width, 15 * unit);
-  context.globalAlpha = 1;
-  context.fillStyle = colour;
-  context.fillText(text, left + 4 * unit, top + 11.5 * unit);
+  const plate = pen.path();
+  trace(plate, [
+    [left, top],
+    [left + width, top],
+    [left + width, top + 15 * unit],
+    [left, top + 15 * unit],
+  ]);
+  pen.fill(plate, { colour: PALETTE.casing, alpha: 0.85 });
+  pen.text(text, left + 4 * unit, top + size, size, colour);
 }
 
 /** In so many steps a side of a mark is gone along, to find a place for its label. */
@@ -166,15 +164,14 @@ const LABEL_STEPS = 48;
 
 /** The outermost place of a polyline that leaves room for a label in the picture; the middle where none does. */
 function labelPlace(
-  context: CanvasRenderingContext2D,
+  { viewport: { scale, x: dx, y: dy }, box }: Window,
   points: readonly Vec2[],
   isLeft: boolean,
   width: number,
   height: number,
 ): Vec2 {
-  const { a, d, e, f } = context.getTransform();
-  const [x0, x1] = [-e / a + (isLeft ? width : 0), (context.canvas.width - e) / a - (isLeft ? 0 : width)];
-  const [y0, y1] = [-f / d + height, (context.canvas.height - f) / d - height];
+  const [x0, x1] = [-dx / scale + (isLeft ? width : 0), (box.width - dx) / scale - (isLeft ? 0 : width)];
+  const [y0, y1] = [-dy / scale + height, (box.height - dy) / scale - height];
   const places = points.flatMap(([px, py], i): Vec2[] => {
     const [qx, qy] = points[i + 1] ?? [px, py];
     return Array.from({ length: LABEL_STEPS + 1 }, (_, k) => {
@@ -188,82 +185,61 @@ function labelPlace(
 }
 
 function fillRegions(
-  context: CanvasRenderingContext2D,
+  pen: Pen,
   regions: readonly { rings: readonly (readonly Vec2[])[]; colour: string }[],
   unit: number,
+  alpha: number,
 ): void {
-  const before = context.globalAlpha;
-  const outlines = new Path2D();
+  const outlines = pen.path();
   for (const { rings, colour } of regions) {
-    const path = new Path2D();
+    const path = pen.path();
     for (const ring of rings) {
-      trace(path, ring);
-      path.closePath();
+      for (const one of [path, outlines]) {
+        trace(one, ring);
+        one.closePath();
+      }
     }
-    context.globalAlpha = before * 0.6;
-    context.fillStyle = colour;
-    context.fill(path, "evenodd");
-    outlines.addPath(path);
+    pen.fill(path, { colour, alpha: 0.6 * alpha, rule: "evenodd" });
   }
-  context.globalAlpha = before;
-  context.strokeStyle = PALETTE.beam;
-  context.lineWidth = 0.75 * unit;
-  context.stroke(outlines);
+  pen.stroke(outlines, { colour: PALETTE.beam, width: 0.75 * unit, alpha });
 }
 
 /** Sectors in the colours of their regions, edges and corners in those of what was found in other views. */
-function drawGraph(
-  context: CanvasRenderingContext2D,
-  { sectors, edges, corners }: GraphOverlay,
-  unit: number,
-): void {
-  const before = context.globalAlpha;
+function drawGraph(pen: Pen, { sectors, edges, corners }: GraphOverlay, unit: number, alpha: number): void {
   for (const { ring, region } of sectors) {
-    const path = new Path2D();
+    const path = pen.path();
     trace(path, ring);
     path.closePath();
-    context.globalAlpha = before * 0.55;
-    context.fillStyle = category(region);
-    context.fill(path);
+    pen.fill(path, { colour: category(region), alpha: 0.55 * alpha });
   }
-  context.globalAlpha = before;
   for (const isMatched of [false, true]) {
-    const path = new Path2D();
+    const path = pen.path();
     for (const { ends } of edges.filter((edge) => edge.isMatched === isMatched)) {
       trace(path, ends);
     }
-    context.strokeStyle = isMatched ? PALETTE.matched : PALETTE.unmatched;
-    context.lineWidth = (isMatched ? LINE_PX : THIN_PX) * unit;
-    context.stroke(path);
+    const colour = isMatched ? PALETTE.matched : PALETTE.unmatched;
+    pen.stroke(path, { colour, width: (isMatched ? LINE_PX : THIN_PX) * unit, alpha });
   }
   for (const { at, space } of corners) {
-    context.beginPath();
-    context.arc(at[0], at[1], (space === null ? 2 : 3.5) * unit, 0, 2 * Math.PI);
-    context.fillStyle = space === null ? PALETTE.unmatched : PALETTE.matched;
-    context.fill();
+    const dot = pen.path();
+    dot.circle(at[0], at[1], (space === null ? 2 : 3.5) * unit);
+    pen.fill(dot, { colour: space === null ? PALETTE.unmatched : PALETTE.matched, alpha });
   }
 }
 
 function strokeAll(
-  context: CanvasRenderingContext2D,
+  pen: Pen,
   data: Float32Array,
   stride: number,
   isWanted: (at: number) => boolean,
-  colour: string,
-  width: number,
-  alpha: number,
+  style: { colour: string; width: number; alpha: number },
 ): void {
-  const path = new Path2D();
+  const path = pen.path();
   for (let at = 0; at + stride <= data.length; at += stride) {
     if (isWanted(at)) {
       path.moveTo(data[at] as number, data[at + 1] as number);
       path.lineTo(data[at + 2] as number, data[at + 3] as number);
     }
   }
-  const before = context.globalAlpha;
-  context.globalAlpha = before * alpha;
-  context.strokeStyle = colour;
-  context.lineWidth = width;
-  context.stroke(path);
-  context.globalAlpha = before;
+  pen.stroke(path, style);
 }

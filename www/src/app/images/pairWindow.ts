@@ -1,4 +1,5 @@
 /** The window of a pair of parallel lines in space, and the image lines inside it (W96 figures 10 and 11). */
+import type { Results } from "../../shared/figure";
 import type { PlaneTrace, Vec3 } from "../../shared/records";
 import { lineEnds } from "../selection/selectionShapes";
 
@@ -10,9 +11,12 @@ export interface PlaneWindow {
 }
 
 /** Positions along the lines count from where the plane across them through the origin cuts them, as in the core. */
-export function windowOf({ lines, crossings }: PlaneTrace): PlaneWindow | null {
-  const [a, b] = lineEnds(lines[0]);
-  const [c, d] = lineEnds(lines[1]);
+export function windowOf(
+  { lines, crossings }: PlaneTrace,
+  results: Pick<Results, "lines">,
+): PlaneWindow | null {
+  const [a, b] = lineEnds(lines[0], results);
+  const [c, d] = lineEnds(lines[1], results);
   if (a === undefined || b === undefined || c === undefined || d === undefined) {
     return null;
   }

@@ -3,14 +3,12 @@
  * matrix, as the viewer's graphics card does; everything else is drawn as the core gave it.
  */
 
+import type { Figure, Results, SelectionDetail } from "../../shared/figure";
 import { REJECTED_STRIDE, SEGMENT_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import type { Vec2, Vec3, ViewInfo } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { type Shape, shapesOf } from "../selection/selectionShapes";
-import { type Results, results } from "../state/results";
-import { scene } from "../state/scene";
-import { type SelectionDetail, selectionDetail } from "../state/selectionDetail";
 import { windowOf } from "./pairWindow";
 
 /** A polyline over an image, pixels. */
@@ -46,43 +44,47 @@ export function project({ projection: p }: Pick<ViewInfo, "projection">, [x, y, 
 }
 
 /** All that the present selection marks in a view. */
-export function marksOf(picked: Selection | null, view: number): Mark[] {
-  const info = scene.value?.views[view];
+export function marksOf(
+  picked: Selection | null,
+  view: number,
+  { scene, results, detail }: Pick<Figure, "scene" | "results" | "detail">,
+): Mark[] {
+  const info = scene?.views[view];
   if (picked === null || info === undefined) {
     return [];
   }
   switch (picked.kind) {
     case "segment":
-      return segmentMarks(picked.view, picked.index, view, results.value, selectionDetail.value);
+      return segmentMarks(picked.view, picked.index, info, view, results, detail);
     case "rejectedSegment":
       return picked.view === view
-        ? [{ points: ends(results.value.rejected[view], picked.index, REJECTED_STRIDE), ...CHOSEN }]
+        ? [{ points: ends(results.rejected[view], picked.index, REJECTED_STRIDE), ...CHOSEN }]
         : [];
     case "region":
       return picked.view === view
-        ? (results.value.regions[view]?.regions[picked.index]?.rings ?? []).map((ring) => ({
+        ? (results.regions[view]?.regions[picked.index]?.rings ?? []).map((ring) => ({
             points: ring,
             ...AREA,
           }))
         : [];
     default: {
-      const shapes = shapesOf(picked);
+      const shapes = shapesOf(picked, results);
       // Of a building the outlines matter, not the areas.
       const style = (role: Shape["role"]) =>
         role === "area" && picked.kind === "refinement" ? OUTLINE : STYLES[role];
       return [
-        ...(picked.kind === "pair" ? windowMarks(info, view, picked.index) : []),
+        ...(picked.kind === "pair" ? windowMarks(info, view, picked.index, results) : []),
         ...shapes.flatMap(({ points, role }) => seenFrom(info, points, style(role))),
-        ...warpedMarks(view, selectionDetail.value),
+        ...warpedMarks(view, detail),
       ];
     }
   }
 }
 
 /** The window of a pair of lines and what crosses it in this view (W96 figure 10). */
-function windowMarks(info: ViewInfo, view: number, index: number): Mark[] {
-  const pair = results.value.rectangles?.pairs[index];
-  const found = pair === undefined ? null : windowOf(pair);
+function windowMarks(info: ViewInfo, view: number, index: number, results: Results): Mark[] {
+  const pair = results.rectangles?.pairs[index];
+  const found = pair === undefined ? null : windowOf(pair, results);
   return found === null
     ? []
     : [
@@ -123,6 +125,7 @@ function ends(data: Float32Array | undefined, index: number, stride: number): Ve
 function segmentMarks(
   own: number,
   index: number,
+  info: ViewInfo,
   view: number,
   { segments }: Results,
   { story, candidate, correspondence }: SelectionDetail,
@@ -165,18 +168,13 @@ function segmentMarks(
     }
   }
   if (correspondence !== null && compared?.view === view) {
-    marks.push(...epipolarMark(correspondence.epipolar, view), ...point(correspondence.other, "x′"));
+    marks.push(...epipolarMark(correspondence.epipolar, info), ...point(correspondence.other, "x′"));
   }
   return marks;
 }
 
 /** The part of an image line that lies in the image. */
-function epipolarMark([a, b, c]: Vec3, view: number): Mark[] {
-  const info = scene.value?.views[view];
-  if (info === undefined) {
-    return [];
-  }
-  const { width, height } = info;
+function epipolarMark([a, b, c]: Vec3, { width, height }: ViewInfo): Mark[] {
   const ends: Vec2[] =
     Math.abs(b) > Math.abs(a)
       ? [

@@ -1,6 +1,7 @@
 /** A corner in space with its edges and regions (B99 2: Bonn), for the inspector. */
+
+import { isVerifiedPlane } from "../../shared/proposed";
 import { cornerPlanesOf } from "../../shared/records";
-import { isVerified } from "../../viewer/layers/adjacency";
 import { counted } from "../parts/counted";
 import { results } from "../state/results";
 import { indicesOf, linkToCorner, linkToFacet, linkToGroup, type Row } from "./rowLinks";
@@ -18,7 +19,7 @@ export function cornerRows(index: number): Row[] {
     return [];
   }
   const planes = planesOfCorner(index);
-  const verified = planes.filter((i) => isVerified(adjacency.planes[i]));
+  const verified = planes.filter((i) => isVerifiedPlane(adjacency.planes[i]));
   const inside = verified.map((i) => adjacency.planes[i]?.inside_nats ?? 0);
   const sigmas = corner.covariance.map((row, i) => Math.sqrt(row[i] ?? 0));
   const neighbours = corner.edges.flatMap(({ neighbour }) => (neighbour === null ? [] : [neighbour]));

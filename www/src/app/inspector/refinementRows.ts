@@ -2,12 +2,13 @@
 
 import { RELATION_WORDS, refinementWords } from "../parts/reasonText";
 import { buildingOfFacet, refinedFacets, relationLimit } from "../selection/refinedBuildings";
+import { params } from "../state/parameters";
 import { results } from "../state/results";
 import { linkToFacet, linkToRefinement, type Row } from "./rowLinks";
 
 /** The refinement of the building that a facet is part of. */
 export function refinedRow(facet: number): Row[] {
-  const building = buildingOfFacet(facet);
+  const building = buildingOfFacet(facet, results.value);
   const found = results.value.refinement?.trace.buildings[building ?? -1];
   return building === undefined || found === undefined
     ? []
@@ -26,7 +27,7 @@ export function refinementRows(index: number): Row[] {
     ["Edges measured", String(found.observations), "over all views"],
     ["Largest move", `${found.largest_move_m.toFixed(2)} m`],
     ["Relations adopted", `${adopted} of ${found.relations.length}`],
-    ["Facets", refinedFacets(index).map(linkToFacet)],
+    ["Facets", refinedFacets(index, results.value).map(linkToFacet)],
   ];
 }
 
@@ -35,7 +36,7 @@ export function relationRows(building: number, index: number): Row[] {
   if (found === undefined) {
     return [];
   }
-  const limit = relationLimit();
+  const limit = relationLimit(params.value);
   return [
     ["Relation", RELATION_WORDS[found.kind]],
     ["Deviation of the free solution", `${(100 * Math.abs(found.deviation_m)).toFixed(1)} cm`],

@@ -145,7 +145,7 @@ function segmentRows(view: number, index: number): Row[] {
 
 function historyOfSegment(view: number, index: number): Row[] {
   const { story } = selectionDetail.value;
-  const lines = lineOfSegment(view, index).map(linkToLine);
+  const lines = lineOfSegment(view, index, results.value).map(linkToLine);
   return [
     ...(story === null
       ? []

@@ -1,7 +1,7 @@
 /** The items of a kind in their order, so that all can be gone through without a pointer. */
 import { LINE_STRIDE, REJECTED_STRIDE, SEGMENT_STRIDE } from "../../shared/flatArrays";
 import type { Selection } from "../../shared/selection";
-import { formatSelection } from "../settings/addressLink";
+import { formatSelection } from "../../shared/selection";
 import type { Tab } from "../state/methods";
 import { results } from "../state/results";
 import { scene } from "../state/scene";

@@ -1,13 +1,14 @@
 /** What the plan of coplanar sets shows, and what is picked there. */
+
+import { isVerifiedSet } from "../../shared/proposed";
 import type { CoplanarSets, Vec2, Vec3 } from "../../shared/records";
-import { isVerified } from "../../viewer/layers/coplanar";
 
 /** The hull of the lines' ends, the polygon that was made of it, or one over the other. */
 export type CoplanarOutlines = "hull" | "polygon" | "both";
 
 /** The verified sets, and that which is picked; the largest first, for the ground is one that holds all others. */
 export function shownSets({ sets }: CoplanarSets, picked: number | null): number[] {
-  const shown = sets.flatMap((set, index) => (isVerified(set) || index === picked ? [index] : []));
+  const shown = sets.flatMap((set, index) => (isVerifiedSet(set) || index === picked ? [index] : []));
   const area = (index: number) => areaOf(sets[index]?.polygon ?? []);
   return shown.sort((a, b) => area(b) - area(a));
 }

@@ -1,78 +1,86 @@
 /** What a stage adds to the results. */
-import type { Args, Result } from "../../shared/calls";
+import type { Args, CallName, Result } from "../../shared/calls";
+import type { Results } from "../../shared/figure";
+import type { ParamTree } from "../../shared/paramTree";
 import type { StageName } from "../../shared/stages";
-import { params } from "../state/parameters";
-import type { Results } from "../state/results";
-import { scene } from "../state/scene";
-import { engine } from "./session";
 
-/** What the page asks the core for, once a stage has run. */
-const FETCHED: Record<StageName, () => Promise<Partial<Results>>> = {
-  regions: async () => ({
-    segments: await perView("segments"),
-    regions: (await perView("regions")).filter(isPresent),
+/** Who answers, and of what. */
+export interface ResultSource {
+  call<K extends CallName>(name: K, ...args: Args<K>): Promise<Result<K>>;
+  /** How many views the scene has. */
+  views: number;
+  /** What the stage ran with. */
+  params: ParamTree;
+}
+
+/** What is asked of the core, once a stage has run. */
+const FETCHED: Record<StageName, (from: ResultSource) => Promise<Partial<Results>>> = {
+  regions: async (from) => ({
+    segments: await perView(from, "segments"),
+    regions: (await perView(from, "regions")).filter(isPresent),
   }),
-  directions: async () => ({ directions: await engine.call("directions") }),
-  clusters: async () => ({ ...(await fetchLines()), clusters: await engine.call("clusters") }),
-  rectangles: async () => ({
-    facets: await engine.call("facets"),
-    madeWith: params.value,
-    rectangles: await engine.call("rectangles"),
+  directions: async (from) => ({ directions: await from.call("directions") }),
+  clusters: async (from) => ({ ...(await fetchLines(from)), clusters: await from.call("clusters") }),
+  rectangles: async (from) => ({
+    facets: await from.call("facets"),
+    madeWith: from.params,
+    rectangles: await from.call("rectangles"),
   }),
-  segments: async () => ({
-    segments: await perView("segments"),
-    rejected: await perView("rejectedSegments"),
+  segments: async (from) => ({
+    segments: await perView(from, "segments"),
+    rejected: await perView(from, "rejectedSegments"),
   }),
-  matches: async () => ({
-    supports: await perView("matchedSegments"),
-    matching: await engine.call("matching"),
+  matches: async (from) => ({
+    supports: await perView(from, "matchedSegments"),
+    matching: await from.call("matching"),
   }),
   // Where views moved, `followCameras` shows it.
   adjustment: async () => ({}),
-  lines: async () => ({
-    ...(await fetchLines()),
-    stretches: await engine.call("detectedStretches"),
+  lines: async (from) => ({
+    ...(await fetchLines(from)),
+    stretches: await from.call("detectedStretches"),
   }),
-  halfplanes: async () => ({
-    halfPlanes: await engine.call("halfPlanes"),
-    sides: await engine.call("sides"),
+  halfplanes: async (from) => ({
+    halfPlanes: await from.call("halfPlanes"),
+    sides: await from.call("sides"),
   }),
-  coplanar: async () => ({ coplanar: await engine.call("coplanar") }),
-  adjacency: async () => ({ adjacency: await engine.call("adjacency") }),
-  dense: async () => ({ dense: await engine.call("dense") }),
-  facets: async () => ({
-    facets: await engine.call("facets"),
-    madeWith: params.value,
-    grouping: await engine.call("grouping"),
-    refinement: await engine.call("refinement"),
+  coplanar: async (from) => ({ coplanar: await from.call("coplanar") }),
+  adjacency: async (from) => ({ adjacency: await from.call("adjacency") }),
+  dense: async (from) => ({ dense: await from.call("dense") }),
+  facets: async (from) => ({
+    facets: await from.call("facets"),
+    madeWith: from.params,
+    grouping: await from.call("grouping"),
+    refinement: await from.call("refinement"),
     // The model adds new lines to the matched ones.
-    ...(await fetchLines()),
+    ...(await fetchLines(from)),
   }),
-  model: async () => ({
-    glb: await engine.call("exportFile", "model.glb"),
-    ground: await engine.call("ground"),
+  model: async (from) => ({
+    glb: await from.call("exportFile", "model.glb"),
+    ground: await from.call("ground"),
   }),
 };
 
 /** What a stage adds to the results. */
-export function fetchResults(stage: StageName): Promise<Partial<Results>> {
-  return FETCHED[stage]();
+export function fetchResults(stage: StageName, from: ResultSource): Promise<Partial<Results>> {
+  return FETCHED[stage](from);
 }
 
-async function fetchLines(): Promise<Partial<Results>> {
+async function fetchLines(from: ResultSource): Promise<Partial<Results>> {
   return {
-    supports: await perView("matchedSegments"),
-    lines: await engine.call("lines"),
-    records: await engine.call("lineRecords"),
+    supports: await perView(from, "matchedSegments"),
+    lines: await from.call("lines"),
+    records: await from.call("lineRecords"),
   };
 }
 
 /** The answers for all views. */
 function perView<K extends "segments" | "matchedSegments" | "rejectedSegments" | "regions">(
+  from: ResultSource,
   call: K,
 ): Promise<Result<K>[]> {
-  const views = scene.value?.views ?? [];
-  return Promise.all(views.map((_, view) => engine.call(call, ...([view] as Args<K>))));
+  const views = Array.from({ length: from.views }, (_, view) => view);
+  return Promise.all(views.map((view) => from.call(call, ...([view] as Args<K>))));
 }
 
 function isPresent<T>(value: T | null): value is T {

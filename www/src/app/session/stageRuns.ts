@@ -141,7 +141,11 @@ async function runStage(name: StageName, position: number, taken: ParamTree): Pr
     }
     workerPool.hasRun(name);
     noteResults();
-    const found = await fetchResults(name);
+    const found = await fetchResults(name, {
+      call: (...asked) => engine.call(...asked),
+      views: scene.value?.views.length ?? 0,
+      params: params.value,
+    });
     const seconds = (performance.now() - started) / 1000;
     const names = await engine.call("exportNames");
     batch(() => {

@@ -5,7 +5,7 @@
  */
 import { batch, effect } from "@preact/signals";
 import type { ParamValue } from "../../shared/paramTree";
-import type { Selection, Standpoint } from "../../shared/selection";
+import { formatSelection, parseSelection, type Selection, type Standpoint } from "../../shared/selection";
 import { isBusy } from "../state/activity";
 import { methodNamed, TABS, type Tab } from "../state/methods";
 import { defaults, method, params } from "../state/parameters";
@@ -75,68 +75,6 @@ export function formatLink(link: Link): string {
   set("point", link.point?.join() ?? null);
   set("camera", link.camera?.join() ?? null);
   return fields.toString();
-}
-
-/** "line:12", "segment:0.44" (view first), "side:12.left"; the words are a format and stay. */
-export function formatSelection(picked: Selection): string | null {
-  switch (picked.kind) {
-    case "segment":
-    case "region":
-      return `${picked.kind}:${picked.view}.${picked.index}`;
-    case "rejectedSegment":
-      return `refused:${picked.view}.${picked.index}`;
-    case "rejectedFacet":
-      return `withdrawn:${picked.index}`;
-    case "cluster":
-      return `cluster:${picked.plane}.${picked.index}`;
-    case "relation":
-      return `relation:${picked.building}.${picked.index}`;
-    case "side":
-      return `side:${picked.line}.${picked.side}`;
-    case "surface":
-      return picked.facet === null ? null : `facet:${picked.facet}`;
-    default:
-      return `${picked.kind}:${picked.index}`;
-  }
-}
-
-export function parseSelection(text: string | null): Selection | null {
-  const found = /^([a-z]+):(\d{1,9})(?:\.(\d{1,9}|left|right))?$/.exec(text ?? "");
-  if (found === null) {
-    return null;
-  }
-  const [, kind, first, second] = found as unknown as [string, string, string, string | undefined];
-  const index = Number(first);
-  switch (kind) {
-    case "segment":
-    case "region":
-      return /^\d+$/.test(second ?? "") ? { kind, view: index, index: Number(second) } : null;
-    case "refused":
-      return /^\d+$/.test(second ?? "")
-        ? { kind: "rejectedSegment", view: index, index: Number(second) }
-        : null;
-    case "cluster":
-      return /^\d+$/.test(second ?? "") ? { kind, plane: index, index: Number(second) } : null;
-    case "relation":
-      return /^\d+$/.test(second ?? "") ? { kind, building: index, index: Number(second) } : null;
-    case "side":
-      return second === "left" || second === "right" ? { kind, line: index, side: second } : null;
-    case "line":
-    case "halfplane":
-    case "dense":
-    case "coplanar":
-    case "corner":
-    case "group":
-    case "refinement":
-    case "facet":
-    case "view":
-    case "pair":
-      return { kind, index };
-    case "withdrawn":
-      return { kind: "rejectedFacet", index };
-    default:
-      return null;
-  }
 }
 
 /** Keeps the address up to date, and goes where back and forward lead. */

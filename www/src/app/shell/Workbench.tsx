@@ -6,10 +6,12 @@ import { Downloads } from "../project/Downloads";
 import { Parameters } from "../project/Parameters";
 import { Project } from "../project/Project";
 import { showsEntrance } from "../screen/opening";
+import { PageTakeAlong } from "../stages/PageTakeAlong";
 import { StageRail } from "../stages/StageRail";
 import { StageView } from "../stages/StageView";
 import { images } from "../state/scene";
 import { lessonStep } from "../state/tour";
+import { tab } from "../state/viewState";
 import { Lesson } from "../tour/Lesson";
 import { Notices } from "./Notices";
 
@@ -27,7 +29,8 @@ export function Workbench() {
         <StageRail />
       </main>
       <aside class="column details" aria-label="Details">
-        {lessonStep.value !== null ? <Lesson /> : images.value.length > 0 && <AboutFigure />}
+        {lessonStep.value !== null ? <Lesson /> : images.value.length > 0 && <AboutFigure tab={tab.value} />}
+        {lessonStep.value === null && images.value.length > 0 && <PageTakeAlong />}
         <Comparison />
         <Inspector />
         <Parameters />

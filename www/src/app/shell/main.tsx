@@ -1,5 +1,5 @@
 /** Starts the page. */
-import "./base.css";
+import "../parts/base.css";
 import "../parts/parts.css";
 import "../parts/charts.css";
 import { render } from "preact";
@@ -8,9 +8,11 @@ import { setOpening } from "../screen/opening";
 import { askAboutSelection } from "../selection/selectionQueries";
 import { start } from "../session/session";
 import { followState } from "../settings/addressLink";
+import { restoreTextScale } from "../state/textScale";
 import { App } from "./App";
 import { isAwaited, restoreOpeningState } from "./openingState";
 
+restoreTextScale();
 const root = document.getElementById("app");
 if (root !== null) {
   render(<App />, root);

@@ -85,5 +85,9 @@ function isShown(stage: StageName): boolean {
 
 /** A line that the model adds to the matched ones? */
 function isNewLine(picked: Selection | null): boolean {
-  return picked?.kind === "line" && results.value.lines !== null && lineEnds(picked.index).length === 0;
+  return (
+    picked?.kind === "line" &&
+    results.value.lines !== null &&
+    lineEnds(picked.index, results.value).length === 0
+  );
 }

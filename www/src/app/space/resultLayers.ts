@@ -3,6 +3,7 @@ import { effect, type ReadonlySignal, signal } from "@preact/signals";
 import { Vector3 } from "three";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import type { Facet, FacetTrace, Vec3 } from "../../shared/records";
+import type { Selection } from "../../shared/selection";
 import { buildAdjacency } from "../../viewer/layers/adjacency";
 import { buildCameras } from "../../viewer/layers/cameras";
 import { buildCoplanar } from "../../viewer/layers/coplanar";
@@ -76,20 +77,21 @@ export function toggleLayer(name: LayerName, inTab: Tab): void {
 /** A function that makes a layer, and what it makes it of; null where there is nothing to show. */
 type Plan = readonly [build: () => Layer, ...of: unknown[]] | null;
 
+/** The 3D lines of a selection, in the results of now. */
+const ownLines = (picked: Selection | null) => linesOfSelection(picked, results.peek());
+
 /** What every layer shows now. `middle` is where cameras look at, local frame. */
 const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   lines: () => {
     const { lines, records } = results.value;
-    return lines && [() => buildLines(lines, records, linesOfSelection), lines, records];
+    return lines && [() => buildLines(lines, records, ownLines), lines, records];
   },
   uncertainty: () => {
     const { lines, records } = results.value;
     // Thousands of tubes that few look at: not before somebody does.
     const isShown = shownLayers.value[tab.value].includes("uncertainty");
     const has = isShown && lines !== null && records.length * LINE_STRIDE === lines.length;
-    return has
-      ? [() => buildUncertainty(lines, records, enlargement(records), linesOfSelection), records]
-      : null;
+    return has ? [() => buildUncertainty(lines, records, enlargement(records), ownLines), records] : null;
   },
   fans: () => {
     const { lines, halfPlanes, sides } = results.value;
@@ -131,16 +133,19 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
     return kept && [() => build(kept.facets), kept, beside];
   },
   picked: () => {
-    const shapes = shapesOf(selection.value).filter(({ role }) => role !== "before");
+    const shapes = shapesOf(selection.value, results.value).filter(({ role }) => role !== "before");
     const areas = shapes.map(({ points, role }) => ({ points, closed: role === "area" }));
     // A segment is in no place of space, but its line is.
-    const lines = selection.value?.kind === "segment" ? linesOfSelection(selection.value).map(lineEnds) : [];
+    const lines =
+      selection.value?.kind === "segment"
+        ? ownLines(selection.value).map((line) => lineEnds(line, results.value))
+        : [];
     const all = [...areas, ...lines.map((points) => ({ points, closed: false }))];
     return all.length === 0 ? null : [() => buildHighlight(all), selection.value, results.value];
   },
   turning: () => {
     const { side, theta } = selectionDetail.value;
-    const ends = side === null ? [] : lineEnds(side.line);
+    const ends = side === null ? [] : lineEnds(side.line, results.value);
     return side !== null && ends.length === 2 && tab.value === "halfplanes"
       ? [() => buildTurning(ends as unknown as [Vec3, Vec3], side.side, theta), side, theta]
       : null;

@@ -2,6 +2,7 @@
 import "./stages.css";
 import type { ComponentType } from "preact";
 import { useRef } from "preact/hooks";
+import type { Figure } from "../../shared/figure";
 import { AdjacencyLab } from "../figures/AdjacencyLab";
 import { ClusterLab } from "../figures/ClusterLab";
 import { CoplanarLab } from "../figures/CoplanarLab";
@@ -15,6 +16,7 @@ import { RefinementLab } from "../figures/RefinementLab";
 import { SimLab } from "../figures/SimLab";
 import { Filmstrip } from "../images/Filmstrip";
 import { ImageViews } from "../images/ImageViews";
+import { pageFigure } from "../selection/selectionQueries";
 import { SpaceView } from "../space/SpaceView";
 import { TABS, type Tab } from "../state/methods";
 import { method } from "../state/parameters";
@@ -45,7 +47,7 @@ const TITLES: Record<Tab, string> = {
 const IMAGE_TABS: readonly Tab[] = ["images", "segments", "matches", "regions", "directions", "clusters"];
 
 /** What stands below the images or the space of a tab. */
-const LABS: Partial<Record<Tab, ComponentType>> = {
+const LABS: Partial<Record<Tab, ComponentType<{ figure: Figure }>>> = {
   matches: PointLab,
   lines: LineLab,
   halfplanes: SimLab,
@@ -58,8 +60,17 @@ const LABS: Partial<Record<Tab, ComponentType>> = {
   directions: DirectionLab,
   clusters: ClusterLab,
   rectangles: RectangleLab,
-  model: () => <Filmstrip />,
+  model: Filmstrip,
 };
+
+/** Drawn anew with whatever of the page's state changes; the tabs and the space are not. */
+function PageImages() {
+  return <ImageViews figure={pageFigure()} empty={<EmptyStage />} />;
+}
+
+function PageLab({ Lab }: { Lab: ComponentType<{ figure: Figure }> }) {
+  return <Lab figure={pageFigure()} />;
+}
 
 export function StageView() {
   const list = useRef<HTMLDivElement>(null);
@@ -103,11 +114,11 @@ export function StageView() {
         ))}
       </div>
       <div id="stage-view" class="stage-view" role="tabpanel" aria-labelledby={`tab-${tab.value}`}>
-        {isImageTab && <ImageViews empty={<EmptyStage />} />}
+        {isImageTab && <PageImages />}
         <SpaceView hidden={isImageTab} />
         {Lab !== undefined && (
           <section class="lab" aria-label={`${TITLES[tab.value]}: figure`}>
-            <Lab />
+            <PageLab Lab={Lab} />
           </section>
         )}
       </div>

@@ -1,78 +1,11 @@
 /** What the stages have found. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
-import type { GroundTexture } from "../../shared/calls";
-import type { ParamTree } from "../../shared/paramTree";
-import type {
-  AdjacencyGraphs,
-  ClusterTrace,
-  CoplanarSets,
-  DensePlanes,
-  Directions,
-  Facet,
-  FacetTrace,
-  HalfPlane,
-  LineRecord,
-  MatchRecord,
-  RectangleTrace,
-  Refinement,
-  Segmentation,
-  SideRecord,
-} from "../../shared/records";
+import { NO_RESULTS, type Results } from "../../shared/figure";
 import { REGION_TABS, type Tab } from "./methods";
 import { method } from "./parameters";
 import { tab } from "./viewState";
 
-/** What the stages have returned so far; arrays per view are empty until their stage has run. */
-export interface Results {
-  segments: Float32Array[];
-  supports: Float32Array[];
-  lines: Float64Array | null;
-  halfPlanes: HalfPlane[] | null;
-  coplanar: CoplanarSets | null;
-  adjacency: AdjacencyGraphs | null;
-  dense: DensePlanes | null;
-  facets: Facet[] | null;
-  /** The parameters that the facets were found with. */
-  madeWith: ParamTree | null;
-  glb: Uint8Array<ArrayBuffer> | null;
-  ground: GroundTexture | null;
-  rejected: Float32Array[];
-  matching: MatchRecord | null;
-  records: LineRecord[];
-  stretches: Float64Array | null;
-  sides: SideRecord[];
-  grouping: FacetTrace | null;
-  refinement: Refinement | null;
-  regions: Segmentation[];
-  directions: Directions | null;
-  clusters: ClusterTrace[] | null;
-  rectangles: RectangleTrace | null;
-}
-
-export const NO_RESULTS: Results = {
-  segments: [],
-  supports: [],
-  lines: null,
-  halfPlanes: null,
-  coplanar: null,
-  adjacency: null,
-  dense: null,
-  facets: null,
-  madeWith: null,
-  glb: null,
-  ground: null,
-  rejected: [],
-  matching: null,
-  records: [],
-  stretches: null,
-  sides: [],
-  grouping: null,
-  refinement: null,
-  regions: [],
-  directions: null,
-  clusters: null,
-  rectangles: null,
-};
+export { NO_RESULTS, type Results };
 
 /** Where a stage's results are kept: in method "combined" both methods have segments, lines and facets of their own. */
 type ResultSet = "main" | "regions";

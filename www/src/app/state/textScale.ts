@@ -5,16 +5,18 @@ import { effect, type ReadonlySignal, signal } from "@preact/signals";
 const SCALES = [1, 1.15, 1.3, 1.5] as const;
 const SCALE_KEY = "ridgeline.text";
 
-const chosen = signal(storedScale());
+const chosen = signal<number>(1);
 
 /** How large text and lines are: for projectors more than 1. */
 export const textScale: ReadonlySignal<number> = chosen;
 
-effect(() => {
-  if (typeof document !== "undefined") {
+/** Writes as large as in the last visit, and has the style sheets follow. */
+export function restoreTextScale(): void {
+  chosen.value = storedScale();
+  effect(() => {
     document.documentElement.style.setProperty("--scale", String(textScale.value));
-  }
-});
+  });
+}
 
 /** The next larger text; after the largest, the usual one. */
 export function biggerText(): void {

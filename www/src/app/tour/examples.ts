@@ -1,8 +1,8 @@
 /** What the tour's steps are about, chosen by the results: a step's claim holds for what it shows. */
 import { LINE_STRIDE, STRETCH_STRIDE } from "../../shared/flatArrays";
+import { isVerifiedPlane } from "../../shared/proposed";
 import { coplanarSetsOf, densePlanesOf, isMadeFrom, type Side, type SideTrace } from "../../shared/records";
 import { type ClassName, likeliestClass } from "../../shared/surfaceClass";
-import { isVerified } from "../../viewer/layers/adjacency";
 import type { Results } from "../state/results";
 
 const DEGREE = Math.PI / 180;
@@ -159,7 +159,7 @@ export interface CornerParts {
 export function cornerParts({ adjacency }: Pick<Results, "adjacency">, index: number): CornerParts | null {
   const corner = adjacency?.trace.corners[index];
   const own = adjacency?.planes.filter(
-    (plane) => isVerified(plane) && plane.regions.some(([proposer]) => proposer === index),
+    (plane) => isVerifiedPlane(plane) && plane.regions.some(([proposer]) => proposer === index),
   );
   return corner === undefined
     ? null

@@ -4,7 +4,7 @@ import { counted } from "../parts/counted";
 import { degreesOf, percentText } from "../parts/numberText";
 import { REJECTION_WORDS } from "../parts/reasonText";
 import { openDemoIn } from "../project/projectActions";
-import { bestTheta } from "../selection/selectionQueries";
+import { bestTheta } from "../selection/inquiry";
 import type { Turn } from "../session/actionQueue";
 import { actions } from "../session/session";
 import { chooseMethod, runEverything } from "../session/stageRuns";
@@ -160,7 +160,7 @@ export const LESSONS: readonly LessonStep[] = [
     question: "Drag θ until the windows are alike, without the Best button: within 2° of the maximum.",
     answer: () => {
       const { side } = selectionDetail.value;
-      return `Sim is ${(side === null ? 0 : highestSim(side)).toFixed(2)} at its peak, at ${degreesOf(bestTheta(side)).toFixed(0)}°. The more texture a roof has and the longer the baseline, the sharper the peak.`;
+      return `Sim is ${(side === null ? 0 : highestSim(side)).toFixed(2)} at its peak, at ${degreesOf(bestTheta(side, results.value)).toFixed(0)}°. The more texture a roof has and the longer the baseline, the sharper the peak.`;
     },
     method: "lines",
     tab: "halfplanes",
@@ -168,7 +168,7 @@ export const LESSONS: readonly LessonStep[] = [
     prepare: () => void showSteepFall(),
     isFound: () => {
       const { side, theta, isTurned } = selectionDetail.value;
-      return side !== null && isTurned && Math.abs(theta - bestTheta(side)) < 2 * DEGREE;
+      return side !== null && isTurned && Math.abs(theta - bestTheta(side, results.value)) < 2 * DEGREE;
     },
   },
   {

@@ -1,7 +1,8 @@
 /** Finds among the results what a step of the tour is best shown by, and selects it. */
 import { effect } from "@preact/signals";
 import type { SideTrace } from "../../shared/records";
-import { bestTheta, compareAt, turnTo } from "../selection/selectionQueries";
+import { bestTheta } from "../selection/inquiry";
+import { compareAt, turnTo } from "../selection/selectionQueries";
 import { ask } from "../session/session";
 import { results } from "../state/results";
 import { type SelectionDetail, selectionDetail } from "../state/selectionDetail";
@@ -41,7 +42,7 @@ export async function showSteepFall(): Promise<void> {
   const { halfPlanes } = results.value;
   const fell = (await tracesOf(slopedHalfPlanes(results.value))).map((side) => ({
     side,
-    ...fallOf(side, bestTheta(side)),
+    ...fallOf(side, bestTheta(side, results.value)),
   }));
   const steepest = fell.reduce((a, b) => (b.by > a.by ? b : a), fell[0] as (typeof fell)[number]);
   if (steepest === undefined || !isHere()) {

@@ -4,7 +4,8 @@
  */
 import { Group } from "three";
 import { category, PALETTE } from "../../shared/palette";
-import type { AdjacencyGraphs, CornerPlane, SpaceCorner, Vec3 } from "../../shared/records";
+import { edgesOfCorner, isVerifiedPlane } from "../../shared/proposed";
+import type { AdjacencyGraphs, CornerPlane, SpaceCorner } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { zUpGroup } from "../scene/frame";
 import { disposeObject, type Layer } from "../scene/layer";
@@ -16,27 +17,15 @@ const OPACITY = { edges: 1, polygon: 0.9, refused: 0.35 };
 /** Of everything but the selection. */
 const DIMMED = 0.25;
 
-/** Do the photographs speak for the plane? */
-export function isVerified(plane: CornerPlane | undefined): boolean {
-  return plane !== undefined && plane.prior_nats + plane.inside_nats > 0;
-}
-
-/** The edges of a corner: from it to where they end, or to the corners that they lead to. */
-export function edgesOf(corner: SpaceCorner, corners: readonly SpaceCorner[]): (readonly [Vec3, Vec3])[] {
-  const [x, y, z] = corner.at;
-  return corner.edges.map(({ direction: [dx, dy, dz], length_m: t, neighbour }) => [
-    corner.at,
-    corners[neighbour ?? -1]?.at ?? [x + t * dx, y + t * dy, z + t * dz],
-  ]);
-}
-
 export function buildAdjacency({ planes, trace }: AdjacencyGraphs): Layer {
   const object = zUpGroup();
   const { corners } = trace;
-  const edges = corners.flatMap((corner, index) => edgesOf(corner, corners).map((ends) => ({ ends, index })));
+  const edges = corners.flatMap((corner, index) =>
+    edgesOfCorner(corner, corners).map((ends) => ({ ends, index })),
+  );
   const numbered = planes.map((plane, index) => ({ plane, index, corner: plane.regions[0]?.[0] ?? 0 }));
-  const verified = numbered.filter(({ plane }) => isVerified(plane));
-  const refused = numbered.filter(({ plane }) => !isVerified(plane));
+  const verified = numbered.filter(({ plane }) => isVerifiedPlane(plane));
+  const refused = numbered.filter(({ plane }) => !isVerifiedPlane(plane));
   const sides = (of: typeof numbered) => of.flatMap((one) => one.plane.polygon.map(() => one));
   const rings = (of: typeof numbered) => sidesOf(of.map(({ plane }) => plane.polygon));
   const parts = {
@@ -83,7 +72,7 @@ export function buildAdjacency({ planes, trace }: AdjacencyGraphs): Layer {
 function chosenCorner(corner: SpaceCorner, corners: readonly SpaceCorner[], own: CornerPlane[]): Group {
   const all = [
     strokes(sidesOf(own.map(({ polygon }) => polygon)), PALETTE.grown, WIDTH_PX.polygon),
-    strokes(edgesOf(corner, corners).flat(2), PALETTE.selected, WIDTH_PX.selected),
+    strokes(edgesOfCorner(corner, corners).flat(2), PALETTE.selected, WIDTH_PX.selected),
   ];
   for (const one of all) {
     one.raycast = () => undefined;

@@ -4,6 +4,7 @@
  */
 import { Group } from "three";
 import { category, PALETTE } from "../../shared/palette";
+import { isVerifiedSet } from "../../shared/proposed";
 import type { CoplanarSet, CoplanarSets } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { zUpGroup } from "../scene/frame";
@@ -16,17 +17,12 @@ const OPACITY = { polygon: 1, hull: 0.8, refused: 0.35 };
 /** Of everything but the selection. */
 const DIMMED = 0.25;
 
-/** Do the photographs speak for the polygon? */
-export function isVerified({ inside_nats, outline_nats }: CoplanarSet): boolean {
-  return inside_nats + outline_nats > 0;
-}
-
 /** @param lines p0 and p1 of each 3D line, local frame, metres */
 export function buildCoplanar({ sets }: CoplanarSets, lines: Float64Array): Layer {
   const object = zUpGroup();
   const numbered = sets.map((set, index) => ({ set, index }));
-  const verified = numbered.filter(({ set }) => isVerified(set));
-  const refused = numbered.filter(({ set }) => !isVerified(set));
+  const verified = numbered.filter(({ set }) => isVerifiedSet(set));
+  const refused = numbered.filter(({ set }) => !isVerifiedSet(set));
   // One entry a side: a click on a side picks its set.
   const sides = verified.flatMap(({ set, index }) => set.polygon.map(() => index));
   const parts = {

@@ -19,10 +19,9 @@ import { middleOf } from "../scene/facetPlan";
 import { zUpGroup } from "../scene/frame";
 import { BOTH_SIDES, disposeObject, type Layer } from "../scene/layer";
 import { nameLabels } from "../scene/nameLabels";
+import { roofTint } from "../scene/roofTint";
 import { SelectedObject } from "../scene/selectedObject";
 
-/** From this slope on, radians, the tint has its full saturation. */
-const FULL_TINT_SLOPE = (40 * Math.PI) / 180;
 const DIMMED = 0.3;
 const OPACITY = 0.92;
 
@@ -53,30 +52,9 @@ export function buildFacets(facets: readonly Facet[]): Layer {
   };
 }
 
-/** The tint of a plane: azimuth as hue, slope as chroma, equal lightness for all. */
-export function normalTint({ plane }: Pick<Facet, "plane">): Color {
-  const [x, y, z] = plane.normal;
-  const slope = Math.atan2(Math.hypot(x, y), Math.abs(z));
-  const chroma = 0.1 * Math.min(1, slope / FULL_TINT_SLOPE);
-  return fromOklch(0.76, chroma, Math.atan2(y, x));
-}
-
-/** Oklch (Ottosson 2020) to three's linear working space, clipped. */
-function fromOklch(lightness: number, chroma: number, hue: number): Color {
-  const a = chroma * Math.cos(hue);
-  const b = chroma * Math.sin(hue);
-  const l = (lightness + 0.3963377774 * a + 0.2158037573 * b) ** 3;
-  const m = (lightness - 0.1055613458 * a - 0.0638541728 * b) ** 3;
-  const s = (lightness - 0.0894841775 * a - 1.291485548 * b) ** 3;
-  return new Color(
-    clip(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
-    clip(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
-    clip(-0.0041960863 * l - 0.7034186147 * m + 1.707614701 * s),
-  );
-}
-
-function clip(value: number): number {
-  return Math.min(1, Math.max(0, value));
+/** The tint of a plane, for three. */
+export function normalTint(facet: Pick<Facet, "plane">): Color {
+  return new Color(...roofTint(facet));
 }
 
 /** Positions of a facet's triangles, nine numbers each; its plan is triangulated, roofs do not overhang. */

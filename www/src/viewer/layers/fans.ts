@@ -12,12 +12,10 @@ import { LINE_STRIDE } from "../../shared/flatArrays";
 import { PALETTE } from "../../shared/palette";
 import { type HalfPlane, isRejected, type Side, type SideRecord, type Vec3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
+import { fanRing, fanWidth } from "../scene/fanRing";
 import { zUpGroup } from "../scene/frame";
 import { BOTH_SIDES, disposeObject, type Layer, rgb } from "../scene/layer";
 
-/** Width of a fan over the length of its line, and its limits in metres: for the eye only. */
-const RELATIVE_WIDTH = 0.35;
-const WIDTH_M = { min: 0.6, max: 3 };
 const REJECTED_OFFSET_M = 0.25;
 const ALPHA = { near: 0.75, far: 0.08, dimmed: 0.3 };
 
@@ -87,10 +85,6 @@ export function buildTurning(ends: readonly [Vec3, Vec3], side: Side, theta: num
   return { object, pick: () => null, highlight: () => undefined, dispose: () => disposeObject(object) };
 }
 
-function fanWidth(lengthM: number): number {
-  return Math.min(WIDTH_M.max, Math.max(WIDTH_M.min, lengthM * RELATIVE_WIDTH));
-}
-
 /** A thin line beside the 3D line, on the rejected side of it. */
 function rejectedLines(
   sides: readonly SideRecord[],
@@ -110,21 +104,7 @@ function rejectedLines(
 
 /** Start and end on the line, then end and start away from it. */
 export function fanCorners(halfPlane: HalfPlane, lines: Float64Array): Vector3[] {
-  const at = halfPlane.line * LINE_STRIDE;
-  const p0 = new Vector3().fromArray(lines, at);
-  const p1 = new Vector3().fromArray(lines, at + 3);
-  const along = p1.clone().sub(p0);
-  const width = fanWidth(along.length());
-  const away = awayFromLine(halfPlane, along.normalize()).multiplyScalar(width);
-  return [p0, p1, p1.clone().add(away), p0.clone().add(away)];
-}
-
-/** The unit vector in the half-plane across its line: to the left or right of it, seen from above. */
-function awayFromLine(halfPlane: HalfPlane, direction: Vector3): Vector3 {
-  const away = new Vector3(...halfPlane.plane.normal).cross(direction).normalize();
-  const left = new Vector3(-direction.y, direction.x, 0);
-  const isLeft = away.dot(left) > 0;
-  return isLeft === (halfPlane.side === "left") ? away : away.negate();
+  return fanRing(halfPlane, lines).map((corner) => new Vector3(...corner));
 }
 
 function fanMesh(corners: readonly Vector3[][], colour: string): Mesh<BufferGeometry, MeshBasicMaterial> {

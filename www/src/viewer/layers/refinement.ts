@@ -4,7 +4,8 @@
  */
 import { Group } from "three";
 import { PALETTE } from "../../shared/palette";
-import type { Refinement, Segment3, Vec3 } from "../../shared/records";
+import { outlinesBefore } from "../../shared/proposed";
+import type { Refinement, Segment3 } from "../../shared/records";
 import type { Selection } from "../../shared/selection";
 import { zUpGroup } from "../scene/frame";
 import { disposeObject, type Layer } from "../scene/layer";
@@ -53,16 +54,10 @@ function shownOf(refinement: Refinement, selection: Selection | null): Group | n
   const sides = (adopted: boolean) =>
     ends(found.relations.filter((one) => one.adopted === adopted).flatMap((one) => one.sides));
   return new Group().add(
-    over(sidesOf(outlinesOf(refinement, index)), PALETTE.grown, SELECTED_PX),
+    over(sidesOf(outlinesBefore(refinement, index)), PALETTE.grown, SELECTED_PX),
     over(sides(false), PALETTE.rejected, SELECTED_PX / 2),
     over(sides(true), PALETTE.bar, SELECTED_PX / 2),
   );
-}
-
-/** The rings of a building's facets before refinement. */
-export function outlinesOf(refinement: Refinement, building: number): (readonly Vec3[])[] {
-  const own = refinement.before.facets.filter((facet) => facet.building === building);
-  return own.flatMap(({ outer, holes }) => [outer, ...holes]);
 }
 
 function ends(sides: readonly Segment3[]): number[] {

@@ -7,9 +7,8 @@ import { rowsOf, titleOf } from "../../../src/app/inspector/selectionRows";
 import { siblingsOf } from "../../../src/app/inspector/siblings";
 import { presentEntries } from "../../../src/app/parts/Legend";
 import { shapesOf } from "../../../src/app/selection/selectionShapes";
-import { formatSelection, parseSelection } from "../../../src/app/settings/addressLink";
 import { TABS } from "../../../src/app/state/methods";
-import { NO_RESULTS, restoreResults } from "../../../src/app/state/results";
+import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
 import { cornerParts } from "../../../src/app/tour/examples";
 import {
@@ -23,6 +22,7 @@ import {
   type SpaceCorner,
   type SpaceEdge,
 } from "../../../src/shared/records";
+import { formatSelection, parseSelection } from "../../../src/shared/selection";
 
 const edgeInImage = (far: [number, number], direction: [number, number], region: number) => ({
   segment: 0,
@@ -204,14 +204,14 @@ describe("a corner in space", () => {
 
   it("lights up with its verified planes and its edges, which lead to its neighbours", () => {
     show();
-    const shapes = shapesOf({ kind: "corner", index: 0 });
+    const shapes = shapesOf({ kind: "corner", index: 0 }, results.value);
     expect(shapes.map(({ role }) => role)).toEqual(["area", "area", "line", "line"]);
     expect(shapes[2]?.points).toEqual([
       [0, 0, 5],
       [5, 0, 5],
     ]);
     expect(shapes[3]?.points[1]).toEqual([0, -4, 5]);
-    expect(shapesOf({ kind: "corner", index: 9 })).toEqual([]);
+    expect(shapesOf({ kind: "corner", index: 9 }, results.value)).toEqual([]);
   });
 
   it("is named in links, and proposes planes", () => {

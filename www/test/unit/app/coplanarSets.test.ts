@@ -5,9 +5,8 @@ import { rowsOf, titleOf } from "../../../src/app/inspector/selectionRows";
 import { presentEntries } from "../../../src/app/parts/Legend";
 import { setAt, shownSets } from "../../../src/app/selection/coplanarPlan";
 import { linesOfSelection, shapesOf } from "../../../src/app/selection/selectionShapes";
-import { formatSelection, parseSelection } from "../../../src/app/settings/addressLink";
 import { TABS } from "../../../src/app/state/methods";
-import { NO_RESULTS, restoreResults } from "../../../src/app/state/results";
+import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
 import { coplanarSetParts } from "../../../src/app/tour/examples";
 import {
@@ -19,6 +18,7 @@ import {
   isMadeFrom,
   isRejected,
 } from "../../../src/shared/records";
+import { formatSelection, parseSelection } from "../../../src/shared/selection";
 
 const square = (x: number, side: number): CoplanarSet["polygon"] => [
   [x, 0, 5],
@@ -121,11 +121,11 @@ describe("sets of coplanar lines", () => {
 
   it("light up with the hull that was there before", () => {
     show();
-    const shapes = shapesOf({ kind: "coplanar", index: 0 });
+    const shapes = shapesOf({ kind: "coplanar", index: 0 }, results.value);
     expect(shapes.map(({ role }) => role)).toEqual(["before", "area"]);
     expect(shapes[1]?.points).toEqual(square(0, 4));
-    expect(linesOfSelection({ kind: "coplanar", index: 0 })).toEqual([3, 4]);
-    expect(shapesOf({ kind: "coplanar", index: 9 })).toEqual([]);
+    expect(linesOfSelection({ kind: "coplanar", index: 0 }, results.value)).toEqual([3, 4]);
+    expect(shapesOf({ kind: "coplanar", index: 9 }, results.value)).toEqual([]);
   });
 
   it("are picked in plan: of several the smallest, and the largest lie below", () => {

@@ -7,9 +7,8 @@ import { frameOf } from "../../../src/app/parts/charts";
 import { presentEntries } from "../../../src/app/parts/Legend";
 import { areasOf, equalScales, planeAt, squaresAt } from "../../../src/app/selection/densePlan";
 import { shapesOf } from "../../../src/app/selection/selectionShapes";
-import { formatSelection, parseSelection } from "../../../src/app/settings/addressLink";
 import { methodOfFacet } from "../../../src/app/space/ModelModes";
-import { NO_RESULTS, restoreResults } from "../../../src/app/state/results";
+import { NO_RESULTS, restoreResults, results } from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
 import {
   type DensePlane,
@@ -20,6 +19,7 @@ import {
   isMadeFrom,
   rectanglesOf,
 } from "../../../src/shared/records";
+import { formatSelection, parseSelection } from "../../../src/shared/selection";
 
 const RING: DensePlane["ring"] = [
   [0, 0, 5],
@@ -179,8 +179,8 @@ describe("the inspector", () => {
 it("a dense plane is shown by its ring, as is a group that no line made; a link names it", () => {
   show();
   const area = [{ points: RING, role: "area" }];
-  expect(shapesOf({ kind: "dense", index: 0 })).toEqual(area);
-  expect(shapesOf({ kind: "group", index: 0 })).toEqual(area);
+  expect(shapesOf({ kind: "dense", index: 0 }, results.value)).toEqual(area);
+  expect(shapesOf({ kind: "group", index: 0 }, results.value)).toEqual(area);
   expect(parseSelection(formatSelection({ kind: "dense", index: 12 }))).toEqual({ kind: "dense", index: 12 });
 });
 

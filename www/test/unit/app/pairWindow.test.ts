@@ -1,23 +1,20 @@
-import { afterEach, describe, expect, it } from "vitest";
+import { describe, expect, it } from "vitest";
 import { windowOf } from "../../../src/app/images/pairWindow";
-import { NO_RESULTS, setResults } from "../../../src/app/state/results";
 
 /** An eave along y = 2 at 5 m and a ridge along y = 6 at 8 m: 5 m apart in their plane. */
 const LINES = Float64Array.of(1, 2, 5, 11, 2, 5, 3, 6, 8, 9, 6, 8);
 
 describe("the window of a pair of lines", () => {
-  afterEach(() => {
-    setResults(NO_RESULTS);
-  });
-
   it("reaches from line to line, and crossings lie where their positions say", () => {
-    setResults({ ...NO_RESULTS, lines: LINES });
-    const found = windowOf({
-      lines: [0, 1],
-      rejection: null,
-      crossings: [{ view: 4, at: [7, 9], across: [0, 2.5], contrast: 1 }],
-      ends: [],
-    });
+    const found = windowOf(
+      {
+        lines: [0, 1],
+        rejection: null,
+        crossings: [{ view: 4, at: [7, 9], across: [0, 2.5], contrast: 1 }],
+        ends: [],
+      },
+      { lines: LINES },
+    );
     expect(found?.outline).toEqual([
       [1, 2, 5],
       [11, 2, 5],
@@ -36,7 +33,8 @@ describe("the window of a pair of lines", () => {
   });
 
   it("is none where a line is missing", () => {
-    setResults({ ...NO_RESULTS, lines: LINES });
-    expect(windowOf({ lines: [0, 2], rejection: null, crossings: [], ends: [] })).toBeNull();
+    expect(
+      windowOf({ lines: [0, 2], rejection: null, crossings: [], ends: [] }, { lines: LINES }),
+    ).toBeNull();
   });
 });

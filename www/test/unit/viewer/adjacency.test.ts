@@ -1,8 +1,9 @@
 /** Corners and their planes in space: which planes are thin, and what a click on one picks. */
 import type { Intersection } from "three";
 import { describe, expect, it } from "vitest";
+import { edgesOfCorner, isVerifiedPlane } from "../../../src/shared/proposed";
 import type { AdjacencyGraphs } from "../../../src/shared/records";
-import { buildAdjacency, edgesOf, isVerified } from "../../../src/viewer/layers/adjacency";
+import { buildAdjacency } from "../../../src/viewer/layers/adjacency";
 
 const plane = (corner: number, insideNats: number) => ({
   regions: [[corner, 0]],
@@ -32,13 +33,13 @@ describe("the layer of corners", () => {
   const pick = (object: unknown, faceIndex: number) => layer.pick({ object, faceIndex } as Intersection);
 
   it("has the photographs' verdict over the odds before", () => {
-    expect(ADJACENCY.planes.map(isVerified)).toEqual([true, false]);
-    expect(isVerified(undefined)).toBe(false);
+    expect(ADJACENCY.planes.map(isVerifiedPlane)).toEqual([true, false]);
+    expect(isVerifiedPlane(undefined)).toBe(false);
   });
 
   it("leads edges to the corners that they join", () => {
     const { corners } = ADJACENCY.trace;
-    expect(corners.flatMap((corner) => edgesOf(corner, corners))).toEqual([
+    expect(corners.flatMap((corner) => edgesOfCorner(corner, corners))).toEqual([
       [
         [0, 0, 5],
         [4, 0, 5],

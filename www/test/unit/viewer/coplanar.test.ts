@@ -1,8 +1,9 @@
 /** Polygons of coplanar lines in space: which are thin, and what a click on one picks. */
 import type { Intersection } from "three";
 import { describe, expect, it } from "vitest";
+import { isVerifiedSet } from "../../../src/shared/proposed";
 import type { CoplanarSets } from "../../../src/shared/records";
-import { buildCoplanar, isVerified } from "../../../src/viewer/layers/coplanar";
+import { buildCoplanar } from "../../../src/viewer/layers/coplanar";
 
 const triangle = (x: number) => [
   [x, 0, 5],
@@ -24,7 +25,7 @@ describe("the layer of coplanar sets", () => {
   const [polygon, hull, refused] = layer.object.children;
 
   it("has the photographs' verdict", () => {
-    expect(COPLANAR.sets.map(isVerified)).toEqual([false, true]);
+    expect(COPLANAR.sets.map(isVerifiedSet)).toEqual([false, true]);
   });
 
   it("picks a set by any side of its polygon, and nothing by a hull", () => {

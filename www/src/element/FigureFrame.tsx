@@ -1,0 +1,87 @@
+/** What stands around a figure: how far it is, what went wrong, its title and paper, and what can be taken along. */
+import { useEffect, useRef, useState } from "preact/hooks";
+import { AboutFigure, FIGURES } from "../app/figures/AboutFigure";
+import { TakeAlong } from "../app/takeAlong/TakeAlong";
+import type { FigureStore } from "./figureStore";
+import { type Kind, rowsOf } from "./kinds";
+import type { SharedScene } from "./sharedScene";
+
+/** Narrower than this, CSS pixels, parts stand below each other, or close together. */
+const PHONE_PX = 560;
+const TIGHT_PX = 860;
+
+export interface Seen {
+  name: string;
+  kind: Kind;
+  scene: SharedScene;
+  store: FigureStore;
+  /** With the equation and what it says. */
+  isExplained: boolean;
+  link: () => string;
+  /** Where a figure is drawn. */
+  onBody: (body: HTMLElement | null) => void;
+}
+
+export function FigureFrame({ seen }: { seen: Seen }) {
+  const { name, kind, scene, store, isExplained, link, onBody } = seen;
+  const [layout, root] = useLayout();
+  const body = useRef<HTMLDivElement>(null);
+  const { progress, failure } = scene.state.value;
+  const { title, source } = FIGURES[kind.tab];
+  const figure = store.figure.value;
+  useEffect(() => onBody(body.current));
+  return (
+    <figure class="frame" aria-label={title} data-layout={layout} ref={root}>
+      {failure !== null && (
+        <p class="failure" role="alert">
+          {failure}
+        </p>
+      )}
+      {failure === null && !store.isReady && (
+        <div class="waiting" role="status">
+          <p class="muted">{progress?.words ?? "Waiting"}</p>
+          <progress aria-label="Progress of the figure" max={1} value={progress?.fraction ?? 0} />
+        </div>
+      )}
+      {store.isReady && (
+        <>
+          <div class={`body kind-${name}`} ref={body}>
+            <kind.View figure={figure} />
+          </div>
+          {isExplained && <AboutFigure tab={kind.tab} />}
+          <figcaption class="foot">
+            <span class="muted">
+              {title} · {source}
+            </span>
+            <TakeAlong
+              tab={kind.tab}
+              name={name}
+              rows={() => rowsOf(kind, store.figure.peek())}
+              body={() => body.current}
+              link={link}
+            />
+          </figcaption>
+        </>
+      )}
+    </figure>
+  );
+}
+
+/** How much room there is, by the names that the style sheets know. */
+function useLayout() {
+  const root = useRef<HTMLElement>(null);
+  const [layout, setLayout] = useState("wide");
+  useEffect(() => {
+    const element = root.current;
+    if (element === null) {
+      return undefined;
+    }
+    const observer = new ResizeObserver(() => {
+      const { clientWidth } = element;
+      setLayout(clientWidth < PHONE_PX ? "phone" : clientWidth < TIGHT_PX ? "tight" : "wide");
+    });
+    observer.observe(element);
+    return () => observer.disconnect();
+  }, []);
+  return [layout, root] as const;
+}

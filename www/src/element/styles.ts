@@ -1,0 +1,19 @@
+/** What figures look like: as on the page. */
+import figuresCss from "../app/figures/figures.css?inline";
+import imagesCss from "../app/images/images.css?inline";
+import baseCss from "../app/parts/base.css?inline";
+import chartsCss from "../app/parts/charts.css?inline";
+import partsCss from "../app/parts/parts.css?inline";
+import takeAlongCss from "../app/takeAlong/takeAlong.css?inline";
+import elementCss from "./element.css?inline";
+import { hostSheet } from "./hostSheet";
+
+export const styleSheet = hostSheet(
+  baseCss,
+  partsCss,
+  chartsCss,
+  imagesCss,
+  figuresCss,
+  takeAlongCss,
+  elementCss,
+);

@@ -1,0 +1,6 @@
+/** `import "ridgeline/exercise"`: makes `<ridgeline-exercise>` known. */
+import { defineExercise } from "./RidgelineExercise";
+
+export { RidgelineExercise } from "./RidgelineExercise";
+
+defineExercise();

@@ -1,0 +1,124 @@
+/**
+ * Judges answers to an exercise. An answer is right where it holds for planted configurations, whatever its formula is; a wrong
+ * one is compared with what the usual mistakes would have answered.
+ */
+import type { Random } from "./random";
+
+export interface Planted<Input extends readonly unknown[], Answer> {
+  input: Input;
+  /** How far an answer is from what was planted, in the unit of the exercise. */
+  error(answer: Answer): number;
+}
+
+export interface Mistake<Input extends readonly unknown[], Answer> {
+  name: string;
+  /** What was done, and what is to be done instead. */
+  says: string;
+  /** What it answers; several ways to make it are one mistake. */
+  variants: readonly ((...input: Input) => Answer)[];
+}
+
+export interface Exercise<Input extends readonly unknown[], Answer> {
+  /** That of the function to be written. */
+  name: string;
+  title: string;
+  /** Paper and section. */
+  source: string;
+  text: string;
+  /** What stands in the editor first. */
+  starter: string;
+  solution: string;
+  /** Of errors. */
+  unit: string;
+  /** Up to this error an answer is right: far above rounding, far below a mistake. */
+  limit: number;
+  plant(random: Random): Planted<Input, Answer>;
+  /** What is wrong with the form of an answer; null where it can be judged. */
+  formProblem(answer: unknown): string | null;
+  isSame(a: Answer, b: Answer): boolean;
+  mistakes: readonly Mistake<Input, Answer>[];
+}
+
+export type Verdict =
+  | { kind: "right" }
+  | { kind: "form"; says: string }
+  | { kind: "mistake"; name: string; says: string }
+  | { kind: "wrong"; error: number; says: string };
+
+/** Judges the answers to planted configurations, one each. */
+export function judge<Input extends readonly unknown[], Answer>(
+  exercise: Exercise<Input, Answer>,
+  planted: readonly Planted<Input, Answer>[],
+  answers: readonly unknown[],
+): Verdict {
+  for (const answer of answers) {
+    const problem = exercise.formProblem(answer);
+    if (problem !== null) {
+      return { kind: "form", says: problem };
+    }
+  }
+  const given = answers as readonly Answer[];
+  const errors = planted.map((one, i) => errorOf(one, given[i] as Answer));
+  if (errors.every((error) => error <= exercise.limit)) {
+    return { kind: "right" };
+  }
+  const made = exercise.mistakes.find(({ variants }) =>
+    variants.some((variant) =>
+      planted.every((one, i) => exercise.isSame(variant(...one.input), given[i] as Answer)),
+    ),
+  );
+  if (made !== undefined) {
+    return { kind: "mistake", name: made.name, says: made.says };
+  }
+  const error = Math.max(...errors);
+  const count = errors.filter((one) => one > exercise.limit).length;
+  return {
+    kind: "wrong",
+    error,
+    says: `Not right in ${count} of ${errors.length} configurations; the largest error is ${errorWords(error, exercise.unit)}.`,
+  };
+}
+
+/** What is no number is infinitely wrong. */
+function errorOf<Input extends readonly unknown[], Answer>(
+  { error }: Planted<Input, Answer>,
+  answer: Answer,
+): number {
+  const found = error(answer);
+  return Number.isFinite(found) ? found : Number.POSITIVE_INFINITY;
+}
+
+function errorWords(error: number, unit: string): string {
+  return Number.isFinite(error)
+    ? `${Number(error.toPrecision(3))}${unit === "" ? "" : ` ${unit}`}`
+    : "beyond measure";
+}
+
+/** Says what is wrong with an answer that should be rows of finite numbers. */
+export function matrixProblem(answer: unknown, rows: number, columns: number): string | null {
+  const isMatrix =
+    Array.isArray(answer) &&
+    answer.length === rows &&
+    answer.every((row) => Array.isArray(row) && row.length === columns && row.every(isNumber));
+  return isMatrix ? null : `Return ${rows} rows of ${columns} numbers; this is ${described(answer)}.`;
+}
+
+/** Says what is wrong with an answer that should be so many finite numbers. */
+export function vectorProblem(answer: unknown, length: number): string | null {
+  const isVector = Array.isArray(answer) && answer.length === length && answer.every(isNumber);
+  return isVector ? null : `Return ${length} numbers; this is ${described(answer)}.`;
+}
+
+function isNumber(value: unknown): boolean {
+  return typeof value === "number" && Number.isFinite(value);
+}
+
+export function described(value: unknown): string {
+  if (value === undefined) {
+    return "nothing: is there a return";
+  }
+  const text = JSON.stringify(value, (_, one: unknown) =>
+    typeof one === "number" && !Number.isFinite(one) ? String(one) : one,
+  );
+  return text !== undefined && text.length > 80 ? `${text.slice(0, 77)}...` : (text ?? typeof value);
+}

@@ -1,0 +1,100 @@
+/** Planted configurations: random, but the same from the same seed. */
+import { applied, dehomogenised, type Matrix, product } from "./linear";
+
+export type Random = () => number;
+
+/** Numbers from 0 to 1 (mulberry32). */
+export function randomFrom(seed: number): Random {
+  let state = seed >>> 0;
+  return () => {
+    state = (state + 0x6d2b79f5) >>> 0;
+    let t = state;
+    t = Math.imul(t ^ (t >>> 15), t | 1);
+    t ^= t + Math.imul(t ^ (t >>> 7), t | 61);
+    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
+  };
+}
+
+export function between(random: Random, low: number, high: number): number {
+  return low + (high - low) * random();
+}
+
+/** From a normal distribution (Box and Muller). */
+export function normal(random: Random): number {
+  return Math.sqrt(-2 * Math.log(1 - random())) * Math.cos(2 * Math.PI * random());
+}
+
+export interface PlantedCamera {
+  /** Focal length and principal point in pixels. */
+  k: number[][];
+  /** From the world to the camera: x right, y down, z forward. */
+  r: number[][];
+  /** R X + t. */
+  t: number[];
+  projection: number[][];
+}
+
+/** An aerial camera, some 100 m above the ground, turned any way about the vertical and a little tilted. */
+export function plantedCamera(random: Random): PlantedCamera {
+  const focal = between(random, 1500, 3000);
+  const k = [
+    [focal, 0, between(random, 350, 450)],
+    [0, focal, between(random, 250, 350)],
+    [0, 0, 1],
+  ];
+  const centre = [between(random, -30, 30), between(random, -30, 30), between(random, 90, 130)];
+  const down = [
+    [1, 0, 0],
+    [0, -1, 0],
+    [0, 0, -1],
+  ];
+  const tilt = () => between(random, 0.05, 0.15) * (random() < 0.5 ? -1 : 1);
+  const r = product(turnX(tilt()), product(turnY(tilt()), product(down, turnZ(between(random, 0.3, 1.2)))));
+  const t = applied(r, centre).map((value) => -value);
+  return { k, r, t, projection: projectionOf(k, r, t) };
+}
+
+/** K [R | t] */
+export function projectionOf(k: Matrix, r: Matrix, t: readonly number[]): number[][] {
+  return product(
+    k,
+    r.map((row, i) => [...row, t[i] ?? 0]),
+  );
+}
+
+/** Where a point of the world is seen. */
+export function seen(projection: Matrix, point: readonly number[]): [number, number] {
+  return dehomogenised(applied(projection, [...point, 1]));
+}
+
+/** On a roof or on the ground. */
+export function plantedPoint(random: Random): [number, number, number] {
+  return [between(random, -15, 15), between(random, -15, 15), between(random, 0, 12)];
+}
+
+function turnX(angle: number): number[][] {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  return [
+    [1, 0, 0],
+    [0, c, -s],
+    [0, s, c],
+  ];
+}
+
+function turnY(angle: number): number[][] {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  return [
+    [c, 0, s],
+    [0, 1, 0],
+    [-s, 0, c],
+  ];
+}
+
+function turnZ(angle: number): number[][] {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  return [
+    [c, -s, 0],
+    [s, c, 0],
+    [0, 0, 1],
+  ];
+}
