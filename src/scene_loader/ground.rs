@@ -1,5 +1,5 @@
-//! What the photographs show of the ground before a scene is planned: between which heights it lies,
-//! and by how much photographs of too fine pixels are reduced.
+//! What the photographs show of the ground before a scene is planned: between which heights it
+//! lies, and by how much photographs of too fine pixels are reduced.
 //!
 //! Cameras alone hardly say how far below them the ground is. Of a flight every view may then show
 //! the region of interest, and nothing tells how fine its pixels are. So the few photographs

@@ -44,8 +44,8 @@ pub struct TileReport {
 }
 
 impl Area {
-    /// Divides the region of interest into tiles of about `tile_m` metres; without a region the area
-    /// that three views show.
+    /// Divides the region of interest into tiles of about `tile_m` metres; without a region the
+    /// area that three views show.
     pub fn plan(
         files: &[InputFile],
         options: &LoadOptions,
