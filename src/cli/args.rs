@@ -134,9 +134,9 @@ pub(super) struct ReconstructArgs {
     /// How roofs are found; by default as the parameters say: lines.
     #[arg(long, value_enum)]
     pub method: Option<MethodArgument>,
-    /// Reconstruct the region tile by tile, each of M metres or so (60 or more), one after the other,
-    /// into one model; without --roi the area that three or more views show. A whole flight of more
-    /// than 12 views goes this way by itself.
+    /// Reconstruct the region tile by tile, each of M metres or so (60 or more), into one model;
+    /// without --roi the area that three or more views show. A whole flight of more than 12 views
+    /// goes this way by itself.
     #[arg(long, value_name = "M", value_parser = parse_finite, conflicts_with = "project")]
     pub tile: Option<f64>,
     /// Write a project file too: images, orientation, parameters and results in one .zip, which
