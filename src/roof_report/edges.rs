@@ -33,6 +33,10 @@ const STEP_M: f64 = 0.1;
 /// Pieces of an edge turn by less than this sine (1 degree).
 const STRAIGHT_SINE: f64 = 0.0175;
 
+/// Shorter pieces between longer ones have no direction of their own, metres: what is left where
+/// outlines were welded.
+const SHORT_M: f64 = 0.01;
+
 /// Step of the plan positions that are compared, metres: that in which they are written.
 const KEY_M: f64 = 1e-4;
 
@@ -166,7 +170,10 @@ fn sides(ring: &Vec<Point3<f64>>) -> impl Iterator<Item = [Point3<f64>; 2]> {
 fn join_pieces(pieces: &[Option<Piece>]) -> Vec<Piece> {
     let goes_on = |run: &Piece, next: &Piece| {
         let (d, e) = (run.2.direction(), next.2.direction());
-        (run.0, run.1) == (next.0, next.1) && d.dot(&e) > 0.0 && d.cross(&e).norm() < STRAIGHT_SINE
+        let is_straight = d.dot(&e) > 0.0 && d.cross(&e).norm() < STRAIGHT_SINE;
+        let is_same = (run.0, run.1) == (next.0, next.1) && is_straight;
+        let is_rest = run.1.is_none() && next.1.is_none() && next.2.length() < SHORT_M;
+        is_same || (is_rest && run.2.length() >= SHORT_M)
     };
     let starts_new = |i: usize| {
         let before = &pieces[(i + pieces.len() - 1) % pieces.len()];

@@ -203,6 +203,10 @@ fn a_corner_of_a_neighbour_does_not_divide_an_edge() {
     let mut lengths: Vec<f64> = eaves.map(|e| e.segment.length()).collect();
     lengths.sort_by(f64::total_cmp);
     assert_eq!(lengths, [10.0, 10.0]);
+    // What welding leaves at a corner is no edge.
+    let mut welded = gable();
+    welded[0].outer.insert(1, Point3::new(9.999, 0.002, 5.001));
+    assert_eq!(roof_edges(&[(FacetId(0), &welded[0])]).len(), 4);
     // Also where the ring begins in the middle of it.
     facets[0].outer.rotate_left(1);
     let members = [(FacetId(0), &facets[0])];

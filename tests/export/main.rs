@@ -7,6 +7,9 @@ mod city;
 mod glb;
 mod meshes;
 mod planted;
+mod report;
+#[path = "../common/solid_checks.rs"]
+mod solid_checks;
 mod tables;
 mod texture;
 
