@@ -17,7 +17,7 @@ fn cityjson_is_valid_and_holds_the_model_in_the_world_frame() {
         }
         let json: Value = serde_json::from_str(text).unwrap();
         for (solid, errors) in solid_errors(&json) {
-            assert_eq!(errors, [], "{name}: {solid}");
+            assert!(errors.is_empty(), "{name}: {solid}: {errors:?}");
         }
         let solids = solids_in_world(&json);
         assert_eq!(solids.len(), model.buildings.len());
