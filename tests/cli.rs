@@ -12,7 +12,7 @@ use std::process::{Command, Output};
 use common::{names_in, synthetic_files, zipped};
 
 /// What a run writes.
-const OUTPUTS: [&str; 20] = [
+const OUTPUTS: [&str; 21] = [
     "buildings.csv",
     "edges.csv",
     "edges.geojson",
@@ -33,6 +33,7 @@ const OUTPUTS: [&str; 20] = [
     "report.json",
     "roof_report.html",
     "segments.json",
+    "tileset.json",
 ];
 
 /// A scene's folder that a test may damage, with a folder for the results.

@@ -6,6 +6,7 @@
 //! | `model.city.jsonl` | CityJSONSeq, a building a line (`tiles::BlockPlan` only) |
 //! | `model_atlas.jpg` | the texture atlas of `model.city.json` |
 //! | `model.glb` | glTF 2.0, Y up, near-origin coordinates, the atlas inside |
+//! | `tileset.json` | 3D Tiles 1.1, places `model.glb` on the Earth where that is known |
 //! | `model.obj`, `model.mtl` | triangles and the same atlas, world frame |
 //! | `model.ply` | triangles, and the 3D lines as edges |
 //! | `model.dxf` | 3DFACE and LINE for drawing programs |
@@ -31,6 +32,7 @@ mod measured;
 mod mesh;
 mod plans;
 mod report;
+mod tileset;
 mod triangulate;
 
 pub use cityjson::city_json_seq;
@@ -93,6 +95,7 @@ pub fn export_all(input: &ExportInput, params: &TextureParams) -> Vec<(String, V
         ("model.city.json", city),
         ("model.glb", glb(scene, model, textured, &atlas)),
         (ATLAS_FILE, atlas),
+        ("tileset.json", tileset::tileset(scene, model, "model.glb")),
         ("model.obj", obj(scene, model, textured)),
         (MATERIAL_FILE, mtl()),
         ("model.ply", ply(scene, model, lines)),

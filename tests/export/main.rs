@@ -12,6 +12,7 @@ mod report;
 mod solid_checks;
 mod tables;
 mod texture;
+mod tileset;
 
 use ridgeline::model::RoofModel;
 

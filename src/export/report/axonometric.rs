@@ -14,7 +14,7 @@ use crate::math::{atan2, sin_cos};
 use crate::model::{Building, Surface};
 
 /// The largest picture, millimetres.
-const PAGE: Vector2<f64> = Vector2::new(178.0, 78.0);
+const PAGE: Vector2<f64> = Vector2::new(178.0, 66.0);
 
 /// Room around it, millimetres.
 const MARGIN: f64 = 2.0;
