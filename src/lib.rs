@@ -101,6 +101,7 @@ pub mod pipeline;
 mod plan_index;
 pub mod planes;
 pub mod raster;
+pub mod roof_report;
 pub mod scene;
 pub mod scene_loader;
 pub mod solids;

@@ -4,7 +4,7 @@
 //! between native and wasm. Everything here is crate `libm`, compiled from the same source
 //! everywhere. (`sqrt`, `abs`, `floor`, `round` are exact by IEEE 754 and may be used directly.)
 
-pub(crate) use libm::{acos, asin, atan, atan2, cos, exp, hypot, log as ln, log2, sin};
+pub(crate) use libm::{acos, asin, atan, atan2, cos, cosh, exp, hypot, log as ln, log2, sin, sinh};
 
 /// The larger of two numbers, neither NaN: `f64::max`, which treats NaN, is a call in wasm.
 #[inline]

@@ -12,8 +12,13 @@ use std::process::{Command, Output};
 use common::{names_in, synthetic_files, zipped};
 
 /// What a run writes.
-const OUTPUTS: [&str; 14] = [
+const OUTPUTS: [&str; 21] = [
+    "buildings.csv",
+    "edges.csv",
+    "edges.geojson",
     "evidence.json",
+    "facets.csv",
+    "facets.geojson",
     "footprints.geojson",
     "halfplanes.json",
     "lines.csv",
@@ -26,7 +31,9 @@ const OUTPUTS: [&str; 14] = [
     "model.ply",
     "model_atlas.jpg",
     "report.json",
+    "roof_report.html",
     "segments.json",
+    "tileset.json",
 ];
 
 /// A scene's folder that a test may damage, with a folder for the results.
@@ -424,6 +431,56 @@ fn a_corrected_scene_survives_the_way_through_a_project() {
     }
     let model = fs::read_to_string(again.join("model.city.json")).unwrap();
     assert!(model.contains("https://www.opengis.net/def/crs/EPSG/0/25832"));
+}
+
+#[test]
+fn a_report_is_made_again_and_of_what_is_no_model_it_is_not() {
+    let scene = Scene::new();
+    assert!(scene.run(&[]).status.success());
+    let page = scene.out().join("roof_report.html");
+    let report = |arguments: &[&Path]| {
+        let command = Command::new(env!("CARGO_BIN_EXE_ridgeline"))
+            .arg("report")
+            .args(arguments)
+            .output();
+        command.unwrap()
+    };
+    let first = fs::read(&page).unwrap();
+    fs::remove_file(&page).unwrap();
+    let output = report(&[&scene.out()]);
+    assert!(output.status.success());
+    assert!(String::from_utf8_lossy(&output.stdout).contains("roof_report.html"));
+    assert!(fs::read(&page).unwrap() == first);
+    // Of a file, into another folder.
+    let other = scene.0.path().join("elsewhere/report");
+    let city = scene.out().join("model.city.json");
+    assert!(
+        report(&[&city, Path::new("--out"), &other])
+            .status
+            .success()
+    );
+    assert_eq!(
+        names_in(&other),
+        [
+            "buildings.csv",
+            "edges.csv",
+            "facets.csv",
+            "roof_report.html"
+        ]
+    );
+    for (path, reason) in [
+        (scene.out().join("report.json"), "is no CityJSON"),
+        (scene.0.path().join("nothing"), "cannot be read"),
+        (
+            scene.0.path().join("scene"),
+            "give the folder of a reconstruction",
+        ),
+    ] {
+        let output = report(&[&path]);
+        assert_eq!(output.status.code(), Some(2));
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(error.contains(reason), "{error}");
+    }
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod common;
 
 use common::golden;
 use common::scenes::{SIZE_PX, scenes};
+use common::solid_checks;
 use nalgebra::{Point2, Point3};
 use ridgeline::execution::progress::silent;
 use ridgeline::execution::shard::MergedShards;
@@ -116,7 +117,13 @@ fn every_scene_is_found_as_its_golden_says() {
             };
             let mut run = Run::new(scene, params);
             run.run_all();
-            found += &golden::section(title, &run.files(&[]));
+            let files = run.files(&[]);
+            let city = files.iter().find(|(name, _)| name == "model.city.json");
+            let city = serde_json::from_slice(&city.unwrap().1).unwrap();
+            for (solid, errors) in solid_checks::solid_errors(&city) {
+                assert!(errors.is_empty(), "{name}, {title}: {solid}: {errors:?}");
+            }
+            found += &golden::section(title, &files);
         }
         if std::env::var_os("RIDGELINE_REWRITE").is_some() {
             std::fs::write(path, found).unwrap();

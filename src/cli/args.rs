@@ -26,6 +26,8 @@ pub(super) enum Command {
     Tile(TileArgs),
     /// Join the parts of all tiles of a plan into one model.
     Join(JoinArgs),
+    /// Make the roof report of a model again: a page that prints and tables, from its CityJSON.
+    Report(ReportArgs),
     /// Print all parameters with their defaults, as JSON for --params.
     Params,
 }
@@ -81,6 +83,16 @@ pub(super) struct InputArgs {
     /// Number of threads; by default one per core. It never changes the result.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+}
+
+/// The arguments of `report`.
+#[derive(Args)]
+pub(super) struct ReportArgs {
+    /// Folder that `reconstruct` wrote, or a CityJSON file; the report is written beside the model.
+    pub model: PathBuf,
+    /// Folder for the report instead; made if missing.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// The arguments of `check`.

@@ -9,6 +9,7 @@
 //! tiles, table    a region tile by tile; the summary of a run
 //! block           a large area on many machines: plan, tile, join
 //! reconstruct     the whole reconstruction
+//! report          the roof report of a finished model
 //! ```
 //!
 //! Exit codes: 0 done, 1 the outputs could not be written, 2 the input or the arguments are bad.
@@ -22,6 +23,7 @@ mod files;
 mod input;
 mod orient;
 mod reconstruct;
+mod report;
 mod table;
 mod tiles;
 mod walk;
@@ -43,6 +45,7 @@ pub fn main() -> ExitCode {
         Command::Join(args) => block::join(&args),
         Command::Check(args) => check::check(&args),
         Command::Orient(args) => orient::orient(&args),
+        Command::Report(args) => report::report(&args),
         Command::Params => print_params(),
     };
     match outcome {

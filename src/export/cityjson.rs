@@ -8,7 +8,10 @@
 use serde_json::{Map, Value, json};
 
 use super::format::{ATLAS_FILE, rounded, to_bytes};
+use super::measured::Measured;
+use crate::ids::FacetId;
 use crate::model::{Building, RoofModel, Surface};
+use crate::roof_report::{Estimate, Lengths, RoofEdgeKind};
 use crate::scene::Scene;
 use crate::texture::{FaceTexture, TexturedModel};
 
@@ -19,11 +22,17 @@ const SCALE_M: f64 = 1e-4;
 const THEME: &str = "photographs";
 
 /// The model as a CityJSON file.
-pub fn city_json(scene: &Scene, model: &RoofModel, textured: &TexturedModel) -> Vec<u8> {
+pub(super) fn city_json(
+    scene: &Scene,
+    model: &RoofModel,
+    measured: &Measured,
+    textured: &TexturedModel,
+) -> Vec<u8> {
     let mut shared = Shared::default();
     let mut objects = Map::new();
     for (i, (building, textures)) in model.buildings.iter().zip(&textured.faces).enumerate() {
-        let object = building_object(scene, model, building, textures, &mut shared);
+        let of = (model, measured);
+        let object = building_object(scene, of, (i, building), textures, &mut shared);
         objects.insert(format!("building-{i}"), object);
     }
     let mut file = head(scene, &shared.vertices);
@@ -38,12 +47,14 @@ pub fn city_json(scene: &Scene, model: &RoofModel, textured: &TexturedModel) -> 
 /// The model as a sequence of CityJSON features, one a line: first what they share, then each
 /// building with its own corners and texture coordinates. Programs read it building by building.
 pub fn city_json_seq(scene: &Scene, model: &RoofModel, textured: &TexturedModel) -> Vec<u8> {
+    let measured = Measured::new(scene, model);
     let mut vertices = Vec::new();
     let mut features = Vec::new();
     for (i, (building, textures)) in model.buildings.iter().zip(&textured.faces).enumerate() {
         let id = format!("building-{i}");
         let mut own = Shared::default();
-        let object = building_object(scene, model, building, textures, &mut own);
+        let of = (model, &measured);
+        let object = building_object(scene, of, (i, building), textures, &mut own);
         features.push(json!({
             "type": "CityJSONFeature",
             "id": id,
@@ -114,8 +125,8 @@ impl Shared {
 
 fn building_object(
     scene: &Scene,
-    model: &RoofModel,
-    building: &Building,
+    (model, measured): (&RoofModel, &Measured),
+    (index, building): (usize, &Building),
     textures: &[FaceTexture],
     shared: &mut Shared,
 ) -> Value {
@@ -137,17 +148,25 @@ fn building_object(
             .map(|ring| ring.iter().map(|&v| offset + v as usize).collect())
             .collect();
         boundaries.push(rings);
-        surfaces.push(semantic_surface(model, face.surface));
+        surfaces.push(semantic_surface(model, measured, face.surface));
         texture_values.push(texture_of_rings(texture, shared));
     }
     let values: Vec<usize> = (0..surfaces.len()).collect();
+    let report = &measured.buildings[index];
+    let mut attributes = json!({
+        "groundHeight": rounded(building.ground_z + scene.origin.z, 4),
+        "roofFacets": building.facets.len(),
+        "volume": rounded(building.solid.volume(), 3),
+    });
+    add_sigma(&mut attributes, "volume", report.volume_m3);
+    add(&mut attributes, "roofArea", report.area_m2);
+    add(&mut attributes, "planArea", report.plan_area_m2);
+    add(&mut attributes, "lowestRoofHeight", report.lowest_m);
+    add(&mut attributes, "highestRoofHeight", report.highest_m);
+    attributes["lengths"] = lengths(&report.lengths);
     json!({
         "type": "Building",
-        "attributes": {
-            "groundHeight": rounded(building.ground_z + scene.origin.z, 4),
-            "roofFacets": building.facets.len(),
-            "volume": rounded(building.solid.volume(), 3),
-        },
+        "attributes": attributes,
         "geometry": [{
             "type": "Solid",
             "lod": "2.2",
@@ -158,8 +177,54 @@ fn building_object(
     })
 }
 
+/// Adds a number and its standard deviation.
+fn add(attributes: &mut Value, name: &str, estimate: Estimate) {
+    attributes[name] = json!(rounded(estimate.value, 4));
+    add_sigma(attributes, name, estimate);
+}
+
+fn add_sigma(attributes: &mut Value, name: &str, estimate: Estimate) {
+    if let Some(sigma) = estimate.sigma {
+        attributes[format!("{name}Sigma")] = json!(rounded(sigma, 4));
+    }
+}
+
+/// Lengths by kind of edge, with their standard deviations.
+fn lengths(lengths: &Lengths) -> Value {
+    let mut named = json!({});
+    for (kind, length) in RoofEdgeKind::ALL.into_iter().zip(lengths) {
+        let name = if kind == RoofEdgeKind::TopEdge {
+            "topEdge"
+        } else {
+            kind.name()
+        };
+        if let Some(length) = length {
+            add(&mut named, name, *length);
+        }
+    }
+    named
+}
+
+/// What was measured of a facet.
+fn add_measures(surface: &mut Value, measured: &Measured, id: FacetId) {
+    surface["photographs"] = json!(measured.photographs[id.index()]);
+    if let Some(facet) = measured.facet(id) {
+        add(surface, "area", facet.area_m2);
+        add(surface, "planArea", facet.plan_area_m2);
+        add(surface, "lowestHeight", facet.lowest_m);
+        add(surface, "highestHeight", facet.highest_m);
+        if let Some(azimuth) = facet.azimuth_deg {
+            surface["azimuthDeg"] = json!(rounded(azimuth.value, 3));
+            if let Some(sigma) = azimuth.sigma {
+                surface["azimuthSigmaDeg"] = json!(rounded(sigma, 4));
+            }
+        }
+        surface["lengths"] = lengths(&facet.lengths);
+    }
+}
+
 /// What a face is; roof surfaces carry the facet's id, slope and evidence.
-fn semantic_surface(model: &RoofModel, surface: Surface) -> Value {
+fn semantic_surface(model: &RoofModel, measured: &Measured, surface: Surface) -> Value {
     match surface {
         Surface::Wall => json!({ "type": "WallSurface" }),
         Surface::Ground => json!({ "type": "GroundSurface" }),
@@ -183,6 +248,7 @@ fn semantic_surface(model: &RoofModel, surface: Surface) -> Value {
                 surface["heightSigma"] = json!(rounded(known.height_m, 4));
                 surface["cornerSigma"] = corners.collect();
             }
+            add_measures(&mut surface, measured, id);
             surface
         }
     }

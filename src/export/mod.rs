@@ -6,38 +6,48 @@
 //! | `model.city.jsonl` | CityJSONSeq, a building a line (`tiles::BlockPlan` only) |
 //! | `model_atlas.jpg` | the texture atlas of `model.city.json` |
 //! | `model.glb` | glTF 2.0, Y up, near-origin coordinates, the atlas inside |
+//! | `tileset.json` | 3D Tiles 1.1, places `model.glb` on the Earth where that is known |
 //! | `model.obj`, `model.mtl` | triangles and the same atlas, world frame |
 //! | `model.ply` | triangles, and the 3D lines as edges |
 //! | `model.dxf` | 3DFACE and LINE for drawing programs |
 //! | `footprints.geojson` | outlines on the ground, with heights |
+//! | `facets.geojson`, `edges.geojson` | the roofs in plan, with areas, slopes, lengths |
+//! | `roof_report.html` | the roofs in numbers and pictures, a page that prints |
+//! | `buildings.csv`, `facets.csv`, `edges.csv` | the same numbers as tables |
 //! | `lines.csv` | the 3D lines as a table |
 //! | `lines.json`, `segments.json`, `halfplanes.json` | what the model was made from |
 //! | `evidence.json` | what spoke for every candidate, and against it |
 //!
-//! `format` holds what the writers share, `triangulate` the triangles of a face.
+//! `format` and `measured` hold what the writers share, `triangulate` the triangles of a face.
 //!
 //! Invariant: the same input gives the same bytes; nothing writes a date, a path or a random id.
 
 mod cityjson;
 mod evidence;
 mod format;
+mod geojson;
 mod glb;
 mod json;
+mod measured;
 mod mesh;
 mod plans;
+mod report;
+mod tileset;
 mod triangulate;
 
-pub use cityjson::{city_json, city_json_seq};
+pub use cityjson::city_json_seq;
 pub use evidence::evidence_json;
 pub use format::{ATLAS_FILE, MATERIAL_FILE};
 pub use glb::glb;
 pub use json::{half_planes_json, lines_json, segments_json};
 pub use mesh::{mtl, obj, ply};
-pub use plans::{dxf, footprints, lines_csv};
+pub use plans::{dxf, lines_csv};
+pub use report::report_files;
 pub use triangulate::triangulate;
 
 use image::codecs::jpeg::JpegEncoder;
 
+use self::measured::Measured;
 use crate::evidence::Candidates;
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
@@ -78,15 +88,21 @@ pub fn export_all(input: &ExportInput, params: &TextureParams) -> Vec<(String, V
         textured,
     } = *input;
     let atlas = atlas_jpeg(textured, params.jpeg_quality);
-    [
-        ("model.city.json", city_json(scene, model, textured)),
+    let measured = Measured::new(scene, model);
+    let city = cityjson::city_json(scene, model, &measured, textured);
+    let report = report_files(&city).expect("what was just written reads");
+    let mut files: Vec<(String, Vec<u8>)> = [
+        ("model.city.json", city),
         ("model.glb", glb(scene, model, textured, &atlas)),
         (ATLAS_FILE, atlas),
+        ("tileset.json", tileset::tileset(scene, model, "model.glb")),
         ("model.obj", obj(scene, model, textured)),
         (MATERIAL_FILE, mtl()),
         ("model.ply", ply(scene, model, lines)),
         ("model.dxf", dxf(scene, model, lines)),
-        ("footprints.geojson", footprints(scene, model)),
+        ("footprints.geojson", geojson::footprints(scene, model)),
+        ("facets.geojson", geojson::facets(scene, model, &measured)),
+        ("edges.geojson", geojson::edges(scene, &measured)),
         ("lines.csv", lines_csv(scene, lines)),
         ("lines.json", lines_json(scene, lines)),
         ("segments.json", segments_json(scene, segments)),
@@ -97,7 +113,9 @@ pub fn export_all(input: &ExportInput, params: &TextureParams) -> Vec<(String, V
         ("evidence.json", evidence_json(scene, candidates)),
     ]
     .map(|(name, bytes)| (name.to_owned(), bytes))
-    .into()
+    .into();
+    files.extend(report);
+    files
 }
 
 /// The atlas as a JPEG file; quality from 1 to 100.

@@ -1,17 +1,13 @@
-//! The model for drawing and mapping programs: DXF, footprints as GeoJSON, the 3D lines as CSV.
+//! The model for drawing programs as DXF, and the 3D lines as CSV.
 //!
-//! Coordinates are those of the input's world frame, metres. GeoJSON (RFC 7946) wants longitude and
-//! latitude: footprints are in these where the frame's place on the Earth is known, else in the
-//! input's own coordinates, whose reference system is named in the older way (GeoJSON 2008, `crs`)
-//! where the input names it. DXF names it in a comment.
+//! Coordinates are those of the input's world frame, metres; DXF names it in a comment.
 
 use nalgebra::Point3;
-use serde_json::{Value, json};
 
-use super::format::{push_line, rounded, to_bytes, world};
+use super::format::{push_line, rounded, world};
 use super::triangulate::triangulate;
 use crate::lines3d::Line3d;
-use crate::model::{Building, RoofModel, Solid, Surface};
+use crate::model::{RoofModel, Surface};
 use crate::scene::Scene;
 
 /// DXF of AutoCAD R12, which every program reads: 3DFACE on the layers ROOF, WALL and GROUND, LINE
@@ -71,71 +67,6 @@ fn entity(text: &mut String, scene: &Scene, kind: &str, layer: &str, points: &[P
             format_args!("{}\n{x}\n{}\n{y}\n{}\n{z}", 10 + i, 20 + i, 30 + i),
         );
     }
-}
-
-/// The footprints of the buildings as GeoJSON polygons, with the heights of ground, eaves and
-/// ridge.
-pub fn footprints(scene: &Scene, model: &RoofModel) -> Vec<u8> {
-    let features: Vec<Value> = (model.buildings.iter().enumerate())
-        .flat_map(|(i, building)| building_footprints(scene, model, i, building))
-        .collect();
-    let mut file = json!({ "type": "FeatureCollection", "features": features });
-    if let (None, Some(epsg)) = (scene.survey.anchor, scene.survey.epsg) {
-        let name = format!("urn:ogc:def:crs:EPSG::{epsg}");
-        file["crs"] = json!({ "type": "name", "properties": { "name": name } });
-    }
-    to_bytes(&file)
-}
-
-fn building_footprints(
-    scene: &Scene,
-    model: &RoofModel,
-    id: usize,
-    building: &Building,
-) -> Vec<Value> {
-    let solid = &building.solid;
-    let roof = building.facets.iter().map(|f| &model.facets[f.index()]);
-    let heights: Vec<f64> = roof.flat_map(|f| &f.outer).map(|p| p.z).collect();
-    let height = |z: f64| rounded(z + scene.origin.z, 3);
-    let grounds = solid.faces.iter().filter(|f| f.surface == Surface::Ground);
-    let feature = |face: &crate::model::SolidFace| {
-        let rings: Vec<_> = face
-            .rings
-            .iter()
-            .map(|ring| closed_ring(scene, solid, ring))
-            .collect();
-        json!({
-            "type": "Feature",
-            "geometry": { "type": "Polygon", "coordinates": rings },
-            "properties": {
-                "building": id,
-                "facets": building.facets.len(),
-                "ground_m": height(building.ground_z),
-                "lowest_roof_m": height(heights.iter().copied().fold(f64::INFINITY, f64::min)),
-                "highest_roof_m": height(heights.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
-            },
-        })
-    };
-    grounds.map(feature).collect()
-}
-
-/// A ring of a ground face from above: the other way round, the first corner again at its end.
-fn closed_ring(scene: &Scene, solid: &Solid, ring: &[u32]) -> Vec<[f64; 2]> {
-    let corner = |&i: &u32| {
-        let p = &solid.vertices[i as usize];
-        match &scene.survey.anchor {
-            Some(anchor) => {
-                let [lon, lat, _] = anchor.geographic(&(p + scene.origin));
-                // A tenth of a millimetre.
-                [rounded(lon, 9), rounded(lat, 9)]
-            }
-            None => {
-                let [x, y, _] = world(scene, p);
-                [x, y]
-            }
-        }
-    };
-    ring.iter().rev().chain(ring.last()).map(corner).collect()
 }
 
 /// The 3D lines as CSV, one a line of text; columns are named in the first one.

@@ -44,6 +44,7 @@ mod input_file;
 mod metric_frame;
 mod reference;
 mod sets;
+mod transverse_mercator;
 mod unread;
 
 pub(crate) use angles::EXACT as EXACT_ROTATION;
@@ -62,4 +63,5 @@ pub(crate) use input_file::stem;
 pub use metric_frame::to_metric_frame;
 pub use reference::{StatedReference, epsg_of};
 pub use sets::{OrientationSet, orientation_sets};
+pub(crate) use transverse_mercator::TransverseMercator;
 pub(crate) use unread::{UnreadFormat, of as unread_format};

@@ -1,9 +1,10 @@
 //! Reference system of a scene, and the quality of its orientation.
 
+use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
 
 use crate::agreement::AgreementReport;
-use crate::orientation::Anchor;
+use crate::orientation::{Anchor, TransverseMercator, geocentric_of};
 
 /// Reference system and quality of the orientation, as far as files and images show it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,6 +25,18 @@ pub struct Survey {
 }
 
 impl Survey {
+    /// Geocentric coordinates (EPSG:4978) of a point of the world, metres; `None` where its place on
+    /// the Earth is not known. Heights of a national grid are taken as ellipsoidal: how far its
+    /// datum is from the ellipsoid (the geoid, up to 100 m) is in no file.
+    pub fn geocentric(&self, world: &Point3<f64>) -> Option<Point3<f64>> {
+        if let Some(anchor) = &self.anchor {
+            return Some(anchor.zero() + anchor.axes().transpose() * world.coords);
+        }
+        let grid = TransverseMercator::of_epsg(self.epsg?)?;
+        let [lon, lat] = grid.geographic(world.x, world.y);
+        Some(geocentric_of(lon, lat, world.z))
+    }
+
     /// The coordinate system of the results in words; `None` where the files do not state it.
     pub fn describe(&self) -> Option<String> {
         let of_anchor = |a: &Anchor| {

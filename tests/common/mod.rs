@@ -3,6 +3,8 @@
 
 pub mod golden;
 pub mod scenes;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod solid_checks;
 
 use std::fs;
 use std::io::Write as _;

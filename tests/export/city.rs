@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use serde_json::Value;
 
 use crate::planted::{ORIGIN, files_of, planted_models, scene};
+use crate::solid_checks::solid_errors;
 
 #[test]
 fn cityjson_is_valid_and_holds_the_model_in_the_world_frame() {
@@ -15,6 +16,9 @@ fn cityjson_is_valid_and_holds_the_model_in_the_world_frame() {
             assert!(!summary.has_errors(), "{name}, {criterion}: {summary}");
         }
         let json: Value = serde_json::from_str(text).unwrap();
+        for (solid, errors) in solid_errors(&json) {
+            assert!(errors.is_empty(), "{name}: {solid}: {errors:?}");
+        }
         let solids = solids_in_world(&json);
         assert_eq!(solids.len(), model.buildings.len());
         let found: f64 = solids.iter().map(volume_of).sum();

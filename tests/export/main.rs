@@ -7,8 +7,12 @@ mod city;
 mod glb;
 mod meshes;
 mod planted;
+mod report;
+#[path = "../common/solid_checks.rs"]
+mod solid_checks;
 mod tables;
 mod texture;
+mod tileset;
 
 use ridgeline::model::RoofModel;
 

@@ -9,6 +9,7 @@ import { saveProject } from "./projectActions";
 
 const WHAT: Record<string, string> = {
   "model.glb": "textured model, glTF 2.0",
+  "tileset.json": "3D Tiles 1.1, beside model.glb",
   "model.city.json": "CityJSON 2.0, LoD 2.2",
   "model_atlas.jpg": "texture of the CityJSON and OBJ files",
   "model.obj": "triangles with texture",
@@ -16,6 +17,12 @@ const WHAT: Record<string, string> = {
   "model.ply": "triangles, and 3D lines as edges",
   "model.dxf": "3DFACE and LINE, AutoCAD R12",
   "footprints.geojson": "outlines on the ground",
+  "facets.geojson": "roof faces in plan: areas, slopes, directions",
+  "edges.geojson": "ridges, hips, valleys, eaves, rakes",
+  "roof_report.html": "roofs in numbers and drawings, for print",
+  "buildings.csv": "buildings as a table",
+  "facets.csv": "roof faces as a table",
+  "edges.csv": "roof edges as a table",
   "lines.csv": "3D lines as a table",
   "lines.json": "3D lines and their views",
   "halfplanes.json": "half-planes and Sim(theta)",

@@ -1,0 +1,275 @@
+//! The roof report: page, tables and maps, and the attributes of CityJSON.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector3;
+use ridgeline::export::report_files;
+use ridgeline::model::{CornerUncertainty, FacetUncertainty, RoofModel};
+use serde_json::Value;
+
+use crate::planted::{ORIGIN, files_of, planted_models, scene};
+
+/// The models, with planted standard deviations.
+fn known_models() -> Vec<(&'static str, RoofModel, f64)> {
+    let mut models = planted_models();
+    for facet in models
+        .iter_mut()
+        .flat_map(|(_, model, _)| &mut model.facets)
+    {
+        let corner = |&at: &nalgebra::Point3<f64>| CornerUncertainty {
+            at,
+            sigma_m: Vector3::new(0.03, 0.04, 0.05),
+        };
+        facet.uncertainty = Some(FacetUncertainty {
+            height_m: 0.06,
+            slope_deg: 0.5,
+            corners: facet.outer.iter().map(corner).collect(),
+        });
+    }
+    models
+}
+
+fn rows(table: &[u8]) -> Vec<BTreeMap<String, String>> {
+    let mut reader = csv::Reader::from_reader(table);
+    reader.deserialize().map(Result::unwrap).collect()
+}
+
+fn number(row: &BTreeMap<String, String>, name: &str) -> f64 {
+    row[name]
+        .parse()
+        .unwrap_or_else(|_| panic!("{name}: {row:?}"))
+}
+
+#[test]
+fn a_folder_makes_the_same_report_again() {
+    for (name, model, _) in known_models() {
+        let files = files_of(&scene(), &model);
+        let again = report_files(&files["model.city.json"]).unwrap();
+        assert_eq!(again.len(), 4);
+        for (file, bytes) in again {
+            assert!(files[&file] == bytes, "{name}: {file}");
+        }
+    }
+}
+
+#[test]
+fn tables_hold_planted_areas_lengths_and_places() {
+    let (_, model, volume) = known_models().remove(1);
+    let files = files_of(&scene(), &model);
+    let building = &rows(&files["buildings.csv"])[0];
+    assert_eq!(building["building"], "building-0");
+    let near = |name: &str, wanted: f64| {
+        let found = number(building, name);
+        assert!(
+            (found - wanted).abs() < 2e-3,
+            "{name}: {found} for {wanted}"
+        );
+    };
+    // The L: two wings of slope 1 : 2.
+    near("plan_area_m2", 16.0 * 6.0 + 6.0 * 6.0);
+    near("area_m2", 132.0 * 1.25f64.sqrt());
+    near("volume_m3", volume);
+    near("ridge_m", 22.0);
+    near("hip_m", 4.5);
+    near("valley_m", 4.5);
+    near("eave_m", 44.0);
+    near("rake_m", 4.0 * 11.25f64.sqrt());
+    near("lowest_m", 5.0);
+    near("lowest_sigma_m", 0.05);
+    assert_eq!(building["abutment_m"], "");
+    let facets = rows(&files["facets.csv"]);
+    assert_eq!(facets.len(), 4);
+    let south = &facets[0];
+    assert!((number(south, "azimuth_deg") - 180.0).abs() < 1e-3);
+    assert_eq!(number(south, "slope_sigma_deg"), 0.5);
+    // Half a degree of tilt across a slope of 26.57 degrees.
+    let turn = (0.5f64.to_radians() * 1.25 / 0.5).to_degrees();
+    assert!((number(south, "azimuth_sigma_deg") - turn).abs() < 1e-2);
+    assert_eq!(south["photographs"], "a.jpg; b.jpg");
+    let edges = rows(&files["edges.csv"]);
+    let ridge = edges.iter().find(|e| e["kind"] == "ridge").unwrap();
+    assert_eq!(number(ridge, "y0_m"), ORIGIN.y + 3.0);
+    // Both ends by 3 cm along it.
+    assert!((number(ridge, "length_sigma_m") - 0.03 * 2f64.sqrt()).abs() < 1e-3);
+    let sum: f64 = (edges.iter().filter(|e| e["kind"] == "eave"))
+        .map(|e| number(e, "length_m"))
+        .sum();
+    assert!((sum - 44.0).abs() < 2e-3);
+}
+
+#[test]
+fn maps_and_cityjson_say_what_the_tables_say() {
+    for (name, model, _) in known_models() {
+        let files = files_of(&scene(), &model);
+        let parse = |file: &str| -> geojson::FeatureCollection {
+            let text = std::str::from_utf8(&files[file]).unwrap();
+            let parsed: geojson::GeoJson = text.parse().unwrap();
+            parsed.try_into().unwrap()
+        };
+        let city: Value = serde_json::from_slice(&files["model.city.json"]).unwrap();
+        let mut surfaces = Vec::new();
+        for object in city["CityObjects"].as_object().unwrap().values() {
+            let all = object["geometry"][0]["semantics"]["surfaces"]
+                .as_array()
+                .unwrap();
+            surfaces.extend(all.iter().filter(|s| s["type"] == "RoofSurface"));
+            assert!(object["attributes"]["volumeSigma"].as_f64().unwrap() > 0.0);
+        }
+        let facets = rows(&files["facets.csv"]);
+        let features = parse("facets.geojson").features;
+        assert_eq!(facets.len(), features.len(), "{name}");
+        for (row, feature) in facets.iter().zip(&features) {
+            let surface = surfaces
+                .iter()
+                .find(|s| s["facet"].to_string() == row["facet"]);
+            let surface = surface.unwrap();
+            let of_map = |name: &str| feature.property(name).unwrap().clone();
+            for (of_table, of_city) in [
+                ("area_m2", "area"),
+                ("area_sigma_m2", "areaSigma"),
+                ("plan_area_m2", "planArea"),
+                ("slope_deg", "slopeDeg"),
+                ("highest_m", "highestHeight"),
+            ] {
+                let found = number(row, of_table);
+                for other in [&of_map(of_table), &surface[of_city]] {
+                    let other = other.as_f64().unwrap();
+                    assert!(
+                        (found - other).abs() < 2e-3,
+                        "{name}: {of_table} {found} {other}"
+                    );
+                }
+            }
+            assert_eq!(surface["photographs"].as_array().unwrap().len(), 2);
+            // Rings are closed, the outer one counter-clockwise.
+            let Some(geojson::GeometryValue::Polygon { coordinates }) =
+                feature.geometry.as_ref().map(|g| &g.value)
+            else {
+                panic!("{name}: no polygon");
+            };
+            assert_eq!(coordinates[0].first(), coordinates[0].last());
+        }
+        let edges = rows(&files["edges.csv"]);
+        let features = parse("edges.geojson").features;
+        assert_eq!(edges.len(), features.len());
+        for (row, feature) in edges.iter().zip(&features) {
+            assert_eq!(feature.property("kind").unwrap(), row["kind"].as_str());
+        }
+    }
+}
+
+#[test]
+fn the_page_is_well_formed_needs_nothing_else_and_names_what_there_is() {
+    for (name, model, _) in known_models() {
+        let files = files_of(&scene(), &model);
+        let page = std::str::from_utf8(&files["roof_report.html"]).unwrap();
+        for other in ["src=", "href=", "url(", "@import", "<script"] {
+            assert!(!page.contains(other), "{name}: {other}");
+        }
+        // It is XML but for two heads, so that every element is closed.
+        let body = &page[page.find("<body>").unwrap()..page.find("</html>").unwrap()];
+        let parsed = roxmltree::Document::parse(body).unwrap();
+        let count = |tag: &str| parsed.descendants().filter(|n| n.has_tag_name(tag)).count();
+        assert_eq!(count("section"), model.buildings.len() + 1);
+        for facet in 0..model.facets.len() {
+            let number = facet.to_string();
+            let is_number = |n: &roxmltree::Node| {
+                n.attribute("class") == Some("number") && n.text() == Some(&number)
+            };
+            assert!(
+                parsed.descendants().any(|n| is_number(&n)),
+                "{name}: {facet}"
+            );
+        }
+        assert!(page.contains(" ± ") && page.contains("a.jpg"));
+        assert!(!page.contains("NaN") && !page.contains("inf"));
+    }
+}
+
+#[test]
+fn names_cannot_break_the_page_or_a_table() {
+    let (_, model, _) = known_models().remove(0);
+    let mut scene = scene();
+    scene.views[0].name = "a, \"b\" <c>.jpg".into();
+    let files = files_of(&scene, &model);
+    let page = std::str::from_utf8(&files["roof_report.html"]).unwrap();
+    assert!(page.contains("a, &quot;b&quot; &lt;c&gt;.jpg"));
+    let facets = rows(&files["facets.csv"]);
+    assert_eq!(facets[0]["photographs"], "a, \"b\" <c>.jpg; b.jpg");
+}
+
+#[test]
+fn a_file_that_is_no_model_is_refused_with_the_reason() {
+    let (_, model, _) = known_models().remove(0);
+    let good: Value =
+        serde_json::from_slice(&files_of(&scene(), &model)["model.city.json"]).unwrap();
+    let damaged = |damage: &dyn Fn(&mut Value)| {
+        let mut file = good.clone();
+        damage(&mut file);
+        report_files(&serde_json::to_vec(&file).unwrap())
+    };
+    assert!(damaged(&|_| {}).is_ok());
+    for (damage, reason) in [
+        (
+            (&|f: &mut Value| f["type"] = "FeatureCollection".into()) as &dyn Fn(&mut Value),
+            "is no CityJSON",
+        ),
+        (&|f| f["transform"] = Value::Null, "\"scale\""),
+        (
+            &|f| f["transform"]["translate"][1] = "x".into(),
+            "\"translate\"",
+        ),
+        (&|f| f["vertices"] = Value::Null, "\"vertices\""),
+        (&|f| f["vertices"][2] = 7.into(), "vertex 2"),
+        (&|f| f["CityObjects"] = Value::Null, "\"CityObjects\""),
+        (
+            &|f| f["CityObjects"]["building-0"]["geometry"] = Value::Null,
+            "RoofSurface",
+        ),
+        (
+            &|f| f["CityObjects"]["building-0"]["geometry"][0]["boundaries"] = 3.into(),
+            "building-0: its Solid has no shell",
+        ),
+        (
+            &|f| {
+                f["CityObjects"]["building-0"]["geometry"][0]["boundaries"][0][1][0][0] =
+                    99999.into()
+            },
+            "building-0: face 1",
+        ),
+        (
+            &|f| {
+                f["CityObjects"]["building-0"]["geometry"][0]["boundaries"][0][0] =
+                    serde_json::json!([])
+            },
+            "face 0: no ring",
+        ),
+    ] {
+        let found = damaged(damage).unwrap_err();
+        assert!(found.contains(reason), "{found} instead of {reason}");
+    }
+    assert!(report_files(b"{").unwrap_err().contains("no JSON"));
+    // What others leave out is not needed.
+    let bare = damaged(&|f| {
+        f["CityObjects"]["building-0"]["attributes"] = Value::Null;
+        let surfaces = &mut f["CityObjects"]["building-0"]["geometry"][0]["semantics"]["surfaces"];
+        for surface in surfaces.as_array_mut().unwrap() {
+            let kind = surface["type"].clone();
+            *surface = serde_json::json!({ "type": kind });
+        }
+    });
+    let bare: BTreeMap<_, _> = bare.unwrap().into_iter().collect();
+    let facet = &rows(&bare["facets.csv"])[0];
+    assert_eq!(
+        (&facet["area_sigma_m2"][..], &facet["photographs"][..]),
+        ("", "")
+    );
+}
+
+#[test]
+fn a_model_without_buildings_has_a_page_that_says_so() {
+    let files = files_of(&scene(), &RoofModel::default());
+    let page = std::str::from_utf8(&files["roof_report.html"]).unwrap();
+    assert!(page.contains("No building was found"));
+    assert_eq!(rows(&files["facets.csv"]).len(), 0);
+}
