@@ -74,6 +74,9 @@ pub(super) struct InputArgs {
     /// Height of the ground, metres in the frame of the orientation; estimated if not given.
     #[arg(long, value_name = "H", value_parser = parse_finite, allow_hyphen_values = true)]
     pub ground_z: Option<f64>,
+    /// Use the photographs at 1/N of their size: less memory and time, and coarser models.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub reduce: Option<u32>,
     /// Number of threads; by default one per core. It never changes the result.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,

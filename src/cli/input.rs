@@ -47,6 +47,7 @@ pub(super) fn open(
         roi: args.roi.or(stated.roi),
         max_views: args.max_views.map(usize::from).or(stated.max_views),
         ground_z: args.ground_z.or(stated.ground_z),
+        reduction: args.reduce.or(stated.reduction),
         epsg: args.crs.or(stated.epsg),
         memory_mb: args.memory.or(stated.memory_mb),
         apply_fix: args.apply_fix || stated.apply_fix,

@@ -23,4 +23,21 @@ impl Photograph {
         });
         Self { rgb, gray }
     }
+
+    /// The mean of each block of `factor` x `factor` pixels; rows and columns left over are
+    /// dropped.
+    pub fn reduced(&self, factor: u32) -> Self {
+        let area = factor * factor;
+        let (width, height) = self.rgb.dimensions();
+        let rgb = image::RgbImage::from_fn(width / factor, height / factor, |x, y| {
+            let mut sum = [area / 2; 3];
+            for (dx, dy) in (0..area).map(|i| (i % factor, i / factor)) {
+                let pixel = self.rgb.get_pixel(x * factor + dx, y * factor + dy);
+                sum = [0, 1, 2].map(|i| sum[i] + u32::from(pixel[i]));
+            }
+            image::Rgb(sum.map(|s| (s / area) as u8))
+        });
+        let gray = self.gray.reduced(factor as usize);
+        Self { rgb, gray }
+    }
 }

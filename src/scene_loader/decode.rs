@@ -32,11 +32,14 @@ fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
         Some(lens) => region::source_of(part, whole, lens),
         None => part,
     };
+    let [full_width, full_height] = planned.full;
+    // In the photograph's own pixels.
+    let read = source.map(|side| side * planned.reduction);
     let stored = match planned.turn {
-        Some(turn) => turn.stored_window(source, [whole.height, whole.width]),
-        None => source,
+        Some(turn) => turn.stored_window(read, [full_height, full_width]),
+        None => read,
     };
-    let mut photograph = match source == all {
+    let mut photograph = match read == [0, 0, full_width, full_height] {
         true => load_image(&file.path, &file.bytes)?,
         false => load_window(&file.path, &file.bytes, stored)?,
     };
@@ -49,6 +52,9 @@ fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
     }
     if let Some(turn) = planned.turn {
         photograph = turn.apply(&photograph);
+    }
+    if planned.reduction > 1 {
+        photograph = photograph.reduced(planned.reduction);
     }
     let [column, row, width, height] = part;
     if let Some(lens) = &planned.distortion {

@@ -17,6 +17,9 @@ pub struct LoadOptions {
     pub max_views: Option<usize>,
     /// Height of the ground, metres, world frame of the input.
     pub ground_z: Option<f64>,
+    /// Each pixel that is used is the mean of so many by so many of the photograph; 1 when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reduction: Option<u32>,
     /// EPSG code of the world's reference system; the files' own when absent.
     pub epsg: Option<u32>,
     /// Memory that may be taken, megabytes; 1500 in the browser and 32768 elsewhere when absent.

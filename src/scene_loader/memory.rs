@@ -26,11 +26,14 @@ pub(crate) fn peak_bytes(files: &[InputFile], views: &[PlannedView]) -> u64 {
     let read: u64 = files.iter().map(|f| f.bytes.len() as u64).sum();
     let kept: u64 = views.iter().map(|v| v.pixels() * BYTES_PER_PIXEL).sum();
     let decoding = views.iter().map(|v| {
-        let whole = [v.whole.width, v.whole.height];
-        let chunk = decoding_bytes(&files[v.file].bytes, whole);
+        let chunk = decoding_bytes(&files[v.file].bytes, v.full);
+        let before_reduction = match v.reduction {
+            1 => 0,
+            factor => v.pixels() * u64::from(factor).pow(2) * (3 + 4),
+        };
         // Without its lens, or turned, a view is a second image of the same size.
         let is_copied = v.distortion.is_some() || v.turn.is_some();
-        chunk + if is_copied { v.pixels() * (3 + 4) } else { 0 }
+        chunk + before_reduction + if is_copied { v.pixels() * (3 + 4) } else { 0 }
     });
     // Views are decoded at the same time when there is room, one by one otherwise.
     BASE_BYTES + read + kept + decoding.max().unwrap_or(0)

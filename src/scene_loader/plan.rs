@@ -385,7 +385,7 @@ impl Plan {
                 None => planned_view(path, image.file, header, orientation),
             };
             match view {
-                Ok(view) => views.push(view),
+                Ok(view) => views.push(view.reduced(options.reduction.unwrap_or(1))),
                 Err(error) => self.errors.push(error),
             }
         }
@@ -397,6 +397,12 @@ impl Plan {
             self.warnings.push(format!(
                 "images of {factor} the size that their orientation states, whose cameras were scaled: {}",
                 listed(paths.into_iter())
+            ));
+        }
+        if let Some(most) = views.iter().map(|v| v.reduction).max().filter(|&f| f > 1) {
+            self.warnings.push(format!(
+                "the photographs are used at {} their size",
+                factor_in_words(1.0 / f64::from(most))
             ));
         }
         if views.len() < 3 && self.errors.is_empty() {

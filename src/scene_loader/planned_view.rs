@@ -20,12 +20,17 @@ pub(crate) struct PlannedImage {
 }
 
 /// A view before its pixels are decoded.
+#[derive(Clone)]
 pub(crate) struct PlannedView {
     pub file: usize,
     /// The name that it goes by: that of the file, with folders where names repeat.
     pub name: String,
-    /// Camera of the whole image, local frame.
+    /// Camera of the whole image, local frame, in the pixels that are used.
     pub whole: Camera,
+    /// So many by so many pixels of the photograph become one that is used.
+    pub reduction: u32,
+    /// Width and height of the photograph as its orientation describes it, pixels.
+    pub full: [u32; 2],
     pub distortion: Option<Distortion>,
     /// The rotation angles as the file states them, and the crop of the image in its frame.
     pub angles: Option<[f64; 3]>,
@@ -45,6 +50,25 @@ impl PlannedView {
             self.part
                 .unwrap_or([0, 0, self.whole.width, self.whole.height]);
         u64::from(width) * u64::from(height)
+    }
+
+    /// The view with so many by so many pixels in one; those at the right and at the bottom that do
+    /// not fill one are left out.
+    pub(super) fn reduced(mut self, factor: u32) -> Self {
+        // An image keeps enough pixels to be matched.
+        const SMALLEST_PX: u32 = 64;
+        let [width, height] = self.full;
+        let factor = factor.min(width.min(height) / SMALLEST_PX).max(1);
+        let by = 1.0 / f64::from(factor);
+        self.reduction = factor;
+        self.whole.k = Matrix3::from_diagonal(&Vector3::new(by, by, 1.0)) * self.whole.k;
+        (self.whole.width, self.whole.height) = (width / factor, height / factor);
+        self.crop = self.crop.map(|crop| Crop {
+            column: crop.column * by,
+            row: crop.row * by,
+            frame: crop.frame.map(|side| side * by),
+        });
+        self
     }
 
     /// What the orientation check needs of the view that was decoded by this plan.
@@ -143,6 +167,8 @@ pub(super) fn planned_view(
         file,
         name: String::new(),
         whole: camera,
+        reduction: 1,
+        full: [width, height],
         distortion,
         angles: orientation.angles,
         readings: orientation.readings.clone(),

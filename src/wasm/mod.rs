@@ -15,6 +15,8 @@ mod arrays;
 mod convert;
 #[cfg(feature = "reconstruction")]
 mod figures;
+#[cfg(feature = "reconstruction")]
+mod heads;
 #[cfg(not(feature = "reconstruction"))]
 mod orienter;
 #[cfg(feature = "reconstruction")]

@@ -1,8 +1,11 @@
 //! What was recognised among the files, as a table for the user before anything is computed.
-//! `windows` has what is read of each view, and the area that views show.
+//! `windows` has what is read of each view, and the area that views show; `flight` both for many
+//! regions, and how the photographs overlap.
 
+mod flight;
 mod windows;
 
+pub use flight::{Flight, FlightOverview, Footprint, Overlap};
 pub use windows::{ViewWindow, region_windows, shown_area};
 
 use serde::Serialize;

@@ -18,7 +18,7 @@ const PLACES: u32 = 200;
 
 /// Ground farther from a camera than so many times its height is not counted as shown: towards the
 /// horizon an image shows any distance, and nothing in it.
-const FARTHEST: f64 = 10.0;
+pub(super) const FARTHEST: f64 = 10.0;
 
 /// A view of a region and its part that a run reads.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -83,12 +83,14 @@ pub fn shown_area(files: &[InputFile], options: &LoadOptions) -> Result<[f64; 4]
     ])
 }
 
+/// Does a camera show a place on the ground, not too far away?
+pub(super) fn shows(camera: &Camera, p: &Point3<f64>) -> bool {
+    (p - camera.center).norm() < FARTHEST * (camera.center.z - p.z).abs()
+        && (camera.project(p)).is_some_and(|image| camera.contains(&image, 0.0))
+}
+
 /// The box of the places on the ground at this height that enough cameras show, local frame.
-fn box_of_shown(cameras: &[&Camera], z: f64) -> Option<[f64; 4]> {
-    let shows = |camera: &Camera, p: &Point3<f64>| {
-        (p - camera.center).norm() < FARTHEST * (camera.center.z - z).abs()
-            && (camera.project(p)).is_some_and(|image| camera.contains(&image, 0.0))
-    };
+pub(super) fn box_of_shown(cameras: &[&Camera], z: f64) -> Option<[f64; 4]> {
     let corners = cameras.iter().flat_map(|camera| {
         let (w, h) = (f64::from(camera.width), f64::from(camera.height));
         let reach = FARTHEST * (camera.center.z - z).abs();
@@ -117,7 +119,7 @@ fn box_of_shown(cameras: &[&Camera], z: f64) -> Option<[f64; 4]> {
 }
 
 /// Least and largest x and y; `None` of nothing.
-fn enclosing(points: impl Iterator<Item = Point3<f64>>) -> Option<[f64; 4]> {
+pub(super) fn enclosing(points: impl Iterator<Item = Point3<f64>>) -> Option<[f64; 4]> {
     points.map(|p| [p.x, p.y, p.x, p.y]).reduce(|a, b| {
         [
             a[0].min(b[0]),

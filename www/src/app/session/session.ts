@@ -20,6 +20,7 @@ import {
   stages,
   updateStage,
 } from "../state/stages";
+import { showTileFraction, tileRun } from "../tiles/flight";
 import { ActionQueue } from "./actionQueue";
 import { failureNotice } from "./failureNotice";
 import { stagesOf } from "./stageCatalogue";
@@ -32,6 +33,9 @@ export const engine = new Engine(
   () => !actions.isEnding,
 );
 export const workerPool = new WorkerPool(engine, (name, fraction) => {
+  if (tileRun.peek() !== null) {
+    showTileFraction(fraction);
+  }
   const running = stages.value.find((stage) => stage.name === name && stage.status === "running");
   if (running !== undefined && fraction > running.fraction) {
     updateStage(name, { fraction });

@@ -13,6 +13,7 @@ import { PointLab } from "../figures/PointLab";
 import { RectangleLab } from "../figures/RectangleLab";
 import { RefinementLab } from "../figures/RefinementLab";
 import { SimLab } from "../figures/SimLab";
+import { FlightProgress } from "../flight/FlightProgress";
 import { Filmstrip } from "../images/Filmstrip";
 import { ImageViews } from "../images/ImageViews";
 import { SpaceView } from "../space/SpaceView";
@@ -103,6 +104,7 @@ export function StageView() {
         ))}
       </div>
       <div id="stage-view" class="stage-view" role="tabpanel" aria-labelledby={`tab-${tab.value}`}>
+        <FlightProgress />
         {isImageTab && <ImageViews empty={<EmptyStage />} />}
         <SpaceView hidden={isImageTab} />
         {Lab !== undefined && (

@@ -35,6 +35,8 @@ export interface Results {
   /** The parameters that the facets were found with. */
   madeWith: ParamTree | null;
   glb: Uint8Array<ArrayBuffer> | null;
+  /** The models of the tiles that are done, as long as they are not joined. */
+  tileGlbs: readonly Uint8Array<ArrayBuffer>[];
   ground: GroundTexture | null;
   rejected: Float32Array[];
   matching: MatchRecord | null;
@@ -60,6 +62,7 @@ export const NO_RESULTS: Results = {
   facets: null,
   madeWith: null,
   glb: null,
+  tileGlbs: [],
   ground: null,
   rejected: [],
   matching: null,
@@ -82,7 +85,9 @@ const found = signal<ResultSets>({ main: NO_RESULTS, regions: NO_RESULTS });
 export const allResults: ReadonlySignal<ResultSets> = found;
 
 export function restoreResults(all: ResultSets): void {
-  found.value = all;
+  // What an older version kept may lack what is new.
+  const whole = (results: Results): Results => ({ ...NO_RESULTS, ...results, tileGlbs: [] });
+  found.value = { main: whole(all.main), regions: whole(all.regions) };
 }
 
 /** Of which stages the present tab tells. */
@@ -100,6 +105,12 @@ export function setResults(all: Results): void {
 export function addResults(shownBy: Tab, some: Partial<Results>): void {
   const set = resultSetOf(shownBy);
   found.value = { ...found.value, [set]: { ...found.value[set], ...some } };
+}
+
+/** Adds the model of a tile to those that are shown until all are joined. */
+export function addTileModel(glb: Uint8Array<ArrayBuffer>): void {
+  const { main } = found.value;
+  found.value = { ...found.value, main: { ...main, tileGlbs: [...main.tileGlbs, glb] } };
 }
 
 const writtenFiles = signal<string[]>([]);

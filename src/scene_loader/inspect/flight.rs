@@ -1,0 +1,230 @@
+//! A whole flight before a pixel is decoded: where its photographs were taken, what each shows of
+//! the ground, how many show each place, and what a run on each of many regions would read.
+//!
+//! The orientation is read once for all regions.
+
+use nalgebra::{Point2, Point3};
+use serde::Serialize;
+
+use super::super::checks::camera_checks;
+use super::super::input::LoadOptions;
+use super::super::memory;
+use super::super::plan::Plan;
+use super::super::planned_view::PlannedView;
+use super::super::region::RegionOfInterest;
+use super::windows::{FARTHEST, ViewWindow, box_of_shown, enclosing, shows};
+use crate::camera::Camera;
+use crate::error::{Error, Result};
+use crate::orientation::InputFile;
+
+/// Places along the longer side of the box in which the photographs that show a place are counted.
+const PLACES: u32 = 96;
+
+/// Points along a side of a footprint's outline: a fold at the horizon needs more than corners.
+const OUTLINE: u32 = 4;
+
+/// The photographs of a flight, seen from above; metres, world frame of the input.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+pub struct FlightOverview {
+    /// Lowest and highest height of the ground, as far as it is known.
+    pub heights: [f64; 2],
+    /// The height between them at which the footprints are drawn.
+    pub ground_z: f64,
+    /// Size of a pixel on the ground, the middle one of all photographs.
+    pub pixel_m: f64,
+    /// The photographs in use.
+    pub footprints: Vec<Footprint>,
+    /// The box of what three or more show, in whole metres: x0, y0, x1, y1.
+    pub shown: Option<[f64; 4]>,
+    /// How many show each place.
+    pub overlap: Overlap,
+}
+
+/// What a photograph shows of the ground.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+pub struct Footprint {
+    /// Path of the file.
+    pub path: String,
+    /// The name that the view goes by.
+    pub view: String,
+    /// Where it was taken.
+    pub center: [f64; 3],
+    /// Around what it shows; what lies towards the horizon is left out.
+    pub outline: Vec<[f64; 2]>,
+}
+
+/// Numbers of photographs on a grid of places.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+pub struct Overlap {
+    /// x0, y0, x1, y1.
+    pub area: [f64; 4],
+    /// Cells from west to east.
+    pub columns: u32,
+    /// Cells from south to north.
+    pub rows: u32,
+    /// How many show the middle of each cell, from west to east, then from south to north.
+    pub counts: Vec<u16>,
+}
+
+/// A flight whose orientation has been read.
+pub struct Flight<'a> {
+    files: &'a [InputFile],
+    memory_mb: Option<u32>,
+    most: Option<usize>,
+    plan: Plan,
+    /// Local frame.
+    heights: [f64; 2],
+}
+
+impl<'a> Flight<'a> {
+    /// Of the files their first bytes suffice. `ground` has the heights of the ground where they
+    /// were measured, metres, world frame of the input.
+    pub fn new(
+        files: &'a [InputFile],
+        options: &LoadOptions,
+        ground: Option<[f64; 2]>,
+    ) -> Result<Self> {
+        let whole = LoadOptions {
+            roi: None,
+            memory_mb: Some(u32::MAX),
+            ..options.clone()
+        };
+        let mut plan = Plan::new(files, &whole, None);
+        if !plan.errors.is_empty() {
+            return Err(plan.errors.remove(0));
+        }
+        let named: Vec<(&str, &Camera)> = (plan.views.iter())
+            .map(|view| (&*view.name, &view.whole))
+            .collect();
+        let z = plan.origin.z;
+        let stated = options.ground_z.map(|stated| stated - z);
+        let measured = ground.filter(|_| stated.is_none());
+        let heights = match measured {
+            Some(heights) => Some(heights.map(|height| height - z)),
+            None => camera_checks::check_cameras(&named, stated).heights,
+        };
+        Ok(Self {
+            files,
+            memory_mb: options.memory_mb,
+            most: options.max_views,
+            heights: heights.ok_or_else(|| Error::Scene {
+                problem: "the cameras do not tell how far below them the ground is".to_owned(),
+                advice: "give the height of the ground".to_owned(),
+            })?,
+            plan,
+        })
+    }
+
+    /// All photographs, seen from above.
+    pub fn overview(&self) -> FlightOverview {
+        let origin = self.plan.origin;
+        let z = 0.5 * (self.heights[0] + self.heights[1]);
+        let cameras: Vec<&Camera> = self.plan.views.iter().map(|view| &view.whole).collect();
+        let footprint = |view: &PlannedView| Footprint {
+            path: self.files[view.file].path.clone(),
+            view: view.name.clone(),
+            center: (view.whole.center + origin).coords.into(),
+            outline: (outline(&view.whole, z).iter())
+                .map(|p| [p.x + origin.x, p.y + origin.y])
+                .collect(),
+        };
+        let mut sizes: Vec<f64> = (cameras.iter())
+            .map(|camera| (camera.center.z - z).abs() / camera.k[(0, 0)].abs())
+            .collect();
+        sizes.sort_by(f64::total_cmp);
+        let world = |[x0, y0, x1, y1]: [f64; 4]| {
+            [x0 + origin.x, y0 + origin.y, x1 + origin.x, y1 + origin.y]
+        };
+        let shown = box_of_shown(&cameras, z);
+        let mut overlap = overlap(&cameras, z, frame_of(&cameras, shown, z));
+        overlap.area = world(overlap.area);
+        FlightOverview {
+            heights: self.heights.map(|height| height + origin.z),
+            ground_z: z + origin.z,
+            pixel_m: sizes[sizes.len() / 2],
+            footprints: self.plan.views.iter().map(footprint).collect(),
+            shown: shown.map(|shown| {
+                let [x0, y0, x1, y1] = world(shown);
+                [x0.floor(), y0.floor(), x1.ceil(), y1.ceil()]
+            }),
+            overlap,
+        }
+    }
+
+    /// The views that a run on a region of interest reads, which part of each, and the memory that
+    /// it takes at its peak, megabytes, what the files hold beyond these bytes not included.
+    pub fn windows(&self, roi: [f64; 4]) -> Result<(Vec<ViewWindow>, u64)> {
+        let mut views = self.plan.views.clone();
+        let region = RegionOfInterest::new(roi, &self.plan.origin, self.heights)?;
+        region.cut(self.files, &mut views, self.most)?;
+        let bytes = memory::peak_bytes(self.files, &views);
+        if let Some(error) = memory::check_memory(bytes, &views, self.memory_mb) {
+            return Err(error);
+        }
+        let window = |view: &PlannedView| ViewWindow {
+            view: view.name.clone(),
+            window: (view.part).unwrap_or([0, 0, view.whole.width, view.whole.height]),
+        };
+        // A part of a megabyte counts as a whole one.
+        Ok((views.iter().map(window).collect(), (bytes >> 20) + 1))
+    }
+}
+
+/// Points around what a camera shows of the ground at this height.
+fn outline(camera: &Camera, z: f64) -> Vec<Point2<f64>> {
+    let (w, h) = (f64::from(camera.width), f64::from(camera.height));
+    let corners = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)];
+    let reach = FARTHEST * (camera.center.z - z).abs();
+    let places = (0..4 * OUTLINE).filter_map(|i| {
+        let side = (i / OUTLINE) as usize;
+        let (from, to) = (corners[side], corners[(side + 1) % 4]);
+        let t = f64::from(i % OUTLINE) / f64::from(OUTLINE);
+        let p = Point2::new(from.0 + t * (to.0 - from.0), from.1 + t * (to.1 - from.1));
+        camera.at_height(&p, z)
+    });
+    places
+        .filter(|p| (p - camera.center).norm() < reach)
+        .map(|p| p.xy())
+        .collect()
+}
+
+/// The box of what is to be seen of a flight: what three show and where they were taken, with a
+/// margin; local frame.
+fn frame_of(cameras: &[&Camera], shown: Option<[f64; 4]>, z: f64) -> [f64; 4] {
+    const MARGIN: f64 = 0.06;
+    let corners = shown.into_iter().flat_map(|[x0, y0, x1, y1]| {
+        [(x0, y0), (x1, y1)].map(|(x, y)| Point3::new(x, y, z))
+    });
+    let centers = cameras.iter().map(|camera| camera.center);
+    let [x0, y0, x1, y1] = enclosing(corners.chain(centers)).unwrap_or_default();
+    let margin = (MARGIN * (x1 - x0).max(y1 - y0)).max(1.0);
+    [x0 - margin, y0 - margin, x1 + margin, y1 + margin]
+}
+
+/// How many cameras show each place of a box, local frame.
+fn overlap(cameras: &[&Camera], z: f64, area: [f64; 4]) -> Overlap {
+    let [x0, y0, x1, y1] = area;
+    let cell = ((x1 - x0).max(y1 - y0) / f64::from(PLACES)).max(f64::MIN_POSITIVE);
+    let count = |size: f64| (size / cell).ceil().clamp(1.0, f64::from(PLACES)) as u32;
+    let (columns, rows) = (count(x1 - x0), count(y1 - y0));
+    let places: Vec<u32> = (0..columns * rows).collect();
+    let counts = crate::execution::map(&places, |_, &i| {
+        let middle = |low: f64, high: f64, n: u32, of: u32| {
+            low + (high - low) * (f64::from(n) + 0.5) / f64::from(of)
+        };
+        let x = middle(x0, x1, i % columns, columns);
+        let y = middle(y0, y1, i / columns, rows);
+        let place = Point3::new(x, y, z);
+        let showing = cameras.iter().filter(|camera| shows(camera, &place));
+        u16::try_from(showing.count()).unwrap_or(u16::MAX)
+    });
+    Overlap {
+        area,
+        columns,
+        rows,
+        counts,
+    }
+}
