@@ -45,8 +45,8 @@ pub use candidate::OrientationCandidate;
 pub use ground::{files_of_ground, files_of_views, ground_files, ground_heights};
 pub use input::LoadOptions;
 pub use inspect::{
-    FileReport, Flight, FlightOverview, Footprint, ImageReport, Inspection, Overlap, ViewWindow,
-    inspect_files, region_windows, shown_area,
+    FileReport, Flight, FlightOverview, Footprint, GroundSource, ImageReport, Inspection, Overlap,
+    ViewWindow, inspect_files, region_windows, shown_area,
 };
 pub use load::{load_scene, whole_views};
 #[cfg(target_arch = "wasm32")]

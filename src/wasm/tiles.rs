@@ -13,6 +13,9 @@ use crate::scene_loader::{
 };
 use crate::tiles::{Area, TileReport, plan_tiles};
 
+/// Most tiles that the page plans: so many take it days.
+const MOST_TILES: usize = 1000;
+
 /// What `planFlight` returns.
 #[derive(Serialize, tsify::Tsify)]
 struct FlightPlan {
@@ -94,6 +97,13 @@ impl Session {
         };
         let planned = (options.roi.or(overview.shown)).map(|area| plan_tiles(area, tile_m));
         let (tiles, problem) = match planned {
+            Some(Ok(tiles)) if tiles.len() > MOST_TILES => (
+                Vec::new(),
+                Some(format!(
+                    "{} tiles are more than the page plans; choose a region, or larger tiles",
+                    tiles.len()
+                )),
+            ),
             Some(Ok(tiles)) => (tiles, None),
             Some(Err(error)) => (Vec::new(), Some(error.to_string())),
             None => (

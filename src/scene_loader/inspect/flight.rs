@@ -6,7 +6,6 @@
 use nalgebra::{Point2, Point3};
 use serde::Serialize;
 
-use super::super::checks::camera_checks;
 use super::super::input::LoadOptions;
 use super::super::memory;
 use super::super::plan::Plan;
@@ -14,7 +13,7 @@ use super::super::planned_view::PlannedView;
 use super::super::region::RegionOfInterest;
 use super::windows::{FARTHEST, ViewWindow, box_of_shown, enclosing, shows};
 use crate::camera::Camera;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::orientation::InputFile;
 
 /// Places along the longer side of the box in which the photographs that show a place are counted.
@@ -23,12 +22,27 @@ const PLACES: u32 = 96;
 /// Points along a side of a footprint's outline: a fold at the horizon needs more than corners.
 const OUTLINE: u32 = 4;
 
+/// Where the height of the ground comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+#[serde(rename_all = "snake_case")]
+pub enum GroundSource {
+    /// The options state it.
+    Stated,
+    /// Photographs show it.
+    Measured,
+    /// From the distances of the cameras, by the usual overlap.
+    Assumed,
+}
+
 /// The photographs of a flight, seen from above; metres, world frame of the input.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct FlightOverview {
     /// Lowest and highest height of the ground, as far as it is known.
     pub heights: [f64; 2],
+    /// Where these come from.
+    pub ground: GroundSource,
     /// The height between them at which the footprints are drawn.
     pub ground_z: f64,
     /// Size of a pixel on the ground, the middle one of all photographs.
@@ -77,6 +91,7 @@ pub struct Flight<'a> {
     plan: Plan,
     /// Local frame.
     heights: [f64; 2],
+    source: GroundSource,
 }
 
 impl<'a> Flight<'a> {
@@ -96,24 +111,21 @@ impl<'a> Flight<'a> {
         if !plan.errors.is_empty() {
             return Err(plan.errors.remove(0));
         }
-        let named: Vec<(&str, &Camera)> = (plan.views.iter())
-            .map(|view| (&*view.name, &view.whole))
-            .collect();
         let z = plan.origin.z;
-        let stated = options.ground_z.map(|stated| stated - z);
-        let measured = ground.filter(|_| stated.is_none());
-        let heights = match measured {
-            Some(heights) => Some(heights.map(|height| height - z)),
-            None => camera_checks::check_cameras(&named, stated).heights,
+        let (heights, source) = match (options.ground_z, ground) {
+            (Some(stated), _) => ([stated - z; 2], GroundSource::Stated),
+            (None, Some(heights)) => (heights.map(|height| height - z), GroundSource::Measured),
+            (None, None) => {
+                let cameras: Vec<&Camera> = plan.views.iter().map(|view| &view.whole).collect();
+                ([assumed_ground(&cameras); 2], GroundSource::Assumed)
+            }
         };
         Ok(Self {
             files,
             memory_mb: options.memory_mb,
             most: options.max_views,
-            heights: heights.ok_or_else(|| Error::Scene {
-                problem: "the cameras do not tell how far below them the ground is".to_owned(),
-                advice: "give the height of the ground".to_owned(),
-            })?,
+            heights,
+            source,
             plan,
         })
     }
@@ -143,6 +155,7 @@ impl<'a> Flight<'a> {
         overlap.area = world(overlap.area);
         FlightOverview {
             heights: self.heights.map(|height| height + origin.z),
+            ground: self.source,
             ground_z: z + origin.z,
             pixel_m: sizes[sizes.len() / 2],
             footprints: self.plan.views.iter().map(footprint).collect(),
@@ -173,6 +186,28 @@ impl<'a> Flight<'a> {
     }
 }
 
+/// Height of the ground if neighbours show three quarters of the same, metres, local frame.
+/// Assumption: the overlap for which flights are usually planned; cameras that look down in parallel
+/// say nothing else of it.
+fn assumed_ground(cameras: &[&Camera]) -> f64 {
+    const NEW_SHARE: f64 = 0.25;
+    let middle = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
+    };
+    let nearest = |i: usize| {
+        let others = cameras.iter().enumerate().filter(|&(j, _)| i != j);
+        let distances = others.map(|(_, other)| (other.center - cameras[i].center).xy().norm());
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    let above = |i: usize| {
+        let Camera { k, height, .. } = cameras[i];
+        nearest(i) / NEW_SHARE * k[(1, 1)].abs() / f64::from(*height)
+    };
+    let all = || 0..cameras.len();
+    middle(all().map(|i| cameras[i].center.z).collect()) - middle(all().map(above).collect())
+}
+
 /// Points around what a camera shows of the ground at this height.
 fn outline(camera: &Camera, z: f64) -> Vec<Point2<f64>> {
     let (w, h) = (f64::from(camera.width), f64::from(camera.height));
@@ -195,9 +230,9 @@ fn outline(camera: &Camera, z: f64) -> Vec<Point2<f64>> {
 /// margin; local frame.
 fn frame_of(cameras: &[&Camera], shown: Option<[f64; 4]>, z: f64) -> [f64; 4] {
     const MARGIN: f64 = 0.06;
-    let corners = shown.into_iter().flat_map(|[x0, y0, x1, y1]| {
-        [(x0, y0), (x1, y1)].map(|(x, y)| Point3::new(x, y, z))
-    });
+    let corners = shown
+        .into_iter()
+        .flat_map(|[x0, y0, x1, y1]| [(x0, y0), (x1, y1)].map(|(x, y)| Point3::new(x, y, z)));
     let centers = cameras.iter().map(|camera| camera.center);
     let [x0, y0, x1, y1] = enclosing(corners.chain(centers)).unwrap_or_default();
     let margin = (MARGIN * (x1 - x0).max(y1 - y0)).max(1.0);

@@ -5,7 +5,7 @@
 mod flight;
 mod windows;
 
-pub use flight::{Flight, FlightOverview, Footprint, Overlap};
+pub use flight::{Flight, FlightOverview, Footprint, GroundSource, Overlap};
 pub use windows::{ViewWindow, region_windows, shown_area};
 
 use serde::Serialize;

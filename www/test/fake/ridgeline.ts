@@ -504,6 +504,7 @@ export class Session implements CoreSession {
     return {
       overview: {
         heights: [0, 0],
+        ground: "stated",
         ground_z: 0,
         pixel_m: 0.05,
         footprints: [],

@@ -16,7 +16,6 @@ import { runOptions } from "../state/project";
 import {
   doneTiles,
   flightPlan,
-  measuredHeights,
   megapixelsOf,
   plannedReduction,
   type Region,
@@ -156,7 +155,7 @@ function Facts({ plan }: { plan: FlightPlan }) {
     ["Memory at a time", used.length > 0 ? `about ${memory} MB at most` : "–"],
     ["Time", used.length > 0 ? `${minutesText(seconds)}${left.length < used.length ? " more" : ""}` : "–"],
     ["Pixel on the ground", `${(100 * overview.pixel_m).toFixed(overview.pixel_m < 0.1 ? 1 : 0)} cm`],
-    ["Ground", groundText(overview.heights)],
+    ["Ground", groundText(overview)],
   ];
   return (
     <dl class="facts" data-testid="flight-facts">
@@ -200,14 +199,13 @@ function rangeText(counts: readonly number[]): string {
   return least === most ? String(least) : `${least} to ${most}`;
 }
 
-function groundText([low, high]: readonly [number, number]): string {
-  if (runOptions.value.groundZ !== null) {
-    return `${runOptions.value.groundZ} m, as stated`;
-  }
-  const range = `${signed(low, 0)} to ${signed(high, 0)} m`;
-  return measuredHeights.value === null
-    ? `${range}, from the cameras alone`
-    : `${range}, roofs included, as four photographs show it`;
+function groundText({ heights: [low, high], ground, ground_z }: FlightPlan["overview"]): string {
+  const words: Record<typeof ground, string> = {
+    stated: `${signed(ground_z, 1)} m, as stated`,
+    measured: `${signed(low, 0)} to ${signed(high, 0)} m with roofs and trees, as four photographs show it`,
+    assumed: `${signed(ground_z, 0)} m, assumed from the distances of the photographs`,
+  };
+  return words[ground];
 }
 
 const SIDES = ["West", "South", "East", "North"] as const;

@@ -35,21 +35,19 @@ export function proposeTiles(): void {
 }
 
 /** Plans the tiles, and measures the ground where nobody states its height; the plan is shown before that. */
-export async function planFlight(turn: Turn | null, tileM: number): Promise<void> {
+export async function planFlight(turn: Turn, tileM: number): Promise<void> {
   await planFitting(tileM);
   const area = plannedRegion();
-  if (area === null || runOptions.value.groundZ !== null || measuredHeights.value !== null) {
-    await lookForKept(tileM);
-    return;
+  if (area !== null && runOptions.value.groundZ === null && measuredHeights.value === null) {
+    turn.enter("load", "Measuring the height of the ground");
+    const options = optionsOf({ ...runOptions.value, roi: null, reduction: plannedReduction.value });
+    const found = await engine.call("groundHeights", options, area);
+    if (found !== null) {
+      setMeasuredHeights(found);
+      await planFitting(tileM);
+    }
   }
-  turn?.enter("load", "Measuring the height of the ground");
-  const options = optionsOf({ ...runOptions.value, roi: null, reduction: plannedReduction.value });
-  const found = await engine.call("groundHeights", options, area);
-  if (found !== null) {
-    setMeasuredHeights(found);
-    await planFitting(tileM);
-  }
-  await lookForKept(tileM);
+  setDoneTiles(await keptTilesOf(tileM).tiles());
 }
 
 /** With the size that was asked for, or the largest that the memory takes. */
@@ -99,10 +97,6 @@ function optionsOf(wanted: RunOptions): LoadOptions {
 export function keptTilesOf(tileM: number): KeptTiles {
   const photographs = files.value.map(({ path, blob }) => [path, blob.size]);
   return new KeptTiles(JSON.stringify([CORE_VERSION, tileM, tileOptions(), params.value, photographs]));
-}
-
-async function lookForKept(tileM: number): Promise<void> {
-  setDoneTiles(await keptTilesOf(tileM).tiles());
 }
 
 /** Forgets the plan: the files are others. */
