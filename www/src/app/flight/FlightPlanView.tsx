@@ -8,7 +8,6 @@ import { minutesText, signed } from "../parts/numberText";
 import { TextField } from "../parts/TextField";
 import { setRunOptions } from "../project/projectActions";
 import { isOfMemory, plannedRegion } from "../session/flightPlanning";
-import { cancel } from "../session/session";
 import { runAll } from "../session/stageRuns";
 import { parseSide, parseTile } from "../settings/loadOptions";
 import { isBusy, phase } from "../state/activity";
@@ -37,10 +36,7 @@ export function FlightPlanView() {
     <section class="flight" aria-label="Plan of the flight" data-testid="flight-plan" tabIndex={0}>
       <div class="flight-head">
         <h2>{headingOf(plan)}</h2>
-        <p class="muted">
-          Nothing has been computed yet. Drag a rectangle on the plan to choose what is reconstructed, or take
-          all of it.
-        </p>
+        <p class="muted">{advice()}</p>
       </div>
       <div class="flight-plan-side">
         <div class="toolbar">
@@ -92,10 +88,20 @@ function headingOf({ overview }: FlightPlan): string {
   return `A flight of ${counted(overview.footprints.length, "photographs")}`;
 }
 
+function advice(): string {
+  if (phase.value === "run") {
+    return "Tile after tile is read, reconstructed and kept; tab Model shows what is there.";
+  }
+  return doneTiles.value.size === 0
+    ? "Nothing has been computed yet. Drag a rectangle on the plan to choose what is reconstructed, or take all of it."
+    : "Another region, or another size of its tiles, begins anew.";
+}
+
 /** What the shades mean. */
 function CoverLegend() {
   return (
-    <ul class="cover-legend" aria-label="Photographs that show a place">
+    <ul class="cover-legend">
+      <li>Photographs that show a place:</li>
       {COVERS.map(({ words, alpha }) => (
         <li key={words}>
           <span class="swatch" style={{ "--alpha": String(alpha) }} aria-hidden="true" />
@@ -116,12 +122,8 @@ function RunRow({ plan }: { plan: FlightPlan }) {
   return (
     <>
       {plan.problem !== null && <p class="plan-problem">{plan.problem}</p>}
-      <p class="row">
-        {phase.value === "run" ? (
-          <button type="button" onClick={() => void cancel()}>
-            Cancel
-          </button>
-        ) : (
+      {phase.value !== "run" && (
+        <p class="row">
           <button
             type="button"
             class="primary"
@@ -130,15 +132,15 @@ function RunRow({ plan }: { plan: FlightPlan }) {
           >
             {name}
           </button>
-        )}
-      </p>
-      {isGoingOn && phase.value !== "run" && (
-        <p class="muted">
-          {counted(used.length - left.length, "tiles")} of this plan are kept in this browser.
         </p>
       )}
+      {isGoingOn && phase.value !== "run" && <p class="muted">{keptText(used.length - left.length)}</p>}
     </>
   );
+}
+
+function keptText(count: number): string {
+  return `${counted(count, "tiles")} of this plan ${count === 1 ? "is" : "are"} kept in this browser.`;
 }
 
 function Facts({ plan }: { plan: FlightPlan }) {

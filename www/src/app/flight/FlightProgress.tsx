@@ -25,11 +25,7 @@ export function FlightProgress() {
         <span>
           {read} of {counted(all, "photographs")} read
         </span>
-        <span>
-          {isJoining
-            ? "joining the tiles"
-            : run.secondsLeft !== null && `${minutesText(run.secondsLeft)} left`}
-        </span>
+        <span>{isJoining ? "joining the tiles" : `${minutesText(run.secondsLeft)} left`}</span>
       </p>
     </div>
   );

@@ -4,6 +4,7 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { PALETTE } from "../../shared/palette";
 import type { FlightPlan, Overlap } from "../../shared/records";
 import { counted } from "../parts/counted";
+import { Thumbnail } from "../project/Thumbnail";
 import { thumbnailOf } from "../project/thumbnails";
 import { files } from "../state/project";
 import { doneTiles, type Region, tileRun } from "../tiles/flight";
@@ -31,7 +32,7 @@ export function PlanDrawing({ plan, region, withPictures, drawsByTouch, onRegion
   const { width, height } = frame;
   const shown = drag.region ?? region;
   return (
-    <div class={`plan-drawing ${drawsByTouch ? "by-touch" : ""}`}>
+    <div class={`plan-drawing ${drawsByTouch ? "by-touch" : ""} ${withPictures ? "with-pictures" : ""}`}>
       <svg
         viewBox={`0 0 ${width} ${height}`}
         role="img"
@@ -55,7 +56,7 @@ export function PlanDrawing({ plan, region, withPictures, drawsByTouch, onRegion
                 key={path}
                 cx={cx}
                 cy={cy}
-                r={withPictures ? 3 : 5}
+                r={withPictures ? 12 : 5}
                 onPointerEnter={() => {
                   named.value = i;
                 }}
@@ -72,6 +73,7 @@ export function PlanDrawing({ plan, region, withPictures, drawsByTouch, onRegion
         {shown !== null && <rect class="region" {...boxOf(frame, shown)} />}
       </svg>
       <ScaleBar frame={frame} />
+      <NamedCard plan={plan} index={named.value} />
     </div>
   );
 }
@@ -151,11 +153,21 @@ function Named({ plan, frame, index }: { plan: FlightPlan; frame: PlanFrame; ind
   );
 }
 
+function NamedCard({ plan, index }: { plan: FlightPlan; index: number | null }) {
+  const one = index === null ? undefined : plan.overview.footprints[index];
+  return one === undefined ? null : (
+    <div class="named-card">
+      <Thumbnail blob={files.value.find(({ path }) => path === one.path)?.blob} />
+      <span>{one.view}</span>
+    </div>
+  );
+}
+
 /** Small pictures where the photographs were taken, one after the other. */
 function Pictures({ plan, frame }: { plan: FlightPlan; frame: PlanFrame }) {
   const urls = usePictures(plan);
   const places = plan.overview.footprints.map(({ center: [x, y] }) => frame.toDrawing([x, y]));
-  const side = Math.min(Math.max(0.9 * spacingOf(places, frame.width), 14), 90);
+  const side = Math.min(Math.max(1.4 * spacingOf(places, frame.width), 34), 110);
   return (
     <g class="pictures">
       {plan.overview.footprints.map(({ path }, i) => {

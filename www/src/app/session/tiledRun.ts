@@ -5,15 +5,21 @@
 import { batch } from "@preact/signals";
 import { EngineError } from "../../core/engine";
 import type { TileOutcome } from "../../shared/calls";
-import type { FlightPlan, TileReport } from "../../shared/records";
+import type { TileReport } from "../../shared/records";
 import { counted } from "../parts/counted";
-import { minutesText } from "../parts/numberText";
 import { announce } from "../state/notices";
 import { params } from "../state/parameters";
 import { addTileModel, NO_RESULTS, setExportNames, setResults } from "../state/results";
 import { updateStage } from "../state/stages";
 import { showTab, tab } from "../state/viewState";
-import { doneTiles, flightPlan, megapixelsOf, setDoneTiles, showTileRun, usedTiles } from "../tiles/flight";
+import {
+  doneTiles,
+  flightPlan,
+  megapixelsLeft,
+  megapixelsOf,
+  setDoneTiles,
+  showTileRun,
+} from "../tiles/flight";
 import type { KeptTiles } from "../tiles/keptTiles";
 import { noteTile, secondsPerMegapixel } from "../tiles/pace";
 import type { Turn } from "./actionQueue";
@@ -72,11 +78,11 @@ export async function runTiles(turn: Turn, tileM: number): Promise<void> {
 
 async function runEach(turn: Turn, kept: KeptTiles, tileM: number): Promise<TileReport[]> {
   const tiles = await engine.call("planTiles", tileOptions(), tileM);
-  const plan = flightPlan.value;
   const reports: TileReport[] = [];
   for (const index of tiles.keys()) {
-    showTileRun({ tile: index, fraction: 0, secondsLeft: secondsLeft(plan) });
-    turn.enter("run", words(index, tiles.length, secondsLeft(plan)));
+    const secondsLeft = secondsPerMegapixel.value * megapixelsLeft();
+    showTileRun({ tile: index, fraction: 0, since: performance.now(), secondsLeft });
+    turn.enter("run", `Tile ${index + 1} of ${tiles.length}`);
     announce(`Tile ${index + 1} of ${tiles.length}`);
     const { report, glb } = (await keptOutcome(kept, index)) ?? (await workOff(kept, index, tiles.length));
     reports.push(report);
@@ -124,16 +130,4 @@ async function workOff(kept: KeptTiles, index: number, of: number): Promise<Tile
   noteTile((performance.now() - started) / 1000, plan === null ? 0 : megapixelsOf(plan, index));
   await kept.keep(index, outcome);
   return engine.callMoving([outcome.buffer], "tileModel", index, outcome);
-}
-
-function words(index: number, of: number, secondsLeft: number | null): string {
-  const left = secondsLeft === null ? "" : `, ${minutesText(secondsLeft)} left`;
-  return `Tile ${index + 1} of ${of}${left}`;
-}
-
-/** How long the tiles that are left will take, by the megapixels that they read. */
-function secondsLeft(plan: FlightPlan | null): number | null {
-  const left = usedTiles.value.filter((tile) => !doneTiles.value.has(tile));
-  const megapixels = left.reduce((sum, tile) => sum + (plan === null ? 0 : megapixelsOf(plan, tile)), 0);
-  return plan === null ? null : secondsPerMegapixel.value * megapixels;
 }

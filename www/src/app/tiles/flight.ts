@@ -1,6 +1,7 @@
 /** A flight that is worked off in tiles: its plan, and how far its tiles are. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import type { FlightPlan } from "../../shared/records";
+import { secondsPerMegapixel } from "./pace";
 
 export type Region = readonly [x0: number, y0: number, x1: number, y1: number];
 
@@ -12,8 +13,10 @@ export interface TileRun {
   /** Which tile, and the fraction of it that is done. */
   tile: number;
   fraction: number;
-  /** So many seconds are left, as far as the tiles that are done tell; null before there is one. */
-  secondsLeft: number | null;
+  /** When it was begun, milliseconds of `performance.now()`. */
+  since: number;
+  /** So many seconds are left for all. */
+  secondsLeft: number;
 }
 
 const present = {
@@ -65,14 +68,28 @@ export function showTileRun(run: TileRun | null): void {
   present.run.value = run;
 }
 
-/** How far the present tile is, from the progress of all of them. */
+/** How far the present tile is, from the progress of all of them; from a tenth on it tells how long the others take. */
 export function showTileFraction(ofAll: number): void {
   const run = present.run.peek();
-  const count = present.plan.peek()?.tiles.length ?? 0;
-  if (run !== null) {
-    const within = Math.min(Math.max(ofAll * count - run.tile, 0), 1);
-    present.run.value = { ...run, fraction: Math.max(run.fraction, within) };
+  const plan = present.plan.peek();
+  if (run === null || plan === null) {
+    return;
   }
+  const within = Math.min(Math.max(ofAll * plan.tiles.length - run.tile, 0), 1);
+  const fraction = Math.max(run.fraction, within);
+  const own = megapixelsOf(plan, run.tile);
+  const isTelling = fraction > 0.1 && own > 0;
+  const pace = isTelling
+    ? (performance.now() - run.since) / 1000 / (fraction * own)
+    : secondsPerMegapixel.peek();
+  present.run.value = { ...run, fraction, secondsLeft: pace * (megapixelsLeft() - fraction * own) };
+}
+
+/** Megapixels of the tiles that are not done. */
+export function megapixelsLeft(): number {
+  const plan = present.plan.peek();
+  const left = usedTiles.peek().filter((tile) => !present.done.peek().has(tile));
+  return left.reduce((sum, tile) => sum + (plan === null ? 0 : megapixelsOf(plan, tile)), 0);
 }
 
 /** Megapixels that a tile reads. */
