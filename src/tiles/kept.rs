@@ -75,3 +75,60 @@ impl Area {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::execution::progress::silent;
+    use crate::synthetic::{gable_scene, to_files};
+
+    fn files() -> Vec<InputFile> {
+        let (scene, _) = gable_scene(48);
+        let files = to_files(&scene).into_iter();
+        files
+            .map(|(path, bytes)| InputFile::new(&path, bytes))
+            .collect()
+    }
+
+    /// Two tiles that no view shows: nothing is computed.
+    fn area(files: &[InputFile], east: f64) -> Area {
+        let options = LoadOptions {
+            orientation: Some("colmap".to_owned()),
+            roi: Some([5000.0, 0.0, 5000.0 + east, 50.0]),
+            ground_z: Some(0.0),
+            ..LoadOptions::default()
+        };
+        Area::plan(files, &options, &crate::params::Params::default(), 50.0).unwrap()
+    }
+
+    #[test]
+    fn what_is_kept_belongs_to_one_tile_of_one_area() {
+        let files = files();
+        let mut planned = area(&files, 100.0);
+        let kept: Vec<Vec<u8>> = (0..2)
+            .map(|tile| planned.work_off(&files, tile, &silent()).unwrap())
+            .collect();
+        assert_eq!(planned.work_off(&files, 2, &silent()), None);
+        let (report, model) = planned.outcome(0, &kept[0]).unwrap();
+        assert!(report.outcome.contains("seen by 0 views"), "{report:?}");
+        assert_eq!(model, None);
+
+        let refusal = |error: Error| error.to_string();
+        let other_tile = refusal(planned.outcome(1, &kept[0]).unwrap_err());
+        assert!(other_tile.contains("is that of tile 1"), "{other_tile}");
+        let other = area(&files, 90.0);
+        let other_area = refusal(other.outcome(0, &kept[0]).unwrap_err());
+        assert!(other_area.contains("another plan"), "{other_area}");
+        let mut changed = files.clone();
+        changed[0].bytes.push(0);
+        assert!(area(&changed, 100.0).outcome(0, &kept[0]).is_err());
+
+        // In their order, and then there is nothing to join.
+        assert!(planned.take(&kept[1]).is_err());
+        for outcome in &kept {
+            planned.take(outcome).unwrap();
+        }
+        let nothing = refusal(planned.finish(&[]).unwrap_err());
+        assert!(nothing.contains("no tile could be read"), "{nothing}");
+    }
+}

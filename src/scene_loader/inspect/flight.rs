@@ -263,3 +263,109 @@ fn overlap(cameras: &[&Camera], z: f64, area: [f64; 4]) -> Overlap {
         counts,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::windows::region_windows;
+    use super::*;
+    use crate::raster::image_format;
+    use crate::scene_loader::{files_of_ground, files_of_views};
+    use crate::synthetic::{gable_scene, to_files};
+
+    fn options(roi: Option<[f64; 4]>, ground_z: Option<f64>) -> LoadOptions {
+        LoadOptions {
+            orientation: Some("colmap".to_owned()),
+            roi,
+            ground_z,
+            max_views: Some(4),
+            ..LoadOptions::default()
+        }
+    }
+
+    /// The files of a house, and the height of its ground.
+    fn house() -> (Vec<InputFile>, f64) {
+        let (scene, truth) = gable_scene(96);
+        let files = to_files(&scene).into_iter();
+        let files = files.map(|(path, bytes)| InputFile::new(&path, bytes));
+        (files.collect(), scene.origin.z + truth.ground_z)
+    }
+
+    #[test]
+    fn each_region_is_planned_as_a_run_on_it_is() {
+        let (files, z) = house();
+        let stated = options(None, Some(z));
+        let flight = Flight::new(&files, &stated, None).unwrap();
+        let [x0, y0, x1, y1] = flight.overview().shown.unwrap();
+        let (x, y) = (0.5 * (x0 + x1), 0.5 * (y0 + y1));
+        for roi in [[x0, y0, x1, y1], [x, y, x + 1.0, y + 1.0], [x0, y0, x, y]] {
+            let alone = region_windows(&files, &options(Some(roi), Some(z))).unwrap();
+            assert_eq!(flight.windows(roi).unwrap(), alone);
+            assert_eq!(alone.0.len(), 4);
+        }
+        let elsewhere = [x1 + 900.0, y1, x1 + 950.0, y1 + 50.0];
+        assert!(flight.windows(elsewhere).is_err());
+    }
+
+    #[test]
+    fn the_first_bytes_of_photographs_suffice_for_a_plan() {
+        let (files, z) = house();
+        let mut heads = files.clone();
+        let is_image = |file: &InputFile| image_format(&file.bytes).is_some();
+        for file in heads.iter_mut().filter(|file| is_image(file)) {
+            file.bytes.truncate(file.bytes.len() / 2);
+        }
+        let stated = options(None, Some(z));
+        let plan = |files: &[InputFile]| Flight::new(files, &stated, None).unwrap().overview();
+        assert_eq!(plan(&heads), plan(&files));
+        let [x0, y0, x1, y1] = plan(&files).shown.unwrap();
+        let region = options(Some([x0, y0, x1, y1]), Some(z));
+        assert_eq!(files_of_ground(&heads, &region), []);
+        assert_eq!(
+            files_of_views(&heads, &region),
+            files_of_views(&files, &region)
+        );
+        // Where the ground is to be measured, in four photographs.
+        let unknown = options(Some([x0, y0, x1, y1]), None);
+        assert_eq!(files_of_ground(&heads, &unknown).len(), 4);
+    }
+
+    #[test]
+    fn the_plan_counts_the_photographs_that_show_a_place() {
+        let (files, z) = house();
+        let found = Flight::new(&files, &options(None, Some(z)), None)
+            .unwrap()
+            .overview();
+        assert_eq!(found.ground, GroundSource::Stated);
+        assert_eq!((found.ground_z, found.heights), (z, [z, z]));
+        assert_eq!(found.footprints.len(), 6);
+        let Overlap {
+            columns,
+            rows,
+            counts,
+            ..
+        } = &found.overlap;
+        assert_eq!(counts.len(), (columns * rows) as usize);
+        assert_eq!(counts.iter().max(), Some(&6));
+        assert_eq!(counts.iter().min(), Some(&0));
+        // The frames' pixels are 8.5 cm large.
+        assert!((found.pixel_m - 0.085).abs() < 0.09, "{}", found.pixel_m);
+        for footprint in &found.footprints {
+            assert_eq!(footprint.outline.len(), 4 * OUTLINE as usize);
+        }
+    }
+
+    #[test]
+    fn a_flight_as_it_is_usually_planned_tells_its_height() {
+        // 100 m above the ground, each next view shows a quarter of new ground.
+        let above = |i: u32| Camera {
+            k: nalgebra::Matrix3::new(80.0, 0.0, 40.0, 0.0, 80.0, 40.0, 0.0, 0.0, 1.0),
+            r: nalgebra::Matrix3::new(1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0),
+            center: Point3::new(25.0 * f64::from(i), 0.0, 130.0),
+            width: 80,
+            height: 80,
+        };
+        let cameras: Vec<Camera> = (0..5).map(above).collect();
+        let found = assumed_ground(&cameras.iter().collect::<Vec<_>>());
+        assert!((found - 30.0).abs() < 1e-9, "{found}");
+    }
+}
