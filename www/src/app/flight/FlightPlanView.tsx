@@ -12,6 +12,8 @@ import { runAll } from "../session/stageRuns";
 import { parseSide, parseTile } from "../settings/loadOptions";
 import { isBusy, phase } from "../state/activity";
 import { runOptions } from "../state/project";
+import { mainResults } from "../state/results";
+import { showTab } from "../state/viewState";
 import {
   doneTiles,
   flightPlan,
@@ -68,6 +70,7 @@ export function FlightPlanView() {
           region={plannedRegion()}
           withPictures={pictures.value === "pictures"}
           drawsByTouch={drawsByTouch.value}
+          isFixed={phase.value === "run"}
           onRegion={(roi) => {
             drawsByTouch.value = false;
             void setRunOptions({ roi });
@@ -116,9 +119,12 @@ function RunRow({ plan }: { plan: FlightPlan }) {
   const used = usedTiles.value;
   const left = used.filter((tile) => !doneTiles.value.has(tile));
   const isGoingOn = left.length < used.length;
-  const name = isGoingOn
-    ? `Go on: ${left.length} of ${counted(used.length, "tiles")}`
-    : `Reconstruct ${counted(used.length, "tiles")}`;
+  const isThere = left.length === 0 && mainResults.value.glb !== null;
+  const name = isThere
+    ? "Show the model"
+    : isGoingOn
+      ? `Go on: ${left.length} of ${counted(used.length, "tiles")}`
+      : `Reconstruct ${counted(used.length, "tiles")}`;
   return (
     <>
       {plan.problem !== null && <p class="plan-problem">{plan.problem}</p>}
@@ -128,7 +134,7 @@ function RunRow({ plan }: { plan: FlightPlan }) {
             type="button"
             class="primary"
             disabled={isBusy.value || used.length === 0}
-            onClick={() => void runAll()}
+            onClick={() => (isThere ? showTab("model") : void runAll())}
           >
             {name}
           </button>
@@ -304,7 +310,7 @@ function SizeFields() {
             void setRunOptions({ reduction: value === "auto" ? null : Number(value) })
           }
         >
-          <option value="auto">{`what the memory takes (${shareText(plannedReduction.value)})`}</option>
+          <option value="auto">{`automatic: ${shareText(plannedReduction.value)}`}</option>
           {REDUCTIONS.map((by) => (
             <option key={by} value={String(by)}>
               {shareText(by)}

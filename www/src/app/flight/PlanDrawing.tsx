@@ -20,19 +20,23 @@ interface Props {
   withPictures: boolean;
   /** Whether fingers draw, too; otherwise they scroll. */
   drawsByTouch: boolean;
+  /** A run is going on, which another region would end. */
+  isFixed: boolean;
   onRegion: (region: [number, number, number, number]) => void;
 }
 
-export function PlanDrawing({ plan, region, withPictures, drawsByTouch, onRegion }: Props) {
+export function PlanDrawing({ plan, region, withPictures, drawsByTouch, isFixed, onRegion }: Props) {
   const { overview } = plan;
   const frame = useMemo(() => frameOf(overview.overlap.area), [overview.overlap.area]);
   const shading = useMemo(() => shadingOf(overview.overlap), [overview.overlap]);
   const named = useSignal<number | null>(null);
-  const drag = useDrag(frame, drawsByTouch, onRegion);
+  const drag = useDrag(frame, drawsByTouch, isFixed, onRegion);
   const { width, height } = frame;
   const shown = drag.region ?? region;
   return (
-    <div class={`plan-drawing ${drawsByTouch ? "by-touch" : ""} ${withPictures ? "with-pictures" : ""}`}>
+    <div
+      class={`plan-drawing ${isFixed ? "fixed" : ""} ${drawsByTouch ? "by-touch" : ""} ${withPictures ? "with-pictures" : ""}`}
+    >
       <svg
         viewBox={`0 0 ${width} ${height}`}
         role="img"
@@ -233,7 +237,7 @@ function ScaleBar({ frame }: { frame: PlanFrame }) {
   );
 }
 
-function useDrag(frame: PlanFrame, drawsByTouch: boolean, onRegion: Props["onRegion"]) {
+function useDrag(frame: PlanFrame, drawsByTouch: boolean, isFixed: boolean, onRegion: Props["onRegion"]) {
   const [region, setRegion] = useState<[number, number, number, number] | null>(null);
   const from = useRef<{ u: number; v: number } | null>(null);
   const placeOf = (event: PointerEvent) => {
@@ -254,7 +258,7 @@ function useDrag(frame: PlanFrame, drawsByTouch: boolean, onRegion: Props["onReg
     region,
     handlers: {
       onPointerDown: (event: PointerEvent) => {
-        if (event.button === 0 && (event.pointerType === "mouse" || drawsByTouch)) {
+        if (!isFixed && event.button === 0 && (event.pointerType === "mouse" || drawsByTouch)) {
           (event.currentTarget as Element).setPointerCapture(event.pointerId);
           from.current = placeOf(event);
           event.preventDefault();

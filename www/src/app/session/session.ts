@@ -20,7 +20,7 @@ import {
   stages,
   updateStage,
 } from "../state/stages";
-import { showTileFraction, tileRun } from "../tiles/flight";
+import { flightPlan, showTileFraction, tileRun } from "../tiles/flight";
 import { ActionQueue } from "./actionQueue";
 import { failureNotice } from "./failureNotice";
 import { stagesOf } from "./stageCatalogue";
@@ -65,7 +65,11 @@ export async function cancel(): Promise<void> {
   }
   await actions.perform({ kind: "cancel", phase: "start" }, async () => {
     haltStages();
-    announce("Cancelled. The next run begins with the first stage.");
+    announce(
+      flightPlan.value === null
+        ? "Cancelled. The next run begins with the first stage."
+        : "Cancelled. Tiles that are done are kept; the next run goes on with the others.",
+    );
     await openEngine();
   });
 }
