@@ -39,8 +39,8 @@ impl Area {
         Some(self.key(index).pack(&outcome))
     }
 
-    /// What a tile came to, and its model by itself (glTF, in the frame of the whole); refused where
-    /// these bytes are not its outcome, whole.
+    /// What a tile came to, and its model by itself (glTF, in the frame of the whole); refused
+    /// where these bytes are not its outcome, whole.
     pub fn outcome(&self, index: usize, kept: &[u8]) -> Result<(TileReport, Option<Vec<u8>>)> {
         let TileOutcome { report, part } = self.key(index).unpack(kept)?;
         let model = part.filter(|part| !part.model.buildings.is_empty());

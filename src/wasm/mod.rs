@@ -16,6 +16,8 @@ mod convert;
 #[cfg(feature = "reconstruction")]
 mod figures;
 #[cfg(feature = "reconstruction")]
+mod files;
+#[cfg(feature = "reconstruction")]
 mod heads;
 #[cfg(not(feature = "reconstruction"))]
 mod orienter;

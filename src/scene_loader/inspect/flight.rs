@@ -187,8 +187,8 @@ impl<'a> Flight<'a> {
 }
 
 /// Height of the ground if neighbours show three quarters of the same, metres, local frame.
-/// Assumption: the overlap for which flights are usually planned; cameras that look down in parallel
-/// say nothing else of it.
+/// Assumption: the overlap for which flights are usually planned; cameras that look down in
+/// parallel say nothing else of it.
 fn assumed_ground(cameras: &[&Camera]) -> f64 {
     const NEW_SHARE: f64 = 0.25;
     let middle = |mut values: Vec<f64>| {
