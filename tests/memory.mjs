@@ -76,7 +76,9 @@ function prepareHelpers(stage, views, earlier) {
 }
 
 function runTiles(session, tileM) {
-    for (const _ of session.planTiles(options, tileM)) session.runTile(() => {});
+    for (const index of session.planTiles(options, tileM).keys()) {
+        session.takeTile(session.runTile(index, () => {}));
+    }
     session.joinTiles();
     for (const name of session.exportNames()) session.exportFile(name);
 }

@@ -70,3 +70,62 @@ fn decode(file: &InputFile, planned: &PlannedView) -> Result<View> {
         photograph.rgb,
     ))
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::orientation::InputFile;
+    use crate::scene_loader::{LoadOptions, load_scene};
+    use crate::synthetic::{gable_scene, to_files};
+
+    #[test]
+    fn photographs_at_half_their_size_show_the_same_places() {
+        let (scene, truth) = gable_scene(200);
+        let files: Vec<InputFile> = (to_files(&scene).into_iter())
+            .map(|(path, bytes)| InputFile::new(&path, bytes))
+            .collect();
+        let half = LoadOptions {
+            reduction: Some(2),
+            ..LoadOptions::default()
+        };
+        let (full, half) = (
+            load_scene(&files, &LoadOptions::default()).unwrap(),
+            load_scene(&files, &half).unwrap(),
+        );
+        assert!(
+            half.warnings
+                .iter()
+                .any(|w| w.contains("at half of their width"))
+        );
+        for (a, b) in full.views.iter().zip(&half.views) {
+            assert_eq!((b.camera.width, b.camera.height), (100, 100));
+            assert_eq!(b.gray, a.gray.reduced(2));
+            for corner in truth.facets.iter().flat_map(|(_, ring)| ring) {
+                let (p, q) = (a.camera.project(corner), b.camera.project(corner));
+                let (p, q) = (p.unwrap().coords, q.unwrap().coords);
+                assert!((p - 2.0 * q).norm() < 1e-6, "{p} {q}");
+            }
+        }
+        // A part of them is a part of the reduced ones.
+        let (x, y) = (full.origin.x, full.origin.y);
+        let part = LoadOptions {
+            roi: Some([x - 1.0, y - 1.0, x + 1.0, y + 1.0]),
+            ground_z: Some(full.origin.z + truth.ground_z),
+            reduction: Some(2),
+            ..LoadOptions::default()
+        };
+        let part = load_scene(&files, &part).unwrap();
+        for (whole, part) in half.views.iter().zip(&part.views) {
+            let [column, row] = [0, 1].map(|i| whole.camera.k[(i, 2)] - part.camera.k[(i, 2)]);
+            let (column, row) = (column.round() as usize, row.round() as usize);
+            for (i, j) in [(0, 0), (3, 5)] {
+                assert_eq!(part.gray.get(i, j), whole.gray.get(i + column, j + row));
+            }
+        }
+        // No image is reduced to nothing.
+        let most = LoadOptions {
+            reduction: Some(1000),
+            ..LoadOptions::default()
+        };
+        assert_eq!(load_scene(&files, &most).unwrap().views[0].camera.width, 66);
+    }
+}

@@ -11,6 +11,7 @@ use super::decode::decode_all;
 use super::input::LoadOptions;
 use super::plan::Plan;
 use super::planned_view::PlannedView;
+use super::region::MOST_VIEWS;
 use crate::camera::Camera;
 use crate::geometry::mean_point;
 use crate::math::median;
@@ -37,9 +38,8 @@ pub(crate) fn plan_scene(files: &[InputFile], options: &LoadOptions) -> Plan {
     let options = &settled(files, options);
     let plan = Plan::new(files, options, None);
     let measured = match (options.roi, options.ground_z) {
-        (Some([x0, y0, x1, y1]), None) if plan.is_chosen => {
-            let middle = Point2::new(0.5 * (x0 + x1), 0.5 * (y0 + y1));
-            heights_near(files, &whole_plan(files, options), Some(middle))
+        (Some(roi), None) if plan.is_chosen => {
+            heights_near(files, &whole_plan(files, options), Some(middle_of(roi)))
         }
         _ => None,
     };
@@ -52,9 +52,11 @@ pub(crate) fn plan_scene(files: &[InputFile], options: &LoadOptions) -> Plan {
 /// The options, with the factor by which photographs are reduced: what is decided once for all
 /// parts of an area.
 pub fn settled(files: &[InputFile], options: &LoadOptions) -> LoadOptions {
-    let reduce = options.reduce.unwrap_or_else(|| reduction(files, options));
+    let reduction = options
+        .reduction
+        .unwrap_or_else(|| reduction(files, options));
     LoadOptions {
-        reduce: Some(reduce),
+        reduction: Some(reduction),
         ..options.clone()
     }
 }
@@ -73,14 +75,19 @@ pub(crate) fn whole_plan(files: &[InputFile], options: &LoadOptions) -> Plan {
 /// small, or do not show how far away the ground is.
 fn reduction(files: &[InputFile], options: &LoadOptions) -> u32 {
     let whole = whole_plan(files, options);
-    if whole.views.iter().all(|view| view.pixels() < SMALL_PX) {
+    if are_small(&whole) {
         return 1;
     }
     let Some(z) = ground_height(files, options, &whole) else {
         return 1;
     };
     let cameras = whole.views.iter().map(|view| &view.whole);
-    pixel_in_the_middle(cameras, z).map_or(1, |pixel_m| ((FINEST_M / pixel_m) as u32).max(1))
+    pixel_in_the_middle(cameras, z).map_or(1, reduction_of)
+}
+
+/// The largest whole factor that leaves pixels of this size on the ground, metres, fine enough.
+pub(crate) fn reduction_of(pixel_m: f64) -> u32 {
+    ((FINEST_M / pixel_m) as u32).max(1)
 }
 
 /// Median size of a pixel in the middle of an image on ground of this height, metres.
@@ -110,24 +117,82 @@ pub(crate) fn ground_height(
     (options.ground_z).map_or_else(measured, |z| Some(z - whole.origin.z))
 }
 
-/// The heights of what the photographs show that were taken nearest to a place in plan (the middle
-/// of the cameras when absent, else world frame), metres, local frame.
-fn heights_near(files: &[InputFile], whole: &Plan, place: Option<Point2<f64>>) -> Option<[f64; 2]> {
+/// The heights of the ground of an area as a few photographs in its middle show it, metres, world
+/// frame of the input.
+pub fn ground_heights(
+    files: &[InputFile],
+    options: &LoadOptions,
+    area: [f64; 4],
+) -> Option<[f64; 2]> {
+    let whole = whole_plan(files, options);
+    let heights = heights_near(files, &whole, Some(middle_of(area)))?;
+    Some(heights.map(|z| z + whole.origin.z))
+}
+
+/// Indices of the files in whose pixels [`ground_heights`] measures.
+pub fn ground_files(files: &[InputFile], options: &LoadOptions, area: [f64; 4]) -> Vec<usize> {
+    files_near(&whole_plan(files, options), Some(middle_of(area)))
+}
+
+/// Indices of the files in whose pixels loading measures the height of the ground, before it
+/// decides by how much photographs are reduced, and before it chooses views: none where both are
+/// known. Of the files their first bytes suffice. Flights state the first: see [`settled`].
+pub fn files_of_ground(files: &[InputFile], options: &LoadOptions) -> Vec<usize> {
+    if options.ground_z.is_some() {
+        return Vec::new();
+    }
+    let whole = whole_plan(files, options);
+    let is_undecided = options.reduction.is_none() && !are_small(&whole);
+    let mut needed = match is_undecided && whole.views.len() <= MOST_VIEWS {
+        true => files_near(&whole, None),
+        false => Vec::new(),
+    };
+    if let (Some(roi), true) = (options.roi, Plan::new(files, options, None).is_chosen) {
+        needed.extend(files_near(&whole, Some(middle_of(roi))));
+    }
+    needed.sort_unstable();
+    needed.dedup();
+    needed
+}
+
+/// Indices of the files whose pixels loading makes views of. Of these their first bytes suffice, of
+/// [`files_of_ground`] all are needed.
+pub fn files_of_views(files: &[InputFile], options: &LoadOptions) -> Vec<usize> {
+    let plan = plan_scene(files, options);
+    plan.views.iter().map(|view| view.file).collect()
+}
+
+fn files_near(whole: &Plan, place: Option<Point2<f64>>) -> Vec<usize> {
+    nearest(whole, place).iter().map(|view| view.file).collect()
+}
+
+fn middle_of([x0, y0, x1, y1]: [f64; 4]) -> Point2<f64> {
+    Point2::new(0.5 * (x0 + x1), 0.5 * (y0 + y1))
+}
+
+/// The views that were taken nearest to a place in plan (the middle of the cameras when absent,
+/// else world frame), small enough to be matched.
+fn nearest(whole: &Plan, place: Option<Point2<f64>>) -> Vec<PlannedView> {
     let centers: Vec<Point3<f64>> = whole.views.iter().map(|v| v.whole.center).collect();
     let place = match place {
         Some(place) => place - whole.origin.xy(),
         None => mean_point(&centers).xy(),
     };
-    let mut nearest: Vec<&PlannedView> = whole.views.iter().collect();
     let distance = |view: &PlannedView| (view.whole.center.xy() - place).norm();
+    let mut nearest: Vec<&PlannedView> = whole.views.iter().collect();
     nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     let matched = |view: &&PlannedView| {
         let mut view = PlannedView::clone(view);
-        let longest = view.whole.width.max(view.whole.height);
-        view.reduce(longest.div_ceil(MATCHED_PX));
+        view.reduce((view.whole.width.max(view.whole.height)).div_ceil(MATCHED_PX));
         view
     };
-    let nearest: Vec<PlannedView> = nearest.iter().take(PHOTOGRAPHS).map(matched).collect();
+    nearest.iter().take(PHOTOGRAPHS).map(matched).collect()
+}
+
+/// The heights of what the photographs show that were taken nearest to a place, metres, local
+/// frame.
+fn heights_near(files: &[InputFile], whole: &Plan, place: Option<Point2<f64>>) -> Option<[f64; 2]> {
+    let nearest = nearest(whole, place);
     let views = decode_all(files, &nearest).ok()?;
     let checked: Vec<CheckedView> = (nearest.iter().zip(&views))
         .map(|(planned, view)| planned.checked(view, whole.origin))
@@ -135,10 +200,14 @@ fn heights_near(files: &[InputFile], whole: &Plan, place: Option<Point2<f64>>) -
     surface_heights(&checked)
 }
 
+/// Are all photographs small enough to be used as they are?
+fn are_small(whole: &Plan) -> bool {
+    whole.views.iter().all(|view| view.pixels() < SMALL_PX)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{gable_scene, to_files};
     use nalgebra::Matrix3;
 
     #[test]
@@ -154,30 +223,5 @@ mod tests {
         let pixel_m = pixel_in_the_middle(cameras.iter(), 100.0).unwrap();
         assert!((pixel_m - 0.021).abs() < 1e-9);
         assert_eq!(pixel_in_the_middle(cameras.iter(), 900.0), None);
-    }
-
-    #[test]
-    fn reduced_photographs_show_the_same_places() {
-        let (scene, _) = gable_scene(401);
-        let files: Vec<InputFile> = (to_files(&scene).into_iter())
-            .map(|(path, bytes)| InputFile::new(&path, bytes))
-            .collect();
-        let options = LoadOptions {
-            reduce: Some(3),
-            ..LoadOptions::default()
-        };
-        let reduced = crate::scene_loader::load_scene(&files, &options).unwrap();
-        assert!(reduced.warnings.iter().any(|w| w.contains("a third")));
-        let ridge = Point3::new(0.3, 0.0, 9.375);
-        for (small, whole) in reduced.views.iter().zip(&scene.views) {
-            assert_eq!((small.camera.width, small.camera.height), (133, 133));
-            assert_eq!(small.rgb.dimensions(), (133, 133));
-            let [p, q] = [small, whole].map(|v| v.camera.project(&ridge).unwrap());
-            assert!((p * 3.0 - q).norm() < 1e-6, "{p} {q}");
-            let (x, y) = (p.x as usize, p.y as usize);
-            let block = (0..9).map(|i| whole.gray.get(3 * x + i % 3, 3 * y + i / 3));
-            let mean = block.sum::<f32>() / 9.0;
-            assert!((small.gray.get(x, y) - mean).abs() < 0.005);
-        }
     }
 }

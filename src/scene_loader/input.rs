@@ -21,7 +21,8 @@ pub struct LoadOptions {
     pub epsg: Option<u32>,
     /// Photographs are reduced by this whole factor; as far as roofs allow when absent (see
     /// [`load_scene`](super::load_scene)).
-    pub reduce: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reduction: Option<u32>,
     /// Memory that may be taken, megabytes; 1500 in the browser and 32768 elsewhere when absent.
     pub memory_mb: Option<u32>,
     /// Correct the error in the orientation that the images reveal, instead of refusing the scene.

@@ -42,10 +42,11 @@ mod tests;
 
 pub use archive::unpack;
 pub use candidate::OrientationCandidate;
-pub use ground::settled;
+pub use ground::{files_of_ground, files_of_views, ground_files, ground_heights, settled};
 pub use input::LoadOptions;
 pub use inspect::{
-    FileReport, ImageReport, Inspection, ShownArea, ViewWindow, inspect_files, region_windows,
+    FileReport, Flight, FlightOverview, Footprint, GroundSource, ImageReport, Inspection, Overlap,
+    ShownArea, ViewWindow, inspect_files, region_windows,
 };
 pub use load::{load_scene, whole_views};
 #[cfg(target_arch = "wasm32")]

@@ -386,7 +386,7 @@ impl Plan {
             };
             match view {
                 Ok(mut view) => {
-                    view.reduce(options.reduce.unwrap_or(1));
+                    view.reduce(options.reduction.unwrap_or(1));
                     views.push(view);
                 }
                 Err(error) => self.errors.push(error),
@@ -453,7 +453,7 @@ impl Plan {
 
 /// By how much photographs are reduced.
 fn notice_of_reduction(options: &LoadOptions) -> Option<String> {
-    let factor = options.reduce.filter(|&factor| factor > 1)?;
+    let factor = options.reduction.filter(|&factor| factor > 1)?;
     Some(format!(
         "photographs are used at {} of their width and height, as fine as roofs need (--reduce 1 \
          uses them in full)",

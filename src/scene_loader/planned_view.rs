@@ -62,7 +62,7 @@ impl PlannedView {
             angles: self.angles,
             readings: self.readings.clone(),
             // The crop that the file states is that of the whole image.
-            crop: (self.crop).filter(|_| self.part.is_none() && self.reduction == 1),
+            crop: self.crop.filter(|_| self.part.is_none()),
         }
     }
 
@@ -70,11 +70,20 @@ impl PlannedView {
     /// over are dropped; the corner of the image is that of its first pixel, so that coordinates
     /// are divided.
     pub(crate) fn reduce(&mut self, factor: u32) {
+        // An image keeps enough pixels to be matched.
+        const SMALLEST_PX: u32 = 64;
+        let smallest = self.whole.width.min(self.whole.height);
+        let factor = factor.min(smallest / SMALLEST_PX).max(1);
+        let by = 1.0 / f64::from(factor);
         self.reduction *= factor;
-        let divide = Vector3::new(1.0 / f64::from(factor), 1.0 / f64::from(factor), 1.0);
-        self.whole.k = Matrix3::from_diagonal(&divide) * self.whole.k;
+        self.whole.k = Matrix3::from_diagonal(&Vector3::new(by, by, 1.0)) * self.whole.k;
         self.whole.width = self.size[0] / self.reduction;
         self.whole.height = self.size[1] / self.reduction;
+        self.crop = self.crop.map(|crop| Crop {
+            column: crop.column * by,
+            row: crop.row * by,
+            frame: crop.frame.map(|side| side * by),
+        });
     }
 
     /// The camera of the part that is used.

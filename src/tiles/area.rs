@@ -24,13 +24,15 @@ use crate::texture::texture_model;
 /// An area, its tiles, and what those that are done have found.
 #[derive(Clone, Debug)]
 pub struct Area {
-    whole: Scene,
-    options: LoadOptions,
-    params: Params,
-    tiles: Vec<Tile>,
-    parts: Vec<CellPart>,
-    reports: Vec<TileReport>,
-    first_error: Option<Error>,
+    pub(super) whole: Scene,
+    pub(super) options: LoadOptions,
+    pub(super) params: Params,
+    pub(super) tiles: Vec<Tile>,
+    /// Sum of all that the tiles are made from.
+    pub(super) sum: u32,
+    pub(super) parts: Vec<CellPart>,
+    pub(super) reports: Vec<TileReport>,
+    pub(super) first_error: Option<Error>,
 }
 
 /// The outcome of a tile.
@@ -54,6 +56,7 @@ impl Area {
     ) -> Result<Self> {
         let (options, tiles) = tiles_of(files, options, tile_m)?;
         Ok(Self {
+            sum: sum_of(files, &options, params, &tiles),
             tiles,
             whole: whole_views(files, &options)?,
             options,
@@ -109,6 +112,29 @@ impl Area {
         let joined = join_cells(self.whole, self.parts);
         Ok(model_files(&joined, &self.params, &self.reports, seconds))
     }
+}
+
+/// CRC-32 of the version, the options, the parameters, the tiles and the files, of which the first
+/// bytes may stand for all.
+fn sum_of(files: &[InputFile], options: &LoadOptions, params: &Params, tiles: &[Tile]) -> u32 {
+    #[derive(Serialize)]
+    struct Made<'a> {
+        version: &'a str,
+        options: &'a LoadOptions,
+        params: &'a Params,
+        tiles: &'a [Tile],
+        files: Vec<(&'a str, u32)>,
+    }
+    let made = Made {
+        version: env!("CARGO_PKG_VERSION"),
+        options,
+        params,
+        tiles,
+        files: (files.iter())
+            .map(|file| (&*file.path, crc32fast::hash(&file.bytes)))
+            .collect(),
+    };
+    crc32fast::hash(&serde_json::to_vec(&made).expect("all keys are strings"))
 }
 
 /// The tiles of the region of interest, or of the area that the views show, and the options with

@@ -5,6 +5,7 @@
 //! model_parts  buildings of a model in another model and frame
 //! join         one model: each building once, ids renumbered, whole images, one atlas
 //! area         one cell after the other
+//! kept         outcomes of its tiles as bytes, to go on from
 //! fields       what the bytes of a part hold beyond what its types write by themselves
 //! part_file    a part as a file: whose it is, and whether it is whole
 //! plan         the tiles of a block as a file, for many machines
@@ -22,6 +23,7 @@ mod fields;
 #[cfg(test)]
 mod fixture;
 mod join;
+mod kept;
 mod model_parts;
 mod part_file;
 mod plan;

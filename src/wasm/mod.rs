@@ -15,6 +15,10 @@ mod arrays;
 mod convert;
 #[cfg(feature = "reconstruction")]
 mod figures;
+#[cfg(feature = "reconstruction")]
+mod files;
+#[cfg(feature = "reconstruction")]
+mod heads;
 #[cfg(not(feature = "reconstruction"))]
 mod orienter;
 #[cfg(feature = "reconstruction")]

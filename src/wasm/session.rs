@@ -5,13 +5,14 @@ use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
 use super::convert::{ViewInfo, from_js, input_error, listener_of, named_error, to_js};
+use super::heads::Heads;
 use crate::execution::MergedShards;
 use crate::orientation::InputFile;
 use crate::params::Params;
 use crate::pipeline::{PackedView, Run, Stage};
 use crate::planes::PointsOfInterest;
 use crate::scene_loader::{
-    LoadOptions, Project, SHOWN, inspect_files, load_scene, open_project, unpack,
+    LoadOptions, Project, SHOWN, files_of_views, inspect_files, load_scene, open_project, unpack,
 };
 use crate::tiles::Area;
 
@@ -20,6 +21,8 @@ use crate::tiles::Area;
 #[derive(Default)]
 pub struct Session {
     pub(crate) files: Vec<InputFile>,
+    /// Photographs of which only the first bytes are here, until they are needed.
+    pub(crate) heads: Heads,
     /// The project that was added last.
     project: Option<Project>,
     pub(crate) params: Params,
@@ -55,7 +58,7 @@ struct JsLoadOptions {
     max_views: Option<usize>,
     /// Whole factor by which photographs are reduced; large ones as far as roofs allow when absent.
     #[tsify(optional)]
-    reduce: Option<u32>,
+    reduction: Option<u32>,
     /// Height of the ground, metres, in the frame of the orientation.
     #[tsify(optional)]
     ground_z: Option<f64>,
@@ -125,10 +128,9 @@ impl Session {
             self.project = Some(project);
         }
         for added in files {
-            self.files.retain(|file| file.path != added.path);
-            self.files.push(added);
+            self.heads.forget(&added.path);
+            self.put(added);
         }
-        self.files.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(())
     }
 
@@ -172,6 +174,7 @@ impl Session {
     #[wasm_bindgen(js_name = clearFiles)]
     pub fn clear_files(&mut self) {
         self.files.clear();
+        self.heads = Heads::default();
         self.packed.clear();
         self.merged = MergedShards::default();
         self.project = None;
@@ -188,7 +191,11 @@ impl Session {
         &self,
         #[wasm_bindgen(unchecked_param_type = "LoadOptions")] options: JsValue,
     ) -> Result<JsValue, JsValue> {
-        to_js(&inspect_files(&self.files, &load_options(&options)?))
+        let options = load_options(&options)?;
+        let mut found = inspect_files(&self.files, &options);
+        let read = files_of_views(&self.files, &options);
+        found.peak_mb += self.heads.lacking_bytes(&self.files, &read) >> 20;
+        to_js(&found)
     }
 
     /// Makes a scene of the files: `{orientation?, views?, roi?, groundZ?}` in, `{views, origin,
@@ -265,6 +272,13 @@ impl Session {
         to_js(&self.loaded_mut()?.adjust_once(&listener_of(on_progress)))
     }
 
+    /// Puts a file in its place, or in that of another one of its path.
+    pub(crate) fn put(&mut self, added: InputFile) {
+        self.files.retain(|file| file.path != added.path);
+        self.files.push(added);
+        self.files.sort_by(|a, b| a.path.cmp(&b.path));
+    }
+
     pub(crate) fn loaded(&self) -> Result<&Run, JsValue> {
         self.run.as_ref().ok_or_else(not_loaded)
     }
@@ -288,8 +302,8 @@ pub(crate) fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
         views: options.views,
         roi: options.roi,
         max_views: options.max_views,
-        reduce: options.reduce,
         ground_z: options.ground_z,
+        reduction: options.reduction,
         epsg: options.epsg,
         memory_mb: None,
         apply_fix: options.apply_fix,
@@ -304,8 +318,8 @@ impl From<&LoadOptions> for JsLoadOptions {
             views: options.views.clone(),
             roi: options.roi,
             max_views: options.max_views,
-            reduce: options.reduce,
             ground_z: options.ground_z,
+            reduction: options.reduction,
             epsg: options.epsg,
             apply_fix: options.apply_fix,
             ignore_check: options.ignore_check,

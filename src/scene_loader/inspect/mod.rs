@@ -1,8 +1,11 @@
 //! What was recognised among the files, as a table for the user before anything is computed.
-//! `windows` has what is read of each view, and the area that views show.
+//! `windows` has what is read of each view, and the area that views show; `flight` both for many
+//! regions, and how the photographs overlap.
 
+mod flight;
 mod windows;
 
+pub use flight::{Flight, FlightOverview, Footprint, GroundSource, Overlap};
 pub use windows::{ShownArea, ViewWindow, region_windows};
 
 use serde::Serialize;

@@ -69,7 +69,7 @@ impl ShownArea {
         let cameras: Vec<&Camera> = plan.views.iter().map(|view| &view.whole).collect();
         let shown = ground_height(files, &options, &plan).map(|z| shown_places(&cameras, z));
         let places = shown.unwrap_or_default().into_iter();
-        let places: Vec<Point2<f64>> = places.map(|p| p.xy() + plan.origin.xy()).collect();
+        let places: Vec<Point2<f64>> = places.map(|p| p + plan.origin.xy()).collect();
         let [x0, y0, x1, y1] = enclosing(&places).ok_or_else(|| Error::Scene {
             problem: "the cameras do not tell which area three of them show".to_owned(),
             advice: "give the region of interest (--roi x0,y0,x1,y1)".to_owned(),
@@ -85,16 +85,22 @@ impl ShownArea {
     }
 }
 
+/// The largest pixels that count, metres, on ground at this height.
+pub(super) fn coarsest_pixel(cameras: &[&Camera], z: f64) -> Option<f64> {
+    pixel_in_the_middle(cameras.iter().copied(), z).map(|pixel_m| COARSEST * pixel_m)
+}
+
+/// Does a camera show a place in pixels finer than `coarsest` metres?
+pub(super) fn shows(camera: &Camera, p: &Point3<f64>, coarsest: f64) -> bool {
+    camera.ground_pixel(p) < coarsest
+        && (camera.project(p)).is_some_and(|image| camera.contains(&image, 0.0))
+}
+
 /// The places of a grid on the ground at this height that enough cameras show, none of them much
 /// more coarsely than the middle of an image; local frame.
-fn shown_places(cameras: &[&Camera], z: f64) -> Vec<Point3<f64>> {
-    let Some(pixel_m) = pixel_in_the_middle(cameras.iter().copied(), z) else {
+pub(super) fn shown_places(cameras: &[&Camera], z: f64) -> Vec<Point2<f64>> {
+    let Some(coarsest) = coarsest_pixel(cameras, z) else {
         return Vec::new();
-    };
-    let coarsest = COARSEST * pixel_m;
-    let shows = |camera: &Camera, p: &Point3<f64>| {
-        camera.ground_pixel(p) < coarsest
-            && (camera.project(p)).is_some_and(|image| camera.contains(&image, 0.0))
     };
     let boxes = cameras
         .iter()
@@ -105,10 +111,11 @@ fn shown_places(cameras: &[&Camera], z: f64) -> Vec<Point3<f64>> {
     let step = larger(x1 - x0, y1 - y0) / f64::from(PLACES);
     let along = |from: f64, to: f64| (0..=((to - from) / step) as u32).map(f64::from);
     let rows: Vec<f64> = along(y0, y1).map(|j| y0 + step * j).collect();
-    let row = |_: usize, &y: &f64| -> Vec<Point3<f64>> {
-        let places = along(x0, x1).map(|i| Point3::new(x0 + step * i, y, z));
-        let is_shown = |p: &Point3<f64>| {
-            let showing = cameras.iter().filter(|camera| shows(camera, p));
+    let row = |_: usize, &y: &f64| -> Vec<Point2<f64>> {
+        let places = along(x0, x1).map(|i| Point2::new(x0 + step * i, y));
+        let is_shown = |p: &Point2<f64>| {
+            let place = Point3::new(p.x, p.y, z);
+            let showing = cameras.iter().filter(|c| shows(c, &place, coarsest));
             showing.take(LEAST_VIEWS).count() == LEAST_VIEWS
         };
         places.filter(is_shown).collect()
@@ -137,7 +144,7 @@ fn box_of_shown(camera: &Camera, z: f64, coarsest: f64) -> [f64; 4] {
 }
 
 /// Least and largest x and y; `None` of nothing.
-fn enclosing(points: &[Point2<f64>]) -> Option<[f64; 4]> {
+pub(super) fn enclosing(points: &[Point2<f64>]) -> Option<[f64; 4]> {
     points.iter().map(|p| [p.x, p.y, p.x, p.y]).reduce(around)
 }
 
@@ -171,8 +178,7 @@ mod tests {
     fn the_area_is_what_three_views_show() {
         let cameras = [0.0, 30.0, 60.0, 90.0].map(|x| above(x, 5.0));
         let cameras: Vec<&Camera> = cameras.iter().collect();
-        let found = shown_places(&cameras, 0.0).into_iter().map(|p| p.xy());
-        let found = enclosing(&found.collect::<Vec<_>>()).unwrap();
+        let found = enclosing(&shown_places(&cameras, 0.0)).unwrap();
         // The first three share 10 to 50, the last three 40 to 80.
         for (found, planted) in found.iter().zip([10.0, -45.0, 80.0, 55.0]) {
             assert!((found - planted).abs() < 3.0, "{found} for {planted}");

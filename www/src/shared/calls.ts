@@ -8,7 +8,15 @@
  */
 import type { Session } from "../pkg/ridgeline.js";
 import type { ParamTree } from "./paramTree";
-import type { GroundPicture, StageSummary, TileReport, WarpedViews } from "./records";
+import type {
+  GroundPicture,
+  Inspection,
+  LoadOptions,
+  SceneInfo,
+  StageSummary,
+  TileReport,
+  WarpedViews,
+} from "./records";
 
 /** A file of the project. The page keeps the handle, so that a new worker can be given it again. */
 export interface InputFile {
@@ -42,12 +50,40 @@ export interface WorkerCalls {
   /** Null where views moved. */
   adjustOnce(): StageSummary | null;
   runShard(stage: string, map: string, index: number, of: number): Bytes;
-  /** The next tile, which is the `index`-th of `of`, with its progress as that of `stage`; null when all are done. */
-  runTile(stage: string, index: number, of: number): TileReport | null;
+  inspect(options: LoadOptions): Promise<Inspection>;
+  load(options: LoadOptions): Promise<SceneInfo>;
+  /** Lowest and highest ground of an area as photographs in its middle show it, metres; null where they show too little. */
+  groundHeights(
+    options: LoadOptions,
+    area: readonly [number, number, number, number],
+  ): Promise<[number, number] | null>;
+  exportProject(options: LoadOptions, shown: Uint8Array): Promise<Bytes>;
+  /** The outcome of a tile, the `index`-th of `of`, as bytes, with its progress as that of `stage`. */
+  runTile(stage: string, index: number, of: number): Promise<Bytes>;
+  tileModel(index: number, kept: Bytes): TileOutcome;
+}
+
+/** What a tile came to, and its model by itself, in the frame of the whole; null where it has none. */
+export interface TileOutcome {
+  report: TileReport;
+  glb: Bytes | null;
 }
 
 /** What only the worker does to its session. */
-type Inner = "free" | "addFile" | "clearFiles" | typeof Symbol.dispose;
+type Inner =
+  | "free"
+  | "addFile"
+  | "addHead"
+  | "fillFile"
+  | "emptyFiles"
+  | "lackingFiles"
+  | "groundFiles"
+  | "groundFilesOfLoad"
+  | "viewFilesOfLoad"
+  | "groundFilesOfTile"
+  | "viewFilesOfTile"
+  | "clearFiles"
+  | typeof Symbol.dispose;
 
 export type Calls = Omit<Session, keyof WorkerCalls | Inner> & WorkerCalls;
 export type CallName = keyof Calls;

@@ -39,6 +39,8 @@ export interface Results {
   /** The parameters that the facets were found with. */
   madeWith: ParamTree | null;
   glb: Uint8Array<ArrayBuffer> | null;
+  /** The models of the tiles that are done, as long as they are not joined. */
+  tileGlbs: readonly Uint8Array<ArrayBuffer>[];
   ground: GroundTexture | null;
   rejected: Float32Array[];
   matching: MatchRecord | null;
@@ -64,6 +66,7 @@ export const NO_RESULTS: Results = {
   facets: null,
   madeWith: null,
   glb: null,
+  tileGlbs: [],
   ground: null,
   rejected: [],
   matching: null,

@@ -1,8 +1,9 @@
 /** Answers one call with the core's Session: convert, call, convert. No geometry, no state but the session. */
-import type { Session } from "../pkg/ridgeline.js";
-import type { CallName, InputFile, WorkerCalls } from "../shared/calls";
+import type { CallName, WorkerCalls } from "../shared/calls";
 import { asTree } from "../shared/paramTree";
-import type { GroundPicture, Params, Picture, ViewImage, WarpedViews } from "../shared/records";
+import type { GroundPicture, Params, Picture, WarpedViews } from "../shared/records";
+import type { CoreSession, FieldsOf } from "./coreSession";
+import { ProjectFiles } from "./projectFiles";
 
 export interface Answer {
   result: unknown;
@@ -14,22 +15,30 @@ const PROGRESS_INTERVAL_MS = 40;
 
 type OnProgress = (stage: string, fraction: number) => void;
 
-/** The session; its pictures are objects of the core, of which only their fields are read. */
-export type CoreSession = Omit<Session, "free" | typeof Symbol.dispose | "image" | "warped" | "ground"> & {
-  image(view: number): FieldsOf<ViewImage>;
-  warped(line: number, left: boolean, theta: number): FieldsOf<Picture> | undefined;
-  ground(): FieldsOf<Picture> | undefined;
-};
-type FieldsOf<T> = Omit<T, "free" | typeof Symbol.dispose>;
-
 /** What the session itself does not answer; `defaults` are the parameters that the class of the session has. */
 export function workerCalls(
   session: CoreSession,
   defaults: () => Params,
   onProgress: OnProgress,
 ): WorkerCalls {
+  const files = new ProjectFiles(session);
   return {
-    setFiles: (files) => setFiles(session, files),
+    setFiles: (all) => files.replace(all),
+    inspect: (options) =>
+      files.withWhole([() => session.groundFilesOfLoad(options)], () => session.inspect(options)),
+    load: (options) =>
+      files.withWhole(
+        [() => session.groundFilesOfLoad(options), () => session.viewFilesOfLoad(options)],
+        () => session.load(options),
+      ),
+    groundHeights: (options, area) => {
+      const where = new Float64Array(area);
+      return files.withWhole([() => session.groundFiles(options, where)], () =>
+        session.groundHeights(options, where),
+      );
+    },
+    exportProject: (options, shown) =>
+      files.withWhole([() => session.lackingFiles()], () => session.exportProject(options, shown)),
     defaultParams: () => asTree(defaults()),
     setParams: (params) => session.setParams(params as unknown as Params),
     image: async (view) => {
@@ -45,7 +54,14 @@ export function workerCalls(
       session.runShard(stage, map, index, of, throttled(stage, onProgress)),
     runTile: (stage, index, of) => {
       const onTileProgress = throttled(stage, onProgress);
-      return session.runTile((fraction) => onTileProgress((index + fraction) / of));
+      return files.withWhole(
+        [() => session.groundFilesOfTile(index), () => session.viewFilesOfTile(index)],
+        () => session.runTile(index, (fraction) => onTileProgress((index + fraction) / of)),
+      );
+    },
+    tileModel: (index, kept) => {
+      const { report, glb } = session.tileModel(index, kept);
+      return { report, glb: glb ?? null };
     },
   };
 }
@@ -84,23 +100,10 @@ function transferOf(result: unknown): Transferable[] {
   if (typeof result === "object" && result !== null && "rgba" in result) {
     return transferOf(result.rgba);
   }
+  if (typeof result === "object" && result !== null && "glb" in result) {
+    return transferOf(result.glb);
+  }
   return [];
-}
-
-async function setFiles(session: CoreSession, files: readonly InputFile[]): Promise<void> {
-  session.clearFiles();
-  for (const { path, blob } of files) {
-    session.addFile(path, new Uint8Array(await readBlob(path, blob)));
-  }
-}
-
-/** A file may have vanished since it was dropped: the browser's own message does not name it. */
-export async function readBlob(path: string, blob: Blob): Promise<ArrayBuffer> {
-  try {
-    return await blob.arrayBuffer();
-  } catch {
-    throw new Error(`${path}: the file can no longer be read. Was it moved or changed? Add it again.`);
-  }
 }
 
 /** Passes a stage's progress on, but not more often than the page can draw it. */

@@ -3,7 +3,8 @@
 import init, { Session } from "../pkg/ridgeline.js";
 import type { WorkerCalls } from "../shared/calls";
 import type { Reply, Request } from "../shared/messages";
-import { type Answer, answer, type CoreSession, workerCalls } from "./calls";
+import { type Answer, answer, workerCalls } from "./calls";
+import type { CoreSession } from "./coreSession";
 import { serve } from "./serve";
 
 declare const self: DedicatedWorkerGlobalScope;

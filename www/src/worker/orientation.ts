@@ -2,7 +2,8 @@
 /// <reference lib="webworker" />
 import init, { Orienter } from "../pkg-orient/orientation.js";
 import type { OrientCalls, OrientedBlock, OrientReply, OrientRequest } from "../shared/orientation";
-import { type Answer, readBlob } from "./calls";
+import type { Answer } from "./calls";
+import { readBlob } from "./projectFiles";
 import { serve } from "./serve";
 
 declare const self: DedicatedWorkerGlobalScope;

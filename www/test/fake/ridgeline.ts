@@ -16,6 +16,7 @@ import type {
   Evidence,
   Facet,
   FacetTrace,
+  FlightPlan,
   GroundPicture,
   HalfPlane,
   LineRecord,
@@ -29,7 +30,7 @@ import type {
   StageSummary,
   TileReport,
 } from "../../src/shared/records";
-import type { CoreSession } from "../../src/worker/calls";
+import type { CoreSession } from "../../src/worker/coreSession";
 import { glbOf } from "./glb";
 
 const SIZE_PX = 400;
@@ -497,10 +498,70 @@ export class Session implements CoreSession {
     return [[0, 0, 50, 50]];
   }
 
-  runTile(onProgress: (fraction: number) => void): TileReport {
-    onProgress(1);
-    return { core: [0, 0, 50, 50], outcome: "1 building" };
+  planFlight(): FlightPlan {
+    const area: [number, number, number, number] = [0, 0, 50, 50];
+    const views = this.#images().map((path) => ({ view: path, window: area }));
+    return {
+      overview: {
+        heights: [0, 0],
+        ground: "stated",
+        ground_z: 0,
+        pixel_m: 0.05,
+        footprints: [],
+        shown: area,
+        overlap: { area, columns: 1, rows: 1, counts: [views.length] },
+      },
+      tiles: [{ core: area, region: area, views, memory_mb: 10, left_out: null }],
+      problem: null,
+    };
   }
+
+  groundFiles(): string[] {
+    return [];
+  }
+
+  groundHeights(): [number, number] | null {
+    return null;
+  }
+
+  groundFilesOfLoad(): string[] {
+    return [];
+  }
+
+  viewFilesOfLoad(): string[] {
+    return [];
+  }
+
+  groundFilesOfTile(): string[] {
+    return [];
+  }
+
+  viewFilesOfTile(): string[] {
+    return [];
+  }
+
+  lackingFiles(): string[] {
+    return [];
+  }
+
+  addHead(): boolean {
+    return false;
+  }
+
+  fillFile(): void {}
+
+  emptyFiles(): void {}
+
+  runTile(_index: number, onProgress: (fraction: number) => void): Uint8Array<ArrayBuffer> {
+    onProgress(1);
+    return new Uint8Array([1]);
+  }
+
+  tileModel(): { report: TileReport; glb: undefined } {
+    return { report: { core: [0, 0, 50, 50], outcome: "1 building" }, glb: undefined };
+  }
+
+  takeTile(): void {}
 
   joinTiles(): void {}
 

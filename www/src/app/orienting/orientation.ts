@@ -254,7 +254,7 @@ export async function reconstructWithIt(): Promise<void> {
     if (epsg !== null) {
       replaceRunOptions({ ...runOptions.value, epsg });
     }
-    await addFilesIn(added);
+    await addFilesIn(turn, added);
     await runEverything(turn);
   });
 }

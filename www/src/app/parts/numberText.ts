@@ -22,6 +22,18 @@ export function percentText(share: number): string {
   return percent === 0 && share > 0 ? "< 1 %" : `${percent} %`;
 }
 
+/** How long something takes, as far as anybody wants to know: "less than a minute", "about 7 minutes", "about 2.5 hours". */
+export function minutesText(seconds: number): string {
+  const minutes = Math.round(seconds / 60);
+  if (minutes < 1) {
+    return "less than a minute";
+  }
+  if (minutes >= 90) {
+    return `about ${Math.round(minutes / 30) / 2} hours`;
+  }
+  return minutes === 1 ? "about a minute" : `about ${minutes} minutes`;
+}
+
 /** Of a plane against the level, by its normal; radians. */
 export function slopeOf([x, y, z]: readonly [number, number, number]): number {
   return Math.atan2(Math.hypot(x, y), Math.abs(z));

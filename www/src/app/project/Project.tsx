@@ -10,6 +10,7 @@ import { files, inspection, projectName, runOptions } from "../state/project";
 import { peakMb, scene } from "../state/scene";
 import { ArrivalHabit, ArrivalQuestion } from "./ArrivalQuestion";
 import { takeFiles } from "./arrivals";
+import { hasFolderPicker, pickFolder } from "./folders";
 import { droppedFiles, pickedFiles } from "./inputFiles";
 import { OrientationCheck } from "./OrientationCheck";
 import { clearProject, openDemo, removeFile, setRunOptions } from "./projectActions";
@@ -80,7 +81,7 @@ export function DropZone() {
         <button type="button" onClick={() => fileInput.current?.click()}>
           Files…
         </button>
-        <button type="button" onClick={() => folderInput.current?.click()}>
+        <button type="button" onClick={() => void openFolder(folderInput.current)}>
           Folder…
         </button>
         {!showsEntrance.value && (
@@ -100,6 +101,22 @@ export function DropZone() {
       />
     </section>
   );
+}
+
+/** Asks for a folder in the way that lets the page read it again after a reload, where the browser has that. */
+async function openFolder(input: HTMLInputElement | null): Promise<void> {
+  if (!hasFolderPicker()) {
+    input?.click();
+    return;
+  }
+  try {
+    const picked = await pickFolder();
+    if (picked !== null) {
+      await takeFiles(picked);
+    }
+  } catch (error) {
+    notify({ severity: "error", title: "The folder cannot be read", text: String(error) });
+  }
 }
 
 /** Takes files that are dropped anywhere, which the browser would open in the page's place; tells whether some are held over it. */

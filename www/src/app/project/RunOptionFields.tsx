@@ -79,7 +79,7 @@ export function PlaceFields() {
         placeholder="no tiles"
         value={tileM}
         parse={parseTile}
-        onValue={(tileM) => void setRunOptions({ tileM })}
+        onValue={(tileM) => void setRunOptions({ tileM, isAtOnce: tileM === null })}
       />
       {method.value !== "rectangles" && (
         <label class="option">

@@ -1,5 +1,6 @@
-/** A small picture of an image file; formats that the browser cannot show stay an empty frame. */
+/** A small picture of an image file, made once it comes into view; formats that the browser cannot show stay an empty frame. */
 import { useEffect, useRef } from "preact/hooks";
+import { thumbnailOf } from "./thumbnails";
 
 const WIDTH_PX = 112;
 
@@ -7,27 +8,28 @@ export function Thumbnail({ blob }: { blob: Blob | undefined }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
     let isCurrent = true;
-    if (blob !== undefined) {
-      decode(blob).then((bitmap) => {
-        if (isCurrent && bitmap !== null && canvas.current !== null) {
-          paint(canvas.current, bitmap);
-        }
-        bitmap?.close();
-      });
+    const frame = canvas.current;
+    if (blob === undefined || frame === null) {
+      return;
     }
+    const observer = new IntersectionObserver((entries) => {
+      if (!entries.some(({ isIntersecting }) => isIntersecting)) {
+        return;
+      }
+      observer.disconnect();
+      void thumbnailOf(blob, () => isCurrent).then((bitmap) => {
+        if (isCurrent && bitmap !== null) {
+          paint(frame, bitmap);
+        }
+      });
+    });
+    observer.observe(frame);
     return () => {
       isCurrent = false;
+      observer.disconnect();
     };
   }, [blob]);
   return <canvas ref={canvas} class="thumbnail" width={WIDTH_PX} height={(WIDTH_PX * 3) / 4} />;
-}
-
-async function decode(blob: Blob): Promise<ImageBitmap | null> {
-  try {
-    return await createImageBitmap(blob, { resizeWidth: 2 * WIDTH_PX, resizeQuality: "medium" });
-  } catch {
-    return null;
-  }
 }
 
 /** Fills the frame, cropping what is too much. */

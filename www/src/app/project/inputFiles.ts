@@ -1,15 +1,31 @@
 /** Files from a drop, a folder or a picker, with their paths, hidden files left out. */
 import type { InputFile } from "../../shared/calls";
+import { filesIn } from "./folders";
 
 /** Everything that was dropped, folders walked through. Must be called before the event's handler returns. */
 export function droppedFiles(transfer: DataTransfer): Promise<InputFile[]> {
+  // A folder that can be read again after a reload is not copied into the browser's storage.
+  const handles = [...transfer.items].map((item) => {
+    const { getAsFileSystemHandle: get } = item as {
+      getAsFileSystemHandle?: () => Promise<FileSystemHandle | null>;
+    };
+    return item.webkitGetAsEntry()?.isDirectory === true ? get?.call(item) : undefined;
+  });
   const entries = [...transfer.items]
     .map((item) => item.webkitGetAsEntry())
     .filter((entry) => entry !== null);
   if (entries.length === 0) {
     return Promise.resolve(pickedFiles(transfer.files));
   }
-  return Promise.all(entries.map(walk)).then((lists) => lists.flat().filter(isVisible));
+  // Entries are gone once the event is over: they are walked either way.
+  const walked = Promise.all(entries.map(walk)).then((lists) => lists.flat().filter(isVisible));
+  const [only] = handles;
+  return handles.length === 1 && only !== undefined
+    ? only.then(
+        (handle) => (handle === null ? walked : filesIn(handle as FileSystemDirectoryHandle)),
+        () => walked,
+      )
+    : walked;
 }
 
 export function pickedFiles(list: FileList): InputFile[] {

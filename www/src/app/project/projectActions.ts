@@ -6,6 +6,7 @@ import type { StageName } from "../../shared/stages";
 import { saveFile } from "../parts/saveFile";
 import type { Turn } from "../session/actionQueue";
 import { refusalNotices } from "../session/failureNotice";
+import { forgetFlight, planFlight, proposeTiles } from "../session/flightPlanning";
 import {
   actions,
   engine,
@@ -57,13 +58,13 @@ export async function addFiles(added: InputFile[]): Promise<void> {
   if (added.length === 0) {
     return;
   }
-  await actions.perform({ kind: "change", phase: "load", words: "Reading files" }, async () => {
-    await addFilesIn(added);
+  await actions.perform({ kind: "change", phase: "load", words: "Reading files" }, async (turn) => {
+    await addFilesIn(turn, added);
   });
 }
 
 /** The same as part of another action. */
-export async function addFilesIn(added: readonly InputFile[]): Promise<void> {
+export async function addFilesIn(turn: Turn, added: readonly InputFile[]): Promise<void> {
   removals = [];
   const byPath = new Map(files.value.map((file) => [file.path, file]));
   for (const file of added) {
@@ -73,7 +74,7 @@ export async function addFilesIn(added: readonly InputFile[]): Promise<void> {
     nameProject(OWN_FILES);
   }
   setProject([...byPath.values()]);
-  await loadProject(adoptProject);
+  await loadProject(turn, adoptProject);
   await adoptResults();
 }
 
@@ -82,20 +83,20 @@ export async function openFiles(added: InputFile[]): Promise<void> {
   if (added.length === 0) {
     return;
   }
-  await actions.perform({ kind: "open", phase: "load", words: "Reading files" }, () =>
-    openIn(added, OWN_FILES),
+  await actions.perform({ kind: "open", phase: "load", words: "Reading files" }, (turn) =>
+    openIn(turn, added, OWN_FILES),
   );
 }
 
 const OWN_FILES = "Own files";
 
 /** The same as part of another action. */
-async function openIn(next: InputFile[], name: string): Promise<void> {
+async function openIn(turn: Turn, next: InputFile[], name: string): Promise<void> {
   removals = [];
   replaceFiles([]);
   nameProject(name);
   setProject(next);
-  await loadProject(adoptProject);
+  await loadProject(turn, adoptProject);
   await adoptResults();
 }
 
@@ -145,12 +146,12 @@ export async function saveProject(): Promise<void> {
 }
 
 export async function removeFile(path: string): Promise<void> {
-  await actions.perform({ kind: "change", phase: "load", words: "Reading files" }, async () => {
+  await actions.perform({ kind: "change", phase: "load", words: "Reading files" }, async (turn) => {
     const left = files.value.filter((file) => file.path !== path);
     // A second click on the same file.
     if (left.length < files.value.length) {
       remove(path.slice(path.lastIndexOf("/") + 1), left);
-      await loadProject();
+      await loadProject(turn);
     }
   });
 }
@@ -199,9 +200,9 @@ function offerUndo(): void {
 }
 
 async function undo(before: StoredProject, found: StoredResults | null): Promise<void> {
-  await actions.perform({ kind: "open", phase: "load", words: "Reading files" }, async () => {
+  await actions.perform({ kind: "open", phase: "load", words: "Reading files" }, async (turn) => {
     removals = removals.slice(0, -1);
-    await restoreIn(before, offerUndo);
+    await restoreIn(turn, before, offerUndo);
     if (found !== null && scene.value !== null) {
       showStoredResults(found);
     }
@@ -209,7 +210,7 @@ async function undo(before: StoredProject, found: StoredResults | null): Promise
 }
 
 /** Takes up a stored project as part of another action; `shown` happens as soon as its files are there. */
-export async function restoreIn(kept: StoredProject, shown = () => {}): Promise<void> {
+export async function restoreIn(turn: Turn, kept: StoredProject, shown = () => {}): Promise<void> {
   nameProject(kept.name);
   const linked = linkedParams();
   batch(() => {
@@ -220,7 +221,7 @@ export async function restoreIn(kept: StoredProject, shown = () => {}): Promise<
     markAsDemo(kept.isDemo);
   });
   shown();
-  await loadProject();
+  await loadProject(turn);
 }
 
 /**
@@ -237,7 +238,7 @@ export async function openDemoIn(turn: Turn, target?: StageName | null): Promise
   const fetched = await fetchDemo(turn.signal);
   turn.signal.throwIfAborted();
   turn.enter("load", "Reading files");
-  const opening = openIn(fetched.files, fetched.title);
+  const opening = openIn(turn, fetched.files, fetched.title);
   markAsDemo(true);
   await opening;
   if (target === undefined) {
@@ -249,18 +250,22 @@ export async function openDemoIn(turn: Turn, target?: StageName | null): Promise
 
 /** Changes what is asked for beyond the files, and loads the scene again. */
 export async function setRunOptions(change: Partial<RunOptions>): Promise<void> {
-  await actions.perform({ kind: "change", phase: "load", words: "Loading" }, async () => {
+  await actions.perform({ kind: "change", phase: "load", words: "Loading" }, async (turn) => {
     outdateScene();
     outdateInspection();
     batch(() => {
       replaceRunOptions({ ...runOptions.value, ...change });
       if (change.orientation !== undefined) {
         setInspection(null);
+        forgetFlight();
+      }
+      if (change.tileM === null) {
+        forgetFlight();
       }
       dismissAbout("project");
       closeScene();
     });
-    await loadProject();
+    await loadProject(turn);
   });
 }
 
@@ -268,6 +273,7 @@ export async function setRunOptions(change: Partial<RunOptions>): Promise<void> 
 function setProject(next: InputFile[]): void {
   outdateFiles();
   batch(() => {
+    forgetFlight();
     replaceFiles(next);
     dismissAbout("project");
     closeScene();
@@ -275,7 +281,7 @@ function setProject(next: InputFile[]): void {
 }
 
 /** Inspects the files, says what stands against them, or loads the scene. */
-async function loadProject(adopt?: () => Promise<void>): Promise<void> {
+async function loadProject(turn: Turn, adopt?: () => Promise<void>): Promise<void> {
   if (files.value.length === 0) {
     return;
   }
@@ -284,13 +290,13 @@ async function loadProject(adopt?: () => Promise<void>): Promise<void> {
   const problems = inspection.value?.errors ?? [];
   // The inspection is of all images, and does not look into them: where that matters, loading says
   // what is wrong.
+  proposeTiles();
   const { leftOut, tileM } = runOptions.value;
   const isFinal = leftOut.length === 0 && inspection.value?.is_implausible !== true;
   if (tileM !== null) {
     // A large area may be too much to load at once: where something stands against the whole, the plan of the tiles says
     // whether it does against them.
-    const options = loadOptions(runOptions.value, inspection.value);
-    await (problems.length === 0 || engine.call("planTiles", options, tileM));
+    await planFlight(turn, tileM);
     return;
   }
   if (problems.length === 0 || !isFinal) {

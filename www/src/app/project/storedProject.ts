@@ -5,6 +5,8 @@ import type { ParamTree } from "../../shared/paramTree";
 import { isBusy } from "../state/activity";
 import { defaults, params } from "../state/parameters";
 import { files, isDemo, projectName, type RunOptions, runOptions } from "../state/project";
+import { forgetKeptTiles } from "../tiles/keptTiles";
+import { askToRead, fileAt, isReadable, placeOf } from "./folders";
 import { presentResults, type StoredResults } from "./storedResults";
 
 export interface StoredProject {
@@ -18,7 +20,23 @@ export interface StoredProject {
 const DATABASE = "ridgeline";
 const STORE = "project";
 const KEY = "present";
+const FILES_KEY = "files";
 const RESULTS_KEY = "results";
+
+/** A file as it is kept: the folder that it lies in, where the browser can read that again, or a copy. */
+type StoredFile = { path: string; size: number } & (
+  | { blob: Blob }
+  | { folder: FileSystemDirectoryHandle; within: string }
+);
+
+/** A project whose files lie in a folder that the browser reads only when the person allows it again. */
+export interface LockedProject {
+  name: string;
+  folder: string;
+  /** Asks the person; null where that is declined. Only as the answer to a click. */
+  unlock(): Promise<StoredProject | null>;
+}
+
 const written = signal<number | null>(null);
 /** Bytes that the browser keeps of the project; null when it keeps nothing. */
 export const storedBytes: ReadonlySignal<number | null> = written;
@@ -27,13 +45,52 @@ export const storedBytes: ReadonlySignal<number | null> = written;
 const DELAY_MS = 400;
 
 /** The project of the last visit; null where there is none, or storage is forbidden. */
-export async function readStoredProject(): Promise<StoredProject | null> {
+export async function readStoredProject(): Promise<StoredProject | LockedProject | null> {
   try {
     const kept = await request<StoredProject | undefined>("readonly", (store) => store.get(KEY));
-    return kept ?? null;
+    const apart = await request<StoredFile[] | undefined>("readonly", (store) => store.get(FILES_KEY));
+    if (kept === undefined) {
+      return null;
+    }
+    // Older versions kept them with the rest.
+    const stored = apart ?? (kept.files ?? []).map(storedFile);
+    const folders = new Set(stored.flatMap((file) => ("folder" in file ? [file.folder] : [])));
+    const readable = await Promise.all([...folders].map(isReadable));
+    if (readable.every((is) => is)) {
+      return { ...kept, files: await opened(stored) };
+    }
+    isLocked = true;
+    return {
+      name: kept.name,
+      folder: [...folders].map(({ name }) => name).join(", "),
+      unlock: async () => {
+        const allowed = await Promise.all([...folders].map(askToRead));
+        return allowed.every((is) => is) ? { ...kept, files: await opened(stored) } : null;
+      },
+    };
   } catch {
     return null;
   }
+}
+
+/** Until the person has allowed or opened something, nothing of what is kept is replaced. */
+let isLocked = false;
+
+async function opened(stored: readonly StoredFile[]): Promise<InputFile[]> {
+  const found = await Promise.all(
+    stored.map(async (file) => {
+      const blob = "blob" in file ? file.blob : await fileAt({ folder: file.folder, path: file.within });
+      return blob === null ? [] : [{ path: file.path, blob }];
+    }),
+  );
+  return found.flat();
+}
+
+function storedFile({ path, blob }: InputFile): StoredFile {
+  const place = placeOf(blob);
+  return place === undefined
+    ? { path, size: blob.size, blob }
+    : { path, size: blob.size, folder: place.folder, within: place.path };
 }
 
 /** What was found of the present project in the last visit; null where there is nothing. */
@@ -54,7 +111,9 @@ function presentInput(): string {
 
 export async function forgetStoredProject(): Promise<void> {
   try {
+    writtenFiles = null;
     await request("readwrite", (store) => store.clear());
+    await forgetKeptTiles();
   } catch {
     // Nothing was kept.
   }
@@ -103,14 +162,25 @@ async function writeResults(kept: { of: string; found: StoredResults | null }): 
   }
 }
 
-async function write(kept: StoredProject): Promise<void> {
-  if (kept.files.length === 0) {
-    await forgetStoredProject();
+/** The files that are written already: a copy of a flight takes its time. */
+let writtenFiles: readonly InputFile[] | null = null;
+
+async function write({ files: all, ...kept }: StoredProject): Promise<void> {
+  if (all.length === 0) {
+    if (!isLocked) {
+      await forgetStoredProject();
+    }
     return;
   }
+  isLocked = false;
   try {
+    if (writtenFiles !== all) {
+      await request("readwrite", (store) => store.put(all.map(storedFile), FILES_KEY));
+      writtenFiles = all;
+    }
     await request("readwrite", (store) => store.put(kept, KEY));
-    written.value = kept.files.reduce((sum, { blob }) => sum + blob.size, 0);
+    const copied = all.filter(({ blob }) => placeOf(blob) === undefined);
+    written.value = copied.reduce((sum, { blob }) => sum + blob.size, 0);
   } catch {
     // Private windows and full disks: the project lasts until the page is closed.
     written.value = null;

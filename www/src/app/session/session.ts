@@ -20,6 +20,7 @@ import {
   stages,
   updateStage,
 } from "../state/stages";
+import { flightPlan, showTileFraction, tileRun } from "../tiles/flight";
 import { ActionQueue } from "./actionQueue";
 import { failureNotice } from "./failureNotice";
 import { stagesOf } from "./stageCatalogue";
@@ -32,6 +33,9 @@ export const engine = new Engine(
   () => !actions.isEnding,
 );
 export const workerPool = new WorkerPool(engine, (name, fraction) => {
+  if (tileRun.peek() !== null) {
+    showTileFraction(fraction);
+  }
   const running = stages.value.find((stage) => stage.name === name && stage.status === "running");
   if (running !== undefined && fraction > running.fraction) {
     updateStage(name, { fraction });
@@ -61,7 +65,11 @@ export async function cancel(): Promise<void> {
   }
   await actions.perform({ kind: "cancel", phase: "start" }, async () => {
     haltStages();
-    announce("Cancelled. The next run begins with the first stage.");
+    announce(
+      flightPlan.value === null
+        ? "Cancelled. The next run begins with the first stage."
+        : "Cancelled. Tiles that are done are kept; the next run goes on with the others.",
+    );
     await openEngine();
   });
 }

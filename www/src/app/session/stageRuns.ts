@@ -47,7 +47,7 @@ export async function runEverything(turn: Turn): Promise<void> {
   const { tileM } = runOptions.value;
   const last = stages.value.at(-1);
   if (tileM !== null) {
-    await runTiles(tileM);
+    await runTiles(turn, tileM);
   } else if (last !== undefined) {
     await runStages(turn, last.name);
   }

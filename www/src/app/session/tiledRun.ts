@@ -1,23 +1,39 @@
-/** A large area, tile by tile in the worker, and one model of all of them. */
+/**
+ * A flight, tile by tile in the worker, and one model of all of them. Each outcome is kept in the browser as soon as it is
+ * there, and its model shown: a run that was cancelled, or ended with the page, goes on with the next tile.
+ */
 import { batch } from "@preact/signals";
 import { EngineError } from "../../core/engine";
+import type { TileOutcome } from "../../shared/calls";
 import type { TileReport } from "../../shared/records";
 import { counted } from "../parts/counted";
-import { loadOptions } from "../settings/loadOptions";
 import { announce } from "../state/notices";
 import { params } from "../state/parameters";
-import { inspection, runOptions } from "../state/project";
-import { NO_RESULTS, setExportNames, setResults } from "../state/results";
+import { addTileModel, NO_RESULTS, setExportNames, setResults } from "../state/results";
 import { updateStage } from "../state/stages";
-import { showTab } from "../state/viewState";
+import { showTab, tab } from "../state/viewState";
+import {
+  doneTiles,
+  flightPlan,
+  megapixelsLeft,
+  megapixelsOf,
+  setDoneTiles,
+  showTileRun,
+} from "../tiles/flight";
+import type { KeptTiles } from "../tiles/keptTiles";
+import { noteTile, secondsPerMegapixel } from "../tiles/pace";
+import type { Turn } from "./actionQueue";
+import { keptTilesOf, planFlight, tileOptions } from "./flightPlanning";
 import { engine, ensureInspected, noteResults, outdateScene } from "./session";
 
 /** The progress of the whole area is shown at the last stage: only the model spans the tiles. */
 const STAGE = "model";
 
 /** Works off the region of interest in tiles of about this size, metres. */
-export async function runTiles(tileM: number): Promise<void> {
+export async function runTiles(turn: Turn, tileM: number): Promise<void> {
   await ensureInspected();
+  await planFlight(turn, tileM);
+  turn.enter("run");
   await engine.call("setParams", params.value);
   const started = performance.now();
   // The worker drops the scene: a tile needs the memory.
@@ -28,7 +44,7 @@ export async function runTiles(tileM: number): Promise<void> {
     updateStage(STAGE, { status: "running", fraction: 0, warnings: [], counts: {} });
   });
   try {
-    const reports = await runEach(tileM);
+    const reports = await runEach(turn, keptTilesOf(tileM), tileM);
     await engine.call("joinTiles");
     noteResults();
     const glb = await engine.call("exportFile", "model.glb");
@@ -55,19 +71,63 @@ export async function runTiles(tileM: number): Promise<void> {
       error.during = "the tiles";
     }
     throw error;
+  } finally {
+    showTileRun(null);
   }
 }
 
-async function runEach(tileM: number): Promise<TileReport[]> {
-  const options = loadOptions(runOptions.value, inspection.value);
-  const tiles = await engine.call("planTiles", options, tileM);
+async function runEach(turn: Turn, kept: KeptTiles, tileM: number): Promise<TileReport[]> {
+  const tiles = await engine.call("planTiles", tileOptions(), tileM);
   const reports: TileReport[] = [];
   for (const index of tiles.keys()) {
+    const secondsLeft = secondsPerMegapixel.value * megapixelsLeft();
+    showTileRun({ tile: index, fraction: 0, since: performance.now(), secondsLeft });
+    turn.enter("run", `Tile ${index + 1} of ${tiles.length}`);
     announce(`Tile ${index + 1} of ${tiles.length}`);
-    const report = await engine.call("runTile", STAGE, index, tiles.length);
-    if (report !== null) {
-      reports.push(report);
+    const { report, glb } = (await keptOutcome(kept, index)) ?? (await workOff(kept, index, tiles.length));
+    reports.push(report);
+    setDoneTiles(new Set([...doneTiles.value, index]));
+    if (glb !== null) {
+      addTileModel(glb);
+      // The model is to be seen growing, unless something else is looked at.
+      if (tab.value === "images") {
+        showTab(STAGE);
+      }
     }
   }
+  turn.enter("run", "Joining the tiles");
+  for (const index of tiles.keys()) {
+    const outcome = await kept.read(index);
+    if (outcome === null) {
+      throw new Error("A tile that was done cannot be read any more. Run again: it is computed anew.");
+    }
+    await engine.callMoving([outcome.buffer], "takeTile", outcome);
+  }
   return reports;
+}
+
+/** What is kept of a tile; null where nothing is, or what another core would not take. */
+async function keptOutcome(kept: KeptTiles, index: number): Promise<TileOutcome | null> {
+  const outcome = await kept.read(index);
+  if (outcome === null) {
+    return null;
+  }
+  try {
+    return await engine.callMoving([outcome.buffer], "tileModel", index, outcome);
+  } catch (error) {
+    if (error instanceof EngineError && error.kind === "input") {
+      await kept.forget(index);
+      return null;
+    }
+    throw error;
+  }
+}
+
+async function workOff(kept: KeptTiles, index: number, of: number): Promise<TileOutcome> {
+  const started = performance.now();
+  const outcome = await engine.call("runTile", STAGE, index, of);
+  const plan = flightPlan.value;
+  noteTile((performance.now() - started) / 1000, plan === null ? 0 : megapixelsOf(plan, index));
+  await kept.keep(index, outcome);
+  return engine.callMoving([outcome.buffer], "tileModel", index, outcome);
 }

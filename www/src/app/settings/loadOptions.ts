@@ -4,13 +4,14 @@ import type { RunOptions } from "../state/project";
 
 /** The core's options; the views are named only where some are left out. */
 export function loadOptions(wanted: RunOptions, inspection: Inspection | null): LoadOptions {
-  const { orientation, leftOut, roi, groundZ, applyFix, ignoreCheck, epsg } = wanted;
+  const { orientation, leftOut, roi, groundZ, reduction, applyFix, ignoreCheck, epsg } = wanted;
   const used = (inspection?.images ?? []).filter(({ path }) => !leftOut.includes(path));
   return {
     ...(orientation !== null && { orientation }),
     ...(leftOut.length > 0 && { views: used.map(({ name }) => name) }),
     ...(roi !== null && { roi }),
     ...(groundZ !== null && { groundZ }),
+    ...(reduction !== null && reduction > 1 && { reduction }),
     ...(applyFix && { applyFix }),
     ...(ignoreCheck && { ignoreCheck }),
     ...(epsg !== null && { epsg }),
@@ -19,7 +20,7 @@ export function loadOptions(wanted: RunOptions, inspection: Inspection | null): 
 
 /** What a project file asks for, as the page has it; images are left out that it does not name. */
 export function wishesOf(opened: OpenedProject["options"], inspection: Inspection): RunOptions {
-  const { orientation, views, roi, groundZ, epsg } = opened;
+  const { orientation, views, roi, groundZ, reduction, epsg } = opened;
   const isNamed = (name: string) => (views ?? []).some((view) => stem(view) === stem(name));
   const leftOut = views === null ? [] : inspection.images.filter(({ name }) => !isNamed(name));
   return {
@@ -31,6 +32,8 @@ export function wishesOf(opened: OpenedProject["options"], inspection: Inspectio
     applyFix: opened.applyFix === true,
     ignoreCheck: opened.ignoreCheck === true,
     tileM: null,
+    isAtOnce: false,
+    reduction,
   };
 }
 
@@ -45,10 +48,16 @@ export function parseTile(text: string): Parsed<number> {
   return isTooSmall ? { error: `${LEAST_TILE_M} m or more` } : parsed;
 }
 
-/** Tiles have margins of this width. */
-const LEAST_TILE_M = 30;
+/** Side of the squares of which tiles consist. */
+const LEAST_TILE_M = 60;
 
 export type Parsed<T> = { value: T | null } | { error: string };
+
+/** One side of a region, metres. */
+export function parseSide(text: string): Parsed<number> {
+  const parsed = parseHeight(text);
+  return "value" in parsed && parsed.value === null ? { error: "a number in metres" } : parsed;
+}
 
 /** "x0, y0, x1, y1" in metres; nothing is the whole scene. */
 export function parseRegion(text: string): Parsed<[number, number, number, number]> {

@@ -3,7 +3,12 @@ import { batch } from "@preact/signals";
 import type { Selection } from "../../shared/selection";
 import type { StageName } from "../../shared/stages";
 import { openDemoIn, restoreIn } from "../project/projectActions";
-import { readStoredProject, readStoredResults } from "../project/storedProject";
+import {
+  type LockedProject,
+  readStoredProject,
+  readStoredResults,
+  type StoredProject,
+} from "../project/storedProject";
 import { showStoredResults } from "../project/storedResults";
 import { lineEnds } from "../selection/selectionShapes";
 import type { Turn } from "../session/actionQueue";
@@ -11,7 +16,9 @@ import { actions } from "../session/session";
 import { runStages } from "../session/stageRuns";
 import { opened } from "../settings/addressLink";
 import { stageOfTab, TABS, type Tab } from "../state/methods";
+import { dismissOffers, notify } from "../state/notices";
 import { method } from "../state/parameters";
+import { runOptions } from "../state/project";
 import { results } from "../state/results";
 import { scene } from "../state/scene";
 import { resumeDetail } from "../state/selectionDetail";
@@ -21,7 +28,8 @@ import { goToIn } from "../tour/lessons";
 
 /** Does the page begin with something? */
 export async function isAwaited(): Promise<boolean> {
-  return opened.scene !== null || ((await readStoredProject())?.files.length ?? 0) > 0;
+  const kept = await readStoredProject();
+  return opened.scene !== null || (kept !== null && "files" in kept && kept.files.length > 0);
 }
 
 export async function restoreOpeningState(): Promise<void> {
@@ -29,19 +37,18 @@ export async function restoreOpeningState(): Promise<void> {
 }
 
 async function restoreIt(turn: Turn): Promise<void> {
-  const kept = await readStoredProject();
+  const stored = await readStoredProject();
   turn.signal.throwIfAborted();
+  if (stored !== null && "unlock" in stored) {
+    offerLocked(stored);
+  }
+  const kept = stored !== null && "files" in stored ? stored : null;
   // A link to the demo scene means it as it was published; a reload, as it was left.
   if (opened.scene === "demo" && !(kept?.isDemo === true && isReload())) {
     await openDemoIn(turn, opened.tab === null ? null : stageOfTab(opened.tab));
   } else if (kept !== null && kept.files.length > 0) {
     turn.enter("load", "Reading files");
-    await restoreIn(kept);
-    const found = await readStoredResults();
-    turn.signal.throwIfAborted();
-    if (found !== null && scene.value !== null) {
-      showStoredResults(found);
-    }
+    await restoreWithResults(turn, kept);
     const stage = opened.tab === null ? null : stageOfTab(opened.tab);
     if (stage !== null && scene.value !== null && (!isShown(stage) || asksCore(opened.selection))) {
       await runStages(turn, stage);
@@ -66,6 +73,39 @@ async function restoreIt(turn: Turn): Promise<void> {
   if (opened.lesson !== null && results.value.glb !== null) {
     await goToIn(turn, opened.lesson);
   }
+}
+
+async function restoreWithResults(turn: Turn, kept: StoredProject): Promise<void> {
+  await restoreIn(turn, kept);
+  const found = await readStoredResults();
+  turn.signal.throwIfAborted();
+  if (found !== null && (scene.value !== null || runOptions.value.tileM !== null)) {
+    showStoredResults(found);
+  }
+}
+
+/** The photographs of the last visit lie in a folder: the browser reads it again when the person says so. */
+function offerLocked(stored: LockedProject): void {
+  const name = "Open the folder again";
+  notify({
+    severity: "info",
+    title: `The last project lies in the folder ${stored.folder}`,
+    text: "The browser asks before the page reads it again. Tiles that are done are kept.",
+    action: {
+      name,
+      run: () => {
+        const unlocking = stored.unlock();
+        const words = "Reading files";
+        void actions.perform({ kind: "open", name: "folder", phase: "load", words }, async (turn) => {
+          const kept = await unlocking;
+          if (kept !== null) {
+            dismissOffers(name);
+            await restoreWithResults(turn, kept);
+          }
+        });
+      },
+    },
+  });
 }
 
 function isReload(): boolean {

@@ -296,7 +296,7 @@ function layerIsEmpty(name: Tab): boolean {
     case "rectangles":
       return facets === null;
     case "model":
-      return results.value.glb === null;
+      return results.value.glb === null && results.value.tileGlbs.length === 0;
     default:
       return false;
   }

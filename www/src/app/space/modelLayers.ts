@@ -2,6 +2,7 @@
 import { computed, type ReadonlySignal, type Signal, signal, useSignalEffect } from "@preact/signals";
 import { THEME_COLOURS } from "../../shared/palette";
 import { buildModel, type ModelLayer } from "../../viewer/layers/model";
+import { modelOfParts } from "../../viewer/modelOfParts";
 import { cornersOf } from "../../viewer/scene/bounds";
 import { unpicked } from "../../viewer/scene/layer";
 import type { Viewer } from "../../viewer/viewer";
@@ -40,6 +41,9 @@ export function useModels(viewer: ReadonlySignal<Viewer | null>): void {
     void show("keptModel", shownKeptGlb, keptModel, viewer, colours);
   });
   useSignalEffect(() => {
+    void showTiles(mainResults.value.tileGlbs, viewer);
+  });
+  useSignalEffect(() => {
     for (const layer of [model.value, keptModel.value]) {
       layer?.setMode(modelMode.value);
       layer?.setTheme(THEME_COLOURS[theme.value]);
@@ -53,6 +57,37 @@ export function useModels(viewer: ReadonlySignal<Viewer | null>): void {
   });
 }
 
+/** What was read of the models of tiles; each is read once, while the model grows. */
+const tileModels = new Map<Uint8Array, ModelLayer>();
+
+/** Shows the models of the tiles that are done, until all are one. */
+async function showTiles(
+  glbs: readonly Uint8Array<ArrayBuffer>[],
+  viewer: ReadonlySignal<Viewer | null>,
+): Promise<void> {
+  if (glbs.length === 0) {
+    tileModels.clear();
+    return;
+  }
+  try {
+    for (const glb of glbs) {
+      if (!tileModels.has(glb)) {
+        tileModels.set(glb, await buildModel(glb, []));
+      }
+    }
+  } catch (error) {
+    notify({ severity: "error", title: "The model cannot be shown", text: String(error) });
+    return;
+  }
+  if (mainResults.peek().tileGlbs !== glbs) {
+    return;
+  }
+  const layer = modelOfParts(glbs.flatMap((glb) => tileModels.get(glb) ?? []));
+  layer.setMode(modelMode.peek());
+  viewer.peek()?.setLayer("model", layer);
+  presentModel.value = layer;
+}
+
 /** Reads a model and puts it into its layer, unless another one has come meanwhile. */
 async function show(
   name: "model" | "keptModel",
@@ -62,6 +97,9 @@ async function show(
   colours: () => string[],
 ): Promise<void> {
   const bytes = glb.value;
+  if (bytes === null && name === "model" && mainResults.peek().tileGlbs.length > 0) {
+    return;
+  }
   if (bytes === null) {
     shown.value = null;
     viewer.peek()?.setLayer(name, null);

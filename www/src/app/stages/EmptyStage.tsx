@@ -1,13 +1,18 @@
 /** What stands in the image tabs as long as there are no images. */
+import { FlightPlanView } from "../flight/FlightPlanView";
 import { PhotographsOnly } from "../photographs/PhotographsOnly";
 import { openDemo } from "../project/projectActions";
 import { inspection } from "../state/project";
+import { flightPlan } from "../tiles/flight";
 import { startTour } from "../tour/lessons";
 
 export function EmptyStage() {
   const photographs = inspection.value?.images ?? [];
   if (photographs.length > 0 && photographs.every(({ orientation }) => orientation === null)) {
     return <PhotographsOnly />;
+  }
+  if (flightPlan.value !== null) {
+    return <FlightPlanView />;
   }
   return (
     <div class="empty">

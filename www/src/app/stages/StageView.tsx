@@ -14,6 +14,7 @@ import { PointLab } from "../figures/PointLab";
 import { RectangleLab } from "../figures/RectangleLab";
 import { RefinementLab } from "../figures/RefinementLab";
 import { SimLab } from "../figures/SimLab";
+import { FlightProgress } from "../flight/FlightProgress";
 import { Filmstrip } from "../images/Filmstrip";
 import { ImageViews } from "../images/ImageViews";
 import { pageFigure } from "../selection/selectionQueries";
@@ -114,6 +115,7 @@ export function StageView() {
         ))}
       </div>
       <div id="stage-view" class="stage-view" role="tabpanel" aria-labelledby={`tab-${tab.value}`}>
+        <FlightProgress />
         {isImageTab && <PageImages />}
         <SpaceView hidden={isImageTab} />
         {Lab !== undefined && (

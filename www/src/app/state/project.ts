@@ -15,6 +15,10 @@ export interface RunOptions {
   ignoreCheck: boolean;
   /** Size of the tiles in which the region is worked off, metres; null: in one. */
   tileM: number | null;
+  /** Every photograph is loaded at once, however many there are. */
+  isAtOnce: boolean;
+  /** So many by so many pixels of a photograph become one; null: as few as the memory takes. */
+  reduction: number | null;
   /** As a project file says. */
   epsg: number | null;
 }
@@ -27,6 +31,8 @@ export const NO_OPTIONS: RunOptions = {
   applyFix: false,
   ignoreCheck: false,
   tileM: null,
+  isAtOnce: false,
+  reduction: null,
   epsg: null,
 };
 

@@ -15,7 +15,9 @@ const found = signal<ResultSets>({ main: NO_RESULTS, regions: NO_RESULTS });
 export const allResults: ReadonlySignal<ResultSets> = found;
 
 export function restoreResults(all: ResultSets): void {
-  found.value = all;
+  // What an older version kept may lack what is new.
+  const whole = (results: Results): Results => ({ ...NO_RESULTS, ...results, tileGlbs: [] });
+  found.value = { main: whole(all.main), regions: whole(all.regions) };
 }
 
 /** Of which stages the present tab tells. */
@@ -33,6 +35,12 @@ export function setResults(all: Results): void {
 export function addResults(shownBy: Tab, some: Partial<Results>): void {
   const set = resultSetOf(shownBy);
   found.value = { ...found.value, [set]: { ...found.value[set], ...some } };
+}
+
+/** Adds the model of a tile to those that are shown until all are joined. */
+export function addTileModel(glb: Uint8Array<ArrayBuffer>): void {
+  const { main } = found.value;
+  found.value = { ...found.value, main: { ...main, tileGlbs: [...main.tileGlbs, glb] } };
 }
 
 const writtenFiles = signal<string[]>([]);

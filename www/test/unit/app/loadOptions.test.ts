@@ -20,6 +20,8 @@ describe("run options", () => {
       applyFix: true,
       ignoreCheck: true,
       tileM: 50,
+      isAtOnce: false,
+      reduction: 2,
       epsg: 25832,
     };
     expect(loadOptions({ ...wanted, roi: [...wanted.roi] }, inspection)).toEqual({
@@ -27,6 +29,7 @@ describe("run options", () => {
       views: ["a.jpg", "c.jpg"],
       roi: [1, 2, 3, 4],
       groundZ: 0,
+      reduction: 2,
       applyFix: true,
       ignoreCheck: true,
       epsg: 25832,

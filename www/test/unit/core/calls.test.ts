@@ -24,7 +24,10 @@ describe("the worker's calls", () => {
   });
 
   it("name a file that can no longer be read", async () => {
-    const gone = { arrayBuffer: () => Promise.reject(new Error("NotReadableError")) } as unknown as Blob;
+    const gone = {
+      size: 1,
+      arrayBuffer: () => Promise.reject(new Error("NotReadableError")),
+    } as unknown as Blob;
     await expect(worker().call("setFiles", [{ path: "gone.jpg", blob: gone }])).rejects.toThrow(/gone\.jpg/);
   });
 

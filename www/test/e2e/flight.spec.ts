@@ -1,0 +1,207 @@
+/** Flights: a plan before anything long, tile after tile with the model growing, and going on after a reload. */
+import { readFileSync } from "node:fs";
+import { expect, type Page, test } from "@playwright/test";
+import {
+  axeFindings,
+  give,
+  houseFiles,
+  lookOf,
+  openTab,
+  stage,
+  type Upload,
+  upload,
+  waitForStage,
+  watch,
+} from "./helpers";
+
+/** The house's six photographs three times over: more than are loaded at once. */
+function flightFiles(): Upload[] {
+  return ["a", "b", "c"].flatMap((pass) =>
+    houseFiles().map(({ name, buffer }) => upload(`${pass}_${name}`, buffer)),
+  );
+}
+
+const plan = (page: Page) => page.getByTestId("flight-plan");
+const facts = (page: Page) => page.getByTestId("flight-facts");
+const side = (page: Page, name: string) => plan(page).getByLabel(name, { exact: true });
+
+async function state(page: Page, name: string, value: string): Promise<void> {
+  await side(page, name).fill(value);
+  await side(page, name).press("Enter");
+}
+
+/** Opens the fields of region and ground; what was open once is open still. */
+async function openPlace(page: Page): Promise<void> {
+  if (!(await page.getByLabel(/^Tile size/).isVisible())) {
+    await page.getByText("Region and ground").click();
+  }
+}
+
+/** Two tiles that meet in the house. */
+async function askForTiles(page: Page): Promise<void> {
+  await openPlace(page);
+  for (const [label, value] of [
+    [/^Region x0/, "-31, -15, 31, 15"],
+    [/^Height of the ground/, "100"],
+    [/^Tile size/, "31"],
+  ] as const) {
+    await page.getByLabel(label).fill(value);
+    await page.getByLabel(label).press("Enter");
+  }
+  await expect(plan(page)).toBeVisible();
+  await expect(plan(page).locator(".tile")).toHaveCount(2);
+}
+
+/** The bytes of the city model, as a person saves them. */
+async function savedModel(page: Page): Promise<string> {
+  const downloading = page.waitForEvent("download");
+  await page.getByRole("button", { name: "model.city.json", exact: true }).click();
+  return readFileSync(await (await downloading).path(), "utf8");
+}
+
+test("a plan is there before anything long, and the region is drawn on it or stated", async ({ page }) => {
+  test.setTimeout(300_000);
+  const { problems } = watch(page);
+  await page.goto("/");
+  await give(page, flightFiles());
+  await expect(plan(page).getByRole("heading", { name: "A flight of 18 photographs" })).toBeVisible();
+  await expect(page.locator(".activity")).toHaveCount(0);
+  // The house stands on ground 100 m high, and four photographs of it show roofs, too.
+  await expect(facts(page)).toContainText(/\+(9\d|10\d) to \+1[01]\d m/);
+  await expect(facts(page)).toContainText(/MB at most/);
+  await expect(plan(page).locator(".footprints polygon")).toHaveCount(18);
+  await expect(stage(page, "segments")).toHaveAttribute("data-status", "waiting");
+  await expect(page.locator("canvas.view-image")).toHaveCount(0);
+  expect(await axeFindings(page)).toEqual([]);
+
+  // By the mouse: the middle half of the drawing.
+  const drawing = page.getByTestId("flight-drawing");
+  const box = (await drawing.boundingBox()) as { x: number; y: number; width: number; height: number };
+  const before = Number(await side(page, "West").inputValue());
+  await page.mouse.move(box.x + box.width / 4, box.y + box.height / 4);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.move(box.x + (3 * box.width) / 4, box.y + (3 * box.height) / 4);
+  await page.mouse.up();
+  // The cameras of the house's flight stand far around what they show.
+  await expect.poll(async () => Number(await side(page, "West").inputValue())).toBeLessThan(before);
+  await expect(plan(page).getByRole("button", { name: "Whole area" })).toBeVisible();
+  const west = Number(await side(page, "West").inputValue());
+  const east = Number(await side(page, "East").inputValue());
+  await expect(facts(page)).toContainText(`${east - west} ×`);
+
+  // By keys: a longer region has more tiles; one that ends before it begins is not taken.
+  await state(page, "West", String(east + 5));
+  await expect(side(page, "West")).toHaveAttribute("aria-invalid", "true");
+  await state(page, "West", String(east - 130));
+  await expect(facts(page)).toContainText("130 ×");
+  const south = Number(await side(page, "South").inputValue());
+  const north = Number(await side(page, "North").inputValue());
+  await expect(plan(page).locator(".tile")).toHaveCount(3 * Math.ceil((north - south) / 60));
+  await plan(page).getByLabel("Size of a tile, m").fill("500");
+  await plan(page).getByLabel("Size of a tile, m").press("Enter");
+  await expect(plan(page).locator(".tile")).toHaveCount(1);
+
+  await plan(page).getByRole("button", { name: "Whole area" }).click();
+  await expect.poll(async () => Number(await side(page, "West").inputValue())).toBe(before);
+
+  // All at once, stage by stage: no region takes more than twelve.
+  await openPlace(page);
+  await page.getByLabel(/^Height of the ground/).fill("100");
+  await page.getByLabel(/^Height of the ground/).press("Enter");
+  await expect(facts(page)).toContainText("+100.0 m, as stated");
+  await state(page, "West", String(before + 1));
+  await plan(page).getByRole("button", { name: "Stage by stage" }).click();
+  await expect(plan(page)).toHaveCount(0);
+  await expect(page.getByText("the 12 that say most about it are used")).toBeVisible();
+  await expect(page.getByRole("alert")).toHaveCount(0);
+  expect(problems).toEqual([]);
+});
+
+test("tiles that are done stay over a cancelled run and a reload, and give the same bytes", async ({
+  page,
+}) => {
+  test.setTimeout(400_000);
+  const { problems } = watch(page);
+  await page.goto("/");
+  await give(page, houseFiles());
+  await askForTiles(page);
+  await page.getByRole("button", { name: "Reconstruct 2 tiles" }).click();
+  const progress = page.getByTestId("flight-progress");
+  await expect(progress).toContainText("0 of 2 tiles");
+  await expect(progress).toContainText("6 of 6 photographs read");
+  await expect(progress).toContainText(/minutes? left/);
+  await expect(progress).toContainText("1 of 2 tiles", { timeout: 150_000 });
+  await page.getByRole("button", { name: "Cancel" }).click();
+  await expect(progress).toHaveCount(0);
+  // Its model is to be seen, though the other tile is not there.
+  await openTab(page, "Model");
+  await expect(page.getByText("Nothing to show yet.")).toHaveCount(0);
+  await expect(async () => {
+    expect((await lookOf(page, page.getByTestId("viewer"))).drawn).toBeGreaterThan(0.02);
+  }).toPass({ timeout: 20_000 });
+
+  await page.reload();
+  await expect(plan(page)).toContainText("1 tile of this plan is kept", { timeout: 60_000 });
+  await expect(plan(page).locator(".tile.done")).toHaveCount(1);
+  await plan(page).getByRole("button", { name: "Go on: 1 of 2 tiles" }).click();
+  await expect(progress).toContainText("1 of 2 tiles");
+  await waitForStage(page, "model", 200_000);
+  const resumed = await savedModel(page);
+
+  // The same without an interruption.
+  await page.getByRole("button", { name: "New project" }).click();
+  await give(page, houseFiles());
+  await askForTiles(page);
+  await expect(plan(page).locator(".tile.done")).toHaveCount(0);
+  await page.getByRole("button", { name: "Reconstruct 2 tiles" }).click();
+  await waitForStage(page, "model", 300_000);
+  expect(await savedModel(page)).toBe(resumed);
+  expect(Object.keys(JSON.parse(resumed).CityObjects)).toHaveLength(1);
+  expect(problems).toEqual([]);
+});
+
+test("a folder is read again after a reload, and not copied", async ({ page }) => {
+  const { problems } = watch(page);
+  // The browser's own picker cannot be operated by a test; its private folders are the same kind of handle.
+  await page.addInitScript(() => {
+    Object.assign(window, {
+      showDirectoryPicker: async () => (await navigator.storage.getDirectory()).getDirectoryHandle("flight"),
+    });
+    if (sessionStorage.getItem("asks") !== null) {
+      Object.assign(FileSystemDirectoryHandle.prototype, {
+        queryPermission: async () => "prompt",
+        requestPermission: async () => "granted",
+      });
+    }
+  });
+  await page.goto("/");
+  await page.evaluate(
+    async (files) => {
+      const root = await navigator.storage.getDirectory();
+      const folder = await root.getDirectoryHandle("flight", { create: true });
+      const images = await folder.getDirectoryHandle("images", { create: true });
+      for (const { name, base64 } of files) {
+        const within = name.endsWith(".jpg") ? images : folder;
+        const written = await (await within.getFileHandle(name, { create: true })).createWritable();
+        await written.write(Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0)));
+        await written.close();
+      }
+    },
+    houseFiles().map(({ name, buffer }) => ({ name, base64: buffer.toString("base64") })),
+  );
+  await page.getByRole("button", { name: "Folder…" }).click();
+  await expect(page.locator(".status.good")).toHaveCount(6);
+  await expect(page.getByTestId("kept")).toContainText("0.0 MB");
+  await page.waitForTimeout(600);
+  await page.reload();
+  await expect(page.locator(".status.good")).toHaveCount(6);
+
+  // A browser that asks again.
+  await page.evaluate(() => sessionStorage.setItem("asks", "yes"));
+  await page.reload();
+  await page.getByRole("button", { name: "Open the folder again" }).click();
+  await expect(page.locator(".status.good")).toHaveCount(6);
+  await expect(page.getByRole("alert")).toHaveCount(0);
+  expect(problems).toEqual([]);
+});

@@ -1,0 +1,67 @@
+import { describe, expect, it } from "vitest";
+import type { CoreSession } from "../../../src/worker/coreSession";
+import { ProjectFiles } from "../../../src/worker/projectFiles";
+
+/** A session that writes down which bytes it is given. */
+function recorder(sufficient: number) {
+  const calls: [string, string, number][] = [];
+  const session = {
+    clearFiles: () => calls.push(["clear", "", 0]),
+    addFile: (path: string, bytes: Uint8Array) => calls.push(["file", path, bytes.length]),
+    addHead: (path: string, bytes: Uint8Array, whole: number) => {
+      calls.push(["head", path, bytes.length]);
+      return bytes.length >= sufficient && whole > bytes.length;
+    },
+    fillFile: (path: string, bytes: Uint8Array) => calls.push(["fill", path, bytes.length]),
+    emptyFiles: () => calls.push(["empty", "", 0]),
+  };
+  return { calls, files: new ProjectFiles(session as unknown as CoreSession) };
+}
+
+const KB = 1024;
+
+function jpeg(kilobytes: number): Blob {
+  const bytes = new Uint8Array(kilobytes * KB);
+  bytes.set([0xff, 0xd8, 0xff]);
+  return new Blob([bytes]);
+}
+
+describe("the files of a project in the worker", () => {
+  it("are read by their first bytes as far as those suffice", async () => {
+    const { calls, files } = recorder(100 * KB);
+    await files.replace([
+      { path: "small.jpg", blob: jpeg(60) },
+      { path: "large.jpg", blob: jpeg(5000) },
+      { path: "list.txt", blob: new Blob([new Uint8Array(300 * KB)]) },
+    ]);
+    expect(calls).toEqual([
+      ["clear", "", 0],
+      ["file", "small.jpg", 60 * KB],
+      ["head", "large.jpg", 64 * KB],
+      ["head", "large.jpg", 512 * KB],
+      ["file", "list.txt", 300 * KB],
+    ]);
+  });
+
+  it("are read whole where their header says too little anywhere", async () => {
+    const { calls, files } = recorder(Number.POSITIVE_INFINITY);
+    await files.replace([{ path: "odd.jpg", blob: jpeg(3000) }]);
+    expect(calls.at(-1)).toEqual(["file", "odd.jpg", 3000 * KB]);
+  });
+
+  it("are whole during the call that needs them, also where it fails", async () => {
+    const { calls, files } = recorder(1);
+    await files.replace([{ path: "a.jpg", blob: jpeg(100) }]);
+    calls.length = 0;
+    const failing = files.withWhole([() => ["a.jpg"], () => []], () => {
+      calls.push(["call", "", 0]);
+      throw new Error("rejected");
+    });
+    await expect(failing).rejects.toThrow("rejected");
+    expect(calls).toEqual([
+      ["fill", "a.jpg", 100 * KB],
+      ["call", "", 0],
+      ["empty", "", 0],
+    ]);
+  });
+});
