@@ -222,7 +222,6 @@ fn named_models_have_no_error() {
     for path in named.split(':').filter(|path| !path.is_empty()) {
         let file: Value = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
         let errors = solid_errors(&file);
-        println!("{path}: {} solids", errors.len());
         let bad = errors.into_iter().filter(|(_, errors)| !errors.is_empty());
         wrong.extend(bad.map(|(name, errors)| format!("{path}: {name}: {errors:?}")));
     }

@@ -84,7 +84,7 @@ fn placement(scene: &Scene, middle: &Point3<f64>) -> Option<Vec<f64>> {
     let zero = on_earth(*middle)? - axes * middle.coords;
     let last = zero.coords.push(1.0);
     let columns = axes.column_iter().map(|c| c.push(0.0)).chain([last]);
-    let numbers: Vec<f64> = columns.flat_map(|c| <[f64; 4]>::from(c)).collect();
+    let numbers: Vec<f64> = columns.flat_map(<[f64; 4]>::from).collect();
     // What is off the Earth (a wrong code) has no place there.
     numbers.iter().all(|n| n.is_finite()).then_some(numbers)
 }

@@ -8,8 +8,8 @@
 //! a facet ends below  a higher one: abutment; the higher one ends there as above
 //! ```
 //!
-//! Level means: nearly along the contour lines of the steeper facet. So the rakes of a roof of three
-//! degrees are none of its eaves, though they hardly rise.
+//! Level means: nearly along the contour lines of the steeper facet. So the rakes of a roof of
+//! three degrees are none of its eaves, though they hardly rise.
 
 use std::collections::BTreeMap;
 
@@ -122,7 +122,7 @@ type Piece = (RoofEdgeKind, Option<FacetId>, Segment3);
 pub fn roof_edges(facets: &[(FacetId, &Facet)]) -> Vec<RoofEdge> {
     let mut left_of = BTreeMap::new();
     for (i, (_, facet)) in facets.iter().enumerate() {
-        for [a, b] in rings_of(facet).flat_map(sides) {
+        for [a, b] in rings_of(facet).flat_map(|ring| sides(ring)) {
             left_of.insert((key(&a), key(&b)), (i, a.z, b.z));
         }
     }
@@ -161,7 +161,7 @@ fn rings_of(facet: &Facet) -> impl Iterator<Item = &Vec<Point3<f64>>> {
     std::iter::once(&facet.outer).chain(&facet.holes)
 }
 
-fn sides(ring: &Vec<Point3<f64>>) -> impl Iterator<Item = [Point3<f64>; 2]> {
+fn sides(ring: &[Point3<f64>]) -> impl Iterator<Item = [Point3<f64>; 2]> {
     let next = ring.iter().cycle().skip(1);
     ring.iter().zip(next).map(|(&a, &b)| [a, b])
 }

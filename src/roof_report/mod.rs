@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! edges        kinds of edges, from the facets alone
+//! estimate     a number and its standard deviation
 //! shape        a building as a function of uncertain numbers, and the propagation of their errors
 //! photographs  which views show a facet
 //! ```
@@ -11,10 +12,12 @@
 //! ground is known is in no standard deviation.
 
 mod edges;
+mod estimate;
 mod photographs;
 mod shape;
 
 pub use edges::{RoofEdge, RoofEdgeKind, roof_edges};
+pub use estimate::Estimate;
 pub use photographs::views_of_facets;
 
 use nalgebra::Point3;
@@ -25,15 +28,6 @@ use crate::model::{Building, Facet, RoofModel};
 
 /// Slopes below this have no direction, degrees: that of a roof which drains is more.
 const LEVEL_DEG: f64 = 1.0;
-
-/// A number and its standard deviation.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// The number.
-    pub value: f64,
-    /// One standard deviation, in the same unit; `None` where the images show too little.
-    pub sigma: Option<f64>,
-}
 
 /// A length for each kind of edge, in the order of [`RoofEdgeKind::ALL`], metres; `None` where
 /// there is no such edge.

@@ -18,8 +18,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point2, Vector2};
 
-use super::Estimate;
 use super::edges::{RoofEdge, gradient, key};
+use super::estimate::Estimate;
 use crate::geometry::mean_point;
 use crate::ids::FacetId;
 use crate::math::atan2;

@@ -120,7 +120,7 @@ fn a_gable_has_a_ridge_two_eaves_and_four_rakes() {
     let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-6, "{a} instead of {b}");
     near(south.plan_area_m2.value, 40.0);
     near(south.area_m2.value, 10.0 * rake);
-    near(south.slope_deg.value, 0.5f64.atan().to_degrees());
+    near(south.slope_deg.value, crate::math::atan(0.5).to_degrees());
     near(south.azimuth_deg.unwrap().value, 180.0);
     near(report.facets[1].azimuth_deg.unwrap().value, 0.0);
     near(south.lowest_m.value, 5.0);
@@ -215,7 +215,7 @@ fn a_corner_of_a_neighbour_does_not_divide_an_edge() {
 
 /// Turned about the origin, enlarged and moved.
 fn moved(facet: &Facet, angle: f64, scale: f64, shift: Vector3<f64>) -> Facet {
-    let turn = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
+    let turn = crate::geometry::rotation_from_axis_angle(&Vector3::new(0.0, 0.0, angle));
     let corners: Vec<_> = (facet.outer.iter())
         .map(|p| turn * p * scale + shift)
         .collect();

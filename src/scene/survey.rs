@@ -25,8 +25,8 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Geocentric coordinates (EPSG:4978) of a point of the world, metres; `None` where its place on
-    /// the Earth is not known. Heights of a national grid are taken as ellipsoidal: how far its
+    /// Geocentric coordinates (EPSG:4978) of a point of the world, metres; `None` where its place
+    /// on the Earth is not known. Heights of a national grid are taken as ellipsoidal: how far its
     /// datum is from the ellipsoid (the geoid, up to 100 m) is in no file.
     pub fn geocentric(&self, world: &Point3<f64>) -> Option<Point3<f64>> {
         if let Some(anchor) = &self.anchor {

@@ -13,8 +13,9 @@ use spade::{ConstrainedDelaunayTriangulation, Point2 as SpadePoint, Triangulatio
 const SNAP_M: f64 = 1e-3;
 /// Largest distance of a corner from the plane of its face, metres (val3dity's default).
 const PLANAR_M: f64 = 1e-2;
-/// Largest angle between the normals of a face and of a triangle of it, degrees (its default).
-const NORMALS_DEG: f64 = 20.0;
+/// Cosine of the largest angle between the normals of a face and of a triangle of it: 20 degrees
+/// (its default).
+const NORMALS_COS: f64 = 0.939_692_620_785_908_4;
 
 /// A corner as whole steps of the file's scale.
 type Corner = [i64; 3];
@@ -72,10 +73,7 @@ fn shell_errors(vertices: &[Corner], faces: &[Vec<Ring>], scale: f64) -> Finding
 
 /// Corners that lie together as one, with the faces that refer to them.
 fn snapped(vertices: &[Corner], faces: &[Vec<Ring>], scale: f64) -> (Vec<Corner>, Vec<Vec<Ring>>) {
-    let near = |a: &Corner, b: &Corner| {
-        let square: f64 = (0..3).map(|i| ((a[i] - b[i]) as f64 * scale).powi(2)).sum();
-        square.sqrt() < SNAP_M
-    };
+    let near = |a: &Corner, b: &Corner| norm(less(*a, *b)) * scale < SNAP_M;
     let mut corners: Vec<Corner> = Vec::new();
     let mut index: BTreeMap<usize, usize> = BTreeMap::new();
     for &v in faces.iter().flatten().flatten() {
@@ -108,7 +106,7 @@ fn dot(a: [i128; 3], b: [i128; 3]) -> i128 {
 }
 
 fn norm(a: [i128; 3]) -> f64 {
-    a.iter().map(|&c| (c as f64).powi(2)).sum::<f64>().sqrt()
+    dot_f64(a, a).sqrt()
 }
 
 /// Twice the vector area of a ring.
@@ -285,7 +283,7 @@ fn planarity_error(
     let deviates = |t: &[usize; 3]| {
         let normal = triangle_normal(corners, t);
         let size = norm(normal);
-        size > 0.0 && dot_f64(normal, area) / (size * length) < NORMALS_DEG.to_radians().cos()
+        size > 0.0 && dot_f64(normal, area) / (size * length) < NORMALS_COS
     };
     triangles(corners, face, axis, area)
         .iter()

@@ -121,7 +121,7 @@ fn maps_and_cityjson_say_what_the_tables_say() {
         for (row, feature) in facets.iter().zip(&features) {
             let surface = surfaces
                 .iter()
-                .find(|s| s["facet"].to_string() == row["facet"]);
+                .find(|s| s["facet"].as_u64() == row["facet"].parse().ok());
             let surface = surface.unwrap();
             let of_map = |name: &str| feature.property(name).unwrap().clone();
             for (of_table, of_city) in [

@@ -1,5 +1,6 @@
 //! 3D Tiles.
 
+use libm::{cos, sin};
 use nalgebra::{Matrix4, Point3, Vector3};
 use ridgeline::model::RoofModel;
 use ridgeline::orientation::Anchor;
@@ -57,7 +58,7 @@ fn a_local_frame_on_the_earth_is_placed_exactly() {
     // Up is away from the middle of the Earth, and nothing is enlarged or turned over.
     let up = transform.transform_vector(&Vector3::z());
     let (lon, lat) = (lon_deg.to_radians(), lat_deg.to_radians());
-    let normal = Vector3::new(lat.cos() * lon.cos(), lat.cos() * lon.sin(), lat.sin());
+    let normal = Vector3::new(cos(lat) * cos(lon), cos(lat) * sin(lon), sin(lat));
     assert!((up - normal).norm() < 1e-9);
     assert!((transform.fixed_view::<3, 3>(0, 0).determinant() - 1.0).abs() < 1e-9);
 }

@@ -8,7 +8,7 @@ use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 
-use super::ReportedModel;
+use super::reported::ReportedModel;
 use super::svg::{Drawing, place_inside};
 use crate::math::{atan2, sin_cos};
 use crate::model::{Building, Surface};

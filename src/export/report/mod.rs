@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! read         CityJSON -> model, names, photographs
+//! reported     these with what was measured
 //! page         the page: HTML with its style and pictures inside
 //! plan         a plan with dimensions, SVG
 //! axonometric  a building from above and aside, SVG
@@ -16,28 +17,13 @@ mod axonometric;
 mod page;
 mod plan;
 mod read;
+mod reported;
 mod svg;
 mod tables;
 
-use nalgebra::Vector3;
-
 use self::read::read_model;
-use crate::model::RoofModel;
-use crate::roof_report::{BuildingReport, roof_report};
-
-/// A model with what its file says of it, in numbers.
-struct ReportedModel {
-    model: RoofModel,
-    /// Names of the buildings in the file.
-    names: Vec<String>,
-    /// Per facet, the photographs that show it.
-    photographs: Vec<Vec<String>>,
-    /// Add it to the model's coordinates for those of the world.
-    origin: Vector3<f64>,
-    /// The coordinate system, where the file states it.
-    system: Option<String>,
-    buildings: Vec<BuildingReport>,
-}
+use self::reported::ReportedModel;
+use crate::roof_report::roof_report;
 
 /// The files of the roof report, name and bytes, from a CityJSON file; an error says what is wrong
 /// with that.

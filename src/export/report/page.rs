@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use nalgebra::{Point2, Vector2};
 
-use super::ReportedModel;
 use super::axonometric::axonometric;
 use super::plan::{Plan, building_plan, overview};
+use super::reported::ReportedModel;
 use super::svg::{Drawing, escaped};
 use crate::roof_report::{BuildingReport, Estimate, FacetReport, Lengths, RoofEdgeKind};
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point2, Point3, Vector2};
 
-use super::ReportedModel;
+use super::reported::ReportedModel;
 use super::svg::{Drawing, place_inside};
 use crate::math::atan2;
 use crate::model::Facet;

@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use super::super::format::rounded;
-use super::ReportedModel;
+use super::reported::ReportedModel;
 use crate::ids::FacetId;
 use crate::roof_report::{Estimate, Lengths, RoofEdgeKind};
 

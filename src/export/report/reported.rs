@@ -1,0 +1,20 @@
+//! A model in numbers, with what its file says of it.
+
+use nalgebra::Vector3;
+
+use crate::model::RoofModel;
+use crate::roof_report::BuildingReport;
+
+/// A model with what its file says of it, in numbers.
+pub(super) struct ReportedModel {
+    pub(super) model: RoofModel,
+    /// Names of the buildings in the file.
+    pub(super) names: Vec<String>,
+    /// Per facet, the photographs that show it.
+    pub(super) photographs: Vec<Vec<String>>,
+    /// Add it to the model's coordinates for those of the world.
+    pub(super) origin: Vector3<f64>,
+    /// The coordinate system, where the file states it.
+    pub(super) system: Option<String>,
+    pub(super) buildings: Vec<BuildingReport>,
+}
