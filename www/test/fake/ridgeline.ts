@@ -507,6 +507,7 @@ export class Session implements CoreSession {
         ground: "stated",
         ground_z: 0,
         pixel_m: 0.05,
+        reduction: 1,
         footprints: [],
         shown: area,
         overlap: { area, columns: 1, rows: 1, counts: [views.length] },

@@ -53,12 +53,7 @@ export async function planFlight(turn: Turn, tileM: number): Promise<void> {
 /** With the size that was asked for, or the largest of those that roofs need that the memory takes. */
 async function planFitting(tileM: number): Promise<void> {
   const planned = (reduction: number) =>
-    engine.call(
-      "planFlight",
-      optionsOf({ ...runOptions.value, reduction }),
-      tileM,
-      measuredHeights.value,
-    );
+    engine.call("planFlight", optionsOf({ ...runOptions.value, reduction }), tileM, measuredHeights.value);
   const asked = runOptions.value.reduction;
   let reduction = asked ?? 1;
   let plan = await planned(reduction);
