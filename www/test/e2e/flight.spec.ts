@@ -32,6 +32,7 @@ async function state(page: Page, name: string, value: string): Promise<void> {
 
 /** Opens the fields of region and ground; what was open once is open still. */
 async function openPlace(page: Page): Promise<void> {
+  await page.getByText("Region and ground").waitFor();
   if (!(await page.getByLabel(/^Tile size/).isVisible())) {
     await page.getByText("Region and ground").click();
   }
@@ -120,6 +121,7 @@ test("a plan is there before anything long, and the region is drawn on it or sta
 
 test("tiles that are done stay over a cancelled run and a reload, and give the same bytes", async ({
   page,
+  browser,
 }) => {
   test.setTimeout(400_000);
   const { problems } = watch(page);
@@ -149,14 +151,16 @@ test("tiles that are done stay over a cancelled run and a reload, and give the s
   await waitForStage(page, "model", 200_000);
   const resumed = await savedModel(page);
 
-  // The same without an interruption.
-  await page.getByRole("button", { name: "New project" }).click();
-  await give(page, houseFiles());
-  await askForTiles(page);
-  await expect(plan(page).locator(".tile.done")).toHaveCount(0);
-  await page.getByRole("button", { name: "Reconstruct 2 tiles" }).click();
-  await waitForStage(page, "model", 300_000);
-  expect(await savedModel(page)).toBe(resumed);
+  // The same without an interruption, in a browser that keeps nothing.
+  const fresh = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+  await fresh.goto("/");
+  await give(fresh, houseFiles());
+  await askForTiles(fresh);
+  await expect(plan(fresh).locator(".tile.done")).toHaveCount(0);
+  await fresh.getByRole("button", { name: "Reconstruct 2 tiles" }).click();
+  await waitForStage(fresh, "model", 300_000);
+  expect(await savedModel(fresh)).toBe(resumed);
+  await fresh.close();
   expect(Object.keys(JSON.parse(resumed).CityObjects)).toHaveLength(1);
   expect(problems).toEqual([]);
 });
