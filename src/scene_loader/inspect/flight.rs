@@ -197,7 +197,8 @@ fn assumed_ground(cameras: &[&Camera]) -> f64 {
     let nearest = |i: usize| {
         let others = cameras.iter().enumerate().filter(|&(j, _)| i != j);
         let distances = others.map(|(_, other)| (other.center - cameras[i].center).xy().norm());
-        distances.fold(f64::INFINITY, f64::min)
+        // Copies of a photograph were taken at one place.
+        distances.filter(|&d| d > 0.0).fold(f64::INFINITY, f64::min)
     };
     let above = |i: usize| {
         let Camera { k, height, .. } = cameras[i];

@@ -38,19 +38,19 @@ async function openPlace(page: Page): Promise<void> {
   }
 }
 
-/** Two tiles that meet in the house. */
+/** Four tiles that meet in the house. */
 async function askForTiles(page: Page): Promise<void> {
   await openPlace(page);
   for (const [label, value] of [
     [/^Region x0/, "-31, -15, 31, 15"],
     [/^Height of the ground/, "100"],
-    [/^Tile size/, "31"],
+    [/^Tile size/, "60"],
   ] as const) {
     await page.getByLabel(label).fill(value);
     await page.getByLabel(label).press("Enter");
   }
   await expect(plan(page)).toBeVisible();
-  await expect(plan(page).locator(".tile")).toHaveCount(2);
+  await expect(plan(page).locator(".tile")).toHaveCount(4);
 }
 
 /** The bytes of the city model, as a person saves them. */
@@ -98,7 +98,10 @@ test("a plan is there before anything long, and the region is drawn on it or sta
   await expect(facts(page)).toContainText("130 ×");
   const south = Number(await side(page, "South").inputValue());
   const north = Number(await side(page, "North").inputValue());
-  await expect(plan(page).locator(".tile")).toHaveCount(3 * Math.ceil((north - south) / 60));
+  // Tiles stand on a grid of the world.
+  const squares = (from: number, to: number) => Math.ceil(to / 60) - Math.floor(from / 60);
+  const count = squares(east - 130, east) * squares(south, north);
+  await expect(plan(page).locator(".tile")).toHaveCount(count);
   await plan(page).getByLabel("Size of a tile, m").fill("500");
   await plan(page).getByLabel("Size of a tile, m").press("Enter");
   await expect(plan(page).locator(".tile")).toHaveCount(1);
@@ -128,12 +131,12 @@ test("tiles that are done stay over a cancelled run and a reload, and give the s
   await page.goto("/");
   await give(page, houseFiles());
   await askForTiles(page);
-  await page.getByRole("button", { name: "Reconstruct 2 tiles" }).click();
+  await page.getByRole("button", { name: "Reconstruct 4 tiles" }).click();
   const progress = page.getByTestId("flight-progress");
-  await expect(progress).toContainText("0 of 2 tiles");
+  await expect(progress).toContainText("0 of 4 tiles");
   await expect(progress).toContainText("6 of 6 photographs read");
   await expect(progress).toContainText(/minutes? left/);
-  await expect(progress).toContainText("1 of 2 tiles", { timeout: 150_000 });
+  await expect(progress).toContainText("1 of 4 tiles", { timeout: 150_000 });
   await page.getByRole("button", { name: "Cancel" }).click();
   await expect(progress).toHaveCount(0);
   // Its model is to be seen, though the other tile is not there.
@@ -146,8 +149,8 @@ test("tiles that are done stay over a cancelled run and a reload, and give the s
   await page.reload();
   await expect(plan(page)).toContainText("1 tile of this plan is kept", { timeout: 60_000 });
   await expect(plan(page).locator(".tile.done")).toHaveCount(1);
-  await plan(page).getByRole("button", { name: "Go on: 1 of 2 tiles" }).click();
-  await expect(progress).toContainText("1 of 2 tiles");
+  await plan(page).getByRole("button", { name: "Go on: 3 of 4 tiles" }).click();
+  await expect(progress).toContainText("1 of 4 tiles");
   await waitForStage(page, "model", 200_000);
   const resumed = await savedModel(page);
 
@@ -157,7 +160,7 @@ test("tiles that are done stay over a cancelled run and a reload, and give the s
   await give(fresh, houseFiles());
   await askForTiles(fresh);
   await expect(plan(fresh).locator(".tile.done")).toHaveCount(0);
-  await fresh.getByRole("button", { name: "Reconstruct 2 tiles" }).click();
+  await fresh.getByRole("button", { name: "Reconstruct 4 tiles" }).click();
   await waitForStage(fresh, "model", 300_000);
   expect(await savedModel(fresh)).toBe(resumed);
   await fresh.close();

@@ -46,10 +46,10 @@ test("tiles run one after the other into the model of the command line", async (
   await expect(page.locator(".status.good")).toHaveCount(6);
   await page.getByText("Region and ground").click();
   await askFor(page, /Tile size/, "10");
-  await expect(page.getByText("30 m or more")).toBeVisible();
+  await expect(page.getByText("60 m or more")).toBeVisible();
   await askFor(page, /Region/, REGION);
   await askFor(page, /Height of the ground/, "100");
-  await askFor(page, /Tile size/, "31");
+  await askFor(page, /Tile size/, "60");
 
   // Cancelled in the middle, and begun again.
   await page.getByRole("button", { name: "Run all" }).click();
@@ -67,7 +67,7 @@ test("tiles run one after the other into the model of the command line", async (
 
   test.skip(MAY_SKIP, `there is no ${BINARY} to compare with`);
   const region = REGION.replaceAll(" ", "");
-  const out = reconstruct(houseFiles(), ".", ["--roi", region, "--ground-z", "100", "--tile", "31"]);
+  const out = reconstruct(houseFiles(), ".", ["--roi", region, "--ground-z", "100", "--tile", "60"]);
   expect(model.equals(readFileSync(join(out, "model.city.json")))).toBe(true);
   expect(atlas.equals(readFileSync(join(out, "model_atlas.jpg")))).toBe(true);
 });

@@ -37,7 +37,8 @@ export function proposeTiles(): void {
 /** Plans the tiles, and measures the ground where nobody states its height; the plan is shown before that. */
 export async function planFlight(turn: Turn, tileM: number): Promise<void> {
   await planFitting(tileM);
-  const area = plannedRegion();
+  // Where the assumed height leaves nothing to be seen, the middle of the flight.
+  const area = plannedRegion() ?? flightPlan.value?.overview.overlap.area ?? null;
   if (area !== null && runOptions.value.groundZ === null && measuredHeights.value === null) {
     turn.enter("load", "Measuring the height of the ground");
     const options = optionsOf({ ...runOptions.value, roi: null, reduction: plannedReduction.value });
