@@ -228,8 +228,8 @@ mod tests {
         // Every place shows the nearest of the faces there.
         let [low, high] = crate::geometry::bounds(faces.iter().flat_map(|f| f.bounds()));
         let mut places = 0;
-        for i in 0..400 {
-            let share = Vector2::new(f64::from(i % 20) + 0.37, f64::from(i / 20) + 0.61) / 20.0;
+        for i in 0..1600 {
+            let share = Vector2::new(f64::from(i % 40) + 0.37, f64::from(i / 40) + 0.61) / 40.0;
             let p = low + (high - low).component_mul(&share);
             let lifted = |ring: &Vec<Point2<f64>>| -> Vec<Point3<f64>> {
                 ring.iter().map(|q| Point3::new(q.x, q.y, 0.0)).collect()
