@@ -22,6 +22,7 @@ const COARSEST: f64 = 2.0;
 
 /// A view of a region and its part that a run reads.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(deny_unknown_fields)]
 pub struct ViewWindow {
     /// The name that the view goes by.

@@ -150,36 +150,6 @@ test("figures 10 to 14: theta is dragged, the windows and Sim follow", async () 
   await expect(theta).not.toHaveText(start ?? "");
 });
 
-test("what a tab shows is taken along: as an SVG file with its photographs, and its numbers", async () => {
-  await pickMatchedSegment();
-  const panel = page.getByRole("region", { name: "Take along" });
-  await panel.getByText("Take along").click();
-  const saved = async (name: string) => {
-    const download = page.waitForEvent("download");
-    await panel.getByRole("button", { name, exact: true }).click();
-    return readFileSync(await (await download).path(), "utf8");
-  };
-  const found = await page.evaluate(
-    (text) => {
-      const parsed = new DOMParser().parseFromString(text, "image/svg+xml");
-      const count = (selector: string) => parsed.querySelectorAll(selector).length;
-      return [count("parsererror"), count('image[href^="data:image/jpeg"]'), count("path")] as const;
-    },
-    await saved("SVG"),
-  );
-  expect(found.slice(0, 2)).toEqual([0, 1]);
-  expect(found[2]).toBeGreaterThan(5);
-  const candidates = await page.locator(".candidates tbody tr").count();
-  const rows = (await saved("CSV")).trimEnd().split("\r\n");
-  expect(new Set(rows.slice(1).map((row) => row.split(",")[0])).size).toBe(candidates);
-  await openTab(page, "Facets");
-  // Tints are styles of single elements, which a file has to say itself.
-  expect(await saved("SVG")).toMatch(/<path[^>]* fill="#[0-9a-f]{6}"/);
-  expect((await saved("CSV")).split("\r\n")[0]).toMatch(/^facet,corner,x,y,z,/);
-  await panel.getByRole("button", { name: "Cite" }).click();
-  await expect(panel.getByRole("textbox", { name: "BibTeX" })).toHaveValue(/Section 4\.3, figures 21 to 23/);
-});
-
 test("a link shows the stage, the method's parameters and the selection", async () => {
   await expect(page).toHaveURL(/tab=halfplanes/);
   await expect(page).toHaveURL(/select=halfplane%3A0/);
@@ -458,4 +428,34 @@ test("new lines of the model stand behind the matched ones, and say where they c
     "data-count",
     String(matched),
   );
+});
+
+test("what a tab shows is taken along: as an SVG file with its photographs, and its numbers", async () => {
+  await pickMatchedSegment();
+  const panel = page.getByRole("region", { name: "Take along" });
+  await panel.getByText("Take along").click();
+  const saved = async (name: string) => {
+    const download = page.waitForEvent("download");
+    await panel.getByRole("button", { name, exact: true }).click();
+    return readFileSync(await (await download).path(), "utf8");
+  };
+  const found = await page.evaluate(
+    (text) => {
+      const parsed = new DOMParser().parseFromString(text, "image/svg+xml");
+      const count = (selector: string) => parsed.querySelectorAll(selector).length;
+      return [count("parsererror"), count('image[href^="data:image/jpeg"]'), count("path")] as const;
+    },
+    await saved("SVG"),
+  );
+  expect(found.slice(0, 2)).toEqual([0, 1]);
+  expect(found[2]).toBeGreaterThan(5);
+  const candidates = await page.locator(".candidates tbody tr").count();
+  const rows = (await saved("CSV")).trimEnd().split("\r\n");
+  expect(new Set(rows.slice(1).map((row) => row.split(",")[0])).size).toBe(candidates);
+  await openTab(page, "Facets");
+  // Tints are styles of single elements, which a file has to say itself.
+  expect(await saved("SVG")).toMatch(/<path[^>]* fill="#[0-9a-f]{6}"/);
+  expect((await saved("CSV")).split("\r\n")[0]).toMatch(/^facet,corner,x,y,z,/);
+  await panel.getByRole("button", { name: "Cite" }).click();
+  await expect(panel.getByRole("textbox", { name: "BibTeX" })).toHaveValue(/Section 4\.3, figures 21 to 23/);
 });

@@ -328,7 +328,7 @@ test("what is too large is loaded by a region of it", async ({ page }) => {
   // In tiles, all of it.
   await ask(/Region/, "-400, -400, 400, 400");
   await expect(page.getByRole("alert")).toContainText("MB of memory");
-  await ask(/Tile size/, "50");
+  await ask(/Tile size/, "60");
   await expect(page.getByRole("alert")).toHaveCount(0);
   expect(problems).toEqual([]);
 });
