@@ -5,25 +5,20 @@ use std::time::Instant;
 
 use ridgeline::execution::progress::silent;
 use ridgeline::orientation::InputFile;
-use ridgeline::params::Params;
-use ridgeline::scene_loader::LoadOptions;
 use ridgeline::tiles::Area;
 
 use super::failure::Failure;
 use super::files;
 use super::input::refusal;
 
-/// Reconstructs the region of interest in tiles of about `tile_m` metres and writes the results.
+/// Reconstructs the tiles of an area and writes the results.
 pub(super) fn reconstruct_tiles(
+    mut area: Area,
     input: &[InputFile],
-    options: &LoadOptions,
-    params: &Params,
-    tile_m: f64,
     out: &Path,
     seen: &str,
 ) -> Result<(), Failure> {
     let refuse = |e: ridgeline::Error| refusal(&e, seen);
-    let mut area = Area::plan(input, options, params, tile_m).map_err(refuse)?;
     eprintln!("{seen}");
     let count = area.tiles().len();
     println!("{}", area.in_words());
