@@ -24,7 +24,9 @@ use crate::labelling::Labelling;
 use crate::lines3d::Line3d;
 use crate::model::{Facet, Occluders};
 use crate::params::RoofParams;
-use crate::photoconsistency::{ConsistencyMap, PlanGrid, ShiftableWindows, consistency_map};
+use crate::photoconsistency::{
+    ConsistencyMap, PlanGrid, ShiftableWindows, consistency_map_of_surface,
+};
 use crate::planes::{
     GroupingInput, Member, PlanRegion, PlaneGroup, PlaneLine, add_proposals, group_planes,
     group_propagated, is_wall, line_neighbours, plane_hypotheses, with_propagated,
@@ -186,21 +188,10 @@ fn plan_window(scene: &Scene, lines: &[Line3d], regions: &[PlanRegion]) -> Optio
 fn ground_map(scene: &Scene, ground: &Ground, grid: &PlanGrid) -> Sharded<Option<ConsistencyMap>> {
     const STEP: f64 = 0.3;
     let plane = ground.plane();
-    let [lowest, highest] = ground.rises().map(|rise| (rise / STEP).round() as i32);
-    let levels: Vec<i32> = (lowest - 1..=highest + 1).collect();
-    let maps = sharded_map("planes", &levels, 0.1..0.2, |_, level| {
-        let raised = Plane {
-            d: plane.d - STEP * f64::from(*level) * plane.normal.z,
-            ..plane
-        };
-        consistency_map(scene, &raised, grid)
+    let maps = sharded_map("planes", &[-STEP, 0.0, STEP], 0.1..0.2, |_, step| {
+        consistency_map_of_surface(scene, &plane, &|p| ground.z_at(p) + step, grid)
     })?;
-    Ok(ConsistencyMap::best_of(&maps, |column, row| {
-        let at = grid.center(column, row);
-        let rise = ground.z_at(&at) - plane.z_at(at.x, at.y);
-        let below = ((rise / STEP).round() as i32 - lowest).clamp(0, highest - lowest) as usize;
-        below..below + 3
-    }))
+    Ok(ConsistencyMap::best_of(&maps))
 }
 
 /// Finest cell, metres. Assumption: what a roof's border lines can be told apart by; sharper images

@@ -1,7 +1,5 @@
 //! The photo-consistency map of a plane.
 
-use std::ops::Range;
-
 use serde::{Deserialize, Serialize};
 
 use super::plan_grid::PlanGrid;
@@ -31,17 +29,12 @@ impl ConsistencyMap {
         f32::from(self.correlation[k]) / 127.0
     }
 
-    /// Of maps of one grid, at every cell the one with the highest correlation among those that
-    /// `among` selects for its column and row. `None` without maps.
-    pub(crate) fn best_of(
-        maps: &[Self],
-        among: impl Fn(usize, usize) -> Range<usize>,
-    ) -> Option<Self> {
+    /// Of maps of one grid, at every cell the one with the highest correlation. `None` without
+    /// maps.
+    pub(crate) fn best_of(maps: &[Self]) -> Option<Self> {
         let mut best = maps.first()?.clone();
-        let (width, cells) = (best.grid.width, best.correlation.len());
-        for k in 0..cells {
-            let named = &maps[among(k % width, k / width)];
-            let Some(map) = named.iter().max_by_key(|m| m.correlation[k]) else {
+        for k in 0..best.correlation.len() {
+            let Some(map) = maps.iter().max_by_key(|m| m.correlation[k]) else {
                 continue;
             };
             best.correlation[k] = map.correlation[k];
@@ -73,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_best_of_the_named_maps_is_taken_with_its_weight() {
+    fn of_several_maps_the_best_is_taken_with_its_weight() {
         let map = |correlation: [i8; 2], weight: u8| ConsistencyMap {
             grid: PlanGrid {
                 origin: nalgebra::Point2::origin(),
@@ -85,14 +78,11 @@ mod tests {
             weight: vec![weight; 2],
             common_weight: vec![weight + 1; 2],
         };
-        let maps = [map([10, 90], 1), map([60, 20], 3), map([99, 99], 5)];
-        let best = ConsistencyMap::best_of(&maps, |_, row| row..2).unwrap();
-        assert_eq!(best.correlation, [60, 20]);
-        assert_eq!(best.weight, [3, 3]);
-        assert_eq!(best.common_weight, [4, 4]);
-        let all = ConsistencyMap::best_of(&maps[..2], |_, _| 0..2).unwrap();
-        assert_eq!(all.correlation, [60, 90]);
-        assert_eq!(all.weight, [3, 1]);
-        assert!(ConsistencyMap::best_of(&[], |_, _| 0..0).is_none());
+        let maps = [map([10, 90], 1), map([60, 20], 3)];
+        let best = ConsistencyMap::best_of(&maps).unwrap();
+        assert_eq!(best.correlation, [60, 90]);
+        assert_eq!(best.weight, [3, 1]);
+        assert_eq!(best.common_weight, [4, 2]);
+        assert!(ConsistencyMap::best_of(&[]).is_none());
     }
 }

@@ -33,7 +33,9 @@ pub(crate) use box_sum::{BoxSum, HALF_WINDOW, RowSum, WINDOW, WINDOW_CELLS};
 pub(crate) use consistency_map::ConsistencyMap;
 pub(crate) use line_side_strip::{LineSideStrip, StripPatch};
 pub(crate) use plan_grid::{PlanGrid, orthophoto};
-pub(crate) use plane_consistency::{consistency_map, consistency_map_behind};
+pub(crate) use plane_consistency::{
+    consistency_map, consistency_map_behind, consistency_map_of_surface,
+};
 pub(crate) use plane_window::{Agreement, WindowMatcher};
 pub(crate) use shiftable_windows::ShiftableWindows;
 pub(crate) use windows::CorrelationWindows;

@@ -1,6 +1,6 @@
 //! The plan grid: a raster of square cells on the XY plane in which plane hypotheses are compared.
 
-use nalgebra::{Matrix3, Point2};
+use nalgebra::{Matrix3, Point2, Point3};
 use serde::{Deserialize, Serialize};
 
 use crate::camera::Camera;
@@ -105,11 +105,27 @@ pub(crate) fn orthophoto(gray: &Gray, camera: &Camera, plane: &Plane, grid: &Pla
     out
 }
 
+/// The same for a surface that is no plane: `z` gives its height over a plan position, metres.
+pub(crate) fn orthophoto_of_surface(
+    gray: &Gray,
+    camera: &Camera,
+    z: &dyn Fn(&Point2<f64>) -> f64,
+    grid: &PlanGrid,
+) -> Vec<f32> {
+    let value = |k: usize| {
+        let p = grid.center(k % grid.width, k / grid.width);
+        let x = camera.project(&Point3::new(p.x, p.y, z(&p)))?;
+        gray.sample(x.x as f32, x.y as f32)
+    };
+    let cells = 0..grid.width * grid.height;
+    cells.map(|k| value(k).unwrap_or(f32::NAN)).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::camera::testing::crop_camera;
-    use nalgebra::{Point3, Vector3};
+    use nalgebra::Vector3;
 
     #[test]
     fn plan_map_agrees_with_projection() {

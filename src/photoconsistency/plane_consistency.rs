@@ -15,11 +15,11 @@
 //!   plane correlate by beyond chance; what a correlation says at a weight is a fitted table
 //!   ([`crate::evidence`]).
 
-use nalgebra::Point3;
+use nalgebra::{Point2, Point3};
 
 use super::consistency_map::{ConsistencyMap, MAX_VIEWS};
 use super::pairwise_correlation::correlate_views;
-use super::plan_grid::{PlanGrid, orthophoto};
+use super::plan_grid::{PlanGrid, orthophoto, orthophoto_of_surface};
 use crate::camera::Camera;
 use crate::geometry::Plane;
 use crate::ids::ViewId;
@@ -40,7 +40,23 @@ pub(crate) fn consistency_map(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> 
     )
 }
 
-/// The same with known occluders: `hidden` tells whether a point of the plane is occluded in a
+/// The same on a surface near `plane`: `z` gives its height over a plan position, metres.
+pub(crate) fn consistency_map_of_surface(
+    scene: &Scene,
+    plane: &Plane,
+    z: &dyn Fn(&Point2<f64>) -> f64,
+    grid: &PlanGrid,
+) -> ConsistencyMap {
+    let views = views_of_plane(scene, plane, grid);
+    let photo = |&v: &ViewId| orthophoto_of_surface(&scene.view(v).gray, scene.camera(v), z, grid);
+    correlate_views(
+        views.iter().map(photo),
+        residual_variance(scene, &views),
+        grid,
+    )
+}
+
+/// The same on a plane with known occluders: `hidden` tells whether a point of the plane is occluded in a
 /// view.
 pub(crate) fn consistency_map_behind(
     scene: &Scene,

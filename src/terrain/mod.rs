@@ -1,10 +1,13 @@
-//! Height of the ground from the images: a sweep of horizontal planes.
+//! Height of the ground from the images: a sweep of horizontal planes, and the smooth surface
+//! under what it finds.
 //!
 //! Every view, reduced four times, is compared with the others on horizontal planes at steps of
 //! height (the measure that verifies facets, `photoconsistency`). Each position takes the
-//! height at which the views agree best; the ground near a building is the lowest height that many
-//! positions around it share, since roofs and trees only rise above it and wrong matches share
-//! none. What is matched at about the height of the plane through those then settles the height.
+//! height at which the views agree best. The ground is the surface of least energy under those
+//! positions ([`surface`]): roofs and trees only rise above it, wrong matches below it are few, and
+//! it hardly leaves the plane that it lies in as a whole.
+
+mod surface;
 
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
@@ -14,31 +17,34 @@ use crate::geometry::{Plane, Segment3};
 use crate::lines3d::Line3d;
 use crate::model::Facet;
 use crate::photoconsistency::{PlanGrid, consistency_map};
-use crate::scene::Scene;
+use crate::scene::{Scene, View};
 
-/// Ground heights, metres, local frame, on a coarse grid over the scene.
+/// The ground: a plane and, on a coarse grid over the scene, how far it rises above that.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ground {
     min: Point2<f64>,
     columns: usize,
     rows: usize,
-    /// Row by row; empty for one height everywhere.
-    heights: Vec<f64>,
-    /// The plane that the ground lies in as a whole.
+    /// Rise of the middle of each block above the plane, metres, row by row; empty for none.
+    rises: Vec<f64>,
+    /// The plane that the ground lies in as a whole; local frame.
     plane: Plane,
 }
 
-/// Blocks higher than this above the common plane show no ground, metres: lower than any eave.
-/// Assumption: the ground of one scene is nearly plane.
+/// Blocks further than this from a plane do not lie in it, metres: lower than any eave.
 const STANDS_OUT: f64 = 1.0;
-/// Ground as a whole slopes less than this (normal's z of 8 degrees). Assumption: a steeper fit
+/// Ground as a whole slopes less than this (normal's z of 18 degrees). Assumption: a steeper fit
 /// follows a roof.
-const LEAST_LEVEL: f64 = 0.99;
+const LEAST_LEVEL: f64 = 0.95;
 /// Cell of the ground grid, metres.
 const CELL: f64 = 5.0;
-/// Matched positions within this distance determine the ground height of a cell, metres: more than
-/// half the width of a building.
+/// Within this distance of a block ground is matched, metres: more than half the width of a
+/// building.
 const RADIUS: f64 = 18.0;
+/// Positions within this distance of a block's middle settle its height, metres.
+const SETTLING: f64 = 7.5;
+/// What lies closer than this to the surface is ground, metres: as rough as ground is.
+const ROUGHNESS: f64 = 0.5;
 /// Images are reduced by this factor for the sweep.
 const REDUCE: usize = 4;
 /// Most planes in the sweep.
@@ -46,6 +52,8 @@ const MAX_LEVELS: usize = 64;
 /// A position counts as matched from this correlation and texture weight on.
 const MIN_CORRELATION: f32 = 0.7;
 const MIN_WEIGHT: f32 = 0.5;
+/// What fewer views see may agree by chance: a third one checks it.
+const LEAST_VIEWS: usize = 3;
 /// Fewer matched positions determine no height.
 const MIN_SAMPLES: usize = 30;
 /// Positions within this height share it, metres: as rough as ground is.
@@ -61,7 +69,7 @@ impl Ground {
             min: Point2::origin(),
             columns: 0,
             rows: 0,
-            heights: Vec::new(),
+            rises: Vec::new(),
             plane: level_plane(z),
         }
     }
@@ -125,25 +133,52 @@ impl Ground {
             min,
             columns,
             rows,
-            heights: vec![elsewhere; columns * rows],
+            rises: vec![0.0; columns * rows],
             plane: level_plane(elsewhere),
         };
-        let cells: Vec<usize> = (0..columns * rows).collect();
-        let lowest = crate::execution::map(&cells, |_, &k| {
-            let at = ground.block(k).xy();
-            low_height(samples.iter().filter(|s| is_near(s, &at)).map(|s| s.z))
+        let blocks: Vec<usize> = (0..columns * rows).collect();
+        let lowest = crate::execution::map(&blocks, |_, &k| {
+            let at = ground.middle(k);
+            let near = samples.iter().filter(|s| is_within(s, &at, RADIUS));
+            low_height(near.map(|s| s.z)).map(|z| Point3::new(at.x, at.y, z))
         });
-        let lowest: Vec<Point3<f64>> = (lowest.iter().enumerate())
-            .filter_map(|(k, z)| {
-                let at = ground.block(k);
-                z.map(|z| Point3::new(at.x, at.y, z))
-            })
-            .collect();
-        if let Some(plane) = common_plane(&lowest) {
+        let lowest: Vec<Point3<f64>> = lowest.into_iter().flatten().collect();
+        let planes = planes_through(&lowest);
+        let surfaces = planes.into_iter().map(|plane| {
+            let blocks = Self {
+                plane,
+                ..ground.clone()
+            }
+            .blocks(samples);
+            (plane, surface::below(&blocks))
+        });
+        let least = surfaces.min_by(|a, b| a.1.energy.total_cmp(&b.1.energy));
+        if let Some((plane, surface)) = least {
             ground.plane = plane;
+            ground.rises = surface.heights;
         }
         ground.settle(samples);
         ground
+    }
+
+    /// The rises of the positions in each block.
+    fn blocks(&self, samples: &[Point3<f64>]) -> surface::Blocks {
+        let mut heights = vec![Vec::new(); self.rises.len()];
+        for p in samples {
+            let (c, r) = ((p.x - self.min.x) / CELL, (p.y - self.min.y) / CELL);
+            heights[r as usize * self.columns + c as usize].push(self.above_plane(p));
+        }
+        for block in &mut heights {
+            block.sort_by(f64::total_cmp);
+        }
+        surface::Blocks {
+            columns: self.columns,
+            heights,
+        }
+    }
+
+    fn above_plane(&self, p: &Point3<f64>) -> f64 {
+        p.z - self.plane.z_at(p.x, p.y)
     }
 
     /// The plane that the ground lies in as a whole.
@@ -151,48 +186,46 @@ impl Ground {
         self.plane
     }
 
-    /// How far the ground lies above that plane, least and most, metres.
-    pub fn rises(&self) -> [f64; 2] {
-        let blocks = (0..self.heights.len()).map(|k| self.block(k));
-        let rise = |p: Point3<f64>| p.z - self.plane.z_at(p.x, p.y);
-        blocks.map(rise).fold([0.0, 0.0], |[low, high], rise| {
-            [rise.min(low), rise.max(high)]
-        })
-    }
-
-    /// Middle of a block, on the ground.
-    fn block(&self, k: usize) -> Point3<f64> {
+    /// Middle of a block, in plan.
+    fn middle(&self, k: usize) -> Point2<f64> {
         let (c, r) = ((k % self.columns) as f64, (k / self.columns) as f64);
-        let p = self.min + Vector2::new(c + 0.5, r + 0.5) * CELL;
-        Point3::new(p.x, p.y, self.heights[k])
+        self.min + Vector2::new(c + 0.5, r + 0.5) * CELL
     }
 
-    /// Lays every block in the common plane, and then to the middle of what is matched around it at
-    /// about that height.
+    /// Moves every block to the middle of what is matched around it on the surface.
     fn settle(&mut self, samples: &[Point3<f64>]) {
-        let plane = self.plane;
-        let rise = |p: &Point3<f64>| p.z - plane.z_at(p.x, p.y);
-        let level: Vec<&Point3<f64>> = (samples.iter())
-            .filter(|p| rise(p).abs() < STANDS_OUT)
+        let rise = |p: &Point3<f64>| self.above_plane(p);
+        let on_surface: Vec<&Point3<f64>> = (samples.iter())
+            .filter(|p| (p.z - self.z_at(&p.xy())).abs() < ROUGHNESS)
             .collect();
-        let cells: Vec<usize> = (0..self.heights.len()).collect();
-        self.heights = crate::execution::map(&cells, |_, &k| {
-            let at = self.block(k);
-            let near = level.iter().filter(|p| is_near(p, &at.xy()));
+        let blocks: Vec<usize> = (0..self.rises.len()).collect();
+        let settled = crate::execution::map(&blocks, |_, &k| {
+            let at = self.middle(k);
+            let near = on_surface.iter().filter(|p| is_within(p, &at, SETTLING));
             let mut rises: Vec<f64> = near.map(|p| rise(p)).collect();
             let enough = rises.len() >= MIN_SAMPLES;
             let middle = crate::math::median(&mut rises).filter(|_| enough);
-            plane.z_at(at.x, at.y) + middle.unwrap_or(0.0)
+            middle.unwrap_or(self.rises[k])
         });
+        self.rises = settled;
     }
 
-    /// Ground height at a plan position, metres.
+    /// Ground height at a plan position, metres; between the middles of blocks it is bilinear.
     pub fn z_at(&self, p: &Point2<f64>) -> f64 {
-        let (c, r) = ((p.x - self.min.x) / CELL, (p.y - self.min.y) / CELL);
-        if c < 0.0 || r < 0.0 || c >= self.columns as f64 || r >= self.rows as f64 {
-            return self.plane.z_at(p.x, p.y);
+        let plane = self.plane.z_at(p.x, p.y);
+        if self.rises.is_empty() {
+            return plane;
         }
-        self.heights[r as usize * self.columns + c as usize]
+        let at = |x: f64, min: f64, count: usize| {
+            let x = ((x - min) / CELL - 0.5).clamp(0.0, (count - 1) as f64);
+            let low = (x as usize).min(count.saturating_sub(2));
+            (low, (low + 1).min(count - 1), x - low as f64)
+        };
+        let (c0, c1, u) = at(p.x, self.min.x, self.columns);
+        let (r0, r1, v) = at(p.y, self.min.y, self.rows);
+        let rise = |c: usize, r: usize| self.rises[r * self.columns + c];
+        let row = |r: usize| rise(c0, r) + (rise(c1, r) - rise(c0, r)) * u;
+        plane + row(r0) + (row(r1) - row(r0)) * v
     }
 
     /// Ground height below a building, metres: the middle one of those at its corners.
@@ -213,9 +246,8 @@ fn level_plane(z: f64) -> Plane {
     }
 }
 
-/// The plane that most of the blocks lie in, or the lowest of those that at least half as many do:
-/// a town may have more flat roofs of one height than ground. `None` without blocks.
-fn common_plane(blocks: &[Point3<f64>]) -> Option<Plane> {
+/// Planes that the ground may lie in as a whole: fits to the blocks from several heights.
+fn planes_through(blocks: &[Point3<f64>]) -> Vec<Plane> {
     const STARTS: usize = 10;
     const ROUNDS: usize = 10;
     let near = |plane: &Plane| -> Vec<(Point3<f64>, f64)> {
@@ -226,30 +258,28 @@ fn common_plane(blocks: &[Point3<f64>]) -> Option<Plane> {
     heights.sort_by(f64::total_cmp);
     let at_share = |i: usize| heights.get(i * heights.len() / STARTS);
     let starts = (0..STARTS).filter_map(at_share).map(|z| level_plane(*z));
-    let found: Vec<(Plane, usize)> = starts
-        .map(|mut plane| {
-            for _ in 0..ROUNDS {
-                let Some(next) = Plane::fit(&near(&plane)).filter(|p| p.normal.z > LEAST_LEVEL)
-                else {
-                    break;
-                };
-                plane = next;
-            }
-            (plane, near(&plane).len())
-        })
-        .collect();
-    let most = found.iter().map(|(_, n)| *n).max()?;
-    let middle = blocks.iter().map(|p| p.coords.xy()).sum::<Vector2<f64>>() / blocks.len() as f64;
-    let common = found.iter().filter(|(_, n)| 2 * n >= most);
-    common.map(|(plane, _)| *plane).min_by(|a, b| {
-        a.z_at(middle.x, middle.y)
-            .total_cmp(&b.z_at(middle.x, middle.y))
-    })
+    let fits = starts.flat_map(|level| {
+        let mut plane = level;
+        for _ in 0..ROUNDS {
+            let Some(next) = Plane::fit(&near(&plane)).filter(|p| p.normal.z > LEAST_LEVEL) else {
+                break;
+            };
+            plane = next;
+        }
+        [level, plane]
+    });
+    let mut planes: Vec<Plane> = Vec::new();
+    for plane in fits {
+        if !planes.contains(&plane) {
+            planes.push(plane);
+        }
+    }
+    planes
 }
 
-/// Is a matched position near enough to determine the ground height here?
-fn is_near(sample: &Point3<f64>, at: &Point2<f64>) -> bool {
-    (sample.xy() - at).norm_squared() <= RADIUS * RADIUS
+/// Is a matched position within a distance of a place in plan, metres?
+fn is_within(sample: &Point3<f64>, at: &Point2<f64>, distance: f64) -> bool {
+    (sample.xy() - at).norm_squared() <= distance * distance
 }
 
 /// The lowest height that many share; `None` with too few samples.
@@ -324,8 +354,9 @@ fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Sharded<Ve
                         .total_cmp(&maps[j].correlation(k))
                         .then(j.cmp(&i))
                 });
-            if let Some(i) = best {
-                let p = grid.center(column, row);
+            let p = grid.center(column, row);
+            let seen = |z: &f64| views_of(scene, &Point3::new(p.x, p.y, *z)) >= LEAST_VIEWS;
+            if let Some(i) = best.filter(|i| seen(&heights[*i])) {
                 let correlation = |i: usize| maps.get(i).map(|m| f64::from(m.correlation(k)));
                 let beside = [i.checked_sub(1).and_then(correlation), correlation(i + 1)];
                 let between = top_between(beside, f64::from(maps[i].correlation(k)));
@@ -335,6 +366,15 @@ fn sweep(scene: &Scene, ends: &[Point3<f64>], low: f64, high: f64) -> Sharded<Ve
         }
     }
     Ok(samples)
+}
+
+/// How many views see a point.
+fn views_of(scene: &Scene, point: &Point3<f64>) -> usize {
+    let sees = |v: &&View| {
+        let image = v.camera.project(point);
+        image.is_some_and(|x| v.camera.contains(&x, 0.0))
+    };
+    scene.views.iter().filter(sees).count()
 }
 
 /// Where the parabola through a correlation and those a level below and above it has its top, in
@@ -382,7 +422,6 @@ mod tests {
     fn sloping_ground_is_found_beside_a_large_roof() {
         let found = Ground::from_samples(&samples(), 49.0);
         for (x, y) in [(30.0, 30.0), (8.0, 8.0), (52.0, 30.0), (30.0, 8.0)] {
-            // Heights are those of blocks of 5 m.
             let miss = found.z_at(&Point2::new(x, y)) - ground(x, y);
             assert!(miss.abs() < 0.12, "{miss} m at {x}, {y}");
         }
@@ -403,38 +442,47 @@ mod tests {
         assert_eq!(low_height(around(50.0, MIN_SAMPLES - 1).into_iter()), None);
     }
 
-    #[test]
-    fn of_two_planes_the_lower_is_the_ground_unless_hardly_anything_lies_in_it() {
-        let plane = |z: f64, count: i32| {
-            (0..count).map(move |i| {
-                let (x, y) = (5.0 * f64::from(i % 10), 5.0 * f64::from(i / 10));
-                Point3::new(x, y, z + 0.03 * x)
-            })
-        };
-        let at_origin = |blocks: Vec<Point3<f64>>| common_plane(&blocks).unwrap().z_at(0.0, 0.0);
-        let found = at_origin(plane(50.0, 60).chain(plane(56.0, 100)).collect());
-        assert!((found - 50.0).abs() < 0.01, "{found}");
-        let found = at_origin(plane(48.0, 12).chain(plane(50.0, 60)).collect());
-        assert!((found - 50.0).abs() < 0.01, "{found}");
-        assert!(common_plane(&[]).is_none());
+    /// Matched positions half a metre apart on 60 m by 60 m at heights by position.
+    fn positions(z: impl Fn(f64, f64) -> f64) -> Vec<Point3<f64>> {
+        let positions = (0..120).flat_map(|c| (0..120).map(move |r| (c, r)));
+        positions
+            .map(|(c, r)| (0.5 * f64::from(c), 0.5 * f64::from(r)))
+            .map(|(x, y)| Point3::new(x, y, z(x, y)))
+            .collect()
     }
 
     #[test]
-    fn ground_may_rise_above_its_plane() {
-        let mound = |x: f64| if x > 40.0 { 0.7 } else { 0.0 };
-        let positions = (0..120).flat_map(|c| (0..120).map(move |r| (c, r)));
-        let samples: Vec<Point3<f64>> = positions
-            .map(|(c, r)| (0.5 * f64::from(c), 0.5 * f64::from(r)))
-            .map(|(x, y)| Point3::new(x, y, ground(x, y) + mound(x)))
-            .collect();
-        let found = Ground::from_samples(&samples, 49.0);
-        for (x, y) in [(10.0, 30.0), (57.0, 30.0)] {
-            let miss = found.z_at(&Point2::new(x, y)) - ground(x, y) - mound(x);
+    fn a_bank_is_followed_and_a_roof_on_its_top_is_not() {
+        // A terrace 1.8 m higher on a third of the place; a flat roof of 12 m by 8 m on it.
+        let terrace = |x: f64| ground(x, 0.0) + if x > 40.0 { 1.8 } else { 0.0 };
+        let roof = |x: f64, y: f64| (x - 50.0).abs() < 6.0 && (y - 30.0).abs() < 4.0;
+        let z = |x: f64, y: f64| terrace(x) + if roof(x, y) { 3.0 } else { 0.0 };
+        let found = Ground::from_samples(&positions(z), 49.0);
+        for (x, y) in [(10.0, 30.0), (30.0, 10.0), (55.0, 10.0), (50.0, 30.0)] {
+            let miss = found.z_at(&Point2::new(x, y)) - terrace(x);
             assert!(miss.abs() < 0.15, "{miss} m at {x}, {y}");
         }
-        let [low, high] = found.rises();
-        assert!(high - low > 0.2 && high - low < 0.8, "{low} to {high}");
-        assert_eq!(Ground::level(3.0).rises(), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_slope_of_fifteen_degrees_is_ground() {
+        let slope = |x: f64| 50.0 + 0.268 * x;
+        let roof = |x: f64, y: f64| (x - 30.0).abs() < 6.0 && (y - 30.0).abs() < 5.0;
+        let z = |x: f64, y: f64| if roof(x, y) { 62.0 } else { slope(x) };
+        let found = Ground::from_samples(&positions(z), 49.0);
+        for (x, y) in [(10.0, 30.0), (30.0, 30.0), (52.3, 11.0)] {
+            let miss = found.z_at(&Point2::new(x, y)) - slope(x);
+            assert!(miss.abs() < 0.15, "{miss} m at {x}, {y}");
+        }
+        assert!((found.plane().normal.z - crate::math::cos(0.262)).abs() < 0.01);
+    }
+
+    #[test]
+    fn ground_without_matches_has_one_height() {
+        let level = Ground::level(3.0);
+        assert_eq!(level.z_at(&Point2::new(7.0, -2.0)), 3.0);
+        assert_eq!(Ground::from_samples(&[], 3.0), level);
+        assert!(planes_through(&[]).is_empty());
     }
 
     #[test]
