@@ -9,7 +9,8 @@ export const CORE_VERSION: string = import.meta.env.PROD
   ? wasmUrl.slice(wasmUrl.lastIndexOf("/") + 1)
   : String(performance.timeOrigin);
 
-const OF_SITE: CoreSource = {
+/** The site's own worker and core. */
+export const OF_SITE: CoreSource = {
   startWorker: () => new Worker(new URL("../worker/main.ts", import.meta.url), { type: "module" }),
   get wasmUrl() {
     return new URL(wasmUrl, document.baseURI).href;
