@@ -10,8 +10,8 @@ import { mix, nearestParameter, type Vec2 } from "../toy/linear";
 import { meanOf, meanSquare, ncc, planeAt, relit, warpedWindow, windowAt } from "../toy/windows";
 
 /** Nearer to each other than in other lessons, as on one strip: B99 matches neighbouring views for this. */
-const FIRST = aerial([-4, -6, 42]);
-const SECOND = aerial([4, -6, 42]);
+const FIRST = aerial([-3, -9, 42]);
+const SECOND = aerial([-1, -1, 42]);
 const pictures = computed(() => [photograph(FIRST), photograph(SECOND)] as const);
 const EAVE = [CORNERS.southEaveWest, CORNERS.southEaveEast] as const;
 
@@ -348,7 +348,7 @@ export const CORRELATION: Lesson = {
       title: "Sunlight must not count",
       prose: () => [
         "Two photographs of one roof are never equally bright. So each window loses its mean, and is divided by its own size: what remains is the *pattern*.",
-        "1 says: the same pattern. 0: nothing in common. −1: the negative of it.",
+        "1 says: the same pattern. 0: nothing in common. −1: the negative of it. Below, every $I2$ becomes $gain I2 + offset$.",
       ],
       formula: () =>
         "c = frac { sum ( I - mean1 ) ( I2 - mean2 ) } { sqrt { sum ( I - mean1 ) ^2 sum ( I2 - mean2 ) ^2 } }",

@@ -217,11 +217,11 @@ function MatrixFigure() {
 
 /** Heights between which the eave may be, by handles on the beam. */
 const heights = signal<readonly [number, number]>([0, 14]);
-const EAVE: readonly [Vec2, Vec2] = [
+const VERGE: readonly [Vec2, Vec2] = [
   imageOf(FIRST, CORNERS.southEaveWest),
-  imageOf(FIRST, CORNERS.southEaveEast),
+  imageOf(FIRST, CORNERS.ridgeWest),
 ];
-const onBeam = (end: 0 | 1, h: number): Vec2 => imageOf(SECOND, atHeight(FIRST, EAVE[end], h));
+const onBeam = (end: 0 | 1, h: number): Vec2 => imageOf(SECOND, atHeight(FIRST, VERGE[end], h));
 
 function BeamFigure() {
   const [low, high] = heights.value;
@@ -241,11 +241,11 @@ function BeamFigure() {
   return (
     <div class="pair">
       <ImagePane camera={FIRST} title="A segment of the first view" label="First view" colour={1}>
-        <Line from={EAVE[0]} to={EAVE[1]} class="s1 thick" />
+        <Line from={VERGE[0]} to={VERGE[1]} class="s1 thick" />
       </ImagePane>
       <ImagePane camera={SECOND} title="Its beam in the second view" label="Second view" colour={2}>
-        <EpipolarLine of={EAVE[0]} class="s2 faint" />
-        <EpipolarLine of={EAVE[1]} class="s2 faint" />
+        <EpipolarLine of={VERGE[0]} class="s2 faint" />
+        <EpipolarLine of={VERGE[1]} class="s2 faint" />
         <Shape
           points={[onBeam(0, low), onBeam(1, low), onBeam(1, high), onBeam(0, high)]}
           class="s6 outline"

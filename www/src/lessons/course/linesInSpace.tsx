@@ -1,5 +1,6 @@
 /** Lesson 6: a line in space has four numbers, and its ends are not among them. */
 import { signal } from "@preact/signals";
+import { counted } from "../../app/parts/counted";
 import { Curve, Dot, Handle, Line, Options, Plot, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { DEGREE, degrees, metres, num, pixels } from "../parts/say";
@@ -7,11 +8,11 @@ import { ImagePane, OBSERVER, PlaneOfLine, Space, seen } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
 import { atHeight, type Camera, imageOf } from "../toy/camera";
 import { normal, stream } from "../toy/evidence";
-import { aerial, CORNERS, VIEWS } from "../toy/house";
+import { ACROSS, aerial, CORNERS } from "../toy/house";
 import { clamp, mix3, type Vec2, type Vec3 } from "../toy/linear";
 import { type Ends2, type Ends3, lineError, lineOfTwo, partBetween } from "../toy/lines";
 
-const [FIRST, SECOND] = VIEWS;
+const [FIRST, SECOND] = ACROSS;
 const TOP_M = 14;
 const feet = signal<readonly [Vec2, Vec2]>([
   [-8, -6],
@@ -138,7 +139,7 @@ function EndsFigure({ isRevealed }: { isRevealed: boolean }) {
 const RIDGE: Ends3 = [CORNERS.ridgeWest, CORNERS.ridgeEast];
 const MEASURED: readonly Ends2[] = (() => {
   const random = stream(5);
-  return VIEWS.map((camera) =>
+  return ACROSS.map((camera) =>
     inView(camera, RIDGE).map(([x, y]): Vec2 => [x + 1.5 * normal(random), y + 1.5 * normal(random)]),
   ) as unknown as readonly Ends2[];
 })();
@@ -148,7 +149,7 @@ const lineOf = ([a, b]: readonly [number, number]): Ends3 => [
   [RIDGE[0][0], 0, a],
   [RIDGE[1][0], 0, b],
 ];
-const errorOf = (heights: readonly [number, number]) => lineError(VIEWS, MEASURED, lineOf(heights));
+const errorOf = (heights: readonly [number, number]) => lineError(ACROSS, MEASURED, lineOf(heights));
 /** The heights of least error, by ever finer steps. */
 const best = (() => {
   let at: readonly [number, number] = [8, 8];
@@ -189,7 +190,7 @@ function FitFigure({ isRevealed }: { isRevealed: boolean }) {
         ))}
       </Space>
       <div class="parts">
-        {VIEWS.map((camera, i) => (
+        {ACROSS.map((camera, i) => (
           <ImagePane
             key={camera.C.join()}
             camera={camera}
@@ -461,7 +462,7 @@ export const LINES_IN_SPACE: Lesson = {
       ],
       figure: GrowFigure,
       says: () =>
-        `What ${needed.value === 1 ? "one view shows is" : `${needed.value} views show is`} ${metres(grownLength(needed.value))} of the 10 m; the longest single segment has 7 m.`,
+        `What at least ${counted(needed.value, "views")} show${needed.value === 1 ? "s" : ""} is ${metres(grownLength(needed.value))} of the 10 m; the longest single segment has 7 m.`,
     },
     {
       id: "own",

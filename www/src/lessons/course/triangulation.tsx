@@ -1,6 +1,7 @@
 /** Lesson 5: from image points to a point in space, and how well it is known. */
 import { signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
+import { counted } from "../../app/parts/counted";
 import { Curve, Dot, Drawing, Handle, Label, Line, Plot, Slider } from "../parts/draw";
 import type { Lesson } from "../parts/lesson";
 import { metres, num, pixels } from "../parts/say";
@@ -386,7 +387,7 @@ export const TRIANGULATION: Lesson = {
           `From ${metres(ofViews(2), 3)} to ${metres(ofViews(8), 3)}. Six views on the ends of a longer line would do more.`,
       },
       says: () =>
-        `${views.value} views: ${metres(ofViews(views.value), 3)}, that is ${num(100 * (1 - ofViews(views.value) / ofViews(2)), 0)} % less than with two.`,
+        `${counted(views.value, "views")}: ${metres(ofViews(views.value), 3)}, that is ${num(100 * (1 - ofViews(views.value) / ofViews(2)), 0)} % less than with two.`,
     },
     {
       id: "own",

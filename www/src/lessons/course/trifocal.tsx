@@ -7,7 +7,7 @@ import { ImagePane, PlaneOfLine, Space, seen } from "../parts/scene";
 import { realFigure } from "../scene/RealFigure";
 import { type Camera, imageOf, projection } from "../toy/camera";
 import { normal, stream } from "../toy/evidence";
-import { aerial, CORNERS, VIEWS } from "../toy/house";
+import { ACROSS, aerial, CORNERS } from "../toy/house";
 import { clipLine, lineDistance, lineThrough, type Vec2, type Vec3 } from "../toy/linear";
 import {
   type Ends2,
@@ -19,7 +19,7 @@ import {
   trifocal,
 } from "../toy/lines";
 
-const [FIRST, SECOND, THIRD] = VIEWS;
+const [FIRST, SECOND, THIRD] = ACROSS;
 const RIDGE: Ends3 = [CORNERS.ridgeWest, CORNERS.ridgeEast];
 const inView = (camera: Camera, [p, q]: Ends3): Ends2 => [imageOf(camera, p), imageOf(camera, q)];
 const IN_FIRST = inView(FIRST, RIDGE);

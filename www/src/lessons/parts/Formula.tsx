@@ -2,6 +2,9 @@
 import type { VNode } from "preact";
 import { type MathNode, parseFormula, piecesOf } from "./formula";
 
+/** A bracket keeps its size: MathML would stretch it to the height of its row. */
+const LOW = { stretchy: "false" } as unknown as { stretchy: boolean };
+
 export function Formula({ text, block = false }: { text: string; block?: boolean }) {
   return (
     <math display={block ? "block" : "inline"} class={block ? "formula" : ""}>
@@ -23,7 +26,7 @@ function Node({ of }: { of: MathNode }): VNode {
       );
     }
     case "mo":
-      return <mo stretchy={of.isHigh === true}>{inside}</mo>;
+      return <mo {...(of.isHigh !== true && LOW)}>{inside}</mo>;
     default: {
       const Tag = of.tag;
       return <Tag>{inside}</Tag>;

@@ -8,6 +8,8 @@ import { Formula } from "./Formula";
 interface DrawingProps {
   width: number;
   height: number;
+  /** Where it begins, if not at 0. */
+  top?: number;
   /** What it shows, for those who do not see it. */
   label: string;
   children: ComponentChildren;
@@ -17,7 +19,15 @@ interface DrawingProps {
 }
 
 /** A drawing in units of its own. `--u` is one CSS pixel in these units, so that text and handles keep their size. */
-export function Drawing({ width, height, label, children, isImage = false, class: name = "" }: DrawingProps) {
+export function Drawing({
+  width,
+  height,
+  label,
+  children,
+  top = 0,
+  isImage = false,
+  class: name = "",
+}: DrawingProps) {
   const svg = useRef<SVGSVGElement>(null);
   useEffect(() => {
     const element = svg.current;
@@ -38,7 +48,7 @@ export function Drawing({ width, height, label, children, isImage = false, class
     <svg
       ref={svg}
       class={`drawing ${isImage ? "image" : ""} ${name}`}
-      viewBox={`0 0 ${width} ${height}`}
+      viewBox={`0 ${top} ${width} ${height}`}
       role="group"
       aria-label={label}
     >

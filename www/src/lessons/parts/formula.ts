@@ -170,7 +170,7 @@ function atom(words: Words): MathNode {
     return { tag: "mi", text: SHOWN[word] ?? word, children: [] };
   }
   if (word.startsWith('"')) {
-    return { tag: "mtext", text: word.slice(1, -1).replaceAll("_", " "), children: [] };
+    return { tag: "mtext", text: `\u00a0${word.slice(1, -1).replaceAll("_", "\u00a0")}\u00a0`, children: [] };
   }
   throw new Error(`"${word}" has no meaning: neither symbol, number nor operator`);
 }

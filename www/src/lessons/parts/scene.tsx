@@ -68,14 +68,17 @@ function GroundGrid({ camera }: { camera: Camera }) {
 export const OBSERVER: Camera = {
   f: 640,
   cx: 190,
-  cy: 185,
+  cy: 200,
   width: 400,
-  height: 370,
+  height: 385,
   C: [-38, -82, 38],
   R: lookingAt([-38, -82, 38], [0, 0, 19], [0, 0, 1]),
 };
 
 export const seen = (X: Vec3): Vec2 => imageOf(OBSERVER, X);
+
+/** Where the drawing begins if no cameras are above the house. */
+const LOW_TOP = 165;
 
 /** The scene in space. Children are drawn over it, at `seen(X)`. */
 export function Space(props: {
@@ -84,8 +87,9 @@ export function Space(props: {
   children?: ComponentChildren;
 }) {
   const { label, cameras, children } = props;
+  const top = cameras.length === 0 ? LOW_TOP : 0;
   return (
-    <Drawing width={OBSERVER.width} height={OBSERVER.height} label={label} class="space">
+    <Drawing width={OBSERVER.width} height={OBSERVER.height - top} top={top} label={label} class="space">
       <g class="ground">
         {[-16, -8, 0, 8, 16].map((t) => (
           <g key={t}>

@@ -1,5 +1,6 @@
 /** Which scene the lessons' real figures show: the project that is open in this browser, files, a link, or the demo. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
+import { counted } from "../../app/parts/counted";
 import { droppedFiles } from "../../app/project/inputFiles";
 import { type LockedProject, readStoredProject, type StoredProject } from "../../app/project/storedProject";
 import { loadOptions } from "../../app/settings/loadOptions";
@@ -67,7 +68,7 @@ export function showDemo(): void {
 export function showFiles(files: readonly InputFile[]): void {
   const first = files[0];
   if (first !== undefined) {
-    const name = files.length === 1 ? first.path : `${files.length} files`;
+    const name = files.length === 1 ? first.path : counted(files.length, "files");
     choose({ kind: "files", name, input: { files } });
   }
 }

@@ -56,3 +56,27 @@ export function stream(seed: number): () => number {
 export function normal(random: () => number): number {
   return Math.sqrt(-2 * Math.log(1 - random())) * Math.cos(2 * Math.PI * random());
 }
+
+/**
+ * What was stated and what was true, by tenths of the stated probability; tenths without enough candidates are left out.
+ * @param copies how often each candidate's nats are counted: more than once states too much
+ */
+export function reliability(
+  all: readonly { isTrue: boolean; nats: number }[],
+  copies: number,
+  bins: number,
+): (readonly [stated: number, share: number])[] {
+  const sums = Array.from({ length: bins }, () => ({ stated: 0, isTrue: 0, count: 0 }));
+  for (const { isTrue, nats } of all) {
+    const stated = probabilityOf(copies * nats);
+    const bin = sums[Math.min(bins - 1, Math.floor(stated * bins))];
+    if (bin !== undefined) {
+      bin.stated += stated;
+      bin.isTrue += isTrue ? 1 : 0;
+      bin.count += 1;
+    }
+  }
+  return sums
+    .filter(({ count }) => count >= 20)
+    .map(({ stated, isTrue, count }) => [stated / count, isTrue / count] as const);
+}

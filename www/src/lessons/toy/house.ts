@@ -79,6 +79,13 @@ export const VIEWS: readonly [Camera, Camera, Camera] = [
   aerial([1, 12, 43]),
 ];
 
+/** Three views whose first baseline runs across the ridge: from those above, its planes would be the same. */
+export const ACROSS: readonly [Camera, Camera, Camera] = [
+  aerial([-7, -11, 42]),
+  aerial([-4, 9, 42]),
+  aerial([11, -1, 43]),
+];
+
 /** Where a face's own coordinates are, metres: along its first side, and up from it. */
 function onFace({ corners, normal }: Face, X: Vec3): Vec2 {
   const [p, q] = corners as readonly [Vec3, Vec3];
