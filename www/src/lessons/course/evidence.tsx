@@ -146,7 +146,7 @@ function SumFigure() {
           ["before", priorNats()] as const,
         ]}
       />
-      <div class="pair">
+      <div class="sliders">
         <ViewSliders />
         <Slider
           label="true before anything is seen"
@@ -342,7 +342,7 @@ export const EVIDENCE: Lesson = {
         options: ["As yes and no", "Hardly", "By a factor of ten"],
         right: () => 1,
         why: () =>
-          `0.59 says ${signed(natsOf(0.59), 2)}, 0.61 says ${signed(natsOf(0.61), 2)}: nearly the same. Drag the measured value on the axis: at 0 it says as much against as 0.9 says for.`,
+          `0.59 says ${signed(natsOf(0.59), 2)}, 0.61 says ${signed(natsOf(0.61), 2)}: nearly the same. Drag the measured value on the axis: at 0 it says ${signed(natsOf(0))}, at 0.9 ${signed(natsOf(0.9))}.`,
       },
       says: () => {
         const c = correlation.value;

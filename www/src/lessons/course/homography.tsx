@@ -113,7 +113,7 @@ const warped = (angle: number) => {
   return warpedWindow(shot(1).picture, planeHomography(FIRST, SECOND, n, d), [x, y], size);
 };
 
-const SECTION = { width: 480, height: 210, scale: 15, x: 150, y: 170 } as const;
+const SECTION = { width: 320, height: 250, scale: 16, x: 70, y: 190 } as const;
 const inSection = (y: number, z: number): Vec2 => [
   SECTION.x + SECTION.scale * (y + 4),
   SECTION.y - SECTION.scale * (z - 5),
@@ -186,19 +186,21 @@ function Strips() {
 
 function FanFigure() {
   return (
-    <>
+    <div class="pair">
       <Section isRevealed={false} />
       <Strips />
-    </>
+    </div>
   );
 }
 
 function GuessFigure({ isRevealed }: { isRevealed: boolean }) {
   return (
     <>
-      <Section isRevealed={isRevealed} />
-      <Strips />
-      {isRevealed && <SimPlot curves={[{ values: curveOf("roof", 1), class: "s6" }]} />}
+      <div class="pair">
+        <Section isRevealed={isRevealed} />
+        <Strips />
+      </div>
+      {isRevealed && <SimPlot isAtTheta curves={[{ values: curveOf("roof", 1), class: "s6" }]} />}
     </>
   );
 }
@@ -232,7 +234,12 @@ const curves = computed(() => {
 });
 const curveOf = (of: Side, other: number) => curves.value(of, other);
 
-function SimPlot({ curves: all }: { curves: readonly { values: readonly number[]; class: string }[] }) {
+function SimPlot(props: {
+  curves: readonly { values: readonly number[]; class: string }[];
+  /** Marks the angle that the reader has turned to. */
+  isAtTheta?: boolean;
+}) {
+  const { curves: all, isAtTheta = false } = props;
   return (
     <Plot
       x={{ min: -75, max: 75 }}
@@ -252,11 +259,13 @@ function SimPlot({ curves: all }: { curves: readonly { values: readonly number[]
               points={values.map((value, i): Vec2 => [toX((ANGLES[i] as number) / DEGREE), toY(value)])}
             />
           ))}
-          <Line
-            from={[toX(theta.value / DEGREE), frame.top]}
-            to={[toX(theta.value / DEGREE), frame.height - frame.bottom]}
-            class="s6 faint"
-          />
+          {isAtTheta && (
+            <Line
+              from={[toX(theta.value / DEGREE), frame.top]}
+              to={[toX(theta.value / DEGREE), frame.height - frame.bottom]}
+              class="s6 faint"
+            />
+          )}
         </>
       )}
     </Plot>

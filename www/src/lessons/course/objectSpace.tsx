@@ -542,12 +542,12 @@ export const OBJECT_SPACE: Lesson = {
         question: "How short can you make it?",
         how: () => {
           const best = describe(ROW, BEST, SIGMA).total;
-          return `Yours has ${num(own().total, 0)} bits with ${breaks.value.length} breaks; the shortest found has ${num(best, 0)} with ${BEST.length} (dashed). The row was made with ${TRUE_BREAKS.length}.`;
+          return `Yours has ${num(own().total, 0)} bits with $k$ = ${breaks.value.length}; the shortest found has ${num(best, 0)} with ${BEST.length} (dashed). The row was made with ${TRUE_BREAKS.length}.`;
         },
       },
       says: () => {
         const { model, data, total } = own();
-        return `${num(model, 0)} bits of model and ${num(data, 0)} of deviations: ${num(total, 0)} together, with ${breaks.value.length} breaks.`;
+        return `${num(model, 0)} bits of model and ${num(data, 0)} of deviations: ${num(total, 0)} together, with $k$ = ${breaks.value.length}.`;
       },
     },
     {
@@ -571,7 +571,7 @@ export const OBJECT_SPACE: Lesson = {
         why: () => "Nobody has set a threshold: a break that saves fewer bits than it costs is not made.",
       },
       says: () =>
-        `${count.value} breaks: ${num(bitsOf(count.value).total, 0)} bits; the shortest has ${num(Math.min(...Array.from({ length: MOST_BREAKS + 1 }, (_, k) => bitsOf(k).total)), 0)}.`,
+        `With $k$ = ${count.value} it is ${num(bitsOf(count.value).total, 0)} bits long; the shortest has ${num(Math.min(...Array.from({ length: MOST_BREAKS + 1 }, (_, k) => bitsOf(k).total)), 0)}.`,
     },
     {
       id: "own-regions",

@@ -84,7 +84,6 @@ const slopes = signal<Record<SideName, number | null>>({
   north: 35 * DEGREE,
   west: 50 * DEGREE,
 });
-const SIDE_CLASS: Readonly<Record<SideName, string>> = { south: "s1", east: "s2", north: "s3", west: "s4" };
 const VIEW = { width: 480, height: 300, scale: 24 } as const;
 const inPlan = ([x, y]: readonly [number, number]): Vec2 => [
   VIEW.width / 2 + VIEW.scale * x,
@@ -120,7 +119,7 @@ function EnvelopeFigure({ isRevealed }: { isRevealed: boolean }) {
         {facets().map(
           ({ side, ring }) =>
             ring.length > 2 && (
-              <Shape key={side} points={ring.map(inPlan)} class={`outline ${SIDE_CLASS[side]}`} />
+              <Shape key={side} points={ring.map(inPlan)} class={`outline s0 tint-${side}`} />
             ),
         )}
         <Shape
@@ -140,15 +139,15 @@ function EnvelopeFigure({ isRevealed }: { isRevealed: boolean }) {
             ["west", [-PLAN.length, 0], -8, 4, "end"],
           ] as const
         ).map(([side, at, dx, dy, anchor]) => (
-          <Label key={side} at={inPlan(at)} dx={dx} dy={dy} anchor={anchor} class={SIDE_CLASS[side]}>
+          <Label key={side} at={inPlan(at)} dx={dx} dy={dy} anchor={anchor}>
             {slopes.value[side] === null ? "–" : degrees(slopes.value[side] ?? 0)}
           </Label>
         ))}
       </Drawing>
       {isRevealed && (
-        <div class="pair">
+        <div class="sliders">
           {SIDES.map((side) => (
-            <div key={side} class={SIDE_CLASS[side]}>
+            <div key={side}>
               <Slider
                 label={side}
                 value={(slopes.value[side] ?? 0) / DEGREE}

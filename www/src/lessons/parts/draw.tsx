@@ -134,7 +134,7 @@ export function Handle({ at, label, says, value, onMove, class: name = "s6", ste
     <g
       class={`handle ${name}`}
       role="slider"
-      tabIndex={0}
+      tabindex={0}
       aria-label={label}
       aria-valuenow={Math.round(100 * (value ?? at[0])) / 100}
       aria-valuetext={says}
