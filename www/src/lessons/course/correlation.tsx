@@ -391,7 +391,7 @@ export const CORRELATION: Lesson = {
       title: "A line is many windows",
       prose: () => [
         "A match of two segments is judged at all its edgels. Only correlations above 0.6 are counted, so that a chimney in front spoils its own edgels only; B99 asks for 15 of them.",
-        "At an eave there is roof on one side and, far below, ground on the other. From another place the ground has moved. Look at the sides one at a time.",
+        "An eave has the roof on one side. On the other, one view sees the wall below it, the next one the ground. Look at the sides one at a time.",
       ],
       figure: EdgelFigure,
       says: () =>

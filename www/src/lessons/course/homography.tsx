@@ -73,6 +73,8 @@ function PlaneFigure({ isRevealed }: { isRevealed: boolean }) {
   );
 }
 
+/** Of the camera, grey values: without it the faintest texture would correlate as well as the strongest. */
+const NOISE = 4;
 /** How much texture the roof has; pictures are made again for each amount. */
 const texture = signal(1);
 const madeWith = new Map<number, readonly Shot[]>();
@@ -88,7 +90,7 @@ const shots = computed(() => {
   }
   const made = [FIRST, SECOND, NEAR, FAR].map((camera) => ({
     camera,
-    picture: photograph(camera, { texture: own }),
+    picture: photograph(camera, { texture: own, noise: NOISE }),
   }));
   madeWith.set(own, made);
   return made;

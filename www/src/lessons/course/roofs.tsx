@@ -320,7 +320,7 @@ export const ROOFS: Lesson = {
         options: ["A hip", "A gable: the ridge runs through", "Flat"],
         right: () => 1,
         why: () =>
-          "Push east below 8°: then that side carries nothing. B99 calls the result of such a side an occluding edge.",
+          "Push east below 8°: then that side carries nothing. An occluding edge, says B99, has no half-plane on its occluded side.",
       },
       says: () => {
         const areas = facets()

@@ -147,7 +147,7 @@ function BaselineFigure({ isRevealed }: { isRevealed: boolean }) {
       <Label at={inSide(0, FLYING_M)} dy={-8} anchor="middle" class="s5">
         <tspan class="letter">B</tspan> = {metres(B, 0)}
       </Label>
-      <Label at={inSide(0, 0)} dx={60} dy={40} class="s7">
+      <Label at={[SIDE.width - 6, SIDE.ground]} dy={30} anchor="end" class="s7">
         σ of the height: {metres(sigmaZ(B), 3)}
       </Label>
       {isRevealed && (

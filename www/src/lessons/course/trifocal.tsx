@@ -206,8 +206,8 @@ function DecoyFigure({ isRevealed }: { isRevealed: boolean }) {
 }
 
 const azimuth = signal(60 * DEGREE);
-/** Views of one strip, so that all three baselines run east. */
-const STRIP = [aerial([-9, 0, 42]), aerial([0, 0, 42]), aerial([9, 0, 42])] as const;
+/** Two views of one strip, whose baseline runs east, and one of the next. */
+const STRIPS = [aerial([-9, 0, 42]), aerial([9, 0, 42]), aerial([0, 14, 42])] as const;
 const NOISE_PX = 0.5;
 const SAMPLES = 24;
 const edge = (): Ends3 => {
@@ -218,33 +218,33 @@ const edge = (): Ends3 => {
   ];
 };
 
-/** The line as it is predicted in the third view of the strip, with noise in the two others. */
+/** The line as it is predicted in the third view, with noise in the two others. */
 function samples(): Vec3[] {
   const random = stream(11);
   const noisy = ([x, y]: Vec2): Vec2 => [x + NOISE_PX * normal(random), y + NOISE_PX * normal(random)];
   const seenIn = (camera: Camera): Ends2 => inView(camera, edge()).map(noisy) as unknown as Ends2;
   return Array.from({ length: SAMPLES }, () =>
-    predicted([STRIP[0], STRIP[1]], [seenIn(STRIP[0]), seenIn(STRIP[1])], STRIP[2]),
+    predicted([STRIPS[0], STRIPS[1]], [seenIn(STRIPS[0]), seenIn(STRIPS[1])], STRIPS[2]),
   );
 }
 const spread = () => {
-  const [p, q] = inView(STRIP[2], edge());
+  const [p, q] = inView(STRIPS[2], edge());
   const all = samples().flatMap((line) => [lineDistance(line, p), lineDistance(line, q)]);
   return Math.sqrt(all.reduce((sum, one) => sum + one ** 2, 0) / all.length);
 };
 
 function DegenerateFigure() {
-  const [p, q] = inView(STRIP[2], edge());
+  const [p, q] = inView(STRIPS[2], edge());
   return (
     <>
       <ImagePane
-        camera={STRIP[2]}
-        title="Third view of one strip: 24 predictions"
+        camera={STRIPS[2]}
+        title="View from the next strip: 24 predictions"
         label="Third view"
         colour={3}
       >
         {samples().map((line, i) => {
-          const part = clipLine(line, STRIP[2].width, STRIP[2].height);
+          const part = clipLine(line, STRIPS[2].width, STRIPS[2].height);
           return part === null ? null : (
             <Line key={i.toString()} from={part[0]} to={part[1]} class="s3 faint" />
           );
@@ -361,12 +361,12 @@ export const TRIFOCAL: Lesson = {
       id: "degenerate",
       title: "Along the flight",
       prose: () => [
-        "Three views of one strip. If an edge runs along the baseline, both planes contain the baseline too: they are nearly the same plane, and where they meet is anybody's guess.",
+        "Two views of one strip, and a third from the next. If an edge runs along the baseline, both planes contain the baseline too: they are nearly the same plane, and where they meet is anybody's guess.",
         "Half a pixel of noise in the two images gives 24 predictions. Turn the edge towards the baseline.",
       ],
       figure: DegenerateFigure,
       says: () =>
-        `At $phi$ = ${degrees(azimuth.value)} half a pixel becomes ${pixels(spread())} in the third view. ${spread() > 3 ? "So a line along the flight needs views from another strip." : "That is a good prediction."}`,
+        `At $phi$ = ${degrees(azimuth.value)} half a pixel becomes ${pixels(spread())} in the third view. ${spread() > 3 ? "Such a line needs a pair of views across the flight." : "That is a good prediction."}`,
     },
     {
       id: "own",

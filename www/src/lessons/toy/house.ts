@@ -119,9 +119,11 @@ export function noise(x: number, y: number): number {
 export interface Look {
   /** How much texture the roof has, 0 to 1. */
   texture: number;
+  /** Standard deviation of the camera's noise, grey values. */
+  noise: number;
 }
 
-const USUAL: Look = { texture: 1 };
+const USUAL: Look = { texture: 1, noise: 0 };
 
 /** Grey value of a surface at a place of its own, 0 to 255. */
 function greyOf(name: FaceName | "ground", [u, v]: Vec2, { texture }: Look): number {
@@ -159,10 +161,17 @@ export function photograph(camera: Camera, look: Look = USUAL): Picture {
   for (let row = 0; row < height; row += 1) {
     for (let column = 0; column < width; column += 1) {
       const ray = apply3(toRay, apply3(inverseK, [column + 0.5, row + 0.5, 1]));
-      grey[row * width + column] = greyAlong(C, ray, seen, look);
+      // The same noise whenever this camera takes its photograph.
+      const own = look.noise === 0 ? 0 : look.noise * noiseAt(column + 7919 * Math.round(C[0]), row);
+      grey[row * width + column] = greyAlong(C, ray, seen, look) + own;
     }
   }
   return { width, height, grey };
+}
+
+/** About normal: three even numbers, scaled to a variance of 1. */
+function noiseAt(x: number, y: number): number {
+  return 2 * (hash(x, y) + hash(x, y + 4096) + hash(x, y + 8192) - 1.5);
 }
 
 function greyAlong(C: Vec3, ray: Vec3, seen: readonly Face[], look: Look): number {
