@@ -11,9 +11,9 @@ interface Props<P extends Prediction = Prediction> {
   predict: P;
 }
 
-export function PredictionView({ name, predict }: Props) {
+export function PredictionView({ name, title, predict }: Props & { title: string }) {
   return (
-    <section class="predict" aria-label="Your guess">
+    <section class="predict" aria-label={`Your guess: ${title}`}>
       <p class="question">
         <Pieces text={predict.question} />
       </p>

@@ -21,8 +21,8 @@ export function ScreenView({ lesson, screen, isOnPaper }: Props) {
       <div class="tell">
         <h2>{title}</h2>
         <Prose screen={screen} />
-        {formula !== undefined && <Written formula={formula} />}
-        {predict !== undefined && <PredictionView name={key} predict={predict} />}
+        {formula !== undefined && <Written title={title} formula={formula} />}
+        {predict !== undefined && <PredictionView name={key} title={title} predict={predict} />}
         <Symbols screen={screen} />
       </div>
       <div class="show">
@@ -47,10 +47,10 @@ function Prose({ screen }: { screen: Screen }) {
   );
 }
 
-function Written({ formula }: { formula: () => string }) {
+function Written({ title, formula }: { title: string; formula: () => string }) {
   return (
     // biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls is reached by key
-    <section class="written" tabIndex={0} aria-label="Formula">
+    <section class="written" tabIndex={0} aria-label={`Formula: ${title}`}>
       <Formula text={formula()} block />
     </section>
   );

@@ -4,9 +4,19 @@ import { Curve, Dot, Drawing, Grey, Handle, Label, Line, Options, Plot, Slider }
 import type { Lesson } from "../parts/lesson";
 import { metres, num, pixels } from "../parts/say";
 import { realFigure } from "../scene/RealFigure";
-import { atHeight, imageOf, planeHomography } from "../toy/camera";
+import { atHeight, fundamental, imageOf, planeHomography, projection } from "../toy/camera";
 import { aerial, CORNERS, photograph, surfaceAt } from "../toy/house";
-import { mix, nearestParameter, type Vec2 } from "../toy/linear";
+import {
+  apply3,
+  clipLine,
+  cross,
+  homogeneous,
+  lineThrough,
+  mix,
+  nearestParameter,
+  point2,
+  type Vec2,
+} from "../toy/linear";
 import { meanOf, meanSquare, ncc, planeAt, relit, warpedWindow, windowAt } from "../toy/windows";
 
 /** Nearer to each other than in other lessons, as on one strip: B99 matches neighbouring views for this. */
@@ -248,6 +258,61 @@ function WarpFigure() {
   );
 }
 
+const F = fundamental(projection(FIRST), projection(SECOND));
+const onEave = signal(0.35);
+const EAVE_LINES = [FIRST, SECOND].map((camera) =>
+  EAVE.map((X) => imageOf(camera, X)),
+) as unknown as readonly [readonly [Vec2, Vec2], readonly [Vec2, Vec2]];
+const eavePoint = (t: number): Vec2 => {
+  const [p, q] = EAVE_LINES[0];
+  return [mix(p[0], q[0], t), mix(p[1], q[1], t)];
+};
+/** x' = l' x (F x) (B99 3.1). */
+const corresponding = (x: Vec2): Vec2 =>
+  point2(cross(lineThrough(...EAVE_LINES[1]), apply3(F, homogeneous(x))));
+/** The roof's half of a window about a point of the eave. */
+const roofHalf = (which: 0 | 1, at: Vec2) =>
+  windowAt(pictures.value[which], at, SIZE).slice(0, (SIZE * (SIZE - 1)) / 2);
+const pointScore = () => {
+  const x = eavePoint(onEave.value);
+  return ncc(roofHalf(0, x), roofHalf(1, corresponding(x)));
+};
+
+function PointFigure() {
+  const x = eavePoint(onEave.value);
+  const x2 = corresponding(x);
+  const epipolar = clipLine(apply3(F, homogeneous(x)), SECOND.width, SECOND.height);
+  return (
+    <>
+      <div class="pair">
+        <Picture which={0}>
+          <Line from={EAVE_LINES[0][0]} to={EAVE_LINES[0][1]} class="s1 on-photo" />
+          <Handle
+            at={x}
+            class="s1 on-photo"
+            label="Point x on the segment"
+            says={`${num(10 * onEave.value)} m along it`}
+            value={onEave.value}
+            step={1}
+            onMove={(to) => {
+              onEave.value = nearestParameter(eavePoint, 0, 1, to);
+            }}
+          />
+        </Picture>
+        <Picture which={1}>
+          <Line from={EAVE_LINES[1][0]} to={EAVE_LINES[1][1]} class="s2 on-photo" />
+          {epipolar !== null && <Line from={epipolar[0]} to={epipolar[1]} class="s2 faint on-photo" />}
+          <Dot at={x2} class="s2 on-photo" />
+        </Picture>
+      </div>
+      <div class="windows-row">
+        <Card values={roofHalf(0, x)} colour={1} title="above x" />
+        <Card values={roofHalf(1, x2)} colour={2} title="above x′" score={num(pointScore(), 2)} />
+      </div>
+    </>
+  );
+}
+
 type Side = "both" | "roof" | "ground";
 const side = signal<Side>("both");
 const THRESHOLD = 0.6;
@@ -385,6 +450,20 @@ export const CORRELATION: Lesson = {
       figure: WarpFigure,
       says: () =>
         `${{ none: "As a square", level: "By a level plane", roof: "By the roof's own plane" }[shape.value]}, the windows correlate with ${num(ncc(large.value, shaped(shape.value)), 2)}.`,
+    },
+    {
+      id: "points",
+      title: "Point by point along a segment",
+      prose: () => [
+        "Two segments $l$ and $l2$ may be the same edge. Nobody knows their ends well, so ends are not compared. But each point $x$ of the one has its place on the other: where its epipolar line $F x$ crosses $l2$. The cross product of two lines is the point in which they meet.",
+        "Drag $x$ along the segment itself.",
+      ],
+      formula: () => "x2 = l2 × ( F x )",
+      figure: PointFigure,
+      says: () => {
+        const [x, y] = corresponding(eavePoint(onEave.value));
+        return `${num(10 * onEave.value)} m along the eave $x2$ is at (${num(x)}, ${num(y)}); the roof above the two points correlates with ${num(pointScore(), 2)}.`;
+      },
     },
     {
       id: "edgels",

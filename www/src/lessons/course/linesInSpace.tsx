@@ -434,7 +434,7 @@ export const LINES_IN_SPACE: Lesson = {
       figure: FitFigure,
       predict: {
         kind: "place",
-        question: `Bring $d$ down. It stands below the figure once you are done.`,
+        question: "Bring the line onto the dots in all three views. How small do you get $d$?",
         how: () =>
           `You reached ${pixels(errorOf(ends.value), 2)}; the least is ${pixels(errorOf(best), 2)}, at ${metres(best[0], 2)} and ${metres(best[1], 2)} (dashed). The ridge is at 8 m.`,
       },

@@ -66,6 +66,15 @@ describe("symbols", () => {
   });
 });
 
+describe("figures of one's own files", () => {
+  it("share a scene if the files are the same", async () => {
+    const { keyOfFiles } = await import("../../../src/element/RidgelineFigure");
+    const files = [{ path: "a.jpg", blob: new Blob() }];
+    expect(keyOfFiles(files)).toBe(keyOfFiles(files));
+    expect(keyOfFiles([...files])).not.toBe(keyOfFiles(files));
+  });
+});
+
 describe("the ten lessons", () => {
   it("are the ten, in their order, with names of their own", () => {
     expect(lessons.map(({ id }) => id)).toEqual(IDS);

@@ -27,6 +27,7 @@ import {
 import {
   apply3,
   clipLine,
+  cross,
   determinant,
   distance2,
   dot,
@@ -34,6 +35,7 @@ import {
   homogeneous,
   lineDistance,
   lineThrough,
+  mix3,
   norm,
   point2,
   sub,
@@ -124,6 +126,16 @@ describe("two views", () => {
     const e2 = homogeneous(point2(projected(projection(SECOND), FIRST.C)));
     expect(norm(apply3(F, e)) / norm(e)).toBeLessThan(1e-10);
     expect(norm(apply3(transpose(F), e2)) / norm(e2)).toBeLessThan(1e-10);
+  });
+
+  it("have x' = l' x (F x) for the points of a line across the baseline", () => {
+    const [p, q] = [CORNERS.southEaveWest, CORNERS.ridgeWest];
+    const line = lineThrough(imageOf(SECOND, p), imageOf(SECOND, q));
+    for (const t of [0, 0.3, 0.8]) {
+      const X = mix3(p, q, t);
+      const x2 = point2(cross(line, apply3(F, homogeneous(imageOf(FIRST, X)))));
+      expect(distance2(x2, imageOf(SECOND, X))).toBeLessThan(1e-7);
+    }
   });
 
   it("meet in the line that they see, if it does not run along the baseline", () => {
