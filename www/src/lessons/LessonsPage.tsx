@@ -45,7 +45,7 @@ function Contents() {
       <h1>Ten lessons of multi-view geometry</h1>
       <p>
         From one photograph to a roof, in the order in which the subject is taught. Every figure moves: guess
-        first, then look. A drawn house comes first, then real photographs: your own project where one is
+        first, then look. A drawn house comes first, then whole photographs: your own project where one is
         open, otherwise the demo scene.
       </p>
       <ol>

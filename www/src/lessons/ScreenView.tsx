@@ -27,7 +27,7 @@ export function ScreenView({ lesson, screen, isOnPaper }: Props) {
       </div>
       <div class="show">
         {isOnPaper && isReal ? (
-          <p class="muted">This figure is drawn from real photographs, on the page.</p>
+          <p class="muted">This figure is drawn from whole photographs, on the page.</p>
         ) : (
           <Figure isRevealed={isRevealed} />
         )}

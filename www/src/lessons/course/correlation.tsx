@@ -478,7 +478,7 @@ export const CORRELATION: Lesson = {
     },
     {
       id: "own",
-      title: "Candidates of a real scene",
+      title: "Candidates of a whole scene",
       prose: () => [
         "The picked segment, its candidates in the other views with their scores, and the two windows. Drag the point along the segment.",
       ],

@@ -436,7 +436,7 @@ export const EVIDENCE: Lesson = {
     },
     {
       id: "own",
-      title: "The posterior of a real half-plane",
+      title: "The posterior of a half-plane",
       prose: () => [
         "B99 wished for “a posterior estimate for the plane angle and the likelihood that a plane is there”. The grey area is that: as high as the probability of a plane, as wide as its angle is uncertain. Compare lines with much and with little texture.",
       ],

@@ -425,7 +425,7 @@ export const HOMOGRAPHY: Lesson = {
     },
     {
       id: "own",
-      title: "Turn a real half-plane",
+      title: "Turn a half-plane of a whole scene",
       prose: () => [
         "Drag $theta$ on the curve: the windows of all views are warped by it. Show the other side of the line, too; at the border of a roof it agrees at no angle.",
       ],

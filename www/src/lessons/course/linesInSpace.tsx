@@ -466,7 +466,7 @@ export const LINES_IN_SPACE: Lesson = {
     },
     {
       id: "own",
-      title: "Lines of a real scene",
+      title: "Lines of a whole scene",
       prose: () => [
         "Each line with its standard deviation against the number of views, and the picked line in every view. The more views, the better: figure 9 of B99.",
       ],

@@ -535,7 +535,7 @@ export const OBJECT_SPACE: Lesson = {
         "Each break costs bits; so does each deviation. Drag the breaks, add some, and make the sum small.",
       ],
       formula: () =>
-        'DL = k log n + ( k + 1 ) * 8 + sum _ i frac { r _ i ^2 } { 2 sigmaG ^2 ln 2 } + "const"',
+        'DL = k log _ 2 n + ( k + 1 ) * 8 + sum _ i frac { r _ i ^2 } { 2 sigmaG ^2 ln 2 } + "const"',
       figure: DescriptionFigure,
       predict: {
         kind: "place",
@@ -575,7 +575,7 @@ export const OBJECT_SPACE: Lesson = {
     },
     {
       id: "own-regions",
-      title: "Regions of a real photograph",
+      title: "Regions of a whole photograph",
       prose: () => [
         "The partition of a photograph by its description length: regions of constant grey with straight, shared borders. Choose another view.",
       ],
@@ -584,7 +584,7 @@ export const OBJECT_SPACE: Lesson = {
     },
     {
       id: "own-directions",
-      title: "Main directions of a real building",
+      title: "Main directions of a whole scene",
       prose: () => [
         "The histogram of all views of the scene, and the two perpendicular directions that were taken from it.",
       ],
@@ -593,7 +593,7 @@ export const OBJECT_SPACE: Lesson = {
     },
     {
       id: "own",
-      title: "Clusters of a real building",
+      title: "Clusters of a whole scene",
       prose: () => [
         "The plane across a main direction, with the rays of all views and the clusters that were kept. Pick one: it is projected back into the photographs.",
       ],

@@ -362,7 +362,7 @@ export const ROOFS: Lesson = {
     },
     {
       id: "own-groups",
-      title: "Groups of a real scene",
+      title: "Groups of a whole scene",
       prose: () => [
         "Each group is a plane with its lines and half-planes. Pick one: its members light up, and so do the facets that it became.",
       ],
@@ -371,7 +371,7 @@ export const ROOFS: Lesson = {
     },
     {
       id: "own",
-      title: "Borders and facets of a real scene",
+      title: "Borders and facets of a whole scene",
       prose: () => [
         "Border lines by their kind, closed outlines, and what was rejected and why. ridgeline decides by one sum over all cells of the plan which plane covers what, instead of pair by pair.",
       ],

@@ -370,7 +370,7 @@ export const TRIFOCAL: Lesson = {
     },
     {
       id: "own",
-      title: "Transfer in a real scene",
+      title: "Transfer in a whole scene",
       prose: () => [
         "The segment, the candidate that it is compared with, and the line that both predict in a third view. Pick other candidates: false ones predict nothing.",
       ],

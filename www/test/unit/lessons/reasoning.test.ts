@@ -46,6 +46,11 @@ describe("a row of grey values", () => {
     expect(many.model).toBeGreaterThan(few.model);
     expect(many.data).toBeLessThanOrEqual(few.data);
     expect(few.total).toBeCloseTo(few.model + few.data, 9);
+    // A place among 60 pixels, and a grey value of 8 bits.
+    expect(many.model - few.model).toBeCloseTo(Math.log2(60) + 8, 9);
+    // A pixel that deviates by one standard deviation costs half a nat.
+    const data = (row: readonly number[]) => bitsOf(row, [], 1).data;
+    expect(data([99, 101]) - data([100, 100])).toBeCloseTo(1 / Math.LN2, 9);
   });
 
   it("without structure has no break", () => {
