@@ -7,6 +7,9 @@ import type { Lesson } from "./parts/lesson";
 import { keyOf, markSeen, seen } from "./progress";
 import { ScreenView } from "./ScreenView";
 
+/** Arrows, and what the remote controls of projectors send. */
+const KEYS: Readonly<Record<string, 1 | -1>> = { ArrowRight: 1, PageDown: 1, ArrowLeft: -1, PageUp: -1 };
+
 export function LessonView({ lesson }: { lesson: Lesson }) {
   const index = screenIndex.value;
   const { id, title, screens, papers } = lesson;
@@ -22,13 +25,10 @@ export function LessonView({ lesson }: { lesson: Lesson }) {
   }, [id, screen, title]);
   useEffect(() => {
     const onKey = (event: KeyboardEvent) => {
-      const by =
-        event.key === "ArrowRight" || event.key === "PageDown"
-          ? 1
-          : event.key === "ArrowLeft" || event.key === "PageUp"
-            ? -1
-            : 0;
-      if (by !== 0 && !isHandout.peek() && !ownsKeys(event)) {
+      const by = KEYS[event.key] ?? 0;
+      // Where there is more below, the keys of pages scroll as everywhere.
+      const isScrolling = event.key.startsWith("Page") && document.body.scrollHeight > window.innerHeight;
+      if (by !== 0 && !isScrolling && !isHandout.peek() && !ownsKeys(event)) {
         event.preventDefault();
         goTo(screenIndex.peek() + by);
       }
@@ -57,6 +57,9 @@ export function LessonView({ lesson }: { lesson: Lesson }) {
         : screen !== undefined && (
             <ScreenView key={screen.id} lesson={id} screen={screen} isOnPaper={false} />
           )}
+      <p class="visually-hidden" role="status">
+        {screen?.title}
+      </p>
       {!isHandout.value && <Ways lesson={lesson} index={index} />}
     </div>
   );

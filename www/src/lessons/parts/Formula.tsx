@@ -45,10 +45,13 @@ export function Paragraph({ text }: { text: string }) {
 export function Pieces({ text }: { text: string }) {
   return (
     <>
-      {piecesOf(text).map(({ kind, text: inner }, i) => {
+      {piecesOf(text).map(({ kind, text: inner, after }, i) => {
         const key = `${i} ${kind}`;
         return kind === "formula" ? (
-          <Formula key={key} text={inner} />
+          <span key={key} class="nowrap">
+            <Formula text={inner} />
+            {after}
+          </span>
         ) : kind === "emphasis" ? (
           <em key={key}>{inner}</em>
         ) : (

@@ -205,20 +205,25 @@ function ofSymbol(symbol: MathSymbol): MathNode {
 }
 
 /** A paragraph in pieces: words, *emphasis* and $formulas$. */
-export type Piece = { kind: "words" | "emphasis" | "formula"; text: string };
+export interface Piece {
+  kind: "words" | "emphasis" | "formula";
+  text: string;
+  /** The punctuation that stays with a formula at the end of a line. */
+  after: string;
+}
 
 export function piecesOf(paragraph: string): Piece[] {
-  return paragraph
-    .split(/(\$[^$]+\$|\*[^*]+\*)/)
-    .filter((part) => part !== "")
-    .map((part): Piece => {
-      const inner = part.slice(1, -1);
-      return part.startsWith("$") && part.length > 2
-        ? { kind: "formula", text: inner }
-        : part.startsWith("*") && part.length > 2
-          ? { kind: "emphasis", text: inner }
-          : { kind: "words", text: part };
-    });
+  const parts = paragraph.split(/(\$[^$]+\$[.,:;?!)]*|\*[^*]+\*)/).filter((part) => part !== "");
+  return parts.map((part): Piece => {
+    const [, formula, after = ""] = /^\$([^$]+)\$([.,:;?!)]*)$/.exec(part) ?? [];
+    if (formula !== undefined) {
+      return { kind: "formula", text: formula, after };
+    }
+    const emphasis = /^\*([^*]+)\*$/.exec(part)?.[1];
+    return emphasis !== undefined
+      ? { kind: "emphasis", text: emphasis, after: "" }
+      : { kind: "words", text: part, after: "" };
+  });
 }
 
 /** The symbols that some paragraphs use, each once. */

@@ -51,8 +51,8 @@ describe("formulas", () => {
       "emphasis",
       "words",
       "formula",
-      "words",
     ]);
+    expect(piecesOf("a $x$?").at(-1)).toEqual({ kind: "formula", text: "x", after: "?" });
     expect(symbolsOfText(["$x$ and $x$"])).toHaveLength(1);
   });
 });
