@@ -5,7 +5,7 @@ import { Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Slider } from "..
 import type { Lesson } from "../parts/lesson";
 import { DEGREE, degrees, metres, num } from "../parts/say";
 import { realFigure } from "../scene/RealFigure";
-import { describe, shortest } from "../toy/description";
+import { byCount, describe, shortest } from "../toy/description";
 import { azimuthHistogram, crossSum, mainDirection, seenLines } from "../toy/directions";
 import { normal, stream } from "../toy/evidence";
 import { aerial } from "../toy/house";
@@ -380,24 +380,8 @@ function addBreak(): void {
   breaks.value = [...breaks.value, at].sort((a, b) => a - b);
 }
 
-/** The best description with each number of breaks: dropping one after the other. */
-const BY_COUNT = (() => {
-  let now = Array.from({ length: PIXELS - 1 }, (_, i) => i + 1);
-  const all = new Map<number, readonly number[]>();
-  while (now.length > 0) {
-    const from = now;
-    let best = { data: Number.POSITIVE_INFINITY, without: 0 };
-    from.forEach((_, i) => {
-      const { data } = describe(ROW, from.toSpliced(i, 1), SIGMA);
-      if (data < best.data) {
-        best = { data, without: i };
-      }
-    });
-    now = from.toSpliced(best.without, 1);
-    all.set(now.length, now);
-  }
-  return all;
-})();
+/** The description with each number of breaks. */
+const BY_COUNT = byCount(ROW, SIGMA);
 const MOST_BREAKS = 16;
 const count = signal(1);
 const bitsOf = (k: number) => describe(ROW, BY_COUNT.get(k) ?? [], SIGMA);

@@ -47,3 +47,22 @@ export function shortest(row: readonly number[], sigma: number): number[] {
     breaks = breaks.toSpliced(best.without, 1);
   }
 }
+
+/** Breaks by their number: from one everywhere, dropping the one that leaves the least deviations. */
+export function byCount(row: readonly number[], sigma: number): ReadonlyMap<number, readonly number[]> {
+  let now = Array.from({ length: row.length - 1 }, (_, i) => i + 1);
+  const all = new Map<number, readonly number[]>();
+  while (now.length > 0) {
+    const from = now;
+    let best = { data: Number.POSITIVE_INFINITY, without: 0 };
+    from.forEach((_, i) => {
+      const { data } = describe(row, from.toSpliced(i, 1), sigma);
+      if (data < best.data) {
+        best = { data, without: i };
+      }
+    });
+    now = from.toSpliced(best.without, 1);
+    all.set(now.length, now);
+  }
+  return all;
+}

@@ -1,6 +1,6 @@
 /** Descriptions, evidence, roofs and main directions of the drawn figures: planted and recovered. */
 import { describe, expect, it } from "vitest";
-import { describe as bitsOf, shortest } from "../../../src/lessons/toy/description";
+import { describe as bitsOf, byCount, shortest } from "../../../src/lessons/toy/description";
 import {
   azimuthHistogram,
   azimuthOf,
@@ -51,6 +51,13 @@ describe("a row of grey values", () => {
     // A pixel that deviates by one standard deviation costs half a nat.
     const data = (row: readonly number[]) => bitsOf(row, [], 1).data;
     expect(data([99, 101]) - data([100, 100])).toBeCloseTo(1 / Math.LN2, 9);
+  });
+
+  it("deviates less with every break, and is shortest with the planted ones", () => {
+    const all = byCount(row, 8);
+    const bits = [0, 1, 2, 3, 4, 5, 6].map((k) => bitsOf(row, all.get(k) ?? [], 8));
+    expect(bits.every(({ data }, k) => k === 0 || data <= (bits[k - 1]?.data ?? 0))).toBe(true);
+    expect(Math.min(...bits.map(({ total }) => total))).toBe(bits[3]?.total);
   });
 
   it("without structure has no break", () => {
