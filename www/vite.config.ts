@@ -34,8 +34,8 @@ function contentSecurityPolicy(): Plugin {
   };
 }
 
-/** What computes the orientation of photographs: fetched by those who need it. */
-const ON_DEMAND = /\/orientation[^/]*$/i;
+/** What computes the orientation of photographs, and the lessons: fetched by those who need it. */
+const ON_DEMAND = /\/(orientation|lessons)[^/]*$/i;
 
 /**
  * Writes `sw.js`: everything of the site is fetched once and served from the cache afterwards, under a name that changes with
@@ -86,7 +86,12 @@ export default defineConfig(({ command, mode }) => ({
   resolve: { alias: command === "serve" && mode === "fake" ? fakeCore() : [] },
   oxc: { jsx: { runtime: "automatic", importSource: "preact" } },
   worker: { format: "es" },
-  build: { target: "es2022", assetsInlineLimit: 0, chunkSizeWarningLimit: 900 },
+  build: {
+    target: "es2022",
+    assetsInlineLimit: 0,
+    chunkSizeWarningLimit: 900,
+    rolldownOptions: { input: { index: "index.html", lessons: "lessons.html" } },
+  },
   server: { port: 5173 },
   preview: { port: 4173 },
 }));

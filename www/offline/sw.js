@@ -37,7 +37,10 @@ self.addEventListener("fetch", (event) => {
       return known;
     }
     const response = await fetch(request);
-    if (response.ok && LATER.some((path) => new URL(path, self.registration.scope).href === request.url)) {
+    const page = new URL(request.url);
+    page.hash = "";
+    page.search = "";
+    if (response.ok && LATER.some((path) => new URL(path, self.registration.scope).href === page.href)) {
       await cache.put(request, response.clone());
     }
     return response;

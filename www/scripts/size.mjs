@@ -1,5 +1,5 @@
 // Sizes of what a first visit fetches, compressed as static hosts serve it; fails where there is too much of it. What computes
-// the orientation of photographs is fetched on demand, and has a limit of its own.
+// the orientation of photographs, and the lessons, are fetched on demand, and have limits of their own.
 //
 //   npm run size        after `npm run build`
 //
@@ -12,9 +12,11 @@ import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 
 const MOST_WASM = 1_600_000;
 const MOST_IN_ALL = 1_900_000;
+// Of the lessons, as static hosts serve them.
+const MOST_LESSONS = 80_000;
 // Of the second module alone, as the larger of two compressions.
 const MOST_SECOND_WASM = 500_000;
-const ON_DEMAND = /\/orientation[^/]*$/i;
+const ON_DEMAND = /(^|\/)(orientation|lessons)[^/]*$/i;
 
 const dist = fileURLToPath(new URL("../dist/", import.meta.url));
 const files = readdirSync(dist, { recursive: true, withFileTypes: true })
@@ -37,6 +39,10 @@ const isLater = ({ path }) => ON_DEMAND.test(path);
 const first = rows.filter((row) => !isLater(row));
 const total = sumOf("in all", first);
 const later = sumOf("on demand", rows.filter(isLater));
+const lessons = sumOf(
+  "lessons",
+  rows.filter(({ path }) => /(^|\/)lessons/.test(path)),
+);
 const wasm = first.find(({ path }) => path.endsWith(".wasm"));
 const second = rows.find((row) => isLater(row) && row.path.endsWith(".wasm"));
 
@@ -53,6 +59,7 @@ const problems = [
   second &&
     second.gzip > MOST_SECOND_WASM &&
     `the second wasm is larger than ${MOST_SECOND_WASM / 1000} kB (gzip)`,
+  lessons.brotli > MOST_LESSONS && `the lessons are larger than ${MOST_LESSONS / 1000} kB (brotli)`,
   total.brotli > MOST_IN_ALL && `the first load is larger than ${MOST_IN_ALL / 1000} kB (brotli)`,
 ].filter(Boolean);
 for (const problem of problems) {

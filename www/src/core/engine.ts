@@ -9,12 +9,15 @@ export const CORE_VERSION: string = import.meta.env.PROD
   ? wasmUrl.slice(wasmUrl.lastIndexOf("/") + 1)
   : String(performance.timeOrigin);
 
+/** The site's own worker and core. */
 const OF_SITE: CoreSource = {
   startWorker: () => new Worker(new URL("../worker/main.ts", import.meta.url), { type: "module" }),
   get wasmUrl() {
     return new URL(wasmUrl, document.baseURI).href;
   },
 };
+
+export { OF_SITE };
 
 export class Engine extends WorkerEngine {
   /** While `mayAsk` says no, requests fail as if the worker had been ended. */

@@ -22,7 +22,7 @@ import {
 import { FigureStore } from "./figureStore";
 import { KIND_NAMES, kindOf, rowsOf } from "./kinds";
 import { fetchScene, sceneUrl } from "./sceneFiles";
-import { type SharedScene, sceneOf } from "./sharedScene";
+import { type SceneInput, type SharedScene, sceneOf } from "./sharedScene";
 import { styleSheet } from "./styles";
 
 /** Where the files of the package are. */
@@ -34,7 +34,20 @@ export interface FigurePlace extends CoreSource {
 const TAG = "ridgeline-figure";
 const SCENE_NAMES = ["kind", "scene", "base", "explained"];
 let place: FigurePlace | null = null;
+const ownKeys = new WeakMap<readonly InputFile[], string>();
 let lastOwnFiles = 0;
+
+/** Figures that are given the same files share a scene. */
+export function keyOfFiles(files: readonly InputFile[]): string {
+  const known = ownKeys.get(files);
+  if (known !== undefined) {
+    return known;
+  }
+  lastOwnFiles += 1;
+  const key = `files ${lastOwnFiles}`;
+  ownKeys.set(files, key);
+  return key;
+}
 
 /** Makes the element known, once a page. */
 export function defineFigure(of: FigurePlace): void {
@@ -52,7 +65,7 @@ export class RidgelineFigure extends HTMLElement {
   readonly #seen = signal<Seen | null>(null);
   #observer: IntersectionObserver | null = null;
   #isVisible = false;
-  #ownFiles: { key: string; files: readonly InputFile[] } | null = null;
+  #own: SceneInput | null = null;
   #scene: SharedScene | null = null;
   #stops: (() => void)[] = [];
   #body: HTMLElement | null = null;
@@ -101,12 +114,16 @@ export class RidgelineFigure extends HTMLElement {
 
   /** Files of a scene that has no address, for example those that a person chose. */
   get files(): readonly InputFile[] | null {
-    return this.#ownFiles?.files ?? null;
+    return this.#own?.files ?? null;
   }
 
   set files(files: readonly InputFile[] | null) {
-    lastOwnFiles += 1;
-    this.#ownFiles = files === null ? null : { key: `files ${lastOwnFiles}`, files };
+    this.input = files === null ? null : { files };
+  }
+
+  /** The same with parameters and options. */
+  set input(input: SceneInput | null) {
+    this.#own = input;
     if (this.#isVisible) {
       this.#show();
     }
@@ -221,12 +238,12 @@ export class RidgelineFigure extends HTMLElement {
   }
 
   #sceneOf(name: string, base: string, method: Parameters<typeof sceneOf>[2]): SharedScene {
-    const own = this.#ownFiles;
+    const own = this.#own;
     if (own !== null) {
-      return sceneOf(place as FigurePlace, own.key, method, async () => own.files);
+      return sceneOf(place as FigurePlace, keyOfFiles(own.files), method, async () => own);
     }
     const url = sceneUrl(name, base, document.baseURI);
-    return sceneOf(place as FigurePlace, url, method, () => fetchScene(url));
+    return sceneOf(place as FigurePlace, url, method, async () => ({ files: await fetchScene(url) }));
   }
 
   /** Tells the page of every change of the state, and of what fails. */

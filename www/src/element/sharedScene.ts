@@ -31,13 +31,21 @@ const NOTHING: SceneState = {
   failure: null,
 };
 
+/** What a scene is made of, and how it is wanted where no project file among it says so. */
+export interface SceneInput {
+  files: readonly InputFile[];
+  params?: ParamTree;
+  /** What is asked for beyond the files; may ask the core, which holds them by then. */
+  options?: (engine: WorkerEngine) => Promise<LoadOptions>;
+}
+
 /** Figures that are taken out of a page to be put elsewhere keep their scene. */
 const GRACE_MS = 2000;
 
 export class SharedScene {
   readonly #present = signal<SceneState>(NOTHING);
   readonly #engine: WorkerEngine;
-  readonly #fetch: () => Promise<readonly InputFile[]>;
+  readonly #fetch: () => Promise<SceneInput>;
   readonly #method: Method;
   readonly #onEnd: () => void;
   readonly #ready = new Set<StageName>();
@@ -45,14 +53,9 @@ export class SharedScene {
   #figures = 0;
   #isClosed = false;
 
-  constructor(
-    source: CoreSource,
-    fetchFiles: () => Promise<readonly InputFile[]>,
-    method: Method,
-    onEnd: () => void,
-  ) {
+  constructor(source: CoreSource, fetchInput: () => Promise<SceneInput>, method: Method, onEnd: () => void) {
     this.#engine = new WorkerEngine(source, (stage, fraction) => this.#reached(stage, fraction));
-    this.#fetch = fetchFiles;
+    this.#fetch = fetchInput;
     this.#method = method;
     this.#onEnd = onEnd;
     this.#queue = this.#attempt(() => this.#load());
@@ -68,11 +71,14 @@ export class SharedScene {
 
   leave(): void {
     this.#figures -= 1;
-    setTimeout(() => {
-      if (this.#figures === 0 && !this.#isClosed) {
-        this.#close();
-      }
-    }, GRACE_MS);
+    setTimeout(() => this.closeUnused(), GRACE_MS);
+  }
+
+  /** Ends what no figure shows, unless the page wants it kept. */
+  closeUnused(): void {
+    if (this.#figures === 0 && !this.#isClosed && !areKept) {
+      this.#close();
+    }
   }
 
   /** Runs what has not run yet of the stages up to this one. */
@@ -93,15 +99,16 @@ export class SharedScene {
 
   async #load(): Promise<void> {
     this.#change({ progress: { words: "Fetching the scene", fraction: 0 } });
-    const [files] = await Promise.all([this.#fetch(), this.#engine.open()]);
+    const [{ files, params: wanted, options }] = await Promise.all([this.#fetch(), this.#engine.open()]);
     this.#change({ progress: { words: "Reading the photographs", fraction: 0 } });
     await this.#engine.call("setFiles", files);
     const project = await this.#engine.call("openedProject");
     const defaults = await this.#engine.call("defaultParams");
-    const chosen = (project?.params ?? defaults) as unknown as ParamTree;
+    const chosen = (project?.params ?? wanted ?? defaults) as unknown as ParamTree;
     const params = { ...chosen, method: this.#method as unknown as ParamTree[string] };
     await this.#engine.call("setParams", params as unknown as Params & ParamTree);
-    const scene = await this.#engine.call("load", optionsOf(project?.options ?? {}));
+    const asked = await options?.(this.#engine);
+    const scene = await this.#engine.call("load", asked ?? optionsOf(project?.options ?? {}));
     const images: ImageBitmap[] = [];
     for (let view = 0; view < scene.views.length; view += 1) {
       images.push(await this.#engine.call("image", view));
@@ -190,14 +197,23 @@ function optionsOf(options: object): LoadOptions {
 }
 
 const open = new Map<string, SharedScene>();
-const fetched = new Map<string, Promise<readonly InputFile[]>>();
+const fetched = new Map<string, Promise<SceneInput>>();
+let areKept = false;
+
+/** For a page that shows figures of one scene after the other: scenes stay when their last figure goes, until this is taken back. */
+export function keepScenes(isWanted: boolean): void {
+  areKept = isWanted;
+  for (const scene of [...open.values()]) {
+    scene.closeUnused();
+  }
+}
 
 /** The scene of an address for a method: the one that other figures show, or a new one. */
 export function sceneOf(
   source: CoreSource,
   key: string,
   method: Method,
-  fetchFiles: () => Promise<readonly InputFile[]>,
+  fetchInput: () => Promise<SceneInput>,
 ): SharedScene {
   const name = `${method} ${key}`;
   const known = open.get(name);
@@ -205,16 +221,16 @@ export function sceneOf(
     return known;
   }
   // Two methods have a worker each, and the files in common.
-  const files = fetched.get(key) ?? fetchFiles();
-  fetched.set(key, files);
+  const input = fetched.get(key) ?? fetchInput();
+  fetched.set(key, input);
   const forget = () => {
     open.delete(name);
     if (![...open.keys()].some((other) => other.endsWith(` ${key}`))) {
       fetched.delete(key);
     }
   };
-  files.catch(() => forget());
-  const made = new SharedScene(source, () => files, method, forget);
+  input.catch(() => forget());
+  const made = new SharedScene(source, () => input, method, forget);
   open.set(name, made);
   return made;
 }

@@ -63,7 +63,7 @@ test("photographs without orientation: recipes, and what their headers say", asy
   expect(await axeFindings(page)).toEqual([]);
 });
 
-test("in the hand: model, photographs and lessons, with fingers", async ({ browser }) => {
+test("in the hand: model, photographs and tour, with fingers", async ({ browser }) => {
   const context = await browser.newContext({ viewport: { width: 360, height: 740 }, hasTouch: true });
   const page = await context.newPage();
   await page.goto("/");

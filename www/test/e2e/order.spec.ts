@@ -9,7 +9,7 @@ test("double clicks, the tour over the demo, own files next, and a reload", asyn
   await page.goto("/");
   await page.getByRole("button", { name: "Demo scene" }).dblclick();
   await page.getByRole("button", { name: "Tour", exact: true }).click();
-  await expect(page.getByTestId("lesson")).toBeVisible();
+  await expect(page.getByTestId("tour-step")).toBeVisible();
   await waitForStage(page, "matches");
   await expect(alerts).toHaveCount(0);
 

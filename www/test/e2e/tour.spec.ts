@@ -8,17 +8,17 @@ onePage(
   async (opened) => {
     page = opened;
     await page.getByRole("button", { name: "Tour", exact: true }).click();
-    await expect(lesson()).toContainText("Step 1 of 12");
+    await expect(panel()).toContainText("Step 1 of 12");
     await waitForStage(page, "model");
   },
   async () => {
-    await lesson().getByRole("button", { name: "End tour" }).click();
-    await expect(lesson()).toHaveCount(0);
+    await panel().getByRole("button", { name: "End tour" }).click();
+    await expect(panel()).toHaveCount(0);
   },
 );
 
-const lesson = () => page.getByTestId("lesson");
-const answer = () => lesson().getByText("✓");
+const panel = () => page.getByTestId("tour-step");
+const answer = () => panel().getByText("✓");
 const isAnswered = () => answer().isVisible();
 const picked = () => page.getByTestId("inspector").locator(".picked");
 const inspector = () => page.getByTestId("inspector");
@@ -29,13 +29,13 @@ const marked = (control: Locator) => expect(control).toHaveCSS("outline-style", 
 /** At the step of this number, whose question is still open. */
 async function isAsked(step: number, tab: string): Promise<void> {
   if (step > 1) {
-    await lesson().getByRole("button", { name: "Next" }).click();
+    await panel().getByRole("button", { name: "Next" }).click();
   }
-  await expect(lesson()).toContainText(`Step ${step} of 12`);
+  await expect(panel()).toContainText(`Step ${step} of 12`);
   await expect(page.getByRole("tab", { name: tab, exact: true })).toHaveAttribute("aria-selected", "true", {
     timeout: 120_000,
   });
-  await expect(lesson()).toContainText("Not found yet.");
+  await expect(panel()).toContainText("Not found yet.");
 }
 
 /** A number of the inspector, by its label. */
@@ -54,7 +54,7 @@ test("1: a long segment at a side of a facet, and not a kerb", async () => {
   await page.getByRole("button", { name: "Next item" }).click();
   await expect(picked()).toHaveText(/^Segment 0/);
   expect(await numberOf(/^Length/)).toBeGreaterThan(200);
-  await expect(lesson()).toContainText("no facet of the model has it as a side");
+  await expect(panel()).toContainText("no facet of the model has it as a side");
   await pickIn(page.locator(".image-view canvas").first());
   expect(await numberOf(/^Length/)).toBeGreaterThan(60);
   // What the answer says is what the inspector shows.
@@ -121,7 +121,7 @@ test("5: the windows differ where theta begins, and are alike where it is right"
   await expect(slider).toBeVisible();
   await marked(slider);
   await expect(page.getByTestId("theta")).not.toHaveText(/^0\.0/);
-  await expect(lesson()).toContainText("Not found yet.");
+  await expect(panel()).toContainText("Not found yet.");
   const begun = await meanSim();
   // The page answers with the last angle that the worker has warped: a slow machine needs a slower hand.
   for (const pause of [60, 250, 600]) {
@@ -207,7 +207,7 @@ test("9: model and photograph over each other", async () => {
   await isAsked(9, "Model");
   const cameras = page.getByLabel("Look through the camera of a view");
   await marked(cameras);
-  await expect(lesson()).toContainText(await cameras.locator("option").first().innerText());
+  await expect(panel()).toContainText(await cameras.locator("option").first().innerText());
   await cameras.selectOption({ index: 1 });
   await expect(answer()).toBeVisible();
   await page.getByLabel("Opacity of the photograph").fill("0.5");

@@ -56,6 +56,10 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
     ["element"],
   ),
   ...floors(["element"], ["exercise/judging", "exercise/tasks", "exercise"]),
+  ...floors(
+    ["shared", "core", "app/state", "app/parts", "app/settings", "app/project", "element"],
+    ["lessons/toy", "lessons/parts", "lessons/scene", "lessons/course", "lessons"],
+  ),
 };
 
 /** What the package's exports and workers start from. */
@@ -165,7 +169,7 @@ describe("the rooms of the page", () => {
         imports.get(path)?.forEach(walk);
       }
     };
-    for (const entry of ["app/shell/main.tsx", ...PACKAGE_ENTRIES]) walk(entry);
+    for (const entry of ["app/shell/main.tsx", "lessons/main.tsx", ...PACKAGE_ENTRIES]) walk(entry);
     const beyond = modules.filter((path) => !reached.has(path) && !path.startsWith("worker/"));
     expect(beyond).toEqual([]);
   });

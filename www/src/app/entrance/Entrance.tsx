@@ -8,7 +8,7 @@ import { createTurntable, type PhotographicGround, type Turntable } from "../../
 import { DropZone } from "../project/Project";
 import { openDemo } from "../project/projectActions";
 import { theme } from "../state/theme";
-import { startTour } from "../tour/lessons";
+import { startTour } from "../tour/steps";
 
 /** What the build wrote beside the model. */
 interface EntranceScene {
@@ -37,6 +37,10 @@ export function Entrance() {
             How?
           </button>
           <span class="muted">A tour in twelve steps, on the example.</span>
+        </p>
+        <p>
+          <a href="./lessons.html">Ten lessons</a>{" "}
+          <span class="muted">of multi-view geometry, with figures to move.</span>
         </p>
         <DropZone />
       </section>

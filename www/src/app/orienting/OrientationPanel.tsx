@@ -22,7 +22,7 @@ import {
 } from "./orientation";
 import { PairFigure } from "./PairFigure";
 
-/** The steps as a lesson tells them. */
+/** The steps as a teacher tells them. */
 const LESSON: Record<Exclude<Step, "done">, { title: string; text: string }> = {
   keypoints: {
     title: "Keypoints",

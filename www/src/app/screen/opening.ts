@@ -1,7 +1,7 @@
 /** What the page begins with: it looks for a link or a kept project before it shows its entrance. */
 import { computed, signal } from "@preact/signals";
 import { files } from "../state/project";
-import { lessonStep } from "../state/tour";
+import { tourStep } from "../state/tour";
 
 /** "looking" for what was kept, "restoring" it, or "open". */
 type Opening = "looking" | "restoring" | "open";
@@ -10,7 +10,7 @@ const reached = signal<Opening>("looking");
 
 /** Nothing is open, and nothing is on its way. */
 export const showsEntrance = computed(
-  () => reached.value === "open" && files.value.length === 0 && lessonStep.value === null,
+  () => reached.value === "open" && files.value.length === 0 && tourStep.value === null,
 );
 
 /** Something is open, or on its way. */

@@ -1,7 +1,7 @@
 /**
  * The page's state in the address, behind "#", so that a link shows what the teacher sees: scene (the demo only: own
  * files stay where they are), method, tab, view, selection, theta, point, camera and changed parameters. Back and
- * forward go from one tab, view, selection or lesson to another.
+ * forward go from one tab, view, selection or step of the tour to another.
  */
 import { batch, effect } from "@preact/signals";
 import type { ParamValue } from "../../shared/paramTree";
@@ -11,7 +11,7 @@ import { methodNamed, TABS, type Tab } from "../state/methods";
 import { defaults, method, params } from "../state/parameters";
 import { isDemo } from "../state/project";
 import { resumeDetail, selectionDetail } from "../state/selectionDetail";
-import { lessonStep, showLesson } from "../state/tour";
+import { showTourStep, tourStep } from "../state/tour";
 import { camera, select, selection, shownView, showTab, showView, standAt, tab } from "../state/viewState";
 import { changedParams } from "./parameterForm";
 
@@ -21,7 +21,7 @@ export interface Link {
   view: number | null;
   selection: Selection | null;
   params: Record<string, ParamValue>;
-  lesson: number | null;
+  tourStep: number | null;
   /** The angle to which the half-plane was turned, degrees. */
   thetaDeg: number | null;
   /** The candidate that the segment is compared with, and where on the segment, 0 to 1. */
@@ -49,7 +49,7 @@ export function parseLink(hash: string): Link {
     view: wholeNumber(fields.get("view")),
     selection: parseSelection(fields.get("select")),
     params: { ...parseParams(fields.get("params")), ...chosen },
-    lesson: wholeNumber(fields.get("lesson")),
+    tourStep: wholeNumber(fields.get("step")),
     thetaDeg: numbers(fields.get("theta"), 1)?.[0] ?? null,
     point: numbers(fields.get("point"), 2) as Link["point"],
     camera: numbers(fields.get("camera"), 6) as Link["camera"],
@@ -70,7 +70,7 @@ export function formatLink(link: Link): string {
   set("view", link.view);
   set("select", link.selection === null ? null : formatSelection(link.selection));
   set("params", Object.keys(changed).length === 0 ? null : JSON.stringify(changed));
-  set("lesson", link.lesson);
+  set("step", link.tourStep);
   set("theta", link.thetaDeg);
   set("point", link.point?.join() ?? null);
   set("camera", link.camera?.join() ?? null);
@@ -91,7 +91,7 @@ export function followState(): void {
       }
       showView(link.view ?? ALL_VIEWS);
       select(link.selection);
-      showLesson(link.lesson);
+      showTourStep(link.tourStep);
       standAt(link.camera);
     });
   });
@@ -118,7 +118,7 @@ function presentLink(): Link {
     view: shownView.value < 0 ? null : shownView.value,
     selection: selection.value,
     params: { ...changedParams(defaults.value, params.value), method: method.value },
-    lesson: lessonStep.value,
+    tourStep: tourStep.value,
     thetaDeg: isTurned ? rounded((theta * 180) / Math.PI, 10) : null,
     point: isMoved ? [candidate, rounded(at, 1000)] : null,
     camera: (camera.value?.map((metres) => rounded(metres, 100)) ?? null) as Standpoint | null,

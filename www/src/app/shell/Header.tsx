@@ -7,7 +7,7 @@ import type { Method } from "../state/methods";
 import { method } from "../state/parameters";
 import { biggerText, textScale } from "../state/textScale";
 import { theme, toggleTheme } from "../state/theme";
-import { startTour } from "../tour/lessons";
+import { startTour } from "../tour/steps";
 
 const METHODS: readonly (readonly [Method, string, string])[] = [
   ["lines", "Lines", "Lines matched over the views, and half-planes at them (Baillard et al. 1999)"],
@@ -49,6 +49,9 @@ export function Header() {
       <button type="button" onClick={startTour}>
         Tour
       </button>
+      <a class="button" href="./lessons.html">
+        Lessons
+      </a>
       <button
         type="button"
         class="quiet"

@@ -1,24 +1,23 @@
-/** In the hand: the model, the photographs, the lessons. What a workbench needs a table for is left out. */
+/** In the hand: the model, the photographs, the tour. What a workbench needs a table for is left out. */
 import type { ComponentChildren } from "preact";
 import { Downloads } from "../project/Downloads";
 import { Project } from "../project/Project";
 import { showsEntrance } from "../screen/opening";
 import { StageRail } from "../stages/StageRail";
 import { StageView } from "../stages/StageView";
-import { lessonStep } from "../state/tour";
+import { tourStep } from "../state/tour";
 import { showTab, tab } from "../state/viewState";
-import { Lesson } from "../tour/Lesson";
-import { endTour, startTour } from "../tour/lessons";
+import { endTour, startTour } from "../tour/steps";
+import { TourPanel } from "../tour/TourPanel";
 import { Notices } from "./Notices";
 
-type Place = "model" | "photographs" | "lessons";
+type Place = "model" | "photographs" | "tour";
 
 export function Phone() {
   const isBehind = showsEntrance.value;
-  const place: Place =
-    lessonStep.value !== null ? "lessons" : tab.value === "images" ? "photographs" : "model";
+  const place: Place = tourStep.value !== null ? "tour" : tab.value === "images" ? "photographs" : "model";
   const go = (name: "model" | "images") => () => {
-    if (lessonStep.value !== null) {
+    if (tourStep.value !== null) {
       endTour();
     }
     showTab(name);
@@ -32,13 +31,13 @@ export function Phone() {
         <PlaceButton isHere={place === "photographs"} onClick={go("images")}>
           Photographs
         </PlaceButton>
-        <PlaceButton isHere={place === "lessons"} onClick={startTour}>
-          Lessons
+        <PlaceButton isHere={place === "tour"} onClick={startTour}>
+          Tour
         </PlaceButton>
       </nav>
       <main class="centre">
         {!isBehind && <Notices />}
-        {place === "lessons" && <Lesson />}
+        {place === "tour" && <TourPanel />}
         <StageView />
         <StageRail />
       </main>

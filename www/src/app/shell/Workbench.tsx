@@ -10,9 +10,9 @@ import { PageTakeAlong } from "../stages/PageTakeAlong";
 import { StageRail } from "../stages/StageRail";
 import { StageView } from "../stages/StageView";
 import { images } from "../state/scene";
-import { lessonStep } from "../state/tour";
+import { tourStep } from "../state/tour";
 import { tab } from "../state/viewState";
-import { Lesson } from "../tour/Lesson";
+import { TourPanel } from "../tour/TourPanel";
 import { Notices } from "./Notices";
 
 export function Workbench() {
@@ -29,8 +29,8 @@ export function Workbench() {
         <StageRail />
       </main>
       <aside class="column details" aria-label="Details">
-        {lessonStep.value !== null ? <Lesson /> : images.value.length > 0 && <AboutFigure tab={tab.value} />}
-        {lessonStep.value === null && images.value.length > 0 && <PageTakeAlong />}
+        {tourStep.value !== null ? <TourPanel /> : images.value.length > 0 && <AboutFigure tab={tab.value} />}
+        {tourStep.value === null && images.value.length > 0 && <PageTakeAlong />}
         <Comparison />
         <Inspector />
         <Parameters />

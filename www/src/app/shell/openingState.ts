@@ -24,7 +24,7 @@ import { scene } from "../state/scene";
 import { resumeDetail } from "../state/selectionDetail";
 import { stages } from "../state/stages";
 import { select, shownView, showTab, showView, standAt } from "../state/viewState";
-import { goToIn } from "../tour/lessons";
+import { goToIn } from "../tour/steps";
 
 /** Does the page begin with something? */
 export async function isAwaited(): Promise<boolean> {
@@ -70,8 +70,8 @@ async function restoreIt(turn: Turn): Promise<void> {
     select(opened.selection);
     standAt(opened.camera);
   });
-  if (opened.lesson !== null && results.value.glb !== null) {
-    await goToIn(turn, opened.lesson);
+  if (opened.tourStep !== null && results.value.glb !== null) {
+    await goToIn(turn, opened.tourStep);
   }
 }
 

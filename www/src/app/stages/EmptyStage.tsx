@@ -4,7 +4,7 @@ import { PhotographsOnly } from "../photographs/PhotographsOnly";
 import { openDemo } from "../project/projectActions";
 import { inspection } from "../state/project";
 import { flightPlan } from "../tiles/flight";
-import { startTour } from "../tour/lessons";
+import { startTour } from "../tour/steps";
 
 export function EmptyStage() {
   const photographs = inspection.value?.images ?? [];

@@ -4,8 +4,8 @@ import { type ReadonlySignal, signal } from "@preact/signals";
 const step = signal<number | null>(null);
 
 /** The step of the guided tour; null while it is closed. */
-export const lessonStep: ReadonlySignal<number | null> = step;
+export const tourStep: ReadonlySignal<number | null> = step;
 
-export function showLesson(index: number | null): void {
+export function showTourStep(index: number | null): void {
   step.value = index;
 }

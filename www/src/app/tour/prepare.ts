@@ -6,7 +6,7 @@ import { compareAt, turnTo } from "../selection/selectionQueries";
 import { ask } from "../session/session";
 import { results } from "../state/results";
 import { type SelectionDetail, selectionDetail } from "../state/selectionDetail";
-import { lessonStep } from "../state/tour";
+import { tourStep } from "../state/tour";
 import { select } from "../state/viewState";
 import { fallOf, highestSim, roofEnds, roofSegments, type SideOfLine, slopedHalfPlanes } from "./examples";
 
@@ -70,8 +70,8 @@ export async function showRoofEnd(): Promise<void> {
 
 /** Whether the tour is still at the step of now: the core takes its time to answer. */
 function stay(): () => boolean {
-  const step = lessonStep.peek();
-  return () => lessonStep.peek() === step;
+  const step = tourStep.peek();
+  return () => tourStep.peek() === step;
 }
 
 interface Tried {

@@ -15,7 +15,7 @@ import { files, isDemo } from "../state/project";
 import { results } from "../state/results";
 import { selectionDetail } from "../state/selectionDetail";
 import { freshStages, stages } from "../state/stages";
-import { lessonStep, showLesson } from "../state/tour";
+import { showTourStep, tourStep } from "../state/tour";
 import {
   beforeGrowing,
   select,
@@ -41,7 +41,7 @@ import {
 } from "./examples";
 import { showRoofEnd, showSteepFall, showVaryingSegment } from "./prepare";
 
-export interface LessonStep {
+export interface TourStep {
   title: string;
   text: string;
   question: string;
@@ -65,7 +65,7 @@ const LONG_PX = 60;
 const GREW_M = 0.5;
 const HIGH_CORRELATION = 0.9;
 
-export const LESSONS: readonly LessonStep[] = [
+export const STEPS: readonly TourStep[] = [
   {
     title: "Straight edges",
     text: "Everything begins with edgels linked into straight segments. A roof edge is rarely found whole in every view, and the longest segments need not be roofs.",
@@ -321,42 +321,42 @@ export function startTour(): void {
 }
 
 export function endTour(): void {
-  showLesson(null);
+  showTourStep(null);
 }
 
 /** Opens a step: its method run to the end on the demo scene, its view, and what it is about. */
 export async function goTo(step: number): Promise<void> {
-  if (LESSONS[step] === undefined) {
+  if (STEPS[step] === undefined) {
     endTour();
     return;
   }
-  showLesson(step);
+  showTourStep(step);
   await actions.perform({ kind: "tour", name: "step", phase: "load" }, async (turn) => {
     // Steps that were passed while this one waited need no run of their own.
-    await goToIn(turn, lessonStep.value ?? step);
+    await goToIn(turn, tourStep.value ?? step);
   });
 }
 
 /** The same as part of another action. */
 export async function goToIn(turn: Turn, step: number): Promise<void> {
-  const lesson = LESSONS[step];
-  if (lesson === undefined) {
+  const shown = STEPS[step];
+  if (shown === undefined) {
     return;
   }
-  showLesson(step);
+  showTourStep(step);
   if (files.value.length === 0) {
     await openDemoIn(turn, null);
   }
-  if (method.value !== lesson.method) {
-    chooseMethod(lesson.method);
+  if (method.value !== shown.method) {
+    chooseMethod(shown.method);
   }
   if (freshStages.value < stages.value.length) {
     await runEverything(turn);
   }
-  if (lessonStep.value === step) {
+  if (tourStep.value === step) {
     select(null);
-    showTab(lesson.tab);
-    lesson.prepare?.();
+    showTab(shown.tab);
+    shown.prepare?.();
   }
 }
 

@@ -1,0 +1,75 @@
+/** The frame of the lessons: where one is, and the contents. */
+import { biggerText, textScale } from "../app/state/textScale";
+import { theme, toggleTheme } from "../app/state/theme";
+import { CONTENTS, lesson, linkTo } from "./address";
+import { LESSONS } from "./catalogue";
+import { LessonView } from "./LessonView";
+import type { Lesson } from "./parts/lesson";
+import { keyOf, seen } from "./progress";
+import { SceneBar } from "./scene/SceneBar";
+
+export function LessonsPage() {
+  const now = lesson.value;
+  return (
+    <div class="lessons">
+      <header class="lessons-head">
+        <a class="home" href="./">
+          <img src="./icon.svg" alt="" width="22" height="22" />
+          ridgeline
+        </a>
+        <a href={CONTENTS} aria-current={now === null ? "page" : undefined}>
+          Lessons
+        </a>
+        <span class="grow" />
+        <button
+          type="button"
+          class="quiet"
+          aria-label={`Text size: ${Math.round(100 * textScale.value)} %, next`}
+          title="Text size"
+          onClick={biggerText}
+        >
+          Aa
+        </button>
+        <button type="button" class="quiet" onClick={toggleTheme}>
+          {theme.value === "dark" ? "Light" : "Dark"}
+        </button>
+      </header>
+      <main>{now === null ? <Contents /> : <LessonView key={now.id} lesson={now} />}</main>
+    </div>
+  );
+}
+
+function Contents() {
+  return (
+    <div class="contents">
+      <h1>Ten lessons of multi-view geometry</h1>
+      <p>
+        From one photograph to a roof, in the order in which the subject is taught. Every figure moves: guess
+        first, then look. A drawn house comes first, then whole photographs: your own project where one is
+        open, otherwise the demo scene.
+      </p>
+      <ol>
+        {LESSONS.map((one) => (
+          <Entry key={one.id} lesson={one} />
+        ))}
+      </ol>
+      <SceneBar />
+    </div>
+  );
+}
+
+function Entry({ lesson: { id, title, aim, minutes, papers, screens } }: { lesson: Lesson }) {
+  const done = screens.filter((screen) => seen.value.has(keyOf(id, screen.id))).length;
+  return (
+    <li>
+      <a href={linkTo(id)}>
+        <strong>{title}</strong>
+        <span>{aim}</span>
+        <span class="muted numbers">
+          {minutes} minutes · {papers} ·{" "}
+          {done === 0 ? `${screens.length} screens` : `${done} of ${screens.length} screens seen`}
+        </span>
+      </a>
+    </li>
+  );
+}

@@ -1,0 +1,477 @@
+/** Lesson 6: a line in space has four numbers, and its ends are not among them. */
+import { signal } from "@preact/signals";
+import { counted } from "../../app/parts/counted";
+import { Curve, Dot, Handle, Line, Options, Plot, Slider } from "../parts/draw";
+import type { Lesson } from "../parts/lesson";
+import { DEGREE, degrees, metres, num, pixels } from "../parts/say";
+import { ImagePane, OBSERVER, PlaneOfLine, Space, seen } from "../parts/scene";
+import { realFigure } from "../scene/RealFigure";
+import { atHeight, type Camera, imageOf } from "../toy/camera";
+import { normal, stream } from "../toy/evidence";
+import { ACROSS, aerial, CORNERS } from "../toy/house";
+import { clamp, mix3, type Vec2, type Vec3 } from "../toy/linear";
+import { type Ends2, type Ends3, lineError, lineOfTwo, partBetween } from "../toy/lines";
+
+const [FIRST, SECOND] = ACROSS;
+const TOP_M = 14;
+const feet = signal<readonly [Vec2, Vec2]>([
+  [-8, -6],
+  [6, 2],
+]);
+
+function FourFigure({ isRevealed }: { isRevealed: boolean }) {
+  const [[a, b], [c, d]] = feet.value;
+  const [low, high]: Ends3 = [
+    [a, b, 0],
+    [c, d, TOP_M],
+  ];
+  const frame = (z: number) => {
+    const corners = (
+      [
+        [-12, -12],
+        [12, -12],
+        [12, 12],
+        [-12, 12],
+      ] as const
+    ).map(([x, y]) => seen([x, y, z]));
+    return <polygon class="outline s5 thin" points={corners.map((p) => p.join()).join(" ")} />;
+  };
+  const handle = (which: 0 | 1, at: Vec3) => (
+    <Handle
+      at={seen(at)}
+      class="s4"
+      label={which === 0 ? "Where it meets the ground" : `Where it meets ${TOP_M} m`}
+      says={`${metres(at[0])} east, ${metres(at[1])} north`}
+      onMove={(to) => {
+        const [x, y] = atHeight(OBSERVER, to, at[2]);
+        const place: Vec2 = [clamp(x, -12, 12), clamp(y, -12, 12)];
+        feet.value = which === 0 ? [place, feet.value[1]] : [feet.value[0], place];
+      }}
+    />
+  );
+  return (
+    <Space label="A line through two levels" cameras={[]}>
+      {frame(0)}
+      {frame(TOP_M)}
+      <Line from={seen(mix3(low, high, -0.15))} to={seen(mix3(low, high, 1.25))} class="s4 thick" />
+      {isRevealed ? (
+        <>
+          {handle(0, low)}
+          {handle(1, high)}
+        </>
+      ) : (
+        <>
+          <Dot at={seen(low)} class="s4" />
+          <Dot at={seen(high)} class="s4" />
+        </>
+      )}
+    </Space>
+  );
+}
+
+const EAVE: Ends3 = [CORNERS.southEaveWest, CORNERS.southEaveEast];
+const inView = (camera: Camera, [p, q]: Ends3): Ends2 => [imageOf(camera, p), imageOf(camera, q)];
+/** Which part of the eave each view's segment shows, from 0 to 1. */
+const parts = signal<readonly [readonly [number, number], readonly [number, number]]>([
+  [0.05, 0.6],
+  [0.3, 0.95],
+]);
+const segmentOf = (view: 0 | 1): Ends2 => {
+  const [from, to] = parts.value[view];
+  return inView(view === 0 ? FIRST : SECOND, [mix3(...EAVE, from), mix3(...EAVE, to)]);
+};
+const fromSegments = () => lineOfTwo([FIRST, SECOND], [segmentOf(0), segmentOf(1)]);
+
+function EndsFigure({ isRevealed }: { isRevealed: boolean }) {
+  const L = partBetween(fromSegments(), 0, -7, 7);
+  const pane = (view: 0 | 1, camera: Camera) => {
+    const [p, q] = segmentOf(view);
+    const whole = inView(camera, EAVE);
+    const handle = (end: 0 | 1, at: Vec2) => (
+      <Handle
+        at={at}
+        class={view === 0 ? "s1" : "s2"}
+        label={`${end === 0 ? "West" : "East"} end of the segment`}
+        says={`${num(100 * (parts.value[view][end] ?? 0), 0)} % along the eave`}
+        value={parts.value[view][end] ?? 0}
+        onMove={([x]) => {
+          const t = clamp((x - whole[0][0]) / (whole[1][0] - whole[0][0]), 0, 1);
+          const [from, to] = parts.value[view];
+          const now =
+            end === 0 ? ([Math.min(t, to - 0.1), to] as const) : ([from, Math.max(t, from + 0.1)] as const);
+          parts.value = view === 0 ? [now, parts.value[1]] : [parts.value[0], now];
+        }}
+      />
+    );
+    return (
+      <ImagePane
+        camera={camera}
+        title={view === 0 ? "First view" : "Second view"}
+        label={view === 0 ? "First view" : "Second view"}
+        colour={view === 0 ? 1 : 2}
+      >
+        <Line from={p} to={q} class={view === 0 ? "s1 thick" : "s2 thick"} />
+        {isRevealed && handle(0, p)}
+        {isRevealed && handle(1, q)}
+      </ImagePane>
+    );
+  };
+  return (
+    <div class="pair three">
+      {pane(0, FIRST)}
+      {pane(1, SECOND)}
+      <Space
+        label="The line in space"
+        cameras={[
+          { name: "C", camera: FIRST, colour: 1 },
+          { name: "C′", camera: SECOND, colour: 2 },
+        ]}
+      >
+        <PlaneOfLine camera={FIRST} ends={segmentOf(0)} class="s1 area" down={5} />
+        <PlaneOfLine camera={SECOND} ends={segmentOf(1)} class="s2 area" down={5} />
+        <Line from={seen(L[0])} to={seen(L[1])} class="s4 thick" />
+      </Space>
+    </div>
+  );
+}
+
+/** Segments of the ridge in three views, with a pixel and a half of noise at their ends. */
+const RIDGE: Ends3 = [CORNERS.ridgeWest, CORNERS.ridgeEast];
+const MEASURED: readonly Ends2[] = (() => {
+  const random = stream(5);
+  return ACROSS.map((camera) =>
+    inView(camera, RIDGE).map(([x, y]): Vec2 => [x + 1.5 * normal(random), y + 1.5 * normal(random)]),
+  ) as unknown as readonly Ends2[];
+})();
+/** Heights of the reader's line above its ends. */
+const ends = signal<readonly [number, number]>([10, 5.5]);
+const lineOf = ([a, b]: readonly [number, number]): Ends3 => [
+  [RIDGE[0][0], 0, a],
+  [RIDGE[1][0], 0, b],
+];
+const errorOf = (heights: readonly [number, number]) => lineError(ACROSS, MEASURED, lineOf(heights));
+/** The heights of least error, by ever finer steps. */
+const best = (() => {
+  let at: readonly [number, number] = [8, 8];
+  for (let step = 1; step > 1e-3; step /= 2) {
+    for (let i = 0; i < 8; i += 1) {
+      const around = [-1, 0, 1].flatMap((da) =>
+        [-1, 0, 1].map((db) => [at[0] + da * step, at[1] + db * step] as const),
+      );
+      at = around.reduce((most, one) => (errorOf(one) < errorOf(most) ? one : most), at);
+    }
+  }
+  return at;
+})();
+
+function FitFigure({ isRevealed }: { isRevealed: boolean }) {
+  const L = lineOf(ends.value);
+  return (
+    <div class="pair">
+      <Space label="The line above the house" cameras={[]}>
+        {isRevealed && <Line from={seen(lineOf(best)[0])} to={seen(lineOf(best)[1])} class="s6 dashed" />}
+        <Line from={seen(L[0])} to={seen(L[1])} class="s4 thick" />
+        {([0, 1] as const).map((end) => (
+          <Handle
+            key={end}
+            at={seen(L[end])}
+            class="s4"
+            label={`Height of the ${end === 0 ? "west" : "east"} end`}
+            says={metres(ends.value[end], 2)}
+            value={ends.value[end]}
+            step={1}
+            onMove={(to) => {
+              const [x, y] = [L[end][0], L[end][1]];
+              const [low, high] = [seen([x, y, 0])[1], seen([x, y, 16])[1]];
+              const z = clamp((16 * (to[1] - low)) / (high - low), 2, 15);
+              ends.value = end === 0 ? [z, ends.value[1]] : [ends.value[0], z];
+            }}
+          />
+        ))}
+      </Space>
+      <div class="parts">
+        {ACROSS.map((camera, i) => (
+          <ImagePane
+            key={camera.C.join()}
+            camera={camera}
+            title={["First", "Second", "Third"][i] ?? ""}
+            label="View with the measured segment and the image of the line"
+            colour={(i + 1) as 1 | 2 | 3}
+          >
+            <Line from={imageOf(camera, L[0])} to={imageOf(camera, L[1])} class="s4" />
+            {(MEASURED[i] as Ends2).map((x) => (
+              <Dot key={x.join()} at={x} class="s7" />
+            ))}
+          </ImagePane>
+        ))}
+      </div>
+    </div>
+  );
+}
+
+type Strips = "one" | "two";
+const strips = signal<Strips>("one");
+const azimuth = signal(45 * DEGREE);
+const ONE_STRIP = [aerial([-9, 0, 42]), aerial([0, 0, 42]), aerial([9, 0, 42])];
+const TWO_STRIPS = [...ONE_STRIP, aerial([0, 14, 42])];
+const SIGMA = 0.5;
+
+/** Standard deviation of the height of a level line, from the slopes of its distances: two numbers, height and tilt. */
+function heightSigma(cameras: readonly Camera[], phi: number): number {
+  const [c, s] = [5 * Math.cos(phi), 5 * Math.sin(phi)];
+  const at = (h: number, tilt: number): Ends3 => [
+    [-c, -s, 8 + h - tilt],
+    [c, s, 8 + h + tilt],
+  ];
+  const step = 0.01;
+  let [hh, ht, tt] = [0, 0, 0];
+  for (const camera of cameras) {
+    const own = inView(camera, at(0, 0));
+    const [dx, dy] = [own[1][0] - own[0][0], own[1][1] - own[0][1]];
+    const length = Math.hypot(dx, dy);
+    const away = (moved: Ends3) =>
+      inView(camera, moved).map(([x, y], i) => {
+        const [u, v] = own[i as 0 | 1];
+        return (dx * (y - v) - dy * (x - u)) / length / step;
+      });
+    const [byHeight, byTilt] = [away(at(step, 0)), away(at(0, step))];
+    byHeight.forEach((h, i) => {
+      const t = byTilt[i] as number;
+      hh += h * h;
+      ht += h * t;
+      tt += t * t;
+    });
+  }
+  return SIGMA * Math.sqrt(tt / (hh * tt - ht * ht));
+}
+const camerasOf = (of: Strips) => (of === "one" ? ONE_STRIP : TWO_STRIPS);
+
+function AzimuthFigure() {
+  const phi = azimuth.value;
+  const most = 0.6;
+  const curve = (of: Strips) =>
+    Array.from({ length: 90 }, (_, i) => i + 1)
+      .map((deg): Vec2 => [deg, heightSigma(camerasOf(of), deg * DEGREE)])
+      .filter(([, value]) => value < most);
+  return (
+    <>
+      <Options
+        label="Strips"
+        all={[
+          ["one", "One strip"],
+          ["two", "A view from the next strip"],
+        ]}
+        value={strips.value}
+        onPick={(value) => {
+          strips.value = value;
+        }}
+      />
+      <Plot
+        x={{ min: 0, max: 90 }}
+        y={{ min: 0, max: most }}
+        xTitle="angle between edge and flight, degrees"
+        yTitle="σ of the height, m"
+        label="Standard deviation of the height of an edge against its direction"
+      >
+        {(toX, toY, frame) => (
+          <>
+            <Curve points={curve(strips.value).map(([x, y]): Vec2 => [toX(x), toY(y)])} class="s7" />
+            <Handle
+              at={[
+                toX(phi / DEGREE),
+                clamp(toY(heightSigma(camerasOf(strips.value), phi)), frame.top, frame.height),
+              ]}
+              class="s6"
+              label="Angle between edge and flight"
+              says={degrees(phi)}
+              value={phi / DEGREE}
+              step={5}
+              onMove={([x]) => {
+                const inner = (x - frame.left) / (frame.width - frame.left - frame.right);
+                azimuth.value = clamp(Math.round(90 * inner), 1, 90) * DEGREE;
+              }}
+            />
+          </>
+        )}
+      </Plot>
+    </>
+  );
+}
+
+/** What three views show of one edge, as parts of it from 0 to 1: no view shows all. */
+const FRAGMENTS = [
+  [
+    [0, 0.28],
+    [0.4, 0.8],
+  ],
+  [
+    [0.06, 0.55],
+    [0.62, 1],
+  ],
+  [[0.2, 0.9]],
+] as const;
+const VIEW_COLOURS = ["s1", "s2", "s3"] as const;
+const needed = signal(2);
+const MOST_STEPS = 200;
+/** Shares of the edge that at least so many views show. */
+const shownBy = (count: number) =>
+  Array.from({ length: MOST_STEPS }, (_, i) => (i + 0.5) / MOST_STEPS).map(
+    (t) => FRAGMENTS.filter((own) => own.some(([from, to]) => t >= from && t <= to)).length >= count,
+  );
+const grownLength = (count: number) => (10 * shownBy(count).filter((is) => is).length) / MOST_STEPS;
+
+function GrowFigure() {
+  const isShown = shownBy(needed.value);
+  return (
+    <>
+      <Plot
+        x={{ min: 0, max: 10 }}
+        y={{ min: 0, max: 4 }}
+        xTitle="along the edge, m"
+        yTitle="views (colours), line (top)"
+        label="Fragments of an edge in three views and the line that they make"
+        height={230}
+      >
+        {(toX, toY) => (
+          <>
+            {FRAGMENTS.map((own, view) =>
+              own.map(([from, to]) => (
+                <Line
+                  key={`${view} ${from}`}
+                  from={[toX(10 * from), toY(view + 0.6)]}
+                  to={[toX(10 * to), toY(view + 0.6)]}
+                  class={`thick ${VIEW_COLOURS[view]}`}
+                />
+              )),
+            )}
+            {isShown.map(
+              (is, i) =>
+                is && (
+                  <rect
+                    key={i.toString()}
+                    class="bar s4"
+                    x={toX((10 * i) / MOST_STEPS)}
+                    width={toX(10 / MOST_STEPS) - toX(0) + 0.2}
+                    y={toY(3.85)}
+                    height={toY(3.45) - toY(3.85)}
+                  />
+                ),
+            )}
+          </>
+        )}
+      </Plot>
+      <Slider
+        label="views that must show a place"
+        value={needed.value}
+        min={1}
+        max={3}
+        step={1}
+        says={num(needed.value, 0)}
+        onInput={(value) => {
+          needed.value = value;
+        }}
+      />
+    </>
+  );
+}
+
+export const LINES_IN_SPACE: Lesson = {
+  id: "lines-in-space",
+  title: "Lines in space",
+  aim: "You can say what images fix of a line, and what they leave open.",
+  minutes: 8,
+  papers: "B99 3.2 to 3.4, figures 4 to 8",
+  screens: [
+    {
+      id: "four",
+      title: "How many numbers?",
+      prose: () => [
+        "A point in space has three numbers. Now a line $L$, endless in both directions, anywhere.",
+      ],
+      figure: FourFigure,
+      predict: {
+        kind: "choice",
+        question: "How many numbers fix an endless line in space?",
+        options: ["3", "4", "5", "6"],
+        right: () => 1,
+        why: () =>
+          "It meets the ground in two coordinates, and a level above in two more. Drag them: every line that is not level is reached. ridgeline writes lines in another way that has no exception, with four numbers as well.",
+      },
+      says: () => {
+        const [[a, b], [c, d]] = feet.value;
+        return `(${num(a)}, ${num(b)}) on the ground and (${num(c)}, ${num(d)}) at ${TOP_M} m: four numbers.`;
+      },
+    },
+    {
+      id: "ends",
+      title: "Ends do not count",
+      prose: () => [
+        "Edge detectors find the direction of an edge well and its ends badly: a tree, a shadow, weak contrast, and the segment ends early. The two views here show different parts of the eave.",
+      ],
+      formula: () => "plane1 = P ^T l , plane2 = P2 ^T l2",
+      figure: EndsFigure,
+      predict: {
+        kind: "choice",
+        question: "The segment of one view becomes shorter. What happens to the line $L$ in space?",
+        options: ["It moves", "It becomes shorter", "Nothing: the plane stays the same"],
+        right: () => 2,
+        why: () => "A plane through a line knows nothing of the line's ends. Drag them along the eave.",
+      },
+      says: () => {
+        const [p, q] = partBetween(fromSegments(), 0, -5, 5);
+        const [a, b] = parts.value;
+        return `The views show ${num(10 * (a[1] - a[0]))} m and ${num(10 * (b[1] - b[0]))} m of the eave; $L$ is at ${metres(p[2], 2)} and ${metres(q[2], 2)}, as before.`;
+      },
+    },
+    {
+      id: "fit",
+      title: "Fit the line yourself",
+      prose: () => [
+        "Three views, each with the measured ends of a segment. They deviate by a pixel or two, so no line hits them all. Only the distance $d$ *across* the image of $L$ counts: along it, ends say nothing.",
+        "Drag the ends of the line up and down until $d$ is as small as you can make it.",
+      ],
+      formula: () => "min _ L sum d ^2",
+      figure: FitFigure,
+      predict: {
+        kind: "place",
+        question: "Bring the line onto the dots in all three views. How small do you get $d$?",
+        how: () =>
+          `You reached ${pixels(errorOf(ends.value), 2)}; the least is ${pixels(errorOf(best), 2)}, at ${metres(best[0], 2)} and ${metres(best[1], 2)} (dashed). The ridge is at 8 m.`,
+      },
+      says: () =>
+        `With its ends at ${metres(ends.value[0], 2)} and ${metres(ends.value[1], 2)} the line leaves $d$ = ${pixels(errorOf(ends.value), 2)}.`,
+    },
+    {
+      id: "direction",
+      title: "Which edges are known well",
+      prose: () => [
+        "Lesson 4 has shown why an edge along the flight is lost. Here is what that does to its height, for every direction: half a pixel of noise, 42 m up, three views 9 m apart.",
+        "Then add one view of the next strip.",
+      ],
+      formula: () => 'sigmaZ "grows_as" frac { 1 } { sin phi }',
+      figure: AzimuthFigure,
+      says: () =>
+        `At $phi$ = ${degrees(azimuth.value)} the height of the edge is good to ${metres(heightSigma(camerasOf(strips.value), azimuth.value), 2)}${strips.value === "one" ? "." : ", with the view of the next strip."}`,
+    },
+    {
+      id: "growing",
+      title: "Merging and growing",
+      prose: () => [
+        "Now that $L$ is known, its ends can be settled over all views. Where two fragments of one view lie on it, and the windows between them correlate in the others, they are *merged*. Where one view shows more than another, and correlation agrees, the line is *grown*.",
+        "How many views must show a place? Fewer: longer lines. More: safer ones.",
+      ],
+      figure: GrowFigure,
+      says: () =>
+        `What at least ${counted(needed.value, "views")} show${needed.value === 1 ? "s" : ""} is ${metres(grownLength(needed.value))} of the 10 m; the longest single segment has 7 m.`,
+    },
+    {
+      id: "own",
+      title: "Lines of a whole scene",
+      prose: () => [
+        "Each line with its standard deviation against the number of views, and the picked line in every view. The more views, the better: figure 9 of B99.",
+      ],
+      figure: realFigure("line-accuracy"),
+      isReal: true,
+    },
+  ],
+};

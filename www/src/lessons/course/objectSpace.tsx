@@ -1,0 +1,588 @@
+/** Lesson 9: W96's way: no image is compared with another, everything meets in space, and the shortest description wins. */
+import { computed, signal } from "@preact/signals";
+import { counted } from "../../app/parts/counted";
+import { Curve, Dot, Drawing, Grey, Handle, Label, Line, Plot, Slider } from "../parts/draw";
+import type { Lesson } from "../parts/lesson";
+import { DEGREE, degrees, metres, num } from "../parts/say";
+import { realFigure } from "../scene/RealFigure";
+import { byCount, describe, shortest } from "../toy/description";
+import { azimuthHistogram, crossSum, mainDirection, seenLines } from "../toy/directions";
+import { normal, stream } from "../toy/evidence";
+import { aerial } from "../toy/house";
+import { clamp, type Vec2 } from "../toy/linear";
+
+const viewCount = signal(6);
+const lineCount = signal(200);
+const comparisons = (views: number) => (views * (views - 1) * lineCount.value ** 2) / 2;
+const accumulated = (views: number) => views * lineCount.value;
+const thousands = (value: number) =>
+  Math.round(value)
+    .toString()
+    .replace(/\B(?=(\d{3})+$)/g, "\u202f");
+
+function CountFigure({ isRevealed }: { isRevealed: boolean }) {
+  const counts = [2, 3, 4, 5, 6, 7, 8, 9, 10];
+  const most = comparisons(10);
+  return (
+    <>
+      <Plot
+        x={{ min: 2, max: 10 }}
+        y={{ min: 0, max: isRevealed ? most : 10 * lineCount.value }}
+        xTitle="views"
+        yTitle="lines touched"
+        label="Work against the number of views"
+      >
+        {(toX, toY, frame) => (
+          <>
+            {isRevealed && (
+              <Curve points={counts.map((n): Vec2 => [toX(n), toY(comparisons(n))])} class="s7" />
+            )}
+            <Curve points={counts.map((n): Vec2 => [toX(n), toY(accumulated(n))])} class="s4" />
+            {isRevealed && (
+              <Label at={[toX(6.6), toY(comparisons(7))]} anchor="end" class="s7">
+                image against image
+              </Label>
+            )}
+            <Label at={[toX(10), toY(accumulated(10))]} dy={-8} anchor="end" class="s4">
+              into space
+            </Label>
+            <Line
+              from={[toX(viewCount.value), frame.top]}
+              to={[toX(viewCount.value), frame.height - frame.bottom]}
+              class="s5 faint"
+            />
+          </>
+        )}
+      </Plot>
+      {isRevealed && (
+        <Slider
+          symbol="N"
+          label="views"
+          value={viewCount.value}
+          min={2}
+          max={10}
+          step={1}
+          says={num(viewCount.value, 0)}
+          onInput={(value) => {
+            viewCount.value = value;
+          }}
+        />
+      )}
+    </>
+  );
+}
+
+/** Six views all round, of a house turned by 24 degrees. */
+const TURN = 24 * DEGREE;
+const AROUND = [
+  [-9, -8],
+  [0, -9],
+  [9, -8],
+  [-9, 8],
+  [0, 9],
+  [9, 8],
+].map(([x = 0, y = 0]) => aerial([x, y, 42]));
+const BINS = 90;
+const used = signal(6);
+const seenBy = computed(() => seenLines(AROUND.slice(0, used.value), TURN, 12, 0.7));
+const histogram = computed(() => azimuthHistogram(AROUND, seenBy.value, BINS));
+const alpha = signal(63 * DEGREE);
+const bestAlpha = () => mainDirection(histogram.value);
+
+function DirectionFigure({ isRevealed }: { isRevealed: boolean }) {
+  const most = Math.max(...histogram.value);
+  const angles = [alpha.value, alpha.value + Math.PI / 2].map((a) => a % Math.PI);
+  return (
+    <>
+      <Plot
+        x={{ min: 0, max: 180 }}
+        y={{ min: 0, max: most }}
+        xTitle="azimuth, degrees"
+        yTitle="length of lines, px"
+        label="Lengths of all image lines by azimuth"
+      >
+        {(toX, toY, frame) => (
+          <>
+            {histogram.value.map((value, bin) => (
+              <rect
+                key={bin.toString()}
+                class="bar s5"
+                x={toX((180 * bin) / BINS)}
+                width={toX(180 / BINS) - toX(0) - 0.5}
+                y={toY(value)}
+                height={toY(0) - toY(value)}
+              />
+            ))}
+            {angles.map((a, i) => (
+              <Line
+                key={i.toString()}
+                from={[toX(a / DEGREE), frame.top]}
+                to={[toX(a / DEGREE), frame.height - frame.bottom]}
+                class={i === 0 ? "s6" : "s6 dashed"}
+              />
+            ))}
+            <Handle
+              at={[toX((angles[0] as number) / DEGREE), frame.top + 8]}
+              class="s6"
+              label="Direction alpha"
+              says={`${degrees(alpha.value)} and ${degrees(angles[1] as number)}`}
+              value={alpha.value / DEGREE}
+              step={2.4}
+              onMove={([x]) => {
+                const inner = (x - frame.left) / (frame.width - frame.left - frame.right);
+                alpha.value = clamp(180 * inner, 0, 179.9) * DEGREE;
+              }}
+            />
+          </>
+        )}
+      </Plot>
+      {isRevealed && (
+        <Slider
+          symbol="N"
+          label="views in the histogram"
+          value={used.value}
+          min={1}
+          max={6}
+          step={1}
+          says={num(used.value, 0)}
+          onInput={(value) => {
+            used.value = value;
+          }}
+        />
+      )}
+    </>
+  );
+}
+
+/** Across the main direction: each line of a view is a ray in this plane, from its projection centre. */
+const CENTRES: readonly Vec2[] = [
+  [-11, 42],
+  [-7, 42],
+  [-3, 42],
+  [4, 42],
+  [8, 42],
+  [12, 42],
+];
+const TRUE_POINTS: readonly Vec2[] = [
+  [-4, 5],
+  [0, 8],
+  [4, 5],
+];
+interface Ray {
+  view: number;
+  through: Vec2;
+}
+const RAYS: readonly Ray[] = (() => {
+  const random = stream(21);
+  return CENTRES.flatMap((_, view) => [
+    ...TRUE_POINTS.map(
+      ([y, z]): Ray => ({ view, through: [y + 0.12 * normal(random), z + 0.12 * normal(random)] }),
+    ),
+    // Kerbs, shadows, a path.
+    { view, through: [-9 + 18 * random(), 0] as Vec2 },
+    { view, through: [-9 + 18 * random(), 1.5 * random()] as Vec2 },
+  ]);
+})();
+const TOLERANCE_M = 0.3;
+const probe = signal<Vec2>([-2, 2.5]);
+
+function distanceToRay({ view, through }: Ray, [y, z]: Vec2): number {
+  const [cy, cz] = CENTRES[view] as Vec2;
+  const [dy, dz] = [through[0] - cy, through[1] - cz];
+  return Math.abs(dy * (z - cz) - dz * (y - cy)) / Math.hypot(dy, dz);
+}
+const supporters = (at: Vec2) =>
+  new Set(RAYS.filter((ray) => distanceToRay(ray, at) < TOLERANCE_M).map(({ view }) => view));
+const CROSS = { width: 480, height: 330, scale: 21, x: 240, y: 285 } as const;
+const inCross = ([y, z]: Vec2): Vec2 => [CROSS.x + CROSS.scale * y, CROSS.y - CROSS.scale * z];
+const VIEW_CLASS = ["s1", "s2", "s3", "s4", "s5", "s7"] as const;
+
+/** The parts of a ray between two heights of the drawing. */
+function rayIn({ view, through }: Ray): readonly [Vec2, Vec2] {
+  const [cy, cz] = CENTRES[view] as Vec2;
+  const at = (z: number): Vec2 => [cy + ((through[0] - cy) * (z - cz)) / (through[1] - cz), z];
+  return [inCross(at(13)), inCross(at(-1.5))];
+}
+
+function ClusterFigure({ isRevealed }: { isRevealed: boolean }) {
+  const own = supporters(probe.value);
+  return (
+    <Drawing
+      width={CROSS.width}
+      height={CROSS.height}
+      label="The plane across the ridge with a ray for every image line"
+      isImage
+      class="plain"
+    >
+      {isRevealed && (
+        <polygon
+          class="outline s0"
+          points={(
+            [
+              [-4, 0],
+              [-4, 5],
+              [0, 8],
+              [4, 5],
+              [4, 0],
+            ] as const
+          )
+            .map((p) => inCross(p).join())
+            .join(" ")}
+        />
+      )}
+      {RAYS.map((ray, i) => {
+        const [from, to] = rayIn(ray);
+        const isNear = distanceToRay(ray, probe.value) < TOLERANCE_M;
+        return (
+          <Line
+            key={i.toString()}
+            from={from}
+            to={to}
+            class={`${VIEW_CLASS[ray.view]} ${isNear ? "" : "faint"}`}
+          />
+        );
+      })}
+      <Handle
+        at={inCross(probe.value)}
+        class="s6"
+        label="Where a line in space might be"
+        says={`${counted(own.size, "views")}, ${metres(probe.value[1])} high`}
+        value={own.size}
+        onMove={([x, y]) => {
+          probe.value = [
+            clamp((x - CROSS.x) / CROSS.scale, -10, 10),
+            clamp((CROSS.y - y) / CROSS.scale, -1, 12),
+          ];
+        }}
+      />
+    </Drawing>
+  );
+}
+
+/** A row of pixels across a house: garden, roof in the sun, roof in the shade, path, garden. */
+const SIGMA = 9;
+const PIXELS = 64;
+const TRUE_BREAKS = [14, 31, 46, 54];
+const LEVELS = [88, 172, 120, 190, 96];
+const ROW: readonly number[] = (() => {
+  const random = stream(3);
+  return Array.from({ length: PIXELS }, (_, i) => {
+    const part = TRUE_BREAKS.filter((at) => at <= i).length;
+    return Math.round((LEVELS[part] as number) + SIGMA * normal(random));
+  });
+})();
+const BEST = shortest(ROW, SIGMA);
+const breaks = signal<readonly number[]>([20, 40]);
+const own = () => describe(ROW, breaks.value, SIGMA);
+
+function DescriptionFigure({ isRevealed }: { isRevealed: boolean }) {
+  const { model, data } = own();
+  const ends = [0, ...breaks.value, PIXELS];
+  const parts = ends.slice(0, -1).map((from, i) => {
+    const to = ends[i + 1] as number;
+    const part = ROW.slice(from, to);
+    return { from, to, mean: part.reduce((sum, one) => sum + one, 0) / part.length };
+  });
+  const most = describe(ROW, [], SIGMA).total;
+  return (
+    <>
+      <Grey values={ROW} width={PIXELS} height={1} label="A row of 64 pixels" class="row-of-pixels" />
+      <Plot
+        x={{ min: 0, max: PIXELS }}
+        y={{ min: 50, max: 220 }}
+        xTitle="pixel"
+        yTitle="grey value"
+        label="Grey values of the row and the stretches that describe them"
+        height={250}
+      >
+        {(toX, toY, frame) => (
+          <>
+            {ROW.map((value, i) => (
+              <Dot key={i.toString()} at={[toX(i + 0.5), toY(value)]} class="s1 small" />
+            ))}
+            {parts.map(({ from, to, mean }) => (
+              <Line key={from} from={[toX(from), toY(mean)]} to={[toX(to), toY(mean)]} class="s6 thick" />
+            ))}
+            {isRevealed &&
+              BEST.map((at) => (
+                <Line
+                  key={`best ${at}`}
+                  from={[toX(at), frame.top]}
+                  to={[toX(at), frame.height - frame.bottom]}
+                  class="s4 dashed"
+                />
+              ))}
+            {breaks.value.map((at, i) => (
+              <g key={i.toString()}>
+                <Line from={[toX(at), frame.top]} to={[toX(at), frame.height - frame.bottom]} class="s6" />
+                <Handle
+                  at={[toX(at), frame.top + 8]}
+                  class="s6"
+                  label={`Break ${i + 1}`}
+                  says={`before pixel ${at}`}
+                  value={at}
+                  step={toX(1) - toX(0)}
+                  onMove={([x]) => {
+                    const inner = (x - frame.left) / (frame.width - frame.left - frame.right);
+                    const low = (breaks.value[i - 1] ?? 0) + 1;
+                    const high = (breaks.value[i + 1] ?? PIXELS) - 1;
+                    breaks.value = breaks.value.with(i, clamp(Math.round(PIXELS * inner), low, high));
+                  }}
+                />
+              </g>
+            ))}
+          </>
+        )}
+      </Plot>
+      <div class="row">
+        <button type="button" disabled={breaks.value.length > 6} onClick={addBreak}>
+          One break more
+        </button>
+        <button
+          type="button"
+          disabled={breaks.value.length === 0}
+          onClick={() => {
+            breaks.value = breaks.value.slice(0, -1);
+          }}
+        >
+          One less
+        </button>
+      </div>
+      <Drawing width={480} height={44} label={`Model ${num(model, 0)} bits, data ${num(data, 0)} bits`}>
+        <rect class="bar s6" x={0} y={4} width={(480 * model) / most} height={16} />
+        <rect
+          class="bar s1"
+          x={(480 * model) / most}
+          y={4}
+          width={Math.min(480, (480 * data) / most)}
+          height={16}
+        />
+        <Label at={[0, 22]} dy={14} class="s6">
+          model {num(model, 0)}
+        </Label>
+        <Label at={[140, 22]} dy={14} class="s1">
+          deviations {num(data, 0)} bits
+        </Label>
+      </Drawing>
+    </>
+  );
+}
+
+/** In the middle of the longest stretch. */
+function addBreak(): void {
+  const ends = [0, ...breaks.value, PIXELS];
+  let longest = 0;
+  for (let i = 1; i + 1 < ends.length; i += 1) {
+    const length = (at: number) => (ends[at + 1] as number) - (ends[at] as number);
+    longest = length(i) > length(longest) ? i : longest;
+  }
+  const at = Math.round(((ends[longest] as number) + (ends[longest + 1] as number)) / 2);
+  breaks.value = [...breaks.value, at].sort((a, b) => a - b);
+}
+
+/** The description with each number of breaks. */
+const BY_COUNT = byCount(ROW, SIGMA);
+const MOST_BREAKS = 16;
+const count = signal(1);
+const bitsOf = (k: number) => describe(ROW, BY_COUNT.get(k) ?? [], SIGMA);
+
+function CountBreaksFigure({ isRevealed }: { isRevealed: boolean }) {
+  const ks = Array.from({ length: MOST_BREAKS + 1 }, (_, k) => k);
+  const most = 700;
+  const curve = (value: (k: number) => number) => (toX: (x: number) => number, toY: (y: number) => number) =>
+    ks.map((k): Vec2 => [toX(k), toY(Math.min(most, value(k)))]);
+  return (
+    <>
+      <Plot
+        x={{ min: 0, max: MOST_BREAKS }}
+        y={{ min: 0, max: most }}
+        xTitle="breaks"
+        yTitle="bits"
+        label="Bits of model and deviations against the number of breaks"
+      >
+        {(toX, toY, frame) => (
+          <>
+            <Curve points={curve((k) => bitsOf(k).data)(toX, toY)} class="s1" />
+            {isRevealed && <Curve points={curve((k) => bitsOf(k).model)(toX, toY)} class="s6" />}
+            {isRevealed && <Curve points={curve((k) => bitsOf(k).total)(toX, toY)} class="s0" />}
+            <Label at={[toX(MOST_BREAKS), toY(bitsOf(MOST_BREAKS).data)]} dy={18} anchor="end" class="s1">
+              deviations
+            </Label>
+            {isRevealed && (
+              <>
+                <Label at={[toX(3), toY(bitsOf(3).model)]} dy={18} class="s6">
+                  model
+                </Label>
+                <Label at={[toX(9), toY(bitsOf(9).total)]} dy={-8} anchor="end">
+                  both
+                </Label>
+                <Line
+                  from={[toX(count.value), frame.top]}
+                  to={[toX(count.value), frame.height - frame.bottom]}
+                  class="s6 faint"
+                />
+              </>
+            )}
+          </>
+        )}
+      </Plot>
+      {isRevealed && (
+        <Slider
+          symbol="k"
+          label="breaks"
+          value={count.value}
+          min={0}
+          max={MOST_BREAKS}
+          step={1}
+          says={num(count.value, 0)}
+          onInput={(value) => {
+            count.value = value;
+          }}
+        />
+      )}
+    </>
+  );
+}
+
+export const OBJECT_SPACE: Lesson = {
+  id: "object-space",
+  title: "Object space and shortest descriptions",
+  aim: "You can say why W96 compares no two images, and where it gets its thresholds from: nowhere.",
+  minutes: 9,
+  papers: "W96 2 and 3.3 to 3.6",
+  screens: [
+    {
+      id: "count",
+      title: "Whom to compare with whom",
+      prose: () => [
+        `$m$ = ${lineCount.value} in each view. B99 compares them image against image, and needs the epipolar beam to stay alive. W96 carries every line into object space once, and looks there where many meet.`,
+      ],
+      formula: () => 'frac { N ( N - 1 ) } { 2 } m ^2 "against" N m',
+      figure: CountFigure,
+      predict: {
+        kind: "choice",
+        question: "Six views with 200 lines each. How many pairs of lines are there, image against image?",
+        options: ["1 200", "36 000", "600 000"],
+        right: () => 2,
+        why: () =>
+          "15 pairs of images, 40 000 pairs of lines in each. Into space go 1 200 lines, and a seventh view adds 200 more.",
+      },
+      says: () =>
+        `With ${counted(viewCount.value, "views")}, pairs of lines: ${thousands(comparisons(viewCount.value))}. Lines into space: ${thousands(accumulated(viewCount.value))}.`,
+    },
+    {
+      id: "direction",
+      title: "Drag α onto the peaks",
+      prose: () => [
+        "Most edges of a house are level and run in two perpendicular directions. The plane of an image line and its projection centre cuts a level plane in an azimuth: for a level edge, its own. Lines that are no edges of the house cut it anywhere.",
+        "All lines of all views go into one histogram. Drag $alpha$; the dashed line stands across it.",
+      ],
+      figure: DirectionFigure,
+      predict: {
+        kind: "place",
+        question: "At which $alpha$ do both lines stand on peaks?",
+        how: () => {
+          const off = Math.abs((((alpha.value - bestAlpha()) % (Math.PI / 2)) + Math.PI / 2) % (Math.PI / 2));
+          return `Yours is ${degrees(Math.min(off, Math.PI / 2 - off))} off: the two peaks together are highest at ${degrees(bestAlpha())}, and the house was turned by ${degrees(TURN)}. One peak alone could be a road; two, perpendicular, are a house.`;
+        },
+      },
+      says: () =>
+        `At ${degrees(alpha.value)} and ${degrees((alpha.value + Math.PI / 2) % Math.PI)} there are ${num(crossSum(histogram.value, alpha.value), 0)} px of lines, of ${num(
+          histogram.value.reduce((sum, one) => sum + one, 0),
+          0,
+        )}.`,
+    },
+    {
+      id: "clusters",
+      title: "Look along the ridge",
+      prose: () => [
+        "Look along the main direction: every edge that runs that way becomes a point, and every image line a ray from its camera. Six views, six colours.",
+        "True edges are where rays of *many views* meet. Two rays meet anywhere; that says nothing. Find a place with all six.",
+      ],
+      figure: ClusterFigure,
+      predict: {
+        kind: "place",
+        question: "Drag the mark to a place where all six views meet. There are three.",
+        how: () =>
+          `Your place has ${supporters(probe.value).size} of 6 views. The three true ones are the eaves and the ridge of the house that is drawn now. Each is an endless line of the roof, found without comparing two images.`,
+      },
+      says: () => {
+        const views = supporters(probe.value).size;
+        return `${views} of 6 views have a ray within ${metres(TOLERANCE_M)} of this place, ${metres(probe.value[1])} above the ground.`;
+      },
+    },
+    {
+      id: "describe",
+      title: "How would you say it in few words?",
+      prose: () => [
+        "A row of 64 pixels across a garden, a roof and a path. Somebody is to write it down: where stretches of constant grey end, how grey each is, and by how much every pixel deviates.",
+        "Each break costs bits; so does each deviation. Drag the breaks, add some, and make the sum small.",
+      ],
+      formula: () =>
+        'DL = k log _ 2 n + ( k + 1 ) * 8 + sum _ i frac { r _ i ^2 } { 2 sigmaG ^2 ln 2 } + "const"',
+      figure: DescriptionFigure,
+      predict: {
+        kind: "place",
+        question: "How short can you make it?",
+        how: () => {
+          const best = describe(ROW, BEST, SIGMA).total;
+          return `Yours has ${num(own().total, 0)} bits with $k$ = ${breaks.value.length}; the shortest found has ${num(best, 0)} with ${BEST.length} (dashed). The row was made with ${TRUE_BREAKS.length}.`;
+        },
+      },
+      says: () => {
+        const { model, data, total } = own();
+        return `${num(model, 0)} bits of model and ${num(data, 0)} of deviations: ${num(total, 0)} together, with $k$ = ${breaks.value.length}.`;
+      },
+    },
+    {
+      id: "minimum",
+      title: "Why it stops by itself",
+      prose: () => [
+        "With every further break the deviations become smaller, to the very end. Whoever only fits, splits until each pixel is a region.",
+        "The model's own bits stop that. ORIS in W96 does this in two dimensions: it begins with many small regions, drops break points and merges regions, as long as the description becomes shorter.",
+      ],
+      figure: CountBreaksFigure,
+      predict: {
+        kind: "estimate",
+        question:
+          "The curve of the deviations only falls. At how many breaks is the *whole* description shortest?",
+        unit: "breaks",
+        min: 0,
+        max: MOST_BREAKS,
+        step: 1,
+        truth: () => BEST.length,
+        within: 0,
+        why: () => "Nobody has set a threshold: a break that saves fewer bits than it costs is not made.",
+      },
+      says: () =>
+        `With $k$ = ${count.value} it is ${num(bitsOf(count.value).total, 0)} bits long; the shortest has ${num(Math.min(...Array.from({ length: MOST_BREAKS + 1 }, (_, k) => bitsOf(k).total)), 0)}.`,
+    },
+    {
+      id: "own-regions",
+      title: "Regions of a whole photograph",
+      prose: () => [
+        "The partition of a photograph by its description length: regions of constant grey with straight, shared borders. Choose another view.",
+      ],
+      figure: realFigure("regions"),
+      isReal: true,
+    },
+    {
+      id: "own-directions",
+      title: "Main directions of a whole scene",
+      prose: () => [
+        "The histogram of all views of the scene, and the two perpendicular directions that were taken from it.",
+      ],
+      figure: realFigure("main-directions"),
+      isReal: true,
+    },
+    {
+      id: "own",
+      title: "Clusters of a whole scene",
+      prose: () => [
+        "The plane across a main direction, with the rays of all views and the clusters that were kept. Pick one: it is projected back into the photographs.",
+      ],
+      figure: realFigure("clusters"),
+      isReal: true,
+    },
+  ],
+};

@@ -1,0 +1,306 @@
+/** Parts of drawn figures: SVG whose type keeps its size, things that are dragged by pointer and key, sliders, plots. */
+import type { ComponentChildren } from "preact";
+import { useEffect, useId, useRef } from "preact/hooks";
+import { axesOf, type Frame, pathOf, type Scale, ticks } from "../../app/parts/charts";
+import type { Vec2 } from "../toy/linear";
+import { Formula } from "./Formula";
+
+interface DrawingProps {
+  width: number;
+  height: number;
+  /** Where it begins, if not at 0. */
+  top?: number;
+  /** What it shows, for those who do not see it. */
+  label: string;
+  children: ComponentChildren;
+  /** Cuts off what is outside, as an image does. */
+  isImage?: boolean;
+  class?: string;
+}
+
+/** A drawing in units of its own. `--u` is one CSS pixel in these units, so that text and handles keep their size. */
+export function Drawing({
+  width,
+  height,
+  label,
+  children,
+  top = 0,
+  isImage = false,
+  class: name = "",
+}: DrawingProps) {
+  const svg = useRef<SVGSVGElement>(null);
+  useEffect(() => {
+    const element = svg.current;
+    if (element === null) {
+      return undefined;
+    }
+    const observer = new ResizeObserver(() => {
+      if (element.clientWidth > 0) {
+        const shown = Math.min(element.clientWidth / width, element.clientHeight / height);
+        element.style.setProperty("--u", (1 / shown).toFixed(4));
+      }
+    });
+    observer.observe(element);
+    return () => observer.disconnect();
+  }, [width, height]);
+  return (
+    // biome-ignore lint/a11y/useSemanticElements: a drawing is no form
+    <svg
+      ref={svg}
+      class={`drawing ${isImage ? "image" : ""} ${name}`}
+      viewBox={`0 ${top} ${width} ${height}`}
+      role="group"
+      aria-label={label}
+    >
+      {children}
+    </svg>
+  );
+}
+
+/** Text in a drawing, with an edge of paper so that lines do not cross it; `dx` and `dy` in CSS pixels. */
+export function Label(props: {
+  at: Vec2;
+  children: ComponentChildren;
+  class?: string;
+  dx?: number;
+  dy?: number;
+  anchor?: "start" | "middle" | "end";
+}) {
+  const { at, children, class: name = "", dx = 0, dy = 0, anchor = "start" } = props;
+  return (
+    <g transform={`translate(${at[0].toFixed(2)} ${at[1].toFixed(2)})`}>
+      <text
+        class={`label ${name}`}
+        text-anchor={anchor}
+        style={{ transform: `translate(calc(var(--u, 1) * ${dx}px), calc(var(--u, 1) * ${dy}px))` }}
+      >
+        {children}
+      </text>
+    </g>
+  );
+}
+
+export function Line({ from, to, class: name }: { from: Vec2; to: Vec2; class: string }) {
+  return <line class={`stroke ${name}`} x1={from[0]} y1={from[1]} x2={to[0]} y2={to[1]} />;
+}
+
+export function Shape({ points, class: name }: { points: readonly Vec2[]; class: string }) {
+  return (
+    <polygon class={name} points={points.map(([x, y]) => `${x.toFixed(2)},${y.toFixed(2)}`).join(" ")} />
+  );
+}
+
+export function Dot({ at, class: name }: { at: Vec2; class: string }) {
+  return <circle class={`point ${name}`} cx={at[0]} cy={at[1]} r={4} />;
+}
+
+interface HandleProps {
+  at: Vec2;
+  /** What it moves. */
+  label: string;
+  /** Where it is, in words. */
+  says: string;
+  /** One number of it, for those who hear it. */
+  value?: number;
+  onMove: (to: Vec2) => void;
+  class?: string;
+  /** How far a key moves it, in units of the drawing. */
+  step?: number;
+}
+
+/** Something that is dragged: by pointer or finger, and with the arrow keys when it has the focus. */
+export function Handle({ at, label, says, value, onMove, class: name = "s6", step = 2 }: HandleProps) {
+  const placeOf = (event: PointerEvent): Vec2 => {
+    const of = event.currentTarget as SVGGraphicsElement;
+    const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(of.getScreenCTM()?.inverse());
+    return [point.x, point.y];
+  };
+  const byKey = (event: KeyboardEvent) => {
+    const by: Readonly<Record<string, Vec2>> = {
+      ArrowLeft: [-step, 0],
+      ArrowRight: [step, 0],
+      ArrowUp: [0, -step],
+      ArrowDown: [0, step],
+    };
+    const move = by[event.key];
+    if (move !== undefined) {
+      event.preventDefault();
+      event.stopPropagation();
+      const times = event.shiftKey ? 5 : 1;
+      onMove([at[0] + times * move[0], at[1] + times * move[1]]);
+    }
+  };
+  return (
+    <g
+      class={`handle ${name}`}
+      role="slider"
+      tabindex={0}
+      aria-label={label}
+      aria-valuenow={Math.round(100 * (value ?? at[0])) / 100}
+      aria-valuetext={says}
+      onKeyDown={byKey}
+      onPointerDown={(event) => {
+        event.preventDefault();
+        (event.currentTarget as SVGElement).setPointerCapture(event.pointerId);
+        (event.currentTarget as SVGElement).focus();
+      }}
+      onPointerMove={(event) => {
+        if (event.buttons === 1) {
+          onMove(placeOf(event));
+        }
+      }}
+    >
+      <circle class="reach" cx={at[0]} cy={at[1]} r={20} />
+      <circle class="knob" cx={at[0]} cy={at[1]} r={8} />
+    </g>
+  );
+}
+
+interface SliderProps {
+  /** The symbol that it moves. */
+  symbol?: string;
+  label: string;
+  value: number;
+  min: number;
+  max: number;
+  step: number;
+  /** The value in words, with its unit. */
+  says: string;
+  onInput: (value: number) => void;
+}
+
+export function Slider({ symbol, label, value, min, max, step, says, onInput }: SliderProps) {
+  const id = useId();
+  return (
+    <div class="slider">
+      <label for={id}>
+        {symbol !== undefined && <Formula text={symbol} />} {label}
+      </label>
+      <output for={id} class="numbers">
+        {says}
+      </output>
+      <input
+        id={id}
+        type="range"
+        min={min}
+        max={max}
+        step={step}
+        value={value}
+        aria-valuetext={says}
+        onInput={(event) => onInput(Number(event.currentTarget.value))}
+      />
+    </div>
+  );
+}
+
+/** One of several, beside each other. */
+export function Options<T extends string>(props: {
+  label: string;
+  all: readonly (readonly [T, string])[];
+  value: T;
+  onPick: (value: T) => void;
+}) {
+  return (
+    <fieldset class="choice">
+      <legend class="visually-hidden">{props.label}</legend>
+      {props.all.map(([value, title]) => (
+        <button
+          key={value}
+          type="button"
+          aria-pressed={props.value === value}
+          onClick={() => props.onPick(value)}
+        >
+          {title}
+        </button>
+      ))}
+    </fieldset>
+  );
+}
+
+interface PlotProps {
+  x: Scale;
+  y: Scale;
+  xTitle: string;
+  yTitle: string;
+  label: string;
+  height?: number;
+  children: (
+    toX: (value: number) => number,
+    toY: (value: number) => number,
+    frame: Frame,
+  ) => ComponentChildren;
+}
+
+const PLOT_WIDTH = 480;
+
+/** Axes about what is drawn inside. */
+export function Plot({ x, y, xTitle, yTitle, label, height = 270, children }: PlotProps) {
+  const frame: Frame = { width: PLOT_WIDTH, height, left: 46, right: 12, top: 24, bottom: 54 };
+  const [toX, toY] = axesOf(frame, x, y);
+  return (
+    <Drawing width={frame.width} height={frame.height} label={label} class="plot">
+      {ticks(y, 4).map((value) => (
+        <g key={`y${value}`}>
+          <line class="grid" x1={frame.left} x2={frame.width - frame.right} y1={toY(value)} y2={toY(value)} />
+          <Label at={[frame.left, toY(value)]} dx={-5} dy={4} anchor="end" class="tick">
+            {tick(value)}
+          </Label>
+        </g>
+      ))}
+      {ticks(x, 5).map((value) => (
+        <g key={`x${value}`}>
+          <line
+            class="grid"
+            x1={toX(value)}
+            x2={toX(value)}
+            y1={frame.top}
+            y2={frame.height - frame.bottom}
+          />
+          <Label at={[toX(value), frame.height - frame.bottom]} dy={15} anchor="middle" class="tick">
+            {tick(value)}
+          </Label>
+        </g>
+      ))}
+      <Label at={[frame.width - frame.right, frame.height - frame.bottom]} dy={33} anchor="end" class="tick">
+        {xTitle}
+      </Label>
+      <Label at={[4, frame.top]} dy={-9} class="tick">
+        {yTitle}
+      </Label>
+      {children(toX, toY, frame)}
+    </Drawing>
+  );
+}
+
+const tick = (value: number) => String(Math.round(1000 * value) / 1000).replace("-", "−");
+
+/** A curve in a plot. */
+export function Curve({ points, class: name }: { points: readonly Vec2[]; class: string }) {
+  return <path class={`stroke curve ${name}`} d={pathOf(points)} />;
+}
+
+/** Grey values as a picture of square pixels. */
+export function Grey(props: {
+  values: ArrayLike<number>;
+  width: number;
+  height: number;
+  label: string;
+  class?: string;
+}) {
+  const { values, width, height, label, class: name = "" } = props;
+  const canvas = useRef<HTMLCanvasElement>(null);
+  useEffect(() => {
+    const context = canvas.current?.getContext("2d");
+    if (context != null) {
+      const image = context.createImageData(width, height);
+      for (let i = 0; i < width * height; i += 1) {
+        image.data.fill(values[i] ?? 0, 4 * i, 4 * i + 3);
+        image.data[4 * i + 3] = 255;
+      }
+      context.putImageData(image, 0, 0);
+    }
+  }, [values, width, height]);
+  return (
+    <canvas ref={canvas} class={`grey ${name}`} width={width} height={height} role="img" aria-label={label} />
+  );
+}

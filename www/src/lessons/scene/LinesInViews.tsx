@@ -1,0 +1,52 @@
+/** A point of a photograph, and its epipolar lines in the others. */
+import { useSignal } from "@preact/signals";
+import { Line } from "../parts/draw";
+import { fundamental } from "../toy/camera";
+import { apply3, clipLine, homogeneous, type Vec2 } from "../toy/linear";
+import { Photo, Waiting } from "./Photo";
+import { SceneBar } from "./SceneBar";
+import { type LoadedScene, useScene } from "./useScene";
+
+const MOST_OTHERS = 5;
+
+export function LinesInViews() {
+  const { root, state, loaded } = useScene();
+  const now = loaded.value;
+  return (
+    <div class="real" ref={root}>
+      <SceneBar />
+      {now === null ? <Waiting state={state.value} /> : <Lines scene={now} />}
+    </div>
+  );
+}
+
+function Lines({ scene }: { scene: LoadedScene }) {
+  const [first, ...others] = scene.views as [LoadedScene["views"][number], ...LoadedScene["views"][number][]];
+  const at = useSignal<Vec2>([0.5 * first.width, 0.5 * first.height]);
+  return (
+    <div class="pair">
+      <Photo
+        view={first}
+        at={at.value}
+        onMove={(to) => {
+          at.value = to;
+        }}
+      />
+      <div class="parts wide">
+        {others.slice(0, MOST_OTHERS).map((view) => {
+          const line = apply3(fundamental(first.P, view.P), homogeneous(at.value));
+          const part = clipLine(line, view.width, view.height);
+          return (
+            <Photo
+              key={view.name}
+              view={view}
+              title={part === null ? `${view.name}: the line is beside the photograph` : view.name}
+            >
+              {part !== null && <Line from={part[0]} to={part[1]} class="s2 on-photo" />}
+            </Photo>
+          );
+        })}
+      </div>
+    </div>
+  );
+}

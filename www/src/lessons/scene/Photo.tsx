@@ -1,0 +1,80 @@
+/** Photographs with marks in their own pixels: whole, to point at, or a part of them, enlarged. */
+import type { ComponentChildren } from "preact";
+import { useEffect, useRef } from "preact/hooks";
+import { Drawing, Handle } from "../parts/draw";
+import { place } from "../parts/say";
+import { clamp, type Vec2 } from "../toy/linear";
+import type { LoadedView } from "./useScene";
+
+/** More pixels than a screen shows are not drawn. */
+const MOST_SHOWN = 1200;
+
+interface PhotoProps {
+  view: LoadedView;
+  title?: string;
+  /** The part that is shown; without it the whole photograph. */
+  part?: { centre: Vec2; size: number };
+  /** Where the mark is that the reader moves. */
+  at?: Vec2;
+  onMove?: (to: Vec2) => void;
+  children?: ComponentChildren;
+}
+
+export function Photo({ view, title, part, at, onMove, children }: PhotoProps) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const { image, width, height, name } = view;
+  const [x0, y0, w, h] =
+    part === undefined
+      ? [0, 0, width, height]
+      : [part.centre[0] - part.size / 2, part.centre[1] - part.size / 2, part.size, part.size];
+  const shown = Math.min(1, MOST_SHOWN / w);
+  const [columns, rows] = part === undefined ? [Math.round(w * shown), Math.round(h * shown)] : [240, 240];
+  useEffect(() => {
+    const context = canvas.current?.getContext("2d");
+    if (context != null) {
+      context.imageSmoothingEnabled = part === undefined;
+      context.clearRect(0, 0, columns, rows);
+      context.drawImage(image, x0, y0, w, h, 0, 0, columns, rows);
+    }
+  }, [image, x0, y0, w, h, columns, rows, part === undefined]);
+  return (
+    <figure class="photo">
+      <div class="stack">
+        <canvas ref={canvas} width={columns} height={rows} role="img" aria-label={`Photograph ${name}`} />
+        <Drawing width={w} height={h} label={`Marks on ${name}`} isImage>
+          <g transform={`translate(${-x0} ${-y0})`}>
+            {children}
+            {at !== undefined && onMove !== undefined && (
+              <Handle
+                at={at}
+                class="s1 on-photo"
+                label={`Point in ${name}`}
+                says={`${place(at, 0)} pixels`}
+                step={Math.max(1, w / 200)}
+                onMove={([x, y]) => onMove([clamp(x, 0, width), clamp(y, 0, height)])}
+              />
+            )}
+          </g>
+        </Drawing>
+      </div>
+      <figcaption>{title ?? name}</figcaption>
+    </figure>
+  );
+}
+
+/** What is going on while there is nothing to show yet. */
+export function Waiting({
+  state,
+}: {
+  state: { progress: { words: string } | null; failure: string | null } | null;
+}) {
+  return state?.failure != null ? (
+    <p class="failure" role="alert">
+      {state.failure}
+    </p>
+  ) : (
+    <p class="muted waiting" role="status">
+      {state?.progress?.words ?? "The photographs are read when they are seen."}
+    </p>
+  );
+}
