@@ -1,5 +1,5 @@
 /** The homography that a plane induces between two views: H(theta) of B99 4.1. */
-import { type Exercise, matrixProblem } from "../judging/judge";
+import { type FunctionExercise, matrixProblem } from "../judging/judge";
 import {
   applied,
   dehomogenised,
@@ -40,9 +40,11 @@ function shift(by: number): number[][] {
   ];
 }
 
-export const homographyOfPlane: Exercise<Input, Matrix> = {
+export const homographyOfPlane: FunctionExercise<Input, Matrix> = {
+  kind: "function",
   name: "homographyOfPlane",
   title: "The homography of a plane",
+  lesson: "homography",
   source: "B99 4.1",
   text: "The first camera is K [I | 0], the second K′ [R | t]: a point X of the first camera's frame is R X + t in that of the second. Given a plane n · X = d in the first camera's frame, return the 3 × 3 matrix H that takes the image x of each of its points to x′ ≃ H x. Its scale is free. (On the plane n · X / d is 1, so that R X + t = (R + t nᵀ / d) X.)",
   starter: `/** @param {number[][]} K  3 rows of 3, as L (K') and R;  @param {number[]} t  3 numbers, as n;  @param {number} d */

@@ -1,5 +1,5 @@
 /** A point in space from two views: what every 3D line of B99 3.2 rests on. */
-import { type Exercise, vectorProblem } from "../judging/judge";
+import { type FunctionExercise, vectorProblem } from "../judging/judge";
 import { leastSquares, type Matrix, type Vector } from "../judging/linear";
 import { plantedCamera, plantedPoint, seen } from "../judging/random";
 
@@ -24,9 +24,11 @@ function triangulated(p: Matrix, x: Vector, q: Matrix, y: Vector, sign = 1): num
 const shifted = ([u = 0, v = 0]: Vector, by: number): number[] => [u + by, v + by];
 const swapped = ([u = 0, v = 0]: Vector): number[] => [v, u];
 
-export const triangulate: Exercise<Input, Vector> = {
+export const triangulate: FunctionExercise<Input, Vector> = {
+  kind: "function",
   name: "triangulate",
   title: "A point from two views",
+  lesson: "triangulation",
   source: "B99 3.2",
   text: "Given projections P and P′ (3 × 4) and the images x = [u, v] and x′ of a point in pixels, return the point [X, Y, Z]. Each image gives two linear equations in the homogeneous point: u (p₃ · X) − p₁ · X = 0 and v (p₃ · X) − p₂ · X = 0, where p₁, p₂, p₃ are the rows of P. Coordinates are those of the projections: nothing is to be shifted.",
   starter: `/** @param {number[][]} P  3 rows of 4;  @param {number[]} x  [u, v];  Q and y are P' and x'. */

@@ -29,9 +29,11 @@ function direction(random: Random, others: readonly Vector[]): number[] {
   return left.map((value) => value / size);
 }
 
-export const ncc: Exercise<Input, number> = {
+export const ncc: FunctionExercise<Input, number> = {
+  kind: "function",
   name: "ncc",
   title: "Normalised cross-correlation",
+  lesson: "correlation",
   source: "B99 3.1",
   text: "Given the grey values of two windows as arrays of equal length, return their normalised cross-correlation, from −1 to 1. It does not change when a window gets brighter or has more contrast. Where a window is constant, there is nothing to correlate: return 0.",
   starter: `/** @param {number[]} a  grey values;  @param {number[]} b  as many. */

@@ -1,5 +1,5 @@
 /** F from two projections, as every epipolar beam of B99 3.1 needs it. */
-import { type Exercise, matrixProblem } from "../judging/judge";
+import { type FunctionExercise, matrixProblem } from "../judging/judge";
 import {
   applied,
   centreOf,
@@ -21,9 +21,11 @@ function fundamental(p: Matrix, q: Matrix): number[][] {
   return product(crossMatrix(applied(q, centreOf(p))), product(q, pseudoInverse(p)));
 }
 
-export const fundamentalFromProjections: Exercise<Input, Matrix> = {
+export const fundamentalFromProjections: FunctionExercise<Input, Matrix> = {
+  kind: "function",
   name: "fundamentalFromProjections",
   title: "The fundamental matrix of two views",
+  lesson: "epipolar",
   source: "B99 3.1",
   text: "Given the 3 × 4 projections P and P′ of two views, return the 3 × 3 matrix F with x′ᵀ F x = 0 for all points x of the one view and x′ of the other that show the same point in space. Its scale is free. (C with P C = 0 is the first centre, e′ = P′ C the epipole, and P⁺ the pseudo-inverse of P.)",
   starter: `/** @param {number[][]} P  3 rows of 4; Q is P'. */
