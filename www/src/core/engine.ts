@@ -3,12 +3,14 @@ import wasmUrl from "../pkg/ridgeline_bg.wasm?url";
 import { type CoreSource, WorkerEngine } from "./workerEngine";
 
 export { EngineError, isFatal, PendingCalls } from "./workerEngine";
+export { OF_SITE };
 
 /** Changes with every other core that is built: what one found, another may not find. */
 export const CORE_VERSION: string = import.meta.env.PROD
   ? wasmUrl.slice(wasmUrl.lastIndexOf("/") + 1)
   : String(performance.timeOrigin);
 
+/** Worker and core of the site. */
 const OF_SITE: CoreSource = {
   startWorker: () => new Worker(new URL("../worker/main.ts", import.meta.url), { type: "module" }),
   get wasmUrl() {

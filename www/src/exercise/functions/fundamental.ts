@@ -27,7 +27,7 @@ export const fundamentalFromProjections: FunctionExercise<Input, Matrix> = {
   title: "The fundamental matrix of two views",
   lesson: "epipolar",
   source: "B99 3.1",
-  text: "Given the 3 × 4 projections P and P′ of two views, return the 3 × 3 matrix F with x′ᵀ F x = 0 for all points x of the one view and x′ of the other that show the same point in space. Its scale is free. (C with P C = 0 is the first centre, e′ = P′ C the epipole, and P⁺ the pseudo-inverse of P.)",
+  text: "Given the 3 × 4 projections P and P′ of two views, return the [[fundamental-matrix]] F (3 × 3) with x′ᵀ F x = 0 for all points x of the one view and x′ of the other that show the same point in space. Its scale is free. (C with P C = 0 is the first centre, e′ = P′ C the epipole, and P⁺ the pseudo-inverse of P.)",
   starter: `/** @param {number[][]} P  3 rows of 4; Q is P'. */
 function fundamentalFromProjections(P, Q) {
   // Three rows of three numbers.

@@ -46,7 +46,7 @@ export const homographyOfPlane: FunctionExercise<Input, Matrix> = {
   title: "The homography of a plane",
   lesson: "homography",
   source: "B99 4.1",
-  text: "The first camera is K [I | 0], the second K′ [R | t]: a point X of the first camera's frame is R X + t in that of the second. Given a plane n · X = d in the first camera's frame, return the 3 × 3 matrix H that takes the image x of each of its points to x′ ≃ H x. Its scale is free. (On the plane n · X / d is 1, so that R X + t = (R + t nᵀ / d) X.)",
+  text: "The first camera is K [I | 0], the second K′ [R | t]: a point X of the first camera's frame is R X + t in that of the second. Given a plane n · X = d in the first camera's frame, return the [[homography]] H (3 × 3) that takes the image x of each of its points to x′ ≃ H x. Its scale is free. (On the plane n · X / d is 1, so that R X + t = (R + t nᵀ / d) X.)",
   starter: `/** @param {number[][]} K  3 rows of 3, as L (K') and R;  @param {number[]} t  3 numbers, as n;  @param {number} d */
 function homographyOfPlane(K, L, R, t, n, d) {
   // Three rows of three numbers.

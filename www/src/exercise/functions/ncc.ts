@@ -1,5 +1,5 @@
 /** Normalised cross-correlation, by which B99 3.1 compares windows. */
-import { described, type Exercise } from "../judging/judge";
+import { described, type FunctionExercise } from "../judging/judge";
 import { dot, type Vector } from "../judging/linear";
 import { between, normal, type Random } from "../judging/random";
 
@@ -35,7 +35,7 @@ export const ncc: FunctionExercise<Input, number> = {
   title: "Normalised cross-correlation",
   lesson: "correlation",
   source: "B99 3.1",
-  text: "Given the grey values of two windows as arrays of equal length, return their normalised cross-correlation, from −1 to 1. It does not change when a window gets brighter or has more contrast. Where a window is constant, there is nothing to correlate: return 0.",
+  text: "Given the grey values of two windows as arrays of equal length, return their normalised [[correlation|cross-correlation]], from −1 to 1. It does not change when a window gets brighter or has more contrast. Where a window is constant, there is nothing to correlate: return 0.",
   starter: `/** @param {number[]} a  grey values;  @param {number[]} b  as many. */
 function ncc(a, b) {
   // A number.

@@ -52,7 +52,7 @@ function signedOverlap(a, b) {
   mistakes: [
     {
       name: "gap lost",
-      says: "Where the stretches do not meet, the result is 0. How far apart they are must be told as well: it is what is left of the constraint when ends are unreliable.",
+      says: "Where the stretches do not meet, the result is 0. How far apart they are must be said as well: ends are unreliable, and a small gap is no contradiction.",
       variants: [(a, b) => Math.max(0, overlap(a, b))],
     },
     {

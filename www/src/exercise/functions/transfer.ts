@@ -37,7 +37,7 @@ export const transferPoint: FunctionExercise<Input, Vector> = {
   title: "A point in the third view",
   lesson: "trifocal",
   source: "B99 3.2",
-  text: "Points x and x′ of two views show the same point in space. F takes a point of the first view to its [[epipolar-line]] in the third, G a point of the second view to its epipolar line there. Return [u, v], where the third view must show the point: this is how a pair is [[verification|verified]]. (Two lines a and b meet in the homogeneous point a × b.)",
+  text: "Points x and x′ of two views show the same point in space. F takes x to its [[epipolar-line]] in a third view, G takes x′ to its epipolar line there. Return [u, v], where the third view must show the point: this is how a pair is [[verification|verified]]. (Two lines a and b meet in the homogeneous point a × b.)",
   starter: `/** @param {number[][]} F  3 rows of 3, as G;  @param {number[]} x  [u, v], as y (x'). */
 function transferPoint(F, G, x, y) {
   // Two numbers.
@@ -55,11 +55,9 @@ function transferPoint(F, G, x, y) {
   limit: 1e-2,
   plant: (random) => {
     const point = plantedPoint(random);
-    const [first, second, third] = [0, 1, 2].map(() => plantedCamera(random).projection) as [
-      Matrix,
-      Matrix,
-      Matrix,
-    ];
+    const [first, second, third] = [plantedCamera(random), plantedCamera(random), plantedCamera(random)].map(
+      ({ projection }) => projection,
+    ) as unknown as readonly [Matrix, Matrix, Matrix];
     const [u, v] = seen(third, point);
     return {
       input: [fundamental(first, third), fundamental(second, third), seen(first, point), seen(second, point)],

@@ -30,7 +30,7 @@ export const triangulate: FunctionExercise<Input, Vector> = {
   title: "A point from two views",
   lesson: "triangulation",
   source: "B99 3.2",
-  text: "Given projections P and P′ (3 × 4) and the images x = [u, v] and x′ of a point in pixels, return the point [X, Y, Z]. Each image gives two linear equations in the homogeneous point: u (p₃ · X) − p₁ · X = 0 and v (p₃ · X) − p₂ · X = 0, where p₁, p₂, p₃ are the rows of P. Coordinates are those of the projections: nothing is to be shifted.",
+  text: "Given [[projection|projections]] P and P′ (3 × 4) and the images x = [u, v] and x′ of a point in pixels, return the point [X, Y, Z]. Each image gives two linear equations in the homogeneous point: u (p₃ · X) − p₁ · X = 0 and v (p₃ · X) − p₂ · X = 0, where p₁, p₂, p₃ are the rows of P. Coordinates are those of the projections: nothing is to be shifted.",
   starter: `/** @param {number[][]} P  3 rows of 4;  @param {number[]} x  [u, v];  Q and y are P' and x'. */
 function triangulate(P, x, Q, y) {
   // Three numbers.

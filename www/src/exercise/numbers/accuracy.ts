@@ -1,4 +1,5 @@
 /** Two views and more: parallax, and how well a height is known. */
+import { counted } from "../../app/parts/counted";
 import { numberExercise } from "../judging/judgeNumber";
 import { figures, stepped } from "../judging/values";
 
@@ -95,9 +96,9 @@ export const sigmaOfViews = numberExercise({
     const sigma = stepped(random, 6, 18, 0.5);
     const right = sigma * Math.sqrt(before / after);
     return {
-      text: `A line seen by ${before} views is known with a [[standard-deviation]] of ${sigma} cm. With what standard deviation is it known from ${after} views of the same accuracy, each of which says as much as each of the first, if their errors are independent?`,
+      text: `A line is seen by ${counted(before, "views")} and known with a [[standard-deviation]] of ${sigma} cm. With what standard deviation is it known when it is seen by ${after}, each of which says as much as each of these, with errors that are independent?`,
       value: right,
-      solution: `Information adds: ${after} views have ${after}/${before} of it, and the variance is ${before}/${after} of what it was. σ = ${sigma} cm · √(${before}/${after}) = ${figures(right)} cm.`,
+      solution: `Information adds: from ${before} to ${after} it grows by ${after}/${before}, and the variance is ${before}/${after} of what it was. σ = ${sigma} cm · √(${before}/${after}) = ${figures(right)} cm.`,
       wrong: {
         "variance for standard deviation": [(sigma * before) / after],
         "more views, worse": [sigma * Math.sqrt(after / before), (sigma * after) / before],

@@ -1,32 +1,27 @@
-/** An exercise: what is to be written, an editor, and what is said of it. */
+/** A function that is to be written: an editor, and what the planted configurations say of it. */
 import { useState } from "preact/hooks";
-import type { Verdict } from "./judging/judge";
-import { judge } from "./judging/judge";
-import { randomFrom } from "./judging/random";
-import { type Run, run } from "./run";
-import type { AnyExercise } from "./tasks/index";
+import { Linked } from "../../app/glossary/Term";
+import type { AnyFunction } from "../functions/index";
+import type { Verdict } from "../judging/about";
+import { judge } from "../judging/judge";
+import { randomFrom } from "../judging/random";
+import { type Run, run } from "../judging/run";
+import { ExerciseFrame, Said } from "./ExerciseFrame";
 
 /** Planted configurations, other ones at every check: who answers them by heart has not answered the next. */
 const CONFIGURATIONS = 24;
 
-export interface Checked {
-  name: string;
-  right: boolean;
-  /** Which of the usual mistakes it is. */
-  mistake: string | null;
-}
-
 type Result = { run: Run; verdict: Verdict | null };
 
 interface Props {
-  exercise: AnyExercise;
+  exercise: AnyFunction;
   code: string;
   onCode: (code: string) => void;
-  onChecked: (checked: Checked) => void;
+  onVerdict: (verdict: Verdict | null) => void;
 }
 
 /** Runs and judges an answer. */
-export async function check(exercise: AnyExercise, code: string, seed: number): Promise<Result> {
+async function check(exercise: AnyFunction, code: string, seed: number): Promise<Result> {
   const random = randomFrom(seed);
   const planted = Array.from({ length: CONFIGURATIONS }, () => exercise.plant(random));
   const ran = await run(
@@ -37,33 +32,27 @@ export async function check(exercise: AnyExercise, code: string, seed: number): 
   return { run: ran, verdict: ran.kind === "answers" ? judge(exercise, planted, ran.answers) : null };
 }
 
-export function ExerciseView({ exercise, code, onCode, onChecked }: Props) {
+export function FunctionView({ exercise, code, onCode, onVerdict }: Props) {
   const [result, setResult] = useState<Result | null>(null);
   const [isRunning, setRunning] = useState(false);
-  const { name, title, source, text, starter, solution } = exercise;
+  const { name, text, starter, solution } = exercise;
   const begin = async () => {
     setRunning(true);
     const seed = crypto.getRandomValues(new Uint32Array(1))[0] ?? 1;
     const found = await check(exercise, code, seed);
     setResult(found);
     setRunning(false);
-    const { verdict } = found;
-    onChecked({
-      name,
-      right: verdict?.kind === "right",
-      mistake: verdict?.kind === "mistake" ? verdict.name : null,
-    });
+    onVerdict(found.verdict);
   };
   const replace = (next: string) => {
     onCode(next);
     setResult(null);
   };
   return (
-    <section class="frame" aria-label={title}>
-      <p class="title">
-        {title} <span class="muted">{source}</span>
+    <ExerciseFrame about={exercise} said={result !== null && <SaidOfRun result={result} />}>
+      <p>
+        <Linked text={text} />
       </p>
-      <p>{text}</p>
       <textarea
         aria-label={`The function ${name}, in JavaScript`}
         spellcheck={false}
@@ -96,12 +85,11 @@ export function ExerciseView({ exercise, code, onCode, onChecked }: Props) {
           </button>
         </details>
       </div>
-      <div role="status">{result !== null && <Said result={result} />}</div>
-    </section>
+    </ExerciseFrame>
   );
 }
 
-function Said({ result: { run: ran, verdict } }: { result: Result }) {
+function SaidOfRun({ result: { run: ran, verdict } }: { result: Result }) {
   return (
     <>
       {ran.kind === "failed" && (
@@ -110,15 +98,9 @@ function Said({ result: { run: ran, verdict } }: { result: Result }) {
           {ran.says}
         </p>
       )}
-      {verdict?.kind === "right" && (
-        <p class="said right">Right, in all of {CONFIGURATIONS} planted configurations.</p>
+      {verdict !== null && (
+        <Said verdict={verdict} right={`Right, in all of ${CONFIGURATIONS} planted configurations.`} />
       )}
-      {verdict?.kind === "mistake" && (
-        <p class="said wrong">
-          <strong>{verdict.name}</strong> {verdict.says}
-        </p>
-      )}
-      {(verdict?.kind === "form" || verdict?.kind === "wrong") && <p class="said wrong">{verdict.says}</p>}
       {ran.log.length > 0 && (
         <>
           <p class="muted">console.log</p>
