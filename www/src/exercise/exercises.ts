@@ -2,7 +2,7 @@
 import { FIGURE_EXERCISES } from "./figures/index";
 import type { FigureExercise } from "./figures/judgeFigure";
 import { type AnyFunction, FUNCTIONS } from "./functions/index";
-import { LESSONS, type Lesson } from "./judging/about";
+import { LESSONS, type Lesson, type NamedMistake } from "./judging/about";
 import type { NumberExercise } from "./judging/judgeNumber";
 import { NUMBERS } from "./numbers/index";
 
@@ -19,19 +19,15 @@ export function exerciseNamed(name: string | null): AnyExercise | null {
   return EXERCISES.find((one) => one.name === name) ?? null;
 }
 
+/** How an exercise is done, in a word. */
 export const KIND_WORDS: Readonly<Record<AnyExercise["kind"], string>> = {
-  figure: "in the figure",
-  number: "a number with its unit",
-  function: "a function to write",
+  figure: "figure",
+  number: "number",
+  function: "code",
 };
 
-export interface NamedAndExplained {
-  name: string;
-  says: string;
-}
-
 /** The usual mistakes that an exercise knows. */
-export function mistakesOf(exercise: AnyExercise): readonly NamedAndExplained[] {
+export function mistakesOf(exercise: AnyExercise): readonly NamedMistake[] {
   return exercise.kind === "function"
     ? exercise.mistakes.map(({ name, says }) => ({ name, says }))
     : Object.entries(exercise.mistakes).map(([name, says]) => ({ name, says }));

@@ -431,11 +431,11 @@ test("exercises: an exercise in a figure fetches the figures' module itself, and
   await ready(turn);
   await expect.poll(async () => (await stateOf(figure)).theta).toBe(0);
   await turn.getByRole("button", { name: "Check" }).click();
-  await expect(turn.getByRole("status").last()).toContainText("level");
+  await expect(turn.locator(".said")).toContainText("level");
   await turn.getByText("A solution").click();
   await turn.getByRole("button", { name: "Show it" }).click();
   await turn.getByRole("button", { name: "Check" }).click();
-  await expect(turn.getByRole("status").last()).toHaveText("Right.");
+  await expect(turn.locator(".said")).toHaveText("Right.");
 
   const ridge = page.locator("ridgeline-exercise[name=heightOfRidge]");
   await expect(ridge).toContainText("Values no. 17");

@@ -38,6 +38,10 @@ export function Entrance() {
           </button>
           <span class="muted">A tour in twelve steps, on the example.</span>
         </p>
+        <p class="muted">
+          To learn it: <a href="./exercises.html">exercises</a>, and a{" "}
+          <a href="./exercises.html#glossary">glossary</a>.
+        </p>
         <DropZone />
       </section>
     </div>

@@ -63,7 +63,7 @@ ${sheet.answers === null ? "" : answerOf(exercise, sheet)}
 
 function taskOf(exercise: AnyExercise, { seed, page, answers }: Sheet): string {
   const blank = (kind: string) => (answers === null ? `<div class="blank${kind}"></div>` : "");
-  const address = `${page}#${exercise.name}`;
+  const address = `${page}?seed=${seed}#${exercise.name}`;
   const link = `<a href="${escaped(address)}">${escaped(address)}</a>`;
   switch (exercise.kind) {
     case "number":
