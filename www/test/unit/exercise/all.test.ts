@@ -1,5 +1,7 @@
 /** All exercises together: as many as there should be, in every lesson, with terms that exist; and the sheets made of them. */
+import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
+import { exercisesPage } from "../../../scripts/exercisesPage";
 import { plain } from "../../../src/app/glossary/linkedText";
 import { EXERCISES, exerciseNamed, mistakesOf } from "../../../src/exercise/exercises";
 import { LESSONS } from "../../../src/exercise/judging/about";
@@ -28,6 +30,22 @@ describe("the exercises", () => {
       expect(exerciseNamed(exercise.name)).toBe(exercise);
     }
     expect(exerciseNamed("constructor")).toBeNull();
+  });
+});
+
+describe("docs/exercises.md", () => {
+  it("lists them (npm run lists)", () => {
+    const page = readFileSync(new URL("../../../../docs/exercises.md", import.meta.url), "utf8");
+    expect(page).toBe(exercisesPage());
+  });
+
+  it("and docs/teaching.md has the code of the notebook", () => {
+    const read = (path: string) => readFileSync(new URL(`../../../../${path}`, import.meta.url), "utf8");
+    const { cells } = JSON.parse(read("www/package/examples/notebook.ipynb")) as {
+      cells: { cell_type: string; source: string[] }[];
+    };
+    const [code] = cells.filter(({ cell_type }) => cell_type === "code");
+    expect(read("docs/teaching.md")).toContain(`\`\`\`python\n${code?.source.join("")}\n\`\`\``);
   });
 });
 

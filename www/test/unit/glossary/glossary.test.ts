@@ -53,7 +53,7 @@ describe("the glossary", () => {
     expect(termNamed("constructor")).toBeNull();
   });
 
-  it("is docs/glossary.md (npm run glossary)", () => {
+  it("is docs/glossary.md (npm run lists)", () => {
     const page = readFileSync(new URL("../../docs/glossary.md", SOURCE), "utf8");
     expect(page).toBe(glossaryPage());
   });
