@@ -139,6 +139,7 @@ const W96 = [
     figures: "6 to 9",
     shows: "the cluster plane with the selected clusters, and a line projected back into all views",
     kind: "clusters",
+    select: "line:0",
   },
   {
     name: "rectangles",
@@ -152,7 +153,8 @@ const fileOf = ({ name, kind }, prefix) => `${prefix}-${name}.${kind === undefin
 
 async function exportsOf(exportFigure, sections, prefix) {
   for (const section of sections.filter(({ kind }) => kind !== undefined)) {
-    const svg = await exportFigure({ kind: section.kind });
+    const { kind, select } = section;
+    const svg = await exportFigure({ kind, ...(select === undefined ? {} : { select }) });
     writeFileSync(new URL(`figures/${fileOf(section, prefix)}`, DOCS), svg);
     process.stdout.write(`${fileOf(section, prefix)}\n`);
   }
