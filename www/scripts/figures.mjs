@@ -136,10 +136,9 @@ const W96 = [
   },
   {
     name: "clusters",
-    figures: "6 to 9",
-    shows: "the cluster plane with the selected clusters, and a line projected back into all views",
+    figures: "6 to 8",
+    shows: "the cluster plane with the image lines of all views, the selected clusters and the rejected ones",
     kind: "clusters",
-    select: "line:0",
   },
   {
     name: "rectangles",
@@ -153,8 +152,7 @@ const fileOf = ({ name, kind }, prefix) => `${prefix}-${name}.${kind === undefin
 
 async function exportsOf(exportFigure, sections, prefix) {
   for (const section of sections.filter(({ kind }) => kind !== undefined)) {
-    const { kind, select } = section;
-    const svg = await exportFigure({ kind, ...(select === undefined ? {} : { select }) });
+    const svg = await exportFigure({ kind: section.kind });
     writeFileSync(new URL(`figures/${fileOf(section, prefix)}`, DOCS), svg);
     process.stdout.write(`${fileOf(section, prefix)}\n`);
   }
