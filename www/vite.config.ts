@@ -8,34 +8,38 @@ import { type Alias, defineConfig, type Plugin } from "vite";
  * Nothing may leave the origin. `blob:` serves the model's embedded atlas and thumbnails;
  * `wasm-unsafe-eval` is what compiling WebAssembly needs.
  */
-const POLICY = [
-  "default-src 'none'",
-  "script-src 'self' 'wasm-unsafe-eval'",
-  "worker-src 'self'",
-  "style-src 'self'",
-  "img-src 'self' blob: data:",
-  "connect-src 'self' blob:",
-  "base-uri 'none'",
-  "form-action 'none'",
-].join("; ");
+const policy = (workers: string) =>
+  [
+    "default-src 'none'",
+    "script-src 'self' 'wasm-unsafe-eval'",
+    `worker-src ${workers}`,
+    "style-src 'self'",
+    "img-src 'self' blob: data:",
+    "connect-src 'self' blob:",
+    "base-uri 'none'",
+    "form-action 'none'",
+  ].join("; ");
+
+/** What a student writes runs in a worker made of it: on the page of the exercises alone, which holds nobody's photographs. */
+const WORKERS: Readonly<Record<string, string>> = { "/exercises.html": "'self' blob:" };
 
 /** The policy goes into the built page only: the development server needs inline styles. */
 function contentSecurityPolicy(): Plugin {
   return {
     name: "content-security-policy",
     apply: "build",
-    transformIndexHtml: () => [
+    transformIndexHtml: (_, { path }) => [
       {
         tag: "meta",
-        attrs: { "http-equiv": "Content-Security-Policy", content: POLICY },
+        attrs: { "http-equiv": "Content-Security-Policy", content: policy(WORKERS[path] ?? "'self'") },
         injectTo: "head-prepend",
       },
     ],
   };
 }
 
-/** What computes the orientation of photographs, and the lessons: fetched by those who need it. */
-const ON_DEMAND = /\/(orientation|lessons)[^/]*$/i;
+/** What computes the orientation of photographs, the lessons and the exercises: fetched by those who need it. */
+const ON_DEMAND = /\/(orientation|lessons|exercises)[^/]*$/i;
 
 /**
  * Writes `sw.js`: everything of the site is fetched once and served from the cache afterwards, under a name that changes with
@@ -90,7 +94,7 @@ export default defineConfig(({ command, mode }) => ({
     target: "es2022",
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 900,
-    rolldownOptions: { input: { index: "index.html", lessons: "lessons.html" } },
+    rolldownOptions: { input: ["index.html", "lessons.html", "exercises.html"] },
   },
   server: { port: 5173 },
   preview: { port: 4173 },

@@ -1,8 +1,10 @@
 /**
- * docs/figures.md: each figure of the papers, and the live view that shows it on the demo scene; and docs/model.png. Opens the
- * built site in Chromium, takes the pictures and writes the page. `npm run build && npm run figures`
+ * docs/figures.md: each figure of the papers, and the live figure that shows it on the demo scene; and docs/model.png. Figures that
+ * stand by themselves (`kind`) are their own SVG exports; views in space, and of the whole page, are pictures of the built site.
+ * Writes the page. `npm run build && npm run figures`
  */
-import { mkdirSync, writeFileSync } from "node:fs";
+import { mkdirSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { withExports } from "./exports.mjs";
 import { withSite } from "./site.mjs";
 
 const DOCS = new URL("../../docs/", import.meta.url);
@@ -14,33 +16,6 @@ const tab = (name) => async (page) => page.getByRole("tab", { name, exact: true 
 const button = (name) => async (page) => page.getByRole("button", { name, exact: true }).click();
 const allViews = async (page) =>
   page.getByRole("group", { name: "View" }).getByRole("button", { name: "All" }).click();
-const firstView = async (page) =>
-  page.getByRole("group", { name: "View" }).getByRole("button", { name: /_01/ }).first().click();
-
-/** Picks segments until one has several candidates. */
-async function pickSegment(page) {
-  await firstView(page);
-  const image = page.locator(".image-view canvas").first();
-  const box = await image.boundingBox();
-  for (let i = 0; i < 100 && (await page.locator(".candidates tbody tr").count()) < 4; i += 1) {
-    const x = box.width * (0.25 + 0.055 * (i % 10));
-    const y = box.height * (0.2 + 0.07 * Math.floor(i / 10));
-    await image.click({ position: { x, y } });
-    await page.waitForTimeout(80);
-  }
-  await allViews(page);
-}
-
-/** A half-plane of a facet: one of a roof, not of the street. */
-async function pickHalfPlane(page) {
-  const facets = page.locator(".plan-facet");
-  const row = page.getByTestId("inspector").locator("div", { hasText: /^Half-planes/ });
-  for (let i = 0; i < (await facets.count()) && (await row.count()) === 0; i += 1) {
-    await facets.nth(i).press("Enter");
-    await page.waitForTimeout(200);
-  }
-  await row.getByRole("button").first().click();
-}
 
 /** Opens a link of the page itself, whose address holds the state of a view, and waits for the stage that it needs. */
 const link = (fields, stage) => async (page) => {
@@ -52,26 +27,31 @@ const link = (fields, stage) => async (page) => {
   await page.waitForTimeout(1000);
 };
 
-/** Sections of the page: pictures, what the papers' figures show, and how to get there. */
+/** Sections of the page: pictures, what the papers' figures show, and the kind of figure or how to get there on the page. */
 const B99 = [
   {
     name: "segments",
     figures: "3.2",
-    shows: "line segments of a view, and what was rejected",
-    steps: [tab("Segments"), firstView, button("Rejected lines")],
+    shows: "line segments of a view",
+    kind: "segments",
   },
   {
     name: "beam",
-    figures: "1 to 4",
-    shows:
-      "the epipolar beam of a segment, point-wise correspondence, the reprojected line and its distance in third views",
-    steps: [tab("Matches"), pickSegment],
+    figures: "1, 2 and 4",
+    shows: "the epipolar beam of a segment, its candidates, and the windows at corresponding points",
+    kind: "epipolar-beam",
+  },
+  {
+    name: "transfer",
+    figures: "3",
+    shows: "the line that a pair of segments predicts in a third view",
+    kind: "point-transfer",
   },
   {
     name: "matches",
     figures: "5 and 6",
     shows: "matched, merged and grown parts over all views",
-    steps: [button("Clear"), tab("Matches"), allViews],
+    steps: [link("tab=matches", "matches"), allViews],
   },
   {
     name: "before",
@@ -81,54 +61,52 @@ const B99 = [
   },
   {
     name: "lines",
-    figures: "6, 8 and 9",
-    shows: "3D lines after it; accuracy against the number of views; the picked line in every view",
-    steps: [link("tab=lines&select=line:7", "lines")],
+    figures: "6 and 8",
+    shows: "3D lines after it",
+    steps: [link("tab=lines", "lines")],
+  },
+  {
+    name: "accuracy",
+    figures: "9",
+    shows: "accuracy against the number of views, and the picked line in every view",
+    kind: "line-accuracy",
   },
   {
     name: "halfplane",
     figures: "10 to 14",
     shows:
       "the homography of a half-plane: points of interest, warped windows, Sim(theta) in total and per view",
-    steps: [link("tab=facets", "facets"), pickHalfPlane, tab("Half-planes")],
+    kind: "theta-sweep",
   },
   {
     name: "fans",
     figures: "15",
     shows: "accepted half-planes as fans, rejected sides as thin red lines",
-    steps: [button("Clear")],
+    steps: [link("tab=halfplanes", "halfplanes")],
   },
   {
     name: "groups",
     figures: "16 to 20",
-    shows: "collinear and coplanar grouping, and new lines in the planes",
-    steps: [
-      link("tab=model", "model"),
-      tab("Groups"),
-      async (page) => page.getByTestId("groups").getByRole("button").first().click(),
-    ],
+    shows: "collinear and coplanar grouping: the groups, and the lines of one in every view",
+    kind: "groups",
   },
   {
     name: "facets",
     figures: "21 to 23",
     shows: "border lines by their kind, closed outlines, facets and what was rejected",
-    steps: [tab("Facets"), async (page) => page.locator(".plan-facet").nth(3).press("Enter")],
+    kind: "facet-plan",
   },
   {
     name: "refinement",
     figures: "2",
     shows: "a building before and after refinement, and the relations that were tested by their chi-square",
-    steps: [
-      button("Clear"),
-      tab("Refinement"),
-      async (page) => page.locator(".relation").first().press("Enter"),
-    ],
+    kind: "refinement",
   },
   {
     name: "new-lines",
     figures: "17 to 20",
     shows: "new lines of the model beside the matched ones: intersections of planes, and borders seen again",
-    steps: [button("Clear"), tab("3D lines"), button("After")],
+    steps: [link("tab=model", "model"), tab("3D lines"), button("After")],
   },
   {
     name: "model",
@@ -148,55 +126,80 @@ const W96 = [
     name: "regions",
     figures: "3",
     shows: "regions with straight shared boundaries",
-    steps: [link("method=rectangles&tab=model", "model"), tab("Regions"), firstView],
+    kind: "regions",
   },
   {
     name: "directions",
     figures: "4 and 5",
     shows: "main directions: the histogram of azimuths and its two perpendicular peaks",
-    steps: [tab("Directions")],
+    kind: "main-directions",
   },
   {
     name: "clusters",
-    figures: "6 to 9",
-    shows: "the cluster plane with the selected clusters, and a line projected back into all views",
-    steps: [
-      tab("Clusters"),
-      allViews,
-      async (page) => page.locator(".cluster").first().click({ force: true }),
-    ],
+    figures: "6 to 8",
+    shows: "the cluster plane with the image lines of all views, the selected clusters and the rejected ones",
+    kind: "clusters",
   },
   {
     name: "rectangles",
     figures: "10 to 12",
     shows: "the window between two parallel lines, the histogram of positions, and the selected planes",
-    steps: [button("Clear"), tab("Rectangles")],
+    kind: "rectangles",
   },
 ];
 
-async function picturesOf(page, sections, prefix) {
-  for (const { name, steps } of sections) {
-    for (const step of steps) {
-      await step(page);
-    }
-    await page.waitForTimeout(900);
-    const path = new URL(`figures/${prefix}-${name}.jpg`, DOCS).pathname;
-    await page.locator(".stage-view").screenshot({ path, type: "jpeg", quality: QUALITY });
-    process.stdout.write(`${prefix}-${name}.jpg\n`);
+const fileOf = ({ name, kind }, prefix) => `${prefix}-${name}.${kind === undefined ? "jpg" : "svg"}`;
+
+async function exportsOf(exportFigure, sections, prefix) {
+  for (const section of sections.filter(({ kind }) => kind !== undefined)) {
+    const svg = await exportFigure({ kind: section.kind });
+    writeFileSync(new URL(`figures/${fileOf(section, prefix)}`, DOCS), svg);
+    process.stdout.write(`${fileOf(section, prefix)}\n`);
   }
 }
 
+async function picturesOf(page, sections, prefix) {
+  for (const section of sections.filter(({ kind }) => kind === undefined)) {
+    for (const step of section.steps) {
+      await step(page);
+    }
+    await page.waitForTimeout(900);
+    const path = new URL(`figures/${fileOf(section, prefix)}`, DOCS).pathname;
+    await page.locator(".stage-view").screenshot({ path, type: "jpeg", quality: QUALITY });
+    process.stdout.write(`${fileOf(section, prefix)}\n`);
+  }
+}
+
+/** "figures 1 to 4", "section 3.2". */
+function where(figures) {
+  if (figures === "–") {
+    return "(no figure)";
+  }
+  const isSection = figures.includes(".") || figures === "2";
+  return isSection ? `section ${figures}` : `figure${figures.length > 2 ? "s" : ""} ${figures}`;
+}
+
 function table(sections, prefix, paper) {
-  return sections
-    .map(
-      ({ name, figures, shows }) =>
-        `### ${paper} ${figures === "–" ? "(no figure)" : figures.includes(".") || figures === "2" ? `section ${figures}` : `figure${figures.length > 2 ? "s" : ""} ${figures}`}\n\n${shows[0].toUpperCase()}${shows.slice(1)}.\n\n![${shows}](figures/${prefix}-${name}.jpg)\n`,
-    )
-    .join("\n");
+  const sectionOf = (section) => {
+    const { figures, shows, kind } = section;
+    const own = kind === undefined ? "" : ` \`<ridgeline-figure kind="${kind}">\``;
+    const title = `${paper} ${where(figures)}`;
+    const sentence = `${shows[0].toUpperCase()}${shows.slice(1)}.${own}`;
+    return `### ${title}\n\n${sentence}\n\n![${shows}](figures/${fileOf(section, prefix)})\n`;
+  };
+  return sections.map(sectionOf).join("\n");
 }
 
 await withSite(PORT, async (browser) => {
-  mkdirSync(new URL("figures/", DOCS), { recursive: true });
+  const folder = new URL("figures/", DOCS);
+  mkdirSync(folder, { recursive: true });
+  for (const old of readdirSync(folder).filter((name) => /^(b99|w96)-/.test(name))) {
+    rmSync(new URL(old, folder));
+  }
+  await withExports(browser, async (exportFigure) => {
+    await exportsOf(exportFigure, B99, "b99");
+    await exportsOf(exportFigure, W96, "w96");
+  });
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, colorScheme: "light" });
   await link("tab=model", "model")(page);
   await page.waitForTimeout(3000);
@@ -206,8 +209,9 @@ await withSite(PORT, async (browser) => {
   await picturesOf(page, W96, "w96");
   const text = `# The figures of the papers, live
 
-Each view of the page draws what the papers draw, from the demo scene and from any other. The pictures are taken from the
-page itself by \`npm run figures\` (in www/, after \`npm run build\`).
+Each view of the page draws what the papers draw, from the demo scene and from any other. Where a figure stands by itself, the
+picture is its own SVG export, as "Take along" saves it; views in space are pictures of the page. All are made by
+\`npm run figures\` (in www/, after \`npm run build\`).
 
 ## B99: Baillard, Schmid, Zisserman, Fitzgibbon 1999
 

@@ -1,5 +1,5 @@
 // Sizes of what a first visit fetches, compressed as static hosts serve it; fails where there is too much of it. What computes
-// the orientation of photographs, and the lessons, are fetched on demand, and have limits of their own.
+// the orientation of photographs, the lessons and the exercises are fetched on demand, with limits of their own.
 //
 //   npm run size        after `npm run build`
 //
@@ -16,7 +16,7 @@ const MOST_IN_ALL = 1_900_000;
 const MOST_LESSONS = 80_000;
 // Of the second module alone, as the larger of two compressions.
 const MOST_SECOND_WASM = 500_000;
-const ON_DEMAND = /(^|\/)(orientation|lessons)[^/]*$/i;
+const ON_DEMAND = /(^|\/)(orientation|lessons|exercises)[^/]*$/i;
 
 const dist = fileURLToPath(new URL("../dist/", import.meta.url));
 const files = readdirSync(dist, { recursive: true, withFileTypes: true })

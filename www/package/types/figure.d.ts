@@ -31,6 +31,10 @@ export declare class RidgelineFigure extends HTMLElement {
   get files(): readonly SceneFile[] | null;
   set files(files: readonly SceneFile[] | null);
   /** These throw before the event "ridgeline-ready". */
+  /** What it shows: scene, results of the stages, selection, and what the core answered about it. */
+  readonly shown: unknown;
+  /** Asks the core about the scene; null where it cannot answer. */
+  ask(call: "segmentStory" | "correspondence" | "side", ...of: (number | boolean)[]): Promise<unknown>;
   toSvg(): string;
   toPng(): Promise<Blob>;
   rows(): Row[];

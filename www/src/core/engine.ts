@@ -3,6 +3,7 @@ import wasmUrl from "../pkg/ridgeline_bg.wasm?url";
 import { type CoreSource, WorkerEngine } from "./workerEngine";
 
 export { EngineError, isFatal, PendingCalls } from "./workerEngine";
+export { OF_SITE };
 
 /** Changes with every other core that is built: what one found, another may not find. */
 export const CORE_VERSION: string = import.meta.env.PROD
@@ -16,8 +17,6 @@ const OF_SITE: CoreSource = {
     return new URL(wasmUrl, document.baseURI).href;
   },
 };
-
-export { OF_SITE };
 
 export class Engine extends WorkerEngine {
   /** While `mayAsk` says no, requests fail as if the worker had been ended. */

@@ -9,7 +9,8 @@ import { citationOf } from "../app/takeAlong/citation";
 import { pngOf, svgOf } from "../app/takeAlong/pictures";
 import { csvOf, type Row } from "../app/takeAlong/tables";
 import type { CoreSource } from "../core/workerEngine";
-import type { InputFile } from "../shared/calls";
+import type { Args, InputFile, Result } from "../shared/calls";
+import type { Figure } from "../shared/figure";
 import { FigureFrame, type Seen } from "./FigureFrame";
 import {
   addressOf,
@@ -30,6 +31,9 @@ export interface FigurePlace extends CoreSource {
   /** Folder of the demo scene. */
   demoUrl: string;
 }
+
+/** Questions that change nothing. */
+export type Question = "segmentStory" | "correspondence" | "side";
 
 const TAG = "ridgeline-figure";
 const SCENE_NAMES = ["kind", "scene", "base", "explained"];
@@ -127,6 +131,16 @@ export class RidgelineFigure extends HTMLElement {
     if (this.#isVisible) {
       this.#show();
     }
+  }
+
+  /** What it shows: scene, results of the stages, selection, and what the core answered about it. */
+  get shown(): Figure {
+    return this.#ready().store.figure.peek();
+  }
+
+  /** Asks the core about the scene; null where it cannot answer. */
+  ask<K extends Question>(call: K, ...of: Args<K>): Promise<Result<K> | null> {
+    return this.#ready().scene.ask(call, ...of);
   }
 
   /** The figure as an SVG file. */

@@ -1,5 +1,6 @@
 /** What figures look like: as on the page. */
 import figuresCss from "../app/figures/figures.css?inline";
+import glossaryCss from "../app/glossary/glossary.css?inline";
 import imagesCss from "../app/images/images.css?inline";
 import baseCss from "../app/parts/base.css?inline";
 import chartsCss from "../app/parts/charts.css?inline";
@@ -14,6 +15,7 @@ export const styleSheet = hostSheet(
   chartsCss,
   imagesCss,
   figuresCss,
+  glossaryCss,
   takeAlongCss,
   elementCss,
 );

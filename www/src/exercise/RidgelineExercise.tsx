@@ -1,32 +1,59 @@
-/** `<ridgeline-exercise name="triangulate">`: write a function, and hear whether it is right or which mistake it makes. */
+/** `<ridgeline-exercise name="triangulate">`: do it, and hear whether it is right or which mistake it is. */
 import { signal } from "@preact/signals";
 import { render } from "preact";
+import glossaryCss from "../app/glossary/glossary.css?inline";
 import baseCss from "../app/parts/base.css?inline";
 import { hostSheet } from "../element/hostSheet";
-import { type Checked, ExerciseView } from "./ExerciseView";
-import exerciseCss from "./exercise.css?inline";
-import { EXERCISES, exerciseNamed } from "./tasks/index";
+import { EXERCISES, exerciseNamed } from "./exercises";
+import type { Verdict } from "./judging/about";
+import exerciseCss from "./views/exercise.css?inline";
+import { FigureView } from "./views/FigureView";
+import { FunctionView } from "./views/FunctionView";
+import { anySeed, NumberView } from "./views/NumberView";
 
 const TAG = "ridgeline-exercise";
-const styleSheet = hostSheet(baseCss, exerciseCss);
+const styleSheet = hostSheet(baseCss, glossaryCss, exerciseCss);
+
+export interface Checked {
+  name: string;
+  right: boolean;
+  /** Which of the usual mistakes it is. */
+  mistake: string | null;
+  /** Of the values of a number; null for other exercises. */
+  seed: number | null;
+}
+
+let needFigure: () => Promise<unknown> = () => Promise.resolve();
 
 export class RidgelineExercise extends HTMLElement {
-  static readonly observedAttributes = ["name"];
+  static readonly observedAttributes = ["name", "seed", "base", "theme"];
 
   readonly #shadow = this.attachShadow({ mode: "open" });
   readonly #name = signal<string | null>(null);
   readonly #code = signal<string | null>(null);
+  readonly #seed = signal<number | null>(null);
+  readonly #place = signal<Place>({ base: null, theme: null });
 
   connectedCallback(): void {
+    this.#seed.value ??= anySeed();
     this.#shadow.adoptedStyleSheets = [styleSheet()];
-    render(<Root name={this.#name} code={this.#code} onChecked={(of) => this.#tell(of)} />, this.#shadow);
+    const of = { name: this.#name, code: this.#code, seed: this.#seed, place: this.#place };
+    render(<Root {...of} onVerdict={(verdict) => this.#tell(verdict)} />, this.#shadow);
   }
 
   disconnectedCallback(): void {
     render(null, this.#shadow);
   }
 
-  attributeChangedCallback(_: string, before: string | null, now: string | null): void {
+  attributeChangedCallback(attribute: string, before: string | null, now: string | null): void {
+    if (attribute === "base" || attribute === "theme") {
+      this.#place.value = { base: this.getAttribute("base"), theme: this.getAttribute("theme") };
+      return;
+    }
+    if (attribute === "seed") {
+      this.#seed.value = now !== null && /^\d{1,9}$/.test(now) ? Number(now) : anySeed();
+      return;
+    }
     this.#name.value = now;
     // What was written before the element had its name belongs to it.
     if (before !== null && before !== now) {
@@ -34,27 +61,42 @@ export class RidgelineExercise extends HTMLElement {
     }
   }
 
-  /** What stands in the editor. */
+  /** What stands in the editor or the field. */
   get code(): string {
-    return this.#code.peek() ?? exerciseNamed(this.getAttribute("name"))?.starter ?? "";
+    const exercise = exerciseNamed(this.getAttribute("name"));
+    return this.#code.peek() ?? (exercise?.kind === "function" ? exercise.starter : "");
   }
 
   set code(code: string) {
     this.#code.value = code;
   }
 
-  #tell(detail: Checked): void {
+  #tell(verdict: Verdict | null): void {
+    const exercise = exerciseNamed(this.#name.peek());
+    const detail: Checked = {
+      name: exercise?.name ?? "",
+      right: verdict?.kind === "right",
+      mistake: verdict?.kind === "mistake" ? verdict.name : null,
+      seed: exercise?.kind === "number" ? this.#seed.peek() : null,
+    };
     this.dispatchEvent(new CustomEvent("ridgeline-checked", { detail, bubbles: true, composed: true }));
   }
+}
+
+interface Place {
+  base: string | null;
+  theme: string | null;
 }
 
 interface RootProps {
   name: { value: string | null };
   code: { value: string | null };
-  onChecked: (checked: Checked) => void;
+  seed: { value: number | null };
+  place: { value: Place };
+  onVerdict: (verdict: Verdict | null) => void;
 }
 
-function Root({ name, code, onChecked }: RootProps) {
+function Root({ name, code, seed, place, onVerdict }: RootProps) {
   const exercise = exerciseNamed(name.value);
   if (exercise === null) {
     const names = EXERCISES.map((one) => one.name).join(", ");
@@ -64,21 +106,55 @@ function Root({ name, code, onChecked }: RootProps) {
       </p>
     );
   }
-  return (
-    <ExerciseView
-      key={exercise.name}
-      exercise={exercise}
-      code={code.value ?? exercise.starter}
-      onCode={(written) => {
-        code.value = written;
-      }}
-      onChecked={onChecked}
-    />
-  );
+  const write = (written: string) => {
+    code.value = written;
+  };
+  switch (exercise.kind) {
+    case "function":
+      return (
+        <FunctionView
+          key={exercise.name}
+          exercise={exercise}
+          code={code.value ?? exercise.starter}
+          onCode={write}
+          onVerdict={onVerdict}
+        />
+      );
+    case "number":
+      return (
+        <NumberView
+          key={exercise.name}
+          exercise={exercise}
+          seed={seed.value ?? 0}
+          onSeed={(drawn) => {
+            seed.value = drawn;
+          }}
+          written={code.value ?? ""}
+          onWritten={write}
+          onVerdict={onVerdict}
+        />
+      );
+    case "figure":
+      return (
+        <FigureView
+          key={exercise.name}
+          exercise={exercise}
+          {...place.value}
+          written={code.value ?? ""}
+          onWritten={write}
+          onVerdict={onVerdict}
+          needFigure={needFigure}
+        />
+      );
+  }
 }
 
-/** Makes the element known, once a page. */
-export function defineExercise(): void {
+/**
+ * Makes the element known, once a page.
+ * @param figure makes `<ridgeline-figure>` known, when an exercise first needs it
+ */
+export function defineExercise(figure: () => Promise<unknown>): void {
+  needFigure = figure;
   if (customElements.get(TAG) === undefined) {
     customElements.define(TAG, RidgelineExercise);
   }

@@ -406,9 +406,9 @@ test("exercises: right, a named mistake, a wrong form, an error with its line, a
 
   const checked = await page.evaluate(() => (window as unknown as { checked: unknown[] }).checked);
   expect(checked.slice(0, 3)).toEqual([
-    { name: "triangulate", right: false, mistake: null },
-    { name: "triangulate", right: true, mistake: null },
-    { name: "triangulate", right: false, mistake: "half a pixel" },
+    { name: "triangulate", right: false, mistake: null, seed: null },
+    { name: "triangulate", right: true, mistake: null, seed: null },
+    { name: "triangulate", right: false, mistake: "half a pixel", seed: null },
   ]);
   await page.addScriptTag({ path: join(WWW, "node_modules/axe-core/axe.min.js") });
   for (const colorScheme of ["light", "dark"] as const) {
@@ -418,5 +418,29 @@ test("exercises: right, a named mistake, a wrong form, an error with its line, a
   await page.setViewportSize({ width: 320, height: 800 });
   await page.screenshot({ path: test.info().outputPath("exercises.png"), fullPage: true });
   expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(320);
+  expect(problems).toEqual([]);
+});
+
+test("exercises: an exercise in a figure fetches the figures' module itself, and a number has values of its own", async ({
+  page,
+}) => {
+  const problems = await open(page, "exercises.html");
+  const turn = page.locator("ridgeline-exercise[name=turnToRoof]");
+  const figure = turn.locator("ridgeline-figure");
+  // From outside, what its figure tells comes from the exercise.
+  await ready(turn);
+  await expect.poll(async () => (await stateOf(figure)).theta).toBe(0);
+  await turn.getByRole("button", { name: "Check" }).click();
+  await expect(turn.locator(".said")).toContainText("level");
+  await turn.getByText("A solution").click();
+  await turn.getByRole("button", { name: "Show it" }).click();
+  await turn.getByRole("button", { name: "Check" }).click();
+  await expect(turn.locator(".said")).toHaveText("Right.");
+
+  const ridge = page.locator("ridgeline-exercise[name=heightOfRidge]");
+  await expect(ridge).toContainText("Values no. 17");
+  await ridge.getByRole("textbox", { name: "Number and unit" }).fill("3.1");
+  await ridge.getByRole("button", { name: "Check" }).click();
+  await expect(ridge.getByRole("status")).toContainText("The unit is missing");
   expect(problems).toEqual([]);
 });

@@ -40,7 +40,10 @@ export function Entrance() {
         </p>
         <p>
           <a href="./lessons.html">Ten lessons</a>{" "}
-          <span class="muted">of multi-view geometry, with figures to move.</span>
+          <span class="muted">
+            of multi-view geometry, with <a href="./exercises.html">exercises</a> and a{" "}
+            <a href="./exercises.html#glossary">glossary</a>.
+          </span>
         </p>
         <DropZone />
       </section>

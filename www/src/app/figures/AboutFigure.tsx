@@ -1,6 +1,7 @@
 /** What each stage view shows: a paragraph, its equation, and where it stands in the papers. */
 import "./figures.css";
 import type { ComponentChildren } from "preact";
+import { Linked } from "../glossary/Term";
 import type { Tab } from "../state/methods";
 
 export interface FigureText {
@@ -39,7 +40,7 @@ export const FIGURES: Record<Tab, FigureText> = {
   images: {
     title: "Views",
     source: "B99 2, figure 1; W96 3.2",
-    text: "Each view is a photograph with a known camera P. Lens distortion has been removed, so that a point X, seen from C, lies at x ≃ P X: both are homogeneous, so the scale is free. All later figures rest on this one equation.",
+    text: "Each view is a photograph with a known camera P. Lens distortion has been removed, so that a point X, seen from the [[projection-centre]] C, lies at x ≃ P X: both are homogeneous, so the scale is free. All later figures rest on this one equation.",
     equation: (
       <mrow>
         <V>x</V>
@@ -61,7 +62,7 @@ export const FIGURES: Record<Tab, FigureText> = {
   segments: {
     title: "Line segments",
     source: "B99 3.2",
-    text: "Edgels with sub-pixel positions are linked into chains, broken where the tangent turns, and fitted by orthogonal regression: the line l leaves the smallest distances to its edgels x. Red: lines that were rejected, as part of a curve or as texture.",
+    text: "[[edgel|Edgels]] with sub-pixel positions are linked into chains, broken where the tangent turns, and fitted by orthogonal regression: the line l leaves the smallest distances to its edgels x. Red: lines that were rejected, as part of a curve or as texture.",
     equation: (
       <mrow>
         <msup>
@@ -78,7 +79,7 @@ export const FIGURES: Record<Tab, FigureText> = {
   matches: {
     title: "Matching over views",
     source: "B99 3.1 to 3.4, figures 1 to 5 and 7",
-    text: "The end points of a segment bound an epipolar beam in every other view. Candidates in it are compared point by point: x′ is where the epipolar line of x meets the candidate l′. A pair predicts the line in third views, by their trifocal tensors; there a segment or, without one, a higher correlation must confirm it.",
+    text: "The end points of a [[segment]] bound an [[epipolar-beam]] in every other view. [[candidate|Candidates]] in it are compared point by point: x′ is where the [[epipolar-line]] of x meets the candidate l′. A pair predicts the line in third views, by their [[trifocal-tensor|trifocal tensors]]; there a segment or, without one, a higher correlation must confirm it.",
     equation: (
       <mrow>
         <V>x′</V>
@@ -96,7 +97,7 @@ export const FIGURES: Record<Tab, FigureText> = {
   lines: {
     title: "3D lines",
     source: "B99 3.2 to 3.4, figures 4, 6, 8 and 9",
-    text: "A line L has four parameters. They minimise the distances d from the ends of the measured segments (m) to the image of L, over all views j. Merging and growing extend what the segments showed. Accuracy improves with the number of views.",
+    text: "A line L has four parameters. They minimise the distances d from the ends of the measured segments (m) to the image of L, over all views j. Merging and growing extend what the segments showed. [[triangulation|Accuracy]] improves with the number of views.",
     equation: (
       <mrow>
         <munder>
@@ -133,7 +134,7 @@ export const FIGURES: Record<Tab, FigureText> = {
   halfplanes: {
     title: "Half-planes",
     source: "B99 4.1, figures 10 to 15",
-    text: "A 3D line fixes the plane through it except for one angle, θ. Each θ induces a homography between the reference view [I | 0] and view i, [A | a]; v is the plane's normal over its distance. At the right θ the neighbourhoods agree: Sim(θ) averages the squared correlations at points of interest, weighted by w, the inverse of their distance from the line, over the views that see the side.",
+    text: "A 3D line fixes the plane through it except for one angle, θ. Each θ induces a [[homography]] between the reference view [I | 0] and view i, [A | a]; v is the plane's normal over its distance. At the right θ the neighbourhoods agree: [[similarity|Sim(θ)]] averages the squared correlations at points of interest, weighted by w, the inverse of their distance from the line, over the views that see the side.",
     equation: (
       <mtable displaystyle>
         <mtr>
@@ -246,7 +247,7 @@ export const FIGURES: Record<Tab, FigureText> = {
   adjacency: {
     title: "Adjacency graphs",
     source: "B99 2 (Bonn; Fischer et al. 1998)",
-    text: "Ends of segments that more likely meet than lie beside each other by chance make corners; their edges, in order around each, part the image into regions. A corner is matched over the views as a whole: N is what the distance from its epipolar line or its predicted place says (covariance S), what the directions of its edges say, and the colours of its regions, each against the density ρ of such things by chance. Two edges in space with a region between them propose its plane; corners that an edge joins confirm each other.",
+    text: "Ends of segments that more likely meet than lie beside each other by chance make corners; their edges, in order around each, part the image into regions: an [[adjacency-graph]]. A corner is matched over the views as a whole: N is what the distance from its epipolar line or its predicted place says (covariance S), what the directions of its edges say, and the colours of its regions, each against the density ρ of such things by chance. Two edges in space with a region between them propose its plane; corners that an edge joins confirm each other.",
     equation: (
       <mrow>
         <mi>N</mi>
@@ -342,7 +343,7 @@ export const FIGURES: Record<Tab, FigureText> = {
   groups: {
     title: "Grouping",
     source: "B99 4.2, figures 16 to 20",
-    text: "Collinear lines with a common half-plane are joined; neighbours that lie in one plane within its uncertainty form a group, which gets a new plane by regression over points X of all its lines. The Delaunay triangulation constrained to the projected lines decides which lines are neighbours. In each plane, further lines are found where segments of several views coincide.",
+    text: "Collinear lines with a common [[half-plane]] are joined; neighbours that lie in one plane within its uncertainty form a group, which gets a new plane by regression over points X of all its lines. The Delaunay triangulation constrained to the projected lines decides which lines are neighbours. In each plane, further lines are found where segments of several views coincide.",
     equation: (
       <mrow>
         <msup>
@@ -361,7 +362,7 @@ export const FIGURES: Record<Tab, FigureText> = {
   facets: {
     title: "Facets",
     source: "B99 4.3, figures 21 to 23",
-    text: "Border lines (real lines, new lines, intersections of planes, closing lines) cut the plan into cells, and the planes compete for them. A facet is kept if the views agree inside and enough of its outline, τ, is real. The paper settles conflicts pair by pair, by area times that share; here the same evidence decides for all cells at once.",
+    text: "[[border-line|Border lines]] (real lines, new lines, intersections of planes, closing lines) cut the plan into cells, and the planes compete for them. A facet is kept if the views agree inside and enough of its outline, τ, is real. The paper settles conflicts pair by pair, by area times that share; here the same evidence decides for all cells at once.",
     equation: (
       <mrow>
         <mi>S</mi>
@@ -430,7 +431,7 @@ export const FIGURES: Record<Tab, FigureText> = {
   regions: {
     title: "Regions (ORIS)",
     source: "W96 3.3, figure 3",
-    text: "The image becomes a partition into regions of constant grey value plus noise, with straight shared boundaries. Break points are dropped and regions merged, always the move that shortens the description most: the length L of the model m and of what remains of the image I. It ends when no move does.",
+    text: "The image becomes a partition into [[region|regions]] of constant grey value plus noise, with straight shared boundaries. Break points are dropped and regions merged, always the move that shortens the [[description-length|description]] most: the length L of the model m and of what remains of the image I. It ends when no move does.",
     equation: (
       <mrow>
         <mo>min</mo>
@@ -452,7 +453,7 @@ export const FIGURES: Record<Tab, FigureText> = {
   directions: {
     title: "Main directions",
     source: "W96 3.4, figures 4 and 5",
-    text: "The interpretation plane of every image line is cut with the XY plane. Horizontal lines give the same azimuth α from every view; others scatter. Two perpendicular peaks of the histogram h are found together.",
+    text: "The [[interpretation-plane]] of every image line is cut with the XY plane. Horizontal lines give the same azimuth α from every view; others scatter. Two perpendicular peaks of the histogram h are found together.",
     equation: (
       <mrow>
         <munder>
@@ -477,7 +478,7 @@ export const FIGURES: Record<Tab, FigureText> = {
   clusters: {
     title: "Clusters",
     source: "W96 3.5, figures 6 to 9",
-    text: "In the plane across a main direction, each image line of that direction is a straight line, and a 3D line is a point where lines of several images meet. The points compete by description length: G is by how many bits the description of the image lines gets shorter when they share one cluster. Colours are views.",
+    text: "In the plane across a [[main-direction]], each image line of that direction is a straight line, and a 3D line is a point where lines of several images meet. The points compete by description length: G is by how many bits the description of the image lines gets shorter when they share one [[cluster]]. Colours are views.",
     equation: (
       <mrow>
         <mi>G</mi>
@@ -533,7 +534,9 @@ export function AboutFigure({ tab }: { tab: Tab }) {
         <h2>{title}</h2>
         <span class="muted">{source}</span>
       </summary>
-      <p>{text}</p>
+      <p>
+        <Linked text={text} />
+      </p>
       <math display="block">{equation}</math>
       <p class="muted">{hint}</p>
     </details>

@@ -1,7 +1,8 @@
 /**
- * Judges answers to an exercise. An answer is right where it holds for planted configurations, whatever its formula is; a wrong
+ * Judges functions that are to be written. An answer is right where it holds for planted configurations, whatever its formula is; a wrong
  * one is compared with what the usual mistakes would have answered.
  */
+import type { About, NamedMistake, Verdict } from "./about";
 import type { Random } from "./random";
 
 export interface Planted<Input extends readonly unknown[], Answer> {
@@ -10,20 +11,13 @@ export interface Planted<Input extends readonly unknown[], Answer> {
   error(answer: Answer): number;
 }
 
-export interface Mistake<Input extends readonly unknown[], Answer> {
-  name: string;
-  /** What was done, and what is to be done instead. */
-  says: string;
+export interface Mistake<Input extends readonly unknown[], Answer> extends NamedMistake {
   /** What it answers; several ways to make it are one mistake. */
   variants: readonly ((...input: Input) => Answer)[];
 }
 
-export interface Exercise<Input extends readonly unknown[], Answer> {
-  /** That of the function to be written. */
-  name: string;
-  title: string;
-  /** Paper and section. */
-  source: string;
+export interface FunctionExercise<Input extends readonly unknown[], Answer> extends About {
+  kind: "function";
   text: string;
   /** What stands in the editor first. */
   starter: string;
@@ -39,15 +33,9 @@ export interface Exercise<Input extends readonly unknown[], Answer> {
   mistakes: readonly Mistake<Input, Answer>[];
 }
 
-export type Verdict =
-  | { kind: "right" }
-  | { kind: "form"; says: string }
-  | { kind: "mistake"; name: string; says: string }
-  | { kind: "wrong"; error: number; says: string };
-
 /** Judges the answers to planted configurations, one each. */
 export function judge<Input extends readonly unknown[], Answer>(
-  exercise: Exercise<Input, Answer>,
+  exercise: FunctionExercise<Input, Answer>,
   planted: readonly Planted<Input, Answer>[],
   answers: readonly unknown[],
 ): Verdict {
@@ -74,7 +62,6 @@ export function judge<Input extends readonly unknown[], Answer>(
   const count = errors.filter((one) => one > exercise.limit).length;
   return {
     kind: "wrong",
-    error,
     says: `Not right in ${count} of ${errors.length} configurations; the largest error is ${errorWords(error, exercise.unit)}.`,
   };
 }

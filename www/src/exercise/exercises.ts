@@ -1,0 +1,34 @@
+/** All exercises, in the order of their lessons. */
+import { FIGURE_EXERCISES } from "./figures/index";
+import type { FigureExercise } from "./figures/judgeFigure";
+import { type AnyFunction, FUNCTIONS } from "./functions/index";
+import { LESSONS, type Lesson, type NamedMistake } from "./judging/about";
+import type { NumberExercise } from "./judging/judgeNumber";
+import { NUMBERS } from "./numbers/index";
+
+export type AnyExercise = AnyFunction | NumberExercise | FigureExercise;
+
+const ORDER = Object.keys(LESSONS) as readonly Lesson[];
+
+/** Of a lesson: first in the figure, then with numbers, then with code. */
+export const EXERCISES: readonly AnyExercise[] = ORDER.flatMap((lesson) =>
+  [...FIGURE_EXERCISES, ...NUMBERS, ...FUNCTIONS].filter((one) => one.lesson === lesson),
+);
+
+export function exerciseNamed(name: string | null): AnyExercise | null {
+  return EXERCISES.find((one) => one.name === name) ?? null;
+}
+
+/** How an exercise is done, in a word. */
+export const KIND_WORDS: Readonly<Record<AnyExercise["kind"], string>> = {
+  figure: "figure",
+  number: "number",
+  function: "code",
+};
+
+/** The usual mistakes that an exercise knows. */
+export function mistakesOf(exercise: AnyExercise): readonly NamedMistake[] {
+  return exercise.kind === "function"
+    ? exercise.mistakes.map(({ name, says }) => ({ name, says }))
+    : Object.entries(exercise.mistakes).map(([name, says]) => ({ name, says }));
+}

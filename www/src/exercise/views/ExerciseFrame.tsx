@@ -1,0 +1,37 @@
+/** What stands around an exercise: its title and paper, what is to be done, and what is said of an answer. */
+import type { ComponentChildren } from "preact";
+import type { About, Verdict } from "../judging/about";
+
+interface Props {
+  about: About;
+  /** What is said of an answer; null before one is given. */
+  said: ComponentChildren;
+  children: ComponentChildren;
+}
+
+export function ExerciseFrame({ about: { title, source }, said, children }: Props) {
+  return (
+    <section class="frame" aria-label={title}>
+      <p class="title">
+        {title} <span class="muted">{source}</span>
+      </p>
+      {children}
+      <div role="status">{said}</div>
+    </section>
+  );
+}
+
+export function Said({ verdict, right }: { verdict: Verdict; right: string }) {
+  switch (verdict.kind) {
+    case "right":
+      return <p class="said right">{right}</p>;
+    case "mistake":
+      return (
+        <p class="said wrong">
+          <strong>{verdict.name}</strong> {verdict.says}
+        </p>
+      );
+    default:
+      return <p class="said wrong">{verdict.says}</p>;
+  }
+}
