@@ -1,10 +1,17 @@
-//! Height of the ground from the images: a sweep of horizontal planes.
+//! Height of the ground: from the images by a sweep of horizontal planes, and from a terrain model
+//! where one is known (`given`).
 //!
 //! Every view, reduced four times, is compared with the others on horizontal planes at steps of
 //! height (the measure that verifies facets, `photoconsistency`). Each position takes the
 //! height at which the views agree best; the ground near a building is the lowest height that many
 //! positions around it share, since roofs and trees only rise above it and wrong matches share
 //! none. What is matched at about the height of the plane through those then settles the height.
+//!
+//! Invariant: the ground has a height at every plan position, also outside of what was swept.
+
+mod given;
+
+pub use given::{TerrainComparison, TerrainVerdict};
 
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
@@ -12,6 +19,7 @@ use serde::{Deserialize, Serialize};
 use crate::execution::{Sharded, sharded_map};
 use crate::geometry::{Plane, Segment3};
 use crate::lines3d::Line3d;
+use crate::math::{larger, smaller};
 use crate::model::Facet;
 use crate::photoconsistency::{PlanGrid, consistency_map};
 use crate::scene::Scene;
@@ -20,25 +28,36 @@ use crate::scene::Scene;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ground {
     min: Point2<f64>,
+    /// Side of a block, metres.
+    block_m: f64,
     columns: usize,
     rows: usize,
-    /// Row by row; empty for one height everywhere.
-    heights: Vec<f64>,
+    /// How far each block lies above the plane, row by row; empty where all of it is the plane.
+    rises: Vec<f64>,
     /// The plane that the ground lies in as a whole.
     plane: Plane,
+    /// How a terrain model that is known compares with the images.
+    terrain: Option<TerrainComparison>,
 }
 
 /// Blocks higher than this above the common plane show no ground, metres: lower than any eave.
 /// Assumption: the ground of one scene is nearly plane.
 const STANDS_OUT: f64 = 1.0;
-/// Ground as a whole slopes less than this (normal's z of 8 degrees). Assumption: a steeper fit
-/// follows a roof.
-const LEAST_LEVEL: f64 = 0.99;
+/// Ground as a whole slopes less than this (normal's z of 17 degrees). Assumption: the steepest
+/// that is built on with gardens around.
+const LEAST_LEVEL: f64 = 0.956;
+/// A plane steeper than this (normal's z of 8 degrees) is the ground only where almost all blocks
+/// lie in it. Assumption: else it follows a roof.
+const GENTLE: f64 = 0.99;
+const ALMOST_ALL: f64 = 0.8;
 /// Cell of the ground grid, metres.
 const CELL: f64 = 5.0;
 /// Matched positions within this distance determine the ground height of a cell, metres: more than
 /// half the width of a building.
 const RADIUS: f64 = 18.0;
+/// So often the plane of sloping ground is fitted, at most. Assumption: each time what is left of the
+/// slope in the lowest heights becomes a small part.
+const ROUNDS_ON_SLOPES: usize = 4;
 /// Images are reduced by this factor for the sweep.
 const REDUCE: usize = 4;
 /// Most planes in the sweep.
@@ -59,10 +78,12 @@ impl Ground {
     pub fn level(z: f64) -> Self {
         Self {
             min: Point2::origin(),
+            block_m: CELL,
             columns: 0,
             rows: 0,
-            heights: Vec::new(),
+            rises: Vec::new(),
             plane: level_plane(z),
+            terrain: None,
         }
     }
 
@@ -100,7 +121,11 @@ impl Ground {
         let [low, high] = z_range.unwrap_or(around_lines);
         let samples = sweep(scene, &ends, low, high)?;
         let elsewhere = low_height(samples.iter().map(|s| s.z)).unwrap_or_else(|| share(0.1));
-        Ok(Self::from_samples(&samples, elsewhere))
+        let found = Self::from_samples(&samples, elsewhere);
+        Ok(match &scene.known.terrain {
+            Some(terrain) => found.with_terrain(terrain, &samples, &ends),
+            None => found,
+        })
     }
 
     fn from_samples(samples: &[Point3<f64>], elsewhere: f64) -> Self {
@@ -123,27 +148,41 @@ impl Ground {
         );
         let mut ground = Self {
             min,
+            block_m: CELL,
             columns,
             rows,
-            heights: vec![elsewhere; columns * rows],
+            rises: vec![0.0; columns * rows],
             plane: level_plane(elsewhere),
+            terrain: None,
         };
-        let cells: Vec<usize> = (0..columns * rows).collect();
-        let lowest = crate::execution::map(&cells, |_, &k| {
-            let at = ground.block(k).xy();
-            low_height(samples.iter().filter(|s| is_near(s, &at)).map(|s| s.z))
-        });
-        let lowest: Vec<Point3<f64>> = (lowest.iter().enumerate())
-            .filter_map(|(k, z)| {
-                let at = ground.block(k);
-                z.map(|z| Point3::new(at.x, at.y, z))
-            })
-            .collect();
-        if let Some(plane) = common_plane(&lowest) {
+        for _ in 0..ROUNDS_ON_SLOPES {
+            let Some(plane) = common_plane(&ground.lowest_blocks(samples)) else {
+                break;
+            };
             ground.plane = plane;
+            // On a slope the lowest height around a block is that of its lower side: sought again
+            // above the plane, it is that of the block.
+            let slope = plane.normal.xy().norm() / plane.normal.z;
+            if slope * RADIUS < ONE_HEIGHT {
+                break;
+            }
         }
         ground.settle(samples);
         ground
+    }
+
+    /// The middle of every block at the lowest height above the plane that many positions around it
+    /// share.
+    fn lowest_blocks(&self, samples: &[Point3<f64>]) -> Vec<Point3<f64>> {
+        let plane = self.plane;
+        let blocks: Vec<usize> = (0..self.rises.len()).collect();
+        let lowest = crate::execution::map(&blocks, |_, &k| {
+            let at = self.middle(k);
+            let near = samples.iter().filter(|s| is_near(s, &at));
+            let rise = low_height(near.map(|s| s.z - plane.z_at(s.x, s.y)))?;
+            Some(Point3::new(at.x, at.y, plane.z_at(at.x, at.y) + rise))
+        });
+        lowest.into_iter().flatten().collect()
     }
 
     /// The plane that the ground lies in as a whole.
@@ -153,18 +192,15 @@ impl Ground {
 
     /// How far the ground lies above that plane, least and most, metres.
     pub fn rises(&self) -> [f64; 2] {
-        let blocks = (0..self.heights.len()).map(|k| self.block(k));
-        let rise = |p: Point3<f64>| p.z - self.plane.z_at(p.x, p.y);
-        blocks.map(rise).fold([0.0, 0.0], |[low, high], rise| {
-            [rise.min(low), rise.max(high)]
+        (self.rises.iter()).fold([0.0, 0.0], |[low, high], &rise| {
+            [smaller(rise, low), larger(rise, high)]
         })
     }
 
-    /// Middle of a block, on the ground.
-    fn block(&self, k: usize) -> Point3<f64> {
+    /// Middle of a block in plan.
+    fn middle(&self, k: usize) -> Point2<f64> {
         let (c, r) = ((k % self.columns) as f64, (k / self.columns) as f64);
-        let p = self.min + Vector2::new(c + 0.5, r + 0.5) * CELL;
-        Point3::new(p.x, p.y, self.heights[k])
+        self.min + Vector2::new(c + 0.5, r + 0.5) * self.block_m
     }
 
     /// Lays every block in the common plane, and then to the middle of what is matched around it at
@@ -175,33 +211,37 @@ impl Ground {
         let level: Vec<&Point3<f64>> = (samples.iter())
             .filter(|p| rise(p).abs() < STANDS_OUT)
             .collect();
-        let cells: Vec<usize> = (0..self.heights.len()).collect();
-        self.heights = crate::execution::map(&cells, |_, &k| {
-            let at = self.block(k);
-            let near = level.iter().filter(|p| is_near(p, &at.xy()));
+        let blocks: Vec<usize> = (0..self.rises.len()).collect();
+        self.rises = crate::execution::map(&blocks, |_, &k| {
+            let at = self.middle(k);
+            let near = level.iter().filter(|p| is_near(p, &at));
             let mut rises: Vec<f64> = near.map(|p| rise(p)).collect();
             let enough = rises.len() >= MIN_SAMPLES;
             let middle = crate::math::median(&mut rises).filter(|_| enough);
-            plane.z_at(at.x, at.y) + middle.unwrap_or(0.0)
+            middle.unwrap_or(0.0)
         });
     }
 
     /// Ground height at a plan position, metres.
     pub fn z_at(&self, p: &Point2<f64>) -> f64 {
-        let (c, r) = ((p.x - self.min.x) / CELL, (p.y - self.min.y) / CELL);
+        let [c, r] = [p.x - self.min.x, p.y - self.min.y].map(|along| along / self.block_m);
+        let on_plane = self.plane.z_at(p.x, p.y);
         if c < 0.0 || r < 0.0 || c >= self.columns as f64 || r >= self.rows as f64 {
-            return self.plane.z_at(p.x, p.y);
+            return on_plane;
         }
-        self.heights[r as usize * self.columns + c as usize]
+        on_plane + self.rises[r as usize * self.columns + c as usize]
     }
 
-    /// Ground height below a building, metres: the middle one of those at its corners.
+    /// Ground height below a building, metres: the middle one of those at its corners, the lowest
+    /// on a slope, so that all walls end in the ground.
     pub fn below(&self, members: &[&Facet]) -> f64 {
-        let mut heights: Vec<f64> = members
-            .iter()
-            .flat_map(|f| &f.outer)
-            .map(|p| self.z_at(&p.xy()))
-            .collect();
+        let corners = members.iter().flat_map(|f| &f.outer);
+        let mut heights: Vec<f64> = corners.map(|p| self.z_at(&p.xy())).collect();
+        let lowest = heights.iter().copied().fold(f64::INFINITY, smaller);
+        let highest = heights.iter().copied().fold(f64::NEG_INFINITY, larger);
+        if highest - lowest > STANDS_OUT {
+            return lowest;
+        }
         crate::math::median(&mut heights).unwrap_or(f64::NAN)
     }
 }
@@ -238,6 +278,10 @@ fn common_plane(blocks: &[Point3<f64>]) -> Option<Plane> {
             (plane, near(&plane).len())
         })
         .collect();
+    let is_ground = |(plane, n): &&(Plane, usize)| {
+        plane.normal.z > GENTLE || *n as f64 > ALMOST_ALL * blocks.len() as f64
+    };
+    let found: Vec<&(Plane, usize)> = found.iter().filter(is_ground).collect();
     let most = found.iter().map(|(_, n)| *n).max()?;
     let middle = blocks.iter().map(|p| p.coords.xy()).sum::<Vector2<f64>>() / blocks.len() as f64;
     let common = found.iter().filter(|(_, n)| 2 * n >= most);
