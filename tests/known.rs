@@ -3,8 +3,9 @@
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used)]
 
-use nalgebra::{Point2, Point3};
+use nalgebra::{Point2, Point3, Vector3};
 use ridgeline::facets::{FootprintVerdict, RegisterTrace};
+use ridgeline::known::{Register, Terrain, WorldSystem};
 use ridgeline::orientation::InputFile;
 use ridgeline::params::Params;
 use ridgeline::pipeline::{Run, Stage};
@@ -48,7 +49,13 @@ fn grid(height: impl Fn(f64, f64) -> f64) -> String {
 
 fn ground_is(run: &Run, height: impl Fn(f64, f64) -> f64, within_m: f64) {
     let ground = &run.results().half_planes.as_ref().unwrap().ground;
-    for (x, y) in [(0.0, 0.0), (12.0, 0.0), (-12.0, 3.0), (2.0, 13.0), (-5.0, -13.0)] {
+    for (x, y) in [
+        (0.0, 0.0),
+        (12.0, 0.0),
+        (-12.0, 3.0),
+        (2.0, 13.0),
+        (-5.0, -13.0),
+    ] {
         let miss = ground.z_at(&Point2::new(x, y)) - height(x, y);
         assert!(miss.abs() < within_m, "{miss} m at {x}, {y}");
     }
@@ -59,13 +66,21 @@ fn house_is(run: &Run, height: impl Fn(f64, f64) -> f64) {
     let model = run.results().roof_model().unwrap();
     assert_eq!((model.facets.len(), model.buildings.len()), (2, 1));
     let corners = model.facets.iter().flat_map(|f| &f.outer);
-    let lowest = corners.map(|p| height(p.x, p.y)).fold(f64::INFINITY, f64::min);
+    let lowest = corners
+        .map(|p| height(p.x, p.y))
+        .fold(f64::INFINITY, f64::min);
     let base = model.buildings[0].ground_z;
     assert!((base - lowest).abs() < 0.6, "{base} instead of {lowest}");
 }
 
 fn comparison(run: &Run) -> &TerrainComparison {
-    run.results().half_planes.as_ref().unwrap().ground.terrain().unwrap()
+    run.results()
+        .half_planes
+        .as_ref()
+        .unwrap()
+        .ground
+        .terrain()
+        .unwrap()
 }
 
 #[test]
@@ -86,11 +101,22 @@ fn a_house_on_a_slope_of_15_degrees_is_found_with_and_without_a_terrain_model() 
     let moved = run(loaded(&scene, Some(("dtm.asc", other_datum))));
     let found = comparison(&moved);
     assert_eq!(found.verdict, TerrainVerdict::Moved);
-    assert!((found.images_above_m.unwrap() + 47.3).abs() < 0.3, "{found:?}");
+    assert!(
+        (found.images_above_m.unwrap() + 47.3).abs() < 0.3,
+        "{found:?}"
+    );
     ground_is(&moved, height, 0.4);
     house_is(&moved, height);
     let report = moved.results().half_planes.as_ref().unwrap();
-    assert!(report.ground.terrain().unwrap().warning().unwrap().contains("another datum"));
+    assert!(
+        report
+            .ground
+            .terrain()
+            .unwrap()
+            .warning()
+            .unwrap()
+            .contains("another datum")
+    );
 }
 
 #[test]
@@ -111,6 +137,40 @@ fn contains(ring: &[Point3<f64>], x: f64, y: f64) -> bool {
         let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
         (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x) >= 0.0
     })
+}
+
+/// By GDAL: strips and tiles, all predictors, whole and floating-point numbers, both byte orders.
+#[test]
+fn files_of_other_programs_hold_the_planted_ground_and_house() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/known/");
+    let file = |name: &str| InputFile::new(name, std::fs::read(format!("{folder}{name}")).unwrap());
+    let system = WorldSystem {
+        epsg: Some(25832),
+        anchor: None,
+    };
+    let origin = Vector3::new(432_100.0, 5_412_300.0, 100.0);
+    for (name, within_m) in [
+        ("strips.tif", 1e-3),
+        ("deflate_p3.tif", 1e-3),
+        ("lzw_p3_double.tif", 1e-3),
+        ("lzw_p2_short.tif", 1.01),
+        ("zstd_big.tif", 1e-3),
+        ("grid.asc", 1e-3),
+    ] {
+        let terrain = Terrain::read(&file(name), &system, origin, 0.3).unwrap();
+        for (x, y) in [(0.0, 0.0), (-38.2, 27.0), (31.7, -28.1)] {
+            let miss = terrain.z_at(x, y).unwrap() - (12.0 + 0.25 * x - 0.1 * y);
+            assert!(miss.abs() < within_m, "{name}: {miss} m at {x}, {y}");
+        }
+        assert_eq!(terrain.z_at(41.0, 0.0), None, "{name}");
+    }
+    for (name, area) in [("houses.geojson", 96.0), ("houses.city.json", 100.0)] {
+        let register = Register::read(&file(name), &system, origin, 0.5, &mut Vec::new()).unwrap();
+        let [house] = &register.footprints[..] else {
+            panic!("{name}: {}", register.footprints.len());
+        };
+        assert!((house.area() - area).abs() < 1e-6, "{name}");
+    }
 }
 
 /// The outline of the planted house, moved, as GeoJSON in the frame of the orientation.
@@ -163,5 +223,8 @@ fn right_moved_and_wrong_footprints_are_named_and_leave_the_house() {
     assert!((x + 1.2).abs() < 0.5 && (y - 0.9).abs() < 0.5, "{found:?}");
 
     let report = right.results().facets.as_ref().unwrap();
-    assert_eq!(report.trace.facets.register.as_ref().unwrap().footprints[0].name, "h1");
+    assert_eq!(
+        report.trace.facets.register.as_ref().unwrap().footprints[0].name,
+        "h1"
+    );
 }

@@ -43,21 +43,26 @@ pub struct Ground {
 /// Blocks higher than this above the common plane show no ground, metres: lower than any eave.
 /// Assumption: the ground of one scene is nearly plane.
 const STANDS_OUT: f64 = 1.0;
-/// Ground as a whole slopes less than this (normal's z of 17 degrees). Assumption: the steepest
-/// that is built on with gardens around.
-const LEAST_LEVEL: f64 = 0.956;
-/// A plane steeper than this (normal's z of 8 degrees) is the ground only where almost all blocks
-/// lie in it. Assumption: else it follows a roof.
-const GENTLE: f64 = 0.99;
-const ALMOST_ALL: f64 = 0.8;
+/// Ground as a whole slopes less than this against the common slope (normal's z of 8 degrees).
+/// Assumption: a steeper fit follows a roof.
+const LEAST_LEVEL: f64 = 0.99;
 /// Cell of the ground grid, metres.
 const CELL: f64 = 5.0;
 /// Matched positions within this distance determine the ground height of a cell, metres: more than
 /// half the width of a building.
 const RADIUS: f64 = 18.0;
-/// So often the plane of sloping ground is fitted, at most. Assumption: each time what is left of the
-/// slope in the lowest heights becomes a small part.
-const ROUNDS_ON_SLOPES: usize = 4;
+/// The steepest common slope, metres a metre (17 degrees), and the steps in which it is sought.
+/// Assumption: the steepest that is built on with gardens around.
+const STEEPEST: f64 = 0.3;
+const SLOPE_STEPS: i32 = 6;
+/// Above a common slope so many times as many positions share a height as above the sea.
+/// Assumption: a slope of less than 8 degrees needs no other treatment than level ground.
+const SHARED_ON_SLOPE: f64 = 2.0;
+/// Below a slope that is the ground lie fewer positions than this share. Assumption: wrong matches
+/// have up to a sixth; below a roof lies the ground.
+const MOST_BELOW: f64 = 0.15;
+/// So many positions show the slope.
+const SLOPE_SAMPLES: usize = 4000;
 /// Images are reduced by this factor for the sweep.
 const REDUCE: usize = 4;
 /// Most planes in the sweep.
@@ -155,32 +160,29 @@ impl Ground {
             plane: level_plane(elsewhere),
             terrain: None,
         };
-        for _ in 0..ROUNDS_ON_SLOPES {
-            let Some(plane) = common_plane(&ground.lowest_blocks(samples)) else {
-                break;
-            };
-            ground.plane = plane;
-            // On a slope the lowest height around a block is that of its lower side: sought again
-            // above the plane, it is that of the block.
-            let slope = plane.normal.xy().norm() / plane.normal.z;
-            if slope * RADIUS < ONE_HEIGHT {
-                break;
-            }
+        // On a slope heights are shared above it, not above the sea.
+        let slope = common_slope(samples);
+        let trend = move |x: f64, y: f64| slope.x * x + slope.y * y;
+        if let Some(rest) = common_plane(&ground.lowest_blocks(samples, trend)) {
+            ground.plane = sloped(&rest, slope);
         }
         ground.settle(samples);
         ground
     }
 
-    /// The middle of every block at the lowest height above the plane that many positions around it
+    /// The middle of every block with the lowest height above a slope that many positions around it
     /// share.
-    fn lowest_blocks(&self, samples: &[Point3<f64>]) -> Vec<Point3<f64>> {
-        let plane = self.plane;
+    fn lowest_blocks(
+        &self,
+        samples: &[Point3<f64>],
+        slope: impl Fn(f64, f64) -> f64 + Sync,
+    ) -> Vec<Point3<f64>> {
         let blocks: Vec<usize> = (0..self.rises.len()).collect();
         let lowest = crate::execution::map(&blocks, |_, &k| {
             let at = self.middle(k);
             let near = samples.iter().filter(|s| is_near(s, &at));
-            let rise = low_height(near.map(|s| s.z - plane.z_at(s.x, s.y)))?;
-            Some(Point3::new(at.x, at.y, plane.z_at(at.x, at.y) + rise))
+            let rise = low_height(near.map(|s| s.z - slope(s.x, s.y)))?;
+            Some(Point3::new(at.x, at.y, rise))
         });
         lowest.into_iter().flatten().collect()
     }
@@ -253,6 +255,55 @@ fn level_plane(z: f64) -> Plane {
     }
 }
 
+/// A plane, steeper by a slope.
+fn sloped(plane: &Plane, slope: Vector2<f64>) -> Plane {
+    let n = plane.normal / plane.normal.z;
+    let normal = Vector3::new(n.x - slope.x, n.y - slope.y, 1.0);
+    let at_zero = Point3::new(0.0, 0.0, plane.z_at(0.0, 0.0));
+    Plane::from_point_normal(&at_zero, &normal).expect("it is not upright")
+}
+
+/// The slope of the ground as a whole, metres a metre east and north, above which many more
+/// positions share one height than above level ground, and below which hardly any lie; none where
+/// there is no such.
+fn common_slope(samples: &[Point3<f64>]) -> Vector2<f64> {
+    let every = samples.len() / SLOPE_SAMPLES + 1;
+    let some: Vec<Point3<f64>> = samples.iter().copied().step_by(every).collect();
+    let steps = -SLOPE_STEPS..=SLOPE_STEPS;
+    let slope = |step: i32| STEEPEST * f64::from(step) / f64::from(SLOPE_STEPS);
+    let slopes: Vec<Vector2<f64>> = (steps.clone())
+        .flat_map(|y| steps.clone().map(move |x| Vector2::new(slope(x), slope(y))))
+        .filter(|slope| slope.norm() <= STEEPEST)
+        .collect();
+    // How many share one height, and how many lie below it.
+    let shared = |slope: &Vector2<f64>| -> [usize; 2] {
+        let mut rises: Vec<f64> = some
+            .iter()
+            .map(|s| s.z - slope.dot(&s.coords.xy()))
+            .collect();
+        rises.sort_by(f64::total_cmp);
+        let mut end = 0;
+        let mut most = [0, 0];
+        for (start, low) in rises.iter().enumerate() {
+            while end < rises.len() && rises[end] <= low + ONE_HEIGHT {
+                end += 1;
+            }
+            if end - start > most[0] {
+                most = [end - start, start];
+            }
+        }
+        most
+    };
+    let found = crate::execution::map(&slopes, |_, slope| shared(slope));
+    let level = shared(&Vector2::zeros())[0] as f64;
+    let is_ground = |[count, below]: [usize; 2]| {
+        count as f64 > SHARED_ON_SLOPE * level && (below as f64) < MOST_BELOW * some.len() as f64
+    };
+    let grounds = (0..slopes.len()).filter(|&i| is_ground(found[i]));
+    let best = grounds.max_by_key(|&i| (found[i][0], std::cmp::Reverse(i)));
+    best.map_or_else(Vector2::zeros, |i| slopes[i])
+}
+
 /// The plane that most of the blocks lie in, or the lowest of those that at least half as many do:
 /// a town may have more flat roofs of one height than ground. `None` without blocks.
 fn common_plane(blocks: &[Point3<f64>]) -> Option<Plane> {
@@ -278,10 +329,6 @@ fn common_plane(blocks: &[Point3<f64>]) -> Option<Plane> {
             (plane, near(&plane).len())
         })
         .collect();
-    let is_ground = |(plane, n): &&(Plane, usize)| {
-        plane.normal.z > GENTLE || *n as f64 > ALMOST_ALL * blocks.len() as f64
-    };
-    let found: Vec<&(Plane, usize)> = found.iter().filter(is_ground).collect();
     let most = found.iter().map(|(_, n)| *n).max()?;
     let middle = blocks.iter().map(|p| p.coords.xy()).sum::<Vector2<f64>>() / blocks.len() as f64;
     let common = found.iter().filter(|(_, n)| 2 * n >= most);
@@ -430,6 +477,39 @@ mod tests {
             let miss = found.z_at(&Point2::new(x, y)) - ground(x, y);
             assert!(miss.abs() < 0.12, "{miss} m at {x}, {y}");
         }
+    }
+
+    #[test]
+    fn a_slope_of_15_degrees_is_found_below_a_roof() {
+        let steep = |x: f64, y: f64| 0.25 * x - 0.1 * y;
+        let samples: Vec<Point3<f64>> = (samples().into_iter())
+            .map(|p| Point3::new(p.x, p.y, p.z + steep(p.x, p.y)))
+            .collect();
+        let found = Ground::from_samples(&samples, 49.0);
+        for (x, y) in [(30.0, 30.0), (8.0, 8.0), (52.0, 30.0), (30.0, 8.0)] {
+            let miss = found.z_at(&Point2::new(x, y)) - ground(x, y) - steep(x, y);
+            assert!(miss.abs() < 0.15, "{miss} m at {x}, {y}");
+        }
+    }
+
+    #[test]
+    fn a_large_sloping_roof_over_level_ground_is_no_slope() {
+        let positions = (0..120).flat_map(|c| (0..120).map(move |r| (c, r)));
+        let samples: Vec<Point3<f64>> = positions
+            .map(|(c, r)| (0.5 * f64::from(c), 0.5 * f64::from(r)))
+            .map(|(x, y)| {
+                Point3::new(
+                    x,
+                    y,
+                    if x > 12.0 {
+                        55.0 + 0.2 * (x - 12.0)
+                    } else {
+                        50.0
+                    },
+                )
+            })
+            .collect();
+        assert_eq!(common_slope(&samples), Vector2::zeros());
     }
 
     #[test]
