@@ -188,7 +188,8 @@ impl<'a> RegisterEvidence<'a> {
         (b - a).norm() / self.params.border_part_m * self.weighed(ratio)
     }
 
-    /// What it says of a facet.
+    /// What it says of a facet. Inside of a footprint it says that there is a roof, not which plane
+    /// that has: nothing. Outside it doubts it.
     pub(super) fn of_facet(&self, facet: &Facet) -> EvidenceTerm {
         let roofs = self.roofs(std::slice::from_ref(facet));
         let covered = (0..roofs.len()).filter(|&k| roofs[k]);
@@ -198,9 +199,8 @@ impl<'a> RegisterEvidence<'a> {
             count += 1.0;
         }
         let share = if count > 0.0 { inside / count } else { 0.5 };
-        let (complete, wrong) = (self.params.completeness, self.params.inside_wrong);
-        let ratio = (share * complete + (1.0 - share) * (1.0 - complete))
-            / (share * wrong + (1.0 - share) * (1.0 - wrong));
+        let outside = (1.0 - self.params.completeness) / self.params.outside_wrong;
+        let ratio = share + (1.0 - share) * smaller(outside, 1.0);
         EvidenceTerm {
             feature: FEATURE,
             value: share,
