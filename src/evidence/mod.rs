@@ -66,8 +66,8 @@ impl<'de> Deserialize<'de> for EvidenceTerm {
     }
 }
 
-/// What a register of buildings says of a facet: no feature of the tables, which are fitted to scenes
-/// without one.
+/// What a register of buildings says of a facet: no feature of the tables, which are fitted to
+/// scenes without one.
 pub(crate) const INSIDE_FOOTPRINT: &str = "inside_footprint";
 
 /// All that speaks for a candidate and against it.

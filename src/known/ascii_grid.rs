@@ -8,6 +8,7 @@
 //! ```
 
 use super::height_grid::HeightGrid;
+use super::refusal::refusal;
 use crate::error::{Error, Result};
 use crate::orientation::InputFile;
 
@@ -141,5 +142,5 @@ pub(super) fn read(file: &InputFile) -> Result<HeightGrid> {
     // Heights are read as they are written: the value that stands for none as well.
     let no_data = header.no_data.unwrap_or(-9999.0) as f32;
     HeightGrid::new(first, cell, [columns, rows], heights, Some(no_data))
-        .map_err(|problem| super::refusal(&file.path, &problem, "give heights of the ground"))
+        .map_err(|problem| refusal(&file.path, &problem, "give heights of the ground"))
 }

@@ -4,12 +4,13 @@
 use serde_json::Value;
 
 use super::footprint::Outline;
+use super::refusal::refusal;
 use super::system::{StatedSystem, Way, WorldSystem};
 use crate::error::Result;
 use crate::orientation::InputFile;
 
 pub(super) fn read(file: &InputFile, json: &Value, system: &WorldSystem) -> Result<Vec<Outline>> {
-    let refuse = |problem: &str, advice: &str| super::refusal(&file.path, problem, advice);
+    let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
     let stated = match &json["metadata"]["referenceSystem"] {
         Value::String(name) => StatedSystem::named(name),
         _ => StatedSystem::Unstated,

@@ -5,6 +5,7 @@
 use serde_json::Value;
 
 use super::footprint::Outline;
+use super::refusal::refusal;
 use super::system::{StatedSystem, Way, WorldSystem};
 use crate::error::Result;
 use crate::orientation::InputFile;
@@ -13,7 +14,7 @@ pub(super) fn read(file: &InputFile, json: &Value, system: &WorldSystem) -> Resu
     let refuse = |problem: &str| {
         let advice = "state the system of the orientation (--crs), or convert the file to it with \
                       ogr2ogr and name it in its crs member";
-        super::refusal(&file.path, problem, advice)
+        refusal(&file.path, problem, advice)
     };
     let stated = match json.get("crs") {
         None => StatedSystem::LongitudeLatitude,
@@ -47,7 +48,7 @@ pub(super) fn read(file: &InputFile, json: &Value, system: &WorldSystem) -> Resu
         let name = name_of(feature, i);
         for polygon in polygons {
             let rings = rings_of(polygon, &way).ok_or_else(|| {
-                super::refusal(
+                refusal(
                     &file.path,
                     &format!("the coordinates of footprint {name} are no places"),
                     "give rings of positions, each two or three finite numbers in the stated system",

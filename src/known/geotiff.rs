@@ -1,6 +1,7 @@
 //! GeoTIFF of heights (OGC 19-008): one band of numbers, its place in the tags.
 
 use super::height_grid::HeightGrid;
+use super::refusal::refusal;
 use super::system::{StatedSystem, WorldSystem};
 use crate::error::Result;
 use crate::orientation::InputFile;
@@ -23,7 +24,7 @@ const USER_DEFINED: u64 = 32_767;
 
 pub(super) fn read(file: &InputFile, system: &WorldSystem) -> Result<HeightGrid> {
     let raster = NumberRaster::read(&file.path, &file.bytes)?;
-    let refuse = |problem: &str, advice: &str| super::refusal(&file.path, problem, advice);
+    let refuse = |problem: &str, advice: &str| refusal(&file.path, problem, advice);
     let reproject = "convert it with gdalwarp to the system of the orientation, in metres";
     let key = |key: u64| geo_key(&raster.directory, key);
     for (units, what) in [

@@ -22,6 +22,7 @@ mod footprint;
 mod geojson;
 mod geotiff;
 mod height_grid;
+mod refusal;
 mod system;
 #[cfg(test)]
 mod tests;
@@ -34,6 +35,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use self::refusal::refusal;
 use crate::error::{Error, Result};
 use crate::orientation::InputFile;
 
@@ -182,14 +184,5 @@ impl Register {
             footprints,
             accuracy_m,
         })
-    }
-}
-
-/// A refusal of a file as a whole.
-fn refusal(file: &str, problem: &str, advice: &str) -> Error {
-    Error::File {
-        file: file.to_owned(),
-        problem: problem.to_owned(),
-        advice: advice.to_owned(),
     }
 }

@@ -37,8 +37,8 @@ pub fn gable_scene(size: u32) -> (Scene, SyntheticTruth) {
     scene_of(&building::gable(), size)
 }
 
-/// The same house on ground that rises by `slope` metres a metre to the east; at the origin it is at
-/// the height that the truth states.
+/// The same house on ground that rises by `slope` metres a metre to the east; at the origin it is
+/// at the height that the truth states.
 pub fn slope_scene(size: u32, slope: f64) -> (Scene, SyntheticTruth) {
     scene_of(&building::gable_on_slope(slope), size)
 }

@@ -76,8 +76,8 @@ impl TerrainComparison {
     }
 }
 
-/// Standard deviation of the ground as the images show it, metres, as in the comparison of the views
-/// on it: a few decimetres.
+/// Standard deviation of the ground as the images show it, metres, as in the comparison of the
+/// views on it: a few decimetres.
 const IMAGE_SIGMA_M: f64 = 0.3;
 /// A difference of so many standard deviations is one of datums.
 const SIGMAS: f64 = 3.0;

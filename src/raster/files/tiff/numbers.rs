@@ -103,7 +103,7 @@ impl<'a> NumberRaster<'a> {
     }
 }
 
-/// Does a file hold one band of numbers with sign or fraction, and state where it lies on the Earth?
+/// Does a file hold one band of numbers with sign or fraction, and state where it lies?
 pub(crate) fn is_height_raster(bytes: &[u8]) -> bool {
     let directory = is_tiff(bytes)
         .then(|| Directory::chain(bytes).find(is_full))
