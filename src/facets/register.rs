@@ -102,7 +102,7 @@ impl<'a> RegisterEvidence<'a> {
             }
         }
         Self {
-            sigma_m: (register.accuracy_m.powi(2) + params.overhang_sigma_m.powi(2)).sqrt(),
+            sigma_m: crate::math::hypot(register.accuracy_m, params.overhang_sigma_m),
             cells: arrangement.raster(&grid),
             register,
             params,

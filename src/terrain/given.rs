@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::{Ground, ONE_HEIGHT, low_height};
 use crate::geometry::Plane;
 use crate::known::Terrain;
-use crate::math::{larger, median};
+use crate::math::{hypot, larger, median};
 
 /// How a terrain model compares with the images.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -118,7 +118,7 @@ impl Ground {
             verdict,
         };
         let offset = offset_of(terrain, samples);
-        let certain = SIGMAS * (terrain.accuracy_m.powi(2) + IMAGE_SIGMA_M.powi(2)).sqrt();
+        let certain = SIGMAS * hypot(terrain.accuracy_m, IMAGE_SIGMA_M);
         let (verdict, lift) = match offset {
             Some(_) if self.is_surface(terrain, samples, offset.unwrap_or(0.0)) => {
                 (TerrainVerdict::Surface, 0.0)
