@@ -40,7 +40,7 @@
 //!
 //! ```text
 //! images + orientation files (or structure_from_motion, where there are none)
-//!    -> orientation, camera, scene_loader   Scene { views, ground }
+//!    -> orientation, camera, scene_loader   Scene { views, ground }; known: terrain, footprints
 //!    -> lines2d                  edgels, chains, segments (per view)          B99 3.2
 //!    -> linematch                pairs, triples, tracks over N views          B99 3.1 - 3.4
 //!    -> lines3d                  3D lines with covariance                     B99 3.2, figure 4
@@ -86,6 +86,7 @@ pub mod figures;
 pub mod geometry;
 pub mod ids;
 mod json;
+pub mod known;
 mod labelling;
 pub mod linematch;
 pub mod lines2d;

@@ -4,7 +4,9 @@
 //! between native and wasm. Everything here is crate `libm`, compiled from the same source
 //! everywhere. (`sqrt`, `abs`, `floor`, `round` are exact by IEEE 754 and may be used directly.)
 
-pub(crate) use libm::{acos, asin, atan, atan2, cos, cosh, exp, hypot, log as ln, log2, sin, sinh};
+pub(crate) use libm::{
+    acos, asin, asinh, atan, atan2, cos, cosh, erfc, exp, hypot, log as ln, log2, sin, sinh,
+};
 
 /// The larger of two numbers, neither NaN: `f64::max`, which treats NaN, is a call in wasm.
 #[inline]

@@ -17,6 +17,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use image::{DynamicImage, ImageFormat};
+use ridgeline::known::{Register, Terrain, WorldSystem};
 use ridgeline::orientation::InputFile;
 use ridgeline::orientation::{detect, orientation_sets};
 use ridgeline::raster::{image_header, load_image, load_window};
@@ -377,6 +378,41 @@ fn tiff_survives_anything() {
     }
     assert!(seeds.len() > 80);
     fuzz("tiff", &seeds, read_image);
+}
+
+/// Reads what may be known of a place.
+fn read_known(files: &[InputFile]) {
+    let system = WorldSystem {
+        epsg: Some(25832),
+        anchor: None,
+    };
+    let origin = nalgebra::Vector3::new(432_100.0, 5_412_300.0, 0.0);
+    for file in files {
+        let terrain = Terrain::read(file, &system, origin, 0.3);
+        if let Ok(terrain) = &terrain {
+            let z = terrain.z_at(3.0, -2.0);
+            assert!(z.is_none_or(f64::is_finite), "{z:?}");
+        }
+        check(terrain.map(|_| ()));
+        let register = Register::read(file, &system, origin, 0.5, &mut Vec::new());
+        if let Ok(register) = &register {
+            let place = nalgebra::Point2::new(3.0, -2.0);
+            assert!(
+                register
+                    .footprints
+                    .iter()
+                    .all(|f| f.depth(&place).is_finite())
+            );
+        }
+        check(register.map(|_| ()));
+    }
+}
+
+#[test]
+fn terrain_and_footprints_survive_anything() {
+    let seeds: Vec<Vec<InputFile>> = files_of("known").into_iter().map(|f| vec![f]).collect();
+    assert!(seeds.len() >= 8);
+    fuzz("known", &seeds, read_known);
 }
 
 #[test]

@@ -80,6 +80,21 @@ pub(super) struct InputArgs {
     /// Height of the ground, metres in the frame of the orientation; estimated if not given.
     #[arg(long, value_name = "H", value_parser = parse_finite, allow_hyphen_values = true)]
     pub ground_z: Option<f64>,
+    /// Terrain model: a GeoTIFF of heights or an ASCII grid of ESRI, in the frame of the
+    /// orientation. The ground and the feet of walls follow it; a difference of heights that the
+    /// images show is taken out and named.
+    #[arg(long, value_name = "FILE", conflicts_with = "ground_z")]
+    pub terrain: Option<PathBuf>,
+    /// Standard deviation of the terrain's heights, metres (0.3 if not given).
+    #[arg(long, value_name = "M", value_parser = parse_positive, requires = "terrain")]
+    pub terrain_accuracy: Option<f64>,
+    /// Footprints of buildings, GeoJSON or CityJSON: evidence that clear images overrule. Which of
+    /// them the model confirms stands in report.json.
+    #[arg(long, value_name = "FILE")]
+    pub footprints: Option<PathBuf>,
+    /// Standard deviation of the footprints' borders, metres (0.5 if not given).
+    #[arg(long, value_name = "M", value_parser = parse_positive, requires = "footprints")]
+    pub footprint_accuracy: Option<f64>,
     /// Number of threads; by default one per core. It never changes the result.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,

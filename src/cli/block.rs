@@ -25,9 +25,14 @@ pub(super) fn plan(args: &PlanArgs) -> Result<(), Failure> {
     if let Some(method) = args.method {
         params.method = method.into();
     }
+    let known = [&args.input.terrain, &args.input.footprints];
+    let known = known.into_iter().flatten();
     let source = BlockSource {
         scene: args.input.scene.to_string_lossy().into_owned(),
         orientation: args.input.orientation.clone(),
+        known: known
+            .map(|path| path.to_string_lossy().into_owned())
+            .collect(),
     };
     let refuse = |e: ridgeline::Error| refusal(&e, &seen);
     let plan = BlockPlan::new(source, &files, &options, &params, args.tile).map_err(refuse)?;
@@ -114,8 +119,16 @@ fn read_plan(folder: &Path) -> Result<(BlockPlan, Vec<u8>), Failure> {
 
 /// The files that a plan was made from, as they are now.
 fn read_inputs(plan: &BlockPlan, folder: &Path) -> Result<ReadFiles, Failure> {
-    let BlockSource { scene, orientation } = &plan.source;
-    input::read_files(Path::new(scene), orientation.as_deref(), folder)
+    let BlockSource {
+        scene,
+        orientation,
+        known,
+    } = &plan.source;
+    let mut read = input::read_files(Path::new(scene), orientation.as_deref(), folder)?;
+    for path in known {
+        input::add_known(&mut read.files, Path::new(path))?;
+    }
+    Ok(read)
 }
 
 fn named(error: ridgeline::Error) -> Failure {

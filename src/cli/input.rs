@@ -1,7 +1,7 @@
 //! A scene as the arguments name it: its files, options and parameters.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ridgeline::orientation::InputFile;
 use ridgeline::params::Params;
@@ -33,12 +33,18 @@ pub(super) fn open(
 ) -> Result<OpenedScene, Failure> {
     set_threads(args.threads);
     let ReadFiles {
-        files,
+        mut files,
         project,
         beside,
         seen,
     } = read_files(&args.scene, args.orientation.as_deref(), results)?;
     let stated = project.options;
+    let known = |files: &mut Vec<InputFile>, path: &Option<PathBuf>| {
+        let path = path.as_deref();
+        path.map(|path| add_known(files, path)).transpose()
+    };
+    let terrain = known(&mut files, &args.terrain)?;
+    let footprints = known(&mut files, &args.footprints)?;
     let options = LoadOptions {
         orientation: beside
             .or_else(|| Some(below(&args.scene, args.orientation.as_deref()?)))
@@ -48,6 +54,10 @@ pub(super) fn open(
         max_views: args.max_views.map(usize::from).or(stated.max_views),
         ground_z: args.ground_z.or(stated.ground_z),
         reduction: args.reduce.map(u32::from).or(stated.reduction),
+        terrain: terrain.or(stated.terrain),
+        terrain_accuracy_m: args.terrain_accuracy.or(stated.terrain_accuracy_m),
+        footprints: footprints.or(stated.footprints),
+        footprint_accuracy_m: args.footprint_accuracy.or(stated.footprint_accuracy_m),
         epsg: args.crs.or(stated.epsg),
         memory_mb: args.memory.or(stated.memory_mb),
         apply_fix: args.apply_fix || stated.apply_fix,
@@ -130,6 +140,22 @@ fn add_orientation(files: &mut Vec<InputFile>, folder: &Path) -> Result<String, 
     }));
     files.sort_by(|a, b| a.path.cmp(&b.path));
     Ok(name)
+}
+
+/// Adds a file of what is known, under a folder of its own; its path there is returned.
+pub(super) fn add_known(files: &mut Vec<InputFile>, path: &Path) -> Result<String, Failure> {
+    let bytes = fs::read(path).map_err(|e| {
+        let problem = format!("{}: cannot be read: {e}; check the path", path.display());
+        Failure::Input(problem)
+    })?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let file = InputFile::new(&format!("known/{name}"), bytes);
+    let path = file.path.clone();
+    // That of a project opened again takes the place of the one that it held.
+    files.retain(|other| other.path != path);
+    files.push(file);
+    files.sort_by(|a, b| a.path.cmp(&b.path));
+    Ok(path)
 }
 
 /// A path relative to the scene's folder, also where the whole path was given.

@@ -66,6 +66,10 @@ impl<'de> Deserialize<'de> for EvidenceTerm {
     }
 }
 
+/// What a register of buildings says of a facet: no feature of the tables, which are fitted to
+/// scenes without one.
+pub(crate) const INSIDE_FOOTPRINT: &str = "inside_footprint";
+
 /// All that speaks for a candidate and against it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
@@ -154,6 +158,9 @@ impl EvidenceModel {
 
     /// The name of a feature as the tables have it.
     fn feature_called(name: &str) -> Option<&'static str> {
+        if name == INSIDE_FOOTPRINT {
+            return Some(INSIDE_FOOTPRINT);
+        }
         let models = [
             Self::of_lines(),
             Self::of_model_lines(),

@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::borders::{Arrangement, BorderCosts, LineIndex};
+use super::register::RegisterEvidence;
 use crate::geometry::Plane;
 use crate::labelling::Energy;
 use crate::math::larger;
@@ -79,26 +80,40 @@ impl PlaneEvidence {
             .map(|i| &self.cells[cell][i].1)
     }
 
+    /// What the images say of the ground in each cell, nats.
+    pub(super) fn ground(&self) -> &[f64] {
+        &self.ground
+    }
+
     /// The energy that labelling minimises.
     pub(super) fn energy(
         &self,
         arrangement: &Arrangement,
         planes: &[Plane],
         index: &LineIndex,
+        register: Option<&RegisterEvidence>,
         params: &RoofParams,
     ) -> Energy<BorderCosts> {
+        let ends_of_roofs = |a: &_, b: &_| register.map_or(0.0, |r| r.of_border(a, b));
+        let registered = match register {
+            Some(register) => register.of_cells(self.cells.len()),
+            None => vec![0.0; self.cells.len()],
+        };
         // "No plane" keeps the cost 0, so evidence for the ground counts against roofs.
-        let costs = |(planes, ground): (&Vec<(u32, CellEvidence)>, &f64)| {
-            let cost = |(plane, e): &(u32, CellEvidence)| (*plane, ground - e.nats - e.single_view);
+        // What a register says for a roof counts for every plane.
+        let against = self.ground.iter().zip(&registered).map(|(g, r)| g - r);
+        let costs = |(planes, against): (&Vec<(u32, CellEvidence)>, f64)| {
+            let cost =
+                |(plane, e): &(u32, CellEvidence)| (*plane, against - e.nats - e.single_view);
             planes.iter().map(cost).collect()
         };
-        let unary = self.cells.iter().zip(&self.ground).map(costs).collect();
+        let unary = self.cells.iter().zip(against).map(costs).collect();
         Energy {
             unary,
             edges: (arrangement.edges.iter())
                 .map(|e| [e.left, e.right])
                 .collect(),
-            borders: BorderCosts::new(arrangement, planes, index, params),
+            borders: BorderCosts::new(arrangement, planes, index, ends_of_roofs, params),
         }
     }
 }
@@ -270,7 +285,13 @@ mod tests {
             &windows,
         );
         let index = LineIndex::new(Vec::new());
-        let energy = evidence.energy(&arrangement, &[HORIZONTAL], &index, &RoofParams::default());
+        let energy = evidence.energy(
+            &arrangement,
+            &[HORIZONTAL],
+            &index,
+            None,
+            &RoofParams::default(),
+        );
         energy.unary.iter().flatten().map(|(_, cost)| cost).sum()
     }
 

@@ -11,6 +11,7 @@
 //! delineation       closed outlines
 //! competing_planes  the planes with their maps and lines, by which facets are measured
 //! verification      the tests that a facet must pass
+//! register          footprints of a register, in nats; each compared with the model
 //! reconstruct       the stage: orders B99 4.2 and 4.3
 //! ```
 //!
@@ -26,10 +27,12 @@ mod evidence;
 mod input;
 mod islands;
 mod reconstruct;
+mod register;
 mod verification;
 
 pub(crate) use borders::ON_LINE;
 pub use borders::{Border, BorderKind};
 pub use input::FacetInput;
 pub use reconstruct::{FacetTrace, reconstruct_facets};
+pub use register::{FootprintFinding, FootprintVerdict, RegisterTrace};
 pub use verification::{FacetRejection, RejectedFacet};

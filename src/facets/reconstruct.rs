@@ -16,6 +16,7 @@ use super::delineation::delineate;
 use super::evidence::PlaneEvidence;
 use super::input::FacetInput;
 use super::islands::without_islands;
+use super::register::{RegisterEvidence, RegisterTrace};
 use super::verification::{FacetRejection, RejectedFacet, tail_on_ground, verify};
 use crate::evidence::JudgedFacet;
 use crate::execution::{Sharded, sharded_map};
@@ -51,6 +52,10 @@ pub struct FacetTrace {
     pub judged: Vec<JudgedFacet>,
     /// Rejected facets.
     pub rejected: Vec<RejectedFacet>,
+    /// A register that is known, compared with the model.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(target_arch = "wasm32", tsify(optional))]
+    pub register: Option<RegisterTrace>,
 }
 
 /// Facets from 3D lines and half-planes (B99 4.2, 4.3). Their `building` is still unset (0): facets
@@ -132,7 +137,7 @@ pub fn reconstruct_facets(
         .map(|l| l.segment)
         .chain(plane_lines.iter().map(|l| l.segment));
     let index = LineIndex::new(real.collect());
-    let energy = evidence.energy(&arrangement, &planes, &index, params);
+    let energy = evidence.energy(&arrangement, &planes, &index, None, params);
     let mut labelling = Labelling::new(energy, planes.len() as u32);
     let competing = CompetingPlanes {
         evidence,
@@ -142,7 +147,27 @@ pub fn reconstruct_facets(
         maps,
         scene: reduced,
     };
-    let verified = solve(&mut labelling, &competing, &groups, ground, scene, params);
+    let colours = (scene, None);
+    let mut verified = solve(&mut labelling, &competing, &groups, ground, colours, params);
+    let register = scene.known.footprints.as_ref().map(|register| {
+        let CompetingPlanes {
+            evidence,
+            arrangement,
+            planes,
+            index,
+            ..
+        } = &competing;
+        let mut register = RegisterEvidence::new(register, &params.register, arrangement, &grid);
+        // What the images show by themselves tells what the register is worth.
+        register.compare(&verified.facets);
+        if register.counts() {
+            let energy = evidence.energy(arrangement, planes, index, Some(&register), params);
+            labelling = Labelling::new(energy, planes.len() as u32);
+            let known = (scene, Some(&register));
+            verified = solve(&mut labelling, &competing, &groups, ground, known, params);
+        }
+        register.findings(&verified.facets, evidence.ground(), &arrangement.areas)
+    });
     let cells = competing.arrangement.cells;
     let trace = FacetTrace {
         groups,
@@ -151,6 +176,7 @@ pub fn reconstruct_facets(
         cells,
         judged: verified.judged,
         rejected: verified.rejected,
+        register,
     };
     Ok((verified.facets, trace))
 }
@@ -225,13 +251,14 @@ struct Verified {
     rejected: Vec<RejectedFacet>,
 }
 
-/// Labels, delineates and verifies until no facet is rejected.
+/// Labels, delineates and verifies until no facet is rejected. `known` are the photographs as they
+/// were taken, and a register that counts.
 fn solve(
     labelling: &mut Labelling<BorderCosts>,
     competing: &CompetingPlanes,
     groups: &[PlaneGroup],
     ground: &Ground,
-    colours: &Scene,
+    known: (&Scene, Option<&RegisterEvidence>),
     params: &RoofParams,
 ) -> Verified {
     const ROUNDS: usize = 4;
@@ -252,7 +279,7 @@ fn solve(
         let occluders = Occluders::new(&found);
         let results = crate::execution::map(&delineation.outlines, |i, outline| {
             verify(
-                competing, &found[i], outline, &occluders, ground, colours, params,
+                competing, &found[i], outline, &occluders, ground, known, params,
             )
         });
         for ((outline, facet), result) in delineation.outlines.iter().zip(found).zip(results) {

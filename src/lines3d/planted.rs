@@ -187,6 +187,7 @@ fn scene_of(places: &[(f64, f64, f64)], photograph: impl Fn(&Camera) -> Gray) ->
         origin: Vector3::zeros(),
         ground_z: None,
         region: None,
+        known: crate::known::Known::default(),
         warnings: Vec::new(),
         survey: crate::scene::Survey::default(),
     }

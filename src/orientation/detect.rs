@@ -70,6 +70,10 @@ pub enum FileKind {
     MicmacCalibration,
     /// A coordinate reference system.
     ReferenceSystem,
+    /// Heights of the ground on a grid.
+    Terrain,
+    /// Footprints of buildings.
+    Footprints,
     /// VisualSFM's model.
     Nvm,
     /// Strecha's camera.
@@ -116,6 +120,8 @@ impl FileKind {
             Self::Micmac => "MicMac orientation",
             Self::MicmacCalibration => "MicMac interior orientation",
             Self::ReferenceSystem => "coordinate reference system",
+            Self::Terrain => "terrain model",
+            Self::Footprints => "footprints of buildings",
             Self::Nvm => "VisualSFM model (.nvm)",
             Self::Strecha => "Strecha camera",
             Self::Middlebury => "Middlebury parameters",
@@ -137,6 +143,9 @@ pub(crate) const GCP_LIST: &str = "gcp_list.txt";
 pub fn detect(file: &InputFile) -> FileKind {
     if crate::raster::unread_image_format(&file.path, &file.bytes).is_some_and(|f| f.is_image) {
         return FileKind::UnreadImage;
+    }
+    if crate::raster::is_height_raster(&file.bytes) {
+        return FileKind::Terrain;
     }
     if crate::raster::image_format(&file.bytes).is_some() {
         return FileKind::Image;
@@ -186,6 +195,12 @@ fn by_content(text: &str) -> Option<FileKind> {
         && trimmed.contains('[')
     {
         return Some(FileKind::ReferenceSystem);
+    }
+    if trimmed
+        .get(..5)
+        .is_some_and(|word| word.eq_ignore_ascii_case("ncols"))
+    {
+        return Some(FileKind::Terrain);
     }
     if trimmed.starts_with("NVM_V3") {
         return Some(FileKind::Nvm);
@@ -292,6 +307,10 @@ fn by_keys(text: &str) -> FileKind {
         FileKind::Nerfstudio
     } else if has(&["views", "K", "R", "C"]) {
         FileKind::Krc
+    } else if has(&["CityJSON", "CityObjects"])
+        || (has(&["Polygon", "coordinates"]) || has(&["MultiPolygon", "coordinates"]))
+    {
+        FileKind::Footprints
     } else {
         FileKind::Json
     }

@@ -1,4 +1,4 @@
-//! From coordinates of a national grid back to longitude and latitude: the transverse Mercator
+//! Between coordinates of a national grid and longitude and latitude: the transverse Mercator
 //! projection by Krueger's series to the fourth order of the third flattening n (Karney 2011,
 //! "Transverse Mercator with an accuracy of a few nanometers", equations 5 to 25, whose series are
 //! Krueger's), which is exact to a micrometre within a zone.
@@ -9,7 +9,7 @@
 //! phi = chi + sum_j delta_j sin 2j chi
 //! ```
 
-use crate::math::{asin, atan2, cos, cosh, sin, sinh};
+use crate::math::{asin, asinh, atan2, cos, cosh, ln, sin, sinh};
 
 /// Semi-major axis of WGS84 and of GRS80, metres.
 const A_M: f64 = 6_378_137.0;
@@ -48,6 +48,40 @@ impl TransverseMercator {
         })
     }
 
+    /// Easting and northing of a longitude and a latitude in degrees, metres (equations 7 to 11 of
+    /// Karney 2011, with the coefficients alpha of the forward series).
+    pub(crate) fn projected(&self, lon_deg: f64, lat_deg: f64) -> [f64; 2] {
+        let (n, n2, n3, n4) = (N, N * N, N * N * N, N * N * N * N);
+        let alpha = [
+            n / 2.0 - 2.0 / 3.0 * n2 + 5.0 / 16.0 * n3 + 41.0 / 180.0 * n4,
+            13.0 / 48.0 * n2 - 3.0 / 5.0 * n3 + 557.0 / 1440.0 * n4,
+            61.0 / 240.0 * n3 - 103.0 / 140.0 * n4,
+            49561.0 / 161_280.0 * n4,
+        ];
+        let lambda = (lon_deg - self.central_meridian_deg).to_radians();
+        let phi = lat_deg.to_radians();
+        let e = (4.0 * N).sqrt() / (1.0 + N);
+        let atanh = |v: f64| 0.5 * ln((1.0 + v) / (1.0 - v));
+        // The conformal latitude, by its tangent.
+        let sine = sin(phi);
+        let tau = sinh(atanh(sine) - e * atanh(e * sine));
+        let (xi1, eta1) = (
+            atan2(tau, cos(lambda)),
+            asinh(sin(lambda) / (tau * tau + cos(lambda) * cos(lambda)).sqrt()),
+        );
+        let (mut xi, mut eta) = (xi1, eta1);
+        for (i, alpha) in alpha.iter().enumerate() {
+            let twice = 2.0 * (i as f64 + 1.0);
+            xi += alpha * sin(twice * xi1) * cosh(twice * eta1);
+            eta += alpha * cos(twice * xi1) * sinh(twice * eta1);
+        }
+        let scale = SCALE * radius();
+        [
+            scale * eta + FALSE_EASTING_M,
+            scale * xi + self.false_northing_m,
+        ]
+    }
+
     /// Longitude and latitude of a position, degrees.
     pub(crate) fn geographic(&self, easting: f64, northing: f64) -> [f64; 2] {
         let (n, n2, n3, n4) = (N, N * N, N * N * N, N * N * N * N);
@@ -63,8 +97,7 @@ impl TransverseMercator {
             56.0 / 15.0 * n3 - 136.0 / 35.0 * n4,
             4279.0 / 630.0 * n4,
         ];
-        // Radius of the sphere whose meridians are as long as the ellipsoid's.
-        let radius = A_M / (1.0 + n) * (1.0 + n2 / 4.0 + n4 / 64.0);
+        let radius = radius();
         let xi = (northing - self.false_northing_m) / (SCALE * radius);
         let eta = (easting - FALSE_EASTING_M) / (SCALE * radius);
         let (mut xi1, mut eta1) = (xi, eta);
@@ -81,6 +114,11 @@ impl TransverseMercator {
         let lon = atan2(sinh(eta1), cos(xi1)).to_degrees() + self.central_meridian_deg;
         [lon, lat.to_degrees()]
     }
+}
+
+/// Radius of the sphere whose meridians are as long as the ellipsoid's, metres.
+fn radius() -> f64 {
+    A_M / (1.0 + N) * (1.0 + N * N / 4.0 + N * N * N * N / 64.0)
 }
 
 #[cfg(test)]
@@ -137,6 +175,10 @@ mod tests {
             let least = if code > 32_000 { 1e-10 } else { 2e-9 };
             let off = (found[0] - lon).abs().max((found[1] - lat).abs());
             assert!(off < least, "{code}: {found:?}, {off:e} off");
+            let grid = TransverseMercator::of_epsg(code).expect("a known code");
+            let back = grid.projected(found[0], found[1]);
+            let off = (back[0] - easting).abs().max((back[1] - northing).abs());
+            assert!(off < 1e-5, "{code}: {back:?}, {off:e} m off");
         }
         for other in [0, 2056, 3857, 4326, 4978, 31_467, 32_661, 32_700, 25_839] {
             assert_eq!(TransverseMercator::of_epsg(other), None);

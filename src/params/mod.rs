@@ -10,6 +10,7 @@ mod dense;
 mod lines;
 mod objectspace;
 mod planes;
+mod register;
 
 pub use self::adjacency::*;
 pub use self::adjustment::*;
@@ -19,6 +20,7 @@ pub use self::dense::*;
 pub use self::lines::*;
 pub use self::objectspace::*;
 pub use self::planes::*;
+pub use self::register::*;
 
 use serde::{Deserialize, Serialize};
 

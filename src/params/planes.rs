@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::RefineParams;
+use super::{RefineParams, RegisterParams};
 
 /// B99 4.1: half-planes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -149,6 +149,8 @@ pub struct RoofParams {
     pub least_nats: f64,
     /// Regularisation and refinement of the buildings.
     pub refine: RefineParams,
+    /// What a register of buildings is worth, where one is given.
+    pub register: RegisterParams,
 }
 
 impl Default for RoofParams {
@@ -164,6 +166,7 @@ impl Default for RoofParams {
             min_height_m: 1.2,
             least_nats: 0.0,
             refine: RefineParams::default(),
+            register: RegisterParams::default(),
         }
     }
 }

@@ -259,7 +259,12 @@ impl Run {
             textured: outputs.textured,
         };
         let mut files = export_all(&borrowed, &self.params.texture);
-        let report = report::report(&self.scene, &self.params, &self.summaries, seconds);
+        let known = report::KnownReport {
+            terrain: (self.results.half_planes.as_ref()).and_then(|found| found.ground.terrain()),
+            footprints: (self.results.facets.as_ref())
+                .and_then(|found| found.trace.facets.register.as_ref()),
+        };
+        let report = report::report(&self.scene, &self.params, &self.summaries, known, seconds);
         files.push(("report.json".into(), report));
         files
     }

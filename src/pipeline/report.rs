@@ -6,8 +6,10 @@ use serde::Serialize;
 
 use super::stages::Stage;
 use super::summary::StageSummary;
+use crate::facets::RegisterTrace;
 use crate::params::Params;
 use crate::scene::{Scene, ViewAdjustment, ViewShift};
+use crate::terrain::TerrainComparison;
 
 /// The content of `report.json`.
 #[derive(Serialize)]
@@ -19,11 +21,29 @@ struct Report<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     coordinates: Option<String>,
     stages: &'a [StageSummary],
+    /// What was known beforehand, compared with the images.
+    #[serde(skip_serializing_if = "KnownReport::is_empty")]
+    known: KnownReport<'a>,
     /// Warnings of the readers; those of the stages stand with them.
     warnings: &'a [String],
     params: &'a Params,
     /// Wall-clock seconds per stage: the only part that differs between runs of the same input.
     seconds: BTreeMap<&'static str, f64>,
+}
+
+/// What was known beforehand, compared with the images.
+#[derive(Clone, Copy, Default, Serialize)]
+pub(crate) struct KnownReport<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub terrain: Option<&'a TerrainComparison>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub footprints: Option<&'a RegisterTrace>,
+}
+
+impl KnownReport<'_> {
+    fn is_empty(&self) -> bool {
+        self.terrain.is_none() && self.footprints.is_none()
+    }
 }
 
 #[derive(Serialize)]
@@ -44,6 +64,7 @@ pub(crate) fn report(
     scene: &Scene,
     params: &Params,
     stages: &[StageSummary],
+    known: KnownReport,
     seconds: &[(Stage, f64)],
 ) -> Vec<u8> {
     let views = scene.views.iter().enumerate().map(|(i, view)| ReportView {
@@ -61,6 +82,7 @@ pub(crate) fn report(
         origin: scene.origin.into(),
         coordinates: scene.survey.describe(),
         stages,
+        known,
         warnings: &scene.warnings,
         params,
         seconds: by_stage,

@@ -9,6 +9,7 @@ use super::{Run, Stage};
 use crate::camera::Camera;
 use crate::execution::{Listener, progress};
 use crate::execution::{MergedShards, Origin, ShardTask, run_shard};
+use crate::known::Known;
 use crate::params::Params;
 use crate::raster::Gray;
 use crate::scene::{Scene, Survey, View};
@@ -75,6 +76,8 @@ impl Run {
             views: views.into_iter().map(PackedView::unpack).collect(),
             // Lines outside are left out by the instance that runs the stage, before any shard.
             region: None,
+            // What is known is weighed there too.
+            known: Known::default(),
             warnings: Vec::new(),
             survey: Survey::default(),
         };

@@ -67,6 +67,7 @@ pub(crate) fn scene(surfaces: &[TexturedPlane]) -> Scene {
         origin: Vector3::zeros(),
         ground_z: None,
         region: None,
+        known: crate::known::Known::default(),
         warnings: Vec::new(),
         survey: crate::scene::Survey::default(),
     }

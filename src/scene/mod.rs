@@ -10,6 +10,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 
 use crate::camera::Camera;
 use crate::ids::ViewId;
+use crate::known::Known;
 use crate::raster::{Channel, Gray, RedBlueDifference, estimate_noise};
 
 /// One photograph with its orientation.
@@ -65,6 +66,8 @@ pub struct Scene {
     /// Region of interest in plan, x0, y0, x1, y1, metres, local frame: what lies outside is not
     /// searched.
     pub region: Option<[f64; 4]>,
+    /// Terrain and footprints that are known beforehand.
+    pub known: Known,
     /// Warnings of the readers (duplicate orientation, ignored files, ...).
     pub warnings: Vec<String>,
     /// Reference system and quality of the orientation.
@@ -102,6 +105,7 @@ impl Scene {
             origin: self.origin,
             ground_z: self.ground_z,
             region: self.region,
+            known: Known::default(),
             warnings: Vec::new(),
             survey: Survey::default(),
         }

@@ -17,6 +17,19 @@ pub struct LoadOptions {
     pub max_views: Option<usize>,
     /// Height of the ground, metres, world frame of the input.
     pub ground_z: Option<f64>,
+    /// Path of the terrain model among the files; the only one among them when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub terrain: Option<String>,
+    /// Standard deviation of its heights, metres; that of surveys when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub terrain_accuracy_m: Option<f64>,
+    /// Path of the footprints among the files; the only GeoJSON of footprints among them when
+    /// absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub footprints: Option<String>,
+    /// Standard deviation of their borders, metres; that of registers when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub footprint_accuracy_m: Option<f64>,
     /// EPSG code of the world's reference system; the files' own when absent.
     pub epsg: Option<u32>,
     /// Photographs are reduced by this whole factor; as far as roofs allow when absent (see

@@ -4,10 +4,12 @@ use super::checks::check_and_correct;
 use super::decode::decode_all;
 use super::ground::{plan_scene, settled, whole_plan};
 use super::input::LoadOptions;
+use super::known_files::read_known;
 use super::planned_view::PlannedView;
 use super::region;
 use crate::agreement::{AgreementReport, Finding};
 use crate::error::{Error, Result};
+use crate::known::{Known, WorldSystem};
 use crate::orientation::InputFile;
 use crate::orientation_check::CheckedView;
 use crate::raster::Gray;
@@ -60,6 +62,7 @@ pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
             .ground_z
             .map(|z| z - plan.origin.z - checked.origin_change.z),
         region: None,
+        known: Known::default(),
         warnings: (plan.warnings.into_iter().chain(placement_warnings))
             .chain(checked.warnings)
             .collect(),
@@ -69,6 +72,13 @@ pub fn load_scene(files: &[InputFile], options: &LoadOptions) -> Result<Scene> {
             ..plan.survey
         },
     };
+    let system = WorldSystem {
+        epsg: scene.survey.epsg,
+        anchor: scene.survey.anchor,
+    };
+    let known = read_known(files, &plan.kinds, options, &system, scene.origin)?;
+    scene.known = known.0;
+    scene.warnings.extend(known.1);
     let local = |[x0, y0, x1, y1]: [f64; 4]| {
         let [x, y] = [scene.origin.x, scene.origin.y];
         [x0 - x, y0 - y, x1 - x, y1 - y]
@@ -101,6 +111,7 @@ pub fn whole_views(files: &[InputFile], options: &LoadOptions) -> Result<Scene> 
         origin: plan.origin,
         ground_z: options.ground_z.map(|z| z - plan.origin.z),
         region: None,
+        known: Known::default(),
         warnings: [plan.warnings, plan.placement_warnings].concat(),
         survey: plan.survey,
     })

@@ -14,6 +14,7 @@
 //! inspect            the plan as a table; what is read of each view, the area that views show
 //! decode             views: of large frames the parts only, distortion removed
 //! ground             the heights of a region that more views show than are used; the plan by them
+//! known_files        terrain and footprints among the files
 //! load               all of it
 //! ```
 //!
@@ -29,6 +30,7 @@ mod decode;
 mod ground;
 mod input;
 mod inspect;
+mod known_files;
 mod load;
 mod memory;
 mod names;

@@ -12,6 +12,7 @@ use super::assignment::{
 use super::candidate::{Choice, OrientationCandidate, choose, take_group};
 use super::checks::camera_checks;
 use super::input::LoadOptions;
+use super::known_files::kinds_of;
 use super::memory;
 use super::names::{images_called, listed, view_names};
 use super::notices;
@@ -21,7 +22,7 @@ use crate::camera::Camera;
 use crate::error::Error;
 use crate::orientation::{
     Anchor, FileKind, InputFile, Orientation, OrientationSet, StatedReference, UnreadFormat,
-    detect, epsg_of, orientation_sets, to_metric_frame, unread_format,
+    epsg_of, orientation_sets, to_metric_frame, unread_format,
 };
 use crate::raster::image_header;
 use crate::scene::Survey;
@@ -69,7 +70,7 @@ impl Plan {
         ground: Option<[f64; 2]>,
     ) -> Self {
         let mut plan = Self {
-            kinds: files.iter().map(detect).collect(),
+            kinds: kinds_of(files, options),
             images: Vec::new(),
             orientation: None,
             candidates: Vec::new(),

@@ -33,6 +33,8 @@ const HOME: Placement = Placement {
 /// Height of the ground, metres: not zero, so that no code may assume it.
 const GROUND_Z: f64 = 1.5;
 const EAVE_Z: f64 = 6.0;
+/// Walls on a slope begin so far below the ground in the middle, metres.
+const DEEPEST: f64 = 4.0;
 /// How far the roof projects beyond the walls, metres.
 const OVERHANG: f64 = 0.6;
 /// Tangent of the roof slope (about 37 degrees).
@@ -41,6 +43,26 @@ const SLOPE: f64 = 0.75;
 /// Gable roof of 14 m by 9 m in plan.
 pub(crate) fn gable() -> SyntheticBuilding {
     gable_at(HOME, [7.0, 4.5], 0.0, 1)
+}
+
+/// The gable roof on ground that rises to the east by `slope`, and is at its usual height in the
+/// middle.
+pub(crate) fn gable_on_slope(slope: f64) -> SyntheticBuilding {
+    let mut house = gable();
+    let tilted = |p: &Point3<f64>| Point3::new(p.x, p.y, p.z + slope * p.x);
+    let sunk = |p: &Point3<f64>| match p.z == GROUND_Z {
+        true => Point3::new(p.x, p.y, p.z - DEEPEST),
+        false => *p,
+    };
+    let walls = house.faces.len() - house.truth.facets.len();
+    for (i, face) in house.faces[..walls].iter_mut().enumerate() {
+        let corners: Vec<Point3<f64>> = match i {
+            0 => face.corners.iter().map(tilted).collect(),
+            _ => face.corners.iter().map(sunk).collect(),
+        };
+        *face = RenderedFace::new(&corners, face.surface);
+    }
+    house
 }
 
 /// Two gable roofs in line, 3 m apart: planes with a gap.

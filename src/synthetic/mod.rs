@@ -37,6 +37,12 @@ pub fn gable_scene(size: u32) -> (Scene, SyntheticTruth) {
     scene_of(&building::gable(), size)
 }
 
+/// The same house on ground that rises by `slope` metres a metre to the east; at the origin it is
+/// at the height that the truth states.
+pub fn slope_scene(size: u32, slope: f64) -> (Scene, SyntheticTruth) {
+    scene_of(&building::gable_on_slope(slope), size)
+}
+
 /// An L-shaped house: a wing with one hipped and one gabled end, and a gabled side wing of the same
 /// slope, so that a hip, a valley and a facet that is not convex occur; six views of `size` x
 /// `size` pixels. The house fills a crop of 320 pixels.
@@ -104,6 +110,7 @@ fn scene_seen_by(
         origin: Vector3::zeros(),
         ground_z: None,
         region: None,
+        known: crate::known::Known::default(),
         warnings: Vec::new(),
         survey: crate::scene::Survey::default(),
     };

@@ -388,6 +388,7 @@ mod tests {
             origin: Vector3::zeros(),
             ground_z: None,
             region: None,
+            known: crate::known::Known::default(),
             warnings: Vec::new(),
             survey: Survey::default(),
         };

@@ -30,6 +30,9 @@ pub struct BlockSource {
     pub scene: String,
     /// The orientation that was chosen, or the folder beside the scene that holds it.
     pub orientation: Option<String>,
+    /// Files of terrain and footprints.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub known: Vec<String>,
 }
 
 /// An input file as it was when the plan was made.

@@ -62,6 +62,18 @@ struct JsLoadOptions {
     /// Height of the ground, metres, in the frame of the orientation.
     #[tsify(optional)]
     ground_z: Option<f64>,
+    /// Path of the terrain model among the files; the only one among them when absent.
+    #[tsify(optional)]
+    terrain: Option<String>,
+    /// Standard deviation of its heights, metres.
+    #[tsify(optional)]
+    terrain_accuracy_m: Option<f64>,
+    /// Path of the footprints among the files; the only GeoJSON of footprints when absent.
+    #[tsify(optional)]
+    footprints: Option<String>,
+    /// Standard deviation of their borders, metres.
+    #[tsify(optional)]
+    footprint_accuracy_m: Option<f64>,
     /// EPSG's number of the world's reference system.
     #[tsify(optional)]
     epsg: Option<u32>,
@@ -304,6 +316,10 @@ pub(crate) fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
         max_views: options.max_views,
         ground_z: options.ground_z,
         reduction: options.reduction,
+        terrain: options.terrain,
+        terrain_accuracy_m: options.terrain_accuracy_m,
+        footprints: options.footprints,
+        footprint_accuracy_m: options.footprint_accuracy_m,
         epsg: options.epsg,
         memory_mb: None,
         apply_fix: options.apply_fix,
@@ -320,6 +336,10 @@ impl From<&LoadOptions> for JsLoadOptions {
             max_views: options.max_views,
             ground_z: options.ground_z,
             reduction: options.reduction,
+            terrain: options.terrain.clone(),
+            terrain_accuracy_m: options.terrain_accuracy_m,
+            footprints: options.footprints.clone(),
+            footprint_accuracy_m: options.footprint_accuracy_m,
             epsg: options.epsg,
             apply_fix: options.apply_fix,
             ignore_check: options.ignore_check,

@@ -145,6 +145,7 @@ pub fn scene() -> Scene {
         origin: ORIGIN,
         ground_z: None,
         region: None,
+        known: ridgeline::known::Known::default(),
         warnings: Vec::new(),
         survey: ridgeline::scene::Survey::default(),
     }

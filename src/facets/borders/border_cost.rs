@@ -11,7 +11,7 @@ use nalgebra::{Point2, Vector2};
 use super::arrangement::{Arrangement, CellEdge};
 use super::line_index::LineIndex;
 use crate::geometry::Plane;
-use crate::labelling::PairwiseCosts;
+use crate::labelling::{NO_PLANE, PairwiseCosts};
 use crate::math::{larger, smaller};
 use crate::params::RoofParams;
 
@@ -24,17 +24,20 @@ pub(crate) struct BorderCosts {
 }
 
 impl BorderCosts {
-    /// Prepares the borders; `index` holds the reconstructed lines.
+    /// Prepares the borders; `index` holds the reconstructed lines, `ends_of_roofs` says what else
+    /// speaks for the end of a roof between two positions, nats.
     pub(crate) fn new(
         arrangement: &Arrangement,
         planes: &[Plane],
         index: &LineIndex,
+        ends_of_roofs: impl Fn(&Point2<f64>, &Point2<f64>) -> f64,
         params: &RoofParams,
     ) -> Self {
         let border = |e: &CellEdge| {
             let ends = [e.a, e.b].map(|v| arrangement.vertices[v]);
             CellBorder {
                 full: (ends[1] - ends[0]).norm() * params.border_nats_per_m,
+                registered: ends_of_roofs(&ends[0], &ends[1]),
                 heights: index.heights_along(&ends[0], &ends[1]),
                 ends,
             }
@@ -71,7 +74,15 @@ impl BorderCosts {
 impl PairwiseCosts for BorderCosts {
     fn cost(&self, edge: usize, left: u32, right: u32) -> f64 {
         let border = &self.borders[edge];
-        self.share(border, left, right) * border.full
+        let cost = self.share(border, left, right) * border.full;
+        let ends = (left == NO_PLANE) != (right == NO_PLANE);
+        match ends {
+            true => larger(
+                cost - border.registered,
+                smaller(cost, ON_LINE * border.full),
+            ),
+            false => cost,
+        }
     }
 
     fn upper_bound(&self, edge: usize) -> f64 {
@@ -83,6 +94,8 @@ impl PairwiseCosts for BorderCosts {
 struct CellBorder {
     /// Cost when nothing supports the border, nats.
     full: f64,
+    /// What a register says for the end of a roof, nats.
+    registered: f64,
     /// Plan positions, metres.
     ends: [Point2<f64>; 2],
     /// Heights of the reconstructed lines along it, metres.
@@ -151,7 +164,6 @@ pub(crate) const LINE_HEIGHT: f64 = 0.35;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::labelling::NO_PLANE;
     use nalgebra::{Point3, Vector3};
 
     /// A border of 2 m along y at x = 0, the planes with the given normals through a point of it,
@@ -164,6 +176,7 @@ mod tests {
         let heights = if line { vec![5.0] } else { Vec::new() };
         let border = CellBorder {
             full: 2.0,
+            registered: 0.0,
             ends,
             heights,
         };

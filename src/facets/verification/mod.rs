@@ -23,6 +23,7 @@ use std::collections::BTreeSet;
 use super::borders::Arrangement;
 use super::competing_planes::CompetingPlanes;
 use super::delineation::Outline;
+use super::register::RegisterEvidence;
 use crate::evidence::{Evidence, EvidenceModel, WindowCounts};
 use crate::geometry::{Plane, mean_point};
 use crate::model::{Facet, Occluders};
@@ -88,19 +89,21 @@ pub(crate) fn tail_on_ground(
 
 /// Verifies a facet between the other facets and over the ground; returns what speaks for it, where
 /// it lies like a roof, and how the views agree inside it. `colours` are the photographs as they
-/// were taken.
+/// were taken; a register that counts adds a term of its own.
 pub(crate) fn verify(
     competing: &CompetingPlanes,
     facet: &Facet,
     outline: &Outline,
     occluders: &Occluders,
     ground: &Ground,
-    colours: &Scene,
+    (colours, register): (&Scene, Option<&RegisterEvidence>),
     params: &RoofParams,
 ) -> Result<(Evidence, WindowCounts), FacetRejection> {
     is_placed_like_a_roof(facet, ground, params)?;
     let (measured, windows) = features::measure(competing, facet, outline, occluders, colours);
-    Ok((EvidenceModel::of_facets().weigh(&measured), windows))
+    let mut evidence = EvidenceModel::of_facets().weigh(&measured);
+    evidence.terms.extend(register.map(|r| r.of_facet(facet)));
+    Ok((evidence, windows))
 }
 
 #[cfg(test)]

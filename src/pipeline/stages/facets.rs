@@ -5,7 +5,7 @@ use super::{Findings, Outcome, Results, Stage, StageDefinition};
 use super::{is_any, required, warn_if};
 use crate::buildings::{RoofTrace, reconstruct_roofs, verify_lines};
 use crate::execution::Sharded;
-use crate::facets::FacetInput;
+use crate::facets::{FacetInput, RegisterTrace};
 use crate::model::RoofModel;
 use crate::objectspace::proposed_planes;
 use crate::params::Params;
@@ -81,7 +81,17 @@ impl StageDefinition for Facets {
                 ("buildings", found.value.buildings.len()),
                 ("contradicted lines", found.trace.lines.contradicted.len()),
             ],
-            warnings: warn_if(facets.is_empty() && has_planes, none),
+            warnings: [
+                warn_if(facets.is_empty() && has_planes, none),
+                found
+                    .trace
+                    .facets
+                    .register
+                    .iter()
+                    .flat_map(RegisterTrace::warnings)
+                    .collect(),
+            ]
+            .concat(),
         }
     }
 }

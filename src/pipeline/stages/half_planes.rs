@@ -7,7 +7,7 @@ use crate::ids::LineId;
 use crate::params::Params;
 use crate::planes::{HalfPlane, SweepTrace, sweep_half_planes};
 use crate::scene::Scene;
-use crate::terrain::Ground;
+use crate::terrain::{Ground, TerrainComparison};
 
 /// Half-planes, and the ground above which they were sought.
 #[derive(Clone, Debug)]
@@ -64,7 +64,16 @@ impl StageDefinition for HalfPlanes {
                 ("half-planes", found.value.len()),
                 ("correlations", correlations),
             ],
-            warnings: warn_if(is_empty && was_swept && is_any(&before.lines), none),
+            warnings: [
+                warn_if(is_empty && was_swept && is_any(&before.lines), none),
+                found
+                    .ground
+                    .terrain()
+                    .and_then(TerrainComparison::warning)
+                    .into_iter()
+                    .collect(),
+            ]
+            .concat(),
         }
     }
 

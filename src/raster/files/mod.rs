@@ -16,5 +16,6 @@ mod window;
 
 pub use load::{ImageHeader, image_format, image_header, load_image};
 pub use tiff::Bands;
+pub(crate) use tiff::{Directory, NumberRaster, is_height_raster, is_tiff, tags as tiff_tags};
 pub use unread::{UnreadImageFormat, unread_image_format};
 pub use window::{decoding_bytes, load_window};

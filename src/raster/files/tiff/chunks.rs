@@ -17,9 +17,9 @@ pub(crate) struct Tiff<'a> {
 }
 
 /// The rows of one strip or tile.
-struct Chunk<'a> {
-    data: Cow<'a, [u8]>,
-    bytes_of_a_row: usize,
+pub(super) struct Chunk<'a> {
+    pub data: Cow<'a, [u8]>,
+    pub bytes_of_a_row: usize,
 }
 
 impl<'a> Tiff<'a> {
@@ -31,6 +31,20 @@ impl<'a> Tiff<'a> {
             bytes,
             layout,
         })
+    }
+
+    /// What the tags say is known already.
+    pub(super) fn of_layout(file: &'a str, bytes: &'a [u8], layout: Layout) -> Self {
+        Self {
+            file,
+            bytes,
+            layout,
+        }
+    }
+
+    /// What the tags say.
+    pub(super) fn layout(&self) -> &Layout {
+        &self.layout
     }
 
     /// Width and height, pixels.
@@ -166,7 +180,7 @@ impl<'a> Tiff<'a> {
     }
 
     /// A strip or tile; `None` where the file leaves it out.
-    fn chunk(&self, index: usize, rows: u32) -> Result<Option<Chunk<'a>>> {
+    pub(super) fn chunk(&self, index: usize, rows: u32) -> Result<Option<Chunk<'a>>> {
         let layout = &self.layout;
         let (offset, count) = layout.places.get(index).copied().unwrap_or_default();
         if offset == 0 || count == 0 {

@@ -27,6 +27,11 @@ pub(crate) mod tags {
     pub(crate) const EXTRA_SAMPLES: u16 = 338;
     pub(crate) const SAMPLE_FORMAT: u16 = 339;
     pub(crate) const JPEG_TABLES: u16 = 347;
+    pub(crate) const MODEL_PIXEL_SCALE: u16 = 33550;
+    pub(crate) const MODEL_TIEPOINT: u16 = 33922;
+    pub(crate) const MODEL_TRANSFORMATION: u16 = 34264;
+    pub(crate) const GEO_KEY_DIRECTORY: u16 = 34735;
+    pub(crate) const GDAL_NO_DATA: u16 = 42113;
     pub(crate) const DNG_VERSION: u16 = 50706;
 }
 
@@ -152,6 +157,13 @@ impl<'a> Directory<'a> {
         let values = self.bytes.get(entry.place.clone())?;
         let number = |value: &[u8]| self.form.number(value, 0..entry.size);
         values.chunks_exact(entry.size).map(number).collect()
+    }
+
+    /// The floating-point values of a tag, of 8 bytes each.
+    pub(crate) fn doubles(&self, tag: u16) -> Option<Vec<f64>> {
+        let values = self.raw(tag)?.chunks_exact(8);
+        let double = |value: &[u8]| self.form.number(value, 0..8).map(f64::from_bits);
+        values.map(double).collect()
     }
 
     /// The first number of a tag.

@@ -172,6 +172,37 @@ impl Layout {
         Ok(layout)
     }
 
+    /// Of an image whose one band holds numbers of so many bits, which are no colours; `None` where
+    /// it is not stated whole.
+    pub(super) fn of_numbers(
+        directory: &Directory,
+        bits: u8,
+        compression: Compression,
+    ) -> Option<Self> {
+        let extent = |tag: u16| directory.number(tag).and_then(|v| u32::try_from(v).ok());
+        let size = extent(tags::IMAGE_WIDTH).zip(extent(tags::IMAGE_LENGTH))?;
+        let mut layout = Self {
+            size,
+            orientation: 1,
+            colours: Colours::Grey,
+            white_is_zero: false,
+            bands: Bands::All,
+            bits,
+            samples: 1,
+            used: 1,
+            is_planar: false,
+            big_endian: directory.big_endian(),
+            compression,
+            predicted: false,
+            jpeg_tables: None,
+            is_tiled: false,
+            chunk: size,
+            places: Vec::new(),
+        };
+        let has_size = size.0 > 0 && size.1 > 0;
+        (has_size && layout.find_chunks(directory).is_some()).then_some(layout)
+    }
+
     fn find_chunks(&mut self, directory: &Directory) -> Option<()> {
         let (width, height) = self.size;
         let extent = |tag: u16| directory.number(tag).and_then(|v| u32::try_from(v).ok());
@@ -229,7 +260,7 @@ impl Layout {
 }
 
 /// Is it no reduced copy, and no mask?
-fn is_full(directory: &Directory) -> bool {
+pub(super) fn is_full(directory: &Directory) -> bool {
     const REDUCED: u64 = 1;
     const MASK: u64 = 4;
     directory.number(tags::NEW_SUBFILE_TYPE).unwrap_or(0) & (REDUCED | MASK) == 0

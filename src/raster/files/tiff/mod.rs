@@ -5,6 +5,7 @@
 //! layout        what the tags say, or the refusal of what is not read
 //! compression   one strip or tile to bytes
 //! chunks        the strips and tiles that touch a window, to samples
+//! numbers       one band of numbers that are no colours: heights
 //! ```
 //!
 //! One path decodes every combination of bands, planes, strips, tiles and predictor, for whole
@@ -15,7 +16,9 @@ mod chunks;
 mod compression;
 mod directory;
 mod layout;
+mod numbers;
 
 pub(super) use chunks::Tiff;
-pub(super) use directory::{Directory, is_tiff, tags};
+pub(crate) use directory::{Directory, is_tiff, tags};
 pub use layout::Bands;
+pub(crate) use numbers::{NumberRaster, is_height_raster};

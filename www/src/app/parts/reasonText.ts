@@ -113,6 +113,7 @@ export const FEATURE_WORDS: Record<string, string> = {
   ln_1_plus_lines: "number of lines",
   ln_1_plus_half_planes: "number of half-planes",
   cos_slope: "slope",
+  inside_footprint: "share inside of known footprints",
   height_m: "height above the ground",
   roughness_px: "roughness",
   missing_views: "views that see it and do not show it",

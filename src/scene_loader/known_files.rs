@@ -1,0 +1,103 @@
+//! Terrain and footprints among the files: those that the options name, else the only ones.
+
+use nalgebra::Vector3;
+
+use super::input::LoadOptions;
+use super::names::listed;
+use crate::error::{Error, Result};
+use crate::known::{
+    FOOTPRINT_ACCURACY_M, Known, Register, TERRAIN_ACCURACY_M, Terrain, WorldSystem,
+};
+use crate::orientation::{FileKind, InputFile, detect};
+
+/// By this property the program's own maps are told from a register: what it has found itself
+/// confirms nothing.
+const OWN_PROPERTY: &str = "\"lowest_roof_m\"";
+
+/// What each file is; what the options name as terrain or footprints is that.
+pub(super) fn kinds_of(files: &[InputFile], options: &LoadOptions) -> Vec<FileKind> {
+    let is = |file: &InputFile, named: &Option<String>| named.as_ref() == Some(&file.path);
+    let kind = |file: &InputFile| match file {
+        _ if is(file, &options.terrain) => FileKind::Terrain,
+        _ if is(file, &options.footprints) => FileKind::Footprints,
+        _ => detect(file),
+    };
+    files.iter().map(kind).collect()
+}
+
+/// Reads what is known, for a scene with this system and origin; with what is to be said of it.
+pub(super) fn read_known(
+    files: &[InputFile],
+    kinds: &[FileKind],
+    options: &LoadOptions,
+    system: &WorldSystem,
+    origin: Vector3<f64>,
+) -> Result<(Known, Vec<String>)> {
+    let mut warnings = Vec::new();
+    let of_kind = |kind: FileKind| {
+        let all = files.iter().zip(kinds);
+        all.filter(move |(_, k)| **k == kind).map(|(file, _)| file)
+    };
+    let terrains: Vec<&InputFile> = of_kind(FileKind::Terrain).collect();
+    // Of CityJSON nothing tells whether it is a result of this program.
+    let is_register = |file: &&InputFile| {
+        let text = file.text();
+        !text.contains("\"CityObjects\"") && !text.contains(OWN_PROPERTY)
+    };
+    let registers: Vec<&InputFile> = of_kind(FileKind::Footprints).filter(is_register).collect();
+    let terrain = match options.ground_z {
+        Some(_) => None,
+        None => chosen(files, options.terrain.as_deref(), &terrains, &mut warnings)?,
+    };
+    let footprints = chosen(
+        files,
+        options.footprints.as_deref(),
+        &registers,
+        &mut warnings,
+    )?;
+    let terrain = terrain.map(|file| {
+        let accuracy_m = options.terrain_accuracy_m.unwrap_or(TERRAIN_ACCURACY_M);
+        Terrain::read(file, system, origin, accuracy_m)
+    });
+    let register = footprints.map(|file| {
+        let accuracy_m = options.footprint_accuracy_m.unwrap_or(FOOTPRINT_ACCURACY_M);
+        Register::read(file, system, origin, accuracy_m, &mut warnings)
+    });
+    let known = Known {
+        terrain: terrain.transpose()?,
+        footprints: register.transpose()?.map(Into::into),
+    };
+    Ok((known, warnings))
+}
+
+/// The file that is named, else the only one of its kind.
+fn chosen<'a>(
+    files: &'a [InputFile],
+    named: Option<&str>,
+    of_kind: &[&'a InputFile],
+    warnings: &mut Vec<String>,
+) -> Result<Option<&'a InputFile>> {
+    match (named, of_kind) {
+        (Some(path), _) => {
+            let file = files.iter().find(|file| file.path == path);
+            let missing = || Error::File {
+                file: path.to_owned(),
+                problem: "it is not among the files".to_owned(),
+                advice: "add it to them".to_owned(),
+            };
+            Ok(Some(file.ok_or_else(missing)?))
+        }
+        (None, []) => Ok(None),
+        (None, [file]) => {
+            warnings.push(format!("{} is used: it lies among the files", file.path));
+            Ok(Some(file))
+        }
+        (None, several) => {
+            let names = listed(several.iter().map(|file| &*file.path));
+            warnings.push(format!(
+                "none of {names} is used: name the one that is meant"
+            ));
+            Ok(None)
+        }
+    }
+}
