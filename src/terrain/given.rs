@@ -5,7 +5,7 @@
 //! with it: the lowest difference that many positions share is that height. It is taken out where
 //! it exceeds what both accuracies explain.
 
-use nalgebra::{Point2, Point3};
+use nalgebra::{Point2, Point3, Vector2};
 use serde::{Deserialize, Serialize};
 
 use super::Ground;
@@ -94,8 +94,9 @@ const LEAST_COVERED: f64 = 0.5;
 const ROOF_M: f64 = 2.0;
 /// A rise of this much within a block is a wall of a surface model, not relief, metres.
 const WALL_M: f64 = 1.5;
-/// More positions than this beside walls, and fewer roofs left than this share: a surface model.
-const WALLS: f64 = 0.02;
+/// More walls than this for each high place, and fewer roofs left than this share: a surface model.
+/// Assumption: a hall of 40 m by 40 m has that many.
+const WALLS: f64 = 0.1;
 const ROOFS_LEFT: f64 = 0.25;
 
 impl Ground {
@@ -188,26 +189,37 @@ impl Ground {
         Some(ground)
     }
 
-    /// Does a model follow the roofs? Then it has walls, and what stands above the ground in the
-    /// images does not stand above it.
+    /// Does a model follow the roofs? Then what stands above the ground in the images does not stand
+    /// above it, and what is high in it has walls around.
     fn is_surface(&self, terrain: &Terrain, samples: &[Point3<f64>], offset: f64) -> bool {
-        let known = |s: &Point3<f64>| terrain.z_at(s.x, s.y);
-        let steps = |s: &&Point3<f64>| {
-            let beside = [
-                known(&(*s + nalgebra::Vector3::x())),
-                known(&(*s + nalgebra::Vector3::y())),
-            ];
-            let z = known(s);
-            (beside.into_iter().flatten()).any(|b| z.is_some_and(|z| (b - z).abs() > WALL_M))
-        };
-        let walls = samples.iter().filter(steps).count();
+        let known = |p: Point2<f64>| Some(terrain.z_at(p.x, p.y)? + offset);
         let above_images = |s: &&Point3<f64>| s.z - self.z_at(&s.xy()) > ROOF_M;
-        let above_model = |s: &&Point3<f64>| known(s).is_some_and(|z| s.z - z - offset > ROOF_M);
+        let above_model = |s: &&Point3<f64>| known(s.xy()).is_some_and(|z| s.z - z > ROOF_M);
         let [roofs, left] = [
             samples.iter().filter(above_images).count(),
             samples.iter().filter(above_model).count(),
         ];
-        walls as f64 > WALLS * samples.len() as f64 && (left as f64) < ROOFS_LEFT * roofs as f64
+        // Near walls nothing is matched, so these are sought everywhere.
+        let [columns, rows] =
+            [self.columns, self.rows].map(|n| (n as f64 * self.block_m / BLOCK_M) as usize);
+        let places = (0..columns * rows).map(|k| {
+            let (c, r) = ((k % columns) as f64, (k / columns) as f64);
+            self.min + Vector2::new(c, r) * BLOCK_M
+        });
+        let (mut high, mut walls) = (0.0, 0.0);
+        for place in places {
+            let Some(z) = known(place) else {
+                continue;
+            };
+            let beside = [Vector2::x(), Vector2::y()].map(|step| known(place + step * BLOCK_M));
+            if beside.iter().flatten().any(|b| (b - z).abs() > WALL_M) {
+                walls += 1.0;
+            }
+            if z - self.z_at(&place) > ROOF_M {
+                high += 1.0;
+            }
+        }
+        walls > WALLS * high && walls > 0.0 && (left as f64) < ROOFS_LEFT * roofs as f64
     }
 }
 
