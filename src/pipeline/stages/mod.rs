@@ -14,6 +14,7 @@ mod adjacency;
 mod adjustment;
 mod clusters;
 mod coplanar;
+mod corrections;
 mod dense;
 mod directions;
 mod facets;
@@ -129,6 +130,8 @@ stage_table! {
     Dense in dense: DENSE,
     /// Roof facets and the closed buildings below them (B99 4.2, 4.3).
     Facets in facets: LINES,
+    /// What somebody corrects of the model by hand.
+    Corrections in corrections: ALL,
     /// The textured model.
     Model in model: ALL,
 }
