@@ -153,12 +153,10 @@ pub(super) struct StatedFiles {
 
 /// The parameters of `--params` and the corrections of `--corrections`.
 pub(super) fn read_params(args: &InputArgs) -> Result<StatedFiles, Failure> {
-    let bad = |path: &Path, problem: String| {
-        Failure::Input(format!("{}: {problem}", path.display()))
-    };
-    let read = |path: &Path| {
-        fs::read_to_string(path).map_err(|e| bad(path, format!("cannot read: {e}")))
-    };
+    let bad =
+        |path: &Path, problem: String| Failure::Input(format!("{}: {problem}", path.display()));
+    let read =
+        |path: &Path| fs::read_to_string(path).map_err(|e| bad(path, format!("cannot read: {e}")));
     let params = |path: &PathBuf| {
         Params::from_json(&read(path)?).map_err(|e| {
             let advice = "`ridgeline params` prints all parameters with their defaults";

@@ -44,8 +44,7 @@ pub(super) fn adjust(
     let strict = |place: &FacetPlace| draft.facet(place);
     let stated = statements(draft, correction, &strict)?;
     // Adjusting has turned the planes since: the place in plan says which facet it is.
-    let loose =
-        |place: &FacetPlace| draft.facet_below(&place.at.xy()).ok_or(NotApplied::NoFacet);
+    let loose = |place: &FacetPlace| draft.facet_below(&place.at.xy()).ok_or(NotApplied::NoFacet);
     let earlier = held.iter().flat_map(|Held(c)| statements(draft, c, &loose));
     let earlier: Vec<(Statement, f64)> = earlier
         .filter(|about| about.house == stated.house)
@@ -126,7 +125,11 @@ fn statements(
                 corners: [a.corner, b.corner],
                 direction,
             };
-            Ok(about(sides[0][0].of, sides.iter().map(along).collect(), EXACT_M))
+            Ok(about(
+                sides[0][0].of,
+                sides.iter().map(along).collect(),
+                EXACT_M,
+            ))
         }
         Correction::SetLevel { facet: place } => {
             let of = facet(place)?;
@@ -174,7 +177,9 @@ fn rise(draft: &Draft, at: At) -> Vector2<f64> {
 
 fn plausible(sigma_m: f64) -> Result<f64, NotApplied> {
     let is_plausible = (1e-3..=10.0).contains(&sigma_m);
-    is_plausible.then_some(sigma_m).ok_or(NotApplied::Implausible)
+    is_plausible
+        .then_some(sigma_m)
+        .ok_or(NotApplied::Implausible)
 }
 
 fn near(from: &Point3<f64>, to: &Point3<f64>) -> Result<(), NotApplied> {

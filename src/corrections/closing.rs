@@ -73,9 +73,8 @@ pub(super) fn closed_over(facets: &[DraftFacet], gone: usize) -> Vec<DraftFacet>
 
 impl Surface {
     fn height<'a>(&self, p: &Point2<f64>, plane: &dyn Fn(usize) -> &'a Plane) -> f64 {
-        let heights = |of: &[usize]| -> Vec<f64> {
-            of.iter().map(|&i| plane(i).z_at(p.x, p.y)).collect()
-        };
+        let heights =
+            |of: &[usize]| -> Vec<f64> { of.iter().map(|&i| plane(i).z_at(p.x, p.y)).collect() };
         match self {
             Self::One(i) => plane(*i).z_at(p.x, p.y),
             Self::Lowest(of) => heights(of).into_iter().fold(f64::INFINITY, f64::min),
@@ -111,7 +110,11 @@ fn where_lower(region: &Region, plane: &Plane, other: &Plane, sign: f64) -> Regi
     let at_origin = (plane.z_at(0.0, 0.0) - other.z_at(0.0, 0.0)) * sign;
     let steep = by.norm_squared();
     if steep < 1e-12 {
-        return if at_origin <= 0.0 { region.clone() } else { Region::default() };
+        return if at_origin <= 0.0 {
+            region.clone()
+        } else {
+            Region::default()
+        };
     }
     // On the line by . p + at_origin = 0; the difference falls to the left of this direction.
     let at = Point2::from(-by * (at_origin / steep));
@@ -146,8 +149,7 @@ fn sides(facets: &[DraftFacet], of: usize) -> Vec<Side> {
     let rings = std::iter::once(&facet.outer).chain(&facet.holes);
     let side = |ends: [Point2<f64>; 2]| Side {
         ends,
-        beyond: (0..facets.len())
-            .find(|&i| i != of && runs(&facets[i].facet, &ends[1], &ends[0])),
+        beyond: (0..facets.len()).find(|&i| i != of && runs(&facets[i].facet, &ends[1], &ends[0])),
     };
     rings.flat_map(|ring| edges(ring).map(side)).collect()
 }

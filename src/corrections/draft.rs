@@ -180,7 +180,10 @@ impl Draft {
 fn tagged(facets: Vec<DraftFacet>, ground: usize) -> impl Iterator<Item = DraftFacet> {
     let building = BuildingId::from_index(ground);
     facets.into_iter().map(move |f| DraftFacet {
-        facet: Facet { building, ..f.facet },
+        facet: Facet {
+            building,
+            ..f.facet
+        },
         source: f.source,
     })
 }
@@ -216,7 +219,8 @@ fn houses_of(model: &RoofModel, sources: &[Option<FacetId>]) -> Vec<House> {
         for face in &mut building.solid.faces {
             if let Surface::Roof(facet) = &mut face.surface {
                 let place = own.iter().position(|f| f == facet);
-                *facet = FacetId::from_index(place.expect("a roof face is a facet of its building"));
+                *facet =
+                    FacetId::from_index(place.expect("a roof face is a facet of its building"));
             }
         }
         House {

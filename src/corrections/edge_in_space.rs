@@ -1,14 +1,15 @@
 //! An edge that somebody marks in one photograph, found in space along the beams of its ends.
 //!
-//! Every pair of heights of the two ends is a line in space; of these the one is taken along whose
-//! images the grey values step most in the other views, and as in the photograph (B99 3.2: a
-//! hypothesis is judged by the views that did not make it). All heights are tried, first coarsely,
-//! then around the best.
+//! Every pair of heights of the two ends is a line in space. Of these the one is taken along which
+//! the other views look most like the photograph: on the side that agrees better (what lies beyond an
+//! eave is another thing in every view), and by the step across the edge (B99 3.1: correlation along
+//! the line, on either side of it). All heights are tried, first coarsely, then around the best.
 
 use nalgebra::{Point2, Point3};
 
 use crate::geometry::{Segment2, Segment3};
 use crate::ids::ViewId;
+use crate::model::RoofModel;
 use crate::scene::{Scene, View};
 
 /// Heights along each beam.
@@ -16,24 +17,46 @@ const STEPS: usize = 90;
 /// Finer searches around the best heights, each by this factor.
 const FINER: [f64; 3] = [0.4, 0.15, 0.05];
 /// Samples along an image of the edge.
-const SAMPLES: usize = 24;
-/// Grey values are compared this far to both sides of the edge, px.
-const ACROSS_PX: f64 = 1.5;
-/// Other views that must show a step there.
+const SAMPLES: usize = 64;
+/// Grey values are averaged over these distances from the edge, px.
+const ACROSS_PX: [f64; 3] = [1.0, 2.0, 3.0];
+/// Other views that must look alike.
 const LEAST_VIEWS: usize = 2;
-/// A view shows it if it has at least this share of the step in the photograph.
-const LEAST_SHARE: f64 = 0.25;
+/// Views look alike along an edge if they agree by so much, of 1.
+const LEAST_AGREEMENT: f64 = 0.7;
 
-/// The edge in space between two places of a view, pixels, within a range of heights, metres; `None`
-/// where too few other views show one.
+/// Roofs are looked for up to this far above those of the model, metres.
+const ABOVE_M: f64 = 5.0;
+
+/// The edge in space whose ends a view shows where it shows these two points; `None` where too few
+/// other views show one, or there is no model that says how high roofs are.
 pub fn edge_in_space(
+    scene: &Scene,
+    model: &RoofModel,
+    view: ViewId,
+    points: [Point3<f64>; 2],
+) -> Option<Segment3> {
+    let camera = &scene.views.get(view.index())?.camera;
+    let [p, q] = points.map(|p| camera.project(&p));
+    let low = model
+        .buildings
+        .iter()
+        .map(|b| b.ground_z)
+        .reduce(f64::min)?;
+    let corners = model.facets.iter().flat_map(|f| &f.outer);
+    let high = corners.map(|p| p.z).reduce(f64::max)?;
+    edge_between(scene, view, [p?, q?], [low, high + ABOVE_M])
+}
+
+/// The edge in space between two places of a view, pixels, within a range of heights, metres.
+fn edge_between(
     scene: &Scene,
     view: ViewId,
     ends: [Point2<f64>; 2],
     heights_m: [f64; 2],
 ) -> Option<Segment3> {
     let marked = scene.view(view);
-    let step = step_across(marked, &Segment2::new(ends[0], ends[1]))?;
+    let own = Strips::along(marked, &Segment2::new(ends[0], ends[1]))?;
     let others: Vec<&View> = scene
         .view_ids()
         .filter(|&v| v != view)
@@ -47,13 +70,15 @@ pub fn edge_in_space(
         let Some(edge) = line(z) else {
             return (0.0, 0);
         };
-        let shares = others.iter().filter_map(|v| {
-            let image = image_of(v, &edge)?;
-            // More of a step than in the photograph is another edge.
-            Some((step_across(v, &image)? / step).clamp(-1.0, 1.0))
+        let agreements = others.iter().filter_map(|v| {
+            let strips = Strips::along(v, &image_of(v, &edge)?)?;
+            Some(own.agreement(&strips))
         });
-        shares.fold((0.0, 0), |(sum, views), share| {
-            (sum + share, views + usize::from(share >= LEAST_SHARE))
+        agreements.fold((0.0, 0), |(sum, views), agreement| {
+            (
+                sum + agreement,
+                views + usize::from(agreement >= LEAST_AGREEMENT),
+            )
         })
     };
     let [low, high] = heights_m;
@@ -89,21 +114,54 @@ pub fn edge_in_space(
 fn image_of(view: &View, edge: &Segment3) -> Option<Segment2> {
     let end = |p: &Point3<f64>| {
         let image = view.camera.project(p)?;
-        view.camera.contains(&image, 2.0 * ACROSS_PX).then_some(image)
+        let margin_px = 2.0 * ACROSS_PX[ACROSS_PX.len() - 1];
+        view.camera.contains(&image, margin_px).then_some(image)
     };
     Some(Segment2::new(end(&edge.p0)?, end(&edge.p1)?))
 }
 
-/// By how much grey values to the right of a segment are larger than to the left, on average.
-fn step_across(view: &View, segment: &Segment2) -> Option<f64> {
-    let across = segment.normal() * ACROSS_PX;
-    let grey = |p: Point2<f64>| view.gray.sample(p.x as f32, p.y as f32).map(f64::from);
-    let mut sum = 0.0;
-    for k in 0..SAMPLES {
-        let p = segment.at((k as f64 + 0.5) / SAMPLES as f64);
-        sum += grey(p + across)? - grey(p - across)?;
+/// Grey values beside a segment, to its left and to its right, each less their mean.
+struct Strips {
+    sides: [[f64; SAMPLES]; 2],
+    /// By how much the right side is brighter than the left one.
+    step: f64,
+}
+
+impl Strips {
+    fn along(view: &View, segment: &Segment2) -> Option<Self> {
+        let normal = segment.normal();
+        let mut sides = [[0.0; SAMPLES]; 2];
+        for k in 0..SAMPLES {
+            let p = segment.at((k as f64 + 0.5) / SAMPLES as f64);
+            for (side, sign) in sides.iter_mut().zip([-1.0, 1.0]) {
+                for across in ACROSS_PX {
+                    let q = p + normal * (sign * across);
+                    side[k] += f64::from(view.gray.sample(q.x as f32, q.y as f32)?);
+                }
+            }
+        }
+        let means = sides.map(|side| side.iter().sum::<f64>() / SAMPLES as f64);
+        for (side, mean) in sides.iter_mut().zip(means) {
+            side.iter_mut().for_each(|grey| *grey -= mean);
+        }
+        let step = means[1] - means[0];
+        Some(Self { sides, step })
     }
-    Some(sum / SAMPLES as f64)
+
+    /// How much two views look alike, up to 1: three quarters by the correlation on the better side,
+    /// the rest by the step.
+    fn agreement(&self, other: &Self) -> f64 {
+        let correlation = |side: usize| {
+            let (a, b) = (&self.sides[side], &other.sides[side]);
+            let product = |a: &[f64; SAMPLES], b: &[f64; SAMPLES]| -> f64 {
+                a.iter().zip(b).map(|(a, b)| a * b).sum()
+            };
+            let norm = (product(a, a) * product(b, b)).sqrt();
+            product(a, b) / norm.max(f64::MIN_POSITIVE)
+        };
+        let step = (other.step * self.step.signum() / self.step.abs().max(1e-6)).clamp(-1.0, 1.0);
+        0.75 * correlation(0).max(correlation(1)) + 0.25 * step
+    }
 }
 
 #[cfg(test)]
@@ -121,12 +179,16 @@ mod tests {
                 continue;
             };
             let heights = [truth.ground_z, truth.ground_z + 15.0];
-            let marked = edge_in_space(&scene, ViewId(0), [image.p0, image.p1], heights);
+            let marked = edge_between(&scene, ViewId(0), [image.p0, image.p1], heights);
             let off = marked.map(|m| (m.p0 - edge.p0).norm().max((m.p1 - edge.p1).norm()));
             found += usize::from(off.is_some_and(|off| off < 0.35));
         }
         // One along the flight line may be given up, or found elsewhere on its beam.
-        assert!(found + 2 >= truth.edges.len(), "{found} of {}", truth.edges.len());
+        assert!(
+            found + 2 >= truth.edges.len(),
+            "{found} of {}",
+            truth.edges.len()
+        );
     }
 
     #[test]
@@ -134,6 +196,6 @@ mod tests {
         let (scene, truth) = gable_scene(320);
         let ends = [Point2::new(8.0, 8.0), Point2::new(8.0, 60.0)];
         let heights = [truth.ground_z + 200.0, truth.ground_z + 215.0];
-        assert_eq!(edge_in_space(&scene, ViewId(0), ends, heights), None);
+        assert_eq!(edge_between(&scene, ViewId(0), ends, heights), None);
     }
 }

@@ -74,9 +74,7 @@ fn apply(
             draft.facet_mut(at).probability = 1.0;
             Ok(())
         }
-        Correction::SetGround { building, height } => {
-            shape::set_ground(draft, building, *height)
-        }
+        Correction::SetGround { building, height } => shape::set_ground(draft, building, *height),
         Correction::SetEave { building, height } => shape::set_eave(draft, building, *height),
         Correction::Merge { facet, with } => shape::merge(draft, facet, with),
         Correction::Split { facet, along } => shape::split(draft, facet, along),

@@ -28,7 +28,9 @@ pub(super) struct Corner {
 impl Draft {
     /// The facet at a place.
     pub(super) fn facet(&self, place: &FacetPlace) -> Result<At, NotApplied> {
-        let at = self.facet_below(&place.at.xy()).ok_or(NotApplied::NoFacet)?;
+        let at = self
+            .facet_below(&place.at.xy())
+            .ok_or(NotApplied::NoFacet)?;
         let plane = &self.get(at).facet.plane;
         let rise = plane.z_at(place.at.x, place.at.y) - place.at.z;
         // Written so that what is no number is refused.

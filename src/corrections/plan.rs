@@ -18,7 +18,11 @@ pub(super) struct Region(Vec<Vec<[f64; 2]>>);
 impl Region {
     pub(super) fn of(facet: &Facet) -> Self {
         let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-        Self(rings.map(|ring| ring.iter().map(|p| [p.x, p.y]).collect()).collect())
+        Self(
+            rings
+                .map(|ring| ring.iter().map(|p| [p.x, p.y]).collect())
+                .collect(),
+        )
     }
 
     pub(super) fn ring(ring: &[Point2<f64>]) -> Self {
@@ -75,7 +79,9 @@ impl Region {
         let lift = |ring: Vec<[f64; 2]>| ring.into_iter().map(|[x, y]| plane.lift(x, y)).collect();
         let parts = self.parts().into_iter();
         let large = parts.filter(|part| Self::signed_area(part) > SLIVER_M2);
-        large.map(|part| part.into_iter().map(lift).collect()).collect()
+        large
+            .map(|part| part.into_iter().map(lift).collect())
+            .collect()
     }
 }
 
@@ -84,8 +90,7 @@ fn ring_area(ring: &[[f64; 2]]) -> f64 {
         return 0.0;
     };
     let next = ring.iter().cycle().skip(1);
-    let twice = |(a, b): (&[f64; 2], &[f64; 2])| {
-        (a[0] - x0) * (b[1] - y0) - (b[0] - x0) * (a[1] - y0)
-    };
+    let twice =
+        |(a, b): (&[f64; 2], &[f64; 2])| (a[0] - x0) * (b[1] - y0) - (b[0] - x0) * (a[1] - y0);
     0.5 * ring.iter().zip(next).map(twice).sum::<f64>()
 }

@@ -128,7 +128,9 @@ pub(super) fn split(
         return Err(NotApplied::NotDivided);
     }
     let plane = &whole.facet.plane;
-    let is_off = [p, q].iter().any(|e| (plane.z_at(e.x, e.y) - e.z).abs() > OFF_M);
+    let is_off = [p, q]
+        .iter()
+        .any(|e| (plane.z_at(e.x, e.y) - e.z).abs() > OFF_M);
     let mut facets = without(&draft.houses[at.house].facets, &[at.facet]);
     for half in &halves {
         for mut part in whole.over(half) {
@@ -250,11 +252,10 @@ fn new_facet(plane: Plane) -> DraftFacet {
 }
 
 /// The corner of the model that a drawn one is.
-fn snapped<'a>(
-    p: &Point3<f64>,
-    all: impl Iterator<Item = &'a Point3<f64>>,
-) -> Option<Point3<f64>> {
-    let near = all.map(|q| ((q - p).norm(), q)).filter(|(d, _)| *d <= SNAP_M);
+fn snapped<'a>(p: &Point3<f64>, all: impl Iterator<Item = &'a Point3<f64>>) -> Option<Point3<f64>> {
+    let near = all
+        .map(|q| ((q - p).norm(), q))
+        .filter(|(d, _)| *d <= SNAP_M);
     near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, q)| *q)
 }
 

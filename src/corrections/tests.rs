@@ -38,7 +38,9 @@ fn edge(ends: [[f64; 3]; 2]) -> [Point3<f64>; 2] {
 /// The place of a facet that covers a plan position.
 fn place(model: &RoofModel, x: f64, y: f64) -> FacetPlace {
     let draft = Draft::new(model);
-    let at = draft.facet_below(&nalgebra::Point2::new(x, y)).expect("a facet");
+    let at = draft
+        .facet_below(&nalgebra::Point2::new(x, y))
+        .expect("a facet");
     let plane = draft.get(at).facet.plane;
     FacetPlace {
         at: plane.lift(x, y) + Vector3::from(ORIGIN),
@@ -116,8 +118,13 @@ fn a_false_facet_inside_a_slope_is_closed_over() {
     let mut facets = gable();
     // A tree above the southern slope.
     facets.push(facet(
-        &[[0.0, -3.0, 9.5], [2.0, -3.0, 9.5], [2.0, -1.0, 9.5], [0.0, -1.0, 9.5]]
-            .map(Point3::from),
+        &[
+            [0.0, -3.0, 9.5],
+            [2.0, -3.0, 9.5],
+            [2.0, -1.0, 9.5],
+            [0.0, -1.0, 9.5],
+        ]
+        .map(Point3::from),
     ));
     let model = closed(&facets);
     let delete = |filled| Correction::DeleteFacet {
@@ -132,9 +139,24 @@ fn a_false_facet_inside_a_slope_is_closed_over() {
 #[test]
 fn neighbours_of_a_false_facet_meet_in_ridge_or_valley() {
     let flat = roof(&[
-        &[[-6.0, -4.0, 6.0], [6.0, -4.0, 6.0], [6.0, -1.0, 8.25], [-6.0, -1.0, 8.25]],
-        &[[-6.0, -1.0, 8.25], [6.0, -1.0, 8.25], [6.0, 1.0, 8.25], [-6.0, 1.0, 8.25]],
-        &[[-6.0, 1.0, 8.25], [6.0, 1.0, 8.25], [6.0, 4.0, 6.0], [-6.0, 4.0, 6.0]],
+        &[
+            [-6.0, -4.0, 6.0],
+            [6.0, -4.0, 6.0],
+            [6.0, -1.0, 8.25],
+            [-6.0, -1.0, 8.25],
+        ],
+        &[
+            [-6.0, -1.0, 8.25],
+            [6.0, -1.0, 8.25],
+            [6.0, 1.0, 8.25],
+            [-6.0, 1.0, 8.25],
+        ],
+        &[
+            [-6.0, 1.0, 8.25],
+            [6.0, 1.0, 8.25],
+            [6.0, 4.0, 6.0],
+            [-6.0, 4.0, 6.0],
+        ],
     ]);
     let delete = Correction::DeleteFacet {
         facet: place(&flat, 0.0, 0.0),
@@ -142,13 +164,38 @@ fn neighbours_of_a_false_facet_meet_in_ridge_or_valley() {
     };
     assert_is(&mended(&flat, &[delete]), &truth(), 1e-3);
     let butterfly = roof(&[
-        &[[-6.0, -4.0, 9.0], [6.0, -4.0, 9.0], [6.0, -1.0, 6.75], [-6.0, -1.0, 6.75]],
-        &[[-6.0, -1.0, 6.75], [6.0, -1.0, 6.75], [6.0, 1.0, 6.75], [-6.0, 1.0, 6.75]],
-        &[[-6.0, 1.0, 6.75], [6.0, 1.0, 6.75], [6.0, 4.0, 9.0], [-6.0, 4.0, 9.0]],
+        &[
+            [-6.0, -4.0, 9.0],
+            [6.0, -4.0, 9.0],
+            [6.0, -1.0, 6.75],
+            [-6.0, -1.0, 6.75],
+        ],
+        &[
+            [-6.0, -1.0, 6.75],
+            [6.0, -1.0, 6.75],
+            [6.0, 1.0, 6.75],
+            [-6.0, 1.0, 6.75],
+        ],
+        &[
+            [-6.0, 1.0, 6.75],
+            [6.0, 1.0, 6.75],
+            [6.0, 4.0, 9.0],
+            [-6.0, 4.0, 9.0],
+        ],
     ]);
     let valley = roof(&[
-        &[[-6.0, -4.0, 9.0], [6.0, -4.0, 9.0], [6.0, 0.0, 6.0], [-6.0, 0.0, 6.0]],
-        &[[-6.0, 0.0, 6.0], [6.0, 0.0, 6.0], [6.0, 4.0, 9.0], [-6.0, 4.0, 9.0]],
+        &[
+            [-6.0, -4.0, 9.0],
+            [6.0, -4.0, 9.0],
+            [6.0, 0.0, 6.0],
+            [-6.0, 0.0, 6.0],
+        ],
+        &[
+            [-6.0, 0.0, 6.0],
+            [6.0, 0.0, 6.0],
+            [6.0, 4.0, 9.0],
+            [-6.0, 4.0, 9.0],
+        ],
     ]);
     let delete = Correction::DeleteFacet {
         facet: place(&butterfly, 0.0, 0.0),
@@ -161,7 +208,13 @@ fn neighbours_of_a_false_facet_meet_in_ridge_or_valley() {
 fn a_facet_at_the_rim_is_lost_to_the_building() {
     let mut facets = gable();
     facets.push(facet(
-        &[[6.0, -2.0, 5.0], [9.0, -2.0, 5.0], [9.0, 2.0, 5.0], [6.0, 2.0, 5.0]].map(Point3::from),
+        &[
+            [6.0, -2.0, 5.0],
+            [9.0, -2.0, 5.0],
+            [9.0, 2.0, 5.0],
+            [6.0, 2.0, 5.0],
+        ]
+        .map(Point3::from),
     ));
     let model = closed(&facets);
     let delete = Correction::DeleteFacet {
@@ -174,13 +227,23 @@ fn a_facet_at_the_rim_is_lost_to_the_building() {
 /// The gable with its northern slope too flat: the eave at 7.8 m.
 fn too_flat() -> RoofModel {
     roof(&[
-        &[[-6.0, -4.0, 6.0], [6.0, -4.0, 6.0], [6.0, 0.0, 9.0], [-6.0, 0.0, 9.0]],
-        &[[-6.0, 0.0, 9.0], [6.0, 0.0, 9.0], [6.0, 4.0, 7.8], [-6.0, 4.0, 7.8]],
+        &[
+            [-6.0, -4.0, 6.0],
+            [6.0, -4.0, 6.0],
+            [6.0, 0.0, 9.0],
+            [-6.0, 0.0, 9.0],
+        ],
+        &[
+            [-6.0, 0.0, 9.0],
+            [6.0, 0.0, 9.0],
+            [6.0, 4.0, 7.8],
+            [-6.0, 4.0, 7.8],
+        ],
     ])
 }
 
 #[test]
-fn a_wrong_slope_is_mended_by_its_eave_a_corner_a_number_or_its_counterpart() {
+fn a_wrong_slope_is_mended_by_its_eave_a_corner_or_a_number() {
     let model = too_flat();
     let north = place(&model, 0.0, 2.0);
     let ways = [
@@ -198,21 +261,44 @@ fn a_wrong_slope_is_mended_by_its_eave_a_corner_a_number_or_its_counterpart() {
             facet: north,
             slope_deg: crate::math::atan(0.75).to_degrees(),
         },
-        Correction::SetSymmetric {
-            facets: [place(&model, 0.0, -2.0), north],
-        },
     ];
     for way in ways {
-        let found = mended(&model, std::slice::from_ref(&way));
-        assert_is(&found, &truth(), if matches!(way, Correction::MoveEdge { .. } | Correction::MoveCorner { .. }) { 0.03 } else { 2.5 });
+        assert_is(&mended(&model, &[way]), &truth(), 0.05);
     }
+}
+
+#[test]
+fn slopes_become_symmetric() {
+    let model = too_flat();
+    let facets = [place(&model, 0.0, -2.0), place(&model, 0.0, 2.0)];
+    let found = mended(&model, &[Correction::SetSymmetric { facets }]);
+    let [south, north] = [0, 1].map(|i| found.facets[i].plane.normal);
+    assert!((south.xy() + north.xy()).norm() < 1e-3, "{south} {north}");
+    // Which of the two was wrong, nothing says; the ridge stays level, and between both eaves.
+    let ridge = found.facets[0]
+        .outer
+        .iter()
+        .map(|p| p.z)
+        .fold(f64::MIN, f64::max);
+    assert!((8.0..10.0).contains(&ridge), "{ridge}");
+    assert_eq!(found.facets.len(), 2);
 }
 
 #[test]
 fn an_end_of_a_ridge_takes_the_other_with_it() {
     let low = roof(&[
-        &[[-6.0, -4.0, 6.0], [6.0, -4.0, 6.0], [6.0, 0.0, 8.0], [-6.0, 0.0, 8.0]],
-        &[[-6.0, 0.0, 8.0], [6.0, 0.0, 8.0], [6.0, 4.0, 6.0], [-6.0, 4.0, 6.0]],
+        &[
+            [-6.0, -4.0, 6.0],
+            [6.0, -4.0, 6.0],
+            [6.0, 0.0, 8.0],
+            [-6.0, 0.0, 8.0],
+        ],
+        &[
+            [-6.0, 0.0, 8.0],
+            [6.0, 0.0, 8.0],
+            [6.0, 4.0, 6.0],
+            [-6.0, 4.0, 6.0],
+        ],
     ]);
     let lift = Correction::MoveCorner {
         from: world([6.0, 0.0, 8.0]),
@@ -224,7 +310,12 @@ fn an_end_of_a_ridge_takes_the_other_with_it() {
 
 #[test]
 fn corners_put_one_after_the_other_all_stay() {
-    let places = [[-6.5, -4.5, 6.0], [6.5, -4.5, 6.0], [6.5, 4.5, 6.0], [-6.5, 4.5, 6.0]];
+    let places = [
+        [-6.5, -4.5, 6.0],
+        [6.5, -4.5, 6.0],
+        [6.5, 4.5, 6.0],
+        [-6.5, 4.5, 6.0],
+    ];
     let from = [[-6.0, -4.0], [6.0, -4.0], [6.0, 4.0], [-6.0, 4.0]];
     let mut model = truth();
     let mut corrections = Vec::new();
@@ -254,7 +345,12 @@ fn corners_put_one_after_the_other_all_stay() {
 
 #[test]
 fn a_flat_roof_becomes_level_and_an_eave_parallel() {
-    let tilted = roof(&[&[[0.0, 0.0, 5.0], [8.0, 0.0, 5.4], [8.0, 6.0, 5.7], [0.0, 6.0, 5.3]]]);
+    let tilted = roof(&[&[
+        [0.0, 0.0, 5.0],
+        [8.0, 0.0, 5.4],
+        [8.0, 6.0, 5.7],
+        [0.0, 6.0, 5.3],
+    ]]);
     let level = Correction::SetLevel {
         facet: place(&tilted, 4.0, 3.0),
     };
@@ -264,14 +360,22 @@ fn a_flat_roof_becomes_level_and_an_eave_parallel() {
     assert!(range < 0.01, "{range}");
     assert!((found.facets[0].outer[0].z - 5.35).abs() < 0.1);
 
-    let skewed = roof(&[&[[0.0, 0.0, 5.0], [8.0, 0.0, 5.0], [8.0, 6.0, 5.0], [0.0, 5.0, 5.0]]]);
+    let skewed = roof(&[&[
+        [0.0, 0.0, 5.0],
+        [8.0, 0.0, 5.0],
+        [8.0, 6.0, 5.0],
+        [0.0, 5.0, 5.0],
+    ]]);
     let parallel = Correction::SetParallel {
         edge: edge([[8.0, 6.0, 5.0], [0.0, 5.0, 5.0]]),
         to: edge([[0.0, 0.0, 5.0], [8.0, 0.0, 5.0]]),
     };
     let found = mended(&skewed, &[parallel]);
     let y = |x: f64| {
-        let corners = found.facets[0].outer.iter().filter(|p| (p.x - x).abs() < 1.0);
+        let corners = found.facets[0]
+            .outer
+            .iter()
+            .filter(|p| (p.x - x).abs() < 1.0);
         corners.map(|p| p.y).fold(f64::MIN, f64::max)
     };
     assert!((y(0.0) - y(8.0)).abs() < 0.02, "{} {}", y(0.0), y(8.0));
@@ -284,12 +388,21 @@ fn a_missing_slope_is_added_drawn_or_as_a_counterpart() {
         facet: place(&half, 0.0, -2.0),
         over: edge([[6.0, 0.0, 9.0], [-6.0, 0.0, 9.0]]),
     };
-    assert_is(&mended(&half, std::slice::from_ref(&mirror)), &truth(), 1e-3);
+    assert_is(
+        &mended(&half, std::slice::from_ref(&mirror)),
+        &truth(),
+        1e-3,
+    );
     // Drawn by hand, a decimetre beside the ridge.
     let drawn = Correction::AddFacet {
-        outline: [[-6.1, 0.1, 9.1], [-6.0, 4.0, 6.0], [6.0, 4.0, 6.0], [6.1, -0.1, 8.9]]
-            .map(world)
-            .to_vec(),
+        outline: [
+            [-6.1, 0.1, 9.1],
+            [-6.0, 4.0, 6.0],
+            [6.0, 4.0, 6.0],
+            [6.1, -0.1, 8.9],
+        ]
+        .map(world)
+        .to_vec(),
     };
     let found = mended(&half, &[drawn]);
     assert_is(&found, &truth(), 0.02);
@@ -299,7 +412,12 @@ fn a_missing_slope_is_added_drawn_or_as_a_counterpart() {
 
 #[test]
 fn what_is_drawn_takes_the_place_of_what_is_below() {
-    let level = roof(&[&[[-6.0, -4.0, 6.0], [6.0, -4.0, 6.0], [6.0, 4.0, 6.0], [-6.0, 4.0, 6.0]]]);
+    let level = roof(&[&[
+        [-6.0, -4.0, 6.0],
+        [6.0, -4.0, 6.0],
+        [6.0, 4.0, 6.0],
+        [-6.0, 4.0, 6.0],
+    ]]);
     let slopes = gable().into_iter().map(|f| Correction::AddFacet {
         outline: f.outer.iter().map(|p| p + Vector3::from(ORIGIN)).collect(),
     });
@@ -310,7 +428,12 @@ fn what_is_drawn_takes_the_place_of_what_is_below() {
 
 #[test]
 fn a_missing_ridge_divides_a_facet_whose_halves_turn_about_it() {
-    let level = roof(&[&[[-6.0, -4.0, 6.0], [6.0, -4.0, 6.0], [6.0, 4.0, 6.0], [-6.0, 4.0, 6.0]]]);
+    let level = roof(&[&[
+        [-6.0, -4.0, 6.0],
+        [6.0, -4.0, 6.0],
+        [6.0, 4.0, 6.0],
+        [-6.0, 4.0, 6.0],
+    ]]);
     let split = Correction::Split {
         facet: place(&level, 1.0, 2.0),
         along: edge([[-5.0, 0.0, 9.0], [5.0, 0.0, 9.0]]),
@@ -326,16 +449,35 @@ fn a_missing_ridge_divides_a_facet_whose_halves_turn_about_it() {
 #[test]
 fn facets_that_are_one_are_merged() {
     let parted = roof(&[
-        &[[-6.0, -4.0, 6.0], [2.0, -4.0, 6.0], [2.0, 0.0, 9.0], [-6.0, 0.0, 9.0]],
-        &[[2.0, -4.0, 5.0], [6.0, -4.0, 5.0], [6.0, 0.0, 9.0], [2.0, 0.0, 9.0]],
-        &[[-6.0, 0.0, 9.0], [2.0, 0.0, 9.0], [6.0, 0.0, 9.0], [6.0, 4.0, 6.0], [-6.0, 4.0, 6.0]],
+        &[
+            [-6.0, -4.0, 6.0],
+            [2.0, -4.0, 6.0],
+            [2.0, 0.0, 9.0],
+            [-6.0, 0.0, 9.0],
+        ],
+        &[
+            [2.0, -4.0, 5.0],
+            [6.0, -4.0, 5.0],
+            [6.0, 0.0, 9.0],
+            [2.0, 0.0, 9.0],
+        ],
+        &[
+            [-6.0, 0.0, 9.0],
+            [2.0, 0.0, 9.0],
+            [6.0, 0.0, 9.0],
+            [6.0, 4.0, 6.0],
+            [-6.0, 4.0, 6.0],
+        ],
     ]);
     let merge = |with: [f64; 2]| Correction::Merge {
         facet: place(&parted, -2.0, -2.0),
         with: place(&parted, with[0], with[1]),
     };
     assert_is(&mended(&parted, &[merge([4.0, -2.0])]), &truth(), 1e-3);
-    assert_eq!(why_not(&parted, merge([-2.0, -2.0])), NotApplied::NotNeighbours);
+    assert_eq!(
+        why_not(&parted, merge([-2.0, -2.0])),
+        NotApplied::NotNeighbours
+    );
 }
 
 #[test]
@@ -345,15 +487,28 @@ fn ground_and_eave_are_set_in_the_world() {
     let found = mended(
         &model,
         &[
-            Correction::SetGround { building, height: ORIGIN[2] - 2.0 },
-            Correction::SetEave { building, height: ORIGIN[2] + 5.0 },
+            Correction::SetGround {
+                building,
+                height: ORIGIN[2] - 2.0,
+            },
+            Correction::SetEave {
+                building,
+                height: ORIGIN[2] + 5.0,
+            },
         ],
     );
     assert_eq!(found.buildings[0].ground_z, -2.0);
-    let low = found.facets[0].outer.iter().map(|p| p.z).fold(f64::MAX, f64::min);
+    let low = found.facets[0]
+        .outer
+        .iter()
+        .map(|p| p.z)
+        .fold(f64::MAX, f64::min);
     assert!((low - 5.0).abs() < 1e-9);
     assert!((found.buildings[0].solid.volume() - (12.0 * 8.0 * 8.5)).abs() < 1e-6);
-    let above = Correction::SetGround { building, height: ORIGIN[2] + 7.0 };
+    let above = Correction::SetGround {
+        building,
+        height: ORIGIN[2] + 7.0,
+    };
     assert_eq!(why_not(&model, above), NotApplied::Implausible);
 }
 
@@ -365,10 +520,14 @@ fn a_building_goes_and_the_others_keep_their_bits() {
         facets.push(facet(&ring));
     }
     let model = closed(&facets);
-    let delete = Correction::DeleteBuilding { building: world([0.0, 1.0, 8.0]) };
+    let delete = Correction::DeleteBuilding {
+        building: world([0.0, 1.0, 8.0]),
+    };
     let mut doubtful = model.clone();
     doubtful.facets.iter_mut().for_each(|f| f.probability = 0.4);
-    let confirm = Correction::Confirm { facet: place(&model, 20.0, 1.0) };
+    let confirm = Correction::Confirm {
+        facet: place(&model, 20.0, 1.0),
+    };
     let (found, trace) = corrected(&doubtful, &[delete, confirm]);
     assert_eq!(trace.outcomes, [None, None]);
     assert_eq!(found.facets.len(), 2);
@@ -383,14 +542,27 @@ fn a_building_goes_and_the_others_keep_their_bits() {
 fn what_no_longer_applies_says_why() {
     let model = truth();
     let there = place(&model, 1.0, 2.0);
-    let delete = |facet| Correction::DeleteFacet { facet, filled: None };
-    let moved = |by: Vector3<f64>| FacetPlace { at: there.at + by, ..there };
-    let turned = FacetPlace { normal: Vector3::new(0.0, 0.0, 1.0), ..there };
+    let delete = |facet| Correction::DeleteFacet {
+        facet,
+        filled: None,
+    };
+    let moved = |by: Vector3<f64>| FacetPlace {
+        at: there.at + by,
+        ..there
+    };
+    let turned = FacetPlace {
+        normal: Vector3::new(0.0, 0.0, 1.0),
+        ..there
+    };
     let outcome = |facet| why_not(&model, delete(facet));
     assert_eq!(outcome(moved(Vector3::x() * 30.0)), NotApplied::NoFacet);
     assert_eq!(outcome(moved(Vector3::z() * 3.0)), NotApplied::OtherHeight);
     assert_eq!(outcome(turned), NotApplied::OtherSlope);
-    let corner = |from, to| Correction::MoveCorner { from: world(from), to: world(to), sigma_m: 0.02 };
+    let corner = |from, to| Correction::MoveCorner {
+        from: world(from),
+        to: world(to),
+        sigma_m: 0.02,
+    };
     let aside = corner([5.0, -4.0, 6.0], [5.0, -4.0, 7.0]);
     assert_eq!(why_not(&model, aside), NotApplied::NoCorner);
     let far = corner([6.0, -4.0, 6.0], [600.0, -4.0, 7.0]);
@@ -400,7 +572,10 @@ fn what_no_longer_applies_says_why() {
     // What it was about goes with an earlier correction.
     let (_, trace) = corrected(
         &model,
-        &[Correction::DeleteBuilding { building: there.at }, delete(there)],
+        &[
+            Correction::DeleteBuilding { building: there.at },
+            delete(there),
+        ],
     );
     assert_eq!(trace.outcomes, [None, Some(NotApplied::NoFacet)]);
 }
@@ -409,13 +584,19 @@ fn what_no_longer_applies_says_why() {
 fn corrections_are_read_as_they_were_written_and_refused_otherwise() {
     let model = truth();
     let all = vec![
-        Correction::DeleteFacet { facet: place(&model, 1.0, 2.0), filled: Some(true) },
+        Correction::DeleteFacet {
+            facet: place(&model, 1.0, 2.0),
+            filled: Some(true),
+        },
         Correction::MoveEdge {
             from: edge([[6.0, 4.0, 6.0], [-6.0, 4.0, 6.0]]),
             to: edge([[6.0, 4.0, 7.0], [-6.0, 4.0, 7.0]]),
             sigma_m: 0.1,
         },
-        Correction::SetEave { building: world([0.0; 3]), height: 7.0 },
+        Correction::SetEave {
+            building: world([0.0; 3]),
+            height: 7.0,
+        },
     ];
     let text = serde_json::to_string(&all).unwrap();
     assert_eq!(corrections_from_json(&text).unwrap(), all);
@@ -428,9 +609,18 @@ fn corrections_are_read_as_they_were_written_and_refused_otherwise() {
         (r#"{"correction": "confirm"}"#, "sequence"),
         (r#"[{"correction": "move_korner"}]"#, "move_korner"),
         (r#"[{"correction": "set_level"}]"#, "facet"),
-        (r#"[{"correction": "delete_building", "building": [1, 2]}]"#, "[0]"),
-        (r#"[{"correction": "delete_building", "building": [1, 2, 3], "x": 1}]"#, "unknown field"),
-        (r#"[{"correction": "set_eave", "building": [1, 2, 3], "height": 1e999}]"#, "number"),
+        (
+            r#"[{"correction": "delete_building", "building": [1, 2]}]"#,
+            "[0]",
+        ),
+        (
+            r#"[{"correction": "delete_building", "building": [1, 2, 3], "x": 1}]"#,
+            "unknown field",
+        ),
+        (
+            r#"[{"correction": "set_eave", "building": [1, 2, 3], "height": 1e999}]"#,
+            "number",
+        ),
         ("[", "EOF"),
     ] {
         let problem = corrections_from_json(bad).unwrap_err().to_string();
@@ -443,7 +633,7 @@ fn whatever_is_corrected_the_invariants_hold() {
     let model = truth();
     let mut random = uniform(7);
     let mut applied = 0;
-    for _ in 0..150 {
+    for _ in 0..60 {
         let mut number = |from: f64, to: f64| from + (to - from) * random();
         let corrections: Vec<Correction> = (0..3)
             .map(|_| {
@@ -455,14 +645,30 @@ fn whatever_is_corrected_the_invariants_hold() {
                     model.facets.iter().flat_map(|f| f.outer.clone()).collect();
                 let corner = corners[(number(0.0, 7.99)) as usize] + Vector3::from(ORIGIN);
                 match number(0.0, 7.0) as usize {
-                    0 => Correction::DeleteFacet { facet: here, filled: None },
-                    1 => Correction::Split { facet: here, along: edge([p, q]) },
-                    2 => Correction::MoveCorner { from: corner, to: world(p), sigma_m: 0.02 },
+                    0 => Correction::DeleteFacet {
+                        facet: here,
+                        filled: None,
+                    },
+                    1 => Correction::Split {
+                        facet: here,
+                        along: edge([p, q]),
+                    },
+                    2 => Correction::MoveCorner {
+                        from: corner,
+                        to: world(p),
+                        sigma_m: 0.02,
+                    },
                     3 => Correction::AddFacet {
                         outline: vec![world(p), world(q), corner, world([y, x, 8.0])],
                     },
-                    4 => Correction::SetSlope { facet: here, slope_deg: number(0.0, 79.0) },
-                    5 => Correction::Merge { facet: here, with: place(&model, -x, -y) },
+                    4 => Correction::SetSlope {
+                        facet: here,
+                        slope_deg: number(0.0, 79.0),
+                    },
+                    5 => Correction::Merge {
+                        facet: here,
+                        with: place(&model, -x, -y),
+                    },
                     _ => Correction::MoveEdge {
                         from: edge([[6.0, 0.0, 9.0], [-6.0, 0.0, 9.0]]),
                         to: edge([[6.0, y, p[2]], [-6.0, y, q[2]]]),
@@ -475,5 +681,5 @@ fn whatever_is_corrected_the_invariants_hold() {
         let (_, trace) = corrected(&model, &corrections);
         applied += trace.outcomes.iter().filter(|why| why.is_none()).count();
     }
-    assert!(applied > 100, "{applied}");
+    assert!(applied > 40, "{applied}");
 }

@@ -141,6 +141,8 @@ fn by_hand_m() -> f64 {
 ///
 /// # Errors
 /// What is no such array, by the keys that lead to it.
-pub fn corrections_from_json(text: &str) -> Result<Vec<Correction>, impl std::error::Error + use<>> {
+pub fn corrections_from_json(
+    text: &str,
+) -> Result<Vec<Correction>, impl std::error::Error + use<>> {
     crate::json::read(text)
 }

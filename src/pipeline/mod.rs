@@ -362,7 +362,10 @@ mod tests {
         let groups = params.as_object().unwrap().iter();
         for (name, group) in groups.filter(|(name, _)| *name != "method") {
             let paths: Vec<String> = match group.as_object() {
-                Some(fields) => fields.keys().map(|field| format!("{name}.{field}")).collect(),
+                Some(fields) => fields
+                    .keys()
+                    .map(|field| format!("{name}.{field}"))
+                    .collect(),
                 None => vec![name.clone()],
             };
             for path in paths {

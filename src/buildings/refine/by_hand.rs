@@ -44,7 +44,9 @@ pub fn adjust_to_statements(
         return None;
     }
     let stated = |all: &[(Statement, f64)]| -> Vec<Term> {
-        all.iter().map(|&(s, sigma)| Term::Stated(s, sigma)).collect()
+        all.iter()
+            .map(|&(s, sigma)| Term::Stated(s, sigma))
+            .collect()
     };
     let mut believed = believed(&wireframe, &start, facets, params);
     believed.extend(stated(earlier));

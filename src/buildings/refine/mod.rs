@@ -46,9 +46,9 @@ mod statement;
 mod uncertainty;
 mod wireframe;
 
+pub use by_hand::adjust_to_statements;
 #[cfg(test)]
 pub(crate) use fixture::gable;
-pub use by_hand::adjust_to_statements;
 pub use gaps::{RoofGap, cut_back_at_gaps};
 pub use rejection::RefineRejection;
 pub use relation_tests::TestedRelation;

@@ -145,8 +145,5 @@ fn off(by: &Vector3<f64>, direction: &Vector3<f64>) -> [f64; 2] {
     let plan = direction.xy().norm();
     let along = direction.xy() / plan;
     let slope = direction.z / plan;
-    [
-        along.perp(&by.xy()),
-        by.z - slope * along.dot(&by.xy()),
-    ]
+    [along.perp(&by.xy()), by.z - slope * along.dot(&by.xy())]
 }

@@ -16,7 +16,10 @@ use crate::math::median;
 use crate::model::{CornerUncertainty, FacetUncertainty};
 
 /// The uncertainty of every facet of a solved problem.
-pub(super) fn uncertainty_of(problem: &AdjustmentProblem, solution: &Solution) -> Vec<FacetUncertainty> {
+pub(super) fn uncertainty_of(
+    problem: &AdjustmentProblem,
+    solution: &Solution,
+) -> Vec<FacetUncertainty> {
     let (w, state) = (problem.wireframe, &solution.state);
     let place = w.corner(state, 0, w.faces[0][0][0]);
     let pixels = problem

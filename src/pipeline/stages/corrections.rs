@@ -32,7 +32,10 @@ impl StageDefinition for Corrections {
         let refused = refused.filter_map(|(i, why)| why.map(|why| (i + 1, why)));
         Findings {
             counts: vec![
-                ("corrections", outcomes.iter().filter(|why| why.is_none()).count()),
+                (
+                    "corrections",
+                    outcomes.iter().filter(|why| why.is_none()).count(),
+                ),
                 ("facets", found.value.facets.len()),
                 ("buildings", found.value.buildings.len()),
             ],

@@ -103,7 +103,8 @@ export function chooseMethod(next: Method): void {
 
 export function resetParams(): void {
   const chosen = method.value as unknown as ParamTree[string];
-  replaceParams({ ...structuredClone(defaults.value), method: chosen });
+  const corrections = params.value["corrections"] ?? {};
+  replaceParams({ ...structuredClone(defaults.value), method: chosen, corrections });
   outdateStages(0);
 }
 
