@@ -7,6 +7,7 @@ import { counted } from "../parts/counted";
 import { saveFile } from "../parts/saveFile";
 import { TextField } from "../parts/TextField";
 import { isBusy } from "../state/activity";
+import { notify } from "../state/notices";
 import { mainResults } from "../state/results";
 import { scene } from "../state/scene";
 import { select, selection, tab } from "../state/viewState";
@@ -14,7 +15,7 @@ import { correctionWords, NOT_APPLIED_WORDS } from "./correctionWords";
 import { doubtfulFacets, nextDoubtful } from "./doubtful";
 import { drawn, forgetDrawn, isCorrecting, showCorrecting } from "./drawn";
 import { type Ends, nearestEdge, placeOf, ridgeOf, ringOf, sum } from "./facetGeometry";
-import { canRedo, canUndo, correct, corrections, redo, remove, undo } from "./history";
+import { canRedo, canUndo, change, correct, corrections, redo, remove, undo } from "./history";
 
 /** What is done with the next facet that is selected. */
 interface Armed {
@@ -330,19 +331,16 @@ function NumberField(props: {
   );
 }
 
-/** The corrections so far, each with its state. */
+/** The corrections so far, each with its state; saved, and opened again. */
 function Done() {
   const outcomes: readonly (NotApplied | null)[] = mainResults.value.corrected?.outcomes ?? [];
-  if (corrections.value.length === 0) {
-    return null;
-  }
   return (
     <>
       <ol class="done" aria-label="Corrections so far">
         {corrections.value.map((one, i) => {
           const why = outcomes[i] ?? null;
           return (
-            <li key={i}>
+            <li key={`${i} ${one.correction}`}>
               <span>{correctionWords(one)}</span>
               {why !== null && <span class="error"> Not applied: {NOT_APPLIED_WORDS[why]}.</span>}
               <button
@@ -358,15 +356,61 @@ function Done() {
           );
         })}
       </ol>
-      <button
-        type="button"
-        onClick={() => {
-          const text = JSON.stringify(corrections.value, null, 2);
-          saveFile("corrections.json", new Blob([text], { type: "application/json" }));
-        }}
-      >
-        Save corrections
-      </button>
+      <div class="row wrap">
+        <button
+          type="button"
+          disabled={corrections.value.length === 0}
+          onClick={() => {
+            const text = JSON.stringify(corrections.value, null, 2);
+            saveFile("corrections.json", new Blob([text], { type: "application/json" }));
+          }}
+        >
+          Save corrections
+        </button>
+        <label class="button">
+          Open corrections
+          <input
+            type="file"
+            accept=".json,application/json"
+            class="visually-hidden"
+            data-testid="corrections-file"
+            disabled={isBusy.value}
+            onChange={(event) => {
+              const file = event.currentTarget.files?.[0];
+              event.currentTarget.value = "";
+              if (file !== undefined) {
+                void openCorrections(file);
+              }
+            }}
+          />
+        </label>
+      </div>
     </>
   );
+}
+
+/** Takes saved corrections in place of the present ones; the core says where one is none. */
+async function openCorrections(file: File): Promise<void> {
+  const list = parsed(await file.text());
+  if (list === null) {
+    notify({
+      severity: "error",
+      title: "These are no corrections",
+      text: `${file.name} holds no list of corrections.`,
+      advice: "Open a file that was saved here.",
+    });
+    return;
+  }
+  await change(list, null);
+}
+
+/** A list of things that name their correction; null for anything else. */
+function parsed(text: string): readonly Correction[] | null {
+  try {
+    const value: unknown = JSON.parse(text);
+    const names = (one: unknown) => typeof one === "object" && one !== null && "correction" in one;
+    return Array.isArray(value) && value.every(names) ? (value as Correction[]) : null;
+  } catch {
+    return null;
+  }
 }
