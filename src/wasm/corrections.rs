@@ -23,8 +23,8 @@ impl Session {
     pub fn edge_in_space(&self, view: usize, points: &[f64]) -> Result<JsValue, JsValue> {
         let run = self.loaded()?;
         let ends: Vec<Point3<f64>> = points.chunks_exact(3).map(Point3::from_slice).collect();
-        let found = match (run.results().roof_model(), ends[..]) {
-            (Some(model), [p, q]) => {
+        let found = match (run.results().roof_model(), &ends[..]) {
+            (Some(model), &[p, q]) => {
                 edge_in_space(run.scene(), model, ViewId::from_index(view), [p, q])
             }
             _ => None,

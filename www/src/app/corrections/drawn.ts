@@ -24,6 +24,11 @@ export function forgetDrawn(): void {
   waiting = null;
 }
 
+/** A drawn point was dragged elsewhere. */
+export function moveDrawn(index: number, to: Vec3): void {
+  points.value = points.value.map((point, i) => (i === index ? to : point));
+}
+
 /** The first end of an edge that is being marked in a photograph. */
 let waiting: Vec3 | null = null;
 

@@ -1,9 +1,9 @@
-/** Dots at the corners and edges of the facet that is being corrected. */
+/** Dots at the corners and edges of the facet that is being corrected, or at the points that were drawn. */
 import { type ReadonlySignal, useSignalEffect } from "@preact/signals";
 import type { Vec3 } from "../../shared/records";
 import type { Viewer } from "../../viewer/viewer";
 import { BY_HAND_M, selectedFacet } from "../corrections/Corrections";
-import { drawn, isCorrecting } from "../corrections/drawn";
+import { drawn, isCorrecting, moveDrawn } from "../corrections/drawn";
 import { difference, type Ends, edgesOf, middle, placeOf, sum } from "../corrections/facetGeometry";
 import { correct } from "../corrections/history";
 import { isBusy } from "../state/activity";
@@ -16,7 +16,11 @@ export function useCornerHandles(viewer: ReadonlySignal<Viewer | null>): void {
     const facet = mainResults.value.facets?.[selectedFacet() ?? -1];
     const isShown = isCorrecting.value && !isBusy.value && (tab.value === "model" || tab.value === "facets");
     const origin = scene.value?.origin;
-    if (!isShown || facet === undefined || origin === undefined || drawn.value.length > 0) {
+    if (isShown && drawn.value.length > 0) {
+      viewer.value?.showHandles(drawn.value, moveDrawn);
+      return;
+    }
+    if (!isShown || facet === undefined || origin === undefined) {
       viewer.value?.showHandles([], () => undefined);
       return;
     }
