@@ -1,9 +1,10 @@
 //! An edge that somebody marks in one photograph, found in space along the beams of its ends.
 //!
 //! Every pair of heights of the two ends is a line in space. Of these the one is taken along which
-//! the other views look most like the photograph: on the side that agrees better (what lies beyond an
-//! eave is another thing in every view), and by the step across the edge (B99 3.1: correlation along
-//! the line, on either side of it). All heights are tried, first coarsely, then around the best.
+//! the other views look most like the photograph: on the side that agrees better (what lies beyond
+//! an eave is another thing in every view), and by the step across the edge (B99 3.1: correlation
+//! along the line, on either side of it). All heights are tried, first coarsely, then around the
+//! best.
 
 use nalgebra::{Point2, Point3};
 
@@ -155,8 +156,8 @@ impl Strips {
         Some(Self { sides, step })
     }
 
-    /// How much two views look alike, up to 1: three quarters by the correlation on the better side,
-    /// the rest by the step.
+    /// How much two views look alike, up to 1: three quarters by the correlation on the better
+    /// side, the rest by the step.
     fn agreement(&self, other: &Self) -> f64 {
         let correlation = |side: usize| {
             let (a, b) = (&self.sides[side], &other.sides[side]);

@@ -11,9 +11,9 @@
 //! edge_in_space  an edge marked in one photograph, found in the others
 //! ```
 //!
-//! Invariant: what is corrected fulfils the invariants of every model; a correction that would break
-//! one is not applied, and says so. Invariant: one that finds no longer what it is about is not
-//! applied either. Invariant: buildings that no correction is about keep their bits.
+//! Invariant: what is corrected fulfils the invariants of every model; a correction that would
+//! break one is not applied, and says so. Invariant: one that finds no longer what it is about is
+//! not applied either. Invariant: buildings that no correction is about keep their bits.
 
 mod adjusting;
 mod closing;

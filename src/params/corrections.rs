@@ -1,8 +1,9 @@
 //! What somebody corrects of a model by hand.
 //!
 //! A correction names what it is about by its place in the world, not by an id: so it holds after
-//! another run of the earlier stages, where the model still has the same there. Places are metres in
-//! the frame of the orientation, Z up; each correction is about the model that those before it leave.
+//! another run of the earlier stages, where the model still has the same there. Places are metres
+//! in the frame of the orientation, Z up; each correction is about the model that those before it
+//! leave.
 
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};

@@ -29,8 +29,8 @@ const LEAST_SIGMA_M: f64 = 0.05;
 /// A relation from which the building is this far does not hold in it, metres.
 const HOLDS_M: f64 = 0.02;
 
-/// The facets of one building, adjusted to statements with their standard deviations, metres, and to
-/// earlier ones as far as these allow it; `None` where it has too many unknowns or there is no
+/// The facets of one building, adjusted to statements with their standard deviations, metres, and
+/// to earlier ones as far as these allow it; `None` where it has too many unknowns or there is no
 /// solution.
 pub fn adjust_to_statements(
     scene: &Scene,

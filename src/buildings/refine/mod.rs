@@ -13,8 +13,7 @@
 //! adjust             least squares of a wireframe, first without relations
 //! relation_tests     relations that the covariance allows, for the second adjustment
 //! uncertainty        standard deviations of planes and corners
-//! acceptance         tests of the adjusted building
-//! rejection          why a building is not adjusted
+//! acceptance         tests of the adjusted building, and why one is not adjusted
 //! statement          what somebody states of a corner, a side or a facet
 //! by_hand            adjustment to such statements
 //! ```
@@ -39,18 +38,17 @@ pub(super) mod fixture;
 mod gaps;
 mod outline;
 mod profiles;
-mod rejection;
 mod relation_tests;
 mod relations;
 mod statement;
 mod uncertainty;
 mod wireframe;
 
+pub use acceptance::RefineRejection;
 pub use by_hand::adjust_to_statements;
 #[cfg(test)]
 pub(crate) use fixture::gable;
 pub use gaps::{RoofGap, cut_back_at_gaps};
-pub use rejection::RefineRejection;
 pub use relation_tests::TestedRelation;
 pub use relations::RelationKind;
 pub use statement::Statement;
