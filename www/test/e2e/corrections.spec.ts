@@ -168,7 +168,10 @@ test("a false facet, a wrong slope and a missing facet are corrected with a few 
     await settled(page);
     const found = await roofOf(page);
     expect(found).toHaveLength(truth.length);
-    expect(offBy(found, truth)).toBeLessThan(0.25);
+    const mended = found.find(({ azimuthDeg, slopeDeg }) => Math.abs(azimuthDeg - 246) < 5 && slopeDeg > 20);
+    expect(Math.abs((mended?.slopeDeg ?? 0) - west.slopeDeg)).toBeLessThan(0.3);
+    // A number says nothing of where the roof lies: both adjustments share it between ridge and eave.
+    expect(offBy(found, truth)).toBeLessThan(0.7);
   });
 
   await test.step("a missing slope is the counterpart of the other one", async () => {
