@@ -1,14 +1,13 @@
 //! Corrections by hand: a model, as somebody says it should be.
 //!
 //! ```text
-//! outcome     what became of a correction
-//! draft       the model building by building, closed again after each correction
-//! place       facets, buildings, corners and edges by their place in the world
-//! plan        regions of the plan: intersection, difference, union
-//! closing     the place of a deleted facet, divided between its neighbours
-//! shape       facets deleted, merged, split, added
-//! adjusting   corners, edges and slopes stated; the building is adjusted to them
-//! edge_in_space  an edge marked in one photograph, found in the others
+//! outcome    what became of a correction
+//! draft      the model building by building, closed again after each correction
+//! place      facets, buildings, corners and edges by their place in the world
+//! plan       regions of the plan: intersection, difference, union
+//! closing    the place of a deleted facet, divided between its neighbours
+//! shape      facets deleted, merged, split, added
+//! adjusting  corners, edges and slopes stated; the building is adjusted to them
 //! ```
 //!
 //! Invariant: what is corrected fulfils the invariants of every model; a correction that would
@@ -18,7 +17,6 @@
 mod adjusting;
 mod closing;
 mod draft;
-mod edge_in_space;
 mod outcome;
 mod place;
 mod plan;
@@ -26,7 +24,6 @@ mod shape;
 #[cfg(test)]
 mod tests;
 
-pub use edge_in_space::edge_in_space;
 pub use outcome::{CorrectionTrace, NotApplied};
 
 use nalgebra::{Point3, Vector3};

@@ -259,10 +259,6 @@ export class Session implements CoreSession {
     return { outcomes: [], sources: FACETS.map((_, i) => i) };
   }
 
-  edgeInSpace() {
-    return null;
-  }
-
   image() {
     const rgba = new Uint8ClampedArray(4 * SIZE_PX * SIZE_PX);
     for (let i = 0; i < SIZE_PX * SIZE_PX; i += 1) {

@@ -252,9 +252,7 @@ function Drawn({ facets, index }: { facets: readonly Facet[]; index: number | nu
   return (
     <div class="row wrap">
       {points.length === 0 && (
-        <span class="muted">
-          Draw (in the 3D view) marks missing edges; through a photograph, by two clicks.
-        </span>
+        <span class="muted">Draw (in the 3D view) marks the corners of a facet, or an edge.</span>
       )}
       {withFacet && (
         <button

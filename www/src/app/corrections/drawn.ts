@@ -1,8 +1,6 @@
 /** Points that were clicked in the 3D view, for facets and edges that are missing. */
 import { type ReadonlySignal, signal } from "@preact/signals";
 import type { Vec3 } from "../../shared/records";
-import { ask } from "../session/session";
-import { announce } from "../state/notices";
 
 const points = signal<readonly Vec3[]>([]);
 /** Local frame, in the order of the clicks. */
@@ -21,7 +19,6 @@ export function showCorrecting(shows: boolean): void {
 
 export function forgetDrawn(): void {
   points.value = [];
-  waiting = null;
 }
 
 /** A drawn point was dragged elsewhere. */
@@ -29,27 +26,7 @@ export function moveDrawn(index: number, to: Vec3): void {
   points.value = points.value.map((point, i) => (i === index ? to : point));
 }
 
-/** The first end of an edge that is being marked in a photograph. */
-let waiting: Vec3 | null = null;
-
-/** Takes a clicked point; of two through the camera of a view, the edge in space that the other views show. */
-export async function takePoint(point: Vec3, view: number | null): Promise<void> {
-  if (view === null) {
-    points.value = [...points.value, point];
-    return;
-  }
-  if (waiting === null) {
-    waiting = point;
-    announce("One end of the edge marked. Click the other one.");
-    return;
-  }
-  const marked = new Float64Array([...waiting, ...point]);
-  waiting = null;
-  const found = await ask("edgeInSpace", view, marked);
-  if (found == null) {
-    announce("The other photographs show no such edge.");
-    return;
-  }
-  points.value = [...points.value, found.p0, found.p1];
-  announce("The edge was found in the other photographs.");
+/** Takes a clicked point. */
+export function takePoint(point: Vec3): void {
+  points.value = [...points.value, point];
 }

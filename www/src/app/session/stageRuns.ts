@@ -103,8 +103,9 @@ export function chooseMethod(next: Method): void {
 
 export function resetParams(): void {
   const chosen = method.value as unknown as ParamTree[string];
-  const corrections = params.value["corrections"] ?? {};
-  replaceParams({ ...structuredClone(defaults.value), method: chosen, corrections });
+  const { corrections } = params.value;
+  const kept = corrections === undefined ? {} : { corrections };
+  replaceParams({ ...structuredClone(defaults.value), method: chosen, ...kept });
   outdateStages(0);
 }
 

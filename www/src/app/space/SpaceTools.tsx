@@ -28,7 +28,7 @@ export function SpaceTools({ viewer, onFit }: { viewer: Viewer | null; onFit: ()
     viewer?.measure(isOn || next !== "measure" ? null : (found) => (measured.value = found));
     viewer?.section(isOn || next !== "section" ? null : (found) => (section.value = found));
     if (!isOn && next === "draw") {
-      viewer?.draw3d((point) => void takePoint(point, throughView.peek()));
+      viewer?.draw3d(takePoint);
     }
   };
   const keepPicture = async () => {
@@ -79,9 +79,7 @@ export function SpaceTools({ viewer, onFit }: { viewer: Viewer | null; onFit: ()
       {tool.value === "measure" && <Reading measured={measured.value} />}
       {tool.value === "draw" && (
         <p class="reading" role="status">
-          {throughView.value === null
-            ? "Click points of the model. Through the camera of a view, two clicks mark an edge."
-            : "Click both ends of an edge: it is looked for in the other photographs."}
+          Click points of the model; dots can be dragged.
         </p>
       )}
       {tool.value === "section" && <Profile viewer={viewer} />}
