@@ -276,15 +276,19 @@ test("facets are deleted, divided, merged and made symmetric, and corners dragge
   }
   const [slope, counterpart] = [placeOf(west), placeOf(east)];
 
-  /** Clicks a place of a roof in the 3D view, seen from above it. */
-  const click = async ({ at, normal }: { at: Place; normal: Place }) => {
-    const { x, y } = (await look(page, origin, at, normal))(at);
-    await page.mouse.click(x, y);
+  /** Clicks a place of a roof in the 3D view, seen from above it, until that is heard: a new model takes a moment to be shown. */
+  const click = async ({ at, normal }: { at: Place; normal: Place }, isHeard: () => Promise<void>) => {
+    await expect(async () => {
+      const { x, y } = (await look(page, origin, at, normal))(at);
+      await page.mouse.click(x, y);
+      await isHeard();
+    }).toPass({ timeout: 30_000 });
   };
-  const select = async (place: { at: Place; normal: Place }) => {
-    await click(place);
-    await expect(panel.getByText(/^Facet \d+, probability/)).toBeVisible();
-  };
+  const select = (place: { at: Place; normal: Place }) =>
+    click(place, () => expect(panel.getByText(/^Facet \d+, probability/)).toBeVisible({ timeout: 2000 }));
+  /** The second facet of a correction about two. */
+  const clickOther = (place: { at: Place; normal: Place }, count: number) =>
+    click(place, () => expect(done).toHaveCount(count, { timeout: 2000 }));
   const undo = async () => {
     await press("Undo");
     await settled(page);
@@ -329,8 +333,11 @@ test("facets are deleted, divided, merged and made symmetric, and corners dragge
     const fall = unit([slope.normal[0], slope.normal[1], 0]);
     const down: Place = [fall[0], fall[1], -Math.tan((west.slopeDeg * Math.PI) / 180)];
     await page.getByRole("button", { name: "Draw", exact: true }).click();
-    for (const by of [-0.8, 0.8]) {
-      await click({ at: along(slope.at, down, by), normal: slope.normal });
+    for (const [i, by] of [-0.8, 0.8].entries()) {
+      const heard = panel.getByRole("button", { name: `Forget ${i + 1} point` });
+      await click({ at: along(slope.at, down, by), normal: slope.normal }, () =>
+        expect(heard).toBeVisible({ timeout: 2000 }),
+      );
     }
     await page.getByRole("button", { name: "Draw", exact: true }).click();
     await press("Divide the facet here");
@@ -341,8 +348,7 @@ test("facets are deleted, divided, merged and made symmetric, and corners dragge
     const part = (by: number) => ({ at: along(slope.at, beside, by), normal: slope.normal });
     await select(part(0.8));
     await press("Merge with …");
-    await click(part(-0.8));
-    await expect(done).toHaveCount(2);
+    await clickOther(part(-0.8), 2);
     await settled(page);
     const found = await roofOf(page);
     expect(found).toHaveLength(truth.length);
@@ -356,8 +362,7 @@ test("facets are deleted, divided, merged and made symmetric, and corners dragge
     await plant(page, wrongSlope(west, 22));
     await select({ at: along(slope.at, [0, 0, 1], 0.5), normal: slope.normal });
     await press("Symmetric with …");
-    await click(counterpart);
-    await expect(done).toHaveCount(3);
+    await clickOther(counterpart, 3);
     await settled(page);
     const found = await roofOf(page);
     const slopes = [246, 66].map((azimuth) =>
