@@ -295,6 +295,22 @@ test("facets are deleted, divided, merged and made symmetric, and corners dragge
     expect(offBy(await roofOf(page), truth)).toBeLessThan(0.002);
   };
 
+  type Pixel = { x: number; y: number };
+  /** Drags a dot, which is the first correction. */
+  const drag = async (from: Pixel, to: Pixel) => {
+    await page.mouse.move(from.x, from.y);
+    await page.mouse.down();
+    await page.mouse.move((from.x + to.x) / 2, (from.y + to.y) / 2);
+    await page.mouse.move(to.x, to.y);
+    await page.mouse.up();
+    await expect(done).toHaveCount(1);
+    await settled(page);
+  };
+  const distanceTo = async (place: Place) => {
+    const corners = (await roofOf(page)).flatMap((face) => face.corners);
+    return Math.min(...corners.map((p) => Math.sqrt(dot(minus(p, place), minus(p, place)))));
+  };
+
   await test.step("a facet is clicked and deleted", async () => {
     await select(slope);
     await press("Delete facet");
@@ -314,17 +330,32 @@ test("facets are deleted, divided, merged and made symmetric, and corners dragge
     const [nx, ny] = slope.normal;
     const to = along(eave, unit([nx, ny, 0]), 1);
     const seen = await look(page, origin, eave, [nx, ny, 1.5]);
-    const [from, there] = [seen(eave), seen(to)];
-    await page.mouse.move(from.x, from.y);
-    await page.mouse.down();
-    await page.mouse.move((from.x + there.x) / 2, (from.y + there.y) / 2);
-    await page.mouse.move(there.x, there.y);
-    await page.mouse.up();
-    await expect(done).toHaveCount(1);
-    await settled(page);
-    const corners = (await roofOf(page)).flatMap((face) => face.corners);
-    const off = corners.map((p) => Math.sqrt(dot(minus(p, to), minus(p, to))));
-    expect(Math.min(...off)).toBeLessThan(0.15);
+    await drag(seen(eave), seen(to));
+    expect(await distanceTo(to)).toBeLessThan(0.15);
+    await undo();
+  });
+
+  await test.step("the dot of an edge is dragged upright", async () => {
+    await select(slope);
+    const edges = west.corners.map((p, i) => [p, west.corners[(i + 1) % west.corners.length] ?? p] as const);
+    const [lowest = [slope.at, slope.at]] = edges.sort(([p, q], [r, s]) => p[2] + q[2] - r[2] - s[2]);
+    const middle = along(along([0, 0, 0], lowest[0], 0.5), lowest[1], 0.5);
+    const raised = (p: Place) => along(p, [0, 0, 1], 0.5);
+    const seen = await look(page, origin, middle, [slope.normal[0], slope.normal[1], 0.5]);
+    await page.keyboard.down("Shift");
+    await drag(seen(middle), seen(raised(middle)));
+    await page.keyboard.up("Shift");
+    // Where the edge ends at a valley, its end slides along it.
+    const direction = unit(minus(lowest[1], lowest[0]));
+    const off = (p: Place) => {
+      const aside = cross(minus(p, raised(middle)), direction);
+      return Math.sqrt(dot(aside, aside));
+    };
+    const faces = await roofOf(page);
+    const ends = faces.flatMap(({ corners }) =>
+      corners.map((p, i) => Math.max(off(p), off(corners[(i + 1) % corners.length] ?? p))),
+    );
+    expect(Math.min(...ends)).toBeLessThan(0.1);
     await undo();
   });
 
