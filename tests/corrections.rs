@@ -54,11 +54,11 @@ fn corrections() -> Value {
     let (_, truth) = ridgeline::synthetic::l_scene(common::SIZE_PX);
     let (plane, ring) = &truth.facets[0];
     let middle = ridgeline::geometry::mean_point(ring);
-    let above = [middle.x, middle.y, middle.z + 50.0];
+    let [x, y, z]: [f64; 3] = middle.into();
     let normal: [f64; 3] = plane.normal.into();
     json!([
-        {"correction": "set_ground", "building": middle, "height": GROUND_Z},
-        {"correction": "confirm", "facet": {"at": above, "normal": normal}},
+        {"correction": "set_ground", "building": [x, y, z], "height": GROUND_Z},
+        {"correction": "confirm", "facet": {"at": [x, y, z + 50.0], "normal": normal}},
     ])
 }
 
