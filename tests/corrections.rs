@@ -120,7 +120,7 @@ fn what_is_no_list_is_refused_by_name() {
         ),
         (
             r#"[{"correction": "delete_building", "building": [0, 0]}]"#,
-            "[0].building",
+            "[0]",
         ),
     ];
     for (text, word) in bad {

@@ -83,7 +83,7 @@ function correctionsOf({ CityObjects, transform: { scale, translate }, vertices 
     return [
         { correction: "set_slope", facet: facetOf(first), slope_deg: first.slopeDeg + 2 },
         { correction: "move_corner", from, to: from.map((x, i) => x + [0.2, 0.1, 0.05][i]) },
-        { correction: "set_ground", building: facetOf(first).at, height: Math.min(...from) - 40 },
+        { correction: "set_ground", building: facetOf(first).at, height: from[2] - 30 },
         { correction: "delete_facet", facet: facetOf(third), filled: false },
     ];
 }
