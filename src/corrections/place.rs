@@ -33,8 +33,9 @@ impl Draft {
             .ok_or(NotApplied::NoFacet)?;
         let plane = &self.get(at).facet.plane;
         let rise = plane.z_at(place.at.x, place.at.y) - place.at.z;
-        // Written so that what is no number is refused.
-        if !(rise.abs() <= SAME_HEIGHT_M) {
+        // What is no number is refused.
+        let is_same_height = rise.abs() <= SAME_HEIGHT_M;
+        if !is_same_height {
             return Err(NotApplied::OtherHeight);
         }
         let angle = crate::math::atan2(

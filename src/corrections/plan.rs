@@ -60,10 +60,13 @@ impl Region {
     }
 
     pub(super) fn area(&self) -> f64 {
-        self.parts().iter().map(Self::signed_area).sum()
+        self.parts()
+            .iter()
+            .map(|part| Self::signed_area(part))
+            .sum()
     }
 
-    fn signed_area(part: &Vec<Vec<[f64; 2]>>) -> f64 {
+    fn signed_area(part: &[Vec<[f64; 2]>]) -> f64 {
         part.iter().map(|ring| ring_area(ring)).sum()
     }
 

@@ -76,7 +76,8 @@ pub(super) fn set_eave(
     let facets = &draft.houses[house].facets;
     let all = facets.iter().flat_map(|f| corners(&f.facet));
     let rise = height - all.fold(f64::INFINITY, |low, p| low.min(p.z));
-    if !(rise.abs() < FAR_M) {
+    let is_plausible = rise.abs() < FAR_M;
+    if !is_plausible {
         return Err(NotApplied::Implausible);
     }
     let raised = facets.iter().map(|f| {
