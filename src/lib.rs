@@ -55,6 +55,7 @@
 //!    -> objectspace              regions, directions, clusters, rectangles    W96 3.3 - 3.6
 //!    or both for one model: lines and planes of objectspace compete with the others
 //!    -> buildings, solids        refined wireframes, walls, closed solids
+//!    -> corrections              what somebody corrects by hand
 //!    -> texture                  best view per face, atlas
 //!    -> export                   CityJSON, glTF, OBJ, lines
 //! ```
@@ -76,6 +77,7 @@ pub mod agreement;
 pub mod buildings;
 pub mod camera;
 pub mod coplanar;
+pub mod corrections;
 pub mod dense;
 mod error;
 pub mod evidence;

@@ -1,4 +1,4 @@
-// Runs scenes, the first two by every method, through the wasm Session in Node and through the native command line, and compares
+// Runs scenes, the first two by every method and the first one with corrections by hand, through the wasm Session in Node and through the native command line, and compares
 // every file byte for byte (report.json without its part `seconds`). So is the orientation of drawn photographs with
 // ground control points, by two orienters that divide the pairs. What model.glb is wrong in, the validator of glTF's makers says.
 //
@@ -8,7 +8,7 @@
 // Ends with exit code 1 and the names of the files that differ or are wrong.
 
 import { spawnSync } from "node:child_process";
-import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { basename, dirname, join } from "node:path";
@@ -29,6 +29,7 @@ try {
         // Method "combined" has the stages of the others; by themselves "coplanar" and "adjacency" do more in their own.
         const methods = place < 2 ? ["lines", "rectangles", "combined", "coplanar", "adjacency"] : ["combined"];
         for (const method of methods) bad.push(...(await compare(scene, method)));
+        if (place === 0) bad.push(...(await compareCorrected(scene)));
     }
     if (!given) bad.push(...(await compareOrientation(join(root, "www/test/fixtures/drone"))));
 } finally {
@@ -49,10 +50,52 @@ function run(program, args) {
     if (status !== 0) throw error ?? new Error(`${program} ended with exit code ${status}`);
 }
 
+// The same with corrections of what the scene itself shows.
+async function compareCorrected(scene) {
+    const city = JSON.parse(runNative(scene, "lines").get("model.city.json").toString());
+    const corrections = correctionsOf(city);
+    const { bad, report } = await compareRuns(scene, "lines", corrections);
+    const { counts } = report.stages.find(({ stage }) => stage === "corrections");
+    console.log(`${basename(scene)}: ${counts.corrections} of ${corrections.length} corrections applied`);
+    return counts.corrections === corrections.length ? bad : [...bad, "corrections"];
+}
+
+// Another slope, a moved corner, a lifted ground and a deleted facet, of the largest building's largest facets.
+function correctionsOf({ CityObjects, transform: { scale, translate }, vertices }) {
+    const place = (v) => vertices[v].map((x, i) => x * scale[i] + translate[i]);
+    const roofs = Object.values(CityObjects).flatMap(({ geometry = [] }) =>
+        geometry.flatMap(({ boundaries: [shell = []], semantics: { values, surfaces } }) =>
+            shell.flatMap((face, i) => {
+                const surface = surfaces[values[0]?.[i] ?? -1];
+                return surface?.type === "RoofSurface" ? [{ ...surface, corners: face[0].map(place) }] : [];
+            }),
+        ),
+    );
+    const largest = roofs.filter(({ slopeDeg }) => slopeDeg > 10).sort((a, b) => b.area - a.area);
+    const facetOf = ({ corners, slopeDeg, azimuthDeg }) => {
+        const [slope, azimuth] = [slopeDeg, azimuthDeg].map((degrees) => (degrees * Math.PI) / 180);
+        const normal = [Math.sin(slope) * Math.sin(azimuth), Math.sin(slope) * Math.cos(azimuth), Math.cos(slope)];
+        const at = [0, 1, 2].map((i) => corners.reduce((sum, p) => sum + p[i], 0) / corners.length);
+        return { at, normal };
+    };
+    const [first, second, third] = largest;
+    const [from] = [...second.corners].sort((a, b) => a[2] - b[2]);
+    return [
+        { correction: "set_slope", facet: facetOf(first), slope_deg: first.slopeDeg + 2 },
+        { correction: "move_corner", from, to: from.map((x, i) => x + [0.2, 0.1, 0.05][i]) },
+        { correction: "set_ground", building: facetOf(first).at, height: from[2] - 30 },
+        { correction: "delete_facet", facet: facetOf(third), filled: false },
+    ];
+}
+
 // The names of the files that differ or are wrong.
 async function compare(scene, method) {
-    const native = runNative(scene, method);
-    const wasm = await runWasm(scene, method);
+    return (await compareRuns(scene, method, [])).bad;
+}
+
+async function compareRuns(scene, method, corrections) {
+    const native = runNative(scene, method, corrections);
+    const wasm = await runWasm(scene, method, corrections);
     const names = [...new Set([...native.keys(), ...wasm.keys()])].sort();
     if (!names.includes("model.glb")) throw new Error("no model was written");
     const differing = names.filter((name) => !same(name, native.get(name), wasm.get(name)));
@@ -60,7 +103,8 @@ async function compare(scene, method) {
         const verdict = differing.includes(name) ? "DIFFERS" : "identical";
         console.log(`${basename(scene)}, ${method}: ${verdict.padEnd(10)} ${name} (${native.get(name)?.length ?? "missing"} bytes)`);
     }
-    return [...differing, ...(await wrongIn(native.get("model.glb")))];
+    const bad = [...differing, ...(await wrongIn(native.get("model.glb")))];
+    return { bad, report: JSON.parse(native.get("report.json").toString()) };
 }
 
 // The same for photographs alone.
@@ -117,20 +161,22 @@ async function wrongIn(glb) {
     return worst.map(({ code }) => code);
 }
 
-function runNative(scene, method) {
-    const out = mkdtempSync(join(tmpdir(), "ridgeline-"));
+function runNative(scene, method, corrections = []) {
+    const [out, beside] = [0, 1].map(() => mkdtempSync(join(tmpdir(), "ridgeline-")));
     try {
-        run(binary, ["reconstruct", scene, "--out", out, "--method", method]);
+        const list = join(beside, "corrections.json");
+        writeFileSync(list, JSON.stringify(corrections));
+        run(binary, ["reconstruct", scene, "--out", out, "--method", method, "--corrections", list]);
         return new Map(readdirSync(out).map((name) => [name, readFileSync(join(out, name))]));
     } finally {
-        rmSync(out, { recursive: true });
+        for (const folder of [out, beside]) rmSync(folder, { recursive: true });
     }
 }
 
-async function runWasm(scene, method) {
+async function runWasm(scene, method, corrections = []) {
     const { session } = await openSession();
     addFiles(session, scene);
-    session.setParams({ method });
+    session.setParams({ method, corrections });
     session.load({});
     for (const stage of session.chosenStages()) {
         const start = performance.now();

@@ -52,6 +52,7 @@ const FLOORS: [&str; 45] = [
     "adjacency",
     "objectspace",
     "buildings",
+    "corrections",
     // Results.
     "texture",
     "roof_report",

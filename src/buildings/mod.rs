@@ -17,6 +17,6 @@ pub use reconstruct::{RoofTrace, UnrefinedFacets, reconstruct_roofs};
 #[cfg(test)]
 pub(crate) use refine::gable;
 pub use refine::{
-    BuildingRefinement, RefineRejection, RefineTrace, RelationKind, RoofGap, SideKind,
-    TestedRelation, cut_back_at_gaps, refine_roofs,
+    BuildingRefinement, RefineRejection, RefineTrace, RelationKind, RoofGap, SideKind, Statement,
+    TestedRelation, adjust_to_statements, cut_back_at_gaps, refine_roofs,
 };

@@ -77,6 +77,10 @@ pub(super) struct InputArgs {
     /// JSON file with parameters; what it leaves out keeps its default.
     #[arg(long, value_name = "FILE")]
     pub params: Option<PathBuf>,
+    /// JSON file with corrections of the model by hand, as the page writes it; instead of those of
+    /// the parameters or the project.
+    #[arg(long, value_name = "FILE")]
+    pub corrections: Option<PathBuf>,
     /// Height of the ground, metres in the frame of the orientation; estimated if not given.
     #[arg(long, value_name = "H", value_parser = parse_finite, allow_hyphen_values = true)]
     pub ground_z: Option<f64>,

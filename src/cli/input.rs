@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use ridgeline::orientation::InputFile;
-use ridgeline::params::Params;
+use ridgeline::params::{Correction, Params, corrections_from_json};
 use ridgeline::scene_loader::{LoadOptions, Project, open_project};
 
 use super::args::InputArgs;
@@ -28,7 +28,7 @@ pub(super) fn refusal(error: &ridgeline::Error, seen: &str) -> Failure {
 /// Reads the files. What the arguments leave out is as in the project, where one is opened.
 pub(super) fn open(
     args: &InputArgs,
-    params: Option<Params>,
+    given: StatedFiles,
     results: &Path,
 ) -> Result<OpenedScene, Failure> {
     set_threads(args.threads);
@@ -66,7 +66,7 @@ pub(super) fn open(
     Ok(OpenedScene {
         files,
         options,
-        params: with_switches(params.unwrap_or(project.params), args),
+        params: with_switches(given, project.params, args),
         seen,
     })
 }
@@ -109,7 +109,11 @@ pub(super) fn read_files(
 }
 
 /// The parameters, with what the arguments say of them.
-fn with_switches(mut params: Params, args: &InputArgs) -> Params {
+fn with_switches(given: StatedFiles, stated: Params, args: &InputArgs) -> Params {
+    let mut params = given.params.unwrap_or(stated);
+    if let Some(corrections) = given.corrections {
+        params.corrections = corrections;
+    }
     if args.adjust || args.no_adjust {
         params.adjustment.enabled = args.adjust;
     }
@@ -167,17 +171,33 @@ fn below(scene: &Path, path: &str) -> String {
     )
 }
 
-/// The parameters of `--params`.
-pub(super) fn read_params(args: &InputArgs) -> Result<Option<Params>, Failure> {
-    let Some(path) = &args.params else {
-        return Ok(None);
+/// What arguments name in files of their own.
+pub(super) struct StatedFiles {
+    params: Option<Params>,
+    corrections: Option<Vec<Correction>>,
+}
+
+/// The parameters of `--params` and the corrections of `--corrections`.
+pub(super) fn read_params(args: &InputArgs) -> Result<StatedFiles, Failure> {
+    let bad =
+        |path: &Path, problem: String| Failure::Input(format!("{}: {problem}", path.display()));
+    let read =
+        |path: &Path| fs::read_to_string(path).map_err(|e| bad(path, format!("cannot read: {e}")));
+    let params = |path: &PathBuf| {
+        Params::from_json(&read(path)?).map_err(|e| {
+            let advice = "`ridgeline params` prints all parameters with their defaults";
+            bad(path, format!("{e}; {advice}"))
+        })
     };
-    let bad = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
-    let text = fs::read_to_string(path).map_err(|e| bad(format!("cannot read: {e}")))?;
-    Params::from_json(&text).map(Some).map_err(|e| {
-        bad(format!(
-            "{e}; `ridgeline params` prints all parameters with their defaults"
-        ))
+    let corrections = |path: &PathBuf| {
+        corrections_from_json(&read(path)?).map_err(|e| {
+            let advice = "it takes the list of corrections that the page saves";
+            bad(path, format!("{e}; {advice}"))
+        })
+    };
+    Ok(StatedFiles {
+        params: args.params.as_ref().map(params).transpose()?,
+        corrections: args.corrections.as_ref().map(corrections).transpose()?,
     })
 }
 

@@ -10,7 +10,7 @@ use ridgeline::execution::progress::Listener;
 use ridgeline::pipeline::{Run, Stage, counted};
 use ridgeline::scene::Scene;
 use ridgeline::scene_loader::{MOST_VIEWS, Project, inspect_files, load_scene, settled};
-use ridgeline::tiles::{Area, CELL_M};
+use ridgeline::tiles::{Area, CELL_M, refuse_corrections};
 
 use super::args::ReconstructArgs;
 use super::failure::Failure;
@@ -44,13 +44,12 @@ pub(super) fn reconstruct(args: &ReconstructArgs) -> Result<(), Failure> {
     let options = settled(&input, &options);
     let inspection = inspect_files(&input, &options);
     let is_flight = options.roi.is_none() && inspection.views > MOST_VIEWS;
-    // What shows no area that three views share is told by loading it.
-    if is_flight
-        && !options.apply_fix
-        && args.project.is_none()
-        && let Ok(area) = Area::plan(&input, &options, &params, CELL_M)
-    {
-        return tiles::reconstruct_tiles(area, &input, &args.out, &seen);
+    if is_flight && !options.apply_fix && args.project.is_none() {
+        refuse_corrections(&params).map_err(|e| refusal(&e, &seen))?;
+        // What shows no area that three views share is told by loading it.
+        if let Ok(area) = Area::plan(&input, &options, &params, CELL_M) {
+            return tiles::reconstruct_tiles(area, &input, &args.out, &seen);
+        }
     }
     if inspection.errors.is_empty() {
         println!(

@@ -6,6 +6,7 @@ mod adjacency;
 mod adjustment;
 mod buildings;
 mod coplanar;
+mod corrections;
 mod dense;
 mod lines;
 mod objectspace;
@@ -16,6 +17,7 @@ pub use self::adjacency::*;
 pub use self::adjustment::*;
 pub use self::buildings::*;
 pub use self::coplanar::*;
+pub use self::corrections::*;
 pub use self::dense::*;
 pub use self::lines::*;
 pub use self::objectspace::*;
@@ -51,6 +53,8 @@ pub struct Params {
     pub roof: RoofParams,
     /// Rectangles in object space.
     pub objectspace: ObjectSpaceParams,
+    /// Corrections by hand, in their order.
+    pub corrections: Vec<Correction>,
     /// Texture atlas.
     pub texture: TextureParams,
 }

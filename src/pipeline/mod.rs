@@ -3,9 +3,9 @@
 //!
 //! ```text
 //! B99:  segments -> matches -> adjustment -> lines -> coplanar -> adjacency -> halfplanes
-//!                      ^           |            -> dense -> facets -> model
+//!                      ^           |            -> dense -> facets -> corrections -> model
 //!                      +-----------+ where views moved
-//! W96:  regions -> directions -> clusters -> rectangles -> model
+//! W96:  regions -> directions -> clusters -> rectangles -> corrections -> model
 //! both: segments to adjustment, those of W96, then the others of B99, which take in its lines and
 //!       planes
 //! ```
@@ -50,8 +50,15 @@ use crate::scene::Scene;
 use crate::texture::TexturedModel;
 
 impl Results {
-    /// The roof model of whichever method ran; of both, that to which both came.
+    /// The roof model of whichever method ran; of both, that to which both came. With what was
+    /// corrected by hand, once that stage has run.
     pub fn roof_model(&self) -> Option<&RoofModel> {
+        let corrected = self.corrections.as_ref().map(|r| &r.value);
+        corrected.or_else(|| self.found_model())
+    }
+
+    /// The roof model before corrections by hand.
+    pub fn found_model(&self) -> Option<&RoofModel> {
         let lines = self.facets.as_ref().map(|r| &r.value);
         lines.or(self.rectangles.as_ref().map(|r| &r.value))
     }
@@ -359,8 +366,14 @@ mod tests {
         }
         let groups = params.as_object().unwrap().iter();
         for (name, group) in groups.filter(|(name, _)| *name != "method") {
-            let fields = group.as_object().unwrap().keys();
-            for path in fields.map(|field| format!("{name}.{field}")) {
+            let paths: Vec<String> = match group.as_object() {
+                Some(fields) => fields
+                    .keys()
+                    .map(|field| format!("{name}.{field}"))
+                    .collect(),
+                None => vec![name.clone()],
+            };
+            for path in paths {
                 let is_read = read.iter().any(|one| leads_to(one, &path));
                 assert!(is_read, "no stage depends on {path}");
             }

@@ -161,7 +161,9 @@ mod tests {
     use super::super::archive::unpack;
     use super::super::load_scene;
     use super::*;
+    use crate::params::Correction;
     use crate::synthetic::{gable_scene, to_files};
+    use nalgebra::Point3;
 
     fn project() -> (Project, Vec<InputFile>) {
         let files = to_files(&gable_scene(48).0);
@@ -175,6 +177,10 @@ mod tests {
         ));
         let mut params = Params::default();
         params.sweep.min_similarity = 0.47;
+        params.corrections.push(Correction::SetGround {
+            building: Point3::new(0.1, 0.2, 7.0 / 3.0),
+            height: -0.3,
+        });
         let options = LoadOptions {
             views: Some(vec!["s1_01".into(), "s1_02".into(), "s2_01".into()]),
             ..LoadOptions::default()

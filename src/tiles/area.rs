@@ -54,6 +54,7 @@ impl Area {
         params: &Params,
         tile_m: f64,
     ) -> Result<Self> {
+        refuse_corrections(params)?;
         let (options, tiles) = tiles_of(files, options, tile_m)?;
         Ok(Self {
             sum: sum_of(files, &options, params, &tiles),
@@ -135,6 +136,19 @@ fn sum_of(files: &[InputFile], options: &LoadOptions, params: &Params, tiles: &[
             .collect(),
     };
     crc32fast::hash(&serde_json::to_vec(&made).expect("all keys are strings"))
+}
+
+/// Refuses corrections by hand. A building at a seam is in the models of several cells; whether a
+/// correction applies in the one that keeps it is known only when they are joined.
+pub fn refuse_corrections(params: &Params) -> Result<()> {
+    match params.corrections.is_empty() {
+        true => Ok(()),
+        false => Err(Error::Scene {
+            problem: "corrections by hand do not go with tiles".to_owned(),
+            advice: "reconstruct the part that they are about by itself (--roi), or leave them out"
+                .to_owned(),
+        }),
+    }
 }
 
 /// The tiles of the region of interest, or of the area that the views show, and the options with

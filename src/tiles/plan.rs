@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::area::{join_cells, model_files, tiles_of, work_off};
+use super::area::{join_cells, model_files, refuse_corrections, tiles_of, work_off};
 use super::join::Joined;
 use super::part_file::{PartKey, TileOutcome};
 use super::tile::{Cell, Tile};
@@ -110,6 +110,7 @@ impl BlockPlan {
         params: &Params,
         tile_m: f64,
     ) -> Result<Self> {
+        refuse_corrections(params)?;
         let (options, tiles) = tiles_of(files, options, tile_m)?;
         whole_views(files, &options)?;
         let planned = crate::execution::map(&tiles, |i, tile| planned(files, &options, i, tile));

@@ -14,6 +14,8 @@
 mod arrays;
 mod convert;
 #[cfg(feature = "reconstruction")]
+mod corrections;
+#[cfg(feature = "reconstruction")]
 mod figures;
 #[cfg(feature = "reconstruction")]
 mod files;

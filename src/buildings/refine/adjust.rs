@@ -15,6 +15,7 @@ use nalgebra::{DVector, Point2};
 use super::edge_observations::EdgeObservation;
 use super::envelope::{Envelope, Pattern};
 use super::relations::Relation;
+use super::statement::Statement;
 use super::wireframe::{Meet, Straight, Wireframe, WireframeState};
 use crate::geometry::Segment2;
 use crate::math;
@@ -62,6 +63,8 @@ pub(super) enum Term {
     Straight(Straight),
     /// An adopted relation, with its standard deviation in its own unit.
     Relation(Relation, f64),
+    /// What somebody states of it, with its standard deviation, metres.
+    Stated(Statement, f64),
 }
 
 /// A least-squares problem.
@@ -241,7 +244,7 @@ impl<'a> AdjustmentProblem<'a> {
     }
 
     /// Weighted residuals of a term; the second is 0 where there is one only.
-    fn residual(&self, term: &Term, state: &WireframeState) -> Option<[f64; 2]> {
+    pub(super) fn residual(&self, term: &Term, state: &WireframeState) -> Option<[f64; 2]> {
         let w = self.wireframe;
         Some(match term {
             Term::Edge(s) => {
@@ -276,6 +279,7 @@ impl<'a> AdjustmentProblem<'a> {
                 [off / along.norm().max(1e-9) / EXACT_M, 0.0]
             }
             Term::Relation(relation, sigma) => [relation.value(w, state) / sigma, 0.0],
+            Term::Stated(statement, sigma) => statement.value(w, state).map(|r| r / sigma),
         })
     }
 
@@ -325,6 +329,7 @@ impl<'a> AdjustmentProblem<'a> {
                 [vertex(s.vertex), vertex(p), vertex(q)].concat()
             }
             Term::Relation(relation, _) => relation.unknowns(w),
+            Term::Stated(statement, _) => statement.unknowns(w),
         }
     }
 }

@@ -13,8 +13,9 @@
 //! adjust             least squares of a wireframe, first without relations
 //! relation_tests     relations that the covariance allows, for the second adjustment
 //! uncertainty        standard deviations of planes and corners
-//! acceptance         tests of the adjusted building
-//! rejection          why a building is not adjusted
+//! acceptance         tests of the adjusted building, and why one is not adjusted
+//! statement          what somebody states of a corner, a side or a facet
+//! by_hand            adjustment to such statements
 //! ```
 //!
 //! Delineation puts borders where lines were found or where correlation ends. The first are
@@ -29,6 +30,7 @@
 
 mod acceptance;
 mod adjust;
+mod by_hand;
 mod edge_observations;
 mod envelope;
 #[cfg(test)]
@@ -36,18 +38,20 @@ pub(super) mod fixture;
 mod gaps;
 mod outline;
 mod profiles;
-mod rejection;
 mod relation_tests;
 mod relations;
+mod statement;
 mod uncertainty;
 mod wireframe;
 
+pub use acceptance::RefineRejection;
+pub use by_hand::adjust_to_statements;
 #[cfg(test)]
 pub(crate) use fixture::gable;
 pub use gaps::{RoofGap, cut_back_at_gaps};
-pub use rejection::RefineRejection;
 pub use relation_tests::TestedRelation;
 pub use relations::RelationKind;
+pub use statement::Statement;
 pub use wireframe::SideKind;
 
 use nalgebra::Vector3;
@@ -57,11 +61,10 @@ use self::acceptance::AcceptanceTest;
 use self::adjust::{AdjustmentProblem, Solution, Term};
 use self::edge_observations::{EdgeObservation, measure_sides};
 use self::relation_tests::adopt_relations;
+use self::uncertainty::uncertainty_of;
 use self::wireframe::{Wireframe, WireframeState};
-use crate::evidence::UncertaintyTable;
 use crate::ids::BuildingId;
 use crate::lines3d::Line3d;
-use crate::math::median;
 use crate::model::{Building, Facet, FacetUncertainty, Occluders, RoofModel};
 use crate::params::{RefineParams, RoofParams};
 use crate::scene::Scene;
@@ -353,18 +356,6 @@ impl BuildingRefiner<'_> {
             Err(rejected(RefineRejection::NoGain))
         }
     }
-}
-
-fn uncertainty_of(problem: &AdjustmentProblem, solution: &Solution) -> Vec<FacetUncertainty> {
-    let (w, state) = (problem.wireframe, &solution.state);
-    let place = w.corner(state, 0, w.faces[0][0][0]);
-    let pixels = problem
-        .scene
-        .views
-        .iter()
-        .map(|v| v.camera.ground_pixel(&place));
-    let pixel_m = median(&mut pixels.collect::<Vec<_>>()).unwrap_or(0.0);
-    uncertainty::of_facets(w, solution, pixel_m, UncertaintyTable::fitted())
 }
 
 fn with_uncertainties(facets: Vec<Facet>, of: Vec<FacetUncertainty>) -> Vec<Facet> {

@@ -28,7 +28,7 @@ pub(super) enum Relation {
 }
 
 /// Over this distance slopes are compared, metres: half the depth of a facet.
-const LEVER_M: f64 = 4.0;
+pub(super) const LEVER_M: f64 = 4.0;
 
 /// The kinds of relations, for the trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -9,13 +9,30 @@
 
 use nalgebra::{DVector, Point2, Vector2, Vector3};
 
-use super::adjust::Solution;
+use super::adjust::{AdjustmentProblem, Solution};
 use super::wireframe::Wireframe;
 use crate::evidence::UncertaintyTable;
+use crate::math::median;
 use crate::model::{CornerUncertainty, FacetUncertainty};
 
+/// The uncertainty of every facet of a solved problem.
+pub(super) fn uncertainty_of(
+    problem: &AdjustmentProblem,
+    solution: &Solution,
+) -> Vec<FacetUncertainty> {
+    let (w, state) = (problem.wireframe, &solution.state);
+    let place = w.corner(state, 0, w.faces[0][0][0]);
+    let pixels = problem
+        .scene
+        .views
+        .iter()
+        .map(|v| v.camera.ground_pixel(&place));
+    let pixel_m = median(&mut pixels.collect::<Vec<_>>()).unwrap_or(0.0);
+    of_facets(w, solution, pixel_m, UncertaintyTable::fitted())
+}
+
 /// The uncertainty of every facet of an adjusted wireframe; `pixel_m` is a ground pixel.
-pub(super) fn of_facets(
+fn of_facets(
     w: &Wireframe,
     solution: &Solution,
     pixel_m: f64,
@@ -109,7 +126,7 @@ fn plan_area(ring: &[CornerUncertainty]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::adjust::{AdjustmentProblem, Term};
+    use super::super::adjust::Term;
     use super::*;
     use crate::params::RefineParams;
     use crate::synthetic::gable_scene;

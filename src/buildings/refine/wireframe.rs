@@ -128,6 +128,12 @@ impl Wireframe {
         (wireframe, state)
     }
 
+    /// The vertex at a corner of a facet, counted through its rings.
+    pub(super) fn vertex(&self, face: usize, corner: usize) -> usize {
+        let mut vertices = self.faces[face].iter().flatten();
+        *vertices.nth(corner).expect("a corner of the facet")
+    }
+
     /// Number of unknowns.
     pub(super) fn size(&self) -> usize {
         2 * self.vertices + 3 * self.faces.len()

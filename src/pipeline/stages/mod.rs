@@ -1,4 +1,4 @@
-//! The stages of a reconstruction: one file each, in one table.
+//! The stages of a reconstruction: one file each, in one table; those of W96 in `objectspace`.
 //!
 //! To add a stage: write its file after the pattern of any other (what it finds, then the `impl` of
 //! [`StageDefinition`] with its name, the stages it needs, the parameters it reads, its sharded
@@ -12,17 +12,15 @@
 
 mod adjacency;
 mod adjustment;
-mod clusters;
 mod coplanar;
+mod corrections;
 mod dense;
-mod directions;
 mod facets;
 mod half_planes;
 mod lines;
 mod matches;
 mod model;
-mod rectangles;
-mod regions;
+mod objectspace;
 mod segments;
 
 use serde::de::DeserializeOwned;
@@ -35,7 +33,7 @@ use crate::scene::Scene;
 
 /// Makes the enumeration of the stages, the type of their results and the rows of the table.
 macro_rules! stage_table {
-    ($($(#[$doc:meta])* $stage:ident in $file:ident: $methods:expr,)*) => {
+    ($($(#[$doc:meta])* $stage:ident in $file:ident $(of $folder:ident)?: $methods:expr,)*) => {
         /// The stages of all methods, in their order.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Stage {
@@ -50,14 +48,14 @@ macro_rules! stage_table {
         /// The results of the stages; `None` for what has not run.
         #[derive(Clone, Debug, Default)]
         pub struct Results {
-            $($(#[$doc])* pub $file: Option<$file::Found>,)*
+            $($(#[$doc])* pub $file: Option<$($folder::)?$file::Found>,)*
         }
 
         impl Stage {
             pub(super) fn row(self) -> &'static Row {
                 match self {
                     $(Self::$stage => {
-                        use $file::$stage as Definition;
+                        use $($folder::)?$file::$stage as Definition;
                         &Row {
                             name: Definition::NAME,
                             title: Definition::TITLE,
@@ -110,13 +108,13 @@ stage_table! {
     /// Single views adjusted to the matched lines.
     Adjustment in adjustment: LINES,
     /// Regions with straight boundaries in every view, and the lines on these (W96 3.3).
-    Regions in regions: RECTANGLES,
+    Regions in regions of objectspace: RECTANGLES,
     /// Windows and their main directions (W96 3.4).
-    Directions in directions: RECTANGLES,
+    Directions in directions of objectspace: RECTANGLES,
     /// 3D lines by clustering (W96 3.5).
-    Clusters in clusters: RECTANGLES,
+    Clusters in clusters of objectspace: RECTANGLES,
     /// Planes between parallel lines and the closed buildings below them (W96 3.6).
-    Rectangles in rectangles: RECTANGLES,
+    Rectangles in rectangles of objectspace: RECTANGLES,
     /// 3D lines (B99 3.2).
     Lines in lines: LINES,
     /// Coplanar lines and their polygons (B99 2, 5).
@@ -129,6 +127,8 @@ stage_table! {
     Dense in dense: DENSE,
     /// Roof facets and the closed buildings below them (B99 4.2, 4.3).
     Facets in facets: LINES,
+    /// What somebody corrects of the model by hand.
+    Corrections in corrections: ALL,
     /// The textured model.
     Model in model: ALL,
 }

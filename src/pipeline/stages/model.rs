@@ -18,7 +18,7 @@ impl StageDefinition for Model {
     const TITLE: &'static str = "Model";
     const SECTION: &'static str = "walls, texture, files";
     const READS: &'static [&'static str] = &["texture"];
-    const NEEDS: &'static [Stage] = &[Stage::Rectangles, Stage::Facets];
+    const NEEDS: &'static [Stage] = &[Stage::Corrections];
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let model = before.roof_model().expect("stages run in their order");

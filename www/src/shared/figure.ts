@@ -8,6 +8,7 @@ import type {
   AdjacencyGraphs,
   ClusterTrace,
   CoplanarSets,
+  CorrectionTrace,
   Correspondence,
   DensePlanes,
   Directions,
@@ -53,6 +54,8 @@ export interface Results {
   directions: Directions | null;
   clusters: ClusterTrace[] | null;
   rectangles: RectangleTrace | null;
+  /** What became of corrections by hand; the facets are the corrected ones then. */
+  corrected: CorrectionTrace | null;
 }
 
 export const NO_RESULTS: Results = {
@@ -79,6 +82,7 @@ export const NO_RESULTS: Results = {
   directions: null,
   clusters: null,
   rectangles: null,
+  corrected: null,
 };
 
 /** What the figures show of the selected segment or side, and what the core answered about it. */

@@ -97,6 +97,13 @@ export const STAGES = [
     reads: ["roof"],
   },
   {
+    name: "corrections",
+    title: "Corrections",
+    section: "by hand",
+    methods: ["lines", "rectangles", "combined", "coplanar", "adjacency"],
+    reads: ["corrections", "roof.refine"],
+  },
+  {
     name: "model",
     title: "Model",
     section: "walls, texture, files",

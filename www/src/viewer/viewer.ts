@@ -16,7 +16,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { ThemeColours } from "../shared/palette";
-import type { ViewInfo } from "../shared/records";
+import type { Vec3, ViewInfo } from "../shared/records";
 import type { Selection, Standpoint } from "../shared/selection";
 import { standFor } from "./scene/bounds";
 import { yUp, zUp } from "./scene/frame";
@@ -26,6 +26,7 @@ import type { Layer } from "./scene/layer";
 import { CUT, MEASURED, OF_BOTH_HALVES, PICK_ORDER } from "./scene/layerRoles";
 import { clipFromViewer } from "./scene/photoProjection";
 import { clipPlace, drawHalves } from "./scene/splitView";
+import { buildHandles, dragged, handleAt } from "./tools/handles";
 import { buildMeasure, type Measured, measure } from "./tools/measure";
 import { PressWatch } from "./tools/press";
 import { clippingPlane, type Section, sectionOf } from "./tools/section";
@@ -64,6 +65,10 @@ export class Viewer {
   /** The points that were clicked for a tool; null while clicks pick. */
   #points: Vector3[] | null = null;
   #onPoint: (points: Vector3[]) => void = () => undefined;
+  /** Dots that can be dragged, and the one that is being dragged. */
+  #handles: readonly Vector3[] = [];
+  #onDrop: (index: number, to: Vec3) => void = () => undefined;
+  #held: { index: number; to: Vector3 } | null = null;
 
   /** Hears where the camera stands once a person has moved it. */
   onStand: (standpoint: Standpoint) => void = () => undefined;
@@ -87,6 +92,11 @@ export class Viewer {
     this.#controls.listenToKeyEvents(canvas);
     this.#controls.addEventListener("change", () => this.draw());
     this.#controls.addEventListener("end", () => this.onStand(this.#standpoint()));
+    // Before the controls hear of it.
+    canvas.addEventListener("pointerdown", (event) => this.#takeHandle(event), { capture: true });
+    canvas.addEventListener("pointermove", (event) => this.#dragHandle(event));
+    canvas.addEventListener("pointerup", () => this.#dropHandle());
+    canvas.addEventListener("pointercancel", () => this.#dropHandle());
     const watch = new PressWatch((at) => this.press(at));
     canvas.addEventListener("pointerdown", (event) => watch.down(event));
     canvas.addEventListener("pointermove", (event) => watch.move(event));
@@ -258,6 +268,56 @@ export class Viewer {
       this.#renderer.clippingPlanes = [this.#cut];
       onSection(sectionOf(this.#shown(CUT), a, b));
     });
+  }
+
+  /** From now on clicks give points, local frame, until it is called with null. */
+  draw3d(onPoint: ((point: Vec3) => void) | null): void {
+    this.#collect(onPoint && ((points) => onPoint(zUp(points.splice(0)[0] as Vector3))));
+  }
+
+  /** Shows dots, local frame, that can be dragged; `onDrop` hears which, and where it was left. */
+  showHandles(handles: readonly Vec3[], onDrop: (index: number, to: Vec3) => void): void {
+    this.#handles = handles.map(yUp);
+    this.#onDrop = onDrop;
+    this.setLayer("handles", handles.length === 0 ? null : buildHandles(this.#handles));
+  }
+
+  #takeHandle(event: PointerEvent): void {
+    const { clientWidth: width, clientHeight: height } = this.#renderer.domElement;
+    if (this.#points !== null || this.#photo !== null || this.#left !== null || event.button !== 0) {
+      return;
+    }
+    const { at } = clipPlace({ x: event.offsetX, y: event.offsetY }, { width, height }, false);
+    const index = handleAt(at, this.#handles, this.#camera, { width, height });
+    const from = this.#handles[index];
+    if (from !== undefined) {
+      this.#held = { index, to: from };
+      this.#controls.enabled = false;
+    }
+  }
+
+  #dragHandle(event: PointerEvent): void {
+    const held = this.#held;
+    if (held === null) {
+      return;
+    }
+    const { clientWidth: width, clientHeight: height } = this.#renderer.domElement;
+    const { at } = clipPlace({ x: event.offsetX, y: event.offsetY }, { width, height }, false);
+    const from = this.#handles[held.index] as Vector3;
+    held.to = dragged(from, this.#caster(at).ray, event.shiftKey) ?? held.to;
+    const shown = this.#handles.map((handle, i) => (i === held.index ? held.to : handle));
+    this.setLayer("handles", buildHandles(shown));
+  }
+
+  #dropHandle(): void {
+    const held = this.#held;
+    if (held !== null) {
+      this.#held = null;
+      this.#controls.enabled = true;
+      if (held.to !== this.#handles[held.index]) {
+        this.#onDrop(held.index, zUp(held.to));
+      }
+    }
   }
 
   /** Shows what the cut hides, or the other side of it. */

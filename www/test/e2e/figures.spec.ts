@@ -411,7 +411,7 @@ test("only the stages behind a changed parameter run again", async () => {
   });
   await page.getByRole("button", { name: "Run all" }).click();
   await waitForStage(page, "model");
-  expect([...new Set(ran)]).toEqual(["facets", "model"]);
+  expect([...new Set(ran)]).toEqual(["facets", "corrections", "model"]);
   expect(await time("matches")).toBe(before);
   await expect(page).toHaveURL(/params=.*min_area_m2/);
 });

@@ -147,6 +147,7 @@ export class Session implements CoreSession {
       adjacency: { enabled: false },
       dense: { enabled: true },
       roof: {},
+      corrections: [] as unknown as ParamTree[string],
       texture: { max_atlas_px: 4096 },
     };
     return params as unknown as Params;
@@ -252,6 +253,10 @@ export class Session implements CoreSession {
 
   facets(): Facet[] {
     return FACETS;
+  }
+
+  corrected() {
+    return { outcomes: [], sources: FACETS.map((_, i) => i) };
   }
 
   image() {

@@ -3,20 +3,26 @@ import type { Results } from "../../shared/figure";
 import type { ParamTree } from "../../shared/paramTree";
 
 /** The facets of the model that refinement made of a building. */
-export function refinedFacets(building: number, { refinement }: Pick<Results, "refinement">): number[] {
-  const before = refinement?.before;
-  return (before?.sources ?? []).flatMap((source, facet) =>
-    before?.facets[source]?.building === building ? [facet] : [],
+export function refinedFacets(building: number, found: Refined): number[] {
+  const before = found.refinement?.before;
+  return sourcesOf(found).flatMap((source, facet) =>
+    before?.facets[source ?? -1]?.building === building ? [facet] : [],
   );
 }
 
 /** The building that a facet of the model belonged to before refinement. */
-export function buildingOfFacet(
-  facet: number,
-  { refinement }: Pick<Results, "refinement">,
-): number | undefined {
-  const before = refinement?.before;
-  return before?.facets[before.sources[facet] ?? -1]?.building;
+export function buildingOfFacet(facet: number, found: Refined): number | undefined {
+  return found.refinement?.before.facets[sourcesOf(found)[facet] ?? -1]?.building;
+}
+
+type Refined = Pick<Results, "refinement"> & Partial<Pick<Results, "corrected">>;
+
+/** For every facet of the model, corrected by hand or not, its index before refinement; null for one that was added. */
+function sourcesOf({ refinement, corrected }: Refined): readonly (number | null)[] {
+  const sources = refinement?.before.sources ?? [];
+  return corrected == null
+    ? sources
+    : corrected.sources.map((facet) => (facet === null ? null : (sources[facet] ?? null)));
 }
 
 /** Up to this chi-square a relation is adopted, as the present parameters have it. */

@@ -23,6 +23,7 @@ const FETCHED: Record<StageName, (from: ResultSource) => Promise<Partial<Results
   clusters: async (from) => ({ ...(await fetchLines(from)), clusters: await from.call("clusters") }),
   rectangles: async (from) => ({
     facets: await from.call("facets"),
+    corrected: null,
     madeWith: from.params,
     rectangles: await from.call("rectangles"),
   }),
@@ -49,11 +50,16 @@ const FETCHED: Record<StageName, (from: ResultSource) => Promise<Partial<Results
   dense: async (from) => ({ dense: await from.call("dense") }),
   facets: async (from) => ({
     facets: await from.call("facets"),
+    corrected: null,
     madeWith: from.params,
     grouping: await from.call("grouping"),
     refinement: await from.call("refinement"),
     // The model adds new lines to the matched ones.
     ...(await fetchLines(from)),
+  }),
+  corrections: async (from) => ({
+    facets: await from.call("facets"),
+    corrected: await from.call("corrected"),
   }),
   model: async (from) => ({
     glb: await from.call("exportFile", "model.glb"),

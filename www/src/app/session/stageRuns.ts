@@ -103,7 +103,9 @@ export function chooseMethod(next: Method): void {
 
 export function resetParams(): void {
   const chosen = method.value as unknown as ParamTree[string];
-  replaceParams({ ...structuredClone(defaults.value), method: chosen });
+  const { corrections } = params.value;
+  const kept = corrections === undefined ? {} : { corrections };
+  replaceParams({ ...structuredClone(defaults.value), method: chosen, ...kept });
   outdateStages(0);
 }
 

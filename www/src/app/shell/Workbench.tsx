@@ -1,5 +1,6 @@
 /** Project on the left, the stage views in the middle, what they mean and parameters on the right. */
 import { Comparison } from "../comparison/Comparison";
+import { Corrections } from "../corrections/Corrections";
 import { AboutFigure } from "../figures/AboutFigure";
 import { Inspector } from "../inspector/Inspector";
 import { Downloads } from "../project/Downloads";
@@ -33,6 +34,7 @@ export function Workbench() {
         {tourStep.value === null && images.value.length > 0 && <PageTakeAlong />}
         <Comparison />
         <Inspector />
+        <Corrections />
         <Parameters />
       </aside>
     </div>

@@ -4,13 +4,14 @@ import { useEffect, useRef } from "preact/hooks";
 import type { Measured } from "../../viewer/tools/measure";
 import type { Section } from "../../viewer/tools/section";
 import type { Viewer } from "../../viewer/viewer";
+import { isCorrecting, takePoint } from "../corrections/drawn";
 import { saveFile } from "../parts/saveFile";
 import { tab } from "../state/viewState";
 import { FlyTo, lookThrough, Photograph, throughView } from "./Photograph";
 import { SectionChart } from "./SectionChart";
 
 /** What clicks in the space view do besides picking. */
-type Tool = "measure" | "section";
+type Tool = "measure" | "section" | "draw";
 
 const tool = signal<Tool | null>(null);
 const measured = signal<Measured | null>(null);
@@ -26,6 +27,9 @@ export function SpaceTools({ viewer, onFit }: { viewer: Viewer | null; onFit: ()
     tool.value = isOn ? null : next;
     viewer?.measure(isOn || next !== "measure" ? null : (found) => (measured.value = found));
     viewer?.section(isOn || next !== "section" ? null : (found) => (section.value = found));
+    if (!isOn && next === "draw") {
+      viewer?.draw3d(takePoint);
+    }
   };
   const keepPicture = async () => {
     const blob = await viewer?.screenshot();
@@ -61,6 +65,11 @@ export function SpaceTools({ viewer, onFit }: { viewer: Viewer | null; onFit: ()
         <button type="button" aria-pressed={tool.value === "section"} onClick={() => choose("section")}>
           Section
         </button>
+        {isCorrecting.value && (
+          <button type="button" aria-pressed={tool.value === "draw"} onClick={() => choose("draw")}>
+            Draw
+          </button>
+        )}
         <button type="button" onClick={() => void keepPicture()}>
           Picture
         </button>
@@ -68,6 +77,11 @@ export function SpaceTools({ viewer, onFit }: { viewer: Viewer | null; onFit: ()
       </div>
       {tool.value !== null && <Crosshair viewer={viewer} onLeave={() => choose(tool.value ?? "measure")} />}
       {tool.value === "measure" && <Reading measured={measured.value} />}
+      {tool.value === "draw" && (
+        <p class="reading" role="status">
+          Click points of the model; dots can be dragged.
+        </p>
+      )}
       {tool.value === "section" && <Profile viewer={viewer} />}
     </>
   );

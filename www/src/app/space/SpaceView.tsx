@@ -29,6 +29,7 @@ import {
   standAt,
   tab,
 } from "../state/viewState";
+import { useCornerHandles } from "./cornerHandles";
 import { canStandBeside, isBeside, standBeside, wantsBeside } from "./keptBeside";
 import { ModeLegend, ModeSwitches } from "./ModelModes";
 import { model, showsKeptFacets, useModels } from "./modelLayers";
@@ -220,6 +221,7 @@ function useLayers(): void {
     }
   });
   useModels(viewer);
+  useCornerHandles(viewer);
   // After the effects that look at new results: where a person or a link has put the camera, it stays.
   useSignalEffect(() => {
     void [model.value, lineStage.value];

@@ -5,8 +5,12 @@ import { METHODS, type Method, STAGES, type StageName } from "../../shared/stage
 
 export type { Method };
 
-/** Views of the stages (the adjustment has none), and beside them the photographs and what the facets were made of. */
-export type Tab = Exclude<StageName, "adjustment"> | "images" | "groups" | "refinement";
+/** Stages without a view of their own: other views show what they do. */
+const SHOWN_BY = { adjustment: "matches", corrections: "model" } as const;
+type ShownElsewhere = keyof typeof SHOWN_BY;
+
+/** Views of the stages, and beside them the photographs and what the facets were made of. */
+export type Tab = Exclude<StageName, ShownElsewhere> | "images" | "groups" | "refinement";
 
 /** The views of a stage, in their order; one of its own name where it has no others. */
 const TABS_OF_STAGE: Partial<Record<StageName, readonly Tab[]>> = {
@@ -32,12 +36,16 @@ function tabsOf(method: Method): Tab[] {
 }
 
 function tabsOfStage(name: StageName): readonly Tab[] {
-  return name === "adjustment" ? [] : (TABS_OF_STAGE[name] ?? [name]);
+  return isShownElsewhere(name) ? [] : (TABS_OF_STAGE[name] ?? [name]);
 }
 
-/** The view that tells most of a stage: of the adjusted cameras, the matches. */
+/** The view that tells most of a stage. */
 export function mainTabOf(name: StageName): Tab {
-  return name === "adjustment" ? "matches" : name;
+  return isShownElsewhere(name) ? SHOWN_BY[name] : name;
+}
+
+function isShownElsewhere(name: StageName): name is ShownElsewhere {
+  return name in SHOWN_BY;
 }
 
 /** The stage whose result a view shows; null where it needs none. */

@@ -30,7 +30,7 @@ export const MEASURED = [
 ] as const;
 
 /** Layers of the place itself, and not of one result. */
-export const OF_BOTH_HALVES: ReadonlySet<string> = new Set(["grid", "measure"]);
+export const OF_BOTH_HALVES: ReadonlySet<string> = new Set(["grid", "measure", "handles"]);
 
 /** Layers of faces, which a cut goes through. */
 export const CUT = ["facets", "model"] as const;

@@ -304,6 +304,7 @@ describe("a run", () => {
       "halfplanes",
       "dense",
       "facets",
+      "corrections",
       "model",
     ];
     expect(ran.slice(-last.length)).toEqual(last);

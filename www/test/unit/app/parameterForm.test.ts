@@ -116,7 +116,7 @@ describe("firstStageOf", () => {
   it("finds the stage that a group changes first", () => {
     expect(firstStageOf("sweep", stages)).toBe(6);
     expect(firstStageOf("dense", stages)).toBe(7);
-    expect(firstStageOf("texture", stages)).toBe(9);
+    expect(firstStageOf("texture", stages)).toBe(10);
     expect(firstStageOf("adjustment", stages)).toBe(stages.indexOf("matches"));
   });
 
@@ -124,7 +124,7 @@ describe("firstStageOf", () => {
     const rectangles = stagesOf("rectangles");
     expect(firstStageOf("objectspace.planes.min_area_m2", rectangles)).toBe(3);
     expect(firstStageOf("objectspace.planes.min_height_m", rectangles)).toBe(1);
-    expect(firstStageOf("sweep.min_similarity", rectangles)).toBe(5);
+    expect(firstStageOf("sweep.min_similarity", rectangles)).toBe(6);
   });
 
   it("outdates everything for a group it does not know", () => {

@@ -1,16 +1,16 @@
 //! Windows and their main directions (W96 3.4).
 
-use super::{Findings, Outcome, Results, Stage, StageDefinition};
-use super::{required, to_bytes, untraced, warn_if};
+use super::super::{Findings, Outcome, Results, Stage, StageDefinition};
+use super::super::{required, to_bytes, untraced, warn_if};
 use crate::execution::Sharded;
 use crate::objectspace::{Window, WindowTrace, find_directions};
 use crate::params::Params;
 use crate::scene::Scene;
 
 /// Windows with their main directions.
-pub(super) type Found = Outcome<Vec<Window>, WindowTrace>;
+pub(in super::super) type Found = Outcome<Vec<Window>, WindowTrace>;
 
-pub(super) struct Directions;
+pub(in super::super) struct Directions;
 
 impl StageDefinition for Directions {
     type Found = Found;

@@ -1,7 +1,7 @@
 //! Planes between parallel lines and the closed buildings below them (W96 3.6).
 
-use super::{Findings, Outcome, Results, Stage, StageDefinition};
-use super::{from_bytes, is_any, required, to_bytes, warn_if};
+use super::super::{Findings, Outcome, Results, Stage, StageDefinition};
+use super::super::{from_bytes, is_any, required, to_bytes, warn_if};
 use crate::execution::Sharded;
 use crate::model::RoofModel;
 use crate::objectspace::{RectangleTrace, find_rectangles};
@@ -9,9 +9,9 @@ use crate::params::Params;
 use crate::scene::Scene;
 
 /// Planes and buildings.
-pub(super) type Found = Outcome<RoofModel, RectangleTrace>;
+pub(in super::super) type Found = Outcome<RoofModel, RectangleTrace>;
 
-pub(super) struct Rectangles;
+pub(in super::super) struct Rectangles;
 
 impl StageDefinition for Rectangles {
     type Found = Found;

@@ -1,15 +1,15 @@
 //! Regions with straight boundaries in every view (W96 3.3).
 
-use super::{Findings, Outcome, Results, Stage, StageDefinition, to_bytes, untraced};
+use super::super::{Findings, Outcome, Results, Stage, StageDefinition, to_bytes, untraced};
 use crate::execution::Sharded;
 use crate::objectspace::{RegionLine, Segmentation, find_regions};
 use crate::params::Params;
 use crate::scene::Scene;
 
 /// Lines on the boundaries of the regions of each view, in the order of the views.
-pub(super) type Found = Outcome<Vec<Vec<RegionLine>>, Vec<Segmentation>>;
+pub(in super::super) type Found = Outcome<Vec<Vec<RegionLine>>, Vec<Segmentation>>;
 
-pub(super) struct Regions;
+pub(in super::super) struct Regions;
 
 impl StageDefinition for Regions {
     type Found = Found;

@@ -1,16 +1,16 @@
 //! 3D lines by clustering (W96 3.5).
 
-use super::{Findings, Outcome, Results, Stage, StageDefinition};
-use super::{is_any, required, to_bytes, untraced, warn_if};
+use super::super::{Findings, Outcome, Results, Stage, StageDefinition};
+use super::super::{is_any, required, to_bytes, untraced, warn_if};
 use crate::execution::Sharded;
 use crate::objectspace::{ClusterTrace, FoundLine, find_clusters};
 use crate::params::Params;
 use crate::scene::Scene;
 
 /// 3D lines; a trace for each window and direction.
-pub(super) type Found = Outcome<Vec<FoundLine>, Vec<ClusterTrace>>;
+pub(in super::super) type Found = Outcome<Vec<FoundLine>, Vec<ClusterTrace>>;
 
-pub(super) struct Clusters;
+pub(in super::super) struct Clusters;
 
 impl StageDefinition for Clusters {
     type Found = Found;

@@ -1,0 +1,59 @@
+/** Dots that can be dragged: level, or upright with Shift. */
+import {
+  BufferGeometry,
+  type Camera,
+  Plane,
+  Points,
+  PointsMaterial,
+  type Ray,
+  type Vector2,
+  Vector3,
+} from "three";
+import { PALETTE } from "../../shared/palette";
+import { disposeObject, type Layer, unpicked } from "../scene/layer";
+
+/** A dot is taken within this distance, CSS pixels. */
+const REACH_PX = 12;
+const DOT_PX = 11;
+/** Nothing is dragged further, metres: near the horizon a pixel is a field. */
+const FURTHEST_M = 30;
+
+/** The dot at a place of the canvas, in clip coordinates; -1 for none. */
+export function handleAt(
+  at: Vector2,
+  handles: readonly Vector3[],
+  camera: Camera,
+  size: { width: number; height: number },
+): number {
+  const distance = (handle: Vector3) => {
+    const seen = handle.clone().project(camera);
+    return Math.hypot(((seen.x - at.x) * size.width) / 2, ((seen.y - at.y) * size.height) / 2);
+  };
+  const nearest = handles.map((handle, i) => ({ i, d: distance(handle) })).sort((a, b) => a.d - b.d)[0];
+  return nearest !== undefined && nearest.d <= REACH_PX ? nearest.i : -1;
+}
+
+/** Where a dot is dragged to: on its level, or above and below it. */
+export function dragged(from: Vector3, ray: Ray, isUpright: boolean): Vector3 | null {
+  const up = new Vector3(0, 1, 0);
+  const facing = ray.direction.clone().setY(0).normalize();
+  const plane = new Plane().setFromNormalAndCoplanarPoint(isUpright ? facing : up, from);
+  const hit = ray.intersectPlane(plane, new Vector3());
+  if (hit === null || hit.distanceTo(from) > FURTHEST_M) {
+    return null;
+  }
+  return isUpright ? new Vector3(from.x, hit.y, from.z) : hit;
+}
+
+export function buildHandles(handles: readonly Vector3[]): Layer {
+  const geometry = new BufferGeometry().setFromPoints([...handles]);
+  const material = new PointsMaterial({
+    color: PALETTE.selected,
+    size: DOT_PX,
+    sizeAttenuation: false,
+    depthTest: false,
+  });
+  const object = new Points(geometry, material);
+  object.renderOrder = 10;
+  return unpicked({ object, dispose: () => disposeObject(object) });
+}

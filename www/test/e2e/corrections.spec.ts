@@ -1,0 +1,417 @@
+/** Mistakes planted in a model, and corrected with a few clicks. */
+import { readFileSync } from "node:fs";
+import { expect, type Page, test } from "@playwright/test";
+import { give, houseFiles, openTab, upload, waitForStage, watch } from "./helpers";
+
+interface RoofFace {
+  slopeDeg: number;
+  azimuthDeg: number;
+  area: number;
+  corners: Place[];
+}
+
+/** The roof faces of the model, as its CityJSON has them. */
+async function roofOf(page: Page): Promise<RoofFace[]> {
+  const [download] = await Promise.all([
+    page.waitForEvent("download"),
+    page.getByRole("button", { name: "model.city.json" }).click(),
+  ]);
+  const city = JSON.parse(readFileSync(await download.path(), "utf8"));
+  const { scale, translate } = city.transform;
+  const place = (v: number) =>
+    city.vertices[v].map((x: number, i: number) => x * scale[i] + translate[i]) as Place;
+  type Building = { geometry?: { boundaries: number[][][][]; semantics: Semantics }[] };
+  type Semantics = { values: number[][]; surfaces: (RoofFace & { type: string })[] };
+  const objects = Object.values(city.CityObjects) as Building[];
+  return objects.flatMap(({ geometry = [] }) =>
+    geometry.flatMap(({ boundaries: [shell = []], semantics: { values, surfaces } }) =>
+      shell.flatMap((face, i) => {
+        const surface = surfaces[values[0]?.[i] ?? -1];
+        return surface?.type === "RoofSurface" ? [{ ...surface, corners: (face[0] ?? []).map(place) }] : [];
+      }),
+    ),
+  );
+}
+
+/** Largest distance of a corner of one roof from the edges of the other, metres: corners inside straight edges come and go. */
+function offBy(found: readonly RoofFace[], truth: readonly RoofFace[]): number {
+  const edges = found.flatMap(({ corners }) =>
+    corners.map((p, i) => [p, corners[(i + 1) % corners.length] ?? p] as const),
+  );
+  const off = (p: readonly number[]) =>
+    Math.min(
+      ...edges.map(([a, b]) => {
+        const along = b.map((x, i) => x - (a[i] ?? 0));
+        const by = p.map((x, i) => x - (a[i] ?? 0));
+        const dot = (u: readonly number[], v: readonly number[]) =>
+          u.reduce((sum, x, i) => sum + x * (v[i] ?? 0), 0);
+        const t = Math.min(1, Math.max(0, dot(by, along) / dot(along, along)));
+        return Math.hypot(...by.map((x, i) => x - t * (along[i] ?? 0)));
+      }),
+    );
+  return Math.max(...truth.flatMap(({ corners }) => corners.map(off)));
+}
+
+function normalOf({ slopeDeg, azimuthDeg }: RoofFace): Place {
+  const [slope, azimuth] = [(slopeDeg * Math.PI) / 180, (azimuthDeg * Math.PI) / 180];
+  return [Math.sin(slope) * Math.sin(azimuth), Math.sin(slope) * Math.cos(azimuth), Math.cos(slope)];
+}
+
+/** A place on a roof face near its middle, and its normal. */
+function placeOf(face: RoofFace): { at: Place; normal: Place } {
+  const normal = normalOf(face);
+  const mean = [0, 1, 2].map(
+    (i) => face.corners.reduce((sum, p) => sum + (p[i] ?? 0), 0) / face.corners.length,
+  );
+  const [c = [0, 0, 0]] = face.corners;
+  const [x = 0, y = 0] = mean;
+  const z = (c[2] ?? 0) - (normal[0] * (x - (c[0] ?? 0)) + normal[1] * (y - (c[1] ?? 0))) / normal[2];
+  return { at: [x, y, z], normal };
+}
+
+/** Corrections that put a facet of another slope in the place of one, turned about its ridge. */
+function wrongSlope(face: RoofFace, slopeDeg: number): object[] {
+  const ridge = Math.max(...face.corners.map(([, , z]) => z));
+  const tan = (degrees: number) => Math.tan((degrees * Math.PI) / 180);
+  const times = tan(slopeDeg) / tan(face.slopeDeg);
+  const outline = face.corners.map(([x, y, z]) => [x, y, ridge - (ridge - z) * times]);
+  return [
+    { correction: "delete_facet", facet: placeOf(face), filled: false },
+    { correction: "add_facet", outline },
+  ];
+}
+
+type Place = [number, number, number];
+const along = (p: Place, by: Place, times: number) => p.map((x, i) => x + times * (by[i] ?? 0)) as Place;
+const minus = (p: Place, q: Place) => along(p, q, -1);
+const dot = (p: Place, q: Place) => p.reduce((sum, x, i) => sum + x * (q[i] ?? 0), 0);
+const cross = ([a, b, c]: Place, [d, e, f]: Place): Place => [b * f - c * e, c * d - a * f, a * e - b * d];
+const unit = (p: Place) => along([0, 0, 0], p, 1 / Math.sqrt(dot(p, p)));
+
+/** Vertical field of view of the 3D view. */
+const FIELD_OF_VIEW_DEG = 35;
+const DISTANCE_M = 30;
+
+/** The 3D view, from where it shows a place in its middle; where it shows others, pixels of the page. */
+async function look(page: Page, origin: Place, at: Place, from: Place) {
+  const target = minus(at, origin);
+  const eye = along(target, unit(from), DISTANCE_M);
+  await page.evaluate((camera) => {
+    const fields = new URLSearchParams(location.hash.slice(1));
+    fields.set("camera", camera);
+    location.hash = fields.toString();
+  }, [...eye, ...target].join());
+  const canvas = page.getByTestId("viewer");
+  const box = await canvas.boundingBox();
+  if (box === null) {
+    throw new Error("the 3D view is not shown");
+  }
+  const ahead = unit(minus(target, eye));
+  const right = unit(cross(ahead, [0, 0, 1]));
+  const up = cross(right, ahead);
+  const scale = box.height / 2 / Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360);
+  return (p: Place) => {
+    const by = minus(minus(p, origin), eye);
+    const depth = dot(by, ahead);
+    return {
+      x: box.x + box.width / 2 + (scale * dot(by, right)) / depth,
+      y: box.y + box.height / 2 - (scale * dot(by, up)) / depth,
+    };
+  };
+}
+
+/** Opens corrections that plant a mistake. */
+async function plant(page: Page, corrections: readonly object[]): Promise<void> {
+  await page
+    .getByTestId("corrections-file")
+    .setInputFiles(upload("planted.json", Buffer.from(JSON.stringify(corrections))));
+  await expect(page.getByRole("list", { name: "Corrections so far" }).getByRole("listitem")).toHaveCount(
+    corrections.length,
+  );
+  await settled(page);
+}
+
+async function settled(page: Page): Promise<void> {
+  await waitForStage(page, "corrections");
+  await waitForStage(page, "model");
+  await expect(page.getByTestId("corrections").getByText("Not applied")).toHaveCount(0);
+}
+
+/** Selects the facet that covers a place: what a click on it does. */
+async function pick(page: Page, x: number, y: number): Promise<void> {
+  const faces = await roofOf(page);
+  const inside = ({ corners }: RoofFace) =>
+    corners.reduce((odd, p, i) => {
+      const q = corners[(i + 1) % corners.length] ?? p;
+      return odd !== (p[1] > y !== q[1] > y && x < p[0] + ((q[0] - p[0]) * (y - p[1])) / (q[1] - p[1]));
+    }, false);
+  // A facet in the hole of another one lies within the outlines of both.
+  const [smallest] = faces.filter(inside).sort((a, b) => a.area - b.area);
+  const index = smallest === undefined ? -1 : faces.indexOf(smallest);
+  expect(index).toBeGreaterThanOrEqual(0);
+  await page.evaluate((select) => {
+    const fields = new URLSearchParams(location.hash.slice(1));
+    fields.set("select", select);
+    location.hash = fields.toString();
+  }, `facet:${index}`);
+  await expect(page.getByTestId("corrections").getByText(`Facet ${index},`)).toBeVisible();
+}
+
+test("a false facet, a wrong slope and a missing facet are corrected with a few clicks", async ({ page }) => {
+  test.slow();
+  const { problems } = watch(page);
+  await page.goto("/");
+  await give(page, houseFiles());
+  await page.getByRole("button", { name: "Run all" }).click();
+  await waitForStage(page, "model");
+  const truth = await roofOf(page);
+  const panel = page.getByTestId("corrections");
+  await panel.getByRole("heading", { name: "Corrections" }).click();
+  const press = (name: string) => panel.getByRole("button", { name, exact: true }).click();
+
+  // The slopes at the ridge of the side wing, by the largest pair that falls in opposite directions.
+  const west = truth.find(({ azimuthDeg, slopeDeg }) => Math.abs(azimuthDeg - 246) < 5 && slopeDeg > 30);
+  const east = truth.find(({ azimuthDeg }) => Math.abs(azimuthDeg - 66) < 5);
+  if (west === undefined || east === undefined) {
+    throw new Error("the house has a side wing");
+  }
+  const [slope, counterpart] = [placeOf(west), placeOf(east)];
+
+  await test.step("the next doubtful facet comes by one key, and is confirmed", async () => {
+    // Keys are heard once the panel has opened.
+    await expect(async () => {
+      await page.keyboard.press("n");
+      await expect(panel.getByText(/^Facet \d+, probability 0\.[0-8]/)).toBeVisible({ timeout: 1000 });
+    }).toPass();
+    await press("Confirm");
+    await settled(page);
+    await expect(panel.getByText("No facet is doubtful")).toBeVisible();
+    await press("Undo");
+    await settled(page);
+  });
+
+  await test.step("a false facet goes, and the slope closes over it", async () => {
+    const [x = 0, y = 0, z = 0] = counterpart.at;
+    const outline = [
+      [x - 1, y - 1],
+      [x + 1, y - 1],
+      [x + 1, y + 1],
+      [x - 1, y + 1],
+    ].map(([u, v]) => [u, v, z + 3]);
+    await plant(page, [{ correction: "add_facet", outline }]);
+    expect(await roofOf(page)).toHaveLength(truth.length + 1);
+    const started = Date.now();
+    await pick(page, x, y);
+    await press("Delete facet");
+    await settled(page);
+    expect(Date.now() - started).toBeLessThan(30_000);
+    const found = await roofOf(page);
+    expect(found).toHaveLength(truth.length);
+    expect(offBy(found, truth)).toBeLessThan(0.05);
+  });
+
+  await test.step("a wrong slope is mended by its number", async () => {
+    await plant(page, wrongSlope(west, 22));
+    const wrong = await roofOf(page);
+    expect(wrong).toHaveLength(truth.length);
+    expect(offBy(wrong, truth)).toBeGreaterThan(0.8);
+    await pick(page, slope.at[0] ?? 0, slope.at[1] ?? 0);
+    await panel.getByLabel("Slope").fill(west.slopeDeg.toFixed(2));
+    await panel.getByLabel("Slope").press("Enter");
+    await settled(page);
+    const found = await roofOf(page);
+    expect(found).toHaveLength(truth.length);
+    expect(offBy(found, truth)).toBeLessThan(0.25);
+  });
+
+  await test.step("a missing slope is the counterpart of the other one", async () => {
+    await plant(page, [{ correction: "delete_facet", facet: slope, filled: false }]);
+    expect(await roofOf(page)).toHaveLength(truth.length - 1);
+    await pick(page, counterpart.at[0] ?? 0, counterpart.at[1] ?? 0);
+    await press("Add counterpart");
+    await settled(page);
+    const found = await roofOf(page);
+    expect(found).toHaveLength(truth.length);
+    const added = found.find(({ azimuthDeg, slopeDeg }) => Math.abs(azimuthDeg - 246) < 5 && slopeDeg > 30);
+    expect(Math.abs((added?.area ?? 0) - west.area) / west.area).toBeLessThan(0.15);
+  });
+
+  await test.step("what no longer applies says why, and what is no list is rejected", async () => {
+    const gone = { at: [slope.at[0], slope.at[1], (slope.at[2] ?? 0) + 5], normal: slope.normal };
+    const file = (text: string) => upload("planted.json", Buffer.from(text));
+    await page
+      .getByTestId("corrections-file")
+      .setInputFiles(file(JSON.stringify([{ correction: "confirm", facet: gone }])));
+    await expect(panel.getByText("the facet there has another height now")).toBeVisible();
+    await page.getByTestId("corrections-file").setInputFiles(file("{}"));
+    await expect(page.getByText("These are no corrections")).toBeVisible();
+  });
+  expect(problems).toEqual([]);
+});
+
+test("facets are deleted, divided, merged and made symmetric, and corners dragged, in the 3D view", async ({
+  page,
+}) => {
+  test.slow();
+  const { problems } = watch(page);
+  await page.goto("/");
+  await give(page, houseFiles());
+  await page.getByRole("button", { name: "Run all" }).click();
+  await waitForStage(page, "model");
+  await openTab(page, "Model");
+  const truth = await roofOf(page);
+  const [download] = await Promise.all([
+    page.waitForEvent("download"),
+    page.getByRole("button", { name: "report.json" }).click(),
+  ]);
+  const origin: Place = JSON.parse(readFileSync(await download.path(), "utf8")).origin;
+  const panel = page.getByTestId("corrections");
+  await panel.getByRole("heading", { name: "Corrections" }).click();
+  const press = (name: string) => panel.getByRole("button", { name, exact: true }).click();
+  const done = panel.getByRole("list", { name: "Corrections so far" }).getByRole("listitem");
+  const west = truth.find(({ azimuthDeg, slopeDeg }) => Math.abs(azimuthDeg - 246) < 5 && slopeDeg > 30);
+  const east = truth.find(({ azimuthDeg }) => Math.abs(azimuthDeg - 66) < 5);
+  if (west === undefined || east === undefined) {
+    throw new Error("the house has a side wing");
+  }
+  const [slope, counterpart] = [placeOf(west), placeOf(east)];
+
+  /** Clicks a place of a roof in the 3D view, seen from above it, until that is heard: a new model takes a moment to be shown. */
+  const click = async ({ at, normal }: { at: Place; normal: Place }, isHeard: () => Promise<void>) => {
+    await expect(async () => {
+      const { x, y } = (await look(page, origin, at, normal))(at);
+      await page.mouse.click(x, y);
+      await isHeard();
+    }).toPass({ timeout: 30_000 });
+  };
+  const select = (place: { at: Place; normal: Place }) =>
+    click(place, () => expect(panel.getByText(/^Facet \d+, probability/)).toBeVisible({ timeout: 2000 }));
+  /** The second facet of a correction about two. */
+  const clickOther = (place: { at: Place; normal: Place }, count: number) =>
+    click(place, () => expect(done).toHaveCount(count, { timeout: 2000 }));
+  const undo = async () => {
+    await press("Undo");
+    await settled(page);
+    expect(offBy(await roofOf(page), truth)).toBeLessThan(0.002);
+  };
+
+  type Pixel = { x: number; y: number };
+  /** Drags a dot, which is the first correction. */
+  const drag = async (from: Pixel, to: Pixel) => {
+    await page.mouse.move(from.x, from.y);
+    await page.mouse.down();
+    await page.mouse.move((from.x + to.x) / 2, (from.y + to.y) / 2);
+    await page.mouse.move(to.x, to.y);
+    await page.mouse.up();
+    await expect(done).toHaveCount(1);
+    await settled(page);
+  };
+  const distanceTo = async (place: Place) => {
+    const corners = (await roofOf(page)).flatMap((face) => face.corners);
+    return Math.min(...corners.map((p) => Math.sqrt(dot(minus(p, place), minus(p, place)))));
+  };
+
+  await test.step("a facet is clicked and deleted", async () => {
+    await select(slope);
+    await press("Delete facet");
+    await expect(done).toHaveCount(1);
+    await settled(page);
+    const left = await roofOf(page);
+    expect(left).toHaveLength(truth.length - 1);
+    expect(left.some(({ azimuthDeg, slopeDeg }) => Math.abs(azimuthDeg - 246) < 5 && slopeDeg > 30)).toBe(
+      false,
+    );
+    await undo();
+  });
+
+  await test.step("the dot of a corner is dragged", async () => {
+    await select(slope);
+    const eave = [...west.corners].sort((p, q) => p[2] - q[2])[0] ?? slope.at;
+    const [nx, ny] = slope.normal;
+    const to = along(eave, unit([nx, ny, 0]), 1);
+    const seen = await look(page, origin, eave, [nx, ny, 1.5]);
+    await drag(seen(eave), seen(to));
+    expect(await distanceTo(to)).toBeLessThan(0.15);
+    await undo();
+  });
+
+  await test.step("the dot of an edge is dragged upright", async () => {
+    await select(slope);
+    const edges = west.corners.map((p, i) => [p, west.corners[(i + 1) % west.corners.length] ?? p] as const);
+    const [lowest = [slope.at, slope.at]] = edges.sort(([p, q], [r, s]) => p[2] + q[2] - r[2] - s[2]);
+    const middle = along(along([0, 0, 0], lowest[0], 0.5), lowest[1], 0.5);
+    const raised = (p: Place) => along(p, [0, 0, 1], 0.5);
+    const seen = await look(page, origin, middle, [slope.normal[0], slope.normal[1], 0.5]);
+    await page.keyboard.down("Shift");
+    await drag(seen(middle), seen(raised(middle)));
+    await page.keyboard.up("Shift");
+    // Where the edge ends at a valley, its end slides along it.
+    const direction = unit(minus(lowest[1], lowest[0]));
+    const off = (p: Place) => {
+      const aside = cross(minus(p, raised(middle)), direction);
+      return Math.sqrt(dot(aside, aside));
+    };
+    const faces = await roofOf(page);
+    const ends = faces.flatMap(({ corners }) =>
+      corners.map((p, i) => Math.max(off(p), off(corners[(i + 1) % corners.length] ?? p))),
+    );
+    expect(Math.min(...ends)).toBeLessThan(0.1);
+    await undo();
+  });
+
+  await test.step("a facet is divided along two clicks, and its parts are merged by two more", async () => {
+    await select(slope);
+    const fall = unit([slope.normal[0], slope.normal[1], 0]);
+    const down: Place = [fall[0], fall[1], -Math.tan((west.slopeDeg * Math.PI) / 180)];
+    await page.getByRole("button", { name: "Draw", exact: true }).click();
+    for (const [i, by] of [-0.8, 0.8].entries()) {
+      const heard = panel.getByRole("button", { name: `Forget ${i + 1} point` });
+      await click({ at: along(slope.at, down, by), normal: slope.normal }, () =>
+        expect(heard).toBeVisible({ timeout: 2000 }),
+      );
+    }
+    await page.getByRole("button", { name: "Draw", exact: true }).click();
+    await press("Divide the facet here");
+    await expect(done).toHaveCount(1);
+    await settled(page);
+    expect(await roofOf(page)).toHaveLength(truth.length + 1);
+    const beside: Place = [-fall[1], fall[0], 0];
+    const part = (by: number) => ({ at: along(slope.at, beside, by), normal: slope.normal });
+    await select(part(0.8));
+    await press("Merge with …");
+    await clickOther(part(-0.8), 2);
+    await settled(page);
+    const found = await roofOf(page);
+    expect(found).toHaveLength(truth.length);
+    expect(offBy(found, truth)).toBeLessThan(0.02);
+    await press("Undo");
+    await settled(page);
+    await undo();
+  });
+
+  await test.step("saved corrections are opened again; two clicks make slopes symmetric", async () => {
+    await plant(page, wrongSlope(west, 22));
+    await select({ at: along(slope.at, [0, 0, 1], 0.5), normal: slope.normal });
+    await press("Symmetric with …");
+    await clickOther(counterpart, 3);
+    await settled(page);
+    const found = await roofOf(page);
+    const slopes = [246, 66].map((azimuth) =>
+      Math.max(...found.flatMap((f) => (Math.abs(f.azimuthDeg - azimuth) < 5 ? [f.slopeDeg] : []))),
+    );
+    expect(Math.abs((slopes[0] ?? 0) - (slopes[1] ?? 90))).toBeLessThan(0.1);
+    const [saved] = await Promise.all([page.waitForEvent("download"), press("Save corrections")]);
+    const list = readFileSync(await saved.path());
+    for (let left = 3; left > 0; left -= 1) {
+      await panel.getByRole("button", { name: `Remove correction ${left}` }).click();
+      await expect(done).toHaveCount(left - 1);
+      await settled(page);
+    }
+    expect(await roofOf(page)).toEqual(truth);
+    await page.getByTestId("corrections-file").setInputFiles(upload("saved.json", list));
+    await expect(done).toHaveCount(3);
+    await settled(page);
+    expect(await roofOf(page)).toEqual(found);
+  });
+  expect(problems).toEqual([]);
+});
