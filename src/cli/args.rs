@@ -47,7 +47,8 @@ pub(super) struct InputArgs {
     /// Reconstruct only this part of the ground plan, metres in the frame of the orientation.
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_roi, allow_hyphen_values = true)]
     pub roi: Option<[f64; 4]>,
-    /// Use at most so many views of that part, those that say most about it (12 if not given).
+    /// Use at most so many views of that part, those that say most about it (12 if not given); more
+    /// where they show little of it each, so that half as many see a place.
     #[arg(long, value_name = "N", requires = "roi", value_parser = clap::value_parser!(u16).range(3..))]
     pub max_views: Option<u16>,
     /// Reduce photographs by this whole factor first; by default large ones as long as their pixels

@@ -56,8 +56,8 @@ pub(crate) fn consistency_map_of_surface(
     )
 }
 
-/// The same on a plane with known occluders: `hidden` tells whether a point of the plane is occluded in a
-/// view.
+/// The same on a plane with known occluders: `hidden` tells whether a point of the plane is
+/// occluded in a view.
 pub(crate) fn consistency_map_behind(
     scene: &Scene,
     plane: &Plane,

@@ -13,7 +13,8 @@ pub struct LoadOptions {
     pub views: Option<Vec<String>>,
     /// Region of interest x0, y0, x1, y1, metres, world frame of the input.
     pub roi: Option<[f64; 4]>,
-    /// Most views of the region of interest, those that say most about it; 12 when absent.
+    /// Most views of the region of interest, those that say most about it; 12 when absent. More
+    /// where views show parts of it, so that half as many see a place.
     pub max_views: Option<usize>,
     /// Height of the ground, metres, world frame of the input.
     pub ground_z: Option<f64>,

@@ -7,9 +7,12 @@
 
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 
-use super::{MIN_SAMPLES, STANDS_OUT, is_within, level_plane};
 use crate::geometry::Plane;
 
+/// Blocks further than this from a plane do not lie in it, metres: lower than any eave.
+pub(super) const STANDS_OUT: f64 = 1.0;
+/// Fewer matched positions determine no height.
+pub(super) const MIN_SAMPLES: usize = 30;
 /// Ground as a whole slopes less than this (normal's z of 18 degrees). Assumption: a steeper fit
 /// follows a roof.
 const LEAST_LEVEL: f64 = 0.95;
@@ -28,6 +31,18 @@ const STEEPEST: f64 = 0.3;
 const SLOPE_STEPS: i32 = 6;
 /// So many positions show the slope.
 const SLOPE_SAMPLES: usize = 4000;
+
+/// Is a matched position within a distance of a place in plan, metres?
+pub(super) fn is_within(sample: &Point3<f64>, at: &Point2<f64>, distance: f64) -> bool {
+    (sample.xy() - at).norm_squared() <= distance * distance
+}
+
+pub(super) fn level_plane(z: f64) -> Plane {
+    Plane {
+        normal: Vector3::z(),
+        d: -z,
+    }
+}
 
 /// Planes through what is lowest around these places.
 pub(super) fn proposals(samples: &[Point3<f64>], places: &[Point2<f64>]) -> Vec<Plane> {

@@ -16,8 +16,10 @@ mod sweep;
 
 pub use given::{TerrainComparison, TerrainVerdict};
 
-use nalgebra::{Point2, Point3, Vector2, Vector3};
+use common_plane::{MIN_SAMPLES, STANDS_OUT, is_within, level_plane};
+use nalgebra::{Point2, Point3, Vector2};
 use serde::{Deserialize, Serialize};
+use surface::ROUGHNESS;
 
 use crate::execution::Sharded;
 use crate::geometry::{Plane, Segment3};
@@ -42,16 +44,10 @@ pub struct Ground {
     terrain: Option<TerrainComparison>,
 }
 
-/// Blocks further than this from a plane do not lie in it, metres: lower than any eave.
-const STANDS_OUT: f64 = 1.0;
 /// Cell of the ground grid, metres.
 const CELL: f64 = 5.0;
 /// Positions within this distance of a block's middle settle its height, metres.
 const SETTLING: f64 = 7.5;
-/// What lies closer than this to the surface is ground, metres: as rough as ground is.
-const ROUGHNESS: f64 = 0.5;
-/// Fewer matched positions determine no height.
-const MIN_SAMPLES: usize = 30;
 impl Ground {
     /// The same height everywhere.
     pub fn level(z: f64) -> Self {
@@ -233,18 +229,6 @@ impl Ground {
             return lowest;
         }
         crate::math::median(&mut heights).unwrap_or(f64::NAN)
-    }
-}
-
-/// Is a matched position within a distance of a place in plan, metres?
-fn is_within(sample: &Point3<f64>, at: &Point2<f64>, distance: f64) -> bool {
-    (sample.xy() - at).norm_squared() <= distance * distance
-}
-
-fn level_plane(z: f64) -> Plane {
-    Plane {
-        normal: Vector3::z(),
-        d: -z,
     }
 }
 

@@ -24,8 +24,9 @@ const TALLEST_M: f64 = 60.0;
 /// Margin around the box, pixels, so that filters and windows at its border are complete.
 const MARGIN_PX: f64 = 40.0;
 
-/// Most views of a region where no number is stated. Assumption: a dozen see every roof from all
-/// sides; time grows with their number and accuracy with its root.
+/// Most views of a region where no number is stated; more only where they show parts of it, so that
+/// half as many see a place. Assumption: a dozen see every roof from all sides, half a dozen from
+/// most; time grows with their number and accuracy with its root.
 pub const MOST_VIEWS: usize = 12;
 
 /// Points along a side of the region at which views are compared.

@@ -23,8 +23,9 @@ struct Patch {
     information: Matrix3<f64>,
 }
 
-/// Indices of at most `most` cameras, in their order, that say most about surfaces at these places,
-/// which are known to within `unknown_m` metres before.
+/// Indices of cameras, in their order, that say most about surfaces at these places, which are
+/// known to within `unknown_m` metres before: at most `most`, or so many more that a place is seen
+/// by half as many in the mean. Views that show a part of the places only are read in part.
 pub(crate) fn most_telling(
     cameras: &[Camera],
     places: &[Point3<f64>],
@@ -42,7 +43,11 @@ pub(crate) fn most_telling(
     let mut patches: Vec<Patch> = places.iter().map(patch).collect();
     let mut chosen = Vec::new();
     let mut waiting: Vec<usize> = (0..cameras.len()).collect();
-    while chosen.len() < most {
+    // Places beyond the border of a flight are not waited for.
+    let is_shown = |patch: &&Patch| cameras.iter().filter(|c| sees(c, patch)).count() >= 3;
+    let shown = patches.iter().filter(is_shown).count();
+    let mut seen = 0;
+    while chosen.len() < most || 2 * seen < most * shown {
         let gains = crate::execution::map(&waiting, |_, &view| gain(&cameras[view], &patches));
         // Of equal ones the first.
         let best = (0..gains.len())
@@ -53,6 +58,9 @@ pub(crate) fn most_telling(
         for patch in &mut patches {
             patch.information += information(&cameras[view], patch);
         }
+        seen += (patches.iter())
+            .filter(|patch| sees(&cameras[view], patch))
+            .count();
         chosen.push(view);
     }
     chosen.sort_unstable();
@@ -68,10 +76,14 @@ fn gain(camera: &Camera, patches: &[Patch]) -> f64 {
     patches.iter().map(of_patch).sum()
 }
 
+fn sees(camera: &Camera, patch: &Patch) -> bool {
+    let image = camera.project(&patch.place);
+    image.is_some_and(|x| camera.contains(&x, 0.0))
+}
+
 /// What a view tells of the position of a piece of surface, metres to the minus two.
 fn information(camera: &Camera, patch: &Patch) -> Matrix3<f64> {
-    let image = camera.project(&patch.place);
-    if !image.is_some_and(|x| camera.contains(&x, 0.0)) {
+    if !sees(camera, patch) {
         return Matrix3::zeros();
     }
     let ray = (camera.center - patch.place).normalize();
@@ -98,6 +110,30 @@ mod tests {
 
     fn at(x: f64, y: f64) -> Camera {
         nadir(x, y, 100.0)
+    }
+
+    #[test]
+    fn where_views_show_a_part_only_more_are_taken() {
+        // Each sees 133 m by 133 m.
+        let places: Vec<Point3<f64>> = (0..25)
+            .map(|i| Point3::new(f64::from(i % 5) * 100.0, f64::from(i / 5) * 100.0, 0.0))
+            .collect();
+        let cameras: Vec<Camera> = (0..300)
+            .map(|i| at(f64::from(i % 20) * 21.0, f64::from(i / 20) * 28.0))
+            .collect();
+        let chosen = most_telling(&cameras, &places, 60.0, 12);
+        let seen_by = |place: &Point3<f64>| {
+            let sees = |&&i: &&usize| {
+                let image = cameras[i].project(place);
+                image.is_some_and(|x| cameras[i].contains(&x, 0.0))
+            };
+            chosen.iter().filter(sees).count()
+        };
+        let seen: Vec<usize> = places.iter().map(seen_by).collect();
+        let mean = seen.iter().sum::<usize>() as f64 / seen.len() as f64;
+        assert!((6.0..6.5).contains(&mean), "{seen:?}");
+        assert!(seen.iter().all(|n| *n >= 3), "{seen:?}");
+        assert!(chosen.len() > 12 && chosen.len() < 150, "{}", chosen.len());
     }
 
     #[test]
