@@ -189,8 +189,8 @@ impl Ground {
         Some(ground)
     }
 
-    /// Does a model follow the roofs? Then what stands above the ground in the images does not stand
-    /// above it, and what is high in it has walls around.
+    /// Does a model follow the roofs? Then what stands above the ground in the images does not
+    /// stand above it, and what is high in it has walls around.
     fn is_surface(&self, terrain: &Terrain, samples: &[Point3<f64>], offset: f64) -> bool {
         let known = |p: Point2<f64>| Some(terrain.z_at(p.x, p.y)? + offset);
         let above_images = |s: &&Point3<f64>| s.z - self.z_at(&s.xy()) > ROOF_M;
