@@ -95,9 +95,10 @@ const ROOF_M: f64 = 2.0;
 /// A rise of this much within a block is a wall of a surface model, not relief, metres.
 const WALL_M: f64 = 1.5;
 /// More walls than this for each high place, and fewer roofs left than this share: a surface model.
-/// Assumption: a hall of 40 m by 40 m has that many.
+/// Assumption: a hall of 40 m by 40 m has that many walls; matches spread by half a window around a
+/// roof, over as much again where it is small.
 const WALLS: f64 = 0.1;
-const ROOFS_LEFT: f64 = 0.25;
+const ROOFS_LEFT: f64 = 0.7;
 
 impl Ground {
     /// How a terrain model compares with the images, where one is known.
