@@ -4,7 +4,7 @@
 //! Every view, reduced four times, is compared with the others on horizontal planes at steps of
 //! height (the measure that verifies facets, `photoconsistency`). Each position takes the
 //! height at which the views agree best. The ground is the surface of least energy under those
-//! positions ([`surface`]): roofs and trees only rise above it, wrong matches below it are few, and
+//! positions (`surface`): roofs and trees only rise above it, wrong matches below it are few, and
 //! it hardly leaves the plane that it lies in as a whole.
 //!
 //! Invariant: the ground has a height at every plan position, also outside of what was swept.
