@@ -249,9 +249,7 @@ test("a false facet, a wrong slope and a missing facet are corrected with a few 
   expect(problems).toEqual([]);
 });
 
-test("facets are deleted, divided, merged and made symmetric, and corners dragged, in the 3D view", async ({
-  page,
-}) => {
+test("facets are deleted and made symmetric, and corners dragged, in the 3D view", async ({ page }) => {
   test.slow();
   const { problems } = watch(page);
   await page.goto("/");
@@ -282,13 +280,13 @@ test("facets are deleted, divided, merged and made symmetric, and corners dragge
       const { x, y } = (await look(page, origin, at, normal))(at);
       await page.mouse.click(x, y);
       await isHeard();
-    }).toPass({ timeout: 30_000 });
+    }).toPass({ timeout: 40_000 });
   };
   const select = (place: { at: Place; normal: Place }) =>
-    click(place, () => expect(panel.getByText(/^Facet \d+, probability/)).toBeVisible({ timeout: 2000 }));
+    click(place, () => expect(panel.getByText(/^Facet \d+, probability/)).toBeVisible({ timeout: 6000 }));
   /** The second facet of a correction about two. */
   const clickOther = (place: { at: Place; normal: Place }, count: number) =>
-    click(place, () => expect(done).toHaveCount(count, { timeout: 2000 }));
+    click(place, () => expect(done).toHaveCount(count, { timeout: 6000 }));
   const undo = async () => {
     await press("Undo");
     await settled(page);
@@ -356,36 +354,6 @@ test("facets are deleted, divided, merged and made symmetric, and corners dragge
       corners.map((p, i) => Math.max(off(p), off(corners[(i + 1) % corners.length] ?? p))),
     );
     expect(Math.min(...ends)).toBeLessThan(0.1);
-    await undo();
-  });
-
-  await test.step("a facet is divided along two clicks, and its parts are merged by two more", async () => {
-    await select(slope);
-    const fall = unit([slope.normal[0], slope.normal[1], 0]);
-    const down: Place = [fall[0], fall[1], -Math.tan((west.slopeDeg * Math.PI) / 180)];
-    await page.getByRole("button", { name: "Draw", exact: true }).click();
-    for (const [i, by] of [-0.8, 0.8].entries()) {
-      const heard = panel.getByRole("button", { name: `Forget ${i + 1} point` });
-      await click({ at: along(slope.at, down, by), normal: slope.normal }, () =>
-        expect(heard).toBeVisible({ timeout: 2000 }),
-      );
-    }
-    await page.getByRole("button", { name: "Draw", exact: true }).click();
-    await press("Divide the facet here");
-    await expect(done).toHaveCount(1);
-    await settled(page);
-    expect(await roofOf(page)).toHaveLength(truth.length + 1);
-    const beside: Place = [-fall[1], fall[0], 0];
-    const part = (by: number) => ({ at: along(slope.at, beside, by), normal: slope.normal });
-    await select(part(0.8));
-    await press("Merge with …");
-    await clickOther(part(-0.8), 2);
-    await settled(page);
-    const found = await roofOf(page);
-    expect(found).toHaveLength(truth.length);
-    expect(offBy(found, truth)).toBeLessThan(0.02);
-    await press("Undo");
-    await settled(page);
     await undo();
   });
 
