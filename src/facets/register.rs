@@ -137,15 +137,7 @@ impl<'a> RegisterEvidence<'a> {
                 false => outside += self.parts(1.0),
             }
         }
-        let RegisterParams {
-            completeness,
-            belongs,
-            ..
-        } = *self.params;
-        let odds = ln(belongs / (1.0 - belongs))
-            + inside * ln(completeness / chance)
-            + outside * ln((1.0 - completeness) / (1.0 - chance));
-        self.belongs = 1.0 / (1.0 + exp(-odds));
+        self.belongs = belongs_here(inside, outside, chance, self.params);
     }
 
     /// What it says for a roof in every cell, nats.
@@ -333,4 +325,34 @@ const SQRT_TWO_PI: f64 = 2.506_628_274_631_000_2;
 fn samples(low: f64, high: f64, origin: f64, step: f64, count: usize) -> std::ops::Range<usize> {
     let at = |v: f64| ((v - origin) / step).clamp(0.0, count as f64) as usize;
     at(low)..smaller(at(high) + 1, count)
+}
+
+/// Probability that a register belongs here: of so many roofs inside and outside of its footprints,
+/// which cover this share of the place.
+fn belongs_here(inside: f64, outside: f64, chance: f64, params: &RegisterParams) -> f64 {
+    let RegisterParams {
+        completeness,
+        belongs,
+        ..
+    } = *params;
+    let odds = ln(belongs / (1.0 - belongs))
+        + inside * ln(completeness / chance)
+        + outside * ln((1.0 - completeness) / (1.0 - chance));
+    1.0 / (1.0 + exp(-odds))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_register_belongs_where_its_footprints_hold_the_roofs() {
+        let params = RegisterParams::default();
+        let belongs = |inside, outside| belongs_here(inside, outside, 0.3, &params);
+        assert!((belongs(0.0, 0.0) - params.belongs).abs() < 1e-12);
+        assert!(belongs(10.0, 0.0) > belongs(0.0, 0.0));
+        assert!(belongs(0.0, 10.0) < 0.01);
+        // Roofs that fall into footprints as often as by chance speak against it.
+        assert!(belongs(3.0, 7.0) < belongs(0.0, 0.0));
+    }
 }
