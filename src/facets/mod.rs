@@ -23,6 +23,7 @@
 mod borders;
 mod competing_planes;
 mod delineation;
+mod dominated;
 mod evidence;
 mod input;
 mod islands;

@@ -13,6 +13,7 @@ use super::borders::{
 };
 use super::competing_planes::CompetingPlanes;
 use super::delineation::delineate;
+use super::dominated::without_dominated;
 use super::evidence::PlaneEvidence;
 use super::input::FacetInput;
 use super::islands::without_islands;
@@ -114,6 +115,7 @@ pub fn reconstruct_facets(
     let hypotheses = plane_hypotheses(scene, &reduced, segments, &input, groups, grid.step, params);
     let (ground_map, hypotheses) = (ground_map?, hypotheses?);
     let windows = ShiftableWindows::new(lines.iter().map(|l| l.segment), &grid);
+    let hypotheses = without_dominated(hypotheses, ground_map.as_ref(), &windows, &grid);
     let bounding = bounding_lines(&input, &hypotheses, ground, params);
     let borders = border_lines(&input, &hypotheses, &bounding, &windows, params);
     let arrangement = Arrangement::new(&with_frame(&borders, &grid));

@@ -16,6 +16,7 @@ use crate::geometry::{Plane, Segment3};
 use crate::ids::ViewId;
 use crate::linematch::EDGE_MARGIN_PX;
 use crate::lines2d::ImageSegment;
+use crate::plan_index::PlanIndex;
 use crate::scene::Scene;
 
 /// A line in a plane that several views show.
@@ -105,15 +106,19 @@ pub(crate) fn lines_in_plane(
             .then(p.view.cmp(&q.view))
             .then(p.a.x.total_cmp(&q.a.x))
     });
+    let index = PlanIndex::new(casts.iter().map(|c| [c.a, c.b]));
+    let tolerance = SAME_LINE_PX * pixel;
     let mut used = vec![false; casts.len()];
     let mut found = Vec::new();
     for i in 0..casts.len() {
         if used[i] {
             continue;
         }
-        let members: Vec<usize> = (0..casts.len())
-            .filter(|&j| !used[j] && coincide(&casts[i], &casts[j], SAME_LINE_PX * pixel))
+        let near = index.touching([casts[i].a, casts[i].b], tolerance);
+        let mut members: Vec<usize> = (near.map(|j| j as usize))
+            .filter(|&j| !used[j] && coincide(&casts[i], &casts[j], tolerance))
             .collect();
+        members.sort();
         let mut views: Vec<ViewId> = members.iter().map(|&j| casts[j].view).collect();
         views.sort();
         views.dedup();

@@ -197,11 +197,13 @@ fn split_at_crossings(borders: &[Border]) -> (Vec<Point2<f64>>, Vec<(usize, usiz
         snapper.vertex(border.a);
         snapper.vertex(border.b);
     }
+    let index = PlanIndex::new(borders.iter().map(|b| [b.a, b.b]));
     for (i, p) in borders.iter().enumerate() {
-        for q in &borders[i + 1..] {
-            if let Some(x) = crossing(p, q) {
-                snapper.vertex(x);
-            }
+        let near = index.touching([p.a, p.b], SNAP).map(|j| j as usize);
+        let mut later: Vec<usize> = near.filter(|j| *j > i).collect();
+        later.sort();
+        for x in later.into_iter().filter_map(|j| crossing(p, &borders[j])) {
+            snapper.vertex(x);
         }
     }
     let mut pieces = Vec::new();
@@ -216,12 +218,6 @@ fn split_at_crossings(borders: &[Border]) -> (Vec<Point2<f64>>, Vec<(usize, usiz
 
 /// Where two borders cross (ends included, with the snapping distance as slack).
 fn crossing(p: &Border, q: &Border) -> Option<Point2<f64>> {
-    let overlap = |a0: f64, a1: f64, b0: f64, b1: f64| {
-        a0.min(a1) <= b0.max(b1) + SNAP && b0.min(b1) <= a0.max(a1) + SNAP
-    };
-    if !overlap(p.a.x, p.b.x, q.a.x, q.b.x) || !overlap(p.a.y, p.b.y, q.a.y, q.b.y) {
-        return None;
-    }
     let (d, e) = (p.b - p.a, q.b - q.a);
     let cross = d.perp(&e);
     // Lines at less than about 3 degrees have no useful crossing; the end points do.

@@ -22,6 +22,7 @@ use crate::ids::ProposalOrigin;
 use crate::lines3d::ThetaFrame;
 use crate::params::RoofParams;
 use crate::photoconsistency::ShiftableWindows;
+use crate::plan_index::PlanIndex;
 use crate::planes::{GroupingInput, MARGIN, Member, PlaneHypothesis};
 
 /// A line within this distance of an intersection, metres, and this angle is the same line.
@@ -36,9 +37,9 @@ pub(crate) fn border_lines(
     windows: &ShiftableWindows,
     params: &RoofParams,
 ) -> Vec<Border> {
-    let mut borders: Vec<Border> = Vec::new();
+    let mut borders = DistinctBorders::default();
     for border in intersections(input, hypotheses) {
-        add(&mut borders, border);
+        borders.add(border);
     }
     let in_plane: Vec<Segment3> = hypotheses
         .iter()
@@ -55,25 +56,25 @@ pub(crate) fn border_lines(
             .collect();
         real.sort_by(|a, b| b.length().total_cmp(&a.length()));
         for border in real {
-            add(&mut borders, border);
+            borders.add(border);
         }
     }
     for border in outermost_lines(input, hypotheses, params) {
-        add(&mut borders, border);
+        borders.add(border);
     }
     for border in extent_lines(input, hypotheses, windows) {
-        add(&mut borders, border);
+        borders.add(border);
     }
     for border in closing_lines(input, hypotheses, params) {
-        add(&mut borders, border);
+        borders.add(border);
     }
     for border in hull_sides(hypotheses, params) {
-        add(&mut borders, border);
+        borders.add(border);
     }
     for border in proposed_sides(input, hypotheses) {
-        add(&mut borders, border);
+        borders.add(border);
     }
-    borders
+    borders.borders
 }
 
 /// The level sides of the planes' convex hulls (B99 4.3) that are long enough to be an edge of a
@@ -285,31 +286,41 @@ fn proposed_sides(input: &GroupingInput, hypotheses: &[PlaneHypothesis]) -> Vec<
 /// A facet has a few long sides; shorter lines in its plane are parts of them or of its texture.
 const CLOSED_LINES: usize = 3;
 
-/// Adds a border unless it lies on one that is there; one that runs along another is moved onto its
-/// line.
-fn add(borders: &mut Vec<Border>, mut border: Border) {
-    for other in borders.iter() {
-        let sine = {
-            let (d, e) = (border.direction(), other.direction());
-            (d.x * e.y - d.y * e.x).abs()
-        };
-        if sine > SAME_LINE_SINE
-            || other.distance(&border.a) > SAME_LINE
-            || other.distance(&border.b) > SAME_LINE
-        {
-            continue;
+/// Borders none of which lies on another.
+#[derive(Default)]
+struct DistinctBorders {
+    borders: Vec<Border>,
+    index: PlanIndex,
+}
+
+impl DistinctBorders {
+    /// Adds a border unless it lies on one that is there; one that runs along another is moved onto
+    /// its line.
+    fn add(&mut self, mut border: Border) {
+        let mut near: Vec<u32> = (self.index.touching([border.a, border.b], SAME_LINE)).collect();
+        near.sort();
+        for other in near.into_iter().map(|i| &self.borders[i as usize]) {
+            let sine = border.direction().perp(&other.direction()).abs();
+            if sine > SAME_LINE_SINE
+                || other.distance(&border.a) > SAME_LINE
+                || other.distance(&border.b) > SAME_LINE
+            {
+                continue;
+            }
+            let d = other.direction();
+            let (s, t) = ((border.a - other.a).dot(&d), (border.b - other.a).dot(&d));
+            let (s, t) = (s.min(t), s.max(t));
+            if t < 0.0 || s > other.length() {
+                continue;
+            }
+            if s >= -SAME_LINE && t <= other.length() + SAME_LINE {
+                return;
+            }
+            border.a = other.foot(&border.a);
+            border.b = other.foot(&border.b);
         }
-        let d = other.direction();
-        let (s, t) = ((border.a - other.a).dot(&d), (border.b - other.a).dot(&d));
-        let (s, t) = (s.min(t), s.max(t));
-        if t < 0.0 || s > other.length() {
-            continue;
-        }
-        if s >= -SAME_LINE && t <= other.length() + SAME_LINE {
-            return;
-        }
-        border.a = other.foot(&border.a);
-        border.b = other.foot(&border.b);
+        let number = self.borders.len() as u32;
+        self.index.insert([border.a, border.b], number);
+        self.borders.push(border);
     }
-    borders.push(border);
 }
