@@ -23,6 +23,32 @@ pub(crate) struct ConsistencyMap {
 }
 
 impl ConsistencyMap {
+    /// What nobody sees.
+    pub(super) fn unseen(grid: &PlanGrid) -> Self {
+        let cells = grid.width * grid.height;
+        Self {
+            grid: *grid,
+            correlation: vec![0; cells],
+            weight: vec![0; cells],
+            common_weight: vec![0; cells],
+        }
+    }
+
+    /// Takes over the cells of `window`, which lies in both, from another map.
+    pub(super) fn copy(&mut self, other: &Self, window: &PlanGrid) {
+        let from_first = |map: &PlanGrid, row: usize| {
+            let (c, r) = window.offset_in(map);
+            let first = (r as usize + row) * map.width + c as usize;
+            first..first + window.width
+        };
+        for row in 0..window.height {
+            let (to, from) = (from_first(&self.grid, row), from_first(&other.grid, row));
+            self.correlation[to.clone()].copy_from_slice(&other.correlation[from.clone()]);
+            self.weight[to.clone()].copy_from_slice(&other.weight[from.clone()]);
+            self.common_weight[to].copy_from_slice(&other.common_weight[from]);
+        }
+    }
+
     /// Mean of the better half of the pairwise correlations at cell `k` (row by row), -1 to 1; 0
     /// where the weight is 0.
     pub(crate) fn correlation(&self, k: usize) -> f32 {

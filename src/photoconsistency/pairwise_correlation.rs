@@ -19,13 +19,7 @@ pub(super) fn correlate_views(
     residual_variance: f32,
     grid: &PlanGrid,
 ) -> ConsistencyMap {
-    let cells = grid.width * grid.height;
-    let mut map = ConsistencyMap {
-        grid: *grid,
-        correlation: vec![0; cells],
-        weight: vec![0; cells],
-        common_weight: vec![0; cells],
-    };
+    let mut map = ConsistencyMap::unseen(grid);
     let mut views: Vec<ViewWindows> = photos.map(|p| ViewWindows::new(p, grid)).collect();
     let pairs = (0..views.len()).flat_map(|a| (a + 1..views.len()).map(move |b| [a, b]));
     let mut pairs: Vec<PairWindows> = pairs.map(|of| PairWindows::new(of, grid)).collect();

@@ -1,6 +1,8 @@
 //! The plan grid: a raster of square cells on the XY plane in which plane hypotheses are compared.
 
-use nalgebra::{Matrix3, Point2, Point3};
+use std::ops::Range;
+
+use nalgebra::{Matrix3, Point2, Point3, Vector2};
 use serde::{Deserialize, Serialize};
 
 use crate::camera::Camera;
@@ -37,7 +39,7 @@ impl PlanGrid {
 
     /// Centre of a cell, metres.
     pub(crate) fn center(&self, column: usize, row: usize) -> Point2<f64> {
-        self.origin + nalgebra::Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * self.step
+        self.origin + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * self.step
     }
 
     /// The cell that holds a plan position, when it is inside.
@@ -48,6 +50,30 @@ impl PlanGrid {
         );
         (c >= 0.0 && r >= 0.0 && c < self.width as f64 && r < self.height as f64)
             .then_some((c as usize, r as usize))
+    }
+
+    /// Some of its columns and rows.
+    pub(super) fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Self {
+        let offset = Vector2::new(columns.start as f64, rows.start as f64) * self.step;
+        Self {
+            origin: self.origin + offset,
+            step: self.step,
+            width: columns.len(),
+            height: rows.len(),
+        }
+    }
+
+    /// With so many cells more on all sides, as far as `whole` reaches, of which it is a part.
+    pub(super) fn widened(&self, cells: usize, whole: &PlanGrid) -> Self {
+        let (c, r) = self.offset_in(whole);
+        let wide = |first: isize, count: usize, most: usize| {
+            let first = first as usize;
+            first.saturating_sub(cells)..(first + count + cells).min(most)
+        };
+        whole.part(
+            wide(c, self.width, whole.width),
+            wide(r, self.height, whole.height),
+        )
     }
 
     /// Column and row of this window's first cell in `larger`, which has the same step.

@@ -17,6 +17,7 @@
 
 use nalgebra::{Point2, Point3};
 
+use super::box_sum::{HALF_WINDOW, WINDOW};
 use super::consistency_map::{ConsistencyMap, MAX_VIEWS};
 use super::pairwise_correlation::correlate_views;
 use super::plan_grid::{PlanGrid, orthophoto, orthophoto_of_surface};
@@ -31,13 +32,9 @@ const RESIDUAL_NOISE: f64 = 1.25;
 
 /// Compares all views on `plane` over `grid`.
 pub(crate) fn consistency_map(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> ConsistencyMap {
-    let views = views_of_plane(scene, plane, grid);
-    let photo = |&v: &ViewId| orthophoto(&scene.view(v).gray, scene.camera(v), plane, grid);
-    correlate_views(
-        views.iter().map(photo),
-        residual_variance(scene, &views),
-        grid,
-    )
+    compared(scene, plane, grid, &|v, part| {
+        orthophoto(&scene.view(v).gray, scene.camera(v), plane, part)
+    })
 }
 
 /// The same on a surface near `plane`: `z` gives its height over a plan position, metres.
@@ -47,13 +44,9 @@ pub(crate) fn consistency_map_of_surface(
     z: &dyn Fn(&Point2<f64>) -> f64,
     grid: &PlanGrid,
 ) -> ConsistencyMap {
-    let views = views_of_plane(scene, plane, grid);
-    let photo = |&v: &ViewId| orthophoto_of_surface(&scene.view(v).gray, scene.camera(v), z, grid);
-    correlate_views(
-        views.iter().map(photo),
-        residual_variance(scene, &views),
-        grid,
-    )
+    compared(scene, plane, grid, &|v, part| {
+        orthophoto_of_surface(&scene.view(v).gray, scene.camera(v), z, part)
+    })
 }
 
 /// The same on a plane with known occluders: `hidden` tells whether a point of the plane is
@@ -64,30 +57,70 @@ pub(crate) fn consistency_map_behind(
     grid: &PlanGrid,
     hidden: &dyn Fn(ViewId, &Point3<f64>) -> bool,
 ) -> ConsistencyMap {
-    let views = views_of_plane(scene, plane, grid);
-    let photo = |&v: &ViewId| {
-        let mut photo = orthophoto(&scene.view(v).gray, scene.camera(v), plane, grid);
+    compared(scene, plane, grid, &|v, part| {
+        let mut photo = orthophoto(&scene.view(v).gray, scene.camera(v), plane, part);
         for (k, gray) in photo.iter_mut().enumerate() {
-            let at = grid.center(k % grid.width, k / grid.width);
+            let at = part.center(k % part.width, k / part.width);
             if hidden(v, &plane.lift(at.x, at.y)) {
                 *gray = f32::NAN;
             }
         }
         photo
+    })
+}
+
+/// Compares the orthophotos of the views that see most of a window. Where there are more than are
+/// compared and each shows a part of the window only, its halves are compared by views of their
+/// own.
+fn compared(
+    scene: &Scene,
+    plane: &Plane,
+    grid: &PlanGrid,
+    orthophoto: &dyn Fn(ViewId, &PlanGrid) -> Vec<f32>,
+) -> ConsistencyMap {
+    let ViewsOfPlane { views, suffice } = views_of_plane(scene, plane, grid);
+    let halves = if suffice { None } else { halves(grid) };
+    let Some(halves) = halves else {
+        let variance = residual_variance(scene, &views);
+        return correlate_views(views.iter().map(|v| orthophoto(*v, grid)), variance, grid);
     };
-    correlate_views(
-        views.iter().map(photo),
-        residual_variance(scene, &views),
-        grid,
-    )
+    let mut map = ConsistencyMap::unseen(grid);
+    for half in halves {
+        // Windows around the cells beside the cut reach beyond it.
+        let around = half.widened(HALF_WINDOW, grid);
+        map.copy(&compared(scene, plane, &around, orthophoto), &half);
+    }
+    map
+}
+
+/// Least side of a part that is compared by itself, cells: a few windows, of which those beside
+/// the cuts are compared twice.
+const LEAST_PART: usize = 5 * WINDOW;
+
+/// The two halves of a window across its longer side; `None` where it is small.
+fn halves(grid: &PlanGrid) -> Option<[PlanGrid; 2]> {
+    let side = grid.width.max(grid.height);
+    let at = side / 2;
+    let cut = |columns: std::ops::Range<usize>, rows| grid.part(columns, rows);
+    (side >= 2 * LEAST_PART).then(|| match grid.width >= grid.height {
+        true => [cut(0..at, 0..grid.height), cut(at..side, 0..grid.height)],
+        false => [cut(0..grid.width, 0..at), cut(0..grid.width, at..side)],
+    })
 }
 
 /// Positions along each side of the window at which the visibility is sampled.
 const SAMPLES: usize = 6;
 
-/// The views to compare: at most [`MAX_VIEWS`], such that every part of the window is seen by as
-/// many as possible, frontal ones first. Crops of large photographs often show a part only.
-fn views_of_plane(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> Vec<ViewId> {
+/// The views to compare.
+struct ViewsOfPlane {
+    views: Vec<ViewId>,
+    /// These are all that see the window, or see all of it.
+    suffice: bool,
+}
+
+/// At most [`MAX_VIEWS`], such that every part of the window is seen by as many as possible,
+/// frontal ones first. Crops of large photographs often show a part only.
+fn views_of_plane(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> ViewsOfPlane {
     let candidates: Vec<CandidateView> = (scene.view_ids())
         .filter_map(|v| CandidateView::new(v, scene.camera(v), plane, grid))
         .collect();
@@ -103,7 +136,11 @@ fn views_of_plane(scene: &Scene, plane: &Plane, grid: &PlanGrid) -> Vec<ViewId> 
         (seen_by.iter_mut().zip(sees)).for_each(|(n, sees)| *n += u32::from(*sees));
         chosen.push(best);
     }
-    chosen.into_iter().map(|i| candidates[i].view).collect()
+    let sees_all = |i: &usize| !candidates[*i].sees.contains(&false);
+    ViewsOfPlane {
+        suffice: chosen.len() == candidates.len() || chosen.iter().all(sees_all),
+        views: chosen.into_iter().map(|i| candidates[i].view).collect(),
+    }
 }
 
 /// A view that sees part of the window.
@@ -143,4 +180,51 @@ pub(super) fn residual_variance(scene: &Scene, views: &[ViewId]) -> f32 {
     let sum: f64 = views.iter().map(|v| scene.view(*v).noise).sum();
     let noise = RESIDUAL_NOISE * sum / views.len().max(1) as f64;
     (noise * noise) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::planes::rendered_planes::{level_ground, strip};
+
+    #[test]
+    fn a_window_that_each_view_shows_a_part_of_is_compared_everywhere() {
+        let ground = level_ground();
+        let plane = ground.plane;
+        // Every place of it is seen by two or three of ten views, 25 m by 25 m each.
+        let scene = strip(&[ground]);
+        let grid = PlanGrid::covering(Point2::new(-40.0, -3.0), Point2::new(40.0, 3.0), 0.2);
+        let agrees_at = |plane: &Plane| {
+            let map = consistency_map(&scene, plane, &grid);
+            let inside = |k: &usize| {
+                let (column, row) = (k % grid.width, k / grid.width);
+                let within =
+                    |at: usize, size: usize| (HALF_WINDOW..size - HALF_WINDOW).contains(&at);
+                within(column, grid.width) && within(row, grid.height)
+            };
+            let cells: Vec<usize> = (0..grid.width * grid.height).filter(inside).collect();
+            assert!(cells.iter().all(|k| map.weight(*k) > 0.0), "unseen");
+            let agree = cells.iter().filter(|k| map.correlation(**k) > 0.8).count();
+            agree as f64 / cells.len() as f64
+        };
+        assert!(agrees_at(&plane) > 0.98);
+        assert!(agrees_at(&Plane { d: -3.0, ..plane }) < 0.05);
+    }
+
+    #[test]
+    fn halves_hold_every_cell_once() {
+        let grid = PlanGrid::covering(Point2::new(3.0, -7.0), Point2::new(33.0, 8.0), 0.1);
+        let [left, right] = halves(&grid).expect("it is large");
+        assert_eq!(left.width + right.width, grid.width);
+        assert_eq!([left.height, right.height], [grid.height; 2]);
+        assert_eq!(right.offset_in(&grid), (left.width as isize, 0));
+        let around = right.widened(HALF_WINDOW, &grid);
+        assert_eq!(
+            around.width,
+            right.width + HALF_WINDOW,
+            "no farther than the whole"
+        );
+        let small = PlanGrid::covering(Point2::origin(), Point2::new(10.0, 10.0), 0.1);
+        assert!(halves(&small).is_none());
+    }
 }

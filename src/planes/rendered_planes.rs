@@ -52,18 +52,29 @@ pub(crate) fn scene(surfaces: &[TexturedPlane]) -> Scene {
         (25.0, 20.0, 3.1),
         (-27.0, 22.0, 3.2),
     ];
-    let views = stations
-        .iter()
-        .enumerate()
-        .map(|(i, &(x, y, kappa))| {
-            let camera = camera(x, y, kappa);
-            let gray = render(&camera, surfaces);
-            let rgb = image::RgbImage::new(250, 250);
-            View::new(format!("{i}.jpg"), camera, gray, rgb)
-        })
-        .collect();
+    of_cameras(
+        stations.map(|(x, y, kappa)| camera(x, y, kappa, &Point3::origin())),
+        surfaces,
+    )
+}
+
+/// Ten views of the same size along x, 10 m apart from -45 m on, each of what lies below it.
+pub(crate) fn strip(surfaces: &[TexturedPlane]) -> Scene {
+    let below = |i: i32| {
+        let x = 10.0 * f64::from(i) - 45.0;
+        camera(x, 0.0, 0.0, &Point3::new(x, 0.0, 0.0))
+    };
+    of_cameras((0..10).map(below), surfaces)
+}
+
+fn of_cameras(cameras: impl IntoIterator<Item = Camera>, surfaces: &[TexturedPlane]) -> Scene {
+    let view = |(i, camera): (usize, Camera)| {
+        let gray = render(&camera, surfaces);
+        let rgb = image::RgbImage::new(250, 250);
+        View::new(format!("{i}.jpg"), camera, gray, rgb)
+    };
     Scene {
-        views,
+        views: cameras.into_iter().enumerate().map(view).collect(),
         origin: Vector3::zeros(),
         ground_z: None,
         region: None,
@@ -73,8 +84,8 @@ pub(crate) fn scene(surfaces: &[TexturedPlane]) -> Scene {
     }
 }
 
-/// A camera 100 m up whose image is a crop around the origin.
-fn camera(x: f64, y: f64, kappa: f64) -> Camera {
+/// A camera 100 m up whose image is a crop around a point.
+fn camera(x: f64, y: f64, kappa: f64, around: &Point3<f64>) -> Camera {
     let down =
         Rotation3::from_matrix_unchecked(Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)));
     let [turn, tilt] = [[0.0, 0.0, kappa], [0.01, -0.02, 0.0]].map(Vector3::from);
@@ -82,8 +93,8 @@ fn camera(x: f64, y: f64, kappa: f64) -> Camera {
     let centre = Point3::new(x, y, 100.0);
     let k = Matrix3::new(1000.0, 0.0, 0.0, 0.0, 1000.0, 0.0, 0.0, 0.0, 1.0);
     let middle = Camera::new(k, r, centre, 250, 250)
-        .project(&Point3::origin())
-        .expect("the origin is in front");
+        .project(around)
+        .expect("it is in front");
     let mut crop = k;
     crop[(0, 2)] = 125.0 - middle.x;
     crop[(1, 2)] = 125.0 - middle.y;
