@@ -181,7 +181,7 @@ test("a false facet, a wrong slope and a missing facet are corrected with a few 
     // Keys are heard once the panel has opened.
     await expect(async () => {
       await page.keyboard.press("n");
-      await expect(panel.getByText(/^Facet \d+, probability 0\.[0-8]/)).toBeVisible({ timeout: 1000 });
+      await expect(panel.getByText(/^Facet \d+, probability 0\.\d/)).toBeVisible({ timeout: 1000 });
     }).toPass();
     await press("Confirm");
     await settled(page);

@@ -213,6 +213,12 @@ export function faceOfFacet(outer: readonly (readonly number[])[]): RoofFace | n
   return most !== undefined && count(most) > 0.5 * places.length ? most : null;
 }
 
+/** Is a face a hip end: with two hips and no part of the ridge? */
+function isHipEnd(face: RoofFace | null): boolean {
+  const around = face === null ? [] : edgesAround(face);
+  return around.filter((kind) => kind === "hip").length >= 2 && !around.includes("ridge");
+}
+
 export const hipEnd: FigureExercise = {
   kind: "figure",
   name: "hipEnd",
@@ -222,7 +228,10 @@ export const hipEnd: FigureExercise = {
   text: "Pick a [[facet]] that is a hip end: bounded by an [[eave]] and two [[hip|hips]], with no part of the [[ridge]].",
   figure: "facet-plan",
   asks: { by: "state" },
-  begin: async () => ({}),
+  begin: async ({ shown }) => {
+    const other = (shown.results.facets ?? []).findIndex(({ outer }) => !isHipEnd(faceOfFacet(outer)));
+    return other < 0 ? {} : { select: `facet:${other}` };
+  },
   judge: async ({ shown }): Promise<Outcome> => {
     const { selection, results } = shown;
     if (selection?.kind !== "facet") {
@@ -241,11 +250,8 @@ export const hipEnd: FigureExercise = {
     return hips >= 2 ? "right" : { wrong: "This face has fewer than two hips." };
   },
   answer: async ({ shown }) => {
-    const right = (shown.results.facets ?? []).flatMap(({ outer }, i) => {
-      const face = faceOfFacet(outer);
-      const around = face === null ? [] : edgesAround(face);
-      return around.filter((kind) => kind === "hip").length >= 2 && !around.includes("ridge") ? [i] : [];
-    });
+    const facets = shown.results.facets ?? [];
+    const right = facets.flatMap(({ outer }, i) => (isHipEnd(faceOfFacet(outer)) ? [i] : []));
     return {
       words: `Facets ${right.join(", ")}.`,
       ...(right[0] === undefined ? {} : { state: { select: `facet:${right[0]}` } }),
