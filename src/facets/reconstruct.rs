@@ -5,6 +5,8 @@
 //! is rejected and the labelling continues without it, as the paper updates the neighbours of a
 //! plane that is removed.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Point2;
 use serde::Serialize;
 
@@ -18,7 +20,7 @@ use super::evidence::PlaneEvidence;
 use super::input::FacetInput;
 use super::islands::without_islands;
 use super::register::{RegisterEvidence, RegisterTrace};
-use super::verification::{FacetRejection, RejectedFacet, tail_on_ground, verify};
+use super::verification::{FacetRejection, Measured, RejectedFacet, tail_on_ground, verify};
 use crate::evidence::JudgedFacet;
 use crate::execution::{Sharded, sharded_map};
 use crate::geometry::{Plane, bounds};
@@ -265,6 +267,8 @@ fn solve(
 ) -> Verified {
     const ROUNDS: usize = 4;
     let (mut rejected, mut improbable) = (Vec::new(), Vec::new());
+    // By plane and cells.
+    let mut measured: BTreeMap<(u32, Vec<usize>), Measured> = BTreeMap::new();
     for round in 1..=ROUNDS {
         labelling.minimise();
         let labels = labelling.labels().to_vec();
@@ -280,13 +284,17 @@ fn solve(
             .collect();
         let occluders = Occluders::new(&found);
         let results = crate::execution::map(&delineation.outlines, |i, outline| {
-            verify(
-                competing, &found[i], outline, &occluders, ground, known, params,
-            )
+            let before = measured.get(&(outline.plane, outline.cells.clone()));
+            let facet = (&found[i], outline);
+            verify(competing, facet, &occluders, ground, known, before, params)
         });
         for ((outline, facet), result) in delineation.outlines.iter().zip(found).zip(results) {
             let reason = match result {
-                Ok((evidence, windows)) => {
+                Ok(verified) => {
+                    let windows = verified.windows().clone();
+                    let evidence = verified.evidence;
+                    let key = (outline.plane, outline.cells.clone());
+                    measured.insert(key, verified.measured);
                     let probability = evidence.probability();
                     let judged = JudgedFacet {
                         outline: facet.outer.clone(),

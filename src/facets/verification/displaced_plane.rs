@@ -38,15 +38,14 @@ pub(super) struct PlaneAgreement {
 }
 
 impl PlaneAgreement {
-    /// Measures it. `scene` has pixels about `step` (metres) wide, `hidden` tells which views do
-    /// not see a point of the facet.
+    /// Measures it. `scene` has pixels about `step` (metres) wide, `visibility` tells which views
+    /// do not see a part of the facet.
     pub(super) fn measure(
         scene: &Scene,
         facet: &Facet,
         step: f64,
-        hidden: &dyn Fn(ViewId, &Point3<f64>) -> bool,
+        visibility: &PartVisibility,
     ) -> Self {
-        let visibility = PartVisibility::new(scene, facet, step, hidden);
         // Occluders are those of the facet itself: it must not occlude its own displaced plane.
         let hidden = |view: ViewId, p: &Point3<f64>| visibility.is_hidden(view, &p.xy());
         let map = interior_map(scene, facet, step, &hidden);
@@ -80,15 +79,17 @@ impl PlaneAgreement {
 }
 
 /// Visibility of the parts of a facet in each view.
-struct PartVisibility {
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct PartVisibility {
     parts: PlanGrid,
     /// By view, then row by row.
     hidden: Vec<Vec<bool>>,
 }
 
 impl PartVisibility {
-    /// Samples one point of every part, [`PART`] cells wide.
-    fn new(
+    /// Samples one point of every part, [`PART`] cells wide; `hidden` tells which views do not see
+    /// a point.
+    pub(super) fn new(
         scene: &Scene,
         facet: &Facet,
         step: f64,
@@ -141,6 +142,11 @@ mod tests {
     use crate::testing;
     use nalgebra::Vector3;
 
+    fn measure(scene: &Scene, facet: &Facet, hidden: bool) -> PlaneAgreement {
+        let visibility = PartVisibility::new(scene, facet, 0.1, &|_, _| hidden);
+        PlaneAgreement::measure(scene, facet, 0.1, &visibility)
+    }
+
     #[test]
     fn a_roof_stands_out_and_a_plane_beside_it_does_not() {
         let (mut scene, truth) = gable_scene(320);
@@ -148,7 +154,7 @@ mod tests {
         let raised = |scene: &Scene, by: f64| {
             let ring = ring.iter().map(|p| p + Vector3::z() * by);
             let facet = testing::facet(&ring.collect::<Vec<_>>());
-            PlaneAgreement::measure(scene, &facet, 0.1, &|_, _| false)
+            measure(scene, &facet, false)
         };
         let found = raised(&scene, 0.0);
         assert!(found.margin_sigmas > 3.0, "{found:?}");
@@ -161,7 +167,7 @@ mod tests {
         (scene.views.iter_mut().enumerate()).for_each(|(i, v)| v.gray.data.rotate_left(7919 * i));
         let found = raised(&scene, 0.0);
         assert!(found.margin_sigmas < 1.0, "{found:?}");
-        let unseen = PlaneAgreement::measure(&scene, &testing::facet(ring), 0.1, &|_, _| true);
+        let unseen = measure(&scene, &testing::facet(ring), true);
         assert_eq!(unseen, PlaneAgreement::default(), "nobody sees it");
     }
 }

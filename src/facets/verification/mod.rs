@@ -16,6 +16,7 @@ mod features;
 mod interior;
 mod rejection;
 
+pub(crate) use features::Measured;
 pub use rejection::{FacetRejection, RejectedFacet};
 
 use std::collections::BTreeSet;
@@ -87,23 +88,38 @@ pub(crate) fn tail_on_ground(
     (few && !low.is_empty()).then(|| low.into_iter().collect())
 }
 
-/// Verifies a facet between the other facets and over the ground; returns what speaks for it, where
-/// it lies like a roof, and how the views agree inside it. `colours` are the photographs as they
-/// were taken; a register that counts adds a term of its own.
+/// A facet that lies like a roof, with what speaks for it.
+pub(crate) struct VerifiedFacet {
+    /// What speaks for it and against it.
+    pub evidence: Evidence,
+    /// What was measured of it.
+    pub measured: Measured,
+}
+
+impl VerifiedFacet {
+    /// How the views agree inside it.
+    pub(super) fn windows(&self) -> &WindowCounts {
+        &self.measured.windows
+    }
+}
+
+/// Verifies a facet between the other facets and over the ground. `colours` are the photographs as
+/// they were taken; a register that counts adds a term of its own; `before` is what was measured of
+/// the same cells before.
 pub(crate) fn verify(
     competing: &CompetingPlanes,
-    facet: &Facet,
-    outline: &Outline,
+    (facet, outline): (&Facet, &Outline),
     occluders: &Occluders,
     ground: &Ground,
     (colours, register): (&Scene, Option<&RegisterEvidence>),
+    before: Option<&Measured>,
     params: &RoofParams,
-) -> Result<(Evidence, WindowCounts), FacetRejection> {
+) -> Result<VerifiedFacet, FacetRejection> {
     is_placed_like_a_roof(facet, ground, params)?;
-    let (measured, windows) = features::measure(competing, facet, outline, occluders, colours);
-    let mut evidence = EvidenceModel::of_facets().weigh(&measured);
+    let measured = Measured::of(competing, facet, outline, occluders, colours, before);
+    let mut evidence = EvidenceModel::of_facets().weigh(&measured.features);
     evidence.terms.extend(register.map(|r| r.of_facet(facet)));
-    Ok((evidence, windows))
+    Ok(VerifiedFacet { evidence, measured })
 }
 
 #[cfg(test)]
