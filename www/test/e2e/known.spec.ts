@@ -82,7 +82,7 @@ test("terrain and footprints are listed, compared with the images, and left out 
     await expect(outlines.nth(1)).toHaveClass(/contradicted.*chosen/);
     await outlines.nth(0).press("Enter");
     await expect(inspector).toContainText("Footprint House 1");
-    await expect(page).toHaveURL(/select=footprint:0/);
+    await expect(page).toHaveURL(/select=footprint%3A0/);
   });
 
   await test.step("a file is left out, and taken again", async () => {

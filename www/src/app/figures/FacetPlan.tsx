@@ -35,9 +35,9 @@ export function FacetLab({ figure }: { figure: Figure }) {
               rejected {grouping.rejected.length}
             </li>
             {grouping.register !== undefined && (
-              <li>
+              <li title="their bounding boxes">
                 <span class="swatch footprint" aria-hidden="true" />
-                footprints (their bounding boxes) {grouping.register.footprints.length}
+                footprints {grouping.register.footprints.length}
               </li>
             )}
           </ul>

@@ -36,7 +36,7 @@ function Footprints({ found }: { found: RegisterTrace }) {
         {found.file}: {counted(found.footprints.length, "footprints")} in the scene
       </p>
       <p>{registerWords(found)}</p>
-      <dl class="facts">
+      <dl class="facts known-outcomes">
         {outcomesOf(found).map(({ verdict, indices, range }) => (
           <div key={verdict} class="broad" data-outcome={verdict}>
             <dt>
