@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::disallowed_methods)]
 
 use nalgebra::{Point2, Point3, Vector3};
-use ridgeline::facets::{FootprintVerdict, RegisterTrace};
+use ridgeline::facets::{FootprintVerdict, RegisterTrace, RegisterVerdict};
 use ridgeline::known::{Register, Terrain, WorldSystem};
 use ridgeline::orientation::InputFile;
 use ridgeline::params::Params;
@@ -20,11 +20,15 @@ const SLOPE: f64 = 0.268;
 
 /// The scene as files, with one more.
 fn loaded(scene: &Scene, more: Option<(&str, String)>) -> Scene {
+    loaded_with(scene, more, &LoadOptions::default())
+}
+
+fn loaded_with(scene: &Scene, more: Option<(&str, String)>, options: &LoadOptions) -> Scene {
     let mut files: Vec<InputFile> = (to_files(scene).into_iter())
         .map(|(path, bytes)| InputFile::new(&path, bytes))
         .collect();
     files.extend(more.map(|(path, text)| InputFile::new(path, text.into_bytes())));
-    load_scene(&files, &LoadOptions::default()).unwrap()
+    load_scene(&files, options).unwrap()
 }
 
 /// Runs all stages up to the facets.
@@ -212,6 +216,10 @@ fn right_moved_and_wrong_footprints_are_named_and_leave_the_house() {
     let right = with(&[("h1", [0.0, 0.0])]);
     let found = register(&right);
     assert!(found.belongs > 0.95, "{found:?}");
+    assert_eq!(
+        found.verdict == RegisterVerdict::Used,
+        found.moved_m == [0.0; 2]
+    );
     assert_eq!(found.footprints[0].verdict, FootprintVerdict::Agrees);
     assert!(found.footprints[0].roofed > 0.9);
 
@@ -221,10 +229,35 @@ fn right_moved_and_wrong_footprints_are_named_and_leave_the_house() {
     assert_eq!(found.footprints[0].verdict, FootprintVerdict::Shifted);
     let [x, y] = found.footprints[0].shift_m.unwrap();
     assert!((x + 1.2).abs() < 0.5 && (y - 0.9).abs() < 0.5, "{found:?}");
+    let [there, here] = [&right, &moved].map(|run| register(run).footprints[0].bounds_m);
+    for (from, to) in there.iter().zip(here) {
+        assert!((from[0] + 1.2 - to[0]).abs() < 1e-9 && (from[1] - 0.9 - to[1]).abs() < 1e-9);
+    }
 
     let report = right.results().facets.as_ref().unwrap();
     assert_eq!(
         report.trace.facets.register.as_ref().unwrap().footprints[0].name,
         "h1"
     );
+}
+
+#[test]
+fn what_is_left_out_is_not_used() {
+    let (scene, truth) = gable_scene(SIZE_PX);
+    let files = [
+        ("houses.geojson", footprints(&truth, &[("h1", [0.0, 0.0])])),
+        ("dtm.asc", grid(|_, _| truth.ground_z)),
+    ];
+    for (path, text) in files {
+        let options = |unused: &[&str]| LoadOptions {
+            unused: unused.iter().map(|path| (*path).to_owned()).collect(),
+            ..LoadOptions::default()
+        };
+        let is_known = |unused: &[&str]| {
+            let known = loaded_with(&scene, Some((path, text.clone())), &options(unused)).known;
+            known.terrain.is_some() || known.footprints.is_some()
+        };
+        assert!(is_known(&["another.asc"]), "{path}");
+        assert!(!is_known(&[path]), "{path}");
+    }
 }

@@ -58,6 +58,7 @@ pub(super) fn open(
         terrain_accuracy_m: args.terrain_accuracy.or(stated.terrain_accuracy_m),
         footprints: footprints.or(stated.footprints),
         footprint_accuracy_m: args.footprint_accuracy.or(stated.footprint_accuracy_m),
+        unused: stated.unused,
         epsg: args.crs.or(stated.epsg),
         memory_mb: args.memory.or(stated.memory_mb),
         apply_fix: args.apply_fix || stated.apply_fix,

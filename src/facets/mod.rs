@@ -35,5 +35,5 @@ pub(crate) use borders::ON_LINE;
 pub use borders::{Border, BorderKind};
 pub use input::FacetInput;
 pub use reconstruct::{FacetTrace, reconstruct_facets};
-pub use register::{FootprintFinding, FootprintVerdict, RegisterTrace};
+pub use register::{FootprintFinding, FootprintVerdict, RegisterTrace, RegisterVerdict};
 pub use verification::{FacetRejection, RejectedFacet};

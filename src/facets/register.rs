@@ -19,7 +19,7 @@
 
 mod comparison;
 
-pub use comparison::{FootprintFinding, FootprintVerdict, RegisterTrace};
+pub use comparison::{FootprintFinding, FootprintVerdict, RegisterTrace, RegisterVerdict};
 
 use nalgebra::{Point2, Vector2};
 

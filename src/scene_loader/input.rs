@@ -31,6 +31,9 @@ pub struct LoadOptions {
     /// Standard deviation of their borders, metres; that of registers when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub footprint_accuracy_m: Option<f64>,
+    /// Paths of terrain models and footprints that are among the files and not used.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unused: Vec<String>,
     /// EPSG code of the world's reference system; the files' own when absent.
     pub epsg: Option<u32>,
     /// Photographs are reduced by this whole factor; as far as roofs allow when absent (see

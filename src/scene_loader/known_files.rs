@@ -36,7 +36,8 @@ pub(super) fn read_known(
     let mut warnings = Vec::new();
     let of_kind = |kind: FileKind| {
         let all = files.iter().zip(kinds);
-        all.filter(move |(_, k)| **k == kind).map(|(file, _)| file)
+        all.filter(move |(file, k)| **k == kind && !options.unused.contains(&file.path))
+            .map(|(file, _)| file)
     };
     let terrains: Vec<&InputFile> = of_kind(FileKind::Terrain).collect();
     // Of CityJSON nothing tells whether it is a result of this program.

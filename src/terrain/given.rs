@@ -16,6 +16,7 @@ use crate::math::{hypot, larger, median};
 
 /// How a terrain model compares with the images.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct TerrainComparison {
     /// Its file.
     pub file: String,
@@ -30,6 +31,7 @@ pub struct TerrainComparison {
 
 /// What was done with a terrain model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum TerrainVerdict {
     /// The images confirm its heights.

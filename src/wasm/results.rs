@@ -113,6 +113,14 @@ impl Session {
         to_js(&found.map_or(&[][..], |h| &h.value))
     }
 
+    /// How the terrain model that is known compares with the images; `null` without one, and before
+    /// the half-planes.
+    #[wasm_bindgen(unchecked_return_type = "TerrainComparison | null")]
+    pub fn terrain(&self) -> Result<JsValue, JsValue> {
+        let found = self.loaded()?.results().half_planes.as_ref();
+        to_js(&found.and_then(|h| h.ground.terrain()))
+    }
+
     /// The sets of coplanar lines with their polygons, `{sets, trace}`; `null` before that stage.
     #[wasm_bindgen(unchecked_return_type = "CoplanarSets | null")]
     pub fn coplanar(&self) -> Result<JsValue, JsValue> {

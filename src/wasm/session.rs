@@ -74,6 +74,9 @@ struct JsLoadOptions {
     /// Standard deviation of their borders, metres.
     #[tsify(optional)]
     footprint_accuracy_m: Option<f64>,
+    /// Paths of terrain models and footprints that are among the files and not used.
+    #[tsify(optional)]
+    unused: Vec<String>,
     /// EPSG's number of the world's reference system.
     #[tsify(optional)]
     epsg: Option<u32>,
@@ -101,6 +104,14 @@ struct SceneInfo {
     origin: [f64; 3],
     warnings: Vec<String>,
     agreement: Option<crate::agreement::AgreementReport>,
+    known: KnownFiles,
+}
+
+/// The files that are taken as what is known beforehand.
+#[derive(Serialize, tsify::Tsify)]
+struct KnownFiles {
+    terrain: Option<String>,
+    footprints: Option<String>,
 }
 
 #[wasm_bindgen]
@@ -238,6 +249,10 @@ impl Session {
             origin: scene.origin.into(),
             warnings: scene.warnings.clone(),
             agreement: scene.survey.agreement.clone(),
+            known: KnownFiles {
+                terrain: scene.known.terrain.as_ref().map(|t| t.file.clone()),
+                footprints: scene.known.footprints.as_ref().map(|f| f.file.clone()),
+            },
         })
     }
 
@@ -320,6 +335,7 @@ pub(crate) fn load_options(options: &JsValue) -> Result<LoadOptions, JsValue> {
         terrain_accuracy_m: options.terrain_accuracy_m,
         footprints: options.footprints,
         footprint_accuracy_m: options.footprint_accuracy_m,
+        unused: options.unused,
         epsg: options.epsg,
         memory_mb: None,
         apply_fix: options.apply_fix,
@@ -340,6 +356,7 @@ impl From<&LoadOptions> for JsLoadOptions {
             terrain_accuracy_m: options.terrain_accuracy_m,
             footprints: options.footprints.clone(),
             footprint_accuracy_m: options.footprint_accuracy_m,
+            unused: options.unused.clone(),
             epsg: options.epsg,
             apply_fix: options.apply_fix,
             ignore_check: options.ignore_check,

@@ -13,12 +13,30 @@ use crate::model::Facet;
 pub struct RegisterTrace {
     /// Its file.
     pub file: String,
+    /// What was done with it.
+    pub verdict: RegisterVerdict,
     /// Probability that it belongs to this place, 0 to 1.
     pub belongs: f64,
     /// By so much it was moved as a whole before it was used, east and north, metres.
     pub moved_m: [f64; 2],
     /// Its footprints in the window, in the order of the file.
     pub footprints: Vec<FootprintFinding>,
+}
+
+/// What was done with a register.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
+#[serde(rename_all = "kebab-case")]
+pub enum RegisterVerdict {
+    /// It counted as it is.
+    #[default]
+    Used,
+    /// It was moved as a whole, to the roofs, and counted.
+    Moved,
+    /// The images contradict it as a whole, so it counted for little.
+    Doubted,
+    /// None of its footprints lies in the scene.
+    Elsewhere,
 }
 
 /// A footprint compared with the model.
@@ -29,6 +47,9 @@ pub struct FootprintFinding {
     pub name: String,
     /// What the images say of it.
     pub verdict: FootprintVerdict,
+    /// South-western and north-eastern corner of its bounding box as it is in the file, metres,
+    /// local frame.
+    pub bounds_m: [[f64; 2]; 2],
     /// Share of its area under the roofs of the model, 0 to 1.
     pub roofed: f64,
     /// From the footprint as it is in the file to the model, east and north, metres; absent where
@@ -61,20 +82,20 @@ impl RegisterTrace {
             of_it.map(|f| &*f.name).collect()
         };
         let mut warnings = Vec::new();
-        if self.footprints.is_empty() {
+        if self.verdict == RegisterVerdict::Elsewhere {
             warnings.push(format!(
                 "none of the footprints of {file} lies in the scene: check its coordinate system"
             ));
             return warnings;
         }
-        if self.belongs < DOUBTFUL {
+        if self.verdict == RegisterVerdict::Doubted {
             warnings.push(format!(
                 "the images contradict {file} as a whole, so it counted for little: check that it is \
                  of this place"
             ));
             return warnings;
         }
-        if self.moved_m != [0.0, 0.0] {
+        if self.verdict == RegisterVerdict::Moved {
             let [x, y] = self.moved_m;
             warnings.push(format!(
                 "{file} was moved by {x:.2} m east and {y:.2} m north, to the roofs"
@@ -134,11 +155,21 @@ impl RegisterEvidence<'_> {
     ) -> RegisterTrace {
         let roofs = self.roofs(facets);
         let found = |footprint: &Footprint| self.finding(footprint, &roofs, ground, areas);
+        let footprints: Vec<_> = (self.register.footprints.iter())
+            .filter_map(found)
+            .collect();
+        let verdict = match footprints.is_empty() {
+            true => RegisterVerdict::Elsewhere,
+            false if self.belongs < DOUBTFUL => RegisterVerdict::Doubted,
+            false if self.moved != [0, 0] => RegisterVerdict::Moved,
+            false => RegisterVerdict::Used,
+        };
         RegisterTrace {
             file: self.register.file.clone(),
+            verdict,
             belongs: self.belongs,
             moved_m: self.moved.map(|n| n as f64 * self.grid.step),
-            footprints: self.register.footprints.iter().filter_map(found).collect(),
+            footprints,
         }
     }
 
@@ -183,6 +214,7 @@ impl RegisterEvidence<'_> {
         };
         Some(FootprintFinding {
             name: footprint.name.clone(),
+            bounds_m: footprint.bounds().map(Into::into),
             verdict,
             roofed,
             shift_m,

@@ -24,6 +24,7 @@ import type {
   SegmentMatching,
   SideRecord,
   SideTrace,
+  TerrainComparison,
 } from "./records";
 import type { Selection } from "./selection";
 
@@ -33,6 +34,8 @@ export interface Results {
   supports: Float32Array[];
   lines: Float64Array | null;
   halfPlanes: HalfPlane[] | null;
+  /** How the terrain model that is known beforehand compares with the images. */
+  terrain: TerrainComparison | null;
   coplanar: CoplanarSets | null;
   adjacency: AdjacencyGraphs | null;
   dense: DensePlanes | null;
@@ -63,6 +66,7 @@ export const NO_RESULTS: Results = {
   supports: [],
   lines: null,
   halfPlanes: null,
+  terrain: null,
   coplanar: null,
   adjacency: null,
   dense: null,

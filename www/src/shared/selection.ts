@@ -19,6 +19,8 @@ export type Selection =
   | { kind: "facet"; index: number }
   /** A facet that was rejected. */
   | { kind: "rejectedFacet"; index: number }
+  /** A footprint of the register that is known beforehand. */
+  | { kind: "footprint"; index: number }
   /** What refinement made of a building; one of the relations tested there. */
   | { kind: "refinement"; index: number }
   | { kind: "relation"; building: number; index: number }
@@ -85,6 +87,7 @@ export function parseSelection(text: string | null): Selection | null {
     case "group":
     case "refinement":
     case "facet":
+    case "footprint":
     case "view":
     case "pair":
       return { kind, index };

@@ -28,6 +28,7 @@ import type {
   SideRecord,
   SideTrace,
   StageSummary,
+  TerrainComparison,
   TileReport,
 } from "../../src/shared/records";
 import type { CoreSession } from "../../src/worker/coreSession";
@@ -196,7 +197,13 @@ export class Session implements CoreSession {
       center: [0, 0, 4000 + i] as P,
       projection: downwards(4000 + i),
     }));
-    return { views, origin: [1000, 2000, 0], warnings: [], agreement: null };
+    return {
+      views,
+      origin: [1000, 2000, 0],
+      warnings: [],
+      agreement: null,
+      known: { terrain: null, footprints: null },
+    };
   }
 
   setParams(): void {}
@@ -237,6 +244,10 @@ export class Session implements CoreSession {
 
   halfPlanes(): HalfPlane[] {
     return HALF_PLANES;
+  }
+
+  terrain(): TerrainComparison | null {
+    return null;
   }
 
   coplanar(): CoplanarSets {

@@ -31,6 +31,7 @@ const ROOMS: Readonly<Record<string, readonly string[]>> = {
       "app/photographs",
       "app/selection",
       "app/inspector",
+      "app/known",
       "app/corrections",
       "app/comparison",
       "app/images",

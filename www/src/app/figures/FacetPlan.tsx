@@ -7,6 +7,7 @@ import { roofTintHex } from "../../viewer/scene/roofTint";
 import { Filmstrip } from "../images/Filmstrip";
 import { closedPathOf, Fit, type Frame, pathOf } from "../parts/charts";
 import { counted } from "../parts/counted";
+import { FOOTPRINT_WORDS } from "../parts/knownText";
 import { facetRejectionWords } from "../parts/reasonText";
 
 /** Figures 21 to 23: border lines by their kind, what they enclose, and what was rejected. */
@@ -33,6 +34,12 @@ export function FacetLab({ figure }: { figure: Figure }) {
               <span class="swatch rejected" aria-hidden="true" />
               rejected {grouping.rejected.length}
             </li>
+            {grouping.register !== undefined && (
+              <li title="their bounding boxes">
+                <span class="swatch footprint" aria-hidden="true" />
+                footprints {grouping.register.footprints.length}
+              </li>
+            )}
           </ul>
         </figcaption>
       </figure>
@@ -66,9 +73,12 @@ interface PlanProps {
 
 function Plan({ frame, figure, grouping, facets }: PlanProps) {
   const outlines = facets.map(({ outer }) => outer);
-  // The roofs fill the figure; border lines on the ground reach far beyond them.
-  const points: readonly (readonly number[])[] =
-    outlines.length > 0 ? outlines.flat() : grouping.borders.flatMap(({ a, b }): Vec2[] => [a, b]);
+  // The roofs, and the footprints that are known, fill the figure; border lines on the ground reach far beyond them.
+  const footprints = grouping.register?.footprints ?? [];
+  const points: readonly (readonly number[])[] = [
+    ...(outlines.length > 0 ? outlines.flat() : grouping.borders.flatMap(({ a, b }): Vec2[] => [a, b])),
+    ...footprints.flatMap(({ bounds_m }) => bounds_m),
+  ];
   const xs = points.map(([x = 0]) => x);
   const ys = points.map(([, y = 0]) => y);
   const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
@@ -107,6 +117,23 @@ function Plan({ frame, figure, grouping, facets }: PlanProps) {
           d={closedPathOf(outline.map(at))}
         />
       ))}
+      {footprints.map(({ name, verdict, bounds_m: [[west, south], [east, north]] }, i) => (
+        <PlanArea
+          key={i}
+          figure={figure}
+          picks={{ kind: "footprint", index: i }}
+          name={`Footprint ${name}: ${FOOTPRINT_WORDS[verdict]}`}
+          className={`plan-footprint ${verdict}`}
+          d={closedPathOf(
+            [
+              [west, south],
+              [east, south],
+              [east, north],
+              [west, north],
+            ].map(at),
+          )}
+        />
+      ))}
       {BORDER_KINDS.map((kind) => {
         const own = grouping.borders.filter((border) => border.kind === kind);
         const pathFor = (borders: typeof own) => borders.map(({ a, b }) => pathOf([at(a), at(b)])).join("");
@@ -134,7 +161,7 @@ function Plan({ frame, figure, grouping, facets }: PlanProps) {
 /** An outline that can be picked, by key as well. */
 function PlanArea(of: {
   figure: Figure;
-  picks: { kind: "facet" | "rejectedFacet"; index: number };
+  picks: { kind: "facet" | "rejectedFacet" | "footprint"; index: number };
   name: string;
   className: string;
   fill?: string;

@@ -95,15 +95,16 @@ function isBars(value: Row[1]): value is Bars {
 
 const MOST_LINKS = 12;
 
-function Links({ to }: { to: readonly Related[] }) {
+/** Things to go on to. */
+export function Links({ to }: { to: readonly Related[] }) {
   if (to.length === 0) {
     return <>–</>;
   }
   return (
     <span class="links">
-      {to.slice(0, MOST_LINKS).map(({ name, selection: next }) => (
+      {to.slice(0, MOST_LINKS).map(({ name, selection: next }, i) => (
         <button
-          key={name}
+          key={i}
           type="button"
           class="link"
           onClick={() => {

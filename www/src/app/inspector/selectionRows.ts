@@ -30,6 +30,7 @@ import { coplanarSetRows } from "./coplanarSetRows";
 import { cornerRows } from "./cornerRows";
 import { densePlaneRows } from "./densePlaneRows";
 import { evidenceOfLine, probabilityRow } from "./evidenceRows";
+import { footprintRows } from "./footprintRows";
 import { refinedRow, refinementRows, relationRows } from "./refinementRows";
 import { rejectedClusterRows, rejectedFacetRows, rejectedSegmentRows } from "./rejectedRows";
 import {
@@ -73,6 +74,8 @@ export function titleOf(picked: Selection): string {
       return `Facet ${picked.index}`;
     case "rejectedFacet":
       return `Rejected facet ${picked.index}`;
+    case "footprint":
+      return `Footprint ${results.value.grouping?.register?.footprints[picked.index]?.name ?? picked.index}`;
     case "cluster":
       return `Rejected cluster ${picked.index} of plane ${picked.plane}`;
     case "refinement":
@@ -114,6 +117,8 @@ export function rowsOf(picked: Selection): Row[] {
       return facetRows(picked.index);
     case "rejectedFacet":
       return rejectedFacetRows(picked.index);
+    case "footprint":
+      return footprintRows(picked.index);
     case "cluster":
       return rejectedClusterRows(picked.plane, picked.index);
     case "refinement":

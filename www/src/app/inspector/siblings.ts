@@ -38,6 +38,8 @@ export function siblingsOf(picked: Selection | null): readonly Selection[] {
       return itemsOfTab("facets");
     case "rejectedFacet":
       return numbered(grouping?.rejected.length, (index) => ({ kind: "rejectedFacet", index }));
+    case "footprint":
+      return numbered(grouping?.register?.footprints.length, (index) => ({ kind: "footprint", index }));
     case "refinement":
       return itemsOfTab("refinement");
     case "relation":

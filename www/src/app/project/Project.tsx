@@ -1,17 +1,17 @@
 /** The project: where files are dropped, and what each of them was recognised as. */
 import "./project.css";
 import { useEffect, useRef, useState } from "preact/hooks";
-import type { ImageReport } from "../../shared/records";
+import type { FileReport, ImageReport } from "../../shared/records";
 import { counted } from "../parts/counted";
 import { showsEntrance } from "../screen/opening";
 import { isBusy } from "../state/activity";
 import { notify } from "../state/notices";
-import { files, inspection, projectName, runOptions } from "../state/project";
+import { files, inspection, isKnownKind, projectName, runOptions } from "../state/project";
 import { peakMb, scene } from "../state/scene";
 import { ArrivalHabit, ArrivalQuestion } from "./ArrivalQuestion";
 import { takeFiles } from "./arrivals";
 import { hasFolderPicker, pickFolder } from "./folders";
-import { droppedFiles, pickedFiles } from "./inputFiles";
+import { baseName, droppedFiles, pickedFiles } from "./inputFiles";
 import { OrientationCheck } from "./OrientationCheck";
 import { clearProject, openDemo, removeFile, setRunOptions } from "./projectActions";
 import { OrientationChoice, PlaceFields } from "./RunOptionFields";
@@ -204,7 +204,7 @@ function ViewRow({ image }: { image: ImageReport }) {
 }
 
 /** Files inside an archive come and go with it. */
-function RemoveButton({ path }: { path: string }) {
+export function RemoveButton({ path }: { path: string }) {
   if (!files.value.some((file) => file.path === path)) {
     return <span />;
   }
@@ -215,10 +215,12 @@ function RemoveButton({ path }: { path: string }) {
   );
 }
 
+/** What the panel of what is known beforehand does not show. */
 function OtherFiles() {
   const report = inspection.value;
-  const others =
-    report?.files.filter(({ path }) => !report.images.some((image) => image.path === path)) ?? [];
+  const isShownAbove = ({ path, kind }: FileReport) =>
+    isKnownKind(kind) || report?.images.some((image) => image.path === path) === true;
+  const others = report?.files.filter((file) => !isShownAbove(file)) ?? [];
   if (others.length === 0) {
     return null;
   }
@@ -291,8 +293,4 @@ function countText(images: readonly ImageReport[]): string {
   const used = images.filter(({ path }) => !runOptions.value.leftOut.includes(path)).length;
   const all = counted(images.length, "views");
   return used === images.length ? all : `${used} of ${all}`;
-}
-
-function baseName(path: string): string {
-  return path.slice(path.lastIndexOf("/") + 1);
 }

@@ -45,6 +45,11 @@ async function walk(entry: FileSystemEntry): Promise<InputFile[]> {
   return (await Promise.all(children.map(walk))).flat();
 }
 
+/** The last part of a path. */
+export function baseName(path: string): string {
+  return path.slice(path.lastIndexOf("/") + 1);
+}
+
 /** A directory reader gives its entries in batches, until an empty one. */
 async function readAll(reader: FileSystemDirectoryReader): Promise<FileSystemEntry[]> {
   const all: FileSystemEntry[] = [];

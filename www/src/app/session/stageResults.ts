@@ -44,6 +44,7 @@ const FETCHED: Record<StageName, (from: ResultSource) => Promise<Partial<Results
   halfplanes: async (from) => ({
     halfPlanes: await from.call("halfPlanes"),
     sides: await from.call("sides"),
+    terrain: await from.call("terrain"),
   }),
   coplanar: async (from) => ({ coplanar: await from.call("coplanar") }),
   adjacency: async (from) => ({ adjacency: await from.call("adjacency") }),

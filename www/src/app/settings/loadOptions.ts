@@ -4,12 +4,20 @@ import type { RunOptions } from "../state/project";
 
 /** The core's options; the views are named only where some are left out. */
 export function loadOptions(wanted: RunOptions, inspection: Inspection | null): LoadOptions {
-  const { orientation, leftOut, roi, groundZ, reduction, applyFix, ignoreCheck, epsg } = wanted;
-  const used = (inspection?.images ?? []).filter(({ path }) => !leftOut.includes(path));
+  const { orientation, leftOut, roi, terrain, footprints, groundZ, reduction, applyFix, ignoreCheck, epsg } =
+    wanted;
+  const images = inspection?.images ?? [];
+  const used = images.filter(({ path }) => !leftOut.includes(path));
+  const unused = leftOut.filter(
+    (path) => !images.some((image) => image.path === path) && isHere(path, inspection),
+  );
   return {
     ...(orientation !== null && { orientation }),
-    ...(leftOut.length > 0 && { views: used.map(({ name }) => name) }),
+    ...(used.length < images.length && { views: used.map(({ name }) => name) }),
     ...(roi !== null && { roi }),
+    ...(terrain !== null && isHere(terrain, inspection) && { terrain }),
+    ...(footprints !== null && isHere(footprints, inspection) && { footprints }),
+    ...(unused.length > 0 && { unused }),
     ...(groundZ !== null && { groundZ }),
     ...(reduction !== null && reduction > 1 && { reduction }),
     ...(applyFix && { applyFix }),
@@ -18,15 +26,22 @@ export function loadOptions(wanted: RunOptions, inspection: Inspection | null): 
   };
 }
 
+/** Whether a file is still among those of the project, as far as that is known. */
+function isHere(path: string, inspection: Inspection | null): boolean {
+  return inspection?.files.some((file) => file.path === path) ?? true;
+}
+
 /** What a project file asks for, as the page has it; images are left out that it does not name. */
 export function wishesOf(opened: OpenedProject["options"], inspection: Inspection): RunOptions {
-  const { orientation, views, roi, groundZ, reduction, epsg } = opened;
+  const { orientation, views, roi, terrain, footprints, unused, groundZ, reduction, epsg } = opened;
   const isNamed = (name: string) => (views ?? []).some((view) => stem(view) === stem(name));
   const leftOut = views === null ? [] : inspection.images.filter(({ name }) => !isNamed(name));
   return {
     orientation,
-    leftOut: leftOut.map(({ path }) => path),
+    leftOut: [...leftOut.map(({ path }) => path), ...(unused ?? [])],
     roi,
+    terrain,
+    footprints,
     groundZ,
     epsg,
     applyFix: opened.applyFix === true,

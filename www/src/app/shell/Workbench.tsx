@@ -3,6 +3,8 @@ import { Comparison } from "../comparison/Comparison";
 import { Corrections } from "../corrections/Corrections";
 import { AboutFigure } from "../figures/AboutFigure";
 import { Inspector } from "../inspector/Inspector";
+import { KnownFiles } from "../known/KnownFiles";
+import { KnownFindings } from "../known/KnownFindings";
 import { Downloads } from "../project/Downloads";
 import { Parameters } from "../project/Parameters";
 import { Project } from "../project/Project";
@@ -22,6 +24,7 @@ export function Workbench() {
     <div class="columns">
       <aside class="column project" aria-label="Project">
         <Project />
+        {!isBehind && <KnownFiles />}
         <Downloads />
       </aside>
       <main class="centre">
@@ -33,6 +36,7 @@ export function Workbench() {
         {tourStep.value !== null ? <TourPanel /> : images.value.length > 0 && <AboutFigure tab={tab.value} />}
         {tourStep.value === null && images.value.length > 0 && <PageTakeAlong />}
         <Comparison />
+        <KnownFindings />
         <Inspector />
         <Corrections />
         <Parameters />

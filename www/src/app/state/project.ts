@@ -1,13 +1,16 @@
 /** The project: its files, what they were recognised as, and what is asked for beyond them. */
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals";
 import type { InputFile } from "../../shared/calls";
-import type { Inspection } from "../../shared/records";
+import type { FileKind, Inspection } from "../../shared/records";
 
-/** What the person asked for beyond the files; images are left out by their path. */
+/** What the person asked for beyond the files; images, terrain models and footprints are left out by their path. */
 export interface RunOptions {
   orientation: string | null;
   leftOut: readonly string[];
   roi: [number, number, number, number] | null;
+  /** The files that are meant where there are several; null: the only one. */
+  terrain: string | null;
+  footprints: string | null;
   groundZ: number | null;
   /** Undo the mistake in the orientation that the images give away. */
   applyFix: boolean;
@@ -27,6 +30,8 @@ export const NO_OPTIONS: RunOptions = {
   orientation: null,
   leftOut: [],
   roi: null,
+  terrain: null,
+  footprints: null,
   groundZ: null,
   applyFix: false,
   ignoreCheck: false,
@@ -57,6 +62,13 @@ export const hasPhotographsOnly = computed(() => {
   const isHelpless = known.every(({ kind }) => kind === "image" || kind === "ignored");
   return isHelpless && images.length > 0 && images.every(({ orientation }) => orientation === null);
 });
+
+/** Terrain models and footprints: what is known of the place beforehand. */
+export type KnownKind = Extract<FileKind, "terrain" | "footprints">;
+
+export function isKnownKind(kind: FileKind): kind is KnownKind {
+  return kind === "terrain" || kind === "footprints";
+}
 
 /** Other files: nothing is known of them yet, and without any nothing is asked for. */
 export function replaceFiles(next: InputFile[]): void {

@@ -30,6 +30,7 @@ describe("links", () => {
     { kind: "cluster", plane: 1, index: 12 },
     { kind: "line", index: 7 },
     { kind: "facet", index: 0 },
+    { kind: "footprint", index: 3 },
     { kind: "group", index: 9 },
     { kind: "pair", index: 5 },
     { kind: "refinement", index: 2 },

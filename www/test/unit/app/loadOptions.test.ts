@@ -4,7 +4,11 @@ import { NO_OPTIONS } from "../../../src/app/state/project";
 import type { Inspection } from "../../../src/shared/records";
 
 const image = (path: string) => ({ path, name: path.replace("in/", ""), size: null, orientation: null });
-const inspection = { images: ["in/a.jpg", "in/b.jpg", "in/c.jpg"].map(image) } as unknown as Inspection;
+const photographs = ["in/a.jpg", "in/b.jpg", "in/c.jpg"];
+const inspection = {
+  images: photographs.map(image),
+  files: [...photographs, "dtm.asc", "houses.geojson"].map((path) => ({ path })),
+} as unknown as Inspection;
 
 describe("run options", () => {
   it("say nothing where nothing is asked for", () => {
@@ -14,8 +18,10 @@ describe("run options", () => {
   it("name the views that are left, the orientation, region and ground", () => {
     const wanted = {
       orientation: "x/b.out",
-      leftOut: ["in/b.jpg"],
+      leftOut: ["in/b.jpg", "dtm.asc"],
       roi: [1, 2, 3, 4] as const,
+      terrain: null,
+      footprints: "houses.geojson",
       groundZ: 0,
       applyFix: true,
       ignoreCheck: true,
@@ -28,12 +34,19 @@ describe("run options", () => {
       orientation: "x/b.out",
       views: ["a.jpg", "c.jpg"],
       roi: [1, 2, 3, 4],
+      footprints: "houses.geojson",
+      unused: ["dtm.asc"],
       groundZ: 0,
       reduction: 2,
       applyFix: true,
       ignoreCheck: true,
       epsg: 25832,
     });
+  });
+
+  it("name no file that is gone, and all views where only terrain is left out", () => {
+    const wanted = { ...NO_OPTIONS, leftOut: ["dtm.asc", "gone.asc"], footprints: "gone.geojson" };
+    expect(loadOptions(wanted, inspection)).toEqual({ unused: ["dtm.asc"] });
   });
 
   it("read a region with any separators, and say what is wrong with it", () => {

@@ -1,0 +1,59 @@
+/** What the images say of the terrain model and the footprints that are known beforehand. */
+import type { RegisterTrace, TerrainComparison } from "../../shared/records";
+import { Links } from "../inspector/Inspector";
+import { counted } from "../parts/counted";
+import { FOOTPRINT_WORDS, outcomesOf, registerWords, terrainWords } from "../parts/knownText";
+import { results } from "../state/results";
+import { tab } from "../state/viewState";
+
+export function KnownFindings() {
+  const { terrain, grouping } = results.value;
+  const register = tab.value === "facets" ? grouping?.register : undefined;
+  const ground = tab.value === "facets" || tab.value === "halfplanes" ? terrain : null;
+  return (
+    <>
+      {ground !== null && <Terrain found={ground} />}
+      {register !== undefined && <Footprints found={register} />}
+    </>
+  );
+}
+
+function Terrain({ found }: { found: TerrainComparison }) {
+  return (
+    <section class="panel" data-testid="known-terrain">
+      <h2>Terrain</h2>
+      <p class="muted">{found.file}</p>
+      <p>{terrainWords(found)}</p>
+    </section>
+  );
+}
+
+function Footprints({ found }: { found: RegisterTrace }) {
+  return (
+    <section class="panel" data-testid="known-footprints">
+      <h2>Footprints</h2>
+      <p class="muted">
+        {found.file}: {counted(found.footprints.length, "footprints")} in the scene
+      </p>
+      <p>{registerWords(found)}</p>
+      <dl class="facts known-outcomes">
+        {outcomesOf(found).map(({ verdict, indices, range }) => (
+          <div key={verdict} class="broad" data-outcome={verdict}>
+            <dt>
+              {indices.length} {FOOTPRINT_WORDS[verdict]}
+              {range !== "" && <span class="muted numbers"> ({range})</span>}
+            </dt>
+            <dd>
+              <Links
+                to={indices.map((index) => ({
+                  name: found.footprints[index]?.name ?? String(index),
+                  selection: { kind: "footprint", index },
+                }))}
+              />
+            </dd>
+          </div>
+        ))}
+      </dl>
+    </section>
+  );
+}

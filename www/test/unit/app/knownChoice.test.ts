@@ -1,0 +1,48 @@
+/** Which terrain model and footprints are taken, and what is asked for when a person takes another or none. */
+import { describe, expect, it } from "vitest";
+import { choiceOf, knownFiles } from "../../../src/app/known/knownChoice";
+import { NO_OPTIONS } from "../../../src/app/state/project";
+import type { FileReport } from "../../../src/shared/records";
+
+const file = (path: string, kind: FileReport["kind"]): FileReport => ({ path, kind, description: "" });
+const files = [
+  file("a.jpg", "image"),
+  file("dtm.asc", "terrain"),
+  file("old.geojson", "footprints"),
+  file("new.geojson", "footprints"),
+];
+const wordsOf = (wanted: Parameters<typeof knownFiles>[1], known: Parameters<typeof knownFiles>[2]) =>
+  Object.fromEntries(knownFiles({ files }, wanted, known).map(({ path, words }) => [path, words]));
+
+describe("files that are known beforehand", () => {
+  it("say what they are taken as, or why they are not", () => {
+    expect(wordsOf(NO_OPTIONS, { terrain: "dtm.asc", footprints: null })).toEqual({
+      "dtm.asc": "taken as the terrain",
+      "old.geojson": "not taken: there are several; choose one",
+      "new.geojson": "not taken: there are several; choose one",
+    });
+    const wanted = { ...NO_OPTIONS, groundZ: 100, leftOut: ["old.geojson"] };
+    expect(wordsOf(wanted, { terrain: null, footprints: "new.geojson" })).toEqual({
+      "dtm.asc": "not taken: the height of the ground is stated",
+      "old.geojson": "left out",
+      "new.geojson": "taken as the footprints",
+    });
+    expect(wordsOf(wanted, { terrain: null, footprints: null })["new.geojson"]).toMatch(
+      /result of this program/,
+    );
+    expect(wordsOf(NO_OPTIONS, null)["dtm.asc"]).toBe("");
+  });
+
+  it("are named once they are chosen, and neither named nor taken once they are left out", () => {
+    const [, old] = knownFiles({ files }, NO_OPTIONS, null);
+    const chosen = {
+      ...NO_OPTIONS,
+      ...choiceOf(old as never, true, { ...NO_OPTIONS, leftOut: ["old.geojson"] }),
+    };
+    expect(chosen).toEqual({ ...NO_OPTIONS, footprints: "old.geojson" });
+    expect({ ...chosen, ...choiceOf(old as never, false, chosen) }).toEqual({
+      ...NO_OPTIONS,
+      leftOut: ["old.geojson"],
+    });
+  });
+});
