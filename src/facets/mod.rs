@@ -5,6 +5,7 @@
 //!
 //! ```text
 //! input             the results of the stages before
+//! dominated         planes that a stronger one explains are left out
 //! borders           border lines, the cells between them, and what a border costs
 //! evidence          the data term: photo-consistency and lines for each plane over each cell
 //! islands           patches too small to be a facet or a hole
