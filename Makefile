@@ -11,7 +11,7 @@
 #   make fuzz       all readers on damaged files, FUZZ_SECONDS (600) for each format
 #   make jury       all scenes many times over, changed a little each time; rewrites its tables there
 #   make judge      SEEDS (as "518 to 530") of random scenes that chose nothing; BEFORE=PROGRAM compares in pairs
-#   make calibrate  fits the tables of src/evidence to scenes with truth, PYTHON (python3) with numpy, scipy, shapely
+#   make calibrate  fits the tables of src/evidence to scenes with truth, PYTHON (python3) with numpy, scipy, shapely, Pillow
 #   make bench      time of every stage on the synthetic scene, and of the lines of the scene in SCENE
 #   make clean      remove what was built (not the tool cache)
 
@@ -74,8 +74,10 @@ judge: native
 
 calibrate: native
 	$(PYTHON) tests/calibrate.py --self-test
+	$(PYTHON) tests/clutter.py --self-test
 	$(PYTHON) tests/calibrate.py --binary target/release/ridgeline --fit "$${FIT:-../shared/fit}" \
 		--more "$${SCENES:-../shared/scenes}"
+	$(PYTHON) tests/clutter.py --scenes "$${FIT:-../shared/fit}"
 
 bench:
 	cargo bench --bench stages

@@ -3,16 +3,19 @@
 //! ```text
 //! reconstruct  method "lines": facets -> closed buildings -> refinement -> roof model
 //! refine       adjusts the wireframe of each building to the image edges of all views
+//! parapets     roofs below the parapets that bound them
 //! model_lines  lines that the finished model contradicts, duplicates and new lines
 //! ```
 //!
 //! Invariant: every facet of the result belongs to one building whose solid is closed.
 
 mod model_lines;
+mod parapets;
 mod reconstruct;
 mod refine;
 
 pub use model_lines::{VerifiedLines, verify_lines};
+pub use parapets::Parapet;
 pub use reconstruct::{RoofTrace, UnrefinedFacets, reconstruct_roofs};
 #[cfg(test)]
 pub(crate) use refine::gable;

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::model_lines::VerifiedLines;
+use super::parapets::{Parapet, below_parapets};
 use super::refine::{RefineTrace, RoofGap, cut_back_at_gaps, refine_roofs};
 use crate::execution::Sharded;
 use crate::facets::{FacetInput, FacetTrace, reconstruct_facets};
@@ -22,6 +23,8 @@ pub struct RoofTrace {
     pub unrefined: UnrefinedFacets,
     /// What was regularised and refined in each building.
     pub refinement: RefineTrace,
+    /// Roofs that lie below the edges that bound them.
+    pub parapets: Vec<Parapet>,
     /// Walls and ground.
     pub solids: SolidTrace,
     /// What the model says of the lines.
@@ -52,7 +55,8 @@ pub fn reconstruct_roofs(
     let (separated, gaps) = cut_back_at_gaps(scene, &delineated, params);
     let (delineated, again) = close_buildings(&separated, below);
     let (refined, refinement) = refine_roofs(scene, lines, &delineated, params);
-    let (model, closed) = close_buildings(&refined, below);
+    let (lowered, parapets) = below_parapets(scene, &refined);
+    let (model, closed) = close_buildings(&lowered, below);
     let unrefined = UnrefinedFacets {
         facets: delineated.facets,
         sources: closed.sources.clone(),
@@ -63,6 +67,7 @@ pub fn reconstruct_roofs(
         gaps,
         unrefined,
         refinement,
+        parapets,
         solids,
         lines: VerifiedLines::default(),
     };

@@ -15,10 +15,12 @@
 //! Invariant: no threshold here or in what calls this but even odds; the calibration alone sets
 //! `least_nats` so low that every candidate is seen.
 
+mod clutter;
 mod judged;
 mod uncertainty;
 mod windows;
 
+pub(crate) use clutter::ClutterTable;
 pub use judged::{
     Candidates, JudgedFacet, JudgedLine, JudgedSurface, WindowCounts, WindowHistogram,
 };

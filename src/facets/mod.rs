@@ -38,3 +38,4 @@ pub use input::FacetInput;
 pub use reconstruct::{FacetTrace, reconstruct_facets};
 pub use register::{FootprintFinding, FootprintVerdict, RegisterTrace, RegisterVerdict};
 pub use verification::{FacetRejection, RejectedFacet};
+pub(crate) use verification::{PartVisibility, largest_slope, windows_inside};

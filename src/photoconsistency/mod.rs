@@ -30,7 +30,7 @@ mod shiftable_windows;
 mod windows;
 
 pub(crate) use box_sum::{BoxSum, HALF_WINDOW, RowSum, WINDOW, WINDOW_CELLS};
-pub(crate) use consistency_map::ConsistencyMap;
+pub(crate) use consistency_map::{ConsistencyMap, MAX_VIEWS};
 pub(crate) use line_side_strip::{LineSideStrip, StripPatch};
 pub(crate) use plan_grid::{PlanGrid, orthophoto};
 pub(crate) use plane_consistency::{

@@ -80,7 +80,7 @@ impl PlaneAgreement {
 
 /// Visibility of the parts of a facet in each view.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct PartVisibility {
+pub(crate) struct PartVisibility {
     parts: PlanGrid,
     /// By view, then row by row.
     hidden: Vec<Vec<bool>>,
@@ -89,7 +89,7 @@ pub(super) struct PartVisibility {
 impl PartVisibility {
     /// Samples one point of every part, [`PART`] cells wide; `hidden` tells which views do not see
     /// a point.
-    pub(super) fn new(
+    pub(crate) fn new(
         scene: &Scene,
         facet: &Facet,
         step: f64,
@@ -108,7 +108,8 @@ impl PartVisibility {
         }
     }
 
-    fn is_hidden(&self, view: ViewId, p: &Point2<f64>) -> bool {
+    /// Does a view not see the part around a place in plan?
+    pub(crate) fn is_hidden(&self, view: ViewId, p: &Point2<f64>) -> bool {
         let part = self.parts.cell(p);
         part.is_some_and(|(c, r)| self.hidden[view.index()][r * self.parts.width + c])
     }
@@ -116,7 +117,7 @@ impl PartVisibility {
 
 /// Largest difference of the slopes (plan over height) of the rays from a point to the views that
 /// see it.
-fn largest_slope(
+pub(crate) fn largest_slope(
     scene: &Scene,
     point: &Point3<f64>,
     hidden: &dyn Fn(ViewId, &Point3<f64>) -> bool,

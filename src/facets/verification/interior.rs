@@ -40,16 +40,7 @@ pub(super) fn interior_map(
 impl<'m> InteriorWindows<'m> {
     /// The windows inside a facet, with the map of its plane.
     pub(super) fn of(facet: &Facet, map: &'m ConsistencyMap) -> Self {
-        let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
-        let rings = std::iter::once(&facet.outer).chain(&facet.holes);
-        let rings: Vec<Vec<Point2<f64>>> = rings.map(in_plan).collect();
-        Self::new(&rings, map)
-    }
-
-    /// The windows inside `rings` (in plan, metres, holes too).
-    fn new(rings: &[Vec<Point2<f64>>], map: &'m ConsistencyMap) -> Self {
-        let mask = cells_inside(rings, &map.grid);
-        let windows = windows_in(&mask, map.grid.width);
+        let windows = windows_inside(facet, &map.grid);
         Self { map, windows }
     }
 
@@ -104,6 +95,14 @@ impl<'m> InteriorWindows<'m> {
         let independent = weights * weights / (squares * (WINDOW * WINDOW) as f64);
         mean / (variance / independent).sqrt()
     }
+}
+
+/// The middles of the windows that lie wholly inside a facet, as cells of a grid, row by row.
+pub(crate) fn windows_inside(facet: &Facet, grid: &PlanGrid) -> Vec<usize> {
+    let in_plan = |ring: &Vec<Point3<f64>>| ring.iter().map(Point3::xy).collect();
+    let rings = std::iter::once(&facet.outer).chain(&facet.holes);
+    let rings: Vec<Vec<Point2<f64>>> = rings.map(in_plan).collect();
+    windows_in(&cells_inside(&rings, grid), grid.width)
 }
 
 /// Least variance of a difference of correlations: that of their rounding.
@@ -178,9 +177,9 @@ mod tests {
     }
 
     /// A facet of 5 m by 3 m.
-    fn facet() -> Vec<Point2<f64>> {
+    fn facet() -> Facet {
         let corners = [(0.0, 0.0), (5.0, 0.0), (5.0, 3.0), (0.0, 3.0)];
-        corners.map(|(x, y)| Point2::new(x, y)).to_vec()
+        crate::testing::facet(&corners.map(|(x, y)| Point3::new(x, y, 0.0)))
     }
 
     /// Mean correlation inside if the facet's edges correlate, and its inside does by `inside`.
@@ -189,7 +188,7 @@ mod tests {
             let from_edge = p.x.min(5.0 - p.x).min(p.y.min(3.0 - p.y));
             if from_edge > 0.5 { inside } else { 0.9 }
         });
-        let inside = InteriorWindows::new(&[facet()], &map).windows;
+        let inside = InteriorWindows::of(&facet(), &map).windows;
         let sum: f64 = inside.iter().map(|&k| f64::from(map.correlation(k))).sum();
         sum / inside.len() as f64
     }
@@ -202,7 +201,7 @@ mod tests {
     #[test]
     fn a_plane_that_the_views_agree_better_on_has_the_advantage() {
         let own = map([0.0; 2], |p| 0.5 + 0.1 * scatter(p));
-        let inside = InteriorWindows::new(&[facet()], &own);
+        let inside = InteriorWindows::of(&facet(), &own);
         // 800 windows of 11 by 11 cells are 6.6 side by side; the mean is 0.1, the standard
         // deviation 0.14.
         let better = map([3.0, -2.0], |p| 0.6 - 0.1 * scatter(p));
@@ -216,7 +215,7 @@ mod tests {
     #[test]
     fn windows_are_counted_on_the_plane_that_is_asked_for() {
         let own = map([0.0; 2], |_| 0.75);
-        let inside = InteriorWindows::new(&[facet()], &own);
+        let inside = InteriorWindows::of(&facet(), &own);
         let counted = |map: &ConsistencyMap| {
             let mut counts = WindowHistogram::default();
             inside.count(map, &mut counts);
@@ -234,14 +233,14 @@ mod tests {
     fn scatter_that_both_planes_share_does_not_count() {
         let common = |p: Point2<f64>| 0.3 * scatter(p);
         let own = map([0.0; 2], |p| 0.4 + common(p));
-        let inside = InteriorWindows::new(&[facet()], &own);
+        let inside = InteriorWindows::of(&facet(), &own);
         assert!(inside.advantage_of(&map([0.0; 2], |p| 0.5 + common(p))) > 10.0);
     }
 
     #[test]
     fn planes_without_a_window_in_common_cannot_be_compared() {
         let own = map([0.0; 2], |_| 0.2);
-        let inside = InteriorWindows::new(&[facet()], &own);
+        let inside = InteriorWindows::of(&facet(), &own);
         assert_eq!(inside.advantage_of(&map([90.0, 0.0], |_| 0.9)), 0.0);
         assert_eq!(inside.advantage_of(&map([-90.0, -60.0], |_| 0.9)), 0.0);
     }

@@ -16,7 +16,9 @@ mod features;
 mod interior;
 mod rejection;
 
+pub(crate) use displaced_plane::{PartVisibility, largest_slope};
 pub(crate) use features::Measured;
+pub(crate) use interior::windows_inside;
 pub use rejection::{FacetRejection, RejectedFacet};
 
 use std::collections::BTreeSet;

@@ -79,6 +79,7 @@ impl StageDefinition for Facets {
             counts: vec![
                 ("facets", facets.len()),
                 ("buildings", found.value.buildings.len()),
+                ("below parapets", found.trace.parapets.len()),
                 ("contradicted lines", found.trace.lines.contradicted.len()),
             ],
             warnings: [
