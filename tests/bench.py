@@ -64,8 +64,18 @@ def main():
         parser.error(f'parts are {", ".join(PARTS)}; at least one round')
     args.binary = args.binary.resolve()
     args.scene = (args.scene or first_folder(args.scenes / 'suburb', ROOT / 'www' / 'public' / 'demo')).resolve()
-    KEPT.mkdir(parents=True, exist_ok=True)
-    before = program_of(args.before) if args.before else None
+    if not args.scene.is_dir():
+        parser.error(f'--scene: there is no folder {args.scene}')
+    try:
+        before = program_of(args.before) if args.before else None
+        return measure(args, parts, before)
+    except (RuntimeError, subprocess.CalledProcessError) as why:
+        print(f'bench: {why}', file=sys.stderr)
+        return 1
+
+
+def measure(args, parts, before):
+    """Runs the parts and writes the page."""
     start, sections, shares = time.monotonic(), [], []
     for part, work in (('pairs', lambda: pairs(args, before, shares)), ('peers', lambda: peers(args)), ('growth', lambda: growth(args))):
         if part in parts:
@@ -91,7 +101,10 @@ def program_of(wish):
     """The release program of a commit, built where it is not kept yet."""
     if pathlib.Path(wish).is_file():
         return pathlib.Path(wish).resolve()
-    commit = git('rev-parse', '--short=12', '--verify', f'{wish}^{{commit}}')
+    try:
+        commit = git('rev-parse', '--short=12', '--verify', f'{wish}^{{commit}}')
+    except subprocess.CalledProcessError:
+        raise RuntimeError(f'{wish} is neither a commit of this repository nor a program') from None
     program = KEPT / 'programs' / commit
     if not program.is_file():
         print(f'building {commit}', flush=True)
@@ -230,7 +243,11 @@ def peers(args):
 
         def theirs():
             options = ['--segments', path, '--model', model] if model else []
-            return json.loads(run([python, ROOT / 'tests' / 'peers.py', '--images', images, *options])['text'].splitlines()[-1])
+            try:
+                found = run([python, ROOT / 'tests' / 'peers.py', '--images', images, *options])
+            except RuntimeError as why:
+                return {what: {'failed': last_line(str(why))} for what in ('segments', 'lines')}
+            return json.loads(found['text'].splitlines()[-1])
 
         ours(LINES_ALONE)
         found = in_turns(args.rounds, {'ours': lambda: ours(LINES_ALONE), 'ours in grey values': lambda: ours(LINES_ALONE | IN_GREY),
