@@ -23,6 +23,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from functools import partial
 
 import growth_runs
 import timed_runs
@@ -77,11 +78,12 @@ def main():
 def measure(args, parts, before):
     """Runs the parts and writes the page."""
     start, sections, shares = time.monotonic(), [], []
-    for part, work in (('pairs', lambda: pairs(args, before, shares)), ('peers', lambda: peers(args)), ('growth', lambda: growth(args))):
+    works = {'pairs': lambda: pairs(args, before, shares), 'peers': lambda: peers(args), 'growth': lambda: growth(args)}
+    for part in PARTS:
         if part in parts:
             print(f'{part}:', flush=True)
             begun = time.monotonic()
-            section = work()
+            section = works[part]()
             print('\n'.join(['', *section, '']))
             print(f'{part} took {time.monotonic() - begun:.0f} s', flush=True)
             sections += section
@@ -126,13 +128,13 @@ def git(*words):
     return subprocess.run(['git', *words], cwd=ROOT, check=True, capture_output=True, text=True).stdout.strip()
 
 
-def with_params(program, wish, work):
-    """Calls `work` with the options that give a program the parameters; those that it does not know are left out."""
+def reconstruct_with(program, scene, wish):
+    """One run with parameters, of which those are left out that the program does not know."""
     params = json.loads(subprocess.run([program, 'params'], check=True, capture_output=True, text=True).stdout)
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / 'params.json'
         path.write_text(json.dumps(known(wish, params)))
-        return work('--params', path)
+        return reconstruct(program, scene, '--params', path)
 
 
 # ---- pairs --------------------------------------------------------------------------------------
@@ -145,8 +147,7 @@ def pairs(args, before, shares):
     programs = {'before': before, 'now': args.binary} if before else {'now': args.binary}
     for name, wish in (('As by default', {}), ('Lines as the only source of planes', LINES_ALONE)):
         print(f' {name.lower()}:', flush=True)
-        variants = {of: (lambda program=program: with_params(program, wish, lambda *options: reconstruct(program, args.scene, *options)))
-                    for of, program in programs.items()}
+        variants = {of: partial(reconstruct_with, program, args.scene, wish) for of, program in programs.items()}
         if not wish:
             variants |= ways(args)
         found = in_turns(args.rounds, variants)
@@ -159,9 +160,7 @@ def pairs(args, before, shares):
 
 def pair_table(found, names):
     """Seconds of every stage of one or two programs, and the ratio."""
-    stages = list(dict.fromkeys(stage for runs in found.values() for one in runs[:1] for stage in one['stages']
-                                if runs in [found[name] for name in names]))
-    rows = [(stage, lambda one, stage=stage: one['stages'].get(stage), 's') for stage in sorted(stages, key=order_of(found, names))]
+    rows = [(stage, lambda one, stage=stage: one['stages'].get(stage), 's') for stage in stages_in_order(found, names)]
     rows += [('processor, user', lambda one: one['user'], 's'), ('memory at the peak', lambda one: one['memory_mb'], 'MB')]
     table = [['', *names, 'now / before' if len(names) == 2 else 'quartiles']]
     for name, measure, unit in rows:
@@ -176,12 +175,12 @@ def pair_table(found, names):
     return markdown(table)
 
 
-def order_of(found, names):
-    """Stages in the order in which the newest program that has them runs them, total last."""
+def stages_in_order(found, names):
+    """Of all programs, in the order in which the newest one that has them runs them; total last."""
     places = {}
     for name in names:
         places |= {stage: place for place, stage in enumerate(found[name][0]['stages'])}
-    return lambda stage: (stage == 'total', places[stage])
+    return sorted(places, key=lambda stage: (stage == 'total', places[stage]))
 
 
 def ways(args):
@@ -236,7 +235,7 @@ def peers(args):
         path = pathlib.Path(folder) / 'segments.json'
 
         def ours(wish):
-            found = with_params(args.binary, wish, lambda *options: reconstruct(args.binary, args.scene, *options))
+            found = reconstruct_with(args.binary, args.scene, wish)
             if wish is LINES_ALONE:
                 path.write_text(json.dumps(found['segments']))
             return found
@@ -250,8 +249,8 @@ def peers(args):
             return json.loads(found['text'].splitlines()[-1])
 
         ours(LINES_ALONE)
-        found = in_turns(args.rounds, {'ours': lambda: ours(LINES_ALONE), 'ours in grey values': lambda: ours(LINES_ALONE | IN_GREY),
-                                       'theirs': theirs})
+        found = in_turns(args.rounds, {'ours': lambda: ours(LINES_ALONE), 'theirs': theirs,
+                                       'ours in grey values': lambda: ours(LINES_ALONE | IN_GREY)})
     section += ['', *segments_table(found)]
     section += ['', *(lines_table(found) if model else ['LIMAP: left out, the scene has no COLMAP text model.'])]
     return section + [line for failure in failures for line in ('', failure)]
@@ -282,7 +281,8 @@ def last_line(text):
 
 def model_of(scene):
     """The folder of the scene's COLMAP text model."""
-    return next((path.parent for path in sorted(scene.rglob('images.txt')) if (path.parent / 'cameras.txt').is_file()), None)
+    models = (path.parent for path in sorted(scene.rglob('images.txt')))
+    return next((model for model in models if (model / 'cameras.txt').is_file()), None)
 
 
 def segments_table(found):
@@ -295,14 +295,16 @@ def segments_table(found):
     count = lambda runs: sum(len(view['segments']) for view in runs[0]['segments'])
     theirs = found['theirs']
     table = [['segments', 's an image', 'found', 'to ours in grey values']]
-    table.append(['ours, colours (default)', told(median_of(ours, an_image), 's'), count(ours), told_ratio(pairs_of(ours, grey, an_image, an_image))])
+    table.append(['ours, colours (default)', told(median_of(ours, an_image), 's'), count(ours),
+                  told_ratio(pairs_of(ours, grey, an_image, an_image))])
     table.append(['ours, grey values', told(median_of(grey, an_image), 's'), count(grey), '1'])
     for name in ('LSD', 'EDLines'):
         table.append([name, told(median_of(theirs, of(name)), 's'), theirs[0]['segments'][name]['segments'],
                       told_ratio(pairs_of(theirs, grey, of(name), an_image))])
-    return markdown(table) + ['', f'OpenCV {theirs[0]["segments"]["version"]} with its own settings, in grey values. Ours is the time of the stage '
-                              f'of a run of {ours[0]["views"]} images, divided by them; it includes the uncertainties of the segments. '
-                              'Found: in all images, 15 pixels and longer. Decoding is not counted.']
+    return markdown(table) + [
+        '', f'OpenCV {theirs[0]["segments"]["version"]} with its own settings, in grey values. Ours is the time of the stage of '
+        f'a run of {ours[0]["views"]} images, divided by them; it includes the uncertainties of the segments. Found: in all '
+        'images, 15 pixels and longer. Decoding is not counted.']
 
 
 def lines_table(found):
@@ -316,10 +318,11 @@ def lines_table(found):
              ['ours, matches and lines', told(median_of(ours, mine), 's'), ours[0]['lines'], '1'],
              ['LIMAP, triangulation and adjustment', told(median_of(theirs, limap), 's'), theirs[0]['lines']['lines'],
               told_ratio(pairs_of(theirs, ours, limap, mine))]]
-    return markdown(table) + ['', f'pylimap {theirs[0]["lines"]["version"]} with its own settings: segments of 20 pixels and longer; '
-                              f'exhaustive matching of the {theirs[0]["lines"]["images"]} images, because a matcher of descriptors would need the images; no '
-                              'points and no vanishing points; cameras fixed. Ours compares grey values along the edges besides. How many of '
-                              'the lines are true is not compared here.']
+    return markdown(table) + [
+        '', f'pylimap {theirs[0]["lines"]["version"]} with its own settings: segments of 20 pixels and longer; exhaustive matching '
+        f'of the {theirs[0]["lines"]["images"]} images, because a matcher of descriptors would need the images; no points and no '
+        'vanishing points; cameras fixed. Ours compares grey values along the edges besides. How many of the lines are true is '
+        'not compared here.']
 
 
 def failure_of(theirs, what):
@@ -343,7 +346,8 @@ def growth(args):
         section += ['', f'With views: left out, there is no {drone.name}.']
     model = model_of(args.flight) if args.flight.is_dir() else None
     if model:
-        section += ['', *over_area(args.binary, args.flight, model, args.rounds), '', *over_photographs(args.binary, args.flight, model, args.rounds)]
+        flight = args.binary, args.flight, model, args.rounds
+        section += ['', *over_area(*flight), '', *over_photographs(*flight)]
     else:
         section += ['', f'With area and photographs: left out, {args.flight.name} is no flight with a COLMAP text model.']
     return section
@@ -359,7 +363,8 @@ def heading(args, before, shares):
              f'round{"s" * (args.rounds > 1)} in turns, on {cores()}. Seconds and megabytes are medians.']
     least = min(shares, default=1)
     if least < UNDISTURBED:
-        lines += ['', f'**Other work disturbed it**: a run on one core had {100 * least:.0f} % of it at the least. Ratios hold better than seconds.']
+        lines += ['', f'**Other work disturbed it**: a run on one core had {100 * least:.0f} % of it at the least. Ratios hold '
+                  'better than seconds.']
     if args.rounds < 5:
         lines += ['', 'Fewer than five rounds: a trial, not a measurement.']
     return lines

@@ -4,6 +4,7 @@
 import pathlib
 import statistics
 import tempfile
+from functools import partial
 
 from growth import MEASURABLE_S, power
 from timed_runs import in_turns, reconstruct
@@ -43,8 +44,7 @@ def over_photographs(program, flight, model, rounds):
 def ladder(program, scene, rounds, caption, sizes):
     """Runs of all sizes in turns, and their table."""
     print(f' {caption}:', flush=True)
-    found = in_turns(rounds, {size: (lambda options=options: reconstruct(program, scene, *options)) for size, options in sizes.items()})
-    return table(caption, found)
+    return table(caption, in_turns(rounds, {size: partial(reconstruct, program, scene, *options) for size, options in sizes.items()}))
 
 
 def table(caption, found):
@@ -67,9 +67,10 @@ def table(caption, found):
 
 
 def medians_of(runs):
-    """Medians of one size. Seconds of the stages are those of the processor: the clock's, by the share that the run had of it."""
-    scale = [one['processor'] / one['clock'] for one in runs]
-    stages = {stage: statistics.median(one['stages'][stage] * share for one, share in zip(runs, scale)) for stage in runs[0]['stages']}
+    """Medians of one size. Seconds of the stages are the processor's: the clock's by the share that the run had of it."""
+    shares = [one['processor'] / one['clock'] for one in runs]
+    stages = {stage: statistics.median(one['stages'][stage] * share for one, share in zip(runs, shares, strict=True))
+              for stage in runs[0]['stages']}
     return {'stages': stages, 'views': runs[0]['views'], 'user': statistics.median(one['user'] for one in runs),
             'memory_mb': statistics.median(one['memory_mb'] for one in runs)}
 
@@ -120,8 +121,8 @@ def self_test():
     assert centres['a b.jpg'] == (3, 4) and centres['c.jpg'] == (0, 0), centres
     # 60 degrees about x: the point straight ahead at z = 2 is at y = -2 sin 60 of the world's, its opposite the camera.
     assert abs(centre_of(0.8660254037844387, 0.5, 0, 0, 0, 0, 2)[1] + 2 * 0.8660254037844387) < 1e-12
-    once = lambda n: {'stages': {'load': 0.12, 'matches': 0.02 * n ** 2, 'lines': 1e-4, 'total': 1.0}, 'processor': 3.0, 'clock': 4.0,
-                      'user': 0.5 * n, 'memory_mb': 100.0, 'views': n}
+    once = lambda n: {'stages': {'load': 0.12, 'matches': 0.02 * n ** 2, 'lines': 1e-4, 'total': 1.0}, 'user': 0.5 * n,
+                      'processor': 3.0, 'clock': 4.0, 'memory_mb': 100.0, 'views': n}
     # Three quarters of the clock's seconds were the processor's.
     lines = table('views', {n: [once(n)] * 3 for n in VIEWS})
     assert lines[2] == '| 3 | 3 | 1.50 | 0.09 | 0.14 | 0.00 | 100 |', lines

@@ -22,7 +22,9 @@ def main():
     parser.add_argument('--segments', type=pathlib.Path)
     parser.add_argument('--model', type=pathlib.Path)
     args = parser.parse_args()
-    found = {name: attempt(work, args) for name, work in (('segments', segments), ('lines', lines)) if name == 'segments' or args.segments}
+    found = {'segments': attempt(segments, args)}
+    if args.segments and args.model:
+        found['lines'] = attempt(lines, args)
     print(json.dumps(found))
 
 
@@ -53,13 +55,14 @@ def segments(args):
         detect(images[0])
         start = time.perf_counter()
         of_images = [detect(image) for image in images]
-        found[name] = {'seconds': (time.perf_counter() - start) / len(images),
-                       'segments': sum(bool(long(ends)) for of_image in of_images if of_image is not None for ends in of_image.reshape(-1, 4))}
+        seconds = (time.perf_counter() - start) / len(images)
+        ends = [segment for of_image in of_images if of_image is not None for segment in of_image.reshape(-1, 4)]
+        found[name] = {'seconds': seconds, 'segments': sum(map(long, ends))}
     return found
 
 
 def long(ends):
-    return (ends[2] - ends[0]) ** 2 + (ends[3] - ends[1]) ** 2 >= MIN_LENGTH_PX ** 2
+    return bool((ends[2] - ends[0]) ** 2 + (ends[3] - ends[1]) ** 2 >= MIN_LENGTH_PX ** 2)
 
 
 def lines(args):

@@ -139,8 +139,8 @@ def self_test():
     assert ratio_of([{'s': 1e-4}], [{'s': 2e-4}], lambda run: run['s']) is None, 'what is too short'
     assert median_of(runs, lambda run: run.get('t')) is None
     assert spread([4.0]) == (4, 4, 4) and spread([1, 2, 3, 4, 5]) == (3, 2, 4)
-    wish, has = {'dense': {'enabled': False}, 'new': {'a': 1}, 'roof': {'a': 1, 'b': 2}}, {'dense': {'enabled': True}, 'roof': {'b': 0}}
-    assert known(wish, has) == {'dense': {'enabled': False}, 'roof': {'b': 2}}
+    wish = {'dense': {'enabled': False}, 'new': {'a': 1}, 'roof': {'a': 1, 'b': 2}}
+    assert known(wish, {'dense': {'enabled': True}, 'roof': {'b': 0}}) == {'dense': {'enabled': False}, 'roof': {'b': 2}}
     order = []
     in_turns(2, {'a': lambda: order.append('a'), 'b': lambda: order.append('b')}, tell=lambda text: None)
     assert order == ['a', 'b', 'b', 'a']
