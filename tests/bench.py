@@ -218,7 +218,8 @@ def ways_table(found):
         lines += ['', 'Not in wasm: there is no Node or no package in www/src/pkg (`make build`).']
     else:
         profile = next((path.name for path in (ROOT / 'target' / 'stamps').glob('profile-*')), None)
-        lines += ['', f'wasm: one instance in Node{f" ({profile})" if profile else ""}, `tests/times.mjs`.']
+        lines += ['', f'wasm: one instance in Node{f" ({profile})" if profile else ""}, `tests/times.mjs`; Node compiles it on the '
+                  'same core while it runs, which short stages feel most.']
     return lines
 
 
@@ -248,7 +249,8 @@ def peers(args):
                 return {what: {'failed': last_line(str(why))} for what in ('segments', 'lines')}
             return json.loads(found['text'].splitlines()[-1])
 
-        ours(LINES_ALONE)
+        if not ours(LINES_ALONE)['views']:
+            return section + ['', f'{args.scene.name} is divided into tiles, of which the stages are not told.']
         found = in_turns(args.rounds, {'ours': lambda: ours(LINES_ALONE), 'theirs': theirs,
                                        'ours in grey values': lambda: ours(LINES_ALONE | IN_GREY)})
     section += ['', *segments_table(found)]

@@ -50,20 +50,26 @@ def ladder(program, scene, rounds, caption, sizes):
 def table(caption, found):
     """Seconds of the processor, of the longest stages, and memory, and the powers with which they grow."""
     medians = {size: medians_of(runs) for size, runs in found.items()}
-    largest = medians[max(medians)]
-    stages = [stage for stage in largest['stages'] if stage not in ('total', 'load')]
-    stages = sorted(sorted(stages, key=lambda stage: -largest['stages'][stage])[:COLUMNS], key=list(largest['stages']).index)
-    columns = ['load', *stages]
+    columns = longest([of['stages'] for of in medians.values()])
     rows = [[caption, 'views used', 'processor [s]', *columns, 'memory [MB]']]
     for size, of in medians.items():
-        seconds = [f'{of["stages"].get(stage, 0):.2f}' for stage in columns]
-        rows.append([str(size), str(of['views']), f'{of["user"]:.2f}', *seconds, f'{of["memory_mb"]:.0f}'])
+        seconds = [f'{of["stages"][stage]:.2f}' if of['stages'] else 'tiles' for stage in columns]
+        rows.append([str(size), str(of['views'] or 'tiles'), f'{of["user"]:.2f}', *seconds, f'{of["memory_mb"]:.0f}'])
     powers = [told_power([(size, of['user']) for size, of in medians.items()]),
               *(told_power([(size, of['stages'].get(stage, 0)) for size, of in medians.items()]) for stage in columns),
               told_power([(size, of['memory_mb']) for size, of in medians.items()])]
     rows.append(['power', '', *powers])
     lines = [f'| {" | ".join(cells)} |' for cells in rows]
     return [lines[0], '|---' * len(rows[0]) + '|', *lines[1:]]
+
+
+def longest(of_sizes):
+    """Reading and the stages that take longest at any size, in their order."""
+    most = {}
+    for stages in of_sizes:
+        most |= {stage: max(seconds, most.get(stage, 0)) for stage, seconds in stages.items() if stage not in ('load', 'total')}
+    chosen = sorted(most, key=lambda stage: -most[stage])[:COLUMNS]
+    return ['load', *(stage for stage in most if stage in chosen)]
 
 
 def medians_of(runs):
@@ -127,5 +133,7 @@ def self_test():
     lines = table('views', {n: [once(n)] * 3 for n in VIEWS})
     assert lines[2] == '| 3 | 3 | 1.50 | 0.09 | 0.14 | 0.00 | 100 |', lines
     assert lines[-1] == '| power |  | 1.00 | 0.00 | 2.00 |  | 0.00 |', lines
+    tiles = {**once(8), 'stages': {}, 'views': 0}
+    assert table('area', {3: [once(3)], 8: [tiles]})[3] == '| 8 | tiles | 4.00 | tiles | tiles | tiles | 100 |'
     assert square((1.0, -2.0), 10) == '--roi=-4.00,-7.00,6.00,3.00'
     assert abs(power([(x, 3 * x ** 1.7) for x in (1, 4, 9, 16)]) - 1.7) < 1e-12

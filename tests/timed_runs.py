@@ -37,7 +37,7 @@ def run(command, threads=1, report=None):
             raise RuntimeError(f'{command[0]}: exit code {process.returncode}\n{errors.read().strip()[-800:]}')
     stages = stages_of(text)
     if report:
-        stages = exact(stages, json.loads(report.read_text())['seconds'])
+        stages = exact(stages, json.loads(report.read_text()).get('seconds', {}))
     return {
         'stages': stages, 'text': text, 'clock': clock, 'user': usage.ru_utime, 'processor': usage.ru_utime + usage.ru_stime,
         # Kilobytes on Linux, bytes on macOS.
@@ -46,14 +46,15 @@ def run(command, threads=1, report=None):
 
 
 def reconstruct(program, scene, *options, threads=1):
-    """One run of the program on a scene, with the number of views used and of lines, and the segments of each view."""
+    """One run of the program on a scene, with the number of views used and of lines, and the segments of each view. Where it
+    divides an area into tiles it tells neither views nor stages: 0 and none."""
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder)
         command = [program, 'reconstruct', scene, '--out', out, *options]
         found = run(command, threads, out / 'report.json')
         report = json.loads((out / 'report.json').read_text())
-        counts = {stage['stage']: stage['counts'] for stage in report['stages']}
-        return {**found, 'views': len(report['views']), 'lines': counts.get('lines', {}).get('lines', 0),
+        counts = {stage['stage']: stage['counts'] for stage in report.get('stages', [])}
+        return {**found, 'views': len(report.get('views', [])), 'lines': counts.get('lines', {}).get('lines', 0),
                 'segments': json.loads((out / 'segments.json').read_text())['views']}
 
 
