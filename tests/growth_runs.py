@@ -121,12 +121,14 @@ def distance(a, b):
 def self_test():
     # A camera at (3, 4, 5) that looks down: R = diag(1, -1, -1), t = -R C; and the same turned by 30 degrees about x.
     with tempfile.TemporaryDirectory() as folder:
-        text = '# a comment\n1 0 1 0 0 -3 4 5 1 a b.jpg\n\n2 0.8660254037844387 0.5 0 0 0 0 0 1 c.jpg\n1 2 3\n'
+        text = '# a comment\n1 0 1 0 0 -3 4 5 1 a b.jpg\n\n2 0.8660254037844387 0.5 0 0 0 0 0 1 c.jpg\n1 2 -1 3 4 -1 5 6 -1 7 8 -1\n'
         (pathlib.Path(folder) / 'images.txt').write_text(text)
         centres = centres_of(pathlib.Path(folder))
-    assert centres['a b.jpg'] == (3, 4) and centres['c.jpg'] == (0, 0), centres
+    assert centres['a b.jpg'] == (3, 4) and centres['c.jpg'] == (0, 0) and len(centres) == 2, centres
     # 60 degrees about x: the point straight ahead at z = 2 is at y = -2 sin 60 of the world's, its opposite the camera.
     assert abs(centre_of(0.8660254037844387, 0.5, 0, 0, 0, 0, 2)[1] + 2 * 0.8660254037844387) < 1e-12
+    # A quarter turn about z: R' t = (2, -1, 3).
+    assert all(abs(a - b) < 1e-12 for a, b in zip(centre_of(0.5 ** 0.5, 0, 0, 0.5 ** 0.5, 1, 2, 3), (-2, 1)))
     once = lambda n: {'stages': {'load': 0.12, 'matches': 0.02 * n ** 2, 'lines': 1e-4, 'total': 1.0}, 'user': 0.5 * n,
                       'processor': 3.0, 'clock': 4.0, 'memory_mb': 100.0, 'views': n}
     # Three quarters of the clock's seconds were the processor's.
