@@ -12,7 +12,8 @@
 #   make jury       all scenes many times over, changed a little each time; rewrites its tables there
 #   make judge      SEEDS (as "518 to 530") of random scenes that chose nothing; BEFORE=PROGRAM compares in pairs
 #   make calibrate  fits the tables of src/evidence to scenes with truth, PYTHON (python3) with numpy, scipy, shapely, Pillow
-#   make bench      time of every stage on the synthetic scene, and of the lines of the scene in SCENE
+#   make bench      time and memory of every stage, against the commit BEFORE in pairs, beside other programs, and
+#                   how they grow; SCENE (SCENES/suburb), ROUNDS (5), FLIGHT; rewrites docs/bench.md
 #   make clean      remove what was built (not the tool cache)
 
 SHELL := bash
@@ -79,8 +80,11 @@ calibrate: native
 		--more "$${SCENES:-../shared/scenes}"
 	$(PYTHON) tests/clutter.py --scenes "$${FIT:-../shared/fit}"
 
-bench:
-	cargo bench --bench stages
+bench: native $(PACKAGE)
+	$(PYTHON) tests/bench.py --self-test
+	$(PYTHON) tests/bench.py --binary target/release/ridgeline $(if $(BEFORE),--before $(BEFORE)) \
+		$(if $(SCENE),--scene $(SCENE)) --rounds $(or $(ROUNDS),5) --scenes "$${SCENES:-../shared/scenes}" \
+		--flight "$${FLIGHT:-../shared/flights/sheffield}"
 
 fuzz:
 	RIDGELINE_FUZZ_SECONDS=$${FUZZ_SECONDS:-600} cargo test --release --test fuzz -- --nocapture --test-threads 1

@@ -1,6 +1,7 @@
-//! Time of every stage on the synthetic L-shaped house, six views of 320 x 320 pixels: `make
-//! bench`. With the folder of a scene in `SCENE`, also its way from images to 3D lines (B99 3), in
-//! grey values and with colours. `RAYON_NUM_THREADS=1` makes the times those of one core.
+//! Time of every stage on the synthetic L-shaped house, six views of 320 x 320 pixels: `cargo bench
+//! --bench stages`; whole runs of scenes are measured by `make bench`. With the folder of a scene
+//! in `SCENE`, also its way from images to 3D lines (B99 3), in grey values and with colours.
+//! `RAYON_NUM_THREADS=1` makes the times those of one core.
 #![allow(missing_docs)] // criterion_group! makes a public function.
 
 use std::path::Path;
