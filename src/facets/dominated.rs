@@ -83,11 +83,12 @@ impl Support {
         let area = spacing * spacing;
         let mut support = Self::default();
         for (row, r) in places(window.height, dr, grid.height) {
+            let of_region = h.region.row(window.center(0, row).y);
             for (column, c) in places(window.width, dc, grid.width) {
                 let single_view = h.single_view.at(row * window.width + column);
                 let observed = windows.evidence_at(&h.map, [column, row]);
                 let said = observed.nats_with_prior() + single_view;
-                if said <= 0.0 || !h.region.contains(&window.center(column, row)) {
+                if said <= 0.0 || !of_region.contains(window.center(column, row).x) {
                     continue;
                 }
                 let of_ground = ground.map(|g| windows.evidence_at(g, [c, r]).nats_with_prior());

@@ -187,6 +187,7 @@ fn sum_over_cells(
     };
     let mut run = (NO_CELL, CellEvidence::default());
     for row in 0..window.height {
+        let of_region = region.row(window.center(0, row).y);
         for column in 0..window.width {
             let (c, r) = (column as isize + dc, row as isize + dr);
             if c < 0 || r < 0 || c as usize >= grid.width || r as usize >= grid.height {
@@ -197,7 +198,7 @@ fn sum_over_cells(
             let single_view = hypothesis.single_view.at(k);
             if cell == u32::MAX
                 || (map.weight(k) == 0.0 && single_view == 0.0)
-                || !region.contains(&window.center(column, row))
+                || !of_region.contains(window.center(column, row).x)
             {
                 continue;
             }

@@ -132,10 +132,14 @@ pub(crate) fn single_view_evidence(
 /// Positions of the window where several views are consistent with the plane.
 fn reference_cells(region: &PlanRegion, map: &ConsistencyMap) -> Vec<usize> {
     let grid = &map.grid;
-    let on = |k: &usize| {
-        map.nats(*k) >= CLEAR_NATS && region.contains(&grid.center(k % grid.width, k / grid.width))
-    };
-    (0..grid.width * grid.height).filter(on).collect()
+    let rows = (0..grid.height).map(|r| (r, region.row(grid.center(0, r).y)));
+    rows.flat_map(|(r, of_region)| {
+        let on = move |c: &usize| {
+            map.nats(r * grid.width + c) >= CLEAR_NATS && of_region.contains(grid.center(*c, r).x)
+        };
+        (0..grid.width).filter(on).map(move |c| r * grid.width + c)
+    })
+    .collect()
 }
 
 /// Is there a position of the region that exactly one view has in its image? Sampled, for mostly

@@ -8,6 +8,7 @@ use super::plane_group::{GroupingInput, PlaneGroup};
 use super::proposed_plane::ProposedPlane;
 use crate::geometry::{Plane, bounds};
 use crate::lines3d::Side;
+use crate::math::{larger, smaller};
 use crate::params::RoofParams;
 
 /// How far a region reaches behind its line, metres: more than the line's own uncertainty.
@@ -40,6 +41,21 @@ struct PlanBox {
 }
 
 impl PlanBox {
+    /// The part of a row of the plan in it.
+    fn span_at(&self, y: f64) -> [f64; 2] {
+        let (ax, ay) = (self.along.x, self.along.y);
+        let (x0, dy) = (self.start.x, y - self.start.y);
+        // t = ax (x - x0) + ay dy and u = ax dy - ay (x - x0), as linear functions of x.
+        let (t, u) = (ay * dy - ax * x0, ax * dy + ay * x0);
+        let sides = [
+            (ax, t + self.ends),
+            (-ax, self.length + self.ends - t),
+            (ay, self.left - u),
+            (-ay, u + self.right),
+        ];
+        (sides.iter()).fold(WHOLE_ROW, |span, (a, b)| clipped(span, *a, *b))
+    }
+
     /// The box of a rectangle along its first side.
     fn around(rectangle: &ProposedPlane) -> Option<Self> {
         let [start, end] = rectangle.sides().next()?;
@@ -59,6 +75,44 @@ impl PlanBox {
             ends: MARGIN,
         })
     }
+}
+
+/// The parts of a row of the plan that a region holds.
+pub(crate) struct RegionRow(Vec<[f64; 2]>);
+
+impl RegionRow {
+    /// Does it hold a position?
+    pub(crate) fn contains(&self, x: f64) -> bool {
+        self.0.iter().any(|[first, last]| *first <= x && x <= *last)
+    }
+}
+
+/// All of a row.
+const WHOLE_ROW: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+/// The part of `[first, last]` where `a x + b >= 0`; empty as `first > last`.
+fn clipped([first, last]: [f64; 2], a: f64, b: f64) -> [f64; 2] {
+    if a > 0.0 {
+        [larger(first, -b / a), last]
+    } else if a < 0.0 {
+        [first, smaller(last, -b / a)]
+    } else if b >= 0.0 {
+        [first, last]
+    } else {
+        [f64::INFINITY, f64::NEG_INFINITY]
+    }
+}
+
+/// The part of a row inside a ring that is convex and counter-clockwise.
+fn hull_span_at(ring: &[Point2<f64>], y: f64) -> [f64; 2] {
+    if ring.len() < 3 {
+        return [f64::INFINITY, f64::NEG_INFINITY];
+    }
+    let next = ring.iter().cycle().skip(1);
+    ring.iter().zip(next).fold(WHOLE_ROW, |span, (a, b)| {
+        let side = b - a;
+        clipped(span, -side.y, side.x * (y - a.y) + side.y * a.x)
+    })
 }
 
 impl PlanRegion {
@@ -108,6 +162,13 @@ impl PlanRegion {
             let (t, u) = (d.dot(&b.along), b.along.x * d.y - b.along.y * d.x);
             t >= -b.ends && t <= b.length + b.ends && u <= b.left && u >= -b.right
         }) || is_inside(&self.hull, p)
+    }
+
+    /// What the region holds of the row of the plan at `y`, metres.
+    pub(crate) fn row(&self, y: f64) -> RegionRow {
+        let boxes = self.boxes.iter().map(|b| b.span_at(y));
+        let spans = boxes.chain(std::iter::once(hull_span_at(&self.hull, y)));
+        RegionRow(spans.filter(|[first, last]| first <= last).collect())
     }
 
     /// The sides of the convex hull of the group's lines that are level in its `plane`, as eaves
@@ -259,6 +320,27 @@ mod tests {
         let region = between_rakes();
         for (x, y) in [(-1.0, 2.0), (21.0, 2.0), (10.0, -0.1), (10.0, 4.1)] {
             assert!(!region.contains(&Point2::new(x, y)), "at {x}, {y}");
+        }
+    }
+
+    #[test]
+    fn a_row_holds_what_the_region_holds() {
+        let region = between_rakes();
+        let boxes_alone = PlanRegion {
+            hull: Vec::new(),
+            ..region.clone()
+        };
+        for region in [region, boxes_alone] {
+            let mut held = 0;
+            for y in (-20..80).map(|i| 0.1 * f64::from(i) + 0.013) {
+                let row = region.row(y);
+                for x in (-30..250).map(|i| 0.1 * f64::from(i) + 0.017) {
+                    let inside = region.contains(&Point2::new(x, y));
+                    assert_eq!(row.contains(x), inside, "at {x}, {y}");
+                    held += usize::from(inside);
+                }
+            }
+            assert!(held > 500);
         }
     }
 
