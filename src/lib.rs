@@ -115,6 +115,7 @@ pub mod terrain;
 mod testing;
 pub mod texture;
 pub mod tiles;
+pub mod walls;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;
 

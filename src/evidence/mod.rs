@@ -17,12 +17,14 @@
 
 mod judged;
 mod uncertainty;
+mod walls;
 mod windows;
 
 pub use judged::{
     Candidates, JudgedFacet, JudgedLine, JudgedSurface, WindowCounts, WindowHistogram,
 };
 pub(crate) use uncertainty::UncertaintyTable;
+pub(crate) use walls::WallEvidence;
 pub(crate) use windows::WindowEvidenceTable;
 
 use std::sync::OnceLock;

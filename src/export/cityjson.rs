@@ -227,6 +227,7 @@ fn add_measures(surface: &mut Value, measured: &Measured, id: FacetId) {
 fn semantic_surface(model: &RoofModel, measured: &Measured, surface: Surface) -> Value {
     match surface {
         Surface::Wall => json!({ "type": "WallSurface" }),
+        Surface::Ceiling => json!({ "type": "OuterCeilingSurface" }),
         Surface::Ground => json!({ "type": "GroundSurface" }),
         Surface::Roof(id) => {
             let facet = &model.facets[id.index()];

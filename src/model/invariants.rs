@@ -100,7 +100,7 @@ pub enum Violation {
         /// Largest distance of a corner from the face's plane, metres.
         distance_m: f64,
     },
-    /// A roof face does not look up, a ground face not down, or a wall is not vertical.
+    /// A roof face does not look up, a ground face or a ceiling not down, or a wall is not vertical.
     FaceDirection {
         /// The building.
         building: BuildingId,
@@ -303,7 +303,9 @@ fn check_face(building: BuildingId, solid: &Solid, face: usize, found: &mut Vec<
     let directed = match surface {
         Surface::Roof(_) => normal.z > 1e-3,
         Surface::Wall => normal.z.abs() < 1e-3,
-        Surface::Ground => normal.z < -0.999,
+        Surface::Ceiling => normal.z < -1e-3,
+        // Level, or on a slope.
+        Surface::Ground => normal.z < -0.9,
     };
     if !directed {
         found.push(Violation::FaceDirection { building, face });
