@@ -21,5 +21,5 @@ pub use invariants::{PLANAR_M, Violation, check_invariants};
 pub use roof_model::{Building, Facet, RoofModel, Solid, SolidFace, Surface, WELD_M};
 pub use uncertainty::{CornerUncertainty, FacetUncertainty};
 pub use visibility::Occluders;
-pub use walls::{BuildingWalls, Wall};
 pub(crate) use visibility::inside;
+pub use walls::{BuildingWalls, Wall};

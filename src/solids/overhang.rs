@@ -53,7 +53,10 @@ pub fn close_below_overhangs(
     let footprint = footprint(&roofs, sides, depths)?;
     let mut parts: Vec<Part> = Vec::new();
     for (member, roof) in roofs.iter().enumerate() {
-        for (rule, stands) in [(OverlayRule::Intersect, true), (OverlayRule::Difference, false)] {
+        for (rule, stands) in [
+            (OverlayRule::Intersect, true),
+            (OverlayRule::Difference, false),
+        ] {
             let shapes = overlay(roof, &footprint, rule);
             let facets = shapes.iter().filter_map(|s| part_of(members[member].1, s));
             parts.extend(facets.map(|facet| Part {
@@ -125,7 +128,14 @@ fn footprint(roofs: &[Rings], sides: &[Side], depths: &[f64]) -> Option<Rings> {
     for (i, side) in sides.iter().enumerate().filter(|(i, _)| depths[*i] > 0.0) {
         let before = *ends.get(&key(&side.start()))?;
         let after = *starts.get(&key(&side.end()))?;
-        let band = band(side, depths[i], [(&sides[before], depths[before]), (&sides[after], depths[after])]);
+        let band = band(
+            side,
+            depths[i],
+            [
+                (&sides[before], depths[before]),
+                (&sides[after], depths[after]),
+            ],
+        );
         plan = overlay(&plan, &[band], OverlayRule::Difference).concat();
     }
     (area_of(&plan) > LEAST_FOOTPRINT * whole).then_some(plan)
@@ -139,11 +149,7 @@ fn band(side: &Side, depth: f64, [before, after]: [(&Side, f64); 2]) -> Vec<Poin
     let turns_in = |first: &Side, then: &Side| first.along().perp(&then.along()) < 0.0;
     let at = |corner: Point2<f64>, [first, then]: [(&Side, f64); 2]| {
         let directions = [first.0.along(), then.0.along()];
-        let mitred = mitre(
-            &corner,
-            [&directions[0], &directions[1]],
-            [first.1, then.1],
-        );
+        let mitred = mitre(&corner, [&directions[0], &directions[1]], [first.1, then.1]);
         let mitred = mitred.filter(|_| turns_in(first.0, then.0));
         mitred.unwrap_or(corner + inner)
     };
@@ -219,7 +225,11 @@ impl<'a> Prisms<'a> {
             for group in heights.chunk_by(same) {
                 let top = group.iter().map(|(z, _)| z).sum::<f64>() / group.len() as f64;
                 for &(_, facet) in group {
-                    let bottom = if prisms.part(facet).stands { foot } else { top - RIM_M };
+                    let bottom = if prisms.part(facet).stands {
+                        foot
+                    } else {
+                        top - RIM_M
+                    };
                     spans.push((facet, bottom, top));
                 }
             }
@@ -366,3 +376,6 @@ fn upright([low_a, low_b]: [u32; 2], [high_a, high_b]: [u32; 2]) -> Option<Shell
         }
     })
 }
+
+#[cfg(test)]
+mod tests;

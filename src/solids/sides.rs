@@ -83,7 +83,10 @@ pub fn outline_sides(facets: &[&Facet]) -> Vec<Side> {
     let mut sides = Vec::new();
     while let Some([a, b]) = open.pop() {
         let mut rim = vec![a, b];
-        while let Some(i) = open.iter().position(|e| continues(&rim[rim.len() - 2..], e)) {
+        while let Some(i) = open
+            .iter()
+            .position(|e| continues(&rim[rim.len() - 2..], e))
+        {
             rim.push(open.remove(i)[1]);
         }
         while let Some(i) = open.iter().position(|e| continues(e, &rim[..2])) {
@@ -137,7 +140,9 @@ mod tests {
         for side in &sides {
             let middle = side.start().xy() + side.along() * (0.5 * side.length());
             let inside = middle + side.inward() * 0.1;
-            let covered = facets.iter().any(|f| crate::model::inside(&f.outer, &inside));
+            let covered = facets
+                .iter()
+                .any(|f| crate::model::inside(&f.outer, &inside));
             assert!(covered);
             assert_eq!(side.rim.len(), if side.is_level() { 2 } else { 3 });
             assert_eq!(side.rim_at(-0.1), None);

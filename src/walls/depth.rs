@@ -80,7 +80,10 @@ mod tests {
         };
         for at in [0.2, 0.6, 1.1] {
             let found = peak(at, 6.0);
-            assert!(found.is_seen() && (found.depth_m - at).abs() < 0.02, "{found:?}");
+            assert!(
+                found.is_seen() && (found.depth_m - at).abs() < 0.02,
+                "{found:?}"
+            );
             assert!(found.sigma_m < 0.06);
             assert!(!peak(at, 0.1).is_seen());
         }

@@ -51,7 +51,11 @@ const LEAST_SLOPE_M: f64 = 0.3;
 
 /// The walls of every building of a model. Where the ground is not known its height below each
 /// building is taken.
-pub fn place_walls(scene: &Scene, model: &RoofModel, ground: Option<&Ground>) -> Vec<BuildingWalls> {
+pub fn place_walls(
+    scene: &Scene,
+    model: &RoofModel,
+    ground: Option<&Ground>,
+) -> Vec<BuildingWalls> {
     let occluders = Occluders::new(&model.facets);
     crate::execution::map(&model.buildings, |_, building| {
         let members: Vec<(FacetId, &Facet)> = (building.facets.iter())
@@ -121,7 +125,9 @@ fn walls(sides: &[Side], estimates: &[Option<DepthEstimate>]) -> Vec<Wall> {
             }
             (weights > 0.0).then(|| sum / weights)
         };
-        mean(&mut same()).or_else(|| mean(&mut all())).unwrap_or(0.0)
+        mean(&mut same())
+            .or_else(|| mean(&mut all()))
+            .unwrap_or(0.0)
     };
     let depth = |depth: f64| if depth < LEAST_DEPTH_M { 0.0 } else { depth };
     (sides.iter().enumerate())
@@ -150,9 +156,8 @@ fn with_solid(
         .map(|w| if w.seen { w.depth_m } else { 0.0 })
         .collect();
     let none = vec![0.0; all.len()];
-    let differs = |depths: &[f64]| {
-        ground.slope_m > LEAST_SLOPE_M || depths.iter().any(|depth| *depth > 0.0)
-    };
+    let differs =
+        |depths: &[f64]| ground.slope_m > LEAST_SLOPE_M || depths.iter().any(|depth| *depth > 0.0);
     let closed = [all, only_seen, none].into_iter().find_map(|depths| {
         let solid = differs(&depths)
             .then(|| close_below_overhangs(members, sides, &depths, &ground.plane))??;
@@ -161,7 +166,9 @@ fn with_solid(
     let (depths, solid) = closed.map_or((vec![0.0; walls.len()], None), |(d, s)| (d, Some(s)));
     let stands = |(wall, depth_m): (Wall, f64)| Wall {
         seen: wall.seen && (wall.depth_m - depth_m).abs() < LEAST_DEPTH_M,
-        sigma_m: wall.sigma_m.filter(|_| (wall.depth_m - depth_m).abs() < LEAST_DEPTH_M),
+        sigma_m: wall
+            .sigma_m
+            .filter(|_| (wall.depth_m - depth_m).abs() < LEAST_DEPTH_M),
         depth_m,
         ..wall
     };

@@ -61,8 +61,9 @@ pub(super) struct Strips<'a> {
     step: f64,
     /// Distance of rows on a wall, metres.
     rise: f64,
-    /// Height of the lowest row of walls, metres.
+    /// Height of the lowest row of walls, and of the highest corner of the rim, metres.
     lowest: f64,
+    highest: f64,
     columns: usize,
     rows: usize,
 }
@@ -98,7 +99,9 @@ impl<'a> Strips<'a> {
         middle.z = 0.5 * (lowest + highest);
         let tangent = |camera: &Camera| {
             let ray = camera.center - middle;
-            let shows = camera.project(&middle).is_some_and(|p| camera.contains(&p, 0.0));
+            let shows = camera
+                .project(&middle)
+                .is_some_and(|p| camera.contains(&p, 0.0));
             (shows && ray.z > 0.0).then(|| -ray.dot(&inward) / ray.z)
         };
         let mut views: Vec<(ViewId, f64)> = (scene.view_ids())
@@ -107,7 +110,9 @@ impl<'a> Strips<'a> {
             .collect();
         views.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         views.truncate(MAX_VIEWS);
-        let pixels = views.iter().map(|(v, _)| scene.camera(*v).ground_pixel(&middle));
+        let pixels = views
+            .iter()
+            .map(|(v, _)| scene.camera(*v).ground_pixel(&middle));
         let step = pixels.fold(f64::INFINITY, smaller);
         let columns = (side.length() / step) as usize;
         if views.len() < 2 || columns < LEAST_COLUMNS {
@@ -124,6 +129,7 @@ impl<'a> Strips<'a> {
             step,
             rise,
             lowest,
+            highest,
             columns,
             rows: (((highest - lowest) / rise) as usize).next_multiple_of(WINDOW_ROWS),
         };
@@ -131,7 +137,7 @@ impl<'a> Strips<'a> {
             .map(|(id, _)| SideView {
                 id: *id,
                 camera: scene.camera(*id),
-                clear_above: strips.clear_above(scene.camera(*id), highest, occluders),
+                clear_above: strips.clear_above(scene.camera(*id), occluders),
             })
             .collect();
         Some(strips)
@@ -165,9 +171,9 @@ impl<'a> Strips<'a> {
             depth: &|_| depth,
         };
         let windows = self.windows(&raster);
-        let nats = windows.flatten().map(|(weight, correlation)| {
-            tables.wall.nats_of(weight, correlation)
-        });
+        let nats = windows
+            .flatten()
+            .map(|(weight, correlation)| tables.wall.nats_of(weight, correlation));
         nats.sum()
     }
 
@@ -175,8 +181,7 @@ impl<'a> Strips<'a> {
     fn ground_nats(&self, tables: &WallEvidence, deepest: f64) -> Vec<f64> {
         let on_ground = |p: Point3<f64>| self.ground.lift(p.x, p.y);
         let start = on_ground(self.side.start());
-        let steps = [self.along, self.inward]
-            .map(|v| on_ground(start + v * self.step) - start);
+        let steps = [self.along, self.inward].map(|v| on_ground(start + v * self.step) - start);
         let rows = ((deepest / self.step) as usize + 1).next_multiple_of(WINDOW_ROWS);
         let raster = Raster {
             start,
@@ -186,7 +191,9 @@ impl<'a> Strips<'a> {
         };
         let windows: Vec<Option<(f32, f32)>> = self.windows(&raster).collect();
         let nats = |window: &Option<(f32, f32)>| {
-            window.map_or(0.0, |(weight, correlation)| tables.ground.nats_of(weight, correlation))
+            window.map_or(0.0, |(weight, correlation)| {
+                tables.ground.nats_of(weight, correlation)
+            })
         };
         (windows.chunks(self.windows_along()))
             .map(|row| row.iter().map(nats).sum())
@@ -194,7 +201,9 @@ impl<'a> Strips<'a> {
     }
 
     fn windows_along(&self) -> usize {
-        (self.columns as f64 / WINDOW_COLUMNS as f64).round().max(1.0) as usize
+        (self.columns as f64 / WINDOW_COLUMNS as f64)
+            .round()
+            .max(1.0) as usize
     }
 
     /// Columns of a window.
@@ -240,13 +249,19 @@ impl<'a> Strips<'a> {
         let warp = Warp::new(&self.scene.view(view.id).gray, &image_from_raster, size)?;
         let mut image = vec![0.0; self.columns * raster.rows];
         for (r, values) in image.chunks_exact_mut(self.columns).enumerate() {
-            warp.fill(r, values, Outside::Nan, |gray| gray);
             let row = r as f64 + 0.5;
             let depth = (raster.depth)(row);
+            let at = |column: f64| raster.start + raster.steps[0] * column + raster.steps[1] * row;
+            // Most rows of deep walls are hidden by the rim as a whole.
+            let ends = [0.0, self.columns as f64].map(|column| self.exit(view, &at(column), depth));
+            if depth > 0.0 && ends.iter().all(|exit| exit.z > self.highest) {
+                values.fill(f32::NAN);
+                continue;
+            }
+            warp.fill(r, values, Outside::Nan, |gray| gray);
             for i in 0..self.windows_along() {
                 for column in self.columns_of(i) {
-                    let steps = raster.steps[0] * (column as f64 + 0.5) + raster.steps[1] * row;
-                    let place = raster.start + steps;
+                    let place = at(column as f64 + 0.5);
                     if !self.sees(view, i, &place, depth) {
                         values[column] = f32::NAN;
                     }
@@ -256,22 +271,25 @@ impl<'a> Strips<'a> {
         Some(image)
     }
 
+    /// Where the ray to a view from a place so deep behind the rim leaves from under the roof.
+    fn exit(&self, view: &SideView, place: &Point3<f64>, depth: f64) -> Point3<f64> {
+        let ray = view.camera.center - place;
+        place + ray * (larger(depth, 0.0) / -ray.dot(&self.inward))
+    }
+
     /// Does a view see a place so deep behind the rim: above the ground, below the rim, and past
     /// other roofs?
     fn sees(&self, view: &SideView, window: usize, place: &Point3<f64>, depth: f64) -> bool {
-        let ray = view.camera.center - place;
-        // Where the ray leaves from under the roof.
-        let out = larger(depth, 0.0) / -ray.dot(&self.inward);
-        let exit = place + ray * out;
+        let exit = self.exit(view, place, depth);
         let s = (exit - self.side.start()).dot(&self.along);
-        let is_below = depth <= 0.0
-            || (self.side.rim_at(s)).is_some_and(|rim| exit.z < rim - RIM_M);
+        let is_below =
+            depth <= 0.0 || (self.side.rim_at(s)).is_some_and(|rim| exit.z < rim - RIM_M);
         let above_ground = place.z - self.ground.z_at(place.x, place.y);
         is_below && above_ground > -1e-6 && exit.z > view.clear_above[window]
     }
 
     /// For each window along the side the height at the rim from which on no roof hides a view.
-    fn clear_above(&self, camera: &Camera, highest: f64, occluders: &Occluders) -> Vec<f64> {
+    fn clear_above(&self, camera: &Camera, occluders: &Occluders) -> Vec<f64> {
         /// Halvings of the height of the roof: to a few centimetres.
         const HALVINGS: usize = 6;
         let at = |window: usize| {
@@ -280,7 +298,7 @@ impl<'a> Strips<'a> {
             // Beside the roof, not below it.
             let foot = self.side.start() + self.along * s - self.inward * self.step;
             let hidden = |z: f64| occluders.hide(&Point3::new(foot.x, foot.y, z), &camera.center);
-            let (mut low, mut high) = (self.lowest - self.rise, highest);
+            let (mut low, mut high) = (self.lowest - self.rise, self.highest);
             if !hidden(low) {
                 return f64::MIN;
             }
@@ -315,7 +333,13 @@ fn compare(windows: &[Vec<f32>], residual: f32) -> Option<(f32, f32)> {
     let (mut sum, mut pairs) = (0.0, 0);
     for (j, b) in windows.iter().enumerate() {
         for (i, a) in windows[..j].iter().enumerate() {
-            let known = |v: f32| if v > LEAST_VARIANCE { v } else { LEAST_VARIANCE };
+            let known = |v: f32| {
+                if v > LEAST_VARIANCE {
+                    v
+                } else {
+                    LEAST_VARIANCE
+                }
+            };
             let deviations = (known(variances[i]) * known(variances[j])).sqrt();
             sum += (product(a, b) / deviations).clamp(-1.0, 1.0);
             pairs += 1;
