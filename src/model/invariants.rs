@@ -101,7 +101,8 @@ pub enum Violation {
         /// Largest distance of a corner from the face's plane, metres.
         distance_m: f64,
     },
-    /// A roof face does not look up, a ground face or a ceiling not down, or a wall is not vertical.
+    /// A roof face does not look up, a ground face or a ceiling not down, or a wall is not
+    /// vertical.
     FaceDirection {
         /// The building.
         building: BuildingId,
