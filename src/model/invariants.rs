@@ -397,7 +397,7 @@ fn check_wall_crossings(building: BuildingId, solid: &Solid, found: &mut Vec<Vio
             if la < hb
                 && lb < ha
                 && properly_cross(pa.0, pa.1, pb.0, pb.1)
-                && meet_where_they_cross((a, pa), (b, pb))
+                && meet_where_they_cross(a, b)
             {
                 let (first, second) = (*first, *second);
                 found.push(Violation::WallsCross {
@@ -412,10 +412,8 @@ fn check_wall_crossings(building: BuildingId, solid: &Solid, found: &mut Vec<Vio
 
 /// Do two walls that cross in plan have a height in common there? One may pass over the other, or
 /// through a notch of it.
-fn meet_where_they_cross(
-    (a, pa): (&[Point3<f64>], (Point2<f64>, Point2<f64>)),
-    (b, pb): (&[Point3<f64>], (Point2<f64>, Point2<f64>)),
-) -> bool {
+fn meet_where_they_cross(a: &[Point3<f64>], b: &[Point3<f64>]) -> bool {
+    let (pa, pb) = (plan_extent(a), plan_extent(b));
     let (u, v) = (pa.1 - pa.0, pb.1 - pb.0);
     let t = (pb.0 - pa.0).perp(&v) / u.perp(&v);
     let at = pa.0 + u * t;
