@@ -56,6 +56,7 @@
 //!    or both for one model: lines and planes of objectspace compete with the others
 //!    -> buildings, solids        refined wireframes, walls, closed solids
 //!    -> corrections              what somebody corrects by hand
+//!    -> walls                    where they stand below overhanging eaves
 //!    -> texture                  best view per face, atlas
 //!    -> export                   CityJSON, glTF, OBJ, lines
 //! ```
@@ -115,6 +116,7 @@ pub mod terrain;
 mod testing;
 pub mod texture;
 pub mod tiles;
+pub mod walls;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;
 

@@ -18,6 +18,7 @@
 mod clutter;
 mod judged;
 mod uncertainty;
+mod walls;
 mod windows;
 
 pub(crate) use clutter::ClutterTable;
@@ -25,6 +26,7 @@ pub use judged::{
     Candidates, JudgedFacet, JudgedLine, JudgedSurface, WindowCounts, WindowHistogram,
 };
 pub(crate) use uncertainty::UncertaintyTable;
+pub(crate) use walls::WallEvidence;
 pub(crate) use windows::WindowEvidenceTable;
 
 use std::sync::OnceLock;

@@ -41,24 +41,31 @@ impl WindowEvidenceTable {
     pub(crate) fn fitted() -> &'static Self {
         static TABLE: OnceLock<WindowEvidenceTable> = OnceLock::new();
         TABLE.get_or_init(|| {
-            let fitted = serde_json::from_str(include_str!("windows.json"));
-            Self::tabulated(&fitted.expect("the table is part of the program"))
+            let fitted: Fitted = serde_json::from_str(include_str!("windows.json"))
+                .expect("the table is part of the program");
+            let knots = (&fitted.weights[..], &fitted.correlations[..]);
+            Self::between(knots, &fitted.nats, fitted.prior)
         })
     }
 
-    fn tabulated(fitted: &Fitted) -> Self {
+    /// From the nats at each of some weights (rising) and, for each, of some correlations (rising).
+    pub(super) fn between(
+        (weights, correlations): (&[f64], &[f64]),
+        nats: &[Vec<f64>],
+        prior: f64,
+    ) -> Self {
         let at = |weight: f64, correlation: f64| {
-            let (row, s) = place(&fitted.weights, weight);
-            let (column, t) = place(&fitted.correlations, correlation);
+            let (row, s) = place(weights, weight);
+            let (column, t) = place(correlations, correlation);
             let along = |row: &[f64]| (1.0 - t) * row[column] + t * row[column + 1];
-            (1.0 - s) * along(&fitted.nats[row]) + s * along(&fitted.nats[row + 1])
+            (1.0 - s) * along(&nats[row]) + s * along(&nats[row + 1])
         };
-        let weights = (0..=u8::MAX).map(|w| f64::from(w) / 255.0);
-        let correlations = || (0..CORRELATIONS).map(|c| c as f64 / 127.0 - 1.0);
-        let nats = weights.flat_map(|w| correlations().map(move |c| at(w, c) as f32));
+        let bytes = (0..=u8::MAX).map(|w| f64::from(w) / 255.0);
+        let steps = || (0..CORRELATIONS).map(|c| c as f64 / 127.0 - 1.0);
+        let nats = bytes.flat_map(|w| steps().map(move |c| at(w, c) as f32));
         Self {
             nats: nats.collect(),
-            prior: fitted.prior,
+            prior,
         }
     }
 
@@ -105,13 +112,8 @@ mod tests {
 
     #[test]
     fn a_planted_table_is_linear_between_its_knots() {
-        let table = WindowEvidenceTable::tabulated(&Fitted {
-            source: "planted".into(),
-            weights: vec![0.0, 1.0],
-            correlations: vec![0.0, 1.0],
-            nats: vec![vec![0.0, 0.0], vec![-2.0, 2.0]],
-            prior: 0.5,
-        });
+        let nats = [vec![0.0, 0.0], vec![-2.0, 2.0]];
+        let table = WindowEvidenceTable::between((&[0.0, 1.0], &[0.0, 1.0]), &nats, 0.5);
         assert!((table.nats(255, 127) - 2.0).abs() < 1e-6);
         assert!((table.nats(255, -50) + 2.0).abs() < 1e-6);
         assert!((table.nats(51, 127) - 0.4).abs() < 1e-6);

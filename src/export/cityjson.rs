@@ -1,5 +1,6 @@
 //! CityJSON 2.0, as one file and as a sequence of features: one Building with an LoD 2.2 Solid per
-//! building of the model.
+//! building of the model, and with an LoD 2.3 Solid where walls are known to stand elsewhere than
+//! below the eaves.
 //!
 //! Coordinates are those of the input's world frame, as whole numbers of 0.1 mm from the scene
 //! origin (coarser steps would bend planar roofs). The texture is the file [`ATLAS_FILE`] beside
@@ -9,8 +10,9 @@ use serde_json::{Map, Value, json};
 
 use super::format::{ATLAS_FILE, rounded, to_bytes};
 use super::measured::Measured;
+use super::walls::{add_attributes, walled_solid};
 use crate::ids::FacetId;
-use crate::model::{Building, RoofModel, Surface};
+use crate::model::{Building, BuildingWalls, RoofModel, Solid, Surface};
 use crate::roof_report::{Estimate, Lengths, RoofEdgeKind};
 use crate::scene::Scene;
 use crate::texture::{FaceTexture, TexturedModel};
@@ -24,7 +26,7 @@ const THEME: &str = "photographs";
 /// The model as a CityJSON file.
 pub(super) fn city_json(
     scene: &Scene,
-    model: &RoofModel,
+    (model, walls): (&RoofModel, &[BuildingWalls]),
     measured: &Measured,
     textured: &TexturedModel,
 ) -> Vec<u8> {
@@ -32,7 +34,10 @@ pub(super) fn city_json(
     let mut objects = Map::new();
     for (i, (building, textures)) in model.buildings.iter().zip(&textured.faces).enumerate() {
         let of = (model, measured);
-        let object = building_object(scene, of, (i, building), textures, &mut shared);
+        let mut object = building_object(scene, of, (i, building), textures, &mut shared);
+        if let Some(walls) = walls.get(i) {
+            add_walls(&mut object, walls, &mut shared);
+        }
         objects.insert(format!("building-{i}"), object);
     }
     let mut file = head(scene, &shared.vertices);
@@ -114,6 +119,14 @@ struct Shared {
 }
 
 impl Shared {
+    /// Appends the corners of a solid.
+    fn add(&mut self, solid: &Solid) {
+        let whole = |c: f64| (c / SCALE_M).round() as i64;
+        let corners = solid.vertices.iter();
+        let whole = corners.map(|p| [whole(p.x), whole(p.y), whole(p.z)]);
+        self.vertices.extend(whole);
+    }
+
     fn appearance(&self) -> Value {
         json!({
             "default-theme-texture": THEME,
@@ -131,13 +144,7 @@ fn building_object(
     shared: &mut Shared,
 ) -> Value {
     let offset = shared.vertices.len();
-    let whole = |c: f64| (c / SCALE_M).round() as i64;
-    let vertices = &building.solid.vertices;
-    shared.vertices.extend(
-        vertices
-            .iter()
-            .map(|p| [whole(p.x), whole(p.y), whole(p.z)]),
-    );
+    shared.add(&building.solid);
     let mut boundaries = Vec::new();
     let mut surfaces = Vec::new();
     let mut texture_values = Vec::new();
@@ -175,6 +182,16 @@ fn building_object(
             "texture": { THEME: { "values": [texture_values] } },
         }],
     })
+}
+
+/// Adds what is known of the walls, and the solid that has them where they stand.
+fn add_walls(object: &mut Value, walls: &BuildingWalls, shared: &mut Shared) {
+    add_attributes(&mut object["attributes"], walls);
+    let geometry = walled_solid(walls, shared.vertices.len());
+    if let (Some(solid), Some(all)) = (&walls.solid, object["geometry"].as_array_mut()) {
+        all.extend(geometry);
+        shared.add(solid);
+    }
 }
 
 /// Adds a number and its standard deviation.
@@ -227,6 +244,7 @@ fn add_measures(surface: &mut Value, measured: &Measured, id: FacetId) {
 fn semantic_surface(model: &RoofModel, measured: &Measured, surface: Surface) -> Value {
     match surface {
         Surface::Wall => json!({ "type": "WallSurface" }),
+        Surface::Ceiling => json!({ "type": "OuterCeilingSurface" }),
         Surface::Ground => json!({ "type": "GroundSurface" }),
         Surface::Roof(id) => {
             let facet = &model.facets[id.index()];

@@ -109,6 +109,7 @@ fn group(surface: Surface) -> String {
     match surface {
         Surface::Roof(facet) => format!("roof_{}", facet.index()),
         Surface::Wall => "wall".to_owned(),
+        Surface::Ceiling => "ceiling".to_owned(),
         Surface::Ground => "ground".to_owned(),
     }
 }

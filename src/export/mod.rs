@@ -18,7 +18,8 @@
 //! | `lines.json`, `segments.json`, `halfplanes.json` | what the model was made from |
 //! | `evidence.json` | what spoke for every candidate, and against it |
 //!
-//! `format` and `measured` hold what the writers share, `triangulate` the triangles of a face.
+//! `format` and `measured` hold what the writers share, `triangulate` the triangles of a face,
+//! `walls` the LoD 2.3 solids of CityJSON.
 //!
 //! Invariant: the same input gives the same bytes; nothing writes a date, a path or a random id.
 
@@ -34,6 +35,7 @@ mod plans;
 mod report;
 mod tileset;
 mod triangulate;
+mod walls;
 
 pub use cityjson::city_json_seq;
 pub use evidence::evidence_json;
@@ -51,7 +53,7 @@ use self::measured::Measured;
 use crate::evidence::Candidates;
 use crate::lines2d::ImageSegment;
 use crate::lines3d::Line3d;
-use crate::model::RoofModel;
+use crate::model::{BuildingWalls, RoofModel};
 use crate::params::TextureParams;
 use crate::planes::HalfPlane;
 use crate::scene::Scene;
@@ -72,6 +74,8 @@ pub struct ExportInput<'a> {
     pub candidates: &'a Candidates,
     /// The model.
     pub model: &'a RoofModel,
+    /// For each building where its walls stand; none where that was not asked.
+    pub walls: &'a [BuildingWalls],
     /// Its textures.
     pub textured: &'a TexturedModel,
 }
@@ -85,11 +89,12 @@ pub fn export_all(input: &ExportInput, params: &TextureParams) -> Vec<(String, V
         half_planes,
         candidates,
         model,
+        walls,
         textured,
     } = *input;
     let atlas = atlas_jpeg(textured, params.jpeg_quality);
     let measured = Measured::new(scene, model);
-    let city = cityjson::city_json(scene, model, &measured, textured);
+    let city = cityjson::city_json(scene, (model, walls), &measured, textured);
     let report = report_files(&city).expect("what was just written reads");
     let mut files: Vec<(String, Vec<u8>)> = [
         ("model.city.json", city),

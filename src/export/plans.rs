@@ -33,6 +33,7 @@ pub fn dxf(scene: &Scene, model: &RoofModel, lines: &[Line3d]) -> Vec<u8> {
             let layer = match face.surface {
                 Surface::Roof(_) => "ROOF",
                 Surface::Wall => "WALL",
+                Surface::Ceiling => "CEILING",
                 Surface::Ground => "GROUND",
             };
             let corners: Vec<u32> = face.rings.iter().flatten().copied().collect();

@@ -6,11 +6,12 @@ use std::collections::BTreeMap;
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;
-use nalgebra::{Point2, Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
 use serde::Serialize;
 
 use super::roof_model::{Facet, RoofModel, Solid, SolidFace, Surface, WELD_M};
 use crate::ids::{BuildingId, FacetId};
+use crate::math::{larger, smaller};
 
 /// Faces of solids are planar within this distance, metres. Welding moves a corner by up to 1 mm in
 /// plan, and two steep roofs that meet there are welded in height by a few millimetres; writers of
@@ -100,7 +101,8 @@ pub enum Violation {
         /// Largest distance of a corner from the face's plane, metres.
         distance_m: f64,
     },
-    /// A roof face does not look up, a ground face not down, or a wall is not vertical.
+    /// A roof face does not look up, a ground face or a ceiling not down, or a wall is not
+    /// vertical.
     FaceDirection {
         /// The building.
         building: BuildingId,
@@ -303,7 +305,9 @@ fn check_face(building: BuildingId, solid: &Solid, face: usize, found: &mut Vec<
     let directed = match surface {
         Surface::Roof(_) => normal.z > 1e-3,
         Surface::Wall => normal.z.abs() < 1e-3,
-        Surface::Ground => normal.z < -0.999,
+        Surface::Ceiling => normal.z < -1e-3,
+        // Level, or on a slope.
+        Surface::Ground => normal.z < -0.9,
     };
     if !directed {
         found.push(Violation::FaceDirection { building, face });
@@ -390,7 +394,11 @@ fn check_wall_crossings(building: BuildingId, solid: &Solid, found: &mut Vec<Vio
             };
             let ((la, ha), (lb, hb)) = (range(a), range(b));
             let (pa, pb) = (plan_extent(a), plan_extent(b));
-            if la < hb && lb < ha && properly_cross(pa.0, pa.1, pb.0, pb.1) {
+            if la < hb
+                && lb < ha
+                && properly_cross(pa.0, pa.1, pb.0, pb.1)
+                && meet_where_they_cross(a, b)
+            {
                 let (first, second) = (*first, *second);
                 found.push(Violation::WallsCross {
                     building,
@@ -400,6 +408,46 @@ fn check_wall_crossings(building: BuildingId, solid: &Solid, found: &mut Vec<Vio
             }
         }
     }
+}
+
+/// Do two walls that cross in plan have a height in common there? One may pass over the other, or
+/// through a notch of it.
+fn meet_where_they_cross(a: &[Point3<f64>], b: &[Point3<f64>]) -> bool {
+    let (pa, pb) = (plan_extent(a), plan_extent(b));
+    let (u, v) = (pa.1 - pa.0, pb.1 - pb.0);
+    let t = (pb.0 - pa.0).perp(&v) / u.perp(&v);
+    let at = pa.0 + u * t;
+    // Beside the place, on both sides, for a wall may end there.
+    let beside = [-2.0 * WELD_M, 2.0 * WELD_M];
+    let sections = [(a, u), (b, v)].map(|(wall, along)| {
+        let along = along.normalize();
+        beside.map(|aside| section(wall, &(at + along * aside), &along))
+    });
+    let [first, second, third, fourth] = [0, 1, 2, 3].map(|i| &sections[i / 2][i % 2]);
+    let common = in_both(&in_both(first, second), &in_both(third, fourth));
+    common.iter().any(|[low, high]| high - low > PLANAR_M)
+}
+
+/// The heights of a wall at a place along it, from each to each.
+fn section(wall: &[Point3<f64>], at: &Point2<f64>, along: &Vector2<f64>) -> Vec<[f64; 2]> {
+    let s = |p: &Point3<f64>| along.dot(&(p.xy() - at));
+    let next = wall.iter().cycle().skip(1);
+    let mut heights: Vec<f64> = (wall.iter().zip(next))
+        .map(|(p, q)| (p, q, s(p), s(q)))
+        .filter(|(.., sp, sq)| (*sp < 0.0) != (*sq < 0.0))
+        .map(|(p, q, sp, sq)| p.z + (q.z - p.z) * sp / (sp - sq))
+        .collect();
+    heights.sort_by(f64::total_cmp);
+    heights.chunks_exact(2).map(|z| [z[0], z[1]]).collect()
+}
+
+/// What two lists of stretches have in common.
+fn in_both(a: &[[f64; 2]], b: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let pairs = a.iter().flat_map(|x| b.iter().map(move |y| (x, y)));
+    pairs
+        .map(|(x, y)| [larger(x[0], y[0]), smaller(x[1], y[1])])
+        .filter(|[low, high]| low < high)
+        .collect()
 }
 
 /// The two ends of a wall in plan.

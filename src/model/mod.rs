@@ -4,6 +4,7 @@
 //! roof_model  facets, buildings and their closed solids
 //! invariants  what every model must fulfil
 //! uncertainty standard deviations of facets and corners
+//! walls       where walls stand below the roof
 //! visibility  occlusion of points by roofs
 //! ```
 //!
@@ -13,6 +14,7 @@ mod invariants;
 mod roof_model;
 mod uncertainty;
 mod visibility;
+mod walls;
 
 pub(crate) use invariants::is_simple;
 pub use invariants::{PLANAR_M, Violation, check_invariants};
@@ -20,3 +22,4 @@ pub use roof_model::{Building, Facet, RoofModel, Solid, SolidFace, Surface, WELD
 pub use uncertainty::{CornerUncertainty, FacetUncertainty};
 pub use visibility::Occluders;
 pub(crate) use visibility::inside;
+pub use walls::{BuildingWalls, Wall};

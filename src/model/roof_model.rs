@@ -72,6 +72,8 @@ pub enum Surface {
     Roof(FacetId),
     /// A vertical face: an eave extruded to the ground, or a step between roofs.
     Wall,
+    /// The underside of a roof that overhangs a wall.
+    Ceiling,
     /// The footprint on the ground.
     Ground,
 }

@@ -176,7 +176,7 @@ impl CandidateView {
 }
 
 /// Variance of the grey values of one surface point between views.
-pub(super) fn residual_variance(scene: &Scene, views: &[ViewId]) -> f32 {
+pub(crate) fn residual_variance(scene: &Scene, views: &[ViewId]) -> f32 {
     let sum: f64 = views.iter().map(|v| scene.view(*v).noise).sum();
     let noise = RESIDUAL_NOISE * sum / views.len().max(1) as f64;
     (noise * noise) as f32

@@ -42,7 +42,7 @@ use crate::export;
 use crate::export::export_all;
 use crate::lines2d::ImageSegment;
 use crate::lines3d::{Line3d, LineOutcome};
-use crate::model::RoofModel;
+use crate::model::{BuildingWalls, RoofModel};
 use crate::objectspace::{image_segments, world_lines};
 use crate::params::{Method, Params};
 use crate::planes::HalfPlane;
@@ -263,6 +263,7 @@ impl Run {
             half_planes: outputs.half_planes,
             candidates: &self.results.candidates(),
             model: outputs.model,
+            walls: outputs.walls,
             textured: outputs.textured,
         };
         let mut files = export_all(&borrowed, &self.params.texture);
@@ -279,13 +280,16 @@ impl Run {
     /// What goes into the files; `None` before the last stage has run.
     fn outputs(&self) -> Option<Outputs<'_>> {
         let r = &self.results;
-        let (model, textured) = (r.roof_model()?, &r.model.as_ref()?.value);
+        let model = r.roof_model()?;
+        let last = r.model.as_ref()?;
+        let (walls, textured) = (&last.walls[..], &last.value);
         Some(match self.params.method {
             Method::Lines | Method::Combined | Method::Coplanar | Method::Adjacency => Outputs {
                 segments: Cow::Borrowed(&r.segments.as_ref()?.value),
                 lines: Cow::Owned(r.all_lines()?),
                 half_planes: &r.half_planes.as_ref()?.value,
                 model,
+                walls,
                 textured,
             },
             Method::Rectangles => {
@@ -296,6 +300,7 @@ impl Run {
                     lines: Cow::Owned(world_lines(&self.scene, lines, found)),
                     half_planes: &[],
                     model,
+                    walls,
                     textured,
                 }
             }
@@ -331,6 +336,7 @@ struct Outputs<'a> {
     lines: Cow<'a, [Line3d]>,
     half_planes: &'a [HalfPlane],
     model: &'a RoofModel,
+    walls: &'a [BuildingWalls],
     textured: &'a TexturedModel,
 }
 

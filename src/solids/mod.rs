@@ -5,6 +5,8 @@
 //! partition  outlines of all facets -> one partition of the plan
 //! rings      closed rings from the directed edges of a region
 //! walls      partition -> faces of a building: roofs, walls, ground
+//! sides      straight stretches of the outline, a wall below each
+//! overhang   the same building with its walls inside the eaves
 //! manifold   faces -> closed oriented 2-manifold
 //! rejection  why a facet is not part of a solid
 //! ```
@@ -17,12 +19,16 @@
 //! Invariant: no facet is dropped without a [`SolidRejection`].
 
 mod manifold;
+mod overhang;
 mod partition;
 mod rejection;
 mod rings;
+mod sides;
 mod walls;
 
+pub use overhang::{RIM_M, close_below_overhangs};
 pub use rejection::SolidRejection;
+pub use sides::{Side, outline_sides};
 
 use serde::Serialize;
 
@@ -197,6 +203,7 @@ fn add_building(
             .binary_search(&f)
             .expect("the facet is in its building"))),
         FaceKind::Wall => Surface::Wall,
+        FaceKind::Ceiling => Surface::Ceiling,
         FaceKind::Ground => Surface::Ground,
     };
     let faces = shell

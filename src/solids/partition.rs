@@ -446,7 +446,7 @@ fn boxes_meet(a: &PlanPart, b: &PlanPart) -> bool {
 }
 
 /// Boolean of two sets of rings (even-odd), as shapes of rings.
-fn overlay(
+pub(super) fn overlay(
     a: &[Vec<Point2<f64>>],
     b: &[Vec<Point2<f64>>],
     rule: OverlayRule,

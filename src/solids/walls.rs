@@ -19,6 +19,8 @@ pub(super) enum FaceKind {
     Roof(usize),
     /// Vertical.
     Wall,
+    /// The underside of a roof that overhangs a wall.
+    Ceiling,
     /// At the foot.
     Ground,
 }

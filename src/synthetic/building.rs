@@ -21,6 +21,8 @@ struct Placement {
     /// Azimuth of the main wing, degrees.
     azimuth_deg: f64,
     eave_z: f64,
+    /// How far the roof projects beyond the walls, metres.
+    overhang: f64,
 }
 
 /// At the origin, parallel to no baseline.
@@ -28,6 +30,7 @@ const HOME: Placement = Placement {
     center: [0.0, 0.0],
     azimuth_deg: 26.0,
     eave_z: EAVE_Z,
+    overhang: OVERHANG,
 };
 
 /// Height of the ground, metres: not zero, so that no code may assume it.
@@ -43,6 +46,12 @@ const SLOPE: f64 = 0.75;
 /// Gable roof of 14 m by 9 m in plan.
 pub(crate) fn gable() -> SyntheticBuilding {
     gable_at(HOME, [7.0, 4.5], 0.0, 1)
+}
+
+/// The gable roof whose walls stand so far inside its eaves and gables, metres.
+pub(crate) fn gable_with_overhang(overhang: f64) -> SyntheticBuilding {
+    let place = Placement { overhang, ..HOME };
+    gable_at(place, [7.0, 4.5], 0.0, 1)
 }
 
 /// The gable roof on ground that rises to the east by `slope`, and is at its usual height in the
@@ -107,6 +116,7 @@ pub(crate) fn tower_and_annex() -> SyntheticBuilding {
         center: rotated(0.0, [0.0, v]),
         azimuth_deg: 0.0,
         eave_z,
+        ..HOME
     };
     join(
         gable_at(beside(4.0, 14.0), [5.0, 3.0], 0.0, 1),
@@ -155,7 +165,7 @@ fn gable_at(place: Placement, [a, b]: [f64; 2], shear: f64, seed: u32) -> Synthe
         (&[0, 1, 2, 3], surface([0.62, 0.33, 0.25], 0.10, seed)),
         (&[3, 2, 4, 5], surface([0.55, 0.34, 0.28], 0.22, seed + 1)),
     ];
-    let (x, y) = (a - OVERHANG, b - OVERHANG);
+    let (x, y) = (a - place.overhang, b - place.overhang);
     let footprint = [
         (at(-x, -y), false),
         (at(x, -y), true),
@@ -288,7 +298,7 @@ fn edges(corners: &[Point3<f64>], facets: &[(&[usize], SurfaceTexture)]) -> Vec<
 /// Vertical faces over the sides of a counter-clockwise footprint, up to the underside of the roof.
 /// Equal slopes make the roof equally high over all footprint corners.
 fn walls(place: Placement, footprint: &[([f64; 2], bool)], ridge: f64) -> Vec<RenderedFace> {
-    let top = place.eave_z + SLOPE * OVERHANG;
+    let top = place.eave_z + SLOPE * place.overhang;
     (0..footprint.len())
         .map(|i| {
             let ([px, py], gabled) = footprint[i];

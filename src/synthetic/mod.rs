@@ -37,6 +37,15 @@ pub fn gable_scene(size: u32) -> (Scene, SyntheticTruth) {
     scene_of(&building::gable(), size)
 }
 
+/// The same house with its walls so far inside the roof's rim, seen from all sides at a slant by
+/// twelve views of `size` x `size` pixels, 5 cm on the house each.
+pub fn oblique_scene(size: u32, overhang: f64) -> (Scene, SyntheticTruth) {
+    scene_seen_by(
+        &building::gable_with_overhang(overhang),
+        &oblique_cameras(size),
+    )
+}
+
 /// The same house on ground that rises by `slope` metres a metre to the east; at the origin it is
 /// at the height that the truth states.
 pub fn slope_scene(size: u32, slope: f64) -> (Scene, SyntheticTruth) {
@@ -178,6 +187,30 @@ fn drone_cameras(size: u32) -> Vec<(String, Camera)> {
             let [omega, phi, kappa] = angles.map(f64::to_radians);
             let r = rotation_from_omega_phi_kappa(omega, phi, kappa);
             (format!("d{i}.png"), Camera::new(k, r, center, size, size))
+        })
+        .collect()
+}
+
+/// Cameras around the house that look at it from 35 and 50 degrees off the vertical.
+fn oblique_cameras(size: u32) -> Vec<(String, Camera)> {
+    let middle = f64::from(size) / 2.0;
+    (0..12)
+        .map(|i| {
+            let off = [35.0f64, 50.0][i % 2].to_radians();
+            let azimuth = (30.0 * i as f64 + 7.0).to_radians();
+            let (s, c) = crate::math::sin_cos(off);
+            let (sa, ca) = crate::math::sin_cos(azimuth);
+            let forward = Vector3::new(-s * ca, -s * sa, -c);
+            let right = forward.cross(&Vector3::z()).normalize();
+            let down = forward.cross(&right);
+            let r = Matrix3::from_rows(&[right, down, forward].map(|v| v.transpose()));
+            let k = Matrix3::new(1600.0, 0.0, middle, 0.0, 1600.0, middle, 0.0, 0.0, 1.0);
+            let center = TARGET - forward * 80.0;
+            let r = nalgebra::Rotation3::from_matrix_unchecked(r);
+            (
+                format!("o{i:02}.png"),
+                Camera::new(k, r, center, size, size),
+            )
         })
         .collect()
 }

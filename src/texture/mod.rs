@@ -256,7 +256,7 @@ fn colour_unseen(painted: &mut [PaintedPatch], kinds: &[Surface]) {
     {
         let colour = match kind {
             Surface::Roof(_) => roof,
-            Surface::Wall => wall,
+            Surface::Wall | Surface::Ceiling => wall,
             Surface::Ground => any,
         };
         p.colours.fill(colour);

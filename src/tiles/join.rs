@@ -90,6 +90,7 @@ impl Joined {
                 half_planes,
                 candidates,
                 model,
+                walls: &[],
                 textured,
             },
             params,

@@ -169,6 +169,7 @@ pub fn files_with(
         half_planes: &half_planes,
         candidates: &planted_candidates(),
         model,
+        walls: &[],
         textured: &textured,
     };
     export_all(&results, &params).into_iter().collect()

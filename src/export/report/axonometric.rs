@@ -196,7 +196,7 @@ fn colour(face: &SeenFace) -> String {
     let shade = 0.68 + 0.32 * face.normal.dot(&light).max(0.0);
     let base = match face.surface {
         Surface::Roof(_) => [226.0, 168.0, 140.0],
-        Surface::Wall | Surface::Ground => [238.0, 234.0, 226.0],
+        Surface::Wall | Surface::Ceiling | Surface::Ground => [238.0, 234.0, 226.0],
     };
     let [r, g, b] = base.map(|c: f64| (c * shade).round() as u8);
     format!("#{r:02x}{g:02x}{b:02x}")

@@ -34,6 +34,7 @@ pub fn report_files(city_json: &[u8]) -> Result<Vec<(String, Vec<u8>)>, String> 
         model: read.model,
         names: read.names,
         photographs: read.photographs,
+        walls: read.walls,
         origin: read.origin,
         system: read.system,
     };

@@ -24,6 +24,7 @@ pub(super) struct ReadModel {
     pub(super) model: RoofModel,
     pub(super) names: Vec<String>,
     pub(super) photographs: Vec<Vec<String>>,
+    pub(super) walls: Vec<ReadWalls>,
     pub(super) origin: Vector3<f64>,
     pub(super) system: Option<String>,
 }
@@ -57,6 +58,7 @@ pub(super) fn read_model(bytes: &[u8]) -> Result<ReadModel, String> {
         model: RoofModel::default(),
         names: Vec::new(),
         photographs: Vec::new(),
+        walls: Vec::new(),
         origin,
         system: system(&file["metadata"]),
     };
@@ -65,6 +67,7 @@ pub(super) fn read_model(bytes: &[u8]) -> Result<ReadModel, String> {
             let added = add_building(&mut read, object, geometry, &vertices);
             if added.map_err(|problem| format!("{name}: {problem}"))? {
                 read.names.push((*name).clone());
+                read.walls.push(walls_of(&object["attributes"]));
             }
         }
     }
@@ -96,10 +99,30 @@ fn system(metadata: &Value) -> Option<String> {
     title.strip_prefix("Roofs; coordinates ").map(str::to_owned)
 }
 
-/// The last solid with semantics, which is the most detailed one.
+/// The solid with semantics whose walls stand below the eaves (LoD 2.2), else the last one, which
+/// is the most detailed.
 fn solid_of(object: &Value) -> Option<&Value> {
     let is_solid = |g: &&Value| g["type"] == "Solid" && g["semantics"]["surfaces"].is_array();
-    list(&object["geometry"])?.iter().rev().find(is_solid)
+    let mut solids = list(&object["geometry"])?.iter().rev().filter(is_solid);
+    let last = solids.clone().next();
+    solids.find(|g| g["lod"] == "2.2").or(last)
+}
+
+/// What the file says of the walls of a building.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ReadWalls {
+    /// Their number, and how many of them photographs show.
+    pub(super) count: Option<[u64; 2]>,
+    /// Volume within them, cubic metres, where they do not stand below the eaves.
+    pub(super) volume_m3: Option<f64>,
+}
+
+fn walls_of(attributes: &Value) -> ReadWalls {
+    let count = |name: &str| attributes[name].as_u64();
+    ReadWalls {
+        count: (count("walls").zip(count("wallsSeen"))).map(|(all, seen)| [all, seen]),
+        volume_m3: attributes["volumeWithinWalls"].as_f64(),
+    }
 }
 
 /// Adds the building of an object; false where it has no roof.

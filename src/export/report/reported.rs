@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::read::ReadWalls;
 use crate::model::RoofModel;
 use crate::roof_report::BuildingReport;
 
@@ -12,6 +13,8 @@ pub(super) struct ReportedModel {
     pub(super) names: Vec<String>,
     /// Per facet, the photographs that show it.
     pub(super) photographs: Vec<Vec<String>>,
+    /// Per building, its walls.
+    pub(super) walls: Vec<ReadWalls>,
     /// Add it to the model's coordinates for those of the world.
     pub(super) origin: Vector3<f64>,
     /// The coordinate system, where the file states it.

@@ -21,8 +21,10 @@ pub(super) fn buildings(reported: &ReportedModel) -> String {
     ]);
     table.length_names();
     table.words(&["ground_m", "probability"]);
+    table.words(&["walls", "walls_seen", "volume_within_walls_m3"]);
     table.end_row();
-    for (report, name) in reported.buildings.iter().zip(&reported.names) {
+    let walls = reported.names.iter().zip(&reported.walls);
+    for (report, (name, walls)) in reported.buildings.iter().zip(walls) {
         table.words(&[name, &report.facets.len().to_string()]);
         for estimate in [
             report.area_m2,
@@ -37,6 +39,9 @@ pub(super) fn buildings(reported: &ReportedModel) -> String {
         let ground = reported.model.buildings[report.building.index()].ground_z;
         table.number(ground + reported.origin.z);
         table.number(report.probability);
+        let counted = |i: usize| walls.count.map_or(String::new(), |c| c[i].to_string());
+        let volume = walls.volume_m3.map(|v| rounded(v, 3).to_string());
+        table.words(&[&counted(0), &counted(1), &volume.unwrap_or_default()]);
         table.end_row();
     }
     table.text

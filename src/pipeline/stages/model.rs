@@ -1,13 +1,23 @@
-//! The textured model, and with it the files.
+//! The textured model, where its walls stand, and with them the files.
 
-use super::{Findings, Outcome, Results, Stage, StageDefinition};
+use super::{Findings, Results, Stage, StageDefinition};
 use crate::execution::Sharded;
+use crate::model::BuildingWalls;
 use crate::params::Params;
 use crate::scene::Scene;
 use crate::texture::{TextureTrace, TexturedModel, texture_model};
+use crate::walls::place_walls;
 
-/// Textures of the model.
-pub(super) type Found = Outcome<TexturedModel, TextureTrace>;
+/// Textures and walls of the model.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// The textures.
+    pub value: TexturedModel,
+    /// How they came about.
+    pub trace: TextureTrace,
+    /// For each building where its walls stand.
+    pub walls: Vec<BuildingWalls>,
+}
 
 pub(super) struct Model;
 
@@ -22,7 +32,13 @@ impl StageDefinition for Model {
 
     fn run(scene: &Scene, params: &Params, before: &Results) -> Sharded<Found> {
         let model = before.roof_model().expect("stages run in their order");
-        Ok(texture_model(scene, model, &params.texture).into())
+        let (value, trace) = texture_model(scene, model, &params.texture);
+        let ground = before.half_planes.as_ref().map(|found| &found.ground);
+        Ok(Found {
+            value,
+            trace,
+            walls: place_walls(scene, model, ground),
+        })
     }
 
     fn summary(_: &Scene, found: &Found, _: &Results) -> Findings {

@@ -10,7 +10,7 @@ import { saveProject } from "./projectActions";
 const WHAT: Record<string, string> = {
   "model.glb": "textured model, glTF 2.0",
   "tileset.json": "3D Tiles 1.1, beside model.glb",
-  "model.city.json": "CityJSON 2.0, LoD 2.2",
+  "model.city.json": "CityJSON 2.0, LoD 2.2 and 2.3",
   "model_atlas.jpg": "texture of the CityJSON and OBJ files",
   "model.obj": "triangles with texture",
   "model.mtl": "material of the OBJ file",
