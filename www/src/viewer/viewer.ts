@@ -38,6 +38,8 @@ const PICK_REACH_PX = 7;
 const FIRST_LOOK = new Vector3(-0.45, 0.72, 0.62).normalize();
 /** Room about what is looked at, for the tools above it. */
 const ROOM = 1.2;
+/** What is so many times smaller than what was looked at is looked at anew. */
+const LEAST_OF_SEEN = 1.5;
 
 export class Viewer {
   readonly #renderer: WebGLRenderer;
@@ -209,6 +211,21 @@ export class Viewer {
     this.#controls.update();
     this.#buildGrid();
     this.draw();
+  }
+
+  /** As `lookAt`; where a look at nearly the same has been taken, the camera stays. */
+  keepLookingAt(points: readonly Vector3[]): void {
+    const next = new Box3().setFromPoints([...points]).getBoundingSphere(new Sphere());
+    const seen = this.#bounds;
+    const reach =
+      seen === null ? 0 : (ROOM * seen.radius - seen.center.distanceTo(next.center)) / next.radius;
+    if (reach >= 1 && seen !== null && next.radius * LEAST_OF_SEEN >= seen.radius) {
+      this.#bounds = next;
+      this.#buildGrid();
+      this.draw();
+    } else {
+      this.lookAt(points);
+    }
   }
 
   /** Straight down, north up. */

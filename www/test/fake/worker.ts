@@ -17,6 +17,7 @@ const TAKES: Partial<Record<CallName | "open", number>> = {
   runStage: 30,
   adjustOnce: 30,
   runShard: 10,
+  firstLook: 50,
   runTile: 60,
   exportProject: 20,
 };
