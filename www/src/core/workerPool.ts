@@ -73,19 +73,27 @@ export class WorkerPool {
     }
   }
 
+  /** Starts workers that will be of use, while the engine reads its files. */
+  hire(workers: number): void {
+    // Who has work for them hears why there are none.
+    this.#resize(workers - 1).catch(() => undefined);
+  }
+
   /**
    * The facets of a preliminary model: one of the workers looks at reduced views while the others begin with the whole ones,
    * and shares what remains. Null where it was ended before, or failed: nothing depends on it.
    */
   async firstLook(packed: Bytes, params: ParamTree, workers: number): Promise<Facet[] | null> {
     // Where the engine works alone, one is hired for this.
-    await this.#resize(Math.max(1, workers - 1));
+    const opened = this.#resize(Math.max(1, workers - 1));
     const [looking] = this.#pooled;
     if (looking === undefined) {
       return null;
     }
+    // From now on: a stage that begins while the worker starts does not wait for it.
     looking.isLooking = true;
     try {
+      await opened;
       await looking.worker.call("setParams", params);
       return await looking.worker.callMoving([packed.buffer], "firstLook", packed);
     } catch {
@@ -126,7 +134,7 @@ export class WorkerPool {
   }
 
   async #resize(count: number): Promise<void> {
-    for (const { worker } of this.#pooled.splice(count)) {
+    for (const { worker } of this.#pooled.splice(Math.max(0, count))) {
       worker.close();
     }
     const opening: Promise<unknown>[] = [];
@@ -136,7 +144,12 @@ export class WorkerPool {
       this.#pooled.push({ worker, views: "none", taken: new Map(), isLooking: false });
       opening.push(worker.open());
     }
-    await Promise.all(opening);
+    try {
+      await Promise.all(opening);
+    } catch (error) {
+      this.#pooled = this.#pooled.filter(({ worker }) => worker.isOpen);
+      throw error;
+    }
   }
 
   /** View by view, so that only one of them is on its way at a time. */

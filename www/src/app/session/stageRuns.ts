@@ -67,6 +67,7 @@ export async function runStages(turn: Turn, target: StageName): Promise<void> {
   if (files.value.length === 0) {
     return;
   }
+  workerPool.hire(workers.value);
   await ensureScene();
   const names = stages.value.map(({ name }) => name);
   const end = names.indexOf(target);

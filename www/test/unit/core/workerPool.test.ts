@@ -7,6 +7,8 @@ let calls: [number, string, readonly unknown[], readonly Transferable[]][] = [];
 /** The worker whose shards fail. */
 let broken = -1;
 let why = "crash";
+/** The worker that cannot be started. */
+let unopened = -1;
 let made = 0;
 /** When first looks end. */
 let looked: Promise<void> = Promise.resolve();
@@ -20,8 +22,11 @@ class FakeEngine {
     this.onProgress = onProgress;
   }
 
-  open(): Promise<void> {
-    return Promise.resolve();
+  async open(): Promise<void> {
+    if (this.number === unopened) {
+      this.isOpen = false;
+      throw new EngineError("cannot be started", "crash");
+    }
   }
 
   close(): void {
@@ -86,6 +91,8 @@ describe("worker pool", () => {
     calls = [];
     fractions.length = 0;
     broken = -1;
+    unopened = -1;
+    looked = Promise.resolve();
     why = "crash";
     made = 0;
   });
@@ -214,5 +221,22 @@ describe("worker pool", () => {
     const failing = pool.firstLook(new Uint8Array(1), {}, 2);
     looked = Promise.reject(new EngineError("ended", "cancelled"));
     await expect(failing).resolves.toBeNull();
+  });
+
+  it("has workers started before there is work, and goes on without one that does not start", async () => {
+    const pool = await poolOf();
+    pool.hire(3);
+    await pool.runShards(wanted);
+    expect(made).toBe(3);
+    pool.close();
+    unopened = 3;
+    pool.hire(2);
+    await new Promise((resolve) => setTimeout(resolve));
+    expect(await pool.firstLook(new Uint8Array(1), {}, 2)).toEqual([{ facet: 4 }]);
+    unopened = 5;
+    pool.close();
+    expect(await pool.firstLook(new Uint8Array(1), {}, 2)).toBeNull();
+    unopened = 6;
+    expect(await pool.runShards({ ...wanted, workers: 2 })).toMatchObject({ message: "cannot be started" });
   });
 });
