@@ -14,7 +14,16 @@ import { select, selection, tab } from "../state/viewState";
 import { correctionWords, NOT_APPLIED_WORDS } from "./correctionWords";
 import { doubtfulFacets, nextDoubtful } from "./doubtful";
 import { drawn, forgetDrawn, isCorrecting, showCorrecting } from "./drawn";
-import { type Ends, edgesOf, nearestEdge, placeOf, ridgeOf, ringOf, sum } from "./facetGeometry";
+import {
+  type Ends,
+  edgesOf,
+  nearestEdge,
+  nearestParallel,
+  placeOf,
+  ridgeOf,
+  ringOf,
+  sum,
+} from "./facetGeometry";
 import { canRedo, canUndo, change, correct, corrections, redo, remove, undo } from "./history";
 
 /** What is done with the next facet that is selected. */
@@ -160,7 +169,7 @@ function SelectedFacet({ facets }: { facets: readonly Facet[] }) {
       )}
       <Numbers facet={facet} place={place.at} />
       <Corners facet={facet} />
-      <Parallel facet={facet} />
+      <Parallel key={index} facet={facet} />
       <Drawn facets={facets} index={index} />
     </fieldset>
   );
@@ -238,10 +247,10 @@ function Corners({ facet }: { facet: Facet }) {
 /** An edge of a facet is made parallel to another one of it, in plan and in slope. */
 function Parallel({ facet }: { facet: Facet }) {
   const edges = edgesOf(facet.outer);
-  const [chosen, choose] = useState([2, 0]);
-  const [moved, kept] = chosen.map((i) => i % edges.length) as [number, number];
+  const [chosen, choose] = useState<readonly number[]>(nearestParallel(facet.outer));
+  const [turned, kept] = chosen.map((i) => i % edges.length) as [number, number];
   const make = () => {
-    const [edge, to] = [worldEnds(edges[moved] as Ends), worldEnds(edges[kept] as Ends)];
+    const [edge, to] = [worldEnds(edges[turned] as Ends), worldEnds(edges[kept] as Ends)];
     void correct({ correction: "set_parallel", edge, to }, placeOf(facet, origin()).at);
   };
   const choice = (which: number, name: string, value: number) => (
@@ -263,10 +272,10 @@ function Parallel({ facet }: { facet: Facet }) {
   return (
     <div class="row wrap parallel">
       <span>Edge</span>
-      {choice(0, "Edge that is turned", moved)}
+      {choice(0, "Edge that is turned", turned)}
       <span>along</span>
       {choice(1, "Edge that it follows", kept)}
-      <button type="button" disabled={moved === kept} onClick={make}>
+      <button type="button" disabled={turned === kept} onClick={make}>
         Make parallel
       </button>
     </div>
