@@ -9,9 +9,9 @@ use crate::model::RoofModel;
 use crate::params::{Method, Params};
 use crate::scene::Scene;
 
-/// Photographs are reduced until all views together have no more pixels. A first look then takes 1.2
-/// to 1.8 s of one core in wasm with four or five buildings, and 3 s with fifteen: 1 s a megapixel
-/// up to the half-planes, the rest for the facets.
+/// Photographs are reduced until all views together have no more pixels. A first look then takes
+/// 1.2 to 1.8 s of one core in wasm with four or five buildings, and 3 s with fifteen: 1 s a
+/// megapixel up to the half-planes, the rest for the facets.
 const PIXELS: usize = 600_000;
 /// A scene of fewer pixels is reconstructed as it is within 3 s, at 2.3 s a megapixel.
 const ENOUGH_PIXELS: usize = 1_000_000;
