@@ -287,6 +287,37 @@ fn instances_that_divide_a_run_give_the_bytes_of_one() {
     }
 }
 
+/// On halved photographs the house is found in the accuracy of their pixels, and a region holds.
+#[test]
+fn a_first_look_at_smaller_photographs_shows_the_planted_house() {
+    let (mut scene, truth) = l_scene(480);
+    let run = Run::new(scene.clone(), Params::default());
+    let packed = run.pack_preliminary();
+    let mut preliminary = Run::of_preliminary(&packed, run.params()).unwrap();
+    let seen = preliminary.scene().views[0].gray.width;
+    assert_eq!(seen, 240);
+    let model = preliminary.first_look();
+    assert_eq!(check_invariants(&model), vec![]);
+    let found = truth
+        .facets
+        .iter()
+        .filter(|(plane, outer)| is_found(plane, outer, &model.facets));
+    assert!(
+        found.count() * 5 >= truth.facets.len() * 4,
+        "{} facets",
+        model.facets.len()
+    );
+
+    scene.region = Some([100.0, 100.0, 120.0, 120.0]);
+    let elsewhere = Run::new(scene, Params::default()).pack_preliminary();
+    let mut preliminary = Run::of_preliminary(&elsewhere, run.params()).unwrap();
+    assert_eq!(preliminary.first_look().facets, vec![]);
+
+    assert!(Run::of_preliminary(&packed[..packed.len() / 2], run.params()).is_none());
+    let small = Run::new(l_scene(64).0, Params::default());
+    assert_eq!(small.pack_preliminary(), Vec::<u8>::new());
+}
+
 /// The view of [`moved_scene`] that is wrong.
 const MOVED: usize = 2;
 

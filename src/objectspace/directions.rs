@@ -100,6 +100,17 @@ fn directions_of(
     (found, trace)
 }
 
+/// Share of the weight of the lines that points along an azimuth (radians) or at right angles to
+/// it.
+pub(super) fn share_of(lines: &[ImageLine], along: f64, params: &DirectionParams) -> f64 {
+    let cuts: Vec<[f64; 2]> = lines.iter().filter_map(azimuth).collect();
+    let total: f64 = cuts.iter().map(|c| c[1]).sum();
+    match total > 0.0 {
+        true => share(along, &cuts, params.tolerance_deg.to_radians()) / total,
+        false => 0.0,
+    }
+}
+
 /// Azimuth of a line from the X axis towards Y, up to right angles, with its standard deviation;
 /// radians.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -165,4 +165,8 @@ fn windows_are_found_around_each_house() {
         };
         assert!(windows.iter().filter(holds).any(azimuth), "{ring:?}");
     }
+    // Of the lines around a house many are its own.
+    for pair in windows.iter().flat_map(|w| &w.directions) {
+        assert!(pair.share > 0.15 && pair.share <= 1.0, "{}", pair.share);
+    }
 }

@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::clusters::{ClusterLine, cluster_lines};
 use super::directions::{
     DirectionTrace, MainDirections, MeasuredAzimuth, directions_by_length, main_directions,
+    share_of,
 };
 use super::image_lines::ImageLine;
 use crate::execution::{Sharded, sharded_map};
@@ -98,7 +99,11 @@ pub(crate) fn find_windows(
     for w in &mut windows {
         let inside: Vec<ImageLine> = image_lines.iter().filter(|s| w.shows(s)).cloned().collect();
         let (found, histogram) = main_directions(&inside, &params.directions);
-        if !given.is_empty() {
+        if given.is_empty() {
+            for pair in &mut w.directions {
+                pair.share = share_of(&inside, pair.azimuth, &params.directions);
+            }
+        } else {
             w.directions = found;
         }
         trace.histograms.push(histogram);
@@ -286,6 +291,7 @@ fn windows_of(
         Some(Window {
             directions: vec![MainDirections {
                 azimuth,
+                // Of image lines, which `find_windows` counts.
                 share: 0.0,
             }],
             ..window([min - margin, max + margin], z_range_m)

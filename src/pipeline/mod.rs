@@ -12,7 +12,7 @@
 //!
 //! `stages` has a file for each of them, and how to add one; `sharding` is what passes between
 //! instances that divide a stage; `report` and `summary` are what people read; `adjustment` keeps
-//! the cameras.
+//! the cameras; `preliminary` is a first look at the model.
 //!
 //! Invariant: no geometry here. Invariant: a result in a [`Run`] always belongs to the current
 //! parameters and to the current results before it; what is out of date is dropped, never shown.
@@ -20,6 +20,7 @@
 mod adjustment;
 #[cfg(test)]
 mod page_table;
+mod preliminary;
 mod report;
 mod sharding;
 mod stages;

@@ -38,6 +38,7 @@ pub(crate) use fill::{fill_gaps, mark_inside};
 pub use filter::gaussian_blur;
 pub use gray::Gray;
 pub use noise::estimate_noise;
+pub(crate) use photograph::reduced_colours;
 pub use photograph::{Photograph, PixelWindow};
 pub use red_blue::RedBlueDifference;
 pub use turn::Turn;

@@ -27,19 +27,26 @@ impl Photograph {
     /// The mean of each block of `factor` x `factor` pixels; rows and columns left over are
     /// dropped.
     pub fn reduced(&self, factor: u32) -> Self {
-        let (width, height) = self.rgb.dimensions();
-        let area = factor * factor;
-        let rgb = image::RgbImage::from_fn(width / factor, height / factor, |x, y| {
-            let block = (0..area).map(|i| (x * factor + i % factor, y * factor + i / factor));
-            let sums = block.fold([0; 3], |sums: [u32; 3], (x, y)| {
-                let pixel = self.rgb.get_pixel(x, y).0;
-                [0, 1, 2].map(|c| sums[c] + u32::from(pixel[c]))
-            });
-            image::Rgb(sums.map(|sum| ((sum + area / 2) / area) as u8))
-        });
-        let gray = self.gray.reduced(factor as usize);
-        Self { rgb, gray }
+        Self {
+            rgb: reduced_colours(&self.rgb, factor),
+            gray: self.gray.reduced(factor as usize),
+        }
     }
+}
+
+/// The mean colour of each block of `factor` x `factor` pixels; rows and columns left over are
+/// dropped.
+pub(crate) fn reduced_colours(rgb: &image::RgbImage, factor: u32) -> image::RgbImage {
+    let (width, height) = rgb.dimensions();
+    let area = factor * factor;
+    image::RgbImage::from_fn(width / factor, height / factor, |x, y| {
+        let block = (0..area).map(|i| (x * factor + i % factor, y * factor + i / factor));
+        let sums = block.fold([0; 3], |sums: [u32; 3], (x, y)| {
+            let pixel = rgb.get_pixel(x, y).0;
+            [0, 1, 2].map(|c| sums[c] + u32::from(pixel[c]))
+        });
+        image::Rgb(sums.map(|sum| ((sum + area / 2) / area) as u8))
+    })
 }
 
 #[cfg(test)]

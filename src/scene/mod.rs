@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use crate::camera::Camera;
 use crate::ids::ViewId;
 use crate::known::Known;
-use crate::raster::{Channel, Gray, RedBlueDifference, estimate_noise};
+use crate::raster::{Channel, Gray, RedBlueDifference, estimate_noise, reduced_colours};
 
 /// One photograph with its orientation.
 #[derive(Clone, Debug)]
@@ -88,6 +88,15 @@ impl Scene {
     /// The same scene with the grey images reduced by a whole factor (mean of each block); without
     /// colours.
     pub fn reduced(&self, factor: usize) -> Scene {
+        self.reduced_with(factor, |_| image::RgbImage::new(0, 0))
+    }
+
+    /// The same with colours.
+    pub fn reduced_in_colour(&self, factor: usize) -> Scene {
+        self.reduced_with(factor, |view| reduced_colours(&view.rgb, factor as u32))
+    }
+
+    fn reduced_with(&self, factor: usize, rgb: impl Fn(&View) -> image::RgbImage) -> Scene {
         let scale = 1.0 / factor as f64;
         let views = self.views.iter().map(|v| {
             let gray = v.gray.reduced(factor);
@@ -98,7 +107,7 @@ impl Scene {
                 height: gray.height as u32,
                 ..v.camera.clone()
             };
-            View::new(v.name.clone(), camera, gray, image::RgbImage::new(0, 0))
+            View::new(v.name.clone(), camera, gray, rgb(v))
         });
         Scene {
             views: views.collect(),

@@ -4,7 +4,7 @@
 use js_sys::{Function, Uint8Array};
 use wasm_bindgen::prelude::*;
 
-use super::convert::{foreign, listener_of, merge_all, named_error};
+use super::convert::{foreign, listener_of, merge_all, named_error, to_js};
 use super::session::{Session, stage_of};
 use crate::execution::MergedShards;
 use crate::pipeline::{PackedView, Run};
@@ -104,5 +104,21 @@ impl Session {
     #[wasm_bindgen(js_name = mergeShards)]
     pub fn merge_shards(&mut self, map: &str, shards: Vec<Uint8Array>) -> Result<(), JsValue> {
         merge_all(&mut self.merged, map, &shards)
+    }
+
+    /// The views reduced for a first look at the model, for `firstLook` of another session; empty
+    /// where this one is done soon.
+    #[wasm_bindgen(js_name = packPreliminary, unchecked_return_type = "Uint8Array<ArrayBuffer>")]
+    pub fn pack_preliminary(&self) -> Result<Vec<u8>, JsValue> {
+        Ok(self.loaded()?.pack_preliminary())
+    }
+
+    /// The facets of a preliminary model, of the views that another session reduced and the present
+    /// parameters. Nothing stays in the session.
+    #[wasm_bindgen(js_name = firstLook, unchecked_return_type = "Facet[]")]
+    pub fn first_look(&self, packed: Vec<u8>) -> Result<JsValue, JsValue> {
+        let run = Run::of_preliminary(&packed, &self.params);
+        let mut run = run.ok_or_else(|| foreign("the views of a first look"))?;
+        to_js(&run.first_look().facets)
     }
 }

@@ -6,6 +6,7 @@
  */
 import type { Bytes } from "../shared/calls";
 import type { ParamTree } from "../shared/paramTree";
+import type { Facet } from "../shared/records";
 import { Engine, EngineError } from "./engine";
 
 /** A worker, and what it holds of the run. */
@@ -14,6 +15,8 @@ interface PooledWorker {
   views: "none" | "grey" | "colour";
   /** For each stage, which of its results. */
   taken: Map<string, number>;
+  /** Whether it takes a first look meanwhile, and no shards. */
+  isLooking: boolean;
 }
 
 interface Wanted {
@@ -47,10 +50,18 @@ export class WorkerPool {
     }
     try {
       await this.#resize(wanted.workers - 1);
-      await this.#giveViews(wanted.views, await this.#engine.call("shardsReadColours", wanted.stage));
-      await this.#giveResults(wanted);
-      await this.#giveCameras();
-      await this.#doMaps(wanted.stage, maps);
+      const sharing = this.#pooled.filter(({ isLooking }) => !isLooking);
+      if (sharing.length === 0) {
+        return null;
+      }
+      await this.#giveViews(
+        sharing,
+        wanted.views,
+        await this.#engine.call("shardsReadColours", wanted.stage),
+      );
+      await this.#giveResults(sharing, wanted);
+      await this.#giveCameras(sharing);
+      await this.#doMaps(sharing, wanted.stage, maps);
       return null;
     } catch (error) {
       const cancelled = error instanceof EngineError && error.kind === "cancelled";
@@ -59,6 +70,40 @@ export class WorkerPool {
       }
       this.close();
       return error instanceof Error ? error : new Error(String(error));
+    }
+  }
+
+  /** Starts workers that will be of use, while the engine reads its files. */
+  hire(workers: number): void {
+    // Who has work for them hears why there are none.
+    this.#resize(workers - 1).catch(() => undefined);
+  }
+
+  /**
+   * The facets of a preliminary model: one of the workers looks at reduced views while the others begin with the whole ones,
+   * and shares what remains. Null where it was ended before, or failed: nothing depends on it.
+   */
+  async firstLook(packed: Bytes, params: ParamTree, workers: number): Promise<Facet[] | null> {
+    // Where the engine works alone, one is hired for this.
+    const opened = this.#resize(Math.max(1, workers - 1));
+    const [looking] = this.#pooled;
+    if (looking === undefined) {
+      return null;
+    }
+    // From now on: a stage that begins while the worker starts does not wait for it.
+    looking.isLooking = true;
+    try {
+      await opened;
+      await looking.worker.call("setParams", params);
+      return await looking.worker.callMoving([packed.buffer], "firstLook", packed);
+    } catch {
+      return null;
+    } finally {
+      looking.isLooking = false;
+      if (workers < 2 || !looking.worker.isOpen) {
+        looking.worker.close();
+        this.#pooled = this.#pooled.filter((one) => one !== looking);
+      }
     }
   }
 
@@ -89,23 +134,28 @@ export class WorkerPool {
   }
 
   async #resize(count: number): Promise<void> {
-    for (const { worker } of this.#pooled.splice(count)) {
+    for (const { worker } of this.#pooled.splice(Math.max(0, count))) {
       worker.close();
     }
     const opening: Promise<unknown>[] = [];
     while (this.#pooled.length < count) {
       const index = this.#pooled.length + 1;
       const worker = new Engine((stage, fraction) => this.#reached(index, stage, fraction));
-      this.#pooled.push({ worker, views: "none", taken: new Map() });
+      this.#pooled.push({ worker, views: "none", taken: new Map(), isLooking: false });
       opening.push(worker.open());
     }
-    await Promise.all(opening);
+    try {
+      await Promise.all(opening);
+    } catch (error) {
+      this.#pooled = this.#pooled.filter(({ worker }) => worker.isOpen);
+      throw error;
+    }
   }
 
   /** View by view, so that only one of them is on its way at a time. */
-  async #giveViews(count: number, withColours: boolean): Promise<void> {
+  async #giveViews(sharing: readonly PooledWorker[], count: number, withColours: boolean): Promise<void> {
     const wanted = withColours ? "colour" : "grey";
-    const lacking = this.#pooled.filter(({ views }) => views !== "colour" && views !== wanted);
+    const lacking = sharing.filter(({ views }) => views !== "colour" && views !== wanted);
     for (let view = 0; view < count && lacking.length > 0; view += 1) {
       const packed = await this.#engine.call("packView", view, withColours);
       await giveAll(workersOf(lacking), [packed], (worker, transfer) =>
@@ -119,11 +169,11 @@ export class WorkerPool {
   }
 
   /** Parameters first: they drop the results that they change, which the engine then has run again. */
-  async #giveResults({ earlier, params }: Wanted): Promise<void> {
-    await Promise.all(this.#pooled.map(({ worker }) => worker.call("setParams", params)));
+  async #giveResults(sharing: readonly PooledWorker[], { earlier, params }: Wanted): Promise<void> {
+    await Promise.all(sharing.map(({ worker }) => worker.call("setParams", params)));
     for (const stage of earlier) {
       const run = this.#runs.get(stage) ?? 0;
-      const lacking = this.#pooled.filter(({ taken }) => taken.get(stage) !== run);
+      const lacking = sharing.filter(({ taken }) => taken.get(stage) !== run);
       const found = lacking.length > 0 ? await this.#engine.call("handOver", stage) : new Uint8Array();
       if (found.length > 0) {
         await giveAll(workersOf(lacking), [found], (worker, transfer) =>
@@ -137,15 +187,15 @@ export class WorkerPool {
   }
 
   /** After the parameters, which may move cameras as the adjustment does. */
-  async #giveCameras(): Promise<void> {
+  async #giveCameras(sharing: readonly PooledWorker[]): Promise<void> {
     const packed = await this.#engine.call("packCameras");
-    await giveAll(workersOf(this.#pooled), [packed], (worker, transfer) =>
+    await giveAll(workersOf(sharing), [packed], (worker, transfer) =>
       worker.callMoving(transfer, "takeCameras", packed),
     );
   }
 
-  async #doMaps(stage: string, maps: readonly string[]): Promise<void> {
-    const workers = [this.#engine, ...workersOf(this.#pooled)];
+  async #doMaps(sharing: readonly PooledWorker[], stage: string, maps: readonly string[]): Promise<void> {
+    const workers = [this.#engine, ...workersOf(sharing)];
     this.#fractions = workers.map(() => 0);
     const of = workers.length;
     for (const [step, map] of maps.entries()) {

@@ -18,7 +18,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { ThemeColours } from "../shared/palette";
 import type { Vec3, ViewInfo } from "../shared/records";
 import type { Selection, Standpoint } from "../shared/selection";
-import { standFor } from "./scene/bounds";
+import { isNearlySame, ROOM, standFor } from "./scene/bounds";
 import { yUp, zUp } from "./scene/frame";
 import { gpuFinished } from "./scene/gpuFence";
 import { buildGrid } from "./scene/grid";
@@ -36,8 +36,6 @@ const PAPER = 0xffffff;
 const PICK_REACH_PX = 7;
 /** From the south-west, as from a low aeroplane. */
 const FIRST_LOOK = new Vector3(-0.45, 0.72, 0.62).normalize();
-/** Room about what is looked at, for the tools above it. */
-const ROOM = 1.2;
 
 export class Viewer {
   readonly #renderer: WebGLRenderer;
@@ -209,6 +207,18 @@ export class Viewer {
     this.#controls.update();
     this.#buildGrid();
     this.draw();
+  }
+
+  /** As `lookAt`; where a look at nearly the same has been taken, the camera stays. */
+  keepLookingAt(points: readonly Vector3[]): void {
+    const next = new Box3().setFromPoints([...points]).getBoundingSphere(new Sphere());
+    if (this.#bounds !== null && isNearlySame(this.#bounds, next)) {
+      this.#bounds = next;
+      this.#buildGrid();
+      this.draw();
+    } else {
+      this.lookAt(points);
+    }
   }
 
   /** Straight down, north up. */

@@ -322,6 +322,15 @@ test("facets are deleted and made symmetric, and corners dragged, in the 3D view
     await undo();
   });
 
+  await test.step("two edges are made parallel, which they nearly are", async () => {
+    await select(slope);
+    await press("Make parallel");
+    await expect(done).toHaveCount(1);
+    await settled(page);
+    await expect(done.first()).toHaveText(/Edge made parallel/);
+    await undo();
+  });
+
   await test.step("the dot of a corner is dragged", async () => {
     await select(slope);
     const eave = [...west.corners].sort((p, q) => p[2] - q[2])[0] ?? slope.at;

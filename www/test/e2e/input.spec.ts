@@ -1,5 +1,6 @@
 import { deflateSync } from "node:zlib";
 import { expect, test } from "@playwright/test";
+import { zipSync } from "fflate";
 import {
   demoImages,
   demoOrientation,
@@ -344,4 +345,21 @@ test("angles in the wrong unit are named", async ({ page }) => {
     ),
   ]);
   await expect(page.getByRole("alert")).toContainText("gon", { timeout: 60_000 });
+});
+
+test("photographs in an archive have their small pictures once they are loaded", async ({ page }) => {
+  await page.goto("/");
+  const files = Object.fromEntries(houseFiles().map(({ name, buffer }) => [name, new Uint8Array(buffer)]));
+  await give(page, [upload("house.zip", Buffer.from(zipSync(files)))]);
+  const pictures = page.locator(".view canvas.thumbnail");
+  await expect(pictures).toHaveCount(6);
+  await page.getByRole("button", { name: "Run up to Segments" }).click();
+  await waitForStage(page, "segments");
+  const isPainted = (canvas: HTMLCanvasElement) => {
+    const pixels = canvas.getContext("2d")?.getImageData(0, 0, canvas.width, canvas.height).data ?? [];
+    return pixels.some((value) => value > 0);
+  };
+  for (let i = 0; i < 6; i += 1) {
+    await expect.poll(() => pictures.nth(i).evaluate(isPainted)).toBe(true);
+  }
 });

@@ -293,6 +293,14 @@ export class Session implements CoreSession {
 
   takeView(): void {}
 
+  packPreliminary(): Uint8Array<ArrayBuffer> {
+    return new Uint8Array([1]);
+  }
+
+  firstLook(): Facet[] {
+    return this.facets();
+  }
+
   handOver(): Uint8Array<ArrayBuffer> {
     return new Uint8Array();
   }

@@ -9,7 +9,7 @@ import { failureOf } from "../../src/worker/failures";
 import { Session } from "./ridgeline";
 
 /** How long a call takes, milliseconds of virtual time; the others take one. */
-const TAKES: Partial<Record<CallName | "open", number>> = {
+export const TAKES: Partial<Record<CallName | "open", number>> = {
   open: 10,
   setFiles: 10,
   inspect: 5,
@@ -17,6 +17,7 @@ const TAKES: Partial<Record<CallName | "open", number>> = {
   runStage: 30,
   adjustOnce: 30,
   runShard: 10,
+  firstLook: 50,
   runTile: 60,
   exportProject: 20,
 };

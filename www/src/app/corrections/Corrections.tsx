@@ -14,7 +14,16 @@ import { select, selection, tab } from "../state/viewState";
 import { correctionWords, NOT_APPLIED_WORDS } from "./correctionWords";
 import { doubtfulFacets, nextDoubtful } from "./doubtful";
 import { drawn, forgetDrawn, isCorrecting, showCorrecting } from "./drawn";
-import { type Ends, nearestEdge, placeOf, ridgeOf, ringOf, sum } from "./facetGeometry";
+import {
+  type Ends,
+  edgesOf,
+  nearestEdge,
+  nearestParallel,
+  placeOf,
+  ridgeOf,
+  ringOf,
+  sum,
+} from "./facetGeometry";
 import { canRedo, canUndo, change, correct, corrections, redo, remove, undo } from "./history";
 
 /** What is done with the next facet that is selected. */
@@ -160,6 +169,7 @@ function SelectedFacet({ facets }: { facets: readonly Facet[] }) {
       )}
       <Numbers facet={facet} place={place.at} />
       <Corners facet={facet} />
+      <Parallel key={index} facet={facet} />
       <Drawn facets={facets} index={index} />
     </fieldset>
   );
@@ -231,6 +241,44 @@ function Corners({ facet }: { facet: Facet }) {
       ))}
       <p class="muted">Dots at corners and edges can be dragged: level, with Shift upright.</p>
     </>
+  );
+}
+
+/** An edge of a facet is made parallel to another one of it, in plan and in slope. */
+function Parallel({ facet }: { facet: Facet }) {
+  const edges = edgesOf(facet.outer);
+  const [chosen, choose] = useState<readonly number[]>(nearestParallel(facet.outer));
+  const [turned, kept] = chosen.map((i) => i % edges.length) as [number, number];
+  const make = () => {
+    const [edge, to] = [worldEnds(edges[turned] as Ends), worldEnds(edges[kept] as Ends)];
+    void correct({ correction: "set_parallel", edge, to }, placeOf(facet, origin()).at);
+  };
+  const choice = (which: number, name: string, value: number) => (
+    <select
+      aria-label={name}
+      value={value}
+      onChange={(event) => {
+        const next = Number(event.currentTarget.value);
+        choose(chosen.map((one, i) => (i === which ? next : one)));
+      }}
+    >
+      {edges.map((_, i) => (
+        <option key={i} value={i}>
+          {i + 1}–{((i + 1) % edges.length) + 1}
+        </option>
+      ))}
+    </select>
+  );
+  return (
+    <div class="row wrap parallel">
+      <span>Edge</span>
+      {choice(0, "Edge that is turned", turned)}
+      <span>along</span>
+      {choice(1, "Edge that it follows", kept)}
+      <button type="button" disabled={turned === kept} onClick={make}>
+        Make parallel
+      </button>
+    </div>
   );
 }
 

@@ -108,3 +108,17 @@ export function nearestEdge(facets: readonly Facet[], index: number, to: Ends): 
     null,
   );
 }
+
+/** The longest edge of a ring, and the other one that is most nearly parallel to it: their numbers, that one first. */
+export function nearestParallel(ring: readonly Vec3[]): [turned: number, kept: number] {
+  const along = edgesOf(ring).map(([p, q]) => difference(q, p));
+  const length = (v: Vec3) => Math.hypot(...v);
+  const longest = along.reduce((best, v, i) => (length(v) > length(along[best] as Vec3) ? i : best), 0);
+  const [kx, ky, kz] = along[longest] as Vec3;
+  const cosine = ([x, y, z]: Vec3) => Math.abs(kx * x + ky * y + kz * z) / length([x, y, z]);
+  const others = along.map((_, i) => i).filter((i) => i !== longest);
+  const turned = others.reduce((best, i) =>
+    cosine(along[i] as Vec3) > cosine(along[best] as Vec3) ? i : best,
+  );
+  return [turned, longest];
+}

@@ -161,7 +161,7 @@ function NamedCard({ plan, index }: { plan: FlightPlan; index: number | null }) 
   const one = index === null ? undefined : plan.overview.footprints[index];
   return one === undefined ? null : (
     <div class="named-card">
-      <Thumbnail blob={files.value.find(({ path }) => path === one.path)?.blob} />
+      <Thumbnail blob={files.value.find(({ path }) => path === one.path)?.blob} loaded={undefined} />
       <span>{one.view}</span>
     </div>
   );

@@ -2,6 +2,7 @@
 import "./project.css";
 import { useState } from "preact/hooks";
 import { TextField } from "../parts/TextField";
+import { dragParam, dropParam } from "../session/draggedParam";
 import { resetParams, setParam } from "../session/stageRuns";
 import {
   fieldText,
@@ -10,6 +11,7 @@ import {
   paramName,
   paramSections,
   parseField,
+  WANTED,
   wantedFields,
 } from "../settings/parameterForm";
 import { defaults, params } from "../state/parameters";
@@ -26,7 +28,7 @@ export function Parameters() {
         </summary>
         <p class="muted">
           Where a paper states a value, the default follows it unless another one proved better. A change
-          makes its stage and all later ones outdated.
+          makes its stage and all later ones outdated; a slider runs them again.
         </p>
         {changed > 0 && (
           <button type="button" onClick={resetParams}>
@@ -104,9 +106,33 @@ function Field({ path, field, place }: { path: string; field: ParamField; place:
         />
       )}
       <span class="unit muted">{field.unit}</span>
+      {place === "wanted" && field.kind === "number" && (
+        <Slider path={`${path}.${field.key}`} field={field} />
+      )}
       <span id={`${id}-note`} class={error === "" ? "muted note" : "error note"}>
         {error || (field.changed ? `default ${fieldText(field.fallback)}` : "")}
       </span>
     </div>
+  );
+}
+
+/** A number that is dragged: its stage runs again meanwhile, and the later ones when it is let go. */
+function Slider({ path, field }: { path: string; field: ParamField }) {
+  const range = WANTED[path];
+  if (range === null || range === undefined) {
+    return null;
+  }
+  const [low, high, step] = range;
+  return (
+    <input
+      type="range"
+      aria-label={`${paramName(path)}, dragged`}
+      min={low}
+      max={high}
+      step={step}
+      value={Number(field.value)}
+      onInput={(event) => dragParam(path, Number(event.currentTarget.value))}
+      onChange={() => void dropParam(path)}
+    />
   );
 }

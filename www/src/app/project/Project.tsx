@@ -7,7 +7,7 @@ import { showsEntrance } from "../screen/opening";
 import { isBusy } from "../state/activity";
 import { notify } from "../state/notices";
 import { files, inspection, isKnownKind, projectName, runOptions } from "../state/project";
-import { peakMb, scene } from "../state/scene";
+import { images, peakMb, scene } from "../state/scene";
 import { ArrivalHabit, ArrivalQuestion } from "./ArrivalQuestion";
 import { takeFiles } from "./arrivals";
 import { hasFolderPicker, pickFolder } from "./folders";
@@ -173,6 +173,12 @@ function Views() {
   );
 }
 
+/** The image as the core has loaded it. */
+function loadedImage(path: string): ImageBitmap | undefined {
+  const views = scene.value?.views ?? [];
+  return images.value[views.findIndex(({ name }) => name === baseName(path))];
+}
+
 function ViewRow({ image }: { image: ImageReport }) {
   const blob = files.value.find(({ path }) => path === image.path)?.blob;
   const { leftOut } = runOptions.value;
@@ -186,7 +192,7 @@ function ViewRow({ image }: { image: ImageReport }) {
         aria-label={`Use ${image.path}`}
         onChange={() => void setRunOptions({ leftOut: isUsed ? [...others, image.path] : others })}
       />
-      <Thumbnail blob={blob} />
+      <Thumbnail blob={blob} loaded={loadedImage(image.path)} />
       <div class="view-text">
         <span class="name" title={image.path}>
           {baseName(image.path)}

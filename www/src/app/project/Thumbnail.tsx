@@ -1,15 +1,24 @@
-/** A small picture of an image file, made once it comes into view; formats that the browser cannot show stay an empty frame. */
+/**
+ * A small picture of an image file, made once it comes into view. Of a format that the browser cannot show, and of a file in
+ * an archive, there is one once the core has loaded it.
+ */
 import { useEffect, useRef } from "preact/hooks";
 import { thumbnailOf } from "./thumbnails";
 
 const WIDTH_PX = 112;
 
-export function Thumbnail({ blob }: { blob: Blob | undefined }) {
+export function Thumbnail({ blob, loaded }: { blob: Blob | undefined; loaded: ImageBitmap | undefined }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
     let isCurrent = true;
     const frame = canvas.current;
-    if (blob === undefined || frame === null) {
+    if (frame === null) {
+      return;
+    }
+    // One that is closed has no size.
+    const paintLoaded = () => loaded !== undefined && loaded.width > 0 && paint(frame, loaded);
+    if (blob === undefined) {
+      paintLoaded();
       return;
     }
     const observer = new IntersectionObserver((entries) => {
@@ -20,6 +29,8 @@ export function Thumbnail({ blob }: { blob: Blob | undefined }) {
       void thumbnailOf(blob, () => isCurrent).then((bitmap) => {
         if (isCurrent && bitmap !== null) {
           paint(frame, bitmap);
+        } else if (isCurrent) {
+          paintLoaded();
         }
       });
     });
@@ -28,7 +39,7 @@ export function Thumbnail({ blob }: { blob: Blob | undefined }) {
       isCurrent = false;
       observer.disconnect();
     };
-  }, [blob]);
+  }, [blob, loaded]);
   return <canvas ref={canvas} class="thumbnail" width={WIDTH_PX} height={(WIDTH_PX * 3) / 4} />;
 }
 

@@ -9,7 +9,14 @@ import { type Method, mainTabOf } from "../state/methods";
 import { announce, dismissOffers, notify } from "../state/notices";
 import { defaults, method, params, replaceParams } from "../state/parameters";
 import { files, runOptions } from "../state/project";
-import { addResults, exportNames, NO_RESULTS, setExportNames, setResults } from "../state/results";
+import {
+  addResults,
+  exportNames,
+  NO_RESULTS,
+  preliminaryFacets,
+  setExportNames,
+  setResults,
+} from "../state/results";
 import { scene } from "../state/scene";
 import {
   beginStage,
@@ -21,10 +28,11 @@ import {
   stages,
   updateStage,
 } from "../state/stages";
-import { select, showPlane, showTab } from "../state/viewState";
+import { select, showPlane, showTab, tab } from "../state/viewState";
 import { chooseWorkers, workers } from "../state/workers";
 import type { Turn } from "./actionQueue";
 import { workerNotice } from "./failureNotice";
+import { beginFirstLook, endFirstLook } from "./firstLook";
 import { actions, engine, ensureScene, followCameras, hasResults, noteResults, workerPool } from "./session";
 import { firstStageOf, stagesOf, stageWords } from "./stageCatalogue";
 import { fetchResults } from "./stageResults";
@@ -59,15 +67,23 @@ export async function runStages(turn: Turn, target: StageName): Promise<void> {
   if (files.value.length === 0) {
     return;
   }
+  workerPool.hire(workers.value);
   await ensureScene();
   const names = stages.value.map(({ name }) => name);
   const end = names.indexOf(target);
-  // A parameter that is changed meanwhile sets back which stages are up to date, and so do views that move.
-  for (let i = freshStages.value; i <= end; i = freshStages.value) {
-    const taken = params.value;
-    beginStage(i);
-    await engine.call("setParams", taken);
-    await runStage(names[i] as StageName, i, taken);
+  if (freshStages.value === 0 && names[end] === "model") {
+    await beginFirstLook();
+  }
+  try {
+    // A parameter that is changed meanwhile sets back which stages are up to date, and so do views that move.
+    for (let i = freshStages.value; i <= end; i = freshStages.value) {
+      const taken = params.value;
+      beginStage(i);
+      await engine.call("setParams", taken);
+      await runStage(names[i] as StageName, i, taken);
+    }
+  } finally {
+    endFirstLook();
   }
 }
 
@@ -154,7 +170,10 @@ async function runStage(name: StageName, position: number, taken: ParamTree): Pr
       addResults(mainTabOf(name), found);
       setExportNames(names);
       select(null);
-      showTab(mainTabOf(name));
+      // A preliminary model is looked at until its own facets take its place.
+      if (preliminaryFacets.value === null || tab.value !== "model") {
+        showTab(mainTabOf(name));
+      }
       updateStage(name, { ...summary, status: "done", fraction: 1, seconds });
       endStage(position);
     });

@@ -73,25 +73,28 @@ const GROUPS_OF_METHOD: Record<string, readonly string[]> = {
   rectangles: ["objectspace", "texture"],
 };
 
-/** What a person most often wants to change, by what it does to the result; all else stands in its stage's section. */
-export const WANTED: readonly string[] = [
-  "roof.min_area_m2",
-  "roof.min_height_m",
-  "roof.refine.refine",
-  "segments.min_length_px",
-  "matching.min_views",
-  "sweep.min_similarity",
-  "objectspace.planes.min_area_m2",
-  "objectspace.clusters.min_views",
-  "texture.max_atlas_px",
-  "texture.jpeg_quality",
-];
+/**
+ * What a person most often wants to change, by what it does to the result, and between which values in which steps it is
+ * dragged; all else stands in its stage's section.
+ */
+export const WANTED: Readonly<Record<string, readonly [low: number, high: number, step: number] | null>> = {
+  "roof.min_area_m2": [0.5, 20, 0.5],
+  "roof.min_height_m": [0, 5, 0.1],
+  "roof.refine.refine": null,
+  "segments.min_length_px": [8, 60, 1],
+  "matching.min_views": [3, 6, 1],
+  "sweep.min_similarity": [0, 1, 0.05],
+  "objectspace.planes.min_area_m2": [0.5, 20, 0.5],
+  "objectspace.clusters.min_views": [2, 6, 1],
+  "texture.max_atlas_px": [256, 4096, 256],
+  "texture.jpeg_quality": [10, 100, 5],
+};
 
 /** The wanted fields that the method reads, each with the section that it is of. */
 export function wantedFields(
   sections: readonly ParamSection[],
 ): { section: ParamSection; field: ParamField }[] {
-  return WANTED.flatMap((path) => {
+  return Object.keys(WANTED).flatMap((path) => {
     const at = path.lastIndexOf(".");
     const section = sections.find((one) => one.path === path.slice(0, at));
     const field = section?.fields.find(({ key }) => key === path.slice(at + 1));

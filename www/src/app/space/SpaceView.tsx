@@ -17,7 +17,7 @@ import { keptResult } from "../state/keptResult";
 import type { Tab } from "../state/methods";
 import { notify } from "../state/notices";
 import { method } from "../state/parameters";
-import { results } from "../state/results";
+import { preliminaryFacets, results } from "../state/results";
 import { scene } from "../state/scene";
 import { theme } from "../state/theme";
 import {
@@ -117,7 +117,12 @@ export function SpaceView({ hidden }: { hidden: boolean }) {
           </div>
         )}
         {!isEmpty && <SpaceTools viewer={viewer.value} onFit={fitView} />}
-        {!isEmpty && <span class="scale muted numbers">grid {GRID_STEP_M} m</span>}
+        {!isEmpty && (
+          <span class="scale muted numbers">
+            {showsPreliminary.value && <span data-testid="preliminary">preliminary · </span>}
+            grid {GRID_STEP_M} m
+          </span>
+        )}
       </div>
     </div>
   );
@@ -201,6 +206,8 @@ function createViewer(canvas: HTMLCanvasElement | null): (() => void) | undefine
   };
 }
 
+/** Whether the present tab shows the preliminary model. */
+const showsPreliminary = computed(() => tab.value === "model" && preliminaryFacets.value !== null);
 const lines = computed(() => results.value.lines);
 /** Changes when a stage has found the lines anew, but not when the model adds some. */
 const lineStage = computed(() => results.value.stretches ?? results.value.clusters);
@@ -216,7 +223,7 @@ function useLayers(): void {
   });
   useSignalEffect(() => {
     const found = lines.peek();
-    if (lineStage.value !== null && found !== null) {
+    if (lineStage.value !== null && found !== null && preliminaryFacets.peek() === null) {
       viewer.value?.lookAt(endsOfLines(found));
     }
   });
@@ -224,7 +231,7 @@ function useLayers(): void {
   useCornerHandles(viewer);
   // After the effects that look at new results: where a person or a link has put the camera, it stays.
   useSignalEffect(() => {
-    void [model.value, lineStage.value];
+    void [model.value, lineStage.value, preliminaryFacets.value];
     if (camera.value !== null) {
       viewer.value?.standAt(camera.value);
     }
@@ -241,6 +248,7 @@ function useLayers(): void {
     const before = tab.value === "lines" && beforeGrowing.value;
     viewer.value?.showLayer("stretches", before);
     viewer.value?.showLayer("refinement", tab.value === "refinement");
+    viewer.value?.showLayer("preliminary", showsPreliminary.value);
     if (before) {
       viewer.value?.showLayer("lines", false);
     }
@@ -298,7 +306,9 @@ function layerIsEmpty(name: Tab): boolean {
     case "rectangles":
       return facets === null;
     case "model":
-      return results.value.glb === null && results.value.tileGlbs.length === 0;
+      return (
+        results.value.glb === null && results.value.tileGlbs.length === 0 && preliminaryFacets.value === null
+      );
     default:
       return false;
   }

@@ -3,13 +3,13 @@ import { computed, type ReadonlySignal, type Signal, signal, useSignalEffect } f
 import { THEME_COLOURS } from "../../shared/palette";
 import { buildModel, type ModelLayer } from "../../viewer/layers/model";
 import { modelOfParts } from "../../viewer/modelOfParts";
-import { cornersOf } from "../../viewer/scene/bounds";
+import { cornersOf, cornersOfFacets } from "../../viewer/scene/bounds";
 import { unpicked } from "../../viewer/scene/layer";
 import type { Viewer } from "../../viewer/viewer";
 import { keptResult } from "../state/keptResult";
 import { notify } from "../state/notices";
 import { method } from "../state/parameters";
-import { mainResults } from "../state/results";
+import { mainResults, preliminaryFacets } from "../state/results";
 import { theme } from "../state/theme";
 import { selection, tab } from "../state/viewState";
 import { isBeside } from "./keptBeside";
@@ -27,6 +27,9 @@ const keptGlb = computed(() => keptResult.value?.glb ?? null);
 const shownKeptGlb = computed(() => (isBeside.value && tab.value === "model" ? keptGlb.value : null));
 /** Where a kept result has no model, or another tab is open, its facets stand in its place. */
 export const showsKeptFacets = computed(() => isBeside.value && shownKeptGlb.value === null);
+
+/** Whether the camera stands where a preliminary model put it. */
+let looksAtPreliminary = false;
 
 /** Keeps both models, and how they look, as the signals say. */
 export function useModels(viewer: ReadonlySignal<Viewer | null>): void {
@@ -51,8 +54,21 @@ export function useModels(viewer: ReadonlySignal<Viewer | null>): void {
     viewer.value?.draw();
   });
   useSignalEffect(() => {
+    if (preliminaryFacets.value !== null) {
+      viewer.value?.lookAt(cornersOfFacets(preliminaryFacets.value));
+      looksAtPreliminary = true;
+    }
+  });
+  useSignalEffect(() => {
     if (model.value !== null) {
-      viewer.peek()?.lookAt(cornersOf(model.value.object));
+      const corners = cornersOf(model.value.object);
+      // The model that a preliminary one announced stands where that stood.
+      if (looksAtPreliminary) {
+        viewer.peek()?.keepLookingAt(corners);
+      } else {
+        viewer.peek()?.lookAt(corners);
+      }
+      looksAtPreliminary = false;
     }
   });
 }

@@ -23,7 +23,7 @@ import type { Viewer } from "../../viewer/viewer";
 import { lineEnds, linesOfSelection, shapesOf } from "../selection/selectionShapes";
 import { keptResult } from "../state/keptResult";
 import type { Tab } from "../state/methods";
-import { results } from "../state/results";
+import { preliminaryFacets, results } from "../state/results";
 import { images, scene } from "../state/scene";
 import { selectionDetail } from "../state/selectionDetail";
 import { selection, tab } from "../state/viewState";
@@ -158,6 +158,10 @@ const PLANS: Record<string, (middle: () => Vec3) => Plan> = {
   facets: () => {
     const { facets } = results.value;
     return facets && [() => buildFacets(facets), facets];
+  },
+  preliminary: () => {
+    const facets = preliminaryFacets.value;
+    return facets && [() => unpicked(buildFacets(facets, false)), facets];
   },
   cameras: (middle) => {
     const views = scene.value?.views;

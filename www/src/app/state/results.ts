@@ -1,6 +1,7 @@
 /** What the stages have found. */
 import { computed, type ReadonlySignal, signal } from "@preact/signals";
 import { NO_RESULTS, type Results } from "../../shared/figure";
+import type { Facet } from "../../shared/records";
 import { REGION_TABS, type Tab } from "./methods";
 import { method } from "./parameters";
 import { tab } from "./viewState";
@@ -22,6 +23,14 @@ export function restoreResults(all: ResultSets): void {
 
 /** Of which stages the present tab tells. */
 export const shownResultSet = computed<ResultSet>(() => resultSetOf(tab.value));
+const firstLook = signal<readonly Facet[] | null>(null);
+/** The facets of a preliminary model, as long as there are no others: shown in space, and part of no result. */
+export const preliminaryFacets = computed(() => (found.value.main.facets === null ? firstLook.value : null));
+
+export function showPreliminary(facets: readonly Facet[] | null): void {
+  firstLook.value = facets;
+}
+
 /** What the present tab tells of. */
 export const results = computed(() => found.value[shownResultSet.value]);
 /** What the model is made of. */

@@ -25,7 +25,8 @@ import { SelectedObject } from "../scene/selectedObject";
 const DIMMED = 0.3;
 const OPACITY = 0.92;
 
-export function buildFacets(facets: readonly Facet[]): Layer {
+/** @param areNamed by their numbers, which those of a preliminary model do not keep */
+export function buildFacets(facets: readonly Facet[], areNamed = true): Layer {
   const object = zUpGroup();
   const triangles = facets.map(triangulate);
   const facetOfTriangle = triangles.flatMap((positions, i) =>
@@ -34,7 +35,10 @@ export function buildFacets(facets: readonly Facet[]): Layer {
   const opacities = facets.map(({ probability }) => opacityOf(probability));
   const all = facetMesh(triangles, facets.map(normalTint), opacities);
   const names = facets.map(({ outer }, i) => ({ text: String(i), at: middleOf(outer) }));
-  object.add(all, outlines(facets), nameLabels(names));
+  object.add(all, outlines(facets));
+  if (areNamed) {
+    object.add(nameLabels(names));
+  }
   const chosen = new SelectedObject(object);
 
   return {

@@ -1,5 +1,5 @@
 /** What a picture has to show: points in the viewer's frame, and where a camera stands that sees them all. */
-import { Box3, type BufferAttribute, Mesh, type Object3D, Vector3 } from "three";
+import { Box3, type BufferAttribute, Mesh, type Object3D, type Sphere, Vector3 } from "three";
 import { LINE_STRIDE } from "../../shared/flatArrays";
 import type { Facet, Vec3 } from "../../shared/records";
 import { yUp } from "./frame";
@@ -10,6 +10,17 @@ const OUTLIERS = 0.04;
 const LEAST_DISTANCE_M = 12;
 /** Half the width of what is looked at while there is nothing. */
 const EMPTY_M = 12;
+
+/** Room about what is looked at, for the tools above it. */
+export const ROOM = 1.2;
+/** What is so many times smaller than what was looked at is too small in its picture. */
+const MUCH_SMALLER = 1.5;
+
+/** Does a camera that looks at the one show the other as it should? */
+export function isNearlySame(seen: Sphere, next: Sphere): boolean {
+  const isInside = seen.center.distanceTo(next.center) + next.radius <= ROOM * seen.radius;
+  return isInside && seen.radius <= MUCH_SMALLER * next.radius;
+}
 
 export function cornersOf(object: Object3D): Vector3[] {
   object.updateWorldMatrix(true, true);

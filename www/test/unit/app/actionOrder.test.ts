@@ -4,7 +4,7 @@
  */
 import { afterAll, beforeAll, describe, expect, it, vi } from "vitest";
 import type { InputFile } from "../../../src/shared/calls";
-import { FakeWorker, failing, moving, ran, violations } from "../../fake/worker";
+import { FakeWorker, failing, moving, ran, TAKES, violations } from "../../fake/worker";
 
 vi.mock("../../../src/pkg/ridgeline_bg.wasm?url", () => ({ default: "none" }));
 vi.mock("../../../src/app/parts/saveFile", () => ({ saveFile: () => {} }));
@@ -49,6 +49,8 @@ async function pageModules() {
     tour,
     activity,
     scene,
+    results,
+    dragged,
   ] = await Promise.all([
     import("../../../src/app/session/session"),
     import("../../../src/app/session/stageRuns"),
@@ -64,6 +66,8 @@ async function pageModules() {
     import("../../../src/app/state/tour"),
     import("../../../src/app/state/activity"),
     import("../../../src/app/state/scene"),
+    import("../../../src/app/state/results"),
+    import("../../../src/app/session/draggedParam"),
   ]);
   const { RULES, SAME_AGAIN } = await import("../../../src/app/session/actionRules");
   return {
@@ -81,6 +85,8 @@ async function pageModules() {
     ...tour,
     ...activity,
     ...scene,
+    ...results,
+    ...dragged,
     RULES,
     SAME_AGAIN,
   };
@@ -125,6 +131,8 @@ async function untilIdle(): Promise<void> {
     await vi.advanceTimersByTimeAsync(20);
   }
   expect(page.actions.isIdle).toBe(true);
+  // Its run is over.
+  expect(page.preliminaryFacets.value).toBeNull();
 }
 
 /** Own files are open and loaded, and nothing has run. */
@@ -285,6 +293,60 @@ describe("a run", () => {
     await untilIdle();
     expect(ran.filter((name) => name === "segments")).toHaveLength(1);
     expect(ran.filter((name) => name === "matches")).toHaveLength(2);
+    expect(new Set(page.stages.value.map(({ status }) => status))).toEqual(new Set(["done"]));
+  });
+
+  it("shows a preliminary model until it has its own", async () => {
+    await beginAnew();
+    begin("run all");
+    const seen = new Set<string>();
+    for (let i = 0; i < 100 && !page.actions.isIdle; i += 1) {
+      await vi.advanceTimersByTimeAsync(10);
+      const facets = page.stages.value.find(({ name }) => name === "facets");
+      if (page.preliminaryFacets.value !== null) {
+        seen.add(facets?.status ?? "none");
+        expect(page.mainResults.value.facets).toBeNull();
+      }
+    }
+    expect(seen).toEqual(new Set(["waiting", "running"]));
+    await untilIdle();
+    expect(page.mainResults.value.facets).not.toBeNull();
+  });
+
+  it("that is over has no preliminary model, however late that comes", async () => {
+    await beginAnew();
+    const usual = TAKES.firstLook ?? 0;
+    TAKES.firstLook = 5000;
+    begin("run all");
+    await untilIdle();
+    // The same worker goes on with another project.
+    begin("own files");
+    await untilIdle();
+    await vi.advanceTimersByTimeAsync(10_000);
+    expect(page.preliminaryFacets.value).toBeNull();
+    TAKES.firstLook = usual;
+  });
+
+  it("of the touched stage alone follows a parameter that is dragged, and the others when it is let go", async () => {
+    await beginAnew();
+    const path = "sweep.min_similarity";
+    page.dragParam(path, 0.3);
+    await page.dropParam(path);
+    // Nothing had run.
+    expect([ran, page.params.value]).toMatchObject([[], { sweep: { min_similarity: 0.3 } }]);
+    begin("run all");
+    await untilIdle();
+    ran.length = 0;
+    page.dragParam(path, 0.5);
+    await vi.advanceTimersByTimeAsync(5);
+    page.dragParam(path, 0.55);
+    page.dragParam(path, 0.6);
+    await untilIdle();
+    // Values between the first and the last are left out.
+    expect(ran).toEqual(["halfplanes", "halfplanes"]);
+    void page.dropParam(path);
+    await untilIdle();
+    expect(ran.slice(2)).toEqual(["dense", "facets", "corrections", "model"]);
     expect(new Set(page.stages.value.map(({ status }) => status))).toEqual(new Set(["done"]));
   });
 

@@ -5,6 +5,7 @@ import {
   freeEdges,
   innerPoint,
   nearestEdge,
+  nearestParallel,
   ridgeOf,
   ringOf,
 } from "../../../src/app/corrections/facetGeometry";
@@ -96,6 +97,27 @@ describe("edges", () => {
       [6, 4, 6],
     ] as unknown as [Vec3, Vec3];
     expect(nearestEdge(GABLE.slice(0, 1), 0, eave)?.[0]?.[2]).toBe(9);
+  });
+});
+
+describe("edges that are nearly parallel", () => {
+  it("are the longest one and the one that runs as it does, whichever way", () => {
+    const skewed: Vec3[] = [
+      [0, 0, 5],
+      [2, 3, 5],
+      [9, 3.4, 5],
+      [11, 0, 5],
+    ];
+    expect(nearestParallel(skewed)).toEqual([1, 3]);
+    expect(nearestParallel([...skewed].reverse())).toEqual([1, 3].map((i) => (2 - i + 4) % 4));
+    // In space: an edge below another one in plan may rise.
+    const rising: Vec3[] = [
+      [0, 0, 0],
+      [10, 0, 0],
+      [10, 1, 8],
+      [0, 1, 0.5],
+    ];
+    expect(nearestParallel(rising)).toEqual([0, 2]);
   });
 });
 

@@ -1,7 +1,16 @@
 import { afterEach, describe, expect, it } from "vitest";
 import { type params, replaceParams } from "../../../src/app/state/parameters";
-import { addResults, mainResults, NO_RESULTS, results, setResults } from "../../../src/app/state/results";
+import {
+  addResults,
+  mainResults,
+  NO_RESULTS,
+  preliminaryFacets,
+  results,
+  setResults,
+  showPreliminary,
+} from "../../../src/app/state/results";
 import { showTab } from "../../../src/app/state/viewState";
+import type { Facet } from "../../../src/shared/records";
 
 const choose = (method: string) => {
   replaceParams({ method } as unknown as typeof params.value);
@@ -37,5 +46,17 @@ describe("results", () => {
     showTab("model");
     expect(results.value.lines).toBe(lines);
     expect(mainResults.value.lines).toBe(lines);
+  });
+
+  it("have no preliminary facets among them, and take their place", () => {
+    const first = [{ outer: [] }] as unknown as Facet[];
+    showPreliminary(first);
+    expect(preliminaryFacets.value).toBe(first);
+    expect(results.value.facets).toBeNull();
+    addResults("lines", { lines: new Float64Array(6) });
+    expect(preliminaryFacets.value).toBe(first);
+    addResults("facets", { facets: [] });
+    expect(preliminaryFacets.value).toBeNull();
+    showPreliminary(null);
   });
 });

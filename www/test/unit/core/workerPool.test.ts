@@ -7,7 +7,11 @@ let calls: [number, string, readonly unknown[], readonly Transferable[]][] = [];
 /** The worker whose shards fail. */
 let broken = -1;
 let why = "crash";
+/** The worker that cannot be started. */
+let unopened = -1;
 let made = 0;
+/** When first looks end. */
+let looked: Promise<void> = Promise.resolve();
 
 class FakeEngine {
   readonly number = made++;
@@ -18,8 +22,11 @@ class FakeEngine {
     this.onProgress = onProgress;
   }
 
-  open(): Promise<void> {
-    return Promise.resolve();
+  async open(): Promise<void> {
+    if (this.number === unopened) {
+      this.isOpen = false;
+      throw new EngineError("cannot be started", "crash");
+    }
   }
 
   close(): void {
@@ -41,6 +48,10 @@ class FakeEngine {
     }
     if (name === "shardsReadColours") {
       return false;
+    }
+    if (name === "firstLook") {
+      await looked;
+      return [{ facet: this.number }];
     }
     if (name === "runShard") {
       if (this.number === broken) {
@@ -80,6 +91,8 @@ describe("worker pool", () => {
     calls = [];
     fractions.length = 0;
     broken = -1;
+    unopened = -1;
+    looked = Promise.resolve();
     why = "crash";
     made = 0;
   });
@@ -167,5 +180,63 @@ describe("worker pool", () => {
     calls = [];
     expect(await pool.runShards({ ...wanted, workers: 1 })).toBeNull();
     expect(of("runShard")).toEqual([]);
+  });
+
+  it("has one worker look first while the others share stages, and then share them too", async () => {
+    let end = () => {};
+    looked = new Promise((resolve) => {
+      end = resolve;
+    });
+    const pool = await poolOf();
+    const views = new Uint8Array(1);
+    const found = pool.firstLook(views, {}, wanted.workers);
+    await pool.runShards(wanted);
+    expect(new Set(of("runShard").map(([worker]) => worker))).toEqual(new Set([0, 2]));
+    expect(of("runShard")[0]?.[2].at(-1)).toBe(2);
+    end();
+    expect(await found).toEqual([{ facet: 1 }]);
+    expect(of("firstLook")[0]?.[3]).toEqual([views.buffer]);
+    await pool.runShards(wanted);
+    expect(
+      new Set(
+        of("runShard")
+          .slice(-6)
+          .map(([worker]) => worker),
+      ),
+    ).toEqual(new Set([0, 1, 2]));
+  });
+
+  it("hires a worker for a first look where the engine works alone, and ends it", async () => {
+    looked = Promise.resolve();
+    const pool = await poolOf();
+    expect(await pool.firstLook(new Uint8Array(1), {}, 1)).toEqual([{ facet: 1 }]);
+    await pool.runShards({ ...wanted, workers: 2 });
+    expect(of("runShard").map(([worker]) => worker)).toContain(2);
+    expect(of("runShard").map(([worker]) => worker)).not.toContain(1);
+  });
+
+  it("has no first look of a worker that is ended", async () => {
+    looked = new Promise(() => {});
+    const pool = await poolOf();
+    const failing = pool.firstLook(new Uint8Array(1), {}, 2);
+    looked = Promise.reject(new EngineError("ended", "cancelled"));
+    await expect(failing).resolves.toBeNull();
+  });
+
+  it("has workers started before there is work, and goes on without one that does not start", async () => {
+    const pool = await poolOf();
+    pool.hire(3);
+    await pool.runShards(wanted);
+    expect(made).toBe(3);
+    pool.close();
+    unopened = 3;
+    pool.hire(2);
+    await new Promise((resolve) => setTimeout(resolve));
+    expect(await pool.firstLook(new Uint8Array(1), {}, 2)).toEqual([{ facet: 4 }]);
+    unopened = 5;
+    pool.close();
+    expect(await pool.firstLook(new Uint8Array(1), {}, 2)).toBeNull();
+    unopened = 6;
+    expect(await pool.runShards({ ...wanted, workers: 2 })).toMatchObject({ message: "cannot be started" });
   });
 });

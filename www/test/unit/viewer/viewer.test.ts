@@ -1,10 +1,10 @@
-import { PerspectiveCamera, Vector3 } from "three";
+import { PerspectiveCamera, Sphere, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import type { HalfPlane } from "../../../src/shared/records";
 import { groundCorners } from "../../../src/viewer/layers/cameras";
 import { normalTint } from "../../../src/viewer/layers/facets";
 import { fanCorners } from "../../../src/viewer/layers/fans";
-import { endsOfLines, standFor } from "../../../src/viewer/scene/bounds";
+import { endsOfLines, isNearlySame, standFor } from "../../../src/viewer/scene/bounds";
 import { yUp, zUpGroup } from "../../../src/viewer/scene/frame";
 
 describe("frame", () => {
@@ -94,6 +94,18 @@ describe("normalTint", () => {
     const north = tint([0, 0.6, 0.8]).getHSL({ h: 0, s: 0, l: 0 });
     expect(Math.abs(south.h - north.h)).toBeGreaterThan(0.2);
     expect(tint([0, 0, 1]).getHSL({ h: 0, s: 0, l: 0 }).s).toBeLessThan(0.02);
+  });
+});
+
+describe("isNearlySame", () => {
+  const sphere = (x: number, radius: number) => new Sphere(new Vector3(x, 0, 0), radius);
+
+  it("holds for a model where a preliminary one was, and for no other place or size", () => {
+    const seen = sphere(0, 20);
+    const pairs = [sphere(0, 20), sphere(3, 20), sphere(0, 23), sphere(-5, 15)];
+    expect(pairs.map((next) => isNearlySame(seen, next))).toEqual([true, true, true, true]);
+    const others = [sphere(6, 20), sphere(0, 25), sphere(0, 12), sphere(100, 20)];
+    expect(others.map((next) => isNearlySame(seen, next))).toEqual([false, false, false, false]);
   });
 });
 
