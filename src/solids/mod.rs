@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! partition  outlines of all facets -> one partition of the plan
+//! touching   buildings that touch themselves in a corner, parted
 //! rings      closed rings from the directed edges of a region
 //! walls      partition -> faces of a building: roofs, walls, ground
 //! manifold   faces -> closed oriented 2-manifold
@@ -20,6 +21,7 @@ mod manifold;
 mod partition;
 mod rejection;
 mod rings;
+mod touching;
 mod walls;
 
 pub use rejection::SolidRejection;
