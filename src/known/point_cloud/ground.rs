@@ -60,17 +60,17 @@ impl GroundPoints {
         let area = (x1 - x0) * (y1 - y0);
         let of_density = (POINTS_A_CELL * area / points.len() as f64).sqrt();
         let cell = larger(larger(of_density, FINEST_M), (area / MOST_CELLS).sqrt());
-        let (columns, rows) = (
-            ((x1 - x0) / cell) as usize + 1,
-            ((y1 - y0) / cell) as usize + 1,
-        );
-        if columns < 2 || rows < 2 || columns as f64 * rows as f64 > 2.0 * MOST_CELLS {
+        let [columns, rows] = [x1 - x0, y1 - y0].map(|size| (size / cell).floor() + 1.0);
+        // Neither is true of what is no number.
+        let is_grid = columns >= 2.0 && rows >= 2.0 && columns * rows <= 2.0 * MOST_CELLS;
+        if !is_grid {
             return Err(format!(
                 "its points of the ground lie within {:.1} m by {:.1} m",
                 x1 - x0,
                 y1 - y0
             ));
         }
+        let (columns, rows) = (columns as usize, rows as usize);
         let cells = Cells::new(points, [x0, y1], cell, [columns, rows]);
         let heights: Vec<Option<f64>> = (0..columns * rows).map(|k| cells.height(k)).collect();
         let closed = closed(&heights, columns, (WIDEST_GAP_M / cell) as usize);

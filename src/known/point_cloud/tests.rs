@@ -338,6 +338,7 @@ fn damaged_headers_are_refused_by_what_they_state() {
     assert!(damaged(104, &[11]).contains("point format 11"));
     assert!(damaged(105, &[9, 0]).contains("records have 9 bytes"));
     assert!(damaged(131, &f64::NAN.to_le_bytes()).contains("is no number"));
+    assert!(damaged(131, &1e300_f64.to_le_bytes()).contains("lie within"));
     assert!(damaged(104, &[0x83]).contains("record of LASzip"));
     assert!(refusal_of(whole[..100].to_vec()).contains("ends within its header"));
 }
